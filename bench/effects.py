@@ -3,7 +3,7 @@
 (docs/cost.md).
 
 ``added``: one scene with its effects added one by one. ``shares``: parts of clocks that several effects share, as they are to be
-set in effects/*.py and, of a pass, in plugin/engine/pass_run.cpp. ``forecast``: expected and measured cost of every scene of
+set in effects/*.py and, of a pass, in plugin/passes/pass_run.cpp. ``forecast``: expected and measured cost of every scene of
 scenes/ (runs them all), or of those named.
  Variants take turns, so that all of them see the same machine; figures are medians of processor time, or
 of the styles' own clocks; for ``shares`` minima of short rounds, because those clocks run on while others have the processor.

@@ -74,10 +74,10 @@ object b {{ shape box (5, 5, 5) cm position (6.5, 0, 2) cm {SOLID} velocity (-1,
 }
 END = "control {{ time 0.2 s frames 50 fps resolution 1 cm  {} }}\n"
 THREADS = {
-    "threads_of_passes": ("engine/*.cpp",),
-    "threads_of_contact": ("contact/*.cpp", "engine/team.cpp", "engine/contact_search.cpp", "engine/positions.cpp"),
-    "threads_of_cells": ("liquid/automaton.cpp", "liquid/occupancy.cpp", "engine/team.cpp"),
-    "threads_of_waves": ("liquid/waves*.cpp", "liquid/span.cpp", "engine/team.cpp"),
+    "threads_of_passes": ("passes/*.cpp", "threads/*.cpp", "geometry/*.cpp", "barrier/*.cpp"),
+    "threads_of_contact": ("contact/*.cpp", "threads/team.cpp", "barrier/contact_search.cpp", "geometry/aligned_array.cpp"),
+    "threads_of_cells": ("liquid/automaton/automaton.cpp", "liquid/occupancy.cpp", "threads/team.cpp"),
+    "threads_of_waves": ("liquid/waves/waves*.cpp", "liquid/waves/span.cpp", "threads/team.cpp"),
 }
 """Programs of tests/lab, and what of plugin/ they need."""
 SET = ("-DMDANIM_SET=common", "-DMDANIM_LANES=4")

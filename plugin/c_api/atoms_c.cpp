@@ -3,7 +3,7 @@
 
 #include "c_api/abi.h"
 #include "c_api/guarded.h"
-#include "styles/bond_mdanim_harmonic.h"
+#include "lammps/bond_mdanim_harmonic.h"
 
 #include "atom.h"
 #include "bond.h"

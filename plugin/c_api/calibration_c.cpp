@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// Plain C functions on what this processor takes (engine/calibration.h), for ctypes. Numbers are nanoseconds: of each width
+// Plain C functions on what this processor takes (passes/calibration.h), for ctypes. Numbers are nanoseconds: of each width
 // without and with dashpots, in the order of mdanim_width_name, and last what a call of threads takes that sleep and that are
 // awake.
 
 #include "c_api/abi.h"
 #include "c_api/guarded.h"
-#include "engine/calibration.h"
+#include "passes/calibration.h"
 
 #include <utility>
 

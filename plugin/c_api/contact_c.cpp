@@ -3,7 +3,7 @@
 
 #include "c_api/abi.h"
 #include "c_api/guarded.h"
-#include "styles/fix_mdanim_contact.h"
+#include "lammps/fix_mdanim_contact.h"
 
 #include "lammps.h"
 #include "modify.h"

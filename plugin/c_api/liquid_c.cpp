@@ -4,7 +4,7 @@
 
 #include "c_api/abi.h"
 #include "c_api/guarded.h"
-#include "styles/fix_mdanim_liquid.h"
+#include "lammps/fix_mdanim_liquid.h"
 
 #include "lammps.h"
 #include "modify.h"

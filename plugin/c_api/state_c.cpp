@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// Plain C functions for ctypes: the state of fixes as records (styles/stateful.h), by the ID of the fix. All ranks call them
+// Plain C functions for ctypes: the state of fixes as records (lammps/stateful.h), by the ID of the fix. All ranks call them
 // together. No exception leaves them.
 
 #include "c_api/abi.h"
 #include "c_api/guarded.h"
-#include "styles/stateful.h"
+#include "lammps/stateful.h"
 
 #include "fix.h"
 #include "lammps.h"

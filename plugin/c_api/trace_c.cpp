@@ -4,7 +4,7 @@
 
 #include "c_api/abi.h"
 #include "c_api/guarded.h"
-#include "styles/fix_mdanim_leapfrog.h"
+#include "lammps/fix_mdanim_leapfrog.h"
 
 #include "atom.h"
 #include "lammps.h"

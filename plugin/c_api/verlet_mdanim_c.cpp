@@ -2,7 +2,7 @@
 // Plain C functions on run_style verlet/mdanim, for ctypes.
 
 #include "c_api/abi.h"
-#include "styles/verlet_mdanim.h"
+#include "lammps/verlet_mdanim.h"
 
 #include "lammps.h"
 #include "update.h"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// Contacts, four at a time, for one set of instructions: CMake compiles this file once for each (engine/kernels_of_set.cpp).
+// Contacts, four at a time, for one set of instructions: CMake compiles this file once for each (passes/kernels_of_set.cpp).
 
 #include "contact/contact_kernel.h"
-#include "engine/vectors.h"
+#include "simd/vectors.h"
 
 #define MDANIM_NAME_OF(set) #set
 #define MDANIM_NAME(set) MDANIM_NAME_OF(set)

@@ -7,7 +7,7 @@
 #include "contact/contact_body.h"
 #include "contact/material_map.h"
 #include "contact/padded_vec3.h"
-#include "contact/zone.h"
+#include "geometry/zone.h"
 
 #include <algorithm>
 #include <array>

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // What a contact does in a step, once X of its point is known: depth, the part that counts, forces on the point and the host.
-// Templates over Real (laws/real.h), compiled for every set of instructions (contact_kernel_of_set.cpp).
+// Templates over Real (numbers/real.h), compiled for every set of instructions (contact_kernel_of_set.cpp).
 
 #ifndef MDANIM_CONTACT_PUSH_H
 #define MDANIM_CONTACT_PUSH_H
 
 #include "contact/lattice_map.h"
-#include "laws/contact.h"
+#include "contact/law.h"
 
 namespace mdanim {
 

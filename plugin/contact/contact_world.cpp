@@ -4,7 +4,7 @@
 
 #include "contact/contact_world.h"
 
-#include "engine/waiting.h"
+#include "threads/waiting.h"
 
 #include <algorithm>
 #include <atomic>

@@ -8,8 +8,8 @@
 #include "contact/contact_field.h"
 #include "contact/contact_object.h"
 #include "contact/plane_field.h"
-#include "engine/boxes.h"
-#include "engine/team.h"
+#include "geometry/boxes.h"
+#include "threads/team.h"
 
 #include <array>
 #include <map>

@@ -3,12 +3,12 @@
 //   x(X) = sum_b N_b(X) x_b    trilinear: the 8 corners of a cell; smooth: quadratic B-splines on up to 27 particles, linear on
 //                              two rows within half a cell of a face: without kinks, and the face is met
 // Weights sum to 1 and reproduce X, so forces that are spread by them keep momentum and angular momentum.
-// Templates over Real (laws/real.h), compiled for every set of instructions (contact_kernel_of_set.cpp).
+// Templates over Real (numbers/real.h), compiled for every set of instructions (contact_kernel_of_set.cpp).
 
 #ifndef MDANIM_LATTICE_MAP_H
 #define MDANIM_LATTICE_MAP_H
 
-#include "laws/vec3.h"
+#include "numbers/vec3.h"
 
 #include <cstddef>
 #include <cstdint>

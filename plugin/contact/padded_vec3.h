@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // A place of a particle or a force on it, as wide as a vector, which the kernels read and write at once. Plain data, for the
-// reason told in engine/kernels_of_set.cpp.
+// reason told in passes/kernels_of_set.cpp.
 
 #ifndef MDANIM_PADDED_VEC3_H
 #define MDANIM_PADDED_VEC3_H
 
-#include "laws/vec3.h"
+#include "numbers/vec3.h"
 
 namespace mdanim {
 

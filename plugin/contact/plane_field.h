@@ -6,7 +6,7 @@
 #define MDANIM_PLANE_FIELD_H
 
 #include "contact/contact_object.h"
-#include "laws/contact.h"
+#include "contact/law.h"
 
 #include <cstdint>
 #include <vector>

@@ -4,9 +4,9 @@
 #ifndef MDANIM_BASIN_H
 #define MDANIM_BASIN_H
 
-#include "engine/team.h"
-#include "laws/immersed.h"
+#include "buoyancy/immersed.h"
 #include "liquid/occupancy.h"
+#include "threads/team.h"
 
 #include <algorithm>
 #include <cmath>

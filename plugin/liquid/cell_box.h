@@ -4,7 +4,7 @@
 #ifndef MDANIM_CELL_BOX_H
 #define MDANIM_CELL_BOX_H
 
-#include "engine/team.h"
+#include "threads/team.h"
 
 #include <algorithm>
 #include <cstddef>

@@ -5,10 +5,10 @@
 #ifndef MDANIM_OCCUPANCY_H
 #define MDANIM_OCCUPANCY_H
 
-#include "laws/vec3.h"
 #include "liquid/cell_box.h"
 #include "liquid/rank_sums.h"
-#include "liquid/row_slabs.h"
+#include "numbers/vec3.h"
+#include "threads/row_slabs.h"
 
 #include <algorithm>
 #include <cstddef>

@@ -35,7 +35,7 @@ MOVING = {
 }
 """Scenes whose steps are taken by passes."""
 ACCOUNTS = np.s_[16:48]
-"""Bytes of a liquid's state that only tell energies, in the heads of plugin/liquid/automaton_basin_state.cpp and of
+"""Bytes of a liquid's state that only tell energies, in the heads of plugin/liquid/automaton/automaton_basin_state.cpp and of
 wave_basin_state.cpp."""
 
 

@@ -20,7 +20,8 @@ from mdanim_lammps.scene.scene import ContactModel
 from scene_texts import POND, SHELF
 
 ACCOUNTS = np.s_[16:48]
-"""Bytes of a liquid's state that only tell energies, StateHead in plugin/liquid/basin_state.cpp."""
+"""Bytes of a liquid's state that only tell energies, in the heads of plugin/liquid/automaton/automaton_basin_state.cpp and
+wave_basin_state.cpp."""
 
 
 def particles(system, objects) -> np.ndarray:

@@ -9,7 +9,7 @@ import numpy as np
 from plugin_library import library
 
 FULLEST = 250
-"""Most units that a cell may hold (plugin/liquid/cells.h)."""
+"""Most units that a cell may hold (plugin/liquid/automaton/cells.h)."""
 
 CELLS = np.ctypeslib.ndpointer(np.uint8, flags="C_CONTIGUOUS")
 INT, LONG, SEED = ctypes.c_int, ctypes.c_long, ctypes.c_uint64

@@ -29,7 +29,7 @@ MEMORY = [
     ("damping", "f8"),
     ("drag", "f8", 3),
 ]
-"""ContactMemory in plugin/laws/contact.h."""
+"""ContactMemory in plugin/contact/law.h."""
 FIELD = np.dtype(
     [
         ("point", "i4"),

@@ -21,10 +21,13 @@ PLUGIN, TESTS = ROOT / "plugin", ROOT / "tests" / "lab" / "plugin"
 FOLDER = ROOT / "build" / "mdanimtest"
 """Of the library alone: as LAMMPS_PLUGIN_PATH it makes LAMMPS load the styles of the tests."""
 FILE = FOLDER / "mdanimtestplugin.so"
-ENGINE = [
-    PLUGIN / "engine" / f"{n}.cpp" for n in ("cutter", "displacement_budget", "positions", "range_cut", "tag_order", "team")
-]
-SOURCES = (*sorted(TESTS.glob("*.cpp")), *sorted((PLUGIN / "liquid").glob("*.cpp")), *ENGINE, PLUGIN / "styles" / "stateful.cpp")
+FLOORS = ("threads/team", "geometry/aligned_array", "lammps/stateful")
+PASSES = ("passes/cutter", "passes/displacement_budget", "passes/range_cut", "passes/tag_order")
+SOURCES = (
+    *sorted(TESTS.glob("*.cpp")),
+    *sorted((PLUGIN / "liquid").rglob("*.cpp")),
+    *(PLUGIN / f"{name}.cpp" for name in (*FLOORS, *PASSES)),
+)
 
 
 def build() -> Path:

@@ -2,9 +2,9 @@
 // Bodies that turn in an automaton by one thread and by several: which cells they fill, what they displace, and sweeps; for the
 // thread sanitizer (tests/sanitize.py). Exit code 1 when a cell differs.
 
-#include "liquid/automaton.h"
+#include "liquid/automaton/automaton.h"
 #include "liquid/occupancy.h"
-#include "liquid/row_slabs.h"
+#include "threads/row_slabs.h"
 
 #include <cmath>
 #include <cstdio>

@@ -2,10 +2,10 @@
 // Passes over damped and plain lattices by one thread and by several, without LAMMPS: a program that tests/sanitize.py compiles
 // with the thread sanitizer. Exit code 0: positions, velocities, boxes and sums are the same to the bit.
 
-#include "engine/boxes.h"
-#include "engine/calibration.h"
-#include "engine/loss.h"
-#include "engine/pass_engine.h"
+#include "geometry/boxes.h"
+#include "passes/calibration.h"
+#include "passes/loss.h"
+#include "passes/pass_engine.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,7 @@
 // A splash of waves beside a shelf by one thread and by several, for the thread sanitizer (tests/sanitize.py). Exit code 1 when a
 // bit differs.
 
-#include "liquid/waves.h"
+#include "liquid/waves/waves.h"
 
 #include <cmath>
 #include <cstdio>

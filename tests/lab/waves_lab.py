@@ -13,7 +13,7 @@ import numpy as np
 from plugin_library import library
 
 UNIT = 1 << 20
-"""Units of liquid in a cell (plugin/liquid/span.h)."""
+"""Units of liquid in a cell (plugin/liquid/waves/span.h)."""
 SOLID = 4096
 """Solid part of a solid cell."""
 

@@ -22,9 +22,9 @@ from ..errors import SetupError
 CALIBRATION = "MDANIM_CALIBRATION"
 """Environment variable with the file, if it is not to be the one in the user's cache."""
 TYPICAL_CALLING = 400.0
-"""Nanoseconds, as plugin/engine/calibration.cpp has it."""
+"""Nanoseconds, as plugin/passes/calibration.cpp has it."""
 CALLS_OF_TASK = 10.0
-"""The least that a thread is asked for, in calls, as plugin/engine/calibration.cpp has it."""
+"""The least that a thread is asked for, in calls, as plugin/passes/calibration.cpp has it."""
 
 
 @dataclass(frozen=True)

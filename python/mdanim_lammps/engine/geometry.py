@@ -17,7 +17,7 @@ NOT_FINITE, INVERTED = 1, 2
 
 
 class _Model(ctypes.Structure):
-    """A system as the plugin takes it: Model in plugin/c_api/guard_c.cpp."""
+    """A system as the plugin takes it: Model in plugin/c_api/frame_checks_c.cpp."""
 
     _fields_ = [
         ("count", ctypes.c_longlong),

@@ -40,7 +40,7 @@ class Instance:
     On a communicator of several ranks all of them call all methods together, with the same arguments, and all get the same
     answers; each holds the particles of its part of space. Every number of a State is the same on any number of ranks, to the
     last bit; energies are sums over particles and agree but for rounding, those that dashpots take to about 1e-3
-    (plugin/engine/loss.h). When LAMMPS stops on one rank only, the error is raised there alone, and the other ranks wait for
+    (plugin/passes/loss.h). When LAMMPS stops on one rank only, the error is raised there alone, and the other ranks wait for
     ever: the caller must abort them.
     """
 

@@ -2,7 +2,7 @@
 """The state of a plan between two steps: positions, velocities, forces, and what fixes keep besides, as records by object.
 
 A record is of one object, of a pair of objects, or of the whole. Its bytes depend neither on how particles are numbered nor on
-which other objects there are (plugin/styles/stateful.h), so records are cut out, sent and joined here without a look inside.
+which other objects there are (plugin/lammps/stateful.h), so records are cut out, sent and joined here without a look inside.
 """
 
 from __future__ import annotations

@@ -19,7 +19,7 @@ from .plan import Plan
 THREADS = "MDANIM_THREADS"
 """Environment variable with the number of threads of an instance: the processes of executors inherit it."""
 MOST_THREADS = 32
-"""Team::MOST_TASKS of plugin/engine/team.h."""
+"""Team::MOST_TASKS of plugin/threads/team.h."""
 
 
 def check_threads(threads: int | str) -> int:

@@ -23,7 +23,7 @@ BYTES_PER_CELL = 20.0
 NARROWEST = 3
 """Fewest cells along a side: with two, no cell is off the walls, and a slope has no middle."""
 MOST_DROPS = 2048
-"""Drops of a liquid that fly at once, as in plugin/liquid/drops.h: where there are more, they merge."""
+"""Drops of a liquid that fly at once, as in plugin/liquid/waves/drops.h: where there are more, they merge."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -173,7 +173,7 @@ def _unusable(liquid: Liquid, grid: Grid) -> list[Problem]:
 
 
 def _too_fast(scene: SceneRecord) -> list[Problem]:
-    """Liquid that comes in faster than waves are let flow, WaveLaw::fastest in plugin/laws/waves.h."""
+    """Liquid that comes in faster than waves are let flow, WaveLaw::fastest in plugin/liquid/waves/law.h."""
     liquid = scene.liquid
     most = 4.0 * math.sqrt(math.hypot(*scene.gravity) * (liquid.high[2] - liquid.low[2]))
     speeds = [("current", c.speed) for c in liquid.current] + [("inflow", max(map(abs, f.velocity))) for f in liquid.inflow]

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from .basin import Grid
 
 SHUT = 31 / 32
-"""Solid part of a cell from which waves take it for shut (plugin/liquid/span.h)."""
+"""Solid part of a cell from which waves take it for shut (plugin/liquid/waves/span.h)."""
 SAMPLES = (1 / 6, 1 / 2, 5 / 6)
 """Places of samples along each edge of a lattice cell [-]."""
 

@@ -2,7 +2,7 @@
 """Objects that start within reach of each other's contact, or behind a plane: the energy of contact at the start, and the gap
 with which there is none.
 
-The laws are those of plugin/laws/barrier.h and wall.h, on the initial positions.
+The laws are those of plugin/barrier/law.h and plugin/wall/law.h, on the initial positions.
 """
 
 from __future__ import annotations

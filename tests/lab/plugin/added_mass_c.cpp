@@ -2,7 +2,7 @@
 // A plain C function over the liquid that moves with bodies, for tests. Columns are (ny, nx).
 
 #include "c_api/abi.h"
-#include "liquid/added_mass.h"
+#include "liquid/waves/added_mass.h"
 
 #include <cstring>
 

@@ -3,9 +3,9 @@
 
 #include "c_api/abi.h"
 #include "c_api/guarded.h"
-#include "laws/counter_rng.h"
-#include "liquid/automaton.h"
-#include "liquid/automaton_rules.h"
+#include "liquid/automaton/automaton.h"
+#include "liquid/automaton/automaton_rules.h"
+#include "numbers/counter_rng.h"
 
 #include <cstdint>
 

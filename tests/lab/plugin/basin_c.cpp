@@ -4,7 +4,7 @@
 
 #include "c_api/abi.h"
 #include "c_api/guarded.h"
-#include "liquid/automaton_basin.h"
+#include "liquid/automaton/automaton_basin.h"
 
 #include <cmath>
 #include <vector>

@@ -2,12 +2,12 @@
 // Plain C functions over the engine's classes that need no LAMMPS, for tests: cuts, tag order, losses, the displacement budget.
 
 #include "c_api/abi.h"
-#include "engine/cutter.h"
-#include "engine/displacement_budget.h"
-#include "engine/loss.h"
-#include "engine/range_cut.h"
-#include "engine/tag_order.h"
-#include "engine/team.h"
+#include "passes/cutter.h"
+#include "passes/displacement_budget.h"
+#include "passes/loss.h"
+#include "passes/range_cut.h"
+#include "passes/tag_order.h"
+#include "threads/team.h"
 
 #include <algorithm>
 #include <array>

@@ -3,7 +3,7 @@
 
 #include "fix_mdanim_test_memory.h"
 
-#include "engine/boxes.h"
+#include "geometry/boxes.h"
 
 #include "atom.h"
 #include "comm.h"

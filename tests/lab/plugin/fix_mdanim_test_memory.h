@@ -10,7 +10,7 @@
 #define LMP_FIX_MDANIM_TEST_MEMORY_H
 
 #include "fix.h"
-#include "styles/stateful.h"
+#include "lammps/stateful.h"
 
 #include <cstdint>
 #include <map>

@@ -2,9 +2,9 @@
 // Plain C functions over Leveller and smooth_surface, for tests and benchmarks. Grids are (nz, ny, nx), x fastest.
 
 #include "c_api/abi.h"
-#include "liquid/cells.h"
-#include "liquid/level.h"
-#include "liquid/surface.h"
+#include "liquid/automaton/cells.h"
+#include "liquid/automaton/level.h"
+#include "liquid/automaton/surface.h"
 
 using mdanim::Cells;
 

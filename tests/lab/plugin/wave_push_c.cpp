@@ -2,7 +2,7 @@
 // A plain C function over the push of waves, for tests. Cells are (nz, ny, nx), columns (ny, nx).
 
 #include "c_api/abi.h"
-#include "liquid/wave_push.h"
+#include "liquid/waves/wave_push.h"
 
 using mdanim::WavePush;
 using mdanim::Waves;

@@ -4,7 +4,7 @@
 
 #include "c_api/abi.h"
 #include "c_api/guarded.h"
-#include "liquid/waves.h"
+#include "liquid/waves/waves.h"
 
 #include <algorithm>
 #include <cstdint>

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""Naive twin of plugin/liquid/automaton.cpp: every rule cell by cell, as it reads. Arrays are (nz, ny, nx)."""
+"""Naive twin of plugin/liquid/automaton/automaton.cpp: every rule cell by cell, as it reads. Arrays are (nz, ny, nx)."""
 
 from itertools import product
 

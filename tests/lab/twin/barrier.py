@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""Naive twin of plugin/laws/barrier.h: every pair of particles, one at a time, no boxes."""
+"""Naive twin of plugin/barrier/law.h: every pair of particles, one at a time, no boxes."""
 
 import numpy as np
 

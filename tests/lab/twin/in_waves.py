@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""Naive twin of what level, still liquid with momentum does to lattices of particles (plugin/styles/buoyancy.cpp).
+"""Naive twin of what level, still liquid with momentum does to lattices of particles (plugin/lammps/buoyancy.cpp).
 
 docs/physics-liquid.md, "Volume by parts of lattice cells", "Drag" and "Solids are calmed". Cells of the liquid are cubes.
 """

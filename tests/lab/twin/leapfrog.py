@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""Naive twin of plugin/laws/leapfrog.h: eq. (3.12) as printed, with velocities kept at half steps."""
+"""Naive twin of plugin/leapfrog/law.h: eq. (3.12) as printed, with velocities kept at half steps."""
 
 import numpy as np
 

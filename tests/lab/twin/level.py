@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""Naive twin of plugin/liquid/level.h and plugin/liquid/surface.h: whole arrays (nz, ny, nx), bodies by scipy."""
+"""Naive twin of level.h and surface.h of plugin/liquid/automaton/: whole arrays (nz, ny, nx), bodies by scipy."""
 
 from collections import deque
 from math import ceil

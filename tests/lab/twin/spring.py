@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""Naive twin of plugin/laws/spring.h: Wcislo 1999, eq. (3.6), (3.7), one bond at a time."""
+"""Naive twin of plugin/springs/law.h: Wcislo 1999, eq. (3.6), (3.7), one bond at a time."""
 
 import numpy as np
 

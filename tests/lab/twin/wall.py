@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""Naive twin of plugin/laws/wall.h: nearest surface points by formulas of our own, one function per shape."""
+"""Naive twin of plugin/wall/law.h: nearest surface points by formulas of our own, one function per shape."""
 
 import numpy as np
 

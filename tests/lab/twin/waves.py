@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""Naive twin of plugin/liquid/waves.h, written from the equations (W1) ... (W9) of docs/physics-liquid.md.
+"""Naive twin of plugin/liquid/waves/waves.h, written from the equations (W1) ... (W9) of docs/physics-liquid.md.
 
 Spans and links are objects, each step is a loop over them, the linear system is a full matrix. Solid parts are
 (nz, ny, nx), in 1/4096.

@@ -1,0 +1,360 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// Loops over particles and faces; the laws are in buoyancy/law.h, the surface in liquid/basin.h.
+
+#include "lammps/buoyancy.h"
+
+#include "buoyancy/law.h"
+#include "numbers/stopwatch.h"
+
+#include "atom.h"
+#include "comm.h"
+#include "error.h"
+#include "fmt/format.h"
+#include "force.h"
+#include "update.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <unordered_map>
+
+using namespace LAMMPS_NS;
+
+namespace mdanim {
+
+static constexpr const char *STYLE = "fix mdanim/liquid";
+static constexpr double PARTICLE = 25.0;    // or face, or lattice cell [ns], about
+
+// --- the command ---
+
+bool Buoyancy::keyword(int iarg, const char *word, const char *value)
+{
+  if (strcmp(word, "buoyancy") == 0) {
+    volume = ParticleValue(lmp, "fix mdanim/liquid: buoyancy", iarg + 1, value);
+    lifts = true;
+  } else if (strcmp(word, "drag") == 0) {
+    gamma = ParticleValue(lmp, "fix mdanim/liquid: drag", iarg + 1, value);
+    slows = true;
+  } else if (strcmp(word, "quadratic") == 0) {
+    per_length = ParticleValue(lmp, "fix mdanim/liquid: quadratic", iarg + 1, value);
+    is_quadratic = true;
+  } else if (strcmp(word, "lambda") == 0) {
+    lambda_column = ParticleColumn(lmp, STYLE, word, iarg + 1, value);
+  } else if (strcmp(word, "base") == 0) {
+    base_column = ParticleColumn(lmp, STYLE, word, iarg + 1, value);
+  } else if (strcmp(word, "faces") == 0) {
+    faces_of = ParticleTable(lmp, "fix mdanim/liquid: faces", iarg + 1, value);
+  } else
+    return false;
+  return true;
+}
+
+void Buoyancy::init(const std::string &fix)
+{
+  if (slows && !lambda_column.given())
+    error->all(FLERR, "{}: drag needs lambda d_NAME, the property that fix mdanim/leapfrog reads", fix);
+  if (!slows && (lambda_column.given() || base_column.given()))
+    error->all(FLERR, "{}: lambda and base say where drag goes, but there is no drag; add one", fix);
+  if (is_quadratic && !slows) error->all(FLERR, "{}: quadratic is a part of drag; add drag, 0 for no other part", fix);
+  if (slows && !lifts) error->all(FLERR, "{}: drag acts on the volume of particles, which buoyancy gives; add buoyancy", fix);
+  if (lifts) volume.init(lmp);
+  if (slows) gamma.init(lmp);
+  if (is_quadratic) per_length.init(lmp);
+  if (!faces_of.given()) return;
+  faces_width = faces_of.width(lmp);
+  if (faces_width == 0 || faces_width % 3)
+    error->all(
+        FLERR,
+        "{}: faces names i2_{}, which is no property of 3 integers a face; make it with 'fix ID all property/atom i2_{} 36'", fix,
+        faces_of.name, faces_of.name);
+}
+
+// --- what depends on lists ---
+
+void Buoyancy::clear_friction(int groupbit) const
+{
+  if (!slows) return;
+  double *const lambda = lambda_column.values(lmp);
+  const double *const base = base_column.given() ? base_column.values(lmp) : nullptr;
+  for (int i = 0; i < atom->nlocal; ++i)
+    if (atom->mask[i] & groupbit) lambda[i] = base ? base[i] : 0.0;
+}
+
+// Each face once, with its corners in an order that does not depend on the particle that names it.
+void Buoyancy::find_faces(const std::vector<int> &near, const std::string &fix)
+{
+  faces.clear();
+  face_of.clear();
+  face_of_first.assign(1, 0);
+  int *const *table = faces_of.rows(lmp);
+  std::unordered_map<std::uint64_t, int> known;    // by the tags across: no other face has both
+  for (const int i : near) {
+    for (int k = 0; k < faces_width && table[i][k]; k += 3) {
+      tagint tag[4] = {atom->tag[i], table[i][k], table[i][k + 1], table[i][k + 2]};
+      std::rotate(tag, std::min_element(tag, tag + 4), tag + 4);
+      const auto [place, is_new] = known.try_emplace(
+          static_cast<std::uint64_t>(tag[0]) << 32 | static_cast<std::uint32_t>(tag[2]), static_cast<int>(faces.size()));
+      face_of.push_back(place->second);
+      if (!is_new) continue;
+      Face face;
+      for (int n = 0; n < 4; ++n) {
+        face.corner[n] = atom->map(tag[n]);
+        if (face.corner[n] < 0)
+          error->one(FLERR, "{}: particle {}, a corner of a face of particle {}, is out of reach; raise comm_modify cutoff", fix,
+                     tag[n], atom->tag[i]);
+      }
+      faces.push_back(face);
+    }
+    face_of_first.push_back(static_cast<int>(face_of.size()));
+  }
+}
+
+// Faces push at the corners near the liquid and are read at all four, which are of one object and mostly all near the liquid.
+void Buoyancy::append_required_atoms(std::vector<int> &particles) const
+{
+  for (const Face &face : faces) particles.insert(particles.end(), face.corner, face.corner + 4);
+}
+
+// --- an update of the liquid ---
+
+void Buoyancy::give_impulses(Basin &basin, const std::vector<int> &near)
+{
+  if (!basin.acts_on_cells() || !lifts) return;
+  const double *const volumes = volume.values(lmp);
+  for (const int i : near) {
+    InLiquid &of = kept[i];
+    if (of.waves.along_x != 0.0 || of.waves.along_y != 0.0)
+      basin.take_push((volumes ? volumes[i] : volume.number) * Vec3{of.waves.along_x, of.waves.along_y, 0.0});
+    if (of.impulse_x == 0.0 && of.impulse_y == 0.0) continue;
+    basin.take_impulse(basin.in_cells(atom->x[i]), {of.impulse_x, of.impulse_y, 0.0});
+    of.impulse_x = of.impulse_y = 0.0;
+  }
+}
+
+void Buoyancy::look(const Basin &basin, const std::vector<int> &near)
+{
+  if (!basin.acts_on_cells() || !lifts || near.empty()) return;
+  const Lap lap(seconds);
+  const double *const *x = atom->x;
+  on_parts.resize(cells.cells.size());
+  threads.parts(static_cast<long>(on_parts.size()), PARTICLE, [&](long from, long to) {
+    for (long n = from; n < to; ++n) {
+      Vec3 sum;
+      for (const int corner : cells.cells[n].corner) sum += vec3(x[corner]);
+      const double middle[3] = {0.125 * sum.x, 0.125 * sum.y, 0.125 * sum.z};
+      on_parts[n] = basin.on_parts(basin.in_cells(middle));
+    }
+  });
+  threads.parts(static_cast<long>(near.size()), PARTICLE, [&](long from, long to) {
+    for (long n = from; n < to; ++n) kept[near[n]] = look_at_particle(basin, n, x[near[n]]);
+  });
+}
+
+// The mean of what acts on its parts of lattice cells. Until the next update s is a straight line between its values where the
+// particle and all around it have gone up or down as far as an update lets them.
+InLiquid Buoyancy::look_at_particle(const Basin &basin, std::size_t n, const double *x) const
+{
+  const double per_height = 1.0 / basin.shape.cell.z, z = (x[2] - basin.shape.low.z) * per_height, far = basin.pace.stride;
+  InWaves<double> mean;
+  double s = 0.0, lower = 0.0, higher = 0.0;
+  int parts = 0;
+  cells.each_of(n, [&](int cell) {
+    const Basin::OnParts &on = on_parts[cell];
+    const double here = on.part_below(z), beside = std::max(0.0, here + on.beside);
+    ++parts;
+    s += here;
+    lower += on.part_below(z - 2.0 * far);    // the middle of the cell goes as far as the corner
+    higher += on.part_below(z + 2.0 * far);
+    mean.more += on.more;
+    mean.along_x += on.along_x * beside;
+    mean.along_y += on.along_y * beside;
+    mean.flow_x += on.flow_x;
+    mean.flow_y += on.flow_y;
+  });
+  if (parts == 0) return {};
+  const double part = 1.0 / parts;
+  for (double *value : {&mean.more, &mean.along_x, &mean.along_y, &mean.flow_x, &mean.flow_y}) *value *= part;
+  mean.slope = part * (lower - higher) / (2.0 * far) * per_height;
+  mean.base = part * s + mean.slope * x[2];
+  if (mean.acts()) mean.rising = basin.rising_at(basin.in_cells(x));
+  return {mean.rounded()};
+}
+
+// --- a step ---
+
+bool Buoyancy::acts_in_passes(const Basin &basin, const double *lambda) const
+{ return basin.acts_on_cells() && lifts && slows && lambda == lambda_column.values(lmp); }
+
+std::function<ImmersedMover(int)> Buoyancy::immersed(const std::vector<char> &is_near) const
+{
+  const auto of = [this](const ParticleValue &value) {
+    return [values = value.values(lmp), number = value.number](int i) { return values ? values[i] : number; };
+  };
+  const double *const lambda = lambda_column.values(lmp), *const base = base_column.given() ? base_column.values(lmp) : nullptr;
+  return [=, &is_near, volume = of(volume), gamma = of(gamma), per_length = of(per_length)](int i) -> ImmersedMover {
+    const double mass = mass_of(atom->rmass, atom->mass, atom->type, i);
+    if (!is_near[i]) return {0.0, mass, 0.0, 0.0, lambda[i]};
+    return {volume(i), mass, gamma(i), is_quadratic ? per_length(i) : 0.0, base ? base[i] : 0.0};
+  };
+}
+
+double Buoyancy::weight(const Basin &basin) const { return basin.g / force->ftm2v; }
+
+LiquidScales Buoyancy::scales(const Basin &basin, bool in_step) const
+{
+  return {rho,
+          weight(basin),
+          basin.calms_solids(),
+          1.0 / force->ftm2v,
+          in_step && basin.acts_on_cells() ? update->dt * force->ftm2v / rho : 0.0,
+          is_quadratic};
+}
+
+// What is the same for all particles.
+struct Buoyancy::Acting {
+  LiquidScales liquid;
+  const double *const *x, *const *v;
+  double *const *f;
+  const double *volume, *gamma, *per_length, *base;
+  double *lambda;
+  InLiquid *kept;         // nullptr where the surface is asked in each step
+  double above, below;    // nothing is immersed from `above` up; most particles of a large body need not look up the surface
+};
+
+// On a particle, the n-th of those that are looked at.
+__attribute__((always_inline)) inline Buoyancy::Wet Buoyancy::act_on(const Acting &now, const Basin &basin, std::size_t n, int i)
+{
+  const double *const x = now.x[i];
+  Basin::AtPlace at;
+  if (now.kept) {
+    at = now.kept[i].waves.at(x[2]);
+  } else if (x[2] < now.above) {
+    if (x[2] <= now.below && basin.over_floor(x))
+      at.immersed = at.push.z = 1.0;
+    else
+      at = basin.at(basin.in_cells(x));
+  }
+  const Immersed<double> particle{now.volume ? now.volume[i] : volume.number, mass_of(atom->rmass, atom->mass, atom->type, i),
+                                  now.gamma ? now.gamma[i] : gamma.number,
+                                  now.per_length ? now.per_length[i] : per_length.number};
+  Vec3 push;
+  if (!pressed())
+    push = lift_along(now.liquid, particle.volume, at.push);
+  else
+    for (int k = face_of_first[n]; k < face_of_first[n + 1]; ++k) push += faces[face_of[k]].push;
+  const auto force = liquid_force(now.liquid, particle, at, push, vec3(now.v[i]));
+  if (now.lambda) now.lambda[i] = (now.base ? now.base[i] : 0.0) + force.lambda;
+  if (now.kept) {
+    now.kept[i].impulse_x += force.impulse_x;
+    now.kept[i].impulse_y += force.impulse_y;
+  }
+  add_to(now.f[i], force.push);
+  return {i, force.push, force.lambda};
+}
+
+// Threads share particles and faces. What all of them do to the liquid and to the ledger is added up in the order of particles.
+void Buoyancy::act(const Basin &basin, const std::vector<int> &these, bool in_step)
+{
+  wet.resize(lifts ? these.size() : 0);
+  if (wet.empty()) return;
+  const Lap lap(seconds);
+  const double floor = basin.shape.low.z, height = basin.shape.cell.z;
+  const Acting now{scales(basin, in_step),
+                   atom->x,
+                   atom->v,
+                   atom->f,
+                   volume.values(lmp),
+                   slows ? gamma.values(lmp) : nullptr,
+                   is_quadratic ? per_length.values(lmp) : nullptr,
+                   base_column.given() ? base_column.values(lmp) : nullptr,
+                   slows ? lambda_column.values(lmp) : nullptr,
+                   basin.acts_on_cells() ? kept.data() : nullptr,
+                   floor + (basin.top() + 1.0) * height,
+                   basin.all_below()};
+  threads.parts(static_cast<long>(faces.size()), PARTICLE, [&](long from, long to) {
+    for (long n = from; n < to; ++n) faces[n].push = pressure_on(faces[n], basin);
+  });
+  threads.parts(static_cast<long>(these.size()), PARTICLE, [&](long from, long to) {
+    for (long n = from; n < to; ++n) wet[n] = act_on(now, basin, n, these[n]);
+  });
+}
+
+// What hydrostatic pressure does to each corner of a face.
+Vec3 Buoyancy::pressure_on(const Face &face, const Basin &basin) const
+{
+  const double *const *x = atom->x;
+  const Vec3 a = vec3(x[face.corner[0]]), b = vec3(x[face.corner[1]]), c = vec3(x[face.corner[2]]), d = vec3(x[face.corner[3]]);
+  const Vec3 middle = 0.25 * ((a + c) + (b + d));
+  const double depth = basin.pressing_depth(middle, cross(c - a, d - b));
+  if (depth <= 0.0) return {};
+  return corner_push(rho * weight(basin) * depth * basin.shape.cell.z, a, b, c, d);
+}
+
+// --- the ledger ---
+
+// Power of the lift, and what drag takes, at the velocities of now.
+Basin::Energies Buoyancy::power() const
+{
+  constexpr std::size_t CHUNK = 1024;    // of particles, with sums of its own
+  constexpr double NS_OF_CHUNK = 4e3;
+  std::vector<Basin::Energies> of_chunk((wet.size() + CHUNK - 1) / CHUNK);
+  threads.parts(static_cast<long>(of_chunk.size()), NS_OF_CHUNK, [&](long from, long to) {
+    for (long k = from; k < to; ++k) {
+      Basin::Energies sum;
+      for (std::size_t n = k * CHUNK; n < std::min(wet.size(), (k + 1) * CHUNK); ++n) {
+        const Vec3 v = vec3(atom->v[wet[n].i]);
+        sum.work += dot(wet[n].push, v);
+        sum.lost += wet[n].lambda * dot(v, v);
+      }
+      of_chunk[k] = sum;
+    }
+  });
+  Basin::Energies now = in_passes;
+  for (const Basin::Energies &sum : of_chunk) {
+    now.work += sum.work;
+    now.lost += sum.lost;
+  }
+  return now;
+}
+
+void Buoyancy::add_power(const Basin::Energies &of_passes, double more_seconds)
+{
+  in_passes = of_passes;
+  seconds += more_seconds;
+}
+
+void Buoyancy::begin_ledger()
+{
+  if (!ledger_was_set) own.power = power();
+  ledger_was_set = false;
+}
+
+// Velocities are those of whole steps here, eq. (3.10), which are the means of the half steps before and after: the trapezoidal
+// rule gives the work exactly.
+void Buoyancy::go_on_with_ledger()
+{
+  if (wet.empty() && in_passes.work == 0.0 && in_passes.lost == 0.0 && own.power.work == 0.0 && own.power.lost == 0.0) return;
+  const Lap lap(seconds);
+  const Basin::Energies now = power();
+  own.sum.work += 0.5 * update->dt * (own.power.work + now.work);
+  own.sum.lost += 0.5 * update->dt * (own.power.lost + now.lost);
+  own.power = now;
+  in_passes = {};
+}
+
+Basin::Ledger Buoyancy::ledger() const
+{
+  double all[] = {own.sum.work, own.sum.lost, own.power.work, own.power.lost};
+  MPI_Allreduce(MPI_IN_PLACE, all, 4, MPI_DOUBLE, MPI_SUM, world);
+  return {{all[0], all[1]}, {all[2], all[3]}};
+}
+
+void Buoyancy::set_ledger(const Basin::Ledger &ledger)
+{
+  own = comm->me == 0 ? ledger : Basin::Ledger{};
+  ledger_was_set = true;
+}
+
+}    // namespace mdanim

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// What the liquid of fix mdanim/liquid does to particles. Wcislo 1999, sec. 4.3.
+
+#ifndef MDANIM_STYLES_BUOYANCY_H
+#define MDANIM_STYLES_BUOYANCY_H
+
+#include "lammps/near_cells.h"
+#include "lammps/particle_value.h"
+#include "liquid/basin.h"
+#include "passes/pass.h"
+#include "pointers.h"
+#include "threads/team.h"
+
+#include <cmath>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace mdanim {
+
+// Lift of particles by their volumes, or by the pressure on the outer faces of their lattices, and drag; and the ledger of both.
+// It is a part of fix mdanim/liquid: it acts on the particles that the fix has found near the liquid, and its ledger stands in
+// the liquid's state.
+class Buoyancy : protected LAMMPS_NS::Pointers {
+ public:
+  // `rho` is the liquid's density.
+  Buoyancy(LAMMPS_NS::LAMMPS *lmp, double rho) : Pointers(lmp), rho(rho), cells(lmp) {}
+
+  // Takes a keyword of the command; false when it is none of buoyancy, drag, lambda, base and faces.
+  bool keyword(int iarg, const char *word, const char *value);
+  // Refuses keywords that do not fit together. `fix` begins messages.
+  void init(const std::string &fix);
+  bool pressed() const { return faces_of.given(); }
+
+  // New lists: leaves the particles of a group the friction that they have anyway; finds the faces of the particles near the
+  // liquid.
+  void clear_friction(int groupbit) const;
+  void find_faces(const std::vector<int> &near, const std::string &fix);
+  void find_cells(const std::vector<int> &near, const ParticleTable &table, const std::string &fix)
+  { cells.find(threads, near, table, fix); }
+  void forget_cells() { cells.clear(); }
+  const NearCells &lattice_cells() const { return cells; }
+  // What the liquid has felt of solids since this was called last, and how it pushes them.
+  void give_impulses(Basin &basin, const std::vector<int> &near);
+  // What acts on particles until this is called again.
+  void look(const Basin &basin, const std::vector<int> &near);
+  // Adds forces and sets friction; in a step the liquid feels what it does.
+  void act(const Basin &basin, const std::vector<int> &near, bool in_step);
+  // The ledger begins at the velocities of now, or where it was set, and goes on by a step.
+  void begin_ledger();
+  void go_on_with_ledger();
+  void use(const Threads &now) { threads = now; }    // for steps; the bits are the same for any number of them
+  // Corners of faces, some perhaps twice.
+  void append_required_atoms(std::vector<int> &particles) const;
+
+  // For passes (passes/pass_liquid.h): whether they compute the same as act(), with friction in the column that is read; a
+  // particle; all of them; and what passes have found in this step.
+  bool acts_in_passes(const Basin &basin, const double *lambda) const;
+  std::function<ImmersedMover(int)> immersed(const std::vector<char> &is_near) const;
+  LiquidScales scales(const Basin &basin, bool in_step) const;
+  void add_power(const Basin::Energies &of_passes, double more_seconds);
+
+  // Of all ranks; and all of it on the first one.
+  Basin::Ledger ledger() const;
+  void set_ledger(const Basin::Ledger &ledger);
+  double density() const { return rho; }
+  // Gravity as a force on a mass [force/mass]; that of the basin is an acceleration.
+  double weight(const Basin &basin) const;
+  double bytes() const
+  {
+    return static_cast<double>(wet.capacity() * sizeof(Wet) + on_parts.capacity() * sizeof on_parts[0] +
+                               kept.capacity() * sizeof kept[0]) +
+           cells.bytes();
+  }
+  double seconds = 0.0;
+
+  // Of a particle, from look() to look(); it goes where the particle goes.
+  std::vector<InLiquid> kept;    // of all local particles, where the liquid acts on lattice cells
+
+ private:
+  struct Wet {    // a particle near the liquid, in this step
+    int i;        // negative where the liquid does not act on it
+    Vec3 push;
+    double lambda;
+  };
+  struct Face {
+    int corner[4];    // counter-clockwise seen from outside
+    Vec3 push;        // on each corner, in this step
+  };
+
+  struct Acting;
+  Wet act_on(const Acting &now, const Basin &basin, std::size_t n, int i);
+  Vec3 pressure_on(const Face &face, const Basin &basin) const;
+  InLiquid look_at_particle(const Basin &basin, std::size_t n, const double *x) const;
+  Basin::Energies power() const;
+
+  double rho;
+  Threads threads;
+  bool lifts = false, slows = false, is_quadratic = false;
+  ParticleValue volume, gamma, per_length;
+  ParticleColumn lambda_column, base_column;
+  ParticleTable faces_of;
+  int faces_width = 0;
+
+  std::vector<Wet> wet;
+  std::vector<Face> faces;                    // of the particles near the liquid
+  std::vector<int> face_of, face_of_first;    // those of the n-th: face_of[face_of_first[n]] …
+  NearCells cells;
+  std::vector<Basin::OnParts> on_parts;    // of each lattice cell
+  Basin::Ledger own;                       // of this rank
+  Basin::Energies in_passes;               // power of those that are not in `wet`, in this step
+  bool ledger_was_set = false;             // since the last step
+};
+
+}    // namespace mdanim
+
+#endif

@@ -1,0 +1,385 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// fix mdanim/barrier. When LAMMPS rebuilds its lists: boxes of objects, those that meet, the pairs of their particles
+// (barrier/contact_search.h). Every step: forces of the pairs in reach. Each particle sums its own in the order of its partners'
+// tags, so the bits of a force depend on neither the order of particles nor the ranks that hold them.
+
+#include "lammps/fix_mdanim_barrier.h"
+
+#include "barrier/contact_search.h"
+#include "barrier/law.h"
+#include "lammps/keywords.h"
+#include "lammps/rank_gather.h"
+#include "lammps/require_open_box.h"
+#include "numbers/stopwatch.h"
+
+#include "atom.h"
+#include "comm.h"
+#include "domain.h"
+#include "error.h"
+#include "force.h"
+#include "neighbor.h"
+#include "update.h"
+#include "utils.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <numeric>
+
+using namespace LAMMPS_NS;
+using namespace FixConst;
+using namespace mdanim;
+
+static const char *const STYLE = "fix mdanim/barrier";
+static constexpr double MOST_SKINS = 64.0;    // that are looked ahead where objects are apart
+
+// --- the command ---
+
+// fix ID group mdanim/barrier BOUNDARY BARRIER k rc [thin GROUP ratio] [damp gn] [power 2|3]
+FixMdanimBarrier::FixMdanimBarrier(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg)
+{
+  scalar_flag = 1;
+  extscalar = 1;
+  energy_global_flag = 1;
+  vector_flag = 1;
+  size_vector = 6;
+  static int extensive[] = {1, 1, 1, 0, 1, 0};
+  extvector = -1;
+  extlist = extensive;
+  global_freq = 1;
+  comm_forward = 4;
+  filter = &widest_kernels().pair_filter;
+
+  need_words(lmp, "fix mdanim/barrier", "fix ID group mdanim/barrier", "BOUNDARY BARRIER k rc", narg - 3);
+  boundary = NamedGroup(lmp, STYLE, 3, arg[3]);
+  barrier = NamedGroup(lmp, STYLE, 4, arg[4]);
+  stiffness = ParticleValue(lmp, "fix mdanim/barrier: k", 5, arg[5]);
+  reach = ParticleValue(lmp, "fix mdanim/barrier: rc", 6, arg[6]);
+
+  for (int iarg = 7; iarg < narg;) {
+    static const std::vector<Keyword> known = {{"thin", "GROUP ratio"}, {"damp", "gn"}, {"power", "2|3"}};
+    const int words = words_of_keyword(lmp, "fix mdanim/barrier", known, iarg, narg, arg);
+    if (strcmp(arg[iarg], "thin") == 0) {
+      thin = NamedGroup(lmp, STYLE, iarg + 1, arg[iarg + 1]);
+      thin_ratio = utils::numeric(FLERR, arg[iarg + 2], false, lmp);
+      if (!(thin_ratio > 0.0)) error->all(FLERR, iarg + 2, "fix mdanim/barrier: thin ratio must be > 0, got {}", arg[iarg + 2]);
+    } else if (strcmp(arg[iarg], "damp") == 0) {
+      damping = utils::numeric(FLERR, arg[iarg + 1], false, lmp);
+      if (!(damping >= 0.0)) error->all(FLERR, iarg + 1, "fix mdanim/barrier: damp must be >= 0, got {}", arg[iarg + 1]);
+    } else {
+      power = utils::inumeric(FLERR, arg[iarg + 1], false, lmp);
+      if (power != 2 && power != 3)
+        error->all(FLERR, iarg + 1, "fix mdanim/barrier: power must be 2 or 3, got {}", arg[iarg + 1]);
+    }
+    iarg += words;
+  }
+}
+
+int FixMdanimBarrier::setmask() { return POST_NEIGHBOR | POST_FORCE; }
+
+void FixMdanimBarrier::init()
+{
+  const auto refuse = [this](const char *why) { error->all(FLERR, "fix {} mdanim/barrier: {}", id, why); };
+  need_objects_in_open_box(this, lmp, "a pair may come into reach");
+  if (atom->map_style == Atom::MAP_NONE) refuse("needs an atom map; put 'atom_modify map array' before the box is made");
+  if (damping > 0.0 && comm->nprocs > 1 && !comm->ghost_velocity)
+    refuse("damp needs the velocities of particles of other ranks; use 'comm_modify vel yes'");
+  stiffness.init(lmp);
+  reach.init(lmp);
+  for (NamedGroup *one : {&boundary, &barrier, &thin}) one->init(lmp);
+}
+
+// --- candidates, when LAMMPS rebuilds ---
+
+int FixMdanimBarrier::role(int i) const
+{
+  const int mask = atom->mask[i];
+  if (mask & boundary.bit()) return mask & thin.bit() ? BOUNDARY | THIN : BOUNDARY;
+  return mask & barrier.bit() ? BARRIER : NONE;
+}
+
+void FixMdanimBarrier::setup_post_neighbor() { post_neighbor(); }
+
+void FixMdanimBarrier::post_neighbor()
+{
+  const Lap lap(seconds);
+  find_pairs();
+  if (damping > 0.0) loss.look(atom->tag, atom->nlocal);
+}
+
+void FixMdanimBarrier::collect_own()
+{
+  own.resize(atom->nlocal + atom->nghost);
+  const double *k = stiffness.values(lmp), *rc = reach.values(lmp);
+  for (int i = 0; i < atom->nlocal; ++i)
+    own[i] = {k ? k[i] : stiffness.number, rc ? rc[i] : reach.number, mass_of(atom->rmass, atom->mass, atom->type, i), object[i]};
+  comm->forward_comm(this);
+}
+
+int FixMdanimBarrier::pack_forward_comm(int n, int *list, double *buf, int, int *)
+{
+  int m = 0;
+  for (int i = 0; i < n; ++i) {
+    const Own &o = own[list[i]];
+    buf[m++] = o.stiffness;
+    buf[m++] = o.reach;
+    buf[m++] = o.mass;
+    buf[m++] = static_cast<double>(o.object);
+  }
+  return m;
+}
+
+void FixMdanimBarrier::unpack_forward_comm(int n, int start, double *buf)
+{
+  for (int i = start; i < start + n; ++i, buf += 4) own[i] = {buf[0], buf[1], buf[2], static_cast<int>(buf[3])};
+}
+
+// Molecule IDs of the objects that have particles of the two groups, ascending; the same on all ranks.
+std::vector<tagint> FixMdanimBarrier::find_objects() const
+{
+  const auto make_unique = [](std::vector<tagint> &ids) {
+    std::sort(ids.begin(), ids.end());
+    ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
+  };
+  std::vector<tagint> here;
+  for (int i = 0; i < atom->nlocal; ++i)
+    if (role(i) != NONE && (here.empty() || here.back() != atom->molecule[i])) {
+      need_object(this, lmp, i);
+      here.push_back(atom->molecule[i]);
+    }
+  make_unique(here);
+  std::vector<tagint> all = gather(world, here);
+  make_unique(all);
+  return all;
+}
+
+// The longest reach of any pair, and eq. (3.14) for every object in ascending order of molecule IDs; the same on all ranks.
+double FixMdanimBarrier::survey(std::vector<Box> &boxes)
+{
+  const std::vector<tagint> ids = find_objects();
+  const double *k = stiffness.values(lmp), *rc = reach.values(lmp);
+  const int nlocal = atom->nlocal;
+  double reach_here = 0.0, longest = 0.0;
+  std::vector<Box> here(ids.size());
+  object.assign(nlocal, NO_OBJECT);
+  int number = 0;
+  for (int i = 0; i < nlocal; ++i) {
+    if (role(i) == NONE || (k && k[i] == 0.0)) continue;    // what is without stiffness takes no part
+    const tagint id = atom->molecule[i];
+    if (ids[number] != id) number = static_cast<int>(std::lower_bound(ids.begin(), ids.end(), id) - ids.begin());
+    object[i] = number;
+    here[number].include(atom->x[i]);
+    reach_here = std::max(reach_here, rc ? rc[i] : reach.number);
+  }
+  MPI_Allreduce(&reach_here, &longest, 1, MPI_DOUBLE, MPI_MAX, world);
+  boxes.resize(here.size());
+  MPI_Allreduce(here.data(), boxes.data(), 6 * static_cast<int>(here.size()), MPI_DOUBLE, MPI_MIN, world);
+  return thin.given() ? std::max(1.0, thin_ratio) * longest : longest;
+}
+
+// Whether this rank adds forces to a particle.
+bool FixMdanimBarrier::moves(int i) const { return i < atom->nlocal && atom->mask[i] & groupbit; }
+
+// How far every particle may go before two objects meet, as far as is looked ahead.
+double FixMdanimBarrier::distance_apart(const std::vector<Box> &boxes, double range) const
+{
+  double apart = 0.0;
+  for (double skins = 1.0; skins <= MOST_SKINS; skins *= 2.0) {
+    const double more = skins * neighbor->skin;
+    if (!meeting_pairs(boxes, range + more).empty()) break;
+    apart = 0.5 * (neighbor->skin + more);
+  }
+  return apart;
+}
+
+void FixMdanimBarrier::find_pairs()
+{
+  strip.clear();
+  reach2.clear();
+  pair.clear();
+  particle.clear();
+  unmoved.clear();
+  tried_pairs = 0.0;
+
+  std::vector<Box> boxes;
+  const double range = survey(boxes) + neighbor->skin;
+  const double ghosts = std::min({comm->cutghost[0], comm->cutghost[1], comm->cutghost[2]});
+  if (comm->nprocs > 1 && ghosts < range)
+    error->all(FLERR,
+               "fix {} mdanim/barrier: particles of other ranks are seen up to {:.6g}, reach and skin need {:.6g}; use "
+               "'comm_modify cutoff {:.6g}'",
+               id, ghosts, range, 1.001 * range);
+
+  const auto meeting = meeting_pairs(boxes, range);
+  meeting_objects = static_cast<bigint>(meeting.size());
+  clear = meeting.empty() ? distance_apart(boxes, range) : 0.0;
+  if (meeting.empty()) return;
+  collect_own();
+
+  ContactSearch search(boxes, meeting, {range, neighbor->skin, thin_ratio, filter});
+  for (int i = 0; i < atom->nlocal + atom->nghost; ++i)
+    if (own[i].object != NO_OBJECT && search.is_near(own[i].object, atom->x[i]))
+      search.add({i, atom->tag[i], own[i].object, role(i), moves(i), own[i].reach, atom->x[i]});
+  search.run();
+
+  // Partners of a particle are mostly of the other kind, and more of them are side by side in a list of that kind alone.
+  constexpr int NONE_YET = -1;
+  std::vector<int> number(search.particles().size());    // in `particle`
+  for (const auto &[low, high] : search.pairs()) number[low] = number[high] = NONE_YET;
+  for (const int kind : {static_cast<int>(BOUNDARY), 0})
+    for (size_t n = 0; n < number.size(); ++n)
+      if (const auto &one = search.particles()[n]; number[n] == NONE_YET && (one.role & BOUNDARY) == kind) {
+        number[n] = static_cast<int>(particle.size());
+        if (!one.moves) unmoved.push_back(number[n]);
+        particle.push_back(one.index);
+      }
+  for (const auto &[low, high] : search.pairs()) {
+    const auto &one = search.particles()[low], &other = search.particles()[high];
+    const double a = own[one.index].stiffness, b = own[other.index].stiffness;
+    const double k = stiffness.constant() ? stiffness.number : pair_stiffness(a, b);
+    const bool both = atom->mask[one.index] & atom->mask[other.index] & groupbit;
+    add_pair(number[low], number[high], {k, search.reach_of(one, other), (one.moves + other.moves) * (both ? 0.5 : 1.0)});
+  }
+  slot.resize(particle.size());
+  for (size_t n = 0; n < slot.size(); ++n) slot[n] = 3 * static_cast<long>(n);
+}
+
+// Pairs come in ascending order of low and then of high tags, and are numbered in that order.
+void FixMdanimBarrier::add_pair(int low, int high, const ContactPair &known)
+{
+  if (strip.empty() || strip.back().one != low || high <= last_high || strip.back().first + STRIP <= high) {
+    constexpr double none[STRIP] = {};
+    strip.push_back({low, high});
+    reach2.push(none, STRIP);
+    pair.resize(pair.size() + STRIP, {0.0, 0.0, 0.0});
+  }
+  const size_t number = STRIP * (strip.size() - 1) + high - strip.back().first;
+  reach2.data()[number] = known.reach * known.reach;
+  pair[number] = known;
+  tried_pairs += known.share;
+  last_high = high;
+}
+
+// --- forces ---
+
+void FixMdanimBarrier::setup(int vflag)
+{
+  deepest = 1.0;
+  post_force(vflag);
+}
+
+void FixMdanimBarrier::post_force(int)
+{
+  {
+    const Lap lap(seconds);
+    here.make_room(particle.size());
+    for (size_t n = 0; n < particle.size(); ++n) here.put(n, atom->x[particle[n]]);
+  }
+  on.assign(3 * particle.size(), 0.0);
+  push<true>(here, ForceSums(on.data(), slot.data(), 1));
+  const Lap lap(seconds);
+  for (size_t n = 0; n < particle.size(); ++n) add_to(atom->f[particle[n]], vec3(&on[slot[n]]));
+}
+
+// Puts the pairs in touch into touching_pair; returns how many.
+int FixMdanimBarrier::find_touching(const Positions &place)
+{
+  masks.resize(strip.size() + 1);
+  touching_pair.resize(pair.size() + STRIP);
+  const auto all = place.all();
+  return filter->in_reach({all.data(), strip.data(), static_cast<int>(strip.size()), reach2.data(), masks.data()},
+                          touching_pair.data());
+}
+
+// Between outputs, where the energy is not read.
+void FixMdanimBarrier::add_forces(const Positions &place, const ForceSums &total) { push<false>(place, total); }
+
+// On the particles that have candidates; nothing on those that are not moved. TELLS: of energy and pairs in touch, too.
+template <bool TELLS> void FixMdanimBarrier::push(const Positions &place, const ForceSums &total)
+{
+  if (TELLS) energy = touching = 0.0;
+  if (strip.empty() && loss.idle()) {
+    loss.rest();
+    return;
+  }
+
+  const Lap lap(seconds);
+  const double *const *v = atom->v;
+  std::vector<Vec3> *slowed = damping > 0.0 ? &loss.forces(atom->nlocal) : nullptr;
+
+  const int many = find_touching(place);
+  for (int m = 0; m < many; ++m) {
+    const auto &[k, reach, share] = pair[touching_pair[m]];
+    const auto [low, first] = strip[touching_pair[m] / STRIP];
+    const int high = first + touching_pair[m] % STRIP;
+    const Vec3 d = place[low] - place[high];
+    const double r = std::sqrt(dot(d, d)), q = 1.0 - r / reach;
+    const Vec3 normal = direction(d, r, true);
+    double size = barrier_force(power, k, reach, q);
+    if (TELLS) {
+      energy += share * barrier_energy(power, k, reach, q);
+      touching += share;
+    }
+    if (damping > 0.0) {
+      const int i = particle[low], j = particle[high];
+      const double approach = dot(vec3(v[i]) - vec3(v[j]), normal);
+      const double rate = damping * reduced_mass(own[i].mass, own[j].mass) / force->ftm2v;
+      size -= rate * q * approach;
+      const Vec3 slowing = (rate * q * approach) * normal;
+      if (moves(i)) (*slowed)[i] -= slowing;
+      if (moves(j)) (*slowed)[j] += slowing;
+    }
+    const Vec3 on_low = size * normal;
+    total.add(low, on_low);
+    total.add(high, -1.0 * on_low);
+    deepest = std::min(deepest, r / reach);
+  }
+  for (const int n : unmoved) total.clear(n);
+  if (slowed) loss.step(v, update->dt, update->setupflag);
+}
+
+// Together with run_style verlet/mdanim, which leaves ghosts out.
+void FixMdanimBarrier::append_required_atoms(std::vector<int> &particles) const
+{ particles.insert(particles.end(), particle.begin(), particle.end()); }
+
+// --- output ---
+
+double FixMdanimBarrier::sum(double here)
+{
+  double all = 0.0;
+  MPI_Allreduce(&here, &all, 1, MPI_DOUBLE, MPI_SUM, world);
+  return all;
+}
+
+double FixMdanimBarrier::compute_scalar() { return sum(energy); }
+
+// 1: pairs of objects whose boxes meet; 2: pairs of particles tried; 3: pairs in touch; 4: smallest r/reach in this run; 5:
+// energy lost to damp; 6: wall seconds of the slowest rank
+double FixMdanimBarrier::compute_vector(int n)
+{
+  double all = 0.0;
+  switch (n) {
+    case 0:
+      return static_cast<double>(meeting_objects);
+    case 1:
+      return sum(tried_pairs);
+    case 2:
+      return sum(touching);
+    case 3:
+      MPI_Allreduce(&deepest, &all, 1, MPI_DOUBLE, MPI_MIN, world);
+      return all;
+    case 4:
+      return sum(loss.total());
+    default:
+      MPI_Allreduce(&seconds, &all, 1, MPI_DOUBLE, MPI_MAX, world);
+      return all;
+  }
+}
+
+double FixMdanimBarrier::memory_usage()
+{
+  return own.capacity() * sizeof(Own) + strip.capacity() * sizeof(Strip) + reach2.bytes() +
+         pair.capacity() * sizeof(ContactPair) + masks.capacity() * sizeof(StripMask) +
+         (object.capacity() + particle.capacity() + unmoved.capacity() + touching_pair.capacity()) * sizeof(int) + here.bytes() +
+         on.capacity() * sizeof(double) + slot.capacity() * sizeof(long) + loss.bytes();
+}

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// fix mdanim/barrier: objects repel each other. Wcislo 1999, sec. 3.3, eq. (3.14), (3.15).
+
+#ifndef LMP_FIX_MDANIM_BARRIER_H
+#define LMP_FIX_MDANIM_BARRIER_H
+
+#include "fix.h"
+#include "geometry/boxes.h"
+#include "lammps/named_group.h"
+#include "lammps/particle_value.h"
+#include "numbers/vec3.h"
+#include "passes/kernels.h"
+#include "passes/loss.h"
+#include "passes/pass_participant.h"
+
+#include <vector>
+
+namespace LAMMPS_NS {
+
+class FixMdanimBarrier : public Fix, public mdanim::PassParticipant {
+ public:
+  FixMdanimBarrier(class LAMMPS *, int, char **);
+
+  int setmask() override;
+  void init() override;
+  void setup_post_neighbor() override;
+  void setup(int) override;
+  void post_neighbor() override;
+  void post_force(int) override;
+  int pack_forward_comm(int, int *, double *, int, int *) override;
+  void unpack_forward_comm(int, int, double *) override;
+  double compute_scalar() override;
+  double compute_vector(int) override;
+  double memory_usage() override;
+  void append_required_atoms(std::vector<int> &particles) const override;
+  bool depends_on_positions_only() const override { return damping == 0.0; }
+  void add_forces(const mdanim::Positions &place, const mdanim::ForceSums &force) override;
+  void equip(const mdanim::Kernels &kernels, const mdanim::Threads &) override { filter = &kernels.pair_filter; }
+  bool needs_all_atoms() override { return damping > 0.0 && !loss.idle(); }
+  double safe_displacement() const override { return clear; }
+  bool sees_absolute_position() const override { return false; }
+
+ private:
+  // What a particle contributes to a pair. Owners send that of ghosts at every rebuild.
+  struct Own {
+    double stiffness, reach, mass;
+    int object;    // its number in find_objects(), or NO_OBJECT
+  };
+  struct ContactPair {
+    double stiffness, reach;
+    double share;    // of the pair that this rank counts: 1/2 for each end that it moves, 1 if the other end is never moved
+  };
+
+  int role(int i) const;
+  std::vector<tagint> find_objects() const;
+  double survey(std::vector<mdanim::Box> &boxes);
+  void collect_own();
+  double distance_apart(const std::vector<mdanim::Box> &boxes, double range) const;
+  void find_pairs();
+  void add_pair(int low, int high, const ContactPair &pair);
+  template <bool TELLS> void push(const mdanim::Positions &place, const mdanim::ForceSums &total);
+  int find_touching(const mdanim::Positions &place);
+  bool moves(int i) const;
+  double sum(double here);
+
+  mdanim::NamedGroup boundary, barrier, thin;
+  double thin_ratio = 0.0, damping = 0.0;
+  int power = 3;
+  mdanim::ParticleValue stiffness, reach;
+
+  static constexpr int NO_OBJECT = -1;    // of particles outside the two groups
+  std::vector<int> object;                // of local particles, see Own
+  std::vector<Own> own;                   // local and ghost particles
+
+  // Pairs that may touch, numbered ascending by the lower tag and then by the higher one: added up in this order, the forces on
+  // every particle are in ascending order of its partners' tags. There are numbers in between that are no pairs (pair_filter.h).
+  std::vector<mdanim::Strip> strip;
+  mdanim::Doubles reach2;           // squares of the reach of pairs, 0 for what is none
+  std::vector<ContactPair> pair;    // and what else is known of them
+  int last_high = 0;                // the higher one of the last pair
+  std::vector<int> particle;        // of pairs, local or ghost: first boundary, then barrier, each ascending by tag
+  std::vector<int> unmoved;         // those of them, as places in it, that this rank adds no forces to
+  const mdanim::PairFilter *filter;
+  std::vector<mdanim::StripMask> masks;    // room for the filter
+  std::vector<int> touching_pair;          // in this step
+  // In a step without passes: positions of these particles, forces on them, and where in `on` those of each begin.
+  mdanim::Positions here;
+  std::vector<double> on;
+  std::vector<long> slot;
+
+  double clear = 0.0;                          // no two objects meet before a particle has gone farther
+  bigint meeting_objects = 0;                  // pairs of objects whose boxes meet
+  double tried_pairs = 0.0, touching = 0.0;    // on this rank; a pair counts half at either end
+  double energy = 0.0;
+  mdanim::Loss loss;       // to damp
+  double deepest = 1.0;    // smallest r/reach in this run
+  double seconds = 0.0;
+};
+
+}    // namespace LAMMPS_NS
+
+#endif

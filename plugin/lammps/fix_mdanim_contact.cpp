@@ -1,0 +1,498 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// fix mdanim/contact. When LAMMPS rebuilds its lists: boxes of objects, those that are near each other, the particles that may
+// have a part in contacts. Every step all ranks tell each other where those are, and each works out all contacts, with the same
+// bits, and takes the forces on its own particles. Contacts are few against springs; what they remember is then the same on all
+// ranks.
+
+#include "lammps/fix_mdanim_contact.h"
+
+#include "contact/bodies_file.h"
+#include "lammps/keywords.h"
+#include "lammps/object_masses.h"
+#include "lammps/rank_gather.h"
+#include "lammps/require_open_box.h"
+#include "numbers/stopwatch.h"
+
+#include "atom.h"
+#include "comm.h"
+#include "error.h"
+#include "force.h"
+#include "neighbor.h"
+#include "update.h"
+#include "utils.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <numeric>
+#include <set>
+#include <stdexcept>
+
+using namespace LAMMPS_NS;
+using namespace FixConst;
+using namespace mdanim;
+
+static constexpr int LARGEST_FILE = 1 << 30;     // bytes
+static constexpr double NS_OF_PARTICLE = 4.0;    // about
+static constexpr double USUAL_DAMPING = 0.3;     // beta
+static const char *const LEFT_OUT = ", or leave it out by 'among GROUP'";
+
+// --- the command ---
+
+// fix ID group mdanim/contact BODY YOUNG FRICTION [objects] [plane x|y|z lo|hi at]… [stiffness f] [damping beta]
+//     [pair MOL MOL mu beta]… [among GROUP] [bodies FILE]
+FixMdanimContact::FixMdanimContact(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg)
+{
+  scalar_flag = 1;
+  extscalar = 1;
+  energy_global_flag = 1;
+  vector_flag = 1;
+  size_vector = 15;
+  static int extensive[] = {1, 1, 1, 1, 0, 1, 1, 0, 1, 1, 1, 0, 0, 0, 1};
+  extvector = -1;
+  extlist = extensive;
+  global_freq = 1;
+  restart_global = 1;
+
+  need_words(lmp, "fix mdanim/contact", "fix ID group mdanim/contact", "BODY YOUNG FRICTION", narg - 3);
+  kind = ParticleValue(lmp, "fix mdanim/contact: BODY", 3, arg[3]);
+  young = ParticleValue(lmp, "fix mdanim/contact: YOUNG", 4, arg[4]);
+  friction = ParticleValue(lmp, "fix mdanim/contact: FRICTION", 5, arg[5]);
+  ContactSettings &settings = world_of_contact.settings;
+  settings.damping = USUAL_DAMPING;
+  for (int iarg = 6; iarg < narg;) iarg += read_word(iarg, narg, arg);
+  if (!settings.objects && settings.planes.empty())
+    error->all(FLERR, "fix mdanim/contact: nothing can touch; write objects, or plane x|y|z lo|hi and its place");
+}
+
+// How many words it took.
+int FixMdanimContact::read_word(int iarg, int narg, char **arg)
+{
+  ContactSettings &settings = world_of_contact.settings;
+  const auto is = [&](const char *word) { return strcmp(arg[iarg], word) == 0; };
+  static const std::vector<Keyword> known = {{"objects", ""},     {"plane", "x|y|z lo|hi at"},   {"stiffness", "f"},
+                                             {"damping", "beta"}, {"pair", "MOL1 MOL2 mu beta"}, {"among", "GROUP"},
+                                             {"bodies", "FILE"}};
+  const int words = words_of_keyword(lmp, "fix mdanim/contact", known, iarg, narg, arg);
+  const auto number = [&](int at, const char *what, double least) {
+    const double value = utils::numeric(FLERR, arg[at], false, lmp);
+    if (!(value >= least)) error->all(FLERR, at, "fix mdanim/contact: {} must be at least {}, got {}", what, least, arg[at]);
+    return value;
+  };
+  if (is("objects")) {
+    settings.objects = true;
+    return words;
+  }
+  if (is("plane")) {
+    const int axis = arg[iarg + 1][0] - 'x';
+    if (axis < 0 || axis > 2 || arg[iarg + 1][1])
+      error->all(FLERR, iarg + 1, "fix mdanim/contact: the axis of a plane is x, y or z, got {}", arg[iarg + 1]);
+    const bool low = strcmp(arg[iarg + 2], "lo") == 0;
+    if (!low && strcmp(arg[iarg + 2], "hi") != 0)
+      error->all(FLERR, iarg + 2, "fix mdanim/contact: a plane is the lower end of what is allowed, lo, or the upper, hi; got {}",
+                 arg[iarg + 2]);
+    settings.planes.push_back({axis, low ? 1.0 : -1.0, utils::numeric(FLERR, arg[iarg + 3], false, lmp)});
+    return words;
+  }
+  if (is("stiffness")) {
+    settings.stiffness = number(iarg + 1, "stiffness", 0.0);
+    if (settings.stiffness == 0.0)
+      error->all(FLERR, iarg + 1,
+                 "fix mdanim/contact: stiffness must be above 0, got {}; leave the fix out where nothing is to touch",
+                 arg[iarg + 1]);
+    return words;
+  }
+  if (is("damping")) {
+    settings.damping = number(iarg + 1, "damping", 0.0);
+    return words;
+  }
+  if (is("pair")) {
+    int a = utils::inumeric(FLERR, arg[iarg + 1], false, lmp), b = utils::inumeric(FLERR, arg[iarg + 2], false, lmp);
+    if (a < 1 || b < 1 || a == b)
+      error->all(FLERR, iarg + 1, "fix mdanim/contact: a pair is two different molecule IDs > 0, got {} and {}", arg[iarg + 1],
+                 arg[iarg + 2]);
+    settings.pairs[{std::min(a, b), std::max(a, b)}] = {number(iarg + 3, "mu of a pair", 0.0),
+                                                        number(iarg + 4, "beta of a pair", 0.0)};
+    return words;
+  }
+  if (is("among")) {
+    among = NamedGroup(lmp, "fix mdanim/contact", iarg + 1, arg[iarg + 1]);
+    return words;
+  }
+  read_bodies_of(arg[iarg + 1]);
+  return words;
+}
+
+// Rank 0 reads the file, all take the same text apart.
+void FixMdanimContact::read_bodies_of(const char *file)
+{
+  std::string text;
+  int bytes = -1;
+  if (comm->me == 0) {
+    std::error_code none;
+    std::ifstream in(file, std::ios::binary | std::ios::ate);
+    const bool is_file = in && std::filesystem::is_regular_file(file, none);
+    const std::streamoff size = is_file ? static_cast<std::streamoff>(in.tellg()) : -1;
+    if (size > LARGEST_FILE) error->one(FLERR, "fix mdanim/contact: {} has {} bytes, more than {}", file, size, LARGEST_FILE);
+    if (size >= 0) text.resize(size);
+    if (size >= 0 && in.seekg(0).read(text.data(), size)) bytes = static_cast<int>(size);
+  }
+  MPI_Bcast(&bytes, 1, MPI_INT, 0, world);
+  if (bytes < 0) error->all(FLERR, "fix mdanim/contact: cannot read the bodies in {}", file);
+  text.resize(bytes);
+  MPI_Bcast(text.data(), bytes, MPI_CHAR, 0, world);
+  try {
+    for (auto &[number, body] : read_bodies(file, text)) bodies[number] = std::make_shared<const ContactBody>(std::move(body));
+  } catch (const std::exception &problem) {
+    error->all(FLERR, "fix mdanim/contact: {}", problem.what());
+  }
+}
+
+int FixMdanimContact::setmask() { return POST_NEIGHBOR | POST_FORCE; }
+
+void FixMdanimContact::take_body(int number, const ContactBodyArrays &arrays)
+{ bodies[number] = std::make_shared<const ContactBody>(arrays); }
+
+void FixMdanimContact::init()
+{
+  need_objects_in_open_box(this, lmp, "surfaces may meet");
+  among.init(lmp);
+  need_molecules_of_pairs();
+  threads_now = Threads();
+  world_of_contact.use(nullptr, threads_now);    // until passes tell those of their instructions
+}
+
+// A rule for a molecule that there is not is a slip of the pen.
+void FixMdanimContact::need_molecules_of_pairs() const
+{
+  std::set<int> named;
+  for (const auto &[ids, law] : world_of_contact.settings.pairs) named.insert({ids.first, ids.second});
+  if (named.empty()) return;
+  const std::vector<int> ids_named(named.begin(), named.end());
+  std::vector<int> here(ids_named.size(), 0), found(ids_named.size(), 0);
+  for (int i = 0; i < atom->nlocal; ++i) {
+    const auto at = std::lower_bound(ids_named.begin(), ids_named.end(), atom->molecule[i]);
+    if (at != ids_named.end() && *at == atom->molecule[i]) here[at - ids_named.begin()] = 1;
+  }
+  MPI_Allreduce(here.data(), found.data(), static_cast<int>(here.size()), MPI_INT, MPI_MAX, world);
+  const auto missing = std::find(found.begin(), found.end(), 0);
+  if (missing != found.end())
+    error->all(FLERR, "fix {} mdanim/contact: pair names molecule {}, and no particle has this ID", id,
+               ids_named[missing - found.begin()]);
+}
+
+// --- objects ---
+
+bool FixMdanimContact::is_among(int i) const { return !among.given() || atom->mask[i] & among.bit(); }
+
+// Of the objects that are here, by ascending IDs; the same on all ranks.
+std::vector<FixMdanimContact::SurveyedObject> FixMdanimContact::survey() const
+{
+  const double *kinds = kind.values(lmp), *youngs = young.values(lmp), *frictions = friction.values(lmp);
+  std::map<int, SurveyedObject> here;
+  for (int i = 0; i < atom->nlocal; ++i) {
+    if (!is_among(i)) continue;
+    need_object(this, lmp, i, LEFT_OUT);
+    const int object_id = static_cast<int>(atom->molecule[i]);
+    SurveyedObject &one = here.emplace(object_id, SurveyedObject{object_id, 0, MAXTAGINT, 0, 0, 0, 0, 0}).first->second;
+    ++one.particles;
+    if (atom->mask[i] & groupbit) one.moves = 1;
+    if (atom->tag[i] >= one.lowest) continue;
+    one.lowest = atom->tag[i];
+    one.kind = kinds ? kinds[i] : kind.number;
+    one.young = youngs ? youngs[i] : young.number;
+    one.friction = frictions ? frictions[i] : friction.number;
+  }
+  std::vector<SurveyedObject> mine_only;
+  for (const auto &[object_id, one] : here) mine_only.push_back(one);
+  std::map<int, SurveyedObject> joined;
+  for (const SurveyedObject &one : gather(world, mine_only)) {
+    SurveyedObject &total = joined.emplace(one.id, SurveyedObject{one.id, 0, MAXTAGINT, 0, 0, 0, 0, 0}).first->second;
+    const long long particles = total.particles + one.particles;
+    const int moves = total.moves | one.moves;
+    if (one.lowest < total.lowest) total = one;
+    total.particles = particles, total.moves = moves;
+  }
+  const std::map<int, double> masses = object_masses(atom, world, [this](int i) { return is_among(i); });
+  std::vector<SurveyedObject> all;
+  for (auto &[object_id, one] : joined) {
+    one.mass = masses.at(object_id);
+    all.push_back(one);
+  }
+  return all;
+}
+
+void FixMdanimContact::take_objects(Contacts contacts)
+{
+  kind.init(lmp);
+  young.init(lmp);
+  friction.init(lmp);
+  std::vector<ContactObject> objects;
+  std::vector<char> moves;
+  ids.clear(), lowest.clear();
+  for (const SurveyedObject &one : survey()) {
+    const auto found = bodies.find(static_cast<int>(one.kind));
+    if (found == bodies.end())
+      error->all(FLERR, "fix {} mdanim/contact: object {} (molecule ID) has body {}, and no such body was given", id, one.id,
+                 one.kind);
+    const ContactBody &body = *found->second;
+    if (one.particles != body.particles())
+      error->all(FLERR, "fix {} mdanim/contact: object {} (molecule ID) has {} particles, its body {} has {}", id, one.id,
+                 one.particles, one.kind, body.particles());
+    if (!(one.young > 0.0) || !(one.friction >= 0.0))
+      error->all(FLERR, "fix {} mdanim/contact: object {} (molecule ID) needs YOUNG > 0 and FRICTION >= 0, got {} and {}", id,
+                 one.id, one.young, one.friction);
+    const double volume = body.edge(0) * body.edge(1) * body.edge(2);
+    const double inertia = one.mass / force->ftm2v;    // that makes a force of an acceleration
+    const double density = inertia / (volume * static_cast<double>(body.filled_cells()));
+    objects.push_back({one.id, found->second, one.young, one.friction, density, one.lowest, {}, 0, 0, {}, {}, 0.0, false});
+    moves.push_back(static_cast<char>(one.moves));
+    ids.push_back(one.id);
+    lowest.push_back(one.lowest);
+  }
+  if (contacts == Contacts::STAY)
+    if (const ContactObject *one = world_of_contact.misfit(objects))
+      error->all(FLERR,
+                 "fix {} mdanim/contact: object {} (molecule ID) has {} than in the last run, and touches others: what contacts "
+                 "remember does not fit; 'unfix' the fix and define it anew",
+                 id, one->id,
+                 one->first_tag != world_of_contact.with_id(one->id)->first_tag ? "other particles" : "another body");
+  world_of_contact.take(std::move(objects), std::move(moves));
+}
+
+// Of an object, by its molecule ID; -1 for one that was not there at the setup.
+int FixMdanimContact::number_of(tagint molecule) const
+{
+  const auto found = std::lower_bound(ids.begin(), ids.end(), molecule);
+  return found != ids.end() && *found == molecule ? static_cast<int>(found - ids.begin()) : -1;
+}
+
+void FixMdanimContact::refuse_new_object(int i) const
+{
+  need_object(this, lmp, i, LEFT_OUT);
+  error->one(FLERR,
+             "fix {} mdanim/contact: object {} (molecule ID) has come since the setup of this run, with particle {}; let it come "
+             "between two runs, the second without 'pre no'{}",
+             id, atom->molecule[i], atom->tag[i], LEFT_OUT);
+}
+
+// --- lists, when LAMMPS rebuilds its own ---
+
+void FixMdanimContact::setup_post_neighbor()
+{
+  take_objects(Contacts::STAY);
+  if (restarted) {
+    try {
+      unpack(StateRecords(*restarted));
+    } catch (const std::exception &problem) {
+      error->all(FLERR, "fix {} mdanim/contact: {}", id, problem.what());
+    }
+  }
+  world_of_contact.forget();
+  list();
+}
+
+void FixMdanimContact::post_neighbor() { list(); }
+
+void FixMdanimContact::list()
+{
+  const Lap lap(seconds);
+  const int nlocal = atom->nlocal, objects = world_of_contact.objects();
+  std::vector<Box> here(objects), boxes(objects);
+  object.assign(nlocal, -1);
+  for (int i = 0; i < nlocal;) {
+    const tagint molecule = atom->molecule[i];
+    const int one = number_of(molecule);
+    Box box;
+    for (; i < nlocal && atom->molecule[i] == molecule; ++i) {
+      if (!is_among(i)) continue;
+      if (one < 0) refuse_new_object(i);
+      object[i] = one;
+      box.include(atom->x[i]);
+    }
+    if (!box.empty()) here[one].unite(box);
+  }
+  MPI_Allreduce(here.data(), boxes.data(), 6 * objects, MPI_DOUBLE, MPI_MIN, world);
+  world_of_contact.look_ahead(boxes, neighbor->skin);
+  std::vector<double> ends = world_of_contact.ends();
+  if (!ends.empty()) {
+    for (int i = 0; i < nlocal; ++i)
+      if (object[i] >= 0) world_of_contact.see(object[i], vec3(atom->x[i]), ends);
+    MPI_Allreduce(MPI_IN_PLACE, ends.data(), static_cast<int>(ends.size()), MPI_DOUBLE, MPI_MIN, world);
+    world_of_contact.narrow(ends);
+  }
+
+  std::vector<std::pair<ContactParticle, int>> needed;    // and local numbers
+  if (!world_of_contact.is_idle())
+    for (int i = 0; i < nlocal; ++i) {
+      if (object[i] < 0) continue;
+      const ContactParticle particle{object[i], static_cast<int>(atom->tag[i] - lowest[object[i]])};
+      if (world_of_contact.needs(particle, vec3(atom->x[i]))) needed.push_back({particle, i});
+    }
+  if (!std::is_sorted(needed.begin(), needed.end())) std::sort(needed.begin(), needed.end());
+  std::vector<ContactParticle> particles;
+  mine.clear();
+  for (const auto &[particle, i] : needed) {
+    particles.push_back(particle);
+    mine.push_back(i);
+  }
+
+  // Of the numbers that ranks send in every step, three for each particle.
+  counts.assign(comm->nprocs, 0);
+  starts.assign(comm->nprocs, 0);
+  const int numbers = 3 * static_cast<int>(mine.size());
+  MPI_Allgather(&numbers, 1, MPI_INT, counts.data(), 1, MPI_INT, world);
+  std::exclusive_scan(counts.begin(), counts.end(), starts.begin(), 0);
+  first_entry = starts[comm->me] / 3;
+  particles = gather(world, particles);
+  std::vector<int> order(particles.size());
+  std::iota(order.begin(), order.end(), 0);
+  const bool is_sorted = std::is_sorted(particles.begin(), particles.end());    // as where one rank has all
+  if (!is_sorted) std::sort(order.begin(), order.end(), [&](int p, int q) { return particles[p] < particles[q]; });
+  slot.resize(order.size());
+  for (std::size_t n = 0; n < order.size(); ++n) slot[order[n]] = static_cast<int>(n);
+  if (!is_sorted) std::sort(particles.begin(), particles.end());
+  for (const ContactParticle &one : particles)
+    if (one.node < 0 || one.node >= world_of_contact.object(one.object).body->particles())
+      error->all(FLERR, "fix {} mdanim/contact: tags of object {} (molecule ID) do not follow each other", id,
+                 world_of_contact.object(one.object).id);
+  world_of_contact.list(particles, places_now());
+}
+
+// --- forces ---
+
+void FixMdanimContact::need_lists() const
+{
+  if (!world_of_contact.is_listed())
+    error->all(FLERR, "fix {} mdanim/contact: its objects were read anew and no setup came after; leave out 'pre no' of this run",
+               id);
+}
+
+// Of all ranks, as LAMMPS has them.
+Coordinates FixMdanimContact::places_now()
+{
+  my_places.make_room(mine.size());
+  for (std::size_t n = 0; n < mine.size(); ++n) my_places.put(n, atom->x[mine[n]]);
+  return places_of_all(my_places.all());
+}
+
+// From those of this rank's particles.
+Coordinates FixMdanimContact::places_of_all(const Coordinates &of_mine)
+{
+  if (comm->nprocs == 1) return of_mine;
+  sent.resize(3 * mine.size());
+  received.resize(3 * slot.size());
+  for (std::size_t n = 0; n < mine.size(); ++n)
+    for (int d = 0; d < 3; ++d) sent[3 * n + d] = of_mine[d][n];
+  MPI_Allgatherv(sent.data(), static_cast<int>(sent.size()), MPI_DOUBLE, received.data(), counts.data(), starts.data(),
+                 MPI_DOUBLE, world);
+  all_places.make_room(slot.size());
+  for (std::size_t n = 0; n < slot.size(); ++n) all_places.put(slot[n], &received[3 * n]);
+  return all_places.all();
+}
+
+// add(n, force) on those of `mine` that may move.
+template <class Add> void FixMdanimContact::give_forces(const Add &add) const
+{
+  const PaddedVec3 *forces = world_of_contact.forces();
+  threads_now.parts(static_cast<long>(mine.size()), NS_OF_PARTICLE, [&](long first, long end) {
+    for (long n = first; n < end; ++n) {
+      if (!world_of_contact.is_pushed(object[mine[n]])) continue;
+      const Vec3 &force = forces[slot[first_entry + n]].value;
+      if ((force.x != 0.0 || force.y != 0.0 || force.z != 0.0) && atom->mask[mine[n]] & groupbit) add(n, force);
+    }
+  });
+}
+
+// With particles where LAMMPS has them.
+void FixMdanimContact::push(double dt)
+{
+  const Lap lap(seconds);
+  need_lists();
+  world_of_contact.step(places_now(), dt);
+  give_forces([this](std::size_t n, const Vec3 &force) { add_to(atom->f[mine[n]], force); });
+}
+
+void FixMdanimContact::setup(int)
+{
+  world_of_contact.account.deepest = 0.0;
+  push(0.0);
+}
+
+void FixMdanimContact::post_force(int) { push(update->dt); }
+
+void FixMdanimContact::append_required_atoms(std::vector<int> &particles) const
+{ particles.insert(particles.end(), mine.begin(), mine.end()); }
+
+void FixMdanimContact::add_forces(const Positions &place, const ForceSums &force)
+{
+  const Lap lap(seconds);
+  need_lists();
+  world_of_contact.step(places_of_all(place.all()), update->dt);
+  give_forces([&force](std::size_t n, const Vec3 &one) { force.add(n, one); });
+}
+
+// --- what it tells ---
+
+double FixMdanimContact::compute_scalar() { return world_of_contact.account.energy + world_of_contact.account.stick_energy; }
+
+// 1: energy of sticking; 2-4: heat of friction, energy that dashpots took, that was let go, since the fix was made; 5: deepest
+// point in this run; 6: points in touch; 7: pairs of objects near each other; 8: wall seconds of the slowest rank; 9-11: force on
+// planes; 12-14: bytes on a rank, of bodies, of what is known of pairs and points, of particles near others; 15: looks at points
+// of objects without a contact, since the fix was made
+double FixMdanimContact::compute_vector(int n)
+{
+  const ContactAccount &account = world_of_contact.account;
+  switch (n) {
+    case 0:
+      return account.stick_energy;
+    case 1:
+      return account.heat;
+    case 2:
+      return account.damped;
+    case 3:
+      return account.let_go;
+    case 4:
+      return account.deepest;
+    case 5:
+      return account.touching;
+    case 6:
+      return world_of_contact.pairs();
+    case 7: {
+      double slowest = 0.0;
+      MPI_Allreduce(&seconds, &slowest, 1, MPI_DOUBLE, MPI_MAX, world);
+      return slowest;
+    }
+    case 11:
+      return static_cast<double>(bytes_of_bodies());
+    case 12:
+      return static_cast<double>(world_of_contact.bytes_of_fields());
+    case 13:
+      return static_cast<double>(bytes_of_particles());
+    case 14:
+      return account.looks;
+    default: {
+      const Vec3 force = world_of_contact.force_on_planes();
+      return n == 8 ? force.x : n == 9 ? force.y : force.z;
+    }
+  }
+}
+
+std::size_t FixMdanimContact::bytes_of_bodies() const
+{
+  std::size_t sum = 0;
+  for (const auto &[number, body] : bodies) sum += body->bytes();
+  return sum;
+}
+
+std::size_t FixMdanimContact::bytes_of_particles() const
+{
+  return world_of_contact.bytes_of_particles() + my_places.bytes() + all_places.bytes() +
+         (object.capacity() + mine.capacity() + slot.capacity()) * sizeof(int);
+}
+
+double FixMdanimContact::memory_usage()
+{ return static_cast<double>(bytes_of_bodies() + world_of_contact.bytes_of_fields() + bytes_of_particles()); }

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// fix mdanim/contact: objects touch each other and planes at their drawn surfaces, with friction.
+
+#ifndef LMP_FIX_MDANIM_CONTACT_H
+#define LMP_FIX_MDANIM_CONTACT_H
+
+#include "contact/contact_world.h"
+#include "fix.h"
+#include "lammps/named_group.h"
+#include "lammps/particle_value.h"
+#include "lammps/stateful.h"
+#include "passes/kernels.h"
+#include "passes/pass_participant.h"
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace LAMMPS_NS {
+
+class FixMdanimContact : public Fix, public mdanim::PassParticipant, public mdanim::Stateful {
+ public:
+  FixMdanimContact(class LAMMPS *, int, char **);
+
+  int setmask() override;
+  void init() override;
+  void setup_post_neighbor() override;
+  void setup(int) override;
+  void post_neighbor() override;
+  void post_force(int) override;
+  double compute_scalar() override;
+  double compute_vector(int) override;
+  double memory_usage() override;
+  void write_restart(FILE *) override;
+  void restart(char *) override;
+
+  void append_required_atoms(std::vector<int> &particles) const override;
+  bool depends_on_positions_only() const override { return true; }
+  void equip(const mdanim::Kernels &kernels, const mdanim::Threads &threads) override
+  {
+    world_of_contact.use(&mdanim::contact_kernels(kernels.name), threads);
+    threads_now = threads;
+  }
+  void add_forces(const mdanim::Positions &place, const mdanim::ForceSums &force) override;
+  double safe_displacement() const override { return world_of_contact.distance_apart(); }
+  bool sees_absolute_position() const override { return !world_of_contact.settings.planes.empty(); }
+
+  mdanim::StateRecords pack() const override;
+  void unpack(const mdanim::StateRecords &records) override;
+
+  // A body of objects whose particles have this number as their BODY. Throws std::runtime_error.
+  void take_body(int kind, const mdanim::ContactBodyArrays &arrays);
+
+ private:
+  // What all ranks know of an object, from its particle with the lowest tag; `mass` is that of all of them.
+  struct SurveyedObject {
+    int id, moves;
+    tagint lowest;
+    long long particles;
+    double kind, young, friction, mass;
+  };
+  // Whether contacts may be of other bodies or particles than objects have now: they are then to be replaced.
+  enum class Contacts { STAY, ARE_REPLACED };
+  int read_word(int iarg, int narg, char **arg);
+  void read_bodies_of(const char *file);
+  void need_molecules_of_pairs() const;
+  std::vector<SurveyedObject> survey() const;
+  void take_objects(Contacts contacts);
+  int number_of(tagint molecule) const;
+  [[noreturn]] void refuse_new_object(int i) const;
+  void need_lists() const;
+  void list();
+  mdanim::Coordinates places_now();
+  mdanim::Coordinates places_of_all(const mdanim::Coordinates &of_mine);
+  template <class Add> void give_forces(const Add &add) const;
+  void push(double dt);
+  std::size_t bytes_of_bodies() const;
+  std::size_t bytes_of_particles() const;
+
+  mdanim::ParticleValue kind, young, friction;
+  mdanim::NamedGroup among;    // none: all
+  bool is_among(int i) const;
+  std::map<int, std::shared_ptr<const mdanim::ContactBody>> bodies;
+  std::optional<mdanim::StateRecords> restarted;    // of a restart file, until bodies are there
+  mdanim::ContactWorld world_of_contact;
+
+  std::vector<tagint> ids, lowest;    // of objects: molecule IDs, ascending, and lowest tags
+  std::vector<int> object;            // of local particles when lists were made, -1 for none
+  std::vector<int> mine;              // local particles with a part in contacts, in the order of the world of contact
+  std::vector<int> slot;              // in that world, of the particles of all ranks, rank by rank
+  int first_entry = 0;                // of this rank's
+  std::vector<int> counts, starts;    // of the numbers that ranks send, three for each particle
+  std::vector<double> sent, received;
+  mdanim::Positions my_places, all_places;
+  mdanim::Threads threads_now;
+  double seconds = 0.0;
+};
+
+}    // namespace LAMMPS_NS
+
+#endif

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// What contacts remember, as records of pairs of objects, (a, b), and of objects at planes, (a, 0).
+
+#include "lammps/fix_mdanim_contact.h"
+
+#include "fmt/format.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <map>
+#include <stdexcept>
+#include <string>
+
+using namespace LAMMPS_NS;
+using namespace mdanim;
+
+static constexpr std::int64_t STATE_VERSION = 1;
+
+namespace {
+
+template <class Row> void append(Bytes &bytes, const std::vector<Row> &rows)
+{
+  const auto n = static_cast<std::int64_t>(rows.size());
+  append_rows(bytes, &n, 1);
+  append_rows(bytes, rows.data(), rows.size());
+}
+
+template <class Row> std::vector<Row> take(const std::uint8_t *&from, const std::uint8_t *end, const char *what)
+{
+  std::int64_t n = -1;
+  if (end - from >= static_cast<std::ptrdiff_t>(sizeof n)) std::memcpy(&n, from, sizeof n);
+  if (n < 0 || n > (end - from - static_cast<std::ptrdiff_t>(sizeof n)) / static_cast<std::ptrdiff_t>(sizeof(Row)))
+    throw std::runtime_error(fmt::format("the record of {} is cut off", what));
+  from += sizeof n;
+  std::vector<Row> rows(n);
+  if (n) std::memcpy(static_cast<void *>(rows.data()), from, n * sizeof(Row));
+  from += n * sizeof(Row);
+  return rows;
+}
+
+// Whether all of a row from this byte on are numbers.
+template <class Row> bool has_numbers(const Row &row, std::size_t from)
+{
+  double values[sizeof(Row) / sizeof(double)];
+  const std::size_t bytes = sizeof(Row) - from;
+  std::memcpy(values, reinterpret_cast<const std::uint8_t *>(&row) + from, bytes);
+  return std::all_of(values, values + bytes / sizeof(double), [](double value) { return std::isfinite(value); });
+}
+
+struct KeptRecords : Stateful {
+  StateRecords records;
+  StateRecords pack() const override { return records; }
+  void unpack(const StateRecords &given) override { records = given; }
+};
+
+}    // namespace
+
+StateRecords FixMdanimContact::pack() const
+{
+  if (restarted) return *restarted;
+  StateRecords records;
+  for (const auto &[ids, contacts] : world_of_contact.pair_contacts()) {
+    Bytes &bytes = records[{ids.first, ids.second}];
+    append_rows(bytes, &STATE_VERSION, 1);
+    append(bytes, contacts.first);
+    append(bytes, contacts.second);
+  }
+  for (const auto &[object_id, contacts] : world_of_contact.plane_contacts()) {
+    Bytes &bytes = records[{object_id, 0}];
+    append_rows(bytes, &STATE_VERSION, 1);
+    append(bytes, contacts);
+  }
+  return records;
+}
+
+void FixMdanimContact::unpack(const StateRecords &records)
+{
+  take_objects(Contacts::ARE_REPLACED);
+  std::map<int, const ContactBody *> body_of;
+  for (int n = 0; n < world_of_contact.objects(); ++n)
+    body_of[world_of_contact.object(n).id] = world_of_contact.object(n).body.get();
+  const auto is_point = [&](int object_id, int point) {
+    return point >= 0 && point < static_cast<int>(body_of.at(object_id)->points().size());
+  };
+  ContactWorld::PairContacts pairs;
+  ContactWorld::PlaneContacts planes;
+  for (const auto &[key, bytes] : records) {
+    const std::string what = key.b ? fmt::format("objects {} and {}", key.a, key.b) : fmt::format("object {}", key.a);
+    const auto bad = [&](const char *why) { throw std::runtime_error(fmt::format("the record of {} {}", what, why)); };
+    if (!body_of.count(key.a) || (key.b && !body_of.count(key.b))) bad("is of an object that is not there");
+    const std::uint8_t *from = bytes.data(), *const end = from + bytes.size();
+    std::int64_t version = -1;
+    if (bytes.size() >= sizeof version) std::memcpy(&version, from, sizeof version);
+    if (version != STATE_VERSION) bad("has another version");
+    from += sizeof version;
+    if (key.b) {
+      auto &[lower, higher] = pairs[{key.a, key.b}];
+      lower = take<FieldContact>(from, end, what.c_str());
+      higher = take<FieldContact>(from, end, what.c_str());
+      const auto check = [&](const std::vector<FieldContact> &rows, int owner, int host) {
+        int before = -1;
+        for (const FieldContact &row : rows) {
+          if (!is_point(owner, row.point) || row.side < 0 || row.side >= body_of[host]->sides() ||
+              !body_of[host]->is_filled(row.cell[0], row.cell[1], row.cell[2]))
+            bad("has points that there are not");
+          if (row.point <= before) bad("has points that do not ascend");
+          if (!has_numbers(row, offsetof(FieldContact, state))) bad("has what is no number");
+          before = row.point;
+        }
+      };
+      check(lower, key.a, key.b);
+      check(higher, key.b, key.a);
+    } else {
+      planes[key.a] = take<PlaneContact>(from, end, what.c_str());
+      std::pair<int, int> before{-1, -1};
+      for (const PlaneContact &row : planes[key.a]) {
+        if (!is_point(key.a, row.point) || row.plane < 0 ||
+            row.plane >= static_cast<int>(world_of_contact.settings.planes.size()))
+          bad("has points or planes that there are not");
+        if (std::pair{row.plane, row.point} <= before) bad("has points that do not ascend");
+        if (!has_numbers(row, offsetof(PlaneContact, anchor))) bad("has what is no number");
+        before = {row.plane, row.point};
+      }
+    }
+    if (from != end) bad("is too long");
+  }
+  world_of_contact.restore(pairs, planes);
+  restarted.reset();
+}
+
+void FixMdanimContact::write_restart(FILE *file)
+{ mdanim::write_restart(*this, lmp, fmt::format("fix {} mdanim/contact", id), file); }
+
+void FixMdanimContact::restart(char *buffer)
+{
+  KeptRecords kept;
+  mdanim::read_restart(kept, lmp, fmt::format("fix {} mdanim/contact", id), buffer);
+  restarted = std::move(kept.records);
+}

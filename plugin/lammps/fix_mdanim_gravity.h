@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// fix mdanim/gravity: m g on every particle. Wcislo 1999, eq. (3.8).
+
+#ifndef LMP_FIX_MDANIM_GRAVITY_H
+#define LMP_FIX_MDANIM_GRAVITY_H
+
+#include "fix.h"
+#include "numbers/vec3.h"
+#include "passes/pass_participant.h"
+
+namespace LAMMPS_NS {
+
+// Adds m g to every particle of its group in plain steps, and tells passes the masses and g.
+class FixMdanimGravity : public Fix, public mdanim::PassGravity {
+ public:
+  FixMdanimGravity(class LAMMPS *, int, char **);
+
+  int setmask() override;
+  void setup(int) override;
+  void post_force(int) override;
+  double compute_scalar() override;
+  double compute_vector(int) override;
+
+  double pulled(int i) const override;
+  const mdanim::Vec3 &acceleration() const override { return g; }
+  void took(double more) override { seconds += more; }
+
+ private:
+  mdanim::Vec3 g;
+  double seconds = 0.0;
+};
+
+}    // namespace LAMMPS_NS
+
+#endif

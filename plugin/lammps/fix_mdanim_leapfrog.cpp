@@ -1,0 +1,415 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// fix mdanim/leapfrog: loops over the particles; the half steps are in leapfrog.h.
+
+#include "lammps/fix_mdanim_leapfrog.h"
+#include "lammps/keywords.h"
+
+#include "leapfrog/law.h"
+#include "numbers/stopwatch.h"
+
+#include "atom.h"
+#include "comm.h"
+#include "domain.h"
+#include "error.h"
+#include "force.h"
+#include "output.h"
+#include "update.h"
+#include "utils.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <utility>
+
+using namespace LAMMPS_NS;
+using namespace FixConst;
+using namespace mdanim;
+
+static constexpr int RESTART_VERSION = 1;
+static constexpr int CHUNK = 1024;    // particles whose sums are one chain
+static constexpr double NS_OF_CHUNK = 2.0 * CHUNK;
+
+FixMdanimLeapfrog::FixMdanimLeapfrog(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg)
+{
+  time_integrate = 1;
+  dynamic_group_allow = 1;
+  restart_global = 1;
+  scalar_flag = 1;
+  extscalar = 1;
+  energy_global_flag = 1;
+  vector_flag = 1;
+  size_vector = 3;
+  static int extensive[] = {0, 1, 0};
+  extvector = -1;
+  extlist = extensive;
+  global_freq = 1;
+  comm_forward = 3;
+
+  int drag_word = 0;
+  for (int iarg = 3; iarg < narg; iarg += 2) {
+    static const std::vector<Keyword> known = {{"lambda", "L|d_NAME"}, {"drag", "implicit|exp"}};
+    words_of_keyword(lmp, "fix mdanim/leapfrog", known, iarg, narg, arg);
+    if (strcmp(arg[iarg], "lambda") == 0) {
+      lambda = ParticleValue(lmp, "fix mdanim/leapfrog: lambda", iarg + 1, arg[iarg + 1]);
+      has_drag = true;
+    } else {
+      drag_word = iarg;
+      if (strcmp(arg[iarg + 1], "exp") == 0)
+        exponential = true;
+      else if (strcmp(arg[iarg + 1], "implicit") == 0)
+        exponential = false;
+      else
+        error->all(FLERR, iarg + 1, "fix mdanim/leapfrog: drag must be implicit or exp, got {}", arg[iarg + 1]);
+    }
+  }
+  if (drag_word && !has_drag)
+    error->all(FLERR, drag_word, "fix mdanim/leapfrog: drag says how lambda is used, but there is no lambda; add one");
+}
+
+int FixMdanimLeapfrog::setmask() { return INITIAL_INTEGRATE | FINAL_INTEGRATE; }
+
+void FixMdanimLeapfrog::init()
+{
+  if (utils::strmatch(update->integrate_style, "^respa"))
+    error->all(FLERR, "fix mdanim/leapfrog: run_style respa is not supported; use run_style verlet");
+  if (domain->dimension != 3) error->all(FLERR, "fix mdanim/leapfrog: dimension must be 3, got {}", domain->dimension);
+  lambda.init(lmp);
+  reset_dt();
+  largest_phi = 0.0;
+}
+
+// (1-phi)/(1+phi) changes sign at phi = 1: strongly damped particles then jitter instead of creeping.
+void FixMdanimLeapfrog::setup(int)
+{
+  bent = 0.0;
+  told = true;
+  if (!has_drag || exponential) return;
+  double here = largest_phi_here(), phi = 0.0;
+  MPI_Allreduce(&here, &phi, 1, MPI_DOUBLE, MPI_MAX, world);
+  if (phi > 0.5 && comm->me == 0)
+    error->warning(FLERR,
+                   "fix {} mdanim/leapfrog: phi = lambda dt/2m reaches {:.3g}; above 0.5 use drag exp or a "
+                   "smaller time step",
+                   id, phi);
+}
+
+void FixMdanimLeapfrog::reset_dt() { half_dt = 0.5 * update->dt * force->ftm2v; }
+
+double FixMdanimLeapfrog::largest_phi_here() const
+{
+  const double *own = lambda.values(lmp);
+  double largest = 0.0;
+  for (int i = 0; i < atom->nlocal; ++i)
+    if (atom->mask[i] & groupbit)
+      largest = std::max(largest, (own ? own[i] : lambda.number) * half_dt / mass_of(atom->rmass, atom->mass, atom->type, i));
+  return largest;
+}
+
+// visit(i, sums) for the particles that move now. Each chunk has sums of its own, which are added in order: they depend on no
+// thread.
+template <class Visit> FixMdanimLeapfrog::Sums FixMdanimLeapfrog::each(Visit visit) const
+{
+  const int *const mask = atom->mask, *const listed = only ? only->data() : nullptr;
+  const int moving = only ? static_cast<int>(only->size()) : atom->nlocal;
+  std::vector<Sums> of_chunk((moving + CHUNK - 1) / CHUNK);
+  threads.parts(static_cast<long>(of_chunk.size()), NS_OF_CHUNK, [&](long begin, long end) {
+    for (long k = begin; k < end; ++k) {
+      const int first = static_cast<int>(k) * CHUNK;
+      Sums sums;
+      for (int n = first; n < std::min(first + CHUNK, moving); ++n)
+        if (const int i = listed ? listed[n] : n; mask[i] & groupbit) visit(i, sums);
+      of_chunk[k] = sums;
+    }
+  });
+  Sums all;
+  for (const Sums &sums : of_chunk) all.add(sums);
+  return all;
+}
+
+// Without drag both halves are v <- v + dt/2m F.
+template <class Half> void FixMdanimLeapfrog::half_step(Half half, bool first)
+{
+  const Lap lap(seconds);
+  if (!has_drag) {
+    double *const *v = atom->v, *const *f = atom->f;
+    const double *rmass = atom->rmass, *mass = atom->mass;
+    const int *type = atom->type;
+    each([&](int i, Sums &) { add_to(v[i], half_dt / mass_of(rmass, mass, type, i) * vec3(f[i])); });
+  } else if (exponential) {
+    half_step_with_drag<Exponential<double>>(half, first);
+  } else {
+    half_step_with_drag<Implicit<double>>(half, first);
+  }
+}
+
+template <class Drag, class Half> void FixMdanimLeapfrog::half_step_with_drag(Half half, bool first)
+{
+  double *const *v = atom->v, *const *f = atom->f;
+  const double *rmass = atom->rmass, *mass = atom->mass, *own = lambda.values(lmp);
+  const int *type = atom->type;
+  const Sums all = each([&](int i, Sums &sums) {
+    const double m = mass_of(rmass, mass, type, i), kick = half_dt / m;
+    const double phi = (own ? own[i] : lambda.number) * kick;
+    if (phi == 0.0) {    // the same bits, for what is out of the liquid
+      add_to(v[i], kick * vec3(f[i]));
+      return;
+    }
+    const Vec3 before = vec3(v[i]), push = vec3(f[i]);
+    const Drag drag = Drag::of(phi, kick);
+    const Vec3 after = half(drag, before, push);
+    v[i][0] = after.x;
+    v[i][1] = after.y;
+    v[i][2] = after.z;
+    sums.loss += drag.loss(before, after, push, m, first);
+    sums.largest_phi = std::max(sums.largest_phi, phi);
+  });
+  lost += force->mvv2e * all.loss;
+  largest_phi = std::max(largest_phi, all.largest_phi);
+}
+
+// v^n -> v^{n+1/2}, then r^{n+1} = r^n + dt v^{n+1/2}: the end of eq. (3.12).
+void FixMdanimLeapfrog::initial_integrate(int)
+{
+  first_half();
+  told = tells_of(update->ntimestep);
+  if (told) bent = -bend();
+  drift();
+}
+
+void FixMdanimLeapfrog::first_half()
+{
+  half_step([](const auto &drag, const Vec3 &v, const Vec3 &f) { return drag.first_half(v, f); }, true);
+}
+
+void FixMdanimLeapfrog::drift()
+{
+  const Lap lap(seconds);
+  if (!trace.empty() && !only) {
+    drift_and_trace();
+    return;
+  }
+  double *const *x = atom->x, *const *v = atom->v;
+  const double dt = update->dt;
+  each([&](int i, Sums &) { add_to(x[i], dt * vec3(v[i])); });
+}
+
+// Where the object of a particle has been. Its molecule ID may have changed since the trace was started.
+FixMdanimLeapfrog::Way &FixMdanimLeapfrog::way_of(int i)
+{
+  const tagint object = atom->molecule[i];
+  if (object < 1 || object > traced())
+    error->one(
+        FLERR,
+        "fix {} mdanim/leapfrog: particle {} has molecule ID {}, but objects 1 to {} are traced; molecule IDs must stay as "
+        "they were when the trace was started (mdanim_trace_start)",
+        id, atom->tag[i], object, traced());
+  return trace[object - 1];
+}
+
+// The same, and the box of each object grows to where its particles are now. Those of an object mostly stand side by side: their
+// box stays in registers until the object changes.
+void FixMdanimLeapfrog::drift_and_trace()
+{
+  double *const *x = atom->x, *const *v = atom->v;
+  const tagint *molecule = atom->molecule;
+  const int *mask = atom->mask, nlocal = atom->nlocal;
+  const double dt = update->dt;
+  for (int i = 0; i < nlocal;) {
+    const tagint object = molecule[i];
+    Way &way = way_of(i);
+    Box box;
+    for (; i < nlocal && molecule[i] == object; ++i) {
+      if (!(mask[i] & groupbit)) continue;    // it never moves: its place is in the box since the start
+      add_to(x[i], dt * vec3(v[i]));
+      box.include(x[i]);
+    }
+    way.box.unite(box);
+  }
+  not_seen = 0;
+}
+
+bool FixMdanimLeapfrog::looks()
+{
+  if (++not_seen < look_after) return false;
+  not_seen = 0;
+  return true;
+}
+
+std::string FixMdanimLeapfrog::start_trace(int objects)
+{
+  if (!atom->molecule_flag) return "objects are told apart by molecule IDs, and there are none; use 'atom_style bond'";
+  const auto [first, last] = std::minmax_element(atom->molecule, atom->molecule + atom->nlocal);
+  tagint bounds[2] = {objects, -1};    // the largest ID, and the smallest with its sign changed
+  if (atom->nlocal) bounds[0] = *last, bounds[1] = -*first;
+  MPI_Allreduce(MPI_IN_PLACE, bounds, 2, MPI_LMP_TAGINT, MPI_MAX, world);
+  if (bounds[0] > objects || -bounds[1] < 1)
+    return fmt::format("molecule IDs go from {} to {}, they must be within 1 and the {} objects to trace", -bounds[1], bounds[0],
+                       objects);
+  trace.assign(objects, Way());
+  for (int i = 0; i < atom->nlocal; ++i) way_of(i).box.include(atom->x[i]);
+  look_after = 1;
+  not_seen = 0;
+  return "";
+}
+
+std::vector<Box> FixMdanimLeapfrog::traced_boxes() const
+{
+  static_assert(sizeof(Way) == TRACE * sizeof(double), "rows of passes, and what goes over the wire");
+  std::vector<Way> all(trace.size());
+  MPI_Allreduce(trace.data(), all.data(), TRACE * traced(), MPI_DOUBLE, MPI_MIN, world);
+  std::vector<Box> boxes;
+  for (const Way &way : all) boxes.push_back(way.box.grown((look_after - 1) * update->dt * std::sqrt(-way.fastest)));
+  return boxes;
+}
+
+// v^{n-1/2} -> v^n, eq. (3.10).
+void FixMdanimLeapfrog::final_integrate()
+{
+  if (told) bent += bend();
+  final_half();
+}
+
+void FixMdanimLeapfrog::final_half()
+{
+  half_step([](const auto &drag, const Vec3 &v, const Vec3 &f) { return drag.final_half(v, f); }, false);
+}
+
+// --- together with run_style verlet/mdanim ---
+
+Friction FixMdanimLeapfrog::friction() const
+{
+  if (!has_drag) return Friction::NONE;
+  return exponential ? Friction::EXPONENTIAL : Friction::IMPLICIT;
+}
+
+Mover FixMdanimLeapfrog::mover(int i)
+{
+  if (!(atom->mask[i] & groupbit)) return {0.0, 0.0, 0.0, 0.0, 0.0, false};
+  const double mass = mass_of(atom->rmass, atom->mass, atom->type, i), kick = half_dt / mass, *own = lambda.values(lmp);
+  const double phi = has_drag ? (own ? own[i] : lambda.number) * kick : 0.0;
+  largest_phi = std::max(largest_phi, phi);
+  return {0.0, mass, kick, update->dt, phi, false};
+}
+
+std::vector<PassIntegrator::Known> FixMdanimLeapfrog::survey_ghosts(std::vector<int> &those_sent)
+{
+  sent.clear();
+  known.resize(atom->nlocal + atom->nghost);
+  for (int i = 0; i < atom->nlocal; ++i) known[i] = {atom->molecule_flag ? atom->molecule[i] : 1, {comm->me, i}};
+  comm->forward_comm(this);
+  std::sort(sent.begin(), sent.end());
+  those_sent.assign(sent.begin(), std::unique(sent.begin(), sent.end()));
+  return std::exchange(known, {});
+}
+
+int FixMdanimLeapfrog::pack_forward_comm(int n, int *list, double *buf, int, int *)
+{
+  int m = 0;
+  for (int k = 0; k < n; ++k) {
+    if (list[k] < atom->nlocal) sent.push_back(list[k]);    // others pass ghosts on
+    const Known &one = known[list[k]];
+    buf[m++] = static_cast<double>(one.object);
+    buf[m++] = static_cast<double>(one.home.rank);
+    buf[m++] = static_cast<double>(one.home.index);
+  }
+  return m;
+}
+
+void FixMdanimLeapfrog::unpack_forward_comm(int n, int first, double *buf)
+{
+  for (int i = first; i < first + n; ++i, buf += 3)
+    known[i] = {static_cast<int>(buf[0]), {static_cast<int>(buf[1]), static_cast<int>(buf[2])}};
+}
+
+void FixMdanimLeapfrog::finish_step(const std::vector<int> &particles)
+{
+  only = &particles;
+  final_half();
+  only = nullptr;
+}
+
+void FixMdanimLeapfrog::begin_step(const std::vector<int> &particles)
+{
+  only = &particles;
+  first_half();
+  if (told) bent -= bend();
+  drift();
+  only = nullptr;
+  if (!trace.empty())
+    for (const int i : particles)
+      if (atom->mask[i] & groupbit) way_of(i).box.include(atom->x[i]);
+}
+
+void FixMdanimLeapfrog::moved(double final_loss, double first_loss, double bend, double phi, double more_seconds)
+{
+  largest_phi = std::max(largest_phi, phi);
+  told = tells_of(update->ntimestep + 1);
+  bent = -bend;
+  lost += force->mvv2e * final_loss;
+  lost += force->mvv2e * first_loss;
+  seconds += more_seconds;
+}
+
+// --- energy ---
+
+bool FixMdanimLeapfrog::tells_of(long long step) const { return step == output->next; }
+
+// dt v . F of the particles that move now.
+double FixMdanimLeapfrog::bend() const
+{
+  return each([&](int i, Sums &sums) { sums.bend += update->dt * dot(vec3(atom->v[i]), vec3(atom->f[i])); }).bend;
+}
+
+// Kinetic energy of this rank's particles, corrected so that the sum of all energies is what leap-frog conserves, to fourth order
+// in dt. That is T + U + dt^2 (v . U'' v / 12 - F . F / 24 m), the energy of the nearby system whose exact motion the steps are
+// (Hairer, Lubich & Wanner, Geometric Numerical Integration, IX.3); without it a vibration of frequency w seems to hold
+// (w dt)^2/24 too little, and an impact to lose what goes into vibrations. U'' v is (F^{n-1} - F^n) / dt, and v the velocity
+// between these two steps.
+double FixMdanimLeapfrog::kinetic()
+{
+  if (!told)
+    error->all(FLERR,
+               "fix {} mdanim/leapfrog: kinetic energy, f_{}[2], is worked out in steps with output alone; ask for it in "
+               "these, as thermo_style does",
+               id, id);
+  const Sums all = each([&](int i, Sums &sums) {
+    const double mass = mass_of(atom->rmass, atom->mass, atom->type, i);
+    const Vec3 v = vec3(atom->v[i]), f = vec3(atom->f[i]);
+    sums.kinetic += 0.5 * mass * dot(v, v);
+    sums.swing += half_dt / mass * update->dt * dot(f, f);
+  });
+  return force->mvv2e * all.kinetic - (all.swing + bent) / 12.0;
+}
+
+double FixMdanimLeapfrog::compute_scalar()
+{
+  double total = 0.0;
+  MPI_Allreduce(&lost, &total, 1, MPI_DOUBLE, MPI_SUM, world);
+  return total;
+}
+
+// 1: largest phi in this run; 2: kinetic energy, in steps with output; 3: wall seconds of the slowest rank
+double FixMdanimLeapfrog::compute_vector(int n)
+{
+  double here = n == 0 ? largest_phi : n == 1 ? kinetic() : seconds, all = 0.0;
+  MPI_Allreduce(&here, &all, 1, MPI_DOUBLE, n == 1 ? MPI_SUM : MPI_MAX, world);
+  return all;
+}
+
+void FixMdanimLeapfrog::write_restart(FILE *fp)
+{
+  const double list[2] = {RESTART_VERSION, compute_scalar()};
+  if (comm->me != 0) return;
+  const int size = sizeof list;
+  fwrite(&size, sizeof size, 1, fp);
+  fwrite(list, sizeof list, 1, fp);
+}
+
+void FixMdanimLeapfrog::restart(char *buffer)
+{
+  double list[2];
+  memcpy(list, buffer, sizeof list);
+  if (list[0] != RESTART_VERSION)
+    error->all(FLERR, "fix mdanim/leapfrog: restart state has version {}, {} is needed", list[0], RESTART_VERSION);
+  lost = comm->me == 0 ? list[1] : 0.0;
+}

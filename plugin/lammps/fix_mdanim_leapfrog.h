@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// fix mdanim/leapfrog: advances particles by the leap-frog with friction. Wcislo 1999, eq. (3.12).
+
+#ifndef LMP_FIX_MDANIM_LEAPFROG_H
+#define LMP_FIX_MDANIM_LEAPFROG_H
+
+#include "fix.h"
+#include "geometry/boxes.h"
+#include "lammps/particle_value.h"
+#include "passes/pass_participant.h"
+#include "threads/team.h"
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+namespace LAMMPS_NS {
+
+// Moves particles by the half steps of leapfrog/law.h in plain steps, and tells passes how to; keeps the account of friction,
+// the kinetic energy that fits the other energies to fourth order, and the trace: where each object has been.
+class FixMdanimLeapfrog : public Fix, public mdanim::PassIntegrator {
+ public:
+  FixMdanimLeapfrog(class LAMMPS *, int, char **);
+
+  int setmask() override;
+  void init() override;
+  void setup(int) override;
+  void reset_dt() override;
+  void initial_integrate(int) override;
+  void final_integrate() override;
+  double compute_scalar() override;
+  double compute_vector(int) override;
+  void write_restart(FILE *) override;
+  void restart(char *) override;
+
+  // For trace_c.cpp, all ranks together: where each object, molecule 1 to M, has been since start_trace, its place then included.
+  // Empty, or why there can be no trace.
+  std::string start_trace(int objects);
+  // From now on passes look at particles every so often; boxes are wider by the way that the fastest particle may have gone
+  // meanwhile.
+  void look_every(int passes) { look_after = passes; }
+  int traced() const { return static_cast<int>(trace.size()); }    // objects; 0 when off
+  std::vector<mdanim::Box> traced_boxes() const;
+
+  int pack_forward_comm(int, int *, double *, int, int *) override;
+  void unpack_forward_comm(int, int, double *) override;
+
+  std::vector<Known> survey_ghosts(std::vector<int> &sent) override;
+  mdanim::Friction friction() const override;
+  mdanim::Mover mover(int i) override;
+  double *trace_rows() override { return trace.empty() ? nullptr : trace.front().box.bound; }
+  bool looks() override;
+  void finish_step(const std::vector<int> &particles) override;
+  void begin_step(const std::vector<int> &particles) override;
+  bool tells_of(long long step) const override;
+  void equip(const mdanim::Kernels &, const mdanim::Threads &now) override { threads = now; }
+  void moved(double final_loss, double first_loss, double bend, double phi, double more_seconds) override;
+  const double *friction_of_particles() const override { return has_drag ? lambda.values(lmp) : nullptr; }
+
+ private:
+  // Over the particles of a loop.
+  struct Sums {
+    double loss = 0.0, bend = 0.0, kinetic = 0.0, swing = 0.0, largest_phi = 0.0;
+
+    void add(const Sums &more)
+    {
+      loss += more.loss;
+      bend += more.bend;
+      kinetic += more.kinetic;
+      swing += more.swing;
+      largest_phi = std::max(largest_phi, more.largest_phi);
+    }
+  };
+  template <class Visit> Sums each(Visit visit) const;
+  void first_half();
+  void final_half();
+  template <class Half> void half_step(Half half, bool first);
+  template <class Drag, class Half> void half_step_with_drag(Half half, bool first);
+  void drift();
+  void drift_and_trace();
+  double largest_phi_here() const;
+  double bend() const;
+  double kinetic();
+
+  bool has_drag = false, exponential = false;
+  mdanim::ParticleValue lambda;
+  double half_dt = 0.0;        // dt/2 in units that turn force/mass into velocity
+  double lost = 0.0;           // energy taken by drag on this rank
+  bool told = false;           // whether kinetic() may be asked for in this step
+  double bent = 0.0;           // dt v^{n-1/2} . (F^n - F^{n-1}) on this rank, if it may
+  double largest_phi = 0.0;    // seen on this rank in this run
+  double seconds = 0.0;
+  const std::vector<int> *only = nullptr;    // particles to move now; null for all
+  std::vector<int> sent;                     // while ghosts are surveyed
+  std::vector<Known> known;
+  struct Way {
+    mdanim::Box box;
+    double fastest = 0.0;    // largest v^2, with its sign changed, of passes that may not have looked
+  };
+  Way &way_of(int i);
+  std::vector<Way> trace;    // of the particles of this rank; empty when off
+  int look_after = 1;        // passes from one look to the next
+  int not_seen = 0;          // passes since the last look
+  mdanim::Threads threads;
+};
+
+}    // namespace LAMMPS_NS
+
+#endif

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// Before every pass each rank tells others where its particles are that have springs to theirs: one message to each, from blocks
+// to blocks.
+
+#ifndef MDANIM_GHOSTS_H
+#define MDANIM_GHOSTS_H
+
+#include "passes/simd_blocks.h"
+
+#include <mpi.h>
+#include <vector>
+
+namespace mdanim {
+
+// Which ranks have this one's particles as ghosts, and which have its ghosts; one message to and from each before every pass.
+class Ghosts {
+ public:
+  // All ranks together, whenever their blocks have been laid out: where this rank's ghosts are at home, in the order of
+  // blocks.ghost_places().
+  void survey(MPI_Comm world, const std::vector<Home> &home, const SimdBlocks &blocks);
+  // All ranks together: ghosts take the places, and with `velocities` the velocities, that they have at home.
+  void meet(MPI_Comm world, SimdBlocks &blocks, bool velocities);
+  std::size_t bytes() const;
+
+ private:
+  struct Rank {
+    int rank;
+    std::vector<int> told, heard;    // particles, in the order of the blocks
+    std::vector<double> out, in;
+  };
+  std::vector<Rank> others;
+  std::vector<MPI_Request> requests;
+};
+
+}    // namespace mdanim
+
+#endif

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-2.0-only
+#include "lammps/keywords.h"
+
+#include "error.h"
+#include "fmt/format.h"
+#include "lammps.h"
+
+#include <algorithm>
+#include <sstream>
+
+using namespace LAMMPS_NS;
+
+// "a", "a and b", "a, b and c".
+static std::string listed(const std::vector<std::string> &words)
+{
+  std::string text;
+  for (std::size_t n = 0; n < words.size(); ++n) text += (n == 0 ? "" : n + 1 < words.size() ? ", " : " and ") + words[n];
+  return text;
+}
+
+// Words of the form that are needed, in their order.
+static std::vector<std::string> needed(const std::string &values)
+{
+  std::vector<std::string> words;
+  std::istringstream stream(values);
+  for (std::string word; stream >> word;)
+    if (word[0] != '[') words.push_back(word);
+  return words;
+}
+
+static void refuse_missing(LAMMPS *lmp, const std::string &style, const std::string &head, const std::string &values, int got,
+                           int place)
+{
+  const std::vector<std::string> all = needed(values), missing(all.begin() + got, all.end());
+  lmp->error->all(FLERR, place, "{}: missing arguments, it is written as '{} {}'; got {} of them, {} {} missing", style, head,
+                  values, got, listed(missing), missing.size() == 1 ? "is" : "are");
+}
+
+void mdanim::need_words(LAMMPS *lmp, const std::string &style, const std::string &head, const std::string &values, int got)
+{
+  if (got < static_cast<int>(needed(values).size())) refuse_missing(lmp, style, head, values, got, Error::ARGZERO);
+}
+
+int mdanim::words_of_keyword(LAMMPS *lmp, const std::string &style, const std::vector<Keyword> &known, int iarg, int narg,
+                             char **arg)
+{
+  const auto found = std::find_if(known.begin(), known.end(), [&](const Keyword &one) { return one.word == arg[iarg]; });
+  if (found == known.end()) {
+    std::vector<std::string> words;
+    for (const Keyword &one : known) words.push_back(one.word);
+    lmp->error->all(FLERR, iarg, "{}: unknown keyword {}; it knows {}", style, arg[iarg], listed(words));
+  }
+  const int count = static_cast<int>(needed(found->values).size()), got = narg - iarg - 1;
+  if (got < count) refuse_missing(lmp, style, found->word, found->values, got, iarg);
+  return 1 + count;
+}

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// run_style verlet/mdanim: run_style verlet, after which it is called because fixes of LAMMPS look for that word, that takes the
+// steps of springs, gravity and leap-frog in one pass over the particles.
+
+#ifndef LMP_VERLET_MDANIM_H
+#define LMP_VERLET_MDANIM_H
+
+#include "lammps/ghosts.h"
+#include "lammps/split_verlet.h"
+#include "passes/displacement_budget.h"
+#include "passes/pass_engine.h"
+
+#include <string>
+#include <vector>
+
+namespace LAMMPS_NS {
+
+// Decides which steps are taken by passes, and does for LAMMPS what is not the engine's: steps of its own, lists, ranks, outputs.
+class VerletMdanim : public SplitVerlet {
+ public:
+  VerletMdanim(class LAMMPS *, int, char **);
+
+  void setup(int) override;
+  void setup_minimal(int) override;
+  void run(int) override;
+  double memory_usage() override;
+  long long passes() const { return passed; }
+  int ranges() const { return engine.ranges(); }
+  const char *width() const { return engine.width(); }          // of the latest run that took passes; empty before any
+  long long held_back() const { return engine.held_back(); }    // particles, all passes together
+
+ private:
+  static constexpr int MOST_THREADS = mdanim::Team::MOST_TASKS;    // no more can have a range each
+
+  void set_width(const char *word);
+  void set_threads(const char *word);
+  void begin_setup();
+  void spare_bond_list();
+  bool find_crew();
+  bool plain(const std::string &reason);
+  void tell_why(int steps);
+  void find_why_not_cut();
+  bool cut();
+  bool cut_for_ranks();
+  void refuse_if_moved();
+  void run_passes(int n);
+  int take_steps(int step, int most);
+  bigint next_stop() const;
+  mdanim::AtomArrays arrays() const;
+  void start_passes(bool positions);
+  void act_late(bool at_end);
+  bool look_again();
+  void meet_ghosts();
+  void tell_limits();
+  void measure();
+  bool spend(double way);
+  bool lists_are_due() override;
+
+  const mdanim::Kernels *told = nullptr;    // in the input script
+  mdanim::PassEngine engine;
+  mdanim::DisplacementBudget budget;
+  mdanim::Ghosts ghosts;
+  std::vector<int> sent;          // own particles that other ranks have as ghosts
+  bool ghosts_are_met = false;    // where they are now
+  int participants_look = 0;      // on any rank
+  bool worth_it = false;          // all ranks together,
+  bigint decided_for = -1;        // after this build of lists
+  bool overflowed = false;        // in this run, on some rank
+  long long passed = 0;
+  int local_then = -1, ghosts_then = 0;    // particles at the end of the last run, negative after a setup
+
+  // found before every run
+  struct Late {
+    class Fix *fix;
+    bool acts_at_end;
+  };
+  std::vector<Late> late;       // the fixes of the crew's late participants
+  std::string why, told_why;    // there are no passes in this run; what was told since the last setup
+  bool lists_matter = false, strangers_have_lists = false;
+};
+
+}    // namespace LAMMPS_NS
+
+#endif

@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// The automaton's loops over whole layers, compiled for several instruction sets: the processor's best is
+// chosen when the program runs. Integers only, so all give the same cells.
+
+#ifndef MDANIM_AUTOMATON_KERNELS_H
+#define MDANIM_AUTOMATON_KERNELS_H
+
+#include "liquid/automaton/automaton.h"
+#include "numbers/counter_rng.h"
+
+namespace mdanim {
+
+// Two neighbours along x, the left one in the low byte.
+using Pair = std::uint16_t __attribute__((may_alias, aligned(1)));
+static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "pairs of cells are read as little-endian numbers");
+
+// What there is among open cells: none with liquid, one unit, more than one.
+enum Holds : std::uint8_t { ZERO = 1, ONE = 2, MORE = 4, ANYTHING = 7 };
+
+struct AutomatonKernels {
+  const char *name;
+  bool (*runs_here)();
+  // Draws first … first + n - 1 under a key, halves apart.
+  void (*draw_words)(std::uint64_t key, std::uint32_t first, int n, std::uint16_t *low, std::uint16_t *high);
+  // Permute the blocks of a layer whose four cells are open, each by the two bits of its draw at `shift`.
+  void (*permute)(std::uint8_t *content, const std::uint8_t *open, int row, int nx, int ny, const std::uint16_t *draws,
+                  int shift);
+  // Eq. (4.16) for n pairs of cells, one above the other. Returns whether anything changed.
+  bool (*exchange)(std::uint8_t *lower, std::uint8_t *upper, const std::uint8_t *open_lower, const std::uint8_t *open_upper,
+                   std::size_t n, Vertical vertical);
+  // What n cells hold, as bits of Holds.
+  std::uint8_t (*look)(const std::uint8_t *content, const std::uint8_t *open, std::size_t n);
+  // Whether n cells are other than `solid` (0 open, 1 solid, 2 solid and still) says.
+  bool (*differ)(const std::uint8_t *solid, const std::uint8_t *open, const std::uint8_t *still, std::size_t n);
+};
+
+#define MDANIM_INLINE inline __attribute__((always_inline))
+
+namespace kernel {
+
+MDANIM_INLINE void draw_words(std::uint64_t key, std::uint32_t first, int n, std::uint16_t *__restrict low,
+                              std::uint16_t *__restrict high)
+{
+  for (int i = 0; i < n; ++i) {
+    const std::uint32_t word = draw32(key, first + i);
+    low[i] = static_cast<std::uint16_t>(word);
+    high[i] = static_cast<std::uint16_t>(word >> 16);
+  }
+}
+
+// Quarter turns of the ring a b / d c: one if bit 1 of the draw is set, two more if bit 0 is. So 0 1 2 3
+// stand for nothing, both diagonals swapped, +1, -1.
+MDANIM_INLINE void permute_row(Pair *__restrict ab, Pair *__restrict dc, const Pair *__restrict open_ab,
+                               const Pair *__restrict open_dc, int n, const std::uint16_t *__restrict draws, int shift)
+{
+  for (int i = 0; i < n; ++i) {
+    const std::uint16_t whole = -((open_ab[i] & open_dc[i]) == 0xffff), draw = draws[i] >> shift;
+    const std::uint16_t half = whole & -(draw & 1), quarter = whole & -(draw >> 1 & 1);    // masks
+    const std::uint16_t p = ab[i], q = dc[i];
+    const std::uint16_t p_turned = (q & 0x00ff) | (p << 8), q_turned = (q >> 8) | (p & 0xff00);
+    const std::uint16_t r = p ^ ((p ^ p_turned) & quarter), s = q ^ ((q ^ q_turned) & quarter);
+    const std::uint16_t r_turned = (s << 8) | (s >> 8), s_turned = (r << 8) | (r >> 8);
+    ab[i] = r ^ ((r ^ r_turned) & half);
+    dc[i] = s ^ ((s ^ s_turned) & half);
+  }
+}
+
+MDANIM_INLINE void permute(std::uint8_t *content, const std::uint8_t *open, int row, int nx, int ny, const std::uint16_t *draws,
+                           int shift)
+{
+  for (int by = 0; by < ny; ++by, content += 2 * row, open += 2 * row, draws += nx)
+    permute_row(reinterpret_cast<Pair *>(content), reinterpret_cast<Pair *>(content + row), reinterpret_cast<const Pair *>(open),
+                reinterpret_cast<const Pair *>(open + row), nx, draws, shift);
+}
+
+template <Vertical VERTICAL>
+MDANIM_INLINE bool exchange(std::uint8_t *__restrict lower, std::uint8_t *__restrict upper,
+                            const std::uint8_t *__restrict open_lower, const std::uint8_t *__restrict open_upper, std::size_t n)
+{
+  std::uint8_t changed = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::uint8_t l = lower[i], u = upper[i], most = VERTICAL == Vertical::LOWER ? l : Cells::FULLEST;
+    const std::uint8_t falls = l == 0 && u > 0 ? 1 : 0, rises = l > 1 && u < most ? 1 : 0;
+    const std::uint8_t down = static_cast<std::uint8_t>(falls - rises) & open_lower[i] & open_upper[i];
+    lower[i] = l + down;
+    upper[i] = u - down;
+    changed |= down;
+  }
+  return changed != 0;
+}
+
+MDANIM_INLINE std::uint8_t look(const std::uint8_t *__restrict content, const std::uint8_t *__restrict open, std::size_t n)
+{
+  std::uint8_t zero = 0, one = 0, more = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    zero |= (content[i] == 0) & open[i];
+    one |= content[i] == 1;
+    more |= content[i] > 1;
+  }
+  return zero * ZERO | one * ONE | more * MORE;
+}
+
+MDANIM_INLINE bool differ(const std::uint8_t *__restrict solid, const std::uint8_t *__restrict open,
+                          const std::uint8_t *__restrict still, std::size_t n)
+{
+  std::uint8_t found = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::uint8_t opened = solid[i] == 0, stilled = solid[i] == 2;
+    found |= (opened ^ (open[i] & 1)) | (stilled ^ still[i]);
+  }
+  return found != 0;
+}
+
+}    // namespace kernel
+
+// The loops once more for each instruction set: what is inlined takes the attribute of where it is.
+#define MDANIM_KERNELS(SET, TARGET, RUNS_HERE)                                                                                   \
+  namespace SET {                                                                                                                \
+  TARGET inline void draw_words(std::uint64_t key, std::uint32_t first, int n, std::uint16_t *low, std::uint16_t *high)          \
+  { kernel::draw_words(key, first, n, low, high); }                                                                              \
+  TARGET inline void permute(std::uint8_t *content, const std::uint8_t *open, int row, int nx, int ny,                           \
+                             const std::uint16_t *draws, int shift)                                                              \
+  { kernel::permute(content, open, row, nx, ny, draws, shift); }                                                                 \
+  TARGET inline bool exchange(std::uint8_t *lower, std::uint8_t *upper, const std::uint8_t *open_lower,                          \
+                              const std::uint8_t *open_upper, std::size_t n, Vertical vertical)                                  \
+  {                                                                                                                              \
+    return vertical == Vertical::LOWER ? kernel::exchange<Vertical::LOWER>(lower, upper, open_lower, open_upper, n)              \
+                                       : kernel::exchange<Vertical::ANY>(lower, upper, open_lower, open_upper, n);               \
+  }                                                                                                                              \
+  TARGET inline std::uint8_t look(const std::uint8_t *content, const std::uint8_t *open, std::size_t n)                          \
+  { return kernel::look(content, open, n); }                                                                                     \
+  TARGET inline bool differ(const std::uint8_t *solid, const std::uint8_t *open, const std::uint8_t *still, std::size_t n)       \
+  { return kernel::differ(solid, open, still, n); }                                                                              \
+  inline bool runs_here() { return RUNS_HERE; }                                                                                  \
+  }
+
+MDANIM_KERNELS(common, , true)
+#if defined(__x86_64__) && defined(__GNUC__)
+MDANIM_KERNELS(avx2, __attribute__((target("avx2"))), __builtin_cpu_supports("avx2"))
+MDANIM_KERNELS(avx512, __attribute__((target("avx512f,avx512bw,avx512vl,avx512dq"))),
+               __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vl") &&
+                   __builtin_cpu_supports("avx512dq"))
+#endif
+
+constexpr AutomatonKernels KERNELS[] = {
+    {"common", common::runs_here, common::draw_words, common::permute, common::exchange, common::look, common::differ},
+#if defined(__x86_64__) && defined(__GNUC__)
+    {"avx2", avx2::runs_here, avx2::draw_words, avx2::permute, avx2::exchange, avx2::look, avx2::differ},
+    {"avx512", avx512::runs_here, avx512::draw_words, avx512::permute, avx512::exchange, avx512::look, avx512::differ},
+#endif
+};
+constexpr int INSTRUCTION_SETS = sizeof(KERNELS) / sizeof(KERNELS[0]);
+
+#undef MDANIM_KERNELS
+#undef MDANIM_INLINE
+
+}    // namespace mdanim
+
+#endif

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// Spray: whole units that leave steep fronts and impacts, fly as points and come back. docs/physics-liquid.md, "Drops".
+
+#ifndef MDANIM_DROPS_H
+#define MDANIM_DROPS_H
+
+#include "liquid/waves/span.h"
+#include "numbers/vec3.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace mdanim {
+
+class Waves;
+
+// Units that fly are not in the waves: the sum of both never changes. Drops are in the order in which they left.
+class Drops {
+ public:
+  struct Drop {
+    Vec3 x, v;
+    Units units;
+  };
+
+  Drops(int nx, int ny, std::uint64_t seed) : nx(nx), ny(ny), seed(seed) {}
+
+  // After an update of the waves of the same time. `when` counts updates; the same one gives the same drops.
+  void update(Waves &waves, double dt, std::uint64_t when);
+
+  const std::vector<Drop> &all() const { return drops; }
+  Units total() const;
+  double energy() const;    // as Waves::Energy
+  Vec3 momentum() const;    // as of Waves, and upwards
+  std::vector<std::uint8_t> state() const;
+  // Throws std::runtime_error, and changes nothing, when it is damaged.
+  void set_state(const std::uint8_t *bytes, std::size_t size);
+
+  double share = 0.0;         // of what rises too fast that leaves: 0 none, 1 all
+  std::size_t most = 2048;    // drops; where there are more, neighbours in the order become one
+
+ private:
+  void leave(Waves &waves, double dt, std::uint64_t when);
+  void fly(const SolidParts &solid, double dt);
+  void land(Waves &waves, const std::vector<double> &from);
+  void merge();
+
+  int nx, ny;
+  std::uint64_t seed;
+  std::vector<Drop> drops;
+};
+
+}    // namespace mdanim
+
+#endif

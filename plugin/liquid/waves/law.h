@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// The equations of waves, for one span or link of columns of liquid, or for one in each lane (real.h). The cell, g and the
+// density of the liquid are 1. The numbers (W1) … are those of docs/physics-liquid.md.
+
+#ifndef MDANIM_LAWS_WAVES_H
+#define MDANIM_LAWS_WAVES_H
+
+#include "numbers/real.h"
+
+namespace mdanim {
+
+// What an update is computed with.
+struct WaveLaw {
+  double dt = 0.1;
+  double share = 1.0;                 // of the update, this sub-update
+  double film = 1.0 / 1024.0;         // a content up to this does not flow
+  double viscosity = 0.02;            // between neighbouring links
+  double calm = 0.0;                  // rate at which all velocities die, see calm_rate()
+  double bed = 0.0;                   // friction of the floor, times |u|/H
+  double inertia = 8.0 / 21.0;        // of rising columns, in their depth
+  double quick = 0.125;               // part of the dispersive head that does not push
+  double breaking = 0.3;              // difference of heads from which on a front loses its inertia, 0 at twice that
+  double overfull = 0.15;             // part of what a full span holds too much that is turned into motion
+  double mean_over = 16.0;            // updates over which the head of a full span at rest is taken
+  double slam = 100.0;                // most that a head falls below its surface, and rises above the basin
+  double height = 1.0;                // of the basin
+  double fastest = 16.0;              // velocity
+  double units_per_cell = 1 << 20;    // of content
+};
+
+// Friction under which waves die to 1/e in a time: half of their energy is in velocities.
+constexpr double calm_rate(double time) { return 2.0 / time; }
+
+// (W1) Head of the surface of a span with solids at its ends alone. A full span has the head of its rest.
+template <class Real> struct SpanSurface {
+  Real full, rest, phi, head;
+};
+
+template <class Real>
+MDANIM_ALWAYS_INLINE SpanSurface<Real> surface(const Real &volume, const Real &capacity, const Real &roof, const Real &free_head,
+                                               const Real &full, const Real &rest, const Real &phi)
+{
+  const Real none = constant<Real>(0.0), one = constant<Real>(1.0);
+  const Real stays = pick(volume >= capacity - one, one, none), turns = pick(volume >= capacity, one, none);
+  SpanSurface<Real> s;
+  s.full = pick(full > none, stays, turns);
+  const auto new_full = s.full > full;
+  s.phi = pick(new_full, larger(phi, roof), phi);
+  s.rest = pick(new_full, s.phi, rest);
+  s.head = pick(s.full > none, s.rest, free_head);
+  return s;
+}
+
+// (W2) How high a link is filled from one side: at least its lower edge.
+template <class Real>
+MDANIM_ALWAYS_INLINE Real level_at(const WaveLaw &law, const Real &head, const Real &volume, const Real &edge)
+{ return pick(volume > constant<Real>(law.film), larger(edge, head), edge); }
+
+template <class Real> struct Opened {
+  Real height, wet, u, q;    // wetted height; 1 where liquid is on either side, else 0; velocity and flux, 0 where it is not wet
+};
+
+// (W2) The wetted opening is that of the upwind side. opening(level) is the height of a link that is open up to a level.
+template <class Real, class Opening>
+MDANIM_ALWAYS_INLINE Opened<Real> open_link(const Real &level_a, const Real &level_b, const Real &edge, const Real &u,
+                                            const Real &q, const Opening &opening)
+{
+  const Real none = constant<Real>(0.0), one = constant<Real>(1.0), top = larger(level_a, level_b);
+  const auto wet = top > edge;
+  const Real upwind = pick(u > none, level_a, pick(u < none, level_b, top));
+  return {pick(wet, opening(upwind), none), pick(wet, one, none), pick(wet, u, none), pick(wet, q, none)};
+}
+
+// The links around one: those behind and ahead along its direction, and those to the left and right of it.
+template <class Real> struct Around {
+  Real u[4], height[4];    // velocity, and wetted height: 0 where there is none
+  Real inflow[4];          // flux from there, positive where it comes towards the link
+};
+
+// (W3) Advection of Stelling & Duinmeijer 2003 and viscosity, both as a mean of velocities; (W4) friction. Viscosity acts over
+// the height that two links share: what one gains the other loses.
+template <class Real>
+MDANIM_ALWAYS_INLINE Real advected(const WaveLaw &law, const Real &u, const Around<Real> &around, const Real &volume_a,
+                                   const Real &volume_b, const Real &height)
+{
+  const Real none = constant<Real>(0.0), one = constant<Real>(1.0);
+  const Real depth = larger(constant<Real>(0.5) * (volume_a + volume_b), constant<Real>(1e-6));
+  const Real k = constant<Real>(law.dt) / depth;
+  const Real viscous = constant<Real>(law.viscosity * law.dt) / larger(height, constant<Real>(1e-6));
+  Real weight[4];
+  for (int n = 0; n < 4; ++n) {
+    const Real &beside = around.height[n];
+    weight[n] = pick(beside > none, k * larger(around.inflow[n], none) + viscous * smaller(beside, height), none);
+  }
+  const Real sum = ((weight[0] + weight[1]) + weight[2]) + weight[3];
+  Real change = ((weight[0] * (around.u[0] - u) + weight[1] * (around.u[1] - u)) + weight[2] * (around.u[2] - u)) +
+                weight[3] * (around.u[3] - u);
+  if (any(sum > one)) change = change / larger(sum, one);
+  const Real mean = u + change;
+  if (law.calm == 0.0 && law.bed == 0.0) return mean;
+  const Real rubbed = larger(mean, none - mean) / larger(height, constant<Real>(0.05));
+  return mean / (one + constant<Real>(law.dt) * (constant<Real>(law.calm) + constant<Real>(law.bed) * rubbed));
+}
+
+// Sums over the links of a span. (W5), (W6): D delta = sum of c delta of the others + rhs, with D = S + sum of H.
+template <class Real> struct SpanSums {
+  Real steepest{}, beside_full{}, inflow{};
+  Real diagonal{}, rhs{};
+
+  // Heads of this span and the other; `inward` is the flux into this one by the velocity before pressure.
+  MDANIM_ALWAYS_INLINE void look(const Real &head, const Real &other, const Real &wet)
+  {
+    const Real difference = head - other;
+    steepest = pick(wet > Real{}, larger(steepest, larger(difference, Real{} - difference)), steepest);
+  }
+  // The same where some spans are full: their heads are no slope.
+  MDANIM_ALWAYS_INLINE void look(const Real &head, const Real &other, const Real &wet, const Real &full, const Real &other_full,
+                                 const Real &inward)
+  {
+    const Real either = larger(full, other_full);
+    look(head, other, wet - either);
+    beside_full = pick(wet > Real{}, larger(beside_full, either), beside_full);
+    inflow += inward;
+  }
+  // From an edge liquid falls: the side below it does not push back.
+  MDANIM_ALWAYS_INLINE void couple(const Real &head, const Real &other, const Real &edge, const Real &height)
+  {
+    const auto below = head < edge;
+    diagonal += pick(below, Real{}, height);
+    rhs -= pick(below, Real{}, height * (head - larger(other, edge)));
+  }
+};
+
+constexpr double POROUS = 0.999;    // d volume/d height of columns that solids partly fill is less
+
+// (W5) A free span: its head is that of its surface and what its rising takes.
+template <class Real>
+MDANIM_ALWAYS_INLINE Real free_stiffness(const WaveLaw &law, const Real &steepest, const Real &volume, const Real &slope)
+{
+  const Real none = constant<Real>(0.0), one = constant<Real>(1.0);
+  const Real part = smaller(one, larger(none, constant<Real>(2.0) - steepest * constant<Real>(1.0 / law.breaking)));
+  const Real smooth = pick(slope < constant<Real>(POROUS), none, part);    // none in columns that solids partly fill
+  return slope / larger(constant<Real>(law.dt * law.dt), smooth * constant<Real>(law.inertia) * volume);
+}
+
+// (W6) A full span: what its roof yields, and what it has to let out.
+template <class Real>
+MDANIM_ALWAYS_INLINE Real full_rhs(const WaveLaw &law, const Real &volume, const Real &capacity, const Real &coming,
+                                   const Real &inflow)
+{
+  const Real excess = constant<Real>(law.overfull) * (volume - capacity) - coming * constant<Real>(law.share);
+  return (excess + inflow) / constant<Real>(law.dt * law.dt);
+}
+
+// Coupling of two spans in the system, before it is scaled.
+template <class Real>
+MDANIM_ALWAYS_INLINE Real coupling(const Real &head_a, const Real &head_b, const Real &edge, const Real &height)
+{ return pick(smaller(head_a, head_b) < edge, Real{}, height); }
+
+// (W7) The head that pushes: of free spans not beside full ones, all but a part of what its rising takes.
+template <class Real>
+MDANIM_ALWAYS_INLINE Real pushing_head(const WaveLaw &law, const Real &head, const Real &delta, const Real &volume,
+                                       const Real &full, const Real &beside_full)
+{
+  const Real none = constant<Real>(0.0), one = constant<Real>(1.0);
+  const Real most = constant<Real>(0.5 / (law.dt * law.dt)) / larger(one, volume);
+  const Real part = pick(larger(full, beside_full) > none, none, smaller(constant<Real>(law.quick), most));
+  return smaller(larger(head + (one - part) * delta, head - constant<Real>(law.slam)), constant<Real>(law.height + law.slam));
+}
+
+template <class Real> struct UpwindFlux {
+  Real u, units;    // velocity; units that pass in this sub-update, a whole number
+};
+
+// To the nearest whole number, of those below 2^51.
+template <class Real> MDANIM_ALWAYS_INLINE Real whole(const Real &a)
+{
+  const Real big = constant<Real>(6755399441055744.0);    // 1.5 * 2^52
+  return (a + big) - big;
+}
+
+// (W8) Pressure moves the liquid; the flux is that of the upwind opening, in whole units.
+template <class Real, class Opening>
+MDANIM_ALWAYS_INLINE UpwindFlux<Real> pushed(const WaveLaw &law, const Real &u, const Real &wet, const Real &phi_a,
+                                             const Real &phi_b, const Real &level_a, const Real &level_b, const Real &edge,
+                                             const Opening &opening)
+{
+  const Real none = constant<Real>(0.0), most = constant<Real>(law.fastest);
+  const Real faster = u - constant<Real>(law.dt) * (larger(phi_b, edge) - larger(phi_a, edge));
+  const Real held = smaller(larger(faster, none - most), most);
+  const Real height = opening(pick(held > none, level_a, level_b));
+  const auto flows = smaller(wet, height) > none;
+  return {pick(flows, held, none), pick(flows, whole(height * held * constant<Real>(law.dt * law.units_per_cell)), none)};
+}
+
+// (W9) What passes from and to a span, in units.
+template <class Real> struct SpanFluxes {
+  Real in{}, out{};
+
+  MDANIM_ALWAYS_INLINE void add(const Real &inward)
+  {
+    in += larger(inward, Real{});
+    out += larger(Real{} - inward, Real{});
+  }
+  // Of what leaves and of what enters, so that the content stays between 0 and `most`: 1, or less by more than rounding.
+  MDANIM_ALWAYS_INLINE Real out_share(const Real &content) const
+  { return pick(out > content, content / larger(out, constant<Real>(1.0)) * constant<Real>(1.0 - 1e-12), constant<Real>(1.0)); }
+  MDANIM_ALWAYS_INLINE Real in_share(const Real &content, const Real &most) const
+  {
+    const Real room = larger(most - content + out, Real{});
+    return pick(in > room, room / larger(in, constant<Real>(1.0)) * constant<Real>(1.0 - 1e-12), constant<Real>(1.0));
+  }
+};
+
+// (W9) A flux that is scaled down, towards 0.
+template <class Real> MDANIM_ALWAYS_INLINE Real scaled_down(const Real &units, const Real &share)
+{
+  const Real none = constant<Real>(0.0), one = constant<Real>(1.0);
+  const Real size = larger(units, none - units), less = size * share, near = whole(less);
+  const Real down = near - pick(near > less, one, none);
+  return pick(share < one, pick(units < none, none - down, down), units);
+}
+
+}    // namespace mdanim
+
+#endif

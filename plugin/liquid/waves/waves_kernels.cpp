@@ -1,0 +1,408 @@
+// SPDX-License-Identifier: GPL-2.0-only
+
+#pragma GCC diagnostic ignored "-Wpsabi"    // all that takes vectors is inlined
+
+#include "liquid/waves/waves_kernels.h"
+
+#include "liquid/waves/waves_link_steps.h"
+
+#include <iterator>
+
+// A lambda that takes the attribute of where it is called.
+#define MDANIM_INLINED __attribute__((always_inline))
+
+namespace mdanim {
+
+namespace {
+
+// Two kinds of vectors, with the integers of their lanes.
+typedef long long FourUnits __attribute__((vector_size(32)));
+typedef double Eight __attribute__((vector_size(64)));
+typedef long long EightUnits __attribute__((vector_size(64)));
+
+template <class Vector> struct UnitsOf;
+template <> struct UnitsOf<Four> {
+  using Type = FourUnits;
+};
+template <> struct UnitsOf<Eight> {
+  using Type = EightUnits;
+};
+
+template <class Vector> constexpr int LANES = sizeof(Vector) / sizeof(double);
+
+// Whole numbers below 2^51 are the last bits of a number of 1.5 * 2^52 and more.
+constexpr double BIG = 6755399441055744.0;
+constexpr long long BITS_OF_BIG = 0x4338000000000000;
+
+template <class Vector> MDANIM_ALWAYS_INLINE Vector load_units(const std::int64_t *from)
+{
+  using Ints = typename UnitsOf<Vector>::Type;
+  const Ints units = reinterpret_cast<const Unaligned<Ints> *>(from)->value;
+  return __builtin_bit_cast(Vector, units + BITS_OF_BIG) - BIG;
+}
+
+template <class Vector> MDANIM_ALWAYS_INLINE void add_units(std::int64_t *to, const Vector &units)
+{
+  using Ints = typename UnitsOf<Vector>::Type;
+  auto *sum = reinterpret_cast<Unaligned<Ints> *>(to);
+  sum->value = sum->value + (__builtin_bit_cast(Ints, units + BIG) - BITS_OF_BIG);
+}
+
+// Calls f(place) for each vector of these rows.
+template <class Vector, class F> MDANIM_ALWAYS_INLINE void each(const WaveArrays &a, long first, long end, const F &f)
+{
+  for (long i = first * a.stride; i < end * a.stride; i += LANES<Vector>) f(i);
+}
+
+// Sums f(place) over each row: eight parts, added in pairs.
+template <class Vector, class F>
+MDANIM_ALWAYS_INLINE void sum_rows_to(double *sums, const WaveArrays &a, long first, long end, const F &f)
+{
+  constexpr int VECTORS = WaveKernels::SUMMED / LANES<Vector>;
+  for (long row = first; row < end; ++row) {
+    Vector sum[VECTORS] = {};
+    for (long i = row * a.stride; i < (row + 1) * a.stride; i += WaveKernels::SUMMED)
+#pragma GCC unroll 2
+      for (int n = 0; n < VECTORS; ++n) sum[n] += f(i + n * LANES<Vector>);
+    double part[WaveKernels::SUMMED];
+    for (int n = 0; n < VECTORS; ++n) store(part + n * LANES<Vector>, sum[n]);
+    sums[row] = ((part[0] + part[1]) + (part[2] + part[3])) + ((part[4] + part[5]) + (part[6] + part[7]));
+  }
+}
+
+template <class Vector, class F> MDANIM_ALWAYS_INLINE void sum_rows(const WaveArrays &a, long first, long end, const F &f)
+{ sum_rows_to<Vector>(a.sums, a, first, end, f); }
+
+namespace kernel {
+
+template <class Vector> MDANIM_ALWAYS_INLINE bool surfaces(const WaveArrays &a, const WaveLaw &law, long first, long end)
+{
+  Vector some_full{};
+  const Vector per_unit = constant<Vector>(1.0 / law.units_per_cell);
+  each<Vector>(a, first, end, [&](long i) MDANIM_INLINED {
+    const Vector volume = load_units<Vector>(a.content + i) * per_unit, capacity = load<Vector>(a.capacity + i);
+    const Vector roof = load<Vector>(a.roof + i), free_head = pick(volume >= capacity, roof, load<Vector>(a.floor + i) + volume);
+    const auto s =
+        surface(volume, capacity, roof, free_head, load<Vector>(a.full + i), load<Vector>(a.rest + i), load<Vector>(a.phi + i));
+    store(a.volume + i, volume);
+    store(a.full + i, s.full);
+    store(a.rest + i, s.rest);
+    store(a.phi + i, s.phi);
+    store(a.head + i, s.head);
+    store(a.slope + i, constant<Vector>(1.0));
+    some_full = larger(some_full, s.full);
+  });
+  return any(some_full > Vector{});
+}
+
+// How a link is open up to a level where solids are at the ends of its spans alone.
+template <class Vector> MDANIM_ALWAYS_INLINE auto opening(const LinkAt &at)
+{
+  const Vector edge = load<Vector>(at.links.edge + at.link), top = load<Vector>(at.links.top + at.link);
+  return [edge, top](const Vector &level) MDANIM_INLINED { return smaller(level, top) - edge; };
+}
+
+template <class Vector> MDANIM_ALWAYS_INLINE void open_links(const WaveArrays &a, const WaveLaw &law, int d, long first, long end)
+{
+  const long along = d == 0 ? 1 : a.stride;
+  each<Vector>(a, first, end, [&](long i) MDANIM_INLINED {
+    const LinkAt at{a.links[d], i, i, i + along};
+    open_at<Vector>(a, law, at, opening<Vector>(at));
+  });
+}
+
+template <class Vector> MDANIM_ALWAYS_INLINE void advect(const WaveArrays &a, const WaveLaw &law, int d, long first, long end)
+{
+  const WaveLinks &links = a.links[d];
+  const double *q = links.q, *across_q = a.links[1 - d].q;
+  const long along = d == 0 ? 1 : a.stride, across = d == 0 ? a.stride : 1;
+  const Vector half = constant<Vector>(0.5), none{};
+  each<Vector>(a, first, end, [&](long i) MDANIM_INLINED {
+    const Vector u = load<Vector>(links.u + i), own = load<Vector>(q + i);
+    Around<Vector> around;
+    const long at[4] = {i - along, i + along, i - across, i + across};
+#pragma GCC unroll 4
+    for (int n = 0; n < 4; ++n) {
+      around.u[n] = load<Vector>(links.u + at[n]);
+      around.height[n] = load<Vector>(links.height + at[n]);
+    }
+    around.inflow[0] = half * (load<Vector>(q + at[0]) + own);
+    around.inflow[1] = none - half * (own + load<Vector>(q + at[1]));
+    around.inflow[2] = half * (load<Vector>(across_q + i - across) + load<Vector>(across_q + i - across + along));
+    around.inflow[3] = none - half * (load<Vector>(across_q + i) + load<Vector>(across_q + i + along));
+    const Vector mean =
+        advected(law, u, around, load<Vector>(a.volume + i), load<Vector>(a.volume + i + along), load<Vector>(links.height + i));
+    store(links.faster + i, pick(load<Vector>(links.wet + i) > none, mean, none));
+  });
+}
+
+// The links of span i in the order in which they are summed: from below and from the left, to the right and up. Calls
+// f(links, link, other span, whether flux along the link comes in).
+template <class F> MDANIM_ALWAYS_INLINE void links_of(const WaveArrays &a, long i, const F &f)
+{
+  f(a.links[1], i - a.stride, i - a.stride, true);
+  f(a.links[0], i - 1, i - 1, true);
+  f(a.links[0], i, i + 1, false);
+  f(a.links[1], i, i + a.stride, false);
+}
+
+template <class Vector, bool SOME_FULL>
+MDANIM_ALWAYS_INLINE void assemble(const WaveArrays &a, const WaveLaw &law, long first, long end)
+{
+  const Vector none{};
+  each<Vector>(a, first, end, [&](long i) MDANIM_INLINED {
+    const Vector head = load<Vector>(a.head + i), volume = load<Vector>(a.volume + i);
+    SpanSums<Vector> sums;
+    links_of(a, i, [&](const WaveLinks &links, long link, long other, bool inward) MDANIM_INLINED {
+      const Vector beside = load<Vector>(a.head + other), wet = load<Vector>(links.wet + link);
+      if (SOME_FULL) {
+        const Vector flux = load<Vector>(links.height + link) * load<Vector>(links.faster + link) * constant<Vector>(law.dt);
+        sums.look(head, beside, wet, load<Vector>(a.full + i), load<Vector>(a.full + other), inward ? flux : none - flux);
+      } else {
+        sums.look(head, beside, wet);
+      }
+    });
+    sums.diagonal = free_stiffness(law, sums.steepest, volume, load<Vector>(a.slope + i));
+    if (SOME_FULL) {
+      const auto full = load<Vector>(a.full + i) > none;
+      sums.diagonal = pick(full, load<Vector>(a.yields + i) * constant<Vector>(1.0 / (law.share * law.share)), sums.diagonal);
+      sums.rhs = pick(full, full_rhs(law, volume, load<Vector>(a.capacity + i), load<Vector>(a.coming + i), sums.inflow), none);
+      store(a.beside_full + i, sums.beside_full);
+    }
+    links_of(a, i, [&](const WaveLinks &links, long link, long other, bool) MDANIM_INLINED {
+      sums.couple(head, load<Vector>(a.head + other), load<Vector>(links.edge + link), load<Vector>(links.height + link));
+    });
+    const auto solved = sums.diagonal > none;
+    const Vector one = constant<Vector>(1.0), scale = one / root(pick(solved, sums.diagonal, one));
+    store(a.scale + i, scale);
+    store(a.rhs + i, pick(solved, sums.rhs * scale, none));
+  });
+}
+
+template <class Vector> MDANIM_ALWAYS_INLINE void couple(const WaveArrays &a, long first, long end)
+{
+  for (int d = 0; d < 2; ++d) {
+    const WaveLinks &links = a.links[d];
+    const long along = d == 0 ? 1 : a.stride;
+    each<Vector>(a, first, end, [&](long i) MDANIM_INLINED {
+      const Vector bare = coupling(load<Vector>(a.head + i), load<Vector>(a.head + i + along), load<Vector>(links.edge + i),
+                                   load<Vector>(links.height + i));
+      store(links.couple + i, bare * load<Vector>(a.scale + i) * load<Vector>(a.scale + i + along));
+    });
+  }
+}
+
+template <class Vector> MDANIM_ALWAYS_INLINE void guess(const WaveArrays &a, bool again, long first, long end)
+{
+  sum_rows<Vector>(a, first, end, [&](long i) MDANIM_INLINED {
+    const Vector delta = load<Vector>(a.delta + i), last = load<Vector>(a.last_delta + i);
+    const Vector expected = again ? load<Vector>(a.p + i) : (delta + delta) - last;
+    store(a.x + i, expected / load<Vector>(a.scale + i));
+    const Vector rhs = load<Vector>(a.rhs + i);
+    return rhs * rhs;
+  });
+}
+
+// A x in one place. x(place) is that of the solver, the diagonal of A is 1.
+template <class Vector, class X> MDANIM_ALWAYS_INLINE Vector apply(const WaveArrays &a, long i, const X &x)
+{
+  Vector sum = x(i);
+  links_of(a, i, [&](const WaveLinks &links, long link, long other, bool) MDANIM_INLINED {
+    sum -= load<Vector>(links.couple + link) * x(other);
+  });
+  return sum;
+}
+
+template <class Vector> MDANIM_ALWAYS_INLINE void start(const WaveArrays &a, long first, long end)
+{
+  sum_rows<Vector>(a, first, end, [&](long i) MDANIM_INLINED {
+    const auto x = [&](long j) MDANIM_INLINED { return load<Vector>(a.x + j); };
+    const Vector r = load<Vector>(a.rhs + i) - apply<Vector>(a, i, x);
+    store(a.r + i, r);
+    store(a.p + i, Vector{});
+    return r * r;
+  });
+}
+
+template <class Vector> MDANIM_ALWAYS_INLINE void turn(const WaveArrays &a, double beta, long first, long end)
+{
+  const Vector factor = constant<Vector>(beta);
+  sum_rows<Vector>(a, first, end, [&](long i) MDANIM_INLINED {
+    // Those of the neighbours once more: so no row waits for another.
+    const auto p = [&](long j) MDANIM_INLINED { return load<Vector>(a.r + j) + factor * load<Vector>(a.p + j); };
+    const Vector own = p(i), ap = apply<Vector>(a, i, p);
+    store(a.next_p + i, own);
+    store(a.ap + i, ap);
+    return own * ap;
+  });
+}
+
+template <class Vector> MDANIM_ALWAYS_INLINE void advance(const WaveArrays &a, double alpha, long first, long end)
+{
+  const Vector factor = constant<Vector>(alpha);
+  sum_rows<Vector>(a, first, end, [&](long i) MDANIM_INLINED {
+    store(a.x + i, load<Vector>(a.x + i) + factor * load<Vector>(a.next_p + i));
+    const Vector r = load<Vector>(a.r + i) - factor * load<Vector>(a.ap + i);
+    store(a.r + i, r);
+    return r * r;
+  });
+}
+
+template <class Vector>
+MDANIM_ALWAYS_INLINE void sum(const WaveArrays &arrays, const double *a, const double *b, long first, long end)
+{
+  sum_rows<Vector>(arrays, first, end, [&](long i) MDANIM_INLINED { return load<Vector>(a + i) * load<Vector>(b + i); });
+}
+
+template <class Vector> MDANIM_ALWAYS_INLINE void heads(const WaveArrays &a, const WaveLaw &law, long first, long end)
+{
+  const Vector part = constant<Vector>(1.0 / law.mean_over);
+  each<Vector>(a, first, end, [&](long i) MDANIM_INLINED {
+    const Vector delta = load<Vector>(a.scale + i) * load<Vector>(a.x + i), full = load<Vector>(a.full + i);
+    const Vector phi =
+        pushing_head(law, load<Vector>(a.head + i), delta, load<Vector>(a.volume + i), full, load<Vector>(a.beside_full + i));
+    const Vector rest = load<Vector>(a.rest + i), mean = rest + (larger(phi, load<Vector>(a.roof + i)) - rest) * part;
+    store(a.phi + i, phi);
+    store(a.rest + i, pick(full > Vector{}, mean, rest));
+    store(a.last_delta + i, load<Vector>(a.delta + i));
+    store(a.delta + i, delta);
+  });
+}
+
+template <class Vector> MDANIM_ALWAYS_INLINE void push(const WaveArrays &a, const WaveLaw &law, int d, long first, long end)
+{
+  const WaveLinks &links = a.links[d];
+  const long along = d == 0 ? 1 : a.stride;
+  sum_rows_to<Vector>(links.moving, a, first, end, [&](long i) MDANIM_INLINED {
+    const LinkAt at{links, i, i, i + along};
+    push_at<Vector>(a, law, at, opening<Vector>(at));
+    return load<Vector>(links.height + i) * load<Vector>(links.faster + i);
+  });
+}
+
+template <class Vector> MDANIM_ALWAYS_INLINE double fastest(const WaveArrays &a, long first, long end)
+{
+  Vector most{};
+  each<Vector>(a, first, end, [&](long i) MDANIM_INLINED {
+    for (const WaveLinks &links : a.links) {
+      const Vector u = load<Vector>(links.u + i);
+      most = larger(most, larger(u, Vector{} - u));
+    }
+  });
+  double u = 0.0;
+  for (int lane = 0; lane < LANES<Vector>; ++lane) u = larger<double>(u, most[lane]);
+  return u;
+}
+
+template <class Vector> MDANIM_ALWAYS_INLINE bool balance(const WaveArrays &a, const WaveLaw &law, long first, long end)
+{
+  Vector least = constant<Vector>(1.0);
+  const Vector per_cell = constant<Vector>(law.units_per_cell), spare = constant<Vector>(0.25 * law.units_per_cell);
+  each<Vector>(a, first, end, [&](long i) MDANIM_INLINED {
+    SpanFluxes<Vector> fluxes;
+    links_of(a, i, [&](const WaveLinks &links, long link, long, bool inward) MDANIM_INLINED {
+      const Vector units = load<Vector>(links.units + link);
+      fluxes.add(inward ? units : Vector{} - units);
+    });
+    store(a.net + i, fluxes.in - fluxes.out);
+    const Vector content = load<Vector>(a.volume + i) * per_cell, most = load<Vector>(a.capacity + i) * per_cell + spare;
+    least = smaller(least, smaller(fluxes.out_share(content), fluxes.in_share(content, most)));
+  });
+  return !any(least < constant<Vector>(1.0));
+}
+
+template <class Vector> MDANIM_ALWAYS_INLINE void settle(const WaveArrays &a, const WaveLaw &law, long first, long end)
+{
+  const Vector flux = constant<Vector>(1.0 / (law.units_per_cell * law.dt));
+  each<Vector>(a, first, end, [&](long i) MDANIM_INLINED {
+    add_units(a.content + i, load<Vector>(a.net + i));
+    for (const WaveLinks &links : a.links) store(links.q + i, load<Vector>(links.units + i) * flux);
+  });
+}
+
+}    // namespace kernel
+}    // namespace
+
+// The loops once more for each instruction set: what is inlined takes the attribute of where it is.
+#define MDANIM_UPDATE_KERNELS(TARGET, V)                                                                                         \
+  using A = WaveArrays;                                                                                                          \
+  using L = WaveLaw;                                                                                                             \
+  TARGET static bool surfaces(const A &a, const L &law, long f, long e) { return kernel::surfaces<V>(a, law, f, e); }            \
+  TARGET static void open_links(const A &a, const L &law, int d, long f, long e) { kernel::open_links<V>(a, law, d, f, e); }     \
+  TARGET static void advect(const A &a, const L &law, int d, long f, long e) { kernel::advect<V>(a, law, d, f, e); }             \
+  TARGET static void assemble(const A &a, const L &law, bool some_full, long f, long e)                                          \
+  { some_full ? kernel::assemble<V, true>(a, law, f, e) : kernel::assemble<V, false>(a, law, f, e); }                            \
+  TARGET static void heads(const A &a, const L &law, long f, long e) { kernel::heads<V>(a, law, f, e); }                         \
+  TARGET static void push(const A &a, const L &law, int d, long f, long e) { kernel::push<V>(a, law, d, f, e); }                 \
+  TARGET static double fastest(const A &a, long f, long e) { return kernel::fastest<V>(a, f, e); }                               \
+  TARGET static bool balance(const A &a, const L &law, long f, long e) { return kernel::balance<V>(a, law, f, e); }              \
+  TARGET static void settle(const A &a, const L &law, long f, long e) { kernel::settle<V>(a, law, f, e); }
+
+#define MDANIM_SOLVER_KERNELS(TARGET, V)                                                                                         \
+  TARGET static void couple(const WaveArrays &a, long f, long e) { kernel::couple<V>(a, f, e); }                                 \
+  TARGET static void guess(const WaveArrays &a, bool again, long f, long e) { kernel::guess<V>(a, again, f, e); }                \
+  TARGET static void start(const WaveArrays &a, long f, long e) { kernel::start<V>(a, f, e); }                                   \
+  TARGET static void turn(const WaveArrays &a, double beta, long f, long e) { kernel::turn<V>(a, beta, f, e); }                  \
+  TARGET static void advance(const WaveArrays &a, double alpha, long f, long e) { kernel::advance<V>(a, alpha, f, e); }          \
+  TARGET static void sum(const WaveArrays &a, const double *x, const double *y, long f, long e) { kernel::sum<V>(a, x, y, f, e); }
+
+#define MDANIM_ALL_KERNELS(SET)                                                                                                  \
+  static const WaveKernels all = {#SET, runs_here, surfaces, open_links, advect, assemble, couple,  guess, start,                \
+                                  turn, advance,   sum,      heads,      push,   fastest,  balance, settle};
+
+namespace common {
+MDANIM_UPDATE_KERNELS(, Four)
+MDANIM_SOLVER_KERNELS(, Four)
+static bool runs_here() { return true; }
+MDANIM_ALL_KERNELS(common)
+}    // namespace common
+
+#if defined(__x86_64__) && defined(__GNUC__)
+namespace avx2 {
+MDANIM_UPDATE_KERNELS(__attribute__((target("avx2"))), Four)
+MDANIM_SOLVER_KERNELS(__attribute__((target("avx2"))), Four)
+static bool runs_here() { return __builtin_cpu_supports("avx2"); }
+MDANIM_ALL_KERNELS(avx2)
+}    // namespace avx2
+
+// GCC 12 takes choices among eight numbers apart, one by one: only the solver, which has none, is faster with them.
+namespace avx512 {
+using avx2::advect, avx2::assemble, avx2::balance, avx2::fastest, avx2::heads, avx2::open_links, avx2::push, avx2::settle,
+    avx2::surfaces;
+MDANIM_SOLVER_KERNELS(__attribute__((target("avx512f,avx512vl,avx512dq,prefer-vector-width=512"))), Eight)
+static bool runs_here()
+{
+  return avx2::runs_here() && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
+         __builtin_cpu_supports("avx512dq");
+}
+MDANIM_ALL_KERNELS(avx512)
+}    // namespace avx512
+#endif
+#undef MDANIM_UPDATE_KERNELS
+#undef MDANIM_SOLVER_KERNELS
+#undef MDANIM_ALL_KERNELS
+#undef MDANIM_INLINED
+
+static const WaveKernels *const ALL[] = {
+    &common::all,
+#if defined(__x86_64__) && defined(__GNUC__)
+    &avx2::all,
+    &avx512::all,
+#endif
+};
+
+const WaveKernels *wave_kernels(int number)
+{
+  if (number < 0 || number >= static_cast<int>(std::size(ALL)) || !ALL[number]->runs_here()) return nullptr;
+  return ALL[number];
+}
+
+const WaveKernels *best_wave_kernels()
+{
+  const WaveKernels *best = nullptr;
+  for (int number = 0; number < static_cast<int>(std::size(ALL)); ++number)
+    if (const WaveKernels *kernels = wave_kernels(number)) best = kernels;
+  return best;
+}
+
+}    // namespace mdanim

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// One step of all particles, block by block: what the vector code (pass_kernel.h) is given. Plain data alone, for the reason told
+// in kernels_of_set.cpp.
+
+#ifndef MDANIM_PASS_H
+#define MDANIM_PASS_H
+
+#include "buoyancy/liquid_scales.h"
+#include "springs/dashpot_work.h"
+
+namespace mdanim {
+
+// Springs from the particles of a block to those `offset` places further on.
+struct Entry {
+  int offset;
+  unsigned law;    // row of Pass::law, or Pass::damped_law if the block is damped
+};
+
+// Particles that stand side by side, one to each lane of the vector unit. Its springs are the entries from the last block's end
+// on, offsets descending.
+struct Block {
+  int start;
+  short lanes;       // of its own; what else is loaded with them belongs to others and is left as it is
+  bool held_back;    // others add to its forces before it may move
+  bool damped;       // some of its particles have dashpots
+  bool bound;        // some have springs
+  unsigned end;
+  int external_force;    // first of its rows of Pass::external_force; negative for none
+  unsigned motion;       // row of Pass::motion
+  int object;            // molecule - 1
+  int chunk;             // row of Pass::sums
+  int immersed;          // row of what is kept and of Pass::immersed_of; negative where no particle is near a liquid
+  bool at_border;        // of a range of blocks: some of what is loaded for it belongs to another range
+  int crossing;          // its row of Pass::crossed; negative where none of its springs cross the border above it
+};
+
+// The springs of a block that cross a border between two ranges of blocks: entries from the last one's end on.
+struct Crossing {
+  int start;
+  bool damped;
+  unsigned end;
+};
+
+// A border between two ranges. Springs across it are evaluated once, before a thread moves anything that they need: they are the
+// first that their lower particles add up, as their offsets are the longest, and the first that their upper particles receive, as
+// these come from their lowest partners. So each sum has the order that it has without a border.
+struct Border {
+  int first, crossings;    // of Pass::crossing, ascending
+  unsigned first_entry;
+  double *f[3], *part[3];       // of the range above
+  unsigned claimed, crossed;    // Pass::turn in which a thread has begun to evaluate them, and in which they are done
+};
+
+// Blocks that one thread takes through a pass.
+struct Range {
+  int first, blocks;    // of Pass::block
+  unsigned first_entry;
+  int end;                   // particle
+  Border *below, *above;     // null where no spring crosses
+  double *f[3], *part[3];    // of this range alone, with the lanes of a vector on either side
+  int shared[2];             // objects that the ranges below and above may have blocks of, too; negative for none
+  double *shared_trace;      // two rows of TRACE for them
+};
+
+enum class Friction { NONE, IMPLICIT, EXPONENTIAL };
+
+// A row of Pass::motion, one number for each lane.
+enum Motion { MASS, KICK, DT, FOREIGN_LANE, OWNED_LANE, STAY, SHARE, PUSH, BRAKED_MASS, PHI, MOTIONS };
+// MASS what gravity pulls at; KICK dt/2m; DT the time step, 0 for what does not move; FOREIGN_LANE 1 where a lane is not the
+// block's own; OWNED_LANE 1 for a particle of this rank. With friction also, see leapfrog.h: STAY 1 - phi or e; SHARE 1 / (1 +
+// phi); PUSH g dt/2m; BRAKED_MASS m, 0 where there is none; PHI.
+
+// What is kept for a particle (InLiquid), one number for each lane: a row of Pass::kept, and one of Pass::kept_floats.
+enum Kept { BASE, SLOPE, IMPULSE_X, IMPULSE_Y, KEPT };
+enum KeptFloat { MORE, ALONG_X, ALONG_Y, FLOW_X, FLOW_Y, RISING, KEPT_FLOATS };
+
+// A row of Pass::immersed, one number for each lane; see Immersed. LAMBDA is friction that a particle has anyway; LISTED is 1 for
+// what is near the liquid.
+enum ImmersedMotion { VOLUME, OWN_MASS, GAMMA, PER_LENGTH, LAMBDA, LISTED, IMMERSED_MOTIONS };
+
+// The same of one particle.
+struct ImmersedMover {
+  double volume, mass, gamma, per_length, lambda;
+};
+
+// What a particle's motion depends on.
+struct Mover {
+  double pulled;                 // mass that gravity pulls at
+  double mass, kick, dt, phi;    // see Motion
+  bool in_liquid;                // its friction is in ImmersedMotion
+};
+
+// A row of Pass::trace: a box, see boxes.h, and the largest v^2 with its sign changed.
+enum Trace { FASTEST = 6, TRACE };
+
+using DashpotSums = DashpotWork<double>;    // over particles
+
+// Sums over particles that have moved in a pass. They are kept for each chunk of particles (Cut) and added up in the order of
+// chunks: no number depends on how many lanes a block has, nor on which threads take the pass.
+struct PassSums {
+  double final_loss, first_loss;    // to friction in either half step
+  double bend;                      // dt v^{n+1/2} . F^n
+  DashpotSums dashpots;
+  double liquid_work, liquid_lost;    // power of the liquid's forces but friction's; what its friction takes
+};
+
+struct Pass {
+  const Block *block;
+  const Entry *entry;
+  const double *law;           // rows of push and pull (spring.h), one of each for every lane
+  const double *damped_law;    // rows of push, pull and c; null where nothing is damped
+  const double *motion;        // see Motion
+  double *x[3], *v[3];         // x^n -> x^{n+1}, v^{n-1/2} -> v^{n+1/2}
+  // With dashpots: their forces of the last step, F^{n-1} -> F^n, and the velocities that those of this step have seen,
+  // v^{n-3/2} -> v^{n-1/2}. Of what is held back these stay as they are, and F^n goes to `held_part`.
+  double *last[3], *seen[3], *held_part[3];
+  // Of the range: what lower partners have done so far, and the dashpots' part of it; nothing before and after a pass.
+  const Range *range;
+  const Crossing *crossing;
+  const Entry *crossing_entry;
+  double *crossed;           // what crossing springs do to their lower particles: rows of (3, lanes), (6, lanes) with dashpots
+  unsigned turn;             // number of the pass
+  double gravity[3];         // [velocity/time]
+  double *external_force;    // rows of forces from elsewhere, (3, lanes) each, to be added after gravity; zero after a pass:
+  int force_providers;       // so many in a row for a block that has any
+  Friction friction;
+  double *kept;                   // rows of KEPT
+  const float *kept_floats;       // rows of KEPT_FLOATS
+  const double *immersed;         // rows of IMMERSED_MOTIONS,
+  const unsigned *immersed_of;    // and which of them goes with a row of `kept`
+  LiquidScales liquid;
+  double top_of_near;    // below it the speed of what is LISTED counts
+  double *total;         // (N, 3): sum of all forces on the particles of blocks that are held back
+  double *trace;         // rows of TRACE, one of each object: to be grown; null for none
+  bool looks;            // where particles are after this pass; else the trace takes note of their speeds alone
+  bool bends;            // `bend` is asked for
+  PassSums *sums;        // of every chunk, zero before a pass
+
+  double fastest;         // largest v^2 of what has moved
+  double squares;         // sum of v^2, with lanes of others: finite where all of them are
+  double fastest_near;    // largest v^2 of what is near the liquid, -1 for nothing
+  double largest_phi;     // of what is near the liquid
+};
+
+}    // namespace mdanim
+
+#endif

@@ -1,0 +1,482 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// The pass over a range of blocks (pass.h), for vectors of MDANIM_LANES doubles.
+//
+// Springs are evaluated once. Blocks come in ascending order and in each of them offsets in descending order, so that a particle
+// receives from its lower partners in ascending order, and a block's own sum takes its upper ones in descending order: the order
+// of bond_mdanim_harmonic.cpp, hence its bits, as the laws are the same text. Lanes without a spring have push = pull = 0 and add
+// nothing as long as positions are finite: F = 0, and a sum that starts at +0 is never -0. Positions of a block can move on at
+// once, for all that is still to come reads its own and upper ones.
+
+#ifndef MDANIM_PASS_KERNEL_H
+#define MDANIM_PASS_KERNEL_H
+
+#include "buoyancy/immersed.h"
+#include "leapfrog/law.h"
+#include "passes/pass.h"
+#include "simd/vectors.h"
+#include "springs/law.h"
+
+#include <sched.h>
+
+namespace mdanim {
+namespace {
+
+constexpr int LANES = MDANIM_LANES;
+typedef double Vector __attribute__((vector_size(8 * LANES)));
+typedef float Floats __attribute__((vector_size(4 * LANES)));
+using Vector3 = Vec<Vector>;
+
+MDANIM_ALWAYS_INLINE Vector load(const double *from) { return load<Vector>(from); }
+
+MDANIM_ALWAYS_INLINE Vector load_floats(const float *from) { return __builtin_convertvector(load<Floats>(from), Vector); }
+
+MDANIM_ALWAYS_INLINE Vector3 load(const double *const *from, long i) { return load<Vector>(from, i); }
+
+// Components of a block's own numbers, LANES of each.
+MDANIM_ALWAYS_INLINE Vector3 load_own(const double *from) { return {load(from), load(from + LANES), load(from + 2 * LANES)}; }
+
+MDANIM_ALWAYS_INLINE void store_own(double *to, const Vector3 &value)
+{
+  store(to, value.x);
+  store(to + LANES, value.y);
+  store(to + 2 * LANES, value.z);
+}
+
+MDANIM_ALWAYS_INLINE Vector largest(Vector a, Vector b) { return a > b ? a : b; }
+
+// Adds lanes in the order of particles, whatever the width.
+MDANIM_ALWAYS_INLINE void add_lanes(double &sum, const Vector &lanes)
+{
+  double each[LANES];
+  store(each, lanes);
+  for (int lane = 0; lane < LANES; ++lane) sum += each[lane];
+}
+
+// Largest and smallest coordinates of one object, as they come.
+struct Bounds {
+  Vector low[3], high[3];
+
+  MDANIM_ALWAYS_INLINE void open()
+  {
+    for (Vector &b : low) b = Vector{} + __DBL_MAX__;
+    for (Vector &b : high) b = Vector{} - __DBL_MAX__;
+  }
+  MDANIM_ALWAYS_INLINE void include(const Vector3 &x)
+  {
+    const Vector at[] = {x.x, x.y, x.z};
+    for (int d = 0; d < 3; ++d) {
+      low[d] = at[d] < low[d] ? at[d] : low[d];
+      high[d] = at[d] > high[d] ? at[d] : high[d];
+    }
+  }
+  MDANIM_ALWAYS_INLINE void close(double *box) const    // of boxes.h
+  {
+    for (int d = 0; d < 3; ++d)
+      for (int lane = 0; lane < LANES; ++lane) {
+        if (low[d][lane] < box[d]) box[d] = low[d][lane];
+        if (-high[d][lane] < box[3 + d]) box[3 + d] = -high[d][lane];
+      }
+  }
+};
+
+// What a pass tells at its end.
+struct Tally {
+  Vector fastest{}, squares{};
+  Vector fastest_near = constant<Vector>(-1.0), largest_phi{};
+  PassSums sums{};
+  int chunk = -1;    // whose sums these are
+  Bounds box;
+  Vector fastest_of_object{};
+  int object = -1;    // whose box and speed these are
+
+  MDANIM_ALWAYS_INLINE void turn_to_chunk(int next, const Pass &pass)
+  {
+    if (chunk >= 0) pass.sums[chunk] = sums;
+    sums = {};
+    chunk = next;
+  }
+
+  MDANIM_ALWAYS_INLINE void turn_to_object(int next, const Pass &pass)
+  {
+    if (object >= 0) {
+      double *row = pass.trace + TRACE * object;
+      for (int side = 0; side < 2; ++side)
+        if (object == pass.range->shared[side]) row = pass.range->shared_trace + TRACE * side;
+      if (pass.looks) box.close(row);
+      for (int lane = 0; lane < LANES; ++lane)
+        if (-fastest_of_object[lane] < row[FASTEST]) row[FASTEST] = -fastest_of_object[lane];
+      fastest = largest(fastest_of_object, fastest);
+    }
+    box.open();
+    fastest_of_object = Vector{};
+    object = next;
+  }
+};
+
+// What the particles of a block feel of springs to upper partners, and of dashpots alone.
+struct Felt {
+  Vector3 springs, dashpots;
+};
+
+// Springs of a block, each once, and the dashpots beside them: for its own particles into `felt`, for their partners into f and
+// part. place(array, i) has the lanes of particles from i on.
+template <bool DAMPED, class Place>
+MDANIM_ALWAYS_INLINE void add_springs(const Pass &pass, const Entry *entry, unsigned &e, unsigned end, int i, double *const *of_f,
+                                      double *const *of_part, Felt &felt, const Place &place)
+{
+  constexpr int COEFFS = DAMPED ? 3 : 2;
+  double *const x[] = {pass.x[0], pass.x[1], pass.x[2]}, *const f[] = {of_f[0], of_f[1], of_f[2]};
+  const double *const coeffs = DAMPED ? pass.damped_law : pass.law;
+  const Vector3 here = place(x, i);
+  Vector3 v;
+  if (DAMPED) v = place(pass.v, i);
+  for (; e < end; ++e) {
+    const int j = i + entry[e].offset;
+    const double *const own = coeffs + static_cast<unsigned long>(entry[e].law) * (COEFFS * LANES);
+    const Vector3 d = here - place(x, j);
+    const Vector square = floored_square(d);
+    Vector3 force = spring_factor(load(own), load(own + LANES), square) * d;
+    if (DAMPED) {
+      const Vector3 slowing = dashpot_factor(load(own + 2 * LANES), d, v - place(pass.v, j), square) * d;
+      force += slowing;
+      felt.dashpots += slowing;
+      store(of_part, j, load(of_part, j) - slowing);
+    }
+    felt.springs += force;
+    store(f, j, load(f, j) - force);
+  }
+}
+
+// All that a block's own particles feel of springs and of gravity, and behind that what they feel of dashpots alone.
+template <bool DAMPED> MDANIM_ALWAYS_INLINE void add_up(const Pass &pass, const Block &block, const Felt &felt, double *total)
+{
+  double *const f[] = {pass.range->f[0], pass.range->f[1], pass.range->f[2]};
+  const int i = block.start;
+  const double *const motion = pass.motion + static_cast<unsigned long>(block.motion) * (MOTIONS * LANES);
+  const Vector mass = load(motion + MASS * LANES), others = load(motion + FOREIGN_LANE * LANES);
+  const Vector3 received = load(f, i), gravity{mass * pass.gravity[0], mass * pass.gravity[1], mass * pass.gravity[2]};
+  store(f, i, others * received);
+  store_own(total, (received + felt.springs) + gravity);
+  if (DAMPED) {
+    const Vector3 slowed = load(pass.range->part, i);
+    store(pass.range->part, i, others * slowed);
+    store_own(total + 3 * LANES, slowed + felt.dashpots);
+  }
+}
+
+template <bool DAMPED> MDANIM_ALWAYS_INLINE void feel(const Pass &pass, const Block &block, unsigned &e, double *total)
+{
+  Felt felt{};
+  const auto place = [](double *const *from, int i) { return load(from, i); };
+  add_springs<DAMPED>(pass, pass.entry, e, block.end, block.start, pass.range->f, pass.range->part, felt, place);
+  add_up<DAMPED>(pass, block, felt, total);
+}
+
+// Forces of participants, whose rows are cleared for the next pass while they are in the cache. Not inlined: most blocks have
+// none, and the springs need all registers.
+__attribute__((noinline)) void take_external_force(const Pass &pass, const Block &block, double *total)
+{
+  double *row = pass.external_force + static_cast<long>(block.external_force) * (3 * LANES);
+  for (int n = 0; n < pass.force_providers; ++n, row += 3 * LANES)
+    for (int d = 0; d < 3 * LANES; d += LANES) {
+      store(total + d, load(total + d) + load(row + d));
+      store(row + d, Vector{});
+    }
+}
+
+// What dashpots do to the account of a block that has gone from `first` to `last`.
+MDANIM_ALWAYS_INLINE void account(const Pass &pass, const Block &block, const double *motion, const Vector3 &now,
+                                  const Vector3 &first, const Vector3 &last, DashpotSums &sums)
+{
+  const Vector others = load(motion + FOREIGN_LANE * LANES), counts = load(motion + OWNED_LANE * LANES);
+  const auto keep = [&](const Vector &theirs, const Vector &own) { return others > 0.0 ? theirs : own; };
+  const Vector3 before = load(pass.last, block.start), seen = load(pass.seen, block.start);
+  const DashpotWork<Vector> terms = dashpot_work(now, before, seen, first, last);
+  store(pass.last, block.start, Vector3{keep(before.x, now.x), keep(before.y, now.y), keep(before.z, now.z)});
+  store(pass.seen, block.start, Vector3{keep(seen.x, first.x), keep(seen.y, first.y), keep(seen.z, first.z)});
+  add_lanes(sums.work, counts * terms.work);
+  add_lanes(sums.bend, counts * terms.bend);
+  add_lanes(sums.ahead, counts * terms.ahead);
+}
+
+// The law of leapfrog.h that a row of Pass::motion tells.
+template <Friction FRICTION> MDANIM_ALWAYS_INLINE auto half_steps(const double *motion)
+{
+  if constexpr (FRICTION == Friction::IMPLICIT)
+    return Implicit<Vector>{load(motion + PHI * LANES), load(motion + KICK * LANES), load(motion + STAY * LANES),
+                            load(motion + SHARE * LANES)};
+  else if constexpr (FRICTION == Friction::EXPONENTIAL)
+    return Exponential<Vector>{load(motion + STAY * LANES), load(motion + PUSH * LANES), load(motion + KICK * LANES)};
+  else
+    return Frictionless<Vector>{load(motion + KICK * LANES)};
+}
+
+// The same for a phi of this step.
+template <Friction FRICTION> MDANIM_ALWAYS_INLINE auto half_steps(const Vector &phi, const Vector &kick)
+{
+  if constexpr (FRICTION == Friction::IMPLICIT)
+    return Implicit<Vector>::of(phi, kick);
+  else
+    return Exponential<Vector>::of(phi, kick);
+}
+
+// The second half of a step and the first of the next, by a law of leapfrog.h; friction takes from `mass` alone. Sums are those
+// of the block's chunk when then(v^n, v^{n+1/2}, r^{n+1}) is called.
+template <Friction FRICTION, bool TRACED, bool DAMPED, class Law, class Then>
+MDANIM_ALWAYS_INLINE void advance(const Pass &pass, const Block &block, const double *total, const Vector3 &f, const Law &law,
+                                  const Vector &mass, Tally &tally, const Then &then)
+{
+  const int i = block.start;
+  const double *const motion = pass.motion + static_cast<unsigned long>(block.motion) * (MOTIONS * LANES);
+  const Vector dt = load(motion + DT * LANES);
+  const Vector3 first = load(pass.v, i);
+  const Vector3 middle = law.final_half(first, f), last = law.first_half(middle, f);
+  Vector3 place = load(pass.x, i) + dt * last;
+  store(pass.v, i, last);
+  store(pass.x, i, place);
+  Vector square = dot(last, last);
+  tally.squares += square;
+  if (block.chunk != tally.chunk) tally.turn_to_chunk(block.chunk, pass);
+  if (pass.bends) add_lanes(tally.sums.bend, dt * dot(last, f));
+  if (DAMPED && block.damped) account(pass, block, motion, load_own(total + 3 * LANES), first, last, tally.sums.dashpots);
+  if constexpr (FRICTION != Friction::NONE) {    // 0 in lanes of others
+    add_lanes(tally.sums.final_loss, law.loss(first, middle, f, mass, false));
+    add_lanes(tally.sums.first_loss, law.loss(middle, last, f, mass, true));
+  }
+  then(middle, last, place);
+  if (TRACED) {
+    if (block.object != tally.object) tally.turn_to_object(block.object, pass);
+    if (block.lanes < LANES) {    // lanes of others go where the first one is, and rest
+      const Vector others = load(motion + FOREIGN_LANE * LANES);
+      const auto at_first = [&](const Vector &a) { return others > 0.0 ? Vector{} + a[0] : a; };
+      place = {at_first(place.x), at_first(place.y), at_first(place.z)};
+      square = others > 0.0 ? Vector{} : square;
+    }
+    if (pass.looks) tally.box.include(place);
+    tally.fastest_of_object = largest(square, tally.fastest_of_object);
+  } else {
+    tally.fastest = largest(square, tally.fastest);
+  }
+}
+
+// The motion of a block that a liquid acts on (buoyancy/immersed.h). Not inlined: most blocks are dry.
+template <Friction FRICTION, bool TRACED, bool DAMPED>
+__attribute__((noinline)) void move_immersed(const Pass &pass, const Block &block, const double *total, Tally &tally)
+{
+  const double *const motion = pass.motion + static_cast<unsigned long>(block.motion) * (MOTIONS * LANES);
+  const double *const own =
+      pass.immersed + static_cast<unsigned long>(pass.immersed_of[block.immersed]) * (IMMERSED_MOTIONS * LANES);
+  double *const kept = pass.kept + static_cast<long>(block.immersed) * (KEPT * LANES);
+  const float *const kept_floats = pass.kept_floats + static_cast<long>(block.immersed) * (KEPT_FLOATS * LANES);
+  const auto of = [own](ImmersedMotion what) { return load(own + what * LANES); };
+  const auto waves = [kept](Kept what) { return load(kept + what * LANES); };
+  const auto small = [kept_floats](KeptFloat what) { return load_floats(kept_floats + what * LANES); };
+  const InWaves<Vector> in_waves{waves(BASE),    waves(SLOPE),  small(MORE),   small(ALONG_X),
+                                 small(ALONG_Y), small(FLOW_X), small(FLOW_Y), small(RISING)};
+  const Immersed<Vector> particle{of(VOLUME), of(OWN_MASS), of(GAMMA), of(PER_LENGTH)};
+  const AtPlace<Vector> at = in_waves.at(load(pass.x[2] + block.start));
+  const Vector3 lift = lift_along(pass.liquid, particle.volume, at.push);
+  const auto force = liquid_force(pass.liquid, particle, at, lift, load(pass.v, block.start));
+  store(kept + IMPULSE_X * LANES, waves(IMPULSE_X) + force.impulse_x);
+  store(kept + IMPULSE_Y * LANES, waves(IMPULSE_Y) + force.impulse_y);
+  const Vector kick = load(motion + KICK * LANES), phi = (of(LAMBDA) + force.lambda) * kick;
+  tally.largest_phi = larger(phi, tally.largest_phi);
+  const auto then = [&](const Vector3 &middle, const Vector3 &last, const Vector3 &place) {
+    add_lanes(tally.sums.liquid_work, dot(force.push, middle));
+    add_lanes(tally.sums.liquid_lost, force.lambda * dot(middle, middle));
+    const Vector square = of(LISTED) > 0.0 ? dot(last, last) : constant<Vector>(-1.0);
+    tally.fastest_near = place.z < pass.top_of_near ? larger(square, tally.fastest_near) : tally.fastest_near;
+  };
+  const Vector mass = phi > 0.0 ? particle.mass : Vector{};
+  advance<FRICTION, TRACED, DAMPED>(pass, block, total, load_own(total) + force.push, half_steps<FRICTION>(phi, kick), mass,
+                                    tally, then);
+}
+
+template <Friction FRICTION, bool TRACED, bool DAMPED>
+MDANIM_ALWAYS_INLINE void move(const Pass &pass, const Block &block, const double *total, Tally &tally)
+{
+  const int i = block.start;
+  if (block.held_back) {
+    for (int lane = 0; lane < block.lanes; ++lane)
+      for (int d = 0; d < 3; ++d) {
+        pass.total[3 * (i + lane) + d] = total[d * LANES + lane];
+        if (DAMPED && block.damped) pass.held_part[d][i + lane] = total[(3 + d) * LANES + lane];
+      }
+    return;
+  }
+  if constexpr (FRICTION != Friction::NONE) {
+    if (__builtin_expect(block.immersed >= 0, 0)) {
+      move_immersed<FRICTION, TRACED, DAMPED>(pass, block, total, tally);
+      return;
+    }
+  }
+  const double *const motion = pass.motion + static_cast<unsigned long>(block.motion) * (MOTIONS * LANES);
+  advance<FRICTION, TRACED, DAMPED>(pass, block, total, load_own(total), half_steps<FRICTION>(motion),
+                                    load(motion + BRAKED_MASS * LANES), tally,
+                                    [](const Vector3 &, const Vector3 &, const Vector3 &) {});
+}
+
+// --- at the borders of ranges ---
+
+// Lanes of particles from i on, but for those of another range, which another thread may be moving: these are where the first is.
+MDANIM_ALWAYS_INLINE Vector3 load_before(int end, double *const *from, int i)
+{
+  if (__builtin_expect(i + LANES <= end, 1)) return load(from, i);
+  double lanes[3 * LANES];
+  for (int d = 0; d < 3; ++d)
+    for (int lane = 0; lane < LANES; ++lane) lanes[d * LANES + lane] = from[d][i + lane < end ? i + lane : i];
+  return load_own(lanes);
+}
+
+template <bool DAMPED> MDANIM_ALWAYS_INLINE void cross(const Pass &pass, const Border &border)
+{
+  const auto place = [](double *const *from, int i) { return load(from, i); };
+  unsigned e = border.first_entry;
+  for (int n = border.first; n < border.first + border.crossings; ++n) {
+    const Crossing &block = pass.crossing[n];
+    Felt felt{};
+    if (DAMPED && block.damped)
+      add_springs<true>(pass, pass.crossing_entry, e, block.end, block.start, border.f, border.part, felt, place);
+    else
+      add_springs<false>(pass, pass.crossing_entry, e, block.end, block.start, border.f, border.part, felt, place);
+    double *const row = pass.crossed + static_cast<long>(n) * ((DAMPED ? 6 : 3) * LANES);
+    store_own(row, felt.springs);
+    if (DAMPED) store_own(row + 3 * LANES, felt.dashpots);
+  }
+}
+
+// The springs across a border are evaluated when this returns, by whichever thread came first. It waits for no other, so no
+// thread waits for long.
+template <bool DAMPED> __attribute__((noinline)) void see_crossed(const Pass &pass, Border &border)
+{
+  unsigned before = pass.turn - 1;
+  if (__atomic_compare_exchange_n(&border.claimed, &before, pass.turn, false, __ATOMIC_ACQ_REL, __ATOMIC_ACQUIRE)) {
+    cross<DAMPED>(pass, border);
+    __atomic_store_n(&border.crossed, pass.turn, __ATOMIC_RELEASE);
+    return;
+  }
+  while (__atomic_load_n(&border.crossed, __ATOMIC_ACQUIRE) != pass.turn) sched_yield();
+}
+
+// Of a damped pass, a block that is damped itself or not.
+template <bool DAMPED_PASS, bool DAMPED>
+__attribute__((noinline)) void feel_at_border(const Pass &pass, const Block &block, unsigned &e, double *total)
+{
+  Felt felt{};
+  if (block.crossing >= 0) {
+    see_crossed<DAMPED_PASS>(pass, *pass.range->above);
+    const double *const row = pass.crossed + static_cast<long>(block.crossing) * ((DAMPED_PASS ? 6 : 3) * LANES);
+    felt.springs = load_own(row);
+    if (DAMPED) felt.dashpots = load_own(row + 3 * LANES);
+  }
+  const auto place = [end = pass.range->end](double *const *from, int i) { return load_before(end, from, i); };
+  add_springs<DAMPED>(pass, pass.entry, e, block.end, block.start, pass.range->f, pass.range->part, felt, place);
+  add_up<DAMPED>(pass, block, felt, total);
+}
+
+// In a copy of its own lanes.
+template <Friction FRICTION, bool TRACED, bool DAMPED>
+__attribute__((noinline)) void move_at_border(const Pass &pass, const Block &block, const double *total, Tally &tally)
+{
+  constexpr int KINDS = DAMPED ? 4 : 2;
+  double room[KINDS][3][LANES] = {};
+  Pass copy = pass;
+  double **const of_copy[] = {copy.x, copy.v, copy.last, copy.seen};
+  for (int kind = 0; kind < KINDS; ++kind)
+    for (int d = 0; d < 3; ++d) {
+      for (int lane = 0; lane < block.lanes; ++lane) room[kind][d][lane] = of_copy[kind][d][block.start + lane];
+      of_copy[kind][d] = room[kind][d] - block.start;
+    }
+  move<FRICTION, TRACED, DAMPED>(copy, block, total, tally);
+  double *const *const of_pass[] = {pass.x, pass.v, pass.last, pass.seen};
+  for (int kind = 0; kind < KINDS; ++kind)
+    for (int d = 0; d < 3; ++d)
+      for (int lane = 0; lane < block.lanes; ++lane) of_pass[kind][d][block.start + lane] = room[kind][d][lane];
+}
+
+// --- all of a range ---
+
+template <bool DAMPED> MDANIM_ALWAYS_INLINE void feel_anywhere(const Pass &pass, const Block &block, unsigned &e, double *total)
+{
+  if (__builtin_expect(block.at_border, 0))
+    DAMPED &&block.damped ? feel_at_border<DAMPED, DAMPED>(pass, block, e, total)
+                          : feel_at_border<DAMPED, false>(pass, block, e, total);
+  else if (DAMPED && block.damped)
+    feel<true>(pass, block, e, total);
+  else
+    feel<false>(pass, block, e, total);
+  if (__builtin_expect(block.external_force >= 0, 0)) take_external_force(pass, block, total);
+}
+
+template <Friction FRICTION, bool TRACED, bool DAMPED>
+MDANIM_ALWAYS_INLINE void move_anywhere(const Pass &pass, const Block &block, const double *total, Tally &tally)
+{
+  if (__builtin_expect(block.at_border && block.start + LANES > pass.range->end, 0))
+    move_at_border<FRICTION, TRACED, DAMPED>(pass, block, total, tally);
+  else
+    move<FRICTION, TRACED, DAMPED>(pass, block, total, tally);
+}
+
+// A block moves while the next one's springs keep the divider busy: nothing then waits for its forces.
+template <Friction FRICTION, bool TRACED, bool DAMPED> MDANIM_ALWAYS_INLINE void go(Pass &pass)
+{
+  double total[2][(DAMPED ? 6 : 3) * LANES];
+  Tally tally;
+  tally.box.open();
+  const Block *const block = pass.block + pass.range->first;
+  const int blocks = pass.range->blocks;
+  unsigned e = pass.range->first_entry;
+  if (pass.range->below) see_crossed<DAMPED>(pass, *pass.range->below);
+  for (int n = 0; n < blocks; ++n) {
+    feel_anywhere<DAMPED>(pass, block[n], e, total[n & 1]);
+    if (n) move_anywhere<FRICTION, TRACED, DAMPED>(pass, block[n - 1], total[~n & 1], tally);
+  }
+  if (blocks) move_anywhere<FRICTION, TRACED, DAMPED>(pass, block[blocks - 1], total[~blocks & 1], tally);
+
+  if (TRACED) tally.turn_to_object(-1, pass);
+  tally.turn_to_chunk(-1, pass);
+  pass.fastest = pass.squares = pass.largest_phi = 0.0;
+  pass.fastest_near = -1.0;
+  for (int lane = 0; lane < LANES; ++lane) {
+    if (tally.fastest[lane] > pass.fastest) pass.fastest = tally.fastest[lane];
+    pass.squares += tally.squares[lane];
+    if (tally.fastest_near[lane] > pass.fastest_near) pass.fastest_near = tally.fastest_near[lane];
+    if (tally.largest_phi[lane] > pass.largest_phi) pass.largest_phi = tally.largest_phi[lane];
+  }
+}
+
+template <Friction FRICTION, bool TRACED> MDANIM_ALWAYS_INLINE void with_or_without_dashpots(Pass &pass)
+{
+  if (pass.damped_law)
+    go<FRICTION, TRACED, true>(pass);
+  else
+    go<FRICTION, TRACED, false>(pass);
+}
+
+template <Friction FRICTION> MDANIM_ALWAYS_INLINE void with_or_without_trace(Pass &pass)
+{
+  if (pass.trace)
+    with_or_without_dashpots<FRICTION, true>(pass);
+  else
+    with_or_without_dashpots<FRICTION, false>(pass);
+}
+
+void pass_of_range(Pass &pass)
+{
+  switch (pass.friction) {
+    case Friction::NONE:
+      with_or_without_trace<Friction::NONE>(pass);
+      break;
+    case Friction::IMPLICIT:
+      with_or_without_trace<Friction::IMPLICIT>(pass);
+      break;
+    case Friction::EXPONENTIAL:
+      with_or_without_trace<Friction::EXPONENTIAL>(pass);
+      break;
+  }
+}
+
+}    // namespace
+}    // namespace mdanim
+
+#endif

@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// How the bond style and fixes take part in passes over blocks (pass.h), which keep positions and velocities in arrays of their
+// own.
+
+#ifndef MDANIM_PASS_PARTICIPANT_H
+#define MDANIM_PASS_PARTICIPANT_H
+
+#include "geometry/aligned_array.h"
+#include "numbers/vec3.h"
+#include "passes/displacement_budget.h"
+#include "passes/pass.h"
+#include "passes/pass_liquid.h"
+#include "springs/spring_rows.h"
+
+#include <vector>
+
+namespace mdanim {
+
+class Loss;
+struct Kernels;
+class Threads;
+
+// Where a particle is at home: the rank, and the index in its arrays.
+struct Home {
+  int rank, index;
+};
+
+// Where the forces on the particles of one participant are added up, zero at first.
+class ForceSums {
+ public:
+  // Components of the sum for particle n lie at slot[n], slot[n] + apart and slot[n] + 2 apart.
+  ForceSums(double *sums, const long *slot, long apart) : sums(sums), slot(slot), apart(apart) {}
+  void add(std::size_t n, const Vec3 &force) const
+  {
+    double *const to = sums + slot[n];
+    to[0] += force.x;
+    to[apart] += force.y;
+    to[2 * apart] += force.z;
+  }
+  void clear(std::size_t n) const { sums[slot[n]] = sums[slot[n] + apart] = sums[slot[n] + 2 * apart] = 0.0; }
+
+ private:
+  double *sums;
+  const long *slot;
+  long apart;
+};
+
+struct PassCrew;
+
+// What has a part in passes: the bond style, or a fix.
+class PassMember {
+ public:
+  // Takes its part. False where it cannot, after those that have joined before: each step is then LAMMPS's own.
+  virtual bool join(PassCrew &crew) = 0;
+  // What to compute with in this run.
+  virtual void equip(const Kernels &, const Threads &) {}
+
+ protected:
+  ~PassMember() = default;
+};
+
+// The springs of all particles, which passes compute.
+class PassSprings : public PassMember {
+ public:
+  bool join(PassCrew &crew) final;
+  virtual bool halves(HalfBonds &half) const = 0;    // the springs, each once; false where that is not how they are summed
+  virtual const std::vector<SpringCoeffs> &coeffs() const = 0;    // by bond type
+  virtual Loss *account() = 0;                                    // of dashpots; null where there are none, on all ranks
+  virtual long long version() const = 0;                          // another number for other springs
+  virtual bool refresh_coefficients() = 0;                        // whether some differ from before
+  [[noreturn]] virtual void lost_partner(int i,
+                                         int partner) const = 0;    // the error that particle i, or none, has this partner, a tag
+  virtual void took(double seconds) = 0;
+};
+
+// What moves particles, and keeps the account of friction.
+class PassIntegrator : public PassMember {
+ public:
+  // A particle's object, 1 where there are none, and where it is at home.
+  struct Known {
+    int object;
+    Home home;
+  };
+
+  bool join(PassCrew &crew) final;
+  virtual Friction friction() const = 0;
+  virtual Mover mover(int i) = 0;
+  virtual double *trace_rows() = 0;                                   // see Pass; null for no trace
+  virtual bool looks() = 0;                                           // asked once in every pass
+  virtual bool tells_of(long long step) const = 0;                    // whether `bend` will be asked for in that step
+  virtual void finish_step(const std::vector<int> &particles) = 0;    // v^{n-1/2} -> v^n
+  virtual void begin_step(const std::vector<int> &particles) = 0;     // v^n -> v^{n+1/2}, r^n -> r^{n+1}
+  // By a pass in its name.
+  virtual void moved(double final_loss, double first_loss, double bend, double largest_phi, double seconds) = 0;
+  // Friction of particles that have numbers of their own, else null.
+  virtual const double *friction_of_particles() const = 0;
+  // All ranks together, after lists were made: own particles that other ranks have as ghosts, and what is known of all particles.
+  virtual std::vector<Known> survey_ghosts(std::vector<int> &sent) = 0;
+};
+
+// m g on every particle, which passes add right after the springs.
+class PassGravity : public PassMember {
+ public:
+  bool join(PassCrew &crew) final;
+  virtual double pulled(int i) const = 0;    // the mass that it pulls at
+  virtual const Vec3 &acceleration() const = 0;
+  virtual void took(double seconds) = 0;
+};
+
+// A fix whose forces run_style verlet/mdanim can combine with passes. It names the particles that it needs, tells whether
+// positions are all that its forces depend on, and how far particles may go before it needs new lists.
+class PassParticipant : public PassMember {
+ public:
+  bool join(PassCrew &crew) override;
+  // The local particles whose x, v and f the fix reads or writes in post_force() and end_of_step(), until lists are rebuilt; the
+  // arrays of LAMMPS hold no others. Adds them to `particles`, some perhaps twice.
+  virtual void append_required_atoms(std::vector<int> &particles) const = 0;
+  // Whether, in this whole run, all that the fix does in a step is to add forces that depend on the positions of these particles
+  // alone, each of which is named once. It may then be asked for them instead, before the pass, which adds them: as many as
+  // append_required_atoms() names, in that order, those of ghosts without meaning.
+  virtual bool depends_on_positions_only() const { return false; }
+  virtual void add_forces(const Positions & /*place*/, const ForceSums & /*force*/) {}
+  // Whether it will read any particle in this step. Asked once, when the step has begun, unless positions are all that it needs.
+  virtual bool needs_all_atoms() { return false; }
+  // How far particles may go from where they stood when lists were made before it must look again, as far as it can tell: one
+  // that has nothing to do until then says so here, and lists last longer than half the skin.
+  virtual double safe_displacement() const { return 0.0; }
+  // Whether a motion that all particles share counts. To a fix that asks for distances between particles alone it does not.
+  virtual bool sees_absolute_position() const { return true; }
+
+ protected:
+  ~PassParticipant() = default;
+};
+
+// All that act in a step, in the order in which LAMMPS has them: participants whose forces are asked for before a pass, and those
+// that come after it.
+struct PassCrew {
+  PassSprings *springs = nullptr;
+  PassIntegrator *integrator = nullptr;
+  PassGravity *gravity = nullptr;
+  PassLiquid *liquid = nullptr;    // a late participant too
+  std::vector<PassParticipant *> early, late;
+
+  void equip(const Kernels &kernels, const Threads &threads) const;
+  // How far particles may go before some participant must look again, of no more than `any`.
+  SafeDisplacement safe_displacement(double any) const;
+};
+
+inline void PassCrew::equip(const Kernels &kernels, const Threads &threads) const
+{
+  springs->equip(kernels, threads);
+  integrator->equip(kernels, threads);
+  for (const auto *participants : {&early, &late})
+    for (PassParticipant *p : *participants) p->equip(kernels, threads);
+}
+
+inline SafeDisplacement PassCrew::safe_displacement(double any) const
+{
+  SafeDisplacement safe = {any, any};
+  for (const auto *participants : {&early, &late})
+    for (const PassParticipant *p : *participants) {
+      double &least = p->sees_absolute_position() ? safe.absolute : safe.relative;
+      least = std::min(least, p->safe_displacement());
+    }
+  return safe;
+}
+
+inline bool PassSprings::join(PassCrew &crew)
+{
+  if (crew.springs) return false;
+  crew.springs = this;
+  return true;
+}
+
+inline bool PassIntegrator::join(PassCrew &crew)
+{
+  if (crew.integrator) return false;
+  crew.integrator = this;
+  return true;
+}
+
+// Its force comes before those of participants.
+inline bool PassGravity::join(PassCrew &crew)
+{
+  if (crew.gravity || !crew.early.empty() || !crew.late.empty()) return false;
+  crew.gravity = this;
+  return true;
+}
+
+// A participant after a late one is late itself: forces are added in the order of fixes.
+inline bool PassParticipant::join(PassCrew &crew)
+{
+  (depends_on_positions_only() && crew.late.empty() ? crew.early : crew.late).push_back(this);
+  return true;
+}
+
+}    // namespace mdanim
+
+#endif

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// Cutting blocks into ranges, which threads take through a pass side by side.
+
+#ifndef MDANIM_RANGE_CUT_H
+#define MDANIM_RANGE_CUT_H
+
+#include "passes/cutter.h"
+
+#include <vector>
+
+namespace mdanim {
+
+// Ranges of a cut, and the springs across their borders, which are no longer among the entries of their blocks (Border in
+// pass.h).
+struct RangeCut {
+  std::vector<int> first;    // particle of each range, ascending; at least one
+  std::vector<Crossing> crossing;
+  std::vector<Entry> entry;          // of these
+  std::vector<int> end_of_border;    // one beyond its last crossing; border n lies below range n + 1
+
+  int ranges() const { return static_cast<int>(first.size()); }
+  std::size_t bytes() const { return crossing.capacity() * sizeof(Crossing) + entry.capacity() * sizeof(Entry); }
+};
+
+// Up to so many ranges of equal cost. They begin where chunks do, and if possible where objects do. A spring crosses one border
+// at most: where springs reach too far for that there are fewer ranges.
+RangeCut cut_into_ranges(Cutter &cutter, Cut &cut, int wanted);
+
+}    // namespace mdanim
+
+#endif

@@ -1,0 +1,388 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// Moving particles into blocks and out of them.
+
+#include "passes/simd_blocks.h"
+
+#include "geometry/boxes.h"
+#include "leapfrog/law.h"
+
+#include <algorithm>
+#include <unordered_set>
+#include <utility>
+
+namespace mdanim {
+
+// --- layout ---
+
+static constexpr int PAGE = 512, LINE = 8;    // doubles
+
+SimdBlocks::SimdBlocks(const Cutter &of, Cut &&cut, RangeCut &&ranges)
+    : cutter(of), lanes(of.lanes()), particles(cut.particles), many_chunks(cut.chunks), has_damped(of.damped()),
+      all(std::move(cut.block)), entries(std::move(cut.entry)), cuts(std::move(ranges)), range(cuts.ranges()),
+      border(cuts.ranges() - 1)
+{
+  // A processor compares loads with stores on their way by the place in a page alone. So the places of a particle in all arrays
+  // that a thread works on are spread evenly over a page.
+  const int kinds = damped() ? 5 : 2, kinds_of_range = damped() ? 2 : 1;
+  const int apart = PAGE / (3 * (kinds + kinds_of_range)) / LINE * LINE;
+  std::vector<std::pair<double **, long>> arrays;
+  long size = 0;
+  const auto add = [&](double *(&of)[3], int kind, int first, int end) {    // with places for particles from `first` to `end`
+    for (int d = 0; d < 3; ++d) {
+      const long place = (3 * kind + d) * apart + first;
+      size += ((place - size) % PAGE + PAGE) % PAGE;
+      arrays.emplace_back(&of[d], size - first);
+      size += end - first;
+    }
+  };
+  double *(*const of_all[])[3] = {&x, &v, &last, &seen, &held_part};
+  for (int kind = 0; kind < kinds; ++kind) add(*of_all[kind], kind, 0, particles + cut.farthest + 2 * lanes);
+  for (int n = 0; n < cuts.ranges(); ++n) {
+    const int end = n + 1 < cuts.ranges() ? cuts.first[n + 1] : particles + cut.farthest;
+    double *(*const of_range[])[3] = {&range[n].f, &range[n].part};
+    for (int kind = 0; kind < kinds_of_range; ++kind) add(*of_range[kind], kinds + kind, cuts.first[n] - lanes, end + lanes);
+  }
+  memory.assign(size);
+  for (const auto &[array, place] : arrays) *array = memory.data() + place;
+  crossed.assign((damped() ? 6 : 3) * lanes * cuts.crossing.size());
+  shared_trace.assign(2 * TRACE * range.size());
+}
+
+SimdBlocks::SimdBlocks(const Cutter &of, Cut &&cut, RangeCut &&ranges, const std::vector<int> &places, int own)
+    : SimdBlocks(of, std::move(cut), std::move(ranges))
+{ lay_out_at(places, own); }
+
+void SimdBlocks::lay_out_at(const std::vector<int> &places, int own)
+{
+  reordered = true;
+  index = places;
+  owned = own;
+  place.assign(own, -1);
+  ghosts.clear();
+  for (int i = 0; i < particles; ++i) {
+    if (index[i] < own)
+      place[index[i]] = i;
+    else
+      ghosts.push_back(i);
+  }
+  total.resize(3 * static_cast<std::size_t>(particles));
+}
+
+// --- motion ---
+
+void SimdBlocks::set_row(const Mover &mover, Friction friction, int lane, double *row) const
+{
+  const auto at = [&](Motion what) -> double & { return row[what * lanes + lane]; };
+  at(MASS) = mover.pulled;
+  at(KICK) = mover.kick;
+  at(DT) = mover.dt;
+  at(STAY) = at(SHARE) = 1.0;
+  at(PUSH) = mover.kick;
+  at(BRAKED_MASS) = mover.phi == 0.0 ? 0.0 : mover.mass;
+  if (friction == Friction::IMPLICIT) {
+    const auto law = Implicit<double>::of(mover.phi, mover.kick);
+    at(STAY) = law.stay;
+    at(SHARE) = law.share;
+    at(PHI) = law.phi;
+  } else if (friction == Friction::EXPONENTIAL) {
+    const auto law = Exponential<double>::of(mover.phi, mover.kick);
+    at(STAY) = law.e;
+    at(PUSH) = law.push;
+  }
+}
+
+// Blocks in which nothing moves or is pulled come behind all others, where passes do not get to.
+void SimdBlocks::set_apart(const std::vector<bool> &moves)
+{
+  const auto order = [](const Block &a, const Block &b) { return a.start < b.start; };
+  if (!std::is_sorted(all.begin(), all.end(), order)) std::sort(all.begin(), all.end(), order);
+  const auto awake = [&](const Block &block) { return block.bound || moves[block.start]; };
+  active = static_cast<int>(std::stable_partition(all.begin(), all.end(), awake) - all.begin());
+  home.resize(particles);
+  for (std::size_t n = 0; n < all.size(); ++n) std::fill_n(&home[all[n].start], all[n].lanes, static_cast<int>(n));
+}
+
+// Blocks with a particle of any provider have a row for each of them.
+void SimdBlocks::expect(const std::vector<std::vector<int>> &particles_of)
+{
+  const int many = static_cast<int>(particles_of.size());
+  for (Block &block : all) block.external_force = -1;
+  force_providers.assign(many, {});
+  int rows = 1;    // the first is for forces on ghosts
+  for (int n = 0; n < many; ++n)
+    for (const int i : particles_of[n]) {
+      ForceProvider &provider = force_providers[n];
+      const int to = static_cast<int>(provider.slot.size());
+      if (is_ghost(i)) {
+        provider.ghosts.push_back({i, to});
+        provider.particle.push_back(0);
+        provider.slot.push_back(0);
+        continue;
+      }
+      provider.particle.push_back(ours(i));
+      Block &block = all[home[ours(i)]];
+      if (block.external_force < 0) {
+        block.external_force = rows;
+        rows += many;
+      }
+      const long row = block.external_force + n;
+      provider.slot.push_back(row * 3 * lanes + ours(i) - block.start);
+    }
+  external_force.assign(static_cast<std::size_t>(rows) * 3 * lanes);
+}
+
+void SimdBlocks::tell_places(std::size_t n, const double *const *of_ghosts, Positions &to) const
+{
+  const std::vector<int> &particle = force_providers[n].particle;
+  to.make_room(particle.size());
+  for (int d = 0; d < 3; ++d) {
+    double *next = to.along[d].data();
+    for (const int i : particle) *next++ = x[d][i];
+  }
+  for (const auto &[i, place] : force_providers[n].ghosts) to.put(place, of_ghosts[i]);
+}
+
+void SimdBlocks::hold_back(const std::vector<int> &wanted, bool everything)
+{
+  for (Block &block : all) block.held_back = everything;
+  for (const int i : wanted)
+    if (!is_ghost(i)) all[home[ours(i)]].held_back = true;
+  outside.clear();
+  for (const Block &block : all)
+    if (block.held_back)
+      for (int lane = 0; lane < block.lanes; ++lane)
+        if (!is_ghost(at(block.start + lane))) outside.push_back(block.start + lane);
+  waiting.clear();
+  if (reordered)
+    for (const int i : outside) waiting.push_back(index[i]);
+}
+
+bool SimdBlocks::friction_acts() const
+{
+  for (std::size_t b = 0; b < all.size(); ++b)
+    if ((slowed[b] || all[b].immersed >= 0) && !all[b].held_back) return true;
+  return false;
+}
+
+void SimdBlocks::take_in(const double *const *from_x, const double *const *from_v)
+{
+  for (int d = 0; d < 3; ++d) {
+    double *to_x = x[d], *to_v = v[d];
+    for (int i = 0; i < particles; ++i) {
+      const int from = at(i);
+      to_x[i] = from_x[from][d];
+      to_v[i] = from_v[from][d];
+    }
+    if (damped()) continue;
+    for (const int i : ghosts) to_v[i] = 0.0;
+  }
+}
+
+void SimdBlocks::give_out(const Threads &threads, double *const *to_x, double *const *to_v) const
+{
+  threads.parts(particles, PARTICLE, [&](long from, long end) {
+    const auto give = [&](const double *const *of, double *const *to) {
+      for (int i = static_cast<int>(from); i < end; ++i)
+        if (!is_ghost(at(i)))
+          for (int d = 0; d < 3; ++d) to[at(i)][d] = of[d][i];
+    };
+    give(x, to_x);
+    give(v, to_v);
+  });
+}
+
+void SimdBlocks::take_in_held_back(const Threads &threads, const double *const *from_x, const double *const *from_v)
+{
+  each_outside(threads, [&](int i) {
+    for (int d = 0; d < 3; ++d) {
+      x[d][i] = from_x[at(i)][d];
+      v[d][i] = from_v[at(i)][d];
+    }
+  });
+}
+
+void SimdBlocks::give_out_held_back(const Threads &threads, double *const *to_x, double *const *to_v) const
+{
+  each_outside(threads, [&](int i) {
+    for (int d = 0; d < 3; ++d) {
+      to_x[at(i)][d] = x[d][i];
+      to_v[at(i)][d] = v[d][i];
+    }
+  });
+}
+
+void SimdBlocks::take_in_dashpots(const std::vector<Vec3> &from_force, const std::vector<Vec3> &from_seen)
+{
+  const auto put = [](const Vec3 &from, double *const *to, int i) { to[0][i] = from.x, to[1][i] = from.y, to[2][i] = from.z; };
+  for (int i = 0; i < particles; ++i) {
+    const int from = at(i);
+    if (is_ghost(from)) continue;
+    put(from_force[from], last, i);
+    put(from_seen[from], seen, i);
+  }
+}
+
+void SimdBlocks::give_out_dashpots(std::vector<Vec3> &to_force, std::vector<Vec3> &to_seen) const
+{
+  for (int i = 0; i < particles; ++i) {
+    const int to = at(i);
+    if (is_ghost(to)) continue;
+    to_force[to] = {last[0][i], last[1][i], last[2][i]};
+    to_seen[to] = {seen[0][i], seen[1][i], seen[2][i]};
+  }
+}
+
+void SimdBlocks::count_held_back(const double *const *from_v, DashpotSums &sums)
+{
+  for (const int i : outside) {
+    if (!all[home[i]].damped) continue;
+    const auto of = [i](const double *const *a) { return Vec3{a[0][i], a[1][i], a[2][i]}; };
+    const auto terms = dashpot_work(of(held_part), of(last), of(seen), of(v), vec3(from_v[at(i)]));
+    sums.work += terms.work;
+    sums.bend += terms.bend;
+    sums.ahead += terms.ahead;
+    for (int d = 0; d < 3; ++d) {
+      last[d][i] = held_part[d][i];
+      seen[d][i] = v[d][i];
+    }
+  }
+}
+
+void SimdBlocks::give_out_places(const std::vector<int> &these, double *const *to_x, double *const *to_v) const
+{
+  for (const int to : these)
+    for (int d = 0; d < 3; ++d) {
+      to_x[to][d] = x[d][place[to]];
+      if (to_v) to_v[to][d] = v[d][place[to]];
+    }
+}
+
+void SimdBlocks::take_in_ghosts(const double *const *from_x, const double *const *from_v)
+{
+  for (const int i : ghosts)
+    for (int d = 0; d < 3; ++d) {
+      x[d][i] = from_x[index[i]][d];
+      if (damped()) v[d][i] = from_v[index[i]][d];
+    }
+}
+
+void SimdBlocks::pack(const std::vector<int> &these, bool velocities, double *to) const
+{
+  for (const int i : these) {
+    for (int d = 0; d < 3; ++d) *to++ = x[d][i];
+    for (int d = 0; velocities && d < 3; ++d) *to++ = v[d][i];
+  }
+}
+
+void SimdBlocks::unpack(const std::vector<int> &these, bool velocities, const double *from)
+{
+  for (const int i : these) {
+    for (int d = 0; d < 3; ++d) x[d][i] = *from++;
+    for (int d = 0; velocities && d < 3; ++d, ++from)
+      if (damped()) v[d][i] = *from;
+  }
+}
+
+void SimdBlocks::give_out_forces(double *const *f) const
+{
+  if (!reordered) return;    // the pass has written them there itself
+  for (const int i : outside) std::copy_n(&total[3 * static_cast<std::size_t>(i)], 3, f[index[i]]);
+}
+
+void SimdBlocks::fill(Pass &pass, double *const *forces)
+{
+  pass.block = all.data();
+  pass.entry = entries.data();
+  pass.law = cutter.rows();
+  pass.damped_law = damped() ? cutter.damped_rows() : nullptr;
+  pass.motion = motions.data();
+  pass.external_force = external_force.data();
+  pass.force_providers = static_cast<int>(force_providers.size());
+  for (int d = 0; d < 3; ++d) {
+    pass.x[d] = x[d];
+    pass.v[d] = v[d];
+    pass.last[d] = last[d];
+    pass.seen[d] = seen[d];
+    pass.held_part[d] = held_part[d];
+  }
+  pass.total = reordered ? total.data() : forces[0];
+  fill_ranges(pass);
+}
+
+// --- ranges ---
+
+void SimdBlocks::fill_ranges(Pass &pass)
+{
+  pass.crossing = cuts.crossing.data();
+  pass.crossing_entry = cuts.entry.data();
+  pass.crossed = crossed.data();
+  for (std::size_t n = 0; n < border.size(); ++n) {
+    Border &own = border[n];
+    own.first = n ? cuts.end_of_border[n - 1] : 0;
+    own.crossings = cuts.end_of_border[n] - own.first;
+    own.first_entry = own.first ? cuts.crossing[own.first - 1].end : 0;
+    own.claimed = own.crossed = turn;
+    std::copy_n(range[n + 1].f, 3, own.f);
+    std::copy_n(range[n + 1].part, 3, own.part);
+  }
+  const auto is_below = [](const Block &block, int particle) { return block.start < particle; };
+  const auto first = [&](std::size_t n) {
+    if (n == range.size()) return active;
+    return static_cast<int>(std::lower_bound(all.begin(), all.begin() + active, cuts.first[n], is_below) - all.begin());
+  };
+  for (std::size_t n = 0; n < range.size(); ++n) {
+    Range &own = range[n];
+    own.first = first(n);
+    own.blocks = first(n + 1) - own.first;
+    own.first_entry = own.first ? all[own.first - 1].end : 0;
+    own.end = n + 1 < range.size() ? cuts.first[n + 1] : particles;
+    own.below = n && border[n - 1].crossings ? &border[n - 1] : nullptr;
+    own.above = n < border.size() && border[n].crossings ? &border[n] : nullptr;
+    const auto shared = [&](int before, int after) {
+      return own.blocks && before >= 0 && after < active && all[before].object == all[after].object ? all[after].object : -1;
+    };
+    own.shared[0] = shared(own.first - 1, own.first);
+    own.shared[1] = shared(own.first + own.blocks - 1, own.first + own.blocks);
+    own.shared_trace = shared_trace.data() + 2 * TRACE * n;
+  }
+  mixed = false;
+  std::unordered_set<int> seen;
+  for (int n = 0; range.size() > 1 && n < active && !mixed; ++n)
+    if (n == 0 || all[n].object != all[n - 1].object) mixed = !seen.insert(all[n].object).second;
+}
+
+void SimdBlocks::begin_pass(Pass &pass)
+{
+  pass.turn = ++turn;
+  const Box nothing;
+  for (std::size_t n = 0; n < 2 * range.size(); ++n) {
+    double *const row = shared_trace.data() + TRACE * n;
+    std::copy_n(nothing.bound, 6, row);
+    row[FASTEST] = 0.0;
+  }
+}
+
+void SimdBlocks::end_pass(const Pass &pass)
+{
+  if (!pass.trace) return;    // else of objects that several ranges have blocks of
+  for (const Range &own : range)
+    for (int side = 0; side < 2; ++side)
+      for (int k = 0; own.shared[side] >= 0 && k < TRACE; ++k) {
+        double &known = pass.trace[TRACE * own.shared[side] + k];
+        known = std::min(known, own.shared_trace[TRACE * side + k]);
+      }
+}
+
+std::size_t SimdBlocks::bytes() const
+{
+  std::size_t of_providers = external_force.bytes() + crossed.bytes() + shared_trace.bytes() + cuts.bytes();
+  for (const ForceProvider &b : force_providers)
+    of_providers += b.particle.capacity() * sizeof(int) + b.ghosts.capacity() * sizeof(Ghost) + b.slot.capacity() * sizeof(long);
+  return of_providers + all.capacity() * sizeof(Block) + entries.capacity() * sizeof(Entry) + motions.bytes() + memory.bytes() +
+         (home.capacity() + outside.capacity() + index.capacity() + place.capacity() + ghosts.capacity() + waiting.capacity()) *
+             sizeof(int) +
+         total.capacity() * sizeof(double) + kept.bytes() + kept_floats.bytes() + immersed_motions.bytes() +
+         immersed_of.capacity() * sizeof(unsigned) + immersed.capacity() * sizeof(int);
+}
+
+}    // namespace mdanim

@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// Particles in blocks for the vector units, and their state in arrays of their own (pass.h).
+
+#ifndef MDANIM_SIMD_BLOCKS_H
+#define MDANIM_SIMD_BLOCKS_H
+
+#include "geometry/aligned_array.h"
+#include "numbers/vec3.h"
+#include "passes/cutter.h"
+#include "passes/pass.h"
+#include "passes/pass_participant.h"
+#include "passes/range_cut.h"
+#include "threads/team.h"
+
+#include <vector>
+
+namespace mdanim {
+
+// Particles in blocks, laid out: their positions, velocities and forces in arrays of their own, one for each component, and what
+// is to be done with them in a pass. There is none before particles are cut and their order is known.
+class SimdBlocks {
+ public:
+  // Of a cut of all particles, which are in the same order in the arrays of LAMMPS.
+  SimdBlocks(const Cutter &cutter, Cut &&cut, RangeCut &&ranges);
+  // They are elsewhere in the arrays of LAMMPS: those from `own` on are ghosts, which others move. After this all other numbers
+  // are LAMMPS's: those of mover(), expect(), hold_back(), held_back().
+  SimdBlocks(const Cutter &cutter, Cut &&cut, RangeCut &&ranges, const std::vector<int> &places, int own);
+  SimdBlocks(const SimdBlocks &) = delete;
+  SimdBlocks &operator=(const SimdBlocks &) = delete;
+  void lay_out_at(const std::vector<int> &places, int own);    // the same blocks when particles are elsewhere again
+
+  int size() const { return particles; }
+  bool damped() const { return has_damped; }    // some block is
+  int chunks() const { return many_chunks; }
+
+  template <class Tell> void set_motion(Friction friction, Tell mover);    // Mover mover(int i)
+  // Which participants give forces before every pass, in the order in which they are added: the particles of each, ghosts perhaps
+  // among them.
+  void expect(const std::vector<std::vector<int>> &particles);
+  // Of those of number n, in the same order: positions, those of ghosts from x; and where forces on them are added up, which is
+  // zero after every pass for all that it moves.
+  void tell_places(std::size_t n, const double *const *x, Positions &place) const;
+  ForceSums external_force_of(std::size_t n) { return {external_force.data(), force_providers[n].slot.data(), lanes}; }
+
+  // Every block with one of these particles is held back, no other; ghosts among them are left out.
+  void hold_back(const std::vector<int> &particles, bool everything);
+  bool friction_acts() const;                                                            // on a block that is not held back
+  const std::vector<int> &held_back() const { return reordered ? waiting : outside; }    // all particles of such blocks
+
+  // Which blocks a liquid acts on, and how; those that are held back as well are left out. The impulses on the liquid are the
+  // liquid's again after the second.
+  void immerse(const Threads &threads, PassLiquid &liquid, Pass &pass);
+  void give_out_impulses(const Threads &threads, PassLiquid &liquid) const;
+  // Of the time of a pass, where a particle in the liquid takes `more` than another, over that.
+  double share_of_liquid(double more) const { return more * immersed_particles / (particles + more * immersed_particles); }
+
+  void take_in(const double *const *x, const double *const *v);
+  void give_out(const Threads &threads, double *const *x, double *const *v) const;
+  // The same for the particles that are held back.
+  void take_in_held_back(const Threads &threads, const double *const *x, const double *const *v);
+  void give_out_held_back(const Threads &threads, double *const *x, double *const *v) const;
+
+  // Where damped: forces of dashpots in the last step, and the velocities that they saw, of all own particles.
+  void take_in_dashpots(const std::vector<Vec3> &force, const std::vector<Vec3> &seen);
+  void give_out_dashpots(std::vector<Vec3> &force, std::vector<Vec3> &seen) const;
+  // Sums of those that are held back; they have moved, and v is where they are to be taken in from.
+  void count_held_back(const double *const *v, DashpotSums &sums);
+
+  // With ghosts: positions of these own particles, which other ranks wait for, and velocities unless v is null; and of theirs.
+  void give_out_places(const std::vector<int> &particles, double *const *x, double *const *v) const;
+  void take_in_ghosts(const double *const *x, const double *const *v);
+  // The same from blocks to blocks, of particles in our own order: three numbers for each, or six with velocities.
+  Vec3 where(int i) const { return {x[0][ours(i)], x[1][ours(i)], x[2][ours(i)]}; }    // an own particle in LAMMPS's order
+  int place_of(int i) const { return place[i]; }                                       // of an own particle, in that order
+  const std::vector<int> &ghost_places() const { return ghosts; }
+  void pack(const std::vector<int> &particles, bool velocities, double *to) const;
+  void unpack(const std::vector<int> &particles, bool velocities, const double *from);
+
+  void fill(Pass &pass, double *const *f);    // f: where forces on those that are held back go
+  void begin_pass(Pass &pass);
+  const std::vector<Range> &ranges() const { return range; }    // of the blocks that have something to do in a pass
+  void end_pass(const Pass &pass);                              // of all ranges
+  // Whether several ranges have blocks of an object that do not follow each other: with a trace, threads would write into one
+  // row.
+  bool objects_are_mixed() const { return mixed; }
+  void give_out_forces(double *const *f) const;    // there they are after a pass and this
+  std::size_t bytes() const;
+
+ private:
+  static constexpr double PARTICLE = 8.0;    // into the arrays of LAMMPS or out of them [ns], about
+  // work(i) for all that are held back, which threads share.
+  template <class Work> void each_outside(const Threads &threads, const Work &work) const
+  {
+    threads.parts(static_cast<long>(outside.size()), PARTICLE, [&](long from, long to) {
+      for (long n = from; n < to; ++n) work(outside[n]);
+    });
+  }
+  int at(int i) const { return reordered ? index[i] : i; }
+  int ours(int i) const { return reordered ? place[i] : i; }    // the way back
+  bool is_ghost(int place) const { return reordered && place >= owned; }
+  void set_row(const Mover &mover, Friction friction, int lane, double *row) const;
+  void fill_ranges(Pass &pass);
+  void list_immersed(const PassLiquid &liquid);
+  template <class Work> long each_immersed(const Threads &threads, PassLiquid &liquid, const Work &work) const;
+  void set_apart(const std::vector<bool> &moves);    // by the first particle of a block: whether any of it moves
+
+  const Cutter &cutter;
+  const int lanes, particles, many_chunks;
+  const bool has_damped;
+  bool reordered = false;    // by lay_out_at()
+  std::vector<Block> all;
+  int active = 0;        // so many of them, the first ones, have something to do in a pass
+  bool mixed = false;    // see objects_are_mixed()
+  std::vector<Entry> entries;
+  std::vector<int> home;       // block of each particle
+  std::vector<bool> slowed;    // blocks with friction
+  std::vector<int> outside;    // particles of blocks that are held back
+  struct Ghost {
+    int particle, to;    // `particle` in LAMMPS's order
+  };
+  struct ForceProvider {
+    std::vector<int> particle;    // in our order, any one for a ghost
+    std::vector<Ghost> ghosts;
+    std::vector<long> slot;    // of each particle's force in `external_force`; of ghosts all the same one, in a row of no block
+  };
+  std::vector<ForceProvider> force_providers;
+  Doubles external_force;              // see Pass
+  std::vector<int> index, place;       // of a particle in LAMMPS's arrays, and back
+  std::vector<int> ghosts, waiting;    // in our order; `outside` in LAMMPS's
+  std::vector<double> total;           // see Pass, in our order
+  std::vector<int> immersed;           // blocks with particles near a liquid
+  double immersed_particles = 0.0;     // of those that are not held back
+  Doubles kept;                        // see Pass
+  Floats kept_floats;
+  DistinctRows<double> immersed_motions;
+  std::vector<unsigned> immersed_of;    // see Pass
+  long long listed = -1;                // by the liquid
+  int owned = 0;                        // in LAMMPS's arrays, ghosts come after them
+  DistinctRows<double> motions;
+  Doubles memory;    // of the arrays
+  double *x[3] = {}, *v[3] = {};
+  double *last[3] = {}, *seen[3] = {}, *held_part[3] = {};    // where damped
+  RangeCut cuts;
+  std::vector<Range> range;
+  std::vector<Border> border;
+  Doubles crossed, shared_trace;
+  unsigned turn = 0;    // passes so far
+};
+
+template <class Tell> void SimdBlocks::set_motion(Friction friction, Tell mover)
+{
+  std::vector<double> row(MOTIONS * lanes);
+  std::vector<bool> slow(particles), moves(particles);    // by the first particle of a block
+  motions = {};
+  for (Block &block : all) {
+    for (int lane = 0; lane < lanes; ++lane) {
+      const int i = lane < block.lanes ? at(block.start + lane) : -1;
+      Mover of_lane = i < 0 || is_ghost(i) ? Mover{} : mover(i);
+      if (of_lane.in_liquid) of_lane.phi = 0.0;
+      if (of_lane.phi != 0.0) slow[block.start] = true;
+      if (of_lane.dt != 0.0 || of_lane.in_liquid) moves[block.start] = true;
+      set_row(of_lane, friction, lane, row.data());
+      row[FOREIGN_LANE * lanes + lane] = lane < block.lanes ? 0.0 : 1.0;
+      row[OWNED_LANE * lanes + lane] = i < 0 || is_ghost(i) ? 0.0 : 1.0;
+    }
+    block.motion = motions.find_or_add(row.data(), row.size());
+  }
+  set_apart(moves);
+  listed = -1;
+  slowed.clear();
+  for (const Block &block : all) slowed.push_back(slow[block.start]);
+}
+
+}    // namespace mdanim
+
+#endif

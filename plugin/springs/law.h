@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// A spring between two particles, and the dashpot beside it, for a double or all lanes of a vector unit at once (real.h).
+// Wcislo 1999, eq. (3.6), (3.7) with the sign set right: V(r) = k/2 (r - r0)^2 = K (r - r0)^2 with LAMMPS's K = k/2,
+//   F_i = -2K (r - r0) n,  n = (r_i - r_j) / r.
+
+#ifndef MDANIM_SPRING_H
+#define MDANIM_SPRING_H
+
+#include "numbers/vec3.h"
+
+namespace mdanim {
+
+// A spring as it is told.
+struct Spring {
+  double K = 0.0;     // [energy/length^2]
+  double r0 = 0.0;    // rest length [length]
+  double c = 0.0;     // dashpot along the spring [force/velocity]; 0 for none
+};
+
+// What its force is made of: F_i = (push / r - pull) r_ij, since -2K (r - r0) / r = 2K r0 / r - 2K; and the dashpot.
+struct SpringCoeffs {
+  double push, pull, c;
+  explicit SpringCoeffs(const Spring &s) : push(2.0 * s.K * s.r0), pull(2.0 * s.K), c(s.c) {}
+  bool operator==(const SpringCoeffs &other) const { return push == other.push && pull == other.pull && c == other.c; }
+};
+
+// So small that it changes no r^2 that is not 0, and coincident particles get zero force instead of NaN.
+constexpr double R2_FLOOR = 1e-300;
+
+// r^2 as the laws below take it.
+template <class Real> MDANIM_ALWAYS_INLINE Real floored_square(const Vec<Real> &rij) { return dot(rij, rij) + R2_FLOOR; }
+
+// F_i / r_ij of the spring.
+template <class Real> MDANIM_ALWAYS_INLINE Real spring_factor(const Real &push, const Real &pull, const Real &square)
+{ return push / root(square) - pull; }
+
+// The dashpot's part of the same factor: F_i = -c (v_ij . n) n = [-c (v_ij . r_ij) / r^2] r_ij.
+template <class Real>
+MDANIM_ALWAYS_INLINE Real dashpot_factor(const Real &c, const Vec<Real> &rij, const Vec<Real> &vij, const Real &square)
+{ return -(c * dot(vij, rij)) / square; }
+
+MDANIM_ALWAYS_INLINE double energy(const Spring &s, double r) { return s.K * (r - s.r0) * (r - s.r0); }
+
+}    // namespace mdanim
+
+#endif
