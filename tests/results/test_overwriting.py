@@ -49,6 +49,24 @@ def test_force_leaves_what_is_the_users(scene):
     assert again.returncode == 7 and "overwrite it with --force" in again.stderr
 
 
+def test_force_leaves_pictures_of_others(scene):
+    """A movie, a page, a diagram that a run could have made, but has not; what it has made says so in itself."""
+    out = scene.parent / "theirs.out"
+    scene = scene if scene.exists() else scene.with_name("other.txt")
+    assert call(scene, "-o", out).returncode == 0
+    assert call("render", out, "--frames").returncode == 0 and call("report", out).returncode == 0
+    theirs = ("films/a.mp4", "report.html", "timeline.png", "frames/frame-00000.png")
+    for name in theirs[1:]:
+        (out / name).write_text("precious")
+    assert call("build", scene, "-o", out, "--force").returncode == 0
+    left = {str(p.relative_to(out)) for p in out.rglob("*") if p.is_file()}
+    assert left & {"films/a.mp4", "frames/frame-00001.png", *theirs} == {*theirs[1:]}
+    (out / "films").mkdir(exist_ok=True)
+    (out / "films/a.mp4").write_text("precious")
+    assert call(scene, "-o", out, "--force", "--no-movie").returncode == 0
+    assert {(out / name).read_text() for name in theirs} == {"precious"}
+
+
 @pytest.mark.parametrize("name", ["../out.mp4", "/tmp/out.mp4", "notes.md", 7])
 def test_a_manifest_names_no_other_files(tmp_path, name):
     """As the movie to be deleted: a folder may be a stranger's."""

@@ -18,6 +18,7 @@ from pathlib import Path
 
 from ..errors import OutputError
 from .forms import Form, strict_json, table
+from .overwriting import is_made_here
 from .untrusted import check_room
 
 MARK = "manifest.json"
@@ -62,10 +63,12 @@ RESULTS = (
         "cost.json",
         SUMMARY,
     ),
-    *("progress.jsonl", "timeline.json", "timeline.png", "movie.mp4", "report.html", "edited.txt", STOP, PAUSE, "log.lammps"),
+    *("progress.jsonl", "timeline.json", "edited.txt", STOP, PAUSE, "log.lammps"),
 )
 """Files of every run."""
-INSIDE = {"meshes": r"[0-9a-f]{32}\.(stl|obj|ply)", "frames": r"frame-\d+\.png"}
+PICTURES = ("timeline.png", "movie.mp4", "report.html")
+"""Are of a run where they say so in themselves; others may have put theirs there."""
+MESHES, FRAMES = ("meshes", r"[0-9a-f]{32}\.(stl|obj|ply)"), ("frames", r"frame-\d+\.png")
 """Folders of a run, and what the names of its files in them are."""
 
 
@@ -132,22 +135,29 @@ def delete_results(folder: Path) -> None:
     only where nothing else stays: by it the folder is ours until the next one replaces it. Raises OSError."""
     for path in _results(folder):
         path.unlink(missing_ok=True)
-    for name in INSIDE:
+    for name, _ in (MESHES, FRAMES):
         remove_empty(folder / name)
     if {path.name for path in folder.iterdir()} <= {MARK, IN_USE}:
         (folder / MARK).unlink(missing_ok=True)
 
 
 def _results(folder: Path) -> Iterator[Path]:
-    yield from (folder / name for name in (*RESULTS, *_movie(folder)) if not _is_folder(folder / name))
+    yield from (folder / name for name in RESULTS if not _is_folder(folder / name))
+    pictures = [folder / name for name in (*PICTURES, *_movie(folder))] + _inside(folder, *FRAMES)
+    yield from (path for path in pictures if is_made_here(path))
+    yield from _inside(folder, *MESHES)
     for script in folder.glob("in.*"):
         if script.is_file() and _is_script(script):
             name = script.name.removeprefix("in.")
             # Also the dump that `lmp` leaves of it: it would be taken for the dump of the new run.
             yield from (folder / own for own in (script.name, f"data.{name}", f"contact.{name}", f"{name}.lammpstrj"))
-    for name, own in INSIDE.items():
-        if _is_folder(folder / name):
-            yield from (path for path in (folder / name).iterdir() if re.fullmatch(own, path.name) and not _is_folder(path))
+
+
+def _inside(folder: Path, name: str, own: str) -> list[Path]:
+    """Files of a folder in an output folder whose names are those of a run."""
+    if not _is_folder(folder / name):
+        return []
+    return [path for path in (folder / name).iterdir() if re.fullmatch(own, path.name) and not _is_folder(path)]
 
 
 def _is_script(path: Path) -> bool:

@@ -16,7 +16,7 @@ MADE = "Made by mdanim-lammps"
 
 def check_overwriting(path: Path, *, force: bool, other: str = "FILE") -> None:
     """Refuse to overwrite a file that this program has not made; -o takes the ``other`` place. Raises OutputError."""
-    if not os.path.lexists(path) or _is_made_here(path):
+    if not os.path.lexists(path) or is_made_here(path):
         return
     if path.is_dir():
         raise OutputError(f"{path} is a folder; write elsewhere with -o {other}")
@@ -26,7 +26,8 @@ def check_overwriting(path: Path, *, force: bool, other: str = "FILE") -> None:
         )
 
 
-def _is_made_here(path: Path) -> bool:
+def is_made_here(path: Path) -> bool:
+    """Whether a picture, a movie or a page says that this program has made it."""
     try:
         with open(path, "rb") as file, mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as content:
             return content.find(MADE.encode()) >= 0
