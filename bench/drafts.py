@@ -77,7 +77,7 @@ class Pool:
         """Part of the cube below the surface."""
         from mdanim_lammps.results.expect import immersed_share
 
-        return immersed_share(self.corners(), self.ready.system.grid, self.instance.liquid_heights()[0])
+        return immersed_share(self.corners(), self.ready.plan.grid, self.instance.liquid_heights()[0])
 
     def lean(self) -> float:
         """Angle between the vertical and the nearest axis of the cube [deg]."""

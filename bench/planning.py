@@ -20,6 +20,7 @@ from mdanim_lammps.parallel.plan import frame_plan as planning
 from mdanim_lammps.parallel.plan import islands
 from mdanim_lammps.parallel.plan.assign import assign
 from mdanim_lammps.parallel.plan.frame_plan import PlannerOptions
+from mdanim_lammps.reach.window import window
 
 EXECUTORS = 8
 
@@ -129,7 +130,7 @@ def _fly(count: int, executors: int, volume: float, frames: int = 100) -> str:
         velocity = np.where((place < 0.0) & (velocity < 0.0) | (place > side) & (velocity > 0.0), -velocity, velocity)
         speed = np.abs(velocity).max(axis=1)
         cost = (2 * particles * rng.uniform(0.95, 1.05, count)).astype(np.int64)  # as measured clocks are
-        d = islands.reach(speed, 1.0, 0.0, 0.02)
+        d = window(speed, 1.0, 0.0, 0.02)
         plan = planning.plan(
             place, place + edge, d, cost, owner, executors, particles=particles, still=still, gap=0.1, previous=before
         )

@@ -302,7 +302,7 @@ def test_buoyancy_is_a_spring_to_the_surface(prepared, model, floor):
     """Add rho_l V_i g/m_i over the height of a cell to every particle's rate, (rho_l/rho_s) g at corners, and no more: a rigid
     body bobs more slowly."""
     ready = prepared(pool(density=250))
-    found = next(e for e in EFFECTS if e.name == "buoyancy").rate(ready.scene, ready.system)
+    found = next(e for e in EFFECTS if e.name == "buoyancy").rate(ready.context)
     system = ready.system
     np.testing.assert_allclose(found, 1000 * 9.81 / 0.05 * system.volume / system.mass, rtol=1e-12)
     texts = (pool(density=250, young=0.05, more=more) for more in ("", "effects { buoyancy off }"))

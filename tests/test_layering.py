@@ -22,6 +22,7 @@ ROOMS = [
     "terminal",
     "scene",
     "model",
+    "reach",
     "effects",
     "certificate",
     "engine",

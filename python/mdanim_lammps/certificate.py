@@ -12,19 +12,17 @@ is taken exponentially, see `strong_drag`.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
 from dataclasses import asdict, dataclass
 from fractions import Fraction
 
 import numpy as np
 
-from .effects import Effect, Resolved
+from .effects import Context
 from .effects.envelope import Envelope
 from .effects.margin import Margin
 from .effects.resting import frictionless, slopes
 from .effects.standing import towers
 from .errors import Problem, RefusedError, SceneError, Span
-from .model.system import System
 from .scene.formatting import estimate, number, say
 from .scene.scene import Accuracy, SceneRecord
 
@@ -105,17 +103,17 @@ class Certificate:
         )
 
 
-def certify(resolved: Resolved, system: System, *, allow_unstable: bool = False) -> Certificate:
+def certify(context: Context, *, allow_unstable: bool = False) -> Certificate:
     """Bound the time step of a scene and choose one that fits its frames.
 
     Raises RefusedError when ``control timestep`` is above the bound (unless ``allow_unstable``), and SceneError when
     ``time`` and ``frames`` cannot be met by one time step.
     """
-    scene, on = resolved.scene, resolved.effects
-    rates = {e.name: r for e in on if (r := e.rate(scene, system)) is not None}
-    drags = {e.name: r for e in on if (r := e.drag_rate(scene, system)) is not None}
+    scene, system, on = context.scene, context.system, context.resolved.effects
+    rates = {e.name: r for e in on if (r := e.rate(context)) is not None}
+    drags = {e.name: r for e in on if (r := e.drag_rate(context)) is not None}
     total_rate = sum(rates.values(), np.zeros(system.particles))
-    if own := [r for e in on if (r := e.own_rate(scene, system)) is not None]:
+    if own := [r for e in on if (r := e.own_rate(context)) is not None]:
         total_rate -= np.sum(own, axis=0) - np.max(own, axis=0)
     limit = stable_step(total_rate, sum(drags.values(), np.zeros(system.particles)))
     limit[system.held] = np.inf
@@ -137,7 +135,7 @@ def certify(resolved: Resolved, system: System, *, allow_unstable: bool = False)
             f"write 'timestep auto' ({say(fraction * bound, 's')}), or insist with --allow-unstable",
         )
         raise RefusedError(str(problem))
-    longest = min([fraction * bound, *(e.max_timestep(scene, system) for e in on)]) if asked is None else asked
+    longest = min([fraction * bound, *(e.max_timestep(context) for e in on)]) if asked is None else asked
     per_frame, frames, last = fit_steps(scene, longest)
     if (steps := per_frame * frames + last) > MOST_STEPS:
         problem = Problem(
@@ -148,7 +146,7 @@ def certify(resolved: Resolved, system: System, *, allow_unstable: bool = False)
         )
         raise RefusedError(str(problem))
     timestep = 1.0 / (scene.control.frames * per_frame)
-    envelope = Envelope(resolved, system, rates, timestep)
+    envelope = Envelope(context, rates, timestep)
     return Certificate(
         timestep=timestep,
         bound=bound,
@@ -159,7 +157,7 @@ def certify(resolved: Resolved, system: System, *, allow_unstable: bool = False)
         frames=frames,
         last_steps=last,
         span=scene.solids[system.object[worst]].spans.get("elasticity"),
-        margins=tuple(_margins(resolved, envelope, limit)),
+        margins=tuple(_margins(envelope, limit)),
         notes=tuple(_notes(envelope)),
     )
 
@@ -210,10 +208,10 @@ def fit_steps(scene: SceneRecord, longest: float) -> tuple[int, int, int]:
     return per_frame, frames, rest * per_frame // q
 
 
-def strong_drag(scene: SceneRecord, system: System, effects: Iterable[Effect], timestep: float) -> float:
-    """Largest phi of the drag that these effects make, all together, when it is above STRONG, else 0."""
-    frictions = [f for e in effects if (f := e.friction(scene, system)) is not None]
-    phi = float((sum(frictions) / system.mass).max()) * timestep / 2.0 if frictions else 0.0
+def strong_drag(context: Context, timestep: float) -> float:
+    """Largest phi of the drag that all effects make together, when it is above STRONG, else 0."""
+    frictions = [f for e in context.resolved.effects if (f := e.friction(context)) is not None]
+    phi = float((sum(frictions) / context.system.mass).max()) * timestep / 2.0 if frictions else 0.0
     return phi if phi > STRONG else 0.0
 
 
@@ -248,15 +246,15 @@ def note_lines(certificate: Certificate) -> list[str]:
     return [f"  {n.severity:<8} {n.message}; {n.hint}" + (f"  [{n.span}]" if n.span else "") for n in certificate.notes]
 
 
-def _margins(resolved: Resolved, envelope: Envelope, limit: np.ndarray) -> list[Margin]:
+def _margins(envelope: Envelope, limit: np.ndarray) -> list[Margin]:
     """The margins, the bound of the objects first; ``limit`` is the largest stable step of each particle [s], shape (N,)."""
-    found = [*_bounds(envelope, limit), *_drag(envelope, resolved)]
-    return found + [m for e in resolved.effects for m in e.margins(envelope)] if envelope.moving.any() else found
+    found = [*_bounds(envelope, limit), *_drag(envelope)]
+    return found + [m for e in envelope.on for m in e.margins(envelope)] if envelope.reach.moving.any() else found
 
 
 def _notes(envelope: Envelope) -> list[Problem]:
     """Those of the effects, what slides, and what will not stand."""
-    if not envelope.moving.any():
+    if not envelope.reach.moving.any():
         return []
     return [*(n for e in envelope.on for n in e.notes(envelope)), *frictionless(envelope), *slopes(envelope), *towers(envelope)]
 
@@ -287,10 +285,10 @@ def _bounds(env: Envelope, limit: np.ndarray) -> list[Margin]:
     return margins
 
 
-def _drag(env: Envelope, resolved: Resolved) -> list[Margin]:
+def _drag(env: Envelope) -> list[Margin]:
     """phi of air and liquid together, as an immersed particle feels it."""
     system = env.system
-    frictions = {e.name: f for e in env.on if (f := e.friction(env.scene, system)) is not None}
+    frictions = {e.name: f for e in env.on if (f := e.friction(env.context)) is not None}
     if not frictions:
         return []
     phi = sum(frictions.values()) / system.mass * env.dt / 2.0
@@ -307,7 +305,7 @@ def _drag(env: Envelope, resolved: Resolved) -> list[Margin]:
             "",
             f"{kinds} is {'strong' if strong else 'weak'} for this time step "
             f"(phi = {number(phi[i], 2)} {'>' if strong else '<='} {STRONG}, eq. (3.13))",
-            resolved.verdicts[list(frictions)[-1]].span,
+            env.context.resolved.verdicts[list(frictions)[-1]].span,
             "warning" if strong else "ok",
             hint="the exponential form is used instead of the paper's implicit one: same terminal speed, no overshoot",
         )

@@ -218,7 +218,12 @@ def test_a_forecast_takes_tenths_of_a_second(pond, clockwork, fresh, particles, 
     ready = pond[0]
     many = SimpleNamespace(particles=particles)
     extrapolate(
-        replace(ready, system=many, certificate=replace(ready.certificate, steps_per_frame=per_frame, frames=1000)), fresh()
+        replace(
+            ready,
+            context=replace(ready.context, system=many),
+            certificate=replace(ready.certificate, steps_per_frame=per_frame, frames=1000),
+        ),
+        fresh(),
     )
     run, certificate = clockwork[0]
     assert (run, certificate.steps_per_frame, certificate.last_steps) == (frames, steps, 0)

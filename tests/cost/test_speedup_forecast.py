@@ -7,7 +7,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from mdanim_lammps.cost.flight import Flight
 from mdanim_lammps.cost.speedup_forecast import SpeedupForecast, _Moments, forecast_speedup
 from mdanim_lammps.engine.sub_plan import SubPlans
 from mdanim_lammps.parallel.plan.frame_plan import PlannerOptions
@@ -39,7 +38,7 @@ def test_the_first_moment_is_the_first_order(prepared, text):
     owner = np.arange(objects) % 2
     owner[ready.system.still] = -1
     order = planner.decide(list(report(parts, owner, speed=ready.system.top_speed(ready.system.velocity))))
-    found = moments.at(*Flight(ready).boxes())
+    found = moments.at(*ready.context.reach.flight().boxes())
     assert np.array_equal(found.label, order.plan.label) and np.array_equal(found.load, order.plan.load)
     assert found.teams == order.plan.teams
     assert len(set(found.label)) > 1
@@ -47,7 +46,7 @@ def test_the_first_moment_is_the_first_order(prepared, text):
 
 def test_objects_fall_and_bounce(prepared):
     """Follow a body that falls through 1.25 m to the ground in half a second, comes up again, and is turned round by a wall."""
-    flight = Flight(prepared(FALLING.format(speed=2)))
+    flight = prepared(FALLING.format(speed=2)).context.reach.flight()
     start = flight.low.copy()
     flight.to(0.4)
     assert flight.low[0, 2] == pytest.approx(1.25 - 5.0 * 0.4**2, abs=0.03) and flight.velocity[0, 2] == pytest.approx(

@@ -45,7 +45,7 @@ control {{ time 1 s  resolution 5 cm  contact-model surface {control} }}
 
 def commands(plan, name):
     """What an effect of a plan writes for LAMMPS."""
-    return next(e for e in plan.effects if e.name == name).commands(plan.scene, plan.system)
+    return next(e for e in plan.effects if e.name == name).commands(plan.context)
 
 
 BARRIER = [
@@ -163,7 +163,7 @@ def test_the_effects_of_a_scene_are_those_of_its_model():
 
 def rate(ready, name):
     """The share of an effect in the bound, each of shape (N,)."""
-    return next(e for e in ready.plan.effects if e.name == name).rate(ready.scene, ready.system)
+    return next(e for e in ready.plan.effects if e.name == name).rate(ready.context)
 
 
 def lightness(system):

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from mdanim_lammps.effects import EFFECTS, decide
 from mdanim_lammps.effects.contact import plane_stiffness
-from mdanim_lammps.effects.liquid import MOST_LAYERS, lattice_cells, layers_of_cells
+from mdanim_lammps.effects.liquid_cells import MOST_LAYERS, lattice_cells, layers_of_cells
 from mdanim_lammps.engine.commands import input_script
 from mdanim_lammps.engine.data_file import data_text
 from mdanim_lammps.engine.instance import Instance
@@ -134,7 +134,7 @@ def pool(liquid="level 0.25 m", block="", top=""):
 
 def commands(ready, name):
     """What an effect writes for LAMMPS."""
-    return next(e for e in EFFECTS if e.name == name).commands(ready.scene, ready.system)
+    return next(e for e in EFFECTS if e.name == name).commands(ready.context)
 
 
 @pytest.mark.parametrize("effect", ["basin", "buoyancy", "liquid-drag"])

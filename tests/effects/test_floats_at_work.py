@@ -39,7 +39,7 @@ class Afloat:
         (folder / "hull.obj").write_text(open_box(*hull))
         (folder / "scene.txt").write_text(LAKE.format(**dict(half=25, top=60, level=30, more="") | lake) + objects)
         self.ready = prepare(load_scene(folder / "scene.txt"))
-        self.system, self.time = self.ready.system, 0.0
+        self.system, self.grid, self.time = self.ready.system, self.ready.plan.grid, 0.0
 
     def __enter__(self):
         self.instance = Instance(self.ready.plan)
@@ -63,13 +63,15 @@ class Afloat:
 
     def draft(self, name: str) -> float:
         """[m]"""
-        return immersed_depth(self.instance.array("x")[self.particles(name)], self.system.grid, self.instance.liquid_heights()[0])
+        return immersed_depth(
+            self.instance.array("x")[self.particles(name)], self.ready.plan.grid, self.instance.liquid_heights()[0]
+        )
 
     def immersed(self, name: str) -> float:
         """Share below the surface [-]."""
         own, corner = self.particles(name), self.system.hexahedron
         corner = corner[(corner[:, 0] >= own.start) & (corner[:, 0] < own.stop)]
-        return immersed_share(self.instance.array("x")[corner], self.system.grid, self.instance.liquid_heights()[0])
+        return immersed_share(self.instance.array("x")[corner], self.grid, self.instance.liquid_heights()[0])
 
     def lowest(self, name: str) -> float:
         """Height of its lowest particle [m]."""
@@ -81,7 +83,7 @@ class Afloat:
 
     def held_inside(self, name: str, inner=(30, 20)) -> float:
         """Liquid over the inside of a hull and above its bottom [m^3]: whole cells that are wet."""
-        grid, x = self.system.grid, self.instance.array("x")[self.particles(name)]
+        grid, x = self.grid, self.instance.array("x")[self.particles(name)]
         middle, half = x[:, :2].mean(axis=0), np.array(inner) / 200
         columns = [grid.low[d] + (np.arange(grid.shape[d]) + 0.5) * grid.cell[d] for d in range(3)]
         within = [np.abs(c - m) < h - CELL / 2 for c, m, h in zip(columns, middle, half)]

@@ -34,22 +34,22 @@ class Wind(effects.Effect):
     if_off = "sails hang down"
     strength = 3.0
 
-    def called_for(self, scene, planes=None):
+    def called_for(self, scene, reach):
         return effects.Verdict(self.name, scene.title == "windy", f"its title is {scene.title!r}")
 
-    def columns(self, scene, system):
-        return {"sail": np.linspace(1.0, 2.0, system.particles)}
+    def columns(self, context):
+        return {"sail": np.linspace(1.0, 2.0, context.system.particles)}
 
-    def commands(self, scene, system):
+    def commands(self, context):
         return [f"fix wind mobile mdanim/gravity {self.strength!r} 0.0 0.0"]
 
     def potential(self, scene, mass, x):
         return -self.strength * float(mass @ x[:, 0])
 
-    def rate(self, scene, system):
-        return np.full(system.particles, 1e9)
+    def rate(self, context):
+        return np.full(context.system.particles, 1e9)
 
-    def max_timestep(self, scene, system):
+    def max_timestep(self, context):
         return 1e-5
 
     def planes(self, scene):
@@ -58,7 +58,7 @@ class Wind(effects.Effect):
     def margins(self, envelope):
         return [Margin("gust", envelope.system.names[0], 2.0, 1.0, "m/s", "a gust of 2 m/s", None, "warning", hint="wait")]
 
-    def warnings(self, scene, system):
+    def warnings(self, context):
         return [Problem(None, "sails are up", "haul them down", severity="warning")]
 
 

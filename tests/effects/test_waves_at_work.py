@@ -214,7 +214,7 @@ def test_a_cube_from_the_bottom_floats_as_deep_as_archimedes_says(way, density):
         instance.setup()
         instance.run(int(2000 / ready.certificate.timestep))
         x = instance.array("x")
-        found = immersed_share(x[ready.system.hexahedron], ready.system.grid, instance.liquid_heights()[0])
+        found = immersed_share(x[ready.system.hexahedron], ready.plan.grid, instance.liquid_heights()[0])
         assert np.abs(instance.array("v")).max() < 2e-2
     assert found == pytest.approx(density / 1000, abs=0.02)
 

@@ -5,7 +5,6 @@ from dataclasses import fields, replace
 
 import numpy as np
 import pytest
-from mdanim_lammps.effects import EFFECTS, resolve
 from mdanim_lammps.engine.data_file import data_text
 from mdanim_lammps.engine.instance import Instance
 from mdanim_lammps.engine.plan import both_ends, make_plan
@@ -77,7 +76,7 @@ def follow(plan, starts=(1, 500), steps=400):
             before = evolve(whole, start - whole.step)
             whole.start_trace()
             after = evolve(whole, steps)
-            found = islands(*whole.trace(), parts.reach.max() * np.ones(len(parts.reach)))
+            found = islands(*whole.trace(), parts.gap.max() * np.ones(len(parts.gap)))
             stretches.append(found)
             for island in found:
                 rows = particles(plan.system, island)
@@ -168,7 +167,7 @@ def test_a_part_says_what_a_plan_of_its_own_would_say(prepared):
     without = text[: text.index(name)] + text[text.index("}", text.index(name)) + 2 :]
     own = prepared(without)
     part = SubPlans(whole.plan).part((0, 1, 3), True)
-    own_plan = make_plan(resolve(EFFECTS, own.scene), own.system, whole.certificate)
+    own_plan = make_plan(own.context, whole.certificate)
     # Types may be numbered otherwise, and kinds of bodies are numbered as in the whole.
     numbered = {"spring_type", "constants", "contact_kind", "frames"}
     for field in {field.name for field in fields(System)} - numbered | {"stiffness", "rest", "damping"}:

@@ -8,8 +8,10 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from mdanim_lammps.effects import EFFECTS, resolve
 from mdanim_lammps.errors import SceneError, Span
-from mdanim_lammps.model import basin, build_models, check_basin, shapes
+from mdanim_lammps.model import basin, build_models, shapes
+from mdanim_lammps.model.spacing import choose_spacing
 from mdanim_lammps.model.system import assemble
 from mdanim_lammps.run.prepare import prepare
 from mdanim_lammps.scene.rotation import rotation_euler
@@ -34,10 +36,21 @@ def block(shape=CUBE, name="block", position=ABOVE, density=500.0, **rest):
     return solid(shape, name, position=position, mass=None, density=density, **rest)
 
 
+def grid_of(made):
+    """Its cells."""
+    return basin.plan_grid(made.liquid, choose_spacing(made)[0])
+
+
+def falling(*solids, h=0.1, liquid=WATER):
+    """A scene with gravity."""
+    return replace(scene(*solids, resolution=h, liquid=liquid), gravity=(0.0, 0.0, -9.81))
+
+
 def problems(*solids, h=0.1, effects=None, **liquid):
     """What is wrong with these solids and this liquid."""
-    made = replace(scene(*solids, resolution=h, liquid=replace(WATER, **liquid)), effects=effects or {})
-    return check_basin(made, build_models(made))
+    made = replace(falling(*solids, h=h, liquid=replace(WATER, **liquid)), effects=effects or {})
+    resolved = resolve(EFFECTS, made)
+    return [p for e in resolved.effects for p in e.problems(resolved, build_models(made), grid_of(made))]
 
 
 # --- cells --------------------------------------------------------------------------------------------------
@@ -122,7 +135,7 @@ def test_a_basin_too_large_for_memory_is_told_before_models_are_made(monkeypatch
     monkeypatch.setattr(basin, "available_memory", lambda: 1e4)
     monkeypatch.setattr("mdanim_lammps.run.prepare.build_models", lambda *_, **__: pytest.fail("models are made"))
     with pytest.raises(SceneError, match="GB are free"):
-        prepare(scene(block(), resolution=0.1, liquid=WATER))
+        prepare(falling(block()))
 
 
 def test_a_basin_too_large_for_memory_is_told(monkeypatch):
@@ -284,7 +297,7 @@ def test_what_leaks_is_told(size, more, told):
         made = scene(
             block(Box(size), "plank", **{"position": (0.5, 0.5, 0.5), **more}), resolution=h, liquid=replace(WATER, **liquid)
         )
-        return basin.leaky_walls(made, build_models(made))
+        return basin.leaky_walls(made, build_models(made), grid_of(made))
 
     found = warnings(0.1)
     assert [w.severity for w in found] == ["warning"] * bool(told)
@@ -306,7 +319,7 @@ def test_what_leaks_is_told(size, more, told):
 def test_liquid_that_comes_too_fast_is_refused(maker, told):
     """In a basin of 1 m liquid flows at 4 sqrt(9.81) = 12.5 m/s at most."""
     made = replace(scene(resolution=0.1, liquid=replace(WATER, **maker)), gravity=(0.0, 0.0, -9.81))
-    found = basin.check_basin(made, ())
+    found = basin.check_basin(made, (), grid_of(made), lifts=True)
     assert [p.severity for p in found] == ["error"] * bool(told)
     if told:
         assert found[0].message.startswith(told) and "at 12.5 m/s at most" in found[0].message
@@ -322,7 +335,7 @@ def test_upright_walls_of_less_than_a_cell_are_told(size, told):
         resolution=0.1,
         liquid=replace(WATER, high=(1.06,) * 3),
     )
-    found = basin.leaky_walls(made, build_models(made))
+    found = basin.leaky_walls(made, build_models(made), grid_of(made))
     assert len(found) == told
     if told:
         assert found[0].message.startswith(
@@ -335,7 +348,7 @@ def test_hulls_that_leak_are_told():
     """Its planks are 7 cm thick: the boat is told where cells are larger than half of that."""
     for h, told in ((0.04, 1), (0.034, 0)):
         made = scene(block(BOAT, "boat"), resolution=h, liquid=replace(WATER, high=(2.0, 2.0, 2.0)))
-        assert len(basin.leaky_walls(made, build_models(made))) == told
+        assert len(basin.leaky_walls(made, build_models(made), grid_of(made))) == told
 
 
 def test_what_a_hull_encloses():

@@ -6,8 +6,9 @@ import pytest
 from mdanim_lammps.effects.liquid import CELLS
 from mdanim_lammps.engine.instance import Instance
 from mdanim_lammps.errors import SceneError
-from mdanim_lammps.model.basin import scene_grid
+from mdanim_lammps.model.basin import plan_grid
 from mdanim_lammps.model.occupied import filled, room
+from mdanim_lammps.model.spacing import choose_spacing
 from mdanim_lammps.run.prepare import prepare
 from mdanim_lammps.scene.parse import parse_scene
 
@@ -44,7 +45,7 @@ def poured(text: str) -> tuple[float, float]:
     with Instance(ready.plan) as instance:
         instance.setup()
         cells = instance.fix_value("liquid", CELLS)
-    return cells, room(scene_grid(ready.scene), ready.models, liquid.model, *liquid.fill, liquid.level)
+    return cells, room(ready.plan.grid, ready.models, liquid.model, *liquid.fill, liquid.level)
 
 
 @pytest.mark.parametrize(
@@ -72,7 +73,7 @@ def test_a_cup_without_room_for_its_liquid_is_refused_at_its_line(way, model):
     """A cell more than there is room for; as much as that runs."""
     scene = parse_scene(cup("level 0.45 m", model=model, **way))
     models = prepare(scene).models
-    most = int(room(scene_grid(scene), models, scene.liquid.model, *scene.liquid.fill) + 1e-6)
+    most = int(room(plan_grid(scene.liquid, choose_spacing(scene)[0]), models, scene.liquid.model, *scene.liquid.fill) + 1e-6)
     assert poured(cup(f"volume {most * 0.125} l", model=model, **way))[0] == most
     with pytest.raises(
         SceneError, match=r"scene:4:68: error: .* of liquid: the part that is filled has room for [\d.]+ l beside"
@@ -90,4 +91,4 @@ def test_a_basin_that_is_full_of_bodies_is_found_quickly():
     """Shares of cells sum to the volume of what is inside, wherever it lies."""
     ready = prepare(parse_scene(cup("level 0.33 m", at=(0.02, 0.01), turn=31.0)))
     for spread in (True, False):
-        assert filled(scene_grid(ready.scene), ready.models, spread).sum() * 0.05**3 == pytest.approx(0.156, rel=1e-6)
+        assert filled(ready.plan.grid, ready.models, spread).sum() * 0.05**3 == pytest.approx(0.156, rel=1e-6)

@@ -15,7 +15,6 @@ import numpy as np
 from ..engine.sub_plan import SubPlans
 from ..parallel.plan.frame_plan import FrameAssignment, PlanContext, PlannerOptions
 from ..run.prepare import Prepared
-from .flight import Flight
 
 AHEAD = 1.0
 """Seconds of the film that are looked at: beyond, what has met decides."""
@@ -51,7 +50,7 @@ def forecast_speedup(ready: Prepared, executors: int, settings: PlannerOptions |
     moments = _Moments(ready, executors, settings or PlannerOptions(by_threads=True))
     seconds = min(AHEAD, ready.scene.control.time)
     times = np.arange(MOMENTS) * seconds / MOMENTS
-    flight = Flight(ready)
+    flight = ready.context.reach.flight()
     found = []
     for t in times:
         flight.to(float(t))

@@ -5,10 +5,12 @@ from .air_drag import AirDrag
 from .boundaries import GroundPlane, WallPlanes
 from .contact import Contact
 from .contact_surface import SurfaceBasin, SurfaceContact, SurfaceGround, SurfaceWalls
+from .context import Context, Resolved, Verdict
 from .damping import Damping
-from .effect import Effect, Resolved, Verdict, decide, resolve
+from .effect import Effect
 from .gravity import Gravity
 from .liquid import Basin, Buoyancy, LiquidAutomaton, LiquidDrag
+from .resolve import acting, decide, resolve
 from .springs import Springs
 
 EFFECTS: tuple[Effect, ...] = (
@@ -25,4 +27,4 @@ EFFECTS: tuple[Effect, ...] = (
     LiquidDrag(),
 )
 
-__all__ = ["EFFECTS", "Effect", "Resolved", "Verdict", "decide", "resolve"]
+__all__ = ["EFFECTS", "Context", "Effect", "Resolved", "Verdict", "acting", "decide", "resolve"]

@@ -5,8 +5,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..scene.scene import Switch
-from .effect import Effect, Verdict
+from .context import Verdict
+from .effect import Effect
 from .readings import Readings
 from .springs import all_held
 
@@ -16,12 +16,6 @@ DRAG_LOSS = "drag_loss"
 """Column of the ledger; the leap-frog counts what air and liquid take together."""
 SLOWING = 0.3
 """Part of the leap-frog's time for a particle that goes to its drag, of air or liquid (bench/effects.py shares)."""
-
-
-def felt(scene, system) -> np.ndarray | None:
-    """lambda of each particle in air [N*s/m], shape (N,); None where air drag is off."""
-    on = AirDrag().called_for(scene).on and scene.effects.get(AirDrag.name) is not Switch.OFF
-    return system.drag if on else None
 
 
 def slowed_share(readings: Readings) -> float:
@@ -35,17 +29,20 @@ class AirDrag(Effect):
     name = "air-drag"
     if_off = "nothing slows down in air"
 
-    def called_for(self, scene, planes=None):
+    def called_for(self, scene, reach):
         for solid in scene.solids:
             if solid.drag and not all_held(solid):
                 return Verdict(self.name, True, f"drag of {solid.name}", solid.spans.get("drag"))
         return Verdict(self.name, False, "no object has drag")
 
-    def columns(self, scene, system):
-        return {"lambda": system.drag}
+    def slows(self, scene):
+        return np.array([solid.drag > 0.0 for solid in scene.solids], bool)
 
-    def friction(self, scene, system):
-        return system.drag
+    def columns(self, context):
+        return {"lambda": context.system.drag}
+
+    def friction(self, context):
+        return context.system.drag
 
     def clocks(self, readings):
         return {LEAPFROG: slowed_share(readings) * readings.fix_seconds("leapfrog")}

@@ -11,7 +11,8 @@ from ..errors import Problem
 from ..model.planes import innermost, scene_planes
 from ..model.touching import WAY_NAMES, Touch, behind_planes
 from ..scene.formatting import at_least, say, whole
-from .effect import Effect, Verdict, stiffness_told
+from .context import Verdict
+from .effect import Effect, stiffness_told
 
 OR_ON_SURFACES = "or write contact-model surface in control, where what touches holds no energy"
 """The other way out of a start within the reach of the paper's contact."""
@@ -33,15 +34,15 @@ class Boundary(Effect):
 
     ledger = "wall"
 
-    def columns(self, scene, system):
-        return {"stiffness": system.contact_stiffness}
+    def columns(self, context):
+        return {"stiffness": context.system.contact_stiffness}
 
     def region(self, scene) -> str:
         """The region command's style and arguments."""
         raise NotImplementedError
 
-    def commands(self, scene, system):
-        return [f"region {self.fix} {self.region(scene)}", f"fix {self.fix} mobile mdanim/wall {self.fix} d_stiffness"]
+    def commands(self, context):
+        return [f"region {self.fix} {self.region(context.scene)}", f"fix {self.fix} mobile mdanim/wall {self.fix} d_stiffness"]
 
     def planes(self, scene):
         return tuple(p for p in scene_planes(scene) if p.effect == self.name)
@@ -49,9 +50,10 @@ class Boundary(Effect):
     def margins(self, envelope):
         return envelope.own_step("wall", envelope.rates[self.name])
 
-    def warnings(self, scene, system):
+    def warnings(self, context):
+        scene = context.scene
         planes = self.planes(scene)
-        found = behind_planes(system, *innermost(planes))
+        found = behind_planes(context.system, *innermost(planes))
         if not found:
             return []
         t = found[0]
@@ -72,8 +74,9 @@ class Boundary(Effect):
     def penetration(self, readings):
         return readings.fix_value(self.fix, DEEPEST)
 
-    def rate(self, scene, system):
+    def rate(self, context):
         # A wall does not move, so D_i alone bounds it, without the factor 2 of a pair.
+        system = context.system
         return np.where(system.held, 0.0, system.contact_stiffness / system.mass)
 
 
@@ -81,7 +84,7 @@ class GroundPlane(Boundary):
     name = fix = "ground"
     if_off = "objects fall for ever"
 
-    def called_for(self, scene, planes=None):
+    def called_for(self, scene, reach):
         if scene.ground is None:
             return Verdict(self.name, False, "no ground in the scene")
         return Verdict(
@@ -96,7 +99,7 @@ class WallPlanes(Boundary):
     name = fix = "walls"
     if_off = "objects leave the scene"
 
-    def called_for(self, scene, planes=None):
+    def called_for(self, scene, reach):
         if scene.walls is None:
             return Verdict(self.name, False, "no walls in the scene")
         return Verdict(self.name, True, f"walls around the scene{stiffness_told(scene)}", scene.spans.get("walls"))

@@ -9,12 +9,13 @@ import numpy as np
 
 from ..errors import Problem
 from ..model.model import Layer
-from ..model.sweep import closest
 from ..model.system import System
 from ..model.touching import REACH, THIN, WAY_NAMES, touching
+from ..reach import largest_of_others
 from ..scene.formatting import at_least, say
 from .boundaries import OR_ON_SURFACES, others
-from .effect import Effect, Verdict, stiffness_told
+from .context import Verdict
+from .effect import Effect, stiffness_told
 from .envelope import Envelope
 from .margin import Margin
 from .springs import all_held
@@ -66,15 +67,6 @@ def barrier_rate(system: System, s: np.ndarray, reach: float) -> np.ndarray:
     return 2.0 * plane_stiffness(round(over_spacing, 3)) * k / system.mass
 
 
-def closing_speeds(system: System, g: float, fall: np.ndarray) -> np.ndarray:
-    """Speed at which each solid may meet another [m/s], shape (M,): both fall alike, with g [m/s^2], so only the start tells
-    them apart until one has landed; ``fall`` [m], shape (M,), is how far."""
-    low, high = system.bounds(system.velocity)
-    apart = np.maximum(high + largest_of_others(-low), largest_of_others(high) - low)
-    apart = np.sqrt((np.maximum(apart, 0.0) ** 2).sum(1))
-    return np.where(system.still, 0.0, np.sqrt(apart**2 + 2.0 * g * np.maximum(0.0, fall)))
-
-
 class Contact(Effect):
     name = "contact"
     fix = "contact"
@@ -82,13 +74,13 @@ class Contact(Effect):
     keeps_apart = True
     if_off = "objects pass through each other"
 
-    def called_for(self, scene, planes=None):
+    def called_for(self, scene, reach):
         moving = [s for s in scene.solids if not all_held(s)]
         if len(scene.solids) < 2:
             return Verdict(self.name, False, "one object" if scene.solids else "no objects")
         if not moving:
             return Verdict(self.name, False, "every object is held")
-        first, second, apart = closest(scene, planes)
+        first, second, apart = reach.closest()
         if apart > 0.0:
             return Verdict(
                 self.name,
@@ -103,16 +95,18 @@ class Contact(Effect):
         """What ``check`` adds about this contact."""
         return stiffness_told(scene)
 
-    def columns(self, scene, system):
-        return {"stiffness": system.contact_stiffness, "reach": self.reach(scene, system)[system.object]}
+    def columns(self, context):
+        system = context.system
+        return {"stiffness": system.contact_stiffness, "reach": self.gap(context)[system.object]}
 
-    def reach(self, scene, system):
-        return REACH * system.spacing
+    def gap(self, context):
+        return REACH * context.system.spacing
 
-    def commands(self, scene, system):
-        return barrier(self.fix, system)
+    def commands(self, context):
+        return barrier(self.fix, context.system)
 
-    def rate(self, scene, system):
+    def rate(self, context):
+        system = context.system
         return barrier_rate(system, system.contact_stiffness, REACH * system.spacing.max())
 
     def margins(self, envelope):
@@ -125,9 +119,9 @@ class Contact(Effect):
     def _closing_speed(self, envelope: Envelope) -> Margin:
         """Speed at which each solid may meet another."""
         system = envelope.system
-        closing = closing_speeds(system, envelope.g, envelope.fall())
+        closing = envelope.reach.closing(envelope.reach.fall)
         # A held partner may be met at full speed, the softer of two is the one that is passed through.
-        limit = self.tunnelling(envelope) * envelope.wave
+        limit = self.tunnelling(envelope) * envelope.reach.wave
         soft = system.contact_factor < 1.0
         limit *= system.contact_factor**SOFTER if soft else 1.0
         weakest = int(limit.argmin())
@@ -149,11 +143,12 @@ class Contact(Effect):
             else "write a lower speed, a higher elasticity, or a resolution of three cells across the thinnest part",
         )
 
-    def acts_on(self, system, liquid):
-        return len(system.names) > 1 and not system.held.all()
+    def acts_on(self, context):
+        return len(context.system.names) > 1 and not context.system.held.all()
 
-    def warnings(self, scene, system):
-        found = touching(system)
+    def warnings(self, context):
+        scene = context.scene
+        found = touching(context.system)
         if not found:
             return []
         t = found[0]
@@ -178,12 +173,3 @@ class Contact(Effect):
         # thin objects, this says rather too much.
         nearest = readings.fix_value(self.fix, NEAREST)
         return max(0.0, (1.0 / REACH - nearest) * REACH * float(readings.system.spacing.max()))
-
-
-def largest_of_others(values: np.ndarray) -> np.ndarray:
-    """Of every column, the largest of all rows but one's own; shape (M,) or (M, K)."""
-    order = np.argsort(values, axis=0)[::-1]
-    largest = np.broadcast_to(np.take_along_axis(values, order[:1], 0), values.shape).copy()
-    if len(values) > 1:
-        np.put_along_axis(largest, order[:1], np.take_along_axis(values, order[1:2], 0), 0)
-    return largest

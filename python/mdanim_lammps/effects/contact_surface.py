@@ -14,18 +14,17 @@ from ..model.boxes import box_pairs
 from ..model.contact_body import ContactBody
 from ..model.model import Layer
 from ..model.overlap import BORN_AT_REST
-from ..model.planes import AXES, scene_planes
-from ..model.sweep import on
+from ..model.planes import AXES
 from ..model.system import System
+from ..reach import largest_of_others
 from ..scene.contact_pairs import USUAL_DAMPING, damping, frictions, pair_rules
 from ..scene.scene import Box, SceneRecord
 from .boundaries import Boundary, GroundPlane, WallPlanes
-from .contact import Contact, barrier, barrier_rate, closing_speeds, largest_of_others
+from .contact import Contact, barrier, barrier_rate
+from .context import Context
 from .effect import Effect
-from .envelope import heights, wave_speed
 from .liquid import Basin
 from .resting import one_sided
-from .support import standing
 
 SHORT, FULL = 0.8, 1.6
 """Reach of the barrier behind the surface, over the shortest edge of its own cells: a particle inside is at least one edge below
@@ -54,7 +53,8 @@ DEEPEST, SECONDS = 4, 7
 class OnSurfaces(Effect):
     """What objects and planes have in common: bodies, friction, the law ``fix mdanim/contact``."""
 
-    def columns(self, scene, system):
+    def columns(self, context):
+        scene, system = context.scene, context.system
         return {
             "body": system.contact_kind[system.object].astype(float),
             "young": system.young[system.object],
@@ -89,13 +89,14 @@ class OnSurfaces(Effect):
     def losses(self, scene):
         return (*[HEAT] * self.rubs(scene), *[DAMPED] * (self.damping(scene) > 0.0))
 
-    def dashpots(self, scene: SceneRecord, system: System, kappa: np.ndarray) -> np.ndarray | None:
+    def dashpots(self, context: Context, kappa: np.ndarray) -> np.ndarray | None:
         """eta_i s_i / m_i [1/s], shape (N,), of the part of the damping that counts in the bound; None where none does.
 
         The dashpot of a point is eta w_q with eta = 2 beta sqrt(kappa rho h/2), of an area s_i at most for a particle; rho is
         that of the lighter of a pair, so no more than that of either. ``kappa`` of each solid [N/m^3], shape (M,).
         """
-        beta = SPARE * (self.damping(scene) - USUAL_DAMPING)
+        system = context.system
+        beta = SPARE * (self.damping(context.scene) - USUAL_DAMPING)
         if beta <= 0.0:
             return None
         h = float(np.cbrt(system.cell_volume).max())
@@ -105,7 +106,7 @@ class OnSurfaces(Effect):
     def lost(self, readings):
         return {term: readings.fix_value(self.fix, TAKEN[term]) for term in self.losses(readings.scene)}
 
-    def warnings(self, scene, system):
+    def warnings(self, context):
         # Surfaces that touch at the start are free of stress; those deeper in each other are refused (model/overlap.py).
         return []
 
@@ -126,16 +127,17 @@ class SurfaceContact(OnSurfaces, Contact):
     def fixes(self):
         return (self.fix, self.behind)
 
-    def columns(self, scene, system):
-        own = super().columns(scene, system)
-        own |= {"stiffness": self.barrier_stiffness(scene, system), "reach": self.barrier_reach(scene, system)}
+    def columns(self, context):
+        system = context.system
+        own = super().columns(context)
+        own |= {"stiffness": self.barrier_stiffness(context), "reach": self.barrier_reach(context)}
         thin = system.layer == Layer.THIN
-        return {**own, "thin": (thin & self.guards(scene, system)[system.object]).astype(float)} if thin.any() else own
+        return {**own, "thin": (thin & self.guards(context)[system.object]).astype(float)} if thin.any() else own
 
-    def guards(self, scene: SceneRecord, system: System) -> np.ndarray:
+    def guards(self, context: Context) -> np.ndarray:
         """Solids whose surface is a barrier where nothing is inside, bool, shape (M,): those that may be met fast. The faces of
         what touches at the start coincide."""
-        found = fast(scene, system)
+        system, found = context.system, fast(context)
         if found.any():
             low, high = system.bounds(system.position)
             gap = 0.5 * BORN_AT_REST * system.spacing.max()
@@ -143,42 +145,46 @@ class SurfaceContact(OnSurfaces, Contact):
                 found[i] = found[j] = False
         return found
 
-    def barrier_stiffness(self, scene: SceneRecord, system: System) -> np.ndarray:
+    def barrier_stiffness(self, context: Context) -> np.ndarray:
         """Of each particle [N/m], shape (N,); 0 without a barrier.
 
         The cells of what is no cuboid stand out of its drawn surface: a barrier would bear it on their corners, so that balls do
         not roll. The surface alone stops it up to SLOW.
         """
-        return np.where((~are_dense(system) | fast(scene, system))[system.object], system.contact_stiffness, 0.0)
+        system = context.system
+        return np.where((~are_dense(system) | fast(context))[system.object], system.contact_stiffness, 0.0)
 
-    def barrier_reach(self, scene: SceneRecord, system: System) -> np.ndarray:
+    def barrier_reach(self, context: Context) -> np.ndarray:
         """Reach of the barrier of each particle [m], shape (N,); of a pair the larger one counts.
 
         Particles on the surface of what is slow have none: how far the barrier of another body reaches out of its inside is
         that body's own, as its layers are.
         """
-        quick = fast(scene, system)[system.object]
+        system = context.system
+        quick = fast(context)[system.object]
         behind = np.where(system.boundary, 0.0, SHORT * shortest_edge(system)[system.object])
         return np.where(quick, FULL * system.spacing[system.object], behind)
 
-    def longest_reach(self, scene: SceneRecord, system: System) -> float:
+    def longest_reach(self, context: Context) -> float:
         """No barrier of the scene reaches farther [m]."""
-        return float((np.where(fast(scene, system), FULL, SHORT) * system.spacing).max())
+        system = context.system
+        return float((np.where(fast(context), FULL, SHORT) * system.spacing).max())
 
-    def commands(self, scene, system):
+    def commands(self, context):
+        scene, system = context.scene, context.system
         rules = [f"pair {i + 1} {j + 1} {mu!r} {beta!r}" for i, j, mu, beta in pair_rules(scene, system.names)]
         return [*self.law(scene, " ".join(["objects", *rules])), *barrier(self.behind, system, self.thin(system))]
 
     def tunnelling(self, envelope):
         found, system = super().tunnelling(envelope), envelope.system
-        bare = (envelope.cells < 1.5) & ~self.guards(envelope.scene, system)
+        bare = (envelope.cells < 1.5) & ~self.guards(envelope.context)
         return np.minimum(found, np.where(needles(system), NEEDLE, np.where(bare, UNGUARDED, np.inf)))
 
     def thin(self, system: System) -> tuple[str, ...]:
         """Commands that make the group of `guards`."""
         return ("variable thin atom d_thin", "group thin variable thin") if (system.layer == Layer.THIN).any() else ()
 
-    def rate(self, scene, system):
+    def rate(self, context):
         """A contact is a spring along one direction, kappa w G G^T with node weights whose sum is 2: those of the point and those
         of the place that it presses on. K <= 2 blockdiag as for springs gives
 
@@ -190,41 +196,45 @@ class SurfaceContact(OnSurfaces, Contact):
         nothing to the norm of a contact. No strict bound: the gradient of depth grows in pressed cells, and a folded sheet bears
         more than one layer.
         """
-        kappa = self.stiffness(scene, system)[system.object]
+        system = context.system
+        kappa = self.stiffness(context)[system.object]
         own, borne, dense = own_area(system), borne_area(system), are_dense(system)
         area = own + borne
         if dense.any() and not dense.all():
             area = np.maximum(area, ALONE * np.where(dense[system.object], own, borne))
         surface = 2.0 * kappa * area / system.mass
-        return surface + barrier_rate(system, self.barrier_stiffness(scene, system), self.longest_reach(scene, system))
+        return surface + barrier_rate(system, self.barrier_stiffness(context), self.longest_reach(context))
 
-    def own_rate(self, scene, system):
-        kappa = self.stiffness(scene, system)[system.object]
+    def own_rate(self, context):
+        system = context.system
+        kappa = self.stiffness(context)[system.object]
         return 2.0 * kappa * own_area(system) / system.mass
 
-    def drag_rate(self, scene, system):
+    def drag_rate(self, context):
         """Points of the own body and of another, and the factor 2 as in `rate`."""
-        one = self.dashpots(scene, system, self.stiffness(scene, system))
+        one = self.dashpots(context, self.stiffness(context))
         return None if one is None else 4.0 * one
 
-    def stiffness(self, scene: SceneRecord, system: System) -> np.ndarray:
+    def stiffness(self, context: Context) -> np.ndarray:
         """kappa of the surface of each solid with the stiffest partner [N/m^3], shape (M,)."""
+        system = context.system
         partner = largest_of_others(system.young)
-        return surface_stiffness(scene, system, 2.0 * partner / (system.young + partner))
+        return surface_stiffness(context.scene, system, 2.0 * partner / (system.young + partner))
 
     def notes(self, envelope):
-        return [p for p in self.about_friction(envelope.scene, envelope.system) if p.severity == "note"]
+        return [p for p in self.about_friction(envelope.context) if p.severity == "note"]
 
-    def warnings(self, scene, system):
-        return [p for p in self.about_friction(scene, system) if p.severity == "warning"]
+    def warnings(self, context):
+        return [p for p in self.about_friction(context) if p.severity == "warning"]
 
-    def about_friction(self, scene: SceneRecord, system: System) -> list[Problem]:
+    def about_friction(self, context: Context) -> list[Problem]:
         """Where it does not act, as notes and warnings."""
-        return [*self.full_reaches(scene, system), *one_sided(scene, system)]
+        return [*self.full_reaches(context), *one_sided(context.scene, context.system)]
 
-    def full_reaches(self, scene: SceneRecord, system: System) -> list[Problem]:
+    def full_reaches(self, context: Context) -> list[Problem]:
         """That the barrier keeps fast objects apart: without friction, whatever was written."""
-        found = np.flatnonzero(fast(scene, system))
+        scene, system = context.scene, context.system
+        found = np.flatnonzero(fast(context))
         if not len(found):
             return []
         spans = scene.solids[found[0]].spans
@@ -270,24 +280,27 @@ class SurfacePlanes(OnSurfaces, Boundary):
         named = any(self.name in (c.first, c.second) for c in scene.contacts)
         return f"friction_{self.name}" if named else "friction"
 
-    def commands(self, scene, system):
+    def commands(self, context):
+        scene = context.scene
         planes = (f"plane {AXES[p.axis]} {'lo' if p.sign > 0 else 'hi'} {p.at!r}" for p in self.planes(scene))
         return self.law(scene, " ".join(planes))
 
-    def rate(self, scene, system):
+    def rate(self, context):
         """a_i = kappa w_i / m_i with w_i as in `SurfaceContact.rate`: the plane does not move, so there is no factor 2."""
-        rate = self.stiffness(scene, system)[system.object] * own_area(system) / system.mass
+        system = context.system
+        rate = self.stiffness(context)[system.object] * own_area(system) / system.mass
         return np.where(system.held, 0.0, rate)
 
-    def own_rate(self, scene, system):
-        return self.rate(scene, system)
+    def own_rate(self, context):
+        return self.rate(context)
 
-    def drag_rate(self, scene, system):
-        return self.dashpots(scene, system, self.stiffness(scene, system))
+    def drag_rate(self, context):
+        return self.dashpots(context, self.stiffness(context))
 
-    def stiffness(self, scene: SceneRecord, system: System) -> np.ndarray:
+    def stiffness(self, context: Context) -> np.ndarray:
         """kappa of the surface of each solid against a plane, which has no points of its own [N/m^3], shape (M,)."""
-        return surface_stiffness(scene, system, np.where(are_dense(system), ALONE, 1.0))
+        system = context.system
+        return surface_stiffness(context.scene, system, np.where(are_dense(system), ALONE, 1.0))
 
 
 class SurfaceGround(SurfacePlanes, GroundPlane):
@@ -347,15 +360,11 @@ def carried_area(body: ContactBody) -> np.ndarray:
     return np.bincount(np.searchsorted(body.node, np.array(flat)).ravel(), area.ravel(), len(body.node))
 
 
-def fast(scene: SceneRecord, system: System) -> np.ndarray:
+def fast(context: Context) -> np.ndarray:
     """Solids that may meet others at more than SLOW of the wave speed of the softest, as if through air, bool, shape (M,)."""
-    g = max(0.0, -scene.gravity[2]) * on(scene, "gravity")
-    planes = [p for p in scene_planes(scene) if on(scene, p.effect)]
-    bottom, floor = heights(system, planes)
-    if (standing(scene, system, planes) | system.still).all():  # nothing comes that might throw one of them down
-        bottom = np.full_like(bottom, floor)
-    slow = np.where(needles(system), SLOW_NEEDLE, SLOW)
-    return closing_speeds(system, g, bottom - floor) > slow * float(wave_speed(system).min())
+    reach = context.reach
+    slow = np.where(needles(reach.system), SLOW_NEEDLE, SLOW)
+    return reach.closing(reach.drop) > slow * float(reach.wave.min())
 
 
 def needles(system: System) -> np.ndarray:

@@ -3,7 +3,8 @@
 
 from __future__ import annotations
 
-from .effect import Effect, Verdict
+from .context import Verdict
+from .effect import Effect
 from .springs import all_held, spring_norm, time_of_dashpots
 
 
@@ -12,7 +13,7 @@ class Damping(Effect):
     needs = ("springs",)
     if_off = "damped objects ring for ever"
 
-    def called_for(self, scene, planes=None):
+    def called_for(self, scene, reach):
         for solid in scene.solids:
             if solid.damping and not all_held(solid):
                 return Verdict(self.name, True, f"damping of {solid.name}", solid.spans.get("damping"))
@@ -28,7 +29,8 @@ class Damping(Effect):
         more = time_of_dashpots(readings.system)
         return {"springs": readings.bond_seconds() * more / (1.0 + more)}
 
-    def drag_rate(self, scene, system):
+    def drag_rate(self, context):
+        system = context.system
         if system.damping is None:  # all damped solids are held as a whole by boxes, and have no springs
             return None
         return 2.0 * spring_norm(system, system.damping) / system.mass

@@ -6,43 +6,22 @@ it adds to the ledger and to the bound.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Sequence
 
 import numpy as np
 
-from ..errors import Problem, Span
+from ..errors import Problem
+from ..model.basin import Grid
+from ..model.model import Model
 from ..model.planes import Plane
 from ..model.system import System
+from ..reach import Bodies, Reach
 from ..scene.formatting import number
-from ..scene.scene import ContactModel, SceneRecord, Switch
+from ..scene.scene import ContactModel, SceneRecord
+from .context import Context, Resolved, Verdict
 from .envelope import Envelope
 from .margin import Margin
 from .readings import Readings
-
-
-@dataclass(frozen=True, slots=True)
-class Verdict:
-    """Whether an effect is on, and why; shown by ``check`` with the scene line."""
-
-    name: str
-    on: bool
-    reason: str
-    span: Span | None = None
-
-
-@dataclass(frozen=True)
-class Resolved:
-    """The verdicts of a scene, worked out once."""
-
-    scene: SceneRecord
-    verdicts: dict[str, Verdict]
-    """Of every effect, by its name."""
-    effects: tuple[Effect, ...]
-    """Those that are on, in the order in which their forces are summed."""
-    planes: tuple[Plane, ...]
-    """The planes of those that are on."""
-    warnings: tuple[Problem, ...]
-    """About effects that the scene calls for and switches off."""
 
 
 class Effect:
@@ -63,8 +42,8 @@ class Effect:
     """Whether its energy is a `potential`, that of a uniform field; no other effect has the same column then."""
     has_arbitrary_zero = False
     """Whether only changes of the energy in its column ``ledger`` mean something; that of a potential always is so."""
-    uses_grid = False
-    """Whether it lives in the cells of the basin."""
+    binds = False
+    """Whether it holds the particles of a solid together."""
     keeps_apart = False
     """Whether objects cannot be inside each other where it is on."""
     needs: tuple[str, ...] = ()
@@ -81,45 +60,87 @@ class Effect:
         surface = scene.control.contact_model is ContactModel.SURFACE
         return self.on_surfaces if surface and self.on_surfaces else self
 
-    def called_for(self, scene: SceneRecord, planes: tuple[Plane, ...] | None = None) -> Verdict:
-        """Whether the scene, by itself, calls for the effect; ``planes`` push objects back, None are those of the scene."""
+    def called_for(self, scene: SceneRecord, reach: Reach) -> Verdict:
+        """Whether the scene, by itself, calls for the effect; ``reach`` tells where solids can be by all effects that are not
+        switched off."""
         raise NotImplementedError
 
-    def columns(self, scene: SceneRecord, system: System) -> dict[str, np.ndarray]:
+    # --- how it moves solids: what reach/ asks, of any scene -------------------------------------------------------------
+
+    def acceleration(self, scene: SceneRecord) -> np.ndarray | None:
+        """What it gives to everything that is free to move [m/s^2], shape (3,); None for nothing."""
+        return None
+
+    def planes(self, scene: SceneRecord) -> tuple[Plane, ...]:
+        """The planes that push solids back, whether the effect is on or not."""
+        return ()
+
+    def slows(self, scene: SceneRecord) -> np.ndarray | None:
+        """Solids that it slows down wherever they are, bool, shape (M,)."""
+        return None
+
+    def pushes_below(self, scene: SceneRecord) -> float:
+        """Height below which it may push solids in any direction [m]; minus infinity where it does so nowhere."""
+        return -math.inf
+
+    def most_push(self, scene: SceneRecord, bodies: Bodies) -> np.ndarray | float:
+        """Largest force of that kind on each solid over its mass [m/s^2], shape (M,)."""
+        return 0.0
+
+    def surface(self, scene: SceneRecord) -> float | None:
+        """Height below which solids are immersed in it [m]; None where it immerses nothing."""
+        return None
+
+    def lift(self, scene: SceneRecord, system: System) -> np.ndarray | float:
+        """Part of the mass of each immersed solid that it carries [kg], shape (M,)."""
+        return 0.0
+
+    # --- what it brings into a run --------------------------------------------------------------------------------------
+
+    def grid(self, scene: SceneRecord, h: float) -> Grid | None:
+        """Cells that it lives in, for a particle spacing h [m]; None where it needs none. Raises SceneError where they do not fit
+        in memory."""
+        return None
+
+    def problems(self, resolved: Resolved, models: Sequence[Model], grid: Grid | None) -> list[Problem]:
+        """What of the start it cannot work with."""
+        return []
+
+    def columns(self, context: Context) -> dict[str, np.ndarray]:
         """Per-particle properties that its commands name as ``d_NAME``, each of shape (N,).
 
         With ``body``, the kind of each particle's body (System.contact_kind), its fix is given the contact bodies of all kinds.
         """
         return {}
 
-    def tables(self, scene: SceneRecord, system: System) -> dict[str, np.ndarray]:
+    def tables(self, context: Context) -> dict[str, np.ndarray]:
         """Per-particle whole numbers that its commands name as ``i2_NAME``, int32, each of shape (N, K)."""
         return {}
 
-    def commands(self, scene: SceneRecord, system: System) -> list[str]:
+    def commands(self, context: Context) -> list[str]:
         """LAMMPS commands; group ``mobile`` exists by then."""
         return []
 
-    def rate(self, scene: SceneRecord, system: System) -> np.ndarray | None:
+    def rate(self, context: Context) -> np.ndarray | None:
         """Its share in the bound on the squared frequency of each particle, 2 lambda_max(D_i)/m_i [1/s^2], shape (N,)."""
         return None
 
-    def own_rate(self, scene: SceneRecord, system: System) -> np.ndarray | None:
+    def own_rate(self, context: Context) -> np.ndarray | None:
         """The part of `rate` that comes of points of a particle's own surface in something else [1/s^2], shape (N,).
 
         No point is in two things at once: of these parts of all effects the largest alone counts.
         """
         return None
 
-    def drag_rate(self, scene: SceneRecord, system: System) -> np.ndarray | None:
+    def drag_rate(self, context: Context) -> np.ndarray | None:
         """The same as `rate` of its dashpots, 2 lambda_max(C_i)/m_i [1/s], shape (N,)."""
         return None
 
-    def max_timestep(self, scene: SceneRecord, system: System) -> float:
+    def max_timestep(self, context: Context) -> float:
         """Longest time step that still shows what it does [s]; stability is another matter, see `rate`."""
         return math.inf
 
-    def friction(self, scene: SceneRecord, system: System) -> np.ndarray | None:
+    def friction(self, context: Context) -> np.ndarray | None:
         """The most that it adds to each particle's lambda, eq. (3.9) [N*s/m], shape (N,)."""
         return None
 
@@ -144,31 +165,15 @@ class Effect:
         """What stands in these columns now [J]."""
         return {}
 
-    def planes(self, scene: SceneRecord) -> tuple[Plane, ...]:
-        """The planes that push objects back, whether the effect is on or not."""
-        return ()
-
     def margins(self, envelope: Envelope) -> list[Margin]:
         """Limits that a scene in which something can move has to keep because of the effect, each with what the scene reaches."""
         return []
 
-    def pull(self, scene: SceneRecord) -> float:
-        """Acceleration downward that it gives to everything [m/s^2]."""
-        return 0.0
-
-    def lift(self, scene: SceneRecord, system: System) -> np.ndarray | float:
-        """Part of the mass of each immersed solid that it carries [kg], shape (M,)."""
-        return 0.0
-
-    def surface(self, scene: SceneRecord) -> float | None:
-        """Height below which solids are immersed in it [m]; None where it immerses nothing."""
-        return None
-
-    def acts_on(self, system: System, liquid: bool) -> bool:
-        """Whether it has anything to act on in a part of a scene: some of its solids, and the liquid or not."""
+    def acts_on(self, context: Context) -> bool:
+        """Whether it has anything to act on in a part of a scene: some of its solids, and the cells of a grid or not."""
         return True
 
-    def warnings(self, scene: SceneRecord, system: System) -> list[Problem]:
+    def warnings(self, context: Context) -> list[Problem]:
         """What is doubtful about the start of a scene that the effect is on in."""
         return []
 
@@ -176,7 +181,7 @@ class Effect:
         """What ``check`` tells of a scene in which something can move besides: nothing is doubtful, but it may not be known."""
         return []
 
-    def reach(self, scene: SceneRecord, system: System) -> np.ndarray | float:
+    def gap(self, context: Context) -> np.ndarray | float:
         """Gap from which on a solid does not feel another by it, the larger one of both counts [m], shape (M,)."""
         return 0.0
 
@@ -201,48 +206,3 @@ def stiffness_told(scene: SceneRecord) -> str:
     """What the reason of an effect that pushes back adds about ``contact-stiffness``; nothing where it is the usual one."""
     factor = scene.control.contact_stiffness
     return "" if factor == 1.0 else f", {number(factor)} times as stiff as usual"
-
-
-def decide(effects: tuple[Effect, ...], scene: SceneRecord) -> tuple[dict[str, Verdict], list[Problem]]:
-    """Verdict of each effect, by name, with the scene's own switches applied; and warnings about needed ones switched off."""
-    effects = tuple(e.of(scene) for e in effects)
-    verdicts: dict[str, Verdict] = {}
-    warnings: list[Problem] = []
-    planes = tuple(p for e in effects if scene.effects.get(e.name) is not Switch.OFF for p in e.planes(scene))
-    for effect in effects:
-        own = effect.called_for(scene, planes)
-        switch = scene.effects.get(effect.name, Switch.AUTO)
-        span = scene.spans.get(f"effects.{effect.name}")
-        if switch is Switch.OFF and own.on:
-            warnings.append(
-                Problem(
-                    span,
-                    f"{effect.name} is switched off, but the scene calls for it ({own.reason})",
-                    effect.if_off,
-                    severity="warning",
-                )
-            )
-            own = Verdict(effect.name, False, f"switched off; {effect.if_off}", span)
-        elif switch is Switch.ON and not own.on:
-            warnings.append(
-                Problem(
-                    span,
-                    f"{effect.name} cannot be switched on: {own.reason}",
-                    "effects are called for by what stands in the scene",
-                    severity="warning",
-                )
-            )
-        verdicts[effect.name] = own
-    for effect in effects:
-        missing = next((name for name in effect.needs if not verdicts[name].on), None)
-        if (own := verdicts[effect.name]).on and missing:
-            verdicts[effect.name] = Verdict(effect.name, False, f"{missing} is off", own.span)
-    return verdicts, warnings
-
-
-def resolve(effects: tuple[Effect, ...], scene: SceneRecord) -> Resolved:
-    """Decide on every effect of a scene."""
-    effects = tuple(e.of(scene) for e in effects)
-    verdicts, warnings = decide(effects, scene)
-    on = tuple(e for e in effects if verdicts[e.name].on)
-    return Resolved(scene, verdicts, on, tuple(p for e in on for p in e.planes(scene)), tuple(warnings))

@@ -5,7 +5,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from .effect import Effect, Verdict
+from .context import Verdict
+from .effect import Effect
 
 
 class Gravity(Effect):
@@ -14,18 +15,18 @@ class Gravity(Effect):
     has_potential = True
     if_off = "nothing falls"
 
-    def called_for(self, scene, planes=None):
+    def called_for(self, scene, reach):
         span = scene.spans.get("gravity")
         if any(scene.gravity):
             return Verdict(self.name, True, "the gravity vector is not zero", span)
         return Verdict(self.name, False, "no gravity in the scene", span)
 
-    def commands(self, scene, system):
-        x, y, z = scene.gravity
+    def commands(self, context):
+        x, y, z = context.scene.gravity
         return [f"fix gravity mobile mdanim/gravity {x!r} {y!r} {z!r}"]
 
-    def pull(self, scene):
-        return max(0.0, -scene.gravity[2])
+    def acceleration(self, scene):
+        return np.array(scene.gravity, float)
 
     def potential(self, scene, mass, x):
         # No matrix product: the threads that it may start cost more than it. Axis by axis einsum is four times as fast.

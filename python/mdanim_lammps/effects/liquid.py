@@ -7,16 +7,17 @@ import math
 
 import numpy as np
 
-from ..errors import Problem
-from ..model.basin import liquid_level
-from ..model.embed import FACES
+from ..errors import Problem, SceneError
+from ..model.basin import check_basin, leaky_walls, liquid_level, open_hulls, plan_grid, too_large
 from ..model.system import System
 from ..model.tensors import largest_eigenvalue
 from ..scene.formatting import number, say
 from ..scene.scene import LiquidModel
 from . import air_drag
 from .boundaries import Boundary
-from .effect import Effect, Verdict
+from .context import Verdict
+from .effect import Effect
+from .liquid_cells import lattice_cells, layers_of_cells, outer_faces
 from .margin import Margin
 from .springs import all_held
 
@@ -74,7 +75,7 @@ class Basin(Boundary):
     name = fix = "basin"
     if_off = "objects fall through the floor of the basin"
 
-    def called_for(self, scene, planes=None):
+    def called_for(self, scene, reach):
         if scene.liquid is None:
             return Verdict(self.name, False, "no liquid in the scene")
         if free_solid(scene) is None:
@@ -90,11 +91,10 @@ class LiquidAutomaton(Effect):
     """The automaton: liquid that falls, spreads, levels and makes room for solids."""
 
     name = fix = "liquid"
-    uses_grid = True
     needs = ("gravity",)
     if_off = "the basin stays empty"
 
-    def called_for(self, scene, planes=None):
+    def called_for(self, scene, reach):
         if scene.liquid is None:
             return Verdict(self.name, False, "no liquid in the scene")
         return Verdict(self.name, True, f"{scene.liquid.name} in a basin", scene.liquid.spans.get("liquid"))
@@ -104,12 +104,12 @@ class LiquidAutomaton(Effect):
 
     def margins(self, envelope):
         """Sweeps for each cell that the fastest solid travels: it may go on for EVERY steps before the fix looks."""
-        liquid, cell = envelope.scene.liquid, min(envelope.system.grid.cell)
+        liquid, cell = envelope.scene.liquid, min(envelope.context.grid.cell)
         bottom = np.minimum.reduceat(envelope.system.position[:, 2], envelope.system.first[:-1])
         surface = liquid_level(liquid)
         # Fastest at the surface on its way down or up, or at the floor.
-        rise = np.maximum(0.0, surface - bottom) * np.maximum(0.0, -envelope.weight_left())
-        fastest = envelope.speed_after(np.maximum.reduce([bottom - surface, rise, envelope.fall()]))
+        rise = np.maximum(0.0, surface - bottom) * np.maximum(0.0, -envelope.reach.weight_left)
+        fastest = envelope.reach.speed_after(np.maximum.reduce([bottom - surface, rise, envelope.reach.fall]))
         m = int(fastest.argmax())
         speed = float(fastest[m])
         stride = STRIDE + EVERY * envelope.dt * speed / cell
@@ -132,25 +132,52 @@ class LiquidAutomaton(Effect):
             )
         ]
 
-    def acts_on(self, system, liquid):
-        return liquid
+    def acts_on(self, context):
+        return context.grid is not None
 
-    def tables(self, scene, system):
-        return {} if scene.liquid.model is LiquidModel.PAPER else {"cell": lattice_cells(system)}
+    def grid(self, scene, h):
+        grid = plan_grid(scene.liquid, h)
+        if problems := too_large(scene.liquid, grid):
+            raise SceneError(problems)
+        return grid
+
+    def problems(self, resolved, models, grid):
+        return check_basin(resolved.scene, models, grid, resolved.on(Buoyancy.name))
+
+    def pushes_below(self, scene):
+        # Waves rise up to the rim of the basin.
+        return -math.inf if scene.liquid is None else scene.liquid.high[2]
+
+    def most_push(self, scene, bodies):
+        liquid = scene.liquid
+        if liquid is None:
+            return 0.0
+        if liquid.model is LiquidModel.PRESSURE:  # a hull whose whole width is pressed on from below, at the deepest
+            lift = liquid.density * (2.0 * bodies.radius) ** 2 * (liquid.high[2] - liquid.low[2]) / bodies.mass
+        else:
+            lift = liquid.density / bodies.density
+        return math.hypot(*scene.gravity) * lift
+
+    def warnings(self, context):
+        return [*open_hulls(context.scene, context.models), *leaky_walls(context.scene, context.models, context.grid)]
+
+    def tables(self, context):
+        return {} if context.scene.liquid.model is LiquidModel.PAPER else {"cell": lattice_cells(context.system)}
 
     def clocks(self, readings):
         return {"flow": readings.fix_value(self.fix, FLOW), "occupancy": readings.fix_value(self.fix, OCCUPANCY)}
 
-    def max_timestep(self, scene, system):
-        return PERIOD / EVERY * math.sqrt(min(system.grid.cell) / -scene.gravity[2])
+    def max_timestep(self, context):
+        return PERIOD / EVERY * math.sqrt(min(context.grid.cell) / -context.scene.gravity[2])
 
     def words(self, scene) -> str:
         """What the command says about the model."""
         model = "model paper" if scene.liquid.model is LiquidModel.PAPER else "cells i2_cell"
         return f"{model} still held sweeps {scene.liquid.sweeps or 'auto'} every {EVERY} stride {STRIDE} period {PERIOD}"
 
-    def commands(self, scene, system):
-        liquid, grid = scene.liquid, system.grid
+    def commands(self, context):
+        scene = context.scene
+        liquid, grid = scene.liquid, context.grid
         fill = [f"region fill {_block(*liquid.fill)}"] if liquid.fill else []
         words = [
             "fix liquid all mdanim/liquid liquid",
@@ -169,7 +196,8 @@ class LiquidAutomaton(Effect):
 class LiquidWaves(LiquidAutomaton):
     """The same with momentum: columns of whole units that move by pressure."""
 
-    def tables(self, scene, system):
+    def tables(self, context):
+        system = context.system
         cells = lattice_cells(system)
         layers = np.zeros((system.particles, 1), np.int32)
         layers[system.hexahedron[:, 0], 0] = layers_of_cells(system)
@@ -178,10 +206,11 @@ class LiquidWaves(LiquidAutomaton):
     def margins(self, envelope):
         return []
 
-    def max_timestep(self, scene, system):
-        return WAVE_PERIOD / EVERY * math.sqrt(min(system.grid.cell) / -scene.gravity[2])
+    def max_timestep(self, context):
+        return WAVE_PERIOD / EVERY * math.sqrt(min(context.grid.cell) / -context.scene.gravity[2])
 
-    def columns(self, scene, system):
+    def columns(self, context):
+        system = context.system
         return {"softness": system.volume / system.young[system.object]}
 
     def words(self, scene):
@@ -191,16 +220,16 @@ class LiquidWaves(LiquidAutomaton):
         pace = f"every {EVERY} stride {WAVE_STRIDE} period {WAVE_PERIOD}"
         return f"model waves calm {calm!r}{drops} {solids} {pace}{_makers(scene.liquid)}"
 
-    def commands(self, scene, system):
-        regions = [f"region {name} {_block(flow.low, flow.high)}" for _, name, flow in _flows(scene.liquid)]
-        return [*regions, *super().commands(scene, system)]
+    def commands(self, context):
+        regions = [f"region {name} {_block(flow.low, flow.high)}" for _, name, flow in _flows(context.scene.liquid)]
+        return [*regions, *super().commands(context)]
 
-    def warnings(self, scene, system):
-        return [*_shallow(scene, system), *_light(scene, system)]
+    def warnings(self, context):
+        scene, system = context.scene, context.system
+        return [*_shallow(scene.liquid, context.grid.cell[2]), *_light(scene, system), *super().warnings(context)]
 
 
-def _shallow(scene, system) -> list[Problem]:
-    liquid, cell = scene.liquid, system.grid.cell[2]
+def _shallow(liquid, cell: float) -> list[Problem]:
     low, high = liquid.fill or (liquid.low, liquid.high)
     area = (high[0] - low[0]) * (high[1] - low[1])
     depth = (liquid.volume / area if liquid.level is None else liquid.level - low[2]) / cell
@@ -266,17 +295,17 @@ class Buoyancy(Effect):
     def of(self, scene):
         return WavePush() if is_wavy(scene) else self
 
-    def called_for(self, scene, planes=None):
+    def called_for(self, scene, reach):
         return _reached(self.name, scene)
 
-    def columns(self, scene, system):
-        return {"volume": system.volume}
+    def columns(self, context):
+        return {"volume": context.system.volume}
 
-    def tables(self, scene, system):
-        return {"face": outer_faces(system)} if scene.liquid.model is LiquidModel.PRESSURE else {}
+    def tables(self, context):
+        return {"face": outer_faces(context.system)} if context.scene.liquid.model is LiquidModel.PRESSURE else {}
 
-    def commands(self, scene, system):
-        faces = " faces i2_face" if scene.liquid.model is LiquidModel.PRESSURE else ""
+    def commands(self, context):
+        faces = " faces i2_face" if context.scene.liquid.model is LiquidModel.PRESSURE else ""
         return [f"fix_modify liquid buoyancy d_volume{faces}"]
 
     def lift(self, scene, system):
@@ -285,24 +314,25 @@ class Buoyancy(Effect):
     def surface(self, scene):
         return liquid_level(scene.liquid)
 
-    def rate(self, scene, system):
+    def rate(self, context):
+        scene, system = context.scene, context.system
         weight = scene.liquid.density * -scene.gravity[2]
         if scene.liquid.model is LiquidModel.PRESSURE:
             # Row sums of the derivatives of -p A/4 over the faces of a particle: of p = weight * depth by its
             # four corners, and of A = d1 x d2 / 2 at the pressure under a full basin.
-            h, deepest = system.spacing[system.object], system.grid.high[2] - system.grid.low[2]
+            h, deepest = system.spacing[system.object], context.grid.high[2] - context.grid.low[2]
             faces = np.count_nonzero(outer_faces(system)[:, ::3], axis=1)
             stiffness = faces * weight * (h**2 / 4 + deepest * math.sqrt(0.5) * h)
         else:
             # s_i goes from 0 to 1 over the height of a cell: a spring to the surface, which does not move along.
-            stiffness = weight * system.volume / system.grid.cell[2]
+            stiffness = weight * system.volume / context.grid.cell[2]
         return np.where(system.held, 0.0, stiffness / system.mass)
 
     def energy(self, readings):
         return readings.fix_scalar(LiquidAutomaton.fix)
 
     def clocks(self, readings):
-        drag = any(e.name == LiquidDrag.name for e in readings.effects)
+        drag = readings.context.on(LiquidDrag.name)
         return {"coupling": readings.fix_value(LiquidAutomaton.fix, COUPLING) * (1.0 - DRAGGING * drag)}
 
 
@@ -312,9 +342,9 @@ class WavePush(Buoyancy):
     ledger = "waves"
     further_ledger = ("wave_loss",)
 
-    def rate(self, scene, system):
+    def rate(self, context):
         # It acts on parts of lattice cells that are half as high; those of a particle at a face lie at one height.
-        return 2.0 * super().rate(scene, system)
+        return 2.0 * super().rate(context)
 
     def energy(self, readings):
         return readings.fix_value(LiquidAutomaton.fix, WAVES)
@@ -331,24 +361,26 @@ class LiquidDrag(Effect):
     needs = ("liquid", "buoyancy")  # which gives the fix the volumes
     if_off = "floating objects bob for a long time"
 
-    def called_for(self, scene, planes=None):
+    def called_for(self, scene, reach):
         if scene.liquid is not None and scene.liquid.drag == 0.0:
             return Verdict(self.name, False, f"{scene.liquid.name} has drag 0", scene.liquid.spans.get("drag"))
         return _reached(self.name, scene)
 
-    def columns(self, scene, system):
-        air = air_drag.felt(scene, system)
+    def columns(self, context):
+        scene, system = context.scene, context.system
+        air = system.drag if context.on(air_drag.AirDrag.name) else None
         dry = np.zeros(system.particles) if air is None else air
         quadratic = {"quadratic": per_length(system)} if _has_quadratic_drag(scene) else {}
         return {"gamma": gamma(scene, system), **quadratic, "lambda": dry, **({} if air is None else {"air": air})}
 
-    def friction(self, scene, system):
+    def friction(self, context):
         # Quadratic drag is no part of it: a step takes a particle less than a tenth of a spacing, so k v dt is small.
+        scene, system = context.scene, context.system
         return gamma(scene, system) * scene.liquid.density * system.volume
 
-    def commands(self, scene, system):
-        base = "" if air_drag.felt(scene, system) is None else " base d_air"
-        quadratic = " quadratic d_quadratic" if _has_quadratic_drag(scene) else ""
+    def commands(self, context):
+        base = " base d_air" if context.on(air_drag.AirDrag.name) else ""
+        quadratic = " quadratic d_quadratic" if _has_quadratic_drag(context.scene) else ""
         return [f"fix_modify liquid drag d_gamma{quadratic} lambda d_lambda{base}"]
 
     def losses(self, scene):
@@ -356,14 +388,13 @@ class LiquidDrag(Effect):
 
     def lost(self, readings):
         # Where air drag is on, that effect tells it.
-        mine = 0.0 if air_drag.felt(readings.scene, readings.system) is not None else readings.fix_scalar("leapfrog")
-        return {air_drag.DRAG_LOSS: mine}
+        return {air_drag.DRAG_LOSS: 0.0 if readings.context.on(air_drag.AirDrag.name) else readings.fix_scalar("leapfrog")}
 
     def clocks(self, readings):
         # Where particles are immersed is looked up for buoyancy in any case; drag adds this to it,
         # and makes the leap-frog slower.
         coupling = {"coupling": DRAGGING * readings.fix_value(LiquidAutomaton.fix, COUPLING)}
-        if any(e.name == air_drag.AirDrag.name for e in readings.effects):
+        if readings.context.on(air_drag.AirDrag.name):
             return coupling
         return coupling | {air_drag.LEAPFROG: air_drag.slowed_share(readings) * readings.fix_seconds("leapfrog")}
 
@@ -401,52 +432,6 @@ def _size(system: System) -> np.ndarray:
 def calm_time(scene) -> float:
     """Time in which waves die where the scene does not tell it [s]."""
     return CALM * math.sqrt((liquid_level(scene.liquid) - scene.liquid.low[2]) / -scene.gravity[2])
-
-
-def lattice_cells(system: System) -> np.ndarray:
-    """Tags (from 1) of corners 1 to 7 of the lattice cell whose corner 0 a particle is, int32, shape (N, 7).
-
-    Corners in VTK order; 0 where it is none. Raises ValueError where a particle is corner 0 of two cells.
-    """
-    table = np.zeros((system.particles, 7), np.int32)
-    owner = system.hexahedron[:, 0]
-    if len(np.unique(owner)) != len(owner):
-        raise ValueError("a particle is the first corner of two lattice cells")
-    table[owner] = system.hexahedron[:, 1:] + 1
-    return table
-
-
-MOST_LAYERS = 8
-"""Lattice cells whose layers are told apart, from the surface on."""
-
-
-def layers_of_cells(system: System) -> np.ndarray:
-    """How many lattice cells lie between each one and the surface of its solid, MOST_LAYERS at most, int32, shape (C,)."""
-    reached = np.bincount(system.hexahedron.ravel(), minlength=system.particles) < 8  # a corner of fewer cells than meet inside
-    layer = np.full(len(system.hexahedron), MOST_LAYERS, np.int32)
-    for n in range(MOST_LAYERS):
-        here = reached[system.hexahedron].any(axis=1)
-        layer[here] = np.minimum(layer[here], n)
-        reached[system.hexahedron[here]] = True
-    return layer
-
-
-def outer_faces(system: System) -> np.ndarray:
-    """The faces that meet in each particle: tags (from 1) of their other three corners, int32, shape (N, 3 F).
-
-    Faces of lattice cells that no other cell shares, counter-clockwise seen from outside, 0 after a particle's last; F is
-    the most at one particle.
-    """
-    quads = system.hexahedron[:, FACES].reshape(-1, 4)
-    _, first, count = np.unique(np.sort(quads, axis=1), axis=0, return_index=True, return_counts=True)
-    outer = quads[np.sort(first[count == 1])]
-    views = np.concatenate([np.roll(outer, -k, axis=1) for k in range(4)])  # each corner's own view of the face
-    views = views[np.argsort(views[:, 0], kind="stable")]
-    owner = views[:, 0]
-    nth = np.arange(len(owner)) - np.searchsorted(owner, owner)
-    table = np.zeros((system.particles, int(nth.max()) + 1, 3), np.int32)
-    table[owner, nth] = views[:, 1:] + 1
-    return table.reshape(system.particles, -1)
 
 
 def _reached(name: str, scene) -> Verdict:

@@ -11,17 +11,16 @@ from ..model.system import System
 from ..scene.scene import SceneRecord
 
 if TYPE_CHECKING:
-    from .effect import Effect
+    from .context import Context
 
 
 class Readings(Protocol):
     """What an instance tells, at the last step of a `run` or after `setup` (engine/instance.py)."""
 
+    context: Context
+    """What it simulates: all solids of the scene, or some."""
     scene: SceneRecord
     system: System
-    """What it simulates: all solids of the scene, or some."""
-    effects: tuple[Effect, ...]
-    """Those that are on."""
 
     def array(self, name: str) -> np.ndarray:
         """Positions ``x`` [m], shape (N, 3), or a property ``d_NAME`` of each particle, shape (N,)."""

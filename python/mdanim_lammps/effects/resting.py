@@ -38,19 +38,19 @@ class Slope(NamedTuple):
 def frictionless(envelope: Envelope) -> list[Problem]:
     """That objects will slide, once, where some may come to rest and nothing has friction."""
     scene, system = envelope.scene, envelope.system
-    if any_friction(scene) or envelope.g <= 0.0 or not envelope.moving.any():
+    if any_friction(scene) or envelope.reach.g <= 0.0 or not envelope.reach.moving.any():
         return []
-    sinks = (envelope.moving & (envelope.weight_left() > 0.0)).any()
+    sinks = (envelope.reach.moving & (envelope.reach.weight_left > 0.0)).any()
     if not any(sinks or p.effect != "basin" for p in floors(envelope)):
         low, high = system.bounds(system.position)
         holding = np.logical_or.reduceat(system.held, system.first[:-1])
         met = any(e.keeps_apart for e in envelope.on) and holding.any()
-        if not met or low[holding, 2].min() >= high[envelope.moving, 2].max():
+        if not met or low[holding, 2].min() >= high[envelope.reach.moving, 2].max():
             return []
     paper = scene.control.contact_model is ContactModel.PAPER
     hint = f"write friction 0.5 in control{' in place of contact-model paper' if paper else ''}"
-    hops = [m for m in np.flatnonzero(envelope.moving).tolist() if scene.solids[m].damping == 0.0]
-    if len(hops) == envelope.moving.sum():
+    hops = [m for m in np.flatnonzero(envelope.reach.moving).tolist() if scene.solids[m].damping == 0.0]
+    if len(hops) == envelope.reach.moving.sum():
         hint += f", and damping 0.2 in object {system.names[hops[0]]}: without damping what lands hops for ever"
     return [
         Problem(
@@ -64,7 +64,7 @@ def frictionless(envelope: Envelope) -> list[Problem]:
 
 def slopes(envelope: Envelope) -> list[Problem]:
     """What will slide because a slope is steeper than its friction holds: the worst of all. Without friction it is meant to."""
-    if envelope.g <= 0.0 or not envelope.moving.any():
+    if envelope.reach.g <= 0.0 or not envelope.reach.moving.any():
         return []
     found, own = _Slopes(envelope), np.array(frictions(envelope.scene))
     steep = [s for s in (*found.on_floors(), *found.on_solids(own)) if s.tangent > s.friction]
@@ -128,7 +128,7 @@ class _Slopes:
         self.envelope, self.scene = envelope, envelope.scene
         self.gravity = np.array(self.scene.gravity)
         rolling = np.array([isinstance(s.shape, ROLLING) for s in self.scene.solids])
-        self.sliding = envelope.moving & ~rolling
+        self.sliding = envelope.reach.moving & ~rolling
 
     def on_floors(self) -> Iterator[Slope]:
         tangent = math.hypot(*self.gravity[:2]) / -self.gravity[2]

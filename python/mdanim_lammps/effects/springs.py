@@ -6,7 +6,8 @@ from __future__ import annotations
 import numpy as np
 
 from ..scene.scene import HoldAll
-from .effect import Effect, Verdict
+from .context import Verdict
+from .effect import Effect
 from .strength import amplitude, load, thinnest, turning
 
 DASHPOTS = 0.44
@@ -46,15 +47,17 @@ def block_norm(pair: np.ndarray, weight: np.ndarray, direction: np.ndarray, part
 class Springs(Effect):
     name = "springs"
     ledger = "elastic"
+    binds = True
     if_off = "solids fall apart into loose particles"
 
-    def called_for(self, scene, planes=None):
+    def called_for(self, scene, reach):
         for solid in scene.solids:
             if not all_held(solid):
                 return Verdict(self.name, True, f"{solid.name} can move and deform", solid.spans.get("elasticity"))
         return Verdict(self.name, False, "every object is held" if scene.solids else "no objects")
 
-    def rate(self, scene, system):
+    def rate(self, context):
+        system = context.system
         return 2.0 * spring_norm(system, system.stiffness) / system.mass
 
     def margins(self, envelope):
@@ -68,7 +71,7 @@ class Springs(Effect):
 
     def clocks(self, readings):
         # A system has dashpots even where damping is switched off.
-        more = time_of_dashpots(readings.system) if any(e.name == "damping" for e in readings.effects) else 0.0
+        more = time_of_dashpots(readings.system) if readings.context.on("damping") else 0.0
         return {"springs": readings.bond_seconds() / (1.0 + more)}
 
 

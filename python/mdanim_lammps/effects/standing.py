@@ -31,7 +31,7 @@ def towers(envelope: Envelope) -> list[Problem]:
     A uniform column buckles at m g H^2 = 7.837 E I (Greenhill). Surfaces that lie on each other are as soft as half a spacing
     more of the column, and on a plane as a whole one.
     """
-    g, scene = envelope.g, envelope.scene
+    g, scene = envelope.reach.g, envelope.scene
     if scene.control.contact_model is ContactModel.PAPER or g <= 0.0 or math.hypot(*scene.gravity[:2]) > LEVEL * g:
         return []
     found = [t for t in _columns(envelope) if t.height > TALL * t.most]
@@ -65,7 +65,7 @@ class _Column:
 
 def _columns(envelope: Envelope) -> Iterator[_Column]:
     """Of cuboids and cylinders with an axis upright, on a plane, on what never moves, or held at the foot alone."""
-    system, moving = envelope.system, envelope.moving
+    system, moving = envelope.system, envelope.reach.moving
     low, high = _drawn(envelope.scene.solids)
     near = BORN_AT_REST * float(system.spacing.max())
     pairs = list(box_pairs(low - 0.5 * near, high + 0.5 * near))
@@ -108,7 +108,7 @@ def _column(envelope: Envelope, members: list[int], height: float) -> _Column | 
     if 0.0 in bending:
         return None
     stiffness = min(b * float(system.young[m]) for b, m in zip(bending, members))
-    weight = float(system.mass_of[members].sum()) * envelope.g
+    weight = float(system.mass_of[members].sum()) * envelope.reach.g
     joints = (1.0 + 0.5 * len(members[1:])) * float(system.spacing.max())
     most = height * (GREENHILL * stiffness / (weight * height * (height + joints))) ** (1 / 3)
     return _Column(members, height, most)

@@ -45,8 +45,8 @@ THINNEST = 2
 def amplitude(env: Envelope) -> Margin:
     scene, system = env.scene, env.system
     meets = len(system.names) > 1 or len(env.planes) > 0
-    ratio = np.where(meets, env.speed / env.wave, 0.0)
-    hard = (len(env.planes) > 0 or not env.moving.all()) and not any(e.uses_grid for e in env.on)  # a liquid breaks the fall
+    ratio = np.where(meets, env.reach.speed / env.reach.wave, 0.0)
+    hard = (len(env.planes) > 0 or not env.reach.moving.all()) and not env.context.grid is not None  # a liquid breaks the fall
     spot = _spots(env) if hard else np.full(len(ratio), np.inf)
     limit = np.minimum(FOLDS, spot)
     m = int((ratio / limit).argmax())
@@ -66,8 +66,8 @@ def amplitude(env: Envelope) -> Margin:
         float(ratio[m]),
         float(limit[m]),
         "",
-        f"{system.names[m]}{f' and {others} more' if others > 0 else ''} may hit at {say(env.speed[m], 'm/s', 2)}, "
-        f"{ratio[m]:.2f} of the wave speed {say(env.wave[m], 'm/s', 2)}; "
+        f"{system.names[m]}{f' and {others} more' if others > 0 else ''} may hit at {say(env.reach.speed[m], 'm/s', 2)}, "
+        f"{ratio[m]:.2f} of the wave speed {say(env.reach.wave[m], 'm/s', 2)}; "
         f"above about {number(limit[m], 2)} {what} and stays crumpled",
         env.place(m, "elasticity"),
         "warning" if folds[m] else "ok",
@@ -89,7 +89,7 @@ def _spots(env: Envelope) -> np.ndarray:
     system, known = env.system, {}
     spots = np.full(len(system.names), np.inf)
     pointed = POINTED[env.scene.control.contact_model]
-    for m in np.flatnonzero(env.moving).tolist():
+    for m in np.flatnonzero(env.reach.moving).tolist():
         solid = env.scene.solids[m]
         if isinstance(solid.shape, Box):
             spots[m] = _folds_on_corner(env, solid, float(np.cbrt(system.cell_volume[m])))
@@ -114,7 +114,7 @@ def _filled(system: System, m: int, rotation: tuple) -> np.ndarray:
 def _folds_on_corner(env: Envelope, solid: Solid, h: float) -> float:
     """The same of a cuboid with this spacing [m], which lands as it is turned at the start; on a corner where it spins."""
     ways = [np.eye(3)[p.axis] for p in env.planes if p.sign * solid.velocity[p.axis] < 0.0]
-    if env.g > 0.0:
+    if env.reach.g > 0.0:
         ways.append(np.array([0.0, 0.0, 1.0]))
     turned = [np.ones(3) / np.sqrt(3.0)] if any(solid.spin) else [way @ np.array(solid.rotation) for way in ways]
     share = min((low_share(np.array(solid.shape.size), way, h) for way in turned), default=1.0)
@@ -132,12 +132,12 @@ def low_share(size: np.ndarray, normal: np.ndarray, depth: float) -> float:
 
 
 def load(env: Envelope) -> list[Margin]:
-    g = env.g
+    g = env.reach.g
     if not g:
         return []
     system = env.system
     stress = _stress(env, g)
-    ratio = np.where(env.moving, stress / (CRUSH * system.young), 0.0)
+    ratio = np.where(env.reach.moving, stress / (CRUSH * system.young), 0.0)
     m = int(ratio.argmax())
     strength = CRUSH * system.young[m]
     return [
@@ -162,7 +162,7 @@ def _stress(env: Envelope, g: float) -> np.ndarray:
     system = env.system
     low, high = system.bounds(system.position)
     size = np.maximum(high - low, 1e-300)
-    weight = system.mass_of * g * np.maximum(0.0, env.weight_left())
+    weight = system.mass_of * g * np.maximum(0.0, env.reach.weight_left)
     floor = size[:, 0] * size[:, 1]
     above = np.zeros(len(weight))
     for start in range(0, len(weight), 256):  # the table of all pairs would be too large for a crowd
@@ -178,7 +178,7 @@ def _stress(env: Envelope, g: float) -> np.ndarray:
 
 
 def thinnest(env: Envelope) -> Margin:
-    cells = np.where(env.moving, env.cells, np.inf)
+    cells = np.where(env.reach.moving, env.cells, np.inf)
     m = int(cells.argmin())
     few = round(float(cells[m])) < THINNEST
     h = float(np.cbrt(env.system.cell_volume[m]))

@@ -69,7 +69,7 @@ def told_once(commands: list[str]) -> list[str]:
 
 def physics(plan: Plan, threads: int = 1) -> list[str]:
     """Commands after the particles exist: groups, effects, integrator, time step."""
-    effects = [c for e in plan.effects for c in e.commands(plan.scene, plan.system)]
+    effects = [c for e in plan.effects for c in e.commands(plan.context)]
     drag = " lambda d_lambda" if "lambda" in plan.columns else ""
     if drag and plan.exponential:
         drag += " drag exp"

@@ -44,9 +44,9 @@ class Instance:
     ever: the caller must abort them.
     """
 
+    context = property(lambda self: self.plan.context)
     scene = property(lambda self: self.plan.scene)
     system = property(lambda self: self.plan.system)
-    effects = property(lambda self: self.plan.effects)
 
     def __init__(self, plan: Plan, comm=None):
         """``comm`` is an mpi4py communicator; None is this process alone. Raises SetupError."""

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..certificate import Certificate, strong_drag
-from ..effects import Effect, Resolved
+from ..effects import Context, Effect
 from ..model.basin import Grid
 from ..model.contact_body import ContactBody
 from ..model.springs import types
@@ -43,8 +43,7 @@ class Plan:
     What depends on the scene as a whole is a field of its own, so that part.py can make a plan of some of the objects.
     """
 
-    scene: SceneRecord
-    system: System
+    context: Context
     certificate: Certificate
     effects: tuple[Effect, ...]
     """Those that are on, in the order in which their forces are summed."""
@@ -66,6 +65,20 @@ class Plan:
     """Whether drag is taken exponentially, certificate.strong_drag."""
 
     @property
+    def scene(self) -> SceneRecord:
+        return self.context.scene
+
+    @property
+    def system(self) -> System:
+        """The solids as particles."""
+        return self.context.system
+
+    @property
+    def grid(self) -> Grid | None:
+        """Cells of the liquid; None where there is none, or it is switched off."""
+        return self.context.grid
+
+    @property
     def kind(self) -> np.ndarray:
         """Atom type of each particle, int32, shape (N,)."""
         return (self.system.layer + HELD * self.system.held).astype(np.int32)
@@ -78,11 +91,6 @@ class Plan:
     def name(self) -> str:
         """The scene's name as it may stand in a LAMMPS file name."""
         return re.sub(r"[^\w.+-]", "_", self.scene.name, flags=re.ASCII)
-
-    @property
-    def grid(self) -> Grid | None:
-        """Cells of the liquid; None where there is none, or it is switched off."""
-        return self.system.grid if any(e.uses_grid for e in self.effects) else None
 
     @property
     def body_fixes(self) -> tuple[str, ...]:
@@ -100,28 +108,26 @@ class Plan:
         return bool(self.coefficients[:, 2].any())
 
 
-def make_plan(resolved: Resolved, system: System, certificate: Certificate) -> Plan:
+def make_plan(context: Context, certificate: Certificate) -> Plan:
     """Gather what the effects that are on ask for."""
-    scene, effects = resolved.scene, resolved.effects
-    names = {e.name for e in effects}
+    system, effects = context.system, context.resolved.effects
     columns: dict[str, np.ndarray] = {}
     tables: dict[str, np.ndarray] = {}
     asked: dict[str, tuple[str, ...]] = {}
     for effect in effects:
-        own_columns, own_tables = effect.columns(scene, system), effect.tables(scene, system)
+        own_columns, own_tables = effect.columns(context), effect.tables(context)
         columns.update(own_columns)
         tables.update(own_tables)
         asked[effect.name] = (*own_columns, *own_tables)
-    if "springs" in names:
+    if context.on("springs"):
         bonds, kind = system.spring, system.spring_type
-        merged, coefficients = types(system.constants * (1.0, 1.0, float("damping" in names)))
+        merged, coefficients = types(system.constants * (1.0, 1.0, float(context.on("damping"))))
         if len(coefficients) < len(system.constants):
             kind = merged[kind - 1]
     else:
         bonds, kind, coefficients = system.spring[:0], np.zeros(0, np.uint8), np.zeros((0, 3))
     return Plan(
-        scene=scene,
-        system=system,
+        context=context,
         certificate=certificate,
         effects=effects,
         columns=columns,
@@ -131,7 +137,7 @@ def make_plan(resolved: Resolved, system: System, certificate: Certificate) -> P
         coefficients=coefficients,
         asked=asked,
         spacing=float(system.spacing.max()),
-        exponential=bool(strong_drag(scene, system, effects, certificate.timestep)),
+        exponential=bool(strong_drag(context, certificate.timestep)),
     )
 
 

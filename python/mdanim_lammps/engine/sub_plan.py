@@ -4,13 +4,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import accumulate, pairwise
 
 import numpy as np
 
-from ..effects import Effect
+from ..effects import Context, Effect
 from ..effects.liquid import top_of_reach
 from ..model.system import System
 from .plan import Ends, Plan, both_ends
@@ -44,11 +44,11 @@ class SubPlans:
         self._ends: dict[int, tuple[np.ndarray, np.ndarray, np.ndarray]] = {}
 
     @cached_property
-    def reach(self) -> np.ndarray:
+    def gap(self) -> np.ndarray:
         """Gap from which on two objects do not feel each other [m]: the larger of their entries; shape (M,),
         0 without contact."""
         whole = self.whole
-        own = [np.broadcast_to(e.reach(whole.scene, whole.system), len(whole.system.names)) for e in whole.effects]
+        own = [np.broadcast_to(e.gap(whole.context), len(whole.system.names)) for e in whole.effects]
         return np.maximum.reduce(own, initial=0.0, axis=0) if own else np.zeros(len(whole.system.names))
 
     @cached_property
@@ -68,15 +68,15 @@ class SubPlans:
         self._check(objects, liquid)
         whole, runs = self.whole, _runs(objects)
         take = _Taker(runs, self._particle)
-        system = self._system(objects, runs, liquid)
-        effects = self._effects(system, liquid)
+        system = self._system(objects, runs)
+        context = replace(whole.context, system=system, grid=whole.grid if liquid else None)
+        effects = self._effects(context)
         wanted = {name for e in effects for name in whole.asked[e.name]}
         used = self._used(objects)
         number = np.zeros(len(whole.coefficients) + 1, whole.bond_kind.dtype)
         number[used] = np.arange(1, len(used) + 1)
         return SubPlan(
-            scene=whole.scene,
-            system=system,
+            context=context,
             certificate=whole.certificate,
             effects=effects,
             columns={name: take(column) for name, column in whole.columns.items() if name in wanted},
@@ -102,17 +102,17 @@ class SubPlans:
         if not objects and not liquid:
             raise ValueError("a part needs an object, or the liquid")
 
-    def _effects(self, system: System, liquid: bool) -> tuple[Effect, ...]:
+    def _effects(self, context: Context) -> tuple[Effect, ...]:
         """The effects of the whole without those that have nothing to act on."""
         missing, effects = set(), []
         for effect in self.whole.effects:
-            if effect.acts_on(system, liquid) and not missing.intersection(effect.needs):
+            if effect.acts_on(context) and not missing.intersection(effect.needs):
                 effects.append(effect)
             else:
                 missing.add(effect.name)
         return tuple(effects)
 
-    def _system(self, objects: tuple[int, ...], runs: list[tuple[int, int]], liquid: bool) -> System:
+    def _system(self, objects: tuple[int, ...], runs: list[tuple[int, int]]) -> System:
         s = self.whole.system
         particle, spring, cell = (_Taker(runs, first) for first in (self._particle, self._spring, self._cell))
         index = np.array(objects, np.intp)
@@ -137,7 +137,6 @@ class SubPlans:
             hexahedron=lambda: particle.renumber(s.hexahedron, cell),
             contact_kind=lambda: s.contact_kind[index],
             frames=lambda: s.frames,
-            grid=lambda: s.grid if liquid else None,
         )
 
     # --- springs at both ends: kept by object, for it takes a sort to make them ---------------------------------------

@@ -12,11 +12,10 @@ import numpy as np
 from ..errors import Problem
 from ..processes import available_memory
 from ..scene.formatting import at_least, estimate, number, say
-from ..scene.scene import Liquid, LiquidModel, Mesh, SceneRecord, Solid, Switch, Torus, Vector
+from ..scene.scene import Liquid, LiquidModel, Mesh, SceneRecord, Solid, Torus, Vector
 from . import shapes
 from .model import Model
 from .occupied import room
-from .spacing import choose_spacing
 
 BYTES_PER_CELL = 20.0
 """What fix mdanim/liquid keeps per cell, measured 18 to 21: content, masks, counts of samples, marks."""
@@ -79,11 +78,6 @@ def plan_grid(liquid: Liquid, h: float) -> Grid:
     return Grid(liquid.low, liquid.high, tuple(shape))
 
 
-def scene_grid(scene: SceneRecord) -> Grid | None:
-    """The grid of a scene's basin; None without a liquid. Raises SceneError for a mesh that is no body."""
-    return None if scene.liquid is None else plan_grid(scene.liquid, choose_spacing(scene)[0])
-
-
 def liquid_level(liquid: Liquid) -> float:
     """Height of the liquid in its basin when it has come to rest without any solid [m]."""
     low, high = liquid.fill or (liquid.low, liquid.high)
@@ -97,27 +91,18 @@ def liquid_level(liquid: Liquid) -> float:
 # --- whether all fits ---------------------------------------------------------------------------------------
 
 
-def check_basin_memory(scene: SceneRecord) -> list[Problem]:
-    """Find a basin that does not fit into memory: it need not wait for the models of all solids."""
-    if scene.liquid is None or scene.effects.get("liquid") is Switch.OFF:
-        return []
-    return _too_large(scene.liquid, scene_grid(scene))
-
-
-def check_basin(scene: SceneRecord, models: Sequence[Model]) -> list[Problem]:
+def check_basin(scene: SceneRecord, models: Sequence[Model], grid: Grid, lifts: bool) -> list[Problem]:
     """Find a basin that is too narrow or too large, a liquid of no cell, and liquid and solids that do not fit into the basin.
 
-    Solids that float need room for what they displace, others for all of their volume; those that are held,
-    even in part, take the room that they have at the start.
+    Solids that float need room for what they displace, others, and all where nothing ``lifts``, for all of their volume; those
+    that are held, even in part, take the room that they have at the start.
     """
-    liquid, grid = scene.liquid, scene_grid(scene)
-    if liquid is None or scene.effects.get("liquid") is Switch.OFF:
-        return []
-    problems = [*_unusable(liquid, grid), *_too_fast(scene)]
-    return problems or [*_too_full(scene, models, grid), *_too_snug(scene, models, grid)]
+    problems = [*_unusable(scene.liquid, grid), *_too_fast(scene)]
+    return problems or [*_too_full(scene, models, grid, lifts), *_too_snug(scene, models, grid)]
 
 
-def _too_large(liquid: Liquid, grid: Grid) -> list[Problem]:
+def too_large(liquid: Liquid, grid: Grid) -> list[Problem]:
+    """Find a basin that does not fit into memory: it need not wait for the models of all solids."""
     needed, free = grid.cells * BYTES_PER_CELL, available_memory()
     if needed <= free:
         return []
@@ -146,8 +131,8 @@ def _unusable(liquid: Liquid, grid: Grid) -> list[Problem]:
                 f"write resolution {say(0.9 * side / NARROWEST, 'm')} in control, or make the basin larger",
             )
         ]
-    if too_large := _too_large(liquid, grid):
-        return too_large
+    if found := too_large(liquid, grid):
+        return found
     low, high = liquid.fill or (liquid.low, liquid.high)
     if not grid.cells_within(low, high):
         thinnest = min(b - a for a, b in zip(low, high))
@@ -231,7 +216,7 @@ def _open_cells(liquid: Liquid, models: Sequence[Model], volume: np.ndarray, gri
     return plenty if plenty > wanted else room(grid, models, liquid.model, low, high, liquid.level)
 
 
-def _too_full(scene: SceneRecord, models: Sequence[Model], grid: Grid) -> list[Problem]:
+def _too_full(scene: SceneRecord, models: Sequence[Model], grid: Grid, lifts: bool) -> list[Problem]:
     """Liquid without room at the start, and bodies without room when they sink in."""
     liquid, cell = scene.liquid, grid.cell_volume
     volume = np.array([shapes.volume(s.shape) for s in scene.solids])
@@ -259,7 +244,7 @@ def _too_full(scene: SceneRecord, models: Sequence[Model], grid: Grid) -> list[P
     standing = np.array([bool(m.held.any()) for m in models], bool)
     within = _within(models, liquid.low, liquid.high)
     free = grid.cells * cell - poured - (volume * within)[standing].sum()
-    sinks = np.where(standing, 0.0, volume * [_sunk(s, v, scene) for s, v in zip(scene.solids, volume)])
+    sinks = np.where(standing, 0.0, volume * [_sunk(s, v, liquid) if lifts else 1.0 for s, v in zip(scene.solids, volume)])
     too_big = [
         Problem(
             solid.spans.get("shape") or solid.spans.get("object"),
@@ -288,7 +273,7 @@ HOLLOW = 0.2
 
 def open_hulls(scene: SceneRecord, models: Sequence[Model]) -> list[Problem]:
     """Warn of bodies that enclose air, because model surface ignores that air."""
-    if scene.liquid is None or scene.liquid.model is not LiquidModel.SURFACE:
+    if scene.liquid.model is not LiquidModel.SURFACE:
         return []
     return [
         Problem(
@@ -315,13 +300,13 @@ LYING = 0.76
 """The same from which it counts as lying: columns are cut where it passes."""
 
 
-def leaky_walls(scene: SceneRecord, models: Sequence[Model]) -> list[Problem]:
+def leaky_walls(scene: SceneRecord, models: Sequence[Model], grid: Grid) -> list[Problem]:
     """Warn of walls, and of hulls, that are too thin for a liquid with momentum to stay on one side of them.
 
     Held walls that stand or lie hold it from one cell on, those that lean from two. What is thin in two directions has no sides.
     """
-    liquid, grid = scene.liquid, scene_grid(scene)
-    if liquid is None or liquid.model is not LiquidModel.WAVES:
+    liquid = scene.liquid
+    if liquid.model is not LiquidModel.WAVES:
         return []
     cell = max(grid.cell)
     thin: dict[tuple, list[str]] = {}  # objects of a repeat are one problem
@@ -399,10 +384,9 @@ def _within(models: Sequence[Model], low: Vector, high: Vector) -> np.ndarray:
     return parts
 
 
-def _sunk(solid: Solid, volume: float, scene: SceneRecord) -> float:
-    """Part of a free solid that is below the surface at rest [-]: Archimedes, if the liquid exerts lift."""
-    liquid = scene.liquid
-    if liquid.model is LiquidModel.PAPER or scene.effects.get("buoyancy") is Switch.OFF:
+def _sunk(solid: Solid, volume: float, liquid: Liquid) -> float:
+    """Part of a free solid that is below the surface at rest [-]: Archimedes."""
+    if liquid.model is LiquidModel.PAPER:
         return 1.0
     density = solid.density if solid.density is not None else solid.mass / volume
     return min(1.0, density / liquid.density)

@@ -25,8 +25,10 @@ from .spacing import plan_spacing
 from .springs import dashpots, equivalent_modulus, rest_lengths, stiffness, types
 
 
-def build_models(scene: SceneRecord, progress: Callable[[int, int], None] | None = None) -> tuple[Model, ...]:
-    """Make the model of every solid, in the order of the scene, all with one particle spacing.
+def build_models(
+    scene: SceneRecord, h: float | None = None, progress: Callable[[int, int], None] | None = None
+) -> tuple[Model, ...]:
+    """Make the model of every solid, in the order of the scene, all with one particle spacing h [m]; None is that of the scene.
 
     ``progress(done, total)`` is called after each solid. Objects of equal shape, elasticity and mass share
     their arrays of springs, masses, layers, surface and contact body, which are read-only; positions, velocities and held
@@ -35,7 +37,7 @@ def build_models(scene: SceneRecord, progress: Callable[[int, int], None] | None
     Raises SceneError with all problems of all solids in one pass: those of plan_spacing, a body that falls
     apart at this spacing, a ``hold`` without particles.
     """
-    h = plan_spacing(scene).h
+    h = plan_spacing(scene).h if h is None else h
     shared = _Shared(h)
     models, problems = [], []
     for done, solid in enumerate(scene.solids, 1):

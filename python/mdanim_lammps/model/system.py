@@ -11,7 +11,6 @@ import numpy as np
 
 from ..scene.scene import SceneRecord
 from . import shapes
-from .basin import Grid, scene_grid
 from .contact_body import BodyFrame, ContactBody
 from .model import Layer, Model, Particles
 from .springs import types
@@ -38,8 +37,6 @@ class System(Particles):
     """Kind of body of each solid as contact sees it, by which solid has it first, int32, shape (M,)."""
     frames: tuple[BodyFrame, ...]
     """What the contact body of each kind of the scene is made from."""
-    grid: Grid | None
-    """Cells of the liquid's basin; None without a liquid."""
     contact_factor: float = 1.0
     """``control contact-stiffness`` [-]."""
 
@@ -162,7 +159,6 @@ def assemble(models: Sequence[Model], scene: SceneRecord) -> System:
         hexahedron=join([m.hexahedron + o if o else m.hexahedron for m, o in zip(models, offsets)]),
         contact_kind=np.array([kind[id(m.frame)] for m in models], np.int32),
         frames=frames,
-        grid=scene_grid(scene),
         contact_factor=scene.control.contact_stiffness,
     )
 

@@ -94,11 +94,14 @@ def recorded(expects: tuple[Expect, ...]) -> dict[tuple[str, str], str]:
     return {(e.subject, e.quantity): f"{RECORDED[e.quantity]}.{e.subject}" for e in expects if e.quantity in RECORDED}
 
 
-def record(quantity: str, system: System, model: Model, position: np.ndarray, height: np.ndarray | None) -> float:
+def record(
+    quantity: str, system: System, model: Model, position: np.ndarray, grid: Grid | None, height: np.ndarray | None
+) -> float:
     """Measure one of RECORDED of a solid now.
 
     Args:
         position: of all particles [m], shape (N, 3).
+        grid: cells of the liquid; None without liquid.
         height: smooth height z of the liquid over each column [m], shape (ny, nx); None without liquid.
     """
     solid = system.names.index(model.name)
@@ -107,9 +110,9 @@ def record(quantity: str, system: System, model: Model, position: np.ndarray, he
         case "strain.max":
             return largest_strain(system, solid, position)
         case "draft":
-            return immersed_depth(model.surface.vertices(own), system.grid, height)
+            return immersed_depth(model.surface.vertices(own), grid, height)
         case "immersed":
-            return immersed_share(own[model.hexahedron], system.grid, height)
+            return immersed_share(own[model.hexahedron], grid, height)
     raise ValueError(f"{quantity} is not recorded")
 
 

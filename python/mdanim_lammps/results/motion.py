@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..model.planes import scene_planes
-from ..scene.scene import Save, Switch
+from .. import effects
+from ..reach import Acting
+from ..scene.scene import Save
 
 if TYPE_CHECKING:
     from .trajectory import Trajectory
@@ -60,12 +61,12 @@ class ContactForces:
         if (scene := trajectory.scene) is None:
             self.why = "the scene of this run, or one of its meshes, cannot be read here"
             return
-        falls = scene.effects.get("gravity") is not Switch.OFF
-        self._gravity = np.array(scene.gravity, float) * falls
+        acting = Acting(scene, effects.acting(effects.EFFECTS, scene))
+        self._gravity = acting.acceleration
         held = np.add.reduceat(m.held, m.first[:-1]) > 0
         self._told = ~held & ~m.still & np.array([not solid.drag for solid in scene.solids])
         self._alone = np.flatnonzero(~self._told)
-        if len(self._alone) != 1 or any(scene.effects.get(p.effect) is not Switch.OFF for p in scene_planes(scene)):
+        if len(self._alone) != 1 or acting.planes:
             self._alone = self._alone[:0]
         if scene.liquid:
             self.why = "lift and drag of the liquid act as well, and frames do not tell them apart"

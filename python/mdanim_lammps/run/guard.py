@@ -9,10 +9,10 @@ from pathlib import Path
 
 import numpy as np
 
-from ..effects.envelope import wave_speed
 from ..engine.geometry import Geometry
 from ..errors import DivergedError, Problem
 from ..model.system import System
+from ..reach import wave_speed
 from ..results.ledger import Ledger
 from ..scene.formatting import number, say
 from ..scene.scene import Accuracy, ContactModel, SceneRecord

@@ -65,7 +65,7 @@ class Observer:
         self.recorded = [
             (number[name], quantity, model_of[name], column) for (name, quantity), column in recorded(plan.scene.expects).items()
         ]
-        grid = plan.grid
+        self.grid = grid = plan.grid
         self.dry = None if grid is None else np.full(grid.shape[1::-1], grid.low[2])
         """Heights of a liquid that is nowhere, shape (ny, nx)."""
 
@@ -94,7 +94,7 @@ class Observer:
             self.geometry.sunk(x, near) if self.apart and sound else None,
             *self.folds.find(objects, x if sound else self.system.position),
             {
-                column: record(quantity, self.system, model, x, self.dry if height is None else height)
+                column: record(quantity, self.system, model, x, self.grid, self.dry if height is None else height)
                 for m, quantity, model, column in self.recorded
                 if sound and m in objects
             },

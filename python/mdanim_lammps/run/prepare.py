@@ -10,16 +10,15 @@ from functools import cached_property
 from .. import effects
 from ..certificate import Certificate, certify
 from ..certificate import warnings as margin_warnings
-from ..effects import Verdict, resolve
-from ..effects.effect import Resolved
+from ..effects import Context, Resolved, Verdict, resolve
 from ..engine.plan import Plan, make_plan
 from ..errors import Problem, SceneError
-from ..model.basin import check_basin, check_basin_memory, leaky_walls, open_hulls
 from ..model.build import build_models
 from ..model.model import Model
 from ..model.overlap import check_geometry
-from ..model.spacing import plan_spacing, too_large
+from ..model.spacing import Spacing, plan_spacing, too_large
 from ..model.system import System, as_parts, assemble
+from ..reach import Reach
 from ..scene.lock import lock_text
 from ..scene.meshes import mesh_files
 from ..scene.scene import IMMERSION, SceneRecord
@@ -29,15 +28,30 @@ from ..scene.scene import IMMERSION, SceneRecord
 class Prepared:
     """A scene that is ready to run."""
 
-    scene: SceneRecord
-    models: tuple[Model, ...]
-    system: System
-    resolved: Resolved
+    context: Context
     warnings: tuple[Problem, ...]
     certificate: Certificate
     plan: Plan
     insist: bool = False
     """Whether a time step above the bound was asked for all the same (``--allow-unstable``)."""
+
+    @property
+    def scene(self) -> SceneRecord:
+        return self.context.scene
+
+    @property
+    def models(self) -> tuple[Model, ...]:
+        """Of every solid, in the order of the scene."""
+        return self.context.models
+
+    @property
+    def system(self) -> System:
+        """All solids as particles."""
+        return self.context.system
+
+    @property
+    def resolved(self) -> Resolved:
+        return self.context.resolved
 
     @property
     def verdicts(self) -> dict[str, Verdict]:
@@ -67,31 +81,28 @@ def prepare(scene: SceneRecord, *, allow_unstable: bool = False, progress: Calla
                 )
             ]
         )
-    if problems := check_basin_memory(scene):
-        raise SceneError(problems)
+    spacing = plan_spacing(scene)
     try:
-        return _prepare(scene, allow_unstable, progress)
+        return _prepare(scene, spacing, allow_unstable, progress)
     except MemoryError:
-        raise SceneError([too_large(scene, plan_spacing(scene))]) from None
+        raise SceneError([too_large(scene, spacing)]) from None
 
 
-def _prepare(scene: SceneRecord, allow_unstable: bool, progress: Callable[[int, int], None] | None) -> Prepared:
-    models = build_models(scene, progress=progress)
-    problems = check_geometry(scene, models) + check_basin(scene, models)
-    resolved = resolve(effects.EFFECTS, scene)
-    verdicts, warnings = resolved.verdicts, list(resolved.warnings)
-    problems += _unmeasurable(scene, verdicts)
+def _prepare(scene: SceneRecord, spacing: Spacing, allow_unstable: bool, progress: Callable[[int, int], None] | None) -> Prepared:
+    resolved = resolve(effects.EFFECTS, scene, spacing.h)
+    grid = next((cells for e in resolved.effects if (cells := e.grid(scene, spacing.h))), None)
+    models = build_models(scene, spacing.h, progress)
+    problems = check_geometry(scene, models) + [p for e in resolved.effects for p in e.problems(resolved, models, grid)]
+    problems += _unmeasurable(scene, resolved.verdicts)
     if problems:
         raise SceneError(problems)
     system = assemble(models, scene)
-    models = as_parts(models, system)
-    certificate = certify(resolved, system, allow_unstable=allow_unstable)
-    plan = make_plan(resolved, system, certificate)
-    warnings += [w for e in plan.effects for w in e.warnings(scene, system)]
-    warnings += margin_warnings(certificate)
-    if verdicts["liquid"].on:
-        warnings += open_hulls(scene, models) + leaky_walls(scene, models)
-    return Prepared(scene, models, system, resolved, (*scene.warnings, *warnings), certificate, plan, allow_unstable)
+    reach = Reach(scene, resolved.effects, spacing.h, system)
+    context = Context(resolved, system, as_parts(models, system), spacing, reach, grid)
+    certificate = certify(context, allow_unstable=allow_unstable)
+    plan = make_plan(context, certificate)
+    warnings = [*scene.warnings, *resolved.warnings, *(w for e in resolved.effects for w in e.warnings(context))]
+    return Prepared(context, (*warnings, *margin_warnings(certificate)), certificate, plan, allow_unstable)
 
 
 def _unmeasurable(scene: SceneRecord, verdicts: dict[str, Verdict]) -> list[Problem]:

@@ -26,17 +26,18 @@ class Surfaces(Effect):
 
     name = fix = "surfaces"
 
-    def columns(self, scene, system):
+    def columns(self, context):
+        system = context.system
         return {"body": system.contact_kind[system.object].astype(float), "young": system.young[system.object]}
 
-    def commands(self, scene, system):
+    def commands(self, context):
         return ["fix surfaces mobile mdanim/contact d_body d_young 0.0 objects"]
 
 
 def with_surfaces(plan: Plan) -> Plan:
     """A plan with the springs alone, and that effect."""
     effect = Surfaces()
-    columns = effect.columns(plan.scene, plan.system)
+    columns = effect.columns(plan.context)
     effects = (*(e for e in plan.effects if e.name == "springs"), effect)
     asked = {e.name: plan.asked.get(e.name, tuple(columns)) for e in effects}
     return replace(plan, effects=effects, columns=columns, tables={}, asked=asked)

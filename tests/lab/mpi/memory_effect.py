@@ -18,11 +18,13 @@ class Memory(effects.Effect):
     name = "memory"
     fix_id = "memory"
 
-    def called_for(self, scene, planes=None):
+    def called_for(self, scene, reach):
         return effects.Verdict(self.name, True, "a test wants it")
 
-    def commands(self, scene, system):
-        reach = 0.4 * float(system.spacing.max())  # objects farther apart than contact reaches must not matter to each other
+    def commands(self, context):
+        reach = 0.4 * float(
+            context.system.spacing.max()
+        )  # objects farther apart than contact reaches must not matter to each other
         return [f"fix {self.fix_id} mobile mdanim/test/memory {reach!r} 1e-4 1e-3"]
 
 

@@ -6,6 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from mdanim_lammps.parallel.plan import islands
+from mdanim_lammps.reach.window import window
 from twin import islands as twin
 
 
@@ -20,7 +21,7 @@ def crowd(rng, count, spread=1.0, lattice=False):
 
 def test_reach_by_hand():
     """Add 1.3 of what the speed covers, free fall from rest, and the margin."""
-    d = islands.reach(np.array([0.0, 2.0]), 0.5, 10.0, 0.25)
+    d = window(np.array([0.0, 2.0]), 0.5, 10.0, 0.25)
     assert d == pytest.approx([1.25 + 0.25, 1.3 + 1.25 + 0.25], rel=1e-15)
 
 

@@ -115,7 +115,7 @@ def test_an_object_that_escapes_for_ever_is_named(parts):
 def test_windows_that_end_at_frames(parts, settings, joined, steps):
     """Cubes so fast that all are one island in windows of ``joined`` steps, and apart in shorter ones: the longest window that
     leaves two executors in balance is chosen."""
-    reserved = 0.4 - 0.1 * parts.whole.spacing - float(parts.reach.max())  # between two cubes, for both
+    reserved = 0.4 - 0.1 * parts.whole.spacing - float(parts.gap.max())  # between two cubes, for both
     speed = 1.02 * reserved / (2 * 1.3 * joined * parts.whole.certificate.timestep)
     planner, found = Planner(parts, 2, LENGTHS, PlannerOptions(**settings)), []
     order = planner.decide(report(parts, EQUAL, speed=speed))

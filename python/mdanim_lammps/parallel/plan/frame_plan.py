@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...engine.sub_plan import SubPlans
+from ...reach.window import window
 from . import islands
 from .assign import assign, firsts, total
 from .teams import GAIN, GAIN_BY_THREADS, LEAST, LEAST_BY_THREADS, Team
@@ -39,7 +40,7 @@ class PlannerOptions:
     """What the planner may be told otherwise, for tests and measurements; no setting changes a bit of the result."""
 
     safety: float = 1.3
-    """Reach of objects over a window, over the way of their fastest particles at its start, see `islands.reach`."""
+    """Reach of objects over a window, over the way of their fastest particles at its start, see `reach.window`."""
     finest: int = 8
     """Most windows to a frame, a power of two."""
     worth: int = 10_000
@@ -156,7 +157,7 @@ class PlanContext:
         self.count = self.objects + (self.pool is not None)
         self.particles = np.append(np.diff(system.first), [0] * (self.count - self.objects)).astype(np.int64)
         self.still = np.append(system.still, np.zeros(self.count - self.objects, bool))
-        self.gap = float(parts.reach.max(initial=0.0))
+        self.gap = float(parts.gap.max(initial=0.0))
         self.feels = None if self.gap else np.arange(self.count) == self.objects
         least, self.gain = (LEAST_BY_THREADS, GAIN_BY_THREADS) if settings.by_threads else (LEAST, GAIN)
         self.least = least if settings.least is None else settings.least
@@ -167,10 +168,10 @@ class PlanContext:
 
     def reach(self, speed: np.ndarray, steps: int, doublings: np.ndarray | int = 0) -> np.ndarray:
         """What boxes are widened by in a window of so many steps, eq. (6.17) [m], shape (M,), the pool's last."""
-        d = islands.reach(
+        d = window(
             speed,
             steps * self.whole.certificate.timestep,
-            float(np.linalg.norm(self.whole.scene.gravity)),
+            float(np.linalg.norm(self.whole.context.reach.acting.acceleration)),
             MARGIN * self.whole.spacing,
             self.settings.safety,
         )

@@ -22,21 +22,6 @@ ROUNDING = 1.0 + 2.0**-20
 """Cells are wider than the widest box by this, and numbers of cells below `CELLS`, so that no rounding hides a neighbour."""
 
 
-def reach(speed: np.ndarray, seconds: float, gravity: float, margin: float, safety: float = 1.3) -> np.ndarray:
-    """What boxes are widened by, d of eq. (6.17), read as the reach of the fastest particle in a window [m], shape (M,).
-
-    d = s v T + g/2 T² + margin; the guard of a window finds out where it was too small, so nothing about
-    ``speed`` has to be proven.
-
-    :param speed: of the fastest particle of each object [m/s], shape (M,)
-    :param seconds: length of the window T [s]
-    :param gravity: magnitude g [m/s²]
-    :param margin: on top [m]
-    :param safety: s [-], for what forces add to the speed meanwhile
-    """
-    return safety * speed * seconds + (0.5 * gravity * seconds * seconds + margin)
-
-
 def boxes(low: np.ndarray, high: np.ndarray, d: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Reserved boxes, eq. (6.17): boxes of particles (M, 3) [m], widened by d (M,) [m] on every side."""
     return low - d[:, None], high + d[:, None]

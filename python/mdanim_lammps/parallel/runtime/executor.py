@@ -109,7 +109,7 @@ class Executor:
         of a team may never come to close theirs."""
         self._follow(self._decide(self._first_report()))
         few = np.flatnonzero(~self.system.still)[:2]
-        if len(few) == 2 and self.parts.reach.any():  # pairs will meet
+        if len(few) == 2 and self.parts.gap.any():  # pairs will meet
             self.cache.stock(self.parts.part(few, False))
         if not self.started:
             self._commit()

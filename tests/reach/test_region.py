@@ -5,9 +5,10 @@ import random
 
 import numpy as np
 import pytest
-from mdanim_lammps.effects import EFFECTS, decide
+from mdanim_lammps.effects import EFFECTS, acting, decide
 from mdanim_lammps.engine.instance import Instance
-from mdanim_lammps.model.sweep import Sweeps, _overlaps, bounding_radius, closest, sweeps
+from mdanim_lammps.reach import Reach, bounding_radius
+from mdanim_lammps.reach.region import Sweeps, _overlaps
 from mdanim_lammps.scene.parse import parse_scene
 from mdanim_lammps.scene.scene import Box, Cylinder, Torus
 
@@ -33,6 +34,11 @@ control {{
 """
 DOWN = "gravity (0, 0, -9.81)\n"
 POOL = "liquid w {{ basin from (-1, -1, {z}) to (3, 1, {top}) density 1000 level {level} }}\n"
+
+
+def reach(scene):
+    """Of what acts on its objects."""
+    return Reach(scene, acting(EFFECTS, scene))
 
 
 def pair(top="", a="", b=""):
@@ -76,7 +82,7 @@ def pair(top="", a="", b=""):
 )
 def test_what_can_meet(scene, meet):
     """Tell pairs that may come within reach from those that cannot."""
-    first, second, apart = closest(scene)
+    first, second, apart = reach(scene).closest()
     assert (apart == 0.0) == meet
     assert (first.name, second.name) == ("a", "b")
 
@@ -96,7 +102,7 @@ def test_contact_is_off_with_the_nearest_pair():
 def test_a_parabola_is_exact():
     """Sweep up to the apex and down to the end, and no further."""
     scene = pair(DOWN, a="velocity (1, 0, 3)")
-    swept, radius = sweeps(scene), 0.1 * 1.1 + 2.5 * 0.05
+    swept, radius = reach(scene).region, 0.1 * 1.1 + 2.5 * 0.05
     np.testing.assert_allclose(swept.low[0], np.array([0, 0, min(1, 1 + 1.5 - 9.81 / 8)]) - radius, atol=1e-12)
     np.testing.assert_allclose(swept.high[0], np.array([0.5, 0, 1 + 9 / 2 / 9.81]) + radius, atol=1e-12)
 
@@ -104,7 +110,7 @@ def test_a_parabola_is_exact():
 def test_what_bounces_may_fall_into_a_liquid():
     """Bound a ball that hits a wall by its speed on every axis where a liquid lies below its parabola."""
     walls = DOWN + "walls from (-0.15, -9, -9) to (9, 9, 9)\n"
-    dry, wet = (sweeps(pair(walls + pool, a="velocity (-5, 0, 0)")) for pool in ("", POOL.format(z=-2, top=-1, level=-1.5)))
+    dry, wet = (reach(pair(walls + pool, a="velocity (-5, 0, 0)")).region for pool in ("", POOL.format(z=-2, top=-1, level=-1.5)))
     assert dry.high[0, 1] < 0.6 and wet.high[0, 1] > 1.0  # the basin's wall is at 1 m
     assert (wet.high[1] == dry.high[1]).all()
 
@@ -127,8 +133,8 @@ def test_held_beams_side_by_side_do_not_meet():
         )
         + "control { time 1 }\n"
     )
-    assert closest(parse_scene(text.replace("MODULUS", "1e9")))[2] > 0.0
-    assert closest(parse_scene(text.replace("MODULUS", "1e5")))[2] == 0.0
+    assert reach(parse_scene(text.replace("MODULUS", "1e9"))).closest()[2] > 0.0
+    assert reach(parse_scene(text.replace("MODULUS", "1e5"))).closest()[2] == 0.0
 
 
 # --- pairs --------------------------------------------------------------------------------------------------
@@ -166,7 +172,7 @@ def test_ten_thousand_objects_are_looked_through():
         "position (0.5*i, 0.5*j, 1) mass 1 elasticity 1e6 }\n }\n}\ncontrol { time 2 }\n"
     )
     scene = parse_scene(text.replace("(0.5*i, 0.5*j, 1)", "(0.5*i - 0.02*max(0, i - 98)*max(0, 1 - j), 0.5*j, 1)"))
-    first, second, apart = closest(scene)
+    first, second, apart = reach(scene).closest()
     assert (first.name, second.name) == ("c[9800]", "c[9900]") and 0.2 < apart < 0.3
 
 
@@ -202,7 +208,7 @@ def random_scene(draw: random.Random) -> str:
 def test_nothing_gets_out_of_its_box(prepared, seed):
     """Run random scenes without contact: every particle, with half the reach of a barrier, stays in its object's box."""
     ready = prepared(random_scene(random.Random(seed)))
-    swept, system, c = sweeps(ready.scene), ready.system, ready.certificate
+    swept, system, c = reach(ready.scene).region, ready.system, ready.certificate
     around = 0.8 * system.spacing.max()
     with Instance(ready.plan) as instance:
         instance.setup()

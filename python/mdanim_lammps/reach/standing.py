@@ -4,36 +4,37 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
 
 import numpy as np
 
 from ..model.boxes import box_pairs
 from ..model.overlap import BORN_AT_REST
-from ..model.planes import Plane
 from ..model.system import System, centers
-from ..scene.scene import Box, SceneRecord
+from ..scene.scene import Box
+from .acting import Acting
 
 LEVEL = 1e-6
 """Tangent of gravity to what is level, and of an axis to upright, that is nothing but rounding."""
 
 
-def standing(scene: SceneRecord, system: System, planes: Iterable[Plane]) -> np.ndarray:
+def standing(acting: Acting, system: System) -> np.ndarray:
     """Solids that are at rest at the start, on a floor, on an upright cuboid that never moves, or on one that stands itself, with
-    their centre of mass above it; bool, shape (M,). None where gravity is not along -z.
+    their centre of mass above it; bool, shape (M,). None where nothing pulls along -z, or something along x or y.
     """
     found = np.zeros(len(system.names), bool)
-    x, y, z = scene.gravity
+    x, y, z = acting.acceleration
     if z >= 0.0 or math.hypot(x, y) > -LEVEL * z:
         return found
     low, high = system.bounds(system.position)
     slowest, fastest = system.bounds(system.velocity)
     calm = ~system.still & ~slowest.any(axis=1) & ~fastest.any(axis=1)
     near = BORN_AT_REST * float(system.spacing.max())
-    for plane in planes:
+    for plane in acting.planes:
         if plane.axis == 2 and plane.sign > 0:
             found |= calm & (np.abs(low[:, 2] - plane.at) <= near)
-    flat = np.array([isinstance(s.shape, Box) and np.abs(np.array(s.rotation))[2].max() > 1.0 - LEVEL for s in scene.solids])
+    flat = np.array(
+        [isinstance(s.shape, Box) and np.abs(np.array(s.rotation))[2].max() > 1.0 - LEVEL for s in acting.scene.solids]
+    )
     middle = centers(system.mass, system.first[:-1], system.position)[:, :2]
     pairs = list(box_pairs(low - 0.5 * near, high + 0.5 * near))
     i, j = (np.concatenate([np.zeros(0, int), *(both[k] for both in pairs)]) for k in (0, 1))

@@ -7,20 +7,19 @@ other. The bounds are derived in docs/cost.md.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
 
+from ..model import mesh, shapes
+from ..model.boxes import box_pairs
+from ..model.springs import equivalent_modulus
 from ..scene import scene as kinds
 from ..scene.contact_pairs import any_friction, frictions
-from ..scene.scene import Box, HoldAll, HoldFaces, LiquidModel, SceneRecord, Shape, Solid, Switch
-from . import mesh, shapes
-from .boxes import box_pairs
-from .planes import Plane, innermost, scene_planes
-from .spacing import choose_spacing
-from .springs import equivalent_modulus
+from ..scene.scene import Box, HoldAll, HoldFaces, SceneRecord, Shape, Solid
+from .acting import Acting
 
 STRETCH = 1.5
 """Largest growth of a body, over its size and over (largest speed inside it) / (wave speed): all of that energy in one uniform
@@ -46,13 +45,12 @@ class Sweeps:
     """Solids that are held entirely, bool, shape (M,): two of them never are in contact."""
 
 
-def closest(scene: SceneRecord, planes: Iterable[Plane] | None = None) -> tuple[Solid, Solid, float]:
+def closest(scene: SceneRecord, swept: Sweeps) -> tuple[Solid, Solid, float]:
     """Two solids of which one can move, and what stays between their boxes at least, along one axis [m].
 
-    The first two found whose boxes overlap, with 0.0; where there are none, those whose boxes come nearest. Raises SceneError for
-    a mesh that is no body, ValueError where no solid can meet another: one solid, or all held.
+    The first two found whose boxes overlap, with 0.0; where there are none, those whose boxes come nearest. Raises ValueError
+    where no solid can meet another: one solid, or all held.
     """
-    swept = sweeps(scene, planes)
     if len(swept.fixed) < 2 or swept.fixed.all():
         raise ValueError("two solids are needed, of which one can move")
     if (pairs := next(_overlaps(swept), None)) is not None:
@@ -70,21 +68,19 @@ def closest(scene: SceneRecord, planes: Iterable[Plane] | None = None) -> tuple[
 # --- boxes --------------------------------------------------------------------------------------------------
 
 
-def sweeps(scene: SceneRecord, planes: Iterable[Plane] | None = None) -> Sweeps:
-    """The region that every solid can reach; ``planes`` push solids back, None are those of the scene that are not switched off.
+def sweeps(acting: Acting, h: float) -> Sweeps:
+    """The region that every solid can reach, for what acts on them and a particle spacing h [m].
 
     Along an axis on which nothing but gravity and drag of air acts, the centre of mass moves on its parabola. Along one on which
     a wall, the ground or a liquid may act, it gets no further than at the largest speed that energy allows. A plane acts along
     its own axis, one with friction along all of them. Raises SceneError for a mesh that is no body.
     """
-    limit_low, limit_high = (
-        innermost(p for p in scene_planes(scene) if on(scene, p.effect)) if planes is None else innermost(planes)
-    )
-    bodies = _Movers(scene, limit_low[2])
-    low, high = _flight(scene, bodies)
+    scene, (limit_low, limit_high) = acting.scene, acting.limits
+    bodies = _Movers(acting, h)
+    low, high = _flight(acting, bodies)
     calm = bodies.size(bodies.tip)  # the largest size by its own spin
     wild = bodies.size(bodies.speed)
-    wet_below = _wet_below(scene)
+    wet_below = acting.wet_below
 
     def touched(radius):
         reached = (low - radius[:, None] <= limit_low) | (high + radius[:, None] >= limit_high)
@@ -115,16 +111,16 @@ def sweeps(scene: SceneRecord, planes: Iterable[Plane] | None = None) -> Sweeps:
 class _Movers:
     """Data of every solid that the bounds need."""
 
-    def __init__(self, scene: SceneRecord, floor: float):
+    def __init__(self, acting: Acting, h: float):
+        scene = acting.scene
         solids = scene.solids
-        self.h = choose_spacing(scene)[0]
+        self.h = h
         self.position = np.array([s.position for s in solids], float)
         self.velocity = np.array([s.velocity for s in solids], float)
-        self.drag = np.array([s.drag > 0.0 for s in solids]) & on(scene, "air-drag")
+        self.slowed = acting.slowed
         self.radius = np.array([bounding_radius(s.shape) for s in solids])
         self.fixed = np.array([any(isinstance(h, HoldAll) for h in s.hold) for s in solids])
-        loose = not on(scene, "springs")
-        self.clamped = np.array([bool(s.hold) for s in solids]) & ~self.fixed & (not loose)
+        self.clamped = np.array([bool(s.hold) for s in solids]) & ~self.fixed & acting.bound
         extents = [shapes.extent(s.shape) for s in solids]
         rotation = np.array([s.rotation for s in solids], float)
         centre, half = (np.array([0.5 * (b + sign * a) for a, b in extents]) for sign in (1.0, -1.0))
@@ -136,9 +132,9 @@ class _Movers:
         self.wave = np.sqrt(1.2 * young / self.density)
         self.tip = np.linalg.norm([s.spin for s in solids], axis=1) * self.radius
         """Speed of the outermost point around the centre of mass [m/s]."""
-        self.loose = self.tip * scene.control.time if loose else np.zeros(len(solids))
-        self.pull = _pull(scene, self)
-        self.speed = _speed(scene, self, floor)
+        self.loose = np.zeros(len(solids)) if acting.bound else self.tip * scene.control.time
+        self.pull = acting.most_pull(self)
+        self.speed = _speed(acting, self)
 
     def size(self, speed: np.ndarray) -> np.ndarray:
         """Radius of a body when this speed [m/s] is converted into deformation [m], shape (M,)."""
@@ -163,52 +159,24 @@ def bounding_radius(shape: Shape) -> float:
             return float(np.linalg.norm(np.abs(shapes.extent(shape)).max(axis=0)))
 
 
-def on(scene: SceneRecord, effect: str) -> bool:
-    """Whether a scene leaves an effect on."""
-    return scene.effects.get(effect) is not Switch.OFF
-
-
-def _gravity(scene: SceneRecord) -> np.ndarray:
-    return np.array(scene.gravity, float) * on(scene, "gravity")
-
-
-def _wet_below(scene: SceneRecord) -> float:
-    """Height below which liquid may be [m]: waves rise up to the rim of the basin."""
-    there = scene.liquid is not None and on(scene, "liquid") and on(scene, "gravity")
-    return scene.liquid.high[2] if there else -np.inf
-
-
-def _pull(scene: SceneRecord, bodies: _Movers) -> np.ndarray:
-    """Largest force of gravity and liquid over the mass [m/s^2], shape (M,)."""
-    g = float(np.linalg.norm(_gravity(scene)))
-    if not np.isfinite(_wet_below(scene)):
-        return np.full(len(bodies.mass), g)
-    liquid = scene.liquid
-    if liquid.model is LiquidModel.PRESSURE:  # a hull whose whole width is pressed on from below, at the deepest
-        lift = liquid.density * (2.0 * bodies.radius) ** 2 * (liquid.high[2] - liquid.low[2]) / bodies.mass
-    else:
-        lift = liquid.density / bodies.density
-    return g * (1.0 + lift)
-
-
-def _speed(scene: SceneRecord, bodies: _Movers, floor: float) -> np.ndarray:
+def _speed(acting: Acting, bodies: _Movers) -> np.ndarray:
     """Largest speed that energy allows [m/s], shape (M,): v^2 = v0^2 + (spin) + 2 * pull * way.
 
     The way is the height above the highest floor where gravity alone pulls, down; else it is v * time at most.
     """
     start = (bodies.velocity**2).sum(axis=1) + bodies.tip**2
-    gained = bodies.pull * scene.control.time
+    gained = bodies.pull * acting.scene.control.time
     most = gained + np.sqrt(gained**2 + start)
-    g = _gravity(scene)
-    if np.isfinite(_wet_below(scene)) or g[0] or g[1] or g[2] > 0.0 or not np.isfinite(floor):
+    g, floor = acting.acceleration, acting.limits[0][2]
+    if np.isfinite(acting.wet_below) or g[0] or g[1] or g[2] > 0.0 or not np.isfinite(floor):
         return most
     way = np.maximum(0.0, bodies.position[:, 2] - floor) + bodies.radius
     return np.minimum(most, np.sqrt(start + 2.0 * bodies.pull * way))
 
 
-def _flight(scene: SceneRecord, bodies: _Movers) -> tuple[np.ndarray, np.ndarray]:
+def _flight(acting: Acting, bodies: _Movers) -> tuple[np.ndarray, np.ndarray]:
     """Lowest and highest point of every centre of mass in free flight along each axis [m], each of shape (M, 3)."""
-    v, g, time = bodies.velocity, _gravity(scene), scene.control.time
+    v, g, time = bodies.velocity, acting.acceleration, acting.scene.control.time
     end = v * time + 0.5 * g * time**2
     with np.errstate(divide="ignore", invalid="ignore"):
         turns = -v / g  # when the velocity along this axis is 0
@@ -217,7 +185,7 @@ def _flight(scene: SceneRecord, bodies: _Movers) -> tuple[np.ndarray, np.ndarray
     low, high = np.minimum(np.minimum(end, apex), 0.0), np.maximum(np.maximum(end, apex), 0.0)
     # Drag of air reduces both parts of the displacement, so each part is at most that without drag.
     coasts, falls = np.where(apex != 0.0, apex, v * time), np.broadcast_to(0.5 * g * time**2, v.shape)
-    slowed = bodies.drag[:, None]
+    slowed = bodies.slowed[:, None]
     low = np.where(slowed, np.minimum(coasts, 0.0) + np.minimum(falls, 0.0), low)
     high = np.where(slowed, np.maximum(coasts, 0.0) + np.maximum(falls, 0.0), high)
     return bodies.position + low, bodies.position + high

@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""What is known of a scene once its effects are decided on and its solids are made: what every effect is given."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from ..errors import Problem, Span
+from ..model.basin import Grid
+from ..model.model import Model
+from ..model.planes import Plane
+from ..model.spacing import Spacing
+from ..model.system import System
+from ..reach import Reach
+from ..scene.scene import SceneRecord
+
+if TYPE_CHECKING:
+    from .effect import Effect
+
+
+@dataclass(frozen=True, slots=True)
+class Verdict:
+    """Whether an effect is on, and why; shown by ``check`` with the scene line."""
+
+    name: str
+    on: bool
+    reason: str
+    span: Span | None = None
+
+
+@dataclass(frozen=True)
+class Resolved:
+    """The verdicts of a scene, worked out once."""
+
+    scene: SceneRecord
+    verdicts: dict[str, Verdict]
+    """Of every effect, by its name."""
+    effects: tuple[Effect, ...]
+    """Those that are on, in the order in which their forces are summed."""
+    planes: tuple[Plane, ...]
+    """The planes of those that are on."""
+    warnings: tuple[Problem, ...]
+    """About effects that the scene calls for and switches off."""
+
+    def on(self, name: str) -> bool:
+        """Whether there is an effect of this name, and it is on."""
+        return name in self.verdicts and self.verdicts[name].on
+
+
+@dataclass(frozen=True)
+class Context:
+    """A scene with all that follows from it, each found once (run/prepare.py); that of a part of a scene has the system and the
+    grid of the part, and the rest of the whole (engine/sub_plan.py)."""
+
+    resolved: Resolved
+    system: System
+    """The solids as particles."""
+    models: tuple[Model, ...]
+    """The solids one by one, with their surfaces."""
+    spacing: Spacing
+    """What the scene is resolved with."""
+    reach: Reach
+    """Where solids can be, until when, and how fast."""
+    grid: Grid | None
+    """Cells of the liquid; None where none of the effects that are on has any."""
+
+    @property
+    def scene(self) -> SceneRecord:
+        return self.resolved.scene
+
+    def on(self, name: str) -> bool:
+        """Whether an effect of this name is on."""
+        return self.resolved.on(name)

@@ -1,0 +1,99 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""What acts on the solids of a scene from outside, as effects declare it: what pulls, stops, slows and carries them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from functools import cached_property
+from typing import Protocol
+
+import numpy as np
+
+from ..model.planes import Plane, innermost
+from ..model.system import System
+from ..scene.scene import SceneRecord
+
+
+class Bodies(Protocol):
+    """What is known of M solids before their models are made."""
+
+    radius: np.ndarray
+    """Of a sphere around the centre of mass that holds each [m], shape (M,)."""
+    density: np.ndarray
+    """[kg/m^3], shape (M,)."""
+    mass: np.ndarray
+    """[kg], shape (M,)."""
+
+
+class Motion(Protocol):
+    """What an effect declares of how it moves solids (effects/effect.py); all of it may be asked of any scene."""
+
+    binds: bool
+
+    def acceleration(self, scene: SceneRecord) -> np.ndarray | None: ...
+
+    def planes(self, scene: SceneRecord) -> tuple[Plane, ...]: ...
+
+    def slows(self, scene: SceneRecord) -> np.ndarray | None: ...
+
+    def pushes_below(self, scene: SceneRecord) -> float: ...
+
+    def most_push(self, scene: SceneRecord, bodies: Bodies) -> np.ndarray | float: ...
+
+    def surface(self, scene: SceneRecord) -> float | None: ...
+
+    def lift(self, scene: SceneRecord, system: System) -> np.ndarray | float: ...
+
+
+class Acting:
+    """What all of some effects declare, together."""
+
+    def __init__(self, scene: SceneRecord, effects: Iterable[Motion]):
+        self.scene, self.effects = scene, tuple(effects)
+        self.planes = tuple(p for e in self.effects for p in e.planes(scene))
+        """Planes that push solids back."""
+        self.bound = any(e.binds for e in self.effects)
+        """Whether the particles of a solid hold together."""
+
+    @cached_property
+    def acceleration(self) -> np.ndarray:
+        """Of everything that is free to move [m/s^2], shape (3,)."""
+        return sum((a for e in self.effects if (a := e.acceleration(self.scene)) is not None), np.zeros(3))
+
+    @property
+    def g(self) -> float:
+        """What pulls down [m/s^2]."""
+        return max(0.0, -float(self.acceleration[2]))
+
+    @cached_property
+    def limits(self) -> tuple[np.ndarray, np.ndarray]:
+        """As `innermost`."""
+        return innermost(self.planes)
+
+    @cached_property
+    def slowed(self) -> np.ndarray:
+        """Solids that are slowed down wherever they are, bool, shape (M,)."""
+        found = np.zeros(len(self.scene.solids), bool)
+        for effect in self.effects:
+            if (slowed := effect.slows(self.scene)) is not None:
+                found |= slowed
+        return found
+
+    @cached_property
+    def wet_below(self) -> float:
+        """Height below which solids are pushed about in any direction [m]; minus infinity where nothing does so."""
+        return max((e.pushes_below(self.scene) for e in self.effects), default=-np.inf)
+
+    @cached_property
+    def surface(self) -> float | None:
+        """Height below which something carries solids [m]; None where nothing does."""
+        return next((z for e in self.effects if (z := e.surface(self.scene)) is not None), None)
+
+    def lift(self, system: System) -> np.ndarray:
+        """Part of the mass of each immersed solid that is carried [kg], shape (M,)."""
+        return sum((e.lift(self.scene, system) for e in self.effects), np.zeros(len(system.names)))
+
+    def most_pull(self, bodies: Bodies) -> np.ndarray:
+        """Largest force from outside on each solid over its mass [m/s^2], shape (M,)."""
+        g = float(np.linalg.norm(self.acceleration))
+        return np.full(len(bodies.mass), g) + sum(e.most_push(self.scene, bodies) for e in self.effects)

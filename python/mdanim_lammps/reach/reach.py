@@ -1,0 +1,149 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Where the solids of a scene can be, until when, and how fast: every question of that kind is asked here."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from functools import cached_property
+
+import numpy as np
+
+from ..model.spacing import choose_spacing
+from ..model.system import System
+from ..scene.scene import SceneRecord, Solid
+from . import region
+from .acting import Acting, Motion
+from .flight import Flight
+from .standing import standing
+
+
+def wave_speed(system: System) -> np.ndarray:
+    """Speed of longitudinal waves in each solid, sqrt(1.2 E / rho) [m/s], shape (M,)."""
+    return np.sqrt(1.2 * system.young / system.density)
+
+
+class Reach:
+    """What effects let the solids of a scene do.
+
+    ``region`` and ``closest`` are never too small, hold until the end of the scene, and need no models. ``fall``, ``speed`` and
+    ``closing`` are what limits are compared with: by energy, from the particles at the start. ``flight`` is where solids are at a
+    time when each flies alone, and `window` (reach/window.py) what boxes are widened by until the next look at them.
+
+    Args:
+        scene: of the solids.
+        effects: that act on them.
+        h: particle spacing [m]; None is that of the scene.
+        system: the solids as particles; None before they are made.
+    """
+
+    def __init__(self, scene: SceneRecord, effects: Iterable[Motion], h: float | None = None, system: System | None = None):
+        self.scene, self.acting, self._h, self._system = scene, Acting(scene, effects), h, system
+
+    # --- never too small, before models are made ------------------------------------------------------------------------
+
+    @cached_property
+    def region(self) -> region.Sweeps:
+        """A box for each solid that holds it at all times. Raises SceneError for a mesh that is not a closed solid."""
+        return region.sweeps(self.acting, choose_spacing(self.scene)[0] if self._h is None else self._h)
+
+    def closest(self) -> tuple[Solid, Solid, float]:
+        """Two solids of which one can move, and what stays between their boxes at least, along one axis [m]; see
+        `region.closest`."""
+        return region.closest(self.scene, self.region)
+
+    # --- by energy, from the start --------------------------------------------------------------------------------------
+
+    @property
+    def system(self) -> System:
+        """The solids as particles. Raises ValueError before they are made."""
+        if self._system is None:
+            raise ValueError("this is asked of models, and none are made yet")
+        return self._system
+
+    @property
+    def g(self) -> float:
+        """What pulls down [m/s^2]."""
+        return self.acting.g
+
+    @cached_property
+    def moving(self) -> np.ndarray:
+        """Solids of which something can move, bool, shape (M,)."""
+        return ~self.system.still
+
+    @cached_property
+    def wave(self) -> np.ndarray:
+        """Speed of waves in each solid, see `wave_speed` [m/s], shape (M,)."""
+        return wave_speed(self.system)
+
+    @cached_property
+    def stands(self) -> np.ndarray:
+        """Solids that stand still on something at the start, bool, shape (M,); see `standing`."""
+        return standing(self.acting, self.system)
+
+    @cached_property
+    def heights(self) -> tuple[np.ndarray, float]:
+        """Height of the lowest point of each solid [m], shape (M,), and of the lowest solid or floor [m]."""
+        bottom = np.minimum.reduceat(self.system.position[:, 2], self.system.first[:-1])
+        return bottom, min([bottom.min(), *(p.at for p in self.acting.planes if p.axis == 2 and p.sign > 0)])
+
+    @cached_property
+    def drop(self) -> np.ndarray:
+        """Height of each solid's fall through air [m], shape (M,), as if nothing stood; none where all solids stand or are held,
+        as nothing comes that might throw one of them down."""
+        bottom, floor = self.heights
+        return bottom - (bottom if (self.stands | ~self.moving).all() else floor)
+
+    @cached_property
+    def fall(self) -> np.ndarray:
+        """Height of each solid's fall [m], shape (M,), down to the ground, the floor of the basin, or the lowest object; none of
+        what stands still at the start.
+
+        As if through air: in a liquid, heights count by what it leaves of the weight. Below the surface a light solid gains
+        height; where there are others it may meet them at the surface already.
+        """
+        (bottom, floor), surface = self.heights, self.acting.surface
+        bottom = np.where(self.stands, np.minimum(bottom, floor), bottom)
+        if surface is None:
+            return bottom - floor
+        in_air, in_liquid = np.maximum(0.0, bottom - surface), np.minimum(bottom, surface) - floor
+        weight = self.weight_left
+        return in_air + in_liquid * (weight if len(self.system.names) == 1 else np.maximum(0.0, weight))
+
+    @cached_property
+    def weight_left(self) -> np.ndarray:
+        """What the liquid leaves of each solid's weight when it is immersed, over its weight; below 0 where it floats,
+        shape (M,)."""
+        return 1.0 - self.acting.lift(self.system) / self.system.mass_of
+
+    @cached_property
+    def speed(self) -> np.ndarray:
+        """Largest speed that each solid may reach by its start and its fall [m/s], shape (M,)."""
+        return self.speed_after(self.fall)
+
+    def speed_after(self, fall: np.ndarray) -> np.ndarray:
+        """The start's speed, with that of a fall [m], shape (M,)."""
+        start = np.maximum.reduceat((self.system.velocity**2).sum(1), self.system.first[:-1])
+        return np.where(self.moving, np.sqrt(np.maximum(0.0, start + 2.0 * self.g * fall)), 0.0)
+
+    def closing(self, fall: np.ndarray) -> np.ndarray:
+        """Speed at which each solid may meet another [m/s], shape (M,): all fall alike, so only the start tells them apart until
+        one has landed; ``fall`` [m], shape (M,), is how far."""
+        low, high = self.system.bounds(self.system.velocity)
+        apart = np.maximum(high + largest_of_others(-low), largest_of_others(high) - low)
+        apart = np.sqrt((np.maximum(apart, 0.0) ** 2).sum(1))
+        return np.where(self.system.still, 0.0, np.sqrt(apart**2 + 2.0 * self.g * np.maximum(0.0, fall)))
+
+    # --- at a time ------------------------------------------------------------------------------------------------------
+
+    def flight(self) -> Flight:
+        """The solids at the start, to be followed as each flies alone."""
+        return Flight(self.acting, self.system)
+
+
+def largest_of_others(values: np.ndarray) -> np.ndarray:
+    """Of every column, the largest of all rows but one's own; shape (M,) or (M, K)."""
+    order = np.argsort(values, axis=0)[::-1]
+    largest = np.broadcast_to(np.take_along_axis(values, order[:1], 0), values.shape).copy()
+    if len(values) > 1:
+        np.put_along_axis(largest, order[:1], np.take_along_axis(values, order[1:2], 0), 0)
+    return largest
