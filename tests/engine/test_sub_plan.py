@@ -272,7 +272,7 @@ def test_an_instance_filled_anew_is_as_a_new_one(prepared, chain):
         for objects in chain[1:]:
             part = parts.part(objects, False)
             assert used.refill(part) and used.plan is part and used.step == 0
-            assert used.system is part.system and used.effects == part.effects  # what effects read
+            assert used.context is part.context and used.system is part.system  # what effects read
             with Instance(part) as new:
                 found, wanted = go(used, objects), go(new, objects)
             equal(found[0], wanted[0], objects)
