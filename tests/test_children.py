@@ -113,9 +113,9 @@ def test_doctor_runs_nothing_of_the_folder(theirs):
 def test_the_view_of_a_run_runs_nothing_of_the_folder(theirs_run):
     """The server that `--view` starts beside a run."""
     script = (
-        "import sys, threading\nfrom pathlib import Path\nfrom mdanim_lammps import command_steps\n"
-        "told = threading.Event()\ncommand_steps.show_address = lambda *words: (print(words[0]), told.set())\n"
-        "viewer = command_steps.Viewer(True)\nviewer.start(Path('scene.out'))\n"
+        "import sys, threading\nfrom pathlib import Path\nfrom mdanim_lammps.view import beside\n"
+        "told = threading.Event()\nbeside.show_address = lambda *words: (print(words[0]), told.set())\n"
+        "viewer = beside.Viewer(True)\nviewer.start(Path('scene.out'))\n"
         "told.wait(60)\nviewer._process.terminate()\nviewer._process.wait()\n"
     )
     assert "http://127.0.0.1" in theirs_run.python(script)
@@ -201,7 +201,7 @@ def test_processes_are_started_in_one_place(path):
     assert found & STARTS <= ALLOWED.get(str(path.relative_to(ROOT)), set())
 
 
-EXECUTABLE = {"children.py", "doctor.py", "command_steps.py", "launch.py"}
+EXECUTABLE = {"children.py", "doctor.py", "steps.py", "launch.py"}
 """Files that name this Python: to start it, or what lies beside it."""
 
 

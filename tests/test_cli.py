@@ -277,14 +277,15 @@ def test_a_movie_cannot_leave_the_folder_by_a_link(scene, tmp_path):
 
 def test_a_large_scene_is_told_before_modelling(prepared, monkeypatch, capsys):
     """Say particles, memory and time before models are made where they are many, and nothing where they are few."""
-    from mdanim_lammps import cli, report
+    from mdanim_lammps import report
+    from mdanim_lammps.cli import steps
 
     ready = prepared(GOOD)
     assert report.size_line(ready.scene) is None
     monkeypatch.setattr(report, "LARGE", 20)
     monkeypatch.setattr("mdanim_lammps.run.prepare.build_models", lambda *_, **__: pytest.fail("modelled"))
     with pytest.raises(pytest.fail.Exception):
-        cli.prepare(ready.scene, allow_unstable=False)
+        steps.prepare(ready.scene, allow_unstable=False)
     line = capsys.readouterr().err
     assert line.startswith("size     about 2.7e-5 million particles, spacing 5 cm set by resolution: ") and "of modelling" in line
 

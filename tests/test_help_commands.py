@@ -9,7 +9,8 @@ from urllib.parse import unquote
 
 import pytest
 from command_line import GOOD, call, run
-from mdanim_lammps import Scene, doctor
+from mdanim_lammps import Scene
+from mdanim_lammps.cli import doctor
 from mdanim_lammps.run.loop import Interrupted
 from mdanim_lammps.scene.explain import MARGINS, explain, words
 from mdanim_lammps.scene.grammar import grammar

@@ -36,12 +36,6 @@ ROOMS = [
     "report",
     "api",
     "view",
-    "command_options",
-    "command_steps",
-    "run_commands",
-    "gallery",
-    "doctor",
-    "help_commands",
     "cli",
     "__main__",
 ]

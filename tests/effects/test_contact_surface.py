@@ -353,7 +353,7 @@ def test_frictionless_is_told_once(prepared, text, told):
 
 def test_what_hops_for_ever_is_told_with_both_lines(prepared, capfd):
     """Without friction and damping: what to write and where, before a run as in `check`; no word of damping where some is."""
-    from mdanim_lammps.command_steps import announce
+    from mdanim_lammps.cli.steps import announce
 
     ready = prepared(pile())
     (line,) = [line for line in note_lines(ready.certificate) if FREE in line]

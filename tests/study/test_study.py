@@ -12,7 +12,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from mdanim_lammps import Scene
-from mdanim_lammps.cli import study as study_command
+from mdanim_lammps.cli.scene_commands import study as study_command
 from mdanim_lammps.errors import DivergedError, OutputError, RefusedError, UsageError
 from mdanim_lammps.run.loop import Interrupted, simulate
 from mdanim_lammps.run.prepare import prepare

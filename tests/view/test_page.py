@@ -12,12 +12,12 @@ import numpy as np
 import pytest
 from browser import Browser, missing
 from mdanim_lammps import Scene
-from mdanim_lammps.command_steps import show_address
 from mdanim_lammps.errors import OutputError
 from mdanim_lammps.results.compare import compare
 from mdanim_lammps.results.progress import PROGRESS
 from mdanim_lammps.scene.parse import load_scene
 from mdanim_lammps.view import server
+from mdanim_lammps.view.beside import show_address
 from mdanim_lammps.view.edit import Editor
 from mdanim_lammps.view.export import write_report
 from mdanim_lammps.view.tail import Tail

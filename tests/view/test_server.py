@@ -14,12 +14,12 @@ from pathlib import Path
 from urllib.parse import urlsplit
 
 import pytest
-from mdanim_lammps import Scene, command_steps
+from mdanim_lammps import Scene
 from mdanim_lammps.errors import OutputError, UsageError
 from mdanim_lammps.results.files import claimed
 from mdanim_lammps.results.ledger import Ledger
 from mdanim_lammps.results.progress import PROGRESS, ProgressLog
-from mdanim_lammps.view import server
+from mdanim_lammps.view import beside, server
 from mdanim_lammps.view.__main__ import serve
 from mdanim_lammps.view.server import LONGEST_MESSAGE, PAGES, packaged_files
 from mdanim_lammps.view.tail import MOST_ROWS, Known, Tail
@@ -228,8 +228,8 @@ def test_a_browser_is_led_to_the_page_by_a_private_file(view, monkeypatch, tmp_p
     monkeypatch.setenv("DISPLAY", ":0")
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
     monkeypatch.setattr("webbrowser.open", lambda url: opened.append(url))
-    monkeypatch.setattr(command_steps, "OPENING", 0.3)
-    command_steps.show_address(view.address)
+    monkeypatch.setattr(beside, "OPENING", 0.3)
+    beside.show_address(view.address)
     assert capsys.readouterr().out == f"view     {view.address}\n"
     assert token(view) not in opened[0]
     file = Path(urlsplit(opened[0]).path)
@@ -243,7 +243,7 @@ def test_a_browser_is_led_to_the_page_by_a_private_file(view, monkeypatch, tmp_p
     while file.parent.exists() and time.monotonic() < deadline:
         time.sleep(0.02)
     assert not list(tmp_path.iterdir()), "it is there for a while only"
-    command_steps.show_address(view.address, browser=False)
+    beside.show_address(view.address, browser=False)
     assert len(opened) == 1
 
 

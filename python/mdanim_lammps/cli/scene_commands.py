@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""The command line: ``mdanim-lammps SCENE`` and its subcommands (docs/command-line.md)."""
+"""Commands about a scene: run, check and draw it, write it for LAMMPS, study what its accuracy costs."""
 
 from __future__ import annotations
 
@@ -10,10 +10,12 @@ import time
 from pathlib import Path
 from typing import Annotated, Literal
 
-from cyclopts import App, CycloptsError, Parameter
+from cyclopts import Parameter
 
-from . import __version__, help_commands, run_commands
-from .command_options import (
+from ..errors import Problem, RefusedError, SceneError, problem_json
+from ..terminal import progress_bar
+from ..view.beside import Viewer
+from .options import (
     Accuracy,
     AllowUnstable,
     Control,
@@ -31,9 +33,8 @@ from .command_options import (
     Verbose,
     View,
 )
-from .command_steps import (
+from .steps import (
     STARTED,
-    Viewer,
     announce,
     check_executors,
     check_size,
@@ -43,27 +44,14 @@ from .command_steps import (
     prepare,
     print_lines,
     print_warnings,
-    refuse_mistyped,
     seconds_of,
     settle,
     simulate_and_draw,
     with_accuracy,
     with_quality,
 )
-from .errors import ExitCode, Problem, RefusedError, SceneError, UsageError, problem_json
-from .terminal import PROGRAM, documented_exit, open_streams, progress_bar, stop_on_sigterm
-
-app = App(
-    name=PROGRAM,
-    help="Physically simulated animation of elastic objects, on top of LAMMPS.",
-    version=__version__,
-    version_flags=["--version"],
-    suppress_keyboard_interrupt=False,
-)
 
 
-@app.command(name="run")
-@app.default
 def run(
     scene: Path,
     /,
@@ -91,9 +79,9 @@ def run(
     movie
         Make movie.mp4 at the end.
     """
-    from .api import open_run, output_folder
-    from .cost.speedup_forecast import forecast_speedup
-    from .report import speedup_lines
+    from ..api import open_run, output_folder
+    from ..cost.speedup_forecast import forecast_speedup
+    from ..report import speedup_lines
 
     check_executors(executors)
     record = with_accuracy(load(scene, set_), accuracy)
@@ -108,7 +96,6 @@ def run(
         simulate_and_draw(ready, folder, quiet=quiet, movie=movie, executors=executors, threads=threads, control=control)
 
 
-@app.command
 def check(
     scene: Path,
     /,
@@ -142,12 +129,12 @@ def check(
 
 
 def _check(scene: Path, executors: int, set_, accuracy, strict: bool, allow_unstable: bool, as_json: bool) -> None:
-    from .cost.forecast import forecast
-    from .cost.speedup_forecast import forecast_speedup
-    from .engine.calibration import stored
-    from .engine.threads import choose_threads
-    from .processes import cores
-    from .report import check_json, check_lines
+    from ..cost.forecast import forecast
+    from ..cost.speedup_forecast import forecast_speedup
+    from ..engine.calibration import stored
+    from ..engine.threads import choose_threads
+    from ..processes import cores
+    from ..report import check_json, check_lines
 
     check_executors(executors)
     record = with_accuracy(load(scene, set_, strict=strict), accuracy)
@@ -163,7 +150,6 @@ def _check(scene: Path, executors: int, set_, accuracy, strict: bool, allow_unst
     print("\n".join(check_lines(ready, cost, threads, spread)))
 
 
-@app.command
 def picture(
     scene: Path,
     /,
@@ -196,9 +182,9 @@ def picture(
     boxes
         Draw the bounding box of each object.
     """
-    from .api import draw_picture
-    from .picture.marks import Marks
-    from .report import progress_line
+    from ..api import draw_picture
+    from ..picture.marks import Marks
+    from ..report import progress_line
 
     check_size(size)
     time = 0.0 if at is None else seconds_of("--at", at)
@@ -217,7 +203,6 @@ def picture(
         print(f"picture  {path}")
 
 
-@app.command
 def build(
     scene: Path,
     /,
@@ -237,7 +222,7 @@ def build(
     scene
         The scene file.
     """
-    from .api import open_run, output_folder
+    from ..api import open_run, output_folder
 
     record = with_accuracy(load(scene, set_), accuracy)
     out = output_folder(record, out)
@@ -250,7 +235,6 @@ def build(
         print(f"built    cd {shlex.quote(str(folder))} && {lmp_command()} -in {shlex.quote(f'in.{ready.plan.name}')}")
 
 
-@app.command
 def study(
     scene: Path,
     /,
@@ -276,9 +260,9 @@ def study(
     ladders
         Only these, e.g. "time step, resolution"; known are time step, resolution, sweeps, contact.
     """
-    from .api import STUDY, output_folder
-    from .study.report import order_lines, table
-    from .study.study import run_study
+    from ..api import STUDY, output_folder
+    from ..study.report import order_lines, table
+    from ..study.study import run_study
 
     seconds = seconds_of("--budget", budget)
     record = with_accuracy(load(scene, set_), accuracy)
@@ -302,35 +286,5 @@ def study(
     print(f"output   {done.folder}/study.json, study.csv, study.png")
 
 
-@app.command
-def completion(shell: Literal["bash", "zsh", "fish"], /) -> None:
-    """Print a script that completes commands and options in a shell.
-
-    Parameters
-    ----------
-    shell
-        bash: put  eval "$(mdanim-lammps completion bash)"  into ~/.bashrc; zsh and fish alike in their files.
-    """
-    print(app.generate_completion(shell=shell))
-
-
-for command in (*run_commands.COMMANDS, *help_commands.COMMANDS):
-    app.command(command)
-
-
-def main(argv: list[str] | None = None) -> None:
-    """Run the command line and exit with one of the documented codes."""
-    open_streams()
-    stop_on_sigterm()
-    arguments = list(sys.argv[1:] if argv is None else argv)
-    debug = "--debug" in arguments
-    arguments = [a for a in arguments if a != "--debug"]
-    with documented_exit(debug=debug):
-        refuse_mistyped(arguments, [name for name in app if not name.startswith("-")])
-        if not arguments:
-            app.help_print([])
-            raise SystemExit(ExitCode.USAGE)
-        try:
-            app(arguments, exit_on_error=False, print_error=False)
-        except CycloptsError as error:
-            raise UsageError(f"{' '.join(str(error).split())}; see '{PROGRAM} --help'") from None
+COMMANDS = (run, check, picture, build, study)
+"""Of the command line, in the order of its help."""

@@ -9,8 +9,8 @@ from typing import Annotated, Literal
 
 from cyclopts import Parameter
 
-from .engine.threads import check_threads
-from .errors import UsageError
+from ..engine.threads import check_threads
+from ..errors import UsageError
 
 Set = Annotated[
     tuple[str, ...], Parameter(name="--set", help="Override a 'let': --set NAME=VALUE.", negative=(), consume_multiple=False)

@@ -3,33 +3,23 @@
 
 from __future__ import annotations
 
-import difflib
-import os
 import re
 import shlex
 import shutil
 import sys
-import threading
 import time
 from collections.abc import Callable
-from functools import partial
 from pathlib import Path
 
-from .children import DEVNULL, PIPE, Child, command, start
-from .errors import DivergedError, ExitCode, MdanimError, OutputError, UsageError
-from .terminal import PROGRAM, error_line, progress_bar
+from ..errors import DivergedError, ExitCode, OutputError, UsageError
+from ..terminal import PROGRAM, progress_bar
 
 STARTED = time.perf_counter()
 """When this process began to work: reading and modelling are part of what a run costs."""
 
-OPENING = 60.0
-"""Seconds for which the file is there that leads a browser to a view."""
-LINGER = 60.0
-"""Seconds for which the view of a run waits for a page when the run is over and no page is open."""
-
 
 def load(path: Path, overrides: tuple[str, ...], *, strict: bool = False):
-    from .scene.parse import load_scene
+    from ..scene.parse import load_scene
 
     pairs = {}
     for text in overrides:
@@ -44,7 +34,7 @@ def with_accuracy(scene, accuracy: str | None):
     """The scene with a class of accuracy from the command line."""
     from dataclasses import replace
 
-    from .scene.scene import Accuracy as AccuracyClass
+    from ..scene.scene import Accuracy as AccuracyClass
 
     if accuracy is None:
         return scene
@@ -55,15 +45,15 @@ def with_quality(scene, quality: str | None):
     """The scene with a quality of pictures from the command line."""
     from dataclasses import replace
 
-    from .scene.render import Quality
+    from ..scene.render import Quality
 
     return scene if quality is None else replace(scene, render=replace(scene.render, quality=Quality(quality)))
 
 
 def settle(scene, *, make: bool, quiet: bool = False, out: Path | None = None):
     """The scene with a setting for its target error, and a line that says where it comes from."""
-    from .api import STUDY, default_folder
-    from .study.target import settle as settle_scene
+    from ..api import STUDY, default_folder
+    from ..study.target import settle as settle_scene
 
     study = (out or default_folder(scene)) / STUDY
     settled = settle_scene(scene, make=make, study=study, on_progress=print_lines("accuracy", quiet))
@@ -80,8 +70,8 @@ def print_lines(name: str, quiet: bool) -> Callable[[str], None]:
 
 
 def prepare(scene, *, allow_unstable: bool):
-    from .report import size_line
-    from .run.prepare import prepare as prepare_scene
+    from ..report import size_line
+    from ..run.prepare import prepare as prepare_scene
 
     if line := size_line(scene):
         print(line, file=sys.stderr, flush=True)
@@ -96,7 +86,7 @@ def lmp_command() -> str:
 
 def check_executors(executors: int) -> None:
     """Raises UsageError for a number that cannot be, or that this machine cannot hold."""
-    from .parallel import limits
+    from ..parallel import limits
 
     limits.check_executors(executors)
 
@@ -109,7 +99,7 @@ def check_size(size: tuple[int, int] | None) -> None:
 
 def seconds_of(option: str, text: str) -> float:
     """A duration such as "2 min" in seconds."""
-    from .scene.units import DimensionError, unit
+    from ..scene.units import DimensionError, unit
 
     match = re.fullmatch(r"\s*([0-9.]+(?:e[+-]?[0-9]+)?)\s*([a-z]+)\s*", text)
     try:
@@ -132,7 +122,7 @@ def frame_range(text: str) -> slice:
 
 def picture_file(path: Path, suffix: str, *, force: bool) -> Path:
     """The file that -o names for a movie or a picture. Raises UsageError, and OutputError where it is not to be overwritten."""
-    from .results.overwriting import check_overwriting
+    from ..results.overwriting import check_overwriting
 
     if path.suffix.lower() != suffix:
         raise UsageError(f"-o {path}: this file is written as {suffix}; give it a name such as {path.stem or 'movie'}{suffix}")
@@ -144,7 +134,7 @@ def picture_file(path: Path, suffix: str, *, force: bool) -> Path:
 
 def made_file(default: Path, out: Path | None, suffix: str, *, force: bool) -> Path:
     """The file of -o, or that of a folder of results. Raises UsageError, and OutputError where it is not to be overwritten."""
-    from .results.overwriting import check_overwriting
+    from ..results.overwriting import check_overwriting
 
     if out is not None:
         return picture_file(out, suffix, force=force)
@@ -158,8 +148,8 @@ def print_warnings(ready) -> None:
 
 
 def announce(ready, quiet: bool, verbose: bool, executors: int = 1, control: str | None = None) -> None:
-    from .certificate import note_lines
-    from .report import certificate_line, effect_line, executors_line, output_line, scene_lines
+    from ..certificate import note_lines
+    from ..report import certificate_line, effect_line, executors_line, output_line, scene_lines
 
     print_warnings(ready)
     if quiet:
@@ -176,10 +166,10 @@ def announce(ready, quiet: bool, verbose: bool, executors: int = 1, control: str
 
 
 def simulate_and_draw(ready, folder: Path, *, quiet: bool, movie: bool, **options) -> None:
-    from .api import movie_file, run_frames
-    from .report import cost_line, progress_line, spread_line
-    from .results.timeline import Timeline
-    from .scene.formatting import number
+    from ..api import movie_file, run_frames
+    from ..report import cost_line, progress_line, spread_line
+    from ..results.timeline import Timeline
+    from ..scene.formatting import number
 
     file = movie_file(folder, ready.scene)
     try:
@@ -212,8 +202,8 @@ def simulate_and_draw(ready, folder: Path, *, quiet: bool, movie: bool, **option
 
 def adopt(folder: Path, *, quiet: bool):
     """The scene that an output folder holds; a dump that plain ``lmp`` has left there becomes its trajectory."""
-    from .api import stored_scene
-    from .run.adopt import adopt_dump
+    from ..api import stored_scene
+    from ..run.adopt import adopt_dump
 
     scene = stored_scene(folder)
     if (line := adopt_dump(folder, scene)) and not quiet:
@@ -221,88 +211,9 @@ def adopt(folder: Path, *, quiet: bool):
     return scene
 
 
-class Viewer:
-    """The server of a view beside a run, in a process of its own; a context manager around the run.
-
-    At the end it waits until the view is no longer needed: until a minute has passed without a page, or Ctrl-C. An error of the
-    run is printed before that. ``edit`` is the file of the scene if pages may edit it.
-    """
-
-    def __init__(self, wanted: bool, edit: Path | None = None):
-        self._wanted, self._edit = wanted or edit is not None, edit
-        self._process: Child | None = None
-
-    def start(self, folder: Path) -> None:
-        """Serve the folder of a run that begins, if that is wanted; returns at once."""
-        if not self._wanted:
-            return
-        server = command("mdanim_lammps.view.__main__", folder, "--linger", f"{LINGER:g}")
-        if self._edit:
-            server += ["--edit", "--scene", str(self._edit)]
-        # In a session of its own: the Ctrl-C that stops the run is not for the view.
-        self._process = start(server, stdin=DEVNULL, stdout=PIPE, start_new_session=True)
-        threading.Thread(target=self._announce, args=(self._process,), daemon=True).start()
-
-    def __enter__(self) -> Viewer:
-        return self
-
-    def __exit__(self, kind, error, traceback) -> None:
-        process = self._process
-        if process is None:
-            return
-        try:
-            if isinstance(error, MdanimError):
-                print(error_line(error), file=sys.stderr, flush=True)
-            if (error is None or isinstance(error, (MdanimError, SystemExit))) and process.poll() is None:
-                print("view     stays until its pages are closed; Ctrl-C ends it", flush=True)
-                process.wait()
-        except KeyboardInterrupt:
-            pass
-        finally:
-            process.terminate()
-            process.wait()
-        if isinstance(error, MdanimError):
-            raise SystemExit(error.exit_code) from error
-
-    @staticmethod
-    def _announce(process: Child) -> None:
-        if line := process.stdout.readline():
-            show_address(line.strip())
-
-
-def show_address(address: str, *, browser: bool = True) -> None:
-    """Print where a view is to be seen; where there is a display, and ``browser`` is wanted, open one."""
-    print(f"view     {address}", flush=True)
-    if browser and (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
-        open_browser(address)
-
-
-def open_browser(address: str) -> None:
-    """Open a browser by a file that leads to an address, and that its owner alone can read for a minute: every user of this
-    machine can read the arguments of a browser."""
-    import atexit
-    import html
-    import tempfile
-    import webbrowser
-
-    folder = Path(tempfile.mkdtemp(prefix="mdanim-view-"))
-    forget = partial(shutil.rmtree, folder, ignore_errors=True)
-    atexit.register(forget)
-    timer = threading.Timer(OPENING, forget)
-    timer.daemon = True
-    timer.start()
-    place = html.escape(address)
-    with open(os.open(folder / "open.html", os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600), "w", encoding="utf-8") as file:
-        file.write(
-            f'<!DOCTYPE html>\n<meta charset="utf-8">\n<meta name="referrer" content="no-referrer">\n'
-            f'<meta http-equiv="refresh" content="0; url={place}">\n<a href="{place}">the view</a>\n'
-        )
-    webbrowser.open((folder / "open.html").as_uri())
-
-
 def draw_movie(folder: Path, scene, path: Path, *, quiet: bool, **options) -> None:
-    from .picture.movie import render_movie
-    from .report import movie_line
+    from ..picture.movie import render_movie
+    from ..report import movie_line
 
     start = time.perf_counter()
     try:
@@ -317,12 +228,3 @@ def draw_movie(folder: Path, scene, path: Path, *, quiet: bool, **options) -> No
     except KeyboardInterrupt:
         print(f"the movie was interrupted, the run is complete; draw it with: mdanim-lammps render {folder}", file=sys.stderr)
         raise SystemExit(ExitCode.INTERRUPTED) from None
-
-
-def refuse_mistyped(arguments: list[str], commands: list[str]) -> None:
-    """Raise UsageError for a mistyped command: a first word that is neither a file nor a command, but close to one."""
-    word = arguments[0] if arguments else "-"
-    if word.startswith("-") or word in commands or Path(word).exists():
-        return
-    if close := difflib.get_close_matches(word, commands, n=1):
-        raise UsageError(f"no scene file and no command is called '{word}'; did you mean '{close[0]}'?")

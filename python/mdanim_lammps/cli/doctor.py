@@ -12,11 +12,11 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from . import __version__
-from .children import command, run
-from .engine import plugin
-from .processes import available_memory, cores
-from .run.manifest import PACKAGES
+from .. import __version__
+from ..children import command, run
+from ..engine import plugin
+from ..processes import available_memory, cores
+from ..run.manifest import PACKAGES
 
 OK, NOTE, FAIL = 0, 1, 2
 LEAST_DISK = 1e9
@@ -94,7 +94,7 @@ def _lmp() -> tuple[int, str]:
 def _mpi() -> tuple[int, str]:
     from mpi4py import MPI
 
-    from .parallel.runtime.launch import launcher
+    from ..parallel.runtime.launch import launcher
 
     mpiexec = launcher()
     # What ends at once may be gone before mpiexec has spoken to it, and then mpiexec dies of SIGPIPE.

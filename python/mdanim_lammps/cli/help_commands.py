@@ -9,9 +9,9 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from .command_options import Accuracy, Force, Quiet, Set, Size
-from .errors import ExitCode, OutputError, UsageError
-from .terminal import PROGRAM
+from ..errors import ExitCode, OutputError, UsageError
+from ..terminal import PROGRAM
+from .options import Accuracy, Force, Quiet, Set, Size
 
 SCENE = """\
 # {name}.txt - a soft cube falls onto the floor. Every setting: {program} explain WORD
@@ -57,7 +57,7 @@ def init(name: str, /, *, force: Force = False) -> None:
     name
         Of the scene, e.g. first; or the file, e.g. scenes/first.txt.
     """
-    from .results.files import write_whole
+    from ..results.files import write_whole
 
     path = Path(name) if name.endswith(".txt") else Path(f"{name}.txt")
     if path.exists() and not force:
@@ -80,8 +80,8 @@ def explain(*word: str) -> None:
     word
         E.g. elasticity, liquid, torus, draft, kPa, "time step".
     """
-    from .scene.explain import explain as meaning
-    from .scene.explain import words
+    from ..scene.explain import explain as meaning
+    from ..scene.explain import words
 
     if not word:
         print(", ".join(words()))

@@ -8,16 +8,16 @@ import sys
 import urllib.parse
 from pathlib import Path
 
-from .api import Scene, movie_file, output_folder, run_frames, stored_scene
-from .command_steps import load, with_accuracy
-from .errors import MdanimError, OutputError
-from .picture.movie import render_movie
-from .results.checkpoint import Checkpoint
-from .results.files import CHECKPOINT, MARK, SUMMARY, claimed, disk_errors, write_whole
-from .results.overwriting import MADE, check_overwriting
-from .run.loop import Interrupted
-from .run.prepare import prepare
-from .scene.scene import SceneRecord
+from ..api import Scene, movie_file, output_folder, run_frames, stored_scene
+from ..errors import MdanimError, OutputError
+from ..picture.movie import render_movie
+from ..results.checkpoint import Checkpoint
+from ..results.files import CHECKPOINT, MARK, SUMMARY, claimed, disk_errors, write_whole
+from ..results.overwriting import MADE, check_overwriting
+from ..run.loop import Interrupted
+from ..run.prepare import prepare
+from ..scene.scene import SceneRecord
+from .steps import load, with_accuracy
 
 STYLE = (
     "body{font:16px sans-serif;margin:2em;background:#f8fafb}figure{margin:0}video{width:100%}code{color:#555}"

@@ -11,9 +11,11 @@ from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
-from .command_options import AllowUnstable, Control, Executors, Overwrite, Quality, Quiet, Size, Threads, View, whole_number
-from .command_steps import (
-    Viewer,
+from ..errors import ExitCode, Problem, RefusedError, UsageError
+from ..terminal import progress_bar
+from ..view.beside import Viewer, show_address
+from .options import AllowUnstable, Control, Executors, Overwrite, Quality, Quiet, Size, Threads, View, whole_number
+from .steps import (
     adopt,
     announce,
     check_executors,
@@ -22,15 +24,12 @@ from .command_steps import (
     frame_range,
     made_file,
     prepare,
-    show_address,
     simulate_and_draw,
     with_quality,
 )
-from .errors import ExitCode, Problem, RefusedError, UsageError
-from .terminal import progress_bar
 
 if TYPE_CHECKING:
-    from .scene.render import Render
+    from ..scene.render import Render
 
 
 def resume(
@@ -54,10 +53,10 @@ def resume(
     movie
         Make movie.mp4 at the end; if left out, where the run was to make one.
     """
-    from .api import stored_scene
-    from .results.checkpoint import Checkpoint
-    from .results.files import CHECKPOINT, SUMMARY, claimed
-    from .results.stored import read_manifest
+    from ..api import stored_scene
+    from ..results.checkpoint import Checkpoint
+    from ..results.files import CHECKPOINT, SUMMARY, claimed
+    from ..results.stored import read_manifest
 
     check_executors(executors)
     scene = stored_scene(folder)
@@ -104,8 +103,8 @@ def render(
     check_size(size)
     if fps is not None and not 0.0 < fps <= 1000.0:
         raise UsageError(f"--fps {fps:g}: must be above 0 and at most 1000, e.g. --fps 30")
-    from .api import movie_file
-    from .scene.parse import load_render
+    from ..api import movie_file
+    from ..scene.parse import load_render
 
     stored = adopt(folder, quiet=quiet)
     record = stored if scene is None else replace(stored, render=load_render(scene, [solid.name for solid in stored.solids]))
@@ -120,8 +119,8 @@ def render(
 
 def _warn_of_slow_motion(render: Render, frames: float) -> None:
     """Say so where a run has too few frames per second for the speed of another render block."""
-    from .scene.formatting import number
-    from .scene.render import SMOOTH_RATE, few_pictures
+    from ..scene.formatting import number
+    from ..scene.render import SMOOTH_RATE, few_pictures
 
     if cause := few_pictures(frames, render.speed):
         smooth = f"{number(SMOOTH_RATE / render.speed)} fps"
@@ -150,7 +149,7 @@ def view(
     open
         Open a browser where there is a display.
     """
-    from .view.__main__ import serve
+    from ..view.__main__ import serve
 
     if not 0 <= port <= 65535:
         raise UsageError(f"--port {port}: must be between 0 (any that is free) and 65535")
@@ -178,7 +177,7 @@ def report(
     exact
         Positions in 16 bits instead of 12.
     """
-    from .view.export import write_report
+    from ..view.export import write_report
 
     path = made_file(folder / "report.html", out, ".html", force=force)
     adopt(folder, quiet=quiet)
@@ -217,7 +216,7 @@ def export(
     force
         Overwrite the files of an earlier export.
     """
-    from .export import export as export_run
+    from ..export import export as export_run
 
     chosen = frame_range(frames)
     adopt(folder, quiet=quiet)
@@ -253,9 +252,9 @@ def timeline(
     out
         The picture's file; default timeline.png in the folder.
     """
-    from .api import stored_scene
-    from .picture.timeline import draw
-    from .results.timeline import TIMELINE, Timeline
+    from ..api import stored_scene
+    from ..picture.timeline import draw
+    from ..results.timeline import TIMELINE, Timeline
 
     scene = stored_scene(folder)
     if not (folder / TIMELINE).exists():
@@ -278,7 +277,7 @@ def compare(a: Path, b: Path, /) -> None:
     b
         Another.
     """
-    from .results.compare import compare as compare_runs
+    from ..results.compare import compare as compare_runs
 
     difference = compare_runs(a, b)
     print(difference)
