@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """Whether the advice of studies holds: each scene once more, finer in everything than any run of its study.
 
-``python bench/advice.py [--budget SECONDS] [SCENE ...]`` prints, for ten small scenes, the errors that a study tells and those
-against the finer run, and every piece of advice that this refutes.
+``python bench/advice.py [--budget SECONDS] [--runs N] [SCENE ...]`` prints, for ten small scenes, a table (docs/accuracy.md):
+errors that a study tells and those against the finer run, of the whole study and as if the budget had left out its finest runs.
+Below are the advice and what the finer run refutes.
 """
 
 import argparse
@@ -12,7 +13,15 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
 import one_thread  # noqa: F401
+from mdanim_lammps.scene.parse import parse_scene
+from mdanim_lammps.study import bench
+from mdanim_lammps.study.analysis import FIRST, Analysis, advice, analyse, as_good, better, off, worse
+from mdanim_lammps.study.error import distance
+from mdanim_lammps.study.measure import measure
+from mdanim_lammps.study.setting import Setting, finer
+from mdanim_lammps.study.study import run_study
 
 FALL = "gravity (0, 0, -9.81) m/s^2\nground z 0 m\n"
 SOFT = "density 1000 kg/m^3  elasticity 1 MPa"
@@ -83,64 +92,86 @@ FINER = 3.0
 """Cells of the check over the scene's own; the finest of a study has twice as many."""
 
 
-@dataclass(frozen=True)
-class Checked:
-    """A study beside a run that is finer in everything."""
+FEWEST = 3
+"""Runs of a ladder that is cut short."""
 
-    name: str
-    advice: str
+
+@dataclass(frozen=True)
+class Told:
+    """The results of a study, or of one that was cut short, beside a run that is finer in everything."""
+
+    finest: Setting
+    """Of the runs that the study's limit comes from."""
+    order: float | None
     doubt: float
     """How well the study says that it knows its errors, a fraction."""
-    errors: dict[str, tuple[float, float]]
-    """By setting: the error that the study tells, and that against the finer run, fractions."""
-    refuted: list[str]
+    own: tuple[float, float]
+    """Error of the scene's own setting that the study tells, and that against the finer run, fractions."""
+    misses: float
+    """Largest difference of these two, of all settings, a fraction."""
+    advice: str
+    refuted: tuple[str, ...]
     """What the finer run contradicts by more than the study's doubt."""
 
 
-def check(name: str, *, budget: float = 300.0, only: tuple[str, ...] = ()) -> Checked:
-    """Study a scene, then run it finer in everything, and compare."""
-    from mdanim_lammps.scene.parse import parse_scene
-    from mdanim_lammps.study.analysis import as_good, better, worse
-    from mdanim_lammps.study.error import distance
-    from mdanim_lammps.study.measure import measure
-    from mdanim_lammps.study.setting import finer
-    from mdanim_lammps.study.study import run_study
-
+def check(name: str, *, budget: float = 300.0, only: tuple[str, ...] = ()) -> list[Told]:
+    """Study a scene, then run it finer in everything, and compare; the whole study first, then with fewer and fewer fine runs."""
     scene = parse_scene(SCENES[name], name.replace(" ", "-"))
     with tempfile.TemporaryDirectory() as folder:
         study = run_study(scene, Path(folder) / "study", budget=budget, only=only)
-        a = study.analysis
-        truth = measure(scene, finer(a.own, FINER * a.own.cells), Path(folder)).center
+        own = study.analysis.own
+        truth = measure(scene, finer(own, FINER * own.cells), Path(folder))
+    cells = [s.cells for s in study.ladders[0].settings if s.key in study.points and study.points[s.key].tracks]
+    told = []
+    for most in reversed(cells[FEWEST - 1 :]):
+        points = {key: p for key, p in study.points.items() if p.setting.cells <= most}
+        if own.key in points:
+            names, touching = [s.name for s in scene.solids], study.analysis.touching
+            a = analyse(points, study.ladders, own, truth.times, scene.expects, names, touching=touching)
+            told.append(_compare(a, truth.center))
+    return told
+
+
+def _compare(a: Analysis, truth: np.ndarray) -> Told:
     found = {str(r.point.setting): (r.error.middle, distance(r.point.tracks[0], truth) / a.scale) for r in a.rated.values()}
 
-    def off(setting) -> float:
+    def real(setting) -> float:
         return found[str(setting)][1]
 
     def refuted() -> Iterator[str]:
-        yield from (f"{s} is {real:.2%} off, not {told:.2%}" for s, (told, real) in found.items() if abs(real - told) > a.doubt)
-        if (r := as_good(a)) and off(r.point.setting) > off(a.own) + a.doubt:
+        yield from (f"{s} is {r:.2%} off, not {told:.2%}" for s, (told, r) in found.items() if abs(r - told) > a.doubt)
+        if (r := as_good(a)) and real(r.point.setting) > real(a.own) + a.doubt:
             yield f"{r.point.setting} is not as good"
-        if (r := better(a)) and off(r.point.setting) > off(a.own):
+        if (r := better(a)) and real(r.point.setting) > real(a.own):
             yield f"{r.point.setting} is not better"
-        if (s := worse(a)) and off(s) < off(a.own):
+        if (s := worse(a)) and real(s) < real(a.own):
             yield f"{s} is not worse"
 
-    return Checked(name, study.advice, a.doubt, found, list(refuted()))
+    order = next(c.order for name in FIRST if (c := a.ladders.get(name)))
+    misses = max(abs(r - told) for told, r in found.values())
+    return Told(a.finest, order, a.doubt, found[str(a.own)], misses, advice(a), tuple(refuted()))
 
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("scenes", nargs="*", default=list(SCENES))
     parser.add_argument("--budget", type=float, default=300.0)
+    parser.add_argument("--runs", type=int, default=1, help="of each point: more of them tell the spread of seconds alone")
     options = parser.parse_args()
-    wrong = 0
+    bench.REPEATS = options.runs
+    lines, wrong = [], 0
+    print("| scene | study up to | order | own setting is told | against the finer run | all settings differ by up to | ± |")
+    print("|---|---|---|---|---|---|---|")
     for scene in options.scenes:
-        c = check(scene, budget=options.budget)
-        print(f"\n{c.name}: errors are told to {c.doubt:.2%}\n  {c.advice}")
-        for setting, (told, real) in c.errors.items():
-            print(f"    {setting:60} {told:7.2%} told {real:7.2%} against the finer run")
-        for line in c.refuted:
-            print(f"  REFUTED: {line}")
-        wrong += len(c.refuted)
+        for k, t in enumerate(check(scene, budget=options.budget)):
+            (error, real), order = t.own, f"{t.order:.1f}" if t.order else "none"
+            print(
+                f"| {'' if k else scene} | {t.finest.cells:g} cells | {order} | {off(error, t.doubt)} | "
+                f"{100 * real:.2g} % | {100 * t.misses:.2g} % | {100 * t.doubt:.2g} %{', REFUTED' if t.refuted else ''} |"
+            )
+            lines += [] if k else [f"{scene}: {t.advice}"]
+            lines += [f"REFUTED, with runs up to {t.finest.cells:g} cells: {line}" for line in t.refuted]
+            wrong += len(t.refuted)
         sys.stdout.flush()
+    print("\n" + "\n".join(f"- {line}" for line in lines))
     sys.exit(wrong > 0)

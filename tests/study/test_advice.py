@@ -22,16 +22,16 @@ def test_advice_on_a_bounce_is_not_refuted(monkeypatch):
     that the own setting is half as far off as it is, and that stiffer contact helps."""
     monkeypatch.setattr(bench, "REPEATS", 1)
     found = check("a bounce", only=("resolution", "contact"))
-    assert found.refuted == []
-    assert found.doubt < 0.5 * next(told for setting, (told, _) in found.errors.items() if setting.startswith("4 cells, 0.50"))
-    assert "opposite signs" in found.advice
+    assert [line for t in found for line in t.refuted] == []
+    assert found[0].doubt < 0.5 * found[0].own[0]
+    assert "opposite signs" in found[0].advice
 
 
 @pytest.mark.soak
 @pytest.mark.parametrize("name", SCENES)
 def test_advice_is_not_refuted(name):
-    """Run ten scenes finer in everything than any run of their studies."""
-    assert check(name).refuted == []
+    """Run ten scenes finer in everything than any run of their studies, whole ones and those that a budget cuts short."""
+    assert [line for t in check(name) for line in t.refuted] == []
 
 
 def test_a_target_counts_cells_and_contact(tmp_path):

@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from mdanim_lammps.scene.parse import parse_scene
-from mdanim_lammps.study.analysis import Measurement, advice, analyse, pareto, sharp
-from mdanim_lammps.study.error import SAFETY, converge, difference, distance, extent, growth, order_until
+from mdanim_lammps.study.analysis import Measurement, advice, analyse, off, pareto, sharp
+from mdanim_lammps.study.error import SAFETY, SHORT, converge, difference, distance, extent, growth, order_until
 from mdanim_lammps.study.setting import Ladder, Setting, together
 from mdanim_lammps.study.store import Point
 from study_lab import BAR, TIMES, track
@@ -63,6 +63,77 @@ def test_no_order_where_there_is_none(sizes, why):
     assert found.doubt == pytest.approx(SAFETY * distance(tracks[-2], tracks[-1]) / 2.0 if "round-off" not in why else 0.0)
 
 
+def _beside(track: np.ndarray, aside: float) -> np.ndarray:
+    """A track that also goes aside."""
+    out = track.copy()
+    out[:, 0, 1] += aside * TIMES
+    return out
+
+
+def test_order_of_the_finest_runs_where_all_have_none():
+    """Coarse cells may differ by more than any power of the spacing: the three finest runs tell an order, which is doubted by a
+    quarter more."""
+    steps = [1 / 2, 1 / 3, 1 / 4, 1 / 6, 1 / 8]
+    tracks = [_beside(track(1.0 + 0.2 * s**1.5), b) for s, b in zip(steps, (0.95, 0.8, 0.0, 0.0, 0.0))]
+    found = converge(steps, tracks, 2.0)
+    assert found.order == pytest.approx(1.5, abs=1e-3) and found.used == 3
+    assert distance(found.limit, track()) < 1e-3
+    assert found.doubt == pytest.approx(SAFETY * distance(tracks[-1], track()) / 2.0, rel=1e-3)
+
+
+def test_the_limit_is_that_of_the_finest_runs():
+    """Coarse runs that are far aside make errors fall steeper than those of the finest runs do, with order 1.5."""
+    steps = [1 / 2, 1 / 3, 1 / 4, 1 / 6, 1 / 8]
+    tracks = [_beside(track(1.0 + 0.4 * s**1.5), b) for s, b in zip(steps, (0.9, -0.4, 0.0, 0.0, 0.0))]
+    found = converge(steps, tracks, 2.0)
+    assert found.order > 3.0 and found.used == 4
+    assert distance(found.limit, track()) < 1e-3
+    assert found.doubt == pytest.approx(distance(tracks[-1], track()) / 2.0, rel=1e-3)
+
+
+def test_no_order_where_the_finest_runs_turn():
+    """Distances alone may fall as a power of the spacing while each run goes elsewhere: that tells no limit."""
+    steps = [1 / 2, 1 / 3, 1 / 4, 1 / 6]
+    tracks = [track(1.0 + 0.8 * s**2) for s in steps]
+    assert converge(steps, tracks, 2.0).order == pytest.approx(2.0, abs=0.01)
+    apart = distance(tracks[-1], tracks[-2])
+    way = distance(track(), _beside(track(), 1.0))
+    tracks[-1] = _beside(tracks[-2], apart / way)
+    found = converge(steps, tracks, 2.0)
+    assert found.order is None and "one way" in found.why
+
+
+def test_a_ladder_that_is_cut_short_is_doubted_more():
+    """Fewer runs than were meant to be there may be near each other by chance."""
+    own = Setting(4.0, 0.5)
+    ladder = Ladder("resolution", tuple(replace(own, cells=float(n)) for n in (2, 3, 4, 6, 8)))
+    runs = [track(1.0 + x) for x in (0.1, -0.04, 0.02, -0.01, 0.005)]
+    points = {s.key: Point(s, 1e-3, 9, 9, [1.0], [1.0], [1e-5], [0.0], [()], [t]) for s, t in zip(ladder.settings, runs)}
+    for count, factor in ((5, SAFETY), (4, SHORT), (3, SHORT)):
+        some = {s.key: points[s.key] for s in ladder.settings[:count]}
+        found = analyse(some, [ladder], own, TIMES, (), ["a", "b"])
+        finest = ladder.settings[count - 1].cells
+        near = max(distance(t, runs[count - 1]) for s, t in zip(ladder.settings, runs[:count]) if 2 * s.cells >= finest)
+        assert found.doubt == pytest.approx(factor * near / found.scale)
+
+
+@pytest.mark.parametrize(
+    ("error", "doubt", "said"),
+    [
+        pytest.param(0.11, 0.0372, "11 ± 4 %", id="a doubt is rounded up"),
+        pytest.param(0.11, 0.012, "11 ± 1.2 %", id="two digits where the first is 1"),
+        pytest.param(0.077, 0.154, "up to 24 %", id="may as well be none"),
+        pytest.param(0.11, 1e-4, "11 %", id="well known"),
+        pytest.param(0.0, 0.0372, "up to 3.8 %", id="its own limit"),
+        pytest.param(0.0, 0.0, "0 %", id="nothing moves"),
+        pytest.param(0.0, math.inf, "not known", id="one run"),
+    ],
+)
+def test_errors_are_told_with_their_doubt(error, doubt, said):
+    """Say no number of which half may be wrong."""
+    assert off(error, doubt) == said
+
+
 def test_order_is_lost_at_a_blow():
     """Find the order that holds up to a blow whose outcome follows no power of the spacing, and the time of the blow."""
     steps, blow = [1 / 2, 1 / 3, 1 / 4, 1 / 6, 1 / 8], TIMES >= 0.4
@@ -77,7 +148,7 @@ def test_order_is_lost_at_a_blow():
     own = Setting(4, 0.5)
     ladder = Ladder("resolution", tuple(replace(own, cells=round(1 / s)) for s in steps))
     points = {s.key: Point(s, 1e-3, 100, 10, [1.0], [1.0], [1e-5], [0.0], [()], [t]) for s, t in zip(ladder.settings, tracks)}
-    said = "most of the error from the resolution, which has order 2 up to t = 0.4 s and none from then on"
+    said = "most of the error from the resolution, which has order 2 up to t = 0.38 s and none from then on"
     for touching, why in ((True, ": which particles meet in a blow"), (False, "; how far others are off")):
         assert said + why in advice(analyse(points, [ladder], own, TIMES, (), ["a", "b"], touching=touching))
 

@@ -20,7 +20,7 @@ SHARP = 0.1
 ALIKE = 0.05
 """Relative difference of errors below which they are not ranked, repeated or not: the limit itself is an estimate."""
 UNSURE = 0.5
-"""Share of doubt below which an error may as well be none, and of an error from which on its doubt is told."""
+"""Share of an error from which on the doubt of all errors is told."""
 UNREPEATED = 0.1
 """Relative spread of seconds that is taken for granted as long as no point was repeated."""
 
@@ -130,7 +130,8 @@ def analyse(
         if len(settings) > 1:
             sizes, tracks = [ladder.step(s) for s in settings], [run[s.key].tracks[0] for s in settings]
             measured[ladder.name] = settings
-            found[ladder.name] = c = converge(sizes, tracks, scale)
+            short = ladder.settings[-1] not in settings
+            found[ladder.name] = c = converge(sizes, tracks, scale, short=short)
             if c.order is None and (part := order_until(times, sizes, tracks, scale)):
                 until[ladder.name] = part
     limit, doubt, finest = _limit(found, measured, own, first, scale)
@@ -260,7 +261,7 @@ def advice(a: Analysis) -> str:
         times = number(next_.seconds.middle / own.seconds.middle, 2)
         says += f"; {next_.point.setting} brings {_off(a, next_)} for {times} times the time"
     elif a.doubt > UNSURE * own.error.middle and a.off(own) >= 1e-6:
-        says += f"; how far others are off is no better known than to {_percent(a.doubt)}, by which the finest runs differ"
+        says += f"; how far others are off is no better known than to {_percent(_up(a.doubt))}"
     return says + "."
 
 
@@ -270,10 +271,19 @@ def _off(a: Analysis, rated: Rated) -> str:
 
 
 def off(error: float, doubt: float) -> str:
-    """An error and how well it is known; ``up to 3 %`` where it may as well be none."""
-    if error < UNSURE * doubt:
-        return f"up to {_percent(error + doubt)}"
-    return f"{number(100 * error, 2)} ± {_percent(doubt, 1)}" if doubt > 0.01 * error else _percent(error)
+    """An error and how well it is known; ``up to 3 %`` where it may as well be none. A doubt is rounded up."""
+    if math.isinf(doubt):
+        return "not known"
+    if error < 0.999 * doubt:  # a finest run is as far off as it is doubted
+        return f"up to {_percent(_up(error + doubt, 2))}"
+    return f"{number(100 * error, 2)} ± {_percent(_up(doubt))}" if doubt > 0.01 * error else _percent(error)
+
+
+def _up(x: float, digits: int = 1) -> float:
+    """A positive number rounded up to one digit, or two where the first is 1; or to two."""
+    first = 10.0 ** math.floor(math.log10(x))
+    unit = first / 10.0 if digits > 1 or x < 2.0 * first else first
+    return unit * math.ceil(x / unit * (1.0 - 1e-12))
 
 
 def as_good(a: Analysis) -> Rated | None:

@@ -17,16 +17,21 @@ ROUND_OFF = 1e-9
 """Differences below this, relative to the extent of the motion, are no errors of a setting."""
 CONVERGENT = 0.3
 """Differences above this share of the extent are too large to follow a power of the step."""
-HIGHEST = 4.5
-"""Highest possible order: a steeper fall is chance."""
+LOWEST, HIGHEST = 0.5, 3.5
+"""Orders that are believed: laws have 1 (contact, surfaces of lattices) and 2 (springs, leap-frog). A slower fall has no limit
+that three runs tell, a steeper one is chance."""
+ONE_WAY = 0.5
+"""Least cosine of the last two steps of a ladder that approaches a limit: errors C s^order have the direction of C whatever s is,
+and where more than that is turned, what is seen is not their fall."""
 PARTS = 60
 """Ends of a run that are tried to find out up to when it has an order."""
 PART = 0.01
 """Two runs have diverged once they differ by this share of the extent."""
 HALF_AS_FINE = 2.0
 """A finest run without a limit is compared with the runs at least half as fine: at order 1 it is as far from its limit."""
-SAFETY = 2.0
-"""Over that distance, the doubt: where errors follow no power of the step, the next run may be farther off than the last was."""
+SAFETY, SHORT = 1.25, 3.0
+"""Over an estimate of how far a limit is, the doubt: the factors of the grid convergence index for three runs and more, and for
+fewer than were meant to be there, which may be near each other by chance (docs/decisions/accuracy.md)."""
 
 
 def extent(track: np.ndarray) -> float:
@@ -55,66 +60,114 @@ class Convergence:
     """The limit of a ladder of runs, its order and its errors."""
 
     limit: np.ndarray
-    """Best estimate of the motion [m], shape (F, M, 3): Richardson's limit, or the finest run where there is no order."""
+    """Best estimate of the motion [m], shape (F, M, 3): Richardson's limit, by the order of the three finest runs if they have
+    one; the finest run where there is no order."""
     errors: tuple[float, ...]
     """Of each run against the limit, relative to the extent, coarsest first; nan for a finest run that is its own limit."""
     order: float | None
-    """Observed order, None where errors follow no power of the step."""
+    """Observed order of all runs that converge, or of the three finest; None where errors follow no power of the step."""
     used: int = 0
     """Runs in the fit."""
     why: str = ""
     """Why there is no order."""
     doubt: float = 0.0
-    """How far the limit itself may be off, relative to the extent: as far as it is from the finest run; without an order, twice
-    as far as the finest run is from any run at least half as fine."""
+    """How far the limit itself may be off, relative to the extent: as far as it is from the finest run; with an order of three
+    runs alone `SAFETY` times as far; without an order, `SAFETY` or `SHORT` times as far as the finest run is from any run at
+    least half as fine."""
 
 
-def converge(steps: Sequence[float], tracks: Sequence[np.ndarray], scale: float) -> Convergence:
+def converge(steps: Sequence[float], tracks: Sequence[np.ndarray], scale: float, *, short: bool = False) -> Convergence:
     """Find the limit of a ladder and the order in which it is approached.
 
-    The order is the slope of log error over log step, least squares over the convergent part, against Richardson's limit
-    of the two finest runs for that same order: both are found together by iteration. A fit against the finest run would
-    flatter the runs next to it. The finest run itself is left out of the fit; with three runs this is the usual formula
-    for three grids; of more runs half must converge. The convergent part reaches from the finest run as far as errors grow with
-    the step and stay below CONVERGENT.
+    The order is that of all runs, or, where these have none, that of the three finest: coarse cells may differ from fine ones by
+    more than any power of the spacing. In both cases the last two steps of the ladder must lead the same way.
 
     Args:
         steps: time step, spacing or the like of each run, falling.
         tracks: of each run [m], each of shape (F, M, 3); two at least.
         scale: extent of the motion [m].
+        short: whether finer runs are missing that were meant to be there.
     """
     tracks = [np.asarray(t) for t in tracks]
     if scale == 0.0:
         return Convergence(tracks[-1], (0.0,) * len(tracks), None, why="nothing moves")
     plain = [distance(t, tracks[-1]) / scale for t in tracks[:-1]]
-    near = [off for off, step in zip(plain, steps) if step <= 1.001 * HALF_AS_FINE * steps[-1]] or plain[-1:]
-
-    def no_order(why: str) -> Convergence:
-        return Convergence(tracks[-1], (*plain, math.nan), None, why=why, doubt=SAFETY * max(near))
-
     if max(plain) < ROUND_OFF:
         return Convergence(tracks[-1], (*plain, 0.0), None, why="all runs agree to round-off")
-    if len(tracks) < 3:
-        return no_order("an order takes three runs")
-    size = np.log(np.asarray(steps, float))
-    order, seen = 2.0, []
+    orders, used, why = (None, 0, "an order takes three runs") if len(tracks) < 3 else _orders(steps, tracks, scale)
+    if orders is None:
+        near = [off for off, step in zip(plain, steps) if step <= 1.001 * HALF_AS_FINE * steps[-1]] or plain[-1:]
+        doubt = (SHORT if short else SAFETY) * max(near)
+        return Convergence(tracks[-1], (*plain, math.nan), None, why=why, doubt=doubt)
+    limit = extrapolate(tracks[-1], tracks[-2], steps[-2] / steps[-1], orders[-1])
+    errors = tuple(distance(t, limit) / scale for t in tracks)
+    # Three runs tell an order, and leave nothing to check it by.
+    return Convergence(limit, errors, orders[0], used=used, doubt=errors[-1] * (SAFETY if why else 1.0))
+
+
+def _orders(steps: Sequence[float], tracks: Sequence[np.ndarray], scale: float) -> tuple[list[float] | None, int, str]:
+    """The order of all runs and that of the three finest, or the one of them that there is; how many runs the first is from; and
+    why there is none, of all of them or at all.
+
+    Orders of fine cells may be others than those of coarse ones: the limit is made with that of the finest.
+    """
+    every, used, why = _order_of_all(steps, tracks, scale)
+    ratio = _ratio(*tracks[-3:])
+    if ratio is None:
+        return None, 0, why or "the finest runs do not approach each other one way"
+    orders = [order for order in (every, _order_of_three(steps[-3:], ratio)) if order is not None]
+    return orders or None, used or 3, why
+
+
+def _ratio(coarse: np.ndarray, middle: np.ndarray, fine: np.ndarray) -> float | None:
+    """The first of the two steps between three runs over the second, along the way from coarse to fine; None where these steps do
+    not lead one way."""
+    which = moving(fine)
+    first, second = (middle - coarse)[:, which].ravel(), (fine - middle)[:, which].ravel()
+    if first @ second <= ONE_WAY * np.linalg.norm(first) * np.linalg.norm(second):
+        return None
+    return float((first @ (first + second)) / (second @ (first + second)))
+
+
+def _order_of_three(steps: Sequence[float], ratio: float) -> float | None:
+    """The order p for which (s1^p - s2^p) / (s2^p - s3^p) is the ratio of the steps between three runs: Richardson's formula."""
+    (a, b), c = (math.log(s / steps[-1]) for s in steps[:2]), ratio
+
+    def off(p: float) -> float:
+        return (math.exp(a * p) - math.exp(b * p)) / (math.exp(b * p) - 1.0) - c
+
+    low, high = LOWEST, HIGHEST
+    if not off(low) < 0.0 < off(high):  # the quotient grows with p
+        return None
+    while high - low > 1e-6:
+        low, high = (middle, high) if off(middle := 0.5 * (low + high)) < 0.0 else (low, middle)
+    return low
+
+
+def _order_of_all(steps: Sequence[float], tracks: Sequence[np.ndarray], scale: float) -> tuple[float | None, int, str]:
+    """The order of all runs that converge, how many these are, and why there is none.
+
+    It is the slope of log error over log step, least squares over the convergent part, against Richardson's limit of the two
+    finest runs for that same order: both are found together by iteration. A fit against the finest run would flatter the runs
+    next to it. The finest run itself is left out of the fit; with three runs this is the usual formula for three grids; of more
+    runs half must converge. The convergent part reaches from the finest run as far as errors grow with the step and stay below
+    CONVERGENT.
+    """
+    size, order = np.log(np.asarray(steps, float)), 2.0
     for _ in range(50):
         limit = extrapolate(tracks[-1], tracks[-2], steps[-2] / steps[-1], order)
         errors = np.array([distance(t, limit) for t in tracks]) / scale
         first = _convergent(errors)
         inside = slice(first, len(tracks) - 1)
         if len(size[inside]) < max(2, len(tracks) // 2):
-            return no_order("too few runs converge")
+            return None, 0, "too few runs converge"
         found = float(np.polyfit(size[inside], np.log(errors[inside]), 1)[0])
-        if not 0.5 < found < HIGHEST:
-            return no_order("errors hardly fall from run to run")
-        seen.append(found)
+        if not LOWEST < found < HIGHEST:
+            return None, 0, "errors hardly fall from run to run"
         if abs(found - order) < 1e-4:
-            break
+            return found, len(tracks) - 1 - first, ""
         order = 0.5 * (order + found)
-    else:
-        return no_order("errors follow no power of the step")
-    return Convergence(limit, tuple(map(float, errors)), found, used=len(tracks) - 1 - first, doubt=float(errors[-1]))
+    return None, 0, "errors follow no power of the step"
 
 
 def order_until(

@@ -164,10 +164,7 @@ def order_lines(study: Study) -> list[str]:
         )
         told = f"; the scene's own setting is {number(100 * own, 2)} % off its limit" if own else ""
         if c.doubt and c.order is None:
-            told += (
-                "; the limit is the finest run, which may be off by twice as much as it is from the runs half as fine, "
-                f"{number(100 * c.doubt, 2)} %"
-            )
+            told += f"; the limit is the finest run, which may be off by {number(100 * c.doubt, 2)} %"
         lines.append(f"{name}: {what}{told}")
     g = study.analysis.growth
     if study.analysis.chaotic and math.isfinite(g.folding):
