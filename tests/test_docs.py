@@ -64,7 +64,7 @@ def test_contributing_names_files_that_are_there():
 def test_architecture_names_modules_that_are_there():
     """Every module and folder that the table of rooms names lies in its room."""
     table = re.findall(r"^\| ((?:`[\w./]+` )+)(?:\(C\+\+\) )?\| (.*) \|$", text_of(ROOT / "docs" / "architecture.md"), flags=re.M)
-    bases = [ROOT, ROOT / "python" / "mdanim_lammps"]
+    bases = [ROOT, ROOT / "python" / "mdanim_lammps", ROOT / "plugin"]
     named = 0
     for rooms, about in table:
         rooms = re.findall(r"`([^`]+)`", rooms)

@@ -91,6 +91,8 @@ class Newcomer:
             self.input_script(code)
         elif code.startswith("import bpy"):
             compile(code, self.page, "exec")  # Blender's own Python is not here
+        elif code.startswith("#!/bin/bash"):
+            self.job(code)
         elif code.startswith("executor 0 "):
             assert "-->" in code or "==>" in code  # a drawing
         else:
@@ -128,6 +130,18 @@ class Newcomer:
         ended = call(*words, cwd=place)
         assert ended.returncode == 0, f"{words}: {ended.stdout}{ended.stderr}"
 
+    def job(self, code: str) -> None:
+        """A job of a batch system, from its beginning and once more, in a folder with a scene; nothing is submitted."""
+        place = self.place / "job"
+        (place / "mdanim" / "bin").mkdir(parents=True)
+        (place / "mdanim" / "bin" / "activate").write_text("sbatch() { false; }\n")
+        (place / "ball.txt").write_text(SCENE.replace("NAME", "ball"))
+        (place / "job.sh").write_text(code)
+        env = {**os.environ, "HOME": str(place), "PATH": f"{BIN}:{os.environ['PATH']}", "SLURM_NTASKS": "2"}
+        ends = [subprocess.run(["bash", "job.sh"], cwd=place, env=env, capture_output=True, text=True) for _ in range(2)]
+        assert ends[0].returncode == 0, ends[0].stderr
+        assert ends[1].returncode == 4 and "is complete" in ends[1].stderr
+
     def input_script(self, code: str) -> None:
         """Between the settings and the run of a script that the program has built."""
         head = (self.place / "ball.out" / "in.ball").read_text().split("\nrun ")[0]
@@ -161,6 +175,8 @@ def test_page(page, runs, tmp_path):
     if page == "quickstart":
         assert len(newcomer.done) >= 6 and (tmp_path / "ball.out" / "movie.mp4").exists()
         assert (tmp_path / "pool.out" / "trajectory.h5").exists() and (tmp_path / "ball3.out" / "ball.lammpstrj").exists()
+    if page == "forces":
+        assert newcomer.names["momentum"][0] == pytest.approx(newcomer.names["blow"], rel=1e-9)  # sums of other orders
     if page == "export":
         assert ["export", "beam.out", "--to", "usd"] in newcomer.done
 
