@@ -10,6 +10,7 @@ from urllib.parse import unquote
 import pytest
 from command_line import GOOD, call, run
 from mdanim_lammps import Scene
+from mdanim_lammps.api import open_run
 from mdanim_lammps.cli import doctor
 from mdanim_lammps.run.loop import Interrupted
 from mdanim_lammps.scene.explain import MARGINS, explain, words
@@ -160,6 +161,25 @@ def test_a_gallery_finishes_what_was_stopped(tmp_path):
     (place / "movie.mp4").write_text("of one frame")
     said = call("gallery", folder, "-o", tmp_path / "g")
     assert said.returncode == 0, said.stderr
+    assert (place / "summary.json").exists() and (place / "movie.mp4").stat().st_size > 1000
+
+
+def test_a_gallery_runs_what_was_stopped_at_once(tmp_path):
+    """There is no checkpoint to go on from; a folder of `build`, whose script may be changed, is left alone."""
+    folder, place, built = tmp_path / "scenes", tmp_path / "g" / "good", tmp_path / "g" / "built"
+    folder.mkdir()
+    for name in ("good", "built"):
+        (folder / f"{name}.txt").write_text(GOOD + "render { size (64, 48) }\n")
+    ready = Scene.load(folder / "good.txt").prepared
+    with open_run(ready, place, force=False):
+        pass  # and is killed
+    assert call("build", folder / "built.txt", "-o", built).returncode == 0
+    said = call("gallery", folder, "-o", tmp_path / "g")
+    assert (
+        said.returncode == 6
+        and "2 scenes, 1 of them failed" in said.stdout
+        and f"{built}/checkpoint cannot be read" in said.stderr
+    )
     assert (place / "summary.json").exists() and (place / "movie.mp4").stat().st_size > 1000
 
 

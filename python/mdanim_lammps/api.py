@@ -352,7 +352,7 @@ def default_folder(record: SceneRecord) -> Path:
 
 
 @contextmanager
-def open_run(ready: Prepared, folder: str | Path | None, *, force: bool, draws: bool = True) -> Iterator[Path]:
+def open_run(ready: Prepared, folder: str | Path | None, *, force: bool, draws: bool | None = True) -> Iterator[Path]:
     """Make the output folder (None: the default one) with all that is known before the run, and keep other runs out of it.
     Raises OutputError."""
     folder = output_folder(ready.scene, folder)

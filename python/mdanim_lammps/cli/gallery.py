@@ -14,6 +14,7 @@ from ..picture.movie import render_movie
 from ..results.checkpoint import Checkpoint
 from ..results.files import CHECKPOINT, MARK, SUMMARY, claimed, disk_errors, write_whole
 from ..results.overwriting import MADE, check_overwriting
+from ..results.stored import read_manifest
 from ..run.loop import Interrupted
 from ..run.prepare import prepare
 from ..scene.scene import SceneRecord
@@ -28,8 +29,9 @@ STYLE = (
 def make_gallery(folder: Path, out: Path, *, accuracy=None, size=None, overrides=(), force=False, quiet=False) -> tuple[int, int]:
     """Run every ``NAME.txt`` of a folder into ``out``/NAME, and write ``out``/index.html; returns how many, and how many failed.
 
-    A run that is complete is kept unless ``force`` is given, one that was stopped goes on. A scene that fails does not stop the
-    others: its message is on the page. Raises Interrupted, and OutputError where there are no scenes or no page can be written.
+    A run that is complete is kept unless ``force`` is given, one that was stopped goes on, or begins again where it has left no
+    checkpoint. A scene that fails does not stop the others: its message is on the page. Raises Interrupted, and OutputError where
+    there are no scenes or no page can be written.
     """
     scenes = sorted(folder.glob("*.txt"))
     if not scenes:
@@ -65,12 +67,20 @@ def make_gallery(folder: Path, out: Path, *, accuracy=None, size=None, overrides
     return len(scenes), failed
 
 
+def _is_without_a_state(place: Path) -> bool:
+    """Whether a folder is of a run that was stopped before its first checkpoint: nothing is lost where it begins again."""
+    if (place / CHECKPOINT).exists() or not (place / MARK).exists():
+        return False
+    return read_manifest(place).get("draws") is not None
+
+
 def _run(record: SceneRecord, place: Path, *, force: bool) -> bool:
     """Have a complete run of a scene in a folder; returns whether anything had to be run. Raises what `Scene.run` does."""
     if not force and (place / SUMMARY).exists():
         return False
-    if force or not (place / MARK).exists():
-        Scene(record).run(place, force=force)
+    anew = force or _is_without_a_state(place)
+    if anew or not (place / MARK).exists():
+        Scene(record).run(place, force=anew)
     else:
         with claimed(place):
             run_frames(prepare(stored_scene(place)), place, resume=Checkpoint.read(place / CHECKPOINT))

@@ -67,7 +67,7 @@ def resume(
         ready = prepare(scene, allow_unstable=allow_unstable)
         announce(ready, quiet, False, executors, control)
         viewer.start(folder)
-        draws = read_manifest(folder).get("draws", True) if movie is None else movie
+        draws = read_manifest(folder).get("draws") is not False if movie is None else movie
         options = {"executors": executors, "threads": threads, "control": control, "resume": checkpoint}
         simulate_and_draw(ready, folder, quiet=quiet, movie=draws, **options)
 

@@ -229,7 +229,7 @@ def build(
     record = settle(record, make=True, quiet=quiet, out=out)
     ready = prepare(record, allow_unstable=allow_unstable)
     announce(ready, quiet, verbose)
-    with open_run(ready, out, force=force) as folder:
+    with open_run(ready, out, force=force, draws=None) as folder:
         pass  # all of it is known before the run
     if not quiet:
         print(f"built    cd {shlex.quote(str(folder))} && {lmp_command()} -in {shlex.quote(f'in.{ready.plan.name}')}")

@@ -17,7 +17,7 @@ MANIFEST = record(
         "python": maybe(text),
         "scene": maybe(text),
         "movie": maybe(text),
-        "draws": flag,
+        "draws": maybe(flag),
         "packages": maybe(table(maybe(text))),
         "sha256": maybe(table(maybe(text))),
     },

