@@ -7,7 +7,7 @@ import shutil
 import numpy as np
 import plugin_path
 import pytest
-from paths import SCENES
+from paths import REPOSITORY, SCENES
 
 SCENES = SCENES / "lammps"
 # Fast and close, so that few steps hold contact, floor, drag, damp, rebuilds and rebalancing.
@@ -127,3 +127,35 @@ def test_cubes_come_to_rest_in_the_bowl(tmp_path):
     t = last_table(output)
     assert t["KinEng"].max() > 0.3 and t["KinEng"][-1] < 0.02 and t["E_bond"][-1] < 0.05
     assert "not in it: fix contact mdanim/barrier" in output
+
+
+@pytest.mark.mpi
+@pytest.mark.parametrize(
+    "scene, steps, tolerance",
+    [("pool", 200, 1e-12), ("bowl", 800, 0.02)],  # a setup has forces without dashpots: a body that falls and is damped hardly sees it
+)
+def test_a_restart_file_goes_on(tmp_path, scene, steps, tolerance):
+    """Compare two halves with a run in one piece: places at the end, and all energies."""
+    first, _ = run(tmp_path, 1, scene, "-var", "steps", str(steps))
+    again = tmp_path / "ranks1" / f"in.{scene}_restart"
+    shutil.copy(SCENES / again.name, again)
+    done = plugin_path.lmp(again, 2, "-var", "steps", str(steps))
+    assert done.returncode == 0, done.stdout + done.stderr
+    (tmp_path / "whole").mkdir()
+    _, whole = run(tmp_path / "whole", 1, scene, "-var", "steps", str(2 * steps))
+    half, whole = table(done.stdout), table(whole[whole.rindex("Per MPI rank memory") :])
+    assert half["Step"][-1] == whole["Step"][-1] == 2 * steps
+    for name in ("KinEng", "E_bond", *(name for name in half if name.startswith("f_") and "[" not in name)):
+        assert half[name][-1] == pytest.approx(whole[name][-1], rel=tolerance, abs=1e-12), name
+
+
+def test_restart_examples_are_those_of_the_scripts():
+    """Every line that a style's page shows after read_restart is a line of a script that goes on."""
+    scripts = [re.sub(r" *#.*", "", script.read_text()).split("\n") for script in SCENES.glob("in.*_restart")]
+    lines = {" ".join(line.split()) for script in scripts for line in script}
+    shown = 0
+    for page in (REPOSITORY / "docs").glob("*_mdanim_*.md"):
+        for block in re.findall(r"^```\n(read_restart +(?:pool|bowl)\.restart\n.*?)^```", page.read_text(), flags=re.S | re.M):
+            shown += 1
+            assert {" ".join(line.split()) for line in block.splitlines()} <= lines, page
+    assert shown == 4
