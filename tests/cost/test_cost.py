@@ -95,7 +95,7 @@ def test_no_second_is_counted_twice(pond):
     instance = SimpleNamespace(
         plan=ready.plan,
         system=ready.system,
-        effects=ready.plan.effects,
+        context=ready.context,
         bond_seconds=lambda: 100.0,
         fix_seconds=lambda fix: 10.0 if fix == "leapfrog" else 0.0,
         fix_value=lambda fix, k: {7: 1.0, 8: 2.0, 9: 4.0}[k],
