@@ -15,8 +15,8 @@ UPDATES = 4
 
 def dive(edge: int, period: float, stride: float) -> str:
     """Deepest and then highest place of the middle of a cube, over its edge, and updates: with a pace of updates."""
-    from mdanim_lammps.effects import liquid
     from mdanim_lammps.engine.instance import Instance
+    from mdanim_lammps.features.liquid import effect as liquid
     from mdanim_lammps.run.prepare import prepare
     from mdanim_lammps.scene.parse import parse_scene
 
@@ -41,7 +41,7 @@ def dive(edge: int, period: float, stride: float) -> str:
 
 def main() -> None:
     """Print it."""
-    from mdanim_lammps.effects.liquid import WAVE_PERIOD, WAVE_STRIDE
+    from mdanim_lammps.features.liquid.effect import WAVE_PERIOD, WAVE_STRIDE
 
     print("period, stride: deepest place, highest place, updates of cubes of 6, 12 and 24 cells")
     for pace in ((0.05, 0.25), (0.1, 1.0), (WAVE_PERIOD, WAVE_STRIDE), (0.2, 2.0)):

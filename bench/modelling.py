@@ -122,7 +122,7 @@ def physics() -> None:
 
 
 def masses() -> None:
-    from mdanim_lammps.effects.springs import spring_norm
+    from mdanim_lammps.features.springs.effect import spring_norm
     from mdanim_lammps.model import masses as fitting
     from mdanim_lammps.model.system import assemble
 

@@ -8,11 +8,11 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from certificate_samples import BOX, box, margin, pile, pool
+from mdanim_lammps import features
 from mdanim_lammps.certificate import fit_steps
-from mdanim_lammps.effects import EFFECTS
-from mdanim_lammps.effects.contact import plane_stiffness
 from mdanim_lammps.engine.commands import physics
 from mdanim_lammps.errors import DivergedError, RefusedError, SceneError
+from mdanim_lammps.features.contact.barrier import plane_stiffness
 from mdanim_lammps.run.loop import simulate
 from twin.lattice import CORNER
 
@@ -302,7 +302,7 @@ def test_buoyancy_is_a_spring_to_the_surface(prepared, model, floor):
     """Add rho_l V_i g/m_i over the height of a cell to every particle's rate, (rho_l/rho_s) g at corners, and no more: a rigid
     body bobs more slowly."""
     ready = prepared(pool(density=250))
-    found = next(e for e in EFFECTS if e.name == "buoyancy").rate(ready.context)
+    found = next(e for e in features.effects() if e.name == "buoyancy").rate(ready.context)
     system = ready.system
     np.testing.assert_allclose(found, 1000 * 9.81 / 0.05 * system.volume / system.mass, rtol=1e-12)
     texts = (pool(density=250, young=0.05, more=more) for more in ("", "effects { buoyancy off }"))

@@ -52,7 +52,7 @@ def test_check_text_and_json(scene):
 def test_effects_are_told_in_short_lines(scene, scenes):
     """Break what is on and what is off into lines that a terminal shows whole, between effects;
     every effect stands in one of them."""
-    from mdanim_lammps.effects import EFFECTS
+    from mdanim_lammps import features
 
     assert run("check", scene()).stdout.splitlines()[:4] == [
         "scene    cube.txt  1 object (27 particles)",
@@ -64,7 +64,7 @@ def test_effects_are_told_in_short_lines(scene, scenes):
         lines = run("check", scenes / f"{name}.txt").stdout.split("certify")[0].splitlines()
         assert max(map(len, lines)) <= 110
         words = " ".join(lines[1:]).replace(",", " ").split()
-        assert all(e.name in words for e in EFFECTS)
+        assert all(e.name in words for e in features.effects())
 
 
 def test_a_liquid_is_announced(scenes):

@@ -24,6 +24,7 @@ ROOMS = [
     "model",
     "reach",
     "effects",
+    "features",
     "certificate",
     "engine",
     "results",

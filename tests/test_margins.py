@@ -6,8 +6,8 @@ import math
 
 import pytest
 from certificate_samples import box, margin, pile, pool
+from mdanim_lammps import features
 from mdanim_lammps.certificate import margin_lines
-from mdanim_lammps.effects import EFFECTS
 
 
 def test_every_object_has_its_own_bound(prepared):
@@ -144,7 +144,7 @@ def test_drag_contact_and_wall_have_margins(prepared):
     ready = prepared(pile(extra="drag 2"))
     c = ready.certificate
     assert margin(c, "drag").value == pytest.approx(2 / 1.0 * c.timestep / 2, rel=1e-9) and margin(c, "drag").limit == 0.5
-    rates = {e.name: e.of(ready.scene).rate(ready.context) for e in EFFECTS if e.name in ("contact", "ground")}
+    rates = {e.name: e.of(ready.scene).rate(ready.context) for e in features.effects() if e.name in ("contact", "ground")}
     assert margin(c, "contact").limit == pytest.approx(2 / math.sqrt(rates["contact"].max()))
     assert margin(c, "wall").limit == pytest.approx(2 / math.sqrt(rates["ground"].max()))
 

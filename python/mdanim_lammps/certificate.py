@@ -17,11 +17,10 @@ from fractions import Fraction
 
 import numpy as np
 
+from . import features
 from .effects import Context
 from .effects.envelope import Envelope
 from .effects.margin import Margin
-from .effects.resting import frictionless, slopes
-from .effects.standing import towers
 from .errors import Problem, RefusedError, SceneError, Span
 from .scene.formatting import estimate, number, say
 from .scene.scene import Accuracy, SceneRecord
@@ -253,10 +252,13 @@ def _margins(envelope: Envelope, limit: np.ndarray) -> list[Margin]:
 
 
 def _notes(envelope: Envelope) -> list[Problem]:
-    """Those of the effects, what slides, and what will not stand."""
+    """Those of the effects that are on, and the advice of all features."""
     if not envelope.reach.moving.any():
         return []
-    return [*(n for e in envelope.on for n in e.notes(envelope)), *frictionless(envelope), *slopes(envelope), *towers(envelope)]
+    return [
+        *(n for e in envelope.on for n in e.notes(envelope)),
+        *(n for advice in features.facets("advice") for n in advice.notes(envelope)),
+    ]
 
 
 def _bounds(env: Envelope, limit: np.ndarray) -> list[Margin]:

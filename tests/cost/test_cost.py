@@ -10,10 +10,10 @@ from dataclasses import replace
 from types import SimpleNamespace
 
 import pytest
+from mdanim_lammps import features
 from mdanim_lammps.cost import later as later_steps
 from mdanim_lammps.cost import movie_forecast
 from mdanim_lammps.cost.forecast import extrapolate, forecast
-from mdanim_lammps.effects import EFFECTS
 from mdanim_lammps.errors import DivergedError, SetupError
 from mdanim_lammps.report import check_json, cost_line, forecast_line, quicker_line
 from mdanim_lammps.results.cost import Cost, CostShare
@@ -81,7 +81,7 @@ def test_parts_add_up_to_the_wall_time(pond):
 def test_every_effect_has_its_seconds_and_its_line(pond):
     """Tell the seconds of each effect that is on, tied to the scene line that called for it."""
     ready, result = pond
-    assert list(result.cost.effects) == [e.name for e in EFFECTS]  # all of them are on
+    assert list(result.cost.effects) == [e.name for e in features.effects()]  # all of them are on
     for name, part in result.cost.effects.items():
         assert part.seconds > 0.0 or name in ("walls", "contact"), name
         assert part.place == str(ready.verdicts[name].span)
@@ -101,7 +101,7 @@ def test_no_second_is_counted_twice(pond):
         fix_value=lambda fix, k: {7: 1.0, 8: 2.0, 9: 4.0}[k],
         array=lambda name: ready.plan.columns["lambda"],
     )
-    clocks = {e.name: e.of(ready.scene).clocks(instance) for e in EFFECTS}
+    clocks = {e.name: e.of(ready.scene).clocks(instance) for e in features.effects()}
     account = Account()
     add_clocks(account, instance)
     assert account.effects == clocks

@@ -5,14 +5,15 @@ import math
 
 import numpy as np
 import pytest
+from mdanim_lammps import features
 from mdanim_lammps.certificate import note_lines
-from mdanim_lammps.effects import EFFECTS, resolve
-from mdanim_lammps.effects.contact import plane_stiffness
-from mdanim_lammps.effects.contact_surface import carried_area
+from mdanim_lammps.effects import resolve
 from mdanim_lammps.engine.commands import input_script
 from mdanim_lammps.engine.instance import Instance
 from mdanim_lammps.engine.sub_plan import SubPlans
 from mdanim_lammps.errors import SceneError
+from mdanim_lammps.features.contact.barrier import plane_stiffness
+from mdanim_lammps.features.contact.surface import carried_area
 from mdanim_lammps.run.energy import ledger_terms, loss_terms
 from mdanim_lammps.run.loop import simulate
 from mdanim_lammps.scene.parse import parse_scene
@@ -149,13 +150,14 @@ def test_the_energy_of_contact_is_that_of_surfaces_and_barrier(prepared):
 def test_the_effects_of_a_scene_are_those_of_its_model():
     """One effect of each name, whichever the model; the table stays as it is."""
     for model in ("paper", "surface"):
-        resolved = resolve(EFFECTS, parse_scene(pile(z=0.2).replace("contact-model surface", f"contact-model {model}")))
+        scene = parse_scene(pile(z=0.2).replace("contact-model surface", f"contact-model {model}"))
+        resolved = resolve(features.effects(), scene)
         names = [type(e).__name__ for e in resolved.effects if e.name in ("contact", "ground", "walls")]
         surface = model == "surface"
         assert names == (
             ["SurfaceContact", "SurfaceGround", "SurfaceWalls"] if surface else ["Contact", "GroundPlane", "WallPlanes"]
         )
-    assert [e.name for e in EFFECTS] == list(resolved.verdicts)
+    assert [e.name for e in features.effects()] == list(resolved.verdicts)
 
 
 # --- the bound ------------------------------------------------------------------------------------------------------
@@ -461,5 +463,5 @@ control {{ time 1 s  contact-model surface  {control} }}
 )
 def test_friction_may_bring_objects_together(a, control, on):
     """A spinning ball stays where it is on ice and rolls to another on rough ground."""
-    resolved = resolve(EFFECTS, parse_scene(ROLL.format(a=a, control=control)))
+    resolved = resolve(features.effects(), parse_scene(ROLL.format(a=a, control=control)))
     assert resolved.verdicts["contact"].on == on

@@ -6,12 +6,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from mdanim_lammps.effects import EFFECTS, decide
-from mdanim_lammps.effects.contact import plane_stiffness
-from mdanim_lammps.effects.liquid_cells import MOST_LAYERS, lattice_cells, layers_of_cells
+from mdanim_lammps import features
+from mdanim_lammps.effects import decide
 from mdanim_lammps.engine.commands import input_script
 from mdanim_lammps.engine.data_file import data_text
 from mdanim_lammps.engine.instance import Instance
+from mdanim_lammps.features.contact.barrier import plane_stiffness
+from mdanim_lammps.features.liquid.tables import MOST_LAYERS, lattice_cells, layers_of_cells
 from mdanim_lammps.scene.parse import parse_scene
 
 FULL = """gravity (0, 0, -9.81)
@@ -56,10 +57,10 @@ LINES = {
 
 def verdicts(text):
     """Verdicts and warnings for a scene text."""
-    return decide(EFFECTS, parse_scene(text))
+    return decide(features.effects(), parse_scene(text))
 
 
-@pytest.mark.parametrize("effect", [e.name for e in EFFECTS])
+@pytest.mark.parametrize("effect", [e.name for e in features.effects()])
 def test_each_effect_is_called_for_by_its_line(effect):
     """Switch on with the line that calls for it."""
     verdict = verdicts(FULL)[0][effect]
@@ -75,20 +76,20 @@ def test_what_pushes_back_tells_an_unusual_stiffness(effect):
     assert told != usual and told.replace(", 2.5 times as stiff as usual", "") == usual
 
 
-@pytest.mark.parametrize("effect", [e.name for e in EFFECTS if e.name != "springs"])
+@pytest.mark.parametrize("effect", [e.name for e in features.effects() if e.name != "springs"])
 def test_each_effect_is_off_without_cause(effect):
     """Stay off, with a reason, in a scene of one free ball."""
     verdict = verdicts(BARE)[0][effect]
     assert not verdict.on and verdict.reason
 
 
-@pytest.mark.parametrize("effect", [e.name for e in EFFECTS])
+@pytest.mark.parametrize("effect", [e.name for e in features.effects()])
 def test_a_needed_effect_switched_off_is_a_warning(effect):
     """Say what will look wrong."""
     found, warnings = verdicts(FULL + f"effects {{ {effect} off }}\n")
     assert not found[effect].on
     assert [w.severity for w in warnings] == ["warning"]
-    assert next(e for e in EFFECTS if e.name == effect).if_off in warnings[0].hint
+    assert next(e for e in features.effects() if e.name == effect).if_off in warnings[0].hint
 
 
 def test_a_needless_effect_cannot_be_switched_on():
@@ -134,7 +135,7 @@ def pool(liquid="level 0.25 m", block="", top=""):
 
 def commands(ready, name):
     """What an effect writes for LAMMPS."""
-    return next(e for e in EFFECTS if e.name == name).commands(ready.context)
+    return next(e for e in features.effects() if e.name == name).commands(ready.context)
 
 
 @pytest.mark.parametrize("effect", ["basin", "buoyancy", "liquid-drag"])
@@ -362,7 +363,7 @@ def test_what_is_on_is_there(prepared, model):
 
 
 @pytest.mark.parametrize("model", MODELS)
-@pytest.mark.parametrize("effect", [e.name for e in EFFECTS])
+@pytest.mark.parametrize("effect", [e.name for e in features.effects()])
 def test_what_is_off_leaves_nothing(prepared, effect, model):
     """Find no trace of an effect that is off, nor of those that need it, and all traces of the others."""
     ready = prepared(ALL.replace("MODEL", model) + f"effects {{ {effect} off }}\n")

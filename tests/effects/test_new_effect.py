@@ -5,7 +5,7 @@ import json
 
 import numpy as np
 import pytest
-from mdanim_lammps import effects
+from mdanim_lammps import effects, features
 from mdanim_lammps.effects.margin import Margin
 from mdanim_lammps.engine.commands import input_script
 from mdanim_lammps.engine.data_file import data_text
@@ -65,7 +65,8 @@ class Wind(effects.Effect):
 @pytest.fixture
 def windy(monkeypatch, prepared):
     """Prepare a scene with the wind in the table of effects."""
-    monkeypatch.setattr(effects, "EFFECTS", (*effects.EFFECTS, Wind()))
+    known = features.effects()
+    monkeypatch.setattr(features, "effects", lambda: (*known, Wind()))
     return lambda v=0, hold="all": prepared(SCENE.format(v=v, hold=hold))
 
 

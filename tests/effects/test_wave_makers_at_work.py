@@ -4,9 +4,9 @@
 import numpy as np
 import pytest
 from mdanim_lammps import Scene
-from mdanim_lammps.effects.liquid import CELLS, CELLS_AT_START, CREST
 from mdanim_lammps.engine.instance import Instance
 from mdanim_lammps.errors import SceneError
+from mdanim_lammps.features.liquid.effect import CELLS, CELLS_AT_START, CREST
 from mdanim_lammps.run.prepare import prepare
 from mdanim_lammps.scene.parse import parse_scene
 

@@ -10,8 +10,8 @@ import heave
 import numpy as np
 import pytest
 from mdanim_lammps import Scene, Trajectory
-from mdanim_lammps.effects.liquid import WAVES
 from mdanim_lammps.engine.instance import Instance
+from mdanim_lammps.features.liquid.effect import WAVES
 from mdanim_lammps.results.expect import immersed_share
 from mdanim_lammps.results.ledger import LIQUID_MOMENTUM
 from mdanim_lammps.run.prepare import prepare

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import numpy as np
-from mdanim_lammps.model.basin import plan_grid
+from mdanim_lammps.features.liquid.basin import plan_grid
 from mdanim_lammps.model.model import Layer, Model, Surface
 from mdanim_lammps.model.springs import types
 from mdanim_lammps.results.trajectory_writer import TrajectoryWriter

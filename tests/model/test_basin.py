@@ -8,9 +8,11 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from mdanim_lammps.effects import EFFECTS, resolve
+from mdanim_lammps import features
+from mdanim_lammps.effects import resolve
 from mdanim_lammps.errors import SceneError, Span
-from mdanim_lammps.model import basin, build_models, shapes
+from mdanim_lammps.features.liquid import basin
+from mdanim_lammps.model import build_models, shapes
 from mdanim_lammps.model.spacing import choose_spacing
 from mdanim_lammps.model.system import assemble
 from mdanim_lammps.run.prepare import prepare
@@ -49,7 +51,7 @@ def falling(*solids, h=0.1, liquid=WATER):
 def problems(*solids, h=0.1, effects=None, **liquid):
     """What is wrong with these solids and this liquid."""
     made = replace(falling(*solids, h=h, liquid=replace(WATER, **liquid)), effects=effects or {})
-    resolved = resolve(EFFECTS, made)
+    resolved = resolve(features.effects(), made)
     return [p for e in resolved.effects for p in e.problems(resolved, build_models(made), grid_of(made))]
 
 

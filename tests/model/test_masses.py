@@ -3,7 +3,7 @@
 
 import numpy as np
 import pytest
-from mdanim_lammps.effects.springs import spring_norm
+from mdanim_lammps.features.springs.effect import spring_norm
 from mdanim_lammps.model import build_models, shapes
 from mdanim_lammps.model.lattice import cells_around
 from mdanim_lammps.model.masses import HEAVIEST, STEPS, exposed, inertia

@@ -3,11 +3,11 @@
 
 import numpy as np
 import pytest
-from mdanim_lammps.effects.liquid import CELLS
 from mdanim_lammps.engine.instance import Instance
 from mdanim_lammps.errors import SceneError
-from mdanim_lammps.model.basin import plan_grid
-from mdanim_lammps.model.occupied import filled, room
+from mdanim_lammps.features.liquid.basin import plan_grid
+from mdanim_lammps.features.liquid.effect import CELLS
+from mdanim_lammps.features.liquid.occupied import filled, room
 from mdanim_lammps.model.spacing import choose_spacing
 from mdanim_lammps.run.prepare import prepare
 from mdanim_lammps.scene.parse import parse_scene

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from mdanim_lammps.model.basin import Grid
+from mdanim_lammps.model.grid import Grid
 from mdanim_lammps.picture.foam import BREAKING, FADE, MOST, Foam, breaking, looked_at, spread
 from mdanim_lammps.picture.render import Painter
 from mdanim_lammps.results.trajectory import Trajectory

@@ -9,7 +9,7 @@ import numpy as np
 import plugin_lab as lab
 import pytest
 from liquid_lab import call
-from mdanim_lammps.model.basin import Grid
+from mdanim_lammps.model.grid import Grid
 from mdanim_lammps.picture.liquid import Blocks, kept_dry, undersides
 from mdanim_lammps.picture.render import Painter
 from mdanim_lammps.results.trajectory import Trajectory

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from mdanim_lammps.model.basin import Grid
+from mdanim_lammps.model.grid import Grid
 from mdanim_lammps.picture import tank
 from mdanim_lammps.picture.camera import action_of
 from mdanim_lammps.picture.liquid import Blocks, Drops, Sheet, droplets, overhang, without_puddles

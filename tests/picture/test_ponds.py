@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from mdanim_lammps.model.basin import Grid
+from mdanim_lammps.model.grid import Grid
 from mdanim_lammps.picture.hulls import FINER, against_bodies, dry_spots
 from mdanim_lammps.picture.liquid import PUDDLE, kept_dry
 from mdanim_lammps.picture.ponds import one_sheet, parted

@@ -5,7 +5,8 @@ import random
 
 import numpy as np
 import pytest
-from mdanim_lammps.effects import EFFECTS, acting, decide
+from mdanim_lammps import features
+from mdanim_lammps.effects import acting, decide
 from mdanim_lammps.engine.instance import Instance
 from mdanim_lammps.reach import Reach, bounding_radius
 from mdanim_lammps.reach.region import Sweeps, _overlaps
@@ -38,7 +39,7 @@ POOL = "liquid w {{ basin from (-1, -1, {z}) to (3, 1, {top}) density 1000 level
 
 def reach(scene):
     """Of what acts on its objects."""
-    return Reach(scene, acting(EFFECTS, scene))
+    return Reach(scene, acting(features.effects(), scene))
 
 
 def pair(top="", a="", b=""):
@@ -89,13 +90,13 @@ def test_what_can_meet(scene, meet):
 
 def test_contact_is_off_with_the_nearest_pair():
     """Name the nearest two, what is left between them, and the scene line."""
-    verdict = decide(EFFECTS, pair(DOWN))[0]["contact"]
+    verdict = decide(features.effects(), pair(DOWN))[0]["contact"]
     assert not verdict.on and verdict.span.line == 10
     # 2 m less two radii with a tenth of slack, less 2.5 spacings of reach for each.
     assert "nearest are a and b, with 1.53 m to spare" in verdict.reason
-    verdict = decide(EFFECTS, pair(DOWN, a="velocity (9, 0, 0)"))[0]["contact"]
+    verdict = decide(features.effects(), pair(DOWN, a="velocity (9, 0, 0)"))[0]["contact"]
     assert verdict.on and verdict.reason == "a and b may meet; no object has friction" and verdict.span.line == 10
-    verdict = decide(EFFECTS, pair(DOWN, a="velocity (9, 0, 0)\n friction 0.3"))[0]["contact"]
+    verdict = decide(features.effects(), pair(DOWN, a="velocity (9, 0, 0)\n friction 0.3"))[0]["contact"]
     assert verdict.on and verdict.reason == "a and b may meet"
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from mdanim_lammps.model.basin import Grid
+from mdanim_lammps.model.grid import Grid
 from mdanim_lammps.results.expect import Measured, evaluate, immersed_depth, immersed_share, recorded
 from mdanim_lammps.scene.scene import Expect
 

@@ -12,7 +12,8 @@ import h5py
 import numpy as np
 import pytest
 from mdanim_lammps.errors import OutputError
-from mdanim_lammps.model.basin import MOST_DROPS, Grid
+from mdanim_lammps.features.liquid.basin import MOST_DROPS
+from mdanim_lammps.model.grid import Grid
 from mdanim_lammps.results.trajectory import Trajectory
 from mdanim_lammps.results.trajectory_file import trajectory_bytes
 from mdanim_lammps.results.trajectory_writer import TrajectoryWriter

@@ -11,7 +11,7 @@ from multiprocessing import get_context
 from multiprocessing.connection import Connection
 from pathlib import Path
 
-from ..effects.air_drag import LEAPFROG
+from ..effects.readings import LEAPFROG
 from ..errors import DivergedError, MdanimError, SetupError
 from ..results.cost import Cost
 from ..results.files import STOP

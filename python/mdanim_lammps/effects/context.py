@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from ..errors import Problem, Span
-from ..model.basin import Grid
+from ..model.grid import Grid
 from ..model.model import Model
 from ..model.planes import Plane
 from ..model.spacing import Spacing

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from ..errors import Problem
-from ..model.basin import Grid
+from ..model.grid import Grid
 from ..model.model import Model
 from ..model.planes import Plane
 from ..model.system import System
@@ -32,6 +32,8 @@ class Effect:
 
     name = ""
     """As in ``effects { name off }``; also its name in the cost table."""
+    order = 1000
+    """Where its forces stand in the sum of all, ascending, by name where two have the same."""
     fix = ""
     """ID of its LAMMPS fix of ours, which times itself; empty when it has none."""
     ledger = ""
@@ -47,7 +49,7 @@ class Effect:
     keeps_apart = False
     """Whether objects cannot be inside each other where it is on."""
     needs: tuple[str, ...] = ()
-    """Effects without which this one cannot be; they stand before it in EFFECTS."""
+    """Effects without which this one cannot be; they stand before it in the sum."""
     if_off = ""
     """What looks wrong when a scene needs the effect and it is switched off."""
 
@@ -172,6 +174,10 @@ class Effect:
     def acts_on(self, context: Context) -> bool:
         """Whether it has anything to act on in a part of a scene: some of its solids, and the cells of a grid or not."""
         return True
+
+    def matters_below(self, context: Context) -> float:
+        """Height from which on a solid does not matter to its cells, nor these to the solid [m]."""
+        return -math.inf
 
     def warnings(self, context: Context) -> list[Problem]:
         """What is doubtful about the start of a scene that the effect is on in."""

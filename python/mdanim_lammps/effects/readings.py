@@ -14,6 +14,10 @@ if TYPE_CHECKING:
     from .context import Context
 
 
+LEAPFROG = "leap-frog"
+"""Clock of the integrator; what effects take of it is not counted with the integrator's own time."""
+
+
 class Readings(Protocol):
     """What an instance tells, at the last step of a `run` or after `setup` (engine/instance.py)."""
 

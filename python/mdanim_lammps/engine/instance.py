@@ -9,7 +9,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from ..errors import DivergedError, SetupError
-from ..model.basin import MOST_DROPS, Grid
+from ..features.liquid.basin import MOST_DROPS
+from ..model.grid import Grid
 from .c_arrays import body_arguments, pointer
 from .calibration import calibrate
 from .commands import BALANCE, SKIN, bond_coeffs, box, physics, prelude, told_once

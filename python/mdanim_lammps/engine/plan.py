@@ -11,8 +11,8 @@ import numpy as np
 
 from ..certificate import Certificate, strong_drag
 from ..effects import Context, Effect
-from ..model.basin import Grid
 from ..model.contact_body import ContactBody
+from ..model.grid import Grid
 from ..model.springs import types
 from ..model.system import System
 from ..scene.scene import SceneRecord

@@ -11,7 +11,6 @@ from itertools import accumulate, pairwise
 import numpy as np
 
 from ..effects import Context, Effect
-from ..effects.liquid import top_of_reach
 from ..model.system import System
 from .plan import Ends, Plan, both_ends
 
@@ -55,7 +54,7 @@ class SubPlans:
     def liquid_top(self) -> float:
         """Height from which on an object does not matter to the liquid, nor the liquid to it [m]; minus infinity
         without liquid."""
-        return top_of_reach(self.whole.grid) if self.whole.grid else -np.inf
+        return max((e.matters_below(self.whole.context) for e in self.whole.effects), default=-np.inf)
 
     def part(self, objects: Sequence[int], liquid: bool) -> Plan:
         """The plan of these objects, from 0 and ascending, and of the liquid with what it does to them, or without.

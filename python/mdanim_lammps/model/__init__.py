@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""Solids as particles and springs, basins as cells: ``plan_spacing``, ``build_models``, ``check_geometry``, ``check_basin``."""
+"""Solids as particles and springs: ``plan_spacing``, ``build_models``, ``check_geometry``."""
 
-from .basin import check_basin
 from .build import build_models
 from .model import Layer, Model, Surface
 from .overlap import check_geometry
 from .spacing import Spacing, plan_spacing
 
-__all__ = ["Layer", "Model", "Spacing", "Surface", "build_models", "check_basin", "check_geometry", "plan_spacing"]
+__all__ = ["Layer", "Model", "Spacing", "Surface", "build_models", "check_geometry", "plan_spacing"]

@@ -11,7 +11,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from ..model.basin import Grid
+from ..model.grid import Grid
 
 BREAKING = (0.6, 1.2)
 """By how much the slope of the surface grows within a column where foam begins, and where all is white: at the foot of a bore, of

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..model.basin import Grid
+from ..model.grid import Grid
 from .liquid import DRIP
 
 FINER = 4

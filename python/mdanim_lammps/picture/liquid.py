@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..model.basin import Grid
+from ..model.grid import Grid
 
 
 class Sheet:

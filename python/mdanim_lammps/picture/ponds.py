@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..model.basin import Grid
+from ..model.grid import Grid
 from .hulls import AROUND, ASIDE, FINER, SHORE, Spots, against_bodies, beside, dry_spots
 from .liquid import DRIP, PUDDLE
 

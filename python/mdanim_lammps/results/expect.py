@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ..model.basin import Grid
+from ..model.grid import Grid
 from ..model.model import Model
 from ..model.system import System
 from ..scene.formatting import number

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .. import effects
+from .. import features
+from ..effects import acting
 from ..reach import Acting
 from ..scene.scene import Save
 
@@ -61,12 +62,12 @@ class ContactForces:
         if (scene := trajectory.scene) is None:
             self.why = "the scene of this run, or one of its meshes, cannot be read here"
             return
-        acting = Acting(scene, effects.acting(effects.EFFECTS, scene))
-        self._gravity = acting.acceleration
+        uniform = Acting(scene, acting(features.effects(), scene))
+        self._gravity = uniform.acceleration
         held = np.add.reduceat(m.held, m.first[:-1]) > 0
         self._told = ~held & ~m.still & np.array([not solid.drag for solid in scene.solids])
         self._alone = np.flatnonzero(~self._told)
-        if len(self._alone) != 1 or acting.planes:
+        if len(self._alone) != 1 or uniform.planes:
             self._alone = self._alone[:0]
         if scene.liquid:
             self.why = "lift and drag of the liquid act as well, and frames do not tell them apart"

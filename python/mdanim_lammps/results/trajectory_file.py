@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..errors import OutputError
-from ..model.basin import Grid
+from ..model.grid import Grid
 from ..model.model import Model, Surface
 from ..scene.scene import Save
 from .files import disk_errors, sync

@@ -9,7 +9,8 @@ from functools import cached_property
 
 import numpy as np
 
-from ..model.basin import MOST_DROPS, Grid
+from ..features.liquid.basin import MOST_DROPS
+from ..model.grid import Grid
 from ..model.model import Layer, Model, Surface
 from ..scene.scene import Liquid, Save, SceneRecord, Vector
 from .weights import Weights

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import OutputError
-from ..model.basin import Grid
+from ..model.grid import Grid
 from ..model.model import Model
 from ..model.system import centers
 from ..scene.scene import SceneRecord

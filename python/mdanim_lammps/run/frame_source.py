@@ -11,8 +11,12 @@ from typing import Protocol
 
 import numpy as np
 
-from ..effects.air_drag import LEAPFROG
-from ..effects.liquid import (
+from ..effects.readings import LEAPFROG
+from ..engine.instance import Instance
+from ..engine.plan import Plan
+from ..engine.state import State
+from ..errors import DivergedError
+from ..features.liquid.effect import (
     BASIN_IMPULSE,
     CAME,
     CELLS,
@@ -25,10 +29,6 @@ from ..effects.liquid import (
     LiquidAutomaton,
     is_wavy,
 )
-from ..engine.instance import Instance
-from ..engine.plan import Plan
-from ..engine.state import State
-from ..errors import DivergedError
 from ..model.model import Model
 from ..results.checkpoint import Checkpoint
 from ..results.frame_rows import FrameRows, RowWriter

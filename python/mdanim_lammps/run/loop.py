@@ -14,11 +14,11 @@ from pathlib import Path
 import numpy as np
 
 from .. import __version__
-from ..effects.air_drag import LEAPFROG
-from ..effects.liquid import is_wavy, overflow
+from ..effects.readings import LEAPFROG
 from ..engine.commands import input_script
 from ..engine.data_file import write_bodies, write_data
 from ..errors import DivergedError, ExitCode, MdanimError, OutputError, Problem
+from ..features.liquid.effect import is_wavy, overflow
 from ..interrupts import Interrupts
 from ..results.checkpoint import Checkpoint
 from ..results.cost import Cost, CostShare

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
-from .. import effects
+from .. import features
 from ..certificate import Certificate, certify
 from ..certificate import warnings as margin_warnings
 from ..effects import Context, Resolved, Verdict, resolve
@@ -89,7 +89,7 @@ def prepare(scene: SceneRecord, *, allow_unstable: bool = False, progress: Calla
 
 
 def _prepare(scene: SceneRecord, spacing: Spacing, allow_unstable: bool, progress: Callable[[int, int], None] | None) -> Prepared:
-    resolved = resolve(effects.EFFECTS, scene, spacing.h)
+    resolved = resolve(features.effects(), scene, spacing.h)
     grid = next((cells for e in resolved.effects if (cells := e.grid(scene, spacing.h))), None)
     models = build_models(scene, spacing.h, progress)
     problems = check_geometry(scene, models) + [p for e in resolved.effects for p in e.problems(resolved, models, grid)]

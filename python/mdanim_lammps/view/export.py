@@ -22,7 +22,7 @@ from tempfile import TemporaryFile
 
 import numpy as np
 
-from .. import effects
+from .. import features
 from ..api import STUDY, stored_scene
 from ..effects import resolve
 from ..errors import MdanimError, OutputError, RefusedError
@@ -297,7 +297,7 @@ def _sections(folder: Path, news: dict) -> Iterable[str]:
         yield _table("Certificate", ["", "limit", "object", ""], rows, what)
     try:
         scene = stored_scene(folder)
-        verdicts = resolve(effects.EFFECTS, scene).verdicts.values()
+        verdicts = resolve(features.effects(), scene).verdicts.values()
         rows = [("on" if v.on else "off", v.name, v.reason, Path(str(v.span)).name if v.span else "") for v in verdicts]
         yield _table("Effects", ["", "effect", "why", "line"], rows)
     except MdanimError as error:

@@ -1,32 +1,12 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""An effect that only tests know: forces depend on the history of particles and of pairs of objects (tests/lab/plugin).
-
-To be imported before everything that looks at the table of effects. Nothing else in the package knows this effect.
-"""
+"""The feature of tests/lab/features/remembers, with the plugin that it needs: to be imported before LAMMPS is."""
 
 import os
-import sys
+from pathlib import Path
 
 import plugin_library
-from mdanim_lammps import effects
+from mdanim_lammps import features
 from mdanim_lammps.engine.plugin import folder
 
-assert "mdanim_lammps.run.prepare" not in sys.modules, "too late: the table of effects has been read"
-
-
-class Memory(effects.Effect):
-    name = "memory"
-    fix_id = "memory"
-
-    def called_for(self, scene, reach):
-        return effects.Verdict(self.name, True, "a test wants it")
-
-    def commands(self, context):
-        reach = 0.4 * float(
-            context.system.spacing.max()
-        )  # objects farther apart than contact reaches must not matter to each other
-        return [f"fix {self.fix_id} mobile mdanim/test/memory {reach!r} 1e-4 1e-3"]
-
-
-effects.EFFECTS = (*effects.EFFECTS, Memory())
+features.add(Path(__file__).parents[1] / "features" / "remembers")
 os.environ["LAMMPS_PLUGIN_PATH"] = ":".join([folder(), str(plugin_library.build().parent)])

@@ -4,8 +4,8 @@
 import numpy as np
 import pytest
 from contact_lab import contacts
-from mdanim_lammps.effects.contact_surface import ALONE
 from mdanim_lammps.engine.instance import Instance
+from mdanim_lammps.features.contact.surface import ALONE
 from state_lab import Records
 
 YOUNG, H = 0.5e6, 0.01

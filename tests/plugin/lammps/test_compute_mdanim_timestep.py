@@ -9,7 +9,7 @@ import numpy as np
 import plugin_lab as lab
 import pytest
 from mdanim_lammps.certificate import stable_step
-from mdanim_lammps.effects.springs import block_norm
+from mdanim_lammps.features.springs.effect import block_norm
 
 BODY = lab.shaken(lab.join(lab.block((4, 3, 2)), lab.block((2, 2, 2), (6.0, 0.0, 0.0))), 0.05)
 RUN = ["compute step all mdanim/timestep", "fix run all mdanim/leapfrog", "thermo_style custom step c_step c_step[*]"]

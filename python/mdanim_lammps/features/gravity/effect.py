@@ -5,12 +5,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from .context import Verdict
-from .effect import Effect
+from ...effects.context import Verdict
+from ...effects.effect import Effect
 
 
 class Gravity(Effect):
     name = fix = "gravity"
+    order = 30
     ledger = "gravity"
     has_potential = True
     if_off = "nothing falls"
@@ -31,3 +32,6 @@ class Gravity(Effect):
     def potential(self, scene, mass, x):
         # No matrix product: the threads that it may start cost more than it. Axis by axis einsum is four times as fast.
         return -float(sum(g * np.einsum("i,i->", mass, x[:, d]) for d, g in enumerate(scene.gravity) if g))
+
+
+EFFECTS = (Gravity(),)

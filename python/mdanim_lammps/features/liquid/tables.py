@@ -5,8 +5,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..model.embed import FACES
-from ..model.system import System
+from ...model.embed import FACES
+from ...model.system import System
 
 
 def lattice_cells(system: System) -> np.ndarray:

@@ -9,13 +9,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..errors import Problem
-from ..model.planes import Plane
-from ..model.system import System
-from ..scene.contact_pairs import any_friction, frictions, pair_rules
-from ..scene.formatting import number
-from ..scene.scene import Box, ContactModel, Ellipsoid, SceneRecord, Sphere, Torus
-from .envelope import Envelope
+from ...effects.envelope import Envelope
+from ...errors import Problem
+from ...model.planes import Plane
+from ...model.system import System
+from ...scene.contact_pairs import any_friction, frictions, pair_rules
+from ...scene.formatting import number
+from ...scene.scene import Box, ContactModel, Ellipsoid, SceneRecord, Sphere, Torus
 
 LEVEL = 1e-6
 """Tangent of a slope that is nothing but rounding."""

@@ -7,12 +7,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ..errors import Problem
-from ..model.planes import innermost, scene_planes
-from ..model.touching import WAY_NAMES, Touch, behind_planes
-from ..scene.formatting import at_least, say, whole
-from .context import Verdict
-from .effect import Effect, stiffness_told
+from ...effects.effect import Effect
+from ...errors import Problem
+from ...model.planes import innermost, scene_planes
+from ...model.touching import WAY_NAMES, Touch, behind_planes
+from ...scene.formatting import at_least, say, whole
 
 OR_ON_SURFACES = "or write contact-model surface in control, where what touches holds no energy"
 """The other way out of a start within the reach of the paper's contact."""
@@ -78,32 +77,3 @@ class Boundary(Effect):
         # A wall does not move, so D_i alone bounds it, without the factor 2 of a pair.
         system = context.system
         return np.where(system.held, 0.0, system.contact_stiffness / system.mass)
-
-
-class GroundPlane(Boundary):
-    name = fix = "ground"
-    if_off = "objects fall for ever"
-
-    def called_for(self, scene, reach):
-        if scene.ground is None:
-            return Verdict(self.name, False, "no ground in the scene")
-        return Verdict(
-            self.name, True, f"ground at z = {say(scene.ground, 'm', 6)}{stiffness_told(scene)}", scene.spans.get("ground")
-        )
-
-    def region(self, scene):
-        return f"plane 0 0 {scene.ground!r} 0 0 1"
-
-
-class WallPlanes(Boundary):
-    name = fix = "walls"
-    if_off = "objects leave the scene"
-
-    def called_for(self, scene, reach):
-        if scene.walls is None:
-            return Verdict(self.name, False, "no walls in the scene")
-        return Verdict(self.name, True, f"walls around the scene{stiffness_told(scene)}", scene.spans.get("walls"))
-
-    def region(self, scene):
-        low, high = scene.walls.low, scene.walls.high
-        return "block " + " ".join(f"{a!r} {b!r}" for a, b in zip(low, high))

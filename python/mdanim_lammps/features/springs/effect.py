@@ -5,9 +5,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..scene.scene import HoldAll
-from .context import Verdict
-from .effect import Effect
+from ...effects.context import Verdict
+from ...effects.effect import Effect
+from ...scene.scene import HoldAll
 from .strength import amplitude, load, thinnest, turning
 
 DASHPOTS = 0.44
@@ -46,6 +46,7 @@ def block_norm(pair: np.ndarray, weight: np.ndarray, direction: np.ndarray, part
 
 class Springs(Effect):
     name = "springs"
+    order = 10
     ledger = "elastic"
     binds = True
     if_off = "solids fall apart into loose particles"
@@ -83,3 +84,6 @@ def spring_norm(system, weight: np.ndarray) -> np.ndarray:
     direction = system.position[i] - system.position[j]
     direction /= np.linalg.norm(direction, axis=1)[:, None]
     return block_norm(system.spring, weight, direction, system.particles)
+
+
+EFFECTS = (Springs(),)

@@ -5,15 +5,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import product
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..scene.scene import LiquidModel, Vector
-from .model import Model
-
-if TYPE_CHECKING:
-    from .basin import Grid
+from ...model.grid import Grid
+from ...model.model import Model
+from ...scene.scene import LiquidModel, Vector
 
 SHUT = 31 / 32
 """Solid part of a cell from which waves take it for shut (plugin/liquid/waves/span.h)."""

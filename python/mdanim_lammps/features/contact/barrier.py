@@ -7,18 +7,18 @@ from functools import lru_cache
 
 import numpy as np
 
-from ..errors import Problem
-from ..model.model import Layer
-from ..model.system import System
-from ..model.touching import REACH, THIN, WAY_NAMES, touching
-from ..reach import largest_of_others
-from ..scene.formatting import at_least, say
-from .boundaries import OR_ON_SURFACES, others
-from .context import Verdict
-from .effect import Effect, stiffness_told
-from .envelope import Envelope
-from .margin import Margin
-from .springs import all_held
+from ...effects.context import Verdict
+from ...effects.effect import Effect, stiffness_told
+from ...effects.envelope import Envelope
+from ...effects.margin import Margin
+from ...errors import Problem
+from ...model.model import Layer
+from ...model.system import System
+from ...model.touching import REACH, THIN, WAY_NAMES, touching
+from ...reach import largest_of_others
+from ...scene.formatting import at_least, say
+from ..springs.effect import all_held
+from .planes import OR_ON_SURFACES, others
 
 TUNNEL = (0.5, 0.65, 0.8)
 """Closing speed over the wave speed from which a block goes through a clamped plate of 1, 2, 3 and more
@@ -69,6 +69,7 @@ def barrier_rate(system: System, s: np.ndarray, reach: float) -> np.ndarray:
 
 class Contact(Effect):
     name = "contact"
+    order = 40
     fix = "contact"
     ledger = "contact"
     keeps_apart = True

@@ -5,16 +5,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
-from ..errors import Problem
-from ..processes import available_memory
-from ..scene.formatting import at_least, estimate, number, say
-from ..scene.scene import Liquid, LiquidModel, Mesh, SceneRecord, Solid, Torus, Vector
-from . import shapes
-from .model import Model
+from ...errors import Problem
+from ...model import shapes
+from ...model.grid import Grid
+from ...model.model import Model
+from ...processes import available_memory
+from ...scene.formatting import at_least, estimate, number, say
+from ...scene.scene import Liquid, LiquidModel, Mesh, SceneRecord, Solid, Torus, Vector
 from .occupied import room
 
 BYTES_PER_CELL = 20.0
@@ -23,45 +23,6 @@ NARROWEST = 3
 """Fewest cells along a side: with two, no cell is off the walls, and a slope has no middle."""
 MOST_DROPS = 2048
 """Drops of a liquid that fly at once, as in plugin/liquid/waves/drops.h: where there are more, they merge."""
-
-
-@dataclass(frozen=True, slots=True)
-class Grid:
-    """Cells that fill a basin exactly."""
-
-    low: Vector
-    """Lower corner [m]."""
-    high: Vector
-    """Upper corner [m]."""
-    shape: tuple[int, int, int]
-    """Cells along x, y, z."""
-
-    @property
-    def cell(self) -> Vector:
-        """Edges of a cell [m]."""
-        return tuple((b - a) / n for a, b, n in zip(self.low, self.high, self.shape))
-
-    @property
-    def cell_volume(self) -> float:
-        """[m^3]"""
-        return math.prod(self.cell)
-
-    @property
-    def cells(self) -> int:
-        """Number of cells."""
-        return math.prod(self.shape)
-
-    def units(self, volume: float) -> int:
-        """Whole cells that a volume [m^3] is rounded to."""
-        return math.floor(volume / self.cell_volume + 0.5)
-
-    def cells_within(self, low: Vector, high: Vector) -> int:
-        """Number of cells whose centre lies in a box [m]."""
-        count = 1
-        for axis, n in enumerate(self.shape):
-            centre = self.low[axis] + (np.arange(n) + 0.5) * self.cell[axis]
-            count *= int(np.count_nonzero((centre >= low[axis]) & (centre <= high[axis])))
-        return count
 
 
 def plan_grid(liquid: Liquid, h: float) -> Grid:

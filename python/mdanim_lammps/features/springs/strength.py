@@ -7,14 +7,14 @@ from itertools import product
 
 import numpy as np
 
-from ..errors import Problem
-from ..model.cells import TooThin, end_share, fill_cells
-from ..model.shapes import thickness
-from ..model.system import System
-from ..scene.formatting import at_least, number, say
-from ..scene.scene import Box, Cone, ContactModel, Ellipsoid, Solid, Sphere
-from .envelope import Envelope
-from .margin import Margin
+from ...effects.envelope import Envelope
+from ...effects.margin import Margin
+from ...errors import Problem
+from ...model.cells import TooThin, end_share, fill_cells
+from ...model.shapes import thickness
+from ...model.system import System
+from ...scene.formatting import at_least, number, say
+from ...scene.scene import Box, Cone, ContactModel, Ellipsoid, Solid, Sphere
 
 FOLDS = 0.2
 """Speed of an impact over the wave speed above which a lattice folds up and stays crumpled (docs/physics-solids.md)."""

@@ -9,13 +9,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..errors import Problem
-from ..model.boxes import box_pairs
-from ..model.overlap import BORN_AT_REST
-from ..model.shapes import extent
-from ..scene.formatting import at_least, say
-from ..scene.scene import Box, ContactModel, Cylinder, Solid
-from .envelope import Envelope
+from ...effects.envelope import Envelope
+from ...errors import Problem
+from ...model.boxes import box_pairs
+from ...model.overlap import BORN_AT_REST
+from ...model.shapes import extent
+from ...scene.formatting import at_least, say
+from ...scene.scene import Box, ContactModel, Cylinder, Solid
 from .resting import LEVEL, floors
 
 GREENHILL = 7.837

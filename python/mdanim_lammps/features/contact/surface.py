@@ -9,21 +9,20 @@ from itertools import product
 
 import numpy as np
 
-from ..errors import Problem
-from ..model.boxes import box_pairs
-from ..model.contact_body import ContactBody
-from ..model.model import Layer
-from ..model.overlap import BORN_AT_REST
-from ..model.planes import AXES
-from ..model.system import System
-from ..reach import largest_of_others
-from ..scene.contact_pairs import USUAL_DAMPING, damping, frictions, pair_rules
-from ..scene.scene import Box, SceneRecord
-from .boundaries import Boundary, GroundPlane, WallPlanes
-from .contact import Contact, barrier, barrier_rate
-from .context import Context
-from .effect import Effect
-from .liquid import Basin
+from ...effects.context import Context
+from ...effects.effect import Effect
+from ...errors import Problem
+from ...model.boxes import box_pairs
+from ...model.contact_body import ContactBody
+from ...model.model import Layer
+from ...model.overlap import BORN_AT_REST
+from ...model.planes import AXES
+from ...model.system import System
+from ...reach import largest_of_others
+from ...scene.contact_pairs import USUAL_DAMPING, damping, frictions, pair_rules
+from ...scene.scene import Box, SceneRecord
+from .barrier import Contact, barrier, barrier_rate
+from .planes import Boundary
 from .resting import one_sided
 
 SHORT, FULL = 0.8, 1.6
@@ -301,18 +300,6 @@ class SurfacePlanes(OnSurfaces, Boundary):
         """kappa of the surface of each solid against a plane, which has no points of its own [N/m^3], shape (M,)."""
         system = context.system
         return surface_stiffness(context.scene, system, np.where(are_dense(system), ALONE, 1.0))
-
-
-class SurfaceGround(SurfacePlanes, GroundPlane):
-    pass
-
-
-class SurfaceWalls(SurfacePlanes, WallPlanes):
-    pass
-
-
-class SurfaceBasin(SurfacePlanes, Basin):
-    pass
 
 
 def surface_stiffness(scene: SceneRecord, system: System, share: np.ndarray | float = 1.0) -> np.ndarray:

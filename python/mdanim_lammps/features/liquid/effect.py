@@ -7,19 +7,21 @@ import math
 
 import numpy as np
 
-from ..errors import Problem, SceneError
-from ..model.basin import check_basin, leaky_walls, liquid_level, open_hulls, plan_grid, too_large
-from ..model.system import System
-from ..model.tensors import largest_eigenvalue
-from ..scene.formatting import number, say
-from ..scene.scene import LiquidModel
-from . import air_drag
-from .boundaries import Boundary
-from .context import Verdict
-from .effect import Effect
-from .liquid_cells import lattice_cells, layers_of_cells, outer_faces
-from .margin import Margin
-from .springs import all_held
+from ...effects.context import Verdict
+from ...effects.effect import Effect
+from ...effects.margin import Margin
+from ...effects.readings import LEAPFROG
+from ...errors import Problem, SceneError
+from ...model.system import System
+from ...model.tensors import largest_eigenvalue
+from ...scene.formatting import number, say
+from ...scene.scene import LiquidModel
+from ..air_drag import effect as air_drag
+from ..contact.planes import Boundary
+from ..contact.surface import SurfacePlanes
+from ..springs.effect import all_held
+from .basin import check_basin, leaky_walls, liquid_level, open_hulls, plan_grid, too_large
+from .tables import lattice_cells, layers_of_cells, outer_faces
 
 EVERY = 4
 """Steps after which the fix looks whether cells are to be updated."""
@@ -73,6 +75,7 @@ class Basin(Boundary):
     """Floor and side walls; these go on upward, so that nothing falls beside the basin."""
 
     name = fix = "basin"
+    order = 70
     if_off = "objects fall through the floor of the basin"
 
     def called_for(self, scene, reach):
@@ -91,6 +94,7 @@ class LiquidAutomaton(Effect):
     """The automaton: liquid that falls, spreads, levels and makes room for solids."""
 
     name = fix = "liquid"
+    order = 90
     needs = ("gravity",)
     if_off = "the basin stays empty"
 
@@ -134,6 +138,9 @@ class LiquidAutomaton(Effect):
 
     def acts_on(self, context):
         return context.grid is not None
+
+    def matters_below(self, context):
+        return top_of_reach(context.grid)
 
     def grid(self, scene, h):
         grid = plan_grid(scene.liquid, h)
@@ -287,6 +294,7 @@ class Buoyancy(Effect):
     """Archimedes, particle by particle: rho_l V_i s_i g upward on the immersed part s_i of a particle."""
 
     name = "buoyancy"
+    order = 100
     ledger = "buoyancy"
     has_arbitrary_zero = True
     needs = ("liquid",)
@@ -358,6 +366,7 @@ class LiquidDrag(Effect):
     """-(gamma + k |v|) rho_l V_i s_i v on the immersed part of a particle; the leap-frog takes gamma's with the drag of air."""
 
     name = "liquid-drag"
+    order = 110
     needs = ("liquid", "buoyancy")  # which gives the fix the volumes
     if_off = "floating objects bob for a long time"
 
@@ -396,7 +405,7 @@ class LiquidDrag(Effect):
         coupling = {"coupling": DRAGGING * readings.fix_value(LiquidAutomaton.fix, COUPLING)}
         if readings.context.on(air_drag.AirDrag.name):
             return coupling
-        return coupling | {air_drag.LEAPFROG: air_drag.slowed_share(readings) * readings.fix_seconds("leapfrog")}
+        return coupling | {LEAPFROG: air_drag.slowed_share(readings) * readings.fix_seconds("leapfrog")}
 
 
 def gamma(scene, system: System) -> np.ndarray:
@@ -468,3 +477,10 @@ def _makers(liquid) -> str:
 
 def _block(low, high) -> str:
     return "block " + " ".join(f"{a!r} {b!r}" for a, b in zip(low, high))
+
+
+class SurfaceBasin(SurfacePlanes, Basin):
+    pass
+
+
+EFFECTS = (Basin(SurfaceBasin()), LiquidAutomaton(), Buoyancy(), LiquidDrag())

@@ -3,13 +3,14 @@
 
 from __future__ import annotations
 
-from .context import Verdict
-from .effect import Effect
-from .springs import all_held, spring_norm, time_of_dashpots
+from ...effects.context import Verdict
+from ...effects.effect import Effect
+from ..springs.effect import all_held, spring_norm, time_of_dashpots
 
 
 class Damping(Effect):
     name = "damping"
+    order = 20
     needs = ("springs",)
     if_off = "damped objects ring for ever"
 
@@ -34,3 +35,6 @@ class Damping(Effect):
         if system.damping is None:  # all damped solids are held as a whole by boxes, and have no springs
             return None
         return 2.0 * spring_norm(system, system.damping) / system.mass
+
+
+EFFECTS = (Damping(),)

@@ -5,13 +5,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from .context import Verdict
-from .effect import Effect
-from .readings import Readings
-from .springs import all_held
+from ...effects.context import Verdict
+from ...effects.effect import Effect
+from ...effects.readings import LEAPFROG, Readings
+from ..springs.effect import all_held
 
-LEAPFROG = "leap-frog"
-"""Clock of the integrator; what effects take of it is not counted with the integrator's own time."""
 DRAG_LOSS = "drag_loss"
 """Column of the ledger; the leap-frog counts what air and liquid take together."""
 SLOWING = 0.3
@@ -27,6 +25,7 @@ def slowed_share(readings: Readings) -> float:
 
 class AirDrag(Effect):
     name = "air-drag"
+    order = 80
     if_off = "nothing slows down in air"
 
     def called_for(self, scene, reach):
@@ -52,3 +51,6 @@ class AirDrag(Effect):
 
     def lost(self, readings):
         return {DRAG_LOSS: readings.fix_scalar("leapfrog")}
+
+
+EFFECTS = (AirDrag(),)

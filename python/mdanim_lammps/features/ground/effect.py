@@ -1,0 +1,33 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""A floor plane that pushes back whatever sinks below it."""
+
+from __future__ import annotations
+
+from ...effects.context import Verdict
+from ...effects.effect import stiffness_told
+from ...scene.formatting import say
+from ..contact.planes import Boundary
+from ..contact.surface import SurfacePlanes
+
+
+class GroundPlane(Boundary):
+    name = fix = "ground"
+    order = 50
+    if_off = "objects fall for ever"
+
+    def called_for(self, scene, reach):
+        if scene.ground is None:
+            return Verdict(self.name, False, "no ground in the scene")
+        return Verdict(
+            self.name, True, f"ground at z = {say(scene.ground, 'm', 6)}{stiffness_told(scene)}", scene.spans.get("ground")
+        )
+
+    def region(self, scene):
+        return f"plane 0 0 {scene.ground!r} 0 0 1"
+
+
+class SurfaceGround(SurfacePlanes, GroundPlane):
+    pass
+
+
+EFFECTS = (GroundPlane(SurfaceGround()),)

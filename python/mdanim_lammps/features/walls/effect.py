@@ -1,0 +1,31 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""A box that objects never leave."""
+
+from __future__ import annotations
+
+from ...effects.context import Verdict
+from ...effects.effect import stiffness_told
+from ..contact.planes import Boundary
+from ..contact.surface import SurfacePlanes
+
+
+class WallPlanes(Boundary):
+    name = fix = "walls"
+    order = 60
+    if_off = "objects leave the scene"
+
+    def called_for(self, scene, reach):
+        if scene.walls is None:
+            return Verdict(self.name, False, "no walls in the scene")
+        return Verdict(self.name, True, f"walls around the scene{stiffness_told(scene)}", scene.spans.get("walls"))
+
+    def region(self, scene):
+        low, high = scene.walls.low, scene.walls.high
+        return "block " + " ".join(f"{a!r} {b!r}" for a, b in zip(low, high))
+
+
+class SurfaceWalls(SurfacePlanes, WallPlanes):
+    pass
+
+
+EFFECTS = (WallPlanes(SurfaceWalls()),)

@@ -1,0 +1,146 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Features are folders: which modules outside of features/ still name one, and which still know the liquid."""
+
+import ast
+import re
+from importlib import import_module
+from pathlib import Path
+
+import mdanim_lammps
+import pytest
+from mdanim_lammps import features
+
+ROOT = Path(mdanim_lammps.__file__).parent
+DRAWN = ("picture", "view", "export")
+"""Rooms that may draw what there is."""
+FIELDS = {"gravity", "ground", "walls", "liquid", "contacts"}
+"""Fields of a scene that are of one feature."""
+LIQUID = re.compile(r"liquid|pool")
+
+NAMING = {
+    "cost/later.py",
+    "engine/instance.py",
+    "engine/plan.py",
+    "model/overlap.py",
+    "model/planes.py",
+    "model/spacing.py",
+    "model/work.py",
+    "parallel/runtime/bundle.py",
+    "parallel/runtime/executor.py",
+    "parallel/runtime/supervisor.py",
+    "reach/region.py",
+    "report.py",
+    "results/compare.py",
+    "results/expect.py",
+    "results/motion.py",
+    "results/stored.py",
+    "results/trajectory.py",
+    "results/trajectory_file.py",
+    "results/trajectory_metadata.py",
+    "results/trajectory_writer.py",
+    "results/untrusted.py",
+    "run/energy.py",
+    "run/frame_source.py",
+    "run/guard.py",
+    "run/loop.py",
+    "run/prepare.py",
+    "scene/contact_pairs.py",
+    "scene/explain.py",
+    "scene/keywords.py",
+    "scene/limits.py",
+    "scene/scene.py",
+    "scene/validate.py",
+    "study/analysis.py",
+    "study/report.py",
+    "study/setting.py",
+}
+"""May only shrink."""
+KNOWING = {
+    "cost/speedup_forecast.py",
+    "engine/instance.py",
+    "engine/sub_plan.py",
+    "model/overlap.py",
+    "model/planes.py",
+    "model/spacing.py",
+    "model/work.py",
+    "parallel/plan/frame_plan.py",
+    "parallel/plan/orders.py",
+    "parallel/plan/planner.py",
+    "parallel/runtime/bundle.py",
+    "parallel/runtime/executor.py",
+    "parallel/runtime/messages.py",
+    "parallel/runtime/supervisor.py",
+    "reach/reach.py",
+    "report.py",
+    "results/compare.py",
+    "results/expect.py",
+    "results/ledger.py",
+    "results/motion.py",
+    "results/trajectory.py",
+    "results/trajectory_file.py",
+    "results/trajectory_metadata.py",
+    "results/trajectory_writer.py",
+    "results/untrusted.py",
+    "run/energy.py",
+    "run/frame_source.py",
+    "run/guard.py",
+    "run/loop.py",
+    "run/prepare.py",
+    "scene/keywords.py",
+    "scene/makers.py",
+    "scene/render.py",
+    "scene/scene.py",
+    "scene/validate.py",
+    "study/analysis.py",
+    "study/setting.py",
+}
+"""May only shrink."""
+
+
+def outside() -> dict[str, ast.Module]:
+    """Modules that may know no feature, by their paths."""
+    paths = (p for p in sorted(ROOT.rglob("*.py")) if p.relative_to(ROOT).parts[0] not in ("features", *DRAWN))
+    return {p.relative_to(ROOT).as_posix(): ast.parse(p.read_text(encoding="utf-8")) for p in paths}
+
+
+def strings(tree: ast.AST) -> set[str]:
+    """Texts that are no docstrings."""
+    bodies = (n.body for n in ast.walk(tree) if isinstance(n, ast.Module | ast.ClassDef | ast.FunctionDef))
+    docs = {id(s.value) for body in bodies for s in body if isinstance(s, ast.Expr)}
+    return {n.value for n in ast.walk(tree) if isinstance(n, ast.Constant) and isinstance(n.value, str) and id(n) not in docs}
+
+
+def names_a_feature(tree: ast.AST) -> bool:
+    """By the name of an effect, by a field of the scene, or by its folder."""
+    nodes = list(ast.walk(tree))
+    folders = set(features.names())
+    imports = {part for n in nodes if isinstance(n, ast.ImportFrom) for part in (n.module or "").split(".")[1:]}
+    fields = {n.attr for n in nodes if isinstance(n, ast.Attribute)} & FIELDS
+    of_features = any(
+        "features" in (n.module or "") and n.module.split("features")[1] for n in nodes if isinstance(n, ast.ImportFrom)
+    )
+    return bool(strings(tree) & {e.name for e in features.effects()} or fields or (of_features and imports & folders))
+
+
+def knows_the_liquid(tree: ast.AST) -> bool:
+    """By anything that is called after it."""
+    names = (getattr(n, kind, None) for n in ast.walk(tree) for kind in ("id", "attr", "arg", "name"))
+    return "liquid" in strings(tree) or any(LIQUID.search(name.lower()) for name in names if isinstance(name, str))
+
+
+@pytest.mark.parametrize(
+    ("sees", "known"), [(names_a_feature, NAMING), (knows_the_liquid, KNOWING)], ids=["a feature", "the liquid"]
+)
+def test_modules_outside_know_no_feature(sees, known):
+    """The lists name all that do; a module that does no more leaves its list."""
+    found = {path for path, tree in outside().items() if sees(tree)}
+    assert not found - known, "a feature owns what it is about: see features/__init__.py"
+    assert not known - found, "take these out of the list"
+
+
+def test_every_feature_says_what_it_is():
+    """Its folder has effects or words, and a sentence."""
+    assert {"gravity", "contact", "liquid"} <= set(features.names())
+    for name in features.names():
+        assert import_module(f"mdanim_lammps.features.{name}").__doc__
+    assert len({e.name for e in features.effects()}) == len(features.effects()) >= 11
