@@ -148,7 +148,7 @@ class Effect:
 
     def energy(self, readings: Readings) -> float:
         """What stands in its column ``ledger`` now [J]."""
-        return self.potential(readings.scene, readings.system.mass, readings.array("x")) if self.has_potential else 0.0
+        return self.potential(readings.context.scene, readings.system.mass, readings.array("x")) if self.has_potential else 0.0
 
     def further_energies(self, readings: Readings) -> dict[str, float]:
         """What stands in its columns ``further_ledger`` now [J]."""

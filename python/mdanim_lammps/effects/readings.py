@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Protocol
 import numpy as np
 
 from ..model.system import System
-from ..scene.scene import SceneRecord
 
 if TYPE_CHECKING:
     from .context import Context
@@ -23,7 +22,6 @@ class Readings(Protocol):
 
     context: Context
     """What it simulates: all solids of the scene, or some."""
-    scene: SceneRecord
     system: System
 
     def array(self, name: str) -> np.ndarray:

@@ -46,7 +46,6 @@ class Instance:
     """
 
     context = property(lambda self: self.plan.context)
-    scene = property(lambda self: self.plan.scene)
     system = property(lambda self: self.plan.system)
 
     def __init__(self, plan: Plan, comm=None):

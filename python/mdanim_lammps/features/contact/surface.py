@@ -103,7 +103,7 @@ class OnSurfaces(Effect):
         return eta[system.object] * borne_area(system) / system.mass
 
     def lost(self, readings):
-        return {term: readings.fix_value(self.fix, TAKEN[term]) for term in self.losses(readings.scene)}
+        return {term: readings.fix_value(self.fix, TAKEN[term]) for term in self.losses(readings.context.scene)}
 
     def warnings(self, context):
         # Surfaces that touch at the start are free of stress; those deeper in each other are refused (model/overlap.py).
