@@ -38,7 +38,6 @@ VARIANTS = {
     "+ gravity, walls": dict(more="gravity (0, 0, -9.81)\nwalls from (-9, -9, 0) cm to (9, 9, 100) cm", z=9),
     "+ gravity, liquid, buoyancy": dict(more=SEA.format(drag=0, model="surface"), z=20),
     "the same with liquid drag": dict(more=SEA.format(drag=4, model="surface"), z=20),
-    "the same with model pressure": dict(more=SEA.format(drag=4, model="pressure"), z=20),
 }
 
 

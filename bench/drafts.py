@@ -4,8 +4,7 @@
 drafts   share of a cube of 6^3 cells below the surface, after five ways to get there, against its density over the liquid's;
          beside it how far the nearest axis of the cube leans from the vertical (45 = on an edge, 54.7 = on a corner)
 cells    the same for one tilted drop and cubes of 3 to 10 cells a side
-models   the same for a cube of 6^3 cells set upright onto the surface, by `liquid { model … }`; ten times stiffer,
-         because pressure squeezes: softer ones shrink and lie deeper
+models   the same for a cube of 6^3 cells set upright onto the surface, by `liquid { model … }`; ten times stiffer
 waves    the first table for ``model waves``, with a calm time of 10 sqrt(L/g)
 speed    terminal speed under the liquid's drag over (rho_s - rho_l) g / (gamma rho_l)
 bobbing  first fall and period of a cube that bobs in ``model waves``, over those of its mass alone; in potential flow
@@ -125,7 +124,7 @@ def cells() -> None:
 def models() -> None:
     """Print drafts under each model of the liquid."""
     print("the same for stiff ones set onto the surface upright, by model of the liquid")
-    for model in ("surface", "pressure", "paper"):
+    for model in ("surface", "paper"):
         print(f"{model:20}" + "   ".join(settled(density=d, z=17.1, young=10000, model=model) for d in DENSITIES), flush=True)
 
 

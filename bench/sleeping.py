@@ -58,7 +58,6 @@ CASES = {
     "basin, 50 m away, at 3 m/s": dict(v=3, more=SEA.format(drag=0, model="surface"), off="basin off"),
     "liquid and buoyancy, 50 m away, at 3 m/s": dict(v=3, more=SEA.format(drag=0, model="surface"), off=WET),
     "the same with liquid drag": dict(v=3, more=SEA.format(drag=4, model="surface"), off=WET),
-    "the same with model pressure": dict(v=3, more=SEA.format(drag=4, model="pressure"), off=WET),
 }
 STEPS, WARM = 100, 5
 """Of a block: two rebuilds of lists at 3 m/s; and those before its clock starts."""

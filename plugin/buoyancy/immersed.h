@@ -70,13 +70,14 @@ MDANIM_ALWAYS_INLINE Vec<Real> lift_along(const LiquidScales &liquid, const Real
   return {along(part.x), along(part.y), along(part.z)};
 }
 
-// A particle with velocity v that pressure pushes. Drag is against the liquid, not against the floor: its friction, which is
+// On a particle with velocity v: lift and drag. Drag is against the liquid, not against the floor: its friction, which is
 // against the floor, is made up for by a push along the flow. Quadratic drag is a force, as forces are a part of the state and
 // friction is not: friction that depends on positions alone is found again.
 template <class Real>
 MDANIM_ALWAYS_INLINE LiquidForce<Real> liquid_force(const LiquidScales &liquid, const Immersed<Real> &particle,
-                                                    const AtPlace<Real> &at, Vec<Real> push, const Vec<Real> &v)
+                                                    const AtPlace<Real> &at, const Vec<Real> &v)
 {
+  Vec<Real> push = lift_along(liquid, particle.volume, at.push);
   const auto friction = [&](const Real &rate) {
     return liquid_lambda(rate, liquid.rho, particle.volume, at.immersed) * liquid.per_force;
   };

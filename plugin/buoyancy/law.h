@@ -20,11 +20,6 @@ inline double immersed_part(double eta, double z) { return std::clamp(eta - z + 
 template <class Real> MDANIM_ALWAYS_INLINE Real lift(double rho, const Real &volume, const Real &s, double g)
 { return rho * volume * s * g; }
 
-// Share of one corner in the force of a pressure p on a quadrilateral whose corners a, b, c, d run
-// counter-clockwise seen from outside: a quarter of -p A, with the area vector A = (c - a) x (d - b) / 2.
-inline Vec3 corner_push(double p, const Vec3 &a, const Vec3 &b, const Vec3 &c, const Vec3 &d)
-{ return (-0.125 * p) * cross(c - a, d - b); }
-
 // Friction coefficient of the immersed part, eq. (3.9): F = -gamma rho_l V s v. Quadratic drag is a gamma that grows with |v|.
 template <class Real> MDANIM_ALWAYS_INLINE Real liquid_lambda(const Real &gamma, double rho, const Real &volume, const Real &s)
 { return gamma * rho * volume * s; }

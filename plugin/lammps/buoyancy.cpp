@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// Loops over particles and faces; the laws are in buoyancy/law.h, the surface in liquid/basin.h.
+// Loops over particles; the laws are in buoyancy/law.h, the surface in liquid/basin.h.
 
 #include "lammps/buoyancy.h"
 
@@ -15,17 +15,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <cstring>
-#include <limits>
-#include <unordered_map>
 
 using namespace LAMMPS_NS;
 
 namespace mdanim {
 
 static constexpr const char *STYLE = "fix mdanim/liquid";
-static constexpr double PARTICLE = 25.0;    // or face, or lattice cell [ns], about
+static constexpr double PARTICLE = 25.0;    // or lattice cell [ns], about
 
 // --- the command ---
 
@@ -44,8 +41,6 @@ bool Buoyancy::keyword(int iarg, const char *word, const char *value)
     lambda_column = ParticleColumn(lmp, STYLE, word, iarg + 1, value);
   } else if (strcmp(word, "base") == 0) {
     base_column = ParticleColumn(lmp, STYLE, word, iarg + 1, value);
-  } else if (strcmp(word, "faces") == 0) {
-    faces_of = ParticleTable(lmp, "fix mdanim/liquid: faces", iarg + 1, value);
   } else
     return false;
   return true;
@@ -62,13 +57,6 @@ void Buoyancy::init(const std::string &fix)
   if (lifts) volume.init(lmp);
   if (slows) gamma.init(lmp);
   if (is_quadratic) per_length.init(lmp);
-  if (!faces_of.given()) return;
-  faces_width = faces_of.width(lmp);
-  if (faces_width == 0 || faces_width % 3)
-    error->all(
-        FLERR,
-        "{}: faces names i2_{}, which is no property of 3 integers a face; make it with 'fix ID all property/atom i2_{} 36'", fix,
-        faces_of.name, faces_of.name);
 }
 
 // --- what depends on lists ---
@@ -80,41 +68,6 @@ void Buoyancy::clear_friction(int groupbit) const
   const double *const base = base_column.given() ? base_column.values(lmp) : nullptr;
   for (int i = 0; i < atom->nlocal; ++i)
     if (atom->mask[i] & groupbit) lambda[i] = base ? base[i] : 0.0;
-}
-
-// Each face once, with its corners in an order that does not depend on the particle that names it.
-void Buoyancy::find_faces(const std::vector<int> &near, const std::string &fix)
-{
-  faces.clear();
-  face_of.clear();
-  face_of_first.assign(1, 0);
-  int *const *table = faces_of.rows(lmp);
-  std::unordered_map<std::uint64_t, int> known;    // by the tags across: no other face has both
-  for (const int i : near) {
-    for (int k = 0; k < faces_width && table[i][k]; k += 3) {
-      tagint tag[4] = {atom->tag[i], table[i][k], table[i][k + 1], table[i][k + 2]};
-      std::rotate(tag, std::min_element(tag, tag + 4), tag + 4);
-      const auto [place, is_new] = known.try_emplace(
-          static_cast<std::uint64_t>(tag[0]) << 32 | static_cast<std::uint32_t>(tag[2]), static_cast<int>(faces.size()));
-      face_of.push_back(place->second);
-      if (!is_new) continue;
-      Face face;
-      for (int n = 0; n < 4; ++n) {
-        face.corner[n] = atom->map(tag[n]);
-        if (face.corner[n] < 0)
-          error->one(FLERR, "{}: particle {}, a corner of a face of particle {}, is out of reach; raise comm_modify cutoff", fix,
-                     tag[n], atom->tag[i]);
-      }
-      faces.push_back(face);
-    }
-    face_of_first.push_back(static_cast<int>(face_of.size()));
-  }
-}
-
-// Faces push at the corners near the liquid and are read at all four, which are of one object and mostly all near the liquid.
-void Buoyancy::append_required_atoms(std::vector<int> &particles) const
-{
-  for (const Face &face : faces) particles.insert(particles.end(), face.corner, face.corner + 4);
 }
 
 // --- an update of the liquid ---
@@ -223,8 +176,7 @@ struct Buoyancy::Acting {
   double above, below;    // nothing is immersed from `above` up; most particles of a large body need not look up the surface
 };
 
-// On a particle, the n-th of those that are looked at.
-__attribute__((always_inline)) inline Buoyancy::Wet Buoyancy::act_on(const Acting &now, const Basin &basin, std::size_t n, int i)
+__attribute__((always_inline)) inline Buoyancy::Wet Buoyancy::act_on(const Acting &now, const Basin &basin, int i)
 {
   const double *const x = now.x[i];
   Basin::AtPlace at;
@@ -239,12 +191,7 @@ __attribute__((always_inline)) inline Buoyancy::Wet Buoyancy::act_on(const Actin
   const Immersed<double> particle{now.volume ? now.volume[i] : volume.number, mass_of(atom->rmass, atom->mass, atom->type, i),
                                   now.gamma ? now.gamma[i] : gamma.number,
                                   now.per_length ? now.per_length[i] : per_length.number};
-  Vec3 push;
-  if (!pressed())
-    push = lift_along(now.liquid, particle.volume, at.push);
-  else
-    for (int k = face_of_first[n]; k < face_of_first[n + 1]; ++k) push += faces[face_of[k]].push;
-  const auto force = liquid_force(now.liquid, particle, at, push, vec3(now.v[i]));
+  const auto force = liquid_force(now.liquid, particle, at, vec3(now.v[i]));
   if (now.lambda) now.lambda[i] = (now.base ? now.base[i] : 0.0) + force.lambda;
   if (now.kept) {
     now.kept[i].impulse_x += force.impulse_x;
@@ -254,7 +201,7 @@ __attribute__((always_inline)) inline Buoyancy::Wet Buoyancy::act_on(const Actin
   return {i, force.push, force.lambda};
 }
 
-// Threads share particles and faces. What all of them do to the liquid and to the ledger is added up in the order of particles.
+// Threads share particles. What all of them do to the liquid and to the ledger is added up in the order of particles.
 void Buoyancy::act(const Basin &basin, const std::vector<int> &these, bool in_step)
 {
   wet.resize(lifts ? these.size() : 0);
@@ -273,23 +220,9 @@ void Buoyancy::act(const Basin &basin, const std::vector<int> &these, bool in_st
                    basin.acts_on_cells() ? kept.data() : nullptr,
                    floor + (basin.top() + 1.0) * height,
                    basin.all_below()};
-  threads.parts(static_cast<long>(faces.size()), PARTICLE, [&](long from, long to) {
-    for (long n = from; n < to; ++n) faces[n].push = pressure_on(faces[n], basin);
-  });
   threads.parts(static_cast<long>(these.size()), PARTICLE, [&](long from, long to) {
-    for (long n = from; n < to; ++n) wet[n] = act_on(now, basin, n, these[n]);
+    for (long n = from; n < to; ++n) wet[n] = act_on(now, basin, these[n]);
   });
-}
-
-// What hydrostatic pressure does to each corner of a face.
-Vec3 Buoyancy::pressure_on(const Face &face, const Basin &basin) const
-{
-  const double *const *x = atom->x;
-  const Vec3 a = vec3(x[face.corner[0]]), b = vec3(x[face.corner[1]]), c = vec3(x[face.corner[2]]), d = vec3(x[face.corner[3]]);
-  const Vec3 middle = 0.25 * ((a + c) + (b + d));
-  const double depth = basin.pressing_depth(middle, cross(c - a, d - b));
-  if (depth <= 0.0) return {};
-  return corner_push(rho * weight(basin) * depth * basin.shape.cell.z, a, b, c, d);
 }
 
 // --- the ledger ---

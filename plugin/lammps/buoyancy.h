@@ -18,7 +18,7 @@
 
 namespace mdanim {
 
-// Lift of particles by their volumes, or by the pressure on the outer faces of their lattices, and drag; and the ledger of both.
+// Lift of particles by their volumes, and drag; and the ledger of both.
 // It is a part of fix mdanim/liquid: it acts on the particles that the fix has found near the liquid, and its ledger stands in
 // the liquid's state.
 class Buoyancy : protected LAMMPS_NS::Pointers {
@@ -26,16 +26,14 @@ class Buoyancy : protected LAMMPS_NS::Pointers {
   // `rho` is the liquid's density.
   Buoyancy(LAMMPS_NS::LAMMPS *lmp, double rho) : Pointers(lmp), rho(rho), cells(lmp) {}
 
-  // Takes a keyword of the command; false when it is none of buoyancy, drag, lambda, base and faces.
+  // Takes a keyword of the command; false when it is none of buoyancy, drag, quadratic, lambda and base.
   bool keyword(int iarg, const char *word, const char *value);
   // Refuses keywords that do not fit together. `fix` begins messages.
   void init(const std::string &fix);
-  bool pressed() const { return faces_of.given(); }
 
-  // New lists: leaves the particles of a group the friction that they have anyway; finds the faces of the particles near the
-  // liquid.
+  // New lists: leaves the particles of a group the friction that they have anyway; finds the lattice cells of the particles near
+  // the liquid.
   void clear_friction(int groupbit) const;
-  void find_faces(const std::vector<int> &near, const std::string &fix);
   void find_cells(const std::vector<int> &near, const ParticleTable &table, const std::string &fix)
   { cells.find(threads, near, table, fix); }
   void forget_cells() { cells.clear(); }
@@ -50,8 +48,6 @@ class Buoyancy : protected LAMMPS_NS::Pointers {
   void begin_ledger();
   void go_on_with_ledger();
   void use(const Threads &now) { threads = now; }    // for steps; the bits are the same for any number of them
-  // Corners of faces, some perhaps twice.
-  void append_required_atoms(std::vector<int> &particles) const;
 
   // For passes (passes/pass_liquid.h): whether they compute the same as act(), with friction in the column that is read; a
   // particle; all of them; and what passes have found in this step.
@@ -83,14 +79,9 @@ class Buoyancy : protected LAMMPS_NS::Pointers {
     Vec3 push;
     double lambda;
   };
-  struct Face {
-    int corner[4];    // counter-clockwise seen from outside
-    Vec3 push;        // on each corner, in this step
-  };
 
   struct Acting;
-  Wet act_on(const Acting &now, const Basin &basin, std::size_t n, int i);
-  Vec3 pressure_on(const Face &face, const Basin &basin) const;
+  Wet act_on(const Acting &now, const Basin &basin, int i);
   InLiquid look_at_particle(const Basin &basin, std::size_t n, const double *x) const;
   Basin::Energies power() const;
 
@@ -99,12 +90,8 @@ class Buoyancy : protected LAMMPS_NS::Pointers {
   bool lifts = false, slows = false, is_quadratic = false;
   ParticleValue volume, gamma, per_length;
   ParticleColumn lambda_column, base_column;
-  ParticleTable faces_of;
-  int faces_width = 0;
 
   std::vector<Wet> wet;
-  std::vector<Face> faces;                    // of the particles near the liquid
-  std::vector<int> face_of, face_of_first;    // those of the n-th: face_of[face_of_first[n]] …
   NearCells cells;
   std::vector<Basin::OnParts> on_parts;    // of each lattice cell
   Basin::Ledger own;                       // of this rank

@@ -50,11 +50,19 @@ static const std::vector<Keyword> FIXED = {{"volume", "V"},
                                            {"drain", "REGION2 q"},
                                            {"vertical", "lower|any"},
                                            {"seed", "N"}};
-static const std::vector<Keyword> FREE = {{"buoyancy", "V|d_NAME"}, {"drag", "gamma|d_NAME"}, {"quadratic", "k|d_NAME"},
-                                          {"lambda", "d_NAME"},     {"base", "d_NAME"},       {"cells", "i2_NAME"},
-                                          {"faces", "i2_NAME"},     {"softness", "d_NAME"},   {"still", "GROUP"},
-                                          {"sweeps", "auto|N"},     {"every", "N"},           {"stride", "s"},
-                                          {"period", "p"}};
+static const std::vector<Keyword> FREE = {{"buoyancy", "V|d_NAME"},
+                                          {"drag", "gamma|d_NAME"},
+                                          {"quadratic", "k|d_NAME"},
+                                          {"lambda", "d_NAME"},
+                                          {"base", "d_NAME"},
+                                          {"cells", "i2_NAME"},
+                                          {"softness", "d_NAME"},
+                                          {"still", "GROUP"},
+                                          {"sweeps", "auto|N"},
+                                          {"every", "N"},
+                                          {"stride", "s"},
+                                          {"period", "p"},
+                                          {"faces", "", "write model waves, in which open hulls float by the air in them"}};
 static constexpr double ANYWHERE = std::numeric_limits<double>::infinity();
 
 bool FixMdanimLiquid::WorldSums::alone() const { return lmp->comm->nprocs == 1; }
@@ -263,10 +271,6 @@ void FixMdanimLiquid::init()
     error->all(FLERR, "{}: periodic boundaries are not supported; use boundary s, f or m", name());
   still_group.init(lmp);
   buoyancy->init(name());
-  if (buoyancy->pressed() && model == Model::PAPER)
-    error->all(FLERR, "{}: model paper knows no pressure on faces; leave faces out", name());
-  if (buoyancy->pressed() && model == Model::WAVES)
-    error->all(FLERR, "{}: model waves presses on all solids without faces; leave faces out", name());
   if (model == Model::WAVES && !atom->molecule_flag)
     error->all(FLERR, "{}: model waves keeps records of objects, which molecule IDs tell apart; use 'atom_style bond'", name());
   if (model == Model::WAVES && !lattice_cells.given())
@@ -281,8 +285,8 @@ void FixMdanimLiquid::init()
     error->all(FLERR,
                "{}: ghosts have no rows of i2_{}, which cells needs on several ranks; add 'ghost yes' to its fix property/atom",
                name(), lattice_cells.name);
-  if ((lattice_cells.given() || buoyancy->pressed()) && atom->map_style == Atom::MAP_NONE)
-    error->all(FLERR, "{}: cells and faces need an atom map; use 'atom_modify map array'", name());
+  if (lattice_cells.given() && atom->map_style == Atom::MAP_NONE)
+    error->all(FLERR, "{}: cells needs an atom map; use 'atom_modify map array'", name());
   use(Threads());    // until passes tell how many there are
   lists_are_prompt = neighbor->every == 1 && neighbor->delay == 0 && !neighbor->build_once;
 }
@@ -404,7 +408,6 @@ void FixMdanimLiquid::find_near(double margin)
     near.push_back(i);
     near_marks[i] = 1;
   }
-  if (buoyancy->pressed()) buoyancy->find_faces(near, name());
   if (by_cells()) buoyancy->find_cells(near, lattice_cells, name());
   int here = !near.empty(), any = here;
   if (comm->nprocs > 1) MPI_Allreduce(&here, &any, 1, MPI_INT, MPI_MAX, world);

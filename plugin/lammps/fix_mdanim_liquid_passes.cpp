@@ -23,9 +23,7 @@ void FixMdanimLiquid::need_setup() const
 
 void FixMdanimLiquid::append_required_atoms(std::vector<int> &particles) const
 {
-  if (in_passes) return;
-  particles.insert(particles.end(), near.begin(), near.end());
-  buoyancy->append_required_atoms(particles);
+  if (!in_passes) particles.insert(particles.end(), near.begin(), near.end());
 }
 
 bool FixMdanimLiquid::join(PassCrew &crew)

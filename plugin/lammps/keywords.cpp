@@ -47,9 +47,11 @@ int mdanim::words_of_keyword(LAMMPS *lmp, const std::string &style, const std::v
   const auto found = std::find_if(known.begin(), known.end(), [&](const Keyword &one) { return one.word == arg[iarg]; });
   if (found == known.end()) {
     std::vector<std::string> words;
-    for (const Keyword &one : known) words.push_back(one.word);
+    for (const Keyword &one : known)
+      if (one.instead.empty()) words.push_back(one.word);
     lmp->error->all(FLERR, iarg, "{}: unknown keyword {}; it knows {}", style, arg[iarg], listed(words));
   }
+  if (!found->instead.empty()) lmp->error->all(FLERR, iarg, "{}: {} is not there any more; {}", style, arg[iarg], found->instead);
   const int count = static_cast<int>(needed(found->values).size()), got = narg - iarg - 1;
   if (got < count) refuse_missing(lmp, style, found->word, found->values, got, iarg);
   return 1 + count;

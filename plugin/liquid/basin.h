@@ -144,9 +144,6 @@ class Basin {
   virtual OnParts on_parts(const Vec3 & /*middle*/) const { return {}; }
   // Upward velocity of the solid around a place [distance/time].
   virtual double rising_at(const Vec3 & /*place*/) const { return 0.0; }
-  // Depth of the liquid that presses on a face of a solid with a middle [distance] and twice its area; 0 where air is
-  // before the face.
-  virtual double pressing_depth(const Vec3 & /*middle*/, const Vec3 & /*area*/) const { return 0.0; }
   // From the height returned down, all within the basin is below the surface, and nothing but Archimedes' lift acts.
   virtual double all_below() const = 0;
   // Rate [1/time] at which what is immersed loses the velocity that differs from that of the solid around.

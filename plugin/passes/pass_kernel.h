@@ -275,8 +275,7 @@ __attribute__((noinline)) void move_immersed(const Pass &pass, const Block &bloc
                                  small(ALONG_Y), small(FLOW_X), small(FLOW_Y), small(RISING)};
   const Immersed<Vector> particle{of(VOLUME), of(OWN_MASS), of(GAMMA), of(PER_LENGTH)};
   const AtPlace<Vector> at = in_waves.at(load(pass.x[2] + block.start));
-  const Vector3 lift = lift_along(pass.liquid, particle.volume, at.push);
-  const auto force = liquid_force(pass.liquid, particle, at, lift, load(pass.v, block.start));
+  const auto force = liquid_force(pass.liquid, particle, at, load(pass.v, block.start));
   store(kept + IMPULSE_X * LANES, waves(IMPULSE_X) + force.impulse_x);
   store(kept + IMPULSE_Y * LANES, waves(IMPULSE_Y) + force.impulse_y);
   const Vector kick = load(motion + KICK * LANES), phi = (of(LAMBDA) + force.lambda) * kick;

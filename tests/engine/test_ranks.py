@@ -25,7 +25,6 @@ NEARER = MEETING.replace("44) cm", "42.6) cm").replace("-4, 5) cm", "-4, 3.5) cm
 SCENES = {
     "solids": NEARER.replace("drag 0.8", "drag 0.8\n  damping 0.05"),
     "liquid": SPLASH,
-    "pressure": SPLASH.replace("model surface", "model pressure"),
     "waves": SPLASH.replace("model surface", "model waves drops 1 wave -x amplitude 2 cm period 0.5 s"),
 }
 MOVING = {
@@ -42,7 +41,7 @@ wave_basin_state.cpp."""
 @pytest.mark.mpi
 @pytest.mark.parametrize(
     ("name", "ranks"),
-    [("solids", 2), ("solids", 3), ("solids", 4), ("liquid", 2), ("liquid", 4), ("pressure", 3), ("waves", 2), ("waves", 3)],
+    [("solids", 2), ("solids", 3), ("solids", 4), ("liquid", 2), ("liquid", 3), ("liquid", 4), ("waves", 2), ("waves", 3)],
 )
 def test_ranks_see_what_one_sees(tmp_path, name, ranks):
     """Follow contact, dashpots, drag, held particles and liquid, take back steps, move all particles: the same bits on

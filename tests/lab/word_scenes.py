@@ -35,7 +35,7 @@ RIGHT = {
     "liquid.basin": ("from (-1, -1, 0) m to (1, 1, 1) m",),
     "liquid.level": ("20 cm",),
     "liquid.volume": ("0.5 m^3",),
-    "liquid.model": ("waves", "surface", "pressure"),
+    "liquid.model": ("waves", "surface"),
     "control.time": ("0.2 s",),
     "control.frames": ("50 fps", "100 fps"),
     "control.timestep": ("auto",),

@@ -17,7 +17,6 @@ static constexpr double SWEEPS_PER_CELL = 8.0;    // that the fastest solid trav
 static constexpr double LEVEL_RATE = 0.11;        // share of exposed cells moved while a shallow-water wave crosses one cell
 static constexpr double BETWEEN_MOVES = 0.5;      // cells that it crosses meanwhile
 static constexpr double SAMPLED = 4.0;            // cells above the liquid up to which solids are marked
-static constexpr double SPLASH = 1.5;             // cells below the surface within which an empty cell is taken for a ripple
 static constexpr double ANYWHERE = std::numeric_limits<double>::infinity();
 
 // The automaton numbers cells and its rim around them by 32 bits; the state, of a byte a cell and 8 a column, goes into a restart
@@ -229,35 +228,6 @@ double AutomatonBasin::liquid_around(const Vec3 &place) const
       for (int dx = -1; dx <= 1; ++dx)
         if (cells().content[cells().at(x + dx, y + dy, z + dz)]) return 1.0;
   return 0.0;
-}
-
-double AutomatonBasin::pressing_depth(const Vec3 &middle, const Vec3 &area) const
-{
-  if (!over_floor(&middle.x)) return 0.0;
-  const Vec3 place = in_cells(&middle.x);
-  const double depth = surface_at(place) - place.z;
-  if (depth <= 0.0) return 0.0;
-  if (depth > SPLASH) {
-    const double size = std::sqrt(dot(area, area));
-    if (size == 0.0 || air_before(middle, (1.0 / size) * area)) return 0.0;
-  }
-  return depth;
-}
-
-// The nearest cells may be solid, for they are only roughly where the face is.
-bool AutomatonBasin::air_before(const Vec3 &middle, const Vec3 &normal) const
-{
-  const Cells &c = cells();
-  for (const double far : {0.75, 1.25, 1.75, 2.25}) {
-    const Vec3 there = middle + (far * shortest) * normal, place = in_cells(&there.x);
-    if (!(place.x >= 0.0 && place.x < c.nx && place.y >= 0.0 && place.y < c.ny && place.z >= 0.0 && place.z < c.nz)) return false;
-    const int x = static_cast<int>(place.x), y = static_cast<int>(place.y);
-    int z = static_cast<int>(place.z);
-    if (!c.open[c.at(x, y, z)]) continue;
-    while (z < top_layer && !c.content[c.at(x, y, z)]) ++z;
-    return z >= top_layer;
-  }
-  return false;
 }
 
 }    // namespace mdanim

@@ -50,8 +50,6 @@ class AutomatonBasin : public Basin {
     return immersion == Immersion::SURFACE && lowest_eta >= 1.0 ? shape.low.z + (lowest_eta - 0.5) * shape.cell.z
                                                                 : -std::numeric_limits<double>::infinity();
   }
-  // No liquid in the first open cell before the face, and none above that.
-  double pressing_depth(const Vec3 &middle, const Vec3 &area) const override;
 
   bool is_smooth() const override { return false; }
   int top() const override { return top_layer; }
@@ -95,7 +93,6 @@ class AutomatonBasin : public Basin {
   }
   double surface_at(const Vec3 &place) const
   { return at_point(eta.data(), blocked.data(), shape.nx, shape.ny, place.x, place.y); }
-  bool air_before(const Vec3 &middle, const Vec3 &normal) const;
 
   const Immersion immersion;
   const RankSums &ranks;

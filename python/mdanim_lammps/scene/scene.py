@@ -148,8 +148,6 @@ class LiquidModel(Enum):
     """A liquid with momentum."""
     SURFACE = "surface"
     """An automaton without momentum; lift by the part of each particle's volume below the surface."""
-    PRESSURE = "pressure"
-    """The same liquid, lift by its pressure on the outer faces: for open hulls."""
     PAPER = "paper"
     """The paper's rules, word by word."""
 
@@ -238,10 +236,10 @@ class Liquid(Worded):
     model: LiquidModel = setting(
         None,
         "`waves`: a liquid with momentum that splashes, sloshes and pushes; open hulls float dry. `surface`: the paper's "
-        "automaton, which makes room, levels and lifts, and nothing else: quicker, and at rest at once. `pressure`: the same "
-        "with the liquid's pressure on every outer face, so that an open hull floats by the air in it. `paper`: the literal "
-        "rules of the paper, with a warning: not Archimedes, objects denser than about 0.4 of the liquid sink.",
-        "surface", default=LiquidModel.WAVES, codec=Words(LiquidModel))  # fmt: skip
+        "automaton, which makes room, levels and lifts, and nothing else: quicker, and at rest at once. `paper`: the "
+        "literal rules of the paper, with a warning: not Archimedes, objects denser than about 0.4 of the liquid sink.",
+        "surface", default=LiquidModel.WAVES, codec=Words(LiquidModel),
+        gone={"pressure": "write model waves, in which open hulls float by the air in them, or model surface"})  # fmt: skip
     calm: float | None = setting(
         "auto | <T:s>", "With `model waves`: time in which waves die to 1/e, besides by drag and depth; `auto` is 50 √(depth/g).",
         "20 s", Rule.POSITIVE, default=None)  # fmt: skip

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import dataclasses
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from enum import Enum
 from typing import Any
@@ -137,6 +137,8 @@ class Keyword:
     codec: Codec = PLAIN
     many: bool = False
     """May be given several times."""
+    gone: Mapping[str, str] = dataclasses.field(default_factory=dict)
+    """Choices that there were, each with the way out."""
     one_of: tuple[str, ...] = ()
     """Exactly one of these is given."""
     also: tuple[str, ...] = ()

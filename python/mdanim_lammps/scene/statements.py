@@ -458,6 +458,8 @@ class Parser(Reader):
         if first.type in ("PLUS", "MINUS") and self.peek.type == "NAME":
             last = self.take()
             text += str(last)
+        if text in keyword.gone:
+            raise Fault(first, f"{keyword.name} {text} is not there any more", keyword.gone[text], last)
         if text not in slot.choices:
             cause = f"'{text.strip()}' is not one of the choices of {keyword.name}"
             raise Fault(first, cause, did_you_mean(text, slot.choices), last)

@@ -49,18 +49,11 @@ def test_a_property_that_fix_modify_names_is_read_at_once(tmp_path, style):
     assert found[0] == found[1]
 
 
-@pytest.mark.parametrize("change", ["cells i2_cell", "faces i2_face", "still some", "softness d_soft"])
+@pytest.mark.parametrize("change", ["cells i2_cell", "still some", "softness d_soft"])
 def test_fix_modify_of_what_a_setup_reads_needs_one(tmp_path, change):
     """Else these would be half taken up."""
     columns = {"lambda": np.zeros(1), "soft": np.zeros(1)}
-    commands = [
-        "fix table all property/atom i2_cell 7 i2_face 36 ghost yes",
-        "group some id 1",
-        *BASIN,
-        FALL,
-        POOL + " buoyancy 1.0",
-        MOVE,
-    ]
+    commands = ["fix table all property/atom i2_cell 7 ghost yes", "group some id 1", *BASIN, FALL, POOL + " buoyancy 1.0", MOVE]
     for style in ("verlet", "verlet/mdanim"):
         lmp = lab.load(
             one(5.0), tmp_path, [*commands, f"run_style {style}", "run 5", f"fix_modify water {change}"], columns=columns

@@ -5,7 +5,6 @@ import ctypes
 import os
 import subprocess
 import sys
-from itertools import product
 
 import numpy as np
 import plugin_lab as lab
@@ -159,35 +158,6 @@ def test_still_walls_part_the_surface(tmp_path):
     assert np.array_equal(smooth[:, 11:], np.zeros((20, 9)))
     assert np.isnan(raw[:, 9:11]).all() and not np.isnan(raw[:, :9]).any()
     assert value(lmp, "units") == 8 * 9 * 20
-    lmp.close()
-
-
-def test_pressure_on_faces_lifts_a_block_like_archimedes(tmp_path):
-    """Summed over a closed surface, hydrostatic pressure is the weight of the displaced liquid, and nothing sideways."""
-    body = lab.block((2, 2, 2), (-1.2, -0.9, 4.1))
-    index = np.arange(27).reshape(3, 3, 3)
-    quads = []
-    for axis, side in product(range(3), (0, 2)):
-        face = np.moveaxis(index, axis, 0)[side]
-        # (y, x) order for z faces is clockwise seen from above: turn those that look the wrong way.
-        for a, b in product((0, 1), repeat=2):
-            quad = [face[a, b], face[a, b + 1], face[a + 1, b + 1], face[a + 1, b]]
-            p = body.x[quad]
-            outward = np.dot(np.cross(p[2] - p[0], p[3] - p[1]), p.mean(0) - body.x.mean(0)) > 0
-            quads.append(quad if outward else quad[::-1])
-    table = {i: [] for i in range(27)}
-    for quad in quads:
-        for k in range(4):
-            table[quad[k]] += [quad[(k + n) % 4] + 1 for n in (1, 2, 3)]
-    commands = [f"set atom {i + 1} i2_face[{k}] {tag}" for i, tags in table.items() for k, tag in enumerate(tags, 1)]
-    lmp = lab.load(
-        body, tmp_path,
-        ["fix table all property/atom i2_cell 7 i2_face 18 ghost yes", *lattice(body, (2, 2, 2)), *commands, *BASIN,
-         POOL + " cells i2_cell buoyancy d_volume faces i2_face", "bond_coeff * 0.0 1.0", "run 0"],
-        columns={"volume": body.mass},
-    )  # fmt: skip
-    # A linear pressure on faces that are parallelograms is integrated exactly.
-    assert lab.by_tag(lmp, "f").sum(0) == pytest.approx([0.0, 0.0, RHO * 8.0 * G], abs=1e-14)
     lmp.close()
 
 
@@ -395,7 +365,7 @@ def test_refuses_with_a_cure(tmp_path, command, message):
         ("buoyancy 1 lambda d_lambda", "there is no drag"),
         ("drag 0.1 lambda d_lambda", "add buoyancy"),
         ("cells i2_none", "no property of 7 integers"),
-        ("faces i2_none", "3 integers a face"),
+        ("faces i2_none", "faces is not there any more; write model waves"),
     ],
 )
 def test_refuses_what_does_not_fit_together(tmp_path, keywords, message):

@@ -62,7 +62,6 @@ BARRIER = "fix a all mdanim/barrier all all 1.0 1.0"
                 ("lambda", "d_NAME"),
                 ("base", "d_NAME"),
                 ("cells", "i2_NAME"),
-                ("faces", "i2_NAME"),
                 ("softness", "d_NAME"),
                 ("still", "GROUP"),
                 ("sweeps", "auto|N"),

@@ -240,7 +240,7 @@ def open_hulls(scene: SceneRecord, models: Sequence[Model]) -> list[Problem]:
         Problem(
             solid.spans.get("shape") or solid.spans.get("object"),
             f"{solid.name} is open and hollow: model surface lifts it by its material alone, not by the air in it",
-            f"leave model surface out of liquid {scene.liquid.name}, or write model pressure there",
+            f"leave model surface out of liquid {scene.liquid.name}: in waves, the default, hulls float dry",
             severity="warning",
         )
         for solid, model in zip(scene.solids, models)

@@ -21,7 +21,7 @@ from ..contact.planes import Boundary
 from ..contact.surface import SurfacePlanes
 from ..springs.effect import all_held
 from .basin import check_basin, leaky_walls, liquid_level, open_hulls, plan_grid, too_large
-from .tables import lattice_cells, layers_of_cells, outer_faces
+from .tables import lattice_cells, layers_of_cells
 
 EVERY = 4
 """Steps after which the fix looks whether cells are to be updated."""
@@ -156,14 +156,7 @@ class LiquidAutomaton(Effect):
         return -math.inf if scene.liquid is None else scene.liquid.high[2]
 
     def most_push(self, scene, bodies):
-        liquid = scene.liquid
-        if liquid is None:
-            return 0.0
-        if liquid.model is LiquidModel.PRESSURE:  # a hull whose whole width is pressed on from below, at the deepest
-            lift = liquid.density * (2.0 * bodies.radius) ** 2 * (liquid.high[2] - liquid.low[2]) / bodies.mass
-        else:
-            lift = liquid.density / bodies.density
-        return math.hypot(*scene.gravity) * lift
+        return 0.0 if scene.liquid is None else math.hypot(*scene.gravity) * (scene.liquid.density / bodies.density)
 
     def warnings(self, context):
         return [*open_hulls(context.scene, context.models), *leaky_walls(context.scene, context.models, context.grid)]
@@ -309,12 +302,8 @@ class Buoyancy(Effect):
     def columns(self, context):
         return {"volume": context.system.volume}
 
-    def tables(self, context):
-        return {"face": outer_faces(context.system)} if context.scene.liquid.model is LiquidModel.PRESSURE else {}
-
     def commands(self, context):
-        faces = " faces i2_face" if context.scene.liquid.model is LiquidModel.PRESSURE else ""
-        return [f"fix_modify liquid buoyancy d_volume{faces}"]
+        return ["fix_modify liquid buoyancy d_volume"]
 
     def lift(self, scene, system):
         return scene.liquid.density * np.add.reduceat(system.volume, system.first[:-1])
@@ -325,15 +314,8 @@ class Buoyancy(Effect):
     def rate(self, context):
         scene, system = context.scene, context.system
         weight = scene.liquid.density * -scene.gravity[2]
-        if scene.liquid.model is LiquidModel.PRESSURE:
-            # Row sums of the derivatives of -p A/4 over the faces of a particle: of p = weight * depth by its
-            # four corners, and of A = d1 x d2 / 2 at the pressure under a full basin.
-            h, deepest = system.spacing[system.object], context.grid.high[2] - context.grid.low[2]
-            faces = np.count_nonzero(outer_faces(system)[:, ::3], axis=1)
-            stiffness = faces * weight * (h**2 / 4 + deepest * math.sqrt(0.5) * h)
-        else:
-            # s_i goes from 0 to 1 over the height of a cell: a spring to the surface, which does not move along.
-            stiffness = weight * system.volume / context.grid.cell[2]
+        # s_i goes from 0 to 1 over the height of a cell: a spring to the surface, which does not move along.
+        stiffness = weight * system.volume / context.grid.cell[2]
         return np.where(system.held, 0.0, stiffness / system.mass)
 
     def energy(self, readings):

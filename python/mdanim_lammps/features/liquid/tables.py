@@ -1,11 +1,10 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What a liquid is told of solids: their lattice cells, and the outer faces of these, by the particles at their corners."""
+"""What a liquid is told of solids: their lattice cells, by the particles at their corners."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from ...model.embed import FACES
 from ...model.system import System
 
 
@@ -35,21 +34,3 @@ def layers_of_cells(system: System) -> np.ndarray:
         layer[here] = np.minimum(layer[here], n)
         reached[system.hexahedron[here]] = True
     return layer
-
-
-def outer_faces(system: System) -> np.ndarray:
-    """The faces that meet in each particle: tags (from 1) of their other three corners, int32, shape (N, 3 F).
-
-    Faces of lattice cells that no other cell shares, counter-clockwise seen from outside, 0 after a particle's last; F is
-    the most at one particle.
-    """
-    quads = system.hexahedron[:, FACES].reshape(-1, 4)
-    _, first, count = np.unique(np.sort(quads, axis=1), axis=0, return_index=True, return_counts=True)
-    outer = quads[np.sort(first[count == 1])]
-    views = np.concatenate([np.roll(outer, -k, axis=1) for k in range(4)])  # each corner's own view of the face
-    views = views[np.argsort(views[:, 0], kind="stable")]
-    owner = views[:, 0]
-    nth = np.arange(len(owner)) - np.searchsorted(owner, owner)
-    table = np.zeros((system.particles, int(nth.max()) + 1, 3), np.int32)
-    table[owner, nth] = views[:, 1:] + 1
-    return table.reshape(system.particles, -1)
