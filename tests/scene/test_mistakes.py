@@ -11,7 +11,7 @@ from scene_parts import CONTROL, pool, text
 # --- mistakes: line, column, words of the message, words of the way out -----------------------------------
 
 MISTAKES = [
-    ("a model that was", pool("volume 1 l model pressure"), 3, 20, "model pressure is not there any more", "write model waves"),
+    ("a model that was", pool("volume 1 l model pressure"), 3, 20, "not one of the choices of model any more", "model waves"),
     ("mistyped unit", text(mass="1.5 kgg"), 4, 12, "'kgg' is not a unit of mass", "did you mean 'kg'?"),
     ("foreign unit", text(mass="3 lb"), 4, 10, "'lb' is not a unit of mass", "units that fit: kg g t"),
     ("wrong dimension", text(mass="3 m"), 4, 8, "mass must be a mass, found 3 m, a length", "kg"),

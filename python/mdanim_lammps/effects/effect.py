@@ -6,7 +6,8 @@ it adds to the ledger and to the bound.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from types import MappingProxyType
 
 import numpy as np
 
@@ -114,6 +115,9 @@ class Effect:
         With ``body``, the kind of each particle's body (System.contact_kind), its fix is given the contact bodies of all kinds.
         """
         return {}
+
+    tags_of: Mapping[str, int] = MappingProxyType({})
+    """For each of its tables how many of the first columns are tags (from 1, 0 for none); a part of a plan numbers these anew."""
 
     def tables(self, context: Context) -> dict[str, np.ndarray]:
         """Per-particle whole numbers that its commands name as ``i2_NAME``, int32, each of shape (N, K)."""

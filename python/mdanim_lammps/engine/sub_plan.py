@@ -71,6 +71,7 @@ class SubPlans:
         context = replace(whole.context, system=system, grid=whole.grid if liquid else None)
         effects = self._effects(context)
         wanted = {name for e in effects for name in whole.asked[e.name]}
+        tags_of = {name: columns for e in effects for name, columns in e.tags_of.items()}
         used = self._used(objects)
         number = np.zeros(len(whole.coefficients) + 1, whole.bond_kind.dtype)
         number[used] = np.arange(1, len(used) + 1)
@@ -79,7 +80,7 @@ class SubPlans:
             certificate=whole.certificate,
             effects=effects,
             columns={name: take(column) for name, column in whole.columns.items() if name in wanted},
-            tables={name: take.tags(table) for name, table in whole.tables.items() if name in wanted},
+            tables={name: take.tags(table, tags_of[name]) for name, table in whole.tables.items() if name in wanted},
             bonds=system.spring if len(whole.bonds) else system.spring[:0],
             bond_kind=number[_Taker(runs, self._bond)(whole.bond_kind)],
             coefficients=whole.coefficients[used - 1],
@@ -205,13 +206,12 @@ class _Taker:
         pieces = [array[s] - array.dtype.type(shift) if shift else array[s] for s, shift in zip(rows.slices, self.shifts)]
         return pieces[0] if len(pieces) == 1 else np.concatenate([array[:0], *pieces])
 
-    def tags(self, table: np.ndarray) -> np.ndarray:
-        """Rows of a table of tags (from 1, 0 for none), numbered anew."""
-        pieces = [
-            np.where(table[s] > 0, table[s] - table.dtype.type(shift), 0) if shift else table[s]
-            for s, shift in zip(self.slices, self.shifts)
-        ]
-        return pieces[0] if len(pieces) == 1 else np.concatenate([table[:0], *pieces])
+    def tags(self, table: np.ndarray, columns: int) -> np.ndarray:
+        """Rows of a table whose first columns are tags (from 1, 0 for none), these numbered anew."""
+        rows = self(table)
+        shift = np.repeat(self.shifts, [s.stop - s.start for s in self.slices]).astype(table.dtype)[:, None]
+        tags = rows[:, :columns]
+        return np.hstack([np.where(tags > 0, tags - shift, 0), rows[:, columns:]])
 
 
 def _runs(objects: tuple[int, ...]) -> list[tuple[int, int]]:

@@ -458,11 +458,9 @@ class Parser(Reader):
         if first.type in ("PLUS", "MINUS") and self.peek.type == "NAME":
             last = self.take()
             text += str(last)
-        if text in keyword.gone:
-            raise Fault(first, f"{keyword.name} {text} is not there any more", keyword.gone[text], last)
         if text not in slot.choices:
-            cause = f"'{text.strip()}' is not one of the choices of {keyword.name}"
-            raise Fault(first, cause, did_you_mean(text, slot.choices), last)
+            cause = f"'{text.strip()}' is not one of the choices of {keyword.name}{' any more' * (text in keyword.gone)}"
+            raise Fault(first, cause, keyword.gone.get(text) or did_you_mean(text, slot.choices), last)
         return Value(slot, first, last, text=text)
 
     def check(self, slot: Slot, keyword: Keyword) -> Value:

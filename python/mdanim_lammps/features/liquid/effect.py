@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+from types import MappingProxyType
 
 import numpy as np
 
@@ -160,6 +161,8 @@ class LiquidAutomaton(Effect):
 
     def warnings(self, context):
         return [*open_hulls(context.scene, context.models), *leaky_walls(context.scene, context.models, context.grid)]
+
+    tags_of = MappingProxyType({"cell": 7})
 
     def tables(self, context):
         return {} if context.scene.liquid.model is LiquidModel.PAPER else {"cell": lattice_cells(context.system)}
