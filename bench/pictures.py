@@ -25,9 +25,9 @@ SIZE = (1280, 720)
 def measure(folder: str, quality: str) -> tuple[float, float]:
     """Seconds of processor time per picture, after a first one, and the largest memory [MB]."""
     os.environ["LP_NUM_THREADS"] = "1"
-    from mdanim_lammps.api import stored_scene
     from mdanim_lammps.picture.render import Painter
     from mdanim_lammps.results.trajectory import Trajectory
+    from mdanim_lammps.run.folder import stored_scene
     from mdanim_lammps.scene.render import Quality
 
     render = replace(stored_scene(Path(folder)).render, quality=Quality(quality))

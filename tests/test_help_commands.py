@@ -10,8 +10,8 @@ from urllib.parse import unquote
 import pytest
 from command_line import GOOD, call, run
 from mdanim_lammps import Scene
-from mdanim_lammps.api import open_run
 from mdanim_lammps.cli import doctor
+from mdanim_lammps.run.folder import open_run
 from mdanim_lammps.run.loop import Interrupted
 from mdanim_lammps.scene.explain import MARGINS, explain, words
 from mdanim_lammps.scene.grammar import grammar
@@ -110,7 +110,7 @@ def test_every_margin_of_the_shipped_scenes_is_explained():
 
     for name in ("beam", "float", "crowd", "plates"):
         scene = Scene.load(SCENES / f"{name}.txt")
-        assert {margin.name for margin in scene.certificate().margins} <= {*MARGINS, *scene.effects()}
+        assert {margin.name for margin in scene.certificate.margins} <= {*MARGINS, *scene.effects}
 
 
 def test_explain_on_the_command_line():

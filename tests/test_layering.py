@@ -15,6 +15,7 @@ ROOT = Path(mdanim_lammps.__file__).parent
 SCRIPTS = sorted(p for folder in ("bench", "docs") for p in (Path(__file__).parents[1] / folder).rglob("*.py"))
 ROOMS = [
     "errors",
+    "deprecated",
     "safe_start",
     "children",
     "processes",

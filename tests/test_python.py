@@ -11,8 +11,7 @@ from pathlib import Path
 import mdanim_lammps
 import numpy as np
 import pytest
-from mdanim_lammps import Scene, SceneError
-from mdanim_lammps.errors import OutputError, UsageError
+from mdanim_lammps import Interrupted, OutputError, RefusedError, Run, Scene, SceneError, UsageError
 
 TEXT = """
 let h = 0.3 m
@@ -52,7 +51,7 @@ def test_a_scene_from_a_file_keeps_its_values(tmp_path):
 SWEEP = """
 from mdanim_lammps import Scene
 print("main module")
-for run in Scene.from_text(open("pair.txt").read(), "pair").sweep(h=[0.3, 0.5]):
+for run in Scene.from_text(open("pair.txt").read(), "pair").sweep({"h": [0.3, 0.5]}):
     print(run.values, run.trajectory.objects["ball"].center_of_mass[0, 2].round(9), run.folder)
 """
 
@@ -73,7 +72,7 @@ def test_a_sweep_that_is_left_ends_its_runs(tmp_path):
     """At once, with checkpoints, though they would go on for hours; the caller's environment is never changed."""
     text = "let t = 0.1\n" + TEXT.replace("time 0.2 s", "time t * 1 s").split("expect")[0]
     before = dict(os.environ)
-    runs = Scene.from_text(text, "pair", h=0.5, folder=tmp_path).sweep(tmp_path / "s", t=[0.1, 9000], processes=2)
+    runs = Scene.from_text(text, "pair", h=0.5, folder=tmp_path).sweep({"t": [0.1, 9000]}, tmp_path / "s", processes=2)
     next(runs)
     assert os.environ == before
     checkpoint, deadline = tmp_path / "s" / "t=9000" / "checkpoint", time.monotonic() + 60
@@ -121,22 +120,22 @@ def test_what_a_sweep_refuses(tmp_path):
     """All problems before the first run; an error of a run comes from its process as it is."""
     scene = Scene.from_text(TEXT, "pair")
     with pytest.raises(UsageError, match="lists of different values"):
-        scene.sweep(h=[0.3, 0.3])
+        scene.sweep({"h": [0.3, 0.3]})
     for no_list in (0.3, "12", "30 cm"):
         with pytest.raises(UsageError, match="needs a list of values for h, found"):
             next(scene.sweep({"h": no_list}, tmp_path / "s"))
     with pytest.raises(SceneError):
-        scene.sweep(tmp_path / "s", h=[0.3, "soft"])
+        scene.sweep({"h": [0.3, "soft"]}, tmp_path / "s")
     assert not (tmp_path / "s").exists()
     (tmp_path / "s" / "h=0.5").mkdir(parents=True)
     (tmp_path / "s" / "h=0.5" / "thesis.tex").touch()
-    runs = scene.sweep(tmp_path / "s", h=[0.3, 0.5], processes=1)
+    runs = scene.sweep({"h": [0.3, 0.5]}, tmp_path / "s", processes=1)
     assert next(runs).values == {"h": 0.3}
     with pytest.raises(OutputError, match="exists; overwrite it with --force"):
         next(runs)
     # Overlapping objects are found when models are built, in the process of the run.
     with pytest.raises(SceneError) as caught:
-        next(Scene.from_text(TEXT.replace("(1, 0, 1) m", "(0, 0, 1) m"), "pair").sweep(tmp_path / "p", h=[1.0]))
+        next(Scene.from_text(TEXT.replace("(1, 0, 1) m", "(0, 0, 1) m"), "pair").sweep({"h": [1.0]}, tmp_path / "p"))
     assert all(problem.message for problem in caught.value.problems)
     assert scene.where(h=1.0).prepared  # apart they are fine
 
@@ -185,7 +184,7 @@ def test_names_are_suggested(run):
     for ask, words in (
         (lambda: run.trajectory.objects["bal"], "no object is called 'bal'; did you mean 'ball'"),
         (lambda: run.ledger.array("kinetc"), "no column 'kinetc'; did you mean 'kinetic'"),
-        (lambda: Scene.from_text(TEXT).effects()["gravty"], "did you mean 'gravity'"),
+        (lambda: Scene.from_text(TEXT).effects["gravty"], "did you mean 'gravity'"),
     ):
         with pytest.raises(KeyError, match=re.escape(words)):
             ask()
@@ -199,7 +198,7 @@ def test_what_notebooks_show(run):
     assert "&lt;b&gt;pair" in scene and "<td>ball</td><td>1 kg</td>" in scene
     assert "<td>ball.position.z</td>" in result and "<td>met</td>" in result
     assert "<td>box</td><td>2 kg</td>" in run.trajectory._repr_html_()
-    assert repr(run).startswith(f"<Result {run.folder}: 3 frames, energy residual ")
+    assert repr(run).startswith(f"<Run {run.folder}: 3 frames, energy residual ")
 
 
 def test_progress_is_shown_where_asked_for(tmp_path, capfd):
@@ -214,3 +213,67 @@ def test_progress_is_shown_where_asked_for(tmp_path, capfd):
 def test_types_are_for_others_too():
     """Type checkers of other projects read the annotations."""
     assert (Path(mdanim_lammps.__file__).parent / "py.typed").exists()
+
+
+def test_a_run_by_its_folder(run):
+    """Whatever the program that has run it had in hand is read back from its folder."""
+    again = Run(run.folder)
+    assert str(again.status) == "done, 3 of 3 frames" and repr(again) == f"<Run {run.folder}: done, 3 of 3 frames>"
+    assert again.ledger.rows == run.ledger.rows and again.ledger.columns == run.ledger.columns
+    assert [(o.found, o.met) for o in again.outcomes] == [(o.found, o.met) for o in run.outcomes] and not again.missed
+    assert again.cost == run.cost and again.timeline is None and not again.warnings
+    assert [solid.name for solid in again.scene.record.solids] == ["ball", "box"]
+    np.testing.assert_array_equal(again.trajectory.position(2), run.trajectory.position(2))
+    with pytest.raises(RefusedError, match="is complete"):
+        again.resume()
+    with pytest.raises(OutputError, match="does not exist"):
+        Run(run.folder / "nowhere")
+
+
+def test_a_run_that_was_stopped(run, tmp_path):
+    """Its state is told with its reason; it goes on to what a run has left that was never stopped."""
+    place = tmp_path / "pair.out"
+    with pytest.raises(Interrupted):
+        Scene.from_text(TEXT, "pair").run(place, on_progress=lambda p: p.frame == 1 and (place / "stop").touch())
+    stopped = Run(place)
+    assert stopped.status.state == "stopped" and stopped.status.frames == 2 and "resume" in stopped.status.message
+    assert stopped.outcomes == [] and stopped.cost is None
+    seen = []
+    assert stopped.resume(on_progress=lambda p: seen.append(p.frame)) is stopped and seen == [2]
+    assert stopped.status.state == "done" and stopped.ledger.rows == run.ledger.rows
+    np.testing.assert_array_equal(stopped.trajectory.position(2), run.trajectory.position(2))
+
+
+def test_a_run_is_drawn_and_exported(run, tmp_path):
+    """-o means the same in Python: a file, or a folder for it; a file of others is kept."""
+    movie = run.render(tmp_path, size=(64, 48), quality="draft")
+    assert movie == tmp_path / "movie.mp4" and movie.stat().st_size > 500
+    (exported,) = run.export("csv", tmp_path).files
+    assert exported == tmp_path / "pair.csv" and exported.exists()
+    (tmp_path / "mine.mp4").write_text("precious")
+    with pytest.raises(OutputError, match="not of this program"):
+        run.render(tmp_path / "mine.mp4")
+    with pytest.raises(UsageError, match=r"written as \.mp4"):
+        run.render(tmp_path / "movie.avi")
+
+
+def test_old_spellings_are_told(tmp_path):
+    """They work for one version, with a warning that names the new one and the caller's line."""
+    scene = Scene.from_text(TEXT, "pair", folder=tmp_path)
+    for old, new in (
+        (lambda: scene.effects()["gravity"].on, "without brackets"),
+        (lambda: scene.certificate().timestep, "without brackets"),
+        (lambda: mdanim_lammps.Universe, "open_universe"),
+        (lambda: scene.sweep(h=[0.4]), "sweep({'NAME'"),
+    ):
+        with pytest.warns(DeprecationWarning, match=re.escape(new)) as told:
+            assert old()
+        assert told[0].filename == __file__
+
+
+def test_what_is_documented_is_exported():
+    """Each name of docs/api.md comes from the package itself, and what it exports is there."""
+    page = (Path(__file__).parents[1] / "docs" / "api.md").read_text()
+    documented = set(re.findall(r"^\.\. auto\w+:: (\S+)$", page, re.MULTILINE))
+    assert documented == {f"mdanim_lammps.{name}" for name in mdanim_lammps.__all__}
+    assert all(getattr(mdanim_lammps, name) for name in mdanim_lammps.__all__)

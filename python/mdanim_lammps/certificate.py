@@ -18,6 +18,7 @@ from fractions import Fraction
 import numpy as np
 
 from . import features
+from .deprecated import OnceMethod
 from .effects import Context
 from .effects.envelope import Envelope
 from .effects.margin import Margin
@@ -36,7 +37,7 @@ MOST_OBJECTS = 100
 
 
 @dataclass(frozen=True, slots=True)
-class Certificate:
+class Certificate(OnceMethod):
     """What is certified before step 0."""
 
     timestep: float

@@ -9,7 +9,7 @@ import numpy as np
 import pandas
 import pytest
 from command_line import call
-from mdanim_lammps import Scene, Trajectory, Universe
+from mdanim_lammps import Scene, Trajectory, open_universe
 from mdanim_lammps.errors import OutputError, UsageError
 from mdanim_lammps.export import FORMATS, export
 from mdanim_lammps.results.ledger import Ledger
@@ -396,20 +396,20 @@ def test_a_dump_of_something_else_is_refused(made_by_lmp, tmp_path):
 
 def test_universe_of_what_build_writes(run, made_by_lmp, tmp_path):
     """Masses, springs, objects, and with the dump all frames."""
-    universe = Universe(made_by_lmp / "data.pond")
+    universe = open_universe(made_by_lmp / "data.pond")
     np.testing.assert_allclose(universe.atoms.masses, run.metadata.mass, rtol=1e-15)
     np.testing.assert_allclose(universe.atoms.positions, run.position(0), rtol=1e-6, atol=1e-9)
     np.testing.assert_allclose(universe.atoms.velocities, run.velocity(0), rtol=1e-6, atol=1e-9)
     assert len(universe.bonds) == len(run.metadata.bond) and len(universe.residues) == 2
     assert universe.residues[1].atoms.total_mass() == pytest.approx(2.0)
     assert list(universe.residues.resnames) == ["block[1]", "stone"] and universe.select_atoms("resname stone").n_residues == 1
-    moving = Universe(made_by_lmp / "data.pond", made_by_lmp / "pond.lammpstrj")
+    moving = open_universe(made_by_lmp / "data.pond", made_by_lmp / "pond.lammpstrj")
     assert len(moving.trajectory) == len(run)
     moving.trajectory[3]
     np.testing.assert_allclose(moving.residues[1].atoms.center_of_mass(), run.centers[3, 1], atol=1e-6)
     (tmp_path / "data.x").write_text("something else\n")
     with pytest.raises(OutputError, match="is not a data file that 'mdanim-lammps build' has written"):
-        Universe(tmp_path / "data.x")
+        open_universe(tmp_path / "data.x")
 
 
 def test_some_objects_and_some_frames(folder, run, tmp_path):

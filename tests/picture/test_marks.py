@@ -8,7 +8,7 @@ import sys
 
 import numpy as np
 import pytest
-from mdanim_lammps.api import Scene, draw_picture
+from mdanim_lammps.api.scene import Scene, draw_picture
 from mdanim_lammps.cli import main
 from mdanim_lammps.errors import UsageError
 from mdanim_lammps.picture.marks import MOST_NAMES, Marks

@@ -15,13 +15,14 @@ import h5py
 import numpy as np
 import pytest
 from campaign import rounds
-from mdanim_lammps.api import open_run, run_frames
+from mdanim_lammps.api.run import run_frames
 from mdanim_lammps.errors import OutputError
 from mdanim_lammps.results.checkpoint import Checkpoint
 from mdanim_lammps.results.files import STOP
 from mdanim_lammps.results.ledger import Ledger
 from mdanim_lammps.results.trajectory import Trajectory
 from mdanim_lammps.results.trajectory_file import NOT_WRITTEN, frame_tables, open_trajectory
+from mdanim_lammps.run.folder import open_run
 from mdanim_lammps.run.loop import Interrupted
 from mdanim_lammps.run.prepare import prepare
 from mdanim_lammps.scene.parse import load_scene

@@ -42,7 +42,7 @@ def test_force_leaves_what_is_the_users(scene):
         *("manifest.json", "scene.lock.txt", "certificate.json", "data.other", "in.other", "contact.other"),
     }
     with pytest.MonkeyPatch.context() as patch:  # as on a full disk
-        patch.setattr("mdanim_lammps.api.write_json", lambda *_: (_ for _ in ()).throw(OutputError("full")))
+        patch.setattr("mdanim_lammps.run.folder.write_json", lambda *_: (_ for _ in ()).throw(OutputError("full")))
         assert call("build", scene, "-o", out, "--force").returncode == 7
     assert call("build", scene, "-o", out, "--force").returncode == 0, "the folder is still ours"
     again = call("build", scene, "-o", out)

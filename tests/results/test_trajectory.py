@@ -16,14 +16,13 @@ import h5py
 import numpy as np
 import pytest
 from MDAnalysis.analysis.rms import RMSD
+from mdanim_lammps.api.run import STAY_OPEN, Run
 from mdanim_lammps.errors import OutputError
 from mdanim_lammps.model.model import Layer
 from mdanim_lammps.results.frame_rows import RowWriter
-from mdanim_lammps.results.ledger import Ledger
 from mdanim_lammps.results.trajectory import Trajectory
 from mdanim_lammps.results.trajectory_file import datasets_of_frames, frame_tables, part_of, trajectory_bytes
 from mdanim_lammps.results.trajectory_writer import TrajectoryWriter
-from mdanim_lammps.run.result import STAY_OPEN, Result
 from mdanim_lammps.scene.scene import Save, Walls
 from paths import LAB
 from picture_samples import KILLED, ball, falling, slab_scene, write
@@ -207,11 +206,12 @@ def test_no_lock_is_needed_to_read(slab, tmp_path):
             np.testing.assert_array_equal(t.universe.trajectory[1].positions, frames[1][2].astype(np.float32))
 
 
-def test_many_results_hold_few_files(slab, tmp_path):
-    """Trajectories of more results than a process may have files; one that is held stays what it is."""
+def test_many_runs_hold_few_files(slab, tmp_path):
+    """Trajectories of more runs than a process may have files; one that is held stays what it is."""
     scene, models, frames = slab
     write(tmp_path / "trajectory.h5", scene, models, frames)
-    results = [Result(tmp_path, Ledger(("kinetic",))) for _ in range(3 * STAY_OPEN)]
+    (tmp_path / "manifest.json").write_text("{}")
+    results = [Run(tmp_path) for _ in range(3 * STAY_OPEN)]
     held = results[0].trajectory
     before = len(os.listdir("/proc/self/fd"))
     assert sum(len(result.trajectory) for result in results) == len(results) * FRAMES

@@ -288,7 +288,7 @@ def test_a_second_interrupt_does_not_wait_for_the_frame(tmp_path, monkeypatch):
     scene = Scene.load(tmp_path / "fall.txt")
     whole, folder = scene.run(tmp_path / "whole.out"), tmp_path / "cut.out"
     windows, run_window = [], frame_source.run_window
-    frame = scene.certificate().steps_per_frame
+    frame = scene.certificate.steps_per_frame
 
     def window(instance, steps):
         run_window(instance, steps)

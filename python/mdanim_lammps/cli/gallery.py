@@ -8,15 +8,14 @@ import sys
 import urllib.parse
 from pathlib import Path
 
-from ..api import Scene, movie_file, output_folder, run_frames, stored_scene
+from ..api import Run, Scene
 from ..errors import MdanimError, OutputError
 from ..picture.movie import render_movie
-from ..results.checkpoint import Checkpoint
-from ..results.files import CHECKPOINT, MARK, SUMMARY, claimed, disk_errors, write_whole
+from ..results.files import CHECKPOINT, MARK, SUMMARY, disk_errors, write_whole
 from ..results.overwriting import MADE, check_overwriting
 from ..results.stored import read_manifest
+from ..run.folder import movie_file, output_folder
 from ..run.loop import Interrupted
-from ..run.prepare import prepare
 from ..scene.scene import SceneRecord
 from .steps import load, with_accuracy
 
@@ -82,6 +81,5 @@ def _run(record: SceneRecord, place: Path, *, force: bool) -> bool:
     if anew or not (place / MARK).exists():
         Scene(record).run(place, force=anew)
     else:
-        with claimed(place):
-            run_frames(prepare(stored_scene(place)), place, resume=Checkpoint.read(place / CHECKPOINT))
+        Run(place).resume(movie=False, progress=False)
     return True

@@ -6,6 +6,7 @@ from __future__ import annotations
 import sys
 from contextlib import suppress
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -15,18 +16,7 @@ from ..errors import ExitCode, Problem, RefusedError, UsageError
 from ..terminal import progress_bar
 from ..view.beside import Viewer, show_address
 from .options import AllowUnstable, Control, Executors, Overwrite, Quality, Quiet, Size, Threads, View, whole_number
-from .steps import (
-    adopt,
-    announce,
-    check_executors,
-    check_size,
-    draw_movie,
-    frame_range,
-    made_file,
-    prepare,
-    simulate_and_draw,
-    with_quality,
-)
+from .steps import adopt, announce, check_executors, check_size, draw_movie, frame_range, prepare, simulate_and_draw, with_quality
 
 if TYPE_CHECKING:
     from ..scene.render import Render
@@ -53,23 +43,15 @@ def resume(
     movie
         Make movie.mp4 at the end; if left out, where the run was to make one.
     """
-    from ..api import stored_scene
-    from ..results.checkpoint import Checkpoint
-    from ..results.files import CHECKPOINT, SUMMARY, claimed
-    from ..results.stored import read_manifest
+    from ..api.run import resumed
 
     check_executors(executors)
-    scene = stored_scene(folder)
-    with Viewer(view) as viewer, claimed(folder):
-        if (folder / SUMMARY).exists():
-            raise RefusedError(f"{folder} is complete; draw it again with 'mdanim-lammps render {folder}'")
-        checkpoint = Checkpoint.read(folder / CHECKPOINT)
-        ready = prepare(scene, allow_unstable=allow_unstable)
+    make = partial(prepare, allow_unstable=allow_unstable)
+    with Viewer(view) as viewer, resumed(folder, make) as (ready, checkpoint, draws):
         announce(ready, quiet, False, executors, control)
         viewer.start(folder)
-        draws = read_manifest(folder).get("draws") is not False if movie is None else movie
         options = {"executors": executors, "threads": threads, "control": control, "resume": checkpoint}
-        simulate_and_draw(ready, folder, quiet=quiet, movie=draws, **options)
+        simulate_and_draw(ready, folder, quiet=quiet, movie=draws if movie is None else movie, **options)
 
 
 def render(
@@ -103,7 +85,8 @@ def render(
     check_size(size)
     if fps is not None and not 0.0 < fps <= 1000.0:
         raise UsageError(f"--fps {fps:g}: must be above 0 and at most 1000, e.g. --fps 30")
-    from ..api import movie_file
+    from ..results.overwriting import output_file
+    from ..run.folder import movie_file
     from ..scene.parse import load_render
 
     stored = adopt(folder, quiet=quiet)
@@ -111,7 +94,7 @@ def render(
     if scene is not None:
         _warn_of_slow_motion(record.render, stored.control.frames)
     record = with_quality(record, quality)
-    path = made_file(movie_file(folder, record), out, ".mp4", force=force)
+    path = output_file(movie_file(folder, record), out, force=force)
     draw_movie(folder, record, path, quiet=quiet, size=size, fps=fps, frames=folder / "frames" if frames else None)
     if not quiet:
         print(f"movie    {path}" + (f"   pictures in {folder / 'frames'}" if frames else ""))
@@ -177,9 +160,10 @@ def report(
     exact
         Positions in 16 bits instead of 12.
     """
+    from ..results.overwriting import output_file
     from ..view.export import write_report
 
-    path = made_file(folder / "report.html", out, ".html", force=force)
+    path = output_file(folder / "report.html", out, force=force)
     adopt(folder, quiet=quiet)
     with progress_bar("report", quiet=quiet) as bar:
         every = write_report(folder, path, exact=exact, on_progress=lambda done, total: bar(done, total, ""))
@@ -252,9 +236,10 @@ def timeline(
     out
         The picture's file; default timeline.png in the folder.
     """
-    from ..api import stored_scene
     from ..picture.timeline import draw
+    from ..results.overwriting import output_file
     from ..results.timeline import TIMELINE, Timeline
+    from ..run.folder import stored_scene
 
     scene = stored_scene(folder)
     if not (folder / TIMELINE).exists():
@@ -262,7 +247,7 @@ def timeline(
             f"{folder} was simulated by one process, so there is no {TIMELINE}; "
             "executors are asked for with -n: mdanim-lammps SCENE -n 2"
         )
-    path = made_file(folder / "timeline.png", out, ".png", force=force)
+    path = output_file(folder / "timeline.png", out, force=force)
     draw(Timeline.read(folder), path, scene.title or scene.name)
     print(f"picture  {path}")
 

@@ -40,7 +40,6 @@ from .steps import (
     check_size,
     lmp_command,
     load,
-    picture_file,
     prepare,
     print_lines,
     print_warnings,
@@ -79,9 +78,9 @@ def run(
     movie
         Make movie.mp4 at the end.
     """
-    from ..api import open_run, output_folder
     from ..cost.speedup_forecast import forecast_speedup
     from ..report import speedup_lines
+    from ..run.folder import open_run, output_folder
 
     check_executors(executors)
     record = with_accuracy(load(scene, set_), accuracy)
@@ -182,14 +181,15 @@ def picture(
     boxes
         Draw the bounding box of each object.
     """
-    from ..api import draw_picture
+    from ..api.scene import draw_picture
     from ..picture.marks import Marks
     from ..report import progress_line
+    from ..results.overwriting import output_file
 
     check_size(size)
     time = 0.0 if at is None else seconds_of("--at", at)
     record = load(scene, set_)
-    path = picture_file(scene.with_suffix(".png") if out is None else out, ".png", force=force)
+    path = output_file(scene.with_suffix(".png"), out, force=force)
     with progress_bar("preview", quiet=quiet or not time) as bar:
         draw_picture(
             with_quality(record, quality),
@@ -222,7 +222,7 @@ def build(
     scene
         The scene file.
     """
-    from ..api import open_run, output_folder
+    from ..run.folder import open_run, output_folder
 
     record = with_accuracy(load(scene, set_), accuracy)
     out = output_folder(record, out)
@@ -260,7 +260,7 @@ def study(
     ladders
         Only these, e.g. "time step, resolution"; known are time step, resolution, sweeps, contact.
     """
-    from ..api import STUDY, output_folder
+    from ..run.folder import STUDY, output_folder
     from ..study.report import order_lines, table
     from ..study.study import run_study
 

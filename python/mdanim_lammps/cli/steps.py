@@ -11,7 +11,7 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
-from ..errors import DivergedError, ExitCode, OutputError, UsageError
+from ..errors import DivergedError, ExitCode, UsageError
 from ..terminal import PROGRAM, progress_bar
 
 STARTED = time.perf_counter()
@@ -52,7 +52,7 @@ def with_quality(scene, quality: str | None):
 
 def settle(scene, *, make: bool, quiet: bool = False, out: Path | None = None):
     """The scene with a setting for its target error, and a line that says where it comes from."""
-    from ..api import STUDY, default_folder
+    from ..run.folder import STUDY, default_folder
     from ..study.target import settle as settle_scene
 
     study = (out or default_folder(scene)) / STUDY
@@ -120,28 +120,6 @@ def frame_range(text: str) -> slice:
     return slice(*(int(word) if word else None for word in match.groups()))
 
 
-def picture_file(path: Path, suffix: str, *, force: bool) -> Path:
-    """The file that -o names for a movie or a picture. Raises UsageError, and OutputError where it is not to be overwritten."""
-    from ..results.overwriting import check_overwriting
-
-    if path.suffix.lower() != suffix:
-        raise UsageError(f"-o {path}: this file is written as {suffix}; give it a name such as {path.stem or 'movie'}{suffix}")
-    if not path.parent.is_dir():
-        raise OutputError(f"-o {path}: there is no folder {path.parent}; make it first, or name another")
-    check_overwriting(path, force=force)
-    return path
-
-
-def made_file(default: Path, out: Path | None, suffix: str, *, force: bool) -> Path:
-    """The file of -o, or that of a folder of results. Raises UsageError, and OutputError where it is not to be overwritten."""
-    from ..results.overwriting import check_overwriting
-
-    if out is not None:
-        return picture_file(out, suffix, force=force)
-    check_overwriting(default, force=force)
-    return default
-
-
 def print_warnings(ready) -> None:
     for warning in ready.warnings:
         print(warning, file=sys.stderr)
@@ -166,9 +144,10 @@ def announce(ready, quiet: bool, verbose: bool, executors: int = 1, control: str
 
 
 def simulate_and_draw(ready, folder: Path, *, quiet: bool, movie: bool, **options) -> None:
-    from ..api import movie_file, run_frames
+    from ..api.run import run_frames
     from ..report import cost_line, progress_line, spread_line
     from ..results.timeline import Timeline
+    from ..run.folder import movie_file
     from ..scene.formatting import number
 
     file = movie_file(folder, ready.scene)
@@ -202,8 +181,8 @@ def simulate_and_draw(ready, folder: Path, *, quiet: bool, movie: bool, **option
 
 def adopt(folder: Path, *, quiet: bool):
     """The scene that an output folder holds; a dump that plain ``lmp`` has left there becomes its trajectory."""
-    from ..api import stored_scene
     from ..run.adopt import adopt_dump
+    from ..run.folder import stored_scene
 
     scene = stored_scene(folder)
     if (line := adopt_dump(folder, scene)) and not quiet:

@@ -12,6 +12,7 @@ from pathlib import Path
 
 from ..errors import OutputError, SetupError, UsageError
 from ..results.files import disk_errors, scratch, sync
+from ..results.overwriting import place_of
 from ..results.trajectory import Trajectory
 from ..results.untrusted import check_folder
 from ..scene.keywords import did_you_mean
@@ -78,7 +79,7 @@ def export(
     Args:
         run: output folder, or an open trajectory; of a run that was stopped what is there.
         to: a name in `FORMATS`.
-        path: the file; None is ``NAME.SUFFIX`` in the output folder.
+        path: the file, or a folder for it; None is ``NAME.SUFFIX`` in the output folder.
         objects: names of those that are wanted; none for all. Liquid is written only with all objects.
         every: only every n-th frame.
         frames: only these, before ``every`` counts.
@@ -99,15 +100,8 @@ def export(
         with Trajectory(run) as opened:
             return export(opened, to, path, objects=objects, every=every, frames=frames, force=force, on_progress=on_progress)
     cut = Cut(run, objects, every, frames)
-    if path is None:
-        home = run.path.parent.resolve()
-        path = home / f"{home.stem}{kind.suffixes[0]}"
-    path = Path(path)
-    if path.suffix.lower() != kind.suffixes[0]:
-        name = f"{path.stem or 'scene'}{kind.suffixes[0]}"
-        raise UsageError(f"-o {path}: {to} is written as {kind.suffixes[0]}; give it a name such as {name}")
-    if not path.parent.is_dir():
-        raise OutputError(f"-o {path}: there is no folder {path.parent}; make it first, or name another")
+    home = run.path.parent.resolve()
+    path = place_of(home / f"{home.stem}{kind.suffixes[0]}", path, to)
     try:
         if kind.needs:
             import_module(kind.needs)

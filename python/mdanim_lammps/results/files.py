@@ -238,6 +238,24 @@ def _is_open_as(path: Path, descriptor: int) -> bool:
     return path.exists() and os.path.samestat(path.stat(), os.fstat(descriptor))
 
 
+def in_use(folder: Path) -> bool:
+    """Whether processes of a run are alive that write into a folder; False on file systems without locks."""
+    try:
+        descriptor = os.open(folder / IN_USE, os.O_RDONLY | os.O_NOFOLLOW | os.O_CLOEXEC)
+    except OSError:
+        return False
+    try:
+        fcntl.flock(descriptor, fcntl.LOCK_SH | fcntl.LOCK_NB)
+    except BlockingIOError:
+        return True
+    except OSError as error:
+        if error.errno not in NO_LOCKS:
+            raise
+    finally:
+        os.close(descriptor)
+    return False
+
+
 def write_whole(path: Path, write: Callable[[Path], None] | str) -> None:
     """Write a file beside its final name, sync it and rename it: the name always holds a whole file, also after a loss of power.
 

@@ -8,7 +8,7 @@ import mmap
 import os
 from pathlib import Path
 
-from ..errors import OutputError
+from ..errors import OutputError, UsageError
 
 MADE = "Made by mdanim-lammps"
 """Stands in every picture, movie and page."""
@@ -24,6 +24,27 @@ def check_overwriting(path: Path, *, force: bool, other: str = "FILE") -> None:
         raise OutputError(
             f"{path} exists, and is not of this program; overwrite it with --force, or write elsewhere with -o {other}"
         )
+
+
+def output_file(default: Path, out: str | Path | None, *, force: bool) -> Path:
+    """`place_of` the one file that a command makes. Raises what that does, and OutputError where it is not to be overwritten."""
+    path = place_of(default, out)
+    check_overwriting(path, force=force)
+    return path
+
+
+def place_of(default: Path, out: str | Path | None, what: str = "this file") -> Path:
+    """Where a file goes: ``default``, or what -o names, a file of that kind or a folder for it. Raises UsageError for another
+    kind, and OutputError where its folder is not there."""
+    if out is None:
+        return default
+    path = Path(out) / default.name if Path(out).is_dir() else Path(out)
+    if path.suffix.lower() != default.suffix.lower():
+        name = f"{path.stem or default.stem}{default.suffix}"
+        raise UsageError(f"-o {path}: {what} is written as {default.suffix}; give it a name such as {name}")
+    if not path.parent.is_dir():
+        raise OutputError(f"-o {path}: there is no folder {path.parent}; make it first, or name another")
+    return path
 
 
 def is_made_here(path: Path) -> bool:

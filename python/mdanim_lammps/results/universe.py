@@ -82,7 +82,7 @@ def universe_of(trajectory: Trajectory) -> MDAnalysis.Universe:
     return universe
 
 
-def open_data(data: str | Path, dump: str | Path | None = None) -> MDAnalysis.Universe:
+def open_universe(data: str | Path, dump: str | Path | None = None) -> MDAnalysis.Universe:
     """What ``mdanim-lammps build`` has written, for MDAnalysis; masses and springs included, metres and m/s.
 
     Args:

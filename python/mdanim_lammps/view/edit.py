@@ -120,8 +120,9 @@ def scene_of(folder: Path) -> Path | None:
 
 def main() -> None:
     """Run the scene on standard input into a folder, which is emptied if it is one of ours."""
-    from ..api import open_run, run_frames
+    from ..api.run import run_frames
     from ..results.files import write_whole
+    from ..run.folder import open_run
     from ..run.prepare import prepare
     from ..scene.parse import parse_scene
     from ..terminal import documented_exit, open_streams, stop_on_sigterm

@@ -23,13 +23,13 @@ from tempfile import TemporaryFile
 import numpy as np
 
 from .. import features
-from ..api import STUDY, stored_scene
 from ..effects import resolve
 from ..errors import MdanimError, OutputError, RefusedError
 from ..results.files import disk_errors, read_json, write_whole
 from ..results.stored import STUDY as STUDY_FILE
 from ..results.stored import read_manifest
 from ..results.untrusted import check_places, check_plain
+from ..run.folder import STUDY, stored_scene
 from .feed import Feed, packed
 from .server import packaged_files
 from .tail import Known, Tail

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import fcntl
 import math
 import os
 import threading
@@ -12,14 +11,14 @@ from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
-from ..api import stored_scene
 from ..errors import MdanimError, OutputError, SceneError
-from ..results.files import IN_USE, NO_LOCKS
+from ..results.files import in_use
 from ..results.ledger import Ledger
 from ..results.progress import ENDED, ProgressTail
 from ..results.stored import read_facts
 from ..results.timeline import Timeline
 from ..results.trajectory_file import find_trajectory
+from ..run.folder import stored_scene
 from ..scene.render import Render
 from .feed import Feed
 
@@ -247,21 +246,3 @@ class Tail:
             return scene.title or scene.name, scene.render
         except SceneError:
             return self.folder.resolve().stem, Render()  # a scene of an older version of the language can be seen all the same
-
-
-def in_use(folder: Path) -> bool:
-    """Whether processes of a run are alive that write into a folder; False on file systems without locks."""
-    try:
-        descriptor = os.open(folder / IN_USE, os.O_RDONLY | os.O_NOFOLLOW | os.O_CLOEXEC)
-    except OSError:
-        return False
-    try:
-        fcntl.flock(descriptor, fcntl.LOCK_SH | fcntl.LOCK_NB)
-    except BlockingIOError:
-        return True
-    except OSError as error:
-        if error.errno not in NO_LOCKS:
-            raise
-    finally:
-        os.close(descriptor)
-    return False

@@ -126,4 +126,4 @@ def test_is_the_certificate_of_a_scene(tmp_path):
     (tmp_path / "out" / "in.two").write_text(script)
     lmp = Path(sys.executable).parent / "lmp"
     subprocess.run([lmp, "-in", "in.two"], cwd=tmp_path / "out", check=True, capture_output=True)
-    assert float((tmp_path / "out" / "bound").read_text()) == pytest.approx(scene.certificate().bound, rel=1e-7)
+    assert float((tmp_path / "out" / "bound").read_text()) == pytest.approx(scene.certificate.bound, rel=1e-7)

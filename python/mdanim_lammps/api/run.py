@@ -1,0 +1,321 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""A run by its folder: how far it is, what it has left, and what can be made of it."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass, replace
+from functools import cached_property
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING
+from weakref import ref
+
+from ..engine.threads import with_threads
+from ..errors import MdanimError, OutputError, Problem, RefusedError
+from ..parallel.limits import check_executors
+from ..report import progress_line
+from ..results.checkpoint import Checkpoint
+from ..results.cost import Cost
+from ..results.expect import Outcome
+from ..results.files import CHECKPOINT, SUMMARY, claimed, in_use, read_json
+from ..results.html import THUMBNAIL, html_table
+from ..results.ledger import Ledger
+from ..results.overwriting import output_file
+from ..results.progress import ENDED, ProgressTail
+from ..results.stored import SUMMARY as SUMMARY_FILE
+from ..results.stored import read_manifest
+from ..results.timeline import Timeline
+from ..results.trajectory import Trajectory
+from ..run.adopt import adopt_dump
+from ..run.folder import check_run, movie_file, stored_scene
+from ..run.loop import Progress, simulate
+from ..run.prepare import Prepared, prepare
+from ..run.result import Result
+from ..scene.formatting import number
+from ..scene.render import Quality
+from ..scene.scene import SceneRecord
+from ..terminal import in_notebook, progress_bar
+
+if TYPE_CHECKING:
+    from ..export import Exported
+    from .scene import Scene
+
+STAY_OPEN = 32
+"""Trajectories of runs that stay open: a process has some 1000 files."""
+_recent: deque[Trajectory] = deque(maxlen=STAY_OPEN)
+
+
+@dataclass(frozen=True, slots=True)
+class RunStatus:
+    """How far a run is."""
+
+    state: str
+    """``built`` (not begun), ``preparing``, ``running``, ``paused``, ``stopped``, ``failed``, ``killed`` or ``done``."""
+    frames: int
+    """That are in the trajectory."""
+    total: int
+    """Frames of the whole run; 0 while that is not known."""
+    message: str = ""
+    """Why it was stopped, or has failed."""
+
+    def __str__(self) -> str:
+        return f"{self.state}, {self.frames} of {self.total} frames" if self.total else self.state
+
+
+class Run:
+    """A run by its folder: one that goes on, was stopped, has failed or is complete. `Scene.run` and `Scene.sweep` return it.
+
+    What is read from the folder is read when it is asked for.
+
+    Args:
+        folder: the output folder.
+        values: of the scene's ``let`` names that were given for this run.
+
+    Raises OutputError for a folder that has no run in it.
+    """
+
+    def __init__(self, folder: str | Path, values: Mapping[str, float | str] | None = None):
+        self.folder, self.values = Path(folder), dict(values or {})
+        check_run(self.folder)
+        self._result: Result | None = None
+        self._opened: ref[Trajectory] | None = None
+
+    # --- what it has left -------------------------------------------------------------------------------------------
+
+    @cached_property
+    def scene(self) -> Scene:
+        """The scene as the folder keeps it, with everything expanded. Raises SceneError, OutputError."""
+        from .scene import Scene
+
+        return Scene(stored_scene(self.folder))
+
+    @property
+    def status(self) -> RunStatus:
+        """How far the run is now. Raises OutputError."""
+        tail = ProgressTail(self.folder)
+        try:
+            tail.read()
+        except OSError as error:
+            raise OutputError(f"{tail.path} cannot be read: {error.strerror or error}") from error
+        finally:
+            tail.close()
+        state = tail.state
+        if not tail.lives:
+            state = "done" if (self.folder / SUMMARY).exists() else "preparing" if in_use(self.folder) else "built"
+        elif state not in ENDED and not in_use(self.folder):
+            state = "killed"
+        return RunStatus(state, tail.count, tail.total, tail.message)
+
+    @property
+    def ledger(self) -> Ledger:
+        """Energies of each frame. Raises OutputError."""
+        return self._result.ledger if self._result else Ledger.read(self.folder / "ledger.csv")
+
+    @property
+    def outcomes(self) -> list[Outcome]:
+        """What came of the ``expect`` lines; empty as long as the run is not complete. Raises OutputError, SceneError."""
+        if self._result:
+            return self._result.outcomes
+        if not (self.folder / SUMMARY).exists():
+            return []
+        expects, rows = self.scene.record.expects, read_json(self.folder / SUMMARY, SUMMARY_FILE).get("expect", ())
+        if len(expects) != len(rows):
+            raise OutputError(f"{self.folder / SUMMARY} has {len(rows)} expectations, the scene {len(expects)}: one is damaged")
+        return [Outcome(e, float("nan") if r["found"] is None else r["found"]) for e, r in zip(expects, rows)]
+
+    @property
+    def missed(self) -> list[Outcome]:
+        """Those outcomes that were not met."""
+        return [o for o in self.outcomes if not o.met]
+
+    @property
+    def cost(self) -> Cost | None:
+        """Seconds per effect and per other piece of work; None as long as the run has not ended. Raises OutputError."""
+        path = self.folder / "cost.json"
+        return self._result.cost if self._result else Cost.read(path) if path.exists() else None
+
+    @property
+    def warnings(self) -> list[Problem]:
+        """What was seen in the run that does not stop it; known only in the program that has run it."""
+        return self._result.warnings if self._result else []
+
+    @property
+    def timeline(self) -> Timeline | None:
+        """What executors did when; None of a run in one process. Raises OutputError."""
+        return Timeline.left_in(self.folder)
+
+    @property
+    def trajectory(self) -> Trajectory:
+        """The frames; opened when they are first asked for, and closed with nothing left that refers to them. The last few that
+        were opened stay open. Raises OutputError."""
+        if (found := self._opened and self._opened()) is None:
+            found = Trajectory(self.folder)
+            self._opened = ref(found)
+            _recent.append(found)
+        return found
+
+    # --- what can be done with it -----------------------------------------------------------------------------------
+
+    def resume(
+        self,
+        *,
+        executors: int = 1,
+        threads: int | None = None,
+        control: str | None = None,
+        movie: bool | None = None,
+        allow_unstable: bool = False,
+        progress: bool | None = None,
+        on_progress: Callable[[Progress], None] | None = None,
+    ) -> Run:
+        """Go on from the last checkpoint, as if the run had never stopped; returns this run.
+
+        ``movie`` draws a movie at the end, None where the run was to make one; other arguments are those of `Scene.run`.
+        Raises RefusedError for a run that is complete, OutputError where there is no checkpoint, and what `Scene.run` raises.
+        """
+        with resumed(self.folder, lambda scene: prepare(scene, allow_unstable=allow_unstable)) as (ready, checkpoint, draws):
+            return self.go(
+                ready,
+                movie=draws if movie is None else movie,
+                progress=progress,
+                on_progress=on_progress,
+                executors=executors,
+                threads=threads,
+                control=control,
+                resume=checkpoint,
+            )
+
+    def go(
+        self, ready: Prepared, *, movie: bool, progress: bool | None, on_progress: Callable[[Progress], None] | None, **options
+    ) -> Run:
+        """Simulate into the folder, which this process has claimed; see `Scene.run` and `run_frames`."""
+        self._result = self._opened = None
+        with progress_bar("run", quiet=quiet_unless(progress)) as bar:
+
+            def tell(now: Progress) -> None:
+                bar(now.frame, now.frames, progress_line(now))
+                if on_progress:
+                    on_progress(now)
+
+            self._result = run_frames(ready, self.folder, on_progress=tell, **options)
+        if movie:
+            self.render(progress=False, force=True)
+        return self
+
+    def render(
+        self,
+        path: str | Path | None = None,
+        *,
+        size: tuple[int, int] | None = None,
+        fps: float | None = None,
+        quality: str | None = None,
+        force: bool = False,
+        progress: bool | None = None,
+    ) -> Path:
+        """Draw the movie.
+
+        Args:
+            path: its file, ``.mp4``, or a folder for it; None is the one that the scene names in the output folder.
+            size: width and height in pixels; None is that of the scene.
+            fps: pictures per second; None is that of the scene.
+            quality: ``draft`` or ``final``; None is that of the scene.
+            force: overwrite a file that this program has not made.
+            progress: shows a bar, by default in a notebook only.
+
+        Raises SetupError, OutputError, UsageError.
+        """
+        from ..picture.movie import render_movie
+
+        self.adopt()
+        record = self.scene.record
+        render = record.render if quality is None else replace(record.render, quality=Quality(quality))
+        file = output_file(movie_file(self.folder, record), path, force=force)
+        with progress_bar("movie", quiet=quiet_unless(progress)) as bar:
+            return render_movie(
+                self.folder, render, file, size=size, fps=fps, on_progress=lambda done, all: bar(done, all, f"{done} of {all}")
+            )
+
+    def export(self, to: str, path: str | Path | None = None, **options) -> Exported:
+        """Write the run as a file of another program; arguments and errors are those of `mdanim_lammps.export.export`."""
+        from ..export import export
+
+        self.adopt()
+        return export(self.folder, to, path, **options)
+
+    def adopt(self) -> str:
+        """Make a trajectory of the dump that plain ``lmp`` has left in the folder, if there is one and no trajectory; returns a
+        line that says so, or an empty text. Raises OutputError, SceneError, RefusedError."""
+        return adopt_dump(self.folder, self.scene.record)
+
+    def __getstate__(self) -> dict:
+        return {name: value for name, value in self.__dict__.items() if name != "scene"} | {"_opened": None}
+
+    def __repr__(self) -> str:
+        values = "".join(f"{name}={value}, " for name, value in self.values.items())
+        if not self._result:
+            return f"<Run {self.folder}: {values}{self.status}>"
+        missed = f", {len(self.missed)} of {len(self.outcomes)} expectations missed" if self.missed else ""
+        residual = number(self.ledger.residual, 3)
+        return f"<Run {self.folder}: {values}{len(self.ledger.rows)} frames, energy residual {residual}{missed}>"
+
+    def _repr_html_(self) -> str:
+        from ..picture.movie import render_still
+
+        rows = [
+            (
+                f"{o.expect.subject}.{o.expect.quantity}",
+                number(o.expect.value, 4),
+                number(o.found, 4),
+                "met" if o.met else "MISSED",
+            )
+            for o in self.outcomes
+        ]
+        picture = None
+        with TemporaryDirectory(prefix="mdanim-picture-") as name, suppress(MdanimError):
+            render = self.scene.record.render
+            picture = render_still(self.trajectory, -1, Path(name) / "end.png", render, size=THUMBNAIL).read_bytes()
+        return html_table(repr(self)[1:-1], ("expected", "value", "found", ""), rows, picture)
+
+
+def quiet_unless(progress: bool | None) -> bool:
+    """Whether no bar is shown: None shows one in a notebook only."""
+    return not (in_notebook() if progress is None else progress)
+
+
+@contextmanager
+def resumed(folder: Path, make: Callable[[SceneRecord], Prepared]) -> Iterator[tuple[Prepared, Checkpoint, bool]]:
+    """Claim the folder of a run that was stopped; gives its scene as `make` prepares it, where it goes on, and whether it was to
+    end with a movie. Raises RefusedError for a run that is complete, OutputError, SceneError, and what ``make`` raises."""
+    scene = stored_scene(folder)
+    with claimed(folder):
+        if (folder / SUMMARY).exists():
+            raise RefusedError(f"{folder} is complete; draw it again with 'mdanim-lammps render {folder}'")
+        checkpoint = Checkpoint.read(folder / CHECKPOINT)
+        yield make(scene), checkpoint, read_manifest(folder).get("draws") is not False
+
+
+def run_frames(
+    ready: Prepared,
+    folder: Path,
+    *,
+    executors: int = 1,
+    threads: int | None = None,
+    control: str | None = None,
+    resume: Checkpoint | None = None,
+    **options,
+) -> Result:
+    """Simulate in this process, or on executors of their own when there is more than one or a ``control`` is named, each with so
+    many threads; None: as many as pay, of all cores divided by executors.
+
+    ``options`` are those of `run.loop.simulate`. Raises what that does, and UsageError for less than one executor or thread or
+    more than this machine can hold.
+    """
+    check_executors(executors, ready.system.particles)
+    with with_threads(threads):
+        if executors == 1 and control is None:
+            return simulate(ready, folder, resume=resume, **options)
+        from ..parallel.runtime.launch import simulate_on
+
+        return simulate_on(executors, control or "central", ready, folder, resume=resume, **options)
