@@ -21,6 +21,9 @@ ROOMS = [
     "processes",
     "interrupts",
     "terminal",
+    "registry",
+    "language",
+    "words",
     "scene",
     "model",
     "reach",
@@ -43,9 +46,23 @@ ROOMS = [
 ]
 
 
+LANGUAGE = {"formatting", "forms", "limits", "rotation", "schema", "shapes", "units"}
+"""Modules of scene/ that know no word of a scene: words of features are written with them."""
+
+
+def room_of(*parts: str) -> str:
+    """The room of a module, given by its names below the package."""
+    if parts[0] == "scene" and len(parts) > 1 and parts[1] in LANGUAGE:
+        return "language"
+    if parts[0] == "features":  # what finds them, their words, and all the rest
+        return "registry" if len(parts) < 3 else "words" if parts[2] == "words" else "features"
+    return parts[0]
+
+
 def room(path: Path) -> str:
     """The room a file belongs to."""
-    return path.relative_to(ROOT).parts[0].removesuffix(".py")
+    parts = path.relative_to(ROOT).with_suffix("").parts
+    return room_of(*(part for part in parts if part != "__init__"))
 
 
 def imported_rooms(path: Path) -> set[str]:
@@ -65,7 +82,7 @@ def imported_rooms(path: Path) -> set[str]:
         for name in names:
             parts = name.split(".")
             if parts[0] == "mdanim_lammps" and len(parts) > 1:
-                found.add(parts[1])
+                found.add(room_of(*parts[1:]))
     return found - {"__version__"}
 
 

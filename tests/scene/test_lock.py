@@ -12,7 +12,7 @@ from mdanim_lammps.scene.keywords import BLOCKS, KEYWORDS, STATEMENTS
 from mdanim_lammps.scene.lock import lock_text
 from mdanim_lammps.scene.parse import load_scene, parse_scene
 from mdanim_lammps.scene.rotation import departure, rotation_about, rotation_euler
-from mdanim_lammps.scene.scene import GLOBALS, IMMERSION, QUANTITIES
+from mdanim_lammps.scene.scene import GLOBALS, QUANTITIES
 from paths import SCENES
 
 # Fixed examples, so that every run of the tests is the same run.
@@ -166,7 +166,7 @@ def scenes(draw):
     cameras = tuple(c for c in cameras if c.eye != c.look)
     expects = []
     for kind, quantity in draw(st.lists(st.sampled_from(sorted(QUANTITIES)), max_size=3)):
-        if wet or (kind != "liquid" and quantity not in IMMERSION):
+        if wet or (kind != "liquid" and QUANTITIES[kind, quantity].needs != "liquid"):
             subject = kind if kind in GLOBALS else draw(st.sampled_from([b.name for b in bodies]))
             time = draw(st.none() | st.floats(0, control.time))
             expects.append(records.Expect(subject, quantity, draw(numbers), draw(st.floats(0, 1e3)), time))

@@ -3,6 +3,8 @@
 
 A folder has facets, each a module that is looked for by its name:
 
+``words``    what it adds to the language (scene/): SWITCHES, what calls for each of its effects; QUANTITIES, what ``expect`` can
+             check; MARGINS, what each of its limits means
 ``effect``   EFFECTS, the effects that it brings (effects/effect.py): causes, columns, commands, planes, bound, ledger
 ``advice``   notes(envelope), what `check` tells of a scene beside what effects tell, whether or not any of them is on
 
@@ -19,32 +21,12 @@ from functools import lru_cache
 from importlib import import_module
 from importlib.util import find_spec
 from types import ModuleType
-from typing import TYPE_CHECKING
-
-if TYPE_CHECKING:
-    from ..effects import Effect
+from typing import Any
 
 MORE = "MDANIM_FEATURES"
 """Environment variable: further folders of features, separated as in PATH."""
 
 __path__ = [*__path__, *filter(None, os.environ.get(MORE, "").split(os.pathsep))]
-
-
-def add(home: str | os.PathLike) -> None:
-    """Take the features in a folder of such folders as well."""
-    __path__.append(os.fspath(home))
-    _forget()
-
-
-def remove(home: str | os.PathLike) -> None:
-    """Undo `add`."""
-    __path__.remove(os.fspath(home))
-    _forget()
-
-
-def _forget() -> None:
-    for found in (names, effects):
-        found.cache_clear()
 
 
 @lru_cache(maxsize=1)
@@ -62,6 +44,6 @@ def facets(kind: str) -> Iterator[ModuleType]:
 
 
 @lru_cache(maxsize=1)
-def effects() -> tuple[Effect, ...]:
-    """All effects, in the order in which their forces are summed."""
+def effects() -> tuple[Any, ...]:
+    """All effects, each an effects.Effect, in the order in which their forces are summed."""
     return tuple(sorted((e for facet in facets("effect") for e in facet.EFFECTS), key=lambda e: (e.order, e.name)))

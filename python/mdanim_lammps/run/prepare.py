@@ -21,7 +21,7 @@ from ..model.system import System, as_parts, assemble
 from ..reach import Reach
 from ..scene.lock import lock_text
 from ..scene.meshes import mesh_files
-from ..scene.scene import IMMERSION, SceneRecord
+from ..scene.scene import SceneRecord
 
 
 @dataclass(frozen=True)
@@ -93,7 +93,7 @@ def _prepare(scene: SceneRecord, spacing: Spacing, allow_unstable: bool, progres
     grid = next((cells for e in resolved.effects if (cells := e.grid(scene, spacing.h))), None)
     models = build_models(scene, spacing.h, progress)
     problems = check_geometry(scene, models) + [p for e in resolved.effects for p in e.problems(resolved, models, grid)]
-    problems += _unmeasurable(scene, resolved.verdicts)
+    problems += _unmeasurable(resolved)
     if problems:
         raise SceneError(problems)
     system = assemble(models, scene)
@@ -105,16 +105,14 @@ def _prepare(scene: SceneRecord, spacing: Spacing, allow_unstable: bool, progres
     return Prepared(context, (*warnings, *margin_warnings(certificate)), certificate, plan, allow_unstable)
 
 
-def _unmeasurable(scene: SceneRecord, verdicts: dict[str, Verdict]) -> list[Problem]:
-    """A problem for every ``expect`` about a liquid that is switched off."""
-    if verdicts["liquid"].on:
-        return []
+def _unmeasurable(resolved: Resolved) -> list[Problem]:
+    """A problem for every ``expect`` whose quantity is that of an effect that is off."""
     return [
         Problem(
             e.span,
-            f"{e.subject}.{e.quantity} needs the liquid, which is off ({verdicts['liquid'].reason})",
-            "take this expect out, or switch the liquid on",
+            f"{e.subject}.{e.quantity} needs the {needs}, which is off ({resolved.verdicts[needs].reason})",
+            f"take this expect out, or switch the {needs} on",
         )
-        for e in scene.expects
-        if e.subject == "liquid" or e.quantity in IMMERSION
+        for e in resolved.scene.expects
+        if (needs := e.kind.needs) and not resolved.on(needs)
     ]

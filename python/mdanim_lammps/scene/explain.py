@@ -5,23 +5,18 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from ..features import facets
 from . import shapes, units
 from .formatting import say
 from .keywords import BLOCKS, KEYWORDS, NOT_SUPPORTED, STATEMENTS, SYNONYMS, did_you_mean, example
 from .limits import LIMITS
 from .scene import QUANTITIES
-from .schema import Keyword, Rule, syntax, units_shown
+from .schema import Keyword, Rule, meaning, syntax, units_shown
 
 MARGINS = {
     "time step": "the bound of each object on the time step; above it motion blows up. 'timestep auto' is half of it",
-    "contact": "the time step that contact alone would bear, by its largest curvature over a plane (an estimate)",
-    "wall": "the time step that ground, walls and basin alone would bear",
-    "closing speed": "how fast objects may meet so that nothing passes through; softer or thinner objects bear less",
-    "sweeps": "how often the liquid is swept while an object travels one cell; below 4 it is pushed up before it can flow away",
-    "amplitude": "the speed of a hit over the wave speed of the object; above about 0.2 a soft object stays crumpled",
-    "load": "the pressure at the foot of what stands at the start, beside the strength 0.2 E at which it is crushed",
-    "thinnest part": "cells across the thinnest part; one cell is 1.9 times too stiff in bending, two are not",
     "drag": "phi = drag * dt / 2 m of a particle; where it is large the exponential form is used instead of the implicit one",
+    **{name: about for words in facets("words") for name, about in getattr(words, "MARGINS", {}).items()},
 }
 """Limits that `check` prints with their margins, and certificate.json holds."""
 
@@ -54,8 +49,9 @@ def _entries() -> Iterator[tuple[str, str]]:
     for kind in vars(shapes).values():
         if isinstance(kind, type) and (forms := getattr(kind, "FORMS", ())) and forms[0].split()[0].isalpha():
             yield forms[0].split()[0], f"{_slots(' | '.join(forms))}\n  {_plain((kind.__doc__ or '').splitlines()[0])}"
-    for (subject, quantity), (unit, about) in QUANTITIES.items():
-        what = f"expect {subject}.{quantity} = ...   a quantity, in {unit if unit != '1' else 'plain numbers'}\n  {_plain(about)}"
+    for (subject, quantity), kind in QUANTITIES.items():
+        unit = kind.unit if kind.unit != "1" else "plain numbers"
+        what = f"expect {subject}.{quantity} = ...   a quantity, in {unit}\n  {_plain(meaning(subject, kind))}"
         yield f"{subject}.{quantity}".removeprefix("NAME."), what
     for unit, about, others in units.LISTED:
         limit = f", at most {say(LIMITS[unit].most, unit, 6)}" if unit in LIMITS else ""

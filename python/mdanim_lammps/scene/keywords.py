@@ -10,6 +10,7 @@ import re
 from dataclasses import dataclass
 from difflib import get_close_matches
 
+from ..features import facets
 from .scene import ContactPair, Control, Liquid, Render, SceneRecord, Solid, Switch
 from .schema import Keyword, Words, keywords
 
@@ -57,20 +58,6 @@ BLOCKS = {b.name: b for b in (
 SCENE = SceneRecord
 """The record of a whole scene."""
 
-_EFFECTS = {
-    "gravity": "a gravity vector that is not zero",
-    "springs": "an object that is not all held",
-    "contact": "two objects that can meet",
-    "ground": "`ground`",
-    "walls": "`walls`",
-    "air-drag": "an object's `drag`",
-    "damping": "an object's `damping`",
-    "basin": "the basin of a liquid and an object that can move",
-    "liquid": "`liquid`",
-    "buoyancy": "a liquid that an object can reach",
-    "liquid-drag": "a liquid that an object can reach",
-}
-
 
 def _switch(name: str, cause: str) -> Keyword:
     return Keyword(
@@ -88,7 +75,7 @@ def _switch(name: str, cause: str) -> Keyword:
 KEYWORDS: dict[str, dict[str, Keyword]] = {
     "": keywords("", SCENE),
     **{name: keywords(name, block.record) for name, block in BLOCKS.items()},
-    "effects": {name: _switch(name, cause) for name, cause in _EFFECTS.items()},
+    "effects": {name: _switch(name, cause) for words in facets("words") for name, cause in words.SWITCHES.items()},
 }
 """Keywords by block and name; the empty string is the scene itself."""
 

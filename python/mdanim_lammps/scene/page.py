@@ -8,7 +8,7 @@ from .formatting import say, whole
 from .keywords import BLOCKS, KEYWORDS, all_keywords
 from .limits import LIMITS, MOST_FRAMES, MOST_OBJECTS, MOST_ROUNDS, Limit
 from .scene import QUANTITIES
-from .schema import Keyword, Rule, syntax, units_shown
+from .schema import Keyword, Rule, meaning, syntax, units_shown
 
 _TOP = """\
 # The scene language
@@ -121,7 +121,7 @@ def language_page() -> str:
         parts += [f"\n## {block.name}\n\n", f"```\n{block.head} {{ ... }}\n```\n\n{block.about}\n\n"]
         parts.append(_table(KEYWORDS[block.name].values()))
     parts += ["\n## What `expect` can check\n\n", "| quantity | unit | meaning |\n|---|---|---|\n"]
-    parts += [f"| `{k}.{q}` | {u if u != '1' else '-'} | {about} |\n" for (k, q), (u, about) in QUANTITIES.items()]
+    parts += [f"| `{k}.{q}` | {x.unit if x.unit != '1' else '-'} | {meaning(k, x)} |\n" for (k, q), x in QUANTITIES.items()]
     parts += [_END, _LIMITS]
     numbers = [("objects", MOST_OBJECTS), ("rounds of all repeats together", MOST_ROUNDS), ("frames", MOST_FRAMES)]
     parts += [f"| {what} | {whole(most)} | - |\n" for what, most in numbers]

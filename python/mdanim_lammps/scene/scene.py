@@ -13,11 +13,12 @@ from pathlib import Path
 from typing import Any, ClassVar
 
 from ..errors import Span
+from ..features import facets
 from .formatting import vector
 from .limits import CONTACT_DAMPING, CONTACT_STIFFNESS, DAMPING, DROPS, FRICTION, SWEEPS
 from .render import COLOR, Camera, Render  # noqa: F401
 from .rotation import IDENTITY, departure, rotation_about, rotation_euler
-from .schema import Codec, Keyword, OneOf, Rule, Vector, Worded, Words, setting
+from .schema import Codec, Keyword, Observable, OneOf, Rule, Vector, Worded, Words, setting
 from .shapes import (
     Box,
     Cone,
@@ -409,25 +410,17 @@ class Control(Worded):
 
 QUANTITIES = {
     **{
-        ("NAME", f"{what}.{axis}"): (u, f"{about}, {axis}")
+        ("NAME", f"{what}.{axis}"): Observable(u, f"{about}, {axis}")
         for what, u, about in (("position", "m", "centre of mass"), ("velocity", "m/s", "velocity of the centre of mass"))
         for axis in "xyz"
     },
-    ("NAME", "draft"): ("m", "immersed depth of an object, from the surface to its lowest point; needs a liquid"),
-    ("NAME", "immersed"): ("1", "share of an object's volume below the surface; needs a liquid"),
-    ("NAME", "strain.max"): ("1", "largest relative change of length of a spring"),
-    ("liquid", "volume"): ("m^3", "volume of the liquid"),
-    ("liquid", "residual"): ("1", "cells gained or lost, to the unit"),
-    ("liquid", "level"): ("m", "mean height of the surface"),
-    ("liquid", "crest"): ("m", "highest point of the liquid at any frame, without drops"),
-    ("liquid", "waves"): ("J", "energy of waves, of height and motion, since the start; 0 without `model waves`"),
-    ("energy", "residual"): ("1", "relative error of the energy ledger"),
-    ("penetration", "max"): ("m", "deepest overlap of two objects"),
+    ("energy", "residual"): Observable("1", "relative error of the energy ledger"),
+    **{of: quantity for words in facets("words") for of, quantity in getattr(words, "QUANTITIES", {}).items()},
 }
-"""What ``expect`` can check: (subject, quantity) to (unit, meaning); NAME stands for any object."""
+"""What ``expect`` can check, by subject and word; NAME stands for any object."""
 
-IMMERSION, GLOBALS = ("draft", "immersed"), ("liquid", "energy", "penetration")
-"""Quantities of an object that need a liquid; subjects of ``expect`` that are no objects."""
+GLOBALS = tuple(dict.fromkeys(subject for subject, _ in QUANTITIES if subject != "NAME"))
+"""Subjects of ``expect`` that are not objects."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -449,8 +442,13 @@ class Expect:
     @property
     def unit(self) -> str:
         """SI unit of what is checked; empty for plain numbers."""
-        unit, _ = QUANTITIES[self.subject if self.subject in GLOBALS else "NAME", self.quantity]
+        unit = self.kind.unit
         return "" if unit == "1" else unit
+
+    @property
+    def kind(self) -> Observable:
+        """What is checked."""
+        return QUANTITIES[self.subject if self.subject in GLOBALS else "NAME", self.quantity]
 
 
 class Check(Codec):

@@ -11,7 +11,7 @@ import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from enum import Enum
-from typing import Any
+from typing import Any, NamedTuple
 
 from ..errors import UsageError
 from .formatting import number
@@ -40,6 +40,21 @@ class Rule(Enum):
         if self is Rule.NOT_NEGATIVE:
             return x >= 0.0
         return x == int(x) and (1 if self is Rule.COUNT else 0) <= x < 2**53
+
+
+class Observable(NamedTuple):
+    """What ``expect`` can check."""
+
+    unit: str
+    """``1`` for plain numbers."""
+    about: str
+    needs: str = ""
+    """The effect that must be on; it has the name of the block that brings it into a scene."""
+
+
+def meaning(subject: str, quantity: Observable) -> str:
+    """In words, with what it needs besides its subject."""
+    return quantity.about + (f"; needs a {quantity.needs}" if quantity.needs not in ("", subject) else "")
 
 
 class Codec:

@@ -23,7 +23,7 @@ from .limits import MOST_FRAMES, MOST_PAIRS
 from .makers import check_waves
 from .meshes import refusal_of_mesh
 from .render import SMOOTH_RATE, few_pictures
-from .scene import GLOBALS, IMMERSION, QUANTITIES, Vector
+from .scene import GLOBALS, QUANTITIES, Vector
 from .source import Problems, SceneFile
 
 
@@ -456,12 +456,13 @@ class Validator:
                 s.span(0), f"{quantity} is not a quantity of {subject} that expect can check", did_you_mean(quantity, known)
             )
             return None
-        if (kind == "liquid" or quantity in IMMERSION) and not self.blocks("liquid") and not self.out.excused("liquid"):
-            self.problem(s.span(0), f"{subject}.{quantity} needs a liquid, and the scene has none")
+        of = QUANTITIES[kind, quantity]
+        if of.needs in BLOCKS and not self.blocks(of.needs) and not self.out.excused(of.needs):
+            self.problem(s.span(0), f"{subject}.{quantity} needs a {of.needs}, and the scene has none")
         if time is not None and (time < 0.0 or (control is not None and time > control.time * (1.0 + 1e-9))):
             end = f", which ends at {number(control.time, 6)} s" if control else ""
             self.problem(s.span(1), f"{number(time, 6)} s lies outside the run{end}", "an earlier time, or a longer control time")
-        dim = units.unit(QUANTITIES[kind, quantity][0]).dim
+        dim = units.unit(of.unit).dim
         numbers = []
         for n, (x, what) in enumerate(((value, "the value"), (tolerance, "the tolerance")), 2):
             if x is None:

@@ -1,0 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Words of a scene that belong to this feature."""
+
+SWITCHES = {"air-drag": "an object's `drag`"}
