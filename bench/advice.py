@@ -121,7 +121,7 @@ def check(name: str, *, budget: float = 300.0, only: tuple[str, ...] = ()) -> li
         study = run_study(scene, Path(folder) / "study", budget=budget, only=only)
         own = study.analysis.own
         truth = measure(scene, finer(own, FINER * own.cells), Path(folder))
-    cells = [s.cells for s in study.ladders[0].settings if s.key in study.points and study.points[s.key].tracks]
+    cells = [s.cells for s in next(study.analysis.measured[name] for name in FIRST if name in study.analysis.measured)]
     told = []
     for most in reversed(cells[FEWEST - 1 :]):
         points = {key: p for key, p in study.points.items() if p.setting.cells <= most}

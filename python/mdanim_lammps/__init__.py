@@ -25,6 +25,7 @@ _PLACES = {
     "results.universe": ("open_universe",),
     "export": ("Exported",),
     "study.study": ("Study",),
+    "study.target": ("Choice",),
     "errors": (
         *("MdanimError", "Problem", "SceneError", "RefusedError", "DivergedError", "OutputError", "SetupError", "UsageError"),
     ),

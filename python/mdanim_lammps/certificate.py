@@ -24,7 +24,7 @@ from .effects.envelope import Envelope
 from .effects.margin import Margin
 from .errors import Problem, RefusedError, SceneError, Span
 from .scene.formatting import estimate, number, say
-from .scene.scene import Accuracy, SceneRecord
+from .scene.scene import SceneRecord
 
 WARN = 0.7
 """Time step over the bound above which large motion may blow up: the bound is that of small motion (docs/physics-solids.md)."""
@@ -127,7 +127,7 @@ def certify(context: Context, *, allow_unstable: bool = False) -> Certificate:
     cause = max(causes, key=causes.get) if total else "nothing"
     name = system.names[system.object[worst]]
 
-    asked, fraction = scene.control.timestep, accuracy_fraction(scene)
+    asked, fraction = scene.control.timestep, scene.control.accuracy.fraction
     if asked is not None and asked > bound * (1.0 + 1e-12) and not allow_unstable:
         problem = Problem(
             scene.control.spans.get("timestep"),
@@ -160,12 +160,6 @@ def certify(context: Context, *, allow_unstable: bool = False) -> Certificate:
         margins=tuple(_margins(envelope, limit)),
         notes=tuple(_notes(envelope)),
     )
-
-
-def accuracy_fraction(scene: SceneRecord) -> float:
-    """Time step over the bound that the scene's accuracy asks of ``timestep auto``; a target error counts as balanced."""
-    accuracy = scene.control.accuracy
-    return (accuracy if isinstance(accuracy, Accuracy) else Accuracy.BALANCED).fraction
 
 
 def stable_step(stiff: np.ndarray, drag: np.ndarray) -> np.ndarray:

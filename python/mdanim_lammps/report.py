@@ -202,7 +202,7 @@ def quicker_line(ready: Prepared, cost: Cost | DivergedError | None) -> str | No
     if not isinstance(cost, Cost) or cost.total < LONG:
         return None
     ways, now = [], control.accuracy
-    if control.resolution is None and isinstance(now, Accuracy) and now is not Accuracy.PREVIEW:
+    if control.resolution is None and now is not Accuracy.PREVIEW:
         less = (Accuracy.PREVIEW.cells / now.cells) ** 4 * now.fraction / Accuracy.PREVIEW.fraction
         ways.append(f"--accuracy preview about {_about(less * cost.total)}")
     edge = max((max(m.cell) for m in ready.models), default=0.0)

@@ -113,7 +113,7 @@ def scenes(draw):
         frames=draw(st.floats(2, 1e3)),
         timestep=draw(st.none() | positive),
         resolution=draw(st.none() | positive),
-        accuracy=draw(st.sampled_from(records.Accuracy) | st.floats(1e-6, 0.9)),
+        accuracy=draw(st.sampled_from(records.Accuracy)),
         contact_stiffness=draw(st.floats(0.1, 100.0)),
         contact_model=records.ContactModel.SURFACE,
         friction=draw(st.floats(0, 10)),

@@ -36,8 +36,8 @@ def test_advice_is_not_refuted(name):
 
 def test_a_target_counts_cells_and_contact(tmp_path):
     """Find a setting for 10 % that is as far as told from a run with twice its cells; more cells alone are farther off."""
-    scene = parse_scene(SCENES["a bounce"].replace("frames 50 fps", 'frames 50 fps  accuracy "error 10 %"'))
-    choice = find_choice(scene, budget=60.0)
+    scene = parse_scene(SCENES["a bounce"])
+    choice = find_choice(scene, 0.1, budget=60.0)
     assert choice.met and choice.cells > 2
     own = Setting(choice.cells, choice.fraction, None, choice.contact)
     run, truth, alone = (

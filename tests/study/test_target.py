@@ -1,24 +1,27 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""``accuracy error p %``: the setting that meets a target."""
+"""``study --target "p %"``: the cheapest setting that meets a target error, and what to write for it."""
 
 import math
+import re
 from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from mdanim_lammps.errors import OutputError
+from mdanim_lammps import Scene
+from mdanim_lammps.cli import main
+from mdanim_lammps.errors import ExitCode, UsageError
 from mdanim_lammps.model import lattice
-from mdanim_lammps.scene.parse import load_scene
+from mdanim_lammps.run.prepare import prepare
+from mdanim_lammps.scene.parse import load_scene, parse_scene
 from mdanim_lammps.study import bench
 from mdanim_lammps.study.error import distance, extent
 from mdanim_lammps.study.measure import Sample, measure
-from mdanim_lammps.study.setting import Setting
-from mdanim_lammps.study.target import choice_file, find_choice, settle, stored_choice, with_choice
+from mdanim_lammps.study.setting import Setting, scene_hash, with_setting
+from mdanim_lammps.study.store import Point, Store
+from mdanim_lammps.study.target import _Search, find_choice
 from paths import REPOSITORY
 from study_lab import BAR, TIMES, track
-
-TARGET = BAR.replace("frames 100 fps", 'frames 100 fps\n  accuracy "error 8 %"')
 
 
 @pytest.fixture
@@ -30,31 +33,57 @@ def stiff_in_bending(monkeypatch):
 
 @pytest.fixture
 def target_file(tmp_path, stiff_in_bending):
-    """A bar that aims at 8 %."""
+    """A bar in a file."""
     path = tmp_path / "goal.txt"
-    path.write_text(TARGET)
+    path.write_text(BAR)
     return path
 
 
-def test_target_is_found_stored_and_used_again(target_file, monkeypatch):
-    """Take the cheapest setting that meets the target, keep it beside the scene, and look no more."""
-    scene = load_scene(target_file)
-    told = []
-    first = settle(scene, make=True, budget=30.0, on_progress=told.append)
-    assert told and first.warning is None
-    choice = stored_choice(scene)
-    assert choice.met and choice.reached <= 0.08
-    assert first.scene.control.resolution == pytest.approx(0.1 / choice.cells, rel=1e-12)
+def command(capsys, *arguments):
+    """Exit code and both outputs of the command line."""
+    with pytest.raises(SystemExit) as stopped:
+        main([str(a) for a in arguments])
+    return stopped.value.code or 0, *capsys.readouterr()
+
+
+def test_target_is_found_and_looked_for_no_more(target_file, monkeypatch, capsys):
+    """Print the cheapest setting that meets the target and what to write for it; its points are kept with the study's."""
+    code, out, err = command(capsys, "study", target_file, "--target", "8 %")
+    assert code == 0 and "0.70 of the bound" in err
+    told, write = out.splitlines()
+    assert re.match(r"target   8 %: \d cells across, .*estimated", told)
     monkeypatch.setattr(bench, "measure", None)
-    second = settle(scene, make=True)
-    assert second.scene == first.scene
-    assert "from goal.accuracy.json" in second.line and "found now" in first.line
+    assert command(capsys, "study", target_file, "--target", "8 %") == (0, out, "")
+    assert command(capsys, "study", target_file, "--target", "8 %", "-q") == (0, write.removeprefix("write    ") + "\n", "")
+    choice = Scene.load(target_file).setting_for(0.08)
+    assert choice.met and choice.reached <= 0.08 and write == f"write    {choice.words}"
+    assert sorted(p.name for p in target_file.parent.iterdir()) == ["goal.out", "goal.txt"]
+
+
+@pytest.mark.parametrize("cells", [2, 3, 6, 7, 11])
+@pytest.mark.parametrize(
+    ("says", "words"),
+    [("", "accuracy preview  resolution"), ("timestep 0.05 ms", "resolution"), ("resolution 2.5 cm", "timestep")],
+)
+def test_words_of_a_setting_make_the_run_that_was_measured(tmp_path, cells, says, words):
+    """A scene with these words has the particles and the steps of the run."""
+    scene = parse_scene(BAR.replace("frames 100 fps", f"frames 100 fps\n  {says}"))
+    setting = Setting(4.0 if "resolution" in says else float(cells), 0.9 / cells if "resolution" in says else 0.7)
+    store = Store(tmp_path / "study", scene_hash(scene))
+    ready = prepare(with_setting(scene, setting))
+    store.points[setting.key] = Point(setting, ready.certificate.timestep)
+    told = _Search(scene, 0.01, store, 1.0, lambda line: None)._words(setting)
+    assert told.startswith(words)
+    written = prepare(parse_scene(BAR.replace("frames 100 fps", f"frames 100 fps\n  {says}  {told}")))
+    assert written.system.particles == ready.system.particles
+    if "timestep" not in says:
+        assert written.certificate.timestep == ready.certificate.timestep
 
 
 def test_target_is_met_by_the_cheapest(target_file):
     """Miss the target with one cell less, or with so much less that it costs half: what is chosen is not too fine."""
     scene = load_scene(target_file)
-    choice = find_choice(scene, budget=30.0)
+    choice = find_choice(scene, 0.08, budget=30.0)
     truth = measure(scene, Setting(12, choice.fraction), target_file.parent)
     errors = {}
     for n in {choice.cells, math.floor(0.8 * choice.cells)}:
@@ -87,8 +116,7 @@ def test_target_steps_back_from_an_overshoot(target_file, monkeypatch):
         )
 
     monkeypatch.setattr(bench, "measure", made_up)
-    target_file.write_text(TARGET.replace("8 %", "1 %"))
-    choice = find_choice(load_scene(target_file), budget=30.0)
+    choice = find_choice(load_scene(target_file), 0.01, budget=30.0)
     assert choice.cells == 5
     assert max(seen) > 5
 
@@ -111,8 +139,7 @@ def test_target_chooses_a_time_step(error, fraction, target_file, monkeypatch):
         )
 
     monkeypatch.setattr(bench, "measure", made_up)
-    target_file.write_text(TARGET.replace("8 %", "1 %"))
-    choice = find_choice(load_scene(target_file), budget=30.0)
+    choice = find_choice(load_scene(target_file), 0.01, budget=30.0)
     assert choice.fraction == fraction
     swing = distance(np.zeros_like(track()), track()) / extent(track())  # rms over the extent
     assert choice.reached == pytest.approx(
@@ -120,25 +147,21 @@ def test_target_chooses_a_time_step(error, fraction, target_file, monkeypatch):
     )
 
 
-def test_stored_target_of_another_scene_is_not_used(target_file):
-    """Look again when scene or target have changed."""
-    settle(load_scene(target_file), make=True, budget=30.0)
-    target_file.write_text(TARGET.replace("2 MPa", "3 MPa"))
-    assert stored_choice(load_scene(target_file)) is None
-    target_file.write_text(TARGET.replace("8 %", "9 %"))
-    assert stored_choice(load_scene(target_file)) is None
-    for fixed in ("resolution 2.5 cm", "timestep 0.1 ms"):  # then something else is to be chosen
-        target_file.write_text(TARGET.replace("frames 100 fps", f"frames 100 fps\n  {fixed}"))
-        assert stored_choice(load_scene(target_file)) is None
-    target_file.write_text(TARGET + "# a word\n")
-    assert stored_choice(load_scene(target_file)) is not None
-    choice_file(load_scene(target_file)).write_text("{}")
-    with pytest.raises(OutputError, match="delete it"):
-        stored_choice(load_scene(target_file))
+def test_points_of_another_scene_are_not_used(target_file, capsys):
+    """Refuse the study of a scene that has changed since; another target or a resolution goes on with what there is."""
+    assert command(capsys, "study", target_file, "--target", "8 %")[0] == 0
+    runs = len(list((target_file.parent / "goal.out" / "study" / "tracks").iterdir()))
+    target_file.write_text(BAR.replace("frames 100 fps", "frames 100 fps  resolution 5 cm") + "# a word\n")
+    assert command(capsys, "study", target_file, "--target", "8 %")[0] == 0
+    assert len(list((target_file.parent / "goal.out" / "study" / "tracks").iterdir())) > runs
+    target_file.write_text(BAR.replace("2 MPa", "3 MPa"))
+    code, _, err = command(capsys, "study", target_file, "--target", "8 %")
+    assert code == ExitCode.IO and "the study of another scene" in err
+    assert command(capsys, "study", target_file, "--target", "8 %", "--force")[0] == 0
 
 
-def test_target_out_of_reach_is_told(target_file, monkeypatch):
-    """Run with the best there is and say by how much it misses, instead of meeting the target by word. Runs claim half a second
+def test_target_out_of_reach_is_told(target_file, monkeypatch, capsys):
+    """Print the best there is and say that it misses, instead of meeting the target by word. Runs claim half a second
     at 4 cells, whatever else the machine does."""
     now = [0.0]
 
@@ -149,41 +172,45 @@ def test_target_out_of_reach_is_told(target_file, monkeypatch):
 
     monkeypatch.setattr(bench, "measure", steady)
     monkeypatch.setattr(bench, "time", SimpleNamespace(perf_counter=lambda: now[0]))
-    target_file.write_text(TARGET.replace("8 %", "0.001 %"))
-    found = settle(load_scene(target_file), make=True, budget=4.0)
-    assert "is not reached" in found.warning.message
-    assert found.scene.control.resolution is not None
+    code, out, err = command(capsys, "study", target_file, "--target", "0.001 %", "--budget", "4 s")
+    assert code == 0 and "0.001 % is not reached" in err
+    assert "resolution" in out.splitlines()[1]
 
 
 def test_time_step_is_chosen_where_the_resolution_is_given(target_file):
     """Leave what the scene fixes, and find the other."""
-    target_file.write_text(TARGET.replace("frames 100 fps", "frames 100 fps\n resolution 5 cm").replace("8 %", "1e-3 %"))
-    choice = find_choice(load_scene(target_file), budget=30.0)
+    target_file.write_text(BAR.replace("frames 100 fps", "frames 100 fps\n resolution 5 cm"))
+    choice = find_choice(load_scene(target_file), 1e-5, budget=30.0)
     assert choice.cells == 2 and choice.met
-    control = with_choice(load_scene(target_file), replace(choice, resolution=1.0)).control
-    assert (control.resolution, control.timestep) == (0.05, choice.timestep)
-    target_file.write_text(TARGET.replace("frames 100 fps", "frames 100 fps\n resolution 5 cm\n timestep 0.1 ms"))
-    assert settle(load_scene(target_file), make=True).line == ""
+    assert choice.words.startswith("timestep ")
+    target_file.write_text(BAR.replace("frames 100 fps", "frames 100 fps\n resolution 5 cm\n timestep 0.1 ms"))
+    with pytest.raises(UsageError, match="nothing to choose"):
+        find_choice(load_scene(target_file), 0.08)
 
 
-def test_check_says_that_a_run_will_look(target_file, capsys):
-    """Run nothing in check: name the setting that is stored, or that there is none yet."""
-    from mdanim_lammps.cli import main
+@pytest.mark.parametrize("options", [["--target", "2"], ["--target", "0 %"], ["--target", "120 %"], ["--target", "two %"]])
+def test_a_target_is_a_part(target_file, capsys, options):
+    """Between 0 and 100 %, as a percentage, that nobody takes 2 for 0.02 or 0.02 for 2 %."""
+    code, _, err = command(capsys, "study", target_file, *options)
+    assert code == ExitCode.USAGE and "between 0 and 100 %" in err
+    with pytest.raises(UsageError, match="between 0 and 100 %"):
+        find_choice(load_scene(target_file), 2.0)
 
-    def check():
-        with pytest.raises(SystemExit) as stopped:
-            main(["check", str(target_file)])
-        assert not stopped.value.code
-        return capsys.readouterr()
 
-    before = check()
-    assert "no setting is known yet" in before.out and "'balanced' is shown" in before.err
-    assert not choice_file(load_scene(target_file)).exists()
-    choice = find_choice(load_scene(target_file), budget=10.0)
-    from mdanim_lammps.study.target import store_choice
+@pytest.mark.parametrize("options", [["--accuracy", "preview"], ["--ladders", "contact"]])
+def test_words_that_a_target_does_not_hear_are_refused(target_file, capsys, options):
+    """A target chooses the accuracy, and varies what it needs to."""
+    code, _, err = command(capsys, "study", target_file, "--target", "8 %", *options)
+    assert code == ExitCode.USAGE and "--target chooses the setting itself" in err
 
-    store_choice(load_scene(target_file), choice)
-    assert "from goal.accuracy.json" in check().out
+
+@pytest.mark.parametrize("word", ["check", "run", "build", "study"])
+def test_a_target_in_a_scene_is_refused(target_file, capsys, word):
+    """Name the command that finds the setting: no run looks for one."""
+    target_file.write_text(BAR.replace("frames 100 fps", 'frames 100 fps\n  accuracy "error 8 %"'))
+    code, _, err = command(capsys, word, target_file)
+    assert code == ExitCode.SCENE and f"{target_file}:13:12: error" in err
+    assert 'mdanim-lammps study SCENE --target "2 %"' in err
 
 
 @pytest.mark.parametrize("percent", [12.0, 8.0, 5.0])

@@ -33,8 +33,10 @@ from ..scene.keywords import Named
 from ..scene.parse import load_scene, parse_scene
 from ..scene.scene import Accuracy, Save, SceneRecord
 from ..study.bench import BUDGET
+from ..study.setting import scene_hash
+from ..study.store import Store
 from ..study.study import Study, run_study
-from ..study.target import settle
+from ..study.target import Choice, find_choice
 from ..terminal import progress_bar
 from .run import Run, quiet_unless
 
@@ -100,12 +102,8 @@ class Scene:
 
     @cached_property
     def prepared(self) -> Prepared:
-        """Models, effects, certificate and LAMMPS plan. Raises SceneError, RefusedError.
-
-        ``accuracy error p %`` has the setting that is stored beside the scene;
-        as long as there is none it counts as ``balanced``.
-        """
-        return prepare(settle(self.record, make=False).scene)
+        """Models, effects, certificate and LAMMPS plan. Raises SceneError, RefusedError."""
+        return prepare(self.record)
 
     @property
     def effects(self) -> Effects:
@@ -134,13 +132,11 @@ class Scene:
         On several ``executors``, ``control`` is ``central`` (the default) or ``peers``: the frames are the same to the last bit.
         So they are for any number of ``threads``; unless told, a process has as many as pay of all cores divided by executors.
         ``progress`` shows a bar, by default in a notebook only; ``on_progress`` is called with a Progress after every frame.
-        A scene with ``accuracy error p %`` and no setting stored beside it is studied first, for two minutes at most.
         Raises SceneError, RefusedError, DivergedError, OutputError, and UsageError for a flag that is not True or False.
         """
         check_flags(force=force, movie=movie, progress=progress)
         started = time.perf_counter()
-        settled = settle(self.record, make=True, study=output_folder(self.record, folder) / STUDY)
-        ready = self.prepared if settled.scene is self.record else prepare(settled.scene)
+        ready = self.prepared
         options = {"executors": executors, "threads": threads, "control": control, "started": started}
         with open_run(ready, folder, force=force, draws=movie) as made:
             return Run(made, self.values).go(ready, movie=movie, progress=progress, on_progress=on_progress, **options)
@@ -220,6 +216,23 @@ class Scene:
         """
         study = output_folder(self.record, folder) / STUDY
         return run_study(self.record, study, budget=budget, only=ladders, force=force, on_progress=on_progress)
+
+    def setting_for(
+        self,
+        error: float,
+        folder: str | Path | None = None,
+        *,
+        budget: float = BUDGET,
+        force: bool = False,
+        on_progress: Callable[[str], None] = lambda line: None,
+    ) -> Choice:
+        """Find the cheapest setting with an error below a target, such as 0.02; its ``words`` belong into ``control``.
+
+        Points are kept with those of `study`, and arguments are as there. Raises UsageError for a scene that says both resolution
+        and timestep, DivergedError where no setting could be found, SceneError, RefusedError, OutputError.
+        """
+        store = Store(output_folder(self.record, folder) / STUDY, scene_hash(self.record), force=force)
+        return find_choice(self.record, error, budget=budget, store=store, on_progress=on_progress)
 
     def picture(self, path: str | Path, *, at: float = 0.0, size: tuple[int, int] | None = None) -> Path:
         """Draw the scene before it is run, at its start or after ``at`` seconds of a quick, coarse run; see `draw_picture`."""

@@ -12,7 +12,8 @@ from typing import Annotated, Literal
 
 from cyclopts import Parameter
 
-from ..errors import Problem, RefusedError, SceneError, problem_json
+from ..errors import Problem, RefusedError, SceneError, UsageError, problem_json
+from ..scene.formatting import number, say
 from ..terminal import progress_bar
 from ..view.beside import Viewer
 from .options import (
@@ -40,11 +41,11 @@ from .steps import (
     check_size,
     lmp_command,
     load,
+    percent_of,
     prepare,
     print_lines,
     print_warnings,
     seconds_of,
-    settle,
     simulate_and_draw,
     with_accuracy,
     with_quality,
@@ -85,7 +86,6 @@ def run(
     check_executors(executors)
     record = with_accuracy(load(scene, set_), accuracy)
     out = output_folder(record, out)
-    record = settle(record, make=True, quiet=quiet, out=out)
     ready = prepare(record, allow_unstable=allow_unstable)
     announce(ready, quiet, verbose, executors, control)
     if executors > 1 and not quiet:
@@ -137,7 +137,7 @@ def _check(scene: Path, executors: int, set_, accuracy, strict: bool, allow_unst
 
     check_executors(executors)
     record = with_accuracy(load(scene, set_, strict=strict), accuracy)
-    ready = prepare(settle(record, make=False, quiet=as_json), allow_unstable=allow_unstable)
+    ready = prepare(record, allow_unstable=allow_unstable)
     setup = time.perf_counter() - STARTED
     cost = forecast(ready, setup=setup)
     threads = choose_threads(ready.plan, stored(), max(1, cores() // executors))
@@ -226,7 +226,6 @@ def build(
 
     record = with_accuracy(load(scene, set_), accuracy)
     out = output_folder(record, out)
-    record = settle(record, make=True, quiet=quiet, out=out)
     ready = prepare(record, allow_unstable=allow_unstable)
     announce(ready, quiet, verbose)
     with open_run(ready, out, force=force, draws=None) as folder:
@@ -242,6 +241,7 @@ def study(
     budget: str = "2 min",
     out: Out = None,
     ladders: Annotated[str, Parameter(name="--ladders")] = "",
+    target: str | None = None,
     set_: Set = (),
     accuracy: Accuracy = None,
     force: Force = False,
@@ -249,6 +249,7 @@ def study(
 ) -> None:
     """What accuracy costs in time: ladders of settings around the scene's own, measured, with a table, a plot and advice.
 
+    With --target the cheapest setting that has this error, and what to write into the scene for it.
     Points that were measured before are not measured again: the same command goes on where it was stopped.
 
     Parameters
@@ -259,12 +260,19 @@ def study(
         Wall time, e.g. "30 s" or "2 min".
     ladders
         Only these, e.g. "time step, resolution"; known are time step, resolution, sweeps, contact.
+    target
+        An error, e.g. "2 %".
     """
     from ..run.folder import STUDY, output_folder
     from ..study.report import order_lines, table
     from ..study.study import run_study
 
     seconds = seconds_of("--budget", budget)
+    if target is not None:
+        if ladders or accuracy:
+            raise UsageError("--target chooses the setting itself: leave out --ladders and --accuracy")
+        _aim(load(scene, set_), percent_of("--target", target), out, seconds, force, quiet)
+        return
     record = with_accuracy(load(scene, set_), accuracy)
     only = [name.strip() for name in ladders.split(",") if name.strip()]
     done = run_study(
@@ -284,6 +292,20 @@ def study(
         print(line)
     print(f"advice   {done.advice}")
     print(f"output   {done.folder}/study.json, study.csv, study.png")
+
+
+def _aim(record, error: float, out: Path | None, budget: float, force: bool, quiet: bool) -> None:
+    """Print the cheapest setting with an error, and what to write for it; with ``quiet`` only that."""
+    from ..api import Scene
+
+    found = Scene(record).setting_for(error, out, budget=budget, force=force, on_progress=print_lines("study", quiet))
+    if not quiet:
+        print(f"target   {number(100 * error)} %: {found}, {say(found.seconds, 's', 2)}")
+    print(f"{'' if quiet else 'write    '}{found.words}")
+    if not found.met:
+        hint = "give it more time with --budget, or ask for less"
+        text = f"an error of {number(100 * error)} % is not reached in the time given; this is the best that was found"
+        print(Problem(None, text, hint, severity="warning"), file=sys.stderr)
 
 
 COMMANDS = (run, check, picture, build, study)

@@ -50,20 +50,6 @@ def with_quality(scene, quality: str | None):
     return scene if quality is None else replace(scene, render=replace(scene.render, quality=Quality(quality)))
 
 
-def settle(scene, *, make: bool, quiet: bool = False, out: Path | None = None):
-    """The scene with a setting for its target error, and a line that says where it comes from."""
-    from ..run.folder import STUDY, default_folder
-    from ..study.target import settle as settle_scene
-
-    study = (out or default_folder(scene)) / STUDY
-    settled = settle_scene(scene, make=make, study=study, on_progress=print_lines("accuracy", quiet))
-    if settled.warning:
-        print(settled.warning, file=sys.stderr)
-    if settled.line and not quiet:
-        print(settled.line)
-    return settled.scene
-
-
 def print_lines(name: str, quiet: bool) -> Callable[[str], None]:
     """A function that prints a line of progress on stderr."""
     return lambda line: None if quiet else print(f"{name:<8} {line}", file=sys.stderr, flush=True)
@@ -111,6 +97,14 @@ def seconds_of(option: str, text: str) -> float:
     if not good:
         raise UsageError(f'{option} {text}: expected a time above 0, e.g. {option} "30 s" or {option} "2 min"')
     return seconds
+
+
+def percent_of(option: str, text: str) -> float:
+    """A part such as "2 %", between 0 and 100 %, as a fraction. Raises UsageError."""
+    match = re.fullmatch(r"\s*([0-9]*\.?[0-9]+(?:e[+-]?[0-9]+)?)\s*%\s*", text)
+    if not match or not 0.0 < float(match[1]) < 100.0:
+        raise UsageError(f'{option} {text}: expected an error between 0 and 100 %, e.g. {option} "2 %"')
+    return float(match[1]) / 100.0
 
 
 def frame_range(text: str) -> slice:

@@ -88,19 +88,9 @@ def choose_spacing(scene: SceneRecord) -> tuple[float, str, list[float]]:
     return *_choose(scene, thin), thin
 
 
-def cells_across(accuracy: Accuracy | float) -> int:
-    """Cells across the thinnest part for an accuracy class.
-
-    A target error (``accuracy error p %``) counts as ``balanced`` until ``study/target.py`` has put the measured setting in its
-    place.
-    """
-    return accuracy.cells if isinstance(accuracy, Accuracy) else Accuracy.BALANCED.cells
-
-
-def _cells_needed(solid: Solid, accuracy: Accuracy | float) -> int:
+def _cells_needed(solid: Solid, accuracy: Accuracy) -> int:
     """A body that never moves need not bend, so two cells, the least that have an inside, are enough."""
-    wanted = cells_across(accuracy)
-    return min(wanted, 2) if any(isinstance(h, HoldAll) for h in solid.hold) else wanted
+    return min(accuracy.cells, 2) if any(isinstance(h, HoldAll) for h in solid.hold) else accuracy.cells
 
 
 def _choose(scene: SceneRecord, thin: list[float]) -> tuple[float, str]:
@@ -114,7 +104,7 @@ def _choose(scene: SceneRecord, thin: list[float]) -> tuple[float, str]:
     if scene.liquid is not None:
         # No solid to go by: 8 cells to each one of a solid, so that a balanced basin is 32 cells wide.
         side = min(b - a for a, b in zip(scene.liquid.low[:2], scene.liquid.high[:2]))
-        return side / (8 * cells_across(control.accuracy)), scene.liquid.name
+        return side / (8 * control.accuracy.cells), scene.liquid.name
     raise SceneError([Problem(None, "the scene has no object and no liquid", "add an object block")])
 
 

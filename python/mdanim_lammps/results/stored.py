@@ -73,26 +73,6 @@ STUDY = record(
         ),
     },
 )
-CHOICE = record(
-    {
-        "scene": text,
-        "choice": record(
-            {
-                "error": positive,
-                "cells": positive,
-                "fraction": number,
-                "contact": positive,
-                "resolution": positive,
-                "timestep": maybe(positive),
-                "reached": number,
-                "doubt": number,
-                "closed": maybe(number),
-                "seconds": number,
-            }
-        ),
-    }
-)
-"""SCENE.accuracy.json."""
 FACTS = {"cost": COST, "summary": SUMMARY, "certificate": CERTIFICATE}
 """Forms of the files that are told of a run that has ended, by their names without ``.json``."""
 

@@ -20,7 +20,7 @@ from .observe import Observation
 from .prepare import Prepared
 
 CLASSES = {Accuracy.PREVIEW: 1e-2, Accuracy.BALANCED: 1e-3, Accuracy.REFERENCE: 1e-4}
-"""Largest energy residual that a scene without losses is to have, by its accuracy; a target error counts as balanced."""
+"""Largest energy residual that a scene without losses is to have, by its accuracy."""
 RESIDUAL_FACTOR, LEAST_RESIDUAL = 50.0, 0.05
 """The run stops at this multiple of the class, and never below this residual."""
 RINGS = 10.0
@@ -257,9 +257,9 @@ class Guard:
             cause, cure = ", where surfaces met: a step is long for the onset of their contact", " or a smaller timestep"
         return Problem(
             scene.control.spans.get("accuracy"),
-            f"the energy residual {number(ledger.residual)} is above {number(goal)}, which 'accuracy {_accuracy(scene).value}' "
-            f"stands for; most of it came from t = {number(rows[worst]['time'], 4)} to {number(rows[worst + 1]['time'], 4)} s"
-            + cause,
+            f"the energy residual {number(ledger.residual)} is above {number(goal)}, which "
+            f"'accuracy {scene.control.accuracy.value}' stands for; most of it came from "
+            f"t = {number(rows[worst]['time'], 4)} to {number(rows[worst + 1]['time'], 4)} s" + cause,
             f"where it matters, write a higher accuracy{cure}",
             severity="warning",
         )
@@ -280,10 +280,6 @@ def fastest_for_its_waves(system: System, speed: np.ndarray) -> int:
     return int((np.nan_to_num(speed, nan=np.inf) / wave_speed(system)).argmax())
 
 
-def _accuracy(scene: SceneRecord) -> Accuracy:
-    return scene.control.accuracy if isinstance(scene.control.accuracy, Accuracy) else Accuracy.BALANCED
-
-
 def energy_class(scene: SceneRecord) -> float:
     """Energy residual that the scene's accuracy stands for [-]."""
-    return CLASSES[_accuracy(scene)]
+    return CLASSES[scene.control.accuracy]

@@ -30,7 +30,7 @@ ODD = {
     "\u00b0": "write deg",
     ":": "leave it out",
     ";": "one setting per line, without ;",
-    "%": 'write a fraction, or accuracy "error 2 %"',
+    "%": "write a fraction",
 }
 """Signs that the language does not have, and what to write instead."""
 

@@ -4,10 +4,8 @@
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from decimal import Decimal, InvalidOperation
 from enum import Enum
 from pathlib import Path
 from typing import Any, ClassVar
@@ -324,31 +322,6 @@ class Switch(Enum):
     AUTO = "auto"
 
 
-class AccuracyOrError(Codec):
-    """A class, or the error that is aimed at as a fraction."""
-
-    FORM = 'preview | balanced | reference | <"error p %">'
-
-    def read(self, k: Keyword, choice: int, values: tuple) -> Accuracy | float:
-        if not values:
-            return list(Accuracy)[choice]
-        match = re.fullmatch(r"\s*error\s+([0-9.eE+-]+)\s*%\s*", values[0])
-        try:
-            percent = Decimal(match[1]) if match else Decimal(0)
-        except InvalidOperation:
-            percent = Decimal(0)
-        if not 0 < percent < 100 or float(percent / 100) == 0.0:
-            classes = ", ".join(a.value for a in Accuracy)
-            cause = f'accuracy is {classes} or an error between 0 and 100 %, found "{values[0]}"'
-            raise ValueError(cause, 'write accuracy "error 2 %"', 0)
-        return float(percent / 100)
-
-    def write(self, k: Keyword, value: Any) -> tuple[int, tuple]:
-        if isinstance(value, Accuracy):
-            return list(Accuracy).index(value), ()
-        return len(Accuracy), (f"error {Decimal(repr(value)) * 100} %",)
-
-
 class SaveAndPrecision(Codec):
     """Which particles are saved, and whether in single precision."""
 
@@ -373,10 +346,11 @@ class Control(Worded):
     """[s]; None is ``auto``."""
     resolution: float | None = setting("auto | <h:m>", "Particle spacing.", "2 cm", Rule.POSITIVE, default=None)
     """Particle spacing [m]; None is ``auto``."""
-    accuracy: Accuracy | float = setting(
-        AccuracyOrError.FORM, "How finely objects are resolved, or the error that is aimed at.",
-        '"error 2 %"', default=Accuracy.BALANCED, codec=AccuracyOrError())  # fmt: skip
-    """A class, or a target error as a fraction (``error 2 %`` is 0.02)."""
+    accuracy: Accuracy = setting(
+        None, "How finely objects and time are resolved; `study` tells what it costs and brings.", "preview",
+        default=Accuracy.BALANCED, codec=Words(Accuracy), gone={
+            "error": 'mdanim-lammps study SCENE --target "2 %" finds the setting for an error and prints what to write',
+        })  # fmt: skip
     contact_stiffness: float = setting(
         "<factor>",
         "What objects, ground and walls push back with, over E h, the stiffness of the material behind a surface; from 0.1 to "

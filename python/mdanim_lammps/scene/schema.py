@@ -123,7 +123,7 @@ class Worded:
     def __post_init__(self):
         for field in dataclasses.fields(self):
             kind, value = type(field.default), getattr(self, field.name)
-            if issubclass(kind, Enum) and not isinstance(value, (kind, float)):  # an error that is aimed at is a number
+            if issubclass(kind, Enum) and not isinstance(value, kind):
                 try:
                     object.__setattr__(self, field.name, kind(value))
                 except ValueError:
@@ -153,7 +153,7 @@ class Keyword:
     many: bool = False
     """May be given several times."""
     gone: Mapping[str, str] = dataclasses.field(default_factory=dict)
-    """Choices that there were, each with the way out."""
+    """Choices that there were, by their first word, each with the way out."""
     one_of: tuple[str, ...] = ()
     """Exactly one of these is given."""
     also: tuple[str, ...] = ()

@@ -448,8 +448,7 @@ class Parser(Reader):
         if t.type == "BAD_STRING":
             raise Fault(t, "this text is never closed", 'add a " at its end')
         if t.type != "STRING":
-            hint = ODD.get(str(t)) or hint
-            raise Fault(t, f"{what} needs a text in quotes, found {t.found()}", hint)
+            raise Fault(t, f"{what} needs a text in quotes, found {t.found()}", ODD.get(str(t)) or hint)
         return self.take()
 
     def choice(self, slot: Slot, keyword: Keyword) -> Value:
@@ -459,8 +458,9 @@ class Parser(Reader):
             last = self.take()
             text += str(last)
         if text not in slot.choices:
-            cause = f"'{text.strip()}' is not one of the choices of {keyword.name}{' any more' * (text in keyword.gone)}"
-            raise Fault(first, cause, keyword.gone.get(text) or did_you_mean(text, slot.choices), last)
+            gone = keyword.gone.get(text.strip('"').partition(" ")[0])
+            cause = f"'{text.strip()}' is not one of the choices of {keyword.name}{' any more' * bool(gone)}"
+            raise Fault(first, cause, gone or did_you_mean(text, slot.choices), last)
         return Value(slot, first, last, text=text)
 
     def check(self, slot: Slot, keyword: Keyword) -> Value:

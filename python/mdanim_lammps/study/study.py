@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -16,7 +15,6 @@ from .bench import BUDGET, Bench
 from .report import write_report
 from .setting import LADDERS, TOUCHING, Ladder, ladders, own_setting, scene_hash, together
 from .store import Point, Store
-from .target import find_choice, store_choice, stored_choice, wanted, with_choice
 
 
 @dataclass(frozen=True)
@@ -61,23 +59,13 @@ def run_study(
     """
     if unknown := [name for name in only if name not in LADDERS]:
         raise UsageError(f"there is no ladder '{unknown[0]}'; known are {', '.join(LADDERS)}")
-    start = time.perf_counter()
     store = Store(folder, scene_hash(scene), force=force)
-    if wanted(scene):
-        # The scene's own setting has to be found first; a stored one that misses its target may be improved on.
-        choice = stored_choice(scene)
-        if choice is None or not choice.met:
-            found = find_choice(scene, budget=budget / 2.0, store=store, on_progress=on_progress)
-            if choice is None or found.met or found.reached < choice.reached:
-                store_choice(scene, choice := found)
-        on_progress(f"accuracy error {100 * choice.error:g} %: {choice}{'' if choice.met else ', not met'}")
-        scene = with_choice(scene, choice)
     ready = prepare(scene)
     own = store.named(own_setting(scene, ready), ready.certificate.timestep)
     found, left = ladders(scene, ready, own)
     found = [ladder for ladder in found if not only or ladder.name in only]
     left = {name: why for name, why in left.items() if not only or name in only}
-    bench = Bench(scene, ready, own, store, budget - (time.perf_counter() - start), on_progress)
+    bench = Bench(scene, ready, own, store, budget, on_progress)
     joint = together(own, found)
     found = ([joint] if joint else []) + found
     settings = list(dict.fromkeys([own, *(s for ladder in found for s in ladder.settings)]))

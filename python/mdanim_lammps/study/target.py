@@ -1,17 +1,15 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""``accuracy error p %``: the cheapest setting that meets a target, found once and stored beside the scene."""
+"""The cheapest setting whose error meets a target, and the words of the language for it."""
 
 from __future__ import annotations
 
 import math
 import tempfile
 from collections.abc import Callable
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 
-from ..errors import DivergedError, OutputError, Problem
-from ..results.files import read_json, write_json
-from ..results.stored import CHOICE, STUDY
+from ..errors import DivergedError, UsageError
 from ..run.prepare import prepare
 from ..scene.formatting import number, say
 from ..scene.scene import Accuracy, SceneRecord
@@ -20,7 +18,7 @@ from .bench import BUDGET, Bench
 from .error import ROUND_OFF, distance, extent
 from .measure import TooLong
 from .setting import TOUCHING, Ladder, Setting, finer, own_setting, scene_hash, thinnest
-from .store import FILE, Store
+from .store import Store
 
 START = (2, 3, 4)
 """Cells across of the first runs: three is the smallest number that shows an order."""
@@ -38,7 +36,7 @@ between two runs a prediction is as accurate as that."""
 
 @dataclass(frozen=True, slots=True)
 class Choice:
-    """A setting that was found for a target."""
+    """A setting that was found for a target error."""
 
     error: float
     """The target, a fraction."""
@@ -46,10 +44,10 @@ class Choice:
     fraction: float
     contact: float
     """``contact-stiffness``."""
-    resolution: float
-    """[m]"""
     timestep: float | None
     """[s]; None where nothing vibrates."""
+    words: str
+    """Settings to write into the scene's ``control``, in place of its accuracy."""
     reached: float
     """Estimated error of this setting, a fraction."""
     doubt: float
@@ -74,150 +72,48 @@ class Choice:
         return f"{self.cells:g} cells across{step}{contact} ({got})"
 
 
-def wanted(scene: SceneRecord) -> bool:
-    """Whether a scene names a target and leaves a setting to choose."""
-    control = scene.control
-    return not isinstance(control.accuracy, Accuracy) and None in (control.resolution, control.timestep)
-
-
-def choice_file(scene: SceneRecord) -> Path | None:
-    """``SCENE.accuracy.json`` beside the scene; None for a scene without a file."""
-    return scene.path and scene.path.with_name(f"{scene.name}.accuracy.json")
-
-
-def stored_choice(scene: SceneRecord) -> Choice | None:
-    """The choice beside the scene, when it is for this scene and this target. Raises OutputError for a broken file."""
-    path = choice_file(scene)
-    if path is None or not path.exists():
-        return None
-    try:
-        data = read_json(path, CHOICE)
-    except OutputError as error:
-        raise OutputError(f"{path} is not a stored accuracy: delete it, and the next run makes a new one\n  {error}") from error
-    choice = Choice(**data["choice"])
-    return choice if data["scene"] == _digest(scene) and choice.error == scene.control.accuracy else None
-
-
-def store_choice(scene: SceneRecord, choice: Choice) -> None:
-    """Write the choice beside the scene. Raises OutputError."""
-    if (path := choice_file(scene)) is not None:
-        write_json(path, {"scene": _digest(scene), "choice": asdict(choice), "met": choice.met})
-
-
-def with_choice(scene: SceneRecord, choice: Choice) -> SceneRecord:
-    """The scene with the setting of a choice; what the scene itself says about resolution and time step stays."""
-    c = scene.control
-    return replace(
-        scene,
-        control=replace(
-            c,
-            resolution=c.resolution if c.resolution is not None else choice.resolution,
-            timestep=c.timestep if c.timestep is not None else choice.timestep,
-            contact_stiffness=choice.contact,
-        ),
-    )
-
-
-def _digest(scene: SceneRecord) -> str:
-    """The scene's hash without its accuracy line; a resolution or time step that it fixes and its contact stiffness count."""
-    c = scene.control
-    return f"{scene_hash(scene)} {c.resolution!r} {c.timestep!r} {c.contact_stiffness!r}"
-
-
 def find_choice(
     scene: SceneRecord,
+    error: float,
     *,
     budget: float = BUDGET,
     store: Store | None = None,
     on_progress: Callable[[str], None] = lambda line: None,
 ) -> Choice:
-    """Measure until a setting meets the target of ``accuracy error p %``, or the budget is spent.
+    """Measure until a setting meets a target error, or the budget is spent.
 
     The resolution is refined from 2 cells on, and contact gets stiffer with it where objects touch and the scene does not say how
     stiff it is (`setting.finer`); each next number of cells follows from the order seen so far. The time step is
-    the largest one of the accuracy classes whose own error stays below a quarter of the target. The error is that of
-    docs/accuracy.md, and where the scene states closed forms at least as sharp as the target, these must be met too.
+    the largest one of the accuracy classes whose own error stays below a quarter of the target. A resolution or a time step that
+    the scene says stays, and its accuracy does not count. The error is that of docs/accuracy.md, and where the scene states
+    closed forms at least as sharp as the target, these must be met too.
 
     Args:
-        scene: with a target.
+        scene: with a resolution or a time step to choose.
+        error: the target, a fraction.
         budget: wall time [s].
         store: a study of this scene whose points are used again; None measures in a temporary folder.
         on_progress: called with each line of progress.
 
-    Raises DivergedError when no setting could be found, and what measuring raises.
+    Raises UsageError for a scene with nothing to choose and an error that is not between 0 and 1, DivergedError when no setting
+    could be found, and what measuring raises.
     """
+    if not 0.0 < error < 1.0:
+        raise UsageError(f"a target error is between 0 and 100 %, found {100 * error:g} %")
+    if None not in (scene.control.resolution, scene.control.timestep):
+        raise UsageError("the scene says both resolution and timestep, so a target has nothing to choose; leave one of them out")
     if store is not None:
-        return _Search(scene, store, budget, on_progress).go()
+        return _Search(scene, error, store, budget, on_progress).go()
     with tempfile.TemporaryDirectory(prefix="mdanim-") as temporary:
-        return _Search(scene, Store(Path(temporary), scene_hash(scene)), budget, on_progress).go()
-
-
-@dataclass(frozen=True, slots=True)
-class Settled:
-    """A scene whose target, if it has one, has become a setting."""
-
-    scene: SceneRecord
-    line: str = ""
-    """Where the setting comes from; empty for a scene without a target."""
-    warning: Problem | None = None
-    """That the target is not met, or has not been looked for yet."""
-
-
-def settle(
-    scene: SceneRecord,
-    *,
-    make: bool,
-    budget: float = BUDGET,
-    study: Path | None = None,
-    on_progress: Callable[[str], None] = lambda line: None,
-) -> Settled:
-    """Turn ``accuracy error p %`` into a setting: the one stored beside the scene, or, with ``make``, one found now.
-
-    Without either the scene stays as it is, and counts as ``balanced``. ``study`` is the folder of a study whose points are
-    used where they are of this scene.
-    """
-    if not wanted(scene):
-        return Settled(scene)
-    what, path = f"error {100 * scene.control.accuracy:g} %", choice_file(scene)
-    span = scene.control.spans.get("accuracy")
-    choice, source = stored_choice(scene), f"from {path.name}" if path else "found now"
-    if choice is None:
-        if not make:
-            told = f"accuracy {what}: no setting is known yet; 'run' looks for one first, for {budget:.0f} s at most"
-            return Settled(
-                scene,
-                told,
-                Problem(
-                    span,
-                    f"the setting for {what} is not known yet; 'balanced' is shown",
-                    f"mdanim-lammps study {scene.path or scene.name}",
-                    severity="warning",
-                ),
-            )
-        known = study and (study / FILE).exists() and read_json(study / FILE, STUDY).get("hash") == scene_hash(scene)
-        choice = find_choice(
-            scene, budget=budget, store=Store(study, scene_hash(scene)) if known else None, on_progress=on_progress
-        )
-        store_choice(scene, choice)
-        source = f"found now, kept in {path.name}" if path else "found now"
-    warning = (
-        None
-        if choice.met
-        else Problem(
-            span,
-            f"{what} is not reached: the best that was found in the time given is {choice}",
-            "give it more time with 'mdanim-lammps study SCENE --budget \"10 min\"', or ask for less",
-            severity="warning",
-        )
-    )
-    return Settled(with_choice(scene, choice), f"accuracy {what}: {choice}, {source}", warning)
+        return _Search(scene, error, Store(Path(temporary), scene_hash(scene)), budget, on_progress).go()
 
 
 class _Search:
     """Goes down one ladder, of resolutions or, where the scene fixes those, of time steps, until the target is met."""
 
-    def __init__(self, scene: SceneRecord, store: Store, budget: float, on_progress: Callable[[str], None]):
-        self.scene, self.store, self.target = scene, store, scene.control.accuracy
+    def __init__(self, scene: SceneRecord, error: float, store: Store, budget: float, on_progress: Callable[[str], None]):
+        scene = replace(scene, control=replace(scene.control, accuracy=Accuracy.BALANCED))
+        self.scene, self.store, self.target = scene, store, error
         self.ready = prepare(scene)
         self.own = own_setting(scene, self.ready)
         self.bench = Bench(scene, self.ready, self.own, store, budget, on_progress)
@@ -232,7 +128,7 @@ class _Search:
             done.append(setting)
         if len(done) < 2:
             problem = next((p.problem for p in self.store.points.values() if p.problem), "the budget was too small for two runs")
-            raise DivergedError(f"accuracy error {100 * self.target:g} %: no setting could be found: {problem}")
+            raise DivergedError(f"no setting for an error of {100 * self.target:g} % could be found: {problem}")
         a = self._analyse(done)
         meeting = [s for s in done if self._error(a, s) <= self.target]
         # By particle-steps: the seconds of short runs differ by less than they vary.
@@ -243,13 +139,27 @@ class _Search:
             best.cells,
             best.fraction,
             best.contact,
-            thinnest(self.scene) / best.cells,
             point.timestep if best.fraction else None,
+            self._words(best),
             self._estimated(a, best),
             a.doubt,
             a.rated[best.key].closed,
             a.rated[best.key].seconds.middle,
         )
+
+    def _words(self, setting: Setting) -> str:
+        """What the scene has to say for a setting. A resolution is rounded down, to as many cells; a time step up, as the scene
+        takes the longest one below it that fits its frames."""
+        control, words = self.scene.control, []
+        fraction = {a.fraction: a.value for a in Accuracy}.get(setting.fraction)
+        if setting.fraction and control.timestep is None:
+            step = self.store.points[setting.key].timestep
+            words.append(f"accuracy {fraction}" if fraction else f"timestep {_rounded(step, 's', 5, up=True)}")
+        if control.resolution is None:
+            words.append(f"resolution {_rounded(thinnest(self.scene) / setting.cells, 'm', 4, up=False)}")
+        if setting.contact != control.contact_stiffness:
+            words.append(f"contact-stiffness {number(setting.contact, 6)}")
+        return "  ".join(words)
 
     def _first(self) -> list[Setting]:
         """The settings that are measured in any case."""
@@ -357,3 +267,9 @@ class _Search:
             return bool(self.bench.measure(setting, limit=max(self.bench.left, 1.0)).tracks)
         except TooLong:
             return False
+
+
+def _rounded(x: float, unit: str, digits: int, *, up: bool) -> str:
+    """A positive quantity in so many digits, rounded up or down."""
+    digit = 10.0 ** (math.floor(math.log10(x)) + 1 - digits)
+    return say(digit * (math.ceil(x / digit - 1e-6) if up else math.floor(x / digit + 1e-6)), unit, digits)
