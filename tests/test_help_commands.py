@@ -5,14 +5,11 @@ import json
 import re
 import subprocess
 from dataclasses import replace
-from urllib.parse import unquote
 
 import pytest
 from command_line import GOOD, call, run
 from mdanim_lammps import Scene
 from mdanim_lammps.cli import doctor
-from mdanim_lammps.run.folder import open_run
-from mdanim_lammps.run.loop import Interrupted
 from mdanim_lammps.scene.explain import MARGINS, explain, words
 from mdanim_lammps.scene.grammar import grammar
 from mdanim_lammps.scene.keywords import BLOCKS, KEYWORDS, did_you_mean, edits
@@ -106,7 +103,6 @@ def test_the_beginning_of_a_word_is_guessed():
 
 def test_every_margin_of_the_shipped_scenes_is_explained():
     """No limit that check prints is without a meaning."""
-    from mdanim_lammps import Scene
 
     for name in ("beam", "float", "crowd", "plates"):
         scene = Scene.load(SCENES / f"{name}.txt")
@@ -129,84 +125,11 @@ def test_completion():
     assert subprocess.run(["bash", "-n"], input=script, text=True).returncode == 0
 
 
-def test_gallery(tmp_path):
-    """All scenes of a folder on a page; one that fails is shown with its message and does not stop the others."""
-    folder = tmp_path / "scenes"
-    folder.mkdir()
-    (folder / "good.txt").write_text('title "A <cube>"\n' + GOOD)
-    (folder / "bad.txt").write_text(GOOD.replace("100 kPa", "100 kg"))
-    said = call("gallery", folder, "-o", tmp_path / "g", "--size", "64", "48", "--accuracy", "preview")
-    assert said.returncode == 6 and "2 scenes, 1 of them failed" in said.stdout
-    page = (tmp_path / "g" / "index.html").read_text()
-    assert '<video src="good/movie.mp4"' in page and "A &lt;cube&gt;" in page and "bad.txt:8" in page
-    movie = tmp_path / "g" / "good" / "movie.mp4"
-    before = movie.stat().st_mtime_ns
-    call("gallery", folder, "-o", tmp_path / "g")
-    assert movie.stat().st_mtime_ns == before  # what is there is kept
-    (tmp_path / "g" / "index.html").write_text("precious")
-    refused = call("gallery", folder, "-o", tmp_path / "g")
-    assert refused.returncode == 7 and "write elsewhere with -o DIR" in refused.stderr
-    assert (tmp_path / "g" / "index.html").read_text() == "precious"
-    empty = call("gallery", tmp_path, cwd=tmp_path)
-    assert empty.returncode == 7 and "holds no scenes" in empty.stderr
-
-
-def test_a_gallery_finishes_what_was_stopped(tmp_path):
-    """A run that was stopped is no finished one: it goes on, and its movie is drawn anew."""
-    folder, place = tmp_path / "scenes", tmp_path / "g" / "good"
-    folder.mkdir()
-    (folder / "good.txt").write_text(GOOD + "render { size (64, 48) }\n")
-    with pytest.raises(Interrupted):
-        Scene.load(folder / "good.txt").run(place, on_progress=lambda p: p.frame == 1 and (place / "stop").touch())
-    (place / "movie.mp4").write_text("of one frame")
-    said = call("gallery", folder, "-o", tmp_path / "g")
-    assert said.returncode == 0, said.stderr
-    assert (place / "summary.json").exists() and (place / "movie.mp4").stat().st_size > 1000
-
-
-def test_a_gallery_runs_what_was_stopped_at_once(tmp_path):
-    """There is no checkpoint to go on from; a folder of `build`, whose script may be changed, is left alone."""
-    folder, place, built = tmp_path / "scenes", tmp_path / "g" / "good", tmp_path / "g" / "built"
-    folder.mkdir()
-    for name in ("good", "built"):
-        (folder / f"{name}.txt").write_text(GOOD + "render { size (64, 48) }\n")
-    ready = Scene.load(folder / "good.txt").prepared
-    with open_run(ready, place, force=False):
-        pass  # and is killed
-    assert call("build", folder / "built.txt", "-o", built).returncode == 0
-    said = call("gallery", folder, "-o", tmp_path / "g")
-    assert (
-        said.returncode == 6
-        and "2 scenes, 1 of them failed" in said.stdout
-        and f"{built}/checkpoint cannot be read" in said.stderr
-    )
-    assert (place / "summary.json").exists() and (place / "movie.mp4").stat().st_size > 1000
-
-
-def test_ctrl_c_ends_a_gallery(tmp_path, monkeypatch):
-    """And not one of its scenes, after which the next would begin."""
-    begun = []
-
-    def run_(scene, place, force):
-        begun.append(scene.record.name)
-        raise Interrupted("interrupted at t = 1 s")
-
-    for name in ("a", "b"):
-        (tmp_path / f"{name}.txt").write_text(GOOD)
-    monkeypatch.setattr(Scene, "run", run_)
-    said = call("gallery", tmp_path, "-o", tmp_path / "g")
-    assert said.returncode == 130 and begun == ["a"] and "interrupted at t = 1 s" in said.stderr
-    assert not (tmp_path / "g" / "index.html").exists()
-
-
-def test_addresses_of_a_gallery_are_quoted(tmp_path):
-    """A name may have any sign."""
-    name = "50 % #1?"
-    (tmp_path / f"{name}.txt").write_text(GOOD + "render { size (64, 48) }\n")
-    said = call("gallery", tmp_path, "-o", tmp_path / "g", "--accuracy", "preview")
-    assert said.returncode == 0, said.stderr
-    (source,) = re.findall(r'<video src="([^"]+)"', (tmp_path / "g" / "index.html").read_text())
-    assert source == "50%20%25%20%231%3F/movie.mp4" and (tmp_path / "g" / unquote(source)).exists()
+def test_what_was_a_command_says_where_it_is():
+    """Whoever types it as before is told what to type."""
+    told = call("gallery", "scenes", "-o", "g", "--force")
+    assert told.returncode == 2 and "python docs/gallery.py DIR" in told.stderr
+    assert "gallery" not in call("--help").stdout
 
 
 def test_doctor_finds_nothing_wrong_here():

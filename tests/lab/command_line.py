@@ -46,15 +46,16 @@ def inside(folder: str | Path | None):
         os.chdir(before)
 
 
-def call(*arguments, cwd=None) -> subprocess.CompletedProcess[str]:
-    """What `run` does, without the second that a process takes to start: for tests of what commands say and leave."""
-    from mdanim_lammps.cli import main
+def call(*arguments, cwd=None, main=None) -> subprocess.CompletedProcess[str]:
+    """What `run` does, without the second that a process takes to start: for tests of what commands say and leave. ``main`` is
+    that of another program."""
+    from mdanim_lammps import cli
 
     words, said, complained, code = [str(word) for word in arguments], io.StringIO(), io.StringIO(), 0
     threshold, handler = gc.get_threshold(), signal.getsignal(signal.SIGTERM)
     try:
         with inside(cwd), redirect_stdout(said), redirect_stderr(complained):
-            main(words)
+            (main or cli.main)(words)
     except SystemExit as end:
         code = int(end.code or 0)
     finally:

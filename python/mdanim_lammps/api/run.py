@@ -104,7 +104,9 @@ class Run:
             tail.close()
         state = tail.state
         if not tail.lives:
-            state = "done" if (self.folder / SUMMARY).exists() else "preparing" if in_use(self.folder) else "built"
+            begun = "preparing" if in_use(self.folder) else "killed"
+            only_built = read_manifest(self.folder).get("draws") is None
+            state = "done" if (self.folder / SUMMARY).exists() else "built" if only_built else begun
         elif state not in ENDED and not in_use(self.folder):
             state = "killed"
         return RunStatus(state, tail.count, tail.total, tail.message)

@@ -38,6 +38,7 @@ def completion(shell: Literal["bash", "zsh", "fish"], /) -> None:
 app.default(scene_commands.run)
 for command in (*scene_commands.COMMANDS, completion, *run_commands.COMMANDS, *help_commands.COMMANDS):
     app.command(command)
+app.command(help_commands.gallery, show=False)
 
 
 def main(argv: list[str] | None = None) -> None:

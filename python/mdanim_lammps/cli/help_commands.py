@@ -11,7 +11,7 @@ from cyclopts import Parameter
 
 from ..errors import ExitCode, OutputError, UsageError
 from ..terminal import PROGRAM
-from .options import Accuracy, Force, Quiet, Set, Size
+from .options import Force
 
 SCENE = """\
 # {name}.txt - a soft cube falls onto the floor. Every setting: {program} explain WORD
@@ -92,32 +92,9 @@ def explain(*word: str) -> None:
         raise UsageError(error.args[0]) from None
 
 
-def gallery(
-    folder: Path,
-    /,
-    *,
-    out: Annotated[Path, Parameter(name=["-o", "--out"])] = Path("gallery"),
-    accuracy: Accuracy = None,
-    size: Size = None,
-    set_: Set = (),
-    force: Force = False,
-    quiet: Quiet = False,
-) -> None:
-    """Run all scenes of a folder, and write a page with their movies: gallery/index.html.
-
-    Parameters
-    ----------
-    folder
-        With scenes, NAME.txt.
-    out
-        Folder of the page; each run has a folder of its own inside.
-    """
-    from .gallery import make_gallery
-
-    made, failed = make_gallery(folder, out, accuracy=accuracy, size=size, overrides=set_, force=force, quiet=quiet)
-    print(f"gallery  {out / 'index.html'}   {made} scene{'s' * (made != 1)}" + (f", {failed} of them failed" if failed else ""))
-    if failed:
-        raise SystemExit(ExitCode.DIVERGED)
+def gallery(*_: Annotated[str, Parameter(allow_leading_hyphen=True)]) -> None:
+    """Was a command: ``python docs/gallery.py DIR``."""
+    raise UsageError("gallery is a script of the repository, no command any more: python docs/gallery.py DIR -o gallery")
 
 
 def doctor() -> None:
@@ -135,5 +112,5 @@ def doctor() -> None:
         raise SystemExit(ExitCode.ENVIRONMENT)
 
 
-COMMANDS = (init, explain, gallery, doctor)
+COMMANDS = (init, explain, doctor)
 """Of the command line, in the order of its help."""
