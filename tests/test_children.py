@@ -102,7 +102,7 @@ def test_ranks_run_nothing_of_the_folder(theirs):
     """The supervisor and executors, and the picture of what they did."""
     theirs.program("scene.txt", "-n", "2", "--no-movie", "-q")
     theirs.program("timeline", "scene.out")
-    assert (theirs.folder / "scene.out" / "timeline.png").exists()
+    assert (theirs.folder / "scene.out" / "trace.json").exists()
 
 
 def test_doctor_runs_nothing_of_the_folder(theirs):

@@ -91,7 +91,7 @@ def test_unchanged_folders_are_accepted(whole, stopped, capsys):
     assert run("compare", whole, stopped) == 0
 
 
-NAMES = ["movie.mp4", "trajectory.h5", "trajectory.h5.part", "checkpoint", "ledger.csv", "summary.json", "timeline.png",
+NAMES = ["movie.mp4", "trajectory.h5", "trajectory.h5.part", "checkpoint", "ledger.csv", "summary.json", "trace.json",
          "timeline.json", "scene.lock.txt", "manifest.json", "frames", "stop", "study"]  # fmt: skip
 
 

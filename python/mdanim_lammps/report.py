@@ -175,7 +175,7 @@ def spread_line(timeline: Timeline, folder: Path) -> str:
         f"spread   {count(timeline.executors, 'executor')}, {timeline.control}: "
         f"{count(sum(timeline.moves), 'object')} moved, {count(again, 'window')} begun again, "
         f"busy {100 * timeline.busy().mean():.0f} %   "
-        f"picture: mdanim-lammps timeline {folder}"
+        f"trace: mdanim-lammps timeline {folder}"
     )
 
 

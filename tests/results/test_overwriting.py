@@ -55,7 +55,7 @@ def test_force_leaves_pictures_of_others(scene):
     scene = scene if scene.exists() else scene.with_name("other.txt")
     assert call(scene, "-o", out).returncode == 0
     assert call("render", out, "--frames").returncode == 0 and call("report", out).returncode == 0
-    theirs = ("films/a.mp4", "report.html", "timeline.png", "frames/frame-00000.png")
+    theirs = ("films/a.mp4", "report.html", "trace.json", "frames/frame-00000.png")
     for name in theirs[1:]:
         (out / name).write_text("precious")
     assert call("build", scene, "-o", out, "--force").returncode == 0

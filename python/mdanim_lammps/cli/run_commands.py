@@ -227,18 +227,18 @@ def export(
 def timeline(
     folder: Path, /, *, out: Annotated[Path | None, Parameter(name=["-o", "--out"])] = None, force: Overwrite = False
 ) -> None:
-    """Draw what each executor did, and which objects it owned, in a run with -n.
+    """Write what each executor did, and which objects it owned, in a run with -n, for https://ui.perfetto.dev.
 
     Parameters
     ----------
     folder
         The output folder of a run with -n.
     out
-        The picture's file; default timeline.png in the folder.
+        The trace; default trace.json in the folder.
     """
-    from ..picture.timeline import draw
     from ..results.overwriting import output_file
     from ..results.timeline import TIMELINE, Timeline
+    from ..results.trace import write_trace
     from ..run.folder import stored_scene
 
     scene = stored_scene(folder)
@@ -247,9 +247,9 @@ def timeline(
             f"{folder} was simulated by one process, so there is no {TIMELINE}; "
             "executors are asked for with -n: mdanim-lammps SCENE -n 2"
         )
-    path = output_file(folder / "timeline.png", out, force=force)
-    draw(Timeline.read(folder), path, scene.title or scene.name)
-    print(f"picture  {path}")
+    path = output_file(folder / "trace.json", out, force=force)
+    write_trace(Timeline.read(folder), path, scene.title or scene.name)
+    print(f"trace    {path}   open it in https://ui.perfetto.dev")
 
 
 def compare(a: Path, b: Path, /) -> None:
