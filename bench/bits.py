@@ -29,6 +29,8 @@ from step import WIDTHS, runs_here
 
 ROOT = Path(__file__).resolve().parents[1]
 STEPS = 200
+EAGER = "2"
+"""The least that a thread is asked for [ns]: threads share whatever they can."""
 WARM_PART, WARM_PARTICLE_STEPS = 0.3, 6e6
 """The middle of a run: after this part of its steps, but no more of them than particles times steps come to."""
 SAME, ROUNDED = ("x", "v", "f", "records"), ("ledger",)
@@ -166,22 +168,10 @@ def work(folder: Path, styles: list[str], steps: int) -> None:
                 print(json.dumps([name, str(Way(style, comm.size)), found]), flush=True)
 
 
-def eager(folder: Path) -> Path:
-    """A calibration by which threads share whatever they can, however short."""
-    from mdanim_lammps.engine.calibration import holds_for
-
-    path = folder / "calibration.json"
-    costs = {"widths_ns": dict.fromkeys(WIDTHS, (30.0, 40.0)), "waking_ns": 1.0, "calling_ns": 0.2}
-    path.write_text(json.dumps(holds_for() | costs))
-    return path
-
-
 def measure(names: list[str], chosen: list[Way], steps: int) -> Iterator[tuple[str, str, dict[str, str]]]:
     """Scene, way and hashes, in the order in which they come."""
-    from mdanim_lammps.engine.calibration import CALIBRATION
-
+    os.environ["MDANIM_LEAST_TASK"] = EAGER
     with tempfile.TemporaryDirectory() as folder:
-        os.environ[CALIBRATION] = str(eager(Path(folder)))
         for n, name in enumerate(names):
             print(f"{name} ...", file=sys.stderr, flush=True)
             plan = plan_of(name)

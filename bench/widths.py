@@ -2,9 +2,9 @@
 """What vectors of each width take, beside the limit of this machine: ``python bench/widths.py [rounds]``.
 
 Bodies in free fall with drag of air, as in bench/step.py, and damped ones. All widths take turns. Told is the least processor
-time of a particle's step in any of them, the width that the calibration of this machine chooses, what it takes over the best one
-(the median of ratios of the same round), and over the limit: the square roots and divisions alone (bench/limits.py), 9 in a
-particle's step, 18 with dashpots.
+time of a particle's step in any of them, what the widest one, which passes take, takes over the best one (the median of ratios of
+the same round), and over the limit: the square roots and divisions alone (bench/limits.py), 9 in a particle's step, 18 with
+dashpots.
 """
 
 from __future__ import annotations
@@ -50,17 +50,13 @@ def measure(text: str, rounds: int) -> dict[str, list[float]]:
 
 def main(rounds: int = ROUNDS) -> None:
     """Print the table in Markdown."""
-    from mdanim_lammps.engine.calibration import calibrate, processor
-    from mdanim_lammps.engine.plugin import open_library
-
-    known = calibrate(open_library())
     times, roots, rows = {}, float("inf"), []
     for name, text in BODIES.items():
         times[name] = measure(text, rounds)
         roots = min(roots, limits.measure()[0]["roots"])  # at several times, as that of others
     for name, found in times.items():
         damped = "damped" in name
-        chosen = known.fastest(damped)
+        chosen = next(iter(found))
         least, limit = {width: min(ns) for width, ns in found.items()}, roots * (2 if damped else 1)
         over = max(statistics.median(own / other for own, other in zip(found[chosen], found[width])) for width in found)
         rows.append(
@@ -73,8 +69,8 @@ def main(rounds: int = ROUNDS) -> None:
                 f"{least[chosen] / limit:.2f}",
             )
         )
-    print(f"{processor()}, ns per particle-step\n")
-    print(markdown(["bodies", *found, "chosen", "over the best", "limit", "chosen over the limit"], rows))
+    print("ns per particle-step\n")
+    print(markdown(["bodies", *found, "taken", "over the best", "limit", "taken over the limit"], rows))
 
 
 if __name__ == "__main__":

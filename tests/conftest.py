@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """Fixtures that every test may use: small scenes from text, prepared and run."""
 
-import json
 import os
 import signal
 from pathlib import Path
@@ -15,20 +14,16 @@ if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
 SCENES = Path(__file__).parent.parent / "scenes"
 
 
-WIDTHS = {"avx512": (31.0, 40.0), "avx2": (30.0, 50.0), "common": (50.0, 90.0)}
-CALIBRATION = {"widths_ns": WIDTHS, "waking_ns": 1.0, "calling_ns": 3e3}
-"""Of the tests: no clock decides which vectors they take nor how many threads. A range has 1000 particles or more, and threads
-that sleep are woken at once."""
+LEAST_TASK = 30e3
+"""Of the tests [ns]: a range has 1000 particles or more."""
 
 
 @pytest.fixture(scope="session", autouse=True)
-def calibration(tmp_path_factory):
-    """The calibration of all processes of the tests; and they have one thread unless they ask for more."""
-    from mdanim_lammps.engine import calibration, threads
+def threads_of_tests():
+    """In all processes of the tests: one thread unless they ask for more, and the same share of the work on any machine."""
+    from mdanim_lammps.engine import threads
 
-    path = tmp_path_factory.mktemp("calibration") / "calibration.json"
-    path.write_text(json.dumps(calibration.holds_for() | CALIBRATION))
-    os.environ[calibration.CALIBRATION] = str(path)
+    os.environ[threads.LEAST] = str(LEAST_TASK)
     os.environ[threads.THREADS] = "1"
 
 

@@ -28,14 +28,11 @@ inline double reach_factor(int a, int b, double thin_ratio)
 // Two springs of stiffness a and b in series, doubled: equal ones give their own stiffness.
 inline double pair_stiffness(double a, double b) { return a + b > 0.0 ? 2.0 * (a * b) / (a + b) : 0.0; }
 
-inline double reduced_mass(double a, double b) { return a * b / (a + b); }
-
 // q = 1 - r/rc, for r < rc. Exactly nothing at r >= rc.
-//   power 3: U = k rc^2/3 q^3, |F| = k rc q^2;   power 2: U = k/2 (rc - r)^2, |F| = k (rc - r)
-inline double barrier_energy(int power, double k, double rc, double q)
-{ return power == 3 ? k * rc * rc / 3.0 * (q * q * q) : 0.5 * k * (rc * q) * (rc * q); }
+//   U = k rc^2/3 q^3, |F| = k rc q^2
+inline double barrier_energy(double k, double rc, double q) { return k * rc * rc / 3.0 * (q * q * q); }
 
-inline double barrier_force(int power, double k, double rc, double q) { return power == 3 ? k * rc * (q * q) : k * (rc * q); }
+inline double barrier_force(double k, double rc, double q) { return k * rc * (q * q); }
 
 // Unit vector from j to i. Two particles in one place are pushed apart along x, the lower tag towards -x.
 inline Vec3 direction(const Vec3 &rij, double r, bool i_has_lower_tag)

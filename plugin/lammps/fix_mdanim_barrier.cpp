@@ -35,19 +35,19 @@ static constexpr double MOST_SKINS = 64.0;    // that are looked ahead where obj
 
 // --- the command ---
 
-// fix ID group mdanim/barrier BOUNDARY BARRIER k rc [thin GROUP ratio] [damp gn] [power 2|3]
+// fix ID group mdanim/barrier BOUNDARY BARRIER k rc [thin GROUP ratio]
 FixMdanimBarrier::FixMdanimBarrier(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg)
 {
   scalar_flag = 1;
   extscalar = 1;
   energy_global_flag = 1;
   vector_flag = 1;
-  size_vector = 6;
-  static int extensive[] = {1, 1, 1, 0, 1, 0};
+  size_vector = 5;
+  static int extensive[] = {1, 1, 1, 0, 0};
   extvector = -1;
   extlist = extensive;
   global_freq = 1;
-  comm_forward = 4;
+  comm_forward = 3;
   filter = &widest_kernels().pair_filter;
 
   need_words(lmp, "fix mdanim/barrier", "fix ID group mdanim/barrier", "BOUNDARY BARRIER k rc", narg - 3);
@@ -57,20 +57,14 @@ FixMdanimBarrier::FixMdanimBarrier(LAMMPS *lmp, int narg, char **arg) : Fix(lmp,
   reach = ParticleValue(lmp, "fix mdanim/barrier: rc", 6, arg[6]);
 
   for (int iarg = 7; iarg < narg;) {
-    static const std::vector<Keyword> known = {{"thin", "GROUP ratio"}, {"damp", "gn"}, {"power", "2|3"}};
+    static const std::vector<Keyword> known = {
+        {"thin", "GROUP ratio"},
+        {"damp", "", "leave it out; objects with friction lose energy at the surfaces of fix mdanim/contact"},
+        {"power", "", "leave it out for the law of power 3, and take fix mdanim/contact for a surface that is linear"}};
     const int words = words_of_keyword(lmp, "fix mdanim/barrier", known, iarg, narg, arg);
-    if (strcmp(arg[iarg], "thin") == 0) {
-      thin = NamedGroup(lmp, STYLE, iarg + 1, arg[iarg + 1]);
-      thin_ratio = utils::numeric(FLERR, arg[iarg + 2], false, lmp);
-      if (!(thin_ratio > 0.0)) error->all(FLERR, iarg + 2, "fix mdanim/barrier: thin ratio must be > 0, got {}", arg[iarg + 2]);
-    } else if (strcmp(arg[iarg], "damp") == 0) {
-      damping = utils::numeric(FLERR, arg[iarg + 1], false, lmp);
-      if (!(damping >= 0.0)) error->all(FLERR, iarg + 1, "fix mdanim/barrier: damp must be >= 0, got {}", arg[iarg + 1]);
-    } else {
-      power = utils::inumeric(FLERR, arg[iarg + 1], false, lmp);
-      if (power != 2 && power != 3)
-        error->all(FLERR, iarg + 1, "fix mdanim/barrier: power must be 2 or 3, got {}", arg[iarg + 1]);
-    }
+    thin = NamedGroup(lmp, STYLE, iarg + 1, arg[iarg + 1]);
+    thin_ratio = utils::numeric(FLERR, arg[iarg + 2], false, lmp);
+    if (!(thin_ratio > 0.0)) error->all(FLERR, iarg + 2, "fix mdanim/barrier: thin ratio must be > 0, got {}", arg[iarg + 2]);
     iarg += words;
   }
 }
@@ -82,8 +76,6 @@ void FixMdanimBarrier::init()
   const auto refuse = [this](const char *why) { error->all(FLERR, "fix {} mdanim/barrier: {}", id, why); };
   need_objects_in_open_box(this, lmp, "a pair may come into reach");
   if (atom->map_style == Atom::MAP_NONE) refuse("needs an atom map; put 'atom_modify map array' before the box is made");
-  if (damping > 0.0 && comm->nprocs > 1 && !comm->ghost_velocity)
-    refuse("damp needs the velocities of particles of other ranks; use 'comm_modify vel yes'");
   stiffness.init(lmp);
   reach.init(lmp);
   for (NamedGroup *one : {&boundary, &barrier, &thin}) one->init(lmp);
@@ -104,15 +96,13 @@ void FixMdanimBarrier::post_neighbor()
 {
   const Lap lap(seconds);
   find_pairs();
-  if (damping > 0.0) loss.look(atom->tag, atom->nlocal);
 }
 
 void FixMdanimBarrier::collect_own()
 {
   own.resize(atom->nlocal + atom->nghost);
   const double *k = stiffness.values(lmp), *rc = reach.values(lmp);
-  for (int i = 0; i < atom->nlocal; ++i)
-    own[i] = {k ? k[i] : stiffness.number, rc ? rc[i] : reach.number, mass_of(atom->rmass, atom->mass, atom->type, i), object[i]};
+  for (int i = 0; i < atom->nlocal; ++i) own[i] = {k ? k[i] : stiffness.number, rc ? rc[i] : reach.number, object[i]};
   comm->forward_comm(this);
 }
 
@@ -123,7 +113,6 @@ int FixMdanimBarrier::pack_forward_comm(int n, int *list, double *buf, int, int 
     const Own &o = own[list[i]];
     buf[m++] = o.stiffness;
     buf[m++] = o.reach;
-    buf[m++] = o.mass;
     buf[m++] = static_cast<double>(o.object);
   }
   return m;
@@ -131,7 +120,7 @@ int FixMdanimBarrier::pack_forward_comm(int n, int *list, double *buf, int, int 
 
 void FixMdanimBarrier::unpack_forward_comm(int n, int start, double *buf)
 {
-  for (int i = start; i < start + n; ++i, buf += 4) own[i] = {buf[0], buf[1], buf[2], static_cast<int>(buf[3])};
+  for (int i = start; i < start + n; ++i, buf += 3) own[i] = {buf[0], buf[1], static_cast<int>(buf[2])};
 }
 
 // Molecule IDs of the objects that have particles of the two groups, ascending; the same on all ranks.
@@ -298,15 +287,9 @@ void FixMdanimBarrier::add_forces(const Positions &place, const ForceSums &total
 template <bool TELLS> void FixMdanimBarrier::push(const Positions &place, const ForceSums &total)
 {
   if (TELLS) energy = touching = 0.0;
-  if (strip.empty() && loss.idle()) {
-    loss.rest();
-    return;
-  }
+  if (strip.empty()) return;
 
   const Lap lap(seconds);
-  const double *const *v = atom->v;
-  std::vector<Vec3> *slowed = damping > 0.0 ? &loss.forces(atom->nlocal) : nullptr;
-
   const int many = find_touching(place);
   for (int m = 0; m < many; ++m) {
     const auto &[k, reach, share] = pair[touching_pair[m]];
@@ -315,27 +298,16 @@ template <bool TELLS> void FixMdanimBarrier::push(const Positions &place, const 
     const Vec3 d = place[low] - place[high];
     const double r = std::sqrt(dot(d, d)), q = 1.0 - r / reach;
     const Vec3 normal = direction(d, r, true);
-    double size = barrier_force(power, k, reach, q);
     if (TELLS) {
-      energy += share * barrier_energy(power, k, reach, q);
+      energy += share * barrier_energy(k, reach, q);
       touching += share;
     }
-    if (damping > 0.0) {
-      const int i = particle[low], j = particle[high];
-      const double approach = dot(vec3(v[i]) - vec3(v[j]), normal);
-      const double rate = damping * reduced_mass(own[i].mass, own[j].mass) / force->ftm2v;
-      size -= rate * q * approach;
-      const Vec3 slowing = (rate * q * approach) * normal;
-      if (moves(i)) (*slowed)[i] -= slowing;
-      if (moves(j)) (*slowed)[j] += slowing;
-    }
-    const Vec3 on_low = size * normal;
+    const Vec3 on_low = barrier_force(k, reach, q) * normal;
     total.add(low, on_low);
     total.add(high, -1.0 * on_low);
     deepest = std::min(deepest, r / reach);
   }
   for (const int n : unmoved) total.clear(n);
-  if (slowed) loss.step(v, update->dt, update->setupflag);
 }
 
 // Together with run_style verlet/mdanim, which leaves ghosts out.
@@ -354,7 +326,7 @@ double FixMdanimBarrier::sum(double here)
 double FixMdanimBarrier::compute_scalar() { return sum(energy); }
 
 // 1: pairs of objects whose boxes meet; 2: pairs of particles tried; 3: pairs in touch; 4: smallest r/reach in this run; 5:
-// energy lost to damp; 6: wall seconds of the slowest rank
+// wall seconds of the slowest rank
 double FixMdanimBarrier::compute_vector(int n)
 {
   double all = 0.0;
@@ -368,8 +340,6 @@ double FixMdanimBarrier::compute_vector(int n)
     case 3:
       MPI_Allreduce(&deepest, &all, 1, MPI_DOUBLE, MPI_MIN, world);
       return all;
-    case 4:
-      return sum(loss.total());
     default:
       MPI_Allreduce(&seconds, &all, 1, MPI_DOUBLE, MPI_MAX, world);
       return all;
@@ -381,5 +351,5 @@ double FixMdanimBarrier::memory_usage()
   return own.capacity() * sizeof(Own) + strip.capacity() * sizeof(Strip) + reach2.bytes() +
          pair.capacity() * sizeof(ContactPair) + masks.capacity() * sizeof(StripMask) +
          (object.capacity() + particle.capacity() + unmoved.capacity() + touching_pair.capacity()) * sizeof(int) + here.bytes() +
-         on.capacity() * sizeof(double) + slot.capacity() * sizeof(long) + loss.bytes();
+         on.capacity() * sizeof(double) + slot.capacity() * sizeof(long);
 }

@@ -10,7 +10,6 @@
 #include "lammps/particle_value.h"
 #include "numbers/vec3.h"
 #include "passes/kernels.h"
-#include "passes/loss.h"
 #include "passes/pass_participant.h"
 
 #include <vector>
@@ -33,17 +32,16 @@ class FixMdanimBarrier : public Fix, public mdanim::PassParticipant {
   double compute_vector(int) override;
   double memory_usage() override;
   void append_required_atoms(std::vector<int> &particles) const override;
-  bool depends_on_positions_only() const override { return damping == 0.0; }
+  bool depends_on_positions_only() const override { return true; }
   void add_forces(const mdanim::Positions &place, const mdanim::ForceSums &force) override;
   void equip(const mdanim::Kernels &kernels, const mdanim::Threads &) override { filter = &kernels.pair_filter; }
-  bool needs_all_atoms() override { return damping > 0.0 && !loss.idle(); }
   double safe_displacement() const override { return clear; }
   bool sees_absolute_position() const override { return false; }
 
  private:
   // What a particle contributes to a pair. Owners send that of ghosts at every rebuild.
   struct Own {
-    double stiffness, reach, mass;
+    double stiffness, reach;
     int object;    // its number in find_objects(), or NO_OBJECT
   };
   struct ContactPair {
@@ -64,8 +62,7 @@ class FixMdanimBarrier : public Fix, public mdanim::PassParticipant {
   double sum(double here);
 
   mdanim::NamedGroup boundary, barrier, thin;
-  double thin_ratio = 0.0, damping = 0.0;
-  int power = 3;
+  double thin_ratio = 0.0;
   mdanim::ParticleValue stiffness, reach;
 
   static constexpr int NO_OBJECT = -1;    // of particles outside the two groups
@@ -92,7 +89,6 @@ class FixMdanimBarrier : public Fix, public mdanim::PassParticipant {
   bigint meeting_objects = 0;                  // pairs of objects whose boxes meet
   double tried_pairs = 0.0, touching = 0.0;    // on this rank; a pair counts half at either end
   double energy = 0.0;
-  mdanim::Loss loss;       // to damp
   double deepest = 1.0;    // smallest r/reach in this run
   double seconds = 0.0;
 };

@@ -8,7 +8,6 @@
 #include "lammps/verlet_mdanim.h"
 
 #include "lammps/mpi_wait.h"
-#include "passes/calibration.h"
 #include "passes/loss.h"
 
 #include "angle.h"
@@ -34,6 +33,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdlib>
 #include <cstring>
 #include <iterator>
 #include <limits>
@@ -48,6 +48,7 @@ static constexpr int ACTS = FixConst::INITIAL_INTEGRATE | FixConst::POST_INTEGRA
 // run_style verlet/mdanim [width common|avx2|avx512] [threads N]
 VerletMdanim::VerletMdanim(LAMMPS *lmp, int narg, char **arg) : SplitVerlet(lmp, 0, arg)
 {
+  if (const char *width = std::getenv("MDANIM_WIDTH"); width && *width) set_width(width);
   for (int n = 0; n < narg; n += 2) {
     if (strcmp(arg[n], "width") != 0 && strcmp(arg[n], "threads") != 0)
       error->all(FLERR, "run_style verlet/mdanim: unknown keyword {}; it knows width and threads", arg[n]);
@@ -67,7 +68,7 @@ void VerletMdanim::set_threads(const char *word)
   const int threads = utils::inumeric(FLERR, word, false, lmp);
   if (threads < 1 || threads > MOST_THREADS)
     error->all(FLERR, "run_style verlet/mdanim: threads is a number from 1 to {}, not {}", MOST_THREADS, threads);
-  engine.set_threads(threads_here(threads));
+  engine.set_threads(Threads::of_run(threads));
 }
 
 void VerletMdanim::set_width(const char *word)
@@ -208,7 +209,7 @@ bool VerletMdanim::find_crew()
   if (lists_matter && neighbor->includegroup) return plain("lists are of one group alone; use 'neigh_modify include all'");
   if (crew.liquid && !crew.liquid->joins(crew.integrator->friction_of_particles())) crew.liquid = nullptr;
   if (springs->refresh_coefficients()) decided_for = -1;
-  if (engine.begin_run(told ? *told : *calibration().fastest(springs->account() != nullptr).kernels)) decided_for = -1;
+  if (engine.begin_run(told ? *told : widest_kernels())) decided_for = -1;
   return true;
 }
 

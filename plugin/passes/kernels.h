@@ -25,7 +25,7 @@ struct Kernels {
   void (*spring_energies)(int n, const double *x, const double *y, const double *z, const double *r0, double *K);
 };
 
-// All that run here, the widest vectors first: of those a pass takes the fastest (calibration.h), other loops the widest.
+// All that run here, the widest vectors first.
 const std::vector<const Kernels *> &kernels_here();
 inline const Kernels &widest_kernels() { return *kernels_here().front(); }
 // Null when the name is unknown or does not run here.

@@ -3,8 +3,6 @@
 
 #include "passes/pass_engine.h"
 
-#include "passes/calibration.h"
-
 #include <algorithm>
 #include <utility>
 
@@ -12,7 +10,7 @@ namespace mdanim {
 
 RangeCut PassEngine::ranges_of(Cut &cut)
 {
-  const int many = threads.many() > 1 ? threads.most(ns_of_pass(cut.particles, *kernels, cutter.damped())) : 1;
+  const int many = threads.many() > 1 ? threads.most(ns_of_pass(cut.particles, cutter.damped())) : 1;
   return cut_into_ranges(cutter, cut, many);
 }
 

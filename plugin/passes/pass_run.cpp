@@ -4,7 +4,6 @@
 #include "passes/pass_run.h"
 
 #include "numbers/stopwatch.h"
-#include "passes/calibration.h"
 #include "passes/loss.h"
 
 #include <algorithm>
@@ -23,7 +22,7 @@ static constexpr double MORE_IN_LIQUID = 0.26;
 PassRun::PassRun(SimdBlocks &blocks, const Kernels &kernels, const Threads &threads, const PassCrew &crew,
                  const AtomArrays &atoms, double dt, Fresh fresh)
     : blocks(blocks), kernels(kernels), threads(threads), crew(crew), atoms(atoms), dt(dt),
-      ns(blocks.ranges().size() > 1 ? ns_of_pass(blocks.size(), kernels, blocks.damped()) : 0.0)
+      ns(blocks.ranges().size() > 1 ? ns_of_pass(blocks.size(), blocks.damped()) : 0.0)
 {
   if (fresh.positions) blocks.take_in(atoms.x, atoms.v);
   if (fresh.motion)

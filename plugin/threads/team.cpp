@@ -9,6 +9,8 @@
 #include <signal.h>
 #include <unistd.h>
 
+#include <cstdlib>
+
 #if defined(__SSE__)
 #include <xmmintrin.h>
 #endif
@@ -51,6 +53,17 @@ std::uint32_t call_of(std::uint64_t state) { return static_cast<std::uint32_t>(s
 void Team::end_of_process_that_made(Team *team)
 {
   if (team->owner == getpid()) delete team;
+}
+
+// Ten times what a call takes beside its tasks when the threads are awake: about as much again goes into data that go from one
+// core to another. And what it takes a thread to wake up (bench/team.py).
+static constexpr double LEAST_TASK = 4e3, WAKING = 12e3;    // [ns]
+
+Threads Threads::of_run(int many)
+{
+  const char *const told = std::getenv("MDANIM_LEAST_TASK");
+  const double least = told ? std::atof(told) : 0.0;
+  return least > 0.0 ? Threads(many, least, WAKING / LEAST_TASK * least) : Threads(many, LEAST_TASK, WAKING);
 }
 
 std::shared_ptr<Team> Team::of(int threads)

@@ -74,6 +74,9 @@ class Threads {
       : number(many), least_task(least), waking(waking), team(Team::of(many))
   {
   }
+  // For steps of a run: a thread is asked for what pays on most processors, or for what the environment says in
+  // MDANIM_LEAST_TASK [ns].
+  static Threads of_run(int many);
   int many() const { return number; }
   // How many of them to ask for what takes one thread so many ns.
   int most(double ns) const

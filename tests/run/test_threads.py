@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """Threads of a run: whatever their number, the frames and the ledger are the same; where the number comes from."""
 
+import ctypes
 import math
 import os
 import re
@@ -8,11 +9,18 @@ import re
 import numpy as np
 import plugin_path
 import pytest
-from filming import ranges
+from filming import WIDTHS, ranges, supported
 from mdanim_lammps import Scene, Trajectory
-from mdanim_lammps.engine.calibration import Calibration
 from mdanim_lammps.engine.instance import Instance
-from mdanim_lammps.engine.threads import THREADS, asked_threads, check_threads, choose_threads, share_of_cores, with_threads
+from mdanim_lammps.engine.threads import (
+    LEAST,
+    THREADS,
+    asked_threads,
+    check_threads,
+    choose_threads,
+    share_of_cores,
+    with_threads,
+)
 from mdanim_lammps.errors import UsageError
 from mdanim_lammps.processes import cores, quota
 from mdanim_lammps.report import threads_line
@@ -63,33 +71,71 @@ def test_the_environment_tells_the_number(monkeypatch):
 
 BLOCK = "object a {{ shape box ({0}, {0}, {0}) cm position (0, 0, 0) density 1000 elasticity 0.2 MPa {1} }}\n"
 BLOCK += "control {{ time 0.1 s resolution 1 cm }}\n"
-KNOWN = Calibration({"avx512": (40.0, 80.0), "avx2": (30.0, 100.0)}, 15e3, 3e3)
-"""A thread pays from 1000 particles on, with dashpots from 375 on."""
 
 
 @pytest.mark.parametrize(
-    ("edge", "damping", "known", "cores", "asked", "threads", "line"),
+    ("edge", "damping", "cores", "asked", "threads", "line"),
     [
-        pytest.param(
-            15, "", KNOWN, 2, None, 2, "2 of 2 cores: a pass over 4 096 particles takes 123 us, a thread", id="all cores"
-        ),
-        pytest.param(15, "", KNOWN, 16, None, 4, "4 of 16 cores", id="no more than pay"),
-        pytest.param(9, "", KNOWN, 4, None, 1, "1 of 4 cores: .* 30 us, a thread pays from 1 000 particles on", id="too small"),
-        pytest.param(9, "damping 0.1", KNOWN, 4, None, 2, "pays from 375 particles on", id="dashpots take longer"),
-        pytest.param(15, "", Calibration(KNOWN.widths, 15e3, None), 40, None, 30, "pays from 134", id="calling unknown"),
-        pytest.param(15, "", KNOWN, 1, None, 1, "1: there is one core", id="one core"),
-        pytest.param(15, "", None, 2, None, 1, "as many as pay, of 2 cores", id="not calibrated"),
-        pytest.param(5, "", KNOWN, 1, "7", 7, "7, as asked for", id="asked for"),
+        pytest.param(15, "", 2, None, 2, "2 of 2 cores: a pass over 4 096 particles takes 123 us, a thread", id="all cores"),
+        pytest.param(15, "", 16, None, 4, "4 of 16 cores", id="no more than pay"),
+        pytest.param(9, "", 4, None, 1, "1 of 4 cores: .* 30 us, a thread pays from 1 000 particles on", id="too small"),
+        pytest.param(11, "damping 0.1", 4, None, 2, "pays from 750 particles on", id="dashpots take longer"),
+        pytest.param(15, "", 1, None, 1, "1: there is one core", id="one core"),
+        pytest.param(5, "", 1, "7", 7, "7, as asked for", id="asked for"),
     ],
 )
-def test_threads_are_taken_where_they_pay(monkeypatch, edge, damping, known, cores, asked, threads, line):
+def test_threads_are_taken_where_they_pay(monkeypatch, edge, damping, cores, asked, threads, line):
     """One for each core, but each has as many particles as pay; what is asked for stands. `check` tells which and why."""
     monkeypatch.delenv(THREADS, raising=False)
     if asked:
         monkeypatch.setenv(THREADS, asked)
-    choice = choose_threads(prepare(parse_scene(BLOCK.format(edge, damping))).plan, known, cores)
+    choice = choose_threads(prepare(parse_scene(BLOCK.format(edge, damping))).plan, cores)
     assert choice.threads == threads
     assert re.match(f"threads  .*{line}", threads_line(choice))
+
+
+def test_the_environment_tells_what_a_thread_is_asked_for(monkeypatch):
+    """134 particles where it says nothing; what is not a time is refused."""
+    monkeypatch.delenv(THREADS, raising=False)
+    plan = prepare(parse_scene(BLOCK.format(15, ""))).plan
+    monkeypatch.delenv(LEAST)
+    assert choose_threads(plan, 40).pays_from == 134 and choose_threads(plan, 40).threads == 30
+    for told in ("0", "-3", "soon", "inf", "nan"):
+        monkeypatch.setenv(LEAST, told)
+        with pytest.raises(UsageError, match=f"{LEAST} is a time in nanoseconds"):
+            choose_threads(plan, 40)
+
+
+def used(threads: int, style: str = "") -> tuple[str, int]:
+    """Width and number of ranges of the passes over a block of 4096 particles."""
+    with with_threads(threads), Instance(prepare(parse_scene(BLOCK.format(15, ""))).plan) as instance:
+        if style:
+            instance._lmp.command(f"run_style verlet/mdanim {style}")
+        instance.setup()
+        instance.run(3)
+        width = instance._library.mdanim_width
+        width.restype, width.argtypes = ctypes.c_char_p, [ctypes.c_void_p]
+        return width(instance._handle).decode(), ranges(instance)
+
+
+@pytest.mark.parametrize(("least", "expected"), [(30e3, 4), (60e3, 2), (64e3, 1)])
+def test_ranges_follow_what_a_thread_is_asked_for(monkeypatch, least, expected):
+    """A range has 1000, 2000 or 2134 particles at least: with the last ones half of all is less."""
+    monkeypatch.setenv(LEAST, str(least))
+    assert used(4)[1] == expected
+
+
+def test_passes_take_the_widest_vectors_unless_told(monkeypatch):
+    """By the environment, or by the command, which goes before it. One that this processor does not have is refused."""
+    here = [width for width in reversed(WIDTHS) if supported(width)]
+    assert used(1)[0] == here[0]
+    for width in here:
+        monkeypatch.setenv("MDANIM_WIDTH", width)
+        assert used(1)[0] == width
+        assert used(1, f"width {here[0]}")[0] == here[0]
+    monkeypatch.setenv("MDANIM_WIDTH", "sse9")
+    with pytest.raises(Exception, match="width sse9 is unknown"):
+        used(1)
 
 
 @pytest.mark.parametrize(("edge", "cores", "expected"), [(15, 3, 3), (15, 1, 1), (9, 3, 1)])

@@ -130,7 +130,6 @@ def check(
 def _check(scene: Path, executors: int, set_, accuracy, strict: bool, allow_unstable: bool, as_json: bool) -> None:
     from ..cost.forecast import forecast
     from ..cost.speedup_forecast import forecast_speedup
-    from ..engine.calibration import stored
     from ..engine.threads import choose_threads
     from ..processes import cores
     from ..report import check_json, check_lines
@@ -140,7 +139,7 @@ def _check(scene: Path, executors: int, set_, accuracy, strict: bool, allow_unst
     ready = prepare(record, allow_unstable=allow_unstable)
     setup = time.perf_counter() - STARTED
     cost = forecast(ready, setup=setup)
-    threads = choose_threads(ready.plan, stored(), max(1, cores() // executors))
+    threads = choose_threads(ready.plan, max(1, cores() // executors))
     spread = forecast_speedup(ready, executors) if executors > 1 else None
     if as_json:
         print(json.dumps(check_json(ready, cost, threads, spread), indent=1))

@@ -12,7 +12,6 @@ from ..errors import DivergedError, SetupError
 from ..features.liquid.basin import MOST_DROPS
 from ..model.grid import Grid
 from .c_arrays import body_arguments, pointer
-from .calibration import calibrate
 from .commands import BALANCE, SKIN, bond_coeffs, box, physics, prelude, told_once
 from .cut import box_to_cut, shorter_along_rows
 from .plan import Ends, Plan
@@ -144,7 +143,7 @@ class Instance:
             kind, rest = last.split(" ", 1)
             # LAMMPS wants all types set.
             self._lmp.commands_list([f"bond_coeff {row}" for row in (*rows, f"{kind}*{self._types} {rest}")])
-        threads = choose_threads(plan, calibrate(self._library), share_of_cores(self._comm)).threads
+        threads = choose_threads(plan, share_of_cores(self._comm)).threads
         self._lmp.commands_list(physics(plan, threads))
         for fix in plan.body_fixes:
             for kind, body in plan.contact_bodies.items():

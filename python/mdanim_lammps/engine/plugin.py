@@ -15,7 +15,6 @@ from pathlib import Path
 
 from ..errors import SetupError
 from ..processes import address_space
-from .calibration import calibrate
 
 DESCRIPTORS = 16
 """Files and sockets that MPI and LAMMPS open when they start; where they cannot, MPI ends the process."""
@@ -23,7 +22,7 @@ OPENING = 0.1e9
 """Memory below which libraries under LAMMPS end the process [bytes]."""
 VERSION = 20250722
 """The LAMMPS version whose headers the plugin was compiled with; its ABI is that of one version."""
-ABI = 13
+ABI = 14
 """Number of the plugin's own C interface, `mdanim_abi`."""
 STYLES = (
     ("bond", "mdanim/harmonic"),
@@ -83,7 +82,6 @@ def open_lammps(log: Path | None = None, comm=None):
         raise SetupError(f"{_FILE} was not loaded by LAMMPS ({', '.join(missing)} missing); reinstall with 'pip install .'")
     if library.mdanim_abi() != ABI:
         raise SetupError(f"{_FILE} has interface {library.mdanim_abi()}, {ABI} is needed; reinstall with 'pip install .'")
-    calibrate(library)
     return lmp, library
 
 

@@ -13,11 +13,17 @@ from fractions import Fraction
 
 from ..errors import UsageError
 from ..processes import affinity, cores, quota
-from .calibration import Calibration
 from .plan import Plan
 
 THREADS = "MDANIM_THREADS"
 """Environment variable with the number of threads of an instance: the processes of executors inherit it."""
+LEAST = "MDANIM_LEAST_TASK"
+"""Environment variable with the least that a thread is asked for [ns]; the plugin reads it too."""
+LEAST_TASK = 4000.0
+"""The same where the environment says nothing, as plugin/threads/team.cpp has it."""
+PASS, DAMPED_PASS = 30.0, 40.0
+"""Nanoseconds that a thread takes for a particle's step in a pass, without and with dashpots, as plugin/passes/range_cut.h has
+them."""
 MOST_THREADS = 32
 """Team::MOST_TASKS of plugin/threads/team.h."""
 
@@ -49,19 +55,30 @@ class ThreadChoice:
     """For this process."""
     particles: int
     step: float
-    """Nanoseconds that one thread takes for a pass over all particles; 0 where this machine is not calibrated."""
+    """Nanoseconds that one thread takes for a pass over all particles, about."""
     pays_from: int
-    """Particles for each thread below which it costs more than it brings; 0 where this machine is not calibrated."""
+    """Particles for each thread below which it costs more than it brings."""
 
 
-def choose_threads(plan: Plan, calibration: Calibration | None, most: int) -> ThreadChoice:
+def choose_threads(plan: Plan, most: int) -> ThreadChoice:
     """What is asked for, or else one thread for each of so many cores, where each has enough to do. Raises UsageError."""
-    asked, particles, step, pays_from = asked_threads(), plan.system.particles, 0.0, 0
-    if calibration:
-        of_particle = calibration.widths[calibration.fastest(plan.damped)][plan.damped]
-        step, pays_from = particles * of_particle, math.ceil(calibration.least_task / of_particle)
-    threads = asked or max(1, min(most, MOST_THREADS, particles // pays_from if pays_from else 1))
-    return ThreadChoice(threads, asked is not None, most, particles, step, pays_from)
+    asked, particles = asked_threads(), plan.system.particles
+    of_particle = DAMPED_PASS if plan.damped else PASS
+    pays_from = math.ceil(least_task() / of_particle)
+    threads = asked or max(1, min(most, MOST_THREADS, particles // pays_from))
+    return ThreadChoice(threads, asked is not None, most, particles, particles * of_particle, pays_from)
+
+
+def least_task() -> float:
+    """The least that a thread is asked for [ns]. Raises UsageError for what is not a time."""
+    told = os.environ.get(LEAST, "")
+    try:
+        least = float(told) if told else LEAST_TASK
+    except ValueError:
+        least = 0.0
+    if not 0.0 < least < math.inf:
+        raise UsageError(f"{LEAST} is a time in nanoseconds, more than 0, not {told}")
+    return least
 
 
 def share_of_cores(comm) -> int:

@@ -4,7 +4,7 @@
 import numpy as np
 
 
-def barrier_forces(x, molecule, boundary, inner, stiffness, reach, thin=None, ratio=0.0, power=3, v=None, mass=None, damp=0.0):
+def barrier_forces(x, molecule, boundary, inner, stiffness, reach, thin=None, ratio=0.0):
     """Forces (N, 3), energy; ``boundary``, ``inner``, ``thin`` bool (N,); ``stiffness``, ``reach`` (N,)."""
     thin = np.zeros(len(x), bool) if thin is None else thin
     force, energy = np.zeros_like(x), 0.0
@@ -24,12 +24,7 @@ def barrier_forces(x, molecule, boundary, inner, stiffness, reach, thin=None, ra
                 continue
             k = 2.0 * stiffness[i] * stiffness[j] / (stiffness[i] + stiffness[j])
             n = (x[i] - x[j]) / r
-            if power == 3:
-                f, u = k * rc * (1.0 - r / rc) ** 2, k * rc**2 / 3.0 * (1.0 - r / rc) ** 3
-            else:
-                f, u = k * (rc - r), k / 2.0 * (rc - r) ** 2
-            if damp:
-                f -= damp * mass[i] * mass[j] / (mass[i] + mass[j]) * (1.0 - r / rc) * np.dot(v[i] - v[j], n)
+            f, u = k * rc * (1.0 - r / rc) ** 2, k * rc**2 / 3.0 * (1.0 - r / rc) ** 3
             force[i] += f * n
             force[j] -= f * n
             energy += u

@@ -31,8 +31,6 @@ BARRIER = "fix a all mdanim/barrier all all 1.0 1.0"
             "got 4 of them, NY and NZ are missing",
         ),
         (f"{BARRIER} thin all", "thin GROUP ratio", "got 1 of them, ratio is missing"),
-        (f"{BARRIER} damp", "damp gn", "got 0 of them, gn is missing"),
-        (f"{BARRIER} power", "power 2|3", "got 0 of them, 2|3 is missing"),
         (f"{CONTACT} plane z lo", "plane x|y|z lo|hi at", "got 2 of them, at is missing"),
         (f"{CONTACT} objects pair 1 2", "pair MOL1 MOL2 mu beta", "got 2 of them, mu and beta are missing"),
         (f"{CONTACT} stiffness", "stiffness f", "got 0 of them, f is missing"),
@@ -82,7 +80,7 @@ def test_what_is_missing_is_named(tmp_path, command, form, missing):
 @pytest.mark.parametrize(
     ("command", "words"),
     [
-        (f"{BARRIER} thik", "unknown keyword thik; it knows thin, damp and power"),
+        (f"{BARRIER} thik", "unknown keyword thik; it knows thin"),
         (f"{CONTACT} plain", "unknown keyword plain; it knows objects, plane, stiffness, damping, pair, among and bodies"),
         ("fix a all mdanim/leapfrog lamda", "unknown keyword lamda; it knows lambda and drag"),
         (f"{LIQUID} wawe", "unknown keyword wawe; it knows volume, level, fill"),

@@ -6,23 +6,20 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from mdanim_lammps.engine.threads import LEAST
 from ranks_lab import on_ranks
-from splash_lab import CALIBRATION, recalibrate, splash, write_eager_calibration
+from splash_lab import EAGER, splash
 
 SPLASH = Path(__file__).parents[2] / "lab" / "mpi" / "splash.py"
 MODELS = ("waves", "surface")
 
 
 @pytest.fixture(scope="module", autouse=True)
-def eager(tmp_path_factory):
+def eager():
     """Threads share whatever they can, in this process and in those of ranks."""
     with pytest.MonkeyPatch.context() as patch:
-        path = tmp_path_factory.mktemp("eager") / "calibration.json"
-        write_eager_calibration(path)
-        patch.setenv(CALIBRATION, str(path))
-        recalibrate()
+        patch.setenv(LEAST, EAGER)
         yield
-    recalibrate()
 
 
 @pytest.fixture(scope="module")
