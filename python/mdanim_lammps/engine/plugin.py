@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import ctypes
 import os
+import resource
 import struct
 from functools import lru_cache
 from pathlib import Path
@@ -20,6 +21,8 @@ DESCRIPTORS = 16
 """Files and sockets that MPI and LAMMPS open when they start; where they cannot, MPI ends the process."""
 OPENING = 0.1e9
 """Memory below which libraries under LAMMPS end the process [bytes]."""
+SHARED = 16 << 20
+"""Size of files that MPI shares memory by [bytes]: one process makes one of 4.3 MB, five have one of 5.3 MB."""
 VERSION = 20250722
 """The LAMMPS version whose headers the plugin was compiled with; its ABI is that of one version."""
 ABI = 14
@@ -58,6 +61,8 @@ def open_lammps(log: Path | None = None, comm=None):
         raise SetupError(
             f"LAMMPS cannot be opened: MPI needs {DESCRIPTORS} more open files than the limit allows; raise it: ulimit -n 1024"
         )
+    if too_small := files_too_small():
+        raise SetupError(f"LAMMPS cannot be opened: {too_small}")
     if address_space() < OPENING:
         raise SetupError(f"LAMMPS cannot be opened: it cannot allocate memory, of which it takes {OPENING * 1e-9:.1f} GB")
     # Read by LAMMPS when an instance is made.
@@ -93,6 +98,14 @@ def is_cut_short(file: Path) -> bool:
         return True
     (table,), (size, count) = struct.unpack_from("<Q", head, 40), struct.unpack_from("<HH", head, 58)
     return table + size * count > file.stat().st_size
+
+
+def files_too_small() -> str:
+    """Why MPI would end the process, and a way out, where the limit of the size of files is less than `SHARED`; else nothing."""
+    limit = resource.getrlimit(resource.RLIMIT_FSIZE)[0]
+    if limit == resource.RLIM_INFINITY or limit >= SHARED:
+        return ""
+    return f"MPI needs files of {SHARED >> 20} MB, and the limit is {limit / 1e6:.3g} MB; raise it: ulimit -f unlimited"
 
 
 def has_descriptors(count: int) -> bool:

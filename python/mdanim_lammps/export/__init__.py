@@ -3,9 +3,13 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import re
-from collections.abc import Callable, Sequence
+import resource
+import shutil
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
@@ -51,6 +55,8 @@ FORMATS = {
     "csv": Format("csv", (".csv",), "a row for each object and frame: centre, velocity, spin, energy; pandas, spreadsheets"),
 }
 """Formats by the name that ``--to`` takes."""
+SPARE = 1 << 20
+"""Bytes: where less is free a library may have failed for want of room, as libraries write in pieces."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,7 +118,8 @@ def export(
     write = import_module(f".{kind.module}", __package__).write
     total = len(cut.frames)
     with disk_errors(path), scratch(path.parent, "export") as part:
-        notes = write(cut, part, path.stem, lambda done: on_progress(done, total))
+        with _errors_of_libraries(part):
+            notes = write(cut, part, path.stem, lambda done: on_progress(done, total))
         for made in (p for p in part.rglob("*") if p.is_file()):
             sync(made)
         _make_way(targets, kind.pieces, force=force, delete=True)
@@ -120,6 +127,24 @@ def export(
             os.replace(part / target.name, target)
         sync(path.parent)
     return Exported(tuple(targets), total, tuple(notes))
+
+
+@contextmanager
+def _errors_of_libraries(folder: Path) -> Iterator[None]:
+    """Turn errors of libraries that write files themselves into OSError of a full disk where there is no room: libraries say that
+    something is corrupt, or does not compress."""
+    try:
+        yield
+    except (OSError, RuntimeError) as error:
+        if isinstance(error, OSError) and error.errno is not None:
+            raise
+        largest = max((made.stat().st_size for made in folder.rglob("*") if made.is_file()), default=0)
+        limit = resource.getrlimit(resource.RLIMIT_FSIZE)[0]
+        if limit != resource.RLIM_INFINITY and largest > limit - SPARE:
+            raise OSError(errno.EFBIG, os.strerror(errno.EFBIG)) from error
+        if shutil.disk_usage(folder).free < SPARE:
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC)) from error
+        raise
 
 
 def _make_way(targets: Sequence[Path], pieces: str, *, force: bool, delete: bool) -> None:

@@ -8,7 +8,6 @@ from pathlib import Path
 
 import numpy as np
 
-from ..errors import OutputError
 from ..picture.camera import FIELD_OF_VIEW, CameraPath, View, action_of, automatic_view
 from ..scene.render import Render
 from .cut import Body, Cut
@@ -100,7 +99,7 @@ def linear(color: np.ndarray) -> np.ndarray:
 
 def _save(stage, stem: str) -> None:
     if not stage.GetRootLayer().Save():
-        raise OutputError(f"{stem}.usdc cannot be written; is the disk full?")
+        raise OSError(f"USD could not write {stem}.usdc")
 
 
 def _material(stage, path: str, body: Body, Sdf, UsdShade):

@@ -10,6 +10,7 @@ from xml.sax.saxutils import quoteattr
 import numpy as np
 
 from ..picture.pieces import cells
+from ..picture.window import silent
 from .cut import Cut
 
 
@@ -92,5 +93,7 @@ def _save(data, path: Path) -> None:
     writer.SetDataModeToAppended()
     writer.EncodeAppendedDataOff()
     writer.SetCompressorTypeToZLib()
-    if not writer.Write():
-        raise OSError(28, f"{path.name} could not be written, is the disk full?")
+    with silent():
+        whole = writer.Write()
+    if not whole:
+        raise OSError(f"VTK could not write {path.name}")

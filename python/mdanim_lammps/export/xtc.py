@@ -50,7 +50,20 @@ def write(cut: Cut, folder: Path, stem: str, on_frame: Callable[[int], None]) ->
             universe.trajectory.ts.data["step"] = int(cut.trajectory.steps[frame])
             file.write(universe.atoms)
             on_frame(done)
+    _check_whole(folder / f"{stem}.xtc", len(cut.frames))
     return [note, "velocities are not in XTC; names of objects are cut after five letters, which is all that GRO has"]
+
+
+def _check_whole(path: Path, frames: int) -> None:
+    """Raise OSError where a file cannot be read to its end: the library takes no notice of errors when it closes a file."""
+    from MDAnalysis.lib.formats.libmdaxdr import XTCFile
+
+    with XTCFile(str(path)) as file:
+        if (found := len(file)) == frames:
+            file.seek(frames - 1)
+            file.read()  # raises OSError where the last frame is cut short
+            return
+    raise OSError(f"{path.name} has {found} frames instead of {frames}")
 
 
 def scale_of(cut: Cut) -> float:

@@ -85,9 +85,16 @@ def _way_out(path: Path, error: OSError) -> str:
     if error.errno not in (errno.ENOSPC, errno.EDQUOT, errno.EFBIG):
         return "check the folder and its permissions, or write elsewhere with -o DIR"
     room = "raise the limit of the size of files (ulimit -f) or make room" if error.errno == errno.EFBIG else "make room"
+    if not _is_of_a_run(path.name):
+        return f"{room} and repeat the command"
     if (path.parent / CHECKPOINT).exists():
         return f"{room} and resume"
     return f"{room} and repeat the command, with --force if it made this folder"
+
+
+def _is_of_a_run(name: str) -> bool:
+    """Whether a run writes a file of this name, not what is made of a run: an export, a page, a picture."""
+    return name in (*RESULTS, MARK) or name.startswith(("in.", "data.", "contact.")) or bool(re.fullmatch(MESHES[1], name))
 
 
 @contextmanager

@@ -21,7 +21,7 @@ from pathlib import Path
 
 from ...children import DEVNULL, PIPE, Child, start
 from ...children import command as child_command
-from ...engine.plugin import has_descriptors
+from ...engine.plugin import files_too_small, has_descriptors
 from ...errors import ExecutorLost, MdanimError, OutputError, SetupError
 from ...interrupts import Interrupts
 from ...results.checkpoint import Checkpoint
@@ -120,6 +120,8 @@ def _started(command: list[str]) -> Child:
         raise SetupError(
             f"executors cannot start: MPI needs {DESCRIPTORS} more open files than the limit allows; raise it: ulimit -n 1024"
         )
+    if too_small := files_too_small():
+        raise SetupError(f"executors cannot start: {too_small}")
     try:
         return start(command, more=ONE_THREAD, stdin=DEVNULL, stdout=PIPE, stderr=PIPE, start_new_session=True, pass_fds=claims)
     except OSError as error:
