@@ -46,6 +46,7 @@ lint: tools $(VENV)/.linters
 	$(BIN)/ruff check .
 	$(BIN)/clang-format --dry-run --Werror $(shell find plugin tests/lab/plugin -name '*.cpp' -o -name '*.h')
 	$(BIN)/mypy
+	$(BIN)/python tests/english.py
 
 $(VENV)/.linters: pyproject.toml $(VENV)/.tools
 	$(BIN)/python -m pip install --quiet --group lint

@@ -4,8 +4,8 @@
 Parts: forms, bodies, cost (bench/waves.py), drafts, bobbing (bench/drafts.py), momentum (bench/momentum.py), share
 (bench/liquid.py). ``--write`` puts the
 tables into the page in place of those that stand there; without it they are printed only. ``--rounds N`` is for the parts that
-measure time, cost and share. Every part runs in a process of its own; a part that fails is told as such, what stands on the page
-for it is left, and the exit code is 1.
+measure time, cost and share. Every part runs in a process of its own; a part that fails is told as such, its table on the page
+stays, and the exit code is 1.
 """
 
 import argparse

@@ -374,7 +374,7 @@ def rank(folder: Path) -> None:
         serve(MPI.COMM_WORLD)
         return
     ready = prepare(load_scene(folder / "blocks.txt"))
-    supervisor.KEEP_SECONDS = math.inf  # a checkpoint is no part of a frame
+    supervisor.KEEP_SECONDS = math.inf  # a checkpoint is not part of a frame
     source, ends = supervisor.Distributed(ready, MPI.COMM_WORLD, "central", PlannerOptions()), []
     simulate(ready, folder, source=source, on_progress=lambda _: ends.append(source.cpu))
     known = {"objects": len(ready.system.names), "particles": ready.system.particles, "steps": ready.certificate.steps_per_frame}

@@ -139,7 +139,7 @@ def test_compare_and_render_use_an_output_folder(scene):
         ),
         pytest.param(["fast.txt"], 4, ["certified bound", "cube", "timestep auto"], id="step above the bound"),
         pytest.param(["cube.txt", "-n", "0"], 2, ["-n 0", "at least one"], id="no executor"),
-        pytest.param(["cube.txt", "-n", "1.5"], 2, ["1.5 is no whole number"], id="part of an executor"),
+        pytest.param(["cube.txt", "-n", "1.5"], 2, ["1.5 is not a whole number"], id="part of an executor"),
         pytest.param(["study", "cube.txt", "--budget", "soon"], 2, ["--budget soon", "expected a time above 0"], id="study"),
         pytest.param(["render", "nowhere.out", "--size", "0", "0"], 2, ["between 2 and 8192"], id="no size"),
         pytest.param(["view", "nowhere.out"], 7, ["nowhere.out does not exist"], id="nothing to view"),
@@ -206,7 +206,7 @@ def test_exit_codes(scene, arguments, code, words):
     ],
 )
 def test_render_refuses(drawn, options, code, words):
-    """Render refuses names that are no movie's, folders that are not there, cameras that look at nothing."""
+    """Render refuses names that are not those of movies, folders that are not there, cameras that look at nothing."""
     before = {p.name for p in drawn.iterdir()}
     (drawn / "look.txt").write_text(GOOD + "object kube { shape sphere 1 m position (9, 9, 9) m mass 1 kg elasticity 1 MPa }\n"
                                     "render { camera from (1, 1, 1) m look kube }\n")  # fmt: skip

@@ -103,7 +103,7 @@ def outside() -> dict[str, ast.Module]:
 
 
 def strings(tree: ast.AST) -> set[str]:
-    """Texts that are no docstrings."""
+    """Texts that are not docstrings."""
     bodies = (n.body for n in ast.walk(tree) if isinstance(n, ast.Module | ast.ClassDef | ast.FunctionDef))
     docs = {id(s.value) for body in bodies for s in body if isinstance(s, ast.Expr)}
     return {n.value for n in ast.walk(tree) if isinstance(n, ast.Constant) and isinstance(n.value, str) and id(n) not in docs}

@@ -42,7 +42,7 @@ def test_gallery(tmp_path):
 
 
 def test_a_gallery_finishes_what_was_stopped(tmp_path):
-    """A run that was stopped is no finished one: it goes on, and its movie is drawn anew."""
+    """A run that was stopped is not a finished one: it goes on, and its movie is drawn anew."""
     folder, place = tmp_path / "scenes", tmp_path / "g" / "good"
     folder.mkdir()
     (folder / "good.txt").write_text(GOOD + "render { size (64, 48) }\n")

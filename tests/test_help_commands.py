@@ -126,7 +126,7 @@ def test_completion():
 
 
 def test_what_was_a_command_says_where_it_is():
-    """Whoever types it as before is told what to type."""
+    """A user who types it as before is told what to type."""
     told = call("gallery", "scenes", "-o", "g", "--force")
     assert told.returncode == 2 and "python docs/gallery.py DIR" in told.stderr
     assert "gallery" not in call("--help").stdout

@@ -111,7 +111,7 @@ def test_names_of_a_scene_that_are_words_of_python(tmp_path):
 
 @pytest.mark.parametrize("at", [0.7777, 0.001, 1 / 3, 1.0, 0.123456789])
 def test_a_picture_at_any_time(tmp_path, at):
-    """Also where it is no whole number of frames of the scene: nobody has asked for frames."""
+    """Also where it is not a whole number of frames of the scene: nobody has asked for frames."""
     drawn = Scene.from_text(TEXT.split("expect")[0], "pair").picture(tmp_path / "p.png", at=at, size=(64, 48))
     assert drawn.exists()
 
@@ -191,7 +191,7 @@ def test_names_are_suggested(run):
 
 
 def test_what_notebooks_show(run):
-    """A picture and a table of a scene and of a result, a table of a trajectory; names are no markup."""
+    """A picture and a table of a scene and of a result, a table of a trajectory; names are not markup."""
     scene = Scene.from_text(TEXT, "<b>pair")._repr_html_()
     result = run._repr_html_()
     assert scene.count("data:image/png;base64,") == 1 == result.count("data:image/png;base64,")

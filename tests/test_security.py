@@ -281,7 +281,7 @@ CRAFTED = {
     "basin without size": lambda file: file["observables/liquid"].attrs.__setitem__("shape", np.array([0, -1, 10**9])),
     "basin of NaN": lambda file: file["observables/liquid"].attrs.__setitem__("low", np.full(3, np.nan)),
     "many tags": lambda file: file["parameters/mdanim"].attrs.__setitem__("total", 10**17),
-    "a title that is no text": lambda file: file["parameters/mdanim"].attrs.__setitem__("title", np.ones(3)),
+    "a title that is not text": lambda file: file["parameters/mdanim"].attrs.__setitem__("title", np.ones(3)),
 }
 
 
@@ -400,7 +400,7 @@ def test_a_crafted_lock(whole, tmp_path, capsys, line):
 
 
 def test_a_stored_study_names_no_files(runs, tmp_path, outside, capsys):
-    """Settings of a stored study that are no numbers do not become names of files."""
+    """Settings of a stored study that are not numbers do not become names of files."""
     from mdanim_lammps.scene.parse import load_scene
     from mdanim_lammps.study.setting import scene_hash
 

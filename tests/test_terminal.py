@@ -61,7 +61,7 @@ def test_output_that_nothing_reads(scene):
 
 
 def test_another_broken_pipe_is_an_error(capsys):
-    """A pipe other than stdout that breaks is told, and is no success."""
+    """A pipe other than stdout that breaks is told, and is not a success."""
     with pytest.raises(SystemExit) as end, documented_exit(debug=False):
         raise BrokenPipeError(32, "Broken pipe")
     assert end.value.code == ExitCode.IO
@@ -127,7 +127,7 @@ def half_loaded(error):
 
 
 def test_what_follows_an_interrupt_is_its_consequence(capsys):
-    """An error after Ctrl-C, as of a library half loaded, is no other fault."""
+    """An error after Ctrl-C, as of a library half loaded, is not another fault."""
     for error in (ImportError("half"), OutputError("half"), OSError("half")):
         with pytest.raises(SystemExit) as ended:
             half_loaded(error)

@@ -27,5 +27,5 @@ context = openmm.Context(system, integrator, openmm.Platform.getPlatformByName("
 context.setPositions(lattice["position"])
 found = run(integrator.step, dt, case["time"], case["limit"], 20)
 if not np.isfinite(context.getState(energy=True).getPotentialEnergy()._value):
-    raise SystemExit("the energy is no number")
+    raise SystemExit("the energy is not a number")
 tell(version=openmm.__version__, nodes=len(lattice["mass"]), **found)

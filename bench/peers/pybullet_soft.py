@@ -59,5 +59,5 @@ if body < 0:
 found = run(lambda count: [pybullet.stepSimulation() for _ in range(count)], DT, case["time"], case["limit"], 1)
 place = np.array(pybullet.getMeshData(body, -1, flags=pybullet.MESH_DATA_SIMULATION_MESH)[1])
 if not np.isfinite(place).all():
-    raise SystemExit("the positions are no numbers")
+    raise SystemExit("the positions are not numbers")
 tell(version=version("pybullet"), nodes=len(nodes), **found)

@@ -85,6 +85,6 @@ def steps(count: int) -> None:
 found = run(steps, dt, case["time"], case["limit"], 20)
 place = x.to_numpy()
 if not np.isfinite(place).all():
-    raise SystemExit("the positions are no numbers")
+    raise SystemExit("the positions are not numbers")
 note = {"note": "each spring once, one thread only"} if serial else {}
 tell(**note, version=ti.__version__ if isinstance(ti.__version__, str) else ".".join(map(str, ti.__version__)), nodes=n, **found)

@@ -31,7 +31,7 @@ ContactBody::ContactBody(const ContactBodyArrays &given)
     cells[d] = given.count[d];
     edges[d] = given.edge[d];
     need(cells[d] > 0 && cells[d] < (1 << 20), "a count of cells is out of range");
-    need(edges[d] > 0.0 && std::isfinite(edges[d]), "an edge of the cells is no length");
+    need(edges[d] > 0.0 && std::isfinite(edges[d]), "an edge of the cells is not a length");
     volume *= cells[d];
     nodes *= cells[d] + 1;
     coefficients *= cells[d] + 1 + 2 * DEPTH_MARGIN;
@@ -46,7 +46,7 @@ ContactBody::ContactBody(const ContactBodyArrays &given)
          "places of particles do not ascend");
   need_particles_of_cells();
   if (given.depth) {
-    need(are_finite(given.depth, coefficients), "a depth is no number");
+    need(are_finite(given.depth, coefficients), "a depth is not a number");
     depth_grid.assign(given.depth, given.depth + coefficients);
     depth_grid.push_back(0.0);    // kernels read three and one more
   } else {

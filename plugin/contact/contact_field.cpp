@@ -13,7 +13,7 @@ static constexpr double TRUSTED = 1.0;    // cells to go for which what was seen
 
 // --- lists ---
 
-// A point counts until the centre of its area is a quarter of a cell beyond an edge; the drawn surface of what is no cuboid
+// A point counts until the centre of its area is a quarter of a cell beyond an edge; the drawn surface of what is not a cuboid
 // stands out of its particles, and farther where cells are stretched.
 double ContactField::stands_out(const ContactBody &owner, const ContactBody &host)
 {

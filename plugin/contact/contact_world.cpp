@@ -332,7 +332,7 @@ void ContactWorld::list_turns()
   for (const auto &some : turns_after) turns.insert(turns.end(), some.begin(), some.end());
 }
 
-// Threads take fields in that order, so whoever waits does so for one that another thread is at.
+// Threads take fields in that order, so a thread waits only for one that another thread is at.
 void ContactWorld::add_forces_side_by_side(double dt)
 {
   constexpr double PART = 0.3;    // of what they cost

@@ -70,7 +70,7 @@ class FixMdanimBarrier : public Fix, public mdanim::PassParticipant {
   std::vector<Own> own;                   // local and ghost particles
 
   // Pairs that may touch, numbered ascending by the lower tag and then by the higher one: added up in this order, the forces on
-  // every particle are in ascending order of its partners' tags. There are numbers in between that are no pairs (pair_filter.h).
+  // every particle are in ascending order of its partners' tags. There are numbers in between that are not pairs (pair_filter.h).
   std::vector<mdanim::Strip> strip;
   mdanim::Doubles reach2;           // squares of the reach of pairs, 0 for what is none
   std::vector<ContactPair> pair;    // and what else is known of them

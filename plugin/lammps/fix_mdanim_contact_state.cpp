@@ -105,7 +105,7 @@ void FixMdanimContact::unpack(const StateRecords &records)
               !body_of[host]->is_filled(row.cell[0], row.cell[1], row.cell[2]))
             bad("has points that there are not");
           if (row.point <= before) bad("has points that do not ascend");
-          if (!has_numbers(row, offsetof(FieldContact, state))) bad("has what is no number");
+          if (!has_numbers(row, offsetof(FieldContact, state))) bad("has a value that is not a number");
           before = row.point;
         }
       };
@@ -119,7 +119,7 @@ void FixMdanimContact::unpack(const StateRecords &records)
             row.plane >= static_cast<int>(world_of_contact.settings.planes.size()))
           bad("has points or planes that there are not");
         if (std::pair{row.plane, row.point} <= before) bad("has points that do not ascend");
-        if (!has_numbers(row, offsetof(PlaneContact, anchor))) bad("has what is no number");
+        if (!has_numbers(row, offsetof(PlaneContact, anchor))) bad("has a value that is not a number");
         before = {row.plane, row.point};
       }
     }

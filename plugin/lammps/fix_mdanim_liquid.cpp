@@ -277,10 +277,11 @@ void FixMdanimLiquid::init()
     error->all(FLERR, "{}: model waves needs the lattice cells of solids; add cells i2_NAME, or write model surface", name());
   const int width = lattice_cells.given() ? lattice_cells.width(lmp) : 7;
   if (width != 7 && width != 8)
-    error->all(FLERR,
-               "{}: cells names i2_{}, which is no property of 7 integers, or 8 with the layers of cells around it; make it with "
-               "'fix ID all property/atom i2_{} 7 ghost yes'",
-               name(), lattice_cells.name, lattice_cells.name);
+    error->all(
+        FLERR,
+        "{}: cells names i2_{}, which is not a property of 7 integers, or 8 with the layers of cells around it; make it with "
+        "'fix ID all property/atom i2_{} 7 ghost yes'",
+        name(), lattice_cells.name, lattice_cells.name);
   if (lattice_cells.given() && comm->nprocs > 1 && !lattice_cells.ghosts_have_rows(lmp))
     error->all(FLERR,
                "{}: ghosts have no rows of i2_{}, which cells needs on several ranks; add 'ghost yes' to its fix property/atom",

@@ -65,7 +65,7 @@ void FixMdanimLiquid::unpack(const StateRecords &records)
       bad |= !(kept[i].waves.is_finite() && std::isfinite(kept[i].impulse_x + kept[i].impulse_y));
     });
     MPI_Allreduce(MPI_IN_PLACE, &bad, 1, MPI_INT, MPI_MAX, world);
-    if (bad) throw std::runtime_error("the liquid's state of particles has what is no number");
+    if (bad) throw std::runtime_error("the liquid's state of particles has a value that is not a number");
   }
   buoyancy->set_ledger(basin->set_state(whole->second.data(), whole->second.size()));
   buoyancy->kept = std::move(kept);

@@ -90,7 +90,8 @@ double *ParticleColumn::values(LAMMPS *lmp) const
   int is_double = 0, columns = 0;
   const int index = lmp->atom->find_custom(name.c_str(), is_double, columns);
   if (index < 0 || !is_double || columns)
-    lmp->error->all(FLERR, "{}: {} names d_{}, which is no per-particle property; make it with 'fix ID all property/atom d_{}'",
+    lmp->error->all(FLERR,
+                    "{}: {} names d_{}, which is not a per-particle property; make it with 'fix ID all property/atom d_{}'",
                     style, keyword, name, name);
   return lmp->atom->dvector[index];
 }

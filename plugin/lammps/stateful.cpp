@@ -76,7 +76,7 @@ StateRecords unflatten(const FlatState &flat)
   for (std::int64_t n = 0; n < flat.records; ++n) {
     const StateKey key{flat.key[2 * n], flat.key[2 * n + 1]};
     if (key.a < 0 || key.b < 0 || (key.b && (key.a == 0 || key.a >= key.b)))
-      fail("({}, {}) are no two objects; a key is (a, b) with 0 < a < b, (a, 0) or (0, 0)", key.a, key.b);
+      fail("({}, {}) are not two objects; a key is (a, b) with 0 < a < b, (a, 0) or (0, 0)", key.a, key.b);
     if (n && !(records.rbegin()->first < key))
       fail("records must be sorted by their keys and differ; ({}, {}) comes after ({}, {})", key.a, key.b,
            records.rbegin()->first.a, records.rbegin()->first.b);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // run_style verlet/mdanim. A step of LAMMPS begins with a half kick and a drift and finishes with forces and the other half kick.
 // Between two outputs a pass finishes a step and begins the next at once, in arrays of its own (passes/pass_engine.h); with a fix
-// that is no PassMember each step is that of run_style verlet. The bits are the same. With other ranks, ghosts are lanes that do
-// not move: they get their positions and, for dashpots, velocities before every pass, and what springs do to them is thrown away.
-// Ranks decide together.
+// that is not a PassMember each step is that of run_style verlet. The bits are the same. With other ranks, ghosts are lanes that
+// do not move: they get their positions and, for dashpots, velocities before every pass, and what springs do to them is thrown
+// away. Ranks decide together.
 
 #include "lammps/verlet_mdanim.h"
 

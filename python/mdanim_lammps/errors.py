@@ -51,7 +51,7 @@ def escaped(name: str) -> str:
 
 
 _ENDLESS = re.compile(r"\S{500,}")
-"""What is no word any more, as of a binary file."""
+"""A token that is not a word, as of a binary file."""
 
 
 def _cut(word: re.Match) -> str:

@@ -55,7 +55,7 @@ def campaign(folder, count: int, seed: int) -> None:
 
 
 def _answer(link) -> dict:
-    """The next message that is no news of the run."""
+    """The next message that is not news of the run."""
     while True:
         said = link.recv(SECONDS)
         if isinstance(said, str) and "news" not in (found := json.loads(said)):

@@ -56,7 +56,7 @@ control {
 @pytest.fixture(scope="module")
 def pond(tmp_path_factory):
     """A scene with every effect, and the result of its run:
-    so long that a few milliseconds that others take are no share of it."""
+    so long that a few milliseconds that others take do not count."""
     from mdanim_lammps.run.prepare import prepare
     from mdanim_lammps.scene.parse import load_scene
 
@@ -369,7 +369,7 @@ def test_ctrl_c_ends_a_forecast(pond, monkeypatch, tmp_path):
 
 
 def test_first_steps_that_are_ended_tell_nothing(pond, monkeypatch, fresh):
-    """SIGTERM before there are frames enough is no end that the forecast has asked for."""
+    """SIGTERM before there are frames enough is not an end that the forecast has asked for."""
     from mdanim_lammps.run import loop
 
     def ended(ready, folder, *, on_progress):

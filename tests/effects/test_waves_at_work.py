@@ -142,7 +142,7 @@ def test_a_body_on_the_floor_gets_no_energy_from_the_liquid(density):
 
 
 def test_the_surface_at_a_body_is_that_around_it():
-    """A cube falls in; below it the head is that of the pressure there, cells higher, but that is no surface."""
+    """A cube falls in; below it the head is that of the pressure there, cells higher, but that is not a surface."""
     ready = scene(density=500, z=18.5)
     with Instance(ready.plan) as instance:
         instance.setup()

@@ -285,7 +285,7 @@ def shuffle_sections(text: str, seed: int) -> str:
 
 
 def test_last_short_frame_is_dumped(prepared, tmp_path):
-    """Dump the last frame at the very end also when the run is no whole number of frames."""
+    """Dump the last frame at the very end also when the run is not a whole number of frames."""
     ready = prepared(MEETING.replace("time 40 ms", "time 25 ms"))
     c = ready.certificate
     assert c.last_steps and c.steps * c.timestep == pytest.approx(0.025, rel=1e-12)

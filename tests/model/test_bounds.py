@@ -107,7 +107,7 @@ def test_an_extreme_is_refused_with_a_message(case, prepared, bounded):
 
 
 def test_strong_dashpots_leave_a_bound():
-    """The bound of strong dashpots is 2/b: their square root is no difference of two equal numbers."""
+    """The bound of strong dashpots is 2/b: their square root is not a difference of two equal numbers."""
     drag = np.array([1e2, 1e9, 1e13])
     assert stable_step(np.full(3, 1e6), drag)[1:] == pytest.approx(2.0 / drag[1:], rel=1e-6)
     assert stable_step(np.full(3, 1e6), drag)[0] == pytest.approx((np.sqrt(1e4 + 4e6) - 1e2) / 1e6, rel=1e-15)

@@ -55,7 +55,7 @@ def test_slabs_side_by_side_cover_one_side_of_each():
     ids=lambda item: item[0],
 )
 def test_others_cover_nothing(other):
-    """What is not flush, can move, is no cuboid, is askew, or meets in an edge."""
+    """What is not flush, can move, is not a cuboid, is askew, or meets in an edge."""
     assert all(frame.open is None for frame in frames(LEFT, other[1]))
 
 

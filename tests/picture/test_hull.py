@@ -59,7 +59,7 @@ def test_inside_of_a_hull_is_told_as_dry(tmp_path, floor):
 
 
 def test_one_cell_of_air_is_not_dry(tmp_path):
-    """Over a body that has just gone under liquid is late by a cell: that is no hull."""
+    """Over a body that has just gone under liquid is late by a cell: that is not a hull."""
     raw, wall, inside = hull_in_pool(tmp_path, 6)
     assert np.isnan(raw[inside | wall]).all()
 

@@ -92,7 +92,7 @@ def test_lasts_as_long_as_it_shows(short, tmp_path):
     [
         pytest.param(None, [0, 1, 2, 3, 4, 5], id="all"),
         pytest.param(10.0, [0, 1, 2, 3, 4, 5], id="its own rate"),
-        pytest.param(5.0, [0, 2, 4], id="every other; the end is no multiple"),
+        pytest.param(5.0, [0, 2, 4], id="every other; the end is not a multiple"),
         pytest.param(6.0, [0, 2, 3, 5], id="the nearest"),
         pytest.param(2.0, [0, 5], id="the last one, in spite of rounding"),
     ],

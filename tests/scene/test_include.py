@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""Scene files on disk: includes, circles, meshes, and files that are no scenes."""
+"""Scene files on disk: includes, circles, meshes, and files that are not scenes."""
 
 import os
 
@@ -106,7 +106,7 @@ def test_what_is_no_scene_is_not_quoted(write, text, within):
 
 
 def test_missing_file_and_folder(tmp_path):
-    """Name a path that is not there, or is no file."""
+    """Name a path that is not there, or is not a file."""
     assert "gone.txt is not there" in problems(tmp_path / "gone.txt")[0].message
     assert "is a folder" in problems(tmp_path)[0].message
     assert "is not an ordinary file" in problems(os.devnull)[0].message

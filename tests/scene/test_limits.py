@@ -101,7 +101,7 @@ def test_movie_in_a_subfolder():
 
 @pytest.fixture
 def strange(tmp_path):
-    """Paths that are no files on a disk, and links to them."""
+    """Paths that are not files on a disk, and links to them."""
     os.mkfifo(tmp_path / "pipe")
     (tmp_path / "folder").mkdir()
     (tmp_path / "huge").touch()
@@ -172,7 +172,7 @@ def test_bytes_of_all_includes_are_counted(tmp_path, monkeypatch):
     pytest.param("title".encode("utf-16"), 1, 1, id="UTF-16"),
 ])  # fmt: skip
 def test_place_in_a_file_that_is_no_text(tmp_path, content, line, column):
-    """Name line and column of the first byte that is no text; say so in an include too."""
+    """Name line and column of the first byte that is not text; say so in an include too."""
     path = tmp_path / "bad.txt"
     path.write_bytes(content)
     with pytest.raises(SceneError) as error:
@@ -189,7 +189,7 @@ def test_place_in_a_file_that_is_no_text(tmp_path, content, line, column):
     ("exponent", "good"), [("0.5", True), ("1/2", True), ("1/3", False), ("0.51", False), ("0.49999", False)]
 )
 def test_power_of_a_quantity_is_exact(exponent, good):
-    """(4 m^2)^0.51 is no length."""
+    """(4 m^2)^0.51 is not a length."""
     scene = text(shape=f"sphere (4 m^2)^({exponent})")
     if good:
         assert parse_scene(scene).solids[0].shape.radius == 2.0

@@ -22,7 +22,7 @@ MISTAKES = [
     ("a word that other programs have", text(mass="1 kg bounce 0.5"), 4, 13, "bounce is not supported yet", "set damping"),
     *((f"{word} outside of all", f"{word} a b\n" + text(), 1, 1, f"{word} is not supported yet", way_out) for word, way_out in
       (("motion", "velocity"), ("weld", "not tied"), ("break", "parts"), ("tear", "do not tear"), ("balloon", "low density"))),
-    ("ground that is no floor", "ground y 0 m\n" + text(), 1, 8, "ground cannot be followed by 'y'", "write ground z 0 m"),
+    ("ground that is not a floor", "ground y 0 m\n" + text(), 1, 8, "ground cannot be followed by 'y'", "write ground z 0 m"),
     ("colour with a hyphen", text(color="light-blue"), 6, 9, "'light-blue' is not a colour", "did you mean 'lightblue'?"),
     ("negative", text(mass="-2 kg"), 4, 8, "mass must be > 0, found -2 kg", ""),
     ("zero", text(shape="sphere 0 m"), 2, 16, "r of sphere must be > 0, found 0 m", ""),
@@ -148,7 +148,7 @@ MISTAKES = [
     ("loop name twice", text("let i = 1\nrepeat i in 1 .. 2 { }\n"), 2, 8, "'i' is given twice", ""),
     ("liquid in a repeat", text("repeat i in 1 .. 2 { liquid w { } }\n"), 1, 22,
      "liquid cannot stand in a repeat", ""),
-    ("index is no whole number", text().replace("ball", "ball[0.5]"), 1, 13,
+    ("index is not a whole number", text().replace("ball", "ball[0.5]"), 1, 13,
      "an index is a whole number, found 0.5", ""),
     ("open index", text().replace("ball", "ball[1"), 1, 15, "a ] is missing", ""),
     ("two million objects", text("repeat i in 1 .. 2*10^6 { object b[i] { } }\n"), 1, 1,

@@ -141,7 +141,7 @@ def test_shape(form, shape):
 
 
 def test_two_values_side_by_side_may_be_names():
-    """Tell a second value from a unit: r and h are no units, so ``cylinder r h`` has two values."""
+    """Tell a second value from a unit: r and h are not units, so ``cylinder r h`` has two values."""
     assert ball("let r = 1\nlet h = 2\n", shape="cylinder r h").shape == records.Cylinder(1.0, 2.0)
     assert ball("let r = 1\nlet t = 2\n", shape="cylinder r (t)").shape == records.Cylinder(1.0, 2.0)
 

@@ -374,7 +374,7 @@ def test_energy_drift_of_scenes(name, accuracy, scenes, tmp_path):
 
 
 def test_study_command(bar_study, bar_file, capsys, monkeypatch):
-    """Print table, orders and advice; refuse a budget that is no time."""
+    """Print table, orders and advice; refuse a budget that is not a time."""
     from mdanim_lammps.cli import main
 
     monkeypatch.setattr(bench, "REPEATS", 1)

@@ -9,7 +9,7 @@
 
 namespace mdanim {
 
-inline constexpr double ON_BODY = 0.5;    // cells of liquid on a body that are no surface yet
+inline constexpr double ON_BODY = 0.5;    // cells of liquid on a body that do not make a surface yet
 
 // The column at a side, 0 to 3: -x, +x, -y, +y; -1 beyond the basin.
 inline int neighbour(int column, int side, int nx, int ny)

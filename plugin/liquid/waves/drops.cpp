@@ -180,7 +180,7 @@ void Drops::set_state(const std::uint8_t *bytes, std::size_t size)
 {
   const std::string whose = "the state of the drops ";
   if (size % sizeof(Drop))
-    throw std::runtime_error(whose + "has " + std::to_string(size) + " bytes, that is no multiple of " +
+    throw std::runtime_error(whose + "has " + std::to_string(size) + " bytes, that is not a multiple of " +
                              std::to_string(sizeof(Drop)));
   std::vector<Drop> taken(size / sizeof(Drop));
   if (size) std::memcpy(taken.data(), bytes, size);

@@ -113,7 +113,7 @@ template <class Real> struct SpanSums {
     const Real difference = head - other;
     steepest = pick(wet > Real{}, larger(steepest, larger(difference, Real{} - difference)), steepest);
   }
-  // The same where some spans are full: their heads are no slope.
+  // The same where some spans are full: their heads do not give a slope.
   MDANIM_ALWAYS_INLINE void look(const Real &head, const Real &other, const Real &wet, const Real &full, const Real &other_full,
                                  const Real &inward)
   {

@@ -106,7 +106,7 @@ void WaveBasin::look_at_column(int column)
   for (int n = spans - 1; n >= 0; --n) {
     const Waves::SpanView span = waves.span_view(column, n);
     const bool last = n == spans - 1 && span.high == shape.nz;
-    // A little that stands on a body is no surface; on the open floor dry ground is.
+    // A little that stands on a body is not a surface; on the open floor dry ground is.
     const bool on_floor = n == 0 && last && span.floor < PUDDLE;
     if (!on_floor && span.volume < ON_BODY) continue;
     heads[column] = std::min(span.phi, shape.nz + 1.0);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// Liquid that comes into columns and leaves them between updates: of drops, inflows and drains. No link knows of it, so whoever
-// calls holds the account.
+// Liquid that comes into columns and leaves them between updates: of drops, inflows and drains. No link knows of it, so the
+// caller holds the account.
 
 #include "liquid/waves/waves.h"
 

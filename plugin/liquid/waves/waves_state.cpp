@@ -109,7 +109,7 @@ void Waves::set_state(const std::uint8_t *bytes, std::size_t size)
   }
   for (const LinkRecord &record : links) damaged = damaged || limited(record.u) != record.u || !std::isfinite(record.q);
   if (damaged)
-    throw std::runtime_error(whose + "is damaged: it holds what is no number, or liquid faster than " +
+    throw std::runtime_error(whose + "is damaged: it holds a value that is not a number, or liquid faster than " +
                              std::to_string(law.fastest));
   if (held != head.units)
     throw std::runtime_error(whose + "is damaged: it holds " + std::to_string(held) + " units of liquid, not " +

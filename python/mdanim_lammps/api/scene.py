@@ -271,7 +271,7 @@ def together_of(values: Mapping, named: Mapping) -> dict:
 
 
 def check_lists(lists: Mapping) -> None:
-    """Raises UsageError for values of a sweep that are no list: a text would be taken for a list of its letters."""
+    """Raises UsageError for values of a sweep that are not a list: a text would be taken for a list of its letters."""
     for name, values in lists.items():
         if isinstance(values, str) or not isinstance(values, Iterable):
             raise UsageError(f"sweep needs a list of values for {name}, found {values!r}; write [{values!r}]")

@@ -29,7 +29,7 @@ Out = Annotated[Path | None, Parameter(name=["-o", "--out"], help="Output folder
 def whole_number(_, tokens) -> int:
     """cyclopts would round a number with a point."""
     if not re.fullmatch(r"[+-]?[0-9]+", tokens[0].value):
-        raise ValueError(f"{tokens[0].value} is no whole number")
+        raise ValueError(f"{tokens[0].value} is not a whole number")
     return int(tokens[0].value)
 
 

@@ -57,7 +57,7 @@ class Geometry:
         return speed
 
     def not_finite(self, x: np.ndarray, v: np.ndarray) -> int | None:
-        """First particle whose position or velocity is no finite number; None where all are."""
+        """First particle whose position or velocity is not a finite number; None where all are."""
         first = self._own[0].mdanim_not_finite(len(x), _address(x), _address(v))
         return None if first < 0 else int(first)
 

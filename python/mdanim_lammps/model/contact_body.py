@@ -19,7 +19,7 @@ from .spread import spread
 FLAT, SHARP, DENSE = 0, 1, 2
 """Kinds of points: inside a side of a cuboid, on an edge or in a corner of a cuboid, of any other shape."""
 DENSITY = 3
-"""Points along a cell edge on shapes that are no cuboids: with 2 a rolling ball strays by a hundredth of its way, with 4 by half
+"""Points along a cell edge on shapes that are not cuboids: with 2 a rolling ball strays by a hundredth of its way, with 4 by half
 as much as with 3."""
 SAMPLES = 8
 """Samples of a mesh along a cell edge, from which distances are taken."""
@@ -82,7 +82,7 @@ class BodyFrame:
 
     @cached_property
     def drawn(self) -> np.ndarray:
-        """Which particles lie inside the shape or on it, bool, shape (N,): corners of cells stand out of what is no cuboid."""
+        """Which particles lie inside the shape or on it, bool, shape (N,): corners of cells stand out of what is not a cuboid."""
         z, y, x = np.nonzero(self.cells.filled)
         cell = np.stack([x, y, z], axis=1)
         corner = cell[:, None] + np.array(list(product((0, 1), repeat=3)))

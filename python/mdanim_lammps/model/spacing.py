@@ -43,7 +43,7 @@ def plan_spacing(scene: SceneRecord) -> Spacing:
     asks.
 
     Raises SceneError, with a problem for every solid that is thinner than the spacing, too far from the origin or too sparse in
-    its bounding box, or whose mesh is no body, and where the particles would not fit in memory.
+    its bounding box, or whose mesh is not a body, and where the particles would not fit in memory.
     """
     h, set_by, thin = choose_spacing(scene)
     problems = check_places(scene, h)
@@ -74,7 +74,7 @@ def plan_spacing(scene: SceneRecord) -> Spacing:
 def choose_spacing(scene: SceneRecord) -> tuple[float, str, list[float]]:
     """The spacing [m], what asked for it, and the thinnest part of every solid [m]; whether it will do is not looked at.
 
-    Raises SceneError with a problem for every solid whose mesh is no body.
+    Raises SceneError with a problem for every solid whose mesh is not a body.
     """
     problems = []
     thin = []

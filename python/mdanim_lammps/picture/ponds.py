@@ -46,7 +46,7 @@ def parted(
 ) -> tuple[np.ndarray, np.ndarray, Ponds | None]:
     """Smooth and raw heights without ponds, and the ponds, None without.
 
-    A pond hangs together, is more than a drip and has a body below: with what runs over the body's edge it is no pond. A small
+    A pond hangs together, is more than a drip and has a body below: with what runs over the body's edge it is not a pond. A small
     one is drawn only where walls hold it.
 
     Args:

@@ -73,7 +73,7 @@ def sweeps(acting: Acting, h: float) -> Sweeps:
 
     Along an axis on which nothing but gravity and drag of air acts, the centre of mass moves on its parabola. Along one on which
     a wall, the ground or a liquid may act, it gets no further than at the largest speed that energy allows. A plane acts along
-    its own axis, one with friction along all of them. Raises SceneError for a mesh that is no body.
+    its own axis, one with friction along all of them. Raises SceneError for a mesh that is not a body.
     """
     scene, (limit_low, limit_high) = acting.scene, acting.limits
     bodies = _Movers(acting, h)

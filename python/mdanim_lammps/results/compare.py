@@ -90,6 +90,6 @@ def _rise(first: Trajectory, second: Trajectory, frame: int) -> float | None:
     drops = [t.liquid_drops(frame) for t in (first, second)]
     if all(np.array_equal(x, y, equal_nan=True) for x, y in (*zip(*pairs), drops)):
         return None
-    # A raw height that only one of them has (NaN, minus infinity) is no height.
+    # A raw height that only one of them has (NaN, minus infinity) is not a height.
     both = [np.isfinite(x) & np.isfinite(y) for x, y in zip(*pairs)]
     return float(max(np.abs(x[b] - y[b]).max(initial=0.0) for x, y, b in zip(*pairs, both)))

@@ -124,7 +124,7 @@ def _check_folder(folder: Path, force: bool, keep: Sequence[str]) -> bool:
         raise OutputError(f"{folder} exists; overwrite it with --force, or write elsewhere with -o DIR")
     if found and not _is_ours(folder):
         raise OutputError(
-            f"{folder} holds files that are no results of mdanim-lammps; --force does not delete "
+            f"{folder} holds files that are not results of mdanim-lammps; --force does not delete "
             "them: name another folder with -o DIR"
         )
     return bool(found)

@@ -55,7 +55,7 @@ class Ledger:
     terms: tuple[str, ...]
     """Energy columns, ``kinetic`` first."""
     extras: tuple[str, ...] = ()
-    """Further columns that are no energies, such as ``strain.NAME`` where an ``expect`` asks for it."""
+    """Further columns that are not energies, such as ``strain.NAME`` where an ``expect`` asks for it."""
     floor: float = 0.0
     """Energy that is nothing but rounding [J]: less than this in play counts as this much."""
     potentials: tuple[str, ...] = ()

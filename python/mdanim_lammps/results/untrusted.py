@@ -137,8 +137,8 @@ def check_metadata(path: Path, m: TrajectoryMetadata) -> None:
     must(walls.shape == (2, 3) and np.isfinite(walls).all(), "the walls are not a box")
     if m.liquid is not None:
         low, high, shape = (np.array(getattr(m.liquid, name)) for name in ("low", "high", "shape"))
-        must(low.shape == high.shape == shape.shape == (3,), "the basin is no box")
-        must(np.isfinite([low, high]).all() and (low < high).all() and (shape > 0).all(), "the basin is no box")
+        must(low.shape == high.shape == shape.shape == (3,), "the basin is not a box")
+        must(np.isfinite([low, high]).all() and (low < high).all() and (shape > 0).all(), "the basin is not a box")
     check_room(8.0 * m.total, path)
 
 

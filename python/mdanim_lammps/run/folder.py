@@ -26,7 +26,7 @@ STUDY = "study"
 
 
 def output_folder(record: SceneRecord, out: str | Path | None = None) -> Path:
-    """The output folder of a run (None: the default one), refused where ``--force`` would delete what is no result.
+    """The output folder of a run (None: the default one), refused where ``--force`` would delete what is not a result.
 
     Raises OutputError for the current folder, for one that holds it, and for one that holds the scene.
     """
@@ -71,7 +71,7 @@ def open_run(ready: Prepared, folder: str | Path | None, *, force: bool, draws: 
 def movie_file(folder: Path, record: SceneRecord) -> Path:
     """Where the movie goes: ``render { movie "NAME" }``, taken from the output folder, or movie.mp4.
 
-    Raises OutputError for a file outside of the output folder, also where a link leads outside, and for one that is no .mp4.
+    Raises OutputError for a file outside of the output folder, also where a link leads outside, and for one that is not a .mp4.
     """
     name = record.render.movie or "movie.mp4"
     path = folder / name

@@ -94,7 +94,7 @@ class Account:
     leapfrog: float = 0.0
     """The integrator without what effects take of it."""
     other: dict[str, float] = field(default_factory=dict)
-    """Work that is no effect's: moving objects, waiting for others."""
+    """Work that is not an effect's: moving objects, waiting for others."""
 
     def add(self, effect: str, clocks: Mapping[str, float], share: float = 1.0) -> None:
         """Add a share of what an effect's clocks say."""
@@ -174,7 +174,7 @@ class Sequential:
         self.plan, self.observer = plan, Observer(plan, models)
         self.objects = np.arange(len(plan.system.names))
         self.spent = Account()
-        """On what is no effect's."""
+        """On what is not an effect's."""
         self.of_step = PER_PARTICLE * plan.system.particles
         """What a step takes [s]: a guess, until the first ones have been measured."""
 

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from .scene import SceneRecord
 
 PLANES = ("ground", "walls", "basin")
-"""Words of a contact block that are no objects."""
+"""Words of a contact block that are not objects."""
 USUAL_DAMPING = 0.3
 """Share of critical damping of a contact with friction: enough to end chatter."""
 

@@ -27,7 +27,7 @@ def explain(word: str) -> str:
     found = [text for name, text in _entries() if wanted == name.lower() or wanted == name.lower().replace("-", " ")]
     if not found:
         raise KeyError(
-            f"'{word}' is no word of a scene; {did_you_mean(wanted, words()) or 'explain without a word lists all of them'}"
+            f"'{word}' is not a word of a scene; {did_you_mean(wanted, words()) or 'explain without a word lists all of them'}"
         )
     return "\n\n".join(found)
 

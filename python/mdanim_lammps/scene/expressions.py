@@ -35,7 +35,7 @@ class Env:
     later: dict = field(default_factory=dict)
     """Names that some ``let`` of the scene defines, and the line where."""
     incomplete: bool = False
-    """A part of the scene could not be read: a name without a value is no new problem."""
+    """A part of the scene could not be read: a name without a value is not a new problem."""
 
     def within(self, i: int) -> Env:
         """The same surroundings inside round ``i`` of a repeat."""

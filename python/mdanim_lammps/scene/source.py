@@ -66,7 +66,7 @@ class UnreadableFile(ValueError):
 def read_text(path: Path, most: int, shown: str = "") -> str:
     """Read a UTF-8 text file of at most ``most`` bytes; ``shown`` is its name in messages.
 
-    Anything that is no file on a disk is refused before it is opened: pipes, devices, what the kernel shows below /proc and /sys.
+    Anything that is not a file on a disk is refused before it is opened: pipes, devices, what the kernel shows below /proc and /sys.
     Raises UnreadableFile, or OSError.
     """
     if os.path.isdir(path):
@@ -100,7 +100,7 @@ def ordinary(path: Path) -> bool:
 
 
 def _place(shown: str, data: bytes, at: int) -> Span:
-    """The place of a byte; bytes that are no text are shown as one sign each."""
+    """The place of a byte; bytes that are not text are shown as one sign each."""
     start = data.rfind(b"\n", 0, at) + 1
     line = data[start : at + 100].split(b"\n")[0].decode("utf-8", "replace")
     column = len(data[start:at].decode("utf-8", "replace")) + 1

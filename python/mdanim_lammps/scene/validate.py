@@ -126,7 +126,7 @@ class Validator:
         return check(block, kind.record(**values))
 
     def settings(self, block: EvaluatedBlock) -> dict[str, Any] | None:
-        """Fields of the record, from the settings of a block; None where a value is no good. Absent ones keep their default."""
+        """Fields of the record, from the settings of a block; None where a value is wrong. Absent ones keep their default."""
         own, good = KEYWORDS[block.block], True
         values = {k.field: k.absent for k in own.values() if k.absent is not None} if block.block != "effects" else {}
         for word, found in block.settings.items():

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 ROUND_OFF = 1e-9
-"""Differences below this, relative to the extent of the motion, are no errors of a setting."""
+"""Differences below this, relative to the extent of the motion, are not errors of a setting."""
 CONVERGENT = 0.3
 """Differences above this share of the extent are too large to follow a power of the step."""
 LOWEST, HIGHEST = 0.5, 3.5

@@ -104,7 +104,7 @@ class ViewServer:
     # --- requests -------------------------------------------------------------------------------------------------
 
     def _gate(self, connection: ServerConnection, request: Request) -> Response | None:
-        """Answer what is no WebSocket; refuse what does not come from this machine's own page."""
+        """Answer what is not a WebSocket; refuse what does not come from this machine's own page."""
         try:
             answer = self._answer(request)
         except (ValueError, KeyError, MultipleValuesError):

@@ -111,7 +111,7 @@ def test_most_boxes_are_never_looked_at(monkeypatch, share, edge):
     ],
 )
 def test_no_boxes(broken):
-    """Refuse what is no box: a plan made of it would let objects pass through each other."""
+    """Refuse what is not a box: a plan made of it would let objects pass through each other."""
     with pytest.raises(ValueError, match=r"a box is (not finite|turned inside out)"):
         islands.pairs(*broken(np.zeros((3, 3)), np.ones((3, 3))))
 

@@ -62,7 +62,7 @@ def test_a_launcher_that_cannot_start_is_told(monkeypatch, tmp_path, named, told
 @pytest.mark.parametrize(
     ("count", "told"),
     [
-        pytest.param("1.5", "1.5 is no whole number", id="a part"),
+        pytest.param("1.5", "1.5 is not a whole number", id="a part"),
         pytest.param("999", r"-n 999: this machine has \d+ cores, .* name other machines in MDANIM_MPIEXEC", id="too many"),
     ],
 )

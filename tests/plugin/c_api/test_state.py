@@ -77,10 +77,10 @@ def test_fixes_without_a_state_are_refused(pool, fix, message):
 @pytest.mark.parametrize(
     ("keys", "message"),
     [
-        ([(0, 1)], r"fix water: \(0, 1\) are no two objects"),
-        ([(2, 1)], r"\(2, 1\) are no two objects"),
-        ([(1, 1)], r"\(1, 1\) are no two objects"),
-        ([(-1, 0)], r"\(-1, 0\) are no two objects"),
+        ([(0, 1)], r"fix water: \(0, 1\) are not two objects"),
+        ([(2, 1)], r"\(2, 1\) are not two objects"),
+        ([(1, 1)], r"\(1, 1\) are not two objects"),
+        ([(-1, 0)], r"\(-1, 0\) are not two objects"),
         ([(1, 2), (1, 0)], r"\(1, 0\) comes after \(1, 2\)"),
         ([(1, 0), (1, 0)], r"\(1, 0\) comes after \(1, 0\)"),
         ([], r"one record \(0, 0\), there are 0"),

@@ -57,7 +57,7 @@ BAD = {
     ),
     "not a body": (at("body", 1), "boby 1", "'body' and its number are needed here, got 'boby'"),
     "twice": (at("body", 1), "body 0", "the number of a body is at least 0 and comes once"),
-    "no length": (at("edge"), "edge 1 0 1", "an edge of the cells is no length"),
+    "no length": (at("edge"), "edge 1 0 1", "an edge of the cells is not a length"),
 }
 
 

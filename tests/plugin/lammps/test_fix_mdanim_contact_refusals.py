@@ -64,7 +64,7 @@ def test_records_that_are_cut_off_or_of_another_version_are_refused(touching, pa
         *(("point", value, "points that there are not") for value in (-1, 2**30)),
         *(("side", value, "points that there are not") for value in (-1, 6)),
         *(("cell", value, "points that there are not") for value in (-1, 2**30)),
-        *((field, value, "what is no number") for field in NUMBERS for value in (np.nan, np.inf)),
+        *((field, value, "not a number") for field in NUMBERS for value in (np.nan, np.inf)),
         ("order", None, "do not ascend"),
     ],
 )
@@ -88,7 +88,7 @@ def test_rows_that_do_not_fit_are_refused(touching, field, value, why):
     [
         ("point", -1, "points or planes that there are not"),
         ("plane", 1, "points or planes that there are not"),
-        *((name, np.nan, "what is no number") for name in PLANE.names[2:]),
+        *((name, np.nan, "not a number") for name in PLANE.names[2:]),
     ],
 )
 def test_rows_of_planes_that_do_not_fit_are_refused(touching, field, value, why):
@@ -160,7 +160,7 @@ BAD = {
     "far too many cells": with_entry("count", slice(None), 2**19),
     "too many along one axis": with_entry("count", 0, 2**30),
     "no edge": with_entry("edge", 2, 0.0),
-    "edge that is no number": with_entry("edge", 2, np.nan),
+    "edge that is not a number": with_entry("edge", 2, np.nan),
     "particle that there is not": with_entry("node", 26, 27),
     "particle below none": with_entry("node", 0, -1),
     "particles that do not ascend": with_entry("node", 5, 4),
@@ -172,12 +172,12 @@ BAD = {
     "point nowhere": with_entry("at", (3, 1), np.nan),
     "centre nowhere": with_entry("centre", (3, 1), np.inf),
     "normal of no length": with_entry("normal", 3, 0.0),
-    "normal that is no number": with_entry("normal", (3, 2), np.nan),
+    "normal that is not a number": with_entry("normal", (3, 2), np.nan),
     "no area": with_entry("area", 3, 0.0),
-    "area that is no number": with_entry("area", 3, np.nan),
+    "area that is not a number": with_entry("area", 3, np.nan),
     "infinite area": with_entry("area", 3, np.inf),
     "unknown kind": with_entry("kind", 3, 3),
-    "depth that is no number": {**CUBE, "depth": np.full(7**3, np.nan)},
+    "depth that is not a number": {**CUBE, "depth": np.full(7**3, np.nan)},
     "open part of no side": {**CUBE, "open": np.array([[6.0, 0, 1, 0, 1]])},
     "open part of half a side": {**CUBE, "open": np.array([[0.5, 0, 1, 0, 1]])},
     "open part that is nowhere": {**CUBE, "open": np.array([[0.0, 0, np.nan, 0, 1]])},
@@ -196,7 +196,7 @@ def test_bodies_that_do_not_fit_are_refused(fix, name):
 
 
 def test_filled_cells_have_their_particles(fix):
-    """Of a body that is no cuboid."""
+    """Of a body that is not a cuboid."""
     shape = {**CUBE, "depth": np.ones(7**3)}
     contact_lab.give_body(fix, "contact", 0, shape)
     with pytest.raises(RuntimeError, match="a filled cell lacks a particle"):

@@ -147,7 +147,7 @@ class SurfaceContact(OnSurfaces, Contact):
     def barrier_stiffness(self, context: Context) -> np.ndarray:
         """Of each particle [N/m], shape (N,); 0 without a barrier.
 
-        The cells of what is no cuboid stand out of its drawn surface: a barrier would bear it on their corners, so that balls do
+        The cells of what is not a cuboid stand out of its drawn surface: a barrier would bear it on their corners, so that balls do
         not roll. The surface alone stops it up to SLOW.
         """
         system = context.system
@@ -311,7 +311,7 @@ def surface_stiffness(scene: SceneRecord, system: System, share: np.ndarray | fl
 
 
 def are_dense(system: System) -> np.ndarray:
-    """Solids that are no cuboids, with dense points on their surfaces, bool, shape (M,)."""
+    """Solids that are not cuboids, with dense points on their surfaces, bool, shape (M,)."""
     return np.array([not isinstance(frame.shape, Box) for frame in system.frames])[system.contact_kind]
 
 

@@ -28,7 +28,7 @@ MOST_DROPS = 2048
 def plan_grid(liquid: Liquid, h: float) -> Grid:
     """The grid of a basin at spacing h [m].
 
-    A side that is no multiple of h gets cells up to a tenth longer; where even that is too short for a whole
+    A side that is not a multiple of h gets cells up to a tenth longer; where even that is too short for a whole
     number of cells (fewer than ten of them), cells as near to h as can be.
     """
     shape = []

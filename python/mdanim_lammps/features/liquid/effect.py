@@ -368,7 +368,7 @@ class LiquidDrag(Effect):
         return {"gamma": gamma(scene, system), **quadratic, "lambda": dry, **({} if air is None else {"air": air})}
 
     def friction(self, context):
-        # Quadratic drag is no part of it: a step takes a particle less than a tenth of a spacing, so k v dt is small.
+        # Quadratic drag is not part of it: a step takes a particle less than a tenth of a spacing, so k v dt is small.
         scene, system = context.scene, context.system
         return gamma(scene, system) * scene.liquid.density * system.volume
 

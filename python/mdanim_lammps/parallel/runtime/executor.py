@@ -91,7 +91,7 @@ class Executor:
         self.account = Account()
         self.told = 0.0
         """When it last told of its account, as ``time.perf_counter()``; 0 until it first waits for leave to simulate: what came
-        before is no part of the account."""
+        before is not part of the account."""
         self.moves = self.retries = 0
         self.led: set[tuple[int, ...]] = set()
         """Teams that it has led since the frame before."""

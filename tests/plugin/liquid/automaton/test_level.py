@@ -128,7 +128,7 @@ def test_vessels_without_a_gap_stay_apart():
 
 
 def test_nothing_leaks_through_a_diagonal_gap():
-    """Cells that only touch along an edge are no way."""
+    """Cells that only touch along an edge are not a way."""
     solid = np.zeros((6, 2, 2), np.uint8)
     solid[:, 0, 1] = solid[:, 1, 0] = 1
     content = np.zeros_like(solid)

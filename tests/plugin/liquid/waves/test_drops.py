@@ -222,7 +222,7 @@ def test_drops_go_on_from_a_state_to_the_last_bit():
 @pytest.mark.parametrize(
     ("damage", "message"),
     [
-        (lambda d: d.view(np.uint8)[:-3], "bytes, that is no multiple of 56"),
+        (lambda d: d.view(np.uint8)[:-3], "bytes, that is not a multiple of 56"),
         (lambda d: np.array([((9.0, 1, 1), (0, 0, 0), 5)], DROP), r"a drop of 5 units is at \(9"),
         (lambda d: np.array([((1, 1, 1), (0, 0, 0), -5)], DROP), "a drop of -5 units"),
         (lambda d: np.array([((1, np.nan, 1), (0, 0, 0), 5)], DROP), "is damaged"),

@@ -16,7 +16,7 @@ def accounted(makers, start):
 
 
 def test_an_inflow_fills_a_basin_at_its_rate():
-    """To the unit over 200 updates, though an update is no whole number of units."""
+    """To the unit over 200 updates, though an update is not a whole number of units."""
     w = lab.Waves((16, 8, 10))
     w.pour(1)
     start = w.total

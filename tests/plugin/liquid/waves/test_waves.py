@@ -462,7 +462,7 @@ def test_rest_is_part_of_the_state():
     ],
 )
 def test_a_damaged_state_is_refused_and_changes_nothing(damage, message):
-    """Too short, of another version or grid, with other solids or another sum, or with what is no number."""
+    """Too short, of another version or grid, with other solids or another sum, or with a value that is not a number."""
     w, _ = splash(12)
     before = w.state
     with pytest.raises(RuntimeError, match=message):
