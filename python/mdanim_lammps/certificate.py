@@ -29,7 +29,7 @@ from .scene.scene import SceneRecord
 WARN = 0.7
 """Time step over the bound above which large motion may blow up: the bound is that of small motion (docs/physics-solids.md)."""
 STRONG = 0.5
-"""phi = lambda dt / 2m, eq. (3.13), above which the implicit form is inaccurate: beyond 1 it turns velocities round every step."""
+"""phi = lambda dt / 2m, eq. (3.13), above which the implicit form is inaccurate: beyond 1 it reverses velocities every step."""
 MOST_STEPS = 10**15
 """Steps of a run at most: so many take years."""
 MOST_OBJECTS = 100

@@ -330,8 +330,8 @@ def test_liquid_that_comes_too_fast_is_refused(maker, told):
 
 @pytest.mark.parametrize(("size", "told"), [((0.1, 0.8, 0.8), 1), ((0.106, 0.8, 0.8), 0), ((0.8, 0.8, 0.1), 0)], ids=str)
 def test_upright_walls_of_less_than_a_cell_are_told(size, told):
-    """A basin whose side is not a multiple of the spacing has cells of 10.6 cm: a wall of 10 cm leaves some of each open, a shelf is
-    cut all the same."""
+    """A basin whose side is not a multiple of the spacing has cells of 10.6 cm: a wall of 10 cm leaves some of each open, a shelf
+    is cut all the same."""
     made = scene(
         block(Box(size), "wall", position=(0.5, 0.5, 0.5), hold=(HoldAll(),)),
         resolution=0.1,

@@ -159,8 +159,8 @@ control {{ time 0.2 s  {control} }}
 
 
 def test_the_cause_of_a_residual_is_told(tmp_path):
-    """A box that lands: the frame in which surfaces met, and the step that is too long for it; damping is not a cure, and a quarter
-    of the step is."""
+    """A box that lands: the frame in which surfaces met, and the step that is too long for it; damping is not a cure, and a
+    quarter of the step is."""
     result, _ = run(DROP.format(control="friction 0.5"), tmp_path)
     (warning,) = result.warnings
     when = next(r["time"] for r in result.ledger.rows if r["wall"])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""The guard: looks at the state of every frame, and stops a run that is not an animation any more, with the cause and a way out."""
+"""The guard: looks at the state of every frame, and stops a run that has gone wrong, with the cause and a way out."""
 
 from __future__ import annotations
 

@@ -66,7 +66,7 @@ class UnreadableFile(ValueError):
 def read_text(path: Path, most: int, shown: str = "") -> str:
     """Read a UTF-8 text file of at most ``most`` bytes; ``shown`` is its name in messages.
 
-    Anything that is not a file on a disk is refused before it is opened: pipes, devices, what the kernel shows below /proc and /sys.
+    All but files on a disk are refused before they are opened: pipes, devices, what the kernel shows below /proc and /sys.
     Raises UnreadableFile, or OSError.
     """
     if os.path.isdir(path):

@@ -147,7 +147,7 @@ class SurfaceContact(OnSurfaces, Contact):
     def barrier_stiffness(self, context: Context) -> np.ndarray:
         """Of each particle [N/m], shape (N,); 0 without a barrier.
 
-        The cells of what is not a cuboid stand out of its drawn surface: a barrier would bear it on their corners, so that balls do
+        The cells of what is not a cuboid stand out of its drawn surface: a barrier would bear it on their corners, so balls would
         not roll. The surface alone stops it up to SLOW.
         """
         system = context.system
