@@ -20,6 +20,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+from mdanim_lammps.features.liquid import frames as liquid
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests" / "lab"))
 import heave
@@ -74,9 +75,9 @@ class Pool:
 
     def share(self) -> float:
         """Part of the cube below the surface."""
-        from mdanim_lammps.results.expect import immersed_share
+        from mdanim_lammps.features.liquid.measure import immersed_share
 
-        return immersed_share(self.corners(), self.ready.plan.grid, self.instance.liquid_heights()[0])
+        return immersed_share(self.corners(), self.ready.plan.grid, liquid.heights(self.instance)[0])
 
     def lean(self) -> float:
         """Angle between the vertical and the nearest axis of the cube [deg]."""

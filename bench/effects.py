@@ -101,7 +101,7 @@ class Runner:
 
     def clocks(self) -> dict[str, float]:
         """Seconds so far of every effect, and of the clocks that several effects share."""
-        from mdanim_lammps.features.liquid.effect import COUPLING
+        from mdanim_lammps.features.liquid.frames import COUPLING
 
         found = {e.name: sum(e.clocks(self.instance).values()) for e in self.ready.plan.effects}
         coupling = {"coupling": self.instance.fix_value("liquid", COUPLING)} if self.ready.plan.grid else {}

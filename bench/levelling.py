@@ -11,6 +11,7 @@ import sys
 from pathlib import Path
 
 import numpy as np
+from mdanim_lammps.features.liquid import frames as liquid
 
 sys.path.insert(0, str(Path(__file__).parent.parent / "tests" / "lab"))
 
@@ -65,7 +66,7 @@ def seconds(scene: str) -> float:
         instance.setup()
         while instance.fix_value("liquid", AWAKE):
             instance.run(4)
-        raw = instance.liquid_heights()[1]
+        raw = liquid.heights(instance)[1]
         assert np.nanmax(raw) == np.nanmin(raw)
         return instance.step * ready.certificate.timestep
 

@@ -5,7 +5,8 @@ other. Elastic bodies in waves, from scene text to LAMMPS; cells of 2.5 cm."""
 import numpy as np
 import pytest
 from mdanim_lammps.engine.instance import Instance
-from mdanim_lammps.results.expect import immersed_depth, immersed_share
+from mdanim_lammps.features.liquid import frames as liquid
+from mdanim_lammps.features.liquid.measure import immersed_depth, immersed_share
 from mdanim_lammps.run.prepare import prepare
 from mdanim_lammps.scene.parse import load_scene
 
@@ -64,14 +65,14 @@ class Afloat:
     def draft(self, name: str) -> float:
         """[m]"""
         return immersed_depth(
-            self.instance.array("x")[self.particles(name)], self.ready.plan.grid, self.instance.liquid_heights()[0]
+            self.instance.array("x")[self.particles(name)], self.ready.plan.grid, liquid.heights(self.instance)[0]
         )
 
     def immersed(self, name: str) -> float:
         """Share below the surface [-]."""
         own, corner = self.particles(name), self.system.hexahedron
         corner = corner[(corner[:, 0] >= own.start) & (corner[:, 0] < own.stop)]
-        return immersed_share(self.instance.array("x")[corner], self.grid, self.instance.liquid_heights()[0])
+        return immersed_share(self.instance.array("x")[corner], self.grid, liquid.heights(self.instance)[0])
 
     def lowest(self, name: str) -> float:
         """Height of its lowest particle [m]."""
@@ -87,7 +88,7 @@ class Afloat:
         middle, half = x[:, :2].mean(axis=0), np.array(inner) / 200
         columns = [grid.low[d] + (np.arange(grid.shape[d]) + 0.5) * grid.cell[d] for d in range(3)]
         within = [np.abs(c - m) < h - CELL / 2 for c, m, h in zip(columns, middle, half)]
-        wet = self.instance.liquid_cells() == 1
+        wet = liquid.cells(self.instance) == 1
         above = columns[2] > x[:, 2].min() + PLANK / 100
         return np.count_nonzero(wet[np.ix_(above, within[1], within[0])]) * CELL**3
 

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from mdanim_lammps import Scene
 from mdanim_lammps.engine.instance import Instance
-from mdanim_lammps.features.liquid.effect import CLOCK
+from mdanim_lammps.features.liquid.frames import CLOCK
 from mdanim_lammps.run.prepare import prepare
 from mdanim_lammps.scene.parse import parse_scene
 

@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 from mdanim_lammps import Scene, Trajectory
-from mdanim_lammps.results.ledger import BASIN_IMPULSE, LIQUID_MOMENTUM, MOMENTUM_RESIDUAL, SOLID_IMPULSE
+from mdanim_lammps.features.liquid.ledger import BASIN_IMPULSE, LIQUID_MOMENTUM, MOMENTUM_RESIDUAL, SOLID_IMPULSE
 
 LAKE = "gravity (0, 0, -9.81)\nliquid lake {{ basin from (-2, -1.5, 0) m to (2, 1.5, 0.8) m  density 1000  level 0.4 m {} }}\n"
 HULL = (

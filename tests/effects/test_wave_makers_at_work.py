@@ -6,7 +6,7 @@ import pytest
 from mdanim_lammps import Scene
 from mdanim_lammps.engine.instance import Instance
 from mdanim_lammps.errors import SceneError
-from mdanim_lammps.features.liquid.effect import CELLS, CELLS_AT_START, CREST
+from mdanim_lammps.features.liquid.frames import AT_START, HIGHEST, NOW
 from mdanim_lammps.run.prepare import prepare
 from mdanim_lammps.scene.parse import parse_scene
 
@@ -36,7 +36,7 @@ def run(ready, seconds, looks=10):
         instance.setup()
         for _ in range(looks):
             instance.run(round(seconds / looks / ready.certificate.timestep))
-            found.append([instance.fix_value("liquid", n) for n in (CELLS, CELLS_AT_START, CREST)])
+            found.append([instance.fix_value("liquid", n) for n in (NOW, AT_START, HIGHEST)])
         return np.array(found)
 
 
@@ -79,10 +79,10 @@ def test_a_current_carries_a_cork_and_changes_no_sum():
     with Instance(ready.plan) as instance:
         instance.setup()
         before = ready.system.center_of_mass(instance.array("x"))[0]
-        cells = instance.fix_value("liquid", CELLS)
+        cells = instance.fix_value("liquid", NOW)
         instance.run(round(4.0 / ready.certificate.timestep))
         after = ready.system.center_of_mass(instance.array("x"))[0]
-        assert instance.fix_value("liquid", CELLS) == cells == instance.fix_value("liquid", CELLS_AT_START)
+        assert instance.fix_value("liquid", NOW) == cells == instance.fix_value("liquid", AT_START)
     assert after[0] - before[0] > 0.3 and abs(after[1] - before[1]) < 0.1
 
 

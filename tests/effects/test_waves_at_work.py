@@ -11,9 +11,10 @@ import numpy as np
 import pytest
 from mdanim_lammps import Scene, Trajectory
 from mdanim_lammps.engine.instance import Instance
-from mdanim_lammps.features.liquid.effect import WAVES
-from mdanim_lammps.results.expect import immersed_share
-from mdanim_lammps.results.ledger import LIQUID_MOMENTUM
+from mdanim_lammps.features.liquid import frames as liquid
+from mdanim_lammps.features.liquid.frames import WAVES
+from mdanim_lammps.features.liquid.ledger import LIQUID_MOMENTUM
+from mdanim_lammps.features.liquid.measure import immersed_share
 from mdanim_lammps.run.prepare import prepare
 from mdanim_lammps.scene.parse import load_scene, parse_scene
 from mdanim_lammps.scene.scene import LiquidModel
@@ -148,7 +149,7 @@ def test_the_surface_at_a_body_is_that_around_it():
         instance.setup()
         for _ in range(12):
             instance.run(int(2 / ready.certificate.timestep))
-            height = instance.liquid_heights()[0]
+            height = liquid.heights(instance)[0]
             at_body = np.zeros(height.shape, bool)
             at_body[7:13, 7:13] = True
             assert height[at_body].max() < height[~at_body].max() + 0.2
@@ -214,7 +215,7 @@ def test_a_cube_from_the_bottom_floats_as_deep_as_archimedes_says(way, density):
         instance.setup()
         instance.run(int(2000 / ready.certificate.timestep))
         x = instance.array("x")
-        found = immersed_share(x[ready.system.hexahedron], ready.plan.grid, instance.liquid_heights()[0])
+        found = immersed_share(x[ready.system.hexahedron], ready.plan.grid, liquid.heights(instance)[0])
         assert np.abs(instance.array("v")).max() < 2e-2
     assert found == pytest.approx(density / 1000, abs=0.02)
 
@@ -248,7 +249,7 @@ def behind(wall: str, fill: str, side) -> float:
     with Instance(ready.plan) as instance:
         instance.setup()
         instance.run(int(1.0 / ready.certificate.timestep))
-        wet = instance.liquid_cells() == 1
+        wet = liquid.cells(instance) == 1
     z, y, x = np.indices(wet.shape) + 0.5
     assert wet.sum() > 500
     return np.count_nonzero(wet & side(x, y, z))
@@ -287,7 +288,7 @@ def test_a_cup_of_held_boxes_holds(turn, shift):
     with Instance(ready.plan) as instance:
         instance.setup()
         instance.run(int(1.0 / ready.certificate.timestep))
-        wet = instance.liquid_cells() == 1
+        wet = liquid.cells(instance) == 1
     z, y, x = np.indices(wet.shape)
     x, y = 0.05 * (x + 0.5) - 0.6, 0.05 * (y + 0.5) - 0.6
     inside = (np.maximum(np.abs(x * c + y * s), np.abs(y * c - x * s)) < 0.3) & (z > 1)

@@ -13,6 +13,7 @@ from mdanim_lammps.engine.data_file import data_text, write_data
 from mdanim_lammps.engine.instance import Instance
 from mdanim_lammps.engine.plan import both_ends
 from mdanim_lammps.errors import SetupError
+from mdanim_lammps.features.liquid import frames as liquid
 from mdanim_lammps.run.loop import write_inputs
 from mdanim_lammps.run.prepare import Prepared
 from scene_texts import MEETING, SPLASH
@@ -168,10 +169,10 @@ def test_restore_goes_on_bit_for_bit(prepared, text):
             assert second.step == first.step
             assert np.array_equal(state(first), state(second))
             if ready.plan.grid:
-                assert np.array_equal(first.liquid_cells(), second.liquid_cells())
-                assert np.array_equal(first.liquid_heights(), second.liquid_heights(), equal_nan=True)
-                assert np.array_equal(first.liquid_drops(), second.liquid_drops())
-                assert (len(first.liquid_drops()) > 0) == (ready.scene.liquid.drops > 0.0)
+                assert np.array_equal(liquid.cells(first), liquid.cells(second))
+                assert np.array_equal(liquid.heights(first), liquid.heights(second), equal_nan=True)
+                assert np.array_equal(liquid.drops(first), liquid.drops(second))
+                assert (len(liquid.drops(first)) > 0) == (ready.scene.liquid.drops > 0.0)
                 assert second.fix_scalar("liquid") == pytest.approx(first.fix_scalar("liquid"), rel=1e-12)
 
 
@@ -211,7 +212,7 @@ def test_a_liquid_is_read_back(prepared):
     grid = ready.plan.grid
     with Instance(ready.plan) as instance:
         instance.setup()
-        cells, (smooth, raw) = instance.liquid_cells(), instance.liquid_heights()
+        cells, (smooth, raw) = liquid.cells(instance), liquid.heights(instance)
     assert cells.shape == grid.shape[::-1] and smooth.shape == raw.shape == (20, 24)
     wet = (cells > 0) & (cells < 255)
     assert cells[wet].sum() == grid.units(0.045) == 2880
@@ -225,7 +226,7 @@ def test_a_scene_without_liquid_has_none(prepared):
     """Refuse to read a liquid that is not there, or off."""
     for text in (MEETING, SPLASH + "effects { liquid off }"):
         with Instance(prepared(text).plan) as instance, pytest.raises(SetupError, match="no liquid"):
-            instance.liquid_heights()
+            liquid.heights(instance)
 
 
 @pytest.mark.mpi

@@ -7,6 +7,7 @@ import numpy as np
 from filming import SOFT, SOLID
 from mdanim_lammps.engine.instance import Instance
 from mdanim_lammps.engine.threads import with_threads
+from mdanim_lammps.features.liquid import frames as liquid
 from mdanim_lammps.run.prepare import prepare
 from mdanim_lammps.scene.parse import parse_scene
 
@@ -34,7 +35,7 @@ def splash(model: str, threads: int, comm=None, resume: bool = False) -> dict[st
     def tell(instance: Instance, name: str) -> None:
         for what in "xvf":
             told[f"{name} {what}"] = instance.array(what).copy()
-        told[f"{name} smooth"], told[f"{name} raw"] = instance.liquid_heights()
+        told[f"{name} smooth"], told[f"{name} raw"] = liquid.heights(instance)
         for fix, found in instance.records().items():
             if fix != "liquid":
                 told[f"{name} {fix}"] = found.data

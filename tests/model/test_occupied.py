@@ -6,7 +6,7 @@ import pytest
 from mdanim_lammps.engine.instance import Instance
 from mdanim_lammps.errors import SceneError
 from mdanim_lammps.features.liquid.basin import plan_grid
-from mdanim_lammps.features.liquid.effect import CELLS
+from mdanim_lammps.features.liquid.frames import NOW
 from mdanim_lammps.features.liquid.occupied import filled, room
 from mdanim_lammps.model.spacing import choose_spacing
 from mdanim_lammps.run.prepare import prepare
@@ -44,7 +44,7 @@ def poured(text: str) -> tuple[float, float]:
     liquid = ready.scene.liquid
     with Instance(ready.plan) as instance:
         instance.setup()
-        cells = instance.fix_value("liquid", CELLS)
+        cells = instance.fix_value("liquid", NOW)
     return cells, room(ready.plan.grid, ready.models, liquid.model, *liquid.fill, liquid.level)
 
 

@@ -3,10 +3,14 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
+from mdanim_lammps.effects.measured import Measured
+from mdanim_lammps.features.liquid.measure import immersed_depth, immersed_share
 from mdanim_lammps.model.grid import Grid
-from mdanim_lammps.results.expect import Measured, evaluate, immersed_depth, immersed_share, recorded
+from mdanim_lammps.results.expect import evaluate, recorded
 from mdanim_lammps.scene.scene import Expect
 
 GRID = Grid((-1.0, -2.0, 0.0), (1.0, 2.0, 3.0), (20, 40, 30))
@@ -18,16 +22,17 @@ def corners(low, high):
     return np.array([[(low, high)[k >> axis & 1][axis] for axis in range(3)] for k in range(8)], dtype=float)
 
 
-def measured(**fields):
-    """A run of three frames at 0, 1 and 2 s in which nothing moves."""
+BOX = SimpleNamespace(system=SimpleNamespace(names=("box",)), grid=SimpleNamespace(cell_volume=0.25))
+
+
+def found(subject, quantity, time=None, level=None, fed=False, **columns):
+    """What one expect line finds in a run of three frames at 0, 1 and 2 s in which nothing moves, with these columns of the
+    ledger and levels."""
     still = np.zeros((3, 1, 3))
-    options = dict(cells=np.array([100.0, 100, 100]), cell_volume=0.001, level=lambda: np.zeros(3)) | fields
-    return Measured(("box",), np.array([0.0, 1.0, 2.0]), still, still, np.zeros(3), 0.0, **options)
-
-
-def found(subject, quantity, time=None, **fields):
-    """What one expect line finds."""
-    (outcome,) = evaluate((Expect(subject, quantity, 0.0, time=time),), measured(**fields))
+    BOX.scene = SimpleNamespace(liquid=SimpleNamespace(fed=fed))
+    ledger = {name: np.array(column, float) for name, column in columns.items()}
+    run = Measured(BOX, np.array([0.0, 1.0, 2.0]), still, still, 0.0, ledger.__getitem__, SimpleNamespace(liquid_levels=level))
+    (outcome,) = evaluate((Expect(subject, quantity, 0.0, time=time),), run)
     return outcome.found
 
 
@@ -67,35 +72,29 @@ def test_an_object_beside_the_basin_is_dry(shift):
 
 def test_draft_between_frames_is_a_straight_line():
     """At a time between two frames the draft is between theirs; without a time it is the last."""
-    draft = {("box", "draft"): np.array([0.0, 0.4, 0.2])}
-    assert found("box", "draft", 1.25, recorded=draft) == pytest.approx(0.35)
-    assert found("box", "draft", 1.0, recorded=draft) == pytest.approx(0.4)
-    assert found("box", "draft", recorded=draft) == pytest.approx(0.2)
+    draft = {"draft.box": [0.0, 0.4, 0.2]}
+    assert found("box", "draft", 1.25, **draft) == pytest.approx(0.35)
+    assert found("box", "draft", 1.0, **draft) == pytest.approx(0.4)
+    assert found("box", "draft", **draft) == pytest.approx(0.2)
 
 
 def test_level_and_volume():
     """The level between frames, the volume as cells times their size."""
-    assert found("liquid", "level", 0.5, level=lambda: np.array([1.0, 2.0, 4.0])) == pytest.approx(1.5)
-    assert found("liquid", "level", level=lambda: np.array([1.0, 2.0, 4.0])) == 4.0
-    assert found("liquid", "volume", cells=np.array([10.0, 10, 12]), cell_volume=0.25) == pytest.approx(3.0)
-    assert found("liquid", "volume", 1.0, cells=np.array([10.0, 10, 12]), cell_volume=0.25) == pytest.approx(2.5)
+    assert found("liquid", "level", 0.5, level=np.array([1.0, 2.0, 4.0])) == pytest.approx(1.5)
+    assert found("liquid", "level", level=np.array([1.0, 2.0, 4.0])) == 4.0
+    assert found("liquid", "volume", liquid_cells=[10.0, 10, 12]) == pytest.approx(3.0)
+    assert found("liquid", "volume", 1.0, liquid_cells=[10.0, 10, 12]) == pytest.approx(2.5)
 
 
 def test_crest_is_the_highest_so_far():
     """The highest at any frame up to a time, not the farthest from 0: basins may be below it."""
-    crest = np.array([-3.0, -1.0, -2.0])
-    assert [found("liquid", "crest", time, of_liquid={"crest": crest}) for time in (0.0, 1.0, 2.0, None)] == [
-        -3.0,
-        -1.0,
-        -1.0,
-        -1.0,
-    ]
+    crest = [-3.0, -1.0, -2.0]
+    assert [found("liquid", "crest", time, liquid_crest=crest) for time in (0.0, 1.0, 2.0, None)] == [-3.0, -1.0, -1.0, -1.0]
 
 
 def test_energy_of_waves_is_that_of_its_time():
     """Between frames on a straight line, at the end without a time."""
-    waves = {"waves": np.array([0.0, 4.0, 1.0])}
-    assert [found("liquid", "waves", time, of_liquid=waves) for time in (0.5, 1.0, None)] == [2.0, 4.0, 1.0]
+    assert [found("liquid", "waves", time, waves=[0.0, 4.0, 1.0]) for time in (0.5, 1.0, None)] == [2.0, 4.0, 1.0]
 
 
 @pytest.mark.parametrize(
@@ -110,7 +109,7 @@ def test_energy_of_waves_is_that_of_its_time():
 )
 def test_residual_is_the_worst_so_far(cells, time, residual):
     """Cells gained or lost count even if they come back later; up to a time only what was before."""
-    assert found("liquid", "residual", time, cells=np.array(cells, float)) == residual
+    assert found("liquid", "residual", time, liquid_cells=cells) == residual
 
 
 def test_what_to_record_is_named_once():

@@ -12,7 +12,7 @@ import h5py
 import numpy as np
 import pytest
 from mdanim_lammps.errors import OutputError
-from mdanim_lammps.features.liquid.basin import MOST_DROPS
+from mdanim_lammps.features.liquid.frames import MOST_DROPS
 from mdanim_lammps.model.grid import Grid
 from mdanim_lammps.results.trajectory import Trajectory
 from mdanim_lammps.results.trajectory_file import trajectory_bytes

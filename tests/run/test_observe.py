@@ -5,6 +5,7 @@ from dataclasses import fields
 
 import numpy as np
 import pytest
+from mdanim_lammps.features.liquid.frames import HEIGHTS
 from mdanim_lammps.run.observe import Observer, join, recorded_models
 from scene_texts import SPLASH
 
@@ -22,7 +23,12 @@ def splash(tmp_path_factory):
     ready, rng = prepare(load_scene(path)), np.random.default_rng(3)
     system = ready.system
     x = system.position + rng.normal(0.0, 1e-3, system.position.shape)
-    return ready, x, rng.normal(0.0, 10.0 ** rng.uniform(-9, 3, x.shape)), np.full(ready.plan.grid.shape[1::-1], 0.13)
+    return (
+        ready,
+        x,
+        rng.normal(0.0, 10.0 ** rng.uniform(-9, 3, x.shape)),
+        {HEIGHTS: np.full((2, *ready.plan.grid.shape[1::-1]), 0.13)},
+    )
 
 
 def in_parts(splash, parts, x, v):
@@ -91,5 +97,5 @@ def test_out_of_reach_of_the_liquid(splash):
     ready, x, v, height = splash
     x = x + [0.0, 0.0, 10.0]
     observer = Observer(ready.plan, ready.models)
-    seen = [observer.observe(np.arange(3), np.arange(3), x, v, h).recorded for h in (None, height)]
+    seen = [observer.observe(np.arange(3), np.arange(3), x, v, told).recorded for told in ({}, height)]
     assert seen[0] == seen[1] and seen[0]["draft.raft"] == seen[0]["immersed.stone"] == 0.0

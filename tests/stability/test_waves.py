@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 from mdanim_lammps.engine.geometry import Geometry
 from mdanim_lammps.engine.instance import Instance
+from mdanim_lammps.features.liquid import frames as liquid
 from mdanim_lammps.run.prepare import prepare
 from mdanim_lammps.scene.parse import load_scene
 
@@ -52,7 +53,7 @@ def check(path, seed: int) -> None:
             # A corner of a heavy body that lands on the floor gets 13.8 m/s where that is dry (seed 1), 15.8 in liquid (seed 16).
             assert np.abs(v - system.center_of_mass(v)[system.object]).max() < 16.0
         assert geometry.inverted(x).sum() <= 0.05 * len(system.hexahedron)
-        level = instance.liquid_heights()[0]
+        level = liquid.heights(instance)[0]
     assert (level >= 0.0).all() and (level < 2 * TOP).all()
 
 

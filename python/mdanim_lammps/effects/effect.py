@@ -6,7 +6,7 @@ it adds to the ledger and to the bound.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from types import MappingProxyType
 
 import numpy as np
@@ -21,6 +21,7 @@ from ..scene.formatting import number
 from ..scene.scene import ContactModel, SceneRecord
 from .context import Context, Resolved, Verdict
 from .envelope import Envelope
+from .fields import Field, Fields
 from .margin import Margin
 from .readings import Readings
 
@@ -174,6 +175,31 @@ class Effect:
     def margins(self, envelope: Envelope) -> list[Margin]:
         """Limits that a scene in which something can move has to keep because of the effect, each with what the scene reaches."""
         return []
+
+    def fields(self, scene: SceneRecord) -> tuple[Field, ...]:
+        """What it tells of a frame."""
+        return ()
+
+    def tell(self, readings: Readings) -> Fields:
+        """The values of these `fields` now, of the part of the scene that is simulated there."""
+        return {}
+
+    def fault(self, scene: SceneRecord, time: float, fields: Fields) -> str:
+        """What of a frame at this time [s] can never be, in words; nothing where all is well."""
+        return ""
+
+    def doubts(self, context: Context, time: float, ledger: Callable[[str], np.ndarray]) -> list[Problem]:
+        """What is doubtful about a run of this length [s] that has ended; ``ledger`` gives a column."""
+        return []
+
+    def gained(self, first: Mapping[str, float], now: Mapping[str, float]) -> float | None:
+        """How much more there is of something than there should be, which must be 0, by two rows of the ledger; None of an effect
+        that counts nothing."""
+        return None
+
+    def summary(self, first: Mapping[str, float], last: Mapping[str, float]) -> dict[str, float]:
+        """Entries of summary.json, by two rows of the ledger."""
+        return {}
 
     def acts_on(self, context: Context) -> bool:
         """Whether it has anything to act on in a part of a scene: some of its solids, and the cells of a grid or not."""

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
@@ -41,6 +41,9 @@ class Readings(Protocol):
 
     def fix_value(self, fix: str, index: int) -> float:
         """Entry ``index`` (from 0) of a fix's vector."""
+
+    def call(self, what: str, function: str, fix: str, *arguments: Any) -> None:
+        """Call a C function of the plugin that asks a fix; arrays are given as pointers. Raises SetupError."""
 
     def fix_seconds(self, fix: str) -> float:
         """Wall seconds of one of our fixes so far."""

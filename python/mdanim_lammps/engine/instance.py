@@ -9,8 +9,6 @@ from collections.abc import Sequence
 import numpy as np
 
 from ..errors import DivergedError, SetupError
-from ..features.liquid.basin import MOST_DROPS
-from ..model.grid import Grid
 from .c_arrays import body_arguments, pointer
 from .commands import BALANCE, SKIN, bond_coeffs, box, physics, prelude, told_once
 from .cut import box_to_cut, shorter_along_rows
@@ -19,8 +17,6 @@ from .plugin import open_lammps
 from .state import NO_RECORDS, Records, State, StateRecords
 from .threads import choose_threads, share_of_cores
 
-LIQUID = b"liquid"
-"""ID of the liquid's fix (effects/liquid.py)."""
 MANY = 20_000
 """Particles from which on what making them has left free in the heap goes back to the system: 100 to 400 bytes each."""
 SMALL = 8000
@@ -441,32 +437,10 @@ class Instance:
         self._call("tell speeds", self._library.mdanim_top_speeds, ctypes.c_int(len(speed)), pointer(speed))
         return speed
 
-    def liquid_heights(self) -> tuple[np.ndarray, np.ndarray]:
-        """Height of every column of cells [m], shape (ny, nx): the surface that solids feel, and the topmost liquid.
-
-        The second is NaN where a body hides it, minus infinity where one keeps the column dry below the surface, as a
-        hull does its inside. Raises SetupError without a liquid.
-        """
-        smooth, raw = np.empty((2, *self._grid().shape[1::-1]))
-        self._call("tell the surface", self._library.mdanim_liquid_heights, LIQUID, pointer(smooth), pointer(raw))
-        return smooth, raw
-
-    def liquid_drops(self) -> np.ndarray:
-        """Middle and radius of each drop that flies [m], shape (D, 4), oldest first. Raises SetupError without a liquid."""
-        rows, count = np.empty((MOST_DROPS, 4)), ctypes.c_int()
-        self._call("tell drops", self._library.mdanim_liquid_drops, LIQUID, MOST_DROPS, pointer(rows), ctypes.byref(count))
-        return rows[: count.value]
-
-    def liquid_cells(self) -> np.ndarray:
-        """Content of every cell, 255 where it is solid; uint8, shape (nz, ny, nx). Raises SetupError without a liquid."""
-        cells = np.empty(self._grid().shape[::-1], np.uint8)
-        self._call("tell cells", self._library.mdanim_liquid_cells, LIQUID, pointer(cells))
-        return cells
-
-    def _grid(self) -> Grid:
-        if self.plan.grid is None:
-            raise SetupError("the scene has no liquid, or it is switched off")
-        return self.plan.grid
+    def call(self, what: str, function: str, fix: str, *arguments) -> None:
+        """Call a C function of the plugin that asks a fix; arrays are given as pointers. Raises SetupError with its message."""
+        arguments = (pointer(a) if isinstance(a, np.ndarray) else a for a in arguments)
+        self._call(what, getattr(self._library, function), fix.encode(), *arguments)
 
     def fix_scalar(self, fix: str) -> float:
         """Energy of a fix [J]."""

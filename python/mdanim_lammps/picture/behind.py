@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from .pieces import Field, gl_matrix, texture
+from .pieces import Lookup, gl_matrix, texture
 
 
 class Behind:
@@ -24,7 +24,7 @@ class Behind:
         self._color, self._values = vtkUnsignedCharArray(), vtkFloatArray()
         self._color.SetNumberOfComponents(3)
         self._color.SetNumberOfTuples(width * height)
-        self._depth = Field(-(-width // 4) * 4, height, packed=True)
+        self._depth = Lookup(-(-width // 4) * 4, height, packed=True)
         self._image, self._texture = texture(self._color, width, height, smooth=True)
 
     def look_up(self, actors: Sequence) -> None:

@@ -102,7 +102,7 @@ def texture(texels, width: int, height: int, smooth: bool):
     return image, shown
 
 
-class Field:
+class Lookup:
     """Numbers on a grid for a shader to look up, overwritten for every frame: one for each place, or three.
 
     VTK makes bytes of the numbers of a texture unless each texel has three or four. So three hold one number, if no more are

@@ -14,7 +14,7 @@ from .foam import Foam
 from .hulls import FINER, dry_spots
 from .liquid import Blocks, Drops, Sheet, droplets, kept_dry, overhang, undersides, without_puddles
 from .palette import LIQUID, rgb
-from .pieces import Field, MovingLine, MovingMesh, box_edges, lit_actor, plane
+from .pieces import Lookup, MovingLine, MovingMesh, box_edges, lit_actor, plane
 from .ponds import Ponds, parted
 
 CLEAR = 1.0
@@ -46,15 +46,15 @@ class Tank:
         self._low, self._high = np.array(pool.low), np.array(pool.high)
         self._color = rgb(pool.color or LIQUID)
         self._form = Sheet(pool.grid) if look == "smooth" else Blocks(pool.grid)
-        self._heights = Field(*pool.shape[:2], smooth=look == "smooth")
+        self._heights = Lookup(*pool.shape[:2], smooth=look == "smooth")
         vertices = self._form.mesh(np.full(pool.shape[1::-1], pool.low[2]))[0]
         self._mesh = MovingMesh(len(vertices), self._form.triangle)
         self.plate = lit_actor(plane(self._low, self._high, pool.low[2]), shading.FRAGMENT_SOLID, liquid=True, sky=sky)
         """The tank's floor, opaque."""
         self.plate.GetProperty().SetColor((0.28, 0.33, 0.37) if dark else (0.74, 0.78, 0.81))
         self._foam = Foam(pool.grid, trajectory.dt * trajectory.steps_per_frame) if look == "smooth" else None
-        self._white = Field(*pool.shape[:2], smooth=True)
-        self._dry, self._beside_ponds = (Field(FINER * pool.shape[0], FINER * pool.shape[1], smooth=True) for _ in range(2))
+        self._white = Lookup(*pool.shape[:2], smooth=True)
+        self._dry, self._beside_ponds = (Lookup(FINER * pool.shape[0], FINER * pool.shape[1], smooth=True) for _ in range(2))
         self._pond = MovingMesh(1, np.zeros((0, 3)))
         sheets = [(self._mesh, self._dry), (self._pond, self._beside_ponds)][: 2 if look == "smooth" else 1]
         self.inner, self.outer = zip(*(self._faces(mesh.data, cut, behind) for mesh, cut in sheets))
@@ -81,7 +81,7 @@ class Tank:
             self.actors.append(drops)
         self._through: Sequence = ()
 
-    def _faces(self, data, cut: Field, behind: Behind | None) -> tuple:
+    def _faces(self, data, cut: Lookup, behind: Behind | None) -> tuple:
         """Actors of inner and outer faces of a sheet, which is not drawn where it is ``cut``."""
         pool = self._trajectory.liquid
         # Behind, then in front: a ray meets the inner faces before the outer ones.

@@ -19,24 +19,6 @@ from ..scene.formatting import exact
 from ..scene.keywords import did_you_mean
 from .untrusted import check_room
 
-WAVES = "waves"
-"""Energy of a liquid with momentum [J]: a term where something moves in it, else an extra where an ``expect`` asks for it."""
-DUE = "liquid_due"
-"""Extra of a liquid that comes and goes: cells at the start, and what has come since less what has gone."""
-LIQUID_MOMENTUM = ("liquid_momentum.x", "liquid_momentum.y")
-"""Extras of a liquid with momentum [N s]."""
-BASIN_IMPULSE = ("basin_impulse.x", "basin_impulse.y")
-"""Further ones: what it has given to walls, floor and all that is held, by pressure and friction [N s]."""
-SOLID_IMPULSE = ("solid_impulse.x", "solid_impulse.y")
-"""What it has given to solids that move, by push and drag [N s]."""
-MOMENTUM_RESIDUAL = ("momentum_residual.x", "momentum_residual.y")
-"""The sum of these three, less the momentum of liquid that came: what no one accounts for [N s]."""
-MOMENTA = (*LIQUID_MOMENTUM, *BASIN_IMPULSE, *SOLID_IMPULSE, *MOMENTUM_RESIDUAL)
-CREST = "liquid_crest"
-"""Extra where an ``expect`` asks for it: height of the highest liquid [m]."""
-CELLS = ("liquid_cells", DUE)
-"""Extras that count cells of liquid, to the unit; whole numbers are written as such."""
-
 LONGEST_LINE = 1 << 24
 """Signs of a line: 25 for each column."""
 MEMORY = 10
@@ -60,6 +42,8 @@ class Ledger:
     """Energy that is nothing but rounding [J]: less than this in play counts as this much."""
     potentials: tuple[str, ...] = ()
     """Terms whose zero is arbitrary: only how far they have changed says how much is in play."""
+    counts: tuple[str, ...] = ()
+    """Extras that count something; whole numbers of them are written as such."""
     rows: list[dict[str, float]] = field(default_factory=list)
     _peak: float = 0.0
     _lowest: dict[str, float] = field(default_factory=dict)
@@ -112,7 +96,7 @@ class Ledger:
         with open(path, "w", newline="", encoding="utf-8") as file:
             writer = csv.writer(file)
             writer.writerow(self.columns)
-            writer.writerows([exact(r[c]) if c in CELLS else repr(r[c]) for c in self.columns] for r in self.rows)
+            writer.writerows([exact(r[c]) if c in self.counts else repr(r[c]) for c in self.columns] for r in self.rows)
 
     @classmethod
     def read(cls, path: Path, most: int | None = None) -> Ledger:

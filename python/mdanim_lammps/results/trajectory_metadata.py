@@ -9,7 +9,7 @@ from functools import cached_property
 
 import numpy as np
 
-from ..features.liquid.basin import MOST_DROPS
+from ..features.liquid.frames import MOST_DROPS
 from ..model.grid import Grid
 from ..model.model import Layer, Model, Surface
 from ..scene.scene import Liquid, Save, SceneRecord, Vector

@@ -5,9 +5,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
+from types import MappingProxyType
 
 import numpy as np
 
+from ..effects.fields import Fields
 from ..errors import OutputError
 from ..model.grid import Grid
 from ..model.model import Model
@@ -172,7 +174,8 @@ class TrajectoryWriter:
         self._check_frame(step, liquid, drops)
         checksums = self._writer.write(self._count, [slice(0, self.metadata.total)], position, velocity)
         means = (centers(self._mass, self._starts, values) for values in (position, velocity))
-        self.add(step, time, checksums, *means, liquid, drops)
+        told = {"liquid_heights": liquid, "liquid_drops": drops}
+        self.add(step, time, checksums, *means, {name: value for name, value in told.items() if value is not None})
 
     def add(
         self,
@@ -181,26 +184,27 @@ class TrajectoryWriter:
         checksums: np.ndarray,
         center: np.ndarray,
         center_velocity: np.ndarray,
-        liquid: tuple[np.ndarray, np.ndarray] | None = None,
-        drops: np.ndarray | None = None,
+        fields: Fields = MappingProxyType({}),
     ) -> None:
         """Add a frame whose rows of particles are written, by one or more `RowWriter` of `rows`.
 
         Args:
-            step, time, liquid, drops: as in `write`.
+            step, time: as in `write`.
             checksums: of all positions and of all velocities of the frame, as the file has them, uint32, shape (2,).
             center: centres of mass of all objects [m], shape (O, 3).
             center_velocity: their velocities [m/s], shape (O, 3).
+            fields: what effects tell of the frame (effects/fields.py).
 
         Raises:
             OutputError: the frame cannot be written; those before it are kept.
             ValueError: as in `write`.
         """
+        liquid, drops = fields.get("liquid_heights"), fields.get("liquid_drops")
         self._check_frame(step, liquid, drops)
         values = {
             "center_of_mass": center,
             "center_of_mass_velocity": center_velocity,
-            **(dict(zip(LIQUID, liquid)) if liquid else {}),
+            **(dict(zip(LIQUID, liquid)) if liquid is not None else {}),
             **({} if drops is None else {DROPS: np.pad(drops, ((0, self._most_drops - len(drops)), (0, 0)))}),
         }
         values = {name: np.ascontiguousarray(value, self._tables[name].dtype) for name, value in values.items()}
@@ -215,9 +219,9 @@ class TrajectoryWriter:
     def _most_drops(self) -> int:
         return self.metadata.liquid.most_drops if self.metadata.liquid else 0
 
-    def _check_frame(self, step: int, liquid: tuple | None, drops: np.ndarray | None) -> None:
+    def _check_frame(self, step: int, liquid: Sequence[np.ndarray] | None, drops: np.ndarray | None) -> None:
         expected = [self.metadata.liquid.shape[1::-1]] * 2 if self.metadata.liquid else []
-        found = [np.shape(height) for height in liquid or ()]
+        found = [np.shape(height) for height in (() if liquid is None else liquid)]
         if found != expected:
             raise ValueError(f"liquid must be heights of shapes {expected}, found {found}")
         most, shape = self._most_drops, None if drops is None else np.shape(drops)

@@ -3,8 +3,11 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
+from ..effects.fields import Field
 from ..engine.instance import Instance
 from ..engine.plan import Plan
 from ..model.system import System
@@ -59,6 +62,22 @@ def ledger_terms(plan: Plan) -> tuple[str, ...]:
     """Columns of the ledger: kinetic energy, and those of the effects that are on."""
     of_effects = (term for e in plan.effects for term in (e.ledger, *e.further_ledger, *e.losses(plan.scene)) if term)
     return ("kinetic", *dict.fromkeys(of_effects))
+
+
+def extra_fields(plan: Plan) -> tuple[Field, ...]:
+    """Fields that are columns of the ledger besides its terms."""
+    terms = ledger_terms(plan)
+    return tuple(f for f in frame_fields(plan) if f.ledger and f.name not in terms)
+
+
+def frame_fields(plan: Plan) -> tuple[Field, ...]:
+    """What all effects tell of a frame."""
+    return tuple(f for e in plan.effects for f in e.fields(plan.scene))
+
+
+def tell(instance: Instance) -> dict[str, Any]:
+    """The values of the fields that the effects of an instance have, by their names."""
+    return {name: value for e in instance.plan.effects for name, value in e.tell(instance).items()}
 
 
 def potential_terms(plan: Plan) -> tuple[str, ...]:

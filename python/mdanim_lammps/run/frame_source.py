@@ -11,28 +11,16 @@ from typing import Protocol
 
 import numpy as np
 
+from ..effects.fields import Fields, join_fields
 from ..effects.readings import LEAPFROG
 from ..engine.instance import Instance
 from ..engine.plan import Plan
 from ..engine.state import State
 from ..errors import DivergedError
-from ..features.liquid.effect import (
-    BASIN_IMPULSE,
-    CAME,
-    CELLS,
-    CELLS_AT_START,
-    CLOCK,
-    CREST,
-    MOMENTUM,
-    SOLID_IMPULSE,
-    WAVES,
-    LiquidAutomaton,
-    is_wavy,
-)
 from ..model.model import Model
 from ..results.checkpoint import Checkpoint
 from ..results.frame_rows import FrameRows, RowWriter
-from .energy import energies
+from .energy import energies, frame_fields, tell
 from .guard import fastest
 from .observe import Observation, Observer
 
@@ -42,28 +30,6 @@ PIECE_SECONDS = 1.0
 """Wall time for which LAMMPS is left alone: a second Ctrl-C is heard after it."""
 PER_PARTICLE = 1e-6
 """More seconds than a step takes for a particle."""
-
-
-@dataclass(frozen=True)
-class LiquidFrame:
-    """The liquid at a frame."""
-
-    heights: tuple[np.ndarray, np.ndarray]
-    """As `Instance.liquid_heights`."""
-    drops: np.ndarray | None
-    """As `Instance.liquid_drops`; None where the liquid sheds none."""
-    cells: float
-    """Cells of liquid now, to the unit: whole ones of an automaton, whole 2^-20 of one of waves."""
-    start: float
-    """The same before step 0, and what has come since less what has gone."""
-    crest: float
-    """Height of the highest liquid, without drops [m]; of an automaton the top of its highest layer."""
-    waves: float
-    """Energy of the waves since the start [J]; 0 of an automaton."""
-    momenta: tuple[float, ...] | None
-    """Extras MOMENTA of the ledger [N s]; None of a liquid without momentum."""
-    clock: float | None
-    """Time that the liquid has gone through, or has slept at rest [s]; None of a liquid without momentum."""
 
 
 @dataclass(frozen=True)
@@ -79,8 +45,8 @@ class Frame:
     """Every term of the ledger [J]; what is lost counts from the start of this run, not from before a resume."""
     penetration: float
     """Deepest that a boundary particle has been below a surface in this run [m]."""
-    liquid: LiquidFrame | None = None
-    """None without a liquid."""
+    fields: Fields = field(default_factory=dict)
+    """What effects tell, by the names of energy.frame_fields."""
     kept: bool = True
     """Whether `FrameSource.state` can be asked for."""
 
@@ -225,12 +191,13 @@ class Sequential:
 
     def _frame(self, frame: int) -> Frame:
         instance = self.instance
-        x, v, liquid = instance.array("x"), instance.array("v"), liquid_frame(instance)
+        x, v = instance.array("x"), instance.array("v")
+        fields = join_fields(frame_fields(self.plan), self.plan.system.still, [(self.objects, tell(instance))])
         with self.spent.clock("guard"):
-            seen = self.observer.observe(self.objects, self.objects, x, v, liquid and liquid.heights[0])
+            seen = self.observer.observe(self.objects, self.objects, x, v, fields)
         with self.spent.clock("output"):
             checksums = self.rows.write(frame, [slice(0, self.plan.system.particles)], x, v)
-        return Frame(instance.step, seen, checksums, energies(instance, seen.center), penetration(instance), liquid)
+        return Frame(instance.step, seen, checksums, energies(instance, seen.center), penetration(instance), fields)
 
 
 def run_window(instance: Instance, steps: int) -> None:
@@ -244,28 +211,6 @@ def run_window(instance: Instance, steps: int) -> None:
 def penetration(instance: Instance) -> float:
     """Deepest that a boundary particle has been below a surface since the instance was set up [m]."""
     return max([0.0, *(e.penetration(instance) for e in instance.plan.effects)])
-
-
-def liquid_frame(instance: Instance) -> LiquidFrame | None:
-    """The liquid now."""
-    if instance.plan.grid is None:
-        return None
-    cells, start = (instance.fix_value(LiquidAutomaton.fix, n) for n in (CELLS, CELLS_AT_START))
-    drops = instance.liquid_drops() if instance.plan.scene.liquid.drops else None
-    wavy = is_wavy(instance.plan.scene)
-    momenta = liquid_momenta(instance) if wavy else None
-    clock = instance.fix_value(LiquidAutomaton.fix, CLOCK) if wavy else None
-    crest, waves = (instance.fix_value(LiquidAutomaton.fix, n) for n in (CREST, WAVES))
-    return LiquidFrame(instance.liquid_heights(), drops, cells, start, crest, waves, momenta, clock)
-
-
-def liquid_momenta(instance: Instance) -> tuple[float, ...]:
-    """MOMENTA of the ledger now [N s], each along x and y."""
-    liquid, basin, solids, came = (
-        np.array([instance.fix_value(LiquidAutomaton.fix, n) for n in entries])
-        for entries in (MOMENTUM, BASIN_IMPULSE, SOLID_IMPULSE, CAME)
-    )
-    return tuple(np.concatenate([liquid, basin, solids, liquid + basin + solids - came]).tolist())
 
 
 def add_clocks(account: Account, instance: Instance) -> None:

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
+from ..effects.fields import Fields
 from ..engine.geometry import Geometry
 from ..errors import DivergedError, Problem
 from ..model.system import System
@@ -42,10 +43,6 @@ FLOWN_APART = (
     "out of range",
 )
 """What LAMMPS says when particles are where they should not be."""
-
-
-CLOCK_ROUNDING = 1e-9
-"""Part by which two sums of a million times may differ [-]."""
 
 
 class Guard:
@@ -161,15 +158,13 @@ class Guard:
                 suspicion=SQUEEZED if self.crumpled else TOO_LONG,
             )
 
-    def clock(self, step: int, seen: float | None) -> None:
-        """Raise DivergedError when a liquid with momentum has gone through another time than solids have [s]: it would run in
-        slow motion."""
+    def fields(self, step: int, fields: Fields) -> None:
+        """Raise DivergedError where an effect finds in what is told of a frame what can never be."""
         time = step * self.ready.certificate.timestep
-        if seen is not None and not abs(seen - time) <= CLOCK_ROUNDING * time:
-            raise DivergedError(
-                f"{self._when(step)}: {self.ready.scene.liquid.name} has gone through {number(seen, 9)} s: this must never be, "
-                f"please report it. {self._kept()[0].upper()}{self._kept()[1:]}"
-            )
+        for effect in self.ready.plan.effects:
+            if fault := effect.fault(self.ready.scene, time, fields):
+                kept = f"{self._kept()[0].upper()}{self._kept()[1:]}"
+                raise DivergedError(f"{self._when(step)}: internal error: {fault}; please report it. {kept}")
 
     def explain_failure(self, step: int, error: DivergedError, solid: int | None) -> DivergedError:
         """The error for LAMMPS's own end of a run in the steps up to this one; ``solid`` is the `fastest`."""

@@ -14,23 +14,23 @@ from pathlib import Path
 import numpy as np
 
 from .. import __version__
+from ..effects.measured import Measured
 from ..effects.readings import LEAPFROG
 from ..engine.commands import input_script
 from ..engine.data_file import write_bodies, write_data
-from ..errors import DivergedError, ExitCode, MdanimError, OutputError, Problem
-from ..features.liquid.effect import is_wavy, overflow
+from ..errors import ExitCode, MdanimError, OutputError
 from ..interrupts import Interrupts
 from ..results.checkpoint import Checkpoint
 from ..results.cost import Cost, CostShare
-from ..results.expect import Measured, Outcome, evaluate, recorded, recorded_of_liquid
+from ..results.expect import Outcome, evaluate, recorded
 from ..results.files import CHECKPOINT, PAUSE, STOP, SUMMARY, disk_errors, write_json, write_whole
-from ..results.ledger import DUE, MOMENTA, Ledger
+from ..results.ledger import Ledger
 from ..results.progress import ProgressLog
 from ..results.trajectory import Trajectory
 from ..results.trajectory_writer import TrajectoryWriter
-from ..scene.formatting import exact, number
+from ..scene.formatting import number
 from ..scene.meshes import mesh_files
-from .energy import least_energy, ledger_terms, loss_terms, potential_terms
+from .energy import extra_fields, least_energy, ledger_terms, loss_terms, potential_terms
 from .frame_source import COST_SECONDS, Account, Frame, FrameSource, LammpsFailure, Sequential, clock
 from .guard import Guard
 from .prepare import Prepared
@@ -138,9 +138,7 @@ def trajectory_writer(ready: Prepared, folder: Path, frames: int) -> TrajectoryW
 
 def _add(out: TrajectoryWriter, now: Frame, when: float) -> None:
     """Add a frame at a time [s]. Raises OutputError."""
-    seen, liquid = now.seen, now.liquid
-    of_liquid = (liquid.heights, liquid.drops) if liquid else ()
-    out.add(now.step, when, now.checksums, seen.center, seen.center_velocity, *of_liquid)
+    out.add(now.step, when, now.checksums, now.seen.center, now.seen.center_velocity, now.fields)
 
 
 def run_id(ready: Prepared) -> str:
@@ -184,20 +182,13 @@ class _Run:
             raise OutputError(f"{folder / CHECKPOINT} is damaged; run the scene again with --force")
         self.recorded = recorded(ready.scene.expects)
         self.grid = ready.plan.grid
-        self.of_liquid = recorded_of_liquid(ready.scene.expects)
-        self.fed = ready.scene.liquid is not None and ready.scene.liquid.fed
-        terms = ledger_terms(ready.plan)
+        self.extras = extra_fields(ready.plan)
         self.ledger = Ledger(
-            terms,
-            (
-                *self.recorded.values(),
-                *(("liquid_cells",) if self.grid else ()),
-                *((DUE,) if self.fed else ()),
-                *(column for column in self.of_liquid.values() if column not in terms),
-                *(MOMENTA if is_wavy(ready.scene) else ()),
-            ),
+            ledger_terms(ready.plan),
+            (*self.recorded.values(), *(field.name for field in self.extras)),
             least_energy(ready.scene, ready.system),
             potential_terms(ready.plan),
+            tuple(field.name for field in self.extras if field.whole),
         )
 
     # --- the order of things ----------------------------------------------------------------------------------------
@@ -311,41 +302,24 @@ class _Run:
 
     def _finish(self, account: Account) -> Result:
         with self._clock("output"), Trajectory(self.folder) as trajectory:
-            liquid = (
-                {}
-                if self.grid is None
-                else {
-                    "cells": self.ledger.array("liquid_cells"),
-                    "due": self.ledger.array(DUE) if self.fed else None,
-                    "cell_volume": self.grid.cell_volume,
-                    "level": lambda: trajectory.liquid_levels,
-                    "of_liquid": {quantity: self.ledger.array(column) for quantity, column in self.of_liquid.items()},
-                }
-            )
             outcomes = evaluate(
                 self.ready.scene.expects,
                 Measured(
-                    trajectory.names,
+                    self.ready.context,
                     trajectory.times,
                     trajectory.centers,
                     trajectory.center_velocities,
-                    self.ledger.array("residual"),
                     self.penetration,
-                    {what: self.ledger.array(column) for what, column in self.recorded.items()},
-                    **liquid,
+                    self.ledger.array,
+                    trajectory,
                 ),
             )
         cost = self._cost(account)
         write_json(self.folder / "cost.json", cost.to_json())
         write_json(self.folder / SUMMARY, self._summary(outcomes))
-        return Result(self.folder, self.ledger, outcomes, cost, [*self.guard.warnings(self.ledger), *self._overflow()])
-
-    def _overflow(self) -> list[Problem]:
-        """Of a liquid that comes in."""
-        if not self.fed:
-            return []
-        due, c = self.ledger.array(DUE), self.certificate
-        return overflow(self.ready.scene, due[-1] - due[0], float(np.prod(self.grid.cell)), c.steps * c.timestep)
+        c, context = self.certificate, self.ready.context
+        doubts = [p for e in self.effects for p in e.doubts(context, c.steps * c.timestep, self.ledger.array)]
+        return Result(self.folder, self.ledger, outcomes, cost, [*self.guard.warnings(self.ledger), *doubts])
 
     def _summary(self, outcomes: list[Outcome]) -> dict:
         scene, c = self.ready.scene, self.certificate
@@ -365,7 +339,7 @@ class _Run:
             "penetration": self.penetration,
             "inverted_cells": self.guard.most_inverted,
             "dents": {self.ready.system.names[m]: cells for m, cells in self.guard.dents.items()},
-            **({"liquid_cells": self.ledger.rows[-1]["liquid_cells"], "liquid_residual": self._gained()} if self.grid else {}),
+            **{word: value for e in self.effects for word, value in e.summary(self.ledger.rows[0], self.ledger.rows[-1]).items()},
             "seconds": sum(self.seconds.values()),
             "expect": [
                 {
@@ -391,21 +365,9 @@ class _Run:
     def _record(self, out: TrajectoryWriter, log: ProgressLog, frame: int, now: Frame) -> None:
         """Check the energies, then append the frame to ledger and trajectory, and tell of it. Raises DivergedError before a bad
         frame counts."""
-        when, liquid, extras = now.step * self.certificate.timestep, now.liquid, dict(now.seen.recorded)
-        if liquid:
-            extras["liquid_cells"] = liquid.cells
-            if self.fed:
-                extras[DUE] = liquid.start
-            extras |= {column: getattr(liquid, quantity) for quantity, column in self.of_liquid.items()}
-            if liquid.momenta:
-                extras |= dict(zip(MOMENTA, liquid.momenta))
-            if liquid.cells != liquid.start:
-                raise DivergedError(
-                    f"step {now.step}, t = {number(when, 4)} s: {exact(liquid.cells)} cells of liquid, "
-                    f"{exact(liquid.start)} at the start{' and come since' if self.fed else ''}: this must "
-                    f"never be, please report it. The last good frame is kept in {self.folder}"
-                )
-            self.guard.clock(now.step, liquid.clock)
+        when = now.step * self.certificate.timestep
+        extras = now.seen.recorded | {field.name: now.fields[field.name] for field in self.extras}
+        self.guard.fields(now.step, now.fields)
         # Losses before a resume are carried over.
         row = self.ledger.weigh(when, {t: e + self.carried.get(t, 0.0) for t, e in now.energies.items()} | extras)
         self.guard.energy(now.step, row["residual"], now.seen.speed)
@@ -415,9 +377,9 @@ class _Run:
         log.frame(frame, row, self.seconds["simulation"], self.source.new_owners())
 
     def _gained(self) -> float | None:
-        """Cells of liquid more than at the start and come since: 0, or something is wrong; None without a liquid."""
+        """How much more there is of what effects count than there should be: 0, or something is wrong."""
         rows = self.ledger.rows
-        return rows[-1]["liquid_cells"] - rows[-1].get(DUE, rows[0]["liquid_cells"]) if self.grid else None
+        return next((more for e in self.effects if (more := e.gained(rows[0], rows[-1])) is not None), None)
 
     def _save(self, out: TrajectoryWriter, frame: int, now: Frame) -> None:
         """Make everything up to this frame safe; the checkpoint last, so that it never is ahead of the trajectory."""

@@ -5,14 +5,17 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from types import MappingProxyType
 
 import numpy as np
 
+from ..effects.fields import Fields
+from ..effects.measured import Glance
 from ..engine.geometry import INVERTED, NOT_FINITE, Geometry
 from ..engine.plan import Plan
 from ..model.model import Model
 from ..model.system import centers
-from ..results.expect import record, recorded
+from ..results.expect import recordable, recorded
 from .folds import Folds
 
 
@@ -59,18 +62,17 @@ class Observer:
     """
 
     def __init__(self, plan: Plan, models: Sequence[Model]):
-        self.system, self.geometry, self.folds = plan.system, Geometry(plan.system), Folds(plan.system)
+        self.context, self.system = plan.context, plan.system
+        self.geometry, self.folds = Geometry(plan.system), Folds(plan.system)
         self.apart = any(effect.keeps_apart for effect in plan.effects)
         model_of, number = {model.name: model for model in models}, {name: m for m, name in enumerate(plan.system.names)}
         self.recorded = [
-            (number[name], quantity, model_of[name], column) for (name, quantity), column in recorded(plan.scene.expects).items()
+            (number[name], recordable()[quantity].look, model_of[name], column)
+            for (name, quantity), column in recorded(plan.scene.expects).items()
         ]
-        self.grid = grid = plan.grid
-        self.dry = None if grid is None else np.full(grid.shape[1::-1], grid.low[2])
-        """Heights of a liquid that is nowhere, shape (ny, nx)."""
 
     def observe(
-        self, objects: np.ndarray, near: np.ndarray, x: np.ndarray, v: np.ndarray, height: np.ndarray | None = None
+        self, objects: np.ndarray, near: np.ndarray, x: np.ndarray, v: np.ndarray, fields: Fields = MappingProxyType({})
     ) -> Observation:
         """Look at some objects.
 
@@ -79,8 +81,7 @@ class Observer:
             near: these and all others that may touch them, ascending, int64.
             x: positions of all particles, of which only those of ``near`` are read [m], shape (N, 3).
             v: velocities, of which only those of ``objects`` are read [m/s], shape (N, 3).
-            height: smooth height z of the liquid over each column of cells [m], shape (ny, nx); None without a liquid, and where
-                these objects are out of its reach.
+            fields: what effects tell of the frame; nothing where these objects are out of their reach.
         """
         found, reach = self.geometry.glance(x, v, objects)
         sound = found != NOT_FINITE
@@ -94,8 +95,8 @@ class Observer:
             self.geometry.sunk(x, near) if self.apart and sound else None,
             *self.folds.find(objects, x if sound else self.system.position),
             {
-                column: record(quantity, self.system, model, x, self.grid, self.dry if height is None else height)
-                for m, quantity, model, column in self.recorded
+                column: look(Glance(self.context, m, model, x, fields))
+                for m, look, model, column in self.recorded
                 if sound and m in objects
             },
         )

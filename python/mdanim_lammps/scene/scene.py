@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import Enum
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from ..errors import Span
 from ..features import facets
@@ -16,7 +16,7 @@ from .formatting import vector
 from .limits import CONTACT_DAMPING, CONTACT_STIFFNESS, DAMPING, DROPS, FRICTION, SWEEPS
 from .render import COLOR, Camera, Render  # noqa: F401
 from .rotation import IDENTITY, departure, rotation_about, rotation_euler
-from .schema import Codec, Keyword, Observable, OneOf, Rule, Vector, Worded, Words, setting
+from .schema import BOX, Codec, Keyword, Observable, OneOf, Rule, Vector, Worded, Words, setting, with_words
 from .shapes import (
     Box,
     Cone,
@@ -34,10 +34,6 @@ from .shapes import (
     Torus,
     Young,
 )
-
-BOX = "from <(x0, y0, z0):m> to <(x1, y1, z1):m>"
-"""Two corners of a box of the world, the lower one first."""
-
 
 # --- objects ----------------------------------------------------------------------------------------------
 
@@ -272,17 +268,6 @@ class Liquid(Worded):
         return bool(self.wave or self.current or self.inflow or self.drain)
 
 
-@dataclass(frozen=True, slots=True)
-class Walls:
-    """A box that objects never leave."""
-
-    FORMS: ClassVar = (BOX,)
-    low: Vector
-    """[m]"""
-    high: Vector
-    """[m]"""
-
-
 # --- control, pictures, self-checks -----------------------------------------------------------------------
 
 
@@ -441,19 +426,9 @@ class SceneRecord:
     """Stem of the file name: ``beam`` for ``beam.txt``."""
     control: Control
     title: str = setting('<"text">', "Title of the scene, shown by `check` and in the movie.", '"Cube on a beam"', default="")
-    gravity: Vector = setting(
-        "<(gx, gy, gz):m/s^2>",
-        "Acceleration of free fall. Absent or zero: no gravity effect at all. With a liquid it must point along -z.",
-        "(0, 0, -9.81) m/s^2", default=(0.0, 0.0, 0.0))  # fmt: skip
-    """[m/s^2]"""
     solids: tuple[Solid, ...] = ()
     liquid: Liquid | None = None
     contacts: tuple[ContactPair, ...] = ()
-    ground: float | None = setting("z <h:m>", "A floor plane at height h. Absent: no floor.", "z 0 m", default=None)
-    """Height of the ground plane [m]."""
-    walls: Walls | None = setting(
-        None, "A box that objects never leave. Absent: no walls.",
-        "from (-2, -2, 0) m to (2, 2, 3) m", default=None, codec=OneOf(Walls))  # fmt: skip
     effects: Mapping[str, Switch] = field(default_factory=dict)
     """Only what ``effects { }`` says; everything else is ``auto``."""
     render: Render = field(default_factory=Render)
@@ -468,3 +443,12 @@ class SceneRecord:
     """Places of ``gravity``, ``ground``, ``walls``, ``effects.NAME`` ..."""
     warnings: tuple = field(default=(), compare=False)
     """Problems of severity ``warning`` that were found while reading."""
+
+    if TYPE_CHECKING:
+
+        def __getattr__(self, name: str) -> Any:
+            """Settings that features add."""
+
+
+if not TYPE_CHECKING:
+    SceneRecord = with_words(SceneRecord, "SCENE")

@@ -14,12 +14,17 @@ from enum import Enum
 from typing import Any, NamedTuple
 
 from ..errors import UsageError
+from ..features import facets
 from .formatting import number
 from .forms import Slot, alternatives, write
 from .limits import LIMITS, Limit
 from .units import unit
 
 Vector = tuple[float, float, float]
+
+
+BOX = "from <(x0, y0, z0):m> to <(x1, y1, z1):m>"
+"""Two corners of a box of the world, the lower one first."""
 
 
 class Rule(Enum):
@@ -210,6 +215,15 @@ def setting(
         absent=None if value is dataclasses.MISSING else value, **facts,
     )  # fmt: skip
     return dataclasses.field(default=default, metadata={"keyword": keyword})
+
+
+def with_words(record: type, kind: str) -> type:
+    """A record with the settings that features add to it: those in the class ``kind`` of their words, each with a default."""
+    found = [getattr(words, kind) for words in facets("words") if hasattr(words, kind)]
+    fields = [(name, of, vars(words)[name]) for words in found for name, of in vars(words)["__annotations__"].items()]
+    made = dataclasses.make_dataclass(record.__name__, fields, bases=(record,), frozen=True, slots=True)
+    made.__module__, made.__doc__ = record.__module__, record.__doc__
+    return made
 
 
 def keywords(block: str, record: type | None) -> dict[str, Keyword]:

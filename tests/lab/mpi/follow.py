@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 from mdanim_lammps.engine.instance import Instance
 from mdanim_lammps.engine.state import State
+from mdanim_lammps.features.liquid import frames as liquid
 from mdanim_lammps.run.prepare import prepare
 from mdanim_lammps.scene.parse import load_scene
 
@@ -24,8 +25,8 @@ def seen(instance: Instance) -> dict[str, np.ndarray]:
     found = {name: getattr(state, name) for name in ("x", "v", "f")}
     found |= {fix: records.data for fix, records in state.records.items() if fix != "liquid"}
     if plan.grid:
-        smooth, raw = instance.liquid_heights()
-        found |= {"liquid": state.records["liquid"].data, "cells": instance.liquid_cells(), "smooth": smooth, "raw": raw}
+        smooth, raw = liquid.heights(instance)
+        found |= {"liquid": state.records["liquid"].data, "cells": liquid.cells(instance), "smooth": smooth, "raw": raw}
     if "lambda" in plan.columns:
         found["lambda"] = instance.array("d_lambda").copy()
     for name in "xvf":  # ranks have different particles, and all of them together all

@@ -1,4 +1,18 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """Words of a scene that belong to this feature."""
 
+from __future__ import annotations
+
+from ...scene.schema import setting
+
 SWITCHES = {"ground": "`ground`"}
+
+
+class GroundWords:
+    """Settings outside of all blocks."""
+
+    ground: float | None = setting("z <h:m>", "A floor plane at height h. Absent: no floor.", "z 0 m", default=None)
+    """Height of the ground plane [m]."""
+
+
+SCENE = GroundWords

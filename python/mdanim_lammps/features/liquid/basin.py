@@ -21,8 +21,6 @@ BYTES_PER_CELL = 20.0
 """What fix mdanim/liquid keeps per cell, measured 18 to 21: content, masks, counts of samples, marks."""
 NARROWEST = 3
 """Fewest cells along a side: with two, no cell is off the walls, and a slope has no middle."""
-MOST_DROPS = 2048
-"""Drops of a liquid that fly at once, as in plugin/liquid/waves/drops.h: where there are more, they merge."""
 
 
 def plan_grid(liquid: Liquid, h: float) -> Grid:

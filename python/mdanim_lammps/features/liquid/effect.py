@@ -21,7 +21,10 @@ from ..air_drag import effect as air_drag
 from ..contact.planes import Boundary
 from ..contact.surface import SurfacePlanes
 from ..springs.effect import all_held
+from . import frames
 from .basin import check_basin, leaky_walls, liquid_level, open_hulls, plan_grid, too_large
+from .frames import COUPLING, FLOW, OCCUPANCY, WAVES, is_wavy
+from .ledger import CELLS, DUE
 from .tables import lattice_cells, layers_of_cells
 
 EVERY = 4
@@ -32,14 +35,6 @@ PERIOD = 0.06
 """Time between updates of a liquid that is not level, over sqrt(cell/g)."""
 NEAR = 8.0
 """Cells above the liquid up to which the motion of solids counts for it; as in the fix."""
-CELLS, CELLS_AT_START, FLOW, OCCUPANCY, COUPLING, WAVES, CREST = 0, 1, 7, 8, 9, 11, 12
-"""In the fix's vector: cells of liquid now and before step 0, to the unit, three clocks [s], the energy of a liquid with momentum
-since then [J], its highest point [m]."""
-MOMENTUM, BASIN_IMPULSE, SOLID_IMPULSE, CAME = (13, 14), (15, 16), (17, 18), (19, 20)
-"""In the fix's vector, along x and y [N s]: the liquid's momentum; the impulses that it has given to its basin with all that is
-held, and to what moves; the momentum that came with liquid, less what went with it."""
-CLOCK = 21
-"""In the fix's vector: time that a liquid with momentum has gone through, or has slept at rest [s]."""
 WAVE_PERIOD, WAVE_STRIDE = 0.15, 1.5
 """As PERIOD and STRIDE, of waves. With 0.05 and 0.25, two to three times the updates, a dive is as deep to 1 % of the body's size
 and the body leaps as high to 2 %; with 0.2 and 2.0 these are 2 and 7 %: bodies with sides of 6 to 24 cells, as fast as if fallen
@@ -56,8 +51,6 @@ SHALLOW = 4
 """Fewest cells of depth that show waves."""
 LIGHT = 0.1
 """Density over that of the liquid below which a body shakes in waves and comes up late (docs/physics-liquid.md)."""
-OVERFLOW = 0.05
-"""Part of what inflows bring that may be missing without a word: updates lag behind."""
 SWEEPS = 4
 """Fewest sweeps of the automaton for each cell that the fastest solid travels; 8 are better (docs/physics-liquid.md)."""
 
@@ -139,6 +132,24 @@ class LiquidAutomaton(Effect):
 
     def acts_on(self, context):
         return context.grid is not None
+
+    def fields(self, scene):
+        return frames.fields(scene)
+
+    def tell(self, readings):
+        return frames.tell(readings)
+
+    def fault(self, scene, time, fields):
+        return frames.fault(scene, time, fields)
+
+    def doubts(self, context, time, ledger):
+        return frames.overflow(context, time, ledger)
+
+    def gained(self, first, now):
+        return now[CELLS] - now.get(DUE, first[CELLS])
+
+    def summary(self, first, last):
+        return {CELLS: last[CELLS], "liquid_residual": self.gained(first, last)}
 
     def matters_below(self, context):
         return top_of_reach(context.grid)
@@ -263,24 +274,6 @@ def _light(scene, system) -> list[Problem]:
             f"{system.names[m]}{others}: {number(density[m] / liquid.density, 2)} times as dense as {liquid.name}; what is "
             f"lighter than {LIGHT} shakes in waves, and comes up late",
             f"write a density of {number(LIGHT * liquid.density)} kg/m^3, or model surface in liquid {liquid.name}",
-            severity="warning",
-        )
-    ]
-
-
-def overflow(scene, cells: float, cell_volume: float, time: float) -> list[Problem]:
-    """Warn where inflows found no room: so many cells came in this time [s]; only where liquid comes and goes in no other way."""
-    liquid = scene.liquid
-    if not liquid.inflow or liquid.drain or liquid.wave or liquid.current:
-        return []
-    asked, came = sum(flow.rate for flow in liquid.inflow) * time, cells * cell_volume
-    if came > (1.0 - OVERFLOW) * asked:
-        return []
-    return [
-        Problem(
-            liquid.spans.get("inflow"),
-            f"{liquid.name}: {say(came, 'm^3')} of {say(asked, 'm^3')} came in; the basin was full, or the place of the inflow",
-            "write a higher basin, a drain at the height of the rim, or another place",
             severity="warning",
         )
     ]
@@ -436,11 +429,6 @@ def _reached(name: str, scene) -> Verdict:
     if solid is None:
         return Verdict(name, False, "nothing that can move reaches the liquid")
     return Verdict(name, True, f"{solid.name} can reach {scene.liquid.name}", solid.spans.get("object"))
-
-
-def is_wavy(scene) -> bool:
-    """Whether the liquid has momentum."""
-    return scene.liquid is not None and scene.liquid.model is LiquidModel.WAVES
 
 
 def _flows(liquid):

@@ -13,13 +13,14 @@ from contextlib import contextmanager, nullcontext
 import numpy as np
 from mpi4py import MPI
 
+from ...effects.fields import Fields, join_fields
 from ...engine.instance_cache import InstanceCache
 from ...engine.state import Records, State, StateRecords, join_all
 from ...engine.sub_plan import SubPlans
 from ...errors import MdanimError
 from ...results.frame_rows import RowWriter
-from ...run.energy import stored
-from ...run.frame_source import COST_SECONDS, Account, LammpsFailure, add_clocks, liquid_frame, penetration
+from ...run.energy import frame_fields, stored, tell
+from ...run.frame_source import COST_SECONDS, Account, LammpsFailure, add_clocks, penetration
 from ...run.observe import Observer
 from ..plan.orders import Order, Report
 from .bundle import Bundle, Wanted, wanted_bundles
@@ -297,11 +298,11 @@ class Executor:
 
     def _commit(self) -> None:
         """Take the states of all instances, and what was lost and how deep something was meanwhile."""
-        self.liquid = None
+        told: list[tuple[np.ndarray, Fields]] = []
         records = []
         for bundle in self.bundles:
             instance, lost = bundle.instance, bundle.newly_lost()
-            depth, liquid = penetration(instance), liquid_frame(instance)
+            depth, fields = penetration(instance), tell(instance)
             kept = instance.records()  # together with the team, as all above
             bundle.write_state(x=self.x, v=self.v, f=self.f)
             if not self._leads(bundle):
@@ -312,8 +313,8 @@ class Executor:
             self._count(lost)
             self.records = bundle.records_elsewhere(self.records)
             records.append(bundle.records_to(kept))
-            if bundle.key.liquid:
-                self.liquid = liquid
+            told.append((bundle.objects, fields))
+        self.fields = join_fields(frame_fields(self.job.plan), self.system.still, told)
         self.records = join_all([self.records, *records])
         self.started = True
 
@@ -343,7 +344,7 @@ class Executor:
             objects = np.union1d(self.own, self.still)
             guests = [bundle.objects[self.system.still[bundle.objects]] for bundle in self.bundles if self._leads(bundle)]
             near = np.unique(np.concatenate([objects, *guests]))
-            seen = self.observer.observe(objects, near, self.x, self.v, self.liquid and self.liquid.heights[0])
+            seen = self.observer.observe(objects, near, self.x, self.v, self.fields)
         with self._clock("output"):
             places = [*self._held(), *self.system.stretches(self.still)]
             checksums = self.rows.write(self.frame, places, self.x, self.v)
@@ -357,7 +358,7 @@ class Executor:
                 checksums,
                 self.energies,
                 self.deepest,
-                self.liquid,
+                self.fields,
                 self.moves,
                 self.retries,
                 tuple(sorted(self.led)),

@@ -13,12 +13,13 @@ import numpy as np
 from mpi4py import MPI
 from mpi4py.util import pkl5
 
+from ...effects.fields import Fields
 from ...engine.plan import Plan
 from ...engine.state import Records
 from ...model.model import Model
 from ...results.checkpoint import Checkpoint
 from ...results.frame_rows import FrameRows
-from ...run.frame_source import Account, LiquidFrame
+from ...run.frame_source import Account
 from ...run.observe import Observation
 from ..plan.frame_plan import PlannerOptions
 
@@ -107,7 +108,8 @@ class Share:
     """Of its rows, as `RowWriter.write` gives them."""
     energies: dict[str, float]
     penetration: float
-    liquid: LiquidFrame | None
+    fields: Fields
+    """What effects tell of these objects, by the names of fields."""
     moves: int
     """Objects that have come to this executor since the frame before."""
     retries: int

@@ -1,0 +1,67 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Named fields: what effects tell of a frame, each declared once."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+PER = ("particle", "bond", "object", "cell", "column", "row", "run")
+"""What a field has a value of: the last is one number of the whole, a row one of a table of any length."""
+
+
+@dataclass(frozen=True, slots=True)
+class Field:
+    """A quantity with a value for each of some things."""
+
+    name: str
+    unit: str
+    """SI; ``1`` for plain numbers."""
+    per: str = "run"
+    """One of PER."""
+    dtype: str = "float64"
+    shape: tuple[int, ...] = ()
+    """Of one value."""
+    default: float = 0.0
+    """Where nothing tells it."""
+    ledger: bool = False
+    """Whether it is a column of the ledger, which is no energy."""
+    whole: bool = False
+    """Whether it counts something, and is written as a whole number where it is one."""
+
+    def __post_init__(self):
+        if self.per not in PER:
+            raise ValueError(f"field {self.name} is per {self.per}, not per one of {', '.join(PER)}")
+        if self.ledger and (self.per != "run" or self.shape):
+            raise ValueError(f"field {self.name} is a column of the ledger, so it is one number per run")
+
+
+Fields = Mapping[str, Any]
+"""Values by the names of fields: arrays, numbers for those per run."""
+
+
+def join_fields(declared: Iterable[Field], still: np.ndarray, parts: Iterable[tuple[np.ndarray, Fields]]) -> dict[str, Any]:
+    """The fields of a whole scene, from what parts of it tell.
+
+    Those per object are put together and have their default where an object never moves, which any part may have; those per run
+    are added up; of all others one part has all.
+
+    Args:
+        declared: all fields of the scene.
+        still: objects that never move, bool, shape (M,).
+        parts: numbers of objects, int64, shape (m,), and fields of these, or of all objects.
+    """
+    parts, found = list(parts), {}
+    for field in declared:
+        told = [(objects, fields[field.name]) for objects, fields in parts if field.name in fields]
+        if field.per == "object":
+            found[field.name] = np.full((len(still), *field.shape), field.default, field.dtype)
+            for objects, values in told:
+                moving = ~still[objects]
+                found[field.name][objects[moving]] = (values[objects] if len(values) == len(still) else values)[moving]
+        elif told:
+            found[field.name] = sum(value for _, value in told) if field.per == "run" and len(told) > 1 else told[0][1]
+    return found

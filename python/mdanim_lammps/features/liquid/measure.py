@@ -1,0 +1,96 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""What ``expect`` can ask of a liquid, and of objects in it."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...effects.measured import Glance, Measured, Recorded
+from ...model.grid import Grid
+from ...scene.scene import Expect
+from .frames import HEIGHTS
+from .ledger import CELLS, CREST, DUE, WAVES
+
+
+def residual(m: Measured, e: Expect) -> float:
+    """Cells more or fewer than there should be, the most at any frame."""
+    cells = m.ledger(CELLS)
+    return m.largest(cells - (m.ledger(DUE) if m.context.scene.liquid.fed else cells[0]), e.time)
+
+
+def volume(m: Measured, e: Expect) -> float:
+    """[m^3]"""
+    return m.at(m.ledger(CELLS), e.time) * m.context.grid.cell_volume
+
+
+MEASURES = {
+    ("liquid", "residual"): residual,
+    ("liquid", "volume"): volume,
+    ("liquid", "level"): lambda m, e: m.at(m.trajectory.liquid_levels, e.time),
+    ("liquid", "crest"): lambda m, e: float(m.until(m.ledger(CREST), e.time).max()),
+    ("liquid", "waves"): lambda m, e: m.at(m.ledger(WAVES), e.time),
+}
+
+
+def immersed_share(corners: np.ndarray, grid: Grid, height: np.ndarray) -> float:
+    """Share of an object's volume that is below the liquid's surface [-], by 64 points in every lattice cell.
+
+    They are spread evenly with no two at one height (a Kronecker sequence), so that a body that floats upright is cut
+    as finely as one that is turned.
+
+    Args:
+        corners: of its lattice cells, in VTK order [m], shape (C, 8, 3).
+        grid: cells of the liquid.
+        height: smooth height z of the liquid over each column [m], shape (ny, nx).
+    """
+    u, v, w = np.modf(0.5 + np.outer(1.2207440846057596 ** -np.arange(1.0, 4.0), np.arange(64)))[0]
+    weight = np.stack([(1 - u) * (1 - v), u * (1 - v), u * v, (1 - u) * v])
+    weight = np.concatenate([weight * (1 - w), weight * w])
+    below = 0  # in pieces: 100 MB for a body of any size
+    for start in range(0, len(corners), 4096):
+        point = np.einsum("kp,ckd->cpd", weight, corners[start : start + 4096]).reshape(-1, 3)
+        column = np.floor((point[:, :2] - grid.low[:2]) / grid.cell[:2]).astype(int)
+        inside = ((column >= 0) & (column < grid.shape[:2])).all(axis=1)
+        x, y = column[inside].T
+        below += int(np.count_nonzero(point[inside, 2] < height[y, x]))
+    return below / (len(corners) * len(u))
+
+
+def immersed_depth(points: np.ndarray, grid: Grid, height: np.ndarray) -> float:
+    """How deep an object is in the liquid: local level less its lowest point, at most its own height [m].
+
+    The local level is the mean over the columns that the object's upright bounding box touches; the smooth height
+    runs on below a body that fills its columns. An object beside the basin has a draft of 0.
+
+    Args:
+        points: of its surface, such as ``model.surface.vertices(position)`` [m], shape (n, 3).
+        grid: cells of the liquid.
+        height: smooth height z of the liquid over each column [m], shape (ny, nx).
+    """
+    low, high = points.min(axis=0), points.max(axis=0)
+    columns = []
+    for a, b, start, edge, count in zip(low, high, grid.low, grid.cell, grid.shape[:2]):
+        first, last = int(np.floor((a - start) / edge)), int(np.floor((b - start) / edge))
+        if last < 0 or first >= count:
+            return 0.0
+        columns.append(slice(max(first, 0), min(last, count - 1) + 1))
+    across, along = columns
+    level = float(np.mean(height[along, across], dtype=np.float64))
+    return float(np.clip(level - low[2], 0.0, high[2] - low[2]))
+
+
+def _draft(g: Glance) -> float:
+    return immersed_depth(g.model.surface.vertices(g.own), g.context.grid, _height(g))
+
+
+def _immersed(g: Glance) -> float:
+    return immersed_share(g.own[g.model.hexahedron], g.context.grid, _height(g))
+
+
+def _height(g: Glance) -> np.ndarray:
+    """Smooth height z over each column [m], shape (ny, nx): out of reach that of a liquid that is nowhere."""
+    grid = g.context.grid
+    return g.fields[HEIGHTS][0] if HEIGHTS in g.fields else np.full(grid.shape[1::-1], grid.low[2])
+
+
+RECORDED = {"draft": Recorded("draft", _draft, Measured.at), "immersed": Recorded("immersed", _immersed, Measured.at)}
