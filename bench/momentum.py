@@ -6,7 +6,7 @@ Printed is a table of docs/physics-liquid.md, along x. Scenes are those of tests
 
 import numpy as np
 from mdanim_lammps.engine.instance import Instance
-from mdanim_lammps.run.frame_source import liquid_momenta
+from mdanim_lammps.features.liquid.frames import momenta
 from mdanim_lammps.run.prepare import prepare
 from mdanim_lammps.scene.parse import parse_scene
 from timing import markdown
@@ -44,7 +44,7 @@ def largest(text: str, time: float) -> np.ndarray:
         instance.setup()
         for _ in range(40):
             instance.run(max(1, round(time / 40 / ready.certificate.timestep)))
-            found.append(liquid_momenta(instance)[::2])
+            found.append(momenta(instance)[::2])
     return np.abs(found).max(axis=0)
 
 

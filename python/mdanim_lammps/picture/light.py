@@ -9,7 +9,7 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
 from ..scene.render import Quality, Render
-from .pieces import Field, gl_matrix
+from .pieces import Lookup, gl_matrix
 from .rays import FAR, NEAR, ROOM, SKY_PIXELS, axes, direction, sky_axes
 from .window import off_screen_window
 
@@ -58,7 +58,7 @@ class DepthPictures:
             renderers.append(renderer)
         self._size = side * pixels
         self._window = off_screen_window(renderers, (self._size, self._size), samples=0)
-        self.depth = Field(self._size, self._size, packed=True)
+        self.depth = Lookup(self._size, self._size, packed=True)
         self._values = numpy_to_vtk(self.depth.numbers.ravel())  # the same memory
 
     def take(self) -> None:
@@ -90,7 +90,7 @@ class Light:
         final = render.quality is Quality.FINAL
         self._pixels = MORE_PIXELS if final or typical < size / 30.0 else PIXELS
         self._lamp = DepthPictures(data, centre, self._radius, axes(self._toward)[None], self._pixels)
-        self._nearest = Field(self._pixels // BLOCK, self._pixels // BLOCK, packed=True)
+        self._nearest = Lookup(self._pixels // BLOCK, self._pixels // BLOCK, packed=True)
         self._sky = DepthPictures(data, centre, self._radius, sky_axes(), SKY_PIXELS) if final else None
 
     def cast(self) -> None:
