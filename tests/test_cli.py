@@ -43,7 +43,7 @@ def test_check_text_and_json(scene):
     assert text.returncode == 0 and "certify" in text.stdout and "contact" in text.stdout
     assert "cost     about " in text.stdout
     assert "basin, liquid, buoyancy, liquid-drag (no liquid in the scene)" in text.stdout
-    data = json.loads(run("check", path, "--format", "json").stdout)
+    data = json.loads(run("check", path, "--json").stdout)
     assert data["effects"]["gravity"]["on"] and not data["effects"]["contact"]["on"]
     assert data["certificate"]["object"] == "cube" and data["cost"]["wall"] > 0.0
     assert [p.name for p in path.parent.iterdir()] == ["cube.txt"]
@@ -73,7 +73,7 @@ def test_a_liquid_is_announced(scenes):
     assert "1 object (405 particles), 1 liquid (38 400 cells)\n" in text
     rounded = run("check", scenes / "float.txt", "--set", "a=0.3").stdout
     assert "its volume rounded by" in rounded
-    data = json.loads(run("check", scenes / "float.txt", "--format", "json").stdout)
+    data = json.loads(run("check", scenes / "float.txt", "--json").stdout)
     assert data["liquid"]["cells"] == [40, 40, 24] and data["liquid"]["cell"] == pytest.approx([0.05, 0.05, 0.05])
 
 

@@ -164,6 +164,7 @@ def test_problems_as_json(tmp_path):
     assert problem["column"] > 1 and problem["width"] > 1 and problem["message"] and problem["hint"]
     (tmp_path / "fast.txt").write_text(GOOD.replace("time 0.1 s", "time 0.1 s\n timestep 1 s"))
     fast = call("check", "fast.txt", "--format", "json", cwd=tmp_path)
+    assert "note: --format json is an old spelling; write --json" in fast.stderr
     assert fast.returncode == 4 and "certified bound" in json.loads(fast.stdout)["problems"][0]["message"]
 
 

@@ -69,7 +69,7 @@ def test_another_broken_pipe_is_an_error(capsys):
 
 
 @pytest.mark.parametrize("encoding", ["latin-1", "ascii"])
-@pytest.mark.parametrize("command", [["check"], ["check", "--format", "json"]])
+@pytest.mark.parametrize("command", [["check"], ["check", "--json"]])
 def test_characters_that_the_terminal_lacks(scene, encoding, command):
     """Print a title beyond the encoding of stdout with escapes instead of failing."""
     done = subprocess.run(

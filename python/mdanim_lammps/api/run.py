@@ -153,7 +153,8 @@ class Run:
     def trajectory(self) -> Trajectory:
         """The frames; opened when they are first asked for, and closed with nothing left that refers to them. The last few that
         were opened stay open. Raises OutputError."""
-        if (found := self._opened and self._opened()) is None:
+        found = self._opened() if self._opened else None
+        if found is None:
             found = Trajectory(self.folder)
             self._opened = ref(found)
             _recent.append(found)

@@ -175,7 +175,7 @@ class Scene:
         if isinstance(values, (str, Path)):
             if folder is not None:
                 raise UsageError(f"sweep has two folders, {values} and {folder}; its first argument is a table of values")
-            values, folder = {}, values
+            values, folder = None, values
         if named:
             warn("sweep(NAME=[...])", "sweep({'NAME': [...]}, folder): a table can have any name of a scene")
         lists = together_of(values or {}, named)

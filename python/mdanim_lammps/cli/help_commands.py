@@ -11,7 +11,6 @@ from cyclopts import Parameter
 
 from ..errors import ExitCode, OutputError, UsageError
 from ..terminal import PROGRAM
-from .options import Force
 
 SCENE = """\
 # {name}.txt - a soft cube falls onto the floor. Every setting: {program} explain WORD
@@ -49,13 +48,15 @@ expect energy.residual = 0 +- 1e-3
 """
 
 
-def init(name: str, /, *, force: Force = False) -> None:
+def init(name: str, /, *, force: bool = False) -> None:
     """Write NAME.txt, a scene with remarks, to begin with.
 
     Parameters
     ----------
     name
         Of the scene, e.g. first; or the file, e.g. scenes/first.txt.
+    force
+        Overwrite the file.
     """
     from ..results.files import write_whole
 

@@ -1,29 +1,20 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""Options that several commands of the command line share."""
+"""Options that several commands share: records of them, whose fields are options of each command that takes the record."""
 
 from __future__ import annotations
 
 import re
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
 from cyclopts import Parameter
 
 from ..engine.threads import check_threads
 from ..errors import UsageError
 
-Set = Annotated[
-    tuple[str, ...], Parameter(name="--set", help="Override a 'let': --set NAME=VALUE.", negative=(), consume_multiple=False)
-]
-Accuracy = Annotated[
-    Literal["preview", "balanced", "reference"] | None,
-    Parameter(help="Cells across the thinnest part: 2, 4, 8; time step 0.7, 0.5, 0.25 of the bound."),
-]
-Strict = Annotated[bool, Parameter(negative=(), help="Bare numbers need a unit.")]
-AllowUnstable = Annotated[bool, Parameter(negative=(), help="Insist on a time step above the certified bound.")]
-Quiet = Annotated[bool, Parameter(name=["-q", "--quiet"], negative=(), help="Print errors only.")]
-Verbose = Annotated[bool, Parameter(name=["-v", "--verbose"], negative=(), help="Print every effect with its reason.")]
-Out = Annotated[Path | None, Parameter(name=["-o", "--out"], help="Output folder; default SCENE.out beside the scene.")]
+if TYPE_CHECKING:
+    from ..scene.scene import SceneRecord
 
 
 def whole_number(_, tokens) -> int:
@@ -31,11 +22,6 @@ def whole_number(_, tokens) -> int:
     if not re.fullmatch(r"[+-]?[0-9]+", tokens[0].value):
         raise ValueError(f"{tokens[0].value} is not a whole number")
     return int(tokens[0].value)
-
-
-Executors = Annotated[
-    int, Parameter(name=["-n", "--executors"], converter=whole_number, help="Processes that simulate; one more supervises them.")
-]
 
 
 def thread_count(_, tokens) -> int:
@@ -46,23 +32,105 @@ def thread_count(_, tokens) -> int:
         raise ValueError(error) from None
 
 
-Threads = Annotated[
-    int | None,
-    Parameter(
-        converter=thread_count,
-        help="Threads of each process that simulates; if left out, as many as pay of all cores divided by executors.",
-    ),
+Quiet = Annotated[bool, Parameter(alias="-q", help="Print errors only.")]
+Verbose = Annotated[bool, Parameter(alias="-v", help="Print every effect with its reason.")]
+AllowUnstable = Annotated[bool, Parameter(help="Insist on a time step above the certified bound.")]
+Executors = Annotated[
+    int, Parameter(alias="-n", converter=whole_number, help="Processes that simulate; one more supervises them.")
 ]
-Control = Annotated[
-    Literal["central", "peers"] | None,
-    Parameter(help="What assigns objects to executors: the supervisor, or each executor alike."),
-]
-Size = Annotated[tuple[int, int] | None, Parameter(help="Width and height in pixels.")]
-Quality = Annotated[
-    Literal["draft", "final"] | None,
-    Parameter(help="draft is fast; final has smooth edges and ambient occlusion. Default: that of the scene."),
-]
-View = Annotated[bool, Parameter(name="--view", negative=(), help="Show the run in a browser while it goes on.")]
-Edit = Annotated[bool, Parameter(negative=(), help="Let the page change the scene's text and run it again; implies --view.")]
-Overwrite = Annotated[bool, Parameter(name="--force", negative=(), help="Overwrite a file that this program has not made.")]
-Force = Annotated[bool, Parameter(negative=(), help="Overwrite an output folder of an earlier run.")]
+View = Annotated[bool, Parameter(help="Show the run in a browser while it goes on.")]
+
+
+@Parameter(name="*")
+@dataclass(frozen=True, kw_only=True)
+class Reading:
+    """How a scene is read."""
+
+    set: Annotated[tuple[str, ...], Parameter(consume_multiple=False)] = ()
+    """Override a 'let': --set NAME=VALUE."""
+    accuracy: Literal["preview", "balanced", "reference"] | None = None
+    """Cells across the thinnest part: 2, 4, 8; time step 0.7, 0.5, 0.25 of the bound."""
+
+    def load(self, path: Path, *, strict: bool = False) -> SceneRecord:
+        """The scene of a file. Raises SceneError, UsageError."""
+        from ..scene.parse import load_scene
+        from ..scene.scene import Accuracy
+
+        pairs = {}
+        for text in self.set:
+            name, equals, value = text.partition("=")
+            if not equals or not name.strip():
+                raise UsageError(f"--set {text}: expected NAME=VALUE, e.g. --set rho=0.8")
+            pairs[name.strip()] = value.strip()
+        scene = load_scene(path, overrides=pairs, strict=strict)
+        return replace(scene, control=replace(scene.control, accuracy=Accuracy(self.accuracy))) if self.accuracy else scene
+
+
+@Parameter(name="*")
+@dataclass(frozen=True, kw_only=True)
+class Executing:
+    """What simulates."""
+
+    executors: Executors = 1
+    threads: Annotated[int | None, Parameter(converter=thread_count)] = None
+    """Threads of each process that simulates; if left out, as many as pay of all cores divided by executors."""
+    control: Literal["central", "peers"] | None = None
+    """What assigns objects to executors: the supervisor, or each executor alike."""
+
+    def check(self) -> Executing:
+        """Raises UsageError for a number of executors that cannot be, or that this machine cannot hold."""
+        from ..parallel import limits
+
+        limits.check_executors(self.executors)
+        return self
+
+
+@Parameter(name="*")
+@dataclass(frozen=True, kw_only=True)
+class OutFolder:
+    """Where a command puts its folder."""
+
+    out: Annotated[Path | None, Parameter(alias="-o")] = None
+    """Output folder; if left out, SCENE.out beside the scene."""
+    force: bool = False
+    """Overwrite an output folder of an earlier run."""
+
+
+@Parameter(name="*")
+@dataclass(frozen=True, kw_only=True)
+class OutFile:
+    """Where a command puts its file."""
+
+    out: Annotated[Path | None, Parameter(alias="-o")] = None
+    """The file, or a folder for it."""
+    force: bool = False
+    """Overwrite an export, or a file that this program has not made."""
+
+    def place(self, default: Path) -> Path:
+        """Where it goes. Raises UsageError, OutputError."""
+        from ..results.overwriting import output_file
+
+        return output_file(default, self.out, force=self.force)
+
+
+@Parameter(name="*")
+@dataclass(frozen=True, kw_only=True)
+class Look:
+    """How pictures look."""
+
+    size: tuple[int, int] | None = None
+    """Width and height in pixels."""
+    quality: Literal["draft", "final"] | None = None
+    """draft is fast; final has smooth edges and ambient occlusion. If left out, that of the scene."""
+
+    def check(self) -> None:
+        """Raises UsageError for a picture that is too small or too large."""
+        if self.size is not None and not all(2 <= n <= 8192 for n in self.size):
+            width, height = self.size
+            raise UsageError(f"--size {width} {height}: width and height must lie between 2 and 8192, e.g. --size 1280 720")
+
+    def of(self, scene: SceneRecord) -> SceneRecord:
+        """The scene with this quality."""
+        from ..scene.render import Quality
+
+        return replace(scene, render=replace(scene.render, quality=Quality(self.quality))) if self.quality else scene

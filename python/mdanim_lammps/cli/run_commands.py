@@ -15,8 +15,8 @@ from cyclopts import Parameter
 from ..errors import ExitCode, Problem, RefusedError, UsageError
 from ..terminal import progress_bar
 from ..view.beside import Viewer, show_address
-from .options import AllowUnstable, Control, Executors, Overwrite, Quality, Quiet, Size, Threads, View, whole_number
-from .steps import adopt, announce, check_executors, check_size, draw_movie, frame_range, prepare, simulate_and_draw, with_quality
+from .options import AllowUnstable, Executing, Look, OutFile, Quiet, View, whole_number
+from .steps import adopt, announce, draw_movie, frame_range, prepare, simulate_and_draw
 
 if TYPE_CHECKING:
     from ..scene.render import Render
@@ -26,10 +26,8 @@ def resume(
     folder: Path,
     /,
     *,
-    executors: Executors = 1,
-    threads: Threads = None,
-    control: Control = None,
-    movie: bool | None = None,
+    executing: Executing = Executing(),
+    movie: Annotated[bool | None, Parameter(negative="--no-movie")] = None,
     view: View = False,
     allow_unstable: AllowUnstable = False,
     quiet: Quiet = False,
@@ -45,29 +43,27 @@ def resume(
     """
     from ..api.run import resumed
 
-    check_executors(executors)
+    executing.check()
     make = partial(prepare, allow_unstable=allow_unstable)
     with Viewer(view) as viewer, resumed(folder, make) as (ready, checkpoint, draws):
-        announce(ready, quiet, False, executors, control)
+        announce(ready, quiet, False, executing)
         viewer.start(folder)
-        options = {"executors": executors, "threads": threads, "control": control, "resume": checkpoint}
-        simulate_and_draw(ready, folder, quiet=quiet, movie=draws if movie is None else movie, **options)
+        movie = draws if movie is None else movie
+        simulate_and_draw(ready, folder, executing, quiet=quiet, movie=movie, resume=checkpoint)
 
 
 def render(
     folder: Path,
     /,
     *,
-    size: Size = None,
-    quality: Quality = None,
+    look: Look = Look(),
     fps: float | None = None,
-    out: Annotated[Path | None, Parameter(name=["-o", "--out"])] = None,
-    frames: Annotated[bool, Parameter(negative=())] = False,
+    output: OutFile = OutFile(),
+    frames: bool = False,
     scene: Path | None = None,
-    force: Overwrite = False,
     quiet: Quiet = False,
 ) -> None:
-    """Draw the movie of an output folder again, with another size, rate or camera.
+    """Draw the movie of an output folder again, with another size, rate or camera: movie.mp4 in the folder.
 
     Parameters
     ----------
@@ -75,17 +71,14 @@ def render(
         The output folder of a run.
     fps
         Pictures per second of the movie.
-    out
-        The movie's file; default movie.mp4 in the folder.
     frames
         Write every picture to frames/ in the folder too.
     scene
         Take the render block (camera, background, speed) of this file instead; it need hold nothing else.
     """
-    check_size(size)
+    look.check()
     if fps is not None and not 0.0 < fps <= 1000.0:
         raise UsageError(f"--fps {fps:g}: must be above 0 and at most 1000, e.g. --fps 30")
-    from ..results.overwriting import output_file
     from ..run.folder import movie_file
     from ..scene.parse import load_render
 
@@ -93,9 +86,9 @@ def render(
     record = stored if scene is None else replace(stored, render=load_render(scene, [solid.name for solid in stored.solids]))
     if scene is not None:
         _warn_of_slow_motion(record.render, stored.control.frames)
-    record = with_quality(record, quality)
-    path = output_file(movie_file(folder, record), out, force=force)
-    draw_movie(folder, record, path, quiet=quiet, size=size, fps=fps, frames=folder / "frames" if frames else None)
+    record = look.of(record)
+    path = output.place(movie_file(folder, record))
+    draw_movie(folder, record, path, quiet=quiet, size=look.size, fps=fps, frames=folder / "frames" if frames else None)
     if not quiet:
         print(f"movie    {path}" + (f"   pictures in {folder / 'frames'}" if frames else ""))
 
@@ -119,7 +112,7 @@ def view(
     *,
     port: Annotated[int, Parameter(converter=whole_number)] = 0,
     open_: Annotated[bool, Parameter(name="--open", negative="--no-open")] = True,
-    edit: Annotated[bool, Parameter(negative=(), help="Let the page change the scene's text and run it again.")] = False,
+    edit: bool = False,
 ) -> None:
     """Look at a run in a browser: one that goes on, with its controls, or one that has ended. Ctrl-C ends it.
 
@@ -131,6 +124,8 @@ def view(
         Port of this machine on which the page is served; a free one unless it is given.
     open
         Open a browser where there is a display.
+    edit
+        Let the page change the scene's text and run it again.
     """
     from ..view.__main__ import serve
 
@@ -140,30 +135,20 @@ def view(
         serve(folder, port=port, edit=edit, on_address=lambda address: show_address(address, browser=open_))
 
 
-def report(
-    folder: Path,
-    /,
-    *,
-    out: Annotated[Path | None, Parameter(name=["-o", "--out"])] = None,
-    exact: Annotated[bool, Parameter(negative=())] = False,
-    force: Overwrite = False,
-    quiet: Quiet = False,
-) -> None:
-    """Write a run as one HTML file: replay, energies, cost, certificate, effects, scene. It opens from disk, without a network.
+def report(folder: Path, /, *, output: OutFile = OutFile(), exact: bool = False, quiet: Quiet = False) -> None:
+    """Write a run as one HTML file: replay, energies, cost, certificate, effects, scene. It opens from disk, without a network:
+    report.html in the folder.
 
     Parameters
     ----------
     folder
         The output folder of a run that has ended.
-    out
-        The file; default report.html in the folder.
     exact
         Positions in 16 bits instead of 12.
     """
-    from ..results.overwriting import output_file
     from ..view.export import write_report
 
-    path = output_file(folder / "report.html", out, force=force)
+    path = output.place(folder / "report.html")
     adopt(folder, quiet=quiet)
     with progress_bar("report", quiet=quiet) as bar:
         every = write_report(folder, path, exact=exact, on_progress=lambda done, total: bar(done, total, ""))
@@ -176,11 +161,10 @@ def export(
     /,
     *,
     to: Annotated[str, Parameter(help="usd, gltf, vtk, xyz, xtc, lammpstrj or csv.")],
-    out: Annotated[Path | None, Parameter(name=["-o", "--out"])] = None,
-    objects: Annotated[str, Parameter()] = "",
+    output: OutFile = OutFile(),
+    objects: str = "",
     every: Annotated[int, Parameter(converter=whole_number)] = 1,
     frames: str = ":",
-    force: Annotated[bool, Parameter(negative=())] = False,
     quiet: Quiet = False,
 ) -> None:
     """Write a run as a file of another program: Blender, ParaView, OVITO, VMD, a spreadsheet.
@@ -189,16 +173,12 @@ def export(
     ----------
     folder
         The output folder of a run, also of one that was stopped.
-    out
-        The file; default NAME with the suffix of the format in the folder.
     objects
         Only these, e.g. "cube, ball[2]"; without liquid.
     every
         Only every N-th frame.
     frames
         Only these, e.g. 30:90; what is left out is the start or the end.
-    force
-        Overwrite the files of an earlier export.
     """
     from ..export import export as export_run
 
@@ -209,11 +189,11 @@ def export(
         done = export_run(
             folder,
             to,
-            out,
+            output.out,
             objects=names,
             every=every,
             frames=chosen,
-            force=force,
+            force=output.force,
             on_progress=lambda n, total: bar(n, total, f"frame {n} of {total}"),
         )
     if quiet:
@@ -224,19 +204,14 @@ def export(
         print(f"         {note}")
 
 
-def timeline(
-    folder: Path, /, *, out: Annotated[Path | None, Parameter(name=["-o", "--out"])] = None, force: Overwrite = False
-) -> None:
-    """Write what each executor did, and which objects it owned, in a run with -n, for https://ui.perfetto.dev.
+def timeline(folder: Path, /, *, output: OutFile = OutFile()) -> None:
+    """Write what each executor did, and which objects it owned, in a run with -n, for https://ui.perfetto.dev: trace.json.
 
     Parameters
     ----------
     folder
         The output folder of a run with -n.
-    out
-        The trace; default trace.json in the folder.
     """
-    from ..results.overwriting import output_file
     from ..results.timeline import TIMELINE, Timeline
     from ..results.trace import write_trace
     from ..run.folder import stored_scene
@@ -247,7 +222,7 @@ def timeline(
             f"{folder} was simulated by one process, so there is no {TIMELINE}; "
             "executors are asked for with -n: mdanim-lammps SCENE -n 2"
         )
-    path = output_file(folder / "trace.json", out, force=force)
+    path = output.place(folder / "trace.json")
     write_trace(Timeline.read(folder), path, scene.title or scene.name)
     print(f"trace    {path}   open it in https://ui.perfetto.dev")
 

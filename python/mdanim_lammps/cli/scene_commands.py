@@ -3,10 +3,10 @@
 
 from __future__ import annotations
 
-import json
 import shlex
 import sys
 import time
+from json import dumps
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -16,56 +16,20 @@ from ..errors import Problem, RefusedError, SceneError, UsageError, problem_json
 from ..scene.formatting import number, say
 from ..terminal import progress_bar
 from ..view.beside import Viewer
-from .options import (
-    Accuracy,
-    AllowUnstable,
-    Control,
-    Edit,
-    Executors,
-    Force,
-    Out,
-    Overwrite,
-    Quality,
-    Quiet,
-    Set,
-    Size,
-    Strict,
-    Threads,
-    Verbose,
-    View,
-)
-from .steps import (
-    STARTED,
-    announce,
-    check_executors,
-    check_size,
-    lmp_command,
-    load,
-    percent_of,
-    prepare,
-    print_lines,
-    print_warnings,
-    seconds_of,
-    simulate_and_draw,
-    with_accuracy,
-    with_quality,
-)
+from .options import AllowUnstable, Executing, Executors, Look, OutFile, OutFolder, Quiet, Reading, Verbose, View
+from .steps import STARTED, announce, lmp_command, percent_of, prepare, print_lines, print_warnings, seconds_of, simulate_and_draw
 
 
 def run(
     scene: Path,
     /,
     *,
-    executors: Executors = 1,
-    threads: Threads = None,
-    out: Out = None,
-    control: Control = None,
-    accuracy: Accuracy = None,
-    set_: Set = (),
-    force: Force = False,
-    movie: bool = True,
+    reading: Reading = Reading(),
+    executing: Executing = Executing(),
+    output: OutFolder = OutFolder(),
+    movie: Annotated[bool, Parameter(negative="--no-movie")] = True,
     view: View = False,
-    edit: Edit = False,
+    edit: bool = False,
     allow_unstable: AllowUnstable = False,
     quiet: Quiet = False,
     verbose: Verbose = False,
@@ -78,34 +42,35 @@ def run(
         The scene file.
     movie
         Make movie.mp4 at the end.
+    edit
+        Let the page change the scene's text and run it again; implies --view.
     """
     from ..cost.speedup_forecast import forecast_speedup
     from ..report import speedup_lines
     from ..run.folder import open_run, output_folder
 
-    check_executors(executors)
-    record = with_accuracy(load(scene, set_), accuracy)
-    out = output_folder(record, out)
+    executing.check()
+    record = reading.load(scene)
+    out = output_folder(record, output.out)
     ready = prepare(record, allow_unstable=allow_unstable)
-    announce(ready, quiet, verbose, executors, control)
-    if executors > 1 and not quiet:
-        print("\n".join(speedup_lines(forecast_speedup(ready, executors))), flush=True)
-    with Viewer(view, scene if edit else None) as viewer, open_run(ready, out, force=force, draws=movie) as folder:
+    announce(ready, quiet, verbose, executing)
+    if executing.executors > 1 and not quiet:
+        print("\n".join(speedup_lines(forecast_speedup(ready, executing.executors))), flush=True)
+    with Viewer(view, scene if edit else None) as viewer, open_run(ready, out, force=output.force, draws=movie) as folder:
         viewer.start(folder)
-        simulate_and_draw(ready, folder, quiet=quiet, movie=movie, executors=executors, threads=threads, control=control)
+        simulate_and_draw(ready, folder, executing, quiet=quiet, movie=movie)
 
 
 def check(
     scene: Path,
     /,
     *,
+    reading: Reading = Reading(),
     executors: Executors = 1,
-    set_: Set = (),
-    accuracy: Accuracy = None,
-    strict: Strict = False,
+    strict: bool = False,
     allow_unstable: AllowUnstable = False,
-    format: Literal["text", "json"] = "text",
-    json_: Annotated[bool, Parameter(name="--json", negative=(), help="The same as --format json.")] = False,
+    json: bool = False,
+    format: Annotated[Literal["text", "json"] | None, Parameter(show=False)] = None,
 ) -> None:
     """List the effects of a scene with reasons and certify its time step; of the run only some first steps, which tell its cost.
 
@@ -113,36 +78,40 @@ def check(
     ----------
     scene
         The scene file.
-    format
-        Text for people, JSON for programs.
+    strict
+        Bare numbers need a unit.
+    json
+        For programs; also of problems.
     """
-    as_json = json_ or format == "json"
+    if format:
+        way_out = "write --json" if format == "json" else "leave it out"
+        print(f"note: --format {format} is an old spelling; {way_out}", file=sys.stderr)
+    told = json or format == "json"
     try:
-        _check(scene, executors, set_, accuracy, strict, allow_unstable, as_json)
+        _check(scene, reading, executors, strict, allow_unstable, told)
     except (SceneError, RefusedError) as error:
-        if not as_json:
+        if not told:
             raise
         problems = error.problems if isinstance(error, SceneError) else [Problem(None, str(error))]
-        print(json.dumps({"problems": [problem_json(p) for p in problems]}, indent=1))
+        print(dumps({"problems": [problem_json(p) for p in problems]}, indent=1))
         raise SystemExit(error.exit_code) from None
 
 
-def _check(scene: Path, executors: int, set_, accuracy, strict: bool, allow_unstable: bool, as_json: bool) -> None:
+def _check(scene: Path, reading: Reading, executors: int, strict: bool, allow_unstable: bool, as_json: bool) -> None:
     from ..cost.forecast import forecast
     from ..cost.speedup_forecast import forecast_speedup
     from ..engine.threads import choose_threads
     from ..processes import cores
     from ..report import check_json, check_lines
 
-    check_executors(executors)
-    record = with_accuracy(load(scene, set_, strict=strict), accuracy)
-    ready = prepare(record, allow_unstable=allow_unstable)
+    Executing(executors=executors).check()
+    ready = prepare(reading.load(scene, strict=strict), allow_unstable=allow_unstable)
     setup = time.perf_counter() - STARTED
     cost = forecast(ready, setup=setup)
     threads = choose_threads(ready.plan, max(1, cores() // executors))
     spread = forecast_speedup(ready, executors) if executors > 1 else None
     if as_json:
-        print(json.dumps(check_json(ready, cost, threads, spread), indent=1))
+        print(dumps(check_json(ready, cost, threads, spread), indent=1))
         return
     print_warnings(ready)
     print("\n".join(check_lines(ready, cost, threads, spread)))
@@ -152,18 +121,16 @@ def picture(
     scene: Path,
     /,
     *,
+    reading: Reading = Reading(),
     at: str | None = None,
-    out: Annotated[Path | None, Parameter(name=["-o", "--out"])] = None,
-    size: Size = None,
-    quality: Quality = None,
-    names: Annotated[bool, Parameter(negative=())] = False,
-    springs: Annotated[bool, Parameter(negative=())] = False,
-    boxes: Annotated[bool, Parameter(negative=())] = False,
-    set_: Set = (),
-    force: Overwrite = False,
+    output: OutFile = OutFile(),
+    look: Look = Look(),
+    names: bool = False,
+    springs: bool = False,
+    boxes: bool = False,
     quiet: Quiet = False,
 ) -> None:
-    """Draw a scene before it is run, with the scene's camera.
+    """Draw a scene before it is run, with the scene's camera: SCENE.png beside the scene.
 
     Parameters
     ----------
@@ -171,8 +138,6 @@ def picture(
         The scene file.
     at
         The moment that is drawn, e.g. "0.8 s": a quick, coarse preview run goes there first.
-    out
-        The picture; default SCENE.png beside the scene.
     names
         Write each object's name above it.
     springs
@@ -183,18 +148,17 @@ def picture(
     from ..api.scene import draw_picture
     from ..picture.marks import Marks
     from ..report import progress_line
-    from ..results.overwriting import output_file
 
-    check_size(size)
+    look.check()
     time = 0.0 if at is None else seconds_of("--at", at)
-    record = load(scene, set_)
-    path = output_file(scene.with_suffix(".png"), out, force=force)
+    record = reading.load(scene)
+    path = output.place(scene.with_suffix(".png"))
     with progress_bar("preview", quiet=quiet or not time) as bar:
         draw_picture(
-            with_quality(record, quality),
+            look.of(record),
             path,
             at=time,
-            size=size,
+            size=look.size,
             marks=Marks(names, springs, boxes),
             on_progress=lambda p: bar(p.frame, p.frames, progress_line(p)),
         )
@@ -206,10 +170,8 @@ def build(
     scene: Path,
     /,
     *,
-    out: Out = None,
-    set_: Set = (),
-    accuracy: Accuracy = None,
-    force: Force = False,
+    reading: Reading = Reading(),
+    output: OutFolder = OutFolder(),
     allow_unstable: AllowUnstable = False,
     quiet: Quiet = False,
     verbose: Verbose = False,
@@ -223,11 +185,11 @@ def build(
     """
     from ..run.folder import open_run, output_folder
 
-    record = with_accuracy(load(scene, set_), accuracy)
-    out = output_folder(record, out)
+    record = reading.load(scene)
+    out = output_folder(record, output.out)
     ready = prepare(record, allow_unstable=allow_unstable)
     announce(ready, quiet, verbose)
-    with open_run(ready, out, force=force, draws=None) as folder:
+    with open_run(ready, out, force=output.force, draws=None) as folder:
         pass  # all of it is known before the run
     if not quiet:
         print(f"built    cd {shlex.quote(str(folder))} && {lmp_command()} -in {shlex.quote(f'in.{ready.plan.name}')}")
@@ -237,13 +199,11 @@ def study(
     scene: Path,
     /,
     *,
+    reading: Reading = Reading(),
     budget: str = "2 min",
-    out: Out = None,
-    ladders: Annotated[str, Parameter(name="--ladders")] = "",
+    output: OutFolder = OutFolder(),
+    ladders: str = "",
     target: str | None = None,
-    set_: Set = (),
-    accuracy: Accuracy = None,
-    force: Force = False,
     quiet: Quiet = False,
 ) -> None:
     """What accuracy costs in time: ladders of settings around the scene's own, measured, with a table, a plot and advice.
@@ -256,7 +216,7 @@ def study(
     scene
         The scene file.
     budget
-        Wall time, e.g. "30 s" or "2 min".
+        Wall time, e.g. "30 s"; if left out, 2 min.
     ladders
         Only these, e.g. "time step, resolution"; known are time step, resolution, sweeps, contact.
     target
@@ -268,18 +228,18 @@ def study(
 
     seconds = seconds_of("--budget", budget)
     if target is not None:
-        if ladders or accuracy:
+        if ladders or reading.accuracy:
             raise UsageError("--target chooses the setting itself: leave out --ladders and --accuracy")
-        _aim(load(scene, set_), percent_of("--target", target), out, seconds, force, quiet)
+        _aim(reading.load(scene), percent_of("--target", target), output, seconds, quiet)
         return
-    record = with_accuracy(load(scene, set_), accuracy)
+    record = reading.load(scene)
     only = [name.strip() for name in ladders.split(",") if name.strip()]
     done = run_study(
         record,
-        output_folder(record, out) / STUDY,
+        output_folder(record, output.out) / STUDY,
         budget=seconds,
         only=only,
-        force=force,
+        force=output.force,
         on_progress=print_lines("study", quiet),
     )
     if quiet:
@@ -293,11 +253,13 @@ def study(
     print(f"output   {done.folder}/study.json, study.csv, study.png")
 
 
-def _aim(record, error: float, out: Path | None, budget: float, force: bool, quiet: bool) -> None:
+def _aim(record, error: float, output: OutFolder, budget: float, quiet: bool) -> None:
     """Print the cheapest setting with an error, and what to write for it; with ``quiet`` only that."""
     from ..api import Scene
 
-    found = Scene(record).setting_for(error, out, budget=budget, force=force, on_progress=print_lines("study", quiet))
+    found = Scene(record).setting_for(
+        error, output.out, budget=budget, force=output.force, on_progress=print_lines("study", quiet)
+    )
     if not quiet:
         print(f"target   {number(100 * error)} %: {found}, {say(found.seconds, 's', 2)}")
     print(f"{'' if quiet else 'write    '}{found.words}")

