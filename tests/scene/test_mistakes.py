@@ -257,6 +257,21 @@ def test_all_problems_in_one_pass():
     assert len(error.value.problems) >= 6
 
 
+@pytest.mark.parametrize(
+    ("control", "columns"),
+    [
+        pytest.param("time 3 sec  fps 20  friktion 0.3", {18, 23, 31}, id="unknown words behind a unit"),
+        pytest.param("time 3 s  accuracy fine  friktion 3  seed -1", {30, 36, 53}, id="behind a choice"),
+        pytest.param("time 3 s  friktion 0.3 fps 20  frames 30 fsp", {21, 34, 52}, id="behind another unknown word"),
+    ],
+)
+def test_all_problems_of_a_line_in_one_pass(control, columns):
+    """Words that a block does not have are told too where they stand behind a bad value on the same line."""
+    with pytest.raises(SceneError) as error:
+        parse_scene(text().replace(CONTROL, f"control {{ {control} }}\n"))
+    assert {p.column for p in error.value.problems} == columns, str(error.value)
+
+
 def test_a_mistake_in_a_repeat_is_told_once():
     """Name the first round in which it happens."""
     body = text(mass="(3 - i) kg").replace("object ball", "object ball[i]").replace(CONTROL, "")

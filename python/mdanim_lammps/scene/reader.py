@@ -16,7 +16,8 @@ from collections.abc import Iterator
 from . import expressions as build
 from . import units
 from .expressions import Node
-from .forms import Slot
+from .forms import Slot, literals
+from .keywords import BLOCKS, KEYWORDS
 from .limits import DEEPEST_BRACKET, DEEPEST_EXPRESSION
 from .source import Fault, SceneFile
 from .tokens import Token, tokens
@@ -33,6 +34,8 @@ ODD = {
     "%": "write a fraction",
 }
 """Signs that the language does not have, and what to write instead."""
+VALUE = ("NUMBER", "STRING")
+"""Tokens that are values by themselves."""
 
 
 class Reader:
@@ -281,3 +284,40 @@ class Reader:
         elif t.type == "RPAR" and not self.brackets:
             hint = "this ) closes nothing"
         return Fault(t, f"{what}, found {t.found()}", hint)
+
+    def skip_statement(self, start: int, block: str, bad: Token | None = None) -> None:
+        """Go on after a bad statement: behind its line, behind the block that it opens, or at the next setting after ``bad``."""
+        self.at = start
+        depth = braces = 0
+        passed = False
+        while True:
+            t = self.peek
+            between = block and passed and depth <= 0 and not braces and t not in self.names
+            if between and (str(t) in KEYWORDS[block] or self._begins(block)):
+                break
+            passed |= bad is not None and t.start >= bad.start
+            t = self.take()
+            if t.type == "END":
+                break
+            if t.type == "LBRACE":
+                braces += 1
+            elif t.type == "RBRACE":
+                braces -= 1
+                if braces < 0:
+                    self.at -= 1
+                    break
+                if braces == 0:
+                    break
+            elif braces == 0:
+                depth += (t.type == "LPAR") - (t.type == "RPAR")
+                if t.type == "NEWLINE":
+                    n = self.peek
+                    if depth <= 0 or n.type in ("RBRACE", "NEWLINE", "END") or str(n) in KEYWORDS[block] or str(n) in BLOCKS:
+                        break
+        self.at = max(self.at, start + 1)
+
+    def _begins(self, block: str) -> bool:
+        """Whether the next word is behind a value and before one, and follows no setting of the block: it is meant to be one."""
+        word, before, behind = self.peek, self.tokens[self.at - 1], self.ahead(1)
+        within = any(str(word) in literals(k.form) for k in KEYWORDS[block].values())
+        return word.type == "NAME" and before.type in (*VALUE, "RPAR", "NAME") and behind.type in (*VALUE, "LPAR") and not within

@@ -129,36 +129,6 @@ class Parser(Reader):
                 self.problem(Fault(opened, cause, "add a } between them"))
                 return result
 
-    def skip_statement(self, start: int, block: str, bad: Token | None = None) -> None:
-        """Go on after a bad statement: behind its line, behind the block that it opens, or at the next setting after ``bad``."""
-        self.at = start
-        depth = braces = 0
-        passed = False
-        while True:
-            t = self.peek
-            if block and passed and depth <= 0 and not braces and str(t) in KEYWORDS[block] and t not in self.names:
-                break
-            passed |= t is bad
-            t = self.take()
-            if t.type == "END":
-                break
-            if t.type == "LBRACE":
-                braces += 1
-            elif t.type == "RBRACE":
-                braces -= 1
-                if braces < 0:
-                    self.at -= 1
-                    break
-                if braces == 0:
-                    break
-            elif braces == 0:
-                depth += (t.type == "LPAR") - (t.type == "RPAR")
-                if t.type == "NEWLINE":
-                    n = self.peek
-                    if depth <= 0 or n.type in ("RBRACE", "NEWLINE", "END") or str(n) in KEYWORDS[block] or str(n) in BLOCKS:
-                        break
-        self.at = max(self.at, start + 1)
-
     def word(self) -> Token:
         """A word, hyphens included (``air-drag``)."""
         first = last = self.take()
@@ -225,7 +195,7 @@ class Parser(Reader):
             return [self.group(word, guess, repeats)]
         if guess in KEYWORDS[block] and not self.opens_block():
             return [self.entry(word, KEYWORDS[block][guess], repeats)]
-        self.skip_statement(self.start, block)
+        self.skip_statement(self.start, block, word)
         return [UnreadableStatement(guess or str(word))]
 
     def _first_on_line(self, t: Token) -> bool:
