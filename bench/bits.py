@@ -2,10 +2,10 @@
 """Bits of runs: ``python bench/bits.py [--quick] [--write FILE] [--against FILE] [SCENE ...]``.
 
 Every scene of scenes/ and of tests/reference, and the hard ones below, is run for some steps from its beginning and from a state
-in its middle: by ``run_style verlet``, and by passes with each set of instructions that runs here, by 1, 2 and 4 threads, all of
-that on 1 and 2 ranks. Told is the SHA-256 of positions, velocities, forces and of the records of fixes, which must be the same in
-all of these ways, and that of the ledger, whose sums each way rounds in another order. A row names the ways that differ from the
-first one. ``--write`` stores all hashes; ``--against`` compares with such a file and exits with 1, naming what differs.
+in its middle: by ``run_style verlet``, and by passes with each set of instructions that runs here, by 1, 2 and 4 threads,
+some of that on 2 ranks. Told is the SHA-256 of positions, velocities, forces and of the records of fixes, which must be the same
+in all of these ways, and that of the ledger, whose sums each way rounds in another order. A row names the ways that differ from
+the first one. ``--write`` stores all hashes; ``--against`` compares with such a file and exits with 1, naming what differs.
 ``--quick`` takes the hard scenes and few ways, a minute; all takes about ten minutes of a core.
 """
 
@@ -89,11 +89,11 @@ class Way(NamedTuple):
 def ways(quick: bool) -> list[Way]:
     """All of them, or those of the quick form."""
     widths = [width for width in WIDTHS if runs_here(width)]
+    few = ["verlet", *(f"verlet/mdanim width {width} threads {n}" for width, n in zip(widths, (2, 4, 1)))]
     if quick:
-        few = ["verlet", *(f"verlet/mdanim width {width} threads {n}" for width, n in zip(widths, (2, 4, 1)))]
         return [*(Way(style, 1) for style in few), Way(few[1], 2)]
-    styles = ["verlet", *(f"verlet/mdanim width {width} threads {n}" for width in widths for n in (1, 2, 4))]
-    return [Way(style, ranks) for ranks in (1, 2) for style in styles]
+    all_alone = ["verlet", *(f"verlet/mdanim width {width} threads {n}" for width in widths for n in (1, 2, 4))]
+    return [*(Way(style, 1) for style in all_alone), *(Way(style, 2) for style in few)]  # ranks wait for each other
 
 
 def files() -> dict[str, Path]:
@@ -162,6 +162,8 @@ def work(folder: Path, styles: list[str], steps: int) -> None:
     comm = MPI.COMM_WORLD
     for path in sorted(folder.glob("*.plan")):
         name, plan, middle = pickle.loads(path.read_bytes())
+        if comm.rank == 0:
+            print(f"{name} on {comm.size} rank{'s' * (comm.size > 1)} ...", file=sys.stderr, flush=True)
         for style in styles:
             found = run(plan, middle, style, steps, comm)
             if comm.rank == 0:

@@ -21,7 +21,8 @@ ROOT = Path(__file__).resolve().parent.parent
 WORK = ROOT / "build" / "sanitize"
 REPORTS, PACKAGE, SCENES = WORK / "reports", WORK / "package", WORK / "scenes"
 BIN = Path(sys.executable).parent
-FLAGS = " ".join((ROOT / "plugin" / "sanitize_flags.txt").read_text().split())
+PLUGIN = ROOT / "plugin"
+FLAGS = " ".join((PLUGIN / "sanitize_flags.txt").read_text().split())
 TESTS = ("plugin/**/test_*.py", "engine/test_trace.py")
 PLANTED = {
     "mdanim_plant_heap_overflow": "AddressSanitizer: heap-buffer-overflow",
@@ -74,16 +75,17 @@ object b {{ shape box (5, 5, 5) cm position (6.5, 0, 2) cm {SOLID} velocity (-1,
 }
 END = "control {{ time 0.2 s frames 50 fps resolution 1 cm  {} }}\n"
 THREADS = {
-    "threads_of_passes": ("passes/*.cpp", "threads/*.cpp", "geometry/*.cpp", "barrier/*.cpp"),
-    "threads_of_contact": ("contact/*.cpp", "threads/team.cpp", "barrier/contact_search.cpp", "geometry/aligned_array.cpp"),
-    "threads_of_cells": ("liquid/automaton/automaton.cpp", "liquid/occupancy.cpp", "threads/team.cpp"),
-    "threads_of_waves": ("liquid/waves/waves*.cpp", "liquid/waves/span.cpp", "threads/team.cpp"),
+    "threads_of_passes": ("passes/*.cpp", "barrier/*.cpp"),
+    "threads_of_contact": ("contact/*.cpp", "barrier/contact_search.cpp"),
+    "threads_of_cells": ("liquid/automaton/automaton.cpp", "liquid/occupancy.cpp"),
+    "threads_of_waves": ("liquid/waves/waves*.cpp", "liquid/waves/span.cpp"),
 }
-"""Programs of tests/lab, and what of plugin/ they need."""
-SET = ("-DMDANIM_SET=common", "-DMDANIM_LANES=4")
+"""Programs of tests/lab, and what of plugin/ they need besides `FLOORS`."""
+FLOORS = ("simd/*.cpp", "threads/*.cpp", "geometry/*.cpp", "**/*_of_set.cpp")
+SET = ("-DMDANIM_SET=common", "-DMDANIM_LANES=4", "-DMDANIM_SETS=MDANIM_A_SET(common)")
 """The instructions that they are compiled for."""
-LEFT_OUT = ("kernels.cpp", "contact_kernel.cpp", "bodies_file.cpp")
-"""Files that choose among sets of instructions, where there is one, or read files."""
+LEFT_OUT = ("bodies_file.cpp",)
+"""Files that read files."""
 WORDS = {"friction": "friction 0.4", "surface": "contact-model surface"}
 """Of control, of those of TEXT that need more; the others are under the paper's own law of contact."""
 
@@ -178,7 +180,7 @@ def run_scenes() -> bool:
 def run_threads(name: str) -> bool:
     """A program of several threads under the thread sanitizer; a data race or another bit makes it fail."""
     program = WORK / name
-    parts = sorted(path for pattern in THREADS[name] for path in (ROOT / "plugin").glob(pattern) if path.name not in LEFT_OUT)
+    parts = sorted({path for pattern in (*FLOORS, *THREADS[name]) for path in PLUGIN.glob(pattern) if path.name not in LEFT_OUT})
     options = ["-std=c++17", "-g", "-O1", "-fsanitize=thread", "-ffp-contract=off", "-Wno-psabi"]
     options += [*SET, f"-I{ROOT / 'plugin'}", "-pthread"]
     source = ROOT / "tests" / "lab" / f"{name}.cpp"

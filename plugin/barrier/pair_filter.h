@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// Which particles are near each other: what the vector code (pair_filter_kernel.h) is given. Plain data alone, for the reason
-// told in kernels_of_set.cpp.
+// Which particles are near each other: what the vector code (pair_filter_of_set.cpp) is given. Plain data alone, for the reason
+// told in simd/of_set.h.
 
 #ifndef MDANIM_PAIR_FILTER_H
 #define MDANIM_PAIR_FILTER_H

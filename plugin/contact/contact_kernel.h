@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // Contacts of one field, four at a time: what the vector code (contact_kernel_of_set.cpp) is given and answers. Plain data alone,
-// for the reason told in passes/kernels_of_set.cpp.
+// for the reason told in simd/of_set.h.
 
 #ifndef MDANIM_CONTACT_KERNEL_H
 #define MDANIM_CONTACT_KERNEL_H
@@ -50,15 +50,11 @@ struct PushedBlock {
 };
 
 struct ContactKernels {
-  const char *name;    // as those of passes/kernels.h
   // The first `n` of the contacts from `first` on, all of points of one kind; those in `hard` stay as they are.
   void (*push)(const PushTask &, FieldContact *first, const PointNow *now, int n, PushedBlock &pushed);
   // The forces of lanes from `first` to `end` - 1 on the host's nodes.
   void (*add_to_nodes)(const PushedBlock &pushed, int first, int end, PaddedVec3 *on);
 };
-
-// Those of a set of instructions that runs here; those of all processors for a name that is not known.
-const ContactKernels &contact_kernels(const char *name);
 
 }    // namespace mdanim
 

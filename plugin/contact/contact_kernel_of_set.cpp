@@ -1,13 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// Contacts, four at a time, for one set of instructions: CMake compiles this file once for each (passes/kernels_of_set.cpp).
+// Contacts, four at a time, for one set of instructions (simd/of_set.h).
 
 #include "contact/contact_kernel.h"
+#include "simd/of_set.h"
 #include "simd/vectors.h"
-
-#define MDANIM_NAME_OF(set) #set
-#define MDANIM_NAME(set) MDANIM_NAME_OF(set)
-#define MDANIM_KERNELS_OF(set) contact_kernels_##set
-#define MDANIM_KERNELS(set) MDANIM_KERNELS_OF(set)
 
 namespace mdanim {
 namespace {
@@ -257,7 +253,7 @@ void push(const PushTask &task, FieldContact *first, const PointNow *now, int n,
 
 }    // namespace
 
-extern const ContactKernels MDANIM_KERNELS(MDANIM_SET);
-const ContactKernels MDANIM_KERNELS(MDANIM_SET) = {MDANIM_NAME(MDANIM_SET), push, add_to_nodes};
+extern const ContactKernels MDANIM_OF_SET(contact_kernels);
+const ContactKernels MDANIM_OF_SET(contact_kernels) = {push, add_to_nodes};
 
 }    // namespace mdanim

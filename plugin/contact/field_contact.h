@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // A point of one object's surface that is in contact with another, its host. Plain data, for the reason told in
-// passes/kernels_of_set.cpp.
+// simd/of_set.h.
 
 #ifndef MDANIM_FIELD_CONTACT_H
 #define MDANIM_FIELD_CONTACT_H

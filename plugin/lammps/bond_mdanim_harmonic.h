@@ -7,10 +7,11 @@
 
 #include "bond.h"
 #include "numbers/vec3.h"
-#include "passes/kernels.h"
 #include "passes/loss.h"
 #include "passes/pass_participant.h"
+#include "simd/kernels.h"
 #include "springs/law.h"
+#include "springs/spring_kernels.h"
 #include "threads/team.h"
 
 #include <vector>

@@ -56,7 +56,7 @@ void BondMdanimHarmonic::energies(int begin, int end, int n, Stretch &stretch, d
       stretch.K[at] = spring[link.type].K;
       stretch.r0[at++] = spring[link.type].r0;
     }
-  kernels.spring_energies(n, stretch.x.data(), stretch.y.data(), stretch.z.data(), stretch.r0.data(), stretch.K.data());
+  kernels.springs.energies(n, stretch.x.data(), stretch.y.data(), stretch.z.data(), stretch.r0.data(), stretch.K.data());
   const double share = upper_only ? 1.0 : 0.5;
   for (int at = 0; at < n; ++at) sum += share * stretch.K[at];
 }
@@ -131,8 +131,8 @@ double BondMdanimHarmonic::compute_rows(int begin, int end, int first, std::vect
     Stretch &stretch = with.stretch;
     take_apart(from, to, springs, stretch);
     if (eflag_global && from >= first) energies(from, to, springs, stretch, sum);
-    kernels.spring_forces(springs, stretch.push.data(), stretch.pull.data(), stretch.x.data(), stretch.y.data(),
-                          stretch.z.data());
+    kernels.springs.forces(springs, stretch.push.data(), stretch.pull.data(), stretch.x.data(), stretch.y.data(),
+                           stretch.z.data());
     if (on) dashpots(from, to, stretch, *on);
     if (upper_only)
       sum_halves(from, to, first, stretch, with.received);

@@ -4,13 +4,14 @@
 #ifndef LMP_FIX_MDANIM_BARRIER_H
 #define LMP_FIX_MDANIM_BARRIER_H
 
+#include "barrier/pair_filter.h"
 #include "fix.h"
 #include "geometry/boxes.h"
 #include "lammps/named_group.h"
 #include "lammps/particle_value.h"
 #include "numbers/vec3.h"
-#include "passes/kernels.h"
 #include "passes/pass_participant.h"
+#include "simd/kernels.h"
 
 #include <vector>
 

@@ -9,8 +9,8 @@
 #include "lammps/named_group.h"
 #include "lammps/particle_value.h"
 #include "lammps/stateful.h"
-#include "passes/kernels.h"
 #include "passes/pass_participant.h"
+#include "simd/kernels.h"
 
 #include <map>
 #include <memory>
@@ -39,7 +39,7 @@ class FixMdanimContact : public Fix, public mdanim::PassParticipant, public mdan
   bool depends_on_positions_only() const override { return true; }
   void equip(const mdanim::Kernels &kernels, const mdanim::Threads &threads) override
   {
-    world_of_contact.use(&mdanim::contact_kernels(kernels.name), threads);
+    world_of_contact.use(&kernels.contact, threads);
     threads_now = threads;
   }
   void add_forces(const mdanim::Positions &place, const mdanim::ForceSums &force) override;

@@ -9,7 +9,7 @@
 
 namespace mdanim {
 
-// For all that is also compiled for processors that not every host has (passes/kernels_of_set.cpp): a copy out of line could be
+// For all that is also compiled for processors that not every host has (simd/of_set.h): a copy out of line could be
 // linked into the rest of the program.
 #define MDANIM_ALWAYS_INLINE inline __attribute__((always_inline))
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // One step of all particles, block by block: what the vector code (pass_kernel.h) is given. Plain data alone, for the reason told
-// in kernels_of_set.cpp.
+// in simd/of_set.h.
 
 #ifndef MDANIM_PASS_H
 #define MDANIM_PASS_H

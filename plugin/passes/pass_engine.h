@@ -4,10 +4,10 @@
 #ifndef MDANIM_PASS_ENGINE_H
 #define MDANIM_PASS_ENGINE_H
 
-#include "passes/kernels.h"
 #include "passes/pass_run.h"
 #include "passes/simd_blocks.h"
 #include "passes/tag_order.h"
+#include "simd/kernels.h"
 
 #include <optional>
 #include <vector>

@@ -222,7 +222,7 @@ template <Friction FRICTION> MDANIM_ALWAYS_INLINE auto half_steps(const Vector &
 
 // The second half of a step and the first of the next, by a law of leapfrog.h; friction takes from `mass` alone. Sums are those
 // of the block's chunk when then(v^n, v^{n+1/2}, r^{n+1}) is called.
-template <Friction FRICTION, bool TRACED, bool DAMPED, class Law, class Then>
+template <Friction FRICTION, bool DAMPED, class Law, class Then>
 MDANIM_ALWAYS_INLINE void advance(const Pass &pass, const Block &block, const double *total, const Vector3 &f, const Law &law,
                                   const Vector &mass, Tally &tally, const Then &then)
 {
@@ -244,7 +244,7 @@ MDANIM_ALWAYS_INLINE void advance(const Pass &pass, const Block &block, const do
     add_lanes(tally.sums.first_loss, law.loss(middle, last, f, mass, true));
   }
   then(middle, last, place);
-  if (TRACED) {
+  if (pass.trace) {
     if (block.object != tally.object) tally.turn_to_object(block.object, pass);
     if (block.lanes < LANES) {    // lanes of others go where the first one is, and rest
       const Vector others = load(motion + FOREIGN_LANE * LANES);
@@ -260,7 +260,7 @@ MDANIM_ALWAYS_INLINE void advance(const Pass &pass, const Block &block, const do
 }
 
 // The motion of a block that a liquid acts on (buoyancy/immersed.h). Not inlined: most blocks are dry.
-template <Friction FRICTION, bool TRACED, bool DAMPED>
+template <Friction FRICTION, bool DAMPED>
 __attribute__((noinline)) void move_immersed(const Pass &pass, const Block &block, const double *total, Tally &tally)
 {
   const double *const motion = pass.motion + static_cast<unsigned long>(block.motion) * (MOTIONS * LANES);
@@ -287,11 +287,10 @@ __attribute__((noinline)) void move_immersed(const Pass &pass, const Block &bloc
     tally.fastest_near = place.z < pass.top_of_near ? larger(square, tally.fastest_near) : tally.fastest_near;
   };
   const Vector mass = phi > 0.0 ? particle.mass : Vector{};
-  advance<FRICTION, TRACED, DAMPED>(pass, block, total, load_own(total) + force.push, half_steps<FRICTION>(phi, kick), mass,
-                                    tally, then);
+  advance<FRICTION, DAMPED>(pass, block, total, load_own(total) + force.push, half_steps<FRICTION>(phi, kick), mass, tally, then);
 }
 
-template <Friction FRICTION, bool TRACED, bool DAMPED>
+template <Friction FRICTION, bool DAMPED>
 MDANIM_ALWAYS_INLINE void move(const Pass &pass, const Block &block, const double *total, Tally &tally)
 {
   const int i = block.start;
@@ -305,14 +304,13 @@ MDANIM_ALWAYS_INLINE void move(const Pass &pass, const Block &block, const doubl
   }
   if constexpr (FRICTION != Friction::NONE) {
     if (__builtin_expect(block.immersed >= 0, 0)) {
-      move_immersed<FRICTION, TRACED, DAMPED>(pass, block, total, tally);
+      move_immersed<FRICTION, DAMPED>(pass, block, total, tally);
       return;
     }
   }
   const double *const motion = pass.motion + static_cast<unsigned long>(block.motion) * (MOTIONS * LANES);
-  advance<FRICTION, TRACED, DAMPED>(pass, block, total, load_own(total), half_steps<FRICTION>(motion),
-                                    load(motion + BRAKED_MASS * LANES), tally,
-                                    [](const Vector3 &, const Vector3 &, const Vector3 &) {});
+  advance<FRICTION, DAMPED>(pass, block, total, load_own(total), half_steps<FRICTION>(motion), load(motion + BRAKED_MASS * LANES),
+                            tally, [](const Vector3 &, const Vector3 &, const Vector3 &) {});
 }
 
 // --- at the borders of ranges ---
@@ -374,7 +372,7 @@ __attribute__((noinline)) void feel_at_border(const Pass &pass, const Block &blo
 }
 
 // In a copy of its own lanes.
-template <Friction FRICTION, bool TRACED, bool DAMPED>
+template <Friction FRICTION, bool DAMPED>
 __attribute__((noinline)) void move_at_border(const Pass &pass, const Block &block, const double *total, Tally &tally)
 {
   constexpr int KINDS = DAMPED ? 4 : 2;
@@ -386,7 +384,7 @@ __attribute__((noinline)) void move_at_border(const Pass &pass, const Block &blo
       for (int lane = 0; lane < block.lanes; ++lane) room[kind][d][lane] = of_copy[kind][d][block.start + lane];
       of_copy[kind][d] = room[kind][d] - block.start;
     }
-  move<FRICTION, TRACED, DAMPED>(copy, block, total, tally);
+  move<FRICTION, DAMPED>(copy, block, total, tally);
   double *const *const of_pass[] = {pass.x, pass.v, pass.last, pass.seen};
   for (int kind = 0; kind < KINDS; ++kind)
     for (int d = 0; d < 3; ++d)
@@ -407,17 +405,17 @@ template <bool DAMPED> MDANIM_ALWAYS_INLINE void feel_anywhere(const Pass &pass,
   if (__builtin_expect(block.external_force >= 0, 0)) take_external_force(pass, block, total);
 }
 
-template <Friction FRICTION, bool TRACED, bool DAMPED>
+template <Friction FRICTION, bool DAMPED>
 MDANIM_ALWAYS_INLINE void move_anywhere(const Pass &pass, const Block &block, const double *total, Tally &tally)
 {
   if (__builtin_expect(block.at_border && block.start + LANES > pass.range->end, 0))
-    move_at_border<FRICTION, TRACED, DAMPED>(pass, block, total, tally);
+    move_at_border<FRICTION, DAMPED>(pass, block, total, tally);
   else
-    move<FRICTION, TRACED, DAMPED>(pass, block, total, tally);
+    move<FRICTION, DAMPED>(pass, block, total, tally);
 }
 
 // A block moves while the next one's springs keep the divider busy: nothing then waits for its forces.
-template <Friction FRICTION, bool TRACED, bool DAMPED> MDANIM_ALWAYS_INLINE void go(Pass &pass)
+template <Friction FRICTION, bool DAMPED> MDANIM_ALWAYS_INLINE void go(Pass &pass)
 {
   double total[2][(DAMPED ? 6 : 3) * LANES];
   Tally tally;
@@ -428,11 +426,11 @@ template <Friction FRICTION, bool TRACED, bool DAMPED> MDANIM_ALWAYS_INLINE void
   if (pass.range->below) see_crossed<DAMPED>(pass, *pass.range->below);
   for (int n = 0; n < blocks; ++n) {
     feel_anywhere<DAMPED>(pass, block[n], e, total[n & 1]);
-    if (n) move_anywhere<FRICTION, TRACED, DAMPED>(pass, block[n - 1], total[~n & 1], tally);
+    if (n) move_anywhere<FRICTION, DAMPED>(pass, block[n - 1], total[~n & 1], tally);
   }
-  if (blocks) move_anywhere<FRICTION, TRACED, DAMPED>(pass, block[blocks - 1], total[~blocks & 1], tally);
+  if (blocks) move_anywhere<FRICTION, DAMPED>(pass, block[blocks - 1], total[~blocks & 1], tally);
 
-  if (TRACED) tally.turn_to_object(-1, pass);
+  if (pass.trace) tally.turn_to_object(-1, pass);
   tally.turn_to_chunk(-1, pass);
   pass.fastest = pass.squares = pass.largest_phi = 0.0;
   pass.fastest_near = -1.0;
@@ -444,33 +442,25 @@ template <Friction FRICTION, bool TRACED, bool DAMPED> MDANIM_ALWAYS_INLINE void
   }
 }
 
-template <Friction FRICTION, bool TRACED> MDANIM_ALWAYS_INLINE void with_or_without_dashpots(Pass &pass)
+template <Friction FRICTION> MDANIM_ALWAYS_INLINE void with_or_without_dashpots(Pass &pass)
 {
   if (pass.damped_law)
-    go<FRICTION, TRACED, true>(pass);
+    go<FRICTION, true>(pass);
   else
-    go<FRICTION, TRACED, false>(pass);
-}
-
-template <Friction FRICTION> MDANIM_ALWAYS_INLINE void with_or_without_trace(Pass &pass)
-{
-  if (pass.trace)
-    with_or_without_dashpots<FRICTION, true>(pass);
-  else
-    with_or_without_dashpots<FRICTION, false>(pass);
+    go<FRICTION, false>(pass);
 }
 
 void pass_of_range(Pass &pass)
 {
   switch (pass.friction) {
     case Friction::NONE:
-      with_or_without_trace<Friction::NONE>(pass);
+      with_or_without_dashpots<Friction::NONE>(pass);
       break;
     case Friction::IMPLICIT:
-      with_or_without_trace<Friction::IMPLICIT>(pass);
+      with_or_without_dashpots<Friction::IMPLICIT>(pass);
       break;
     case Friction::EXPONENTIAL:
-      with_or_without_trace<Friction::EXPONENTIAL>(pass);
+      with_or_without_dashpots<Friction::EXPONENTIAL>(pass);
       break;
   }
 }

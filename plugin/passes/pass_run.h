@@ -4,9 +4,9 @@
 #ifndef MDANIM_PASS_RUN_H
 #define MDANIM_PASS_RUN_H
 
-#include "passes/kernels.h"
 #include "passes/pass_participant.h"
 #include "passes/simd_blocks.h"
+#include "simd/kernels.h"
 #include "threads/team.h"
 
 #include <functional>

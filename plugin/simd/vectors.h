@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// Vectors of numbers in memory, for the kernels (kernels_of_set.cpp).
+// Vectors of numbers in memory, for the kernels (of_set.h).
 
 #ifndef MDANIM_VECTORS_H
 #define MDANIM_VECTORS_H

@@ -10,6 +10,7 @@ import ctypes
 import fcntl
 import hashlib
 import os
+import platform
 import subprocess
 import sys
 from concurrent.futures import ThreadPoolExecutor
@@ -21,13 +22,20 @@ PLUGIN, TESTS = ROOT / "plugin", ROOT / "tests" / "lab" / "plugin"
 FOLDER = ROOT / "build" / "mdanimtest"
 """Of the library alone: as LAMMPS_PLUGIN_PATH it makes LAMMPS load the styles of the tests."""
 FILE = FOLDER / "mdanimtestplugin.so"
-FLOORS = ("threads/team", "geometry/aligned_array", "lammps/stateful")
+FLOORS = ("simd/kernels", "threads/team", "geometry/aligned_array", "lammps/stateful")
 PASSES = ("passes/cutter", "passes/displacement_budget", "passes/range_cut", "passes/tag_order")
 SOURCES = (
     *sorted(TESTS.glob("*.cpp")),
-    *sorted((PLUGIN / "liquid").rglob("*.cpp")),
+    *sorted(path for path in (PLUGIN / "liquid").rglob("*.cpp") if not path.stem.endswith("_of_set")),
     *(PLUGIN / f"{name}.cpp" for name in (*FLOORS, *PASSES)),
 )
+OF_SET = sorted(PLUGIN.rglob("*_of_set.cpp"))
+SETS = [
+    (name, [f"-DMDANIM_SET={name}", f"-DMDANIM_LANES={lanes}", "-Wno-psabi", *flags])
+    for name, lanes, *flags in map(str.split, (PLUGIN / "simd" / "sets.txt").read_text().splitlines())
+    if name == "common" or platform.machine() in ("x86_64", "AMD64")
+]
+"""Sets of instructions, and what the compiler is told for each."""
 
 
 def build() -> Path:
@@ -45,9 +53,12 @@ def build() -> Path:
 def _compile() -> None:
     """Sources side by side on all cores, then the link. Raises RuntimeError with what the compiler says."""
     part = FOLDER / "part"
-    objects = [FOLDER / f"{source.parent.name}-{source.stem}.o" for source in SOURCES]
+    names = "".join(f"MDANIM_A_SET({name})" for name, _ in SETS)
+    objects = {FOLDER / f"{source.parent.name}-{source.stem}.o": (source, [f"-DMDANIM_SETS={names}"]) for source in SOURCES}
+    for name, flags in SETS:
+        objects |= {FOLDER / f"{name}-{source.stem}.o": (source, flags) for source in OF_SET}
     with ThreadPoolExecutor(len(os.sched_getaffinity(0))) as pool:
-        commands = ([*_command(), "-c", str(source), "-o", str(o)] for source, o in zip(SOURCES, objects, strict=True))
+        commands = ([*_command(), *flags, "-c", str(source), "-o", str(o)] for o, (source, flags) in objects.items())
         list(pool.map(_run, commands))
     _run([*_command(), "-shared", *map(str, objects), "-o", str(part)])
     part.replace(FILE)
@@ -82,9 +93,9 @@ def _command() -> list[str]:
 
 def _digest() -> str:
     """Of all that the library is made from."""
-    found = hashlib.sha256(" ".join(_command()).encode())
+    found = hashlib.sha256(f"{_command()} {SETS}".encode())
     for path in sorted(p for folder in (PLUGIN, TESTS) for p in folder.rglob("*") if p.suffix in (".h", ".cpp")):
-        if path in SOURCES or path.suffix == ".h":
+        if path in SOURCES or path in OF_SET or path.suffix == ".h":
             found.update(path.read_bytes())
     return found.hexdigest()
 

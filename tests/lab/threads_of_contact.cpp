@@ -3,6 +3,7 @@
 // Exit code 0: forces, sums and what contacts remember are the same to the bit.
 
 #include "contact/contact_world.h"
+#include "simd/kernels.h"
 
 #include <cmath>
 #include <cstdio>
@@ -11,10 +12,6 @@
 #include <vector>
 
 using namespace mdanim;
-
-namespace mdanim {
-extern const ContactKernels contact_kernels_common;
-}
 
 namespace {
 
@@ -187,7 +184,7 @@ int main()
            !std::memcmp(shared.numbers.data(), alone.numbers.data(), alone.numbers.size() * sizeof(double));
   };
   for (const int threads : {1, 2, 5})
-    if (!is_same(threads, &contact_kernels_common)) {
+    if (!is_same(threads, &widest_kernels().contact)) {
       std::printf("%d threads give other bits\n", threads);
       return 1;
     }

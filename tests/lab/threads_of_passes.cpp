@@ -15,16 +15,6 @@
 
 using namespace mdanim;
 
-namespace mdanim {
-extern const Kernels kernels_common;
-// Those of kernels.cpp, which chooses among sets of instructions.
-const std::vector<const Kernels *> &kernels_here()
-{
-  static const std::vector<const Kernels *> here{&kernels_common};
-  return here;
-}
-}    // namespace mdanim
-
 namespace {
 
 constexpr int EDGE = 11, OBJECTS = 3, STEPS = 30, OF_ONE = EDGE * EDGE * EDGE, PARTICLES = OBJECTS * OF_ONE;

@@ -3,6 +3,8 @@
 
 #include "liquid/waves/waves.h"
 
+#include "simd/kernels.h"
+
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -28,7 +30,7 @@ double *WaveLinks::*const OF_LINKS[] = {
 
 Waves::Waves(int nx, int ny, int nz)
     : nx(nx), ny(ny), nz(nz), stride((nx / WaveKernels::SUMMED + 1) * WaveKernels::SUMMED), further_start((1 + ny) * stride),
-      solid(nx, ny, nz), wall(nx, ny, nz), walled_anew(nx * ny, 0), kernels(best_wave_kernels()), spans_in(nx * ny, 0),
+      solid(nx, ny, nz), wall(nx, ny, nz), walled_anew(nx * ny, 0), kernels(&widest_kernels().waves), spans_in(nx * ny, 0),
       further(nx * ny, 0), of_spans(std::size(OF_SPANS))
 {
   law.height = nz;
@@ -69,13 +71,6 @@ void Waves::lay_out(long rows, std::size_t most_further_links)
       arrays.links[d].*OF_LINKS[k] = of_links[d][k].data();
     }
   }
-}
-
-bool Waves::use_kernels(int number)
-{
-  const WaveKernels *found = wave_kernels(number);
-  if (found) kernels = found;
-  return found != nullptr;
 }
 
 void Waves::use_general_form()

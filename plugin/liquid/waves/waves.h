@@ -131,8 +131,8 @@ class Waves {
   void use(const Threads &now) { threads = now; }    // for updates; the bits are the same for any number of them
 
   // For tests and benchmarks.
-  bool use_kernels(int number);    // false where this processor lacks them
-  void use_general_form();         // for everything
+  void use(const WaveKernels &other) { kernels = &other; }
+  void use_general_form();    // for everything
   struct Counts {
     long updates = 0, sub_updates = 0, solutions = 0, iterations = 0, limited = 0;
     Units displaced = 0;    // by spans that closed

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// The loops of an update of waves over whole rows of columns, compiled for several instruction sets: the processor's best is
-// chosen when the program runs. All give the same bits: every lane computes what liquid/waves/law.h says, and sums are taken by
+// The loops of an update of waves over whole rows of columns, once for each set of instructions
+// (simd/kernels.h). All give the same bits: every lane computes what liquid/waves/law.h says, and sums are taken by
 // rows in eight parts.
 
 #ifndef MDANIM_WAVES_KERNELS_H
@@ -44,8 +44,6 @@ struct WaveArrays {
 struct WaveKernels {
   static constexpr int SUMMED = 8;    // numbers of a row are summed in so many parts
 
-  const char *name;
-  bool (*runs_here)();
   bool (*surfaces)(const WaveArrays &, const WaveLaw &, long first, long end);             // (W1); whether some span is full
   void (*open_links)(const WaveArrays &, const WaveLaw &, int d, long first, long end);    // (W2) of direction d
   void (*advect)(const WaveArrays &, const WaveLaw &, int d, long first, long end);        // (W3), (W4)
@@ -62,10 +60,6 @@ struct WaveKernels {
   bool (*balance)(const WaveArrays &, const WaveLaw &, long first, long end);        // to `net`; whether (W9) holds
   void (*settle)(const WaveArrays &, const WaveLaw &, long first, long end);         // contents and q
 };
-
-// The best of this processor, or those of a number: 0, 1, …; null where there are none or the processor lacks them.
-const WaveKernels *best_wave_kernels();
-const WaveKernels *wave_kernels(int number);
 
 }    // namespace mdanim
 

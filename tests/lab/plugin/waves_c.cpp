@@ -5,6 +5,7 @@
 #include "c_api/abi.h"
 #include "c_api/guarded.h"
 #include "liquid/waves/waves.h"
+#include "simd/kernels.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -56,7 +57,14 @@ MDANIM_EXPORT int mdanim_waves_set(void *w, const char *name, double value)
 }
 
 // False where this processor lacks the instruction set of this number.
-MDANIM_EXPORT int mdanim_waves_use(void *w, int number) { return waves(w).use_kernels(number); }
+// Kernels of a number, the widest first; 0 where this processor has not so many sets of instructions.
+MDANIM_EXPORT int mdanim_waves_use(void *w, int number)
+{
+  const auto &here = mdanim::kernels_here();
+  if (number >= static_cast<int>(here.size())) return 0;
+  waves(w).use(here[number]->waves);
+  return 1;
+}
 
 // Updates by so many threads, of which each takes one row or more.
 MDANIM_EXPORT void mdanim_waves_threads(void *w, int threads) { waves(w).use(mdanim::Threads(threads)); }

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// Which particles are near each other, four others at a time (pair_filter.h).
-
-#ifndef MDANIM_PAIR_FILTER_KERNEL_H
-#define MDANIM_PAIR_FILTER_KERNEL_H
+// Which particles are near each other, four others at a time (pair_filter.h), for one set of instructions.
 
 #include "barrier/pair_filter.h"
+
+#include "simd/of_set.h"
 #include "simd/vectors.h"
 
 namespace mdanim {
@@ -60,6 +59,8 @@ int within(const double *const *place, int from, int to, const double *x, double
 }
 
 }    // namespace
-}    // namespace mdanim
 
-#endif
+extern const PairFilter MDANIM_OF_SET(pair_filter);
+const PairFilter MDANIM_OF_SET(pair_filter) = {in_reach, within};
+
+}    // namespace mdanim

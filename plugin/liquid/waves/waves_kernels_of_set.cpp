@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-2.0-only
+// The loops of an update of waves for one set of instructions (simd/of_set.h).
 
 #pragma GCC diagnostic ignored "-Wpsabi"    // all that takes vectors is inlined
 
 #include "liquid/waves/waves_kernels.h"
 
 #include "liquid/waves/waves_link_steps.h"
-
-#include <iterator>
+#include "simd/of_set.h"
 
 // A lambda that takes the attribute of where it is called.
 #define MDANIM_INLINED __attribute__((always_inline))
@@ -75,7 +75,7 @@ template <class Vector, class F> MDANIM_ALWAYS_INLINE void sum_rows(const WaveAr
 
 namespace kernel {
 
-template <class Vector> MDANIM_ALWAYS_INLINE bool surfaces(const WaveArrays &a, const WaveLaw &law, long first, long end)
+template <class Vector> bool surfaces(const WaveArrays &a, const WaveLaw &law, long first, long end)
 {
   Vector some_full{};
   const Vector per_unit = constant<Vector>(1.0 / law.units_per_cell);
@@ -102,7 +102,7 @@ template <class Vector> MDANIM_ALWAYS_INLINE auto opening(const LinkAt &at)
   return [edge, top](const Vector &level) MDANIM_INLINED { return smaller(level, top) - edge; };
 }
 
-template <class Vector> MDANIM_ALWAYS_INLINE void open_links(const WaveArrays &a, const WaveLaw &law, int d, long first, long end)
+template <class Vector> void open_links(const WaveArrays &a, const WaveLaw &law, int d, long first, long end)
 {
   const long along = d == 0 ? 1 : a.stride;
   each<Vector>(a, first, end, [&](long i) MDANIM_INLINED {
@@ -111,7 +111,7 @@ template <class Vector> MDANIM_ALWAYS_INLINE void open_links(const WaveArrays &a
   });
 }
 
-template <class Vector> MDANIM_ALWAYS_INLINE void advect(const WaveArrays &a, const WaveLaw &law, int d, long first, long end)
+template <class Vector> void advect(const WaveArrays &a, const WaveLaw &law, int d, long first, long end)
 {
   const WaveLinks &links = a.links[d];
   const double *q = links.q, *across_q = a.links[1 - d].q;
@@ -179,7 +179,7 @@ MDANIM_ALWAYS_INLINE void assemble(const WaveArrays &a, const WaveLaw &law, long
   });
 }
 
-template <class Vector> MDANIM_ALWAYS_INLINE void couple(const WaveArrays &a, long first, long end)
+template <class Vector> void couple(const WaveArrays &a, long first, long end)
 {
   for (int d = 0; d < 2; ++d) {
     const WaveLinks &links = a.links[d];
@@ -192,7 +192,7 @@ template <class Vector> MDANIM_ALWAYS_INLINE void couple(const WaveArrays &a, lo
   }
 }
 
-template <class Vector> MDANIM_ALWAYS_INLINE void guess(const WaveArrays &a, bool again, long first, long end)
+template <class Vector> void guess(const WaveArrays &a, bool again, long first, long end)
 {
   sum_rows<Vector>(a, first, end, [&](long i) MDANIM_INLINED {
     const Vector delta = load<Vector>(a.delta + i), last = load<Vector>(a.last_delta + i);
@@ -213,7 +213,7 @@ template <class Vector, class X> MDANIM_ALWAYS_INLINE Vector apply(const WaveArr
   return sum;
 }
 
-template <class Vector> MDANIM_ALWAYS_INLINE void start(const WaveArrays &a, long first, long end)
+template <class Vector> void start(const WaveArrays &a, long first, long end)
 {
   sum_rows<Vector>(a, first, end, [&](long i) MDANIM_INLINED {
     const auto x = [&](long j) MDANIM_INLINED { return load<Vector>(a.x + j); };
@@ -224,7 +224,7 @@ template <class Vector> MDANIM_ALWAYS_INLINE void start(const WaveArrays &a, lon
   });
 }
 
-template <class Vector> MDANIM_ALWAYS_INLINE void turn(const WaveArrays &a, double beta, long first, long end)
+template <class Vector> void turn(const WaveArrays &a, double beta, long first, long end)
 {
   const Vector factor = constant<Vector>(beta);
   sum_rows<Vector>(a, first, end, [&](long i) MDANIM_INLINED {
@@ -237,7 +237,7 @@ template <class Vector> MDANIM_ALWAYS_INLINE void turn(const WaveArrays &a, doub
   });
 }
 
-template <class Vector> MDANIM_ALWAYS_INLINE void advance(const WaveArrays &a, double alpha, long first, long end)
+template <class Vector> void advance(const WaveArrays &a, double alpha, long first, long end)
 {
   const Vector factor = constant<Vector>(alpha);
   sum_rows<Vector>(a, first, end, [&](long i) MDANIM_INLINED {
@@ -248,13 +248,12 @@ template <class Vector> MDANIM_ALWAYS_INLINE void advance(const WaveArrays &a, d
   });
 }
 
-template <class Vector>
-MDANIM_ALWAYS_INLINE void sum(const WaveArrays &arrays, const double *a, const double *b, long first, long end)
+template <class Vector> void sum(const WaveArrays &arrays, const double *a, const double *b, long first, long end)
 {
   sum_rows<Vector>(arrays, first, end, [&](long i) MDANIM_INLINED { return load<Vector>(a + i) * load<Vector>(b + i); });
 }
 
-template <class Vector> MDANIM_ALWAYS_INLINE void heads(const WaveArrays &a, const WaveLaw &law, long first, long end)
+template <class Vector> void heads(const WaveArrays &a, const WaveLaw &law, long first, long end)
 {
   const Vector part = constant<Vector>(1.0 / law.mean_over);
   each<Vector>(a, first, end, [&](long i) MDANIM_INLINED {
@@ -269,7 +268,7 @@ template <class Vector> MDANIM_ALWAYS_INLINE void heads(const WaveArrays &a, con
   });
 }
 
-template <class Vector> MDANIM_ALWAYS_INLINE void push(const WaveArrays &a, const WaveLaw &law, int d, long first, long end)
+template <class Vector> void push(const WaveArrays &a, const WaveLaw &law, int d, long first, long end)
 {
   const WaveLinks &links = a.links[d];
   const long along = d == 0 ? 1 : a.stride;
@@ -280,7 +279,7 @@ template <class Vector> MDANIM_ALWAYS_INLINE void push(const WaveArrays &a, cons
   });
 }
 
-template <class Vector> MDANIM_ALWAYS_INLINE double fastest(const WaveArrays &a, long first, long end)
+template <class Vector> double fastest(const WaveArrays &a, long first, long end)
 {
   Vector most{};
   each<Vector>(a, first, end, [&](long i) MDANIM_INLINED {
@@ -294,7 +293,7 @@ template <class Vector> MDANIM_ALWAYS_INLINE double fastest(const WaveArrays &a,
   return u;
 }
 
-template <class Vector> MDANIM_ALWAYS_INLINE bool balance(const WaveArrays &a, const WaveLaw &law, long first, long end)
+template <class Vector> bool balance(const WaveArrays &a, const WaveLaw &law, long first, long end)
 {
   Vector least = constant<Vector>(1.0);
   const Vector per_cell = constant<Vector>(law.units_per_cell), spare = constant<Vector>(0.25 * law.units_per_cell);
@@ -311,7 +310,7 @@ template <class Vector> MDANIM_ALWAYS_INLINE bool balance(const WaveArrays &a, c
   return !any(least < constant<Vector>(1.0));
 }
 
-template <class Vector> MDANIM_ALWAYS_INLINE void settle(const WaveArrays &a, const WaveLaw &law, long first, long end)
+template <class Vector> void settle(const WaveArrays &a, const WaveLaw &law, long first, long end)
 {
   const Vector flux = constant<Vector>(1.0 / (law.units_per_cell * law.dt));
   each<Vector>(a, first, end, [&](long i) MDANIM_INLINED {
@@ -323,86 +322,25 @@ template <class Vector> MDANIM_ALWAYS_INLINE void settle(const WaveArrays &a, co
 }    // namespace kernel
 }    // namespace
 
-// The loops once more for each instruction set: what is inlined takes the attribute of where it is.
-#define MDANIM_UPDATE_KERNELS(TARGET, V)                                                                                         \
-  using A = WaveArrays;                                                                                                          \
-  using L = WaveLaw;                                                                                                             \
-  TARGET static bool surfaces(const A &a, const L &law, long f, long e) { return kernel::surfaces<V>(a, law, f, e); }            \
-  TARGET static void open_links(const A &a, const L &law, int d, long f, long e) { kernel::open_links<V>(a, law, d, f, e); }     \
-  TARGET static void advect(const A &a, const L &law, int d, long f, long e) { kernel::advect<V>(a, law, d, f, e); }             \
-  TARGET static void assemble(const A &a, const L &law, bool some_full, long f, long e)                                          \
-  { some_full ? kernel::assemble<V, true>(a, law, f, e) : kernel::assemble<V, false>(a, law, f, e); }                            \
-  TARGET static void heads(const A &a, const L &law, long f, long e) { kernel::heads<V>(a, law, f, e); }                         \
-  TARGET static void push(const A &a, const L &law, int d, long f, long e) { kernel::push<V>(a, law, d, f, e); }                 \
-  TARGET static double fastest(const A &a, long f, long e) { return kernel::fastest<V>(a, f, e); }                               \
-  TARGET static bool balance(const A &a, const L &law, long f, long e) { return kernel::balance<V>(a, law, f, e); }              \
-  TARGET static void settle(const A &a, const L &law, long f, long e) { kernel::settle<V>(a, law, f, e); }
-
-#define MDANIM_SOLVER_KERNELS(TARGET, V)                                                                                         \
-  TARGET static void couple(const WaveArrays &a, long f, long e) { kernel::couple<V>(a, f, e); }                                 \
-  TARGET static void guess(const WaveArrays &a, bool again, long f, long e) { kernel::guess<V>(a, again, f, e); }                \
-  TARGET static void start(const WaveArrays &a, long f, long e) { kernel::start<V>(a, f, e); }                                   \
-  TARGET static void turn(const WaveArrays &a, double beta, long f, long e) { kernel::turn<V>(a, beta, f, e); }                  \
-  TARGET static void advance(const WaveArrays &a, double alpha, long f, long e) { kernel::advance<V>(a, alpha, f, e); }          \
-  TARGET static void sum(const WaveArrays &a, const double *x, const double *y, long f, long e) { kernel::sum<V>(a, x, y, f, e); }
-
-#define MDANIM_ALL_KERNELS(SET)                                                                                                  \
-  static const WaveKernels all = {#SET, runs_here, surfaces, open_links, advect, assemble, couple,  guess, start,                \
-                                  turn, advance,   sum,      heads,      push,   fastest,  balance, settle};
-
-namespace common {
-MDANIM_UPDATE_KERNELS(, Four)
-MDANIM_SOLVER_KERNELS(, Four)
-static bool runs_here() { return true; }
-MDANIM_ALL_KERNELS(common)
-}    // namespace common
-
-#if defined(__x86_64__) && defined(__GNUC__)
-namespace avx2 {
-MDANIM_UPDATE_KERNELS(__attribute__((target("avx2"))), Four)
-MDANIM_SOLVER_KERNELS(__attribute__((target("avx2"))), Four)
-static bool runs_here() { return __builtin_cpu_supports("avx2"); }
-MDANIM_ALL_KERNELS(avx2)
-}    // namespace avx2
-
-// GCC 12 takes choices among eight numbers apart, one by one: only the solver, which has none, is faster with them.
-namespace avx512 {
-using avx2::advect, avx2::assemble, avx2::balance, avx2::fastest, avx2::heads, avx2::open_links, avx2::push, avx2::settle,
-    avx2::surfaces;
-MDANIM_SOLVER_KERNELS(__attribute__((target("avx512f,avx512vl,avx512dq,prefer-vector-width=512"))), Eight)
-static bool runs_here()
-{
-  return avx2::runs_here() && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
-         __builtin_cpu_supports("avx512dq");
-}
-MDANIM_ALL_KERNELS(avx512)
-}    // namespace avx512
-#endif
-#undef MDANIM_UPDATE_KERNELS
-#undef MDANIM_SOLVER_KERNELS
-#undef MDANIM_ALL_KERNELS
 #undef MDANIM_INLINED
 
-static const WaveKernels *const ALL[] = {
-    &common::all,
-#if defined(__x86_64__) && defined(__GNUC__)
-    &avx2::all,
-    &avx512::all,
+// GCC 12 takes choices among eight numbers apart, one by one: only the solver, which has none, is faster with them.
+namespace {
+#if MDANIM_LANES == 8
+using Wide = Eight;
+#else
+using Wide = Four;
 #endif
+void assemble(const WaveArrays &a, const WaveLaw &law, bool some_full, long first, long end)
+{ some_full ? kernel::assemble<Four, true>(a, law, first, end) : kernel::assemble<Four, false>(a, law, first, end); }
+}    // namespace
+
+extern const WaveKernels MDANIM_OF_SET(wave_kernels);
+const WaveKernels MDANIM_OF_SET(wave_kernels) = {
+    kernel::surfaces<Four>, kernel::open_links<Four>, kernel::advect<Four>, assemble,
+    kernel::couple<Wide>,   kernel::guess<Wide>,      kernel::start<Wide>,  kernel::turn<Wide>,
+    kernel::advance<Wide>,  kernel::sum<Wide>,        kernel::heads<Four>,  kernel::push<Four>,
+    kernel::fastest<Four>,  kernel::balance<Four>,    kernel::settle<Four>,
 };
-
-const WaveKernels *wave_kernels(int number)
-{
-  if (number < 0 || number >= static_cast<int>(std::size(ALL)) || !ALL[number]->runs_here()) return nullptr;
-  return ALL[number];
-}
-
-const WaveKernels *best_wave_kernels()
-{
-  const WaveKernels *best = nullptr;
-  for (int number = 0; number < static_cast<int>(std::size(ALL)); ++number)
-    if (const WaveKernels *kernels = wave_kernels(number)) best = kernels;
-  return best;
-}
 
 }    // namespace mdanim

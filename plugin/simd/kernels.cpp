@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// The choice among sets of instructions: the only place that knows which there are.
+// The choice among sets of instructions. MDANIM_SETS names them as MDANIM_A_SET(avx512) MDANIM_A_SET(avx2) ..., in the order of
+// sets.txt.
 
-#include "passes/kernels.h"
+#include "simd/kernels.h"
 
 #include <algorithm>
 #include <cstring>
@@ -9,13 +10,13 @@
 
 namespace mdanim {
 
-extern const Kernels kernels_common;
-#if defined(__x86_64__)
-extern const Kernels kernels_avx2, kernels_avx512;
-static const Kernels *const ALL[] = {&kernels_avx512, &kernels_avx2, &kernels_common};    // the widest first
-#else
-static const Kernels *const ALL[] = {&kernels_common};
-#endif
+#define MDANIM_A_SET(set) extern const Kernels kernels_##set;
+MDANIM_SETS
+#undef MDANIM_A_SET
+
+#define MDANIM_A_SET(set) &kernels_##set,
+static const Kernels *const ALL[] = {MDANIM_SETS};
+#undef MDANIM_A_SET
 
 const std::vector<const Kernels *> &kernels_here()
 {

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// Loops over springs whose r_ij are side by side: what the vector code (spring_kernels_of_set.cpp) is given.
+
+#ifndef MDANIM_SPRING_KERNELS_H
+#define MDANIM_SPRING_KERNELS_H
+
+namespace mdanim {
+
+struct SpringKernels {
+  // r_ij -> F_i of n springs.
+  void (*forces)(int n, const double *push, const double *pull, double *x, double *y, double *z);
+  // r_ij -> energies of n springs, in the place of K.
+  void (*energies)(int n, const double *x, const double *y, const double *z, const double *r0, double *K);
+};
+
+}    // namespace mdanim
+
+#endif
