@@ -1,128 +1,105 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""An effect that only this file knows: adding it to the table of effects is all that it takes."""
+"""A feature is one folder, tests/lab/features/windy/wind: a word, a switch, a quantity of expect, a column, a field of frames."""
 
 import json
+import os
+import subprocess
+import sys
 
 import numpy as np
 import pytest
-from mdanim_lammps import effects, features
-from mdanim_lammps.effects.margin import Margin
-from mdanim_lammps.engine.commands import input_script
-from mdanim_lammps.engine.data_file import data_text
-from mdanim_lammps.errors import DivergedError, Problem
-from mdanim_lammps.model.planes import Plane
-from mdanim_lammps.report import check_json, scene_lines
-from mdanim_lammps.run.guard import Guard
-from mdanim_lammps.run.loop import simulate, write_inputs
-from mdanim_lammps.run.observe import Observer
+from mdanim_lammps.errors import SceneError
+from mdanim_lammps.results.compare import compare
+from mdanim_lammps.scene.parse import parse_scene
+from paths import LAB
 
-SCENE = """
-title "windy"
-object a {{ shape box (30, 30, 30) cm position (-2, 0, 0) m density 1000 elasticity 1 MPa velocity ({v}, 0, 0) m/s }}
-object b {{ shape box (30, 30, 30) cm position (2, 0, 0) m density 1000 elasticity 1 MPa velocity (1, 0, 0) m/s hold {hold} }}
-control {{ time 0.2 s frames 100 fps resolution 10 cm }}
-"""
-FAR = -5.0
-"""Where the fence of the wind stands [m]."""
+WIND, TAU, TIME = 3.0, 1.0, 0.2
+"""[m/s], [s], [s]: as in tests/lab/windy.py and tests/lab/features/windy/wind/effect.py."""
 
 
-class Wind(effects.Effect):
-    """A constant acceleration along x, with a fence that objects are to stay behind."""
-
-    name = fix = ledger = "wind"
-    has_potential = True
-    if_off = "sails hang down"
-    strength = 3.0
-
-    def called_for(self, scene, reach):
-        return effects.Verdict(self.name, scene.title == "windy", f"its title is {scene.title!r}")
-
-    def columns(self, context):
-        return {"sail": np.linspace(1.0, 2.0, context.system.particles)}
-
-    def commands(self, context):
-        return [f"fix wind mobile mdanim/gravity {self.strength!r} 0.0 0.0"]
-
-    def potential(self, scene, mass, x):
-        return -self.strength * float(mass @ x[:, 0])
-
-    def rate(self, context):
-        return np.full(context.system.particles, 1e9)
-
-    def max_timestep(self, context):
-        return 1e-5
-
-    def planes(self, scene):
-        return (Plane(self.name, "the fence", 0, 1, FAR, "beyond the fence"),)
-
-    def margins(self, envelope):
-        return [Margin("gust", envelope.system.names[0], 2.0, 1.0, "m/s", "a gust of 2 m/s", None, "warning", hint="wait")]
-
-    def warnings(self, context):
-        return [Problem(None, "sails are up", "haul them down", severity="warning")]
+@pytest.fixture(scope="module")
+def windy(tmp_path_factory):
+    """All that is said and done about the wind."""
+    done = subprocess.run(
+        [sys.executable, LAB / "windy.py", tmp_path_factory.mktemp("windy")], capture_output=True, text=True, timeout=200
+    )
+    assert done.returncode == 0, done.stderr
+    return json.loads(done.stdout)
 
 
-@pytest.fixture
-def windy(monkeypatch, prepared):
-    """Prepare a scene with the wind in the table of effects."""
-    known = features.effects()
-    monkeypatch.setattr(features, "effects", lambda: (*known, Wind()))
-    return lambda v=0, hold="all": prepared(SCENE.format(v=v, hold=hold))
+def test_the_language_has_its_words(windy):
+    """On the page of the language, explained, and read back from a lock."""
+    words = windy["words"]
+    assert "| **wind** `(wx, wy, wz)` | m/s | - | `(0, 0, 0) m/s` | Velocity of the air. Absent: it is at rest. |" in words["page"]
+    assert "Called for by `wind`." in words["page"] and "| `wind.work` | J | work of the wind since the start |" in words["page"]
+    assert [text.splitlines()[0] for text in words["explained"]] == [
+        "wind (wx, wy, wz)   a setting outside of all blocks",
+        "expect wind.work = ...   a quantity, in J",
+        "gust   a limit that check prints with its margin",
+    ]
+    assert words["read back"] == [WIND, 0.0, 0.0]
 
 
 def test_check_tells_of_it(windy):
-    """Cause, bound, margin and warning."""
-    ready = windy()
-    told = check_json(ready)
-    assert told["effects"]["wind"] == {"on": True, "reason": "its title is 'windy'", "place": None}
-    assert any("wind" in line for line in scene_lines(ready))
-    c = ready.certificate
-    assert (c.cause, c.share > 0.9) == ("wind", True)
-    assert c.bound == pytest.approx(2.0 / np.sqrt(1e9), rel=0.1) and c.timestep <= 1e-5
-    assert "gust" in [m.name for m in c.margins]
-    assert {"a gust of 2 m/s", "sails are up"} <= {w.message for w in ready.warnings}
+    """Cause, bound, margin and warning; switched off by its name."""
+    told = windy["told"]
+    assert told["check"]["on"] and told["check"]["reason"] == "the wind is (3.0, 0.0, 0.0) m/s" and told["check"]["place"]
+    assert any("wind" in line for line in told["lines"])
+    c = told["certificate"]
+    assert (c["cause"], c["share"] > 0.9) == ("wind", True)
+    assert c["bound"] == pytest.approx(2.0 / np.sqrt(1e8), rel=0.1) and c["timestep"] <= 1e-4
+    assert "gust" in told["margins"] and {"a gust", "sails are up"} <= set(told["warnings"])
+    on, reason, warnings = told["off"]
+    assert not on and reason == "switched off; sails hang down" and any("wind is switched off" in w for w in warnings)
 
 
 def test_lammps_is_told_of_it(windy):
-    """Column and commands, in the files as in a live instance."""
-    ready = windy()
-    assert "fix wind mobile mdanim/gravity 3.0 0.0 0.0" in input_script(ready.plan)
-    assert "d_sail" in input_script(ready.plan)
-    assert "d_sail" in "".join(data_text(ready.plan)) or "2.0" in "".join(data_text(ready.plan))
+    """Column with its unit, and commands, in the files as in a live instance."""
+    told = windy["told"]
+    assert "fix wind mobile mdanim/gravity 3.0 0.0 0.0" in told["script"] and "d_sail" in told["script"]
+    assert "Model # mass sail" in told["data"] and told["unit"] == "m^2"
 
 
-def test_a_run_keeps_its_account(windy, tmp_path):
-    """Objects are accelerated, the ledger has its column and adds up, summary and cost name it."""
-    ready = windy()
-    folder = tmp_path / "windy.out"
-    folder.mkdir()
-    write_inputs(ready, folder)
-    result = simulate(ready, folder)
-    assert "wind" in result.ledger.terms
-    assert result.ledger.residual < 1e-3
-    mass, way = ready.system.mass_of[0], 0.5 * Wind.strength * 0.2**2
-    assert np.ptp(result.ledger.array("wind")) == pytest.approx(mass * Wind.strength * way, rel=1e-3)
+def test_a_run_keeps_its_account(windy):
+    """Objects are accelerated, the ledger has its column and adds up, summary and cost name it, expect finds its work."""
+    run, way = windy["run"], 0.5 * WIND / TAU * TIME**2
+    assert "wind" in run["terms"] and run["residual"] < 1e-3
+    work = run["mass"] * WIND / TAU * way
+    assert run["potential"] == pytest.approx(work, rel=1e-3)
     # The zero of its potential is as arbitrary as that of gravity: a joule too much is held against the 5 J that move.
-    row = result.ledger.rows[0]
-    joule = result.ledger.weigh(0.2, row | {"kinetic": row["kinetic"] + 1.0})["residual"]
-    assert joule == pytest.approx(1.0 / (row["kinetic"] + 1.0 + np.ptp(result.ledger.array("wind"))), rel=0.2)
-    assert "wind" in json.loads((folder / "summary.json").read_text())["effects"]
-    assert "wind" in result.cost.effects
+    assert run["joule"] == pytest.approx(1.0 / (run["kinetic"] + 1.0 + work), rel=0.2)
+    assert "wind" in run["summary"] and "wind" in run["cost"]
+    assert run["expect"] == [[pytest.approx(work, rel=1e-3), True]]
 
 
-def test_its_plane_is_one_of_the_scene(windy, prepared, tmp_path):
+def test_frames_have_its_field(windy):
+    """The force on each object, with its unit; nothing of what never moves."""
+    run = windy["run"]
+    for force in run["force"]:
+        np.testing.assert_allclose(force, [[run["mass"] * WIND / TAU, 0, 0], [0, 0, 0]], rtol=1e-12)
+    assert run["unit"] == "N"
+
+
+def test_its_plane_is_one_of_the_scene(windy):
     """An object thrown away from the other may come back from the fence, and the guard stops what has passed it."""
-    assert windy(v=-20).verdicts["contact"].on
-    guard = Guard(windy(), tmp_path)
-    x = guard.ready.system.position.copy()
-    moved = guard.ready.system.object == 0
-    x[moved, 0] += 2.0 * FAR  # below the fence
-    with pytest.raises(DivergedError, match="it has left the fence"):
-        guard.check(1, Observer(guard.ready.plan, ()).observe(np.arange(2), np.arange(2), x, np.zeros_like(x)))
+    assert windy["told"]["may come back"] and "it has left the fence" in windy["left"]
 
 
-def test_without_it_nothing_is_left(prepared):
-    """The same scene with the table as it is: no wind, and no contact of objects that fly apart."""
-    ready = prepared(SCENE.format(v=-20, hold="all"))
-    assert "wind" not in ready.verdicts and not ready.verdicts["contact"].on
-    assert ready.certificate.cause == "springs"
+def test_executors_know_it(windy, tmp_path):
+    """Two of them give the same bits, those of its field too."""
+    text = (LAB / "windy.txt").read_text()
+    (tmp_path / "windy.txt").write_text(text)
+    env = os.environ | {"MDANIM_FEATURES": str(LAB / "features" / "windy")}
+    for name, more in (("one", ()), ("two", ("-n", "2"))):
+        command = [sys.executable, "-m", "mdanim_lammps", "run", "windy.txt", "--no-movie", "-o", f"{name}.out", *more]
+        done = subprocess.run(command, capture_output=True, text=True, timeout=200, cwd=tmp_path, env=env)
+        assert done.returncode == 0, done.stderr
+    found = compare(tmp_path / "one.out", tmp_path / "two.out")
+    assert found.equal and found.frames == 6
+
+
+def test_without_it_nothing_is_left(windy):
+    """No wind, no column, and no contact of objects that fly apart; and without its folder its words are unknown."""
+    assert windy["told"]["calm"] == [False, False, "springs", False]
+    with pytest.raises(SceneError, match="wind"):
+        parse_scene((LAB / "windy.txt").read_text())

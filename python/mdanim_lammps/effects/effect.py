@@ -110,8 +110,8 @@ class Effect:
         """What of the start it cannot work with."""
         return []
 
-    def columns(self, context: Context) -> dict[str, np.ndarray]:
-        """Per-particle properties that its commands name as ``d_NAME``, each of shape (N,).
+    def columns(self, context: Context) -> dict[Field, np.ndarray]:
+        """Per-particle properties that its commands name as ``d_NAME``, each of shape (N,), by their `fields.column`.
 
         With ``body``, the kind of each particle's body (System.contact_kind), its fix is given the contact bodies of all kinds.
         """

@@ -39,6 +39,11 @@ class Field:
             raise ValueError(f"field {self.name} is a column of the ledger, so it is one number per run")
 
 
+def column(name: str, unit: str) -> Field:
+    """A property of each particle, which fixes look up as ``d_NAME``."""
+    return Field(name, unit, per="particle")
+
+
 Fields = Mapping[str, Any]
 """Values by the names of fields: arrays, numbers for those per run."""
 

@@ -49,6 +49,8 @@ class Plan:
     """Those that are on, in the order in which their forces are summed."""
     columns: dict[str, np.ndarray]
     """Per-particle properties ``d_NAME`` that some effect asks for, each of shape (N,)."""
+    units: dict[str, str]
+    """SI unit of each of them."""
     tables: dict[str, np.ndarray]
     """Per-particle whole numbers ``i2_NAME`` that some effect asks for, int32, each of shape (N, K)."""
     bonds: np.ndarray
@@ -112,10 +114,20 @@ def make_plan(context: Context, certificate: Certificate) -> Plan:
     """Gather what the effects that are on ask for."""
     system, effects = context.system, context.resolved.effects
     columns: dict[str, np.ndarray] = {}
+    units: dict[str, str]
+    """SI unit of each of them."""
     tables: dict[str, np.ndarray] = {}
     asked: dict[str, tuple[str, ...]] = {}
+    units: dict[str, str] = {}
     for effect in effects:
-        own_columns, own_tables = effect.columns(context), effect.tables(context)
+        declared, own_tables = effect.columns(context), effect.tables(context)
+        own_columns = {field.name: values for field, values in declared.items()}
+        for field, values in declared.items():
+            what = f"{effect.name}: column {field.name} [{field.unit}]"
+            if field.per != "particle" or np.shape(values) != (system.particles,):
+                raise ValueError(f"{what} is per {field.per}, with values of shape {np.shape(values)}")
+            if units.setdefault(field.name, field.unit) != field.unit:
+                raise ValueError(f"{what} is in {units[field.name]} elsewhere")
         columns.update(own_columns)
         tables.update(own_tables)
         asked[effect.name] = (*own_columns, *own_tables)
@@ -131,6 +143,7 @@ def make_plan(context: Context, certificate: Certificate) -> Plan:
         certificate=certificate,
         effects=effects,
         columns=columns,
+        units=units,
         tables=tables,
         bonds=bonds,
         bond_kind=kind,

@@ -80,6 +80,7 @@ class SubPlans:
             certificate=whole.certificate,
             effects=effects,
             columns={name: take(column) for name, column in whole.columns.items() if name in wanted},
+            units={name: unit for name, unit in whole.units.items() if name in wanted},
             tables={name: take.tags(table, tags_of[name]) for name, table in whole.tables.items() if name in wanted},
             bonds=system.spring if len(whole.bonds) else system.spring[:0],
             bond_kind=number[_Taker(runs, self._bond)(whole.bond_kind)],

@@ -59,6 +59,9 @@ def compare(a: Path, b: Path) -> Difference:
                 f"{a} has {len(first)} frames and {b} {len(second)}, or their times differ: "
                 "run both scenes with the same control block"
             )
+        fields = first.metadata.fields
+        if fields != second.metadata.fields:
+            raise OutputError(f"{a} and {b} hold frames with different fields: there is nothing to compare")
         if first.liquid != second.liquid:
             raise OutputError(f"{a} and {b} hold different liquids or basins: there is nothing to compare")
         found = None
@@ -66,6 +69,7 @@ def compare(a: Path, b: Path) -> Difference:
         for i in range(len(first)):
             x, y = first.position(i), second.position(i)
             same = np.array_equal(x, y) and np.array_equal(first.velocity(i), second.velocity(i))
+            same = same and all(np.array_equal(*(t.field(f.name, i) for t in (first, second)), equal_nan=True) for f in fields)
             rise = _rise(first, second, i)
             if same and rise is None:
                 continue

@@ -14,12 +14,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..errors import OutputError, SceneError, SetupError
-from ..scene.keywords import Named
+from ..scene.keywords import Named, did_you_mean
 from ..scene.scene import Save, SceneRecord
 from .html import html_table
 from .trajectory_file import (
     CHECKSUM,
     DROPS,
+    FIELDS,
     LIQUID,
     NOT_WRITTEN,
     STEP,
@@ -206,6 +207,16 @@ class Trajectory:
     def liquid_levels(self) -> np.ndarray:
         """Mean height z of the liquid over the basin [m], shape (F,)."""
         return np.array([self.liquid_height(i).mean(dtype=np.float64) for i in range(len(self))])
+
+    def field(self, name: str, frame: int) -> np.ndarray:
+        """What an effect tells of each object in a frame, by one of ``metadata.fields``, shape (O, ...) in their units.
+
+        Raises KeyError that names a near field.
+        """
+        known = [field.name for field in self.metadata.fields]
+        if name not in known:
+            raise KeyError(f"frames have no field {name!r}; {did_you_mean(name, known) or 'no effect of it tells any'}")
+        return self._read(f"{FIELDS}/{name}", frame)
 
     def surface(self, frame: int) -> pyvista.PolyData:
         """Surfaces of all objects in one frame [m], as one mesh.

@@ -21,6 +21,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..effects.fields import Field
 from ..errors import OutputError
 from ..model.grid import Grid
 from ..model.model import Model, Surface
@@ -40,6 +41,9 @@ LIQUID = ("liquid/height", "liquid/raw")
 """Heights of a liquid: smooth, and of the topmost cells; below ``/observables``."""
 DROPS = "liquid/drops"
 """Middle and radius of each drop; a radius of 0 is none."""
+
+FIELDS = "fields"
+"""Below ``/observables``: what effects tell of each object, by name."""
 
 STEP, TIME, CHECKSUM = "step", "time", "checksum"
 _ROW = (STEP, TIME, CHECKSUM)
@@ -185,6 +189,7 @@ def datasets_of_frames(file: h5py.File) -> dict[str, h5py.Dataset]:
     names = ["center_of_mass", "center_of_mass_velocity"]
     if "observables/liquid" in file:
         names += [*LIQUID, *([DROPS] if DROPS in file["observables"] else [])]
+    names += [f"{FIELDS}/{name}" for name in _names_of_fields(file)]
     return found | {name: file[f"observables/{name}/value"] for name in names}
 
 
@@ -203,7 +208,7 @@ def frame_shapes(metadata: TrajectoryMetadata) -> dict[str, tuple[int, ...]]:
     return {name: tuple(shape) for name, _, shape, _, _ in _quantities(metadata)}
 
 
-def _quantities(metadata: TrajectoryMetadata) -> Iterator[tuple[str, str, tuple[int, int], type, str]]:
+def _quantities(metadata: TrajectoryMetadata) -> Iterator[tuple[str, str, tuple[int, ...], type, str]]:
     """What every frame has: name, group above it, shape, type, unit."""
     real = np.float32 if metadata.single else np.float64
     n, objects, liquid = len(metadata.id), len(metadata.names), metadata.liquid
@@ -215,6 +220,8 @@ def _quantities(metadata: TrajectoryMetadata) -> Iterator[tuple[str, str, tuple[
         yield name, "observables", liquid.shape[1::-1], np.float32, "m"
     if liquid and liquid.most_drops:
         yield DROPS, "observables", (liquid.most_drops, 4), np.float32, "m"
+    for field in metadata.fields:
+        yield f"{FIELDS}/{field.name}", "observables", (objects, *field.shape), np.dtype(field.dtype).type, field.unit
 
 
 def _fixed_bytes(particles: int, springs: int, surfaces: Sequence[Surface]) -> int:
@@ -384,6 +391,7 @@ def read_metadata(file: h5py.File) -> TrajectoryMetadata:
         ground=float(group.attrs["ground"]) if "ground" in group.attrs else None,
         walls=None if walls is None else (tuple(walls[0].tolist()), tuple(walls[1].tolist())),
         liquid=_read_liquid(file),
+        fields=_read_fields(file),
         save=Save(_string(group.attrs["save"])),
         single=bool(group.attrs["single"]),
         scene_text=_texts(group["scene"])[0],
@@ -415,6 +423,21 @@ def _read_liquid(file: h5py.File) -> LiquidMetadata | None:
     name, color = (_string(attributes[key]) for key in ("name", "color"))
     drops = file[f"observables/{DROPS}/value"].shape[1] if DROPS in file["observables"] else 0
     return LiquidMetadata(name, low, high, shape, float(attributes["density"]), color, drops)
+
+
+def _read_fields(file: h5py.File) -> tuple[Field, ...]:
+    values = {name: file[f"observables/{FIELDS}/{name}/value"] for name in _names_of_fields(file)}
+    return tuple(
+        Field(name, _string(value.attrs["units"]), per="object", dtype=value.dtype.name, shape=value.shape[2:])
+        for name, value in values.items()
+    )
+
+
+def _names_of_fields(file: h5py.File) -> list[str]:
+    group = file["observables"].get(FIELDS, {})
+    if not isinstance(group, Mapping):
+        raise KeyError(f"/observables/{FIELDS} is not a group")
+    return sorted(group)
 
 
 def _version() -> str:

@@ -3,12 +3,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
+from ..effects.fields import Field
 from ..features.liquid.frames import MOST_DROPS
 from ..model.grid import Grid
 from ..model.model import Layer, Model, Surface
@@ -77,6 +78,8 @@ class TrajectoryMetadata:
     """Lower and upper corner of the box that objects never leave [m]."""
     liquid: LiquidMetadata | None = None
     """None in a scene without liquid."""
+    fields: tuple[Field, ...] = ()
+    """What frames hold besides, with a value for each object, by name."""
     save: Save = Save.ALL
     single: bool = False
     """Positions and velocities in single precision."""
@@ -129,7 +132,7 @@ def stored_particles(model: Model, save: Save) -> np.ndarray:
 
 
 def metadata_of(
-    scene: SceneRecord, models: Sequence[Model], scene_text: str = "", grid: Grid | None = None
+    scene: SceneRecord, models: Sequence[Model], scene_text: str = "", grid: Grid | None = None, fields: Iterable[Field] = ()
 ) -> TrajectoryMetadata:
     """Collect what a trajectory of these models must know; objects in the order of ``models``.
 
@@ -138,6 +141,7 @@ def metadata_of(
         models: one per solid, named like the solids.
         scene_text: the expanded scene, kept so that pictures need nothing but the trajectory.
         grid: cells of the scene's liquid; None where there is none, or where it is switched off.
+        fields: what effects tell of a frame; those per object are stored.
     """
     solids = {solid.name: solid for solid in scene.solids}
     records = [solids[model.name] for model in models]
@@ -164,6 +168,7 @@ def metadata_of(
         ground=scene.ground,
         walls=(scene.walls.low, scene.walls.high) if scene.walls else None,
         liquid=liquid_metadata(scene.liquid, grid) if grid else None,
+        fields=tuple(sorted((field for field in fields if field.per == "object"), key=lambda field: field.name)),
         save=scene.control.save,
         single=scene.control.single,
         scene_text=scene_text,

@@ -9,7 +9,7 @@ from types import MappingProxyType
 
 import numpy as np
 
-from ..effects.fields import Fields
+from ..effects.fields import Field, Fields
 from ..errors import OutputError
 from ..model.grid import Grid
 from ..model.model import Model
@@ -21,6 +21,7 @@ from .trajectory import Trajectory
 from .trajectory_file import (
     CHECKSUM,
     DROPS,
+    FIELDS,
     FORMAT,
     LIQUID,
     NOT_WRITTEN,
@@ -51,6 +52,7 @@ class TrajectoryWriter:
         steps_per_frame: time steps between frames.
         scene_text: the expanded scene, so that pictures need no other file.
         grid: cells of the scene's liquid; every frame then has heights. None without liquid.
+        fields: what effects tell of a frame; those per object are stored.
 
     Raises:
         OutputError: the file cannot be written, e.g. because the disk is full.
@@ -67,9 +69,10 @@ class TrajectoryWriter:
         steps_per_frame: int,
         scene_text: str = "",
         grid: Grid | None = None,
+        fields: Sequence[Field] = (),
     ):
         part = part_of(path)
-        create_trajectory(part, metadata_of(scene, models, scene_text, grid), frames, dt, steps_per_frame)
+        create_trajectory(part, metadata_of(scene, models, scene_text, grid, fields), frames, dt, steps_per_frame)
         self._open(Path(path), models, count=0)
 
     @classmethod
@@ -205,6 +208,7 @@ class TrajectoryWriter:
             "center_of_mass": center,
             "center_of_mass_velocity": center_velocity,
             **(dict(zip(LIQUID, liquid)) if liquid is not None else {}),
+            **{f"{FIELDS}/{field.name}": fields[field.name] for field in self.metadata.fields},
             **({} if drops is None else {DROPS: np.pad(drops, ((0, self._most_drops - len(drops)), (0, 0)))}),
         }
         values = {name: np.ascontiguousarray(value, self._tables[name].dtype) for name, value in values.items()}

@@ -26,6 +26,10 @@ if TYPE_CHECKING:
     from .trajectory_metadata import TrajectoryMetadata
 
 
+BY_FRAME = ("particles/all/position/value", "particles/all/velocity/value", "observables/liquid/", "observables/fields/")
+"""Tables of an HDF5 file of which one frame is read at a time."""
+
+
 def check_folder(folder: Path) -> None:
     """Refuse a folder with a link, a pipe or a device anywhere in it: it could lead a command to other files, or never end.
 
@@ -72,7 +76,7 @@ def check_hdf5(path: Path, file: h5py.File) -> None:
                 return f"the data of {name} lie in another file"
             row = found.dtype.itemsize * float(np.prod(found.shape[1:], dtype=np.float64))
             # Of quantities of frames one frame is read at a time, of all other tables everything.
-            by_frame = name.startswith(("particles/all/position/value", "particles/all/velocity/value", "observables/liquid/"))
+            by_frame = name.startswith(BY_FRAME)
             needed += row * (1 if by_frame or not found.shape else len(found))
         return None
 
@@ -97,6 +101,8 @@ def check_metadata(path: Path, m: TrajectoryMetadata) -> None:
     for kinds, names in (("iu", ("first", "id", "layer", "bond", "surface_of")), ("f", ("mass", "object_mass"))):
         for name in names:
             must(getattr(m, name).dtype.kind in kinds, f"{name} holds {getattr(m, name).dtype}")
+    for field in m.fields:
+        must(np.dtype(field.dtype).kind in "fiu", f"{field.name} holds {field.dtype}")
     for surface in m.surfaces:
         must(surface.index.ndim == 2 and surface.weight.shape == surface.index.shape, "a surface lacks weights")
         for kinds, array in (("iu", surface.triangle), ("iu", surface.index), ("f", surface.weight)):

@@ -30,7 +30,7 @@ from ..results.trajectory import Trajectory
 from ..results.trajectory_writer import TrajectoryWriter
 from ..scene.formatting import number
 from ..scene.meshes import mesh_files
-from .energy import extra_fields, least_energy, ledger_terms, loss_terms, potential_terms
+from .energy import extra_fields, frame_fields, least_energy, ledger_terms, loss_terms, potential_terms
 from .frame_source import COST_SECONDS, Account, Frame, FrameSource, LammpsFailure, Sequential, clock
 from .guard import Guard
 from .prepare import Prepared
@@ -133,6 +133,7 @@ def trajectory_writer(ready: Prepared, folder: Path, frames: int) -> TrajectoryW
         steps_per_frame=ready.certificate.steps_per_frame,
         scene_text=ready.lock,
         grid=ready.plan.grid,
+        fields=frame_fields(ready.plan),
     )
 
 

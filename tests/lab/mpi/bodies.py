@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 from mdanim_lammps.effects import Effect
+from mdanim_lammps.effects.fields import column
 from mdanim_lammps.engine.instance import Instance
 from mdanim_lammps.engine.plan import Plan
 from mdanim_lammps.run.prepare import prepare
@@ -28,7 +29,10 @@ class Surfaces(Effect):
 
     def columns(self, context):
         system = context.system
-        return {"body": system.contact_kind[system.object].astype(float), "young": system.young[system.object]}
+        return {
+            column("body", "1"): system.contact_kind[system.object].astype(float),
+            column("young", "Pa"): system.young[system.object],
+        }
 
     def commands(self, context):
         return ["fix surfaces mobile mdanim/contact d_body d_young 0.0 objects"]
@@ -37,7 +41,7 @@ class Surfaces(Effect):
 def with_surfaces(plan: Plan) -> Plan:
     """A plan with the springs alone, and that effect."""
     effect = Surfaces()
-    columns = effect.columns(plan.context)
+    columns = {field.name: values for field, values in effect.columns(plan.context).items()}
     effects = (*(e for e in plan.effects if e.name == "springs"), effect)
     asked = {e.name: plan.asked.get(e.name, tuple(columns)) for e in effects}
     return replace(plan, effects=effects, columns=columns, tables={}, asked=asked)

@@ -7,9 +7,12 @@ import numpy as np
 
 from ...effects.context import Verdict
 from ...effects.effect import Effect
+from ...effects.fields import column
 from ...effects.readings import LEAPFROG, Readings
 from ..springs.effect import all_held
 
+LAMBDA = column("lambda", "N s/m")
+"""What the leap-frog takes as drag, of air and liquid together."""
 DRAG_LOSS = "drag_loss"
 """Column of the ledger; the leap-frog counts what air and liquid take together."""
 SLOWING = 0.3
@@ -38,7 +41,7 @@ class AirDrag(Effect):
         return np.array([solid.drag > 0.0 for solid in scene.solids], bool)
 
     def columns(self, context):
-        return {"lambda": context.system.drag}
+        return {LAMBDA: context.system.drag}
 
     def friction(self, context):
         return context.system.drag

@@ -10,6 +10,7 @@ import numpy as np
 from ...effects.context import Verdict
 from ...effects.effect import Effect, stiffness_told
 from ...effects.envelope import Envelope
+from ...effects.fields import column
 from ...effects.margin import Margin
 from ...errors import Problem
 from ...model.model import Layer
@@ -18,11 +19,13 @@ from ...model.touching import REACH, THIN, WAY_NAMES, touching
 from ...reach import largest_of_others
 from ...scene.formatting import at_least, say
 from ..springs.effect import all_held
-from .planes import OR_ON_SURFACES, others
+from .planes import OR_ON_SURFACES, STIFFNESS, others
 
 TUNNEL = (0.5, 0.65, 0.8)
 """Closing speed over the wave speed from which a block goes through a clamped plate of 1, 2, 3 and more
 cells (docs/stability.md)."""
+GAP = column("reach", "m")
+"""How far each particle is felt as a barrier."""
 NEAREST = 3
 """In the vector of fix mdanim/barrier: the smallest distance of a pair over its reach in this run [-]."""
 SOFTER = 2.0 / 3.0
@@ -98,7 +101,7 @@ class Contact(Effect):
 
     def columns(self, context):
         system = context.system
-        return {"stiffness": system.contact_stiffness, "reach": self.gap(context)[system.object]}
+        return {STIFFNESS: system.contact_stiffness, GAP: self.gap(context)[system.object]}
 
     def gap(self, context):
         return REACH * context.system.spacing

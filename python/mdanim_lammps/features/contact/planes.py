@@ -8,6 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from ...effects.effect import Effect
+from ...effects.fields import column
 from ...errors import Problem
 from ...model.planes import innermost, scene_planes
 from ...model.touching import WAY_NAMES, Touch, behind_planes
@@ -17,6 +18,8 @@ OR_ON_SURFACES = "or write contact-model surface in control, where what touches 
 """The other way out of a start within the reach of the paper's contact."""
 
 
+STIFFNESS = column("stiffness", "N/m")
+"""What particles push back with."""
 DEEPEST = 4
 """In the vector of fix mdanim/wall: the deepest particle behind the region in this run [m]."""
 
@@ -34,7 +37,7 @@ class Boundary(Effect):
     ledger = "wall"
 
     def columns(self, context):
-        return {"stiffness": context.system.contact_stiffness}
+        return {STIFFNESS: context.system.contact_stiffness}
 
     def region(self, scene) -> str:
         """The region command's style and arguments."""

@@ -11,6 +11,7 @@ import numpy as np
 
 from ...effects.context import Context
 from ...effects.effect import Effect
+from ...effects.fields import column
 from ...errors import Problem
 from ...model.boxes import box_pairs
 from ...model.contact_body import ContactBody
@@ -21,8 +22,8 @@ from ...model.system import System
 from ...reach import largest_of_others
 from ...scene.contact_pairs import USUAL_DAMPING, damping, frictions, pair_rules
 from ...scene.scene import Box, SceneRecord
-from .barrier import Contact, barrier, barrier_rate
-from .planes import Boundary
+from .barrier import GAP, Contact, barrier, barrier_rate
+from .planes import STIFFNESS, Boundary
 from .resting import one_sided
 
 SHORT, FULL = 0.8, 1.6
@@ -55,9 +56,9 @@ class OnSurfaces(Effect):
     def columns(self, context):
         scene, system = context.scene, context.system
         return {
-            "body": system.contact_kind[system.object].astype(float),
-            "young": system.young[system.object],
-            self.friction_column(scene): np.array(self.frictions(scene))[system.object],
+            column("body", "1"): system.contact_kind[system.object].astype(float),
+            column("young", "Pa"): system.young[system.object],
+            column(self.friction_column(scene), "1"): np.array(self.frictions(scene))[system.object],
         }
 
     def frictions(self, scene: SceneRecord) -> list[float]:
@@ -129,9 +130,9 @@ class SurfaceContact(OnSurfaces, Contact):
     def columns(self, context):
         system = context.system
         own = super().columns(context)
-        own |= {"stiffness": self.barrier_stiffness(context), "reach": self.barrier_reach(context)}
+        own |= {STIFFNESS: self.barrier_stiffness(context), GAP: self.barrier_reach(context)}
         thin = system.layer == Layer.THIN
-        return {**own, "thin": (thin & self.guards(context)[system.object]).astype(float)} if thin.any() else own
+        return {**own, column("thin", "1"): (thin & self.guards(context)[system.object]).astype(float)} if thin.any() else own
 
     def guards(self, context: Context) -> np.ndarray:
         """Solids whose surface is a barrier where nothing is inside, bool, shape (M,): those that may be met fast. The faces of

@@ -10,6 +10,7 @@ import numpy as np
 
 from ...effects.context import Verdict
 from ...effects.effect import Effect
+from ...effects.fields import column
 from ...effects.margin import Margin
 from ...effects.readings import LEAPFROG
 from ...errors import Problem, SceneError
@@ -225,7 +226,7 @@ class LiquidWaves(LiquidAutomaton):
 
     def columns(self, context):
         system = context.system
-        return {"softness": system.volume / system.young[system.object]}
+        return {column("softness", "m^3/Pa"): system.volume / system.young[system.object]}
 
     def words(self, scene):
         calm = scene.liquid.calm or calm_time(scene)
@@ -296,7 +297,7 @@ class Buoyancy(Effect):
         return _reached(self.name, scene)
 
     def columns(self, context):
-        return {"volume": context.system.volume}
+        return {column("volume", "m^3"): context.system.volume}
 
     def commands(self, context):
         return ["fix_modify liquid buoyancy d_volume"]
@@ -357,8 +358,9 @@ class LiquidDrag(Effect):
         scene, system = context.scene, context.system
         air = system.drag if context.on(air_drag.AirDrag.name) else None
         dry = np.zeros(system.particles) if air is None else air
-        quadratic = {"quadratic": per_length(system)} if _has_quadratic_drag(scene) else {}
-        return {"gamma": gamma(scene, system), **quadratic, "lambda": dry, **({} if air is None else {"air": air})}
+        quadratic = {column("quadratic", "1/m"): per_length(system)} if _has_quadratic_drag(scene) else {}
+        still_air = {} if air is None else {column("air", "N s/m"): air}
+        return {column("gamma", "1/s"): gamma(scene, system), **quadratic, air_drag.LAMBDA: dry, **still_air}
 
     def friction(self, context):
         # Quadratic drag is not part of it: a step takes a particle less than a tenth of a spacing, so k v dt is small.
