@@ -30,7 +30,7 @@ def windy(tmp_path_factory):
 def test_the_language_has_its_words(windy):
     """On the page of the language, explained, and read back from a lock."""
     words = windy["words"]
-    assert "| **wind** `(wx, wy, wz)` | m/s | - | `(0, 0, 0) m/s` | Velocity of the air. Absent: it is at rest. |" in words["page"]
+    assert "| **wind** `(wx, wy, wz)` | m/s | - | `(0, 0, 0) m/s` | Velocity of the air." in words["page"]
     assert "Called for by `wind`." in words["page"] and "| `wind.work` | J | work of the wind since the start |" in words["page"]
     assert [text.splitlines()[0] for text in words["explained"]] == [
         "wind (wx, wy, wz)   a setting outside of all blocks",

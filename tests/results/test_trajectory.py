@@ -18,12 +18,13 @@ import pytest
 from MDAnalysis.analysis.rms import RMSD
 from mdanim_lammps.api.run import STAY_OPEN, Run
 from mdanim_lammps.errors import OutputError
+from mdanim_lammps.features.walls.words import Walls
 from mdanim_lammps.model.model import Layer
 from mdanim_lammps.results.frame_rows import RowWriter
 from mdanim_lammps.results.trajectory import Trajectory
 from mdanim_lammps.results.trajectory_file import datasets_of_frames, frame_tables, part_of, trajectory_bytes
 from mdanim_lammps.results.trajectory_writer import TrajectoryWriter
-from mdanim_lammps.scene.scene import Save, Walls
+from mdanim_lammps.scene.scene import Save
 from paths import LAB
 from picture_samples import KILLED, ball, falling, slab_scene, write
 

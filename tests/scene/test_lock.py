@@ -7,6 +7,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from mdanim_lammps.errors import SceneError
+from mdanim_lammps.features.walls.words import Walls
 from mdanim_lammps.scene import scene as records
 from mdanim_lammps.scene.keywords import BLOCKS, KEYWORDS, STATEMENTS
 from mdanim_lammps.scene.lock import lock_text
@@ -126,7 +127,7 @@ def scenes(draw):
     wet = draw(st.booleans())
     liquid = None
     if wet:
-        basin = draw(boxes(records.Walls))
+        basin = draw(boxes(Walls))
         room = math.prod(b - a for a, b in zip(basin.low, basin.high))
         by_volume = draw(st.booleans())
         share = draw(st.floats(0.1, 0.9))
@@ -179,7 +180,7 @@ def scenes(draw):
         liquid=liquid,
         contacts=contacts,
         ground=draw(st.none() | numbers),
-        walls=draw(st.none() | st.just(records.Walls((-2e6,) * 3, (2e6,) * 3))),
+        walls=draw(st.none() | st.just(Walls((-2e6,) * 3, (2e6,) * 3))),
         effects=draw(st.dictionaries(st.sampled_from(sorted(KEYWORDS["effects"])), st.sampled_from(records.Switch), max_size=3)),
         render=records.Render(
             size=draw(st.tuples(*[st.integers(1, 4000)] * 2)),

@@ -6,6 +6,7 @@ import time
 
 import pytest
 from mdanim_lammps.errors import SceneError
+from mdanim_lammps.features.walls.words import Walls
 from mdanim_lammps.scene import scene as records
 from mdanim_lammps.scene.expressions import random_unit
 from mdanim_lammps.scene.parse import load_scene, parse_scene
@@ -215,7 +216,7 @@ def test_top_level():
     )
     assert scene.title == "a # b"
     assert scene.ground == -0.05
-    assert scene.walls == records.Walls((-1.0, -1.0, 0.0), (1.0, 1.0, 2.0))
+    assert scene.walls == Walls((-1.0, -1.0, 0.0), (1.0, 1.0, 2.0))
     assert scene.effects == {"contact": records.Switch.OFF, "air-drag": records.Switch.AUTO}
     assert (scene.spans["ground"].line, scene.spans["effects.air-drag"].column) == (2, 23)
 
