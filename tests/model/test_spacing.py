@@ -6,8 +6,9 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from mdanim_lammps.errors import SceneError
-from mdanim_lammps.model import build_models, plan_spacing, shapes, spacing, work
-from mdanim_lammps.model.cells import _without_nubs, box_counts, fill_cells
+from mdanim_lammps.model import build, build_models, plan_spacing, shapes, spacing, work
+from mdanim_lammps.model.cells import TooThin, _without_nubs, box_counts, fill_cells
+from mdanim_lammps.model.limits import bounding_cells
 from mdanim_lammps.model.springs import MAX_ASPECT
 from mdanim_lammps.scene.parse import parse_scene
 from mdanim_lammps.scene.scene import Accuracy, Box, Cone, Cylinder, HoldAll, Liquid, Mesh, Sphere
@@ -206,6 +207,26 @@ def test_a_body_that_falls_apart_is_refused():
     assert "not in one piece" in problem.message and problem.line == 2
     number, unit = problem.hint.split()[2:4]
     assert len(model(dumbbell, float(number) * {"cm": 0.01, "mm": 0.001}[unit]).position) > 600
+
+
+@pytest.mark.parametrize(("most", "tried"), [(1e3, 1), (1e2, 0)])
+def test_finer_cells_are_tried_up_to_a_number(monkeypatch, most, tried):
+    """A large body in pieces is refused soon: the search ends before it has looked at millions of cells."""
+    looked = []
+
+    def fill(shape, h):
+        looked.append(h)
+        raise TooThin("its cells are not in one piece")
+
+    monkeypatch.setattr(build, "fill_cells", fill)
+    monkeypatch.setattr(build, "MOST_TRIED", most)
+    dumbbell = Mesh(MESHES / "dumbbell.obj", 0.1)
+    with pytest.raises(SceneError) as caught:
+        model(dumbbell, 0.1)
+    message = caught.value.problems[0].message
+    assert (" nor at " in message) == bool(tried) and "at 10 cm" in message
+    cells = [bounding_cells(dumbbell, h) for h in looked[1:]]
+    assert bool(cells) == bool(tried) and sum(cells) <= most < sum(cells) + bounding_cells(dumbbell, 0.8 * looked[-1])
 
 
 def test_two_bodies_in_one_file_are_refused():

@@ -18,6 +18,7 @@ from .contact_body import BodyFrame
 from .cover import with_covers
 from .embed import make_surface
 from .lattice import Lattice, make_lattice
+from .limits import bounding_cells
 from .masses import Fit, fit_masses
 from .mesh import MeshError
 from .model import Model, Surface
@@ -219,10 +220,19 @@ def _missed(hold: HoldWithin, solid: Solid, lattice: Lattice) -> tuple[str, str]
     )
 
 
+MOST_TRIED = 3e7
+"""Cells that are looked at for a finer resolution at which a body holds together: some five seconds."""
+
+
 def _too_thin(solid: Solid, h: float, error: TooThin) -> Problem:
     """Name a sufficient resolution, by trying finer ones."""
+    tried, left = [h], MOST_TRIED
     # Two digits, so that the resolution that is tried is the one in the message.
     for trial in [float(f"{finer:.2g}") for finer in h * 0.8 ** np.arange(1, 6)]:
+        left -= bounding_cells(solid.shape, trial)
+        if left < 0.0:
+            break
+        tried.append(trial)
         try:
             fill_cells(solid.shape, trial)
         except TooThin:
@@ -232,8 +242,9 @@ def _too_thin(solid: Solid, h: float, error: TooThin) -> Problem:
             f"{solid.name}: thinner than the spacing allows, {error} at {say(h, 'm')}",
             f"write resolution {say(trial, 'm')} in control, or make its thin parts thicker",
         )
+    found = [say(size, "m") for size in tried]
     return Problem(
         solid.spans.get("shape"),
-        f"{solid.name}: {error}, neither at {say(h, 'm')} nor at {say(trial, 'm')}",
+        f"{solid.name}: {error}, " + (f"neither at {found[0]} nor at {found[-1]}" if len(tried) > 1 else f"at {found[0]}"),
         "make separate bodies, and parts that touch in a point, separate objects",
     )
