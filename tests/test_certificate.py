@@ -142,10 +142,18 @@ def test_fit_steps(time, frames, longest, expected):
     assert (per_frame * whole + last) * dt == pytest.approx(time, rel=1e-12)
 
 
-def test_a_time_that_fits_no_step_is_a_problem():
-    """Say which duration would do."""
-    with pytest.raises(SceneError, match=r"try 'time 1\.73333 s'"):
-        fit_steps(scene(math.sqrt(3.0)), 1e-2)
+@pytest.mark.parametrize(
+    ("time", "longest", "expected"),
+    [
+        pytest.param(math.sqrt(3.0), 1e-2, (4, 51, 0), id="no fraction of small numbers"),
+        pytest.param(0.1234, 1e-2, (4, 3, 0), id="500 steps in a frame"),
+        pytest.param(0.1234, 1e-4, (500, 3, 351), id="steps as short as that"),
+        pytest.param(1.73333, 1e-2, (4, 52, 0), id="a rounded number of frames"),
+    ],
+)
+def test_a_run_whose_time_no_step_fits_ends_with_the_last_whole_frame(time, longest, expected):
+    """Steps are no more than four times as short for the sake of the last frame."""
+    assert fit_steps(scene(time), longest) == expected
 
 
 @pytest.mark.parametrize(
@@ -362,14 +370,22 @@ def test_a_liquid_breaks_a_fall(prepared, density, height, level, more, speed):
         assert f"may hit at {speed:.2g} m/s" in found[0].message
 
 
-@pytest.mark.parametrize(("time", "frames"), [(0.7777, 30), (1.00001, 24), (0.123456789, 60), (5.4321, 29.97)])
-def test_the_time_that_is_advised_is_taken(prepared, time, frames):
-    """Where no time step fits both time and frames; as a rounded decimal it would be refused again."""
+@pytest.mark.parametrize(("time", "frames"), [(0.7777, 30), (1.0001, 24), (0.123456789, 60), (5.4321, 29.97)])
+def test_a_run_that_ends_early_says_so(prepared, time, frames):
+    """Where no time step fits both time and frames, a note tells the last frame. The time that is advised gives the same run."""
     text = (
         "object a {{ shape sphere 10 cm  position (0, 0, 1) m  density 1000 kg/m^3  elasticity 100 kPa }}\n"
-        "control {{ {}  frames {} fps }}\n"
+        "control {{ time {} s  frames {} fps }}\n{}"
     )
-    with pytest.raises(SceneError, match="no time step fits both") as refused:
-        prepared(text.format(f"time {time} s", frames))
-    advised = re.search(r"'(time [^']+)' \((\d+) frames\)", str(refused.value))
-    assert prepared(text.format(advised[1], frames)).certificate.frames == int(advised[2])
+    early = prepared(text.format(time, frames, "")).certificate
+    whole = math.floor(time * frames)
+    assert (early.frames, early.last_steps) == (whole, 0)
+    note = next(n for n in early.notes if "no time step fits" in n.message)
+    advised = re.fullmatch(r"write 'time (\S+) s'", note.hint)[1]
+    assert f"the run ends with frame {whole}, at {advised} s" in note.message and note.severity == "note"
+    assert float(advised) == pytest.approx(whole / frames, rel=1e-5)
+    with pytest.raises(SceneError, match=f"lies behind the last whole frame, at {advised} s"):
+        prepared(text.format(time, frames, f"expect a.position.z at {time} s = 0 +- 1 m"))
+    exact = prepared(text.format(advised, frames, "")).certificate
+    assert (exact.frames, exact.last_steps, exact.timestep) == (whole, 0, early.timestep)
+    assert not any("no time step fits" in n.message for n in exact.notes)

@@ -24,7 +24,7 @@ from .effects.envelope import Envelope
 from .effects.margin import Margin
 from .errors import Problem, RefusedError, SceneError, Span
 from .scene.formatting import estimate, number, say
-from .scene.scene import SceneRecord
+from .scene.scene import Control, SceneRecord
 
 WARN = 0.7
 """Time step over the bound above which large motion may blow up: the bound is that of small motion (docs/physics-solids.md)."""
@@ -32,6 +32,10 @@ STRONG = 0.5
 """phi = lambda dt / 2m, eq. (3.13), above which the implicit form is inaccurate: beyond 1 it reverses velocities every step."""
 MOST_STEPS = 10**15
 """Steps of a run at most: so many take years."""
+ROUNDED = 1e-3
+"""Part of a frame by which a time may differ from that of a frame: 1.73333 s are 52 frames of 1/30 s."""
+MOST_PARTS = 100
+"""Steps of a frame that a last, shorter frame may ask for in any case."""
 MOST_OBJECTS = 100
 """Objects whose own bound is told, the smallest first."""
 
@@ -106,8 +110,8 @@ class Certificate(OnceMethod):
 def certify(context: Context, *, allow_unstable: bool = False) -> Certificate:
     """Bound the time step of a scene and choose one that fits its frames.
 
-    Raises RefusedError when ``control timestep`` is above the bound (unless ``allow_unstable``), and SceneError when
-    ``time`` and ``frames`` cannot be met by one time step.
+    Raises RefusedError when ``control timestep`` is above the bound (unless ``allow_unstable``), and SceneError when the scene
+    expects something behind the last whole frame of a ``time`` that no time step fits.
     """
     scene, system, on = context.scene, context.system, context.resolved.effects
     rates = {e.name: r for e in on if (r := e.rate(context)) is not None}
@@ -146,7 +150,7 @@ def certify(context: Context, *, allow_unstable: bool = False) -> Certificate:
         )
         raise RefusedError(str(problem))
     timestep = 1.0 / (scene.control.frames * per_frame)
-    envelope = Envelope(context, rates, timestep)
+    early, envelope = _end(scene, frames, last), Envelope(context, rates, timestep)
     return Certificate(
         timestep=timestep,
         bound=bound,
@@ -158,7 +162,7 @@ def certify(context: Context, *, allow_unstable: bool = False) -> Certificate:
         last_steps=last,
         span=scene.solids[system.object[worst]].spans.get("elasticity"),
         margins=tuple(_margins(envelope, limit)),
-        notes=tuple(_notes(envelope)),
+        notes=(*early, *_notes(envelope)),
     )
 
 
@@ -174,32 +178,61 @@ def stable_step(stiff: np.ndarray, drag: np.ndarray) -> np.ndarray:
 def fit_steps(scene: SceneRecord, longest: float) -> tuple[int, int, int]:
     """Steps per frame, whole frames, and steps of a last shorter frame, so that one dt <= ``longest`` meets them all.
 
-    ``time * frames`` = p/q in lowest terms asks for a multiple of q steps per frame. Raises SceneError when q is so large
-    that it would shorten the step by more than a factor of four.
+    ``time * frames`` = p/q in lowest terms asks for a multiple of q steps per frame. Where q is so large that it would shorten
+    the step by more than a factor of four, the run ends with the last whole frame.
     """
     control = scene.control
     least = max(1, math.ceil(1.0 / (control.frames * longest) * (1.0 - 1e-12))) if longest < math.inf else 1
-    ratio = Fraction(control.time * control.frames).limit_denominator(10_000)
-    if abs(float(ratio) - control.time * control.frames) > 1e-9 * float(ratio or 1) or ratio.denominator > 4 * least + 100:
-        whole = max(1, round(control.time * control.frames))
-        fits = number(whole / control.frames, 6)
-        if abs(float(fits) * control.frames - whole) > 1e-9 * whole:  # as a decimal it would be refused again
-            fits += f" s', written exactly: 'time {whole} / {number(control.frames, 6)}"
-        raise SceneError(
-            [
-                Problem(
-                    control.spans.get("time"),
-                    f"time {number(control.time, 6)} s is {number(control.time * control.frames, 6)} frames at "
-                    f"{number(control.frames, 6)} fps: "
-                    "no time step fits both",
-                    f"try 'time {fits} s' ({whole} frames)",
-                )
-            ]
-        )
+    ratio = _in_frames(control)
+    if ratio is None or ratio.denominator > 4 * least + MOST_PARTS:
+        return least, whole_frames(control), 0
     q = ratio.denominator
     per_frame = q * math.ceil(least / q)
     frames, rest = divmod(ratio.numerator, q)
     return per_frame, frames, rest * per_frame // q
+
+
+def _in_frames(control: Control) -> Fraction | None:
+    """The time of a scene over that of a frame; None where it is no fraction of small numbers."""
+    ratio = Fraction(control.time * control.frames).limit_denominator(10_000)
+    return None if abs(float(ratio) - control.time * control.frames) > 1e-9 * float(ratio or 1) else ratio
+
+
+def whole_frames(control: Control) -> int:
+    """Whole frames in the time of a scene."""
+    return math.floor(control.time * control.frames + ROUNDED)
+
+
+def may_end_early(control: Control) -> bool:
+    """Whether there are time steps for which a run ends with the last whole frame."""
+    ratio = _in_frames(control)
+    return ratio is None or ratio.denominator > MOST_PARTS
+
+
+def _end(scene: SceneRecord, frames: int, last: int) -> list[Problem]:
+    """That a run of so many whole frames, and of these steps of a last one, ends before the time of the scene.
+
+    Raises SceneError where the scene expects something later.
+    """
+    control = scene.control
+    if last or frames + ROUNDED >= control.time * control.frames:
+        return []
+    end = f"{number(frames / control.frames, 6)} s"
+    late = [e for e in scene.expects if e.time is not None and e.time > frames / control.frames * (1.0 + 1e-9)]
+    cause = f"lies behind the last whole frame, at {end}: no time step fits the time {number(control.time, 6)} s"
+    if late:
+        raise SceneError(
+            [Problem(e.span, f"{number(e.time, 6)} s {cause}", "write an earlier time, or a longer one") for e in late]
+        )
+    return [
+        Problem(
+            control.spans.get("time"),
+            f"time {number(control.time, 6)} s is {number(control.time * control.frames, 6)} frames at "
+            f"{number(control.frames, 6)} fps, which no time step fits: the run ends with frame {frames}, at {end}",
+            f"write 'time {end}'",
+            severity="note",
+        )
+    ]
 
 
 def strong_drag(context: Context, timestep: float) -> float:

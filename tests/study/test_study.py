@@ -12,6 +12,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from mdanim_lammps import Scene
+from mdanim_lammps.certificate import fit_steps
 from mdanim_lammps.cli.scene_commands import study as study_command
 from mdanim_lammps.errors import DivergedError, OutputError, RefusedError, UsageError
 from mdanim_lammps.run.loop import Interrupted, simulate
@@ -20,7 +21,7 @@ from mdanim_lammps.scene.parse import load_scene, parse_scene
 from mdanim_lammps.scene.scene import Accuracy, LiquidModel
 from mdanim_lammps.study import bench
 from mdanim_lammps.study.measure import Sample, TooLong, measure
-from mdanim_lammps.study.setting import LADDERS, Setting, ladders, own_setting, scene_hash, with_setting
+from mdanim_lammps.study.setting import LADDERS, Setting, ladders, own_setting, same_frames, scene_hash, with_setting
 from mdanim_lammps.study.store import Store
 from mdanim_lammps.study.study import run_study
 from study_lab import BAR, TIMES, track
@@ -312,6 +313,21 @@ def test_liquid_repeats_have_another_seed(scenes, tmp_path):
     for _ in range(2):
         runs.measure(Setting(2, 0.5))
     assert not np.array_equal(*store.points["c2-f0.5"].tracks)
+
+
+@pytest.mark.parametrize(("time", "frames"), [("0.20371 s", 20), ("0.2 s", 20), ("0.195 s", 19)])
+def test_settings_of_a_study_have_the_same_frames(time, frames):
+    """Whether a last, shorter frame follows depends on the time step: 500 steps in a frame are too many for a long one."""
+    text = (
+        BAR.replace("time 0.2 s", f"time {time}").replace("at 0.2 s", "at 0.1 s")
+        + f"expect bar.position.y at {time} = 0 +- 1 m\n"
+    )
+    scene = same_frames(parse_scene(text))
+    counts = {fit_steps(scene, longest)[1:] for longest in (1e-2, 1e-3, 1e-4, 1e-5)}
+    assert {whole for whole, _ in counts} == {frames} and len({last > 0 for _, last in counts}) == 1
+    assert len(scene.expects) == (1 if time == "0.20371 s" else 2)
+    if time == "0.20371 s":
+        assert len({fit_steps(parse_scene(BAR.replace("0.2 s", time)), longest)[2] > 0 for longest in (1e-2, 1e-5)}) == 2
 
 
 # --- must hold: order of the time step, drift of the classes ----------------------------------------------------------

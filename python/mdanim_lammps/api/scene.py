@@ -33,7 +33,7 @@ from ..scene.keywords import Named
 from ..scene.parse import load_scene, parse_scene
 from ..scene.scene import Accuracy, Save, SceneRecord
 from ..study.bench import BUDGET
-from ..study.setting import scene_hash
+from ..study.setting import same_frames, scene_hash
 from ..study.store import Store
 from ..study.study import Study, run_study
 from ..study.target import Choice, find_choice
@@ -231,8 +231,9 @@ class Scene:
         Points are kept with those of `study`, and arguments are as there. Raises UsageError for a scene that says both resolution
         and timestep, DivergedError where no setting could be found, SceneError, RefusedError, OutputError.
         """
-        store = Store(output_folder(self.record, folder) / STUDY, scene_hash(self.record), force=force)
-        return find_choice(self.record, error, budget=budget, store=store, on_progress=on_progress)
+        scene = same_frames(self.record)
+        store = Store(output_folder(self.record, folder) / STUDY, scene_hash(scene), force=force)
+        return find_choice(scene, error, budget=budget, store=store, on_progress=on_progress)
 
     def picture(self, path: str | Path, *, at: float = 0.0, size: tuple[int, int] | None = None) -> Path:
         """Draw the scene before it is run, at its start or after ``at`` seconds of a quick, coarse run; see `draw_picture`."""

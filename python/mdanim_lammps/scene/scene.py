@@ -321,7 +321,9 @@ class SaveAndPrecision(Codec):
 class Control(Worded):
     """Duration, frames, accuracy: everything that is neither an object nor a picture."""
 
-    time: float = setting("<T:s>", "Simulated duration.", "3 s", Rule.POSITIVE)
+    time: float = setting(
+        "<T:s>", "Simulated duration; where no time step fits it and the frames, up to the last whole frame.",
+        "3 s", Rule.POSITIVE)  # fmt: skip
     """[s]"""
     frames: float = setting("<n:fps>", "Frames per simulated second.", "25 fps", Rule.POSITIVE, default=30.0)
     """[1/s]"""

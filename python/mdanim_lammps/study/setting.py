@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from .. import __version__
-from ..certificate import fit_steps
+from ..certificate import fit_steps, may_end_early, whole_frames
 from ..model.spacing import choose_spacing
 from ..run.prepare import Prepared, prepare
 from ..scene.formatting import number
@@ -112,6 +112,19 @@ def with_setting(scene: SceneRecord, setting: Setting, *, repeat: int = 0) -> Sc
         bound = prepare(scene).certificate.bound
         scene = replace(scene, control=replace(scene.control, timestep=setting.fraction * bound * (1.0 + 1e-9)))
     return scene
+
+
+def same_frames(scene: SceneRecord) -> SceneRecord:
+    """The scene up to its last whole frame where it may depend on the time step whether a last, shorter frame follows.
+
+    Runs of all settings have the same frames.
+    """
+    control = scene.control
+    if not may_end_early(control):
+        return scene
+    end = whole_frames(control) / control.frames
+    expects = tuple(e for e in scene.expects if e.time is None or e.time <= end * (1.0 + 1e-9))
+    return replace(scene, expects=expects, control=replace(control, time=end))
 
 
 def frames_only(scene: SceneRecord) -> SceneRecord:

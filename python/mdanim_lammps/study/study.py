@@ -13,7 +13,7 @@ from ..scene.scene import SceneRecord
 from .analysis import Analysis, advice, analyse
 from .bench import BUDGET, Bench
 from .report import write_report
-from .setting import LADDERS, TOUCHING, Ladder, ladders, own_setting, scene_hash, together
+from .setting import LADDERS, TOUCHING, Ladder, ladders, own_setting, same_frames, scene_hash, together
 from .store import Point, Store
 
 
@@ -59,6 +59,7 @@ def run_study(
     """
     if unknown := [name for name in only if name not in LADDERS]:
         raise UsageError(f"there is no ladder '{unknown[0]}'; known are {', '.join(LADDERS)}")
+    scene = same_frames(scene)
     store = Store(folder, scene_hash(scene), force=force)
     ready = prepare(scene)
     own = store.named(own_setting(scene, ready), ready.certificate.timestep)

@@ -17,7 +17,7 @@ from .analysis import Analysis, analyse
 from .bench import BUDGET, Bench
 from .error import ROUND_OFF, distance, extent
 from .measure import TooLong
-from .setting import TOUCHING, Ladder, Setting, finer, own_setting, scene_hash, thinnest
+from .setting import TOUCHING, Ladder, Setting, finer, own_setting, same_frames, scene_hash, thinnest
 from .store import Store
 
 START = (2, 3, 4)
@@ -102,6 +102,7 @@ def find_choice(
         raise UsageError(f"a target error is between 0 and 100 %, found {100 * error:g} %")
     if None not in (scene.control.resolution, scene.control.timestep):
         raise UsageError("the scene says both resolution and timestep, so a target has nothing to choose; leave one of them out")
+    scene = same_frames(scene)
     if store is not None:
         return _Search(scene, error, store, budget, on_progress).go()
     with tempfile.TemporaryDirectory(prefix="mdanim-") as temporary:
