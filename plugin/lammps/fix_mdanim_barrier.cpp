@@ -8,23 +8,18 @@
 #include "barrier/contact_search.h"
 #include "barrier/law.h"
 #include "lammps/keywords.h"
-#include "lammps/rank_gather.h"
-#include "lammps/require_open_box.h"
 #include "numbers/stopwatch.h"
 
 #include "atom.h"
 #include "comm.h"
-#include "domain.h"
 #include "error.h"
-#include "force.h"
 #include "neighbor.h"
-#include "update.h"
 #include "utils.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <numeric>
+#include <utility>
 
 using namespace LAMMPS_NS;
 using namespace FixConst;
@@ -36,17 +31,15 @@ static constexpr double MOST_SKINS = 64.0;    // that are looked ahead where obj
 // --- the command ---
 
 // fix ID group mdanim/barrier BOUNDARY BARRIER k rc [thin GROUP ratio]
-FixMdanimBarrier::FixMdanimBarrier(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg)
+FixMdanimBarrier::FixMdanimBarrier(LAMMPS *lmp, int narg, char **arg) : FixBase(lmp, narg, arg)
 {
-  scalar_flag = 1;
-  extscalar = 1;
-  energy_global_flag = 1;
-  vector_flag = 1;
-  size_vector = 5;
-  static int extensive[] = {1, 1, 1, 0, 0};
-  extvector = -1;
-  extlist = extensive;
-  global_freq = 1;
+  need(THREE_DIMENSIONS | ORTHOGONAL_BOX | OPEN_BOX | OBJECTS | ATOM_MAP | PROMPT_LISTS, "a pair may come into reach");
+  look_up({&boundary, &barrier, &thin}, {&stiffness, &reach});
+  tell({{"meeting", true, [this] { return static_cast<double>(meeting_objects); }},
+        {"tried", true, [this] { return sum(tried_pairs); }},
+        {"touching", true, [this] { return sum(touching); }},
+        {"nearest", false, [this] { return least(deepest); }},
+        clock()});
   comm_forward = 3;
   filter = &widest_kernels().pair_filter;
 
@@ -71,16 +64,6 @@ FixMdanimBarrier::FixMdanimBarrier(LAMMPS *lmp, int narg, char **arg) : Fix(lmp,
 
 int FixMdanimBarrier::setmask() { return POST_NEIGHBOR | POST_FORCE; }
 
-void FixMdanimBarrier::init()
-{
-  const auto refuse = [this](const char *why) { error->all(FLERR, "fix {} mdanim/barrier: {}", id, why); };
-  need_objects_in_open_box(this, lmp, "a pair may come into reach");
-  if (atom->map_style == Atom::MAP_NONE) refuse("needs an atom map; put 'atom_modify map array' before the box is made");
-  stiffness.init(lmp);
-  reach.init(lmp);
-  for (NamedGroup *one : {&boundary, &barrier, &thin}) one->init(lmp);
-}
-
 // --- candidates, when LAMMPS rebuilds ---
 
 int FixMdanimBarrier::role(int i) const
@@ -102,7 +85,7 @@ void FixMdanimBarrier::collect_own()
 {
   own.resize(atom->nlocal + atom->nghost);
   const double *k = stiffness.values(lmp), *rc = reach.values(lmp);
-  for (int i = 0; i < atom->nlocal; ++i) own[i] = {k ? k[i] : stiffness.number, rc ? rc[i] : reach.number, object[i]};
+  for (int i = 0; i < atom->nlocal; ++i) own[i] = {k ? k[i] : stiffness.number, rc ? rc[i] : reach.number, objects[i]};
   comm->forward_comm(this);
 }
 
@@ -123,46 +106,29 @@ void FixMdanimBarrier::unpack_forward_comm(int n, int start, double *buf)
   for (int i = start; i < start + n; ++i, buf += 3) own[i] = {buf[0], buf[1], static_cast<int>(buf[2])};
 }
 
-// Molecule IDs of the objects that have particles of the two groups, ascending; the same on all ranks.
-std::vector<tagint> FixMdanimBarrier::find_objects() const
+void FixMdanimBarrier::find_objects()
 {
-  const auto make_unique = [](std::vector<tagint> &ids) {
-    std::sort(ids.begin(), ids.end());
-    ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
-  };
   std::vector<tagint> here;
   for (int i = 0; i < atom->nlocal; ++i)
     if (role(i) != NONE && (here.empty() || here.back() != atom->molecule[i])) {
       need_object(this, lmp, i);
       here.push_back(atom->molecule[i]);
     }
-  make_unique(here);
-  std::vector<tagint> all = gather(world, here);
-  make_unique(all);
-  return all;
+  objects.make(world, std::move(here));
 }
 
-// The longest reach of any pair, and eq. (3.14) for every object in ascending order of molecule IDs; the same on all ranks.
+// The longest reach of any pair, and a box around every object in ascending order of molecule IDs; the same on all ranks.
 double FixMdanimBarrier::survey(std::vector<Box> &boxes)
 {
-  const std::vector<tagint> ids = find_objects();
+  find_objects();
   const double *k = stiffness.values(lmp), *rc = reach.values(lmp);
-  const int nlocal = atom->nlocal;
-  double reach_here = 0.0, longest = 0.0;
-  std::vector<Box> here(ids.size());
-  object.assign(nlocal, NO_OBJECT);
-  int number = 0;
-  for (int i = 0; i < nlocal; ++i) {
-    if (role(i) == NONE || (k && k[i] == 0.0)) continue;    // what is without stiffness takes no part
-    const tagint id = atom->molecule[i];
-    if (ids[number] != id) number = static_cast<int>(std::lower_bound(ids.begin(), ids.end(), id) - ids.begin());
-    object[i] = number;
-    here[number].include(atom->x[i]);
-    reach_here = std::max(reach_here, rc ? rc[i] : reach.number);
-  }
-  MPI_Allreduce(&reach_here, &longest, 1, MPI_DOUBLE, MPI_MAX, world);
-  boxes.resize(here.size());
-  MPI_Allreduce(here.data(), boxes.data(), 6 * static_cast<int>(here.size()), MPI_DOUBLE, MPI_MIN, world);
+  boxes = objects.place(
+      *atom, world, [&](int i) { return role(i) != NONE && !(k && k[i] == 0.0); },    // without stiffness it takes no part
+      [](int) {});
+  double reach_here = 0.0;
+  for (int i = 0; i < atom->nlocal; ++i)
+    if (objects[i] != ObjectTable::NONE) reach_here = std::max(reach_here, rc ? rc[i] : reach.number);
+  const double longest = largest(reach_here);
   return thin.given() ? std::max(1.0, thin_ratio) * longest : longest;
 }
 
@@ -207,7 +173,7 @@ void FixMdanimBarrier::find_pairs()
 
   ContactSearch search(boxes, meeting, {range, neighbor->skin, thin_ratio, filter});
   for (int i = 0; i < atom->nlocal + atom->nghost; ++i)
-    if (own[i].object != NO_OBJECT && search.is_near(own[i].object, atom->x[i]))
+    if (own[i].object != ObjectTable::NONE && search.is_near(own[i].object, atom->x[i]))
       search.add({i, atom->tag[i], own[i].object, role(i), moves(i), own[i].reach, atom->x[i]});
   search.run();
 
@@ -316,40 +282,12 @@ void FixMdanimBarrier::append_required_atoms(std::vector<int> &particles) const
 
 // --- output ---
 
-double FixMdanimBarrier::sum(double here)
-{
-  double all = 0.0;
-  MPI_Allreduce(&here, &all, 1, MPI_DOUBLE, MPI_SUM, world);
-  return all;
-}
-
 double FixMdanimBarrier::compute_scalar() { return sum(energy); }
-
-// 1: pairs of objects whose boxes meet; 2: pairs of particles tried; 3: pairs in touch; 4: smallest r/reach in this run; 5:
-// wall seconds of the slowest rank
-double FixMdanimBarrier::compute_vector(int n)
-{
-  double all = 0.0;
-  switch (n) {
-    case 0:
-      return static_cast<double>(meeting_objects);
-    case 1:
-      return sum(tried_pairs);
-    case 2:
-      return sum(touching);
-    case 3:
-      MPI_Allreduce(&deepest, &all, 1, MPI_DOUBLE, MPI_MIN, world);
-      return all;
-    default:
-      MPI_Allreduce(&seconds, &all, 1, MPI_DOUBLE, MPI_MAX, world);
-      return all;
-  }
-}
 
 double FixMdanimBarrier::memory_usage()
 {
-  return own.capacity() * sizeof(Own) + strip.capacity() * sizeof(Strip) + reach2.bytes() +
+  return objects.bytes() + own.capacity() * sizeof(Own) + strip.capacity() * sizeof(Strip) + reach2.bytes() +
          pair.capacity() * sizeof(ContactPair) + masks.capacity() * sizeof(StripMask) +
-         (object.capacity() + particle.capacity() + unmoved.capacity() + touching_pair.capacity()) * sizeof(int) + here.bytes() +
+         (particle.capacity() + unmoved.capacity() + touching_pair.capacity()) * sizeof(int) + here.bytes() +
          on.capacity() * sizeof(double) + slot.capacity() * sizeof(long);
 }

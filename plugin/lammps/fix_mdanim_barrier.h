@@ -5,10 +5,9 @@
 #define LMP_FIX_MDANIM_BARRIER_H
 
 #include "barrier/pair_filter.h"
-#include "fix.h"
 #include "geometry/boxes.h"
-#include "lammps/named_group.h"
-#include "lammps/particle_value.h"
+#include "lammps/fix_base.h"
+#include "lammps/object_table.h"
 #include "numbers/vec3.h"
 #include "passes/pass_participant.h"
 #include "simd/kernels.h"
@@ -17,12 +16,11 @@
 
 namespace LAMMPS_NS {
 
-class FixMdanimBarrier : public Fix, public mdanim::PassParticipant {
+class FixMdanimBarrier : public mdanim::FixBase, public mdanim::PassParticipant {
  public:
   FixMdanimBarrier(class LAMMPS *, int, char **);
 
   int setmask() override;
-  void init() override;
   void setup_post_neighbor() override;
   void setup(int) override;
   void post_neighbor() override;
@@ -30,7 +28,6 @@ class FixMdanimBarrier : public Fix, public mdanim::PassParticipant {
   int pack_forward_comm(int, int *, double *, int, int *) override;
   void unpack_forward_comm(int, int, double *) override;
   double compute_scalar() override;
-  double compute_vector(int) override;
   double memory_usage() override;
   void append_required_atoms(std::vector<int> &particles) const override;
   bool depends_on_positions_only() const override { return true; }
@@ -43,7 +40,7 @@ class FixMdanimBarrier : public Fix, public mdanim::PassParticipant {
   // What a particle contributes to a pair. Owners send that of ghosts at every rebuild.
   struct Own {
     double stiffness, reach;
-    int object;    // its number in find_objects(), or NO_OBJECT
+    int object;    // its number in `objects`, or NONE
   };
   struct ContactPair {
     double stiffness, reach;
@@ -51,7 +48,7 @@ class FixMdanimBarrier : public Fix, public mdanim::PassParticipant {
   };
 
   int role(int i) const;
-  std::vector<tagint> find_objects() const;
+  void find_objects();
   double survey(std::vector<mdanim::Box> &boxes);
   void collect_own();
   double distance_apart(const std::vector<mdanim::Box> &boxes, double range) const;
@@ -60,15 +57,13 @@ class FixMdanimBarrier : public Fix, public mdanim::PassParticipant {
   template <bool TELLS> void push(const mdanim::Positions &place, const mdanim::ForceSums &total);
   int find_touching(const mdanim::Positions &place);
   bool moves(int i) const;
-  double sum(double here);
 
   mdanim::NamedGroup boundary, barrier, thin;
   double thin_ratio = 0.0;
   mdanim::ParticleValue stiffness, reach;
 
-  static constexpr int NO_OBJECT = -1;    // of particles outside the two groups
-  std::vector<int> object;                // of local particles, see Own
-  std::vector<Own> own;                   // local and ghost particles
+  mdanim::ObjectTable objects;    // of particles of the two groups
+  std::vector<Own> own;           // local and ghost particles
 
   // Pairs that may touch, numbered ascending by the lower tag and then by the higher one: added up in this order, the forces on
   // every particle are in ascending order of its partners' tags. There are numbers in between that are not pairs (pair_filter.h).
@@ -91,7 +86,6 @@ class FixMdanimBarrier : public Fix, public mdanim::PassParticipant {
   double tried_pairs = 0.0, touching = 0.0;    // on this rank; a pair counts half at either end
   double energy = 0.0;
   double deepest = 1.0;    // smallest r/reach in this run
-  double seconds = 0.0;
 };
 
 }    // namespace LAMMPS_NS

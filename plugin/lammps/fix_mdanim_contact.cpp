@@ -10,7 +10,6 @@
 #include "lammps/keywords.h"
 #include "lammps/object_masses.h"
 #include "lammps/rank_gather.h"
-#include "lammps/require_open_box.h"
 #include "numbers/stopwatch.h"
 
 #include "atom.h"
@@ -44,18 +43,27 @@ static const char *const LEFT_OUT = ", or leave it out by 'among GROUP'";
 
 // fix ID group mdanim/contact BODY YOUNG FRICTION [objects] [plane x|y|z lo|hi at]… [stiffness f] [damping beta]
 //     [pair MOL MOL mu beta]… [among GROUP] [bodies FILE]
-FixMdanimContact::FixMdanimContact(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg)
+FixMdanimContact::FixMdanimContact(LAMMPS *lmp, int narg, char **arg) : FixBase(lmp, narg, arg)
 {
-  scalar_flag = 1;
-  extscalar = 1;
-  energy_global_flag = 1;
-  vector_flag = 1;
-  size_vector = 15;
-  static int extensive[] = {1, 1, 1, 1, 0, 1, 1, 0, 1, 1, 1, 0, 0, 0, 1};
-  extvector = -1;
-  extlist = extensive;
-  global_freq = 1;
   restart_global = 1;
+  need(THREE_DIMENSIONS | ORTHOGONAL_BOX | OPEN_BOX | OBJECTS | PROMPT_LISTS, "surfaces may meet");
+  look_up({&among}, {&kind, &young, &friction});
+  const ContactAccount &account = world_of_contact.account;
+  tell({{"stick_energy", true, [&] { return account.stick_energy; }},
+        {"friction_heat", true, [&] { return account.heat; }},
+        {"damping_loss", true, [&] { return account.damped; }},
+        {"let_go", true, [&] { return account.let_go; }},
+        {"deepest", false, [&] { return account.deepest; }},
+        {"touching", true, [&] { return account.touching; }},
+        {"near", true, [this] { return static_cast<double>(world_of_contact.pairs()); }},
+        clock(),
+        {"force_x", true, [this] { return world_of_contact.force_on_planes().x; }},
+        {"force_y", true, [this] { return world_of_contact.force_on_planes().y; }},
+        {"force_z", true, [this] { return world_of_contact.force_on_planes().z; }},
+        {"bytes_of_bodies", false, [this] { return static_cast<double>(bytes_of_bodies()); }},
+        {"bytes_of_pairs", false, [this] { return static_cast<double>(world_of_contact.bytes_of_fields()); }},
+        {"bytes_of_particles", false, [this] { return static_cast<double>(bytes_of_particles()); }},
+        {"looks", true, [&] { return account.looks; }}});
 
   need_words(lmp, "fix mdanim/contact", "fix ID group mdanim/contact", "BODY YOUNG FRICTION", narg - 3);
   kind = ParticleValue(lmp, "fix mdanim/contact: BODY", 3, arg[3]);
@@ -158,8 +166,7 @@ void FixMdanimContact::take_body(int number, const ContactBodyArrays &arrays)
 
 void FixMdanimContact::init()
 {
-  need_objects_in_open_box(this, lmp, "surfaces may meet");
-  among.init(lmp);
+  FixBase::init();
   need_molecules_of_pairs();
   threads_now = Threads();
   world_of_contact.use(nullptr, threads_now);    // until passes tell those of their instructions
@@ -230,9 +237,10 @@ void FixMdanimContact::take_objects(Contacts contacts)
   kind.init(lmp);
   young.init(lmp);
   friction.init(lmp);
-  std::vector<ContactObject> objects;
+  std::vector<ContactObject> made;
   std::vector<char> moves;
-  ids.clear(), lowest.clear();
+  std::vector<tagint> ids;
+  lowest.clear();
   for (const SurveyedObject &one : survey()) {
     const auto found = bodies.find(static_cast<int>(one.kind));
     if (found == bodies.end())
@@ -248,26 +256,20 @@ void FixMdanimContact::take_objects(Contacts contacts)
     const double volume = body.edge(0) * body.edge(1) * body.edge(2);
     const double inertia = one.mass / force->ftm2v;    // that makes a force of an acceleration
     const double density = inertia / (volume * static_cast<double>(body.filled_cells()));
-    objects.push_back({one.id, found->second, one.young, one.friction, density, one.lowest, {}, 0, 0, {}, {}, 0.0, false});
+    made.push_back({one.id, found->second, one.young, one.friction, density, one.lowest, {}, 0, 0, {}, {}, 0.0, false});
     moves.push_back(static_cast<char>(one.moves));
     ids.push_back(one.id);
     lowest.push_back(one.lowest);
   }
   if (contacts == Contacts::STAY)
-    if (const ContactObject *one = world_of_contact.misfit(objects))
+    if (const ContactObject *one = world_of_contact.misfit(made))
       error->all(FLERR,
                  "fix {} mdanim/contact: object {} (molecule ID) has {} than in the last run, and touches others: what contacts "
                  "remember does not fit; 'unfix' the fix and define it anew",
                  id, one->id,
                  one->first_tag != world_of_contact.with_id(one->id)->first_tag ? "other particles" : "another body");
-  world_of_contact.take(std::move(objects), std::move(moves));
-}
-
-// Of an object, by its molecule ID; -1 for one that was not there at the setup.
-int FixMdanimContact::number_of(tagint molecule) const
-{
-  const auto found = std::lower_bound(ids.begin(), ids.end(), molecule);
-  return found != ids.end() && *found == molecule ? static_cast<int>(found - ids.begin()) : -1;
+  objects.set(std::move(ids));
+  world_of_contact.take(std::move(made), std::move(moves));
 }
 
 void FixMdanimContact::refuse_new_object(int i) const
@@ -300,27 +302,14 @@ void FixMdanimContact::post_neighbor() { list(); }
 void FixMdanimContact::list()
 {
   const Lap lap(seconds);
-  const int nlocal = atom->nlocal, objects = world_of_contact.objects();
-  std::vector<Box> here(objects), boxes(objects);
-  object.assign(nlocal, -1);
-  for (int i = 0; i < nlocal;) {
-    const tagint molecule = atom->molecule[i];
-    const int one = number_of(molecule);
-    Box box;
-    for (; i < nlocal && atom->molecule[i] == molecule; ++i) {
-      if (!is_among(i)) continue;
-      if (one < 0) refuse_new_object(i);
-      object[i] = one;
-      box.include(atom->x[i]);
-    }
-    if (!box.empty()) here[one].unite(box);
-  }
-  MPI_Allreduce(here.data(), boxes.data(), 6 * objects, MPI_DOUBLE, MPI_MIN, world);
+  const int nlocal = atom->nlocal;
+  const std::vector<Box> boxes =
+      objects.place(*atom, world, [this](int i) { return is_among(i); }, [this](int i) { refuse_new_object(i); });
   world_of_contact.look_ahead(boxes, neighbor->skin);
   std::vector<double> ends = world_of_contact.ends();
   if (!ends.empty()) {
     for (int i = 0; i < nlocal; ++i)
-      if (object[i] >= 0) world_of_contact.see(object[i], vec3(atom->x[i]), ends);
+      if (objects[i] >= 0) world_of_contact.see(objects[i], vec3(atom->x[i]), ends);
     MPI_Allreduce(MPI_IN_PLACE, ends.data(), static_cast<int>(ends.size()), MPI_DOUBLE, MPI_MIN, world);
     world_of_contact.narrow(ends);
   }
@@ -328,8 +317,8 @@ void FixMdanimContact::list()
   std::vector<std::pair<ContactParticle, int>> needed;    // and local numbers
   if (!world_of_contact.is_idle())
     for (int i = 0; i < nlocal; ++i) {
-      if (object[i] < 0) continue;
-      const ContactParticle particle{object[i], static_cast<int>(atom->tag[i] - lowest[object[i]])};
+      if (objects[i] < 0) continue;
+      const ContactParticle particle{objects[i], static_cast<int>(atom->tag[i] - lowest[objects[i]])};
       if (world_of_contact.needs(particle, vec3(atom->x[i]))) needed.push_back({particle, i});
     }
   if (!std::is_sorted(needed.begin(), needed.end())) std::sort(needed.begin(), needed.end());
@@ -400,7 +389,7 @@ template <class Add> void FixMdanimContact::give_forces(const Add &add) const
   const PaddedVec3 *forces = world_of_contact.forces();
   threads_now.parts(static_cast<long>(mine.size()), NS_OF_PARTICLE, [&](long first, long end) {
     for (long n = first; n < end; ++n) {
-      if (!world_of_contact.is_pushed(object[mine[n]])) continue;
+      if (!world_of_contact.is_pushed(objects[mine[n]])) continue;
       const Vec3 &force = forces[slot[first_entry + n]].value;
       if ((force.x != 0.0 || force.y != 0.0 || force.z != 0.0) && atom->mask[mine[n]] & groupbit) add(n, force);
     }
@@ -439,48 +428,6 @@ void FixMdanimContact::add_forces(const Positions &place, const ForceSums &force
 
 double FixMdanimContact::compute_scalar() { return world_of_contact.account.energy + world_of_contact.account.stick_energy; }
 
-// 1: energy of sticking; 2-4: heat of friction, energy that dashpots took, that was let go, since the fix was made; 5: deepest
-// point in this run; 6: points in touch; 7: pairs of objects near each other; 8: wall seconds of the slowest rank; 9-11: force on
-// planes; 12-14: bytes on a rank, of bodies, of what is known of pairs and points, of particles near others; 15: looks at points
-// of objects without a contact, since the fix was made
-double FixMdanimContact::compute_vector(int n)
-{
-  const ContactAccount &account = world_of_contact.account;
-  switch (n) {
-    case 0:
-      return account.stick_energy;
-    case 1:
-      return account.heat;
-    case 2:
-      return account.damped;
-    case 3:
-      return account.let_go;
-    case 4:
-      return account.deepest;
-    case 5:
-      return account.touching;
-    case 6:
-      return world_of_contact.pairs();
-    case 7: {
-      double slowest = 0.0;
-      MPI_Allreduce(&seconds, &slowest, 1, MPI_DOUBLE, MPI_MAX, world);
-      return slowest;
-    }
-    case 11:
-      return static_cast<double>(bytes_of_bodies());
-    case 12:
-      return static_cast<double>(world_of_contact.bytes_of_fields());
-    case 13:
-      return static_cast<double>(bytes_of_particles());
-    case 14:
-      return account.looks;
-    default: {
-      const Vec3 force = world_of_contact.force_on_planes();
-      return n == 8 ? force.x : n == 9 ? force.y : force.z;
-    }
-  }
-}
-
 std::size_t FixMdanimContact::bytes_of_bodies() const
 {
   std::size_t sum = 0;
@@ -490,8 +437,8 @@ std::size_t FixMdanimContact::bytes_of_bodies() const
 
 std::size_t FixMdanimContact::bytes_of_particles() const
 {
-  return world_of_contact.bytes_of_particles() + my_places.bytes() + all_places.bytes() +
-         (object.capacity() + mine.capacity() + slot.capacity()) * sizeof(int);
+  return world_of_contact.bytes_of_particles() + my_places.bytes() + all_places.bytes() + objects.bytes() +
+         (mine.capacity() + slot.capacity()) * sizeof(int);
 }
 
 double FixMdanimContact::memory_usage()

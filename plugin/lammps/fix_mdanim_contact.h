@@ -5,9 +5,8 @@
 #define LMP_FIX_MDANIM_CONTACT_H
 
 #include "contact/contact_world.h"
-#include "fix.h"
-#include "lammps/named_group.h"
-#include "lammps/particle_value.h"
+#include "lammps/fix_base.h"
+#include "lammps/object_table.h"
 #include "lammps/stateful.h"
 #include "passes/pass_participant.h"
 #include "simd/kernels.h"
@@ -19,7 +18,7 @@
 
 namespace LAMMPS_NS {
 
-class FixMdanimContact : public Fix, public mdanim::PassParticipant, public mdanim::Stateful {
+class FixMdanimContact : public mdanim::FixBase, public mdanim::PassParticipant, public mdanim::Stateful {
  public:
   FixMdanimContact(class LAMMPS *, int, char **);
 
@@ -30,7 +29,6 @@ class FixMdanimContact : public Fix, public mdanim::PassParticipant, public mdan
   void post_neighbor() override;
   void post_force(int) override;
   double compute_scalar() override;
-  double compute_vector(int) override;
   double memory_usage() override;
   void write_restart(FILE *) override;
   void restart(char *) override;
@@ -67,7 +65,6 @@ class FixMdanimContact : public Fix, public mdanim::PassParticipant, public mdan
   void need_molecules_of_pairs() const;
   std::vector<SurveyedObject> survey() const;
   void take_objects(Contacts contacts);
-  int number_of(tagint molecule) const;
   [[noreturn]] void refuse_new_object(int i) const;
   void need_lists() const;
   void list();
@@ -85,8 +82,8 @@ class FixMdanimContact : public Fix, public mdanim::PassParticipant, public mdan
   std::optional<mdanim::StateRecords> restarted;    // of a restart file, until bodies are there
   mdanim::ContactWorld world_of_contact;
 
-  std::vector<tagint> ids, lowest;    // of objects: molecule IDs, ascending, and lowest tags
-  std::vector<int> object;            // of local particles when lists were made, -1 for none
+  mdanim::ObjectTable objects;        // at the setup; their particles when lists were made
+  std::vector<tagint> lowest;         // tags of objects
   std::vector<int> mine;              // local particles with a part in contacts, in the order of the world of contact
   std::vector<int> slot;              // in that world, of the particles of all ranks, rank by rank
   int first_entry = 0;                // of this rank's
@@ -94,7 +91,6 @@ class FixMdanimContact : public Fix, public mdanim::PassParticipant, public mdan
   std::vector<double> sent, received;
   mdanim::Positions my_places, all_places;
   mdanim::Threads threads_now;
-  double seconds = 0.0;
 };
 
 }    // namespace LAMMPS_NS

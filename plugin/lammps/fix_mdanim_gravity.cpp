@@ -9,7 +9,6 @@
 
 #include "atom.h"
 #include "error.h"
-#include "update.h"
 #include "utils.h"
 
 using namespace LAMMPS_NS;
@@ -17,16 +16,10 @@ using namespace FixConst;
 using namespace mdanim;
 
 // fix ID group mdanim/gravity gx gy gz   [force/mass, as in LAMMPS's own fix gravity]
-FixMdanimGravity::FixMdanimGravity(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg)
+FixMdanimGravity::FixMdanimGravity(LAMMPS *lmp, int narg, char **arg) : FixBase(lmp, narg, arg)
 {
-  scalar_flag = 1;
-  extscalar = 1;
-  energy_global_flag = 1;
-  vector_flag = 1;
-  size_vector = 1;
-  extvector = 0;
-  global_freq = 1;
   dynamic_group_allow = 1;
+  tell({clock()});
 
   need_words(lmp, "fix mdanim/gravity", "fix ID group mdanim/gravity", "gx gy gz", narg - 3);
   if (narg > 6) error->all(FLERR, 6, "fix mdanim/gravity: gx gy gz are all it takes, got also {}", arg[6]);
@@ -36,12 +29,7 @@ FixMdanimGravity::FixMdanimGravity(LAMMPS *lmp, int narg, char **arg) : Fix(lmp,
 
 int FixMdanimGravity::setmask() { return POST_FORCE; }
 
-void FixMdanimGravity::setup(int vflag)
-{
-  if (utils::strmatch(update->integrate_style, "^respa"))
-    error->all(FLERR, "fix {} mdanim/gravity: run_style respa is not supported; use run_style verlet", id);
-  post_force(vflag);
-}
+void FixMdanimGravity::setup(int vflag) { post_force(vflag); }
 
 double FixMdanimGravity::pulled(int i) const
 { return atom->mask[i] & groupbit ? mass_of(atom->rmass, atom->mass, atom->type, i) : 0.0; }
@@ -57,16 +45,7 @@ void FixMdanimGravity::post_force(int)
 // Energy, zero at the origin.
 double FixMdanimGravity::compute_scalar()
 {
-  double here = 0.0, all = 0.0;
+  double here = 0.0;
   for (int i = 0; i < atom->nlocal; ++i) here -= pulled(i) * dot(g, vec3(atom->x[i]));
-  MPI_Allreduce(&here, &all, 1, MPI_DOUBLE, MPI_SUM, world);
-  return all;
-}
-
-// 1: wall seconds of the slowest rank
-double FixMdanimGravity::compute_vector(int)
-{
-  double largest = 0.0;
-  MPI_Allreduce(&seconds, &largest, 1, MPI_DOUBLE, MPI_MAX, world);
-  return largest;
+  return sum(here);
 }

@@ -4,14 +4,14 @@
 #ifndef LMP_FIX_MDANIM_GRAVITY_H
 #define LMP_FIX_MDANIM_GRAVITY_H
 
-#include "fix.h"
+#include "lammps/fix_base.h"
 #include "numbers/vec3.h"
 #include "passes/pass_participant.h"
 
 namespace LAMMPS_NS {
 
 // Adds m g to every particle of its group in plain steps, and tells passes the masses and g.
-class FixMdanimGravity : public Fix, public mdanim::PassGravity {
+class FixMdanimGravity : public mdanim::FixBase, public mdanim::PassGravity {
  public:
   FixMdanimGravity(class LAMMPS *, int, char **);
 
@@ -19,7 +19,6 @@ class FixMdanimGravity : public Fix, public mdanim::PassGravity {
   void setup(int) override;
   void post_force(int) override;
   double compute_scalar() override;
-  double compute_vector(int) override;
 
   double pulled(int i) const override;
   const mdanim::Vec3 &acceleration() const override { return g; }
@@ -27,7 +26,6 @@ class FixMdanimGravity : public Fix, public mdanim::PassGravity {
 
  private:
   mdanim::Vec3 g;
-  double seconds = 0.0;
 };
 
 }    // namespace LAMMPS_NS

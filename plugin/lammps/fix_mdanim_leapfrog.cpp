@@ -9,7 +9,6 @@
 
 #include "atom.h"
 #include "comm.h"
-#include "domain.h"
 #include "error.h"
 #include "force.h"
 #include "output.h"
@@ -29,21 +28,15 @@ static constexpr int RESTART_VERSION = 1;
 static constexpr int CHUNK = 1024;    // particles whose sums are one chain
 static constexpr double NS_OF_CHUNK = 2.0 * CHUNK;
 
-FixMdanimLeapfrog::FixMdanimLeapfrog(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg)
+FixMdanimLeapfrog::FixMdanimLeapfrog(LAMMPS *lmp, int narg, char **arg) : FixBase(lmp, narg, arg)
 {
   time_integrate = 1;
   dynamic_group_allow = 1;
   restart_global = 1;
-  scalar_flag = 1;
-  extscalar = 1;
-  energy_global_flag = 1;
-  vector_flag = 1;
-  size_vector = 3;
-  static int extensive[] = {0, 1, 0};
-  extvector = -1;
-  extlist = extensive;
-  global_freq = 1;
   comm_forward = 3;
+  need(THREE_DIMENSIONS);
+  look_up({}, {&lambda});
+  tell({{"phi", false, [this] { return largest(largest_phi); }}, {"kinetic", true, [this] { return sum(kinetic()); }}, clock()});
 
   int drag_word = 0;
   for (int iarg = 3; iarg < narg; iarg += 2) {
@@ -70,10 +63,7 @@ int FixMdanimLeapfrog::setmask() { return INITIAL_INTEGRATE | FINAL_INTEGRATE; }
 
 void FixMdanimLeapfrog::init()
 {
-  if (utils::strmatch(update->integrate_style, "^respa"))
-    error->all(FLERR, "fix mdanim/leapfrog: run_style respa is not supported; use run_style verlet");
-  if (domain->dimension != 3) error->all(FLERR, "fix mdanim/leapfrog: dimension must be 3, got {}", domain->dimension);
-  lambda.init(lmp);
+  FixBase::init();
   reset_dt();
   largest_phi = 0.0;
 }
@@ -84,8 +74,7 @@ void FixMdanimLeapfrog::setup(int)
   bent = 0.0;
   told = true;
   if (!has_drag || exponential) return;
-  double here = largest_phi_here(), phi = 0.0;
-  MPI_Allreduce(&here, &phi, 1, MPI_DOUBLE, MPI_MAX, world);
+  const double phi = largest(largest_phi_here());
   if (phi > 0.5 && comm->me == 0)
     error->warning(FLERR,
                    "fix {} mdanim/leapfrog: phi = lambda dt/2m reaches {:.3g}; above 0.5 use drag exp or a "
@@ -381,20 +370,7 @@ double FixMdanimLeapfrog::kinetic()
   return force->mvv2e * all.kinetic - (all.swing + bent) / 12.0;
 }
 
-double FixMdanimLeapfrog::compute_scalar()
-{
-  double total = 0.0;
-  MPI_Allreduce(&lost, &total, 1, MPI_DOUBLE, MPI_SUM, world);
-  return total;
-}
-
-// 1: largest phi in this run; 2: kinetic energy, in steps with output; 3: wall seconds of the slowest rank
-double FixMdanimLeapfrog::compute_vector(int n)
-{
-  double here = n == 0 ? largest_phi : n == 1 ? kinetic() : seconds, all = 0.0;
-  MPI_Allreduce(&here, &all, 1, MPI_DOUBLE, n == 1 ? MPI_SUM : MPI_MAX, world);
-  return all;
-}
+double FixMdanimLeapfrog::compute_scalar() { return sum(lost); }
 
 void FixMdanimLeapfrog::write_restart(FILE *fp)
 {

@@ -4,9 +4,8 @@
 #ifndef LMP_FIX_MDANIM_LEAPFROG_H
 #define LMP_FIX_MDANIM_LEAPFROG_H
 
-#include "fix.h"
 #include "geometry/boxes.h"
-#include "lammps/particle_value.h"
+#include "lammps/fix_base.h"
 #include "passes/pass_participant.h"
 #include "threads/team.h"
 
@@ -18,7 +17,7 @@ namespace LAMMPS_NS {
 
 // Moves particles by the half steps of leapfrog/law.h in plain steps, and tells passes how to; keeps the account of friction,
 // the kinetic energy that fits the other energies to fourth order, and the trace: where each object has been.
-class FixMdanimLeapfrog : public Fix, public mdanim::PassIntegrator {
+class FixMdanimLeapfrog : public mdanim::FixBase, public mdanim::PassIntegrator {
  public:
   FixMdanimLeapfrog(class LAMMPS *, int, char **);
 
@@ -29,7 +28,6 @@ class FixMdanimLeapfrog : public Fix, public mdanim::PassIntegrator {
   void initial_integrate(int) override;
   void final_integrate() override;
   double compute_scalar() override;
-  double compute_vector(int) override;
   void write_restart(FILE *) override;
   void restart(char *) override;
 
@@ -84,12 +82,11 @@ class FixMdanimLeapfrog : public Fix, public mdanim::PassIntegrator {
 
   bool has_drag = false, exponential = false;
   mdanim::ParticleValue lambda;
-  double half_dt = 0.0;        // dt/2 in units that turn force/mass into velocity
-  double lost = 0.0;           // energy taken by drag on this rank
-  bool told = false;           // whether kinetic() may be asked for in this step
-  double bent = 0.0;           // dt v^{n-1/2} . (F^n - F^{n-1}) on this rank, if it may
-  double largest_phi = 0.0;    // seen on this rank in this run
-  double seconds = 0.0;
+  double half_dt = 0.0;                      // dt/2 in units that turn force/mass into velocity
+  double lost = 0.0;                         // energy taken by drag on this rank
+  bool told = false;                         // whether kinetic() may be asked for in this step
+  double bent = 0.0;                         // dt v^{n-1/2} . (F^n - F^{n-1}) on this rank, if it may
+  double largest_phi = 0.0;                  // seen on this rank in this run
   const std::vector<int> *only = nullptr;    // particles to move now; null for all
   std::vector<int> sent;                     // while ghosts are surveyed
   std::vector<Known> known;

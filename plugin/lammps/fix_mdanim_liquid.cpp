@@ -3,7 +3,7 @@
 
 #include "lammps/fix_mdanim_liquid.h"
 #include "lammps/keywords.h"
-#include "lammps/require_open_box.h"
+#include "lammps/object_table.h"
 
 #include "liquid/automaton/automaton_basin.h"
 #include "liquid/waves/wave_basin.h"
@@ -83,20 +83,16 @@ void FixMdanimLiquid::WorldSums::lowest(int *values, int count) const
 // --- the command ---
 
 // fix ID group mdanim/liquid REGION rho grid NX NY NZ volume V | level Z gravity G keyword values ...
-FixMdanimLiquid::FixMdanimLiquid(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg), sums(lmp)
+FixMdanimLiquid::FixMdanimLiquid(LAMMPS *lmp, int narg, char **arg) : FixBase(lmp, narg, arg), sums(lmp)
 {
-  scalar_flag = 1;
-  extscalar = 1;
-  energy_global_flag = 1;
-  vector_flag = 1;
-  size_vector = 22;
-  extvector = 0;
   array_flag = 1;
   size_array_cols = 4;
   extarray = 0;
-  global_freq = 1;
   nevery = 1;
   restart_global = 1;
+  need(THREE_DIMENSIONS | ORTHOGONAL_BOX | OPEN_BOX);
+  look_up({&still_group}, {});
+  tell_numbers();
 
   need_words(lmp, STYLE, "fix ID group mdanim/liquid", "REGION rho grid NX NY NZ", narg - 3);
   region_id = arg[3];
@@ -259,20 +255,11 @@ int FixMdanimLiquid::modify_param(int narg, char **arg)
 
 int FixMdanimLiquid::setmask() { return POST_NEIGHBOR | POST_FORCE | END_OF_STEP; }
 
-std::string FixMdanimLiquid::name() const { return fmt::format("fix {} mdanim/liquid", id); }
-
 void FixMdanimLiquid::init()
 {
-  if (utils::strmatch(update->integrate_style, "^respa"))
-    error->all(FLERR, "{}: run_style respa is not supported; use run_style verlet", name());
-  if (domain->dimension != 3) error->all(FLERR, "{}: dimension must be 3, got {}", name(), domain->dimension);
-  if (domain->triclinic) error->all(FLERR, "{}: a triclinic box is not supported", name());
-  if (domain->xperiodic || domain->yperiodic || domain->zperiodic)
-    error->all(FLERR, "{}: periodic boundaries are not supported; use boundary s, f or m", name());
-  still_group.init(lmp);
+  need((model == Model::WAVES ? OBJECTS : 0) | (lattice_cells.given() ? ATOM_MAP : 0));
+  FixBase::init();
   buoyancy->init(name());
-  if (model == Model::WAVES && !atom->molecule_flag)
-    error->all(FLERR, "{}: model waves keeps records of objects, which molecule IDs tell apart; use 'atom_style bond'", name());
   if (model == Model::WAVES && !lattice_cells.given())
     error->all(FLERR, "{}: model waves needs the lattice cells of solids; add cells i2_NAME, or write model surface", name());
   const int width = lattice_cells.given() ? lattice_cells.width(lmp) : 7;
@@ -286,8 +273,6 @@ void FixMdanimLiquid::init()
     error->all(FLERR,
                "{}: ghosts have no rows of i2_{}, which cells needs on several ranks; add 'ghost yes' to its fix property/atom",
                name(), lattice_cells.name);
-  if (lattice_cells.given() && atom->map_style == Atom::MAP_NONE)
-    error->all(FLERR, "{}: cells needs an atom map; use 'atom_modify map array'", name());
   use(Threads());    // until passes tell how many there are
   lists_are_prompt = neighbor->every == 1 && neighbor->delay == 0 && !neighbor->build_once;
 }
@@ -436,47 +421,37 @@ void FixMdanimLiquid::end_of_step() { buoyancy->go_on_with_ledger(); }
 
 double FixMdanimLiquid::compute_scalar() { return -buoyancy->ledger().sum.work; }
 
-// 1 cells of liquid; 2 at the start; 3 mean level; 4 solid cells; 5 sweeps, of waves updates; 6 awake; 7 energy lost to drag;
-// wall seconds of the slowest rank for 8 liquid, 9 occupancy, 10 coupling, 11 all; 12 energy of waves; 13 highest liquid;
-// 14, 15 momentum of waves along x and y; impulses along x and y on 16, 17 the basin, 18, 19 solids; 20, 21 what came;
-// 22 the clock of waves
-double FixMdanimLiquid::compute_vector(int n)
+void FixMdanimLiquid::tell_numbers()
 {
-  switch (n) {
-    case 0:
-      return basin->cells_now();
-    case 1:
-      return basin->cells_at_start();
-    case 2:
-      return basin->mean_level();
-    case 3:
-      return static_cast<double>(basin->solid_cells());
-    case 4:
-      return static_cast<double>(basin->updates_so_far());
-    case 5:
-      return !(basin->is_calm() && none_near);
-    case 6:
-      return buoyancy->ledger().sum.lost;
-    case 11:
-      return basin->energy() * buoyancy->density() * buoyancy->weight(*basin) * basin->cell_volume() * basin->shape.cell.z;
-    case 12:
-      return top_height(basin->highest());
-    case 21:
-      return basin->clock(update->ntimestep, update->dt);
-    default:
-      break;
-  }
-  if (n > 12) {
-    const Basin::Impulses impulses = basin->impulses();
-    const Vec3 told[] = {basin->momentum(), impulses.basin, impulses.solids, impulses.came};
-    const Vec3 &one = told[(n - 13) / 2];
-    return buoyancy->density() * ((n - 13) % 2 ? one.y : one.x);
-  }
-  const double liquid = basin->liquid_seconds, occupancy = basin->occupancy_seconds, coupling = look_seconds + buoyancy->seconds;
-  const double here[] = {liquid, occupancy, coupling, liquid + occupancy + coupling};
-  double slowest = 0.0;
-  MPI_Allreduce(&here[n - 7], &slowest, 1, MPI_DOUBLE, MPI_MAX, world);
-  return slowest;
+  const auto along = [this](Vec3 Basin::Impulses::*which, double Vec3::*axis) {
+    return [this, which, axis] { return buoyancy->density() * (basin->impulses().*which).*axis; };
+  };
+  const auto coupling = [this] { return look_seconds + buoyancy->seconds; };
+  tell({{"cells", false, [this] { return basin->cells_now(); }},
+        {"cells_at_start", false, [this] { return basin->cells_at_start(); }},
+        {"level", false, [this] { return basin->mean_level(); }},
+        {"solid_cells", false, [this] { return static_cast<double>(basin->solid_cells()); }},
+        {"updates", false, [this] { return static_cast<double>(basin->updates_so_far()); }},
+        {"awake", false, [this] { return static_cast<double>(!(basin->is_calm() && none_near)); }},
+        {"drag_loss", false, [this] { return buoyancy->ledger().sum.lost; }},
+        {"flow_seconds", false, [this] { return largest(basin->liquid_seconds); }},
+        {"occupancy_seconds", false, [this] { return largest(basin->occupancy_seconds); }},
+        {"coupling_seconds", false, [=] { return largest(coupling()); }},
+        {"seconds", false, [=] { return largest(basin->liquid_seconds + basin->occupancy_seconds + coupling()); }},
+        {"waves", false,
+         [this] {
+           return basin->energy() * buoyancy->density() * buoyancy->weight(*basin) * basin->cell_volume() * basin->shape.cell.z;
+         }},
+        {"crest", false, [this] { return top_height(basin->highest()); }},
+        {"momentum_x", false, [this] { return buoyancy->density() * basin->momentum().x; }},
+        {"momentum_y", false, [this] { return buoyancy->density() * basin->momentum().y; }},
+        {"basin_impulse_x", false, along(&Basin::Impulses::basin, &Vec3::x)},
+        {"basin_impulse_y", false, along(&Basin::Impulses::basin, &Vec3::y)},
+        {"solid_impulse_x", false, along(&Basin::Impulses::solids, &Vec3::x)},
+        {"solid_impulse_y", false, along(&Basin::Impulses::solids, &Vec3::y)},
+        {"came_x", false, along(&Basin::Impulses::came, &Vec3::x)},
+        {"came_y", false, along(&Basin::Impulses::came, &Vec3::y)},
+        {"clock", false, [this] { return basin->clock(update->ntimestep, update->dt); }}});
 }
 
 // A row per column of cells: x, y of its centre, z of the smooth surface, z of the topmost liquid (NaN where a body hides it).

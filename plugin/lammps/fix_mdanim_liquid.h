@@ -4,10 +4,8 @@
 #ifndef LMP_FIX_MDANIM_LIQUID_H
 #define LMP_FIX_MDANIM_LIQUID_H
 
-#include "fix.h"
 #include "lammps/buoyancy.h"
-#include "lammps/named_group.h"
-#include "lammps/particle_value.h"
+#include "lammps/fix_base.h"
 #include "lammps/stateful.h"
 #include "liquid/basin.h"
 #include "liquid/rank_sums.h"
@@ -25,7 +23,10 @@ class WaveBasin;
 namespace LAMMPS_NS {
 
 // Supplies the basin (liquid/basin.h) with solids and time, and Buoyancy (buoyancy.h) with the particles near the liquid.
-class FixMdanimLiquid : public Fix, public mdanim::PassParticipant, public mdanim::PassLiquid, public mdanim::Stateful {
+class FixMdanimLiquid : public mdanim::FixBase,
+                        public mdanim::PassParticipant,
+                        public mdanim::PassLiquid,
+                        public mdanim::Stateful {
  public:
   FixMdanimLiquid(class LAMMPS *, int, char **);
   ~FixMdanimLiquid() override;
@@ -38,7 +39,6 @@ class FixMdanimLiquid : public Fix, public mdanim::PassParticipant, public mdani
   void post_force(int) override;
   void end_of_step() override;
   double compute_scalar() override;
-  double compute_vector(int) override;
   double compute_array(int, int) override;
   double memory_usage() override;
   void grow_arrays(int most) override;
@@ -94,7 +94,7 @@ class FixMdanimLiquid : public Fix, public mdanim::PassParticipant, public mdani
     const LAMMPS *lmp;
   };
 
-  std::string name() const;    // begins messages
+  void tell_numbers();
   static bool is_maker(const char *word);
   void add_maker(mdanim::WaveBasin &waves, int iarg, char **arg, double depth);
   void keyword(int iarg, char **arg, mdanim::Basin::Pace &pace);

@@ -12,7 +12,6 @@
 #include "error.h"
 #include "neighbor.h"
 #include "region.h"
-#include "update.h"
 #include "utils.h"
 
 #include <algorithm>
@@ -27,18 +26,16 @@ static constexpr double MOST = 65536.0;        // times half the skin that are l
 static constexpr double ANY_DEPTH = 1.0e20;    // as large as LAMMPS's INF
 
 // fix ID group mdanim/wall REGION k
-FixMdanimWall::FixMdanimWall(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg)
+FixMdanimWall::FixMdanimWall(LAMMPS *lmp, int narg, char **arg) : FixBase(lmp, narg, arg)
 {
-  scalar_flag = 1;
-  extscalar = 1;
-  energy_global_flag = 1;
-  vector_flag = 1;
-  size_vector = 6;
-  static int extensive[] = {1, 1, 1, 1, 0, 0};
-  extvector = -1;
-  extlist = extensive;
-  global_freq = 1;
   dynamic_group_allow = 1;
+  look_up({}, {&stiffness});
+  tell({{"force_x", true, [this] { return sum(on_wall.x); }},
+        {"force_y", true, [this] { return sum(on_wall.y); }},
+        {"force_z", true, [this] { return sum(on_wall.z); }},
+        {"behind", true, [this] { return sum(particles_behind); }},
+        {"deepest", false, [this] { return largest(deepest); }},
+        clock()});
 
   need_words(lmp, "fix mdanim/wall", "fix ID group mdanim/wall", "REGION k", narg - 3);
   if (narg > 5) error->all(FLERR, 5, "fix mdanim/wall: region and k are all it takes, got also {}", arg[5]);
@@ -71,10 +68,8 @@ int FixMdanimWall::setmask() { return POST_NEIGHBOR | POST_FORCE; }
 
 void FixMdanimWall::init()
 {
-  if (utils::strmatch(update->integrate_style, "^respa"))
-    error->all(FLERR, "fix {} mdanim/wall: run_style respa is not supported; use run_style verlet", id);
+  FixBase::init();
   take_region(Error::NOPOINTER);
-  stiffness.init(lmp);
   // Lists are then rebuilt as soon as a particle has moved by half the skin.
   watching = !region->dynamic_check() && neighbor->every == 1 && neighbor->delay == 0 && !neighbor->build_once;
 }
@@ -195,19 +190,6 @@ Vec3 FixMdanimWall::push_back(const Vec3 &x, double k)
   return force;
 }
 
-double FixMdanimWall::compute_scalar()
-{
-  double all = 0.0;
-  MPI_Allreduce(&energy, &all, 1, MPI_DOUBLE, MPI_SUM, world);
-  return all;
-}
-
-// 1-3: force on the wall; 4: particles behind it; 5: deepest in this run; 6: wall seconds of the slowest rank
-double FixMdanimWall::compute_vector(int n)
-{
-  double here[] = {on_wall.x, on_wall.y, on_wall.z, particles_behind, deepest, seconds}, all = 0.0;
-  MPI_Allreduce(&here[n], &all, 1, MPI_DOUBLE, n < 4 ? MPI_SUM : MPI_MAX, world);
-  return all;
-}
+double FixMdanimWall::compute_scalar() { return sum(energy); }
 
 double FixMdanimWall::memory_usage() { return watched.capacity() * sizeof(int); }

@@ -5,9 +5,8 @@
 #ifndef LMP_FIX_MDANIM_WALL_H
 #define LMP_FIX_MDANIM_WALL_H
 
-#include "fix.h"
 #include "geometry/boxes.h"
-#include "lammps/particle_value.h"
+#include "lammps/fix_base.h"
 #include "numbers/vec3.h"
 #include "passes/pass_participant.h"
 
@@ -16,7 +15,7 @@
 
 namespace LAMMPS_NS {
 
-class FixMdanimWall : public Fix, public mdanim::PassParticipant {
+class FixMdanimWall : public mdanim::FixBase, public mdanim::PassParticipant {
  public:
   FixMdanimWall(class LAMMPS *, int, char **);
 
@@ -27,7 +26,6 @@ class FixMdanimWall : public Fix, public mdanim::PassParticipant {
   void post_neighbor() override;
   void post_force(int) override;
   double compute_scalar() override;
-  double compute_vector(int) override;
   double memory_usage() override;
   void append_required_atoms(std::vector<int> &particles) const override;
   bool depends_on_positions_only() const override { return watching; }
@@ -60,7 +58,6 @@ class FixMdanimWall : public Fix, public mdanim::PassParticipant {
   mdanim::Vec3 on_wall;
   double particles_behind = 0.0;
   double deepest = 0.0;    // in this run
-  double seconds = 0.0;
 };
 
 }    // namespace LAMMPS_NS

@@ -98,7 +98,7 @@ def test_no_second_is_counted_twice(pond):
         context=ready.context,
         bond_seconds=lambda: 100.0,
         fix_seconds=lambda fix: 10.0 if fix == "leapfrog" else 0.0,
-        fix_value=lambda fix, k: {7: 1.0, 8: 2.0, 9: 4.0}[k],
+        fix_value=lambda fix, name: {"flow_seconds": 1.0, "occupancy_seconds": 2.0, "coupling_seconds": 4.0}[name],
         array=lambda name: ready.plan.columns["lambda"],
     )
     clocks = {e.name: e.of(ready.scene).clocks(instance) for e in features.effects()}

@@ -39,8 +39,8 @@ class Readings(Protocol):
     def fix_scalar(self, fix: str) -> float:
         """Energy of a fix [J]."""
 
-    def fix_value(self, fix: str, index: int) -> float:
-        """Entry ``index`` (from 0) of a fix's vector."""
+    def fix_value(self, fix: str, entry: str | int) -> float:
+        """Entry of a fix's vector, by its name in the list of the fix's page, or by its place from 0."""
 
     def call(self, what: str, function: str, fix: str, *arguments: Any) -> None:
         """Call a C function of the plugin that asks a fix; arrays are given as pointers. Raises SetupError."""

@@ -12,6 +12,7 @@ from ..errors import DivergedError, SetupError
 from .c_arrays import body_arguments, pointer
 from .commands import BALANCE, SKIN, bond_coeffs, box, physics, prelude, told_once
 from .cut import box_to_cut, shorter_along_rows
+from .outputs import output_place
 from .plan import Ends, Plan
 from .plugin import open_lammps
 from .state import NO_RECORDS, Records, State, StateRecords
@@ -27,7 +28,7 @@ REPEATED = ("comm_modify", "bond_style")
 """Commands before the particles that an instance takes again when it is filled anew: bond styles begin with empty accounts."""
 UNDONE = {"fix": "unfix {}", "region": "region {} delete"}
 """What takes back a command for what acts on particles; the others may be given again."""
-GLOBAL, SCALAR, VECTOR, SIZE_VECTOR = 0, 0, 1, 3  # LAMMPS's constants for extract_fix
+GLOBAL, SCALAR, VECTOR = 0, 0, 1  # LAMMPS's constants for extract_fix
 
 
 class Instance:
@@ -446,22 +447,22 @@ class Instance:
         """Energy of a fix [J]."""
         return float(self._lmp.extract_fix(fix, GLOBAL, SCALAR))
 
-    def fix_value(self, fix: str, index: int) -> float:
-        """Entry ``index`` (from 0) of a fix's vector."""
-        return float(self._lmp.extract_fix(fix, GLOBAL, VECTOR, index))
+    def fix_value(self, fix: str, entry: str | int) -> float:
+        """Entry of a fix's vector, by its name on the page of the fix or its place from 0. Raises SetupError for another name."""
+        place = entry if isinstance(entry, int) else output_place(self._library, self._handle, fix, entry)
+        return float(self._lmp.extract_fix(fix, GLOBAL, VECTOR, place))
 
     def elastic_energy(self) -> float:
         """Energy of all springs [J], at the last step of a `run` or after `setup`."""
         return float(self._lmp.get_thermo("ebond")) if len(self.plan.bonds) else 0.0
 
     def kinetic_energy(self) -> float:
-        """Kinetic energy of all that can move [J], at the last step of a `run` or after `setup`; corrected so that the sum of all
-        energies is what leap-frog conserves (docs/fix_mdanim_leapfrog.md)."""
-        return self.fix_value("leapfrog", 1)
+        """Kinetic energy of all that can move [J], at the last step; corrected as docs/fix_mdanim_leapfrog.md says."""
+        return self.fix_value("leapfrog", "kinetic")
 
     def fix_seconds(self, fix: str) -> float:
-        """Wall seconds of one of our fixes so far: the last entry of its vector."""
-        return self.fix_value(fix, int(self._lmp.extract_fix(fix, GLOBAL, SIZE_VECTOR)) - 1)
+        """Wall seconds of one of our fixes so far."""
+        return self.fix_value(fix, "seconds")
 
     def bond_seconds(self) -> float:
         """Wall seconds of the springs so far, of the slowest rank."""

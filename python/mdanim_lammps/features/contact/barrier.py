@@ -26,7 +26,7 @@ TUNNEL = (0.5, 0.65, 0.8)
 cells (docs/stability.md)."""
 GAP = column("reach", "m")
 """How far each particle is felt as a barrier."""
-NEAREST = 3
+NEAREST = "nearest"
 """In the vector of fix mdanim/barrier: the smallest distance of a pair over its reach in this run [-]."""
 SOFTER = 2.0 / 3.0
 """With contact softer than its standard that speed falls with this power of ``contact-stiffness`` (docs/physics-contact.md)."""

@@ -20,7 +20,7 @@ OR_ON_SURFACES = "or write contact-model surface in control, where what touches 
 
 STIFFNESS = column("stiffness", "N/m")
 """What particles push back with."""
-DEEPEST = 4
+DEEPEST = "deepest"
 """In the vector of fix mdanim/wall: the deepest particle behind the region in this run [m]."""
 
 

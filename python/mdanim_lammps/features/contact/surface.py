@@ -44,10 +44,10 @@ UNGUARDED, NEEDLE = 0.35, 0.2
 cell across along two axes (bench/contact.py)."""
 HEAT, DAMPED, LET_GO = "friction_heat", "contact_damping_loss", "let_go"
 """Columns of the ledger."""
-TAKEN = {HEAT: 1, DAMPED: 2, LET_GO: 3}
-"""Their entries of the fix's vector, from 0."""
-DEEPEST, SECONDS = 4, 7
-"""In the fix's vector: the deepest point below a surface in this run [m], and wall seconds."""
+TAKEN = {HEAT: "friction_heat", DAMPED: "damping_loss", LET_GO: "let_go"}
+"""Their entries of the fix's vector."""
+DEEPEST = "deepest"
+"""In the fix's vector: the deepest point below a surface in this run [m]."""
 
 
 class OnSurfaces(Effect):
@@ -111,7 +111,7 @@ class OnSurfaces(Effect):
         return []
 
     def clocks(self, readings):
-        return {self.fix: readings.fix_value(self.fix, SECONDS)}
+        return {self.fix: readings.fix_seconds(self.fix)}
 
     def penetration(self, readings):
         return readings.fix_value(self.fix, DEEPEST)

@@ -18,13 +18,15 @@ from ...scene.scene import LiquidModel, SceneRecord
 from .ledger import CELLS, CREST, DUE, MOMENTA
 from .ledger import WAVES as ENERGY
 
-NOW, AT_START, FLOW, OCCUPANCY, COUPLING, WAVES, HIGHEST = 0, 1, 7, 8, 9, 11, 12
+NOW, AT_START, WAVES, HIGHEST = "cells", "cells_at_start", "waves", "crest"
+FLOW, OCCUPANCY, COUPLING = "flow_seconds", "occupancy_seconds", "coupling_seconds"
 """In the fix's vector: cells of liquid now and before step 0, to the unit, three clocks [s], the energy of a liquid with momentum
 since then [J], its highest point [m]."""
-MOMENTUM, TO_BASIN, TO_SOLIDS, CAME = (13, 14), (15, 16), (17, 18), (19, 20)
+MOMENTUM, TO_BASIN = ("momentum_x", "momentum_y"), ("basin_impulse_x", "basin_impulse_y")
+TO_SOLIDS, CAME = ("solid_impulse_x", "solid_impulse_y"), ("came_x", "came_y")
 """In the fix's vector, along x and y [N s]: the liquid's momentum; the impulses that it has given to its basin with all that is
 held, and to what moves; the momentum that came with liquid, less what went with it."""
-CLOCK = 21
+CLOCK = "clock"
 """In the fix's vector: time that a liquid with momentum has gone through, or has slept at rest [s]."""
 OVERFLOW = 0.05
 """Part of what inflows bring that may be missing without a word: updates lag behind."""
