@@ -195,12 +195,17 @@ def test_a_forecast_takes_what_is_later_for_as_long(pond, clockwork, fresh):
     told, steps = extrapolate(ready, fresh(), setup=7.0), ready.certificate.steps
     assert told.effects == {"springs": CostShare(pytest.approx(0.75 * 0.5e-3 * steps), "here")}
     assert told.other == pytest.approx(
-        {"leap-frog": 0.75 * 0.3e-3 * steps, "rest of the step": 0.75 * 0.2e-3 * steps, "setup": 7.0 + 2.25, "output": 7 * 0.015}
+        {
+            "leap-frog": 0.75 * 0.3e-3 * steps,
+            "rest of the step": 0.75 * 0.2e-3 * steps,
+            "setup": 7.0 + 2.25,
+            "output": 7 * 0.015 + 3.75,
+        }
     )
     assert told.wall == pytest.approx(sum(told.parts.values()))
     twice = extrapolate(replace(ready, certificate=replace(ready.certificate, frames=12)), fresh())
     assert twice.effects["springs"].seconds == pytest.approx(2 * told.effects["springs"].seconds)
-    assert twice.other["output"] == pytest.approx(13 * 0.015)
+    assert twice.other["output"] == pytest.approx(13 * 0.015 + 3.75)
 
 
 @pytest.mark.parametrize(
@@ -237,8 +242,8 @@ def test_a_forecast_runs_no_more_than_the_run(pond, clockwork, fresh):
 
 
 def test_a_forecast_counts_what_begins_later(pond, monkeypatch, fresh):
-    """Contact that costs nothing in the first steps and 2 s in a whole coarse run costs 2 s in the run, times its steps and its
-    particles at surfaces; what costs as much at first is not counted twice; half a coarse run tells the half."""
+    """Effects at surfaces cost what they cost in a whole coarse run, times its steps and, by a power, its particles at surfaces;
+    half a coarse run tells the half where its steps cost the same."""
     ready, _ = pond
     now = [0.0]  # of two programs on one processor
     clocks = SimpleNamespace(perf_counter=lambda: now[0], thread_time=lambda: 0.5 * now[0])
@@ -248,18 +253,43 @@ def test_a_forecast_counts_what_begins_later(pond, monkeypatch, fresh):
         def simulate(coarse, folder, *, on_progress, done=done):
             steps = coarse.certificate.steps
             now[0] += 1.0
-            on_progress(SimpleNamespace(step=round(done * steps), steps=steps))
+            on_progress(SimpleNamespace(step=round(done * steps), steps=steps, seconds=8.0 * done))
             parts = {"springs": CostShare(3.0), "contact": CostShare(4.0 * done), "ground": CostShare(2.0 * done)}
             return SimpleNamespace(cost=Cost(9.0, steps, 1, parts, {}))
 
         monkeypatch.setattr("mdanim_lammps.run.loop.simulate", simulate)
         coarse = later_steps._coarser(ready)
         assert coarse.system.particles < ready.system.particles / 3
-        first = Cost(4.0, 1, 1, {"springs": CostShare(3.0), "contact": CostShare(0.0), "ground": CostShare(1.0)}, {})
-        more = later_steps.later(ready, fresh(), lambda coarse, folder: first)
-        surface = ready.system.boundary.sum() / coarse.system.boundary.sum()
+        found = later_steps.later(ready, fresh())
+        surface = (ready.system.boundary.sum() / coarse.system.boundary.sum()) ** later_steps.POINTS
         steps = ready.certificate.steps / coarse.certificate.steps
-        assert more == {"contact": pytest.approx(2.0 * surface * steps, rel=0.01)}
+        assert found == {
+            "contact": pytest.approx(2.0 * surface * steps, rel=0.01),
+            "ground": pytest.approx(surface * steps, rel=0.01),
+        }
+
+
+@pytest.mark.parametrize("grows", [1.0, 3.0])
+def test_a_coarse_run_that_was_ended_goes_on_as_it_ended(pond, monkeypatch, fresh, grows):
+    """Springs take 1 s of the whole run, contact 2 s of its first half and ``grows`` times that of its second, when all objects
+    lie on each other; of the three quarters that are run, the last tells the one that is left."""
+    ready, _ = pond
+    now = [0.0]
+    monkeypatch.setattr(later_steps, "time", SimpleNamespace(perf_counter=lambda: now[0], thread_time=lambda: now[0]))
+
+    def contact(part):
+        return 4.0 * (min(part, 0.5) + grows * max(0.0, part - 0.5))
+
+    def simulate(coarse, folder, *, on_progress):
+        steps = coarse.certificate.steps
+        for part in (0.25, 0.5, 0.6, 0.75):
+            now[0] = part + contact(part)
+            on_progress(SimpleNamespace(step=part * steps, steps=steps, seconds=now[0]))
+        return SimpleNamespace(cost=Cost(9.0, steps, 1, {"springs": CostShare(0.75), "contact": CostShare(contact(0.75))}, {}))
+
+    monkeypatch.setattr("mdanim_lammps.run.loop.simulate", simulate)
+    found = later_steps._whole(later_steps._coarser(ready), fresh() / "whole")
+    assert found == {"springs": pytest.approx(1.0), "contact": pytest.approx(contact(1.0))}
 
 
 def test_a_movie_is_forecast_from_some_pictures(pond, monkeypatch):

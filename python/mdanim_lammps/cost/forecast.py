@@ -79,14 +79,15 @@ def _tell(send: Connection, ready: Prepared, folder: Path, setup: float) -> None
 
 
 def whole(ready: Prepared, folder: Path, *, setup: float = 0.0) -> Cost:
-    """The expected cost of a run, with what begins later than its first steps; arguments and errors as of `extrapolate`."""
+    """The expected cost of a run, that at surfaces by a coarse run of all steps; arguments and errors as of `extrapolate`."""
     cost = extrapolate(ready, folder, setup=setup)
     if cost.total - cost.other["setup"] < WORTH:
         return cost
     (aside := folder / "coarse").mkdir()
-    more = later(ready, aside, extrapolate)
-    effects = {name: replace(part, seconds=part.seconds + more.get(name, 0.0)) for name, part in cost.effects.items()}
-    return replace(cost, wall=cost.wall + sum(more.values()), effects=effects)
+    found = later(ready, aside)
+    effects = {name: replace(part, seconds=found.get(name, part.seconds)) for name, part in cost.effects.items()}
+    more = sum(part.seconds for part in effects.values()) - sum(part.seconds for part in cost.effects.values())
+    return replace(cost, wall=cost.wall + more, effects=effects)
 
 
 def extrapolate(ready: Prepared, folder: Path, *, setup: float = 0.0) -> Cost:
@@ -104,6 +105,7 @@ def extrapolate(ready: Prepared, folder: Path, *, setup: float = 0.0) -> Cost:
         if len(marks) >= FRAMES[0] and marks[-1][1] - marks[0][1] > ENOUGH:
             (folder / STOP).touch()
 
+    began = time.thread_time()
     short = replace(ready, certificate=replace(c, steps_per_frame=steps, frames=frames, last_steps=0))
     try:
         cost = simulate(short, folder, on_progress=mark).cost
@@ -112,16 +114,18 @@ def extrapolate(ready: Prepared, folder: Path, *, setup: float = 0.0) -> Cost:
             raise  # by a signal
         cost = stopped.cost
     assert cost is not None, "a run that has ended or stopped has a cost"
+    whole_own = time.thread_time() - began
     # What a run does once, before its first frame and after its last one, is not in these differences.
     wall, own, simulated = (last - first for first, last in zip(marks[0], marks[-1]))
     # What other programs have of the processor is not part of a run. Time is that of this thread: others share its work.
     share = own / wall
     counted = sum(part.seconds for part in cost.effects.values()) + cost.other[LEAPFROG] + cost.other[REST]
     of_step = share * simulated / ((len(marks) - 1) * steps) * c.steps / counted
+    once = whole_own - own - own / (len(marks) - 1) - share * cost.other["setup"]
     effects = {name: replace(part, seconds=of_step * part.seconds, clocks={}) for name, part in cost.effects.items()}
     other = {
         **{name: of_step * cost.other[name] for name in (LEAPFROG, REST)},
         "setup": setup + share * cost.other["setup"],
-        "output": share * (wall - simulated) / (len(marks) - 1) * (1 + c.last_frame),
+        "output": share * (wall - simulated) / (len(marks) - 1) * (1 + c.last_frame) + max(0.0, once),
     }
     return Cost(sum(part.seconds for part in effects.values()) + sum(other.values()), c.steps, particles, effects, other)

@@ -1,16 +1,14 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""Costs that begin later than the first steps, by the run in coarse cells: its surfaces touch when those of the run will."""
+"""Costs at surfaces, which first steps do not tell, by the run in coarse cells: its surfaces touch when those of the run will."""
 
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
 from ..errors import MdanimError
 from ..model.spacing import choose_spacing
-from ..results.cost import Cost
 from ..results.files import STOP
 from ..run.prepare import Prepared, prepare
 from ..scene.scene import Save
@@ -21,26 +19,30 @@ COARSER = (2.0, 1.5)
 """Spacings that are tried over the run's own: cost falls with the fourth power, and a thin object may not take the first."""
 PATIENCE = 3.0
 """Processor seconds of the coarse run."""
+LAST = 0.8
+"""Part of a coarse run that was ended after which its steps cost as much as those that are left."""
+POINTS = 0.7
+"""Power with which the cost of surfaces grows with their particles: pairs of objects that are near each other have a cost of
+their own, whatever number of points they have (docs/decisions/forecast.md)."""
 
 
-def later(ready: Prepared, folder: Path, first_steps: Callable[[Prepared, Path], Cost]) -> dict[str, float]:
-    """Seconds by effect that first steps do not show, in a run of ``ready``; empty where nothing coarser can be run.
+def later(ready: Prepared, folder: Path) -> dict[str, float]:
+    """Seconds by effect of `LATER` in a run of ``ready``; empty where nothing coarser can be run.
 
-    A coarse run is made whole, and its first steps alone are taken for all as those of the run are; what the whole costs more is
-    scaled by the number of steps and of particles at surfaces. ``folder`` holds temporary files.
+    The costs of a coarse run are scaled by the number of steps and, by a power, of particles at surfaces. ``folder`` holds
+    temporary files.
     """
     coarse = _coarser(ready)
     if coarse is None:
         return {}
     try:
-        (folder / "first").mkdir()
-        told, whole = first_steps(coarse, folder / "first"), _whole(coarse, folder / "whole")
+        whole = _whole(coarse, folder / "whole")
     except MdanimError:
         return {}  # what stops in coarse cells says nothing of the run
-    surface = ready.system.boundary.sum() / coarse.system.boundary.sum()
-    scale = float(ready.certificate.steps / coarse.certificate.steps * surface)
-    parts = {name: whole[name] - told.parts[name] for name in LATER if name in whole}
-    return {name: scale * more for name, more in parts.items() if more > 0.0}
+    steps = ready.certificate.steps / coarse.certificate.steps
+    surface = float(ready.system.boundary.sum() / coarse.system.boundary.sum()) ** POINTS
+    points = {"buoyancy": ready.system.particles / coarse.system.particles}  # lifts all particles, and has no pairs
+    return {name: steps * points.get(name, surface) * whole[name] for name in LATER if name in whole}
 
 
 def _coarser(ready: Prepared) -> Prepared | None:
@@ -59,15 +61,15 @@ def _coarser(ready: Prepared) -> Prepared | None:
 
 
 def _whole(coarse: Prepared, folder: Path) -> dict[str, float]:
-    """Seconds by effect of the coarse run; where PATIENCE ended it, all of it is taken to cost as much as what was run."""
+    """Seconds by effect of the coarse run; where PATIENCE ended it, what was left would have cost as much as its last steps."""
     from ..run.loop import Interrupted, Progress, simulate
 
     folder.mkdir()
-    start, done = (time.perf_counter(), time.thread_time()), 0.0
+    start = time.perf_counter(), time.thread_time()
+    marks: list[tuple[float, float]] = []
 
     def look(p: Progress) -> None:
-        nonlocal done
-        done = p.step / p.steps
+        marks.append((p.step / p.steps, p.seconds))
         if time.thread_time() - start[1] > PATIENCE:
             (folder / STOP).touch()
 
@@ -75,8 +77,15 @@ def _whole(coarse: Prepared, folder: Path) -> dict[str, float]:
         cost = simulate(coarse, folder, on_progress=look).cost
     except Interrupted as stopped:
         cost = stopped.cost
-    if cost is None or not done:
+    if cost is None or not marks:
         raise MdanimError("no cost of the coarse run is known")
     # Clocks of effects tell wall time, of which other programs may have a part.
     own = min(1.0, (time.thread_time() - start[1]) / (time.perf_counter() - start[0]))
-    return {name: own / done * part.seconds for name, part in cost.effects.items()}
+    found = {name: own * part.seconds for name, part in cost.effects.items()}
+    done, simulated = marks[-1]
+    at, before = next(m for m in (*reversed(marks[:-1]), (0.0, 0.0)) if m[0] <= LAST * done)
+    # All other effects cost as much from the beginning on: if a step costs more, that is due to those at surfaces.
+    more = own * ((simulated - before) / (done - at) - simulated / done)
+    at_surfaces = sum(found.get(name, 0.0) for name in LATER)
+    growth = 1.0 + (1.0 - done) * max(1.0 / done + more / at_surfaces, 0.0) if at_surfaces else 1.0
+    return {name: seconds * (growth if name in LATER else 1.0 / done) for name, seconds in found.items()}
