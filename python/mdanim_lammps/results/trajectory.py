@@ -16,17 +16,13 @@ import numpy as np
 from ..errors import OutputError, SceneError, SetupError
 from ..scene.keywords import Named, did_you_mean
 from ..scene.scene import Save, SceneRecord
+from .frame_reader import EVERYTHING, FrameReader
 from .html import html_table
 from .trajectory_file import (
-    CHECKSUM,
     DROPS,
     FIELDS,
     LIQUID,
     NOT_WRITTEN,
-    STEP,
-    TIME,
-    checksum,
-    datasets_of_frames,
     find_trajectory,
     frame_shapes,
     open_trajectory,
@@ -62,44 +58,35 @@ class Trajectory:
 
     def __init__(self, path: str | Path):
         self.path = find_trajectory(Path(path))
-        self._file = open_trajectory(self.path)
-        try:
-            with self._damage():
-                check_hdf5(self.path, self._file)
-                self.metadata = read_metadata(self._file)
-                check_metadata(self.path, self.metadata)
-                tables = datasets_of_frames(self._file)
-                parameters = self._file["parameters/mdanim"].attrs
-                self.format, self.dt = int(parameters["format"]), float(parameters["dt"])
-                self.steps_per_frame = int(parameters["steps_per_frame"])
-                check_steps(self.path, self.dt, self.steps_per_frame)
-                steps, times = tables.pop(STEP)[:], tables.pop(TIME)[:]
-                self._checksums = tables.pop(CHECKSUM)[:] if CHECKSUM in tables else None
-                self._values = tables
-                count = self._count(steps, times)
-                check_frames(self.path, frame_shapes(self.metadata), tables, steps[:count], times[:count])
-        except OutputError:
-            self._file.close()
-            raise
+        with self._damage(), open_trajectory(self.path) as file:
+            check_hdf5(self.path, file)
+            self.metadata = read_metadata(file)
+            check_metadata(self.path, self.metadata)
+            parameters = file["parameters/mdanim"].attrs
+            self.format, self.dt = int(parameters["format"]), float(parameters["dt"])
+            self.steps_per_frame = int(parameters["steps_per_frame"])
+            check_steps(self.path, self.dt, self.steps_per_frame)
+            self.frames = FrameReader(self.path, file)
+            """Also of frames that were not on the disk when this was opened."""
+            steps, times, sums = self.frames.rows()
+            count = self._count(steps, times, sums)
+            check_frames(self.path, frame_shapes(self.metadata), self.frames.tables, steps[:count], times[:count])
         self.steps: np.ndarray = steps[:count]
         """Time step of each frame, shape (F,)."""
         self.times: np.ndarray = times[:count]
         """Simulated time of each frame [s], shape (F,)."""
-        self._checked = {name: np.zeros(count, bool) for name in self._values}
 
-    def _count(self, steps: np.ndarray, times: np.ndarray) -> int:
+    def _count(self, steps: np.ndarray, times: np.ndarray, sums: np.ndarray | None) -> int:
         """Number of frames that are whole. Raises OutputError where steps or times are damaged."""
-        if self._checksums is None:
-            return min(len(steps), len(times), *map(len, self._values.values()))
-        if not len(steps) == len(times) == len(self._checksums) or self._checksums.shape[1:] != (1 + len(self._values),):
-            raise OutputError(f"{self.path}: damaged: its tables of steps, times and checksums do not fit together")
+        if sums is None:
+            return len(steps)
         written = steps != NOT_WRITTEN
         count = int(written.sum())
         if not written[:count].all():
-            raise self._damaged(int(written.argmin()), "step")
-        for frame, (step, time, sums) in enumerate(zip(steps[:count], times, self._checksums)):
-            if row_checksum(step, time) != sums[0]:
-                raise self._damaged(frame, "step or time")
+            raise self.frames.damaged(int(written.argmin()), "step")
+        for frame, (step, time, row) in enumerate(zip(steps[:count], times, sums)):
+            if row_checksum(step, time) != row[0]:
+                raise self.frames.damaged(frame, "step or time")
         return count
 
     @cached_property
@@ -175,12 +162,12 @@ class Trajectory:
     @cached_property
     def centers(self) -> np.ndarray:
         """Centres of mass of all objects [m], shape (F, O, 3)."""
-        return self._read_all("center_of_mass")
+        return self.frames.values("center_of_mass", len(self))
 
     @cached_property
     def center_velocities(self) -> np.ndarray:
         """Velocities of the centres of mass [m/s], shape (F, O, 3)."""
-        return self._read_all("center_of_mass_velocity")
+        return self.frames.values("center_of_mass_velocity", len(self))
 
     @property
     def liquid(self) -> LiquidMetadata | None:
@@ -247,12 +234,12 @@ class Trajectory:
 
     def check(self, frame: int) -> None:
         """Compare all values of a frame with their checksums. Raises OutputError where the file is damaged, IndexError."""
-        for name in self._values:
+        for name in self.frames.tables:
             self._read(name, frame)
 
     def close(self) -> None:
         """Close the file."""
-        self._file.close()
+        self.frames.close()
 
     def __reduce__(self):
         return Trajectory, (self.path,)  # in another process: opened anew
@@ -279,39 +266,14 @@ class Trajectory:
             raise OutputError(f"{self.path}: there is no liquid in this run")
         return self._read(name, frame)
 
-    def _read(self, name: str, frame: int, particles: slice = slice(None)) -> np.ndarray:
+    def _read(self, name: str, frame: int, particles: slice = EVERYTHING) -> np.ndarray:
         """One quantity of a frame, or of some particles in it; the whole of it is checked when it is read for the first time."""
-        frame = self._frame(frame)
-        with self._damage():
-            if self._checked[name][frame]:
-                return self._values[name][frame, particles]
-            value = self._values[name][frame]
-        self._compare(name, frame, value)
-        return value[particles]
-
-    def _read_all(self, name: str) -> np.ndarray:
-        """One quantity of all frames."""
-        with self._damage():
-            values = self._values[name][: len(self)]
-        for frame, value in enumerate(values):
-            self._compare(name, frame, value)
-        return values
-
-    def _compare(self, name: str, frame: int, value: np.ndarray) -> None:
-        if self._checksums is not None and checksum(value) != self._checksums[frame, 1 + list(self._values).index(name)]:
-            raise self._damaged(frame, name)
-        self._checked[name][frame] = True
+        return self.frames.value(name, self._frame(frame), particles)
 
     def _frame(self, frame: int) -> int:
         if not -len(self) <= frame < len(self):
             raise IndexError(f"frame {frame} of a trajectory with {len(self)} frames")
         return range(len(self))[frame]
-
-    def _damaged(self, frame: int, what: str) -> OutputError:
-        return OutputError(
-            f"{self.path}: frame {frame} is damaged: its {what} differs from what was written (checksum); "
-            "copy the file again from its source, or run the scene again with --force"
-        )
 
     @contextmanager
     def _damage(self) -> Iterator[None]:

@@ -13,11 +13,11 @@ import gc
 import math
 import os
 import zlib
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -120,23 +120,18 @@ def find_trajectory(path: Path) -> Path:
     raise OutputError(f"{file}: no such trajectory; run the scene first, or name the folder that a run wrote")
 
 
-def without_need_of_a_lock(open_file: Callable) -> Any:
-    """Open an HDF5 file for reading: ``open_file(locking)`` with a lock as other readers of this process take it, since HDF5
-    opens a file twice in one way only; without one where the lock is refused: what is read is checked."""
-    try:
-        return open_file("best-effort")
-    except OSError as error:
-        if "lock" not in str(error):
-            raise
-        return open_file(False)
-
-
 def open_trajectory(path: Path) -> h5py.File:
-    """Open a file for reading; file systems may have no locks. Raises OutputError."""
+    """Open a file for reading: with a lock as other readers of this process take it, since HDF5 opens a file twice in one way
+    only, and without one where the lock is refused, as what is read is checked. Raises OutputError."""
     import h5py
 
-    def opened():
-        return without_need_of_a_lock(lambda locking: h5py.File(path, "r", locking=locking))
+    def opened(locking="best-effort") -> h5py.File:
+        try:
+            return h5py.File(path, "r", locking=locking)
+        except OSError as error:
+            if locking and "lock" in str(error):
+                return opened(locking=False)
+            raise
 
     try:
         try:
@@ -147,7 +142,7 @@ def open_trajectory(path: Path) -> h5py.File:
             gc.collect()  # files of trajectories that nothing refers to any more
             return opened()
     except (OSError, RuntimeError, ValueError) as error:
-        raise OutputError(f"{path}: cannot be read as HDF5, it is not a trajectory or it is damaged ({error})") from None
+        raise OutputError(f"{path}: cannot be read as HDF5, it is no trajectory or it is damaged ({error})") from None
 
 
 def create_trajectory(path: Path, metadata: TrajectoryMetadata, frames: int, dt: float, steps_per_frame: int) -> None:

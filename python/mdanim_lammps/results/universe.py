@@ -11,55 +11,50 @@ import numpy as np
 from ..errors import OutputError
 from .dump import read_dump
 from .trajectory import Trajectory
-from .trajectory_file import without_need_of_a_lock
 
 with warnings.catch_warnings():
     # In a notebook without ipywidgets tqdm, which MDAnalysis imports, shows its own path.
     warnings.filterwarnings("ignore", "IProgress not found")
     import MDAnalysis
-    from MDAnalysis.coordinates.H5MD import H5MDReader, H5PYPicklable
+    from MDAnalysis.coordinates.base import ReaderBase
 
 
-class _File(H5PYPicklable):
-    """Opened as `open_trajectory` does, in another process too."""
-
-    def __init__(self, name: str, mode: str = "r", driver: str | None = None):
-        start = super().__init__
-        without_need_of_a_lock(lambda locking: start(name=name, mode=mode, driver=driver, locking=locking))
-
-
-class _Reader(H5MDReader):
-    """Gives frames that are written, each after its checksums were compared."""
+class _Reader(ReaderBase):
+    """Gives frames to MDAnalysis, each after its checksums were compared."""
 
     # MDAnalysis registers readers by their format: this one is for `universe_of` alone.
     format = "MDANIM"
 
     def __init__(self, filename: str, **options):
-        self._source = Trajectory(filename)
         super().__init__(filename, **options)
+        self._source = Trajectory(filename)
+        self.n_atoms = len(self._source.metadata.id)
+        self._reopen()
+        self._read_next_timestep()
 
     @property
     def n_frames(self) -> int:
         return len(self._source)
 
     def _read_frame(self, frame: int):
-        if frame >= len(self._source):
+        source, ts = self._source, self.ts
+        if frame >= len(source):
             raise OSError  # the end, for MDAnalysis
-        self._source.check(frame)
-        return super()._read_frame(frame)
+        found = {name: source.frames.value(name, frame) for name in source.frames.tables}
+        ts.frame, ts.time = frame, float(source.times[frame])
+        ts.positions, ts.velocities = found.pop("position"), found.pop("velocity")
+        ts.data.update(found, step=int(source.steps[frame]))
+        return ts
 
-    def open_trajectory(self) -> None:
-        self._frame = -1
-        self._file = _File(self.filename)
-        self._particle_group = self._file["particles/all"]
+    def _read_next_timestep(self, ts=None):
+        return self._read_frame(self.ts.frame + 1)
+
+    def _reopen(self) -> None:
+        self.ts = self._Timestep(self.n_atoms, positions=True, velocities=True, **self._ts_kwargs)
+        self.ts.frame = -1
 
     def close(self) -> None:
         self._source.close()
-        super().close()
-
-    def _reopen(self) -> None:
-        super().close()
-        self.open_trajectory()
 
 
 def universe_of(trajectory: Trajectory) -> MDAnalysis.Universe:

@@ -23,6 +23,7 @@ FARTHEST = 1e30
 if TYPE_CHECKING:
     import h5py
 
+    from .trajectory_file import FrameTable
     from .trajectory_metadata import TrajectoryMetadata
 
 
@@ -162,19 +163,19 @@ def check_places(path: Path, *places: np.ndarray, frame: int | None = None) -> N
 
 
 def check_frames(
-    path: Path, shapes: Mapping[str, tuple[int, ...]], tables: Mapping, steps: np.ndarray, times: np.ndarray
+    path: Path, shapes: Mapping[str, tuple[int, ...]], tables: Mapping[str, FrameTable], steps: np.ndarray, times: np.ndarray
 ) -> None:
     """Refuse quantities of another shape than the metadata say, and times that do not ascend. Raises OutputError.
 
     Args:
         path: for the message.
         shapes: of one frame of each quantity.
-        tables: the quantities, each with frames first.
+        tables: where the quantities are.
         steps, times: of the frames that are whole, shape (F,).
     """
     for name, shape in shapes.items():
-        found = tables[name].shape
-        if found[1:] != shape or len(found) < 2 or found[0] < len(steps) or tables[name].dtype.kind != "f":
-            raise OutputError(f"{path}: damaged: {name} has the shape {found}, a frame of it has {shape}")
+        found = tables[name]
+        if found.shape != shape or found.frames < len(steps) or found.dtype.kind != "f":
+            raise OutputError(f"{path}: damaged: {name} has frames of the shape {found.shape}, not {shape}, or too few")
     if (np.diff(steps) <= 0).any() or not np.isfinite(times).all() or (np.diff(times) <= 0.0).any():
         raise OutputError(f"{path}: damaged: the times of its frames do not ascend")

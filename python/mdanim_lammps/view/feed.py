@@ -23,6 +23,7 @@ from pathlib import Path
 
 import numpy as np
 
+from ..errors import OutputError
 from ..picture.camera import FIELD_OF_VIEW, Action, CameraPath, action_of, automatic_view
 from ..picture.foam import Foam
 from ..picture.liquid import Sheet, without_puddles
@@ -35,7 +36,6 @@ from ..results.trajectory import Trajectory
 from ..results.trajectory_file import DROPS
 from ..results.trajectory_file import LIQUID as LIQUID_TABLES
 from ..results.untrusted import check_places
-from ..results.written_frames import WrittenFrames
 from ..scene.render import Floor, Render
 
 STRAIN, PARTICLES = 1, 2
@@ -69,9 +69,15 @@ class Feed:
     """
 
     def __init__(self, folder: Path, title: str = "", render: Render = Render(), *, finished: bool = False):
-        self.frames, self.title, self.render, self.finished = WrittenFrames(folder), title, render, finished
+        self._trajectory = trajectory = Trajectory(folder)
+        if not trajectory.frames.has_checksums:
+            raise OutputError(
+                f"{trajectory.path}: format {trajectory.format} cannot be viewed; run the scene again, or draw it: "
+                f"mdanim-lammps render {folder}"
+            )
+        self.frames, self.title, self.render, self.finished = trajectory.frames, title, render, finished
         self.folder = folder
-        m = self.metadata = self.frames.metadata
+        m = self.metadata = trajectory.metadata
         self.mesh = shaded_mesh(m, self.frames.value("position", 0))
         of = self.mesh.object_of_vertex
         order = np.argsort(of, kind="stable")
@@ -84,8 +90,8 @@ class Feed:
         self.object_of_vertex = of
         self.first = np.searchsorted(of, np.arange(len(m.names)))
         self.count = np.diff(np.append(self.first, len(of)))
-        frame_time = self.frames.dt * self.frames.steps_per_frame
-        self._foam = Foam(m.liquid.grid, frame_time) if m.liquid else None
+        self._frame_time = trajectory.dt * trajectory.steps_per_frame
+        self._foam = Foam(m.liquid.grid, self._frame_time) if m.liquid else None
 
     def close(self) -> None:
         """Close the trajectory."""
@@ -123,7 +129,7 @@ class Feed:
         return {
             "title": self.title,
             "frames": self.frames.total,
-            "frameTime": self.frames.dt * self.frames.steps_per_frame,
+            "frameTime": self._frame_time,
             "particles": len(m.id),
             "springs": len(m.bond),
             "mostStrain": MOST_STRAIN,

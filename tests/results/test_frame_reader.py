@@ -10,7 +10,7 @@ from mdanim_lammps import Trajectory
 from mdanim_lammps.errors import OutputError
 from mdanim_lammps.results.trajectory_file import part_of
 from mdanim_lammps.results.trajectory_writer import TrajectoryWriter
-from mdanim_lammps.results.written_frames import WrittenFrames
+from mdanim_lammps.view.feed import Feed
 from picture_samples import flat, pool_scene, raw_of, wet_frames, write
 
 FRAMES = 4
@@ -31,7 +31,7 @@ def test_frames_are_read_before_they_are_on_the_disk(tmp_path, pool):
     with TrajectoryWriter(path, scene, models, frames=FRAMES, dt=0.01, steps_per_frame=10, grid=grid) as out:
         out.write(*frames[0])
         out.write(*frames[1])
-        early = WrittenFrames(tmp_path)
+        early = Trajectory(tmp_path).frames
         assert early.total == FRAMES and early.on_disk() == 0
         seen = [{name: early.value(name, n) for name in ("position", "velocity", "center_of_mass", "liquid/raw")} for n in (0, 1)]
         assert early.time(1) == frames[1][1]
@@ -43,7 +43,7 @@ def test_frames_are_read_before_they_are_on_the_disk(tmp_path, pool):
         out.write(*frames[2])
         out.write(*frames[3])
     assert early.is_at(path) and not early.is_at(part_of(path)) and early.on_disk() == FRAMES
-    with Trajectory(path) as whole, early:
+    with Trajectory(path) as whole:
         for n in (0, 1):
             np.testing.assert_array_equal(seen[n]["position"], whole.position(n))
             np.testing.assert_array_equal(seen[n]["velocity"], whole.velocity(n))
@@ -62,7 +62,8 @@ def test_a_damaged_frame_is_refused(tmp_path, pool):
     with open(path, "r+b") as file:
         byte = os.pread(file.fileno(), 1, place)[0]
         os.pwrite(file.fileno(), bytes([byte ^ 1]), place)
-    with WrittenFrames(tmp_path) as found:
+    with Trajectory(tmp_path) as whole:
+        found = whole.frames
         with pytest.raises(OutputError, match=r"frame 2 .* position"):
             found.value("position", 2)
         found.value("position", 1)
@@ -76,4 +77,27 @@ def test_older_formats_are_refused(tmp_path, pool):
         del file["parameters/mdanim/checksum"]
         file["parameters/mdanim"].attrs["format"] = 2
     with pytest.raises(OutputError, match="mdanim-lammps render"):
-        WrittenFrames(tmp_path)
+        Feed(tmp_path)
+
+
+def test_a_closed_file_is_not_read(tmp_path, pool):
+    """Its number may be that of another file by then."""
+    scene, models, frames, grid = pool
+    whole = Trajectory(write(tmp_path / "trajectory.h5", scene, models, frames, grid))
+    whole.position(0)
+    whole.close()
+    with open(tmp_path / "other", "wb+") as other:
+        other.truncate(1 << 20)
+        with pytest.raises(OutputError, match="was closed"):
+            whole.objects[whole.names[0]].position(0)
+
+
+def test_what_is_read_may_be_changed(tmp_path, pool):
+    """Arrays are the caller's own."""
+    scene, models, frames, grid = pool
+    with Trajectory(write(tmp_path / "trajectory.h5", scene, models, frames, grid)) as whole:
+        whole.position(1)[:] = 0.0
+        np.testing.assert_array_equal(whole.position(1), frames[1][2])
+        np.testing.assert_array_equal(
+            whole.objects[whole.names[-1]].position(1), frames[1][2][whole.objects[whole.names[-1]].particles]
+        )
