@@ -80,6 +80,29 @@ def test_older_formats_are_refused(tmp_path, pool):
         Feed(tmp_path)
 
 
+def test_tables_of_older_formats_do_not_lie_in_one_piece(tmp_path, pool):
+    """Formats 1 and 2 were written in chunks, without checksums: they are read, only not while their run goes on."""
+    scene, models, frames, grid = pool
+    path = write(tmp_path / "trajectory.h5", scene, models, frames, grid)
+    with h5py.File(path, "r+") as file:
+        names = []
+        file.visititems(lambda name, found: names.append(name) if name.endswith("/value") else None)
+        for name in names:
+            values, units = file[name][:], dict(file[name].attrs)
+            del file[name]
+            file.create_dataset(name, data=values, chunks=(1, *values.shape[1:])).attrs.update(units)
+        del file["parameters/mdanim/checksum"]
+        file["parameters/mdanim"].attrs["format"] = 2
+    with Trajectory(path) as whole:
+        assert len(whole) == FRAMES
+        for n in (0, 3):
+            np.testing.assert_array_equal(whole.position(n), frames[n][2])
+            np.testing.assert_array_equal(whole.objects[whole.names[-1]].position(n), whole.position(n)[-len(models[-1].mass) :])
+            assert np.isfinite(whole.liquid_height(n)).all()
+        assert whole.centers.shape == (FRAMES, len(models), 3)
+        np.testing.assert_array_equal(whole.universe.trajectory[2].positions, frames[2][2].astype(np.float32))
+
+
 def test_a_closed_file_is_not_read(tmp_path, pool):
     """Its number may be that of another file by then."""
     scene, models, frames, grid = pool

@@ -28,7 +28,7 @@ class FrameReader:
 
     Args:
         path: of the file.
-        file: the same, opened.
+        file: the same, opened; may be closed then, but for an older format.
 
     Raises:
         OutputError: its tables of frames are damaged; KeyError where one is missing.
@@ -36,7 +36,8 @@ class FrameReader:
 
     def __init__(self, path: Path, file: h5py.File):
         self.path, tables = path, frame_tables(file)
-        if any(table.offset == 0 and table.stride * table.frames for table in tables.values()):
+        older = CHECKSUM not in tables
+        if not older and any(table.offset == 0 and table.stride * table.frames for table in tables.values()):
             raise OutputError(f"{path}: damaged: a table of its frames does not lie in one piece")
         for name, dtype in ((STEP, np.int64), (TIME, np.float64), (CHECKSUM, np.uint32)):
             if name in tables and tables[name].dtype != dtype:
@@ -54,7 +55,7 @@ class FrameReader:
             self._file = os.open(path, os.O_RDONLY | os.O_NOFOLLOW | os.O_CLOEXEC)
         except OSError as error:
             raise OutputError(f"{path}: cannot be read: {error.strerror}") from error
-        self.close = weakref.finalize(self, os.close, self._file)
+        self.close = weakref.finalize(self, _close, self._file, file if older else None)
         """Close the file; else it is closed when nothing refers to this object any more."""
 
     @property
@@ -98,7 +99,7 @@ class FrameReader:
         Raises OutputError where it is not written or is damaged, IndexError.
         """
         table = self.tables[name]
-        if 0 <= frame < self.total and self._good[name][frame] and rows != EVERYTHING:
+        if 0 <= frame < self.total and self._good[name][frame] and rows != EVERYTHING and not table.pieces:
             first, end, _ = rows.indices(table.shape[0])
             return self._bytes(table, frame * table.stride + first * table.row, (end - first, *table.shape[1:]))
         found = self._read(table, frame)
@@ -128,11 +129,15 @@ class FrameReader:
 
     def all(self, table: FrameTable, count: int) -> np.ndarray:
         """A table of the first frames."""
+        if table.pieces:
+            return table.pieces[:count]
         return self._bytes(table, 0, (count, *table.shape))
 
     def _read(self, table: FrameTable, frame: int) -> np.ndarray:
         if not 0 <= frame < self.total:
             raise IndexError(f"frame {frame} of a trajectory with {self.total} frames")
+        if table.pieces:
+            return table.pieces[frame]
         return self._bytes(table, frame * table.stride, table.shape)
 
     def _bytes(self, table: FrameTable, begin: int, shape: tuple[int, ...]) -> np.ndarray:
@@ -149,3 +154,9 @@ class FrameReader:
                 raise OutputError(f"{self.path}: ends before what its tables tell of: it is damaged")
             rest, at = rest[read:], at + read
         return found
+
+
+def _close(descriptor: int, file: h5py.File | None) -> None:
+    os.close(descriptor)
+    if file:
+        file.close()

@@ -58,7 +58,8 @@ class Trajectory:
 
     def __init__(self, path: str | Path):
         self.path = find_trajectory(Path(path))
-        with self._damage(), open_trajectory(self.path) as file:
+        file = open_trajectory(self.path)
+        with self._damage():
             check_hdf5(self.path, file)
             self.metadata = read_metadata(file)
             check_metadata(self.path, self.metadata)
@@ -71,6 +72,8 @@ class Trajectory:
             steps, times, sums = self.frames.rows()
             count = self._count(steps, times, sums)
             check_frames(self.path, frame_shapes(self.metadata), self.frames.tables, steps[:count], times[:count])
+            if self.frames.has_checksums:
+                file.close()
         self.steps: np.ndarray = steps[:count]
         """Time step of each frame, shape (F,)."""
         self.times: np.ndarray = times[:count]
@@ -162,12 +165,14 @@ class Trajectory:
     @cached_property
     def centers(self) -> np.ndarray:
         """Centres of mass of all objects [m], shape (F, O, 3)."""
-        return self.frames.values("center_of_mass", len(self))
+        with self._damage():
+            return self.frames.values("center_of_mass", len(self))
 
     @cached_property
     def center_velocities(self) -> np.ndarray:
         """Velocities of the centres of mass [m/s], shape (F, O, 3)."""
-        return self.frames.values("center_of_mass_velocity", len(self))
+        with self._damage():
+            return self.frames.values("center_of_mass_velocity", len(self))
 
     @property
     def liquid(self) -> LiquidMetadata | None:
@@ -268,7 +273,9 @@ class Trajectory:
 
     def _read(self, name: str, frame: int, particles: slice = EVERYTHING) -> np.ndarray:
         """One quantity of a frame, or of some particles in it; the whole of it is checked when it is read for the first time."""
-        return self.frames.value(name, self._frame(frame), particles)
+        frame = self._frame(frame)
+        with self._damage():
+            return self.frames.value(name, frame, particles)
 
     def _frame(self, frame: int) -> int:
         if not -len(self) <= frame < len(self):

@@ -69,6 +69,8 @@ class FrameTable:
     """Of one frame."""
     frames: int
     """Frames that there is room for."""
+    pieces: h5py.Dataset | None = None
+    """The table itself where it does not lie in one piece, as before format 3."""
 
     @property
     def stride(self) -> int:
@@ -169,8 +171,8 @@ def create_trajectory(path: Path, metadata: TrajectoryMetadata, frames: int, dt:
 def frame_tables(file: h5py.File) -> dict[str, FrameTable]:
     """Where the tables of the frames are, by the names of `quantities`, STEP, TIME and CHECKSUM. Raises KeyError."""
     return {
-        name: FrameTable(dataset.id.get_offset() or 0, dataset.dtype, dataset.shape[1:], len(dataset))
-        for name, dataset in datasets_of_frames(file).items()
+        name: FrameTable(d.id.get_offset() or 0, d.dtype, d.shape[1:], len(d), d if d.chunks else None)
+        for name, d in datasets_of_frames(file).items()
     }
 
 
