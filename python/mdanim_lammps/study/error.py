@@ -13,6 +13,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+REST = 1e-12
+"""Motion that is nothing but rounding [m]."""
 ROUND_OFF = 1e-9
 """Differences below this, relative to the extent of the motion, are not errors of a setting."""
 CONVERGENT = 0.3
@@ -35,8 +37,9 @@ fewer than were meant to be there, which may be near each other by chance (docs/
 
 
 def extent(track: np.ndarray) -> float:
-    """Largest distance of any centre of mass from its start [m]."""
-    return float(np.linalg.norm(track - track[0], axis=-1).max())
+    """Largest distance of any centre of mass from its start [m]; 0 where it is below REST."""
+    far = float(np.linalg.norm(track - track[0], axis=-1).max())
+    return far if far > REST else 0.0
 
 
 def moving(track: np.ndarray) -> np.ndarray:
