@@ -18,15 +18,6 @@ FIELDS = {"gravity", "ground", "walls", "liquid", "contacts"}
 LIQUID = re.compile(r"liquid|pool")
 
 NAMING = {
-    "cost/later.py",
-    "engine/plan.py",
-    "model/overlap.py",
-    "model/planes.py",
-    "model/spacing.py",
-    "model/work.py",
-    "parallel/runtime/bundle.py",
-    "parallel/runtime/executor.py",
-    "reach/region.py",
     "report.py",
     "results/compare.py",
     "results/motion.py",
@@ -37,9 +28,7 @@ NAMING = {
     "results/trajectory_writer.py",
     "results/untrusted.py",
     "run/energy.py",
-    "run/guard.py",
     "run/loop.py",
-    "run/prepare.py",
     "scene/contact_pairs.py",
     "scene/keywords.py",
     "scene/limits.py",
@@ -51,18 +40,6 @@ NAMING = {
 }
 """May only shrink."""
 KNOWING = {
-    "cost/speedup_forecast.py",
-    "engine/sub_plan.py",
-    "model/overlap.py",
-    "model/planes.py",
-    "model/spacing.py",
-    "model/work.py",
-    "parallel/plan/frame_plan.py",
-    "parallel/plan/orders.py",
-    "parallel/plan/planner.py",
-    "parallel/runtime/bundle.py",
-    "parallel/runtime/executor.py",
-    "reach/reach.py",
     "report.py",
     "results/compare.py",
     "results/motion.py",
@@ -72,7 +49,6 @@ KNOWING = {
     "results/trajectory_writer.py",
     "results/untrusted.py",
     "run/energy.py",
-    "run/prepare.py",
     "scene/keywords.py",
     "scene/makers.py",
     "scene/render.py",

@@ -110,7 +110,7 @@ def test_what_is_in_the_liquid_and_what_is_not(prepared, model):
     """Take out the pond with what swims in it, and the two objects that fall far above it and meet."""
     plan = prepared(POND.replace("MODEL", model)).plan
     parts = SubPlans(plan)
-    assert plan.system.position[particles(plan.system, (0, 2)), 2].min() > parts.liquid_top
+    assert plan.system.position[particles(plan.system, (0, 2)), 2].min() > parts.grid_top
     with Instance(plan) as whole:
         whole.setup()
         before = evolve(whole, 60)
@@ -210,7 +210,7 @@ def test_effects_with_nothing_to_act_on_are_left_out(prepared):
         pytest.param((1, 1), False, "must ascend", id="one of them twice"),
         pytest.param((1, 6), False, "within 0 and 5", id="not there"),
         pytest.param((-1, 2), False, "within 0 and 5", id="counted from the end"),
-        pytest.param((0,), True, "no liquid", id="no liquid"),
+        pytest.param((0,), True, "no grid", id="no liquid"),
         pytest.param((), False, "needs an object", id="nothing"),
     ],
 )

@@ -335,7 +335,7 @@ def test_plans_have_bodies_where_an_effect_asks_for_them(made, monkeypatch):
     asking = Effect()
     asking.name, asking.fix = "asking", "asker"
     plan = replace(plan, effects=(*plan.effects, asking), asked={**plan.asked, "asking": ("body",)})
-    part = SubPlans(plan).part([1, 3, 4], liquid=False)
+    part = SubPlans(plan).part([1, 3, 4], grid=False)
     assert part.body_fixes == plan.body_fixes == ("asker",)
     assert part.system.contact_kind.tolist() == [1, 2, 1]
     assert list(part.contact_bodies) == [1, 2]

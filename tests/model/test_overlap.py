@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
+from mdanim_lammps import features
 from mdanim_lammps.features.walls.words import Walls
 from mdanim_lammps.model import build_models, check_geometry, overlap, shapes
 from mdanim_lammps.scene.scene import Box, ContactModel, Cylinder, HoldAll, Liquid, Mesh, Sphere, Torus
@@ -26,7 +27,7 @@ PAPER = {"contact_model": ContactModel.PAPER}
 def problems(*solids, h=0.25, **rest):
     """What is wrong with these solids, at spacing h."""
     made = scene(*solids, resolution=h, **rest)
-    return check_geometry(made, build_models(made))
+    return check_geometry(made, build_models(made), [p for e in features.effects() for p in e.planes(made)])
 
 
 def moved(body, hint):

@@ -13,8 +13,6 @@ from ..results.files import STOP
 from ..run.prepare import Prepared, prepare
 from ..scene.scene import Save
 
-LATER = ("contact", "ground", "walls", "basin", "buoyancy")
-"""Effects at surfaces, which cost next to nothing until these meet something."""
 COARSER = (2.0, 1.5)
 """Spacings that are tried over the run's own: cost falls with the fourth power, and a thin object may not take the first."""
 PATIENCE = 3.0
@@ -41,12 +39,13 @@ def later(ready: Prepared, folder: Path) -> dict[str, float]:
         return {}  # what stops in coarse cells says nothing of the run
     steps = ready.certificate.steps / coarse.certificate.steps
     surface = float(ready.system.boundary.sum() / coarse.system.boundary.sum()) ** POINTS
-    points = {"buoyancy": ready.system.particles / coarse.system.particles}  # lifts all particles, and has no pairs
-    return {name: steps * points.get(name, surface) * whole[name] for name in LATER if name in whole}
+    particles = ready.system.particles / coarse.system.particles  # what touches nothing acts on all of them, and has no pairs
+    late = [e for e in ready.plan.effects if e.at_surfaces and e.name in whole]
+    return {e.name: steps * (surface if e.touches else particles) * whole[e.name] for e in late}
 
 
 def _coarser(ready: Prepared) -> Prepared | None:
-    if not any(ready.verdicts[name].on for name in LATER):
+    if not any(e.at_surfaces for e in ready.plan.effects):
         return None
     control = ready.scene.control
     for factor in COARSER:

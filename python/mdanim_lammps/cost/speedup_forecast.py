@@ -93,8 +93,8 @@ class _Moments:
         """The plan for objects in these boxes (M, 3) [m] at these speeds (M,) [m/s],
         for the window that leaves loads in balance."""
         context = self.context
-        if context.pool is not None:
-            low, high, speed = np.vstack([low, context.pool[0]]), np.vstack([high, context.pool[1]]), np.append(speed, 0.0)
+        if context.grid is not None:
+            low, high, speed = np.vstack([low, context.grid[0]]), np.vstack([high, context.grid[1]]), np.append(speed, 0.0)
 
         def make(steps: int) -> tuple[FrameAssignment, np.ndarray]:
             d = context.reach(speed, steps)

@@ -46,6 +46,14 @@ class Effect:
     """Whether its energy is a `potential`, that of a uniform field; no other effect has the same column then."""
     has_arbitrary_zero = False
     """Whether only changes of the energy in its column ``ledger`` mean something; that of a potential always is so."""
+    on_grid = False
+    """Whether it lives in the cells of a `grid`, as one thing that one process has."""
+    touches = False
+    """Whether it acts where surfaces meet."""
+    at_surfaces = False
+    """Whether it costs next to nothing until surfaces meet something."""
+    brakes = False
+    """Whether it makes dashpots along springs."""
     binds = False
     """Whether it holds the particles of a solid together."""
     keeps_apart = False
@@ -81,6 +89,10 @@ class Effect:
 
     def slows(self, scene: SceneRecord) -> np.ndarray | None:
         """Solids that it slows down wherever they are, bool, shape (M,)."""
+        return None
+
+    def rough(self, scene: SceneRecord) -> np.ndarray | None:
+        """Solids that its planes may push along themselves, bool, shape (M,)."""
         return None
 
     def pushes_below(self, scene: SceneRecord) -> float:

@@ -131,9 +131,9 @@ def make_plan(context: Context, certificate: Certificate) -> Plan:
         columns.update(own_columns)
         tables.update(own_tables)
         asked[effect.name] = (*own_columns, *own_tables)
-    if context.on("springs"):
+    if any(e.binds for e in effects):
         bonds, kind = system.spring, system.spring_type
-        merged, coefficients = types(system.constants * (1.0, 1.0, float(context.on("damping"))))
+        merged, coefficients = types(system.constants * (1.0, 1.0, float(any(e.brakes for e in effects))))
         if len(coefficients) < len(system.constants):
             kind = merged[kind - 1]
     else:

@@ -51,24 +51,23 @@ class SubPlans:
         return np.maximum.reduce(own, initial=0.0, axis=0) if own else np.zeros(len(whole.system.names))
 
     @cached_property
-    def liquid_top(self) -> float:
-        """Height from which on an object does not matter to the liquid, nor the liquid to it [m]; minus infinity
-        without liquid."""
+    def grid_top(self) -> float:
+        """Height above which an object and the cells of the grid do not matter to each other [m]; minus infinity without one."""
         return max((e.matters_below(self.whole.context) for e in self.whole.effects), default=-np.inf)
 
-    def part(self, objects: Sequence[int], liquid: bool) -> Plan:
-        """The plan of these objects, from 0 and ascending, and of the liquid with what it does to them, or without.
+    def part(self, objects: Sequence[int], grid: bool) -> Plan:
+        """The plan of these objects, from 0 and ascending, and of the grid with what it does to them, or without.
 
         Tags, molecules and bond types are numbered anew, from 1 and in the same order. Contact is left out where no two objects
-        could touch. Raises ValueError for objects that are not ascending or not there, for a liquid that is not there, and for
+        could touch. Raises ValueError for objects that are not ascending or not there, for a grid that is not there, and for
         nothing at all.
         """
         objects = tuple(int(m) for m in objects)
-        self._check(objects, liquid)
+        self._check(objects, grid)
         whole, runs = self.whole, _runs(objects)
         take = _Taker(runs, self._particle)
         system = self._system(objects, runs)
-        context = replace(whole.context, system=system, grid=whole.grid if liquid else None)
+        context = replace(whole.context, system=system, grid=whole.grid if grid else None)
         effects = self._effects(context)
         wanted = {name for e in effects for name in whole.asked[e.name]}
         tags_of = {name: columns for e in effects for name, columns in e.tags_of.items()}
@@ -92,16 +91,16 @@ class SubPlans:
             make_ends=lambda: self._join_ends(objects, system.first, number),
         )
 
-    def _check(self, objects: tuple[int, ...], liquid: bool) -> None:
+    def _check(self, objects: tuple[int, ...], grid: bool) -> None:
         count = len(self.whole.system.names)
         if any(b <= a for a, b in pairwise(objects)):
             raise ValueError(f"objects of a part must ascend, so that sums keep their order; got {objects}")
         if objects and not 0 <= objects[0] <= objects[-1] < count:
             raise ValueError(f"objects of a part must be within 0 and {count - 1}, got {objects}")
-        if liquid and self.whole.grid is None:
-            raise ValueError("the plan has no liquid")
-        if not objects and not liquid:
-            raise ValueError("a part needs an object, or the liquid")
+        if grid and self.whole.grid is None:
+            raise ValueError("the plan has no grid")
+        if not objects and not grid:
+            raise ValueError("a part needs an object, or the grid")
 
     def _effects(self, context: Context) -> tuple[Effect, ...]:
         """The effects of the whole without those that have nothing to act on."""

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 
 import numpy as np
 
@@ -13,7 +13,7 @@ from ..scene.scene import ContactModel, SceneRecord, Solid
 from . import shapes
 from .boxes import box_pairs
 from .model import Layer, Model
-from .planes import Plane, scene_planes
+from .planes import Plane
 from .touching import REACH, THIN
 
 HAIR = 1e-6
@@ -25,10 +25,10 @@ BORN_AT_REST = 0.25
 so deep is where contact begins. The law takes twice as much."""
 
 
-def check_geometry(scene: SceneRecord, models: tuple[Model, ...], planes: Iterable[Plane] | None = None) -> list[Problem]:
+def check_geometry(scene: SceneRecord, models: tuple[Model, ...], planes: Iterable[Plane] = ()) -> list[Problem]:
     """Find every object that starts in another one, below the ground, or outside walls or basin.
 
-    ``planes`` push objects back; None are those of the scene. Each problem stands at the position of the (second) object and
+    ``planes`` push objects back. Each problem stands at the position of the (second) object and
     tells how deep it is in and which move frees it, so far that contact holds no energy afterwards. Objects that are held
     entirely may overlap each other and extend beyond the walls: such objects are the scene's architecture. Under ``contact-model
     surface`` they may overlap a little, by BORN_AT_REST. Pairs after the first MOST_PAIRS in each other are not looked at.
@@ -36,7 +36,7 @@ def check_geometry(scene: SceneRecord, models: tuple[Model, ...], planes: Iterab
     problems = []
     if not models:
         return problems
-    planes = scene_planes(scene) if planes is None else tuple(planes)
+    planes = tuple(planes)
     surface = scene.control.contact_model is ContactModel.SURFACE
     bodies = _BoundingBoxes(models, [m.surface.vertices(m.position) for m in models], surface)
     problems += _outside(scene, bodies, planes)
@@ -93,25 +93,25 @@ class _BoundingBoxes:
 _MOVES = {(0, 1): "to +x", (0, -1): "to -x", (1, 1): "to +y", (1, -1): "to -y", (2, 1): "up", (2, -1): "down"}
 
 
-def _rooms(scene: SceneRecord) -> list[tuple[str, tuple, tuple]]:
-    """The space with a wall on both sides along x and y: its name, lower and upper corner [m]."""
-    rooms = [("the space between the walls is", scene.walls)] if scene.walls is not None else []
-    rooms += [("the basin is", scene.liquid)] if scene.liquid is not None else []
-    return [(what, box.low, box.high) for what, box in rooms]
+def _rooms(planes: Iterable[Plane]) -> Iterator[tuple[str, int, float]]:
+    """What has a wall on both sides along x or y: its name, the axis, how wide it is along it [m]."""
+    sides = {(p.room, p.axis, p.sign): p.at for p in planes if p.room}
+    for (room, axis, sign), at in sides.items():
+        if sign > 0 and axis < 2 and (room, axis, -1) in sides:
+            yield room, axis, sides[room, axis, -1] - at
 
 
 def _outside(scene: SceneRecord, bodies: _BoundingBoxes, planes: tuple[Plane, ...]) -> list[Problem]:
     problems = []
     too_wide = np.zeros((len(bodies.models), 3), bool)  # no move helps along these axes
-    for what, low, high in _rooms(scene):
-        room = np.subtract(high, low)[:2]
-        size = (bodies.high - bodies.low)[:, :2]
-        for i, axis in zip(*np.nonzero((size > room + bodies.hair) & ~bodies.fixed[:, None])):
+    for room, axis, width in _rooms(planes):
+        size = (bodies.high - bodies.low)[:, axis]
+        for i in np.flatnonzero((size > width + bodies.hair) & ~bodies.fixed).tolist():
             solid, too_wide[i, axis] = scene.solids[i], True
             problems.append(
                 Problem(
                     solid.spans.get("shape") or _span(solid),
-                    f"{solid.name} is {say(size[i, axis], 'm')} wide along {'xyz'[axis]}, {what} only {say(room[axis], 'm')}",
+                    f"{solid.name} is {say(size[i], 'm')} wide along {'xyz'[axis]}, {room} is only {say(width, 'm')}",
                     "make it smaller (is a unit missing?), or the room larger",
                 )
             )

@@ -1,14 +1,15 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""The planes that push objects back: ground, walls, floor and sides of a basin."""
+"""Planes that push objects back."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 
-from ..scene.scene import SceneRecord
+from ..scene.schema import Vector
 
 AXES = "xyz"
 
@@ -27,27 +28,24 @@ class Plane:
     """[m]"""
     beyond: str
     """Position of an object beyond the plane: ``below the ground``."""
+    room: str = ""
+    """What it shuts in together with others: ``the basin``; empty for a plane that stands alone."""
 
 
-def scene_planes(scene: SceneRecord) -> tuple[Plane, ...]:
-    """Every plane that a scene names, whether its effect is on or not."""
-    planes = []
-    if scene.ground is not None:
-        planes.append(Plane("ground", "the ground", 2, 1, scene.ground, "below the ground"))
-    if scene.walls is not None:
-        planes += [_side("walls", axis, *side) for axis in range(3) for side in _sides(scene.walls, axis)]
-    if scene.liquid is not None:
-        planes += [_side("basin", axis, *side) for axis in range(2) for side in _sides(scene.liquid, axis)]
-        planes.append(Plane("basin", "the basin", 2, 1, scene.liquid.low[2], "below the floor of the basin"))
-    return tuple(planes)
+class Corners(Protocol):
+    """Two corners of a box, the lower one first."""
+
+    low: Vector
+    high: Vector
 
 
-def _sides(box, axis: int) -> tuple[tuple[int, float], ...]:
-    return (1, box.low[axis]), (-1, box.high[axis])
-
-
-def _side(effect: str, axis: int, sign: int, at: float) -> Plane:
-    return Plane(effect, f"the {effect}", axis, sign, at, f"outside the {effect} at {'-' if sign > 0 else '+'}{AXES[axis]}")
+def box_sides(effect: str, box: Corners, axes: int, room: str) -> tuple[Plane, ...]:
+    """The planes on both sides of a box across the first so many axes; ``room`` is what the box is called."""
+    return tuple(
+        Plane(effect, f"the {effect}", axis, sign, at, f"outside the {effect} at {'-' if sign > 0 else '+'}{AXES[axis]}", room)
+        for axis in range(axes)
+        for sign, at in ((1, box.low[axis]), (-1, box.high[axis]))
+    )
 
 
 def innermost(planes: Iterable[Plane]) -> tuple[np.ndarray, np.ndarray]:

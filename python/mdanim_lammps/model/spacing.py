@@ -9,6 +9,7 @@ from functools import lru_cache
 import numpy as np
 
 from ..errors import Problem, SceneError
+from ..features import facets
 from ..processes import available_memory
 from ..scene.formatting import number, say, whole
 from ..scene.scene import Accuracy, Box, HoldAll, Mesh, SceneRecord, Shape, Solid
@@ -24,7 +25,7 @@ class Spacing:
     h: float
     """Particle spacing [m]."""
     set_by: str
-    """Name of the solid with the thinnest part, ``resolution``, or the liquid where there is no solid."""
+    """Name of the solid with the thinnest part, ``resolution``, or what a scene without solids goes by."""
     particles: tuple[int, ...]
     """Estimated number of particles of each solid, in the order of the scene."""
     memory: float
@@ -101,11 +102,10 @@ def _choose(scene: SceneRecord, thin: list[float]) -> tuple[float, str]:
         wanted = [t / _cells_needed(s, control.accuracy) for s, t in zip(scene.solids, thin)]
         k = int(np.argmin(wanted))
         return wanted[k], scene.solids[k].name
-    if scene.liquid is not None:
-        # No solid to go by: 8 cells to each one of a solid, so that a balanced basin is 32 cells wide.
-        side = min(b - a for a, b in zip(scene.liquid.low[:2], scene.liquid.high[:2]))
-        return side / (8 * control.accuracy.cells), scene.liquid.name
-    raise SceneError([Problem(None, "the scene has no object and no liquid", "add an object block")])
+    for words in facets("words"):
+        if hasattr(words, "width") and (found := words.width(scene)):
+            return found[0] / control.accuracy.cells, found[1]
+    raise SceneError([Problem(None, "the scene has no object", "add an object block")])
 
 
 @lru_cache(maxsize=4096)

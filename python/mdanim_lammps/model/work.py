@@ -6,6 +6,7 @@ from __future__ import annotations
 from functools import lru_cache
 from math import ceil, hypot, pi
 
+from ..features import facets
 from ..scene.scene import Box, Cone, ContactModel, Cylinder, Ellipsoid, Mesh, SceneRecord, Shape, Sphere, Torus
 from . import shapes
 from .contact_body import DENSITY
@@ -35,7 +36,7 @@ def seconds(scene: SceneRecord, h: float, particles: int) -> float:
 
 def _touches(scene: SceneRecord) -> bool:
     """Whether there is something that an object can touch at its surface."""
-    others = len(scene.solids) > 1 or scene.ground is not None or scene.walls is not None or scene.liquid is not None
+    others = len(scene.solids) > 1 or any(words.touched(scene) for words in facets("words") if hasattr(words, "touched"))
     return others and scene.control.contact_model is ContactModel.SURFACE
 
 

@@ -36,6 +36,8 @@ class Motion(Protocol):
 
     def slows(self, scene: SceneRecord) -> np.ndarray | None: ...
 
+    def rough(self, scene: SceneRecord) -> np.ndarray | None: ...
+
     def pushes_below(self, scene: SceneRecord) -> float: ...
 
     def most_push(self, scene: SceneRecord, bodies: Bodies) -> np.ndarray | float: ...
@@ -73,10 +75,18 @@ class Acting:
     @cached_property
     def slowed(self) -> np.ndarray:
         """Solids that are slowed down wherever they are, bool, shape (M,)."""
+        return self._any(e.slows(self.scene) for e in self.effects)
+
+    @cached_property
+    def rough(self) -> np.ndarray:
+        """Solids that planes may push along themselves, bool, shape (M,)."""
+        return self._any(e.rough(self.scene) for e in self.effects)
+
+    def _any(self, told: Iterable[np.ndarray | None]) -> np.ndarray:
         found = np.zeros(len(self.scene.solids), bool)
-        for effect in self.effects:
-            if (slowed := effect.slows(self.scene)) is not None:
-                found |= slowed
+        for solids in told:
+            if solids is not None:
+                found |= solids
         return found
 
     @cached_property

@@ -105,9 +105,9 @@ class Reach:
         bottom = np.where(self.stands, np.minimum(bottom, floor), bottom)
         if surface is None:
             return bottom - floor
-        in_air, in_liquid = np.maximum(0.0, bottom - surface), np.minimum(bottom, surface) - floor
+        in_air, below = np.maximum(0.0, bottom - surface), np.minimum(bottom, surface) - floor
         weight = self.weight_left
-        return in_air + in_liquid * (weight if len(self.system.names) == 1 else np.maximum(0.0, weight))
+        return in_air + below * (weight if len(self.system.names) == 1 else np.maximum(0.0, weight))
 
     @cached_property
     def weight_left(self) -> np.ndarray:

@@ -17,7 +17,6 @@ from ..model import mesh, shapes
 from ..model.boxes import box_pairs
 from ..model.springs import equivalent_modulus
 from ..scene import scene as kinds
-from ..scene.contact_pairs import any_friction, frictions
 from ..scene.scene import Box, HoldAll, HoldFaces, SceneRecord, Shape, Solid
 from .acting import Acting
 
@@ -91,7 +90,7 @@ def sweeps(acting: Acting, h: float) -> Sweeps:
     radius = np.where(hit, wild, calm)
     by_axis, _ = touched(radius)
     by_axis[~hit] = False
-    by_axis |= (_rough(scene) & by_axis.any(axis=1))[:, None]  # friction acts along the other axes
+    by_axis |= (acting.rough & by_axis.any(axis=1))[:, None]  # friction acts along the other axes
     far = bodies.speed * scene.control.time
     # A body that has bounced may fall into a liquid that its parabola misses.
     bounced = hit & (bodies.position[:, 2] - far - radius <= wet_below)
@@ -189,11 +188,6 @@ def _flight(acting: Acting, bodies: _Movers) -> tuple[np.ndarray, np.ndarray]:
     low = np.where(slowed, np.minimum(coasts, 0.0) + np.minimum(falls, 0.0), low)
     high = np.where(slowed, np.maximum(coasts, 0.0) + np.maximum(falls, 0.0), high)
     return bodies.position + low, bodies.position + high
-
-
-def _rough(scene: SceneRecord) -> np.ndarray:
-    """Solids that may have friction against a plane, bool, shape (M,)."""
-    return np.array(frictions(scene)) > 0.0 if not scene.contacts else np.full(len(scene.solids), any_friction(scene))
 
 
 def _clamped(scene: SceneRecord, bodies: _Movers) -> np.ndarray:

@@ -247,7 +247,8 @@ class Guard:
         change = [abs(b["residual"] - a["residual"]) for a, b in pairwise(rows)]
         worst = change.index(max(change))
         cause, cure = "", ", a smaller timestep, or some damping: impacts add energy to undamped objects"
-        met = any(rows[k].get(term) for k in (worst, worst + 1) for term in ("contact", "wall"))
+        touched = {e.ledger for e in self.ready.plan.effects if e.touches}
+        met = any(rows[k].get(term) for k in (worst, worst + 1) for term in touched)
         if met and scene.control.contact_model is ContactModel.SURFACE:
             cause, cure = ", where surfaces met: a step is long for the onset of their contact", " or a smaller timestep"
         return Problem(

@@ -74,7 +74,7 @@ def prepare(scene: SceneRecord, *, allow_unstable: bool = False, progress: Calla
         raise SceneError(
             [
                 Problem(
-                    scene.liquid.spans.get("liquid") if scene.liquid else None,
+                    next(iter(scene.spans.values()), None),
                     "the scene has no object, and runs without one are not built yet",
                     "write one; one that never moves will do, e.g.  object stone { shape box (10, 10, 10) cm  "
                     "position (0, 0, 0) m  density 2000  elasticity 1 MPa  hold all }",
@@ -92,7 +92,8 @@ def _prepare(scene: SceneRecord, spacing: Spacing, allow_unstable: bool, progres
     resolved = resolve(features.effects(), scene, spacing.h)
     grid = next((cells for e in resolved.effects if (cells := e.grid(scene, spacing.h))), None)
     models = build_models(scene, spacing.h, progress)
-    problems = check_geometry(scene, models) + [p for e in resolved.effects for p in e.problems(resolved, models, grid)]
+    planes = [p for e in features.effects() for p in e.of(scene).planes(scene)]  # also of those that are off
+    problems = check_geometry(scene, models, planes) + [p for e in resolved.effects for p in e.problems(resolved, models, grid)]
     problems += _unmeasurable(resolved)
     if problems:
         raise SceneError(problems)

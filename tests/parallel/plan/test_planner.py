@@ -131,7 +131,7 @@ def test_the_pool_is_one_more_object(prepared):
     planner = Planner(parts, 2, LENGTHS, PlannerOptions())
     grid, count = parts.whole.grid, planner.objects
     assert len(planner.cost) == count + 1 and not planner.context.still[-1] and planner.context.still.sum() == 1
-    assert (planner.low[-1] < np.array(grid.low)).all() and planner.high[-1, 2] == parts.liquid_top
+    assert (planner.low[-1] < np.array(grid.low)).all() and planner.high[-1, 2] == parts.grid_top
     assert (planner.high[-1, :2] > np.array(grid.high)[:2]).all()
     system = parts.whole.system
     low, high = (f.reduceat(system.position, system.first[:-1]) for f in (np.minimum, np.maximum))

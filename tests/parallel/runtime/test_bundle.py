@@ -15,7 +15,7 @@ GUESTS = np.array([[1, 3], [2, 3]])
 def wanted(executor, objects=7, teams=()):
     """(objects that it has, liquid, team, objects that it moves) of each bundle."""
     plan = FrameAssignment(OWNER, LABEL, BUNDLE, GUESTS, tuple(teams), np.zeros(3, np.int64))
-    return [(w.key.objects, w.key.liquid, w.key.team, w.members.tolist()) for w in wanted_bundles(plan, objects, executor)]
+    return [(w.key.objects, w.key.grid, w.key.team, w.members.tolist()) for w in wanted_bundles(plan, objects, executor)]
 
 
 def test_bundles_of_one_executor():

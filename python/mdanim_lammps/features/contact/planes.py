@@ -10,7 +10,7 @@ import numpy as np
 from ...effects.effect import Effect
 from ...effects.fields import column
 from ...errors import Problem
-from ...model.planes import innermost, scene_planes
+from ...model.planes import innermost
 from ...model.touching import WAY_NAMES, Touch, behind_planes
 from ...scene.formatting import at_least, say, whole
 
@@ -35,6 +35,7 @@ class Boundary(Effect):
     """What ground, walls and basins have in common: a region, and a fix that pushes back whatever leaves it."""
 
     ledger = "wall"
+    touches = at_surfaces = True
 
     def columns(self, context):
         return {STIFFNESS: context.system.contact_stiffness}
@@ -45,9 +46,6 @@ class Boundary(Effect):
 
     def commands(self, context):
         return [f"region {self.fix} {self.region(context.scene)}", f"fix {self.fix} mobile mdanim/wall {self.fix} d_stiffness"]
-
-    def planes(self, scene):
-        return tuple(p for p in scene_planes(scene) if p.effect == self.name)
 
     def margins(self, envelope):
         return envelope.own_step("wall", envelope.rates[self.name])

@@ -20,7 +20,7 @@ from ...model.overlap import BORN_AT_REST
 from ...model.planes import AXES
 from ...model.system import System
 from ...reach import largest_of_others
-from ...scene.contact_pairs import USUAL_DAMPING, damping, frictions, pair_rules
+from ...scene.contact_pairs import USUAL_DAMPING, any_friction, damping, frictions, pair_rules
 from ...scene.scene import Box, SceneRecord
 from .barrier import GAP, Contact, barrier, barrier_rate
 from .planes import STIFFNESS, Boundary
@@ -272,6 +272,9 @@ class SurfaceContact(OnSurfaces, Contact):
 
 class SurfacePlanes(OnSurfaces, Boundary):
     """Planes that points of drawn surfaces are pushed back by."""
+
+    def rough(self, scene):
+        return np.full(len(scene.solids), any_friction(scene)) if scene.contacts else np.array(frictions(scene)) > 0.0
 
     def frictions(self, scene):
         return frictions(scene, self.name)

@@ -11,6 +11,7 @@ from ..springs.effect import all_held, spring_norm, time_of_dashpots
 class Damping(Effect):
     name = "damping"
     order = 20
+    brakes = True
     needs = ("springs",)
     if_off = "damped objects ring for ever"
 

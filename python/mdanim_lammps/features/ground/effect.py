@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from ...effects.context import Verdict
 from ...effects.effect import stiffness_told
+from ...model.planes import Plane
 from ...scene.formatting import say
 from ..contact.planes import Boundary
 from ..contact.surface import SurfacePlanes
@@ -21,6 +22,9 @@ class GroundPlane(Boundary):
         return Verdict(
             self.name, True, f"ground at z = {say(scene.ground, 'm', 6)}{stiffness_told(scene)}", scene.spans.get("ground")
         )
+
+    def planes(self, scene):
+        return () if scene.ground is None else (Plane(self.name, "the ground", 2, 1, scene.ground, "below the ground"),)
 
     def region(self, scene):
         return f"plane 0 0 {scene.ground!r} 0 0 1"

@@ -16,3 +16,8 @@ class GroundWords:
 
 
 SCENE = GroundWords
+
+
+def touched(scene) -> bool:
+    """Whether it brings something into a scene that objects may touch."""
+    return scene.ground is not None

@@ -14,6 +14,7 @@ from ...effects.fields import column
 from ...effects.margin import Margin
 from ...effects.readings import LEAPFROG
 from ...errors import Problem, SceneError
+from ...model.planes import Plane, box_sides
 from ...model.system import System
 from ...model.tensors import largest_eigenvalue
 from ...scene.formatting import number, say
@@ -80,6 +81,12 @@ class Basin(Boundary):
             return Verdict(self.name, False, "nothing in the basin can move")
         return Verdict(self.name, True, f"the basin of {scene.liquid.name}", scene.liquid.spans.get("basin"))
 
+    def planes(self, scene):
+        if scene.liquid is None:
+            return ()
+        floor = Plane(self.name, "the basin", 2, 1, scene.liquid.low[2], "below the floor of the basin")
+        return (*box_sides(self.name, scene.liquid, 2, "the basin"), floor)
+
     def region(self, scene):
         (x0, y0, z0), (x1, y1, _) = scene.liquid.low, scene.liquid.high
         return f"block {x0!r} {x1!r} {y0!r} {y1!r} {z0!r} INF"
@@ -89,6 +96,7 @@ class LiquidAutomaton(Effect):
     """The automaton: liquid that falls, spreads, levels and makes room for solids."""
 
     name = fix = "liquid"
+    on_grid = True
     order = 90
     needs = ("gravity",)
     if_off = "the basin stays empty"
@@ -284,6 +292,7 @@ class Buoyancy(Effect):
     """Archimedes, particle by particle: rho_l V_i s_i g upward on the immersed part s_i of a particle."""
 
     name = "buoyancy"
+    at_surfaces = True
     order = 100
     ledger = "buoyancy"
     has_arbitrary_zero = True

@@ -25,3 +25,16 @@ QUANTITIES = {
 MARGINS = {
     "sweeps": "how often the liquid is swept while an object travels one cell; below 4 it is pushed up before it can flow away"
 }
+
+
+def touched(scene) -> bool:
+    """Whether it brings something into a scene that objects may touch."""
+    return scene.liquid is not None
+
+
+def width(scene) -> tuple[float, str] | None:
+    """What a scene without objects goes by: an eighth of the basin's narrower side [m], so that a balanced basin is 32 cells,
+    and its name."""
+    if scene.liquid is None:
+        return None
+    return min(b - a for a, b in zip(scene.liquid.low[:2], scene.liquid.high[:2])) / 8, scene.liquid.name

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from ...effects.context import Verdict
 from ...effects.effect import stiffness_told
+from ...model.planes import box_sides
 from ..contact.planes import Boundary
 from ..contact.surface import SurfacePlanes
 
@@ -18,6 +19,9 @@ class WallPlanes(Boundary):
         if scene.walls is None:
             return Verdict(self.name, False, "no walls in the scene")
         return Verdict(self.name, True, f"walls around the scene{stiffness_told(scene)}", scene.spans.get("walls"))
+
+    def planes(self, scene):
+        return () if scene.walls is None else box_sides(self.name, scene.walls, 3, "the space between the walls")
 
     def region(self, scene):
         low, high = scene.walls.low, scene.walls.high

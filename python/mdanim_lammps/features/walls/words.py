@@ -31,3 +31,8 @@ class WallsWords:
 
 
 SCENE = WallsWords
+
+
+def touched(scene) -> bool:
+    """Whether it brings something into a scene that objects may touch."""
+    return scene.walls is not None

@@ -135,13 +135,13 @@ def plan(
     return FrameAssignment(given.owner, label, bundle, islands.guests(met, label, still), given.teams, given.load)
 
 
-def pool_box(parts: SubPlans) -> tuple[np.ndarray, np.ndarray]:
+def grid_box(parts: SubPlans) -> tuple[np.ndarray, np.ndarray]:
     """The box within which an object and the liquid can matter to each other [m]."""
     grid = parts.whole.grid
     assert grid is not None, "only asked for where there is a liquid"
     margin = ASIDE * np.max(np.subtract(grid.high, grid.low))
     low, high = np.array(grid.low) - margin, np.array(grid.high) + margin
-    high[2] = parts.liquid_top
+    high[2] = parts.grid_top
     return low, high
 
 
@@ -153,8 +153,8 @@ class PlanContext:
         self.whole, self.executors, self.settings = whole, executors, settings
         self.objects = len(system.names)
         """The pool not counted."""
-        self.pool = pool_box(parts) if whole.grid is not None else None
-        self.count = self.objects + (self.pool is not None)
+        self.grid = grid_box(parts) if whole.grid is not None else None
+        self.count = self.objects + (self.grid is not None)
         self.particles = np.append(np.diff(system.first), [0] * (self.count - self.objects)).astype(np.int64)
         self.still = np.append(system.still, np.zeros(self.count - self.objects, bool))
         self.gap = float(parts.gap.max(initial=0.0))
@@ -177,7 +177,7 @@ class PlanContext:
         )
         d = d * 2.0**doublings
         d[self.still] = 0.0
-        if self.pool is not None:
+        if self.grid is not None:
             d[-1] = 0.0
         return d
 

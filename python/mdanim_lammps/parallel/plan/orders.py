@@ -23,7 +23,7 @@ class Report:
     """Of the fastest particle of each [m/s], shape (m,)."""
     cost: np.ndarray
     """Processor time for a frame of each [us], int64, shape (m,)."""
-    pool_cost: int | None = None
+    grid_cost: int | None = None
     """The same of the liquid, from the executor that has it."""
     escaped: tuple[int, ...] = ()
     """Objects that have left their reserved boxes: the window must be done again."""

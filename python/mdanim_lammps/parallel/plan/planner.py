@@ -38,8 +38,8 @@ class Planner:
         self.objects = self.context.objects
         count = self.context.count
         self.low, self.high, self.speed = np.zeros((count, 3)), np.zeros((count, 3)), np.zeros(count)
-        if self.context.pool is not None:
-            self.low[-1], self.high[-1] = self.context.pool
+        if self.context.grid is not None:
+            self.low[-1], self.high[-1] = self.context.grid
         self.cost = self.context.guess(GUESSED_COST)
         self.measured = np.zeros(count, bool)
         self.doublings = np.zeros(count, np.int64)
@@ -92,8 +92,8 @@ class Planner:
         if self.plan is None:
             return
         cost = report.cost
-        if report.pool_cost is not None:
-            ids, cost = np.append(ids, self.objects), np.append(cost, report.pool_cost)
+        if report.grid_cost is not None:
+            ids, cost = np.append(ids, self.objects), np.append(cost, report.grid_cost)
         new = cost.astype(np.int64)
         # Whole numbers only, so that all planners round alike.
         smooth = np.where(self.measured[ids], self.cost[ids] + ((new - self.cost[ids]) * int(256 * WEIGHT_OF_LATEST) >> 8), new)

@@ -38,7 +38,7 @@ class Key:
 
     objects: tuple[int, ...]
     """Those that it moves, and copies of still ones, ascending."""
-    liquid: bool
+    grid: bool
     team: tuple[int, ...]
     """Executors that run it, its leader first."""
     by_threads: bool = False
@@ -62,7 +62,7 @@ class Wanted:
 
 
 def wanted_bundles(plan: FrameAssignment, objects: int, executor: int, by_threads: bool = False) -> list[Wanted]:
-    """What an executor has to run, those of teams first; ``objects`` is the number of them, the pool not counted.
+    """What an executor has to run, those of teams first; ``objects`` is the number of them, the grid not counted.
 
     ``by_threads``: leaders of teams run what is theirs alone.
     """
@@ -98,7 +98,7 @@ class Bundle:
     def __init__(self, parts: SubPlans, wanted: Wanted, comm: MPI.Comm | None, cache: InstanceCache):
         self.objects = np.array(wanted.key.objects, np.intp)
         """All in its instance, also those that it has laid aside."""
-        self.plan = parts.part(wanted.key.objects, wanted.key.liquid)
+        self.plan = parts.part(wanted.key.objects, wanted.key.grid)
         self.comm = comm
         self.instance = _instance(self.plan, comm, cache, threads_for=len(wanted.key.team) if wanted.key.by_threads else 1)
         self.places = parts.whole.system.stretches(self.objects)
@@ -111,8 +111,8 @@ class Bundle:
         self.aside = np.zeros(len(self.objects), bool)
         """Objects that are others' now."""
         self.lost: dict[str, float] = {}
-        self.run_seconds = self.liquid_seconds = 0.0
-        """Processor time of the last window, and of that the liquid's [s]."""
+        self.run_seconds = self.grid_seconds = 0.0
+        """Processor time of the last window, and of that the grid's [s]."""
         self._take(wanted)
 
     def _take(self, wanted: Wanted) -> None:
@@ -176,13 +176,13 @@ class Bundle:
         """Which of all objects are in it and not laid aside, and last whether the whole is: bool, shape (M + 1,)."""
         inside = np.zeros(len(self.first), bool)
         inside[list(self.key.objects)] = True
-        inside[-1] = self.key.liquid
+        inside[-1] = self.key.grid
         return inside
 
     def records_from(self, records: Records) -> dict[str, StateRecords]:
         """Of records of all objects those that its instance is to have, numbered as there."""
         inside = self.inside
-        return {fix: found.where(found.of(inside)).take(self.objects, self.key.liquid) for fix, found in records.items()}
+        return {fix: found.where(found.of(inside)).take(self.objects, self.key.grid) for fix, found in records.items()}
 
     def records_to(self, records: Records) -> dict[str, StateRecords]:
         """What its instance has of the objects that it moves, numbered as all objects are; of pairs with guests too."""
@@ -201,10 +201,10 @@ class Bundle:
 
     def can_be(self, wanted: Wanted) -> bool:
         """Whether it is this bundle, once it has laid aside the objects that it is to have no more, and most of its work would
-        still be for something. Only instances of one executor without a liquid lay aside."""
+        still be for something. Only instances of one executor without a grid lay aside."""
         if wanted.key == self.key:
             return True
-        if wanted.number != self.number or wanted.key.liquid or self.key.liquid or len(wanted.key.team) + len(self.key.team) > 2:
+        if wanted.number != self.number or wanted.key.grid or self.key.grid or len(wanted.key.team) + len(self.key.team) > 2:
             return False
         if np.count_nonzero(self._among(wanted.key.objects) & ~self.aside) < len(wanted.key.objects):
             return False
@@ -236,20 +236,24 @@ class Bundle:
 
     def run(self, steps: int) -> None:
         """Run a window. Raises LammpsFailure."""
-        begin, soaked = time.process_time(), self._soaked()
+        begin, before_grid = time.process_time(), self._of_grid()
         self.instance.look_every(min(max(1, steps // LOOKS_PER_WINDOW), MOST_STEPS_BETWEEN_LOOKS))
         run_window(self.instance, steps)
         self.trace = self.instance.trace()
         self.instance.start_trace()  # of the next window
         self.here = self.instance.trace()  # of this moment alone
         self.ran = True
-        self.run_seconds, self.liquid_seconds = time.process_time() - begin, self._soaked() - soaked
+        self.run_seconds, self.grid_seconds = time.process_time() - begin, self._of_grid() - before_grid
 
-    def _soaked(self) -> float:
-        """Seconds of the liquid so far, of all threads for a team."""
-        if not self.key.liquid:
+    def _of_grid(self) -> float:
+        """Seconds of what lives in the grid so far, of all threads for a team."""
+        if not self.key.grid:
             return 0.0
-        return self.instance.fix_seconds("liquid") * len(self.key.team) / len(self.key.ranks)
+        return (
+            sum(self.instance.fix_seconds(e.fix) for e in self.plan.effects if e.on_grid)
+            * len(self.key.team)
+            / len(self.key.ranks)
+        )
 
     def escaped(self, low: np.ndarray, high: np.ndarray) -> list[int]:
         """Objects that have been outside of their reserved boxes, those of all objects [m], shape (M, 3), at any step
@@ -266,12 +270,12 @@ class Bundle:
         return low, high, self.instance.top_speeds()[self.moves]
 
     def costs(self, scale: float) -> np.ndarray:
-        """Processor time of each member in the last window, without the liquid's, times ``scale``; int64, shape (m,).
+        """Processor time of each member in the last window, without the grid's, times ``scale``; int64, shape (m,).
 
         It is told for one executor alone, so that a team counts as what it does.
         """
         particles = self.particles[self.moves]
-        total = scale * len(self.key.ranks) * max(0.0, self.run_seconds - self.liquid_seconds)
+        total = scale * len(self.key.ranks) * max(0.0, self.run_seconds - self.grid_seconds)
         return (total * particles / max(1, particles.sum())).astype(np.int64)
 
     def newly_lost(self) -> dict[str, float]:

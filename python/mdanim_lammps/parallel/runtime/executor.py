@@ -238,7 +238,7 @@ class Executor:
         """A bundle with the state of the last frame; on a team, that of its leader."""
         key, records = wanted.key, self.records
         if len(key.ranks) > 1 and self.started:
-            everything = np.array([*key.objects, *([self.objects] if key.liquid else [])])
+            everything = np.array([*key.objects, *([self.objects] if key.grid else [])])
             if self.me == key.ranks[0]:
                 for member in key.ranks[1:]:
                     self.mail.send(member, Tag.TEAM, self._pack(everything), self.comm)
@@ -282,18 +282,18 @@ class Executor:
     def _report(self, steps: int) -> Report:
         """Of all objects that it has run."""
         scale = 1e6 * self.job.plan.certificate.steps_per_frame / steps
-        found, escaped, pool_cost = [], [], None
+        found, escaped, grid_cost = [], [], None
         for bundle in self.bundles:
             extent = bundle.extent()  # together with the team
             if not self._leads(bundle):
                 continue
             escaped += bundle.escaped(self.order.low, self.order.high)
             found.append((bundle.members, *extent, bundle.costs(scale)))
-            if bundle.key.liquid:
-                pool_cost = int(scale * len(bundle.key.ranks) * bundle.liquid_seconds)
+            if bundle.key.grid:
+                grid_cost = int(scale * len(bundle.key.ranks) * bundle.grid_seconds)
         empty = (np.zeros(0, np.int64), np.zeros((0, 3)), np.zeros((0, 3)), np.zeros(0), np.zeros(0, np.int64))
         return Report(
-            *(np.concatenate(arrays) for arrays in zip(empty, *found)), pool_cost, tuple(escaped), self.order.plan.fingerprint()
+            *(np.concatenate(arrays) for arrays in zip(empty, *found)), grid_cost, tuple(escaped), self.order.plan.fingerprint()
         )
 
     def _commit(self) -> None:
