@@ -25,7 +25,7 @@ their own, whatever number of points they have (docs/decisions/forecast.md)."""
 
 
 def later(ready: Prepared, folder: Path) -> dict[str, float]:
-    """Seconds by effect of `LATER` in a run of ``ready``; empty where nothing coarser can be run.
+    """Seconds by effect, of those `Effect.at_surfaces`, in a run of ``ready``; empty where nothing coarser can be run.
 
     The costs of a coarse run are scaled by the number of steps and, by a power, of particles at surfaces. ``folder`` holds
     temporary files.
@@ -85,6 +85,7 @@ def _whole(coarse: Prepared, folder: Path) -> dict[str, float]:
     at, before = next(m for m in (*reversed(marks[:-1]), (0.0, 0.0)) if m[0] <= LAST * done)
     # All other effects cost as much from the beginning on: if a step costs more, that is due to those at surfaces.
     more = own * ((simulated - before) / (done - at) - simulated / done)
-    at_surfaces = sum(found.get(name, 0.0) for name in LATER)
+    late = {e.name for e in coarse.plan.effects if e.at_surfaces}
+    at_surfaces = sum(seconds for name, seconds in found.items() if name in late)
     growth = 1.0 + (1.0 - done) * max(1.0 / done + more / at_surfaces, 0.0) if at_surfaces else 1.0
-    return {name: seconds * (growth if name in LATER else 1.0 / done) for name, seconds in found.items()}
+    return {name: seconds * (growth if name in late else 1.0 / done) for name, seconds in found.items()}
