@@ -5,7 +5,8 @@ from __future__ import annotations
 
 import base64
 import html
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
+from typing import Any
 
 THUMBNAIL = (480, 270)
 """Pixels of pictures in notebooks."""
@@ -14,8 +15,14 @@ THUMBNAIL = (480, 270)
 def html_table(title: str, heads: Sequence[str], rows: Iterable[Sequence], picture: bytes | None = None, most: int = 20) -> str:
     """A table with a title, and a PNG before it; of many rows the first ones."""
     rows = list(rows)
-    line = lambda cells, tag: "<tr>" + "".join(f"<{tag}>{html.escape(str(cell))}</{tag}>" for cell in cells) + "</tr>"
     more = f"<p>… and {len(rows) - most} more</p>" if len(rows) > most else ""
     image = f'<img src="data:image/png;base64,{base64.b64encode(picture).decode()}"/>' if picture else ""
-    body = "".join(line(row, "td") for row in rows[:most])
-    return f"<p><b>{html.escape(title)}</b></p>{image}<table>{line(heads, 'th')}{body}</table>{more}"
+    return f"<p><b>{html.escape(title)}</b></p>{image}{plain_table(heads, rows[:most])}{more}"
+
+
+def plain_table(
+    heads: Sequence, rows: Iterable[Iterable], text: Callable[[Any], str] = lambda cell: html.escape(str(cell))
+) -> str:
+    """A table, without a row of heads where all are empty; ``text`` gives the HTML of a cell."""
+    line = lambda cells, tag: "<tr>" + "".join(f"<{tag}>{text(cell)}</{tag}>" for cell in cells) + "</tr>"
+    return f"<table>{line(heads, 'th') if any(heads) else ''}{''.join(line(row, 'td') for row in rows)}</table>"

@@ -26,6 +26,7 @@ from .. import features
 from ..effects import resolve
 from ..errors import MdanimError, OutputError, RefusedError
 from ..results.files import disk_errors, read_json, write_whole
+from ..results.html import plain_table
 from ..results.stored import STUDY as STUDY_FILE
 from ..results.stored import read_manifest
 from ..results.untrusted import check_places, check_plain
@@ -344,10 +345,7 @@ def _table(title: str, heads: list[str], rows: Iterable[Iterable], note: str = "
     rows = list(rows)
     if not rows and not note:
         return ""
-    line = lambda cells, tag: "<tr>" + "".join(f"<{tag}>{_cell(c)}</{tag}>" for c in cells) + "</tr>"
-    body = "".join(line(row, "td") for row in rows)
-    head = line(heads, "th") if any(heads) else ""
-    return _section(title, (_paragraph(note) if note else "") + f"<table>{head}{body}</table>", closed=closed)
+    return _section(title, (_paragraph(note) if note else "") + plain_table(heads, rows, _cell), closed=closed)
 
 
 def _cell(value) -> str:
