@@ -5,6 +5,7 @@ import math
 
 import pytest
 from mdanim_lammps.scene import units
+from mdanim_lammps.scene.functions import FUNCTIONS, root
 from mdanim_lammps.scene.units import DimensionError, Quantity
 
 
@@ -58,7 +59,7 @@ KG = Quantity(3.0, (0, 1, 0, 0))
     pytest.param(units.multiply, (M, KG), Quantity(6.0, (1, 1, 0, 0)), id="product"),
     pytest.param(units.divide, (M, M), 1.0, id="nothing left"),
     pytest.param(units.power, (M, 3.0), Quantity(8.0, (3, 0, 0, 0)), id="cube"),
-    pytest.param(units.root, (units.power(M, 2.0),), M, id="root of a square"),
+    pytest.param(root, (units.power(M, 2.0),), M, id="root of a square"),
     pytest.param(units.power, (Quantity(4.0, (2, 0, 0, 0)), 0.5), M, id="half power"),
     pytest.param(units.modulo, (7.0, 3.0), 1.0, id="mod"),
     pytest.param(units.modulo, (-1.0, 3.0), 2.0, id="mod has the sign of the divisor"),
@@ -75,9 +76,9 @@ def test_arithmetic(function, arguments, result):
     pytest.param(units.add, (M, KG), "cannot add a length and a mass (2 m, 3 kg)", id="unlike"),
     pytest.param(units.power, (2.0, M), "an exponent is a plain number, found 2 m", id="exponent"),
     pytest.param(units.power, (-8.0, 1 / 3), "not a real number", id="complex"),
-    pytest.param(units.root, (-1.0,), "sqrt needs a number >= 0, found -1", id="root"),
-    pytest.param(units.FUNCTIONS["sin"][2], (M,), "an angle is needed here, found a length", id="sine"),
-    pytest.param(units.FUNCTIONS["max"][2], (M, KG), "cannot compare", id="maximum"),
+    pytest.param(root, (-1.0,), "sqrt needs a number >= 0, found -1", id="root"),
+    pytest.param(FUNCTIONS["sin"][2], (M,), "an angle is needed here, found a length", id="sine"),
+    pytest.param(FUNCTIONS["max"][2], (M, KG), "cannot compare", id="maximum"),
     pytest.param(units.add, ((1.0, 2.0), 1.0), "a vector and a number cannot be added", id="unlike shapes"),
     pytest.param(units.multiply, ((1.0,), (1.0,)), "a number is needed here, found a vector", id="vectors"),
     pytest.param(units.with_unit, (M, units.unit("m")), "has a unit already", id="two units"),

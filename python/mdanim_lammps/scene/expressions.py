@@ -7,14 +7,15 @@ import math
 import operator
 from dataclasses import dataclass, field
 
-from . import units
+from . import functions, units
+from .functions import FUNCTIONS
 from .keywords import did_you_mean
 from .limits import DEEPEST_EXPRESSION
 from .source import Fault, Silent
 from .tokens import Token
 from .units import DimensionError, Quantity
 
-RESERVED = frozenset({*units.FUNCTIONS, "rand", "pi", "mod", "let", "repeat", "include", "in"})
+RESERVED = frozenset({*functions.RESERVED, "rand", "pi", "mod", "let", "repeat", "include", "in"})
 """Names that no ``let`` may take."""
 
 
@@ -204,11 +205,12 @@ def call(token: Token, parts: list[Node], last: Token, site: int) -> Node:
     """A function. ``site`` is the number of a rand among those of the scene: a comment line must change nothing."""
     if token == "rand":
         return _rand(token, parts, last, site)
-    if token not in units.FUNCTIONS:
-        raise Fault(token, f"'{token}' is not a function", did_you_mean(str(token), [*units.FUNCTIONS, "rand"]))
-    least, most, function = units.FUNCTIONS[token]
+    if token not in FUNCTIONS:
+        raise Fault(token, f"'{token}' is not a function", did_you_mean(str(token), [*FUNCTIONS, "rand"]))
+    least, most, function = FUNCTIONS[token]
     if not least <= len(parts) <= most:
-        raise Fault(token, f"{token} takes {least} number, found {len(parts)}", last=last)
+        numbers = "numbers" if least > 1 else "number"
+        raise Fault(token, f"{token} takes {least} {numbers}, found {len(parts)}", last=last)
     return Computed(lambda env: guarded(token, function, *[p.run(env) for p in parts]), parts, token, last)
 
 

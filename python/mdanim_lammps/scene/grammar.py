@@ -9,6 +9,7 @@ from collections.abc import Iterator
 
 from . import units
 from .forms import OptionalPart, Slot, Word, alternatives
+from .functions import FUNCTIONS
 from .keywords import BLOCKS, KEYWORDS, STATEMENTS
 from .scene import QUANTITIES
 
@@ -38,7 +39,7 @@ def grammar() -> dict:
             },
             match(STATEMENTS, "keyword.control.mdanim"),
             {"match": r"(?<![\w.])(?:[0-9]+(?:\.(?!\.)[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?", "name": "constant.numeric.mdanim"},
-            {"match": rf"\b(?:{_any(units.FUNCTIONS)}|rand)(?=\s*\()", "name": "support.function.mdanim"},
+            {"match": rf"\b(?:{_any(FUNCTIONS)}|rand)(?=\s*\()", "name": "support.function.mdanim"},
             match(settings, "keyword.other.mdanim"),
             match(literals - settings, "constant.language.mdanim"),
             {"match": rf"\.(?:{_any(quantities)})(?!\w)", "name": "support.variable.mdanim"},

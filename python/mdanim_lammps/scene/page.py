@@ -46,8 +46,9 @@ control {
 
 ### Numbers, vectors, units
 
-- A number may be an expression: `+ - * / mod ^ ( )`, `sqrt sin cos tan min max abs`, `pi`, `rand(a, b)`. `^`
-  binds strongest and goes from right to left; `-2^2` is -4; `mod` has the sign of the divisor.
+- A number may be an expression: `+ - * / mod ^ ( )`, `sqrt sin cos tan asin acos atan atan2`,
+  `exp log floor ceil round min max abs`, of vectors `norm dot cross`, `pi`, `rand(a, b)`. `^` binds strongest and goes from right
+  to left; `-2^2` is -4; `mod` has the sign of the divisor.
 - A vector is `(x, y, z)`. Vectors can be added, and multiplied by a number.
 - A unit may follow any number, vector or bracket. It belongs to everything before it, up to a bracket, a
   comma, or the sign after the last unit: `rho*a*a kg` is (rho a a) kg, and `1 m + 20 cm` is 1.2 m. Terms

@@ -17,6 +17,7 @@ from . import expressions as build
 from . import units
 from .expressions import Node
 from .forms import Slot, literals
+from .functions import FUNCTIONS
 from .keywords import BLOCKS, KEYWORDS
 from .limits import DEEPEST_BRACKET, DEEPEST_EXPRESSION
 from .source import Fault, SceneFile
@@ -269,7 +270,7 @@ class Reader:
             return t
         hint = "put the value with its unit in brackets to go on calculating: (2 m) * 3"
         if t.type == "NAME":
-            goes_on = str(t) in self.names or str(t) in units.FUNCTIONS or str(t) in ("rand", "pi")
+            goes_on = str(t) in self.names or str(t) in FUNCTIONS or str(t) in ("rand", "pi")
             raise Fault(t, f"'{t}' is not a unit", hint if goes_on else units.suggest_unit(str(t)))
         raise Fault(t, f"a unit is expected after '{operator}', found {t.found()}", hint)
 

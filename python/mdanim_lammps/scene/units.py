@@ -185,7 +185,7 @@ def show(x: object) -> str:
     return say(magnitude(x), symbol(dimension(x)), 6)
 
 
-def _same(x: Scalar, y: Scalar, doing: str) -> Dim:
+def same_kind(x: Scalar, y: Scalar, doing: str) -> Dim:
     """The common dimension of two values; a bare number takes the other's SI unit."""
     a, b = dimension(x), dimension(y)
     if a != b and a != NONE and b != NONE:
@@ -195,7 +195,8 @@ def _same(x: Scalar, y: Scalar, doing: str) -> Dim:
     return a if a != NONE else b
 
 
-def _scalars(*values: object) -> None:
+def only_numbers(*values: object) -> None:
+    """Raise DimensionError where a value is a vector."""
     if any(isinstance(v, tuple) for v in values):
         raise DimensionError("a number is needed here, found a vector (x, y, z)")
 
@@ -223,19 +224,19 @@ def _compound(value: float, dim: Dim) -> Scalar:
 
 def add(x, y):
     """x + y of two numbers or two vectors."""
-    return _pairwise(lambda a, b: quantity(magnitude(a) + magnitude(b), _same(a, b, "add")), x, y)
+    return _pairwise(lambda a, b: quantity(magnitude(a) + magnitude(b), same_kind(a, b, "add")), x, y)
 
 
 def subtract(x, y):
     """x - y of two numbers or two vectors."""
-    return _pairwise(lambda a, b: quantity(magnitude(a) - magnitude(b), _same(a, b, "subtract")), x, y)
+    return _pairwise(lambda a, b: quantity(magnitude(a) - magnitude(b), same_kind(a, b, "subtract")), x, y)
 
 
 def multiply(x, y):
     """x * y; one of the two may be a vector."""
     if isinstance(x, tuple) != isinstance(y, tuple):
         return tuple(multiply(a, y) for a in x) if isinstance(x, tuple) else tuple(multiply(x, b) for b in y)
-    _scalars(x, y)
+    only_numbers(x, y)
     return _compound(magnitude(x) * magnitude(y), tuple(a + b for a, b in zip(dimension(x), dimension(y))))
 
 
@@ -243,19 +244,19 @@ def divide(x, y):
     """x / y; x may be a vector."""
     if isinstance(x, tuple):
         return tuple(divide(a, y) for a in x)
-    _scalars(x, y)
+    only_numbers(x, y)
     return _compound(magnitude(x) / magnitude(y), tuple(a - b for a, b in zip(dimension(x), dimension(y))))
 
 
 def modulo(x, y):
     """The remainder of x / y, with the sign of y."""
-    _scalars(x, y)
-    return quantity(operator.mod(magnitude(x), magnitude(y)), _same(x, y, "take mod of"))
+    only_numbers(x, y)
+    return quantity(operator.mod(magnitude(x), magnitude(y)), same_kind(x, y, "take mod of"))
 
 
 def power(x, y):
     """x ^ y for a plain number y."""
-    _scalars(x, y)
+    only_numbers(x, y)
     if dimension(y) != NONE:
         raise DimensionError(f"an exponent is a plain number, found {show(y)}")
     result = magnitude(x) ** magnitude(y)
@@ -282,47 +283,3 @@ def with_unit(x, u: Unit):
     if isinstance(x, Quantity):
         raise DimensionError(f"the value has a unit already: it is {describe(x.dim)}, {show(x)}", f"leave out '{u.text}'")
     return quantity(x * u.over / u.under, u.dim)
-
-
-def _angle(x) -> float:
-    """A plain number or an angle, in radians."""
-    _scalars(x)
-    if dimension(x) not in (NONE, UNITS["rad"].dim):
-        raise DimensionError(f"an angle is needed here, found {describe(dimension(x))}, {show(x)}")
-    return magnitude(x)
-
-
-def root(x):
-    """Square root; halves the dimension."""
-    _scalars(x)
-    if magnitude(x) < 0.0:
-        raise DimensionError(f"sqrt needs a number >= 0, found {show(x)}")
-    return quantity(math.sqrt(magnitude(x)), tuple(Fraction(e) / 2 for e in dimension(x)))
-
-
-def _extreme(choose):
-    def function(*values):
-        _scalars(*values)
-        dim = NONE
-        for v in values:
-            dim = _same(quantity(1.0, dim), v, "compare")
-        return quantity(choose(map(magnitude, values)), dim)
-
-    return function
-
-
-def _absolute(x):
-    _scalars(x)
-    return quantity(abs(magnitude(x)), dimension(x))
-
-
-FUNCTIONS = {
-    "sqrt": (1, 1, root),
-    "sin": (1, 1, lambda x: math.sin(_angle(x))),
-    "cos": (1, 1, lambda x: math.cos(_angle(x))),
-    "tan": (1, 1, lambda x: math.tan(_angle(x))),
-    "min": (1, 99, _extreme(min)),
-    "max": (1, 99, _extreme(max)),
-    "abs": (1, 1, _absolute),
-}
-"""Functions: fewest arguments, most arguments, function. ``rand`` is in expressions.py: its value depends on its place."""
