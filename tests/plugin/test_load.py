@@ -11,7 +11,7 @@ from pathlib import Path
 import plugin_path
 import pytest
 from mdanim_lammps.engine import plugin
-from mdanim_lammps.engine.plugin import ABI, STYLES, VERSION
+from mdanim_lammps.engine.plugin import ABI, VERSION, all_styles
 from mdanim_lammps.errors import SetupError
 
 FILE = Path(plugin_path.folder()) / "mdanimplugin.so"
@@ -20,7 +20,7 @@ FILE = Path(plugin_path.folder()) / "mdanimplugin.so"
 def test_styles_and_numbers_are_those_python_asks_for():
     """LAMMPS has every style; the file tells the interface and version that the driver checks."""
     lmp = plugin_path.lammps()
-    assert [lmp.has_style(kind, name) for kind, name in STYLES] == [True] * len(STYLES)
+    assert [lmp.has_style(kind, name) for kind, name in all_styles()] == [True] * len(all_styles())
     lmp.close()
     library = ctypes.CDLL(str(FILE))
     assert library.mdanim_abi() == ABI
@@ -42,7 +42,7 @@ def test_the_styles_are_all_that_a_scene_asks_for():
     """What the engine's commands name, a plugin that lacks it is refused for."""
     sources = "".join(path.read_text() for path in Path(plugin.__file__).parents[1].rglob("*.py"))
     named = {*re.findall(r"mdanim/[a-z]+", sources)} - {"mdanim/test"}
-    assert named <= {name for _, name in STYLES}
+    assert named <= {name for _, name in all_styles()}
 
 
 def test_another_lammps_version_is_refused_and_lmp_lives_on(tmp_path):

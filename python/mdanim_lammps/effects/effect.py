@@ -34,6 +34,8 @@ class Effect:
 
     name = ""
     """As in ``effects { name off }``; also its name in the cost table."""
+    styles: tuple[tuple[str, str], ...] = ()
+    """Styles of the plugin that it uses: kind and name."""
     order = 1000
     """Where its forces stand in the sum of all, ascending, by name where two have the same."""
     fix = ""

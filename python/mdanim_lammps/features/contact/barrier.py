@@ -71,6 +71,14 @@ def barrier_rate(system: System, s: np.ndarray, reach: float) -> np.ndarray:
 
 
 class Contact(Effect):
+    """A barrier between boundary and inner particles: U(r) = k_c r_c^2/3 (1 - r/r_c)^3 [J] below the reach r_c [m], Wcislo 1999,
+    sec. 3.3.
+
+    k_c = 2 s_i s_j/(s_i + s_j) [N/m] with s = E h times what stands behind a particle (docs/physics-contact.md, "The barrier
+    of the paper"; in the bound: "In the bound on the time step").
+    """
+
+    styles = (("fix", "mdanim/barrier"),)
     name = "contact"
     order = 40
     fix = "contact"

@@ -32,8 +32,13 @@ def others(found: Sequence[Touch], what: str) -> str:
 
 
 class Boundary(Effect):
-    """What ground, walls and basins have in common: a region, and a fix that pushes back whatever leaves it."""
+    """What ground, walls and basins have in common: a plane pushes back what is a depth d beyond it [m], F = s d [N], U = s d^2/2
+    [J].
 
+    s = E h times what stands behind a particle [N/m] (docs/physics-contact.md, "The barrier of the paper").
+    """
+
+    styles = (("fix", "mdanim/wall"),)
     ledger = "wall"
     touches = at_surfaces = True
 

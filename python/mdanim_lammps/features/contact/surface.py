@@ -51,7 +51,12 @@ DEEPEST = "deepest"
 
 
 class OnSurfaces(Effect):
-    """What objects and planes have in common: bodies, friction, the law ``fix mdanim/contact``."""
+    """What objects and planes have in common at drawn surfaces: U = sum kappa w g(d) over points of an area w [m^2] at a depth d
+    [m], with friction up to mu times the normal force, and a dashpot (docs/physics-contact.md, "At the drawn surfaces,
+    with friction").
+    """
+
+    styles = (("fix", "mdanim/contact"),)
 
     def columns(self, context):
         scene, system = context.scene, context.system
@@ -118,8 +123,12 @@ class OnSurfaces(Effect):
 
 
 class SurfaceContact(OnSurfaces, Contact):
-    """Points of each drawn surface against the depth below that of the other body, and a short barrier behind it."""
+    """Points of each drawn surface against the depth below that of the other body, and a short barrier behind it.
 
+    kappa = f 2 E_A E_B/(E_A + E_B)/max(h_A, h_B) [N/m^3] (docs/physics-contact.md, "At the drawn surfaces, with friction").
+    """
+
+    styles = (("fix", "mdanim/contact"), ("fix", "mdanim/barrier"))
     behind = "barrier"
     """ID of the barrier's fix."""
 
@@ -271,7 +280,9 @@ class SurfaceContact(OnSurfaces, Contact):
 
 
 class SurfacePlanes(OnSurfaces, Boundary):
-    """Planes that points of drawn surfaces are pushed back by."""
+    """Planes that points of drawn surfaces are pushed back by: kappa = f E/h [N/m^3] (docs/physics-contact.md, "At the drawn
+    surfaces, with friction").
+    """
 
     def rough(self, scene):
         return np.full(len(scene.solids), any_friction(scene)) if scene.contacts else np.array(frictions(scene)) > 0.0

@@ -9,6 +9,12 @@ from ..springs.effect import all_held, spring_norm, time_of_dashpots
 
 
 class Damping(Effect):
+    """A dashpot beside each spring: F = -c v along the line of two particles [N], c = 2 zeta sqrt(k m_ij) [N s/m], m_ij the
+    reduced mass.
+
+    ``damping`` zeta [-] is the fraction of critical damping of the two alone (docs/physics-solids.md, "Damping and drag").
+    """
+
     name = "damping"
     order = 20
     brakes = True

@@ -10,6 +10,12 @@ from ...effects.effect import Effect
 
 
 class Gravity(Effect):
+    """A uniform field: F = m g on every particle [N], Wcislo 1999, eq. (3.8).
+
+    It has the potential U = -m g x [J], so all bodies fall alike, and it takes no part in the bound on the time step.
+    """
+
+    styles = (("fix", "mdanim/gravity"),)
     name = fix = "gravity"
     order = 30
     ledger = "gravity"

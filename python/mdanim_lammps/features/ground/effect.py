@@ -12,6 +12,8 @@ from ..contact.surface import SurfacePlanes
 
 
 class GroundPlane(Boundary):
+    """A floor plane at a height z [m], by the law of `Boundary` (docs/physics-contact.md)."""
+
     name = fix = "ground"
     order = 50
     if_off = "objects fall for ever"
@@ -31,7 +33,7 @@ class GroundPlane(Boundary):
 
 
 class SurfaceGround(SurfacePlanes, GroundPlane):
-    pass
+    """The same by the law of `SurfacePlanes` (docs/physics-contact.md)."""
 
 
 EFFECTS = (GroundPlane(SurfaceGround()),)

@@ -68,7 +68,9 @@ def free_solid(scene):
 
 
 class Basin(Boundary):
-    """Floor and side walls; these go on upward, so that nothing falls beside the basin."""
+    """Floor and side walls of a basin [m], by the law of `Boundary`; the walls go on upward, so that nothing falls beside the
+    basin (docs/physics-contact.md).
+    """
 
     name = fix = "basin"
     order = 70
@@ -93,8 +95,11 @@ class Basin(Boundary):
 
 
 class LiquidAutomaton(Effect):
-    """The automaton: liquid that falls, spreads, levels and makes room for solids."""
+    """The automaton: whole cells of liquid that fall, spread, level and make room for solids, Wcislo 1999, sec. 4 (docs/physics-
+    liquid.md, "The automaton"). It has no energy; its step must see solids often enough.
+    """
 
+    styles = (("fix", "mdanim/liquid"),)
     name = fix = "liquid"
     on_grid = True
     order = 90
@@ -217,7 +222,7 @@ class LiquidAutomaton(Effect):
 
 
 class LiquidWaves(LiquidAutomaton):
-    """The same with momentum: columns of whole units that move by pressure."""
+    """A liquid with momentum: columns of whole units move by their pressure rho g h [Pa] (docs/physics-liquid.md, "Waves")."""
 
     def tables(self, context):
         system = context.system
@@ -289,7 +294,11 @@ def _light(scene, system) -> list[Problem]:
 
 
 class Buoyancy(Effect):
-    """Archimedes, particle by particle: rho_l V_i s_i g upward on the immersed part s_i of a particle."""
+    """Archimedes, particle by particle: F = rho_l V_i s_i g upward [N] on the part s_i of a particle below the surface, Wcislo
+    1999, sec. 4.2.
+
+    In the bound it is a spring to the surface, rho_l V g/(h m) [1/s^2] (docs/physics-liquid.md, "Forces on solids").
+    """
 
     name = "buoyancy"
     at_surfaces = True
@@ -333,7 +342,9 @@ class Buoyancy(Effect):
 
 
 class WavePush(Buoyancy):
-    """Lift and push by the pressure of a liquid with momentum."""
+    """Lift and push by the pressure of a liquid with momentum on parts of lattice cells (docs/physics-liquid.md, "Bodies in
+    waves").
+    """
 
     ledger = "waves"
     further_ledger = ("wave_loss",)
@@ -351,7 +362,12 @@ class WavePush(Buoyancy):
 
 
 class LiquidDrag(Effect):
-    """-(gamma + k |v|) rho_l V_i s_i v on the immersed part of a particle; the leap-frog takes gamma's with the drag of air."""
+    """F = -(gamma + k |v|) rho_l V_i s_i v on the part of a particle below the surface [N]; the leap-frog takes gamma's with the
+    drag of air.
+
+    gamma = sqrt(g/L) [1/s] and k = C/2L [1/m] of a body of size L [m], unless ``drag`` says otherwise (docs/physics-
+    liquid.md, "Forces on solids").
+    """
 
     name = "liquid-drag"
     order = 110
@@ -464,7 +480,7 @@ def _block(low, high) -> str:
 
 
 class SurfaceBasin(SurfacePlanes, Basin):
-    pass
+    """The same by the law of `SurfacePlanes` (docs/physics-contact.md)."""
 
 
 EFFECTS = (Basin(SurfaceBasin()), LiquidAutomaton(), Buoyancy(), LiquidDrag())

@@ -45,6 +45,15 @@ def block_norm(pair: np.ndarray, weight: np.ndarray, direction: np.ndarray, part
 
 
 class Springs(Effect):
+    """Springs between neighbours in a lattice: F = -k (r - r0) along the line of two particles [N], Wcislo 1999, eq. (3.6),
+    (3.7).
+
+    Their constants k [N/m] follow from Young's modulus [Pa] and the lattice (docs/physics-solids.md, "Springs"). The share in
+    the bound is a_i = 2 lambda_max(D_i)/m_i [1/s^2] with D_i = sum k n n^T over the springs of a particle (docs/physics-
+    solids.md, "The bound on the time step").
+    """
+
+    styles = (("bond", "mdanim/harmonic"),)
     name = "springs"
     order = 10
     ledger = "elastic"

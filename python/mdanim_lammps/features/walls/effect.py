@@ -11,6 +11,8 @@ from ..contact.surface import SurfacePlanes
 
 
 class WallPlanes(Boundary):
+    """The six sides of a box [m], by the law of `Boundary` (docs/physics-contact.md)."""
+
     name = fix = "walls"
     order = 60
     if_off = "objects leave the scene"
@@ -29,7 +31,7 @@ class WallPlanes(Boundary):
 
 
 class SurfaceWalls(SurfacePlanes, WallPlanes):
-    pass
+    """The same by the law of `SurfacePlanes` (docs/physics-contact.md)."""
 
 
 EFFECTS = (WallPlanes(SurfaceWalls()),)
