@@ -29,10 +29,10 @@ void ContactField::list(ContactObject &points_of, ContactObject &host_now, const
   std::vector<int> points_before(near.size());
   for (std::size_t q = 0; q < near.size(); ++q) points_before[q] = near.point(q);
   const std::vector<Watch> watch_before = std::move(watch);
-  const std::vector<double> wake_before = std::move(wake);
+  const Wakes wake_before = std::move(wake);
   const double spent = budget + nearer, trusted = TRUSTED * host->body->spacing();
   near.clear(), wake.clear(), watch.clear(), of_contact.clear();
-  budget = 0.0, next = AT_ONCE;
+  budget = 0.0;
   std::size_t before = 0, contact = 0;
   for (const int p : finder.inside(zone.grown(reach), contacts)) {
     while (contact < contacts.size() && contacts[contact].point < p) ++contact;
@@ -64,7 +64,6 @@ void ContactField::settle(const ContactArrays &arrays)
 {
   for (std::size_t q = 0; q < near.size(); ++q)
     if (wake[q] < NEVER && wake[q] <= budget) look(q, arrays, false);
-  next = AT_ONCE;
 }
 
 // A point that is looked at now and then, and a contact.
@@ -227,19 +226,12 @@ void ContactField::end(const FieldContact &contact, std::size_t q, Fate fate, co
     watch[q].X = contact.state.X;
   }
   look(q, arrays, false);
-  next = std::min(next, wake[q]);
 }
 
 void ContactField::look(const ContactArrays &arrays, double nearer, double dt)
 {
   budget += nearer;
-  if (dt > 0.0 && next < budget) {
-    next = NEVER;
-    for (std::size_t q = 0; q < wake.size(); ++q) {
-      if (wake[q] < budget) look(q, arrays, true);
-      next = std::min(next, wake[q]);
-    }
-  }
+  if (dt > 0.0) wake.look_below(budget, [&](std::size_t q) { look(q, arrays, true); });
   now.clear();
   for (const std::size_t q : of_contact) now.push_back(point_now(q, arrays));
   known_ahead = 0;
@@ -317,9 +309,8 @@ void ContactField::push_run(std::size_t first, std::size_t end, std::size_t &lef
 
 std::size_t ContactField::bytes() const
 {
-  return near.bytes() + wake.capacity() * sizeof(double) + watch.capacity() * sizeof(Watch) +
-         contacts.capacity() * sizeof(FieldContact) + now.capacity() * sizeof(PointNow) + ahead.capacity() * sizeof(PushedBlock) +
-         of_contact.capacity() * sizeof(std::size_t);
+  return near.bytes() + wake.bytes() + watch.capacity() * sizeof(Watch) + contacts.capacity() * sizeof(FieldContact) +
+         now.capacity() * sizeof(PointNow) + ahead.capacity() * sizeof(PushedBlock) + of_contact.capacity() * sizeof(std::size_t);
 }
 
 }    // namespace mdanim

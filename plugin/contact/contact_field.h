@@ -8,6 +8,7 @@
 
 #include "contact/contact_kernel.h"
 #include "contact/contact_object.h"
+#include "contact/wakes.h"
 
 #include <array>
 #include <cstdint>
@@ -50,7 +51,7 @@ class ContactField {
   std::size_t bytes() const;
 
  private:
-  static constexpr double NEVER = std::numeric_limits<double>::infinity();
+  static constexpr double NEVER = Wakes::NEVER;
   static constexpr std::uint8_t EVERY_SIDE = 63;
 
   struct Watch {
@@ -108,7 +109,7 @@ class ContactField {
   ContactObject *owner, *host;
   ContactLaw law;
   NearPoints near;
-  std::vector<double> wake;    // of near points: what `budget` must come to before one is looked at
+  Wakes wake;    // of near points, against `budget`
   std::vector<Watch> watch;
   std::vector<FieldContact> contacts;     // by ascending points
   std::vector<std::size_t> of_contact;    // their near points
@@ -116,7 +117,7 @@ class ContactField {
   std::vector<PushedBlock> ahead;         // what they come to, four at a time, kind by kind,
   std::size_t known_ahead = 0;            // so many of these in this step
   int looks = 0;                          // in this step
-  double budget = 0.0, next = 0.0;        // the least of `wake`, or less
+  double budget = 0.0;
 };
 
 }    // namespace mdanim

@@ -218,7 +218,7 @@ bool ContactField::look(std::size_t q, const ContactArrays &arrays, bool may_beg
   const auto lost = [&] {
     known.cell = {-1, -1, -1};
     known.open = EVERY_SIDE;
-    wake[q] = budget;    // is looked for again in the next step
+    wake.set(q, budget);    // is looked for again in the next step
     return false;
   };
   if (known.cell[0] < 0) {
@@ -229,7 +229,7 @@ bool ContactField::look(std::size_t q, const ContactArrays &arrays, bool may_beg
     const double away = cell[0] < 0 ? 0.5 * OuterCells::SEARCHED * h : std::sqrt(dot(x - there.x, x - there.x));
     if (away > NEAREST * h) {
       known.open = 0;
-      wake[q] = budget + away - NEAREST * h;
+      wake.set(q, budget + away - NEAREST * h);
       return false;
     }
     known.cell = cell, known.X = middle;
@@ -263,7 +263,7 @@ bool ContactField::look(std::size_t q, const ContactArrays &arrays, bool may_beg
   if (!may_begin || verdict.side < 0) {
     // In another cell the depth may be another one.
     const double slack = std::min(verdict.slack, std::max(known.room, verdict.slack - PRESSED * JUMP * h));
-    wake[q] = budget + std::max(0.0, slack);
+    wake.set(q, budget + std::max(0.0, slack));
     return false;
   }
 
@@ -277,7 +277,7 @@ bool ContactField::look(std::size_t q, const ContactArrays &arrays, bool may_beg
   const auto where = std::lower_bound(of_contact.begin(), of_contact.end(), q);
   contacts.insert(contacts.begin() + (where - of_contact.begin()), contact);
   of_contact.insert(where, q);
-  wake[q] = NEVER;
+  wake.set(q, NEVER);
   return true;
 }
 

@@ -8,7 +8,7 @@
 namespace mdanim {
 
 static constexpr double AT_ONCE = -1.0;
-static constexpr double NEVER = std::numeric_limits<double>::infinity();
+static constexpr double NEVER = Wakes::NEVER;
 
 void PlaneField::list(ContactObject &points_of, const PointFinder &finder, const ContactArrays &arrays, double reach)
 {
@@ -17,7 +17,7 @@ void PlaneField::list(ContactObject &points_of, const PointFinder &finder, const
   for (std::size_t q = 0; q < near.size(); ++q) points_before[q] = near.point(q);
   const std::vector<std::uint8_t> below_before = std::move(was_below);
   near.clear(), wake.clear(), was_below.clear(), of_contact.clear();
-  budget = 0.0, next = AT_ONCE;
+  budget = 0.0;
   std::size_t before = 0, contact = 0;
   for (const int p : finder.inside(plane.within(reach), contacts)) {
     while (contact < contacts.size() && contacts[contact].point < p) ++contact;
@@ -45,7 +45,6 @@ void PlaneField::settle(const ContactArrays &arrays)
 {
   for (std::size_t q = 0; q < near.size(); ++q)
     if (wake[q] < NEVER && wake[q] <= budget) look(q, arrays, false);
-  next = AT_ONCE;
 }
 
 bool PlaneField::look(std::size_t q, const ContactArrays &arrays, bool may_begin)
@@ -55,7 +54,7 @@ bool PlaneField::look(std::size_t q, const ContactArrays &arrays, bool may_begin
   const bool was = was_below[q];
   was_below[q] = depth > 0.0;
   if (depth <= 0.0 || !may_begin) {
-    wake[q] = budget - std::min(depth, 0.0);
+    wake.set(q, budget - std::min(depth, 0.0));
     return false;
   }
   PlaneContact contact{};
@@ -67,7 +66,7 @@ bool PlaneField::look(std::size_t q, const ContactArrays &arrays, bool may_begin
   const auto where = std::lower_bound(of_contact.begin(), of_contact.end(), q);
   contacts.insert(contacts.begin() + (where - of_contact.begin()), contact);
   of_contact.insert(where, q);
-  wake[q] = NEVER;
+  wake.set(q, NEVER);
   return true;
 }
 
@@ -82,13 +81,7 @@ void PlaneField::look(const ContactArrays &arrays, double dt)
   on_plane = {};
   ahead.clear();
   budget += owner->stir - dot(plane.normal(), owner->way);
-  if (dt > 0.0 && next < budget) {
-    next = NEVER;
-    for (std::size_t q = 0; q < wake.size(); ++q) {
-      if (wake[q] < budget) look(q, arrays, true);
-      next = std::min(next, wake[q]);
-    }
-  }
+  if (dt > 0.0) wake.look_below(budget, [&](std::size_t q) { look(q, arrays, true); });
 }
 
 // What a contact comes to in a step; one that is over stays as it is.
@@ -127,8 +120,7 @@ void PlaneField::add_forces(ContactArrays &arrays, double dt, ContactAccount &ac
       account.heat += contact.memory.stick_energy;
       account.damped += last_damping_work(contact.memory, pushed.depth);
       was_below[q] = 0;
-      wake[q] = budget - pushed.depth;
-      next = std::min(next, wake[q]);
+      wake.set(q, budget - pushed.depth);
       continue;
     }
     near.add_force(q, pushed.on_point, arrays.force());
@@ -148,7 +140,7 @@ void PlaneField::add_forces(ContactArrays &arrays, double dt, ContactAccount &ac
 
 std::size_t PlaneField::bytes() const
 {
-  return near.bytes() + wake.capacity() * sizeof(double) + was_below.capacity() + contacts.capacity() * sizeof(PlaneContact) +
+  return near.bytes() + wake.bytes() + was_below.capacity() + contacts.capacity() * sizeof(PlaneContact) +
          ahead.capacity() * sizeof(Pushed) + of_contact.capacity() * sizeof(std::size_t);
 }
 

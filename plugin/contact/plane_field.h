@@ -7,6 +7,7 @@
 
 #include "contact/contact_object.h"
 #include "contact/law.h"
+#include "contact/wakes.h"
 
 #include <cstdint>
 #include <vector>
@@ -71,12 +72,12 @@ class PlaneField {
   ContactPlane plane;
   ContactLaw law;
   NearPoints near;
-  std::vector<double> wake;
+  Wakes wake;                             // as that of ContactField
   std::vector<std::uint8_t> was_below;    // when a near point was looked at last
   std::vector<PlaneContact> contacts;     // by ascending points
   std::vector<std::size_t> of_contact;
   std::vector<Pushed> ahead;
-  double budget = 0.0, next = 0.0;    // the least of `wake`, or less
+  double budget = 0.0;
   Vec3 on_plane;
 };
 

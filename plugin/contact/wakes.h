@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// When points without a contact are looked at: each has what a budget must exceed before it is. Most points are looked at in few
+// steps, so the least of every few points is kept, and a step passes over those whose least is not exceeded.
+
+#ifndef MDANIM_WAKES_H
+#define MDANIM_WAKES_H
+
+#include <algorithm>
+#include <cstddef>
+#include <limits>
+#include <vector>
+
+namespace mdanim {
+
+class Wakes {
+ public:
+  static constexpr double NEVER = std::numeric_limits<double>::infinity();
+
+  void clear() { wake.clear(), least_of.clear(), least = NEVER; }
+  void push_back(double at)
+  {
+    if (wake.size() % BLOCK == 0) least_of.push_back(NEVER);
+    wake.push_back(NEVER);
+    set(wake.size() - 1, at);
+  }
+  std::size_t size() const { return wake.size(); }
+  double operator[](std::size_t q) const { return wake[q]; }
+  void set(std::size_t q, double at)
+  {
+    wake[q] = at;
+    least_of[q / BLOCK] = std::min(least_of[q / BLOCK], at);
+    least = std::min(least, at);
+  }
+  // look(q), which sets what is asked of point q from then on, for every point that a budget exceeds, in ascending order.
+  template <class Look> void look_below(double budget, const Look &look)
+  {
+    if (!(least < budget)) return;
+    least = NEVER;
+    for (std::size_t block = 0; block < least_of.size(); ++block) {
+      if (least_of[block] < budget) {
+        const std::size_t end = std::min(wake.size(), (block + 1) * BLOCK);
+        double left = NEVER;
+        for (std::size_t q = block * BLOCK; q < end; ++q) {
+          if (wake[q] < budget) look(q);
+          left = std::min(left, wake[q]);
+        }
+        least_of[block] = left;
+      }
+      least = std::min(least, least_of[block]);
+    }
+  }
+  std::size_t bytes() const { return (wake.capacity() + least_of.capacity()) * sizeof(double); }
+
+ private:
+  static constexpr std::size_t BLOCK = 8;
+
+  std::vector<double> wake, least_of;    // of each point, and of each block of points: the least, or less
+  double least = NEVER;                  // of all, or less
+};
+
+}    // namespace mdanim
+
+#endif
