@@ -100,7 +100,7 @@ ContactBody read_body(Words &words)
   for (int p = 0; p < points; ++p) {
     cell[p] = words.number<std::int32_t>("the cell of a point");
     const int value = words.number<int>("the kind of a point");
-    if (value < 0 || value > 2) words.fail("the kind of a point is 0, 1 or 2");
+    if (value < 0 || value > 3) words.fail("the kind of a point is 0, 1, 2 or 3");
     kind[p] = static_cast<std::uint8_t>(value);
     area[p] = words.number<double>("the area of a point");
     for (std::vector<double> *values : {&at, &centre, &normal})

@@ -56,7 +56,7 @@ ContactBody::ContactBody(const ContactBodyArrays &given)
   surface.reserve(given.points);
   for (int p = 0; p < given.points; ++p) {
     need(given.cell[p] >= 0 && given.cell[p] < static_cast<int>(volume) && filled[given.cell[p]], "a point is in no filled cell");
-    need(given.area[p] > 0.0 && std::isfinite(given.area[p]) && given.kind[p] <= 2, "a point has no area or is of no kind");
+    need(given.area[p] > 0.0 && std::isfinite(given.area[p]) && given.kind[p] <= 3, "a point has no area or is of no kind");
     need(are_finite(given.at + 3 * p, 3) && are_finite(given.centre + 3 * p, 3), "a point is nowhere");
     const Vec3 normal = vec3(given.normal + 3 * p);
     need(std::fabs(dot(normal, normal) - 1.0) < 1e-6, "a normal has not length 1");
@@ -66,6 +66,7 @@ ContactBody::ContactBody(const ContactBodyArrays &given)
                        vec3(given.normal + 3 * p),
                        given.area[p],
                        static_cast<PointKind>(given.kind[p])});
+    has_fine |= surface.back().kind == PointKind::FINE;
   }
   take_open_parts(given);
   sort_points();
@@ -103,12 +104,15 @@ void ContactBody::sort_points()
   const auto low_corner = [this](int p) { return place(surface[p].cell[0], surface[p].cell[1], surface[p].cell[2]); };
   by_cell.resize(surface.size());
   std::iota(by_cell.begin(), by_cell.end(), 0);
-  std::stable_sort(by_cell.begin(), by_cell.end(), [&](int p, int q) { return low_corner(p) < low_corner(q); });
+  const auto is_fine = [this](int p) { return surface[p].kind == PointKind::FINE; };
+  std::stable_sort(by_cell.begin(), by_cell.end(), [&](int p, int q) {
+    return low_corner(p) != low_corner(q) ? low_corner(p) < low_corner(q) : is_fine(p) < is_fine(q);
+  });
   std::vector<char> is_corner(places(), 0);
   for (int n = 0; n < static_cast<int>(by_cell.size()); ++n) {
     const int p = by_cell[n], low = low_corner(p);
     if (carriers.empty() || carriers.back().place != low) {
-      carriers.push_back({low, n, n, {}, {}});
+      carriers.push_back({low, n, n, n, {}, {}});
       for (int corner = 0; corner < 8; ++corner)
         is_corner[low + (corner & 1) + row() * (corner >> 1 & 1) + layer() * (corner >> 2)] = 1;
     }
@@ -116,6 +120,7 @@ void ContactBody::sort_points()
     const Vec3 from_corner = surface[p].at - Vec3{1.0 * surface[p].cell[0], 1.0 * surface[p].cell[1], 1.0 * surface[p].cell[2]};
     if (cell.first == n) cell.low = cell.high = from_corner;
     cell.last = n + 1;
+    if (!is_fine(p)) cell.fine = cell.last;
     const auto unite = [&](double at, double &least, double &most, double edge) {
       least = std::min(least, at), most = std::max(most, at);
       stands_out = std::max({stands_out, -least * edge, (most - 1.0) * edge});

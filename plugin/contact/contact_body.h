@@ -8,6 +8,7 @@
 #include "contact/contact_push.h"
 
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 namespace mdanim {
@@ -15,7 +16,8 @@ namespace mdanim {
 enum class PointKind : std::uint8_t {
   FLAT = 0,     // inside a side of a cuboid
   SHARP = 1,    // on an edge of a cuboid or in a corner
-  DENSE = 2     // of any other shape
+  DENSE = 2,    // of any other shape
+  FINE = 3      // closer to each other, of a round shape of few cells, which then acts on what is flat with them alone
 };
 
 // A point of the drawn surface and the area that it stands for.
@@ -29,9 +31,9 @@ struct SurfacePoint {
 
 // The points that a cell carries.
 struct PointCell {
-  int place;          // of its low corner in the grid
-  int first, last;    // of ContactBody::points_by_cell()
-  Vec3 low, high;     // a box around their X, from that corner
+  int place;                // of its low corner in the grid
+  int first, fine, last;    // of ContactBody::points_by_cell(); fine ones from `fine` on
+  Vec3 low, high;           // a box around their X, from that corner
 };
 
 // What is open of a side that other bodies cover, in X along the first and the second axis across it; none where low is beyond
@@ -79,6 +81,13 @@ class ContactBody {
   const std::vector<SurfacePoint> &points() const { return surface; }
   const std::vector<PointCell> &point_cells() const { return carriers; }
   const std::vector<int> &points_by_cell() const { return by_cell; }
+  // Of a cell, the first and the end of the points that act on a plane or a cuboid, or on a shape that is not flat. Points of a
+  // cuboid are a cell apart, too few for what is curved: its own points are dense.
+  std::pair<int, int> acting(const PointCell &cell, bool on_flat) const
+  {
+    if (on_flat) return {has_fine ? cell.fine : cell.first, cell.last};
+    return {cell.first, is_cuboid() ? cell.first : cell.fine};
+  }
   bool carries(int node) const { return is_carrier[node]; }    // points, or centres of their areas
   // How far the drawn surface stands out of the cells [m].
   double overhang() const { return stands_out; }
@@ -115,6 +124,7 @@ class ContactBody {
   std::vector<PointCell> carriers;
   std::vector<int> by_cell;    // numbers of points, cell by cell, ascending in each
   std::vector<char> is_carrier;
+  bool has_fine = false;    // points
   double stands_out = 0.0, lever = 1.0;
   std::vector<OpenPart> open_parts;    // sides without any act everywhere
   std::vector<double> depth_grid;      // coefficients of quadratic B-splines on nodes -2 to n + 2

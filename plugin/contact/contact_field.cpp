@@ -34,12 +34,10 @@ void ContactField::list(ContactObject &points_of, ContactObject &host_now, const
   near.clear(), wake.clear(), watch.clear(), of_contact.clear();
   budget = 0.0;
   std::size_t before = 0, contact = 0;
-  for (const int p : finder.inside(zone.grown(reach), contacts)) {
+  for (const int p : finder.inside(zone.grown(reach), host->body->is_cuboid(), contacts)) {
     while (contact < contacts.size() && contacts[contact].point < p) ++contact;
     const bool touches = contact < contacts.size() && contacts[contact].point == p;
     while (before < points_before.size() && points_before[before] < p) ++before;
-    // Points of a cuboid are a cell apart, too few for what is curved: its own points are dense.
-    if (owner->body->points()[p].kind != PointKind::DENSE && !host->body->is_cuboid()) continue;
     const CarriedPoint point(*owner, p);
     if (!point.is_there) continue;
     const double out = zone.outside(point.place(arrays.place()));

@@ -88,7 +88,7 @@ double PointFinder::least_along(const Vec3 &direction) const
                                       [&](const auto &one, const auto &other) { return low(one.second) < low(other.second); });
   double least = Box::FAR;
   const auto try_points_of = [&](const PointCell &cell) {
-    for (int n = cell.first; n < cell.last; ++n) {
+    for (int n = cell.first; n < cell.fine; ++n) {    // those are close enough for this
       const CarriedPoint point(owner, points[n]);
       if (point.is_there) least = std::min(least, dot(direction, point.place(arrays.place())));
     }

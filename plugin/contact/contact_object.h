@@ -164,15 +164,17 @@ class NearPoints {
 class PointFinder {
  public:
   PointFinder(const ContactObject &owner, const ContactArrays &arrays);
-  // Ascending numbers of all that are in a zone, and of some beside it; with those of `contacts` among them.
-  template <class Contact> std::vector<int> inside(const Zone &zone, const std::vector<Contact> &contacts) const
+  // Ascending numbers of all in a zone that act on what is flat, or on what is not, and of some beside it; with those of
+  // `contacts` among them.
+  template <class Contact> std::vector<int> inside(const Zone &zone, bool on_flat, const std::vector<Contact> &contacts) const
   {
     std::vector<std::uint64_t> marked((owner.body->points().size() + 63) / 64, 0);
     const auto mark = [&marked](int point) { marked[point / 64] |= std::uint64_t{1} << point % 64; };
     for (const auto &[c, box] : cells) {
       const PointCell &cell = owner.body->point_cells()[c];
       if (!zone.meets(box)) continue;
-      for (int n = cell.first; n < cell.last; ++n) mark(owner.body->points_by_cell()[n]);
+      const auto [first, end] = owner.body->acting(cell, on_flat);
+      for (int n = first; n < end; ++n) mark(owner.body->points_by_cell()[n]);
     }
     for (const Contact &one : contacts) mark(one.point);
     std::vector<int> found;

@@ -19,7 +19,7 @@ void PlaneField::list(ContactObject &points_of, const PointFinder &finder, const
   near.clear(), wake.clear(), was_below.clear(), of_contact.clear();
   budget = 0.0;
   std::size_t before = 0, contact = 0;
-  for (const int p : finder.inside(plane.within(reach), contacts)) {
+  for (const int p : finder.inside(plane.within(reach), true, contacts)) {
     while (contact < contacts.size() && contacts[contact].point < p) ++contact;
     const bool touches = contact < contacts.size() && contacts[contact].point == p;
     while (before < points_before.size() && points_before[before] < p) ++before;

@@ -11,7 +11,7 @@ from mdanim_lammps.effects import Effect
 from mdanim_lammps.engine.sub_plan import SubPlans
 from mdanim_lammps.model import build_models, contact_body, shapes
 from mdanim_lammps.model.cells import fill_cells
-from mdanim_lammps.model.contact_body import DENSE, FLAT, SHARP, BodyFrame, make_contact_body
+from mdanim_lammps.model.contact_body import DENSE, FINE, FLAT, SHARP, BodyFrame, make_contact_body
 from mdanim_lammps.model.distance import TRIANGLE_REACH, distance
 from mdanim_lammps.model.lattice import CORNERS, Cells, make_lattice
 from mdanim_lammps.model.spread import spread
@@ -124,10 +124,38 @@ def test_types_are_those_of_the_plugin():
 # --- all shapes -------------------------------------------------------------------------------------------------------
 
 
+def acting(body):
+    """Which points act together: fine ones, and all others."""
+    fine = body.kind == FINE
+    return [~fine, fine] if fine.any() else [~fine]
+
+
+@pytest.mark.parametrize(
+    ("shape", "h", "fine"),
+    [
+        pytest.param(Sphere(0.2), 0.1, True, id="a ball of four cells"),
+        pytest.param(Sphere(0.3), 0.1, False, id="of six"),
+        pytest.param(Ellipsoid((0.2, 0.3, 0.3)), 0.1, True, id="an ellipsoid"),
+        pytest.param(Cylinder(0.2, 0.4), 0.1, False, id="a cylinder touches along lines"),
+    ],
+)
+def test_balls_of_few_cells_have_fine_points(shape, h, fine):
+    """A ninth of the least radius apart, behind all dense ones; every other shape has none."""
+    (model,) = build_models(scene(solid(shape), resolution=h))
+    body = model.frame.contact
+    is_fine = body.kind == FINE
+    assert is_fine.any() == fine
+    assert (np.diff(body.kind.astype(int)) >= 0).all()
+    if fine:
+        assert shapes.area(shape) / is_fine.sum() == pytest.approx((shapes.thickness(shape) / 18) ** 2, rel=0.1)
+
+
 @pytest.mark.parametrize("shape", SHAPES, ids=shape_id)
 def test_areas_sum_to_the_drawn_surface(shape):
-    """Every part of the surface belongs to one point."""
-    assert body_of(shape).area.sum() == pytest.approx(shapes.area(shape), rel=1e-9)
+    """Every part of the surface belongs to one of the points that act together."""
+    body = body_of(shape)
+    for some in acting(body):
+        assert body.area[some].sum() == pytest.approx(shapes.area(shape), rel=1e-9)
 
 
 @pytest.mark.parametrize("shape", SHAPES, ids=shape_id)
@@ -135,8 +163,9 @@ def test_forces_of_an_even_pressure_cancel(shape):
     """Areas times outward normals sum to nothing over a closed surface, and their work on a growing body is three volumes."""
     cells, body = cells_of(shape), body_of(shape)
     force = body.area[:, None] * body.normal
-    assert abs(force.sum(axis=0)).max() < 2e-3 * body.area.sum()
-    assert (metres(body, cells, body.centre) * force).sum() == pytest.approx(3 * shapes.volume(shape), rel=5e-3)
+    for some in acting(body):
+        assert abs(force[some].sum(axis=0)).max() < 2e-3 * body.area[some].sum()
+        assert (metres(body, cells, body.centre) * force)[some].sum() == pytest.approx(3 * shapes.volume(shape), rel=5e-3)
 
 
 @pytest.mark.parametrize("shape", SHAPES, ids=shape_id)

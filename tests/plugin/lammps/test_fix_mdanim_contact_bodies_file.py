@@ -53,7 +53,7 @@ BAD = {
     "unknown kind": (
         at("points") + 1,
         re.sub(r"^(\d+) \d", r"\1 7", LINES[at("points") + 1]),
-        "the kind of a point is 0, 1 or 2",
+        "the kind of a point is 0, 1, 2 or 3",
     ),
     "not a body": (at("body", 1), "boby 1", "'body' and its number are needed here, got 'boby'"),
     "twice": (at("body", 1), "body 0", "the number of a body is at least 0 and comes once"),

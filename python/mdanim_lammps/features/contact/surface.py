@@ -14,7 +14,7 @@ from ...effects.effect import Effect
 from ...effects.fields import column
 from ...errors import Problem
 from ...model.boxes import box_pairs
-from ...model.contact_body import ContactBody
+from ...model.contact_body import FINE, ContactBody
 from ...model.model import Layer
 from ...model.overlap import BORN_AT_REST
 from ...model.planes import AXES
@@ -348,7 +348,8 @@ def borne_area(system: System) -> np.ndarray:
 
 
 def carried_area(body: ContactBody) -> np.ndarray:
-    """w_i of one body, shape (N,). Points beyond the cell that carries them have weights below 0."""
+    """w_i of one body, shape (N,): the larger one of those of its fine points and of all others, as either act. Points beyond the
+    cell that carries them have weights below 0."""
     cells, nodes = body.count.astype(np.int64), body.count + 1
     z, rest = np.divmod(body.cell, cells[0] * cells[1])
     y, x = np.divmod(rest, cells[0])
@@ -359,7 +360,9 @@ def carried_area(body: ContactBody) -> np.ndarray:
         weight.append(np.abs(np.where(way, inside, 1.0 - inside)).prod(axis=1))
         flat.append((corner + way) @ np.array([1, nodes[0], nodes[0] * nodes[1]], np.int64))
     area = np.array(weight) * (body.area * np.sum(weight, axis=0))
-    return np.bincount(np.searchsorted(body.node, np.array(flat)).ravel(), area.ravel(), len(body.node))
+    node, fine = np.searchsorted(body.node, np.array(flat)), body.kind == FINE
+    sets = [fine, ~fine] if fine.any() else [~fine]
+    return np.max([np.bincount(node[:, some].ravel(), area[:, some].ravel(), len(body.node)) for some in sets], axis=0)
 
 
 def fast(context: Context) -> np.ndarray:
