@@ -19,7 +19,7 @@ PATIENCE = 3.0
 """Processor seconds of the coarse run."""
 LAST = 0.8
 """Part of a coarse run that was ended after which its steps cost as much as those that are left."""
-POINTS = 0.7
+POINTS = 0.8
 """Power with which the cost of surfaces grows with their particles: pairs of objects that are near each other have a cost of
 their own, whatever number of points they have (docs/decisions/forecast.md)."""
 
