@@ -2,7 +2,9 @@
 """How a problem is printed: place, message, source line, caret, way out, include chain."""
 
 import pytest
-from mdanim_lammps.errors import ExitCode, MdanimError, Problem, SceneError, Span
+from command_line import GOOD, call
+from mdanim_lammps import Scene
+from mdanim_lammps.errors import ExitCode, MdanimError, OutputError, Problem, SceneError, Span, for_a_shell, in_python
 
 LINE = "      mass       1.5 kgg"
 
@@ -70,3 +72,50 @@ def test_scene_error_prints_every_problem():
     assert str(error) == "error: one\nwarning: two"
     assert error.exit_code is ExitCode.SCENE
     assert isinstance(error, MdanimError)
+
+
+@pytest.mark.parametrize(
+    ("shell", "python"),
+    [
+        (
+            "a.out exists; overwrite it with --force, or write elsewhere with -o DIR",
+            "a.out exists; overwrite it with force=True, or write elsewhere",
+        ),
+        ("-o x.mp4: there is no folder y; make it first", "x.mp4: there is no folder y; make it first"),
+        ("--force does not delete them: name another with -o", "force=True does not delete them: name another"),
+        ("start afresh with --force or another -o folder", "start afresh with force=True or another folder"),
+        ("name NAME.out beside NAME.txt or what -o said", "name NAME.out beside NAME.txt or what `run` was given"),
+        ("-n 70: this machine has 2 cores; write -n 2", "executors=70: this machine has 2 cores; write executors=2"),
+        ("--frames 5:None: the run has frames 0 to 4", "frames=slice(5, None): the run has frames 0 to 4"),
+        (
+            "take fewer frames (--every 4) or objects (--objects), or --to usd",
+            "take fewer frames (every=4) or objects (objects=...), or 'usd'",
+        ),
+        ("--set h: the scene has no 'let h'", "h: the scene has no 'let h'"),
+        ("with 'mdanim-lammps study S --budget 9', or --no-movie", "with 'mdanim-lammps study S --budget 9', or movie=False"),
+        (
+            "s.txt:1:3: error: what\n    1 | let a = b -n 2\n      |         ^  --force",
+            "s.txt:1:3: error: what\n    1 | let a = b -n 2\n      |         ^  force=True",
+        ),
+    ],
+)
+def test_messages_name_options_as_they_are_written(shell, python):
+    """In Python as Python has them; what is for a shell, and lines of a scene, stay."""
+    assert in_python(shell) == python
+    assert str(OutputError(shell)) == python and OutputError(shell).told() == shell
+    before = for_a_shell()
+    try:
+        assert str(OutputError(shell)) == shell
+    finally:
+        for_a_shell(before)
+
+
+def test_a_command_speaks_as_a_shell_and_python_as_python(tmp_path):
+    """Of the same folder, one after the other in one process."""
+    (tmp_path / "good.txt").write_text(GOOD)
+    scene = Scene.load(tmp_path / "good.txt")
+    scene.run()
+    said = call(tmp_path / "good.txt").stderr
+    with pytest.raises(OutputError) as caught:
+        scene.run()
+    assert "overwrite it with --force" in said and "overwrite it with force=True, or write elsewhere" in str(caught.value)

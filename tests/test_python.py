@@ -131,7 +131,7 @@ def test_what_a_sweep_refuses(tmp_path):
     (tmp_path / "s" / "h=0.5" / "thesis.tex").touch()
     runs = scene.sweep({"h": [0.3, 0.5]}, tmp_path / "s", processes=1)
     assert next(runs).values == {"h": 0.3}
-    with pytest.raises(OutputError, match="exists; overwrite it with --force"):
+    with pytest.raises(OutputError, match="exists; overwrite it with force=True"):
         next(runs)
     # Overlapping objects are found when models are built, in the process of the run.
     with pytest.raises(SceneError) as caught:

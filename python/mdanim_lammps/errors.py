@@ -129,10 +129,59 @@ def _window(text: str, start: int) -> tuple[str, int]:
     return left + text[first : first + _WINDOW] + right, start - first + len(left)
 
 
+_VERBATIM = re.compile(r"mdanim-lammps [^;\n']*|^ *\d+ \| .*$", re.MULTILINE)
+"""What is not respelled: commands for a shell, and lines of a scene."""
+_IN_PYTHON = tuple(
+    (re.compile(option), spelling)
+    for option, spelling in (
+        (r" with -o\b( DIR| FILE)?", ""),
+        (r"\banother -o folder", "another folder"),
+        (r"\bwhat -o said", "what `run` was given"),
+        (r"-o (?=\S)", ""),
+        (r"-n (\d+)", r"executors=\1"),
+        (r"--no-movie", "movie=False"),
+        (r"--(force|springs|names)\b", r"\1=True"),
+        (r"--to (\w+)", r"'\1'"),
+        (r"--(every|size) (\d\w*)", r"\1=\2"),
+        (r"--frames (\w+):(\w+)", r"frames=slice(\1, \2)"),
+        (r"--(frames|objects|every|size|budget)\b", r"\1=..."),
+        (r"--set (?=\w)", ""),
+    )
+)
+"""Options of the command line as Python has them."""
+_spelled_for_a_shell = [False]
+
+
+def for_a_shell(yes: bool = True) -> bool:
+    """Have messages name options as the command line does, or, as at the start, as Python does; returns how it was before."""
+    before, _spelled_for_a_shell[0] = _spelled_for_a_shell[0], yes
+    return before
+
+
+def in_python(text: str) -> str:
+    """A message with ``force=True`` in place of ``--force``, and so on; commands for a shell stay."""
+    parts, at = [], 0
+    for kept in (*_VERBATIM.finditer(text), None):
+        part = text[at : kept.start() if kept else None]
+        for option, spelling in _IN_PYTHON:
+            part = option.sub(spelling, part)
+        parts += [part, kept[0] if kept else ""]
+        at = kept.end() if kept else at
+    return "".join(parts)
+
+
 class MdanimError(Exception):
     """Base of all errors that end the program with one message and an exit code."""
 
     exit_code = ExitCode.USAGE
+
+    def __str__(self) -> str:
+        """The message, with options as they are written where it is read: in a shell or in Python."""
+        return self.told() if _spelled_for_a_shell[0] else in_python(self.told())
+
+    def told(self) -> str:
+        """The message with the options of the command line."""
+        return super().__str__()
 
 
 class UsageError(MdanimError):
@@ -182,7 +231,7 @@ class DivergedError(MdanimError):
         super().__init__(why, kept)
         self.why, self.kept = why, kept
 
-    def __str__(self) -> str:
+    def told(self) -> str:
         """When and why, and in a line of its own what is kept and how to go on."""
         return f"{self.why}\n  {self.kept}" if self.kept else self.why
 

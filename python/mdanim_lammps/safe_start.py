@@ -24,4 +24,5 @@ if __name__ == "__main__":
     sys.modules["mdanim_lammps"] = package = module_from_spec(spec)
     spec.loader.exec_module(package)
     sys.argv[:2] = sys.argv[1:2]
+    import_module("mdanim_lammps.errors").for_a_shell()  # what a child says is spelled by its parent
     import_module(sys.argv[0]).main()

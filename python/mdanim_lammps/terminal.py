@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from typing import Any, NoReturn, TextIO
 
-from .errors import CONTROL, ExitCode, MdanimError, SceneError, out_of_files, out_of_memory
+from .errors import CONTROL, ExitCode, MdanimError, SceneError, for_a_shell, out_of_files, out_of_memory
 from .interrupts import PROGRAM, heard, interrupt, on_signals
 from .processes import available_memory
 
@@ -107,6 +107,7 @@ def documented_exit(*, debug: bool) -> Iterator[None]:
     ``debug`` lets errors through, for their traceback. Raises SystemExit.
     """
     heard.clear()
+    before = for_a_shell()
     try:
         yield
         sys.stdout.flush()
@@ -140,6 +141,8 @@ def documented_exit(*, debug: bool) -> Iterator[None]:
         if not debug:
             _end_where_short(error)
         raise
+    finally:
+        for_a_shell(before)
 
 
 def _end_where_short(error: Exception) -> None:

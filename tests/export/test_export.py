@@ -229,7 +229,7 @@ def test_gltf(folder, run, tmp_path):
 def test_gltf_that_would_be_too_large_is_refused(folder, tmp_path, monkeypatch):
     """Before anything is written, with a way out; nothing is left."""
     monkeypatch.setattr("mdanim_lammps.export.gltf.LARGEST", 10_000)
-    with pytest.raises(UsageError, match=r"the format allows 4 GB; take fewer frames \(--every \d+\)"):
+    with pytest.raises(UsageError, match=r"the format allows 4 GB; take fewer frames \(every=\d+\)"):
         exported(folder, "gltf", tmp_path)
     assert not list(tmp_path.iterdir())
 
@@ -427,7 +427,7 @@ def test_what_cannot_be_exported_is_refused(folder, tmp_path):
     for options, words in (
         (dict(to="gtlf"), "did you mean 'gltf'"),
         (dict(to="csv", objects=["stoen"]), "did you mean 'stone'"),
-        (dict(to="csv", every=0), "--every 0: must be 1 or more"),
+        (dict(to="csv", every=0), "every=0: must be 1 or more"),
         (dict(to="csv", frames=slice(9, None)), "the run has frames 0 to 4"),
         (dict(to="usd", path=tmp_path / "a.usda"), r"give it a name such as a\.usdc"),
     ):
@@ -440,7 +440,7 @@ def test_what_cannot_be_exported_is_refused(folder, tmp_path):
 def test_what_is_there_is_kept(folder, tmp_path):
     """An earlier export is refused, and replaced with ``force``; a folder with other files never is."""
     export(folder, "vtk", tmp_path / "a.pvd")
-    with pytest.raises(OutputError, match="exists; overwrite it with --force"):
+    with pytest.raises(OutputError, match="exists; overwrite it with force=True"):
         export(folder, "vtk", tmp_path / "a.pvd")
     export(folder, "vtk", tmp_path / "a.pvd", every=4, force=True)
     assert len(list((tmp_path / "a.vtk").iterdir())) == 6

@@ -55,7 +55,7 @@ def test_an_older_version_is_refused(tmp_path, monkeypatch, version):
         patch.setattr(checkpoint, "VERSION", version)
         state().write(tmp_path / "checkpoint")
     with pytest.raises(
-        OutputError, match=f"of version {version}, this program reads 4: go on with .* or run .* again with --force"
+        OutputError, match=f"of version {version}, this program reads 4: go on with .* or run .* again with force=True"
     ):
         Checkpoint.read(tmp_path / "checkpoint")
 

@@ -122,7 +122,7 @@ def test_a_folder_is_one_runs_at_a_time(tmp_path, holder, monkeypatch):
     monkeypatch.setattr(files, "PATIENCE", 0.1)
     write_whole(tmp_path / files.MARK, f'{{"program": "{files.PROGRAM}"}}')
     for way in (claimed(tmp_path), open_folder(tmp_path, force=True)):
-        with pytest.raises(OutputError, match=r"another run is writing into this folder; .*touch .*/stop.* -o DIR"), way:
+        with pytest.raises(OutputError, match=r"another run is writing into this folder; .*touch .*/stop.* write elsewhere"), way:
             pass
     assert sorted(os.listdir(tmp_path)) == sorted([IN_USE, files.MARK])
     holder.send_signal(signal.SIGKILL)

@@ -88,7 +88,7 @@ def test_trajectory_is_the_state(fall):
 def test_folder_is_not_overwritten_unasked(fall):
     """Refuse to overwrite; obey force; never delete what is not ours."""
     scene = Scene.load(fall.folder.parent / "fall.txt")
-    with pytest.raises(OutputError, match="--force"):
+    with pytest.raises(OutputError, match="force=True"):
         scene.run(fall.folder)
     other = fall.folder.parent / "precious"
     other.mkdir()

@@ -117,7 +117,7 @@ def test_study_of_a_changed_scene_is_refused(bar_study, bar_file):
     assert scene_hash(scene) != scene_hash(stiffer)
     other = BAR.replace("frames 100 fps", "frames 100 fps\n accuracy preview") + 'title "a bar"\nrender { background white }\n'
     assert scene_hash(parse_scene(other)) == scene_hash(scene)
-    with pytest.raises(OutputError, match="--force"):
+    with pytest.raises(OutputError, match="force=True"):
         Store(bar_study.folder, scene_hash(stiffer))
 
 
@@ -201,7 +201,7 @@ def test_what_a_run_takes_to_start_does_not_grow_with_its_work(clock, tmp_path, 
 
 def test_budget_too_small_for_the_own_setting(clock, tmp_path):
     """Refuse, and say what it would take."""
-    with pytest.raises(RefusedError, match=r"would take about 0\.5.*--budget"):
+    with pytest.raises(RefusedError, match=r"would take about 0\.5.*budget"):
         run_study(parse_scene(BAR), tmp_path / "study", budget=0.3)
 
 

@@ -82,7 +82,7 @@ def test_executors_that_do_not_fit_in_memory(monkeypatch):
     monkeypatch.delenv(launch.MPIEXEC, raising=False)
     monkeypatch.setattr(limits, "available_memory", lambda: 1e9)
     limits.check_executors(4, 100_000)
-    with pytest.raises(UsageError, match=r"-n 4: the processes need 2.7 GB, 1.0 GB are free; write -n 1 or"):
+    with pytest.raises(UsageError, match=r"executors=4: the processes need 2.7 GB, 1.0 GB are free; write executors=1 or"):
         limits.check_executors(4, 2_000_000)
     monkeypatch.setenv(launch.MPIEXEC, "mpiexec -f hosts")
     limits.check_executors(999, 2_000_000)
