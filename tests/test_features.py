@@ -50,7 +50,6 @@ KNOWING = {
     "results/untrusted.py",
     "run/energy.py",
     "scene/keywords.py",
-    "scene/makers.py",
     "scene/render.py",
     "scene/scene.py",
     "scene/validate.py",

@@ -5,6 +5,7 @@ A folder has facets, each a module that is looked for by its name:
 
 ``words``    what it adds to the language (scene/): SWITCHES, what calls for each of its effects; QUANTITIES, what ``expect`` can
              check; MARGINS, what each of its limits means; SCENE, a class with settings that stand outside of all blocks;
+             CHECKS by the word of a block, and check(validator, top, held) of a whole scene (scene/validate.py);
              touched(scene), whether it brings something that objects may touch; width(scene), what scenes without objects go by
 ``measure``  how its quantities are found (effects/measured.py): MEASURES in a run that has ended, RECORDED in one object
 ``effect``   EFFECTS, the effects that it brings (effects/effect.py): causes, columns, commands, planes, bound, ledger

@@ -13,14 +13,14 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import Span
+from ..features import facets
 from . import keywords, units
 from . import scene as records
 from .contact_pairs import PLANES, objects_by_name, pairs_of
 from .expand import EvaluatedBlock, EvaluatedSetting
-from .formatting import number, say, vector, whole
+from .formatting import number, say, whole
 from .keywords import BLOCKS, KEYWORDS, Block, did_you_mean, example
 from .limits import MOST_FRAMES, MOST_PAIRS
-from .makers import check_waves
 from .meshes import refusal_of_mesh
 from .render import SMOOTH_RATE, few_pictures
 from .scene import GLOBALS, QUANTITIES, Vector
@@ -67,15 +67,13 @@ class Validator:
         """All records; None after an error."""
         self.one_of_each()
         held = {block.field: self.records(block) for block in BLOCKS.values()}
-        top, control, liquid = self.settings(self.out), held["control"], held["liquid"]
+        top, control = self.settings(self.out), held["control"]
         if not self.blocks("control") and not self.out.excused("control"):
             self.problem(self.top, "the scene has no control block: how long is it?", "write control { time 3 s }", key="control")
         self.names_once()
-        self.gravity_fits(self.blocks("liquid"))
-        self.ground_below(liquid)
-        if top.get("walls"):
-            self.corners(self.out.first("walls"), "the space between the walls")
-            self.inside_walls(held["solids"], top["walls"])
+        for words in facets("words"):
+            if hasattr(words, "check"):
+                words.check(self, top, held)
         self.contact_fits(control, held["solids"])
         held["control"] = control = self.frames(control, held["render"])
         self.cameras(control)
@@ -122,8 +120,12 @@ class Validator:
         values = {**dict(zip(kind.names, block.names)), **settings}
         if "spans" in kind.record.__dataclass_fields__:
             values["spans"] = self.spans(block)
+        record = kind.record(**values)
+        for words in facets("words"):
+            if kind.name in getattr(words, "CHECKS", {}):
+                record = words.CHECKS[kind.name](self, block, record)
         check = getattr(self, f"check_{kind.name}", lambda block, record: record)
-        return check(block, kind.record(**values))
+        return check(block, record)
 
     def settings(self, block: EvaluatedBlock) -> dict[str, Any] | None:
         """Fields of the record, from the settings of a block; None where a value is wrong. Absent ones keep their default."""
@@ -180,42 +182,6 @@ class Validator:
                     self.head(block), f"an object cannot be called {block.name}: expect uses this word", "take another name"
                 )
             first.setdefault(block.name, block)
-
-    def ground_below(self, liquid: records.Liquid | None) -> None:
-        """Ground above the floor of the basin holds solids up within the liquid."""
-        ground = self.out.value("ground")
-        if liquid is None or ground is None or not liquid.low[2] < ground < liquid.high[2]:
-            return
-        self.problem(
-            self.out.first("ground").span(0),
-            f"the ground at z = {say(ground, 'm', 6)} is above the floor of the basin, {say(liquid.low[2], 'm', 6)}: "
-            "nothing sinks below it, liquid does",
-            f"the basin has a floor of its own: leave the ground out, or write ground z {say(liquid.low[2], 'm', 6)}",
-            severity="warning",
-        )
-
-    def gravity_fits(self, liquids: list[EvaluatedBlock]) -> None:
-        """A liquid lies flat only under gravity along -z."""
-        if not liquids or self.out.excused("gravity"):
-            return
-        given = self.out.first("gravity")
-        g = given.values[0] if given else (0.0, 0.0, 0.0)
-        if g[0] != 0.0 or g[1] != 0.0 or g[2] >= 0.0:
-            span = given.span(0) if given else self.head(liquids[0])
-            found = f"found {units.show(g)} m/s^2" if given else "the scene has no gravity"
-            self.problem(span, f"a liquid needs gravity along -z, {found}", "e.g. gravity (0, 0, -9.81) m/s^2", key="gravity")
-
-    def inside_walls(self, solids: list[records.Solid], walls: records.Walls | None) -> None:
-        """An object's centre must lie between the walls; how far it reaches is checked with its model."""
-        if walls is None:
-            return
-        for s in solids:
-            if not all(a < x < b for a, x, b in zip(walls.low, s.position, walls.high)):
-                self.problem(
-                    s.spans["position"],
-                    f"{s.name} stands outside the walls: its centre is {units.show(s.position)} m",
-                    f"the walls go from {units.show(walls.low)} to {units.show(walls.high)} m",
-                )
 
     def contact_fits(self, control: records.Control | None, solids: list[records.Solid]) -> None:
         """The contact of the paper has neither friction nor damping; that of surfaces has damping where it has friction."""
@@ -357,38 +323,6 @@ class Validator:
                 self.problem(place, cause, f"first given at {given}", key=("contact", id(block.group)))
                 return None
         return contact
-
-    def check_liquid(self, block: EvaluatedBlock, liquid: records.Liquid) -> records.Liquid:
-        """Volume or level against what the liquid starts in: the basin, or part of it."""
-        self.corners(block.first("basin"), "the basin")
-        low, high = liquid.low, liquid.high
-        if liquid.fill is not None:
-            s = block.first("fill")
-            self.corners(s, "the part that is filled")
-            for which, (corner, name) in enumerate(zip(liquid.fill, ("lower", "upper"))):
-                if not all(a <= x <= b for a, x, b in zip(low, corner, high)):
-                    cause = f"the {name} corner of fill lies outside the basin: {vector(corner)} m"
-                    self.problem(s.span(which), cause, f"the basin goes from {vector(low)} to {vector(high)} m")
-        where = "the basin" if liquid.fill is None else "the fill region"
-        bottom, top = liquid.fill or (low, high)
-        room = math.prod(b - a for a, b in zip(bottom, top))
-        if liquid.volume is not None and liquid.volume > room > 0.0:
-            cause = f"{say(liquid.volume, 'm^3', 6)} of liquid do not fit into {where} of {say(room, 'm^3', 6)}"
-            way_out = "less liquid, or a larger basin" if liquid.fill is None else "less liquid, or a larger fill region"
-            self.problem(block.first("volume").span(0), cause, way_out)
-        if liquid.level is not None and not bottom[2] < liquid.level <= top[2]:
-            cause = f"the level {say(liquid.level, 'm', 6)} is outside {where}, which goes from "
-            cause += f"{say(bottom[2], 'm', 6)} to {say(top[2], 'm', 6)}"
-            self.problem(block.first("level").span(0), cause, "the level is a height, not a depth")
-        check_waves(liquid, block, self.problem)
-        if liquid.model is records.LiquidModel.PAPER:
-            self.problem(
-                block.first("model").span(0),
-                "model paper takes the rules literally: not Archimedes, objects denser than about 0.4 of the liquid sink",
-                "leave the line out for drafts after Archimedes",
-                severity="warning",
-            )
-        return liquid
 
     def cameras(self, control: records.Control | None) -> None:
         """Cameras look at something; several are points of one path, each with a time of its own, in order."""

@@ -1,7 +1,15 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """Words of a scene that belong to this feature."""
 
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+from ...scene.formatting import say, vector
 from ...scene.schema import Observable
+from ...scene.units import show
 
 SWITCHES = {
     "basin": "the basin of a liquid and an object that can move",
@@ -38,3 +46,91 @@ def width(scene) -> tuple[float, str] | None:
     if scene.liquid is None:
         return None
     return min(b - a for a, b in zip(scene.liquid.low[:2], scene.liquid.high[:2])) / 8, scene.liquid.name
+
+
+# --- checks: v is the scene/validate.Validator ----------------------------------------------------------------------
+
+
+def check(v: Any, top: Mapping, held: Mapping) -> None:
+    """What else a scene needs that has a liquid; ``held`` are the records of blocks."""
+    gravity_fits(v, v.blocks("liquid"))
+    ground_below(v, held["liquid"])
+
+
+def gravity_fits(v: Any, liquids: list) -> None:
+    """A liquid lies flat only under gravity along -z."""
+    if not liquids or v.out.excused("gravity"):
+        return
+    given = v.out.first("gravity")
+    g = given.values[0] if given else (0.0, 0.0, 0.0)
+    if g[0] != 0.0 or g[1] != 0.0 or g[2] >= 0.0:
+        span = given.span(0) if given else v.head(liquids[0])
+        found = f"found {show(g)} m/s^2" if given else "the scene has no gravity"
+        v.problem(span, f"a liquid needs gravity along -z, {found}", "e.g. gravity (0, 0, -9.81) m/s^2", key="gravity")
+
+
+def ground_below(v: Any, liquid: Any) -> None:
+    """Ground above the floor of the basin holds solids up within the liquid."""
+    ground = v.out.value("ground")
+    if liquid is None or ground is None or not liquid.low[2] < ground < liquid.high[2]:
+        return
+    v.problem(
+        v.out.first("ground").span(0),
+        f"the ground at z = {say(ground, 'm', 6)} is above the floor of the basin, {say(liquid.low[2], 'm', 6)}: "
+        "nothing sinks below it, liquid does",
+        f"the basin has a floor of its own: leave the ground out, or write ground z {say(liquid.low[2], 'm', 6)}",
+        severity="warning",
+    )
+
+
+def check_liquid(v: Any, block: Any, liquid: Any) -> Any:
+    """Volume or level against what the liquid starts in: the basin, or part of it."""
+    v.corners(block.first("basin"), "the basin")
+    low, high = liquid.low, liquid.high
+    if liquid.fill is not None:
+        s = block.first("fill")
+        v.corners(s, "the part that is filled")
+        for which, (corner, name) in enumerate(zip(liquid.fill, ("lower", "upper"))):
+            if not all(a <= x <= b for a, x, b in zip(low, corner, high)):
+                cause = f"the {name} corner of fill lies outside the basin: {vector(corner)} m"
+                v.problem(s.span(which), cause, f"the basin goes from {vector(low)} to {vector(high)} m")
+    where = "the basin" if liquid.fill is None else "the fill region"
+    bottom, top = liquid.fill or (low, high)
+    room = math.prod(b - a for a, b in zip(bottom, top))
+    if liquid.volume is not None and liquid.volume > room > 0.0:
+        cause = f"{say(liquid.volume, 'm^3', 6)} of liquid do not fit into {where} of {say(room, 'm^3', 6)}"
+        way_out = "less liquid, or a larger basin" if liquid.fill is None else "less liquid, or a larger fill region"
+        v.problem(block.first("volume").span(0), cause, way_out)
+    if liquid.level is not None and not bottom[2] < liquid.level <= top[2]:
+        cause = f"the level {say(liquid.level, 'm', 6)} is outside {where}, which goes from "
+        cause += f"{say(bottom[2], 'm', 6)} to {say(top[2], 'm', 6)}"
+        v.problem(block.first("level").span(0), cause, "the level is a height, not a depth")
+    check_waves(liquid, block, v.problem)
+    if liquid.model.value == "paper":
+        v.problem(
+            block.first("model").span(0),
+            "model paper takes the rules literally: not Archimedes, objects denser than about 0.4 of the liquid sink",
+            "leave the line out for drafts after Archimedes",
+            severity="warning",
+        )
+    return liquid
+
+
+def check_waves(liquid: Any, block: Any, problem: Any) -> None:
+    """Makers only with waves, only inside the basin, and with a rate; ``problem`` takes a span, a cause and a way out."""
+    waves = liquid.model.value == "waves"
+    for word in ("sweeps",) if waves else ("calm", "drops", "wave", "current", "inflow", "drain"):
+        if getattr(liquid, word):
+            cause, way_out = f"model {liquid.model.value} has no {word}", "surface" if waves else "waves"
+            problem(block.first(word).span(), cause, f"leave the line out, or write model {way_out}")
+    for word in ("inflow", "drain"):
+        for s, flow in zip(block.settings.get(word, ()), getattr(liquid, word)):
+            corners = list(zip(flow.low, flow.high, liquid.low, liquid.high))
+            if any(high < low or high < bottom or low > top for low, high, bottom, top in corners):
+                cause = f"the {word} from {vector(flow.low)} to {vector(flow.high)} m is not a part of the basin"
+                problem(s.span(), cause, f"the basin goes from {vector(liquid.low)} to {vector(liquid.high)} m")
+            if not flow.rate > 0.0:
+                problem(s.span(), f"the rate of the {word} must be > 0, found {say(flow.rate, 'm^3/s')}", "e.g. 0.002 m^3/s")
+
+
+CHECKS = {"liquid": check_liquid}

@@ -3,10 +3,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 from ...scene.schema import BOX, OneOf, Vector, setting
+from ...scene.units import show
 
 SWITCHES = {"walls": "`walls`"}
 
@@ -36,3 +38,23 @@ SCENE = WallsWords
 def touched(scene) -> bool:
     """Whether it brings something into a scene that objects may touch."""
     return scene.walls is not None
+
+
+def check(v: Any, top: Mapping, held: Mapping) -> None:
+    """An object's centre must lie between the walls; how far it reaches is checked with its model.
+
+    Args:
+        v: the scene/validate.Validator.
+        top: settings outside of all blocks.
+        held: records of blocks.
+    """
+    if (walls := top.get("walls")) is None:
+        return
+    v.corners(v.out.first("walls"), "the space between the walls")
+    for s in held["solids"]:
+        if not all(a < x < b for a, x, b in zip(walls.low, s.position, walls.high)):
+            v.problem(
+                s.spans["position"],
+                f"{s.name} stands outside the walls: its centre is {show(s.position)} m",
+                f"the walls go from {show(walls.low)} to {show(walls.high)} m",
+            )
