@@ -161,24 +161,36 @@ ContactField::Fate ContactField::push(FieldContact &contact, std::size_t q, cons
   if (!follow(contact, task, now.x, weights, spot, off, hop)) return Fate::LOST;
   if (!host->body->is_cuboid() && hop.happened) go_on(contact, hop, spot);
   const Vec3 shift = spot.to_material(now.shift);
-  const Depth<double> below = host->body->depth(contact.side, contact.state.X);
+  Depth<double> below = host->body->depth(contact.side, contact.state.X);
+  const auto place = [&](int i, int j, int k) {
+    return at.place[at.slot[weights.base + i + at.body.row() * j + at.body.layer() * k]].value;
+  };
+  const Vec3 normal = spot.gradient(below.slope);
+  FlattenedDepth<double> flat;
+  if (task.is_smooth && is_flattened(normal)) {
+    flat = flattened_depth(weights.axis, place, spot, normal, below.value);
+    below.value = flat.part * below.value;
+  }
   double part = 1.0;
   if (host->body->is_cuboid())
     part = part_that_counts<double>(task.ramps, task.host, contact.state.X + shift, contact.side / 2, part_slope);
+  if (task.is_smooth && is_crushed(spot, at.body)) {
+    if (task.dt > 0.0) {
+      account.let_go += let_go_energy(task.law, now.area, contact.state.memory, contact.last.energy,
+                                      below.value - contact.state.memory.depth, part);
+      account.damped += last_damping_work(contact.state.memory, below.value);
+    }
+    return Fate::CRUSHED;
+  }
   if (!(below.value > std::min(contact.state.memory.offset, 0.0) && part > 0.0 && below.value <= task.longest)) {
     if (task.dt > 0.0) account.damped += last_damping_work(contact.state.memory, below.value);
     return Fate::OUT;
   }
 
   Vec3 turn;
-  if (task.is_smooth && is_on_ramp(part_slope)) {
-    const int row = at.body.row(), layer = at.body.layer(), *const slots = at.slot + weights.base;
-    turn = part_turn(
-        weights.axis, [&](int i, int j, int k) { return at.place[slots[i + row * j + layer * k]].value; }, spot, part_slope,
-        shift);
-  }
+  if (task.is_smooth && is_on_ramp(part_slope)) turn = part_turn(weights.axis, place, spot, part_slope, shift);
   const ContactPush<double> push =
-      contact_push(task.law, task.dt, now.area, part, part_slope, turn, below, spot, off, shift, contact.state);
+      contact_push(task.law, task.dt, now.area, part, part_slope, turn, below, flat, spot, off, shift, contact.state);
   contact.last = push.outcome;
 
   PaddedVec3 *on = arrays.force();
@@ -215,9 +227,9 @@ void ContactField::end(const FieldContact &contact, std::size_t q, Fate fate, co
                        ContactAccount &account)
 {
   account.heat += contact.state.memory.stick_energy;
-  if (fate == Fate::LOST) {
-    // The last force still did work in half of the last step, as leap-frog counts it.
-    account.let_go += contact.last.energy - 0.5 * dot(contact.last.force, contact.last.moved);
+  // The last force still did work in half of the last step, as leap-frog counts it.
+  if (fate == Fate::LOST) account.let_go += contact.last.energy - 0.5 * dot(contact.last.force, contact.last.moved);
+  if (fate != Fate::OUT) {
     watch[q] = {};
   } else {
     watch[q].cell = {contact.cell[0], contact.cell[1], contact.cell[2]};

@@ -67,7 +67,8 @@ class ContactField {
     double depth = 0.0;
     std::uint8_t open = 0;    // as that of Watch
     double slack = 0.0;       // a motion that cannot yet begin a contact [m]
-    bool is_sure = true;      // no contact, and open is right, though the place of the point is guessed
+    bool is_crushed = false;
+    bool is_sure = true;    // no contact, and open is right, though the place of the point is guessed
   };
 
   Placed placed(const ContactArrays &arrays) const { return {*host->body, host->slot.data(), arrays.place()}; }
@@ -84,7 +85,7 @@ class ContactField {
   bool world_normal(const SurfacePoint &point, const ContactArrays &arrays, Vec3 &normal) const;
   Ramps ramps(PointKind kind) const;
 
-  enum class Fate { STAYS, OUT, LOST };
+  enum class Fate { STAYS, OUT, LOST, CRUSHED };
   // A contact that goes on to another cell in a step: how far the point has moved against the host in the cell that it leaves
   // [m], and how far X is from where it would be there.
   struct Hop {

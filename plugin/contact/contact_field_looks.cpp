@@ -164,6 +164,7 @@ ContactField::Verdict ContactField::judge(const SurfacePoint &point, const Vec3 
   int side = -1;
   bool is_shut = false, is_surely_shut = false, may_face = false;
   double best = NEVER, until = 0.0, slack = NEVER;
+  Vec3 inward_of_side;
   Verdict verdict;
   for (int s = 0; s < host->body->sides(); ++s) {
     const Depth<double> below = host->body->depth(s, X);
@@ -192,17 +193,26 @@ ContactField::Verdict ContactField::judge(const SurfacePoint &point, const Vec3 
       is_shut = true;
       until = std::max(until, std::min(-PRESSED * depth * h, 0.5 * PRESSED * h * (cosine - LEAST_COSINE)));
     } else if (depth / cosine < best) {
-      best = depth / cosine, side = s;
+      best = depth / cosine, side = s, inward_of_side = inward;
       verdict.depth = below.value;
     }
   }
   verdict.is_sure &= is_surely_shut || !may_face;
   verdict.slack = is_shut ? std::max(slack, until) : slack;
+  const bool is_deep = verdict.depth > DEEPEST_BIRTH * h;
+  if (host->body->is_cuboid() && is_crushed(spot, *host->body)) {
+    verdict.is_crushed = true;
+    verdict.open = EVERY_SIDE, verdict.slack = 0.0;    // X may be another one in the next step
+  }
+  if (side >= 0 && is_smooth(point.kind)) {
+    verdict.depth *= Flattened<double>(std::sqrt(dot(inward_of_side, inward_of_side))).value;
+    if (verdict.is_crushed) side = -1;
+  }
   const auto counts = [&] {
     Vec3 slope;
     return !host->body->is_cuboid() || part_that_counts<double>(near_edges, grid, X_centre, side / 2, slope) > 0.0;
   };
-  if (!is_shut && side >= 0 && verdict.depth <= DEEPEST_BIRTH * h && counts()) verdict.side = side;
+  if (!is_shut && side >= 0 && !is_deep && counts()) verdict.side = side;
   return verdict;
 }
 
@@ -273,7 +283,7 @@ bool ContactField::look(std::size_t q, const ContactArrays &arrays, bool may_beg
   for (int d = 0; d < 3; ++d) contact.cell[d] = known.cell[d];
   contact.state.X = contact.state.anchor = X;
   contact.state.memory.depth = verdict.depth;
-  contact.state.memory.offset = was_open >> verdict.side & 1 ? verdict.depth : 0.0;
+  contact.state.memory.offset = verdict.is_crushed || was_open >> verdict.side & 1 ? verdict.depth : 0.0;
   const auto where = std::lower_bound(of_contact.begin(), of_contact.end(), q);
   contacts.insert(contacts.begin() + (where - of_contact.begin()), contact);
   of_contact.insert(where, q);

@@ -202,10 +202,20 @@ MDANIM_ALWAYS_INLINE void push_block(const PushTask &task, FieldContact *first, 
   Vec<Four> turn;
   if (SMOOTH && any(is_on_ramp(part_slope)))
     turn = part_turn(found.weights, places_around(task, found), found.spot, part_slope, shift);
+  FlattenedDepth<Four> flat;
+  int crushed = 0;
+  if (SMOOTH) {
+    crushed = bits(found.spot.det < crushed_volume(host.spacing));
+    const Vec<Four> normal = found.spot.gradient(below.slope);
+    if (any(is_flattened(normal))) {
+      flat = flattened_depth(found.weights, places_around(task, found), found.spot, normal, below.value);
+      below.value = flat.part * below.value;
+    }
+  }
   const auto stays = (below.value > 0.0) & (part > 0.0) & (below.value <= task.longest);
 
   const ContactPush<Four> push =
-      contact_push(task.law, task.dt, point.area, part, part_slope, turn, below, found.spot, found.off, shift, state);
+      contact_push(task.law, task.dt, point.area, part, part_slope, turn, below, flat, found.spot, found.off, shift, state);
   pushed.nodes = 0;
   spread_to_nodes<SMOOTH>(found.weights, -1.0 * push.both, {-1.0 * push.moment[0], -1.0 * push.moment[1], -1.0 * push.moment[2]},
                           [&](int i, int j, int k, const Vec<Four> &force) {
@@ -214,7 +224,7 @@ MDANIM_ALWAYS_INLINE void push_block(const PushTask &task, FieldContact *first, 
                             const Four column[4] = {force.x, force.y, force.z, Four{}};
                             store_columns(column, [&](int lane) { return &row[lane].value.x; });
                           });
-  pushed.hard = (found.lost | ~bits(stays)) & ((1 << n) - 1);
+  pushed.hard = (found.lost | crushed | ~bits(stays)) & ((1 << n) - 1);
   pushed.on_ramp = bits(is_on_ramp(part_slope));
   FieldContact *to[LANES];
 #pragma GCC unroll 8

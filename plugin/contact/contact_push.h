@@ -17,6 +17,10 @@ constexpr double RAMPS_END = 2.05;     // cells from an edge from which on all o
 // Volume of a cell that is not believed to be turned over.
 MDANIM_ALWAYS_INLINE double smallest_volume(double spacing) { return 0.02 * spacing * spacing * spacing; }
 
+// A smaller one is crushed: X of a point is soon another one there, and contacts of points that see it through smooth maps are
+// let go.
+MDANIM_ALWAYS_INLINE double crushed_volume(double spacing) { return 0.25 * spacing * spacing * spacing; }
+
 // Depth below one side [m], and its gradient by X.
 template <class Real> struct Depth {
   Real value{};
@@ -144,16 +148,46 @@ MDANIM_ALWAYS_INLINE Vec<Real> part_turn(const Weights<Real> &weights, const Pla
   return {pick(counts, turn.x, Real{}), pick(counts, turn.y, Real{}), pick(counts, turn.z, Real{})};
 }
 
+// Of the depth that counts where the host is pressed flat, f = phi d: phi, and what its gradient is more than phi times that of
+// d, by the place of the point and by the columns of dx/dX.
+template <class Real> struct FlattenedDepth {
+  bool is_flat = false;
+  Real part;
+  Vec<Real> on_point, on_column[3];
+};
+
+template <class Real> MDANIM_ALWAYS_INLINE auto is_flattened(const Vec<Real> &normal)
+{ return dot(normal, normal) > Flattened<double>::STEEP * Flattened<double>::STEEP; }
+
+// d n^2 = -2 sum_a v_a n . d(dx/dX_a),  v = n as a way of X.
+template <class Real, class Place>
+MDANIM_ALWAYS_INLINE FlattenedDepth<Real> flattened_depth(const Weights<Real> &weights, const Place &place,
+                                                          const Spot<Real> &spot, const Vec<Real> &normal, const Real &depth)
+{
+  const Flattened<Real> phi(root(dot(normal, normal)));
+  const Vec<Real> along = spot.to_material(normal);
+  const Real more = depth * (phi.value * phi.slope);
+  FlattenedDepth<Real> flat;
+  flat.is_flat = true;
+  flat.part = phi.value;
+  flat.on_point = more * spot.gradient(change_of_gradient(weights, place, normal, along));
+#pragma GCC unroll 3
+  for (int d = 0; d < 3; ++d) flat.on_column[d] = (more * component(along, d)) * normal;
+  return flat;
+}
+
 // `off` is X less its guess, about which all is linear; `shift` goes from X to the centre of the point's area; `turn` is
-// part_turn().
+// part_turn(); `below` has the depth that counts, and the slope of d.
 template <class Real>
 MDANIM_ALWAYS_INLINE ContactPush<Real> contact_push(const ContactLaw &law, double dt, const Real &area, const Real &part,
                                                     const Vec<Real> &part_slope, const Vec<Real> &turn, const Depth<Real> &below,
-                                                    const Spot<Real> &spot, const Vec<Real> &off, const Vec<Real> &shift,
-                                                    ContactState<Real> &state)
+                                                    const FlattenedDepth<Real> &flat, const Spot<Real> &spot,
+                                                    const Vec<Real> &off, const Vec<Real> &shift, ContactState<Real> &state)
 {
-  const Vec<Real> normal = spot.gradient(below.slope);    // of the depth, in space
+  const Vec<Real> normal = spot.gradient(below.slope);    // of d, in space
   ContactForce<Real> force = contact_pressure(law, area, part, below.value, dt, state.memory);
+  const Real press = force.press;    // along f
+  if (flat.is_flat) force.press = flat.part * press;
   ContactPush<Real> push;
   Vec<Real> lean;
   if (law.friction > 0.0) {
@@ -164,12 +198,16 @@ MDANIM_ALWAYS_INLINE ContactPush<Real> contact_push(const ContactLaw &law, doubl
     lean = force.kept * lean;
     state.anchor = state.X + lean;
   }
-  const Vec<Real> on_point = -force.press * normal + force.pull + force.drag + force.surface_energy * turn;
+  Vec<Real> on_point = -force.press * normal + force.pull + force.drag + force.surface_energy * turn;
+  if (flat.is_flat) on_point -= press * flat.on_point;
   push.at_centre = -force.surface_energy * spot.gradient(part_slope);
   push.both = on_point + push.at_centre;
 #pragma GCC unroll 3
   for (int d = 0; d < 3; ++d)
     push.moment[d] = component(off, d) * push.both + component(shift, d) * push.at_centre + component(lean, d) * force.pull;
+  if (flat.is_flat)
+#pragma GCC unroll 3
+    for (int d = 0; d < 3; ++d) push.moment[d] += press * flat.on_column[d];
   push.outcome = {on_point, spot.to_space(state.change), part * force.surface_energy};
   push.heat = force.heat;
   push.damped = force.damped;

@@ -117,6 +117,32 @@ MDANIM_ALWAYS_INLINE void contact_friction(const ContactLaw &law, const Real &ar
   memory.stick_energy = 0.5 * k * dot(left, left);
 }
 
+// Part of a depth that counts where the host is pressed flat, so that the depth that counts, f = phi d, goes on as a distance in
+// space: the gradient of d is 1 in an undeformed cell, and without limit in one that is flattened.
+//   phi(n) = y(n)/n,  y = n below STEEP, STEEP + a (n - STEEP)/(n - STEEP + a) beyond    n = |gradient of d in space|, a = MORE
+template <class Real> struct Flattened {
+  static constexpr double STEEP = 1.1, MORE = 1.0;
+  Real value, slope;    // phi, and -d(log phi)/dn over n
+  MDANIM_ALWAYS_INLINE explicit Flattened(const Real &steepness)
+  {
+    const Real over = larger(steepness - STEEP, Real{}), room = over + MORE, y = STEEP + MORE * over / room;
+    const auto is_flat = steepness > STEEP;
+    value = pick(is_flat, y / steepness, constant<Real>(1.0));
+    slope = pick(is_flat, (1.0 / steepness - MORE * MORE / (room * room * y)) / steepness, Real{});
+  }
+};
+
+// Energy that goes with a contact which is let go in a step: what it held, less what its last force still does in half of the
+// step, as leap-frog counts. `energy` is what it held, `deeper` how much deeper it is now, `part` what counts of it now.
+inline double let_go_energy(const ContactLaw &law, double area, const ContactMemory<double> &memory, double energy, double deeper,
+                            double part)
+{
+  const Onset<double> g(memory.depth - memory.offset, law.onset);
+  if (!(g.value > 0.0)) return energy;
+  const double k = law.kappa * area, was = energy / (k * g.value);    // part that counted
+  return energy + 0.5 * k * (was * g.slope * deeper + (part - was) * g.value);
+}
+
 // Part of a point that counts near a sharp edge of the other body, `inside` cells from it: 0 before `from`, 1 a `width` later.
 // The slope rises and falls evenly over ROUND of the width each, as a kink is a force that sets in at once. Ramps of points that
 // are (1 - ROUND) width apart add up to a straight line.

@@ -64,6 +64,8 @@ inline bool evaluate(const Placed &host, const MapWeights &weights, Spot<double>
   return missing >= 0;
 }
 
+inline bool is_crushed(const Spot<double> &spot, const ContactBody &body) { return spot.det < crushed_volume(body.spacing()); }
+
 // Adds force N_b + dN_b/dX . moment to every particle b.
 inline void spread(const Placed &host, const MapWeights &weights, const Vec3 &force, const Vec3 (&moment)[3], PaddedVec3 *on)
 {

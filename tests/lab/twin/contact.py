@@ -7,10 +7,11 @@ It has no boxes, no lists and no look ahead. A cell in contact that is turned in
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, fields
-from functools import cached_property
+from dataclasses import dataclass, field
 
 import numpy as np
+
+from .maps import inverse, trilinear_spot
 
 FACING = 0.45
 """Least cosine between a point's outward normal and that of a side that faces it, negated."""
@@ -20,120 +21,12 @@ ONSET = 0.05
 """eps over the spacing."""
 STICK = 0.8
 """kappa_t over kappa."""
+STEEP, MORE = 1.1, 1.0
+"""Gradient of the depth beyond which less than all of the depth counts, and how much it grows at most from there on."""
+CRUSHED = 0.25
+"""Volume over that of an undeformed cell below which points on edges are let go."""
 FAR = 2.2
 """Spacings from the middle of the nearest cell beyond which nothing is known of a point."""
-
-
-# --- maps from lattice coordinates to space ---
-
-
-def linear(X, cell, nodes: int = 2):
-    """First node, weights (P, nodes), their slopes and the slopes of these along one axis: those of a third node are 0."""
-    u, zero = X - cell, np.zeros_like(X)
-    slope = np.stack([zero - 1.0, zero + 1.0, zero][:nodes], -1)
-    return cell, np.stack([1.0 - u, u, zero][:nodes], -1), slope, np.zeros_like(slope)
-
-
-def smooth(X, cells: int):
-    """The same of quadratic B-splines, linear within half a cell of an end and beyond it."""
-    middle = np.floor(X + 0.5)
-    u = X - middle
-    w = np.stack([(0.5 - u) ** 2 / 2.0, 0.75 - u**2, (0.5 + u) ** 2 / 2.0], -1)
-    slope = np.stack([u - 0.5, -2.0 * u, u + 0.5], -1)
-    bend = np.tile([1.0, -2.0, 1.0], (len(X), 1))
-    end = np.where((X < 0.5) | (cells == 1), 0.0, cells - 1.0)
-    first, straight, straight_slope, straight_bend = linear(X, end, 3)
-    is_straight = (X < 0.5) | (cells == 1) | (X - (cells - 0.5) >= 0.0)
-    pick = is_straight[:, None]
-    of_axis = ((straight, w), (straight_slope, slope), (straight_bend, bend))
-    return np.where(is_straight, first, middle - 1.0), *(np.where(pick, a, b) for a, b in of_axis)
-
-
-@dataclass
-class Spot:
-    """Where points X are: place (P, 3), J = dx/dX (P, 3, 3), dJ/dX (P, 3, 3, 3), nodes (P, 8 or 27), their weights and the
-    gradients of these by X."""
-
-    x: np.ndarray
-    J: np.ndarray
-    dJ: np.ndarray
-    nodes: np.ndarray
-    N: np.ndarray
-    dN: np.ndarray
-
-    def to_material(self, way):
-        """A change of place as one of X."""
-        return np.einsum("pac,pc->pa", self.K, way)
-
-    def gradient(self, slope):
-        """A gradient by X as one in space."""
-        return np.einsum("pac,pa->pc", self.K, slope)
-
-    def take(self, rows) -> Spot:
-        """Some of the points."""
-        return Spot(*(getattr(self, part.name)[rows] for part in fields(self)))
-
-    @cached_property
-    def K(self):
-        """dX/dx."""
-        return np.linalg.inv(self.J)
-
-
-def evaluate(x, count, axes) -> Spot:
-    """The map with these weights along the axes; ``x`` are the particles of a cuboid, x fastest."""
-    (first_x, wx, sx, bx), (first_y, wy, sy, by), (first_z, wz, sz, bz) = axes
-    n = wx.shape[1]
-    i, j, k = (np.minimum(first[:, None].astype(int) + np.arange(n), c) for first, c in zip((first_x, first_y, first_z), count))
-    product = lambda a, b, c: (c[:, :, None, None] * b[:, None, :, None] * a[:, None, None, :]).reshape(len(a), n**3)
-    nx, ny = count[0] + 1, count[1] + 1
-    nodes = (i[:, None, None, :] + nx * (j[:, None, :, None] + ny * k[:, :, None, None])).reshape(len(i), n**3)
-    N = product(wx, wy, wz)
-    dN = np.stack([product(sx, wy, wz), product(wx, sy, wz), product(wx, wy, sz)], -1)
-    xy, xz, yz = product(sx, sy, wz), product(sx, wy, sz), product(wx, sy, sz)
-    ddN = np.stack([product(bx, wy, wz), xy, xz, xy, product(wx, by, wz), yz, xz, yz, product(wx, wy, bz)], -1)
-    at = x[nodes]
-    dJ = (at.transpose(0, 2, 1) @ ddN).reshape(-1, 3, 3, 3)
-    return Spot((N[:, None, :] @ at)[:, 0], at.transpose(0, 2, 1) @ dN, dJ, nodes, N, dN)
-
-
-def trilinear_spot(x, count, X, cell, nodes: int = 2) -> Spot:
-    """By the cells given."""
-    return evaluate(x, count, [linear(X[:, a], cell[:, a].astype(float), nodes) for a in range(3)])
-
-
-def smooth_spot(x, count, X) -> Spot:
-    """By B-splines."""
-    return evaluate(x, count, [smooth(X[:, a], int(count[a])) for a in range(3)])
-
-
-def newton(place, X, spot_of):
-    """X of these places, to the last bit that it reaches; NaN where a cell is turned inside out on the way."""
-    for _ in range(60):
-        spot = spot_of(np.nan_to_num(X))
-        X = np.where((np.linalg.det(spot.J) > 0.0)[:, None], X, np.nan)
-        if not np.isfinite(X).all():
-            spot.J[~np.isfinite(X).all(1)] = np.eye(3)
-        change = spot.to_material(place - spot.x)
-        length = np.linalg.norm(change, axis=1, keepdims=True)
-        X = X + change / np.maximum(1.0, 2.0 * length)
-        if length[np.isfinite(X).all(1)].max(initial=0.0) < 1e-7:  # the next step would be its square
-            return X
-    return np.where(length < 1e-7, X, np.nan)
-
-
-def inverse(x, count, place, X, is_smooth):
-    """X and cell of these places; ``X`` is where to begin. X is NaN where it is not found."""
-    for _ in range(20):
-        cell = np.clip(np.floor(np.nan_to_num(X)), 0, count - 1)
-        X = newton(place, X, lambda at, cell=cell: trilinear_spot(x, count, at, cell))
-        if (np.clip(np.floor(np.nan_to_num(X) + 1e-9), 0, count - 1) == cell).all():
-            break
-    X[is_smooth] = newton(place[is_smooth], X[is_smooth], lambda at: smooth_spot(x, count, at))
-    at = np.nan_to_num(X)
-    spot, sharp = trilinear_spot(x, count, at, cell, 3), smooth_spot(x, count, at[is_smooth])
-    for part in fields(Spot):
-        getattr(spot, part.name)[is_smooth] = getattr(sharp, part.name)
-    return X, cell.astype(int), spot
 
 
 # --- the undeformed cuboid ---
@@ -169,6 +62,14 @@ def ramps(count, is_flat, X):
     return low * high, low_slope * high - high_slope * low, start - np.minimum(X, count - X)
 
 
+def flattened(n):
+    """What of a depth counts whose gradient is n long, and -d(log of that)/dn over n."""
+    over = np.maximum(n - STEEP, 0.0)
+    y = STEEP + MORE * over / (over + MORE)
+    flat = n > STEEP
+    return np.where(flat, y / n, 1.0), np.where(flat, (1.0 / n - (MORE / (over + MORE)) ** 2 / y) / n, 0.0)
+
+
 def onset(d, eps):
     """g(d) and its derivative."""
     d = np.maximum(d, 0.0)
@@ -198,6 +99,7 @@ class Account:
     damped: float = 0.0
     touching: int = 0
     deepest: float = 0.0
+    let_go: float = 0.0
 
 
 @dataclass
@@ -216,6 +118,7 @@ class Memory:
     damping: np.ndarray
     drag: np.ndarray
     cell: np.ndarray
+    energy: np.ndarray
 
     @classmethod
     def new(cls, points: int, sides: int = 6) -> Memory:
@@ -223,7 +126,7 @@ class Memory:
         return cls(
             np.full(points, -1), zeros((points, sides), bool), np.full((points, 3), np.nan), zeros((points, 3)), zeros(points),
             zeros(points), zeros((points, 3)), zeros(points), zeros(points), zeros(points), zeros((points, 3)),
-            zeros((points, 3), int),
+            zeros((points, 3), int), zeros(points),
         )  # fmt: skip
 
 
@@ -379,14 +282,19 @@ class Twin:
 
         # Which sides a point might be in, and which could not hold energy.
         facing = np.empty((len(known), 6))
+        counted = depth.copy()
+        is_crushed = np.linalg.det(spot.J) < CRUSHED * h**3
+        sees_smooth = is_sharp[known]
         apart = np.empty((len(known), 6))
         _, _, missing = ramps(count, is_flat[known], X_centre)
         for s in range(6):
             inward = spot.gradient(np.tile(slopes[s], (len(known), 1)))
-            facing[:, s] = (normal[known] * inward).sum(1) / np.linalg.norm(inward, axis=1)
+            steep = np.linalg.norm(inward, axis=1)
+            facing[:, s] = (normal[known] * inward).sum(1) / steep
+            counted[sees_smooth, s] *= flattened(steep)[0][sees_smooth]
             others = [d for d in range(3) if d != s // 2]
             apart[:, s] = np.maximum(-depth[:, s] / h, missing[:, others].max(1))
-        is_open = (apart <= 0.0) | (0.5 * (FACING - facing) > apart)
+        is_open = (apart <= 0.0) | (0.5 * (FACING - facing) > apart) | is_crushed[:, None]
         t, slope_t, _ = ramps(count, is_flat[known], X_centre)
         product = lambda values, side: np.where(np.arange(3) == side[:, None] // 2, 1.0, values).prod(1)
 
@@ -397,14 +305,14 @@ class Twin:
             side = rank.argmin(1)
             row = np.arange(len(known))
             born = ~touches[known] & ~is_shut & np.isfinite(rank.min(1))
-            born &= (depth[row, side] <= DEEPEST * h) & (product(t, side) > 0.0)
+            born &= (depth[row, side] <= DEEPEST * h) & (product(t, side) > 0.0) & ~(is_crushed & sees_smooth)
             n = known[born]
             memory.side[n] = side[born]
             memory.anchor[n] = X[born]
-            memory.depth[n] = depth[born, side[born]]
-            was_open = memory.open[n, side[born]]
+            memory.depth[n] = counted[born, side[born]]
+            was_open = memory.open[n, side[born]] | is_crushed[born]
             memory.offset[n] = np.where(was_open, memory.depth[n], 0.0)
-            memory.pull[n] = memory.stick[n] = memory.stick_energy[n] = 0.0
+            memory.pull[n] = memory.stick[n] = memory.stick_energy[n] = memory.energy[n] = 0.0
             memory.damping[n] = memory.drag[n] = 0.0
         free = memory.side[known] < 0
         memory.open[:] = False
@@ -418,8 +326,10 @@ class Twin:
         if not len(c):
             return
         side = memory.side[known[c]]
-        d, t_c = depth[c, side], product(t[c], side)
-        over = (d <= 0.0) | (t_c <= 0.0)
+        d, t_c = counted[c, side], product(t[c], side)
+        crushed = is_crushed[c] & sees_smooth[c]
+        over = (d <= 0.0) | (t_c <= 0.0) | crushed
+        self._let_go(law, area, memory, known[c[crushed]], d[crushed], t_c[crushed])
         ended = known[c[over]]
         account.damped += float((0.5 * memory.damping[ended] * (d[over] - memory.depth[ended])).sum())
         account.heat += float(memory.stick_energy[ended].sum())
@@ -434,7 +344,12 @@ class Twin:
             rest = np.where(np.arange(3) == axis, slope_t[c], np.where(np.arange(3) == side[:, None] // 2, 1.0, t[c]))
             grad_t[:, axis] = np.where(side // 2 == axis, 0.0, rest[:, axis] * np.delete(rest, axis, 1).prod(1))
         grad = spot.gradient(slopes[side])
-        press, surface = pressure(law, area[n], t_c, n, memory, d, dt, account)
+        steep, along = np.linalg.norm(grad, axis=1), spot.to_material(grad)
+        part, more = flattened(steep)
+        part, more = np.where(is_sharp[n], part, 1.0), np.where(is_sharp[n], more, 0.0) * d
+        along_f, surface = pressure(law, area[n], t_c, n, memory, d, dt, account)
+        press = part * along_f
+        memory.energy[n] = t_c * surface
         pull = drag = lean = np.zeros((len(c), 3))
         if law.friction > 0.0:
             lean = memory.anchor[n] - X[c]  # to the anchor, at the depth of the point
@@ -447,9 +362,12 @@ class Twin:
         to_centre = spot.to_material(shift[n])
         turned = np.einsum("pcab,pb->pca", spot.dJ, to_centre)  # how J changes on the way to the centre
         at_point = -press[:, None] * grad + pull + drag - spot.gradient(np.einsum("pca,pc->pa", turned, at_centre))
+        bend = np.einsum("pcab,pb,pc->pa", spot.dJ, along, grad)  # how n.J v changes with X
+        at_point = at_point - (along_f * more)[:, None] * spot.gradient(bend)
         owner.push(0, n, at_point, total)
         owner.push(1, n, at_centre, total)
         moment = to_centre[:, :, None] * at_centre[:, None, :] + lean[:, :, None] * pull[:, None, :]  # (P, a, c)
+        moment = moment + (along_f * more)[:, None, None] * along[:, :, None] * grad[:, None, :]
         back = spot.N[:, :, None] * (at_point + at_centre)[:, None, :] + np.einsum("pna,pac->pnc", spot.dN, moment)
         np.add.at(total[host.rows], spot.nodes, -back)
 
@@ -457,6 +375,14 @@ class Twin:
         account.stick += float(memory.stick_energy[n].sum())
         account.touching += len(c)
         account.deepest = max(account.deepest, float(d.max(initial=0.0)))
+
+    def _let_go(self, law, area, memory, points, depth, t):
+        """What contacts in crushed cells held goes with them, less what their forces still do in half of the step."""
+        value, slope = onset(memory.depth[points] - memory.offset[points], law.onset)
+        k, energy = law.kappa * area[points], memory.energy[points]
+        was = energy / np.maximum(k * value, 1e-300)
+        half = 0.5 * k * (was * slope * (depth - memory.depth[points]) + (t - was) * value)
+        self.account.let_go += float((energy + np.where(value > 0.0, half, 0.0)).sum())
 
     def _in_plane(self, a, b, law, x, dt, total):
         axis, sign, at = self.planes[-1 - b]

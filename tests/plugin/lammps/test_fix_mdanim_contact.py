@@ -70,6 +70,14 @@ MEETINGS = {
             Cuboid((2, 3, 2), (0.2, 0.1, 2.86), axis=(0, 1, 0), angle=45, friction=0.3, velocity=(0, 0, -0.06)),
         )
     ),
+    # Gradients of depths come to 1.5.
+    "edge on edge, hard": Meeting(
+        (
+            Cuboid((3, 2, 2), axis=(1, 0, 0), angle=45),
+            Cuboid((2, 3, 2), (0.2, 0.1, 2.86), axis=(0, 1, 0), angle=45, velocity=(0, 0, -0.6)),
+        ),
+        steps=40,
+    ),
     "on a corner": Meeting((SLAB, Cuboid((2, 2, 2), (0.3, 0.2, 2.78), **ON_CORNER, velocity=(0.02, 0, -0.05))), steps=150),
     "on a corner, rough": Meeting(
         (ROUGH, Cuboid((2, 2, 2), (0.3, 0.2, 2.78), friction=0.4, **ON_CORNER, velocity=(0.02, 0, -0.05))), steps=150
