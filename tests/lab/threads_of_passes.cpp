@@ -108,7 +108,7 @@ std::vector<double> film(int threads, bool mixed)
   engine.set_threads(Threads::of_run(threads));
   springs.join(engine.crew);
   integrator.join(engine.crew);
-  engine.begin_run(kernels_common);
+  engine.begin_run(widest_kernels());
   if (!engine.cut(PARTICLES, object.data())) std::abort();
   PassRun &run = engine.start({x, v, v + PARTICLES}, Integrator::DT, true, 0);
   std::vector<double> told;
