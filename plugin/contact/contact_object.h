@@ -239,13 +239,6 @@ void keep_near(std::vector<Contact> &contacts, const std::vector<std::size_t> &o
   contacts.resize(left);
 }
 
-// Rows of a record as bytes.
-template <class Row> void append_rows(std::vector<std::uint8_t> &bytes, const Row *rows, std::size_t n)
-{
-  const auto *from = reinterpret_cast<const std::uint8_t *>(rows);
-  bytes.insert(bytes.end(), from, from + n * sizeof(Row));
-}
-
 }    // namespace mdanim
 
 #endif

@@ -3,6 +3,9 @@
 
 #include "lammps/fix_mdanim_contact.h"
 
+#include "records/byte_reader.h"
+#include "records/byte_writer.h"
+
 #include "fmt/format.h"
 
 #include <algorithm>
@@ -18,26 +21,6 @@ using namespace mdanim;
 static constexpr std::int64_t STATE_VERSION = 1;
 
 namespace {
-
-template <class Row> void append(Bytes &bytes, const std::vector<Row> &rows)
-{
-  const auto n = static_cast<std::int64_t>(rows.size());
-  append_rows(bytes, &n, 1);
-  append_rows(bytes, rows.data(), rows.size());
-}
-
-template <class Row> std::vector<Row> take(const std::uint8_t *&from, const std::uint8_t *end, const char *what)
-{
-  std::int64_t n = -1;
-  if (end - from >= static_cast<std::ptrdiff_t>(sizeof n)) std::memcpy(&n, from, sizeof n);
-  if (n < 0 || n > (end - from - static_cast<std::ptrdiff_t>(sizeof n)) / static_cast<std::ptrdiff_t>(sizeof(Row)))
-    throw std::runtime_error(fmt::format("the record of {} is cut off", what));
-  from += sizeof n;
-  std::vector<Row> rows(n);
-  if (n) std::memcpy(static_cast<void *>(rows.data()), from, n * sizeof(Row));
-  from += n * sizeof(Row);
-  return rows;
-}
 
 // Whether all of a row from this byte on are numbers.
 template <class Row> bool has_numbers(const Row &row, std::size_t from)
@@ -61,15 +44,11 @@ StateRecords FixMdanimContact::pack() const
   if (restarted) return *restarted;
   StateRecords records;
   for (const auto &[ids, contacts] : world_of_contact.pair_contacts()) {
-    Bytes &bytes = records[{ids.first, ids.second}];
-    append_rows(bytes, &STATE_VERSION, 1);
-    append(bytes, contacts.first);
-    append(bytes, contacts.second);
+    records[{ids.first, ids.second}] =
+        ByteWriter().put(STATE_VERSION).put_counted(contacts.first).put_counted(contacts.second).take();
   }
   for (const auto &[object_id, contacts] : world_of_contact.plane_contacts()) {
-    Bytes &bytes = records[{object_id, 0}];
-    append_rows(bytes, &STATE_VERSION, 1);
-    append(bytes, contacts);
+    records[{object_id, 0}] = ByteWriter().put(STATE_VERSION).put_counted(contacts).take();
   }
   return records;
 }
@@ -87,17 +66,14 @@ void FixMdanimContact::unpack(const StateRecords &records)
   ContactWorld::PlaneContacts planes;
   for (const auto &[key, bytes] : records) {
     const std::string what = key.b ? fmt::format("objects {} and {}", key.a, key.b) : fmt::format("object {}", key.a);
-    const auto bad = [&](const char *why) { throw std::runtime_error(fmt::format("the record of {} {}", what, why)); };
+    ByteReader reader(bytes.data(), bytes.size(), "the record of " + what);
+    const auto bad = [&](const char *why) { reader.fail(why); };
     if (!body_of.count(key.a) || (key.b && !body_of.count(key.b))) bad("is of an object that is not there");
-    const std::uint8_t *from = bytes.data(), *const end = from + bytes.size();
-    std::int64_t version = -1;
-    if (bytes.size() >= sizeof version) std::memcpy(&version, from, sizeof version);
-    if (version != STATE_VERSION) bad("has another version");
-    from += sizeof version;
+    reader.expect_version(STATE_VERSION);
     if (key.b) {
       auto &[lower, higher] = pairs[{key.a, key.b}];
-      lower = take<FieldContact>(from, end, what.c_str());
-      higher = take<FieldContact>(from, end, what.c_str());
+      lower = reader.get_counted<FieldContact>();
+      higher = reader.get_counted<FieldContact>();
       const auto check = [&](const std::vector<FieldContact> &rows, int owner, int host) {
         int before = -1;
         for (const FieldContact &row : rows) {
@@ -112,7 +88,7 @@ void FixMdanimContact::unpack(const StateRecords &records)
       check(lower, key.a, key.b);
       check(higher, key.b, key.a);
     } else {
-      planes[key.a] = take<PlaneContact>(from, end, what.c_str());
+      planes[key.a] = reader.get_counted<PlaneContact>();
       std::pair<int, int> before{-1, -1};
       for (const PlaneContact &row : planes[key.a]) {
         if (!is_point(key.a, row.point) || row.plane < 0 ||
@@ -123,7 +99,7 @@ void FixMdanimContact::unpack(const StateRecords &records)
         before = {row.plane, row.point};
       }
     }
-    if (from != end) bad("is too long");
+    reader.expect_end();
   }
   world_of_contact.restore(pairs, planes);
   restarted.reset();

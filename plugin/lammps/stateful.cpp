@@ -4,6 +4,8 @@
 #include "lammps/stateful.h"
 
 #include "lammps/rank_gather.h"
+#include "records/byte_reader.h"
+#include "records/byte_writer.h"
 
 #include "atom.h"
 #include "comm.h"
@@ -32,59 +34,7 @@ struct RestartHead {
   std::int64_t version, records, bytes;
 };
 
-template <class T> void append(Bytes &bytes, const T &value)
-{
-  const auto *from = reinterpret_cast<const std::uint8_t *>(&value);
-  bytes.insert(bytes.end(), from, from + sizeof value);
-}
-
-template <class T> T read(const std::uint8_t *&from)
-{
-  T value;
-  std::memcpy(&value, from, sizeof value);
-  from += sizeof value;
-  return value;
-}
-
 }    // namespace
-
-// --- arrays ---
-
-std::int64_t bytes_of(const StateRecords &records)
-{
-  std::int64_t bytes = 0;
-  for (const auto &[key, record] : records) bytes += static_cast<std::int64_t>(record.size());
-  return bytes;
-}
-
-void flatten(const StateRecords &records, std::int32_t *key, std::int64_t *first, std::uint8_t *data)
-{
-  *first = 0;
-  for (const auto &[objects, record] : records) {
-    *key++ = objects.a;
-    *key++ = objects.b;
-    std::copy(record.begin(), record.end(), data + *first);
-    first[1] = first[0] + static_cast<std::int64_t>(record.size());
-    ++first;
-  }
-}
-
-StateRecords unflatten(const FlatState &flat)
-{
-  StateRecords records;
-  if (flat.records < 0 || flat.first[0] != 0) fail("the first of {} records does not begin at 0", flat.records);
-  for (std::int64_t n = 0; n < flat.records; ++n) {
-    const StateKey key{flat.key[2 * n], flat.key[2 * n + 1]};
-    if (key.a < 0 || key.b < 0 || (key.b && (key.a == 0 || key.a >= key.b)))
-      fail("({}, {}) are not two objects; a key is (a, b) with 0 < a < b, (a, 0) or (0, 0)", key.a, key.b);
-    if (n && !(records.rbegin()->first < key))
-      fail("records must be sorted by their keys and differ; ({}, {}) comes after ({}, {})", key.a, key.b,
-           records.rbegin()->first.a, records.rbegin()->first.b);
-    if (flat.first[n + 1] < flat.first[n]) fail("record ({}, {}) ends before it begins", key.a, key.b);
-    records.emplace_hint(records.end(), key, Bytes(flat.data + flat.first[n], flat.data + flat.first[n + 1]));
-  }
-  return records;
-}
 
 // --- restart files ---
 
@@ -116,7 +66,8 @@ void read_restart(Stateful &state, LAMMPS *lmp, const std::string &fix, const ch
   try {
     // LAMMPS hands over no size, so that the head is believed once its version is right.
     const auto *from = reinterpret_cast<const std::uint8_t *>(buffer);
-    const auto head = read<RestartHead>(from);
+    const auto head = ByteReader(from, sizeof(RestartHead), "its state in the restart file").get<RestartHead>();
+    from += sizeof head;
     if (head.version != RESTART_VERSION)
       fail("its state in the restart file has version {}, {} is needed; write the file with this version of the plugin",
            head.version, RESTART_VERSION);
@@ -177,10 +128,10 @@ void ParticleRows::pack(StateRecords &into) const
     const StateRow &row = all[order[n]];
     if (n && !(all[order[n - 1]] < row)) fail("particle {} of object {} has its state twice", row.tag, row.object);
     Bytes &record = into[{row.object, 0}];
-    if (record.empty()) append(record, version);
-    append(record, row.tag);
-    const auto from = all_values.begin() + static_cast<std::ptrdiff_t>(order[n] * width);
-    record.insert(record.end(), from, from + static_cast<std::ptrdiff_t>(width));
+    ByteWriter writer(std::move(record));
+    if (writer.is_empty()) writer.put(version);
+    writer.put(row.tag).put(all_values.data() + order[n] * width, width);
+    record = writer.take();
   }
 }
 
@@ -189,17 +140,16 @@ void ParticleRows::unpack(const StateRecords &records, const Visit &visit) const
   const auto every_row = [&](auto &&take) {
     for (const auto &[key, record] : records) {
       if (key.a == 0 || key.b != 0) continue;
+      ByteReader reader(record.data(), record.size(), fmt::format("the record of object {}", key.a));
       const std::size_t size = sizeof(std::int32_t) + width;
       if (record.size() < sizeof version || (record.size() - sizeof version) % size)
-        fail("the record of object {} has {} bytes, not {} and a multiple of {}", key.a, record.size(), sizeof version, size);
-      const std::uint8_t *from = record.data(), *const end = from + record.size();
-      const auto found = read<std::int64_t>(from);
-      if (found != version) fail("the record of object {} has version {}, {} is needed", key.a, found, version);
+        reader.fail(fmt::format("has {} bytes, not {} and a multiple of {}", record.size(), sizeof version, size));
+      reader.expect_version(version);
       const tagint lowest = lowest_tag(key.a);
-      for (; from < end; from += width) {
-        const auto here = local.find(lowest + read<std::int32_t>(from));
+      while (reader.left() > 0) {
+        const auto here = local.find(lowest + reader.get<std::int32_t>());
         const bool is_local = here != local.end() && lmp->atom->molecule[here->second] == key.a;
-        take(is_local ? here->second : -1, from);
+        take(is_local ? here->second : -1, reader.skip(width));
       }
     }
   };

@@ -4,9 +4,9 @@
 #ifndef MDANIM_STATE_KIND_H
 #define MDANIM_STATE_KIND_H
 
-#include <cmath>
+#include "records/byte_reader.h"
+
 #include <cstring>
-#include <stdexcept>
 #include <string>
 
 namespace mdanim {
@@ -17,22 +17,26 @@ struct StateKind {
   double version;
 
   // Throws std::runtime_error where `found` is another kind or version.
-  void expect(const StateKind &found, const std::string &whose) const
+  void expect(const StateKind &found, const ByteReader &reader) const
   {
     if (std::memcmp(found.word, word, sizeof word) == 0 && found.version == version) return;
-    throw std::runtime_error(whose + "is not of version " + std::to_string(static_cast<int>(version)) + " of kind " + word +
-                             ", as this liquid's is; it was written for another model or by another version of the plugin");
+    reader.fail("is not of version " + std::to_string(static_cast<int>(version)) + " of kind " + word +
+                ", as this liquid's is; it was written for another model or by another version of the plugin");
   }
 };
 
-// Throws std::runtime_error where one of these numbers, named by what they are, is infinite or NaN, or below `least`.
-template <class Numbers>
-void need_numbers(const Numbers &numbers, const std::string &whose, const char *what, double least = -HUGE_VAL)
-{
-  for (const double number : numbers)
-    if (!(std::isfinite(number) && number >= least))
-      throw std::runtime_error(whose + "is damaged: " + what + " is " + std::to_string(number));
-}
+// The grid of cells that a state is of.
+struct StateGrid {
+  std::int64_t nx, ny, nz;
+
+  std::string words() const { return std::to_string(nx) + " x " + std::to_string(ny) + " x " + std::to_string(nz); }
+  // Throws std::runtime_error where `found` is another one.
+  void expect(const StateGrid &found, const ByteReader &reader) const
+  {
+    if (found.nx != nx || found.ny != ny || found.nz != nz)
+      reader.fail("is of a grid of " + found.words() + " cells, this one has " + words());
+  }
+};
 
 }    // namespace mdanim
 

@@ -22,7 +22,7 @@ PLUGIN, TESTS = ROOT / "plugin", ROOT / "tests" / "lab" / "plugin"
 FOLDER = ROOT / "build" / "mdanimtest"
 """Of the library alone: as LAMMPS_PLUGIN_PATH it makes LAMMPS load the styles of the tests."""
 FILE = FOLDER / "mdanimtestplugin.so"
-FLOORS = ("simd/kernels", "threads/team", "geometry/aligned_array", "lammps/stateful")
+FLOORS = ("simd/kernels", "threads/team", "records/state_records", "geometry/aligned_array", "lammps/stateful")
 PASSES = ("passes/cutter", "passes/displacement_budget", "passes/range_cut", "passes/tag_order")
 SOURCES = (
     *sorted(TESTS.glob("*.cpp")),

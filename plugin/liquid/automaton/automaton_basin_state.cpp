@@ -3,6 +3,8 @@
 
 #include "liquid/automaton/automaton_basin.h"
 #include "liquid/state_kind.h"
+#include "records/byte_reader.h"
+#include "records/byte_writer.h"
 
 #include <array>
 #include <cmath>
@@ -76,62 +78,49 @@ namespace {
 struct StateHead {
   StateKind kind;
   Basin::Ledger ledger;
-  std::int64_t nx, ny, nz;
+  StateGrid grid;
   std::int64_t units, swept, calm;
   Basin::Wait wait;
   double travel, crossed;
 };
-
-std::string number(std::int64_t n) { return std::to_string(n); }
-
-std::string grid(std::int64_t nx, std::int64_t ny, std::int64_t nz)
-{ return number(nx) + " x " + number(ny) + " x " + number(nz); }
 
 }    // namespace
 
 // The head, raw heights, and a byte for each cell: what it holds, or a code.
 std::vector<std::uint8_t> AutomatonBasin::state(const Ledger &ledger) const
 {
-  const StateHead head{KIND, ledger, shape.nx, shape.ny, shape.nz, units, swept, calm, wait, travel, crossed};
-  const std::size_t heights = height.size() * sizeof(double), count = solid.codes().size();
-  std::vector<std::uint8_t> bytes(sizeof head + heights + count);
-  std::memcpy(bytes.data(), &head, sizeof head);
-  std::memcpy(bytes.data() + sizeof head, height.data(), heights);
-  std::uint8_t *content = bytes.data() + sizeof head + heights;
-  contents(content);
-  for (std::size_t c = 0; c < count; ++c)
+  const StateHead head{KIND, ledger, {shape.nx, shape.ny, shape.nz}, units, swept, calm, wait, travel, crossed};
+  std::vector<std::uint8_t> content(solid.codes().size());
+  contents(content.data());
+  for (std::size_t c = 0; c < content.size(); ++c)
     if (content[c] == SOLID_CODE && solid.codes()[c] == SolidCells::STILL) content[c] = STILL_CODE;
-  return bytes;
+  return ByteWriter().put(head).put_all(height).put_all(content).take();
 }
 
 Basin::Ledger AutomatonBasin::set_state(const std::uint8_t *bytes, std::size_t size)
 {
-  StateHead head;
-  const std::size_t heights = height.size() * sizeof(double), count = solid.codes().size();
-  const std::string whose = "the liquid's state ";
-  if (size < sizeof head) throw std::runtime_error(whose + "has " + std::to_string(size) + " bytes, that is too few");
-  std::memcpy(&head, bytes, sizeof head);
-  KIND.expect(head.kind, whose);
-  if (head.nx != shape.nx || head.ny != shape.ny || head.nz != shape.nz || size != sizeof head + heights + count)
-    throw std::runtime_error(whose + "is of a grid of " + grid(head.nx, head.ny, head.nz) + " cells, this one has " +
-                             grid(shape.nx, shape.ny, shape.nz));
-  const std::uint8_t *const content = bytes + sizeof head + heights;
+  ByteReader reader(bytes, size, "the liquid's state");
+  const auto head = reader.get<StateHead>();
+  KIND.expect(head.kind, reader);
+  StateGrid{shape.nx, shape.ny, shape.nz}.expect(head.grid, reader);
+  const std::size_t count = solid.codes().size();
+  const auto stored = reader.get_all<double>(height.size());
+  const auto content = reader.get_all<std::uint8_t>(count);
+  reader.expect_end();
   std::int64_t held = 0;
-  for (std::size_t c = 0; c < count; ++c) {
-    if (content[c] >= STILL_CODE) continue;
-    if (content[c] > Cells::FULLEST) throw std::runtime_error(whose + "is damaged: a cell holds " + std::to_string(content[c]));
-    held += content[c];
+  for (const std::uint8_t of_cell : content) {
+    if (of_cell >= STILL_CODE) continue;
+    if (of_cell > Cells::FULLEST) reader.is_damaged("a cell holds " + std::to_string(of_cell));
+    held += of_cell;
   }
   if (held != head.units)
-    throw std::runtime_error(whose + "is damaged: it holds " + number(held) + " units of liquid, not " + number(head.units));
-  need_numbers(std::array{head.travel, head.crossed, head.wait.before, head.wait.dt}, whose, "a time or a way", 0.0);
-  need_numbers(std::array{head.swept, head.wait.steps, head.wait.looked}, whose, "a count", 0.0);
-  need_numbers(std::array{head.ledger.sum.work, head.ledger.sum.lost, head.ledger.power.work, head.ledger.power.lost}, whose,
-               "an energy");
-  std::vector<double> stored(height.size());
-  std::memcpy(stored.data(), bytes + sizeof head, heights);
+    reader.is_damaged("it holds " + std::to_string(held) + " units of liquid, not " + std::to_string(head.units));
+  reader.expect_numbers(std::array{head.travel, head.crossed, head.wait.before, head.wait.dt}, "a time or a way", 0.0);
+  reader.expect_numbers(std::array{head.swept, head.wait.steps, head.wait.looked}, "a count", 0.0);
+  reader.expect_numbers(std::array{head.ledger.sum.work, head.ledger.sum.lost, head.ledger.power.work, head.ledger.power.lost},
+                        "an energy");
   for (const double h : stored)
-    if (!std::isnan(h)) need_numbers(std::array{h}, whose, "the height of a column", 0.0);
+    if (!std::isnan(h)) reader.expect_numbers(std::array{h}, "the height of a column", 0.0);
   units = head.units;
   swept = head.swept;
   wait = head.wait;

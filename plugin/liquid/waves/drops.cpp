@@ -5,6 +5,8 @@
 #include "liquid/waves/columns.h"
 #include "liquid/waves/waves.h"
 #include "numbers/counter_rng.h"
+#include "records/byte_reader.h"
+#include "records/byte_writer.h"
 
 #include <algorithm>
 #include <cmath>
@@ -169,27 +171,19 @@ void Drops::merge()
   drops.resize(left);
 }
 
-std::vector<std::uint8_t> Drops::state() const
-{
-  std::vector<std::uint8_t> bytes(drops.size() * sizeof(Drop));
-  if (!bytes.empty()) std::memcpy(bytes.data(), drops.data(), bytes.size());
-  return bytes;
-}
+std::vector<std::uint8_t> Drops::state() const { return ByteWriter().put_all(drops).take(); }
 
 void Drops::set_state(const std::uint8_t *bytes, std::size_t size)
 {
-  const std::string whose = "the state of the drops ";
+  ByteReader reader(bytes, size, "the state of the drops");
   if (size % sizeof(Drop))
-    throw std::runtime_error(whose + "has " + std::to_string(size) + " bytes, that is not a multiple of " +
-                             std::to_string(sizeof(Drop)));
-  std::vector<Drop> taken(size / sizeof(Drop));
-  if (size) std::memcpy(taken.data(), bytes, size);
+    reader.fail("has " + std::to_string(size) + " bytes, that is not a multiple of " + std::to_string(sizeof(Drop)));
+  std::vector<Drop> taken = reader.get_all<Drop>(size / sizeof(Drop));
   for (const Drop &drop : taken)
     if (drop.units <= 0 || !(drop.x.x >= 0.0 && drop.x.x < nx && drop.x.y >= 0.0 && drop.x.y < ny &&
                              std::isfinite(drop.x.z + drop.v.x + drop.v.y + drop.v.z)))
-      throw std::runtime_error(whose + "is damaged: a drop of " + std::to_string(drop.units) + " units is at (" +
-                               std::to_string(drop.x.x) + ", " + std::to_string(drop.x.y) + ", " + std::to_string(drop.x.z) +
-                               ")");
+      reader.is_damaged("a drop of " + std::to_string(drop.units) + " units is at (" + std::to_string(drop.x.x) + ", " +
+                        std::to_string(drop.x.y) + ", " + std::to_string(drop.x.z) + ")");
   drops.swap(taken);
 }
 

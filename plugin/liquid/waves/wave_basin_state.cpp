@@ -5,6 +5,8 @@
 
 #include "liquid/state_kind.h"
 #include "liquid/waves/columns.h"
+#include "records/byte_reader.h"
+#include "records/byte_writer.h"
 
 #include <algorithm>
 #include <array>
@@ -24,7 +26,8 @@ constexpr double PI = 3.14159265358979323846;
 struct WaveBasinHead {
   StateKind kind;
   Basin::Ledger ledger;
-  std::int64_t nx, ny, nz, units, updates, stale, moving;
+  StateGrid grid;
+  std::int64_t units, updates, stale, moving;
   std::uint64_t still_known;
   Basin::Wait wait;
   double gone, slept;
@@ -32,25 +35,16 @@ struct WaveBasinHead {
   Basin::Impulses account;
   std::uint64_t of_drops;    // bytes
 
-  // Throws std::runtime_error.
-  void check(const std::string &whose) const
+  void check(const ByteReader &reader) const
   {
-    need_numbers(std::array{wait.before, wait.dt, gone, slept, travel}, whose, "a time or a way", 0.0);
-    need_numbers(std::array{units, updates, moving, wait.steps, wait.looked}, whose, "a count", 0.0);
-    need_numbers(std::array{ledger.sum.work, ledger.sum.lost, ledger.power.work, ledger.power.lost, energy_at_start}, whose,
-                 "an energy");
+    reader.expect_numbers(std::array{wait.before, wait.dt, gone, slept, travel}, "a time or a way", 0.0);
+    reader.expect_numbers(std::array{units, updates, moving, wait.steps, wait.looked}, "a count", 0.0);
+    reader.expect_numbers(std::array{ledger.sum.work, ledger.sum.lost, ledger.power.work, ledger.power.lost, energy_at_start},
+                          "an energy");
     for (const Vec3 &impulse : {account.basin, account.solids, account.came})
-      need_numbers(std::array{impulse.x, impulse.y, impulse.z}, whose, "an impulse");
+      reader.expect_numbers(std::array{impulse.x, impulse.y, impulse.z}, "an impulse");
   }
 };
-
-// Copies of values that the bytes of a state hold, which may lie anywhere.
-template <class Value> std::vector<Value> copied(const std::uint8_t *from, std::size_t count)
-{
-  std::vector<Value> values(count);
-  if (count > 0) std::memcpy(static_cast<void *>(values.data()), from, count * sizeof values[0]);
-  return values;
-}
 
 }    // namespace
 
@@ -165,62 +159,51 @@ void WaveBasin::contents(std::uint8_t *out) const
 // The head, masses, what floats, heads and added masses of columns, the makers, the drops, the waves.
 std::vector<std::uint8_t> WaveBasin::state(const Ledger &ledger) const
 {
-  const std::vector<std::uint8_t> of_makers = makers.state(), of_drops = drops.state(), of_waves = waves.state();
-  const WaveBasinHead head{KIND,        ledger, shape.nx, shape.ny, shape.nz, units,           updates, stale,          moving,
-                           still_known, wait,   gone,     slept,    travel,   energy_at_start, account, of_drops.size()};
-  std::vector<std::uint8_t> bytes;
-  const auto add = [&](const void *from, std::size_t size) {
-    const auto *first = static_cast<const std::uint8_t *>(from);
-    bytes.insert(bytes.end(), first, first + size);
-  };
-  add(&head, sizeof head);
-  add(mass.data(), mass.size() * sizeof mass[0]);
-  add(afloat.data(), afloat.size() * sizeof afloat[0]);
-  add(push.state().data(), push.state().size() * sizeof push.state()[0]);
-  add(push.added_state().data(), push.added_state().size() * sizeof push.added_state()[0]);
-  add(of_makers.data(), of_makers.size());
-  add(of_drops.data(), of_drops.size());
-  add(of_waves.data(), of_waves.size());
-  return bytes;
+  const Bytes of_drops = drops.state();
+  const WaveBasinHead head{KIND,
+                           ledger,
+                           {shape.nx, shape.ny, shape.nz},
+                           units,
+                           updates,
+                           stale,
+                           moving,
+                           still_known,
+                           wait,
+                           gone,
+                           slept,
+                           travel,
+                           energy_at_start,
+                           account,
+                           of_drops.size()};
+  ByteWriter writer;
+  writer.put(head).put_all(mass).put_all(afloat).put_all(push.state()).put_all(push.added_state());
+  return writer.put_all(makers.state()).put_all(of_drops).put_all(waves.state()).take();
 }
 
 Basin::Ledger WaveBasin::set_state(const std::uint8_t *bytes, std::size_t size)
 {
-  const std::string whose = "the liquid's state ";
-  const auto too_few = [&] { throw std::runtime_error(whose + "has " + std::to_string(size) + " bytes, that is too few"); };
-  WaveBasinHead head;
-  if (size < sizeof head) too_few();
-  std::memcpy(&head, bytes, sizeof head);
-  KIND.expect(head.kind, whose);
-  if (head.nx != shape.nx || head.ny != shape.ny || head.nz != shape.nz)
-    throw std::runtime_error(whose + "is of a grid of " + std::to_string(head.nx) + " x " + std::to_string(head.ny) + " x " +
-                             std::to_string(head.nz) + " cells, this one has " + std::to_string(shape.nx) + " x " +
-                             std::to_string(shape.ny) + " x " + std::to_string(shape.nz));
-  std::size_t place = sizeof head;
-  const auto skip = [&](std::size_t part_size) {
-    if (size - place < part_size) too_few();
-    const std::uint8_t *const from = bytes + place;
-    place += part_size;
-    return from;
-  };
-  const auto next = [&](auto value) { return copied<decltype(value)>(skip(columns() * sizeof value), columns()); };
+  ByteReader reader(bytes, size, "the liquid's state");
+  const auto head = reader.get<WaveBasinHead>();
+  KIND.expect(head.kind, reader);
+  StateGrid{shape.nx, shape.ny, shape.nz}.expect(head.grid, reader);
+  const auto masses = reader.get_all<double>(columns());
+  const auto floating = reader.get_all<AddedMass::Solids>(columns());
+  const auto ambient = reader.get_all<double>(columns());
+  const auto added = reader.get_all<AddedMass::Column>(columns());
   const std::size_t of_makers = makers.state().size();
-  const std::vector<double> masses = next(0.0);
-  const auto floating = next(AddedMass::Solids{});
-  const std::vector<double> ambient = next(0.0);
-  const auto added = next(AddedMass::Column{});
-  const std::uint8_t *const made = skip(of_makers), *const flying = skip(head.of_drops);
-  head.check(whose);
-  need_numbers(masses, whose, "the mass of a column", 0.0);
+  const std::uint8_t *const made = reader.skip(of_makers), *const flying = reader.skip(head.of_drops);
+  head.check(reader);
+  reader.expect_numbers(masses, "the mass of a column", 0.0);
   for (int c = 0; c < columns(); ++c) {
-    need_numbers(std::array{floating[c].mass, added[c].mass}, whose, "the mass of a column", 0.0);
-    need_numbers(std::array{floating[c].velocity, added[c].force, added[c].velocity}, whose, "the motion of a column");
-    if (!std::isnan(ambient[c])) need_numbers(std::array{ambient[c]}, whose, "the head around a body");
+    reader.expect_numbers(std::array{floating[c].mass, added[c].mass}, "the mass of a column", 0.0);
+    reader.expect_numbers(std::array{floating[c].velocity, added[c].force, added[c].velocity}, "the motion of a column");
+    if (!std::isnan(ambient[c])) reader.expect_numbers(std::array{ambient[c]}, "the head around a body");
   }
   Drops taken(drops);
   taken.set_state(flying, head.of_drops);
   WaveMakers(makers).set_state(made, of_makers);
-  waves.set_state(bytes + place, size - place);    // which also tells other makers, by its size
+  const std::size_t of_waves = reader.left();
+  waves.set_state(reader.skip(of_waves), of_waves);    // which also tells other makers, by its size
   drops = taken;
   makers.set_state(made, of_makers);
   mass = masses;

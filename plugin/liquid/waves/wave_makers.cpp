@@ -2,9 +2,10 @@
 
 #include "liquid/waves/wave_makers.h"
 
-#include "liquid/state_kind.h"
 #include "liquid/waves/waves.h"
 #include "numbers/portable.h"
+#include "records/byte_reader.h"
+#include "records/byte_writer.h"
 
 #include <algorithm>
 #include <array>
@@ -148,28 +149,18 @@ Units WaveMakers::go(Waves &waves, const Mouth &mouth, Units units)
   return taken;
 }
 
-std::vector<std::uint8_t> WaveMakers::state() const
-{
-  std::vector<std::uint8_t> bytes(sizeof account + due.size() * sizeof(double));
-  std::memcpy(bytes.data(), &account, sizeof account);
-  if (!due.empty()) std::memcpy(bytes.data() + sizeof account, due.data(), due.size() * sizeof(double));
-  return bytes;
-}
+std::vector<std::uint8_t> WaveMakers::state() const { return ByteWriter().put(account).put_all(due).take(); }
 
 void WaveMakers::set_state(const std::uint8_t *bytes, std::size_t size)
 {
+  ByteReader reader(bytes, size, "the state of the makers of waves");
   const std::size_t own = sizeof account + due.size() * sizeof(double);
-  if (size != own)
-    throw std::runtime_error("the state of the makers of waves has " + std::to_string(size) + " bytes, these have " +
-                             std::to_string(own));
-  Account counted;
-  std::vector<double> owed(due.size());
-  std::memcpy(&counted, bytes, sizeof counted);
-  if (!due.empty()) std::memcpy(owed.data(), bytes + sizeof counted, due.size() * sizeof(double));
-  const std::string whose = "the state of the makers of waves ";
-  need_numbers(std::array{counted.time, static_cast<double>(counted.in), static_cast<double>(counted.out)}, whose,
-               "what came, or its time", 0.0);
-  need_numbers(owed, whose, "the part of a unit that is due", -1.0);
+  if (size != own) reader.fail("has " + std::to_string(size) + " bytes, these have " + std::to_string(own));
+  const auto counted = reader.get<Account>();
+  const auto owed = reader.get_all<double>(due.size());
+  reader.expect_numbers(std::array{counted.time, static_cast<double>(counted.in), static_cast<double>(counted.out)},
+                        "what came, or its time", 0.0);
+  reader.expect_numbers(owed, "the part of a unit that is due", -1.0);
   account = counted;
   due = owed;
 }

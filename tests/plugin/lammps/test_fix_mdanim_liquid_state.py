@@ -45,7 +45,7 @@ def test_a_state_is_taken_up_to_the_bit(tmp_path):
     second.numpy.extract_atom("v")[: len(v)] = v
     take_up(second, stored)
     assert same(frames(first, [150])[-1], frames(second, [150])[-1])
-    with pytest.raises(RuntimeError, match="grid"):
+    with pytest.raises(RuntimeError, match=r"cut off: it has \d+ bytes"):
         take_up(second, stored[:-1])
     first.close()
     second.close()

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// Records of objects and of pairs of objects: what checkpoints, other instances and restart files hold alike.
+
+#ifndef MDANIM_STATE_RECORDS_H
+#define MDANIM_STATE_RECORDS_H
+
+#include "records/byte_writer.h"
+
+#include <cstdint>
+#include <map>
+#include <tuple>
+
+namespace mdanim {
+
+// The objects (molecule IDs) that a record is of: two of them, a < b; one, (a, 0); or (0, 0) for what is of the whole, as the
+// liquid.
+struct StateKey {
+  int a = 0, b = 0;
+  bool operator<(const StateKey &other) const { return std::tie(a, b) < std::tie(other.a, other.b); }
+};
+
+// Records by ascending keys. The same state gives the same bytes on any number of ranks; they depend neither on how particles are
+// numbered nor on which other objects there are. Each begins with a version of the fix's own.
+using StateRecords = std::map<StateKey, Bytes>;
+
+// Records as three arrays: keys (R, 2), where the bytes of each begin (R + 1), bytes.
+struct FlatState {
+  std::int64_t records;
+  const std::int32_t *key;
+  const std::int64_t *first;
+  const std::uint8_t *data;
+};
+
+std::int64_t bytes_of(const StateRecords &records);
+void flatten(const StateRecords &records, std::int32_t *key, std::int64_t *first, std::uint8_t *data);
+// Throws std::runtime_error when keys are not sorted, twice the same or no keys, or when `first` does not ascend from 0.
+StateRecords unflatten(const FlatState &flat);
+
+}    // namespace mdanim
+
+#endif
