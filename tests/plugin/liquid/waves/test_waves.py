@@ -457,7 +457,7 @@ def test_rest_is_part_of_the_state():
         (lambda state: np.concatenate([state[:8], [7], state[9:]]), "a grid of 7 x 20 x 24 cells, this one has 20 x 20 x 24"),
         (lambda state: np.concatenate([state[:48], [state[48] ^ 1], state[49:]]), "units of liquid, not"),
         (lambda state: np.concatenate([state[:64], np.full(24 * 800, 16), state[64 + 24 * 800 :]]), "spans and"),
-        (lambda state: np.concatenate([state[:-8], np.array([np.nan]).view(np.uint8)]), "no number"),
+        (lambda state: np.concatenate([state[:-8], np.array([np.nan]).view(np.uint8)]), "not a number"),
         (lambda state: np.concatenate([state[:-16], np.array([1e9]).view(np.uint8), state[-8:]]), "faster than 19.59"),
     ],
 )
