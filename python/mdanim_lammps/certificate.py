@@ -193,7 +193,7 @@ def fit_steps(scene: SceneRecord, longest: float) -> tuple[int, int, int]:
 
 
 def _in_frames(control: Control) -> Fraction | None:
-    """The time of a scene over that of a frame; None where it is no fraction of small numbers."""
+    """The time of a scene over that of a frame; None where it is not a fraction of small numbers."""
     ratio = Fraction(control.time * control.frames).limit_denominator(10_000)
     return None if abs(float(ratio) - control.time * control.frames) > 1e-9 * float(ratio or 1) else ratio
 

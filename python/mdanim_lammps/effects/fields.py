@@ -28,7 +28,7 @@ class Field:
     default: float = 0.0
     """Where nothing tells it."""
     ledger: bool = False
-    """Whether it is a column of the ledger, which is no energy."""
+    """Whether it is a column of the ledger that is not an energy."""
     whole: bool = False
     """Whether it counts something, and is written as a whole number where it is one."""
 

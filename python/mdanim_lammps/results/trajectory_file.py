@@ -144,7 +144,7 @@ def open_trajectory(path: Path) -> h5py.File:
             gc.collect()  # files of trajectories that nothing refers to any more
             return opened()
     except (OSError, RuntimeError, ValueError) as error:
-        raise OutputError(f"{path}: cannot be read as HDF5, it is no trajectory or it is damaged ({error})") from None
+        raise OutputError(f"{path}: cannot be read as HDF5, it is not a trajectory or it is damaged ({error})") from None
 
 
 def create_trajectory(path: Path, metadata: TrajectoryMetadata, frames: int, dt: float, steps_per_frame: int) -> None:
