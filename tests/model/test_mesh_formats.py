@@ -117,6 +117,26 @@ def test_every_form_is_read(tmp_path, name):
     np.testing.assert_array_equal(found.points[found.index].reshape(4, 3, 3), np.array(POINTS)[np.array(FACES)])
 
 
+@pytest.mark.parametrize(
+    ("prefix", "kind", "read_as"), [("", "uchar", [10, 20, 30]), ("diffuse_", "uchar", [10, 20, 30]), ("", "float", None)]
+)
+def test_colours_of_points_have_two_names(prefix, kind, read_as):
+    """Those that are not bytes are passed over: whether they end at 1 or at 255 is not told."""
+    names = "".join(f"property {kind} {prefix}{name}\n" for name in ("red", "green", "blue"))
+    text = GOOD["ascii.ply"].replace(b"property float z\n", b"property float z\n" + names.encode())
+    for point in POINTS:
+        row = " ".join(map(str, point)).encode() + b"\n"
+        text = text.replace(b"\n" + row, b"\n" + row[:-1] + b" 10 20 30\n", 1)
+    found = read(text, ".ply")
+    np.testing.assert_array_equal(found.points[found.index].reshape(4, 3, 3), np.array(POINTS)[np.array(FACES)])
+    assert found.color.tolist() == ([read_as] * 4 if read_as else [])
+
+
+def test_points_are_as_fine_as_stl_has_them():
+    """In every format: the same body is the same to the last bit."""
+    assert read(GOOD["plain.obj"], ".obj").points.dtype == read(GOOD["double.ply"], ".ply").points.dtype == np.float32
+
+
 @pytest.mark.parametrize("name", ["texture-not-there.obj", "upper.stl", "uneven-binary_little_endian.ply"])
 def test_it_becomes_a_body(tmp_path, name):
     (tmp_path / name).write_bytes(GOOD[name])

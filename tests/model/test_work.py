@@ -34,7 +34,17 @@ def test_surfaces_count_once_for_equal_objects_and_only_where_something_touches(
     assert 0 < alone < together < 20 * alone
     assert work.seconds(ten, 0.02, 10**6) - together == pytest.approx(5.0)
     assert work.memory(one, 0.02, 0) < work.memory(ten, 0.02, 0)
+    two = scene(*(solid(Sphere(0.5), f"b{k}") for k in range(2)))
+    assert work.memory(two, 0.02, 0) == work.memory(ten, 0.02, 0) and work.seconds(two, 0.02, 0) == work.seconds(ten, 0.02, 0)
     assert work.seconds(scene(solid(Box((1.0, 1.0, 1.0)))), 0.02, 0) == 0.0
+
+
+def test_points_of_a_mesh_cost_more_than_those_of_a_shape():
+    """They are found among samples, and their distances to triangles are searched: a ball with as many takes a quarter."""
+    knot, ball, floor = Mesh(MESHES / "knot.ply", 0.01), Sphere(0.5), solid(Box((1.0, 1.0, 1.0)), "floor")
+    h = 0.05 * (work._points(ball, 0.05) / work._points(knot, 0.05)) ** 0.5
+    assert work._points(ball, h) == pytest.approx(work._points(knot, 0.05))
+    assert work.seconds(scene(solid(knot), floor), 0.05, 0) > 4.0 * work.seconds(scene(solid(ball), floor), h, 0)
 
 
 def test_a_needle_is_told_by_its_surface():
