@@ -119,7 +119,7 @@ def test_what_cannot_be_overwritten(tmp_path):
     (tmp_path / "folder.png").mkdir()
     (tmp_path / "empty.png").touch()
     (tmp_path / "link.png").symlink_to(tmp_path / "empty.png")
-    for name, words in (("folder.png", "is a folder"), ("empty.png", "--force"), ("link.png", "--force")):
+    for name, words in (("folder.png", "is a folder"), ("empty.png", "force=True"), ("link.png", "force=True")):
         with pytest.raises(OutputError, match=words):
             check_overwriting(tmp_path / name, force=False)
     check_overwriting(tmp_path / "none.png", force=False)

@@ -354,7 +354,7 @@ def test_a_size_that_is_not_allowed_is_refused_at_once(tmp_path):
     assert died.returncode == 1 and died.stdout == ""
     assert died.stderr.splitlines()[-1].endswith(
         "trajectory.h5.part: cannot be written: File too large; raise the limit of the size of files (ulimit -f) or make room "
-        "and repeat the command, with --force if it made this folder"
+        "and repeat the command, with force=True if it made this folder"
     )
     assert not os.listdir(tmp_path)
 
