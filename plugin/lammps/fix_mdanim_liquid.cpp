@@ -257,7 +257,8 @@ int FixMdanimLiquid::setmask() { return POST_NEIGHBOR | POST_FORCE | END_OF_STEP
 
 void FixMdanimLiquid::init()
 {
-  need((model == Model::WAVES ? OBJECTS : 0) | (lattice_cells.given() ? ATOM_MAP : 0));
+  if (model == Model::WAVES) need(OBJECTS);
+  if (lattice_cells.given()) need(ATOM_MAP);
   FixBase::init();
   buoyancy->init(name());
   if (model == Model::WAVES && !lattice_cells.given())
