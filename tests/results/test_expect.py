@@ -10,7 +10,7 @@ import pytest
 from mdanim_lammps.effects.measured import Measured
 from mdanim_lammps.features.liquid.measure import immersed_depth, immersed_share
 from mdanim_lammps.model.grid import Grid
-from mdanim_lammps.results.expect import evaluate, recorded
+from mdanim_lammps.results.expect import Outcome, evaluate, recorded
 from mdanim_lammps.scene.scene import Expect
 
 GRID = Grid((-1.0, -2.0, 0.0), (1.0, 2.0, 3.0), (20, 40, 30))
@@ -110,6 +110,19 @@ def test_energy_of_waves_is_that_of_its_time():
 def test_residual_is_the_worst_so_far(cells, time, residual):
     """Cells gained or lost count even if they come back later; up to a time only what was before."""
     assert found("liquid", "residual", time, liquid_cells=cells) == residual
+
+
+@pytest.mark.parametrize(
+    ("relation", "below", "equal", "above"), [("=", 0, 1, 0), ("<", 1, 0, 0), (">", 0, 0, 1), ("<=", 1, 1, 0), (">=", 0, 1, 1)]
+)
+def test_bounds_are_met_on_their_side(relation, below, equal, above):
+    """Less, equal and more than a value by a thousandth; a number that is none meets nothing."""
+    for value in (-2.0, 0.3):
+        expect = Expect("box", "position.z", value, relation=relation)
+        met = [Outcome(expect, value + d).met for d in (-1e-3, 0.0, 1e-3)]
+        assert met == [bool(below), bool(equal), bool(above)]
+        assert not Outcome(expect, float("nan")).met
+    assert f"expect box.position.z {relation} 0.3" in str(Outcome(expect, 0.2))
 
 
 def test_what_to_record_is_named_once():

@@ -170,7 +170,9 @@ def scenes(draw):
         if wet or (kind != "liquid" and QUANTITIES[kind, quantity].needs != "liquid"):
             subject = kind if kind in GLOBALS else draw(st.sampled_from([b.name for b in bodies]))
             time = draw(st.none() | st.floats(0, control.time))
-            expects.append(records.Expect(subject, quantity, draw(numbers), draw(st.floats(0, 1e3)), time))
+            relation = draw(st.sampled_from(["=", "<", ">", "<=", ">="]))
+            tolerance = draw(st.floats(0, 1e3)) if relation == "=" else 0.0
+            expects.append(records.Expect(subject, quantity, draw(numbers), tolerance, time, relation))
     return records.SceneRecord(
         name="scene",
         control=control,

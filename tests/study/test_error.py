@@ -239,6 +239,7 @@ expect bar.position.z at 0.1 s = 0.9 +- 0.05 m
 expect bar.position.z at 0.1 s = 0.9 +- 0.5 m
 expect bar.velocity.z at 0.1 s = -1 +- 0.1 m/s
 expect energy.residual = 0 +- 1e-3
+expect bar.position.z at 0.1 s < 0.9
 """
     )
     swing = track()[:, :1]

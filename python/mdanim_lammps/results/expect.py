@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import operator
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -12,6 +13,16 @@ from ..effects.measured import Measure, Measured, Recorded
 from ..features import facets
 from ..scene.formatting import number
 from ..scene.scene import GLOBALS, Expect
+
+ROUNDING = 1e-12
+"""Relative error of a value that was read from text [-]."""
+BOUNDS = {
+    "<": operator.lt,
+    ">": operator.gt,
+    "<=": lambda found, value: found <= value + ROUNDING * abs(value),
+    ">=": lambda found, value: found >= value - ROUNDING * abs(value),
+}
+"""Whether what is found keeps a bound."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,17 +36,22 @@ class Outcome:
     def met(self) -> bool:
         # A NaN is never met; the last digit of a value read from text is forgiven.
         e = self.expect
-        return abs(self.found - e.value) <= e.tolerance + 1e-12 * max(abs(e.value), e.tolerance)
+        if e.relation != "=":
+            return BOUNDS[e.relation](self.found, e.value)
+        return abs(self.found - e.value) <= e.tolerance + ROUNDING * max(abs(e.value), e.tolerance)
 
     def __str__(self) -> str:
         e = self.expect
         when = "" if e.time is None else f" at {number(e.time, 6)} s"
         verdict = "met" if self.met else "MISSED"
         place = f"{e.span}: " if e.span else ""
-        return (
-            f"{place}expect {e.subject}.{e.quantity}{when} = {number(e.value, 6)} +- {number(e.tolerance, 6)}: "
-            f"found {number(self.found, 6)}, {verdict}"
-        )
+        return f"{place}expect {e.subject}.{e.quantity}{when} {self.asked}: found {number(self.found, 6)}, {verdict}"
+
+    @property
+    def asked(self) -> str:
+        """``= 0.12 +- 0.01``, ``< 0.1``"""
+        e = self.expect
+        return f"{e.relation} {number(e.value, 6)}" + (f" +- {number(e.tolerance, 6)}" if e.relation == "=" else "")
 
 
 def evaluate(expects: tuple[Expect, ...], measured: Measured) -> list[Outcome]:

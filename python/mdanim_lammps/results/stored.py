@@ -37,7 +37,8 @@ SUMMARY = record(
         "penetration": number,
         "expect": many(
             record(
-                {"what": text, "time": maybe(number), "value": number, "tolerance": number, "found": maybe(number), "met": flag}
+                {"what": text, "time": maybe(number), "value": number, "tolerance": number, "found": maybe(number), "met": flag},
+                {"relation": text},
             )
         ),
     },

@@ -346,6 +346,7 @@ class _Run:
                 {
                     "what": f"{o.expect.subject}.{o.expect.quantity}",
                     "time": o.expect.time,
+                    "relation": o.expect.relation,
                     "value": o.expect.value,
                     "tolerance": o.expect.tolerance,
                     "found": o.found if np.isfinite(o.found) else None,

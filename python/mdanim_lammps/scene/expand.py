@@ -346,7 +346,7 @@ class Expander:
         kind = v.slot.kind
         if kind == "color":
             return self._color(s, v, x)
-        if kind in ("text", "choice", "check") or v.name is not None:
+        if kind in ("text", "choice", "check", "relation") or v.name is not None:
             return x
         what = label(s, v)
         if kind == "number":

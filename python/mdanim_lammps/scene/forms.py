@@ -24,7 +24,7 @@ class Slot:
     """A place for a value."""
 
     kind: str
-    """number, vector, text, choice, color, place or check."""
+    """number, vector, text, choice, color, place, check or relation."""
     text: str
     """As shown to people: ``r``, ``(x, y, z)``."""
     unit: str = "1"
@@ -43,6 +43,10 @@ class OptionalPart:
     parts: tuple
 
 
+KINDS = {"color": "color", "NAME.QUANTITY": "check", "RELATION": "relation"}
+"""Kinds of slots that have a reader of their own, by what they show."""
+
+
 def _slot(text: str) -> Slot:
     shown, _, u = text.partition(":")
     u, _, other = u.partition(" or ")
@@ -54,8 +58,8 @@ def _slot(text: str) -> Slot:
         return Slot("text", shown)
     if "|" in shown:
         return Slot("choice", shown, choices=tuple(shown.split("|")))
-    if shown in ("color", "NAME.QUANTITY"):
-        return Slot("color" if shown == "color" else "check", shown)
+    if shown in KINDS:
+        return Slot(KINDS[shown], shown)
     return Slot("number", shown, u, dim=dim)
 
 
@@ -99,15 +103,15 @@ def literals(form: str) -> frozenset[str]:
 
 
 def write(parts: tuple, values: tuple, number: Callable[[float], str] = repr) -> str:
-    """The text of one alternative with these values, in SI units; optional parts whose values are None are left out."""
+    """The text of one alternative with these values, in SI units; optional parts without values are left out."""
     rest = iter(values)
 
     def text(p) -> str | None:
         if isinstance(p, Word):
             return p.text
         if isinstance(p, OptionalPart):
-            taken = [text(q) for q in p.parts]
-            return None if None in taken else " ".join(taken)
+            taken = [text(q) for q in p.parts] if any(isinstance(q, Slot) for q in pieces(p.parts)) else []
+            return None if None in taken else " ".join(filter(None, taken))
         return _value(p, next(rest), number)
 
     return " ".join(filter(None, map(text, parts)))

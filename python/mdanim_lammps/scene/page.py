@@ -91,8 +91,9 @@ include "rubber.txt"            # relative to this file
 """
 
 _END = """
-`position` and `velocity` are followed by `.x`, `.y` or `.z`. Time is written `at 2 s`; without
-it the check is made at the end of the run, or over the whole run for residuals and maxima.
+A line ends with `= value`, `= value +- tolerance`, `= value +- p %` (per cent of the value), or with a bound:
+`< value`, `> value`, `<= value`, `>= value`. `position` and `velocity` are followed by `.x`, `.y` or `.z`. Time is
+written `at 2 s`; without it the check is made at the end of the run, or over the whole run for residuals and maxima.
 """
 
 

@@ -384,6 +384,10 @@ GLOBALS = tuple(dict.fromkeys(subject for subject, _ in QUANTITIES if subject !=
 """Subjects of ``expect`` that are not objects."""
 
 
+RELATIONS = {"=": "=", "<": "<", ">": ">", "<=": "<=", ">=": ">=", "≤": "<=", "≥": ">="}
+"""How what is found may stand to a value, by how it is written."""
+
+
 @dataclass(frozen=True, slots=True)
 class Expect:
     """A self-check, evaluated after the run."""
@@ -398,6 +402,8 @@ class Expect:
     """SI, >= 0."""
     time: float | None = None
     """[s]; None is the end of the run (``strain.max``, ``penetration.max``, ``crest``, residuals: the whole run)."""
+    relation: str = "="
+    """One of RELATIONS."""
     span: Span | None = field(default=None, compare=False, repr=False)
 
     @property
@@ -416,8 +422,9 @@ class Check(Codec):
     """A self-check; its values are read in validate.py, for their unit is that of the quantity."""
 
     def write(self, k: Keyword, value: Any) -> tuple[int, tuple]:
-        numbers = (f"{x!r} {value.unit}".rstrip() for x in (value.value, value.tolerance))
-        return 0, (f"{value.subject}.{value.quantity}", value.time, *numbers)
+        numbers = [f"{x!r} {value.unit}".rstrip() for x in (value.value, value.tolerance)]
+        tolerance = numbers[1] if value.relation == "=" else None
+        return 0, (f"{value.subject}.{value.quantity}", value.time, value.relation, numbers[0], tolerance)
 
 
 @dataclass(frozen=True, slots=True)
@@ -435,9 +442,10 @@ class SceneRecord:
     """Only what ``effects { }`` says; everything else is ``auto``."""
     render: Render = field(default_factory=Render)
     expects: tuple[Expect, ...] = setting(
-        "<NAME.QUANTITY> [at <T:s>] = <value:?> [+- <tolerance:?>]",
+        "<NAME.QUANTITY> [at <T:s>] <RELATION> <value:?> [+- <tolerance:?> [%]]",
         "A self-check, evaluated after the run; a miss is exit code 6. Without `at`: the end of the run, and the whole run for "
-        "residuals and maxima. Without `+-`: exactly.",
+        "residuals and maxima. RELATION is `=`, `<`, `>`, `<=` or `>=`; only `=` has a tolerance, in the unit of the value or in "
+        "per cent of it: `= 12 cm +- 2 %`. Without `+-`: exactly.",
         "ball.position.z at 1 s = 0.1 m +- 1 cm", name="expect", default=(), many=True, codec=Check())  # fmt: skip
     path: Path | None = field(default=None, compare=False)
     """The file that was read, absolute."""

@@ -15,7 +15,7 @@ from .forms import OptionalPart, Slot, Word, alternatives, literals, pieces
 from .keywords import BLOCKS, KEYWORDS, NOT_SUPPORTED, STATEMENTS, did_you_mean, example, foreign_line, misplaced, nearest
 from .limits import DEEPEST_INCLUDE, DEEPEST_REPEAT, MOST_BYTES, MOST_FILES
 from .reader import ODD, Reader
-from .scene import GLOBALS
+from .scene import GLOBALS, RELATIONS
 from .schema import Keyword
 from .source import Fault, Problems, SceneFile, UnreadableFile, read_text
 from .tokens import Token
@@ -407,6 +407,11 @@ class Parser(Reader):
             return Value(slot, t, self.tokens[self.at - 1], text=str(name))
         if slot.kind == "check":
             return self.check(slot, keyword)
+        if slot.kind == "relation":
+            if t not in RELATIONS:
+                raise Fault(t, f"'=' is missing in {keyword.name}, found {t.found()}", f"{example(keyword)}; or <, >, <=, >=")
+            self.take()
+            return Value(slot, t, t, text=RELATIONS[str(t)])
         if slot.kind == "place" and t.type == "NAME":
             name = self.name()
             return Value(slot, name.token, name.last, name=name)

@@ -15,6 +15,7 @@ _PATTERNS = {
     "BLANK": r"[ \t\f\r\u00a0\u202f]+|\#[^\n]*",
     "PLUS_MINUS": r"\+-|±",
     "DOTS": r"\.\.",
+    "RELATION": r"[<>]=?|[≤≥]",
     "BAD": r".",
 }
 _SIGNS = {

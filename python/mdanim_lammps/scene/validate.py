@@ -380,7 +380,7 @@ class Validator:
 
     def expect(self, s: EvaluatedSetting, control: records.Control | None) -> records.Expect | None:
         """One self-check, with the unit of its quantity."""
-        (subject, quantity), time, value, tolerance = s.values
+        (subject, quantity), time, relation, value, tolerance = s.values
         kind = subject if subject in GLOBALS else "NAME"
         known = [q for k, q in QUANTITIES if k == kind]
         if kind == "NAME" and not self.known_subject(subject, quantity, s.span(0)):
@@ -397,11 +397,14 @@ class Validator:
             end = f", which ends at {number(control.time, 6)} s" if control else ""
             self.problem(s.span(1), f"{number(time, 6)} s lies outside the run{end}", "an earlier time, or a longer control time")
         dim = units.unit(of.unit).dim
-        numbers = []
-        for n, (x, what) in enumerate(((value, "the value"), (tolerance, "the tolerance")), 2):
+        numbers, part = [], "%" in s.entry.words
+        for n, (x, what) in enumerate(((value, "the value"), (tolerance, "the tolerance")), 3):
             if x is None:
                 numbers.append(0.0)
                 continue
+            if n == 4 and (cause := self._tolerance_unfit(relation, part, numbers[0], x)):
+                self.problem(s.span(n), *cause)
+                return None
             if units.dimension(x) not in (dim, units.NONE):
                 self.problem(
                     s.span(n),
@@ -413,8 +416,21 @@ class Validator:
                 self.problem(s.span(n), f"{what} is not a finite number")
             numbers.append(units.magnitude(x))
         if numbers[1] < 0.0:
-            self.problem(s.span(3), f"the tolerance must be >= 0, found {units.show(tolerance)}")
-        return records.Expect(subject, quantity, numbers[0], numbers[1], time, s.span())
+            self.problem(s.span(4), f"the tolerance must be >= 0, found {units.show(tolerance)}")
+        if part:
+            numbers[1] *= abs(numbers[0]) / 100.0
+        return records.Expect(subject, quantity, numbers[0], numbers[1], time, relation, s.span())
+
+    @staticmethod
+    def _tolerance_unfit(relation: str, part: bool, value: float, tolerance: Any) -> tuple[str, str] | None:
+        """Cause and way out where a tolerance says nothing."""
+        if relation != "=":
+            return f"a tolerance cannot follow '{relation}'", f"write the bound itself, or = {number(value, 6)} +- ..."
+        if part and units.dimension(tolerance) != units.NONE:
+            return f"per cent is of a plain number, found {units.show(tolerance)}", "leave out the unit, or the per cent"
+        if part and value == 0.0:
+            return "per cent of 0 is nothing", "write a tolerance with the unit of the value"
+        return None
 
     def known_subject(self, subject: str, quantity: str, span: Span) -> bool:
         """An object; or a word for the whole scene, mistyped."""

@@ -185,6 +185,10 @@ def _value(seen: Sequence[float], usual: float) -> Measurement:
     return Measurement(middle, max(max(seen) - min(seen), usual * middle))
 
 
+BOUNDS = (("energy", "residual"), ("penetration", "max"), ("liquid", "residual"))
+"""Quantities of which an ``expect`` says how large they may be."""
+
+
 def sharp(
     expects: Sequence[Expect], names: Sequence[str], track: np.ndarray, times: np.ndarray, sharpness: float = SHARP
 ) -> dict[int, float]:
@@ -192,17 +196,18 @@ def sharp(
 
     That is the extent of the object's own motion for positions, that of the run or that of the truth, whichever goes farther; its
     largest speed for velocities, the value for others.
-    Residuals and penetration are bounds, not truths; so is a line whose tolerance is a larger share than ``sharpness``.
+    Lines with ``<`` or ``>``, residuals and penetration are bounds, not truths; so is a line whose tolerance is a larger share
+    than ``sharpness``.
     """
     out, way = {}, {name: extent(track[:, m][:, None]) for m, name in enumerate(names)}
     for e in expects:
-        if e.quantity.startswith("position."):
+        if e.quantity.startswith("position.") and e.relation == "=":
             told = abs(e.value - track[0, names.index(e.subject), "xyz".index(e.quantity[-1])])
             if e.tolerance <= 1.1 * sharpness * told:
                 way[e.subject] = max(way[e.subject], told)
     for k, e in enumerate(expects):
         kind = e.quantity.split(".")[0]
-        if (e.subject, e.quantity) in (("energy", "residual"), ("penetration", "max"), ("liquid", "residual")):
+        if e.relation != "=" or (e.subject, e.quantity) in BOUNDS:
             continue
         if kind in ("position", "velocity"):
             own = track[:, names.index(e.subject)]

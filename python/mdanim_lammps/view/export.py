@@ -277,6 +277,12 @@ def _text(data: bytes) -> str:
 # --- what the folder tells ----------------------------------------------------------------------------------------------
 
 
+def _asked(e: dict) -> str:
+    """What an expectation of a summary asks for: a value with its tolerance, or a bound."""
+    relation = e.get("relation", "=")
+    return f"{e['value']:.6g} ± {e['tolerance']:.3g}" if relation == "=" else f"{relation} {e['value']:.6g}"
+
+
 def _sections(folder: Path, news: dict) -> Iterable[str]:
     facts = news["facts"]
     yield _table("Cost", ["effect", "seconds", "asked for at"], _cost_rows(facts.get("cost") or {"other": news["cost"]}))
@@ -284,10 +290,7 @@ def _sections(folder: Path, news: dict) -> Iterable[str]:
     yield _table(
         "Expected and found",
         ["", "what", "at [s]", "expected", "found"],
-        [
-            ("met" if e["met"] else "MISSED", e["what"], e["time"], f"{e['value']:.6g} ± {e['tolerance']:.3g}", e["found"])
-            for e in summary.get("expect", ())
-        ],
+        [("met" if e["met"] else "MISSED", e["what"], e["time"], _asked(e), e["found"]) for e in summary.get("expect", ())],
     )
     certificate = facts.get("certificate", {})
     if certificate:
