@@ -393,3 +393,55 @@ def test_a_large_size_without_unit_is_told():
     assert "20 m" in note.message
     for shape in ("sphere 10 m", "sphere 1", "box (10, 10, 10) cm"):
         assert not parse_scene(text(shape=shape)).warnings
+
+
+@pytest.mark.parametrize(
+    ("let", "expression", "value"),
+    [
+        ("5 m", "gap + 20 cm", 5.2),
+        ("5", "(gap + 20) cm", 0.25),
+        ("5", "gap m + 20 cm", 5.2),
+        ("5", "20 cm + gap", 5.2),
+        ("5", "gap + 0.2 m", 5.2),  # a bare number is SI in any case
+        ("5", "2*gap + 20 cm", 0.3),
+        ("0", "gap + 20 cm", 0.2),
+    ],
+)
+def test_sums_with_a_let_that_have_one_meaning(let, expression, value):
+    """Brackets, a unit of its own, and the unit of SI say in which unit a number is."""
+    scene = f"let gap = {let} object b {{ shape sphere 10 cm mass 1 kg elasticity 1 MPa position (0, 0, {expression}) }}"
+    solids = parse_scene(f"{scene}\ncontrol {{ time 1 s }}".replace(" object", "\nobject")).solids
+    assert solids[0].position[2] == pytest.approx(value, rel=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("lets", "expression", "column"),
+    [
+        ("let gap = 5", "gap + 20 cm", 0),
+        ("let gap = 5", "1 m - gap + 20 cm", 6),
+        ("let gap = 5", "-gap - 20 mm", 1),
+        ("let a = 1 m\nlet gap = 5", "a + 2 + gap cm", 8),
+        ("repeat i in 1 .. 1 { let gap = i", "gap + 20 cm", 0),
+    ],
+)
+def test_a_let_without_unit_before_a_unit_is_refused(lets, expression, column):
+    """With `let gap = 5` the sum `gap + 20 cm` would be 25 cm, and with `let gap = 5 m` 5.2 m."""
+    repeat, place = "}" * lets.count("{"), "position (0, 0, "
+    scene = f"{lets}\nobject b {{\nshape sphere 10 cm mass 1 kg elasticity 1 MPa\n{place}{expression})\n}}{repeat}"
+    with pytest.raises(SceneError) as error:
+        parse_scene(f"{scene}\ncontrol {{ time 1 s }}")
+    (problem,) = error.value.problems
+    unit = expression.split()[-1]
+    assert (
+        problem.message.removesuffix(" (with i = 1)")
+        == f"gap has no unit and stands in a sum before {unit}: it could be in {unit} or in m"
+    )
+    assert problem.hint == f"write (gap + ...) {unit}, or gap m + ... {unit}; or give gap a unit in its let"
+    assert problem.span.column == 1 + len(place) + column
+
+
+def test_an_index_in_a_sum_has_the_unit_behind_it():
+    """An index of a repeat is a number of the text, as a literal is."""
+    scene = "repeat i in 1 .. 2 { object b[i] { shape sphere 1 cm mass 1 kg elasticity 1 MPa position (0, 0, i + 20 cm) } }"
+    solids = parse_scene(f"{scene}\ncontrol {{ time 1 s }}").solids
+    assert [s.position[2] for s in solids] == pytest.approx([0.21, 0.22])

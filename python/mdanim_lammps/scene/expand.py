@@ -152,7 +152,7 @@ class Expander:
                 n = high - low + 1.0
                 known = len(env.values)
                 env.values.setdefault(str(s.variable), float(low + (high - low) // 2))
-                o, r = self.count(s.body, env, worst)
+                o, r = self.count(s.body, replace(env, counters=(*env.counters, str(s.variable))), worst)
                 while len(env.values) > known:
                     env.values.popitem()
                 if n * max(o, 1.0) > MOST_OBJECTS or n * (1.0 + r) > MOST_ROUNDS:
@@ -274,7 +274,7 @@ class Expander:
                 self.problems.add(s.source.span(s.token, s.variable), cause, "repeat less often", key="objects")
                 break
             env.values[name] = float(i)
-            self.scope(s.body, env.within(i), out)
+            self.scope(s.body, env.within(name, i), out)
         env.values.pop(name, None)
         self.loop_names = outer
 

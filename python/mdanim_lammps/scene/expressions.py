@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import math
 import operator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from . import functions, units
 from .functions import FUNCTIONS
@@ -37,16 +37,18 @@ class Env:
     """Names that some ``let`` of the scene defines, and the line where."""
     incomplete: bool = False
     """A part of the scene could not be read: a name without a value is not a new problem."""
+    counters: tuple[str, ...] = ()
+    """Names of the indices in ``loops``."""
 
-    def within(self, i: int) -> Env:
+    def within(self, counter: str, i: int) -> Env:
         """The same surroundings inside round ``i`` of a repeat."""
-        return Env(self.values, (*self.loops, i), self.seed, self.strict, self.later, self.incomplete)
+        return replace(self, loops=(*self.loops, i), counters=(*self.counters, counter))
 
 
 class Node:
     """A compiled value: ``run(env)`` gives a float, a Quantity or a tuple of them; raises Fault."""
 
-    __slots__ = ("constant", "depth", "first", "last", "terms", "value")
+    __slots__ = ("constant", "depth", "first", "last", "name", "terms", "value")
 
     def __init__(self, parts, first: Token, last: Token, constant: bool = True):
         self.first, self.last = first, last
@@ -54,6 +56,8 @@ class Node:
         """Of a sum that is not in brackets: its terms, each with the sign before it."""
         self.value = None
         """Of a literal: its value."""
+        self.name: Token | None = None
+        """Of a variable, with signs before it or without: its name."""
         self.constant = constant and all(p.constant for p in parts)
         self.depth = 1 + max((p.depth for p in parts), default=0)
         if self.depth > DEEPEST_EXPRESSION:
@@ -147,7 +151,9 @@ def name(token: Token) -> Node:
             raise Silent(token, "")
         return value
 
-    return Computed(run, (), token, token, constant=False)
+    node = Computed(run, (), token, token, constant=False)
+    node.name = token
+    return node
 
 
 def binary(x: Node, token: Token, y: Node) -> Node:
@@ -176,7 +182,9 @@ def negative(token: Token, x: Node) -> Node:
     if x.value is not None:
         return Literal(units.negate(x.value), token, x.last)
     f = x.run
-    return Computed(lambda env: units.negate(f(env)), (x,), token, x.last)
+    node = Computed(lambda env: units.negate(f(env)), (x,), token, x.last)
+    node.name = x.name
+    return node
 
 
 def vector(left: Token, parts: list[Node], right: Token) -> Node:
@@ -241,6 +249,9 @@ def with_unit(x: Node, unit: units.Unit, last: Token) -> Node:
         if terms:
             values = [node.run(env) for _, node in terms]
             bare = [_bare(v) for v in values]
+            for (_, node), v, without in zip(terms, values, bare):
+                if without and node.name is not None and node.name not in env.counters:
+                    _clear(node.name, v, unit)
             if any(bare) and not all(bare):
                 values = [guarded(last, units.with_unit, v, unit) if b else v for v, b in zip(values, bare)]
                 total = values[0]
@@ -253,6 +264,17 @@ def with_unit(x: Node, unit: units.Unit, last: Token) -> Node:
         return guarded(last, units.with_unit, value, unit)
 
     return Computed(run, (x,), x.first, last)
+
+
+def _clear(name: Token, value, unit: units.Unit) -> None:
+    """Refuse a ``let`` without unit as a term of a sum before a unit other than that of SI: with ``let gap = 5`` the sum
+    ``gap + 20 cm`` would be 25 cm, and with ``let gap = 5 m`` 5.2 m."""
+    if unit.over == unit.under or not any(value if isinstance(value, tuple) else (value,)):
+        return
+    u, si = unit.text, units.symbol(unit.dim)
+    cause = f"{name} has no unit and stands in a sum before {u}: it could be in {u} or in {si}"
+    way_out = f"write ({name} + ...) {u}, or {name} {si} + ... {u}; or give {name} a unit in its let"
+    raise Fault(name, cause, way_out)
 
 
 def joined(x: Node, tail: Node) -> Node:

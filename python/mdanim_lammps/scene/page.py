@@ -52,7 +52,8 @@ control {
 - A vector is `(x, y, z)`. Vectors can be added, and multiplied by a number.
 - A unit may follow any number, vector or bracket. It belongs to everything before it, up to a bracket, a
   comma, or the sign after the last unit: `rho*a*a kg` is (rho a a) kg, and `1 m + 20 cm` is 1.2 m. Terms
-  of a sum that have a unit already keep theirs: `gap + 20 cm` with `let gap = 5 mm` is 20.5 cm.
+  of a sum that have a unit already keep theirs: `gap + 20 cm` with `let gap = 5 mm` is 20.5 cm. With `let gap = 5` it
+  is refused: write `(gap + 20) cm` for 25 cm, `gap m + 20 cm` for 5.2 m.
 - Bare numbers are SI: metres, kilograms, seconds, radians. `check --strict` refuses bare numbers where a
   unit belongs.
 - Dimensions are checked: `mass 3 m` is an error, and so is the sum of a length and a time. An angle is
