@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// Objects two by two, particles of one against those of the other through a grid of cells.
+// Objects in pairs: particles of one against those of the other, found by a grid of cells.
 
 #include "barrier/contact_search.h"
 
@@ -9,7 +9,7 @@
 
 namespace mdanim {
 
-static constexpr std::size_t PAIRS_TO_TRY = 4000;    // one by one: for so few a grid takes longer
+static constexpr std::size_t PAIRS_TO_TRY = 4000;    // pair by pair: for few particles a grid takes longer
 
 void ContactSearch::ObjectParticles::clear(int room)
 {
@@ -57,7 +57,7 @@ void ContactSearch::sort_by_object()
 }
 
 // Boundary particles of `seeking` against guards of `guarding`, the particles that form the barrier; each within range of the
-// other object's box. Thin ones are both: a pair of them is found from one side, that with `thin_too`.
+// other object's box. Thin particles are both: a pair of them is found from one side only, the one with `thin_too`.
 void ContactSearch::search(int seeking, int guarding, bool thin_too)
 {
   pick(guards, guarding, BARRIER | THIN, boxes[seeking].grown(set.range));
@@ -87,7 +87,7 @@ void ContactSearch::pick(ObjectParticles &side, int object, int wanted, const Bo
   }
 }
 
-// One seeker and guards in a row.
+// One seeker against guards that stand in a row.
 void ContactSearch::look(int seeker, const ObjectParticles &side, int from, int to, bool thin_too)
 {
   const Vec3 at = seekers.place[seeker];
@@ -111,7 +111,7 @@ void ContactSearch::consider(int a, int b, double r2, bool thin_too)
 double ContactSearch::reach_of(const Particle &one, const Particle &other) const
 { return reach_factor(one.role, other.role, set.thin_ratio) * std::max(one.reach, other.reach); }
 
-// By counting: twice as many pairs take twice as long.
+// Sorts by counting: twice as many pairs take twice as long.
 template <class Key> void ContactSearch::sort_found(Key key)
 {
   std::vector<int> at(near.size() + 1, 0);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// From boxes that meet to pairs of particles that may touch. Wcislo 1999, eq. (3.14), (3.15).
+// The search from boxes that meet to pairs of particles that may touch. Wcislo 1999, eq. (3.14), (3.15).
 
 #ifndef MDANIM_CONTACT_SEARCH_H
 #define MDANIM_CONTACT_SEARCH_H
@@ -67,7 +67,7 @@ class ContactSearch {
   const std::vector<Box> &boxes;
   const std::vector<std::pair<int, int>> &meeting;
   const Settings set;
-  std::vector<Box> zone;    // of each object: around all places within range of a partner's box
+  std::vector<Box> zone;    // for each object: the zone around all places within range of a partner's box
   std::vector<Particle> near;
   std::vector<int> begin, of_object;    // those of object n, by their places in `near`: of_object[begin[n]] to [begin[n + 1] - 1]
   std::vector<Pair> found;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// What a boundary particle of one object feels from an inner particle of another.
-// Wcislo 1999, sec. 3.3 (boundary against sub-boundary); the form of the law is ours,
-// docs/fix_mdanim_barrier.md.
+// The force between a boundary particle of one object and an inner particle of another. Wcislo 1999, sec. 3.3 (boundary against
+// sub-boundary); the form of the law is ours, docs/fix_mdanim_barrier.md.
 
 #ifndef MDANIM_BARRIER_H
 #define MDANIM_BARRIER_H
@@ -28,13 +27,12 @@ inline double reach_factor(int a, int b, double thin_ratio)
 // Two springs of stiffness a and b in series, doubled: equal ones give their own stiffness.
 inline double pair_stiffness(double a, double b) { return a + b > 0.0 ? 2.0 * (a * b) / (a + b) : 0.0; }
 
-// q = 1 - r/rc, for r < rc. Exactly nothing at r >= rc.
-//   U = k rc^2/3 q^3, |F| = k rc q^2
+// q = 1 - r/rc, for r < rc. Exactly zero at r >= rc. U = k rc^2/3 q^3, |F| = k rc q^2
 inline double barrier_energy(double k, double rc, double q) { return k * rc * rc / 3.0 * (q * q * q); }
 
 inline double barrier_force(double k, double rc, double q) { return k * rc * (q * q); }
 
-// Unit vector from j to i. Two particles in one place are pushed apart along x, the lower tag towards -x.
+// Unit vector from j to i. Two particles at the same place are pushed apart along x, the one of the lower tag towards -x.
 inline Vec3 direction(const Vec3 &rij, double r, bool i_has_lower_tag)
 {
   if (r > 0.0) return {rij.x / r, rij.y / r, rij.z / r};

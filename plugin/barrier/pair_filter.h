@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// Which particles are near each other: what the vector code (pair_filter_of_set.cpp) is given. Plain data alone, for the reason
-// told in simd/of_set.h.
+// Tests which particles are near each other: the interface to the vector code (pair_filter_of_set.cpp). Plain data only;
+// simd/of_set.h says why.
 
 #ifndef MDANIM_PAIR_FILTER_H
 #define MDANIM_PAIR_FILTER_H
@@ -14,7 +14,7 @@ struct Strip {
   int one, first;
 };
 
-// Which others of a strip are near, one bit for each.
+// The others of a strip that are near, one bit for each.
 struct StripMask {
   int strip, bits;
 };
@@ -24,14 +24,15 @@ struct Candidates {
   const Strip *strip;
   int strips;
   const double *reach2;    // square of the reach of every pair, 0 where there is none
-  StripMask *lanes;        // room for a strip more than there are
+  StripMask *lanes;        // room for one strip more than there are
 };
 
-// For one kind of processor; the same answers from each.
+// The functions for one set of instructions; all sets give the same answers.
 struct PairFilter {
   // Numbers of the pairs in reach, ascending; returns how many. There must be room for all pairs and STRIP more.
   int (*in_reach)(const Candidates &, int *pair);
-  // Those of places `from` to `to` - 1 that are less than sqrt(range2) away from `at`, ascending; the same.
+  // Places from `from` to `to` - 1 that are less than sqrt(range2) away from `at`, ascending; returns and needs room as
+  // in_reach().
   int (*within)(const double *const *place, int from, int to, const double *at, double range2, int *found);
 };
 

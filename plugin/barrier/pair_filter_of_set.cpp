@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// Which particles are near each other, four others at a time (pair_filter.h), for one set of instructions.
+// Tests which particles are near each other, four at a time (pair_filter.h), for one set of instructions.
 
 #include "barrier/pair_filter.h"
 
@@ -11,7 +11,8 @@ namespace {
 
 static_assert(STRIP == 4, "a strip is a vector");
 
-// The numbers from `first` on whose bits are set, put behind `many` others; without a branch that cannot be predicted.
+// Appends the numbers from `first` on whose bits are set to the `many` numbers in `found`; without a branch that cannot be
+// predicted.
 MDANIM_ALWAYS_INLINE int append(int bits, int first, int *found, int many)
 {
   for (int lane = 0; lane < STRIP; ++lane) {
@@ -21,14 +22,14 @@ MDANIM_ALWAYS_INLINE int append(int bits, int first, int *found, int many)
   return many;
 }
 
-// r^2 between one place and those from k on.
+// r^2 between one place and the four from k on.
 MDANIM_ALWAYS_INLINE Four square(const Vec<Four> &at, const double *const *place, int k)
 {
   const Vec<Four> d = at - load<Four>(place, k);
   return dot(d, d);
 }
 
-// Most strips have no pair in reach, and none is looked at twice: again without a branch.
+// Most strips have no pair in reach. No strip is looked at twice. This too is without a branch.
 int in_reach(const Candidates &all, int *found)
 {
   const double *const place[] = {all.place[0], all.place[1], all.place[2]};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// What liquid does to a particle in a step, for a double or all lanes of a vector unit at once (real.h). Wcislo 1999, sec. 4.3;
-// docs/physics-liquid.md.
+// The forces of a liquid on a particle in a step, for a double or all lanes of a vector unit at once (real.h). Wcislo 1999, sec.
+// 4.3; docs/physics-liquid.md.
 
 #ifndef MDANIM_IMMERSED_H
 #define MDANIM_IMMERSED_H
@@ -15,17 +15,17 @@ namespace mdanim {
 
 // The liquid where a particle is.
 template <class Real> struct AtPlace {
-  Real immersed{};    // part of the volume around it that is below the surface
-  Vec<Real> push;     // force on a volume, over the weight of as much liquid
+  Real immersed{};    // fraction of the volume around it that is below the surface
+  Vec<Real> push;     // force on a volume, divided by the weight of as much liquid
   Vec<Real> flow;     // velocity of the liquid [distance/time]
   Real rising{};      // upward velocity of the solid around [distance/time]
 };
 
-// Waves at a particle, from one update of the liquid to the next. In memory what does not depend on where the basin stands has
-// half the digits.
+// Waves at a particle, from one update of the liquid to the next. In memory, numbers that do not depend on where the basin stands
+// have half the digits.
 template <class Real, class Small = Real> struct InWaves {
-  Real base{}, slope{};          // the part of its volume below the surface is base - slope z, within 0 and 1
-  Small more{};                  // the push upwards is that part and this
+  Real base{}, slope{};          // the fraction of its volume below the surface is base - slope z, within 0 and 1
+  Small more{};                  // the push upwards is that fraction plus this
   Small along_x{}, along_y{};    // push sideways
   Small flow_x{}, flow_y{};      // velocity of the liquid
   Small rising{};                // see AtPlace
@@ -44,13 +44,13 @@ template <class Real, class Small = Real> struct InWaves {
   }
 };
 
-// What is kept for a particle.
+// Values that are kept for a particle.
 struct InLiquid {
   InWaves<double, float> waves;
   double impulse_x = 0.0, impulse_y = 0.0;    // on the liquid, over its density, since the last update
 };
 
-// A particle.
+// A particle in the liquid.
 template <class Real> struct Immersed {
   Real volume, mass;
   Real gamma, per_length;    // of drag: rates [1/time], [1/distance]
@@ -62,7 +62,7 @@ template <class Real> struct LiquidForce {
   Real impulse_x, impulse_y;    // on the liquid, over its density
 };
 
-// Archimedes' push, over the parts of the weight of as much liquid along each axis.
+// Archimedes' force, divided by the weight of as much liquid, along each axis.
 template <class Real>
 MDANIM_ALWAYS_INLINE Vec<Real> lift_along(const LiquidScales &liquid, const Real &volume, const Vec<Real> &part)
 {
@@ -70,9 +70,9 @@ MDANIM_ALWAYS_INLINE Vec<Real> lift_along(const LiquidScales &liquid, const Real
   return {along(part.x), along(part.y), along(part.z)};
 }
 
-// On a particle with velocity v: lift and drag. Drag is against the liquid, not against the floor: its friction, which is
-// against the floor, is made up for by a push along the flow. Quadratic drag is a force, as forces are a part of the state and
-// friction is not: friction that depends on positions alone is found again.
+// Lift and drag on a particle with velocity v. Drag acts relative to the liquid, not to the floor: friction acts relative to the
+// floor, and a push along the flow makes up the difference. Quadratic drag is a force, because forces are a part of the state and
+// friction is not: friction that depends on positions alone can be computed again.
 template <class Real>
 MDANIM_ALWAYS_INLINE LiquidForce<Real> liquid_force(const LiquidScales &liquid, const Immersed<Real> &particle,
                                                     const AtPlace<Real> &at, const Vec<Real> &v)

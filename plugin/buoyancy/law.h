@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// What liquid does to a particle: it lifts and it slows. Wcislo 1999, sec. 4.3; docs/physics-liquid.md.
+// Buoyancy and drag of a liquid on a particle. Wcislo 1999, sec. 4.3; docs/physics-liquid.md.
 
 #ifndef MDANIM_BUOYANCY_H
 #define MDANIM_BUOYANCY_H
@@ -24,9 +24,8 @@ template <class Real> MDANIM_ALWAYS_INLINE Real lift(double rho, const Real &vol
 template <class Real> MDANIM_ALWAYS_INLINE Real liquid_lambda(const Real &gamma, double rho, const Real &volume, const Real &s)
 { return gamma * rho * volume * s; }
 
-// Value at (x, y) of a field known at the centres of unit cells, bilinear, constant beyond the outermost
-// centres; a blocked cell (not 0) says what the cell of the point says, so that nothing is mixed across a
-// wall.
+// Value at (x, y) of a field known at the centres of unit cells, bilinear, constant beyond the outermost centres. A blocked cell
+// (not 0) takes the value of the cell of the point, so that nothing is mixed across a wall.
 inline double at_point(const double *field, const unsigned char *blocked, int nx, int ny, double x, double y)
 {
   const long own =

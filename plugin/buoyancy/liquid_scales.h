@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// What is the same for all particles in a liquid.
+// Values that are the same for all particles in a liquid.
 
 #ifndef MDANIM_LIQUID_SCALES_H
 #define MDANIM_LIQUID_SCALES_H
@@ -8,7 +8,7 @@ namespace mdanim {
 
 struct LiquidScales {
   double rho, g;
-  double calming;      // rate at which what is immersed loses the velocity that differs from that of the solid around [1/time]
+  double calming;      // rate at which immersed particles lose the velocity relative to the solid around them [1/time]
   double per_force;    // turns mass * velocity / time into force
   double impulse;      // turns force into impulse on the liquid in a step, over its density
   bool quadratic;      // whether some particle has that drag

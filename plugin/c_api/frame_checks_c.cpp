@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// What the driver looks at in every frame, as plain C functions over arrays in the order of tags: whether numbers are finite,
+// The checks of the driver in every frame, as plain C functions over arrays in the order of tags: whether numbers are finite,
 // where objects are, whether cells are turned inside out, whether objects are inside each other.
 
 #include "c_api/abi.h"
@@ -32,7 +32,7 @@ struct SystemArrays {
   const unsigned char *still;    // whether an object never moves, (M)
 };
 
-// The same where it is now.
+// The same objects with their present positions.
 struct Objects : SystemArrays {
   const double *x;    // (N, 3)
 
@@ -66,8 +66,8 @@ bool inside_out(const int *corner, const double *x)
   return !(dot(cross(e.u, e.v), e.w) > 0.0);
 }
 
-// Whether a point lies in a cell, taken as the parallelepiped of its mean edges: so a squeezed body is no deeper than a relaxed
-// one.
+// Whether a point lies in a cell, taken as the parallelepiped of its mean edges: so a squeezed body counts as no deeper than a
+// relaxed one.
 bool in_cell(const Objects &o, long long c, const Vec3 &point)
 {
   const Vec3 d = point - o.middle(c);
@@ -80,7 +80,7 @@ bool in_cell(const Objects &o, long long c, const Vec3 &point)
 // Boundary particles of object a that are deeper in object b than its outermost layer of cells.
 long long sunk(const Objects &o, int a, int b, const Box &both)
 {
-  const double reach = o.spacing[b];    // of points in a cell from its middle: 0.87 unless it is stretched
+  const double reach = o.spacing[b];    // distance of points in a cell from its middle: at most 0.87 unless it is stretched
   const Box around = both.grown(reach);
   std::vector<long long> cell;
   std::vector<Vec3> middle;
@@ -126,7 +126,7 @@ bool centre_inside(const Objects &o, int a, int b, const Box &both)
   return both.contains(&centre.x) && holds(o, b, centre) && holds(o, a, centre);
 }
 
-// Of all pairs of n objects the one with the most points of one in the other; how many they are.
+// The pair, among n objects, with the most points of one in the other; returns the number of these points.
 long long deepest_pair(const Objects &o, int n, const int *objects, int *pair)
 {
   std::vector<Box> boxes;
@@ -147,11 +147,11 @@ long long deepest_pair(const Objects &o, int n, const int *objects, int *pair)
   return most;
 }
 
-// Number of the first particle whose position or velocity is not finite, -1 where all are; x, v (n, 3).
+// Number of the first particle whose position or velocity is not finite, -1 where all are finite; x, v (n, 3).
 long long not_finite(long long n, const double *x, const double *v)
 {
-  // Infinities and NaN have all bits of the exponent set: one more carries into the bit of the sign. Without branches this runs
-  // at the speed of memory.
+  // Infinities and NaN have all bits of the exponent set: adding one carries into the sign bit. Without branches this runs at the
+  // speed of memory.
   constexpr std::uint64_t EXPONENT = 0x7ff0000000000000u, ONE = 0x0010000000000000u;
   std::uint64_t carried = 0;
   for (const double *values : {x, v})
@@ -168,11 +168,11 @@ long long not_finite(long long n, const double *x, const double *v)
 
 }    // namespace
 
-// Number of the first particle whose position or velocity is not finite, -1 where all are; x, v (n, 3).
+// Number of the first particle whose position or velocity is not finite, -1 where all are finite; x, v (n, 3).
 MDANIM_EXPORT long long mdanim_not_finite(long long n, const double *x, const double *v) noexcept { return not_finite(n, x, v); }
 
 // Whether each cell is turned inside out: the volume spanned by the mean of its edges along each axis is not positive. corner (n,
-// 8) in VTK order, inverted (n). Returns how many are.
+// 8) in VTK order, inverted (n). Returns the number of such cells.
 MDANIM_EXPORT long long mdanim_inverted(long long n, const int *corner, const double *x, unsigned char *inverted) noexcept
 {
   long long count = 0;
@@ -183,8 +183,9 @@ MDANIM_EXPORT long long mdanim_inverted(long long n, const int *corner, const do
   return count;
 }
 
-// One look at n objects of a model whose x and v are (N, 3). Returns 1 when some number is not finite, 2 when some cell is inside
-// out, else 0; and, but for 1, how far each object reaches along x, y, z, -x, -y, -z: reach (n, 6), the corners of eq. (3.14).
+// Checks n objects of a model whose x and v are (N, 3). Returns 1 when some number is not finite, 2 when some cell is inside out,
+// else 0. Unless it returns 1, it writes how far each object reaches along x, y, z, -x, -y, -z: reach (n, 6), the corners of eq.
+// (3.14).
 MDANIM_EXPORT int mdanim_glance(const SystemArrays *model, int n, const int *objects, const double *x, const double *v,
                                 double *reach) noexcept
 {
@@ -206,7 +207,7 @@ MDANIM_EXPORT int mdanim_glance(const SystemArrays *model, int n, const int *obj
   return 0;
 }
 
-// Largest component of the velocities v (N, 3) of n objects of a model, without its sign: speed (n).
+// Largest absolute component of the velocities v (N, 3) of n objects of a model: speed (n).
 MDANIM_EXPORT void mdanim_largest_components(const SystemArrays *model, int n, const int *objects, const double *v,
                                              double *speed) noexcept
 {
@@ -218,10 +219,10 @@ MDANIM_EXPORT void mdanim_largest_components(const SystemArrays *model, int n, c
   }
 }
 
-// Two of n objects that are inside each other, more than contact ever lets them: boundary particles of one below the outermost
-// layer of cells of the other, or the centre of one in the body of the other. Writes the one that is inside, and the other, into
-// `pair` and returns how many of its points are; 0 where there are none, -1 without memory. Objects that never move are not
-// looked at with each other.
+// Finds two of n objects that are inside each other, deeper than contact ever allows: boundary particles of one below the
+// outermost layer of cells of the other, or the centre of one in the body of the other. Writes the object that is inside, and the
+// other, into `pair` and returns the number of its points that are inside; 0 where there is no such pair, -1 without memory.
+// Pairs of objects that never move are skipped.
 MDANIM_EXPORT long long mdanim_sunk(const SystemArrays *model, int n, const int *objects, const double *x, int *pair)
 {
   return guarded(-1LL, [=] { return deepest_pair({*model, x}, n, objects, pair); });

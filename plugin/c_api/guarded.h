@@ -10,7 +10,7 @@
 
 namespace mdanim {
 
-// Does the work. Returns 0, or 1 with the text of the exception that ended it in `error`, which has room for `error_size` bytes.
+// Calls work(). Returns 0, or 1 with the text of the exception that ended it in `error`, which has room for `error_size` bytes.
 template <class Work> int guarded(char *error, int error_size, Work work) noexcept
 {
   try {
@@ -26,7 +26,7 @@ template <class Work> int guarded(char *error, int error_size, Work work) noexce
   return 1;
 }
 
-// Returns what the work returns, or `failed` if an exception ends it: for functions without room for a message.
+// Returns the result of work(), or `failed` if an exception ends it: for functions without room for a message.
 template <class Value, class Work> Value guarded(Value failed, Work work) noexcept
 {
   try {

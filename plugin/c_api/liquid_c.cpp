@@ -30,7 +30,7 @@ MDANIM_EXPORT int mdanim_liquid_heights(void *handle, const char *fix, double *s
   return guarded(error, error_size, [&] { liquid(handle, fix).liquid().surface(smooth, raw); });
 }
 
-// Liquid that flies: x, y, z and radius of each droplet; `rows` has room for `most`. Tells how many there are.
+// Drops, the liquid that flies: x, y, z and radius of each; `rows` has room for `most`. Gives the number of drops.
 MDANIM_EXPORT int mdanim_liquid_drops(void *handle, const char *fix, int most, double *rows, int *count, char *error,
                                       int error_size)
 {

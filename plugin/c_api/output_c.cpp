@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// Plain C functions for ctypes: the names of what fixes tell.
+// Plain C functions for ctypes: names of the output values of fixes.
 
 #include "c_api/abi.h"
 #include "lammps/fix_base.h"

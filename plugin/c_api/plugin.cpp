@@ -77,13 +77,13 @@ PluginRecord run(const char *name, const char *info, void *(*creator)(void *, in
 
 MDANIM_EXPORT int mdanim_abi() noexcept { return mdanim::ABI; }
 
-// The LAMMPS version whose headers we were compiled with, as lammps_version() counts.
+// The LAMMPS version of the headers that the plugin was compiled with, as lammps_version() counts.
 extern "C" __attribute__((visibility("default"))) int mdanim_built_for;
 int mdanim_built_for = MDANIM_LAMMPS_VERSION;
 
 namespace {
 
-// The first line of what the MPI library in this process says of itself.
+// The first line of the description that the MPI library in this process gives.
 std::string name_of_mpi()
 {
   char text[MPI_MAX_LIBRARY_VERSION_STRING] = "";
@@ -93,8 +93,8 @@ std::string name_of_mpi()
   return all.substr(0, all.find('\n'));
 }
 
-// Whether members that the library interface tells the addresses of are where our headers have them: builds of one date may
-// differ by updates and patches.
+// Whether members whose addresses the library interface gives are where our headers have them: builds of one date may differ by
+// updates and patches.
 bool layout_is_ours(LAMMPS *lmp)
 {
   const std::pair<const char *, const void *> known[] = {
@@ -108,7 +108,7 @@ bool layout_is_ours(LAMMPS *lmp)
 }
 
 // Why the styles cannot work in this LAMMPS; empty if they can. A C++ class of another LAMMPS may have another layout, and LAMMPS
-// itself loads such a plugin without complaint. What a test reads is checked by those before it.
+// itself loads such a plugin without complaint. Each test relies only on what the tests before it have checked.
 std::string why_not(LAMMPS *lmp)
 {
   if (const int found = lammps_version(lmp); found != mdanim_built_for)
@@ -127,7 +127,7 @@ std::string why_not(LAMMPS *lmp)
     return fmt::format("was built for another update of LAMMPS version {} or with another standard library: run_style verlet has "
                        "another layout",
                        mdanim_built_for);
-  // Handles of MPICH, and of all that share its binary interface, are whole numbers, the same in C and in Fortran.
+  // Handles of MPICH, and of all libraries with its binary interface, are whole numbers, the same in C and in Fortran.
   if (lammps_get_mpi_comm(lmp) != static_cast<int>(lmp->world))
     return fmt::format("was built for MPICH and is not loaded into a LAMMPS with {}", name_of_mpi());
   return "";

@@ -41,8 +41,8 @@ MDANIM_EXPORT int mdanim_stateful(void *handle, int n, const char **id, char *er
   });
 }
 
-// Puts the state together for mdanim_state_get: numbers of its records and of their bytes. Returns 0, or 1 with a message in
-// `error`.
+// Packs the state for mdanim_state_get, and gives the numbers of its records and of their bytes. Returns 0, or 1 with a message
+// in `error`.
 MDANIM_EXPORT int mdanim_state_pack(void *handle, const char *fix, long long *records, long long *bytes, char *error,
                                     int error_size)
 {
@@ -54,8 +54,8 @@ MDANIM_EXPORT int mdanim_state_pack(void *handle, const char *fix, long long *re
   });
 }
 
-// What mdanim_state_pack has put together: keys (records, 2), sorted; first (records + 1), where the bytes of each record begin;
-// data (bytes). Once only. Returns 0, or 1 with a message in `error`.
+// Copies the state that mdanim_state_pack has packed, once only: keys (records, 2), sorted; first (records + 1), where the bytes
+// of each record begin; data (bytes). Returns 0, or 1 with a message in `error`.
 MDANIM_EXPORT int mdanim_state_get(void *handle, const char *fix, std::int32_t *key, std::int64_t *first, std::uint8_t *data,
                                    char *error, int error_size)
 {
@@ -67,7 +67,7 @@ MDANIM_EXPORT int mdanim_state_get(void *handle, const char *fix, std::int32_t *
   });
 }
 
-// Take up a state, arrays as in mdanim_state_get. All particles are there, and the setup of a run comes after. Returns 0, or 1
+// Sets the state; arrays as in mdanim_state_get. All particles must exist, and the setup of a run must follow. Returns 0, or 1
 // with a message in `error`; then nothing has changed.
 MDANIM_EXPORT int mdanim_state_put(void *handle, const char *fix, long long records, const std::int32_t *key,
                                    const std::int64_t *first, const std::uint8_t *data, char *error, int error_size)

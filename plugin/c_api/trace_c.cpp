@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// Plain C functions for ctypes: where objects have been in the steps of a run, and how fast they are. All ranks call them
+// Plain C functions for ctypes: where objects have been during the steps of a run, and how fast they are. All ranks call them
 // together.
 
 #include "c_api/abi.h"
@@ -75,14 +75,14 @@ void top_speeds(void *handle, int objects, double *speed)
 
 }    // namespace
 
-// Forget what was traced, take note of where objects 1 to `objects` (molecule IDs) are, and of where every step takes them from
-// now on. Returns 0, or 1 with a message in `error`.
+// Forgets the trace so far, and starts another of the places of objects 1 to `objects` (molecule IDs), now and after every step.
+// Returns 0, or 1 with a message in `error`.
 MDANIM_EXPORT int mdanim_trace_start(void *handle, int objects, char *error, int error_size)
 {
   return guarded(error, error_size, [=] { start_trace(handle, objects); });
 }
 
-// Look at particles after every so many steps only; until the next mdanim_trace_start. Boxes are then wider, by the way of each
+// Looks at particles only after every `steps` steps, until the next mdanim_trace_start. Boxes are then wider by the way of each
 // object's fastest particle in one step less. Returns 0, or 1 with a message in `error`.
 MDANIM_EXPORT int mdanim_trace_every(void *handle, int steps, char *error, int error_size)
 {
@@ -90,14 +90,14 @@ MDANIM_EXPORT int mdanim_trace_every(void *handle, int steps, char *error, int e
 }
 
 // Lowest and highest coordinates of the particles of each object since mdanim_trace_start; low, high (objects, 3). Coordinates
-// that are NaN are passed over. Returns 0, or 1 with a message in `error`.
+// that are NaN are skipped. Returns 0, or 1 with a message in `error`.
 MDANIM_EXPORT int mdanim_trace(void *handle, int objects, double *low, double *high, char *error, int error_size)
 {
   return guarded(error, error_size, [=] { trace(handle, objects, low, high); });
 }
 
-// Speed of the fastest particle of each object (molecule IDs 1 to `objects`) now; speed (objects). Speeds that are NaN are passed
-// over. Returns 0, or 1 with a message in `error`.
+// Speed of the fastest particle of each object (molecule IDs 1 to `objects`) now; speed (objects). Speeds that are NaN are
+// skipped. Returns 0, or 1 with a message in `error`.
 MDANIM_EXPORT int mdanim_top_speeds(void *handle, int objects, double *speed, char *error, int error_size)
 {
   return guarded(error, error_size, [=] { top_speeds(handle, objects, speed); });

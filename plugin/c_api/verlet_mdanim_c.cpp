@@ -12,28 +12,28 @@ using namespace LAMMPS_NS;
 static const VerletMdanim *run_of(void *handle)
 { return dynamic_cast<VerletMdanim *>(static_cast<LAMMPS *>(handle)->update->integrate); }
 
-// How many steps this rank has taken by a pass over its blocks; 0 with another run style.
+// Number of steps that this rank has taken by a pass over its blocks; 0 with another run style.
 MDANIM_EXPORT long long mdanim_passes(void *handle) noexcept
 {
   const VerletMdanim *run = run_of(handle);
   return run ? run->passes() : 0;
 }
 
-// Into how many ranges threads share the latest pass of this rank; 0 before any.
+// Number of ranges that threads share in the latest pass of this rank; 0 before the first pass.
 MDANIM_EXPORT int mdanim_ranges(void *handle) noexcept
 {
   const VerletMdanim *run = run_of(handle);
   return run ? run->ranges() : 0;
 }
 
-// The width of the vectors of this rank's passes; empty before any.
+// The set of vector instructions that this rank's passes use; empty before the first pass.
 MDANIM_EXPORT const char *mdanim_width(void *handle) noexcept
 {
   const VerletMdanim *run = run_of(handle);
   return run ? run->width() : "";
 }
 
-// How many particles were held back in passes of this rank and moved one by one, all passes together.
+// Number of particles that were held back in passes of this rank and moved one by one, all passes together.
 MDANIM_EXPORT long long mdanim_held_back(void *handle) noexcept
 {
   const VerletMdanim *run = run_of(handle);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// Room for numbers.
+// Allocation of aligned arrays.
 
 #include "geometry/aligned_array.h"
 

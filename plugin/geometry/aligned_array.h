@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// Numbers for the vector units, and places of particles made of them.
+// Aligned numbers for the vector units, and positions of particles made of them.
 
 #ifndef MDANIM_POSITIONS_H
 #define MDANIM_POSITIONS_H
@@ -12,7 +12,7 @@
 
 namespace mdanim {
 
-// Numbers that start on a cache line and may be read and written a vector beyond their end.
+// Numbers that start on a cache line. They may be read and written up to one vector beyond their end.
 template <class Number> class Aligned {
  public:
   Aligned() = default;
@@ -39,7 +39,7 @@ using Floats = Aligned<float>;
 struct Positions {
   Doubles along[3];
 
-  void make_room(std::size_t n)    // what is in it is lost
+  void make_room(std::size_t n)    // loses the contents
   {
     for (Doubles &a : along)
       if (a.size() < n) a.assign(n);

@@ -139,12 +139,12 @@ class Grid {
   }
 
  private:
-  static constexpr double MOST = 1e9;    // cells in a row; an int holds one more
+  static constexpr double MOST = 1e9;    // cells in a row; an int holds more
 
   int place(const double *x, int d) const
   {
     const double p = (x[d] - origin[d]) / cell;
-    return p > 0.0 ? static_cast<int>(std::min(p, count[d] - 1.0)) : 0;    // a cast rounds down what is not negative
+    return p > 0.0 ? static_cast<int>(std::min(p, count[d] - 1.0)) : 0;    // a cast rounds numbers that are not negative down
   }
   size_t index(int a, int b, int c) const { return (static_cast<size_t>(a) * count[1] + b) * count[2] + c; }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// Where something may be that is near an object: a box, cut off across a direction. Between two balls beside each other along a
-// diagonal their boxes alone say little.
+// The space near an object in which something may be: a box, cut off across a direction. For two balls beside each other along a
+// diagonal the boxes alone exclude little.
 
 #ifndef MDANIM_ZONE_H
 #define MDANIM_ZONE_H
@@ -20,11 +20,11 @@ inline Vec3 farthest(const Box &box, const Vec3 &way)
 
 struct Zone {
   Box box;
-  Vec3 across;    // unit vector, and the least of a place along it; none for 0
+  Vec3 across;    // unit vector, and the lowest coordinate along it; zero for no cut
   double from = -Box::FAR;
 
   Zone grown(double by) const { return {box.grown(by), across, from - by}; }
-  // How far a place is outside of it, at least; negative inside.
+  // Lower bound of the distance of a place from the zone; negative inside.
   double outside(const Vec3 &x) const
   {
     const double at[] = {x.x, x.y, x.z};
@@ -33,7 +33,7 @@ struct Zone {
     return out;
   }
   bool contains(const Vec3 &x) const { return dot(across, x) >= from && box.contains(&x.x); }
-  // False where it has no part of a box.
+  // False where the zone and a box have no part in common.
   bool meets(const Box &other) const { return meet(box, other, 0.0) && dot(across, farthest(other, across)) >= from; }
 };
 

@@ -59,7 +59,7 @@ MDANIM_ALWAYS_INLINE double power_of_half(int n)
 // = 1 - r g(r).
 MDANIM_ALWAYS_INLINE void exponential_decay(double phi, double &e, double &g)
 {
-  if (!(phi < 700.0)) {    // exp(-phi) is nothing beside 1
+  if (!(phi < 700.0)) {    // exp(-phi) is negligible beside 1
     e = 0.0;
     g = 1.0 / phi;
     return;

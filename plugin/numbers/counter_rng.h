@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// Random numbers that depend on nothing but their own key: the same on every rank, in every order, after
-// every resume.
+// Random numbers that depend only on their own key: the same on every rank, in every order, after every resume.
 
 #ifndef MDANIM_COUNTER_RNG_H
 #define MDANIM_COUNTER_RNG_H
@@ -18,7 +17,7 @@ inline std::uint64_t mix64(std::uint64_t x)
   return x ^ (x >> 31);
 }
 
-// 32 bits to 32 bits, one to one; few operations, so that a compiler makes vectors of it.
+// 32 bits to 32 bits, one to one; few operations, so that a compiler can vectorise it.
 inline std::uint32_t mix32(std::uint32_t x)
 {
   x ^= x >> 16;
@@ -33,7 +32,7 @@ inline std::uint32_t mix32(std::uint32_t x)
 inline std::uint32_t draw32(std::uint64_t key, std::uint32_t index)
 { return mix32(mix32(index ^ static_cast<std::uint32_t>(key)) ^ static_cast<std::uint32_t>(key >> 32)); }
 
-// What a draw is for, so that no two uses share numbers.
+// The use of a draw, so that no two uses share numbers.
 enum class Phase : std::uint64_t { EVEN_BLOCKS, ODD_BLOCKS, DISPLACEMENT, LEVEL, FILL, DROPS };
 
 // Key of all draws of one kind at one time; `when` counts sweeps or steps.

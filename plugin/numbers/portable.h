@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// Functions of sums, products and quotients alone: their bits are those of IEEE 754 on every processor. A C library has other
-// forms for processors with fused multiply-add, whose last bits differ.
+// Functions made of sums, products and quotients only: their bits are those of IEEE 754 on every processor. C libraries have
+// other versions for processors with fused multiply-add, whose last bits differ.
 
 #ifndef MDANIM_PORTABLE_H
 #define MDANIM_PORTABLE_H
@@ -22,7 +22,7 @@ inline double sine_of_turns(double turns)
   return x * sum;
 }
 
-// exp(-x) of x >= 0, to 1e-12 of its value: by halves, whose exponential is squared as often.
+// exp(-x) for x >= 0, to 1e-12 of its value: x is halved, and the exponential squared as often.
 inline double decay(double x)
 {
   constexpr double NOTHING = 740.0, SMALL = 0.25;
@@ -41,7 +41,7 @@ inline double tangent_hyperbolic(double x)
   return x < 0.0 ? -value : value;
 }
 
-// x/sinh(x) of x >= 0.
+// x/sinh(x) for x >= 0.
 inline double over_sine_hyperbolic(double x)
 {
   constexpr double SMALL = 1e-4;

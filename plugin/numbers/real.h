@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// What laws compute with: a double, or a vector of doubles, one for each lane of a vector unit. Laws are templates over this
+// The number type of the laws: a double, or a vector of doubles, one for each lane of a vector unit. Laws are templates over this
 // `Real`, so plain styles and passes over blocks compute the same operations in the same order, hence the same bits.
 
 #ifndef MDANIM_REAL_H
@@ -9,7 +9,7 @@
 
 namespace mdanim {
 
-// For all that is also compiled for processors that not every host has (simd/of_set.h): a copy out of line could be
+// For all code that is also compiled for processors that not every host has (simd/of_set.h): a copy that is not inlined could be
 // linked into the rest of the program.
 #define MDANIM_ALWAYS_INLINE inline __attribute__((always_inline))
 
@@ -25,14 +25,14 @@ template <class Real> MDANIM_ALWAYS_INLINE Real root(Real a)
 
 template <class Real> MDANIM_ALWAYS_INLINE Real constant(double a) { return a - Real{}; }
 
-// `a` in lanes in which a comparison of numbers is true, else `b`.
+// `a` in lanes in which a comparison is true, else `b`.
 template <class Yes, class Real> MDANIM_ALWAYS_INLINE Real pick(const Yes &yes, const Real &a, const Real &b)
 { return yes ? a : b; }
 
 template <class Real> MDANIM_ALWAYS_INLINE Real smaller(const Real &a, const Real &b) { return pick(b < a, b, a); }
 template <class Real> MDANIM_ALWAYS_INLINE Real larger(const Real &a, const Real &b) { return pick(a < b, b, a); }
 
-// Whether a comparison is true in some lane.
+// Whether a comparison is true in at least one lane.
 template <class Yes> MDANIM_ALWAYS_INLINE bool any(const Yes &yes)
 {
   if constexpr (std::is_arithmetic_v<Yes>) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// Own wall time of a style: LAMMPS lumps all fixes into one line of its timing.
+// Wall time of one style: LAMMPS lumps all fixes into one line of its timing.
 
 #ifndef MDANIM_STOPWATCH_H
 #define MDANIM_STOPWATCH_H

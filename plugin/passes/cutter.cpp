@@ -8,9 +8,9 @@
 
 namespace mdanim {
 
-// What a block costs besides its springs, in vectors of springs.
+// Cost of a block besides its springs, in vectors of springs.
 static constexpr int OVERHEAD = 2;
-// Passes are taken only when at least this part of the lanes has work.
+// Passes are used only when at least this part of the lanes has work.
 static constexpr double WORTH_IT = 0.3;
 
 // The chunk of each particle.
@@ -48,7 +48,7 @@ std::vector<int> Cutter::lengths(const HalfBonds &bonds, const std::vector<int> 
         latest = i;
       }
       const long total = cost[i] + OVERHEAD + offsets;
-      if (total <= cost[i + n]) {    // of equal ones the longer, which comes later
+      if (total <= cost[i + n]) {    // among equal costs the longer block, which comes later
         cost[i + n] = total;
         best[i + n] = n;
       }
@@ -99,7 +99,7 @@ Cut Cutter::cut(const HalfBonds &bonds, const int *object)
       block.bound = block.bound || bound[block.start + lane];
     }
     for (;;) {
-      int offset = 0;    // the longest that is left
+      int offset = 0;    // the longest offset that is left
       for (int lane = 0; lane < block.lanes; ++lane)
         if (left[lane].size()) offset = std::max(offset, left[lane].first->offset);
       if (offset == 0) break;
@@ -107,7 +107,7 @@ Cut Cutter::cut(const HalfBonds &bonds, const int *object)
       for (int lane = 0; lane < block.lanes; ++lane) {
         auto &[link, last] = left[lane];
         if (link == last || link->offset != offset) continue;
-        const SpringCoeffs &own = bonds.law[link++->type];    // a second spring between the same two is another entry
+        const SpringCoeffs &own = bonds.law[link++->type];    // a second spring between the same two particles is another entry
         law[lane] = own.push;
         law[width + lane] = own.pull;
         if (block.damped) law[2 * width + lane] = own.c;
@@ -148,7 +148,7 @@ Cut Cutter::join(const std::vector<const Cut *> &cuts)
 
 bool Cutter::rows_pile_up() const
 {
-  constexpr unsigned MANY = 4;    // times as many as usual
+  constexpr unsigned MANY = 4;    // multiple of the usual number
   return coeffs.size() + damped_coeffs.size() > MANY * (usual_rows + 64);
 }
 

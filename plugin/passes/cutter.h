@@ -12,8 +12,8 @@
 
 namespace mdanim {
 
-// Blocks of some particles that no spring leads out of; starts count from the first of them, ends from the first entry. A chunk
-// has up to so many particles of one object, and a block is in one chunk.
+// Blocks of a set of particles that no spring leads out of; starts count from the first of these particles, ends from the first
+// entry. A chunk has a bounded number of particles of one object. A block lies in one chunk.
 struct Cut {
   static constexpr int CHUNK = 512;
   std::vector<Block> block;
@@ -29,26 +29,26 @@ struct Cut {
 struct LaneUse {
   double springs = 0.0, lanes = 0.0;
 
-  // Whether enough have: the springs of neighbours in the arrays must mostly lead equally far, as they do in lattices that are
-  // numbered row by row.
+  // Whether enough lanes have springs: those of neighbours in the arrays must mostly lead equally far, as they do in lattices
+  // that are numbered row by row.
   bool worth_it() const;
 };
 
 // Makes cuts for one number of lanes, by dynamic programming, and keeps the rows of coefficients that their entries name.
 class Cutter {
  public:
-  // Forget all cuts: from now on they are for blocks of so many lanes.
+  // Forgets all cuts: from now on they are for blocks of `lanes` lanes.
   void start(int lanes);
-  // Cut particles into blocks so that the fewest vectors of forces are to be computed.
+  // Cuts particles into blocks so that as few vectors of forces as possible are computed.
   Cut cut(const HalfBonds &bonds, const int *object);
-  // All cuts one after the other, as a single one; there may be none.
+  // Joins all cuts, one after the other, into a single one; there may be none.
   Cut join(const std::vector<const Cut *> &cuts);
   LaneUse use(const Cut &cut) const;
-  bool rows_pile_up() const;    // so many are those of cuts that are gone that all cuts had better be made anew
+  bool rows_pile_up() const;    // most rows belong to cuts that are gone: better make all cuts anew
 
   int lanes() const { return width; }
-  bool damped() const { return damped_coeffs.size() > 0; }    // some block is
-  // Rows of coefficients: of a damped block push, pull and c, of another one push and pull, one of each for every lane.
+  bool damped() const { return damped_coeffs.size() > 0; }    // some block is damped
+  // Length of a row of coefficients: push, pull and c for a damped block, push and pull for another one, each for every lane.
   int row_length(bool of_damped) const { return (of_damped ? 3 : 2) * width; }
   const double *row(bool of_damped, unsigned law) const { return (of_damped ? damped_coeffs : coeffs).first_of(law); }
   unsigned add_row(bool of_damped, const double *row)
@@ -61,8 +61,8 @@ class Cutter {
   std::vector<int> lengths(const HalfBonds &bonds, const std::vector<int> &chunk) const;
 
   int width = 0;
-  DistinctRows<double> coeffs, damped_coeffs;    // all of one length, one number for each lane or several
-  unsigned usual_rows = 0;                       // how many there were when cuts were joined first after start()
+  DistinctRows<double> coeffs, damped_coeffs;    // rows of equal length, one or several numbers for each lane
+  unsigned usual_rows = 0;                       // number of rows when cuts were joined first after start()
 };
 
 }    // namespace mdanim

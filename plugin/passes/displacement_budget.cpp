@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// From displacements to what is left.
+// The budget computed from displacements.
 
 #include "passes/displacement_budget.h"
 
@@ -31,8 +31,8 @@ void DisplacementBudget::set_limits(double half, const SafeDisplacement &partici
   limits = {std::max(half, found[0]), std::max(half, found[1])};
 }
 
-// Two particles have not come nearer to each other by more than the diagonal of the box around all displacements; so each has
-// gone half of it, but for drift.
+// The distance between two particles has not shrunk by more than the diagonal of the box around all displacements. So each has
+// used up half of it, apart from drift.
 void DisplacementBudget::set_left(const Moved &here)
 {
   Box all[] = {here.displacement, here.now};
@@ -42,9 +42,8 @@ void DisplacementBudget::set_left(const Moved &here)
   if (!alone) left = std::max(half_skin - gone, std::min(left, way_to_strangers(here.now, all[1])));
 }
 
-// How much farther this rank's particles, which are within `own`, may go before one may have passed half a rank unseen: LAMMPS
-// hands them on to the ranks beside alone, which have their shares of the box around all particles, `all`, when they are handed
-// on.
+// How much farther this rank's particles, which are within `own`, may go before one may have crossed half a rank unseen. LAMMPS
+// hands particles on to neighbouring ranks only; these have their shares of the box around all particles, `all`, at that time.
 double DisplacementBudget::way_to_strangers(const Box &own, const Box &all) const
 {
   double way = std::numeric_limits<double>::max();

@@ -15,8 +15,8 @@
 
 namespace mdanim {
 
-// How far a particle may go from where it was when lists were made: all told, and with the drift of all particles taken off.
-// Contact looks at distances between particles alone, so what flies along together needs no new lists.
+// How far a particle may go from its place at the last rebuild of lists: in total, and without the drift of all particles.
+// Contact depends on distances between particles only, so objects that fly together need no new lists.
 struct SafeDisplacement {
   double absolute, relative;
 
@@ -29,44 +29,44 @@ struct SafeDisplacement {
   double most() const { return std::max(absolute, relative); }
 };
 
-// A rank's part of the box along one axis. A side of the box that `follows` goes where particles are.
+// A rank's part of the box along one axis. A side of the box that `follows` moves with the particles.
 struct BoxShare {
   double box_low, box_high, low, high;
   bool follows_low, follows_high;
 };
 
-// What is left of the way that particles may go until a fix or a rank must look at them again. It is measured from where they
-// are, and spent step by step by the way of the fastest; only when it is used up positions are compared again. All ranks call
-// each function together: `least` puts the least number of all ranks in the place of each.
+// The budget: the distance that particles may still go until a fix or a rank must look at them again. It is measured from where
+// they are, and spent step by step by the displacement of the fastest. Positions are compared again only when it is used up. All
+// ranks call each function together: `least` replaces each number by the smallest of all ranks.
 class DisplacementBudget {
  public:
   using Least = std::function<void(double *numbers, int count)>;
-  static constexpr double OVERFLOW = std::numeric_limits<double>::infinity();    // spent on one rank, is heard by all
+  static constexpr double OVERFLOW = std::numeric_limits<double>::infinity();    // spent on one rank, noticed by all
 
-  // Of a rank that is alone, or of one of several, which also tells its shares of the box along the three axes, before every
-  // limit.
+  // For a rank that is alone, and for one of several. The latter also gives its shares of the box along the three axes before
+  // every limit.
   void set_alone();
   void set_ranks(Least least);
   void set_shares(const std::array<BoxShare, 3> &of_rank) { shares = of_rank; }
-  // Half of the skin, and farther where no participant needs lists until then.
+  // Limits are half of the skin, or more where no participant needs lists until then.
   void set_limits(double half_skin, const SafeDisplacement &participants);
   double farthest() const { return limits.most(); }
 
-  // As the particles of this rank stand now, particle i at where(i), that stood at then[i] when lists were made.
+  // Measures particles of this rank: i is at where(i), and was at then[i] when lists were made.
   template <class Where> void measure(int particles, Where where, const double *const *then);
-  void measure_unmoved() { left = limits.least(); }    // of a rank that is alone
-  // Whether some is left on every rank after going so far.
+  void measure_unmoved() { left = limits.least(); }    // for a rank that is alone
+  // Spends `way`. Returns whether some of the budget is left on every rank.
   bool spend(double way);
-  // Lists are new: from here on the budget is spent. `build` is their number.
+  // Lists are new: the budget is spent from here on. `build` is the number of the lists.
   void begin(long build);
   void forget() { begun_with = -1; }
-  // Whether so little is left, of a budget that is not used up, that lists had better be made at once.
+  // Whether so little of the budget is left that lists had better be made at once.
   bool nearly_spent() const { return left <= SOON * whole; }
   bool overflowed() const { return left == -OVERFLOW; }
 
  private:
-  static constexpr double SOON = 0.2;    // part of the whole
-  // What particles of a rank have done since lists were made.
+  static constexpr double SOON = 0.2;    // part of the whole budget
+  // Displacements of the particles of a rank since lists were made.
   struct Moved {
     double most = 0.0;        // square of the longest displacement
     Box displacement, now;    // boxes around all displacements and positions

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// Energy that velocity-dependent forces take in the course of a run.
+// Energy that velocity-dependent forces take during a run.
 
 #ifndef MDANIM_LOSS_H
 #define MDANIM_LOSS_H
@@ -24,7 +24,7 @@ namespace mdanim {
 // The forces of a setup see v^n itself, and count for half a step.
 class Loss {
  public:
-  // When lists are rebuilt: whether particle i still is the one whose force was kept.
+  // Called when lists are rebuilt: checks whether particle i is still the one whose force was kept.
   template <class Tag> void look(const Tag *tag, int particles)
   {
     if (static_cast<int>(order.size()) == particles && std::equal(order.begin(), order.end(), tag)) return;
@@ -41,7 +41,7 @@ class Loss {
     return force;
   }
 
-  // When they are complete. v is what they have seen.
+  // Closes a step when the forces are complete. v is the velocity that they were computed with.
   void step(const double *const *v, double dt, bool setup)
   {
     const int particles = static_cast<int>(force.size());
@@ -73,8 +73,9 @@ class Loss {
     ahead = 0.0;
   }
 
-  // Steps that passes take (simd_blocks.h), which keep F^{n-1} and v^{n-3/2} meanwhile. Before them the account of all so far is
-  // closed; v is what the next forces will see. Of the sum with F^{m+1} - F^{m-1} the second half then always goes `ahead`.
+  // For steps that passes take (simd_blocks.h), which keep F^{n-1} and v^{n-3/2} meanwhile. Before these steps the account so far
+  // is closed; v is the velocity of the next forces. From then on the second half of the sum with F^{m+1} - F^{m-1} is taken one
+  // step `ahead`.
   void close(const double *const *v, double dt)
   {
     sum += 0.5 * dt * (begun ? power : power - sum_of(force, v));
@@ -83,7 +84,7 @@ class Loss {
     power = tail = 0.0;
     begun = true;
   }
-  // One of them.
+  // Adds one such step.
   void passed(const DashpotSums &sums, double dt)
   {
     sum -= 0.5 * dt * sums.work;
@@ -92,15 +93,15 @@ class Loss {
     ahead = kept >= 1 ? sums.ahead : 0.0;
     kept = std::min(kept + 1, 2);
   }
-  // After them: what they have kept is back in latest() and latest_seen().
+  // Called after them: F^{n-1} and v^{n-3/2} are back in latest() and latest_seen().
   void reopen() { last.assign(force.size(), Vec3()); }
   std::vector<Vec3> &latest() { return force; }
   std::vector<Vec3> &latest_seen() { return seen; }
 
-  // Whether nothing has acted in the last step.
+  // Whether no force has acted in the last step.
   bool idle() const { return power == 0.0 && tail == 0.0; }
 
-  // In place of a computation, while idle.
+  // Replaces a computation while idle.
   void rest()
   {
     kept = 0;

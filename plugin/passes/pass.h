@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// One step of all particles, block by block: what the vector code (pass_kernel.h) is given. Plain data alone, for the reason told
-// in simd/of_set.h.
+// One step of all particles, block by block: the interface to the vector code (pass_kernel.h). Plain data only; simd/of_set.h
+// says why.
 
 #ifndef MDANIM_PASS_H
 #define MDANIM_PASS_H
@@ -10,18 +10,18 @@
 
 namespace mdanim {
 
-// Springs from the particles of a block to those `offset` places further on.
+// Springs from the particles of a block to those `offset` places farther on.
 struct Entry {
   int offset;
   unsigned law;    // row of Pass::law, or Pass::damped_law if the block is damped
 };
 
-// Particles that stand side by side, one to each lane of the vector unit. Its springs are the entries from the last block's end
-// on, offsets descending.
+// Particles that stand side by side, one in each lane of the vector unit. Springs of a block are the entries behind the previous
+// block's end, offsets descending.
 struct Block {
   int start;
-  short lanes;       // of its own; what else is loaded with them belongs to others and is left as it is
-  bool held_back;    // others add to its forces before it may move
+  short lanes;       // lanes of its own particles; others are loaded with them but left as they are
+  bool held_back;    // other forces are added before it may move
   bool damped;       // some of its particles have dashpots
   bool bound;        // some have springs
   unsigned end;
@@ -31,19 +31,19 @@ struct Block {
   int chunk;             // row of Pass::sums
   int immersed;          // row of what is kept and of Pass::immersed_of; negative where no particle is near a liquid
   bool at_border;        // of a range of blocks: some of what is loaded for it belongs to another range
-  int crossing;          // its row of Pass::crossed; negative where none of its springs cross the border above it
+  int crossing;          // its row of Pass::crossed; negative where none of its springs crosses the border above it
 };
 
-// The springs of a block that cross a border between two ranges of blocks: entries from the last one's end on.
+// The springs of a block that cross a border between two ranges of blocks: entries behind the previous crossing's end.
 struct Crossing {
   int start;
   bool damped;
   unsigned end;
 };
 
-// A border between two ranges. Springs across it are evaluated once, before a thread moves anything that they need: they are the
-// first that their lower particles add up, as their offsets are the longest, and the first that their upper particles receive, as
-// these come from their lowest partners. So each sum has the order that it has without a border.
+// A border between two ranges. Springs across it are evaluated once, before a thread moves any particle that they need. They are
+// the first that their lower particles add up, as their offsets are the longest. They are the first that their upper particles
+// receive, as these come from their lowest partners. So each sum keeps the order that it has without a border.
 struct Border {
   int first, crossings;    // of Pass::crossing, ascending
   unsigned first_entry;
@@ -66,31 +66,31 @@ enum class Friction { NONE, IMPLICIT, EXPONENTIAL };
 
 // A row of Pass::motion, one number for each lane.
 enum Motion { MASS, KICK, DT, FOREIGN_LANE, OWNED_LANE, STAY, SHARE, PUSH, BRAKED_MASS, PHI, MOTIONS };
-// MASS what gravity pulls at; KICK dt/2m; DT the time step, 0 for what does not move; FOREIGN_LANE 1 where a lane is not the
-// block's own; OWNED_LANE 1 for a particle of this rank. With friction also, see leapfrog.h: STAY 1 - phi or e; SHARE 1 / (1 +
-// phi); PUSH g dt/2m; BRAKED_MASS m, 0 where there is none; PHI.
+// MASS: mass that gravity pulls at; KICK: dt/2m; DT: time step, 0 for particles that do not move; FOREIGN_LANE: 1 in a lane that
+// is not the block's own; OWNED_LANE: 1 for a particle of this rank. With friction also, see leapfrog/law.h: STAY: 1 - phi or e;
+// SHARE: 1 / (1 + phi); PUSH: g dt/2m; BRAKED_MASS: m, 0 without friction; PHI.
 
-// What is kept for a particle (InLiquid), one number for each lane: a row of Pass::kept, and one of Pass::kept_floats.
+// Values kept for a particle (InLiquid), one number for each lane: a row of Pass::kept, and one of Pass::kept_floats.
 enum Kept { BASE, SLOPE, IMPULSE_X, IMPULSE_Y, KEPT };
 enum KeptFloat { MORE, ALONG_X, ALONG_Y, FLOW_X, FLOW_Y, RISING, KEPT_FLOATS };
 
-// A row of Pass::immersed, one number for each lane; see Immersed. LAMBDA is friction that a particle has anyway; LISTED is 1 for
-// what is near the liquid.
+// A row of Pass::immersed, one number for each lane; see Immersed. LAMBDA is the friction that a particle has without the liquid;
+// LISTED is 1 for particles near the liquid.
 enum ImmersedMotion { VOLUME, OWN_MASS, GAMMA, PER_LENGTH, LAMBDA, LISTED, IMMERSED_MOTIONS };
 
-// The same of one particle.
+// The same values of one particle.
 struct ImmersedMover {
   double volume, mass, gamma, per_length, lambda;
 };
 
-// What a particle's motion depends on.
+// Values that a particle's motion depends on.
 struct Mover {
   double pulled;                 // mass that gravity pulls at
   double mass, kick, dt, phi;    // see Motion
   bool in_liquid;                // its friction is in ImmersedMotion
 };
 
-// A row of Pass::trace: a box, see boxes.h, and the largest v^2 with its sign changed.
+// A row of Pass::trace: a box, see boxes.h, and the negative of the largest v^2.
 enum Trace { FASTEST = 6, TRACE };
 
 using DashpotSums = DashpotWork<double>;    // over particles
@@ -111,10 +111,10 @@ struct Pass {
   const double *damped_law;    // rows of push, pull and c; null where nothing is damped
   const double *motion;        // see Motion
   double *x[3], *v[3];         // x^n -> x^{n+1}, v^{n-1/2} -> v^{n+1/2}
-  // With dashpots: their forces of the last step, F^{n-1} -> F^n, and the velocities that those of this step have seen,
-  // v^{n-3/2} -> v^{n-1/2}. Of what is held back these stay as they are, and F^n goes to `held_part`.
+  // With dashpots: their forces of the last step, F^{n-1} -> F^n, and the velocities that the forces of this step were computed
+  // with, v^{n-3/2} -> v^{n-1/2}. For blocks that are held back these stay as they are, and F^n goes to `held_part`.
   double *last[3], *seen[3], *held_part[3];
-  // Of the range: what lower partners have done so far, and the dashpots' part of it; nothing before and after a pass.
+  // The range; forces from lower partners so far, and the dashpots' part of them, both zero before and after a pass.
   const Range *range;
   const Crossing *crossing;
   const Entry *crossing_entry;
@@ -124,9 +124,9 @@ struct Pass {
   double *external_force;    // rows of forces from elsewhere, (3, lanes) each, to be added after gravity; zero after a pass:
   int force_providers;       // so many in a row for a block that has any
   Friction friction;
-  double *kept;                   // rows of KEPT
-  const float *kept_floats;       // rows of KEPT_FLOATS
-  const double *immersed;         // rows of IMMERSED_MOTIONS,
+  double *kept;                   // rows of KEPT numbers
+  const float *kept_floats;       // rows of KEPT_FLOATS numbers
+  const double *immersed;         // rows of IMMERSED_MOTIONS numbers,
   const unsigned *immersed_of;    // and which of them goes with a row of `kept`
   LiquidScales liquid;
   double top_of_near;    // below it the speed of what is LISTED counts

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// What is cut anew, and when.
+// Decides which cuts are made anew, and when.
 
 #include "passes/pass_engine.h"
 

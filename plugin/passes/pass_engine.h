@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// What run_style verlet/mdanim computes with, without LAMMPS and without MPI.
+// The engine of run_style verlet/mdanim, without LAMMPS and without MPI.
 
 #ifndef MDANIM_PASS_ENGINE_H
 #define MDANIM_PASS_ENGINE_H
@@ -14,34 +14,35 @@
 
 namespace mdanim {
 
-// Owns what passes need, in the order in which each makes the next: the crew and its kernels, cuts of the springs, blocks that
-// are laid out, and a run of passes. It cuts anew only what has changed.
+// Owns the parts of a pass, in the order in which each makes the next: the crew and its kernels, cuts of the springs, blocks that
+// are laid out, and a run of passes. It cuts anew only after a change.
 class PassEngine {
  public:
   PassCrew crew;
 
-  // These threads take passes. The caller of all other functions is one of them.
+  // Sets the threads that take passes. The caller of all other functions is one of them.
   void set_threads(Threads &&now) { threads = std::move(now); }
 
-  // The crew is complete: with these kernels, and what only this run knows forgotten. Whether the kernels are others than before.
+  // The crew is complete and uses these kernels; knowledge of a single run is forgotten. Returns whether the kernels differ from
+  // before.
   bool begin_run(const Kernels &kernels);
-  void forget_springs();    // particles may have others now
+  void forget_springs();    // particles may have other springs now
 
-  // Blocks for the springs as they are now, of a rank that has all particles, in tag order; `object` null where there are none.
-  // False where passes are not worth it.
+  // Cuts blocks for the springs as they are now, for a rank that has all particles, in tag order; `object` is null where there
+  // are none. False where passes do not pay.
   bool cut(int particles, const int *object);
-  // Of one of several ranks, for its particles and the ghosts that they have springs to. All ranks are to decide by their uses
-  // together.
+  // Cuts blocks for one of several ranks: its particles and the ghosts that they have springs to. All ranks are to decide
+  // together, by the lane use of all.
   LaneUse cut(const Bonded &known);
   const TagOrder &order() const { return line; }
 
-  // Starts a run of passes; `build` is the number of the lists, which particles keep their motion with.
+  // Starts a run of passes. `build` is the number of the lists: while it stays the same particles keep their motion.
   PassRun &start(const AtomArrays &atoms, double dt, bool positions, long long build);
   void keep_motion(long long build) { motion_for = build; }    // lists are new, and particles move as before
   bool is_running() const { return run.has_value(); }
   PassRun &running() { return *run; }
-  void leave();                   // ends it
-  void drop() { run.reset(); }    // ends one that an error has broken off, without taking anything from its blocks
+  void leave();                   // ends the run
+  void drop() { run.reset(); }    // ends a run that an error has broken off, without taking anything from its blocks
   SimdBlocks &laid_out() { return *blocks; }
 
   long long held_back() const { return moved_alone; }    // particles, all passes together
@@ -58,10 +59,10 @@ class PassEngine {
   const Kernels *kernels = nullptr;
   long long cut_for = NONE;            // version of the springs
   long long motion_for = NONE;         // build of lists
-  std::vector<int> objects;            // of a rank that has all particles: what it is cut for
-  TagOrder line;                       // of one of several: what is cut,
-  std::vector<SpringCoeffs> coeffs;    // for these,
-  LaneUse use;                         // and how well
+  std::vector<int> objects;            // for a rank that has all particles: the objects that it is cut for
+  TagOrder line;                       // for one of several ranks: the line that is cut,
+  std::vector<SpringCoeffs> coeffs;    // for these coefficients,
+  LaneUse use;                         // and the lane use
   Cutter cutter;
   std::optional<SimdBlocks> blocks;
   std::optional<PassRun> run;

@@ -32,7 +32,7 @@ MDANIM_ALWAYS_INLINE Vector load_floats(const float *from) { return __builtin_co
 
 MDANIM_ALWAYS_INLINE Vector3 load(const double *const *from, long i) { return load<Vector>(from, i); }
 
-// Components of a block's own numbers, LANES of each.
+// Loads components of a block's own numbers, LANES of each.
 MDANIM_ALWAYS_INLINE Vector3 load_own(const double *from) { return {load(from), load(from + LANES), load(from + 2 * LANES)}; }
 
 MDANIM_ALWAYS_INLINE void store_own(double *to, const Vector3 &value)
@@ -44,7 +44,7 @@ MDANIM_ALWAYS_INLINE void store_own(double *to, const Vector3 &value)
 
 MDANIM_ALWAYS_INLINE Vector largest(Vector a, Vector b) { return a > b ? a : b; }
 
-// Adds lanes in the order of particles, whatever the width.
+// Adds lanes in the order of particles, whatever the number of lanes.
 MDANIM_ALWAYS_INLINE void add_lanes(double &sum, const Vector &lanes)
 {
   double each[LANES];
@@ -52,7 +52,7 @@ MDANIM_ALWAYS_INLINE void add_lanes(double &sum, const Vector &lanes)
   for (int lane = 0; lane < LANES; ++lane) sum += each[lane];
 }
 
-// Largest and smallest coordinates of one object, as they come.
+// Largest and smallest coordinates of one object, collected lane by lane.
 struct Bounds {
   Vector low[3], high[3];
 
@@ -79,7 +79,7 @@ struct Bounds {
   }
 };
 
-// What a pass tells at its end.
+// Results of a pass, returned at its end.
 struct Tally {
   Vector fastest{}, squares{};
   Vector fastest_near = constant<Vector>(-1.0), largest_phi{};
@@ -113,13 +113,13 @@ struct Tally {
   }
 };
 
-// What the particles of a block feel of springs to upper partners, and of dashpots alone.
+// Forces on the particles of a block: of springs to upper partners, and of dashpots alone.
 struct Felt {
   Vector3 springs, dashpots;
 };
 
-// Springs of a block, each once, and the dashpots beside them: for its own particles into `felt`, for their partners into f and
-// part. place(array, i) has the lanes of particles from i on.
+// Evaluates the springs of a block, each once, and the dashpots beside them: forces on its own particles go into `felt`, those on
+// their partners into f and part. place(array, i) gives the lanes of particles from i on.
 template <bool DAMPED, class Place>
 MDANIM_ALWAYS_INLINE void add_springs(const Pass &pass, const Entry *entry, unsigned &e, unsigned end, int i, double *const *of_f,
                                       double *const *of_part, Felt &felt, const Place &place)
@@ -147,7 +147,7 @@ MDANIM_ALWAYS_INLINE void add_springs(const Pass &pass, const Entry *entry, unsi
   }
 }
 
-// All that a block's own particles feel of springs and of gravity, and behind that what they feel of dashpots alone.
+// Adds up the forces on a block's own particles: of springs and gravity, and behind that of dashpots alone.
 template <bool DAMPED> MDANIM_ALWAYS_INLINE void add_up(const Pass &pass, const Block &block, const Felt &felt, double *total)
 {
   double *const f[] = {pass.range->f[0], pass.range->f[1], pass.range->f[2]};
@@ -172,8 +172,8 @@ template <bool DAMPED> MDANIM_ALWAYS_INLINE void feel(const Pass &pass, const Bl
   add_up<DAMPED>(pass, block, felt, total);
 }
 
-// Forces of participants, whose rows are cleared for the next pass while they are in the cache. Not inlined: most blocks have
-// none, and the springs need all registers.
+// Adds the forces of participants and clears their rows for the next pass while they are in the cache. Not inlined: most blocks
+// have none, and the springs need all registers.
 __attribute__((noinline)) void take_external_force(const Pass &pass, const Block &block, double *total)
 {
   double *row = pass.external_force + static_cast<long>(block.external_force) * (3 * LANES);
@@ -184,7 +184,7 @@ __attribute__((noinline)) void take_external_force(const Pass &pass, const Block
     }
 }
 
-// What dashpots do to the account of a block that has gone from `first` to `last`.
+// The dashpots' part in the account of a block that has gone from `first` to `last`.
 MDANIM_ALWAYS_INLINE void account(const Pass &pass, const Block &block, const double *motion, const Vector3 &now,
                                   const Vector3 &first, const Vector3 &last, DashpotSums &sums)
 {
@@ -199,7 +199,7 @@ MDANIM_ALWAYS_INLINE void account(const Pass &pass, const Block &block, const do
   add_lanes(sums.ahead, counts * terms.ahead);
 }
 
-// The law of leapfrog.h that a row of Pass::motion tells.
+// The law of leapfrog/law.h with the coefficients in a row of Pass::motion.
 template <Friction FRICTION> MDANIM_ALWAYS_INLINE auto half_steps(const double *motion)
 {
   if constexpr (FRICTION == Friction::IMPLICIT)
@@ -211,7 +211,7 @@ template <Friction FRICTION> MDANIM_ALWAYS_INLINE auto half_steps(const double *
     return Frictionless<Vector>{load(motion + KICK * LANES)};
 }
 
-// The same for a phi of this step.
+// The same law with a phi of this step.
 template <Friction FRICTION> MDANIM_ALWAYS_INLINE auto half_steps(const Vector &phi, const Vector &kick)
 {
   if constexpr (FRICTION == Friction::IMPLICIT)
@@ -220,8 +220,8 @@ template <Friction FRICTION> MDANIM_ALWAYS_INLINE auto half_steps(const Vector &
     return Exponential<Vector>::of(phi, kick);
 }
 
-// The second half of a step and the first of the next, by a law of leapfrog.h; friction takes from `mass` alone. Sums are those
-// of the block's chunk when then(v^n, v^{n+1/2}, r^{n+1}) is called.
+// The second half of a step and the first half of the next, by a law of leapfrog/law.h; friction takes from `mass` only.
+// then(v^n, v^{n+1/2}, r^{n+1}) is called with the sums of the block's chunk.
 template <Friction FRICTION, bool DAMPED, class Law, class Then>
 MDANIM_ALWAYS_INLINE void advance(const Pass &pass, const Block &block, const double *total, const Vector3 &f, const Law &law,
                                   const Vector &mass, Tally &tally, const Then &then)
@@ -246,7 +246,7 @@ MDANIM_ALWAYS_INLINE void advance(const Pass &pass, const Block &block, const do
   then(middle, last, place);
   if (pass.trace) {
     if (block.object != tally.object) tally.turn_to_object(block.object, pass);
-    if (block.lanes < LANES) {    // lanes of others go where the first one is, and rest
+    if (block.lanes < LANES) {    // lanes of others are put where the first one is, at rest
       const Vector others = load(motion + FOREIGN_LANE * LANES);
       const auto at_first = [&](const Vector &a) { return others > 0.0 ? Vector{} + a[0] : a; };
       place = {at_first(place.x), at_first(place.y), at_first(place.z)};
@@ -315,7 +315,7 @@ MDANIM_ALWAYS_INLINE void move(const Pass &pass, const Block &block, const doubl
 
 // --- at the borders of ranges ---
 
-// Lanes of particles from i on, but for those of another range, which another thread may be moving: these are where the first is.
+// Lanes of particles from i on. Those of another range, which another thread may be moving, are put where the first is.
 MDANIM_ALWAYS_INLINE Vector3 load_before(int end, double *const *from, int i)
 {
   if (__builtin_expect(i + LANES <= end, 1)) return load(from, i);
@@ -342,8 +342,8 @@ template <bool DAMPED> MDANIM_ALWAYS_INLINE void cross(const Pass &pass, const B
   }
 }
 
-// The springs across a border are evaluated when this returns, by whichever thread came first. It waits for no other, so no
-// thread waits for long.
+// Springs across a border have been evaluated when this returns, by whichever thread came first. That thread waits for no other,
+// so no thread waits long.
 template <bool DAMPED> __attribute__((noinline)) void see_crossed(const Pass &pass, Border &border)
 {
   unsigned before = pass.turn - 1;
@@ -355,7 +355,7 @@ template <bool DAMPED> __attribute__((noinline)) void see_crossed(const Pass &pa
   while (__atomic_load_n(&border.crossed, __ATOMIC_ACQUIRE) != pass.turn) sched_yield();
 }
 
-// Of a damped pass, a block that is damped itself or not.
+// A block of a damped pass, which may itself be damped or not.
 template <bool DAMPED_PASS, bool DAMPED>
 __attribute__((noinline)) void feel_at_border(const Pass &pass, const Block &block, unsigned &e, double *total)
 {
@@ -371,7 +371,7 @@ __attribute__((noinline)) void feel_at_border(const Pass &pass, const Block &blo
   add_up<DAMPED>(pass, block, felt, total);
 }
 
-// In a copy of its own lanes.
+// The same in a copy of its own lanes.
 template <Friction FRICTION, bool DAMPED>
 __attribute__((noinline)) void move_at_border(const Pass &pass, const Block &block, const double *total, Tally &tally)
 {
@@ -391,7 +391,7 @@ __attribute__((noinline)) void move_at_border(const Pass &pass, const Block &blo
       for (int lane = 0; lane < block.lanes; ++lane) of_pass[kind][d][block.start + lane] = room[kind][d][lane];
 }
 
-// --- all of a range ---
+// --- a whole range ---
 
 template <bool DAMPED> MDANIM_ALWAYS_INLINE void feel_anywhere(const Pass &pass, const Block &block, unsigned &e, double *total)
 {
@@ -414,7 +414,7 @@ MDANIM_ALWAYS_INLINE void move_anywhere(const Pass &pass, const Block &block, co
     move<FRICTION, DAMPED>(pass, block, total, tally);
 }
 
-// A block moves while the next one's springs keep the divider busy: nothing then waits for its forces.
+// A block moves while the next one's springs keep the divider busy, so nothing waits for its forces.
 template <Friction FRICTION, bool DAMPED> MDANIM_ALWAYS_INLINE void go(Pass &pass)
 {
   double total[2][(DAMPED ? 6 : 3) * LANES];

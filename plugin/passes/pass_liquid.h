@@ -12,31 +12,31 @@
 
 namespace mdanim {
 
-// A liquid whose force on a particle depends on the particle's place and velocity and on a few numbers that are kept for it: a
-// pass computes it (buoyancy/immersed.h) and moves the particle at once. Particles that are held back for other participants are
-// left to the fix, which is a late participant as well. Numbers of particles are those of LAMMPS's arrays.
+// A liquid whose force on a particle depends on the particle's place and velocity and on a few numbers that are kept for it. A
+// pass computes the force (buoyancy/immersed.h) and moves the particle at once. Particles that are held back for other
+// participants are left to the fix, which is a late participant as well. Particles are numbered as in LAMMPS's arrays.
 class PassLiquid {
  public:
-  // Whether passes may do that in this whole run; `lambda` is where the integrator reads friction.
+  // Whether passes may compute the liquid's forces in this whole run; `lambda` is where the integrator reads friction.
   virtual bool joins(const double *lambda) = 0;
   virtual LiquidScales scales() const = 0;
-  // Below this height a particle's speed counts.
+  // Height below which a particle's speed counts.
   virtual double top_of_near() const = 0;
-  // The particles near the liquid, and another number for others.
+  // The particles near the liquid; listed() is another number when others are near.
   virtual const std::vector<int> &near_particles() const = 0;
   virtual long long listed() const = 0;
   virtual bool is_near(int i) const = 0;
-  // What passes are told of a particle, until particles move to other places of the arrays.
+  // Coefficients of a particle for passes. They hold until particles move to other places of the arrays.
   virtual std::function<ImmersedMover(int i)> immersed() const = 0;
-  // Of all particles in LAMMPS's arrays.
+  // Kept values of all particles in LAMMPS's arrays.
   virtual InLiquid *kept() = 0;
-  // The arrays hold these particles alone from now on, until this is called again; null for all particles.
+  // From now on the arrays hold only these particles, until this is called again; null for all particles.
   virtual void split(const std::vector<int> *in_arrays) = 0;
-  // Whether the liquid is to move in this step. If so it does before the pass, when the arrays hold all particles.
+  // Whether the liquid is to move in this step. If so, it moves before the pass, when the arrays hold all particles.
   virtual bool is_due() = 0;
   virtual void update_liquid() = 0;
-  // By a pass in its name: power of its forces without friction's, and what friction takes; square of the largest speed of what
-  // is near after it, negative for nothing.
+  // Reports a pass that acted for the liquid: power of its forces without friction, and energy that friction takes; square of the
+  // largest speed near the liquid, negative where no particle is near; wall time.
   virtual void acted(double work, double lost, double fastest, double seconds) = 0;
 
  protected:

@@ -20,12 +20,12 @@ class Loss;
 struct Kernels;
 class Threads;
 
-// Where a particle is at home: the rank, and the index in its arrays.
+// The owner of a particle: the rank, and the index in its arrays.
 struct Home {
   int rank, index;
 };
 
-// Where the forces on the particles of one participant are added up, zero at first.
+// Sums of the forces on the particles of one participant, zero at first.
 class ForceSums {
  public:
   // Components of the sum for particle n lie at slot[n], slot[n] + apart and slot[n] + 2 apart.
@@ -47,12 +47,12 @@ class ForceSums {
 
 struct PassCrew;
 
-// What has a part in passes: the bond style, or a fix.
+// A member of the crew of a pass: the bond style, or a fix.
 class PassMember {
  public:
-  // Takes its part. False where it cannot, after those that have joined before: each step is then LAMMPS's own.
+  // Joins the crew. False where it cannot, given those that have joined before: each step is then LAMMPS's own.
   virtual bool join(PassCrew &crew) = 0;
-  // What to compute with in this run.
+  // Sets the kernels and threads to compute with in this run.
   virtual void equip(const Kernels &, const Threads &) {}
 
  protected:
@@ -73,10 +73,10 @@ class PassSprings : public PassMember {
   virtual void took(double seconds) = 0;
 };
 
-// What moves particles, and keeps the account of friction.
+// The integrator: moves particles, and keeps the account of friction.
 class PassIntegrator : public PassMember {
  public:
-  // A particle's object, 1 where there are none, and where it is at home.
+  // A particle's object, 1 where there are none, and its owner.
   struct Known {
     int object;
     Home home;
@@ -90,11 +90,12 @@ class PassIntegrator : public PassMember {
   virtual bool tells_of(long long step) const = 0;                    // whether `bend` will be asked for in that step
   virtual void finish_step(const std::vector<int> &particles) = 0;    // v^{n-1/2} -> v^n
   virtual void begin_step(const std::vector<int> &particles) = 0;     // v^n -> v^{n+1/2}, r^n -> r^{n+1}
-  // By a pass in its name.
+  // Reports a pass that moved particles for the integrator.
   virtual void moved(double final_loss, double first_loss, double bend, double largest_phi, double seconds) = 0;
-  // Friction of particles that have numbers of their own, else null.
+  // Friction of particles that have values of their own, else null.
   virtual const double *friction_of_particles() const = 0;
-  // All ranks together, after lists were made: own particles that other ranks have as ghosts, and what is known of all particles.
+  // Called by all ranks together, after lists were made: own particles that other ranks have as ghosts, and the object and owner
+  // of all particles.
   virtual std::vector<Known> survey_ghosts(std::vector<int> &sent) = 0;
 };
 
@@ -112,28 +113,28 @@ class PassGravity : public PassMember {
 class PassParticipant : public PassMember {
  public:
   bool join(PassCrew &crew) override;
-  // The local particles whose x, v and f the fix reads or writes in post_force() and end_of_step(), until lists are rebuilt; the
-  // arrays of LAMMPS hold no others. Adds them to `particles`, some perhaps twice.
+  // Appends the local particles whose x, v and f the fix reads or writes in post_force() and end_of_step(), until lists are
+  // rebuilt. The arrays of LAMMPS hold no others. A particle may be appended twice.
   virtual void append_required_atoms(std::vector<int> &particles) const = 0;
-  // Whether, in this whole run, all that the fix does in a step is to add forces that depend on the positions of these particles
-  // alone, each of which is named once. It may then be asked for them instead, before the pass, which adds them: as many as
-  // append_required_atoms() names, in that order, those of ghosts without meaning.
+  // Whether, in this whole run, the fix only adds forces that depend on the positions of these particles, each of which is named
+  // once. It may then be asked for the forces before the pass, which adds them: one for each particle that
+  // append_required_atoms() names, in that order; those of ghosts are ignored.
   virtual bool depends_on_positions_only() const { return false; }
   virtual void add_forces(const Positions & /*place*/, const ForceSums & /*force*/) {}
-  // Whether it will read any particle in this step. Asked once, when the step has begun, unless positions are all that it needs.
+  // Whether it will read any particle in this step. Asked once, when the step has begun, unless the fix needs positions only.
   virtual bool needs_all_atoms() { return false; }
-  // How far particles may go from where they stood when lists were made before it must look again, as far as it can tell: one
-  // that has nothing to do until then says so here, and lists last longer than half the skin.
+  // How far particles may go from where they were at the last rebuild before the fix must look again, as far as it can tell. A
+  // fix that has nothing to do until then says so here, and lists last longer than half the skin.
   virtual double safe_displacement() const { return 0.0; }
-  // Whether a motion that all particles share counts. To a fix that asks for distances between particles alone it does not.
+  // Whether a motion that all particles share counts. It does not for a fix that depends on distances between particles only.
   virtual bool sees_absolute_position() const { return true; }
 
  protected:
   ~PassParticipant() = default;
 };
 
-// All that act in a step, in the order in which LAMMPS has them: participants whose forces are asked for before a pass, and those
-// that come after it.
+// All members that act in a step, in the order in which LAMMPS has them: participants whose forces are asked for before a pass,
+// and those that come after it.
 struct PassCrew {
   PassSprings *springs = nullptr;
   PassIntegrator *integrator = nullptr;
@@ -142,7 +143,7 @@ struct PassCrew {
   std::vector<PassParticipant *> early, late;
 
   void equip(const Kernels &kernels, const Threads &threads) const;
-  // How far particles may go before some participant must look again, of no more than `any`.
+  // How far particles may go before some participant must look again, `any` at most.
   SafeDisplacement safe_displacement(double any) const;
 };
 

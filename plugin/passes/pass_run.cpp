@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// What passes need to know, and what becomes of what they tell.
+// Data that passes need, and the use of their results.
 
 #include "passes/pass_run.h"
 
@@ -11,11 +11,12 @@
 
 namespace mdanim {
 
-// Parts of the time of a pass, which is one piece: what it takes without springs, without drag and without gravity tells them
-// (bench/effects.py shares, which goes from 13 and 3 springs for each particle to none). The springs have the rest.
+// Parts of the time of a pass, which cannot be timed piece by piece: they follow from its time without springs, without drag and
+// without gravity (bench/effects.py shares, which goes from 13 and 3 springs for each particle to none). The rest belongs to the
+// springs.
 static constexpr double OF_LEAPFROG = 0.35, OF_DRAG = 0.14, OF_GRAVITY = 0.01;
 
-// What a pass takes more for a particle that a liquid acts on, over what it takes for any: bench/liquid.py, at rest over nothing
+// Extra time of a pass for a particle in a liquid, relative to its time for any particle: bench/liquid.py, at rest over nothing
 // near.
 static constexpr double MORE_IN_LIQUID = 0.26;
 
@@ -62,7 +63,7 @@ void PassRun::hold_back()
     crew.liquid->split(&blocks.held_back());
   }
   pass.friction =
-      blocks.friction_acts() ? crew.integrator->friction() : Friction::NONE;    // without any it is the same, and faster
+      blocks.friction_acts() ? crew.integrator->friction() : Friction::NONE;    // without friction: the same, and faster
 }
 
 void PassRun::step(long long next, const std::function<void(bool at_end)> &late)
@@ -91,7 +92,7 @@ void PassRun::step(long long next, const std::function<void(bool at_end)> &late)
   crew.springs->took(all - moving - pulling - lifting);
   if (!crew.late.empty()) {
     late_participants_turn(late);
-    if (needs_all) hold_back();    // they may need others now
+    if (needs_all) hold_back();    // they may need other particles now
   }
   if (Loss *account = crew.springs->account()) account->passed(sums.dashpots, dt);
 }
@@ -129,7 +130,7 @@ void PassRun::take_pass()
   }
 }
 
-// Forces that the pass is to add.
+// Forces that the pass adds.
 void PassRun::early_participants_turn()
 {
   for (std::size_t n = 0; n < crew.early.size(); ++n) {
@@ -173,7 +174,7 @@ bool PassRun::in_range(const AtomArrays &atoms, int particles)
   return squares < LARGEST_SQUARE;
 }
 
-// All particles are the liquid's own affair again.
+// From here on all particles are the liquid's own task again.
 void PassRun::give_back_to_liquid()
 {
   if (!crew.liquid) return;
@@ -181,7 +182,7 @@ void PassRun::give_back_to_liquid()
   crew.liquid->split(nullptr);
 }
 
-// Particles stay in the blocks, and the pass moves them as ever.
+// Particles stay in the blocks, and the pass moves them as usual.
 void PassRun::update_liquid()
 {
   give_back_to_liquid();

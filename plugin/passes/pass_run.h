@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// Steps taken by passes, from the first to the last before LAMMPS's arrays are to be up to date again.
+// Steps taken by passes, from the first to the last before LAMMPS's arrays must be up to date again.
 
 #ifndef MDANIM_PASS_RUN_H
 #define MDANIM_PASS_RUN_H
@@ -23,7 +23,7 @@ struct AtomArrays {
 // asks the members of the crew for motion, forces and accounts, in the order in which the plain step adds forces.
 class PassRun {
  public:
-  // What must be told to the blocks: nothing of it where they have left the last run and nothing has changed since.
+  // Data that must be given to the blocks again: none where they have left the last run and nothing has changed since.
   struct Fresh {
     bool positions, motion;
   };
@@ -32,10 +32,10 @@ class PassRun {
 
   // Whether a participant reads particles in the arrays, besides those that are held back.
   bool participants_look() const { return look; }
-  // One pass, to step `next`. Participants that come after it act by `late`, first for their forces, then, with true, at the end
-  // of the step.
+  // Takes one pass, to step `next`. Participants that come after it act by `late`: first for their forces, then, with true, at
+  // the end of the step.
   void step(long long next, const std::function<void(bool at_end)> &late);
-  // Of the last step.
+  // The largest speed in the last step.
   double largest_speed() const;
   bool in_range() const { return pass.squares < LARGEST_SQUARE; }
   static bool in_range(const AtomArrays &atoms, int particles);
@@ -44,8 +44,8 @@ class PassRun {
   long long held_back() const { return moved_alone; }    // particles, all passes together
 
  private:
-  // Sum of the squares of velocities (and positions) from which on the lanes without a spring, which are multiplied by zero, may
-  // not stay zero: the particles of another object may be in such a lane. The plain step has no such lanes.
+  // Sum of the squares of velocities (and positions) beyond which the product of a lane without a spring and zero may not be
+  // zero: such a lane may hold a particle of another object. The plain step has no such lanes.
   static constexpr double LARGEST_SQUARE = 1e200;
 
   void hold_back();
@@ -61,14 +61,14 @@ class PassRun {
   const PassCrew &crew;
   const AtomArrays atoms;
   const double dt;
-  const double ns;    // that one thread takes for a pass, where several are to take it
+  const double ns;    // that one thread takes for a pass, before it is shared
   Pass pass = {};
   std::vector<Pass> of_range;          // the pass of each range
-  PassSums sums = {};                  // of the last pass,
+  PassSums sums = {};                  // sums of the last pass,
   std::vector<PassSums> chunk_sums;    // and of each of its chunks
   bool look = false;
   long long moved_alone = 0;
-  Positions place;            // of the particles of an early participant
+  Positions place;            // positions of the particles of an early participant
   std::vector<int> wanted;    // particles that late participants need
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// Where borders lie, and which springs cross them.
+// Finds borders, and the springs that cross them.
 
 #include "passes/range_cut.h"
 
@@ -7,9 +7,9 @@
 
 namespace mdanim {
 
-// What a block costs besides its springs, in vectors of springs: gravity, friction and motion.
+// Cost of a block besides its springs, in vectors of springs: gravity, friction and motion.
 static constexpr int MOTION_COST = 6;
-// A border moves to the beginning of an object within this part of a range.
+// A border moves to the beginning of an object within this fraction of a range.
 static constexpr int NEAR = 16;
 
 namespace {
@@ -34,10 +34,10 @@ class RangeCutter {
   Cutter &cutter;
   Cut &cut;
   const int lanes;
-  std::vector<long> cost{0};    // of all blocks before each
+  std::vector<long> cost{0};    // cost of all blocks before each
 };
 
-// The springs of an entry below a border and across it: tell(crosses, row) for both that have any.
+// The springs of an entry below a border and across it: calls tell(crosses, row) for each part that is not empty.
 template <class Tell> void RangeCutter::split(const Block &block, const Entry &entry, int end, Tell tell) const
 {
   const double *const row = cutter.row(block.damped, entry.law);
@@ -63,7 +63,7 @@ int RangeCutter::reach(std::size_t border) const
     const Block &block = cut.block[n];
     for (unsigned e = first_entry(n); e < block.end; ++e) {
       const int last = block.start + block.lanes - 1 + cut.entry[e].offset;
-      if (last >= at) high = std::max(high, last + 1);    // a lane may have no such spring: a border that is refused costs little
+      if (last >= at) high = std::max(high, last + 1);    // a lane may have no such spring: refusing a border costs little
     }
   }
   return high;
@@ -97,7 +97,7 @@ void RangeCutter::find_borders(int wanted)
   found.first.assign(1, 0);
   for (std::size_t n = 0; n < cut.block.size(); ++n)
     cost.push_back(cost.back() + MOTION_COST + static_cast<long>(cut.block[n].end - first_entry(n)));
-  int reached = 0;    // by springs over the last border, and by what is loaded with them
+  int reached = 0;    // reached by springs over the last border, and by lanes that are loaded with them
   for (int r = 1; r < wanted; ++r) {
     const std::size_t border = best_block(cost.back() * r / wanted, cost.back() / wanted / NEAR);
     if (!border) break;

@@ -10,23 +10,22 @@
 
 namespace mdanim {
 
-// What one thread takes for a pass over particles, some with dashpots or none [ns], about (bench/widths.py).
+// Time of one thread for a pass over particles, some with dashpots or none [ns], approximately (bench/widths.py).
 inline double ns_of_pass(int particles, bool damped) { return particles * (damped ? 40.0 : 30.0); }
 
-// Ranges of a cut, and the springs across their borders, which are no longer among the entries of their blocks (Border in
-// pass.h).
+// Ranges of a cut, and the springs across their borders, which are removed from the entries of their blocks (Border in pass.h).
 struct RangeCut {
-  std::vector<int> first;    // particle of each range, ascending; at least one
+  std::vector<int> first;    // first particle of each range, ascending; at least one
   std::vector<Crossing> crossing;
-  std::vector<Entry> entry;          // of these
+  std::vector<Entry> entry;          // entries of these springs
   std::vector<int> end_of_border;    // one beyond its last crossing; border n lies below range n + 1
 
   int ranges() const { return static_cast<int>(first.size()); }
   std::size_t bytes() const { return crossing.capacity() * sizeof(Crossing) + entry.capacity() * sizeof(Entry); }
 };
 
-// Up to so many ranges of equal cost. They begin where chunks do, and if possible where objects do. A spring crosses one border
-// at most: where springs reach too far for that there are fewer ranges.
+// Cuts into `wanted` ranges of equal cost at most. They begin where chunks do, and if possible where objects do. A spring crosses
+// one border at most: where springs reach too far for that there are fewer ranges.
 RangeCut cut_into_ranges(Cutter &cutter, Cut &cut, int wanted);
 
 }    // namespace mdanim

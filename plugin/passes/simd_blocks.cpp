@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// Moving particles into blocks and out of them.
+// Moves particles into blocks and out of them.
 
 #include "passes/simd_blocks.h"
 
@@ -21,8 +21,8 @@ SimdBlocks::SimdBlocks(const Cutter &of, Cut &&cut, RangeCut &&ranges)
       all(std::move(cut.block)), entries(std::move(cut.entry)), cuts(std::move(ranges)), range(cuts.ranges()),
       border(cuts.ranges() - 1)
 {
-  // A processor compares loads with stores on their way by the place in a page alone. So the places of a particle in all arrays
-  // that a thread works on are spread evenly over a page.
+  // A processor compares loads with pending stores by their place in a page only. So the places of a particle in all arrays that
+  // a thread works on are spread evenly over a page.
   const int kinds = damped() ? 5 : 2, kinds_of_range = damped() ? 2 : 1;
   const int apart = PAGE / (3 * (kinds + kinds_of_range)) / LINE * LINE;
   std::vector<std::pair<double **, long>> arrays;
@@ -91,7 +91,7 @@ void SimdBlocks::set_row(const Mover &mover, Friction friction, int lane, double
   }
 }
 
-// Blocks in which nothing moves or is pulled come behind all others, where passes do not get to.
+// Blocks in which nothing moves or is pulled are put behind all others, where passes do not come.
 void SimdBlocks::set_apart(const std::vector<bool> &moves)
 {
   const auto order = [](const Block &a, const Block &b) { return a.start < b.start; };
@@ -102,7 +102,7 @@ void SimdBlocks::set_apart(const std::vector<bool> &moves)
   for (std::size_t n = 0; n < all.size(); ++n) std::fill_n(&home[all[n].start], all[n].lanes, static_cast<int>(n));
 }
 
-// Blocks with a particle of any provider have a row for each of them.
+// Gives blocks with a particle of any provider a row for each provider.
 void SimdBlocks::expect(const std::vector<std::vector<int>> &particles_of)
 {
   const int many = static_cast<int>(particles_of.size());
@@ -364,7 +364,7 @@ void SimdBlocks::begin_pass(Pass &pass)
 
 void SimdBlocks::end_pass(const Pass &pass)
 {
-  if (!pass.trace) return;    // else of objects that several ranges have blocks of
+  if (!pass.trace) return;    // otherwise objects that several ranges have blocks of
   for (const Range &own : range)
     for (int side = 0; side < 2; ++side)
       for (int k = 0; own.shared[side] >= 0 && k < TRACE; ++k) {

@@ -16,42 +16,42 @@
 
 namespace mdanim {
 
-// Particles in blocks, laid out: their positions, velocities and forces in arrays of their own, one for each component, and what
-// is to be done with them in a pass. There is none before particles are cut and their order is known.
+// Particles in blocks, laid out: their positions, velocities and forces in arrays of their own, one for each component, and the
+// work for them in a pass. There is no such object before particles are cut and their order is known.
 class SimdBlocks {
  public:
-  // Of a cut of all particles, which are in the same order in the arrays of LAMMPS.
+  // Blocks of a cut of all particles, which are in the same order in the arrays of LAMMPS.
   SimdBlocks(const Cutter &cutter, Cut &&cut, RangeCut &&ranges);
-  // They are elsewhere in the arrays of LAMMPS: those from `own` on are ghosts, which others move. After this all other numbers
-  // are LAMMPS's: those of mover(), expect(), hold_back(), held_back().
+  // Particles are in another order in the arrays of LAMMPS: those from `own` on are ghosts, which others move. All other
+  // functions number them as LAMMPS does: mover(), expect(), hold_back(), held_back().
   SimdBlocks(const Cutter &cutter, Cut &&cut, RangeCut &&ranges, const std::vector<int> &places, int own);
   SimdBlocks(const SimdBlocks &) = delete;
   SimdBlocks &operator=(const SimdBlocks &) = delete;
-  void lay_out_at(const std::vector<int> &places, int own);    // the same blocks when particles are elsewhere again
+  void lay_out_at(const std::vector<int> &places, int own);    // the same blocks when the order in LAMMPS's arrays has changed
 
   int size() const { return particles; }
   bool damped() const { return has_damped; }    // some block is
   int chunks() const { return many_chunks; }
 
   template <class Tell> void set_motion(Friction friction, Tell mover);    // Mover mover(int i)
-  // Which participants give forces before every pass, in the order in which they are added: the particles of each, ghosts perhaps
-  // among them.
+  // Sets the participants that give forces before every pass, in the order in which they are added: the particles of each; some
+  // may be ghosts.
   void expect(const std::vector<std::vector<int>> &particles);
-  // Of those of number n, in the same order: positions, those of ghosts from x; and where forces on them are added up, which is
-  // zero after every pass for all that it moves.
+  // For participant number n, its particles in the same order: positions, those of ghosts from x; and where forces on them are
+  // added up, which is zero after every pass for all particles that it moves.
   void tell_places(std::size_t n, const double *const *x, Positions &place) const;
   ForceSums external_force_of(std::size_t n) { return {external_force.data(), force_providers[n].slot.data(), lanes}; }
 
-  // Every block with one of these particles is held back, no other; ghosts among them are left out.
+  // Holds back every block with one of these particles, and no other; ghosts among them are left out.
   void hold_back(const std::vector<int> &particles, bool everything);
   bool friction_acts() const;                                                            // on a block that is not held back
   const std::vector<int> &held_back() const { return reordered ? waiting : outside; }    // all particles of such blocks
 
-  // Which blocks a liquid acts on, and how; those that are held back as well are left out. The impulses on the liquid are the
-  // liquid's again after the second.
+  // Sets the blocks that a liquid acts on, with its coefficients; blocks that are held back as well are left out. The second
+  // function gives the impulses on the liquid back to it.
   void immerse(const Threads &threads, PassLiquid &liquid, Pass &pass);
   void give_out_impulses(const Threads &threads, PassLiquid &liquid) const;
-  // Of the time of a pass, where a particle in the liquid takes `more` than another, over that.
+  // Share of the liquid in the time of a pass in which a particle in the liquid takes `more` than another, relative to that.
   double share_of_liquid(double more) const { return more * immersed_particles / (particles + more * immersed_particles); }
 
   void take_in(const double *const *x, const double *const *v);
@@ -60,16 +60,17 @@ class SimdBlocks {
   void take_in_held_back(const Threads &threads, const double *const *x, const double *const *v);
   void give_out_held_back(const Threads &threads, double *const *x, double *const *v) const;
 
-  // Where damped: forces of dashpots in the last step, and the velocities that they saw, of all own particles.
+  // Where damped: forces of dashpots in the last step, and the velocities that they were computed with, of all own particles.
   void take_in_dashpots(const std::vector<Vec3> &force, const std::vector<Vec3> &seen);
   void give_out_dashpots(std::vector<Vec3> &force, std::vector<Vec3> &seen) const;
-  // Sums of those that are held back; they have moved, and v is where they are to be taken in from.
+  // Adds the sums of particles that are held back; they have moved, and v is the array that they will be taken in from.
   void count_held_back(const double *const *v, DashpotSums &sums);
 
-  // With ghosts: positions of these own particles, which other ranks wait for, and velocities unless v is null; and of theirs.
+  // With ghosts: gives out positions of these own particles, which other ranks wait for, and velocities unless v is null; and
+  // takes in those of ghosts.
   void give_out_places(const std::vector<int> &particles, double *const *x, double *const *v) const;
   void take_in_ghosts(const double *const *x, const double *const *v);
-  // The same from blocks to blocks, of particles in our own order: three numbers for each, or six with velocities.
+  // The same from blocks to blocks, for particles in our own order: three numbers for each, or six with velocities.
   Vec3 where(int i) const { return {x[0][ours(i)], x[1][ours(i)], x[2][ours(i)]}; }    // an own particle in LAMMPS's order
   int place_of(int i) const { return place[i]; }                                       // of an own particle, in that order
   const std::vector<int> &ghost_places() const { return ghosts; }
@@ -79,16 +80,16 @@ class SimdBlocks {
   void fill(Pass &pass, double *const *f);    // f: where forces on those that are held back go
   void begin_pass(Pass &pass);
   const std::vector<Range> &ranges() const { return range; }    // of the blocks that have something to do in a pass
-  void end_pass(const Pass &pass);                              // of all ranges
+  void end_pass(const Pass &pass);                              // for all ranges
   // Whether several ranges have blocks of an object that do not follow each other: with a trace, threads would write into one
   // row.
   bool objects_are_mixed() const { return mixed; }
-  void give_out_forces(double *const *f) const;    // there they are after a pass and this
+  void give_out_forces(double *const *f) const;    // forces are there after a pass and this call
   std::size_t bytes() const;
 
  private:
-  static constexpr double PARTICLE = 8.0;    // into the arrays of LAMMPS or out of them [ns], about
-  // work(i) for all that are held back, which threads share.
+  static constexpr double PARTICLE = 8.0;    // time to copy one into the arrays of LAMMPS or out of them [ns], approximately
+  // Calls work(i) for all particles that are held back, shared among threads.
   template <class Work> void each_outside(const Threads &threads, const Work &work) const
   {
     threads.parts(static_cast<long>(outside.size()), PARTICLE, [&](long from, long to) {
@@ -109,7 +110,7 @@ class SimdBlocks {
   const bool has_damped;
   bool reordered = false;    // by lay_out_at()
   std::vector<Block> all;
-  int active = 0;        // so many of them, the first ones, have something to do in a pass
+  int active = 0;        // the first blocks, which have work in a pass
   bool mixed = false;    // see objects_are_mixed()
   std::vector<Entry> entries;
   std::vector<int> home;       // block of each particle
@@ -125,7 +126,7 @@ class SimdBlocks {
   };
   std::vector<ForceProvider> force_providers;
   Doubles external_force;              // see Pass
-  std::vector<int> index, place;       // of a particle in LAMMPS's arrays, and back
+  std::vector<int> index, place;       // index of a particle in LAMMPS's arrays, and back
   std::vector<int> ghosts, waiting;    // in our order; `outside` in LAMMPS's
   std::vector<double> total;           // see Pass, in our order
   std::vector<int> immersed;           // blocks with particles near a liquid
@@ -135,7 +136,7 @@ class SimdBlocks {
   DistinctRows<double> immersed_motions;
   std::vector<unsigned> immersed_of;    // see Pass
   long long listed = -1;                // by the liquid
-  int owned = 0;                        // in LAMMPS's arrays, ghosts come after them
+  int owned = 0;                        // number of own particles in LAMMPS's arrays; ghosts come after them
   DistinctRows<double> motions;
   Doubles memory;    // of the arrays
   double *x[3] = {}, *v[3] = {};

@@ -41,11 +41,11 @@ void SimdBlocks::list_immersed(const PassLiquid &liquid)
   listed = liquid.listed();
 }
 
-// work(what is kept for a particle, its row, its lane) for all own particles that the liquid acts on in passes, which
-// threads share. Returns how many they are.
+// Calls work(kept values of a particle, its row, its lane) for all own particles that the liquid acts on in passes, shared among
+// threads. Returns the number of these particles.
 template <class Work> long SimdBlocks::each_immersed(const Threads &threads, PassLiquid &liquid, const Work &work) const
 {
-  constexpr double PARTICLE = 10.0;    // [ns], about
+  constexpr double PARTICLE = 10.0;    // [ns], approximately
   InLiquid *const of = liquid.kept();
   std::atomic<long> particles{0};
   threads.parts(static_cast<long>(immersed.size()), PARTICLE * lanes, [&](long from, long to) {

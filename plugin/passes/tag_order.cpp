@@ -10,15 +10,15 @@ namespace mdanim {
 
 namespace {
 
-// Whether an array by tags would be far longer than what it is of: tags may have any gaps.
+// Whether an array indexed by tags would be far longer than the number of tags: tags may have any gaps.
 bool is_sparse(int lowest, int highest, std::size_t many)
 {
   constexpr std::int64_t SPARSE = 16, ALWAYS = 1024;
   return static_cast<std::int64_t>(highest) - lowest > SPARSE * static_cast<std::int64_t>(many) + ALWAYS;
 }
 
-// Places of tags in ascending order, for a place for each tag from the lowest to the highest; where that were far too many, for
-// those alone that there are.
+// Places of tags in ascending order: in an array with a place for each tag from the lowest to the highest, or, where that would
+// be far too long, for the existing tags only.
 class TagPlaces {
  public:
   // each_tag(visit) visits all tags.
@@ -38,12 +38,12 @@ class TagPlaces {
 
  private:
   int lowest, places;
-  std::vector<int> tags;    // empty where every one has a place
+  std::vector<int> tags;    // empty where every tag in between has a place
 };
 
 }    // namespace
 
-// Own particles in tag order.
+// Sorts own particles by tags.
 void TagOrder::sort(const Bonded &known)
 {
   const int *const tag = known.tag;
@@ -97,7 +97,7 @@ void TagOrder::refuse_lost_partner(const Bonded &known, int partner)
   known.lost(-1, partner);
 }
 
-// Whether there is a piece for each object; none of an object's particles is among another's.
+// Whether there is a piece for each object; no particle of an object is among those of another.
 bool TagOrder::take_by_objects(const Bonded &known, const std::vector<Run> &runs)
 {
   std::unordered_map<int, Piece *> before;    // by object
@@ -129,8 +129,8 @@ bool TagOrder::take_by_objects(const Bonded &known, const std::vector<Run> &runs
   return true;
 }
 
-// A spring belongs to its lower end, which may be another rank's. From the highest own particle down all partners come
-// descending.
+// A spring belongs to its lower end, which may be on another rank. From the highest own particle down all partners come in
+// descending order.
 TagOrder::Piece TagOrder::made(const Bonded &known, const Run &run) const
 {
   int lowest = known.tag[ordered[run.begin]], highest = known.tag[ordered[run.end - 1]];

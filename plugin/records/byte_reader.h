@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// Reads the bytes of a record, in the order in which ByteWriter put them; they may lie anywhere. All functions throw
+// Reads the bytes of a record in the order in which ByteWriter wrote them; they need not be aligned. All functions throw
 // std::runtime_error with a message that begins with the name of the record.
 
 #ifndef MDANIM_BYTE_READER_H
@@ -18,7 +18,7 @@ namespace mdanim {
 
 class ByteReader {
  public:
-  // `name` as "the liquid's state".
+  // `name` names the record in messages, as "the liquid's state".
   ByteReader(const std::uint8_t *bytes, std::size_t size, std::string name)
       : bytes(bytes), all(size), next(0), name(std::move(name))
   {
@@ -26,7 +26,7 @@ class ByteReader {
 
   std::size_t left() const { return all - next; }
 
-  // Where the next so many bytes lie.
+  // Address of the next `size` bytes, which are skipped.
   const std::uint8_t *skip(std::size_t size)
   {
     if (size > left()) is_cut_off();
@@ -54,7 +54,7 @@ class ByteReader {
     if (count < 0) is_cut_off();
     return get_all<Value>(static_cast<std::size_t>(count));
   }
-  // A part of the record, and the rest of it.
+  // A reader for the next `size` bytes of the record; this one goes on behind them.
   ByteReader get_part(std::size_t size, const std::string &part_name)
   {
     const std::uint8_t *const from = skip(size);
@@ -73,7 +73,7 @@ class ByteReader {
   {
     if (left() > 0) fail("is too long: " + std::to_string(left()) + " of its " + std::to_string(all) + " bytes are left");
   }
-  // Every number is finite and not below `least`; `what` names them, as "the mass of a column".
+  // Throws unless every number is finite and not below `least`; `what` names them, as "the mass of a column".
   template <class Numbers> void expect_numbers(const Numbers &numbers, const char *what, double least = -HUGE_VAL) const
   {
     for (const double number : numbers)

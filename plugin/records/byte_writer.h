@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// Bytes of a record, value after value as they lie in memory. ByteReader takes them in the same order.
+// Writes the bytes of a record, value after value as they lie in memory. ByteReader reads them in the same order.
 
 #ifndef MDANIM_BYTE_WRITER_H
 #define MDANIM_BYTE_WRITER_H
@@ -29,7 +29,7 @@ class ByteWriter {
     static_assert(std::is_trivially_copyable_v<Value> && !std::is_pointer_v<Value>, "a record holds plain values");
     return put(&value, sizeof value);
   }
-  // Values without their number: who reads them knows it.
+  // Values without their number, which the reader must know.
   template <class Value> ByteWriter &put_all(const std::vector<Value> &values)
   {
     static_assert(std::is_trivially_copyable_v<Value>, "a record holds plain values");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// Records from and to arrays.
+// Conversion of records to and from arrays.
 
 #include "records/state_records.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// Records of objects and of pairs of objects: what checkpoints, other instances and restart files hold alike.
+// Records of objects and of pairs of objects: the form shared by checkpoints, other instances and restart files.
 
 #ifndef MDANIM_STATE_RECORDS_H
 #define MDANIM_STATE_RECORDS_H
@@ -12,15 +12,15 @@
 
 namespace mdanim {
 
-// The objects (molecule IDs) that a record is of: two of them, a < b; one, (a, 0); or (0, 0) for what is of the whole, as the
+// The objects (molecule IDs) of a record: two of them, a < b; one, (a, 0); or (0, 0) for a record of the whole, as that of the
 // liquid.
 struct StateKey {
   int a = 0, b = 0;
   bool operator<(const StateKey &other) const { return std::tie(a, b) < std::tie(other.a, other.b); }
 };
 
-// Records by ascending keys. The same state gives the same bytes on any number of ranks; they depend neither on how particles are
-// numbered nor on which other objects there are. Each begins with a version of the fix's own.
+// Records by ascending keys. The same state gives the same bytes on any number of ranks. They depend neither on how particles are
+// numbered nor on which other objects there are. Each begins with a version number of its fix.
 using StateRecords = std::map<StateKey, Bytes>;
 
 // Records as three arrays: keys (R, 2), where the bytes of each begin (R + 1), bytes.
@@ -33,7 +33,7 @@ struct FlatState {
 
 std::int64_t bytes_of(const StateRecords &records);
 void flatten(const StateRecords &records, std::int32_t *key, std::int64_t *first, std::uint8_t *data);
-// Throws std::runtime_error when keys are not sorted, twice the same or no keys, or when `first` does not ascend from 0.
+// Throws std::runtime_error when keys are not sorted, occur twice or are not keys, or when `first` does not ascend from 0.
 StateRecords unflatten(const FlatState &flat);
 
 }    // namespace mdanim

@@ -15,7 +15,7 @@ struct Pass;              // passes/pass.h
 struct SpringKernels;     // springs/spring_kernels.h
 struct WaveKernels;       // liquid/waves/waves_kernels.h
 
-// The same bits from each of them; `runs_here` must be true before anything else of it is called.
+// All sets give the same bits. `runs_here` must be true before any other function of a set is called.
 struct Kernels {
   const char *name;
   int lanes;    // of a block
@@ -27,7 +27,7 @@ struct Kernels {
   const WaveKernels &waves;
 };
 
-// All that run here, the widest vectors first.
+// All sets that run on this processor, the widest vectors first.
 const std::vector<const Kernels *> &kernels_here();
 inline const Kernels &widest_kernels() { return *kernels_here().front(); }
 // Null when the name is unknown or does not run here.

@@ -31,7 +31,7 @@ template <class Vector, class Number> MDANIM_ALWAYS_INLINE Vector load(const Num
 template <class Number, class Vector> MDANIM_ALWAYS_INLINE void store(Number *to, const Vector &value)
 { reinterpret_cast<Unaligned<Vector> *>(to)->value = value; }
 
-// Elements of two vectors, those of the second numbered on.
+// Elements of two vectors; elements of the second are numbered after those of the first.
 #if defined(__clang__) || __GNUC__ >= 12
 #define MDANIM_SHUFFLE(a, b, ...) __builtin_shufflevector(a, b, __VA_ARGS__)
 #else
@@ -39,7 +39,7 @@ template <class Number, class Vector> MDANIM_ALWAYS_INLINE void store(Number *to
 typedef long long FourPlaces __attribute__((vector_size(32)));
 #endif
 
-// Rows become columns.
+// Exchanges rows and columns.
 MDANIM_ALWAYS_INLINE void transpose(Four &a, Four &b, Four &c, Four &d)
 {
   const Four p = MDANIM_SHUFFLE(a, b, 0, 4, 2, 6), q = MDANIM_SHUFFLE(a, b, 1, 5, 3, 7);
@@ -48,7 +48,7 @@ MDANIM_ALWAYS_INLINE void transpose(Four &a, Four &b, Four &c, Four &d)
   c = MDANIM_SHUFFLE(p, r, 2, 3, 6, 7), d = MDANIM_SHUFFLE(q, s, 2, 3, 6, 7);
 }
 
-// Four records of N numbers become a record of N vectors, and the other way round. row(lane) is the first number of a record.
+// Turns four records of N numbers into a record of N vectors, and back. row(lane) is the first number of a record.
 template <int N, class Row> MDANIM_ALWAYS_INLINE void load_columns(const Row &row, Four (&column)[N])
 {
 #pragma GCC unroll 16
@@ -71,7 +71,7 @@ template <int N, class Row> MDANIM_ALWAYS_INLINE void store_columns(const Four (
   }
 }
 
-// Arrays of all x, all y, all z, at place i.
+// Components from arrays of all x, all y, all z, at place i.
 template <class Vector, class Array> MDANIM_ALWAYS_INLINE Vec<Vector> load(const Array *const *from, long i)
 { return {load<Vector>(from[0] + i), load<Vector>(from[1] + i), load<Vector>(from[2] + i)}; }
 

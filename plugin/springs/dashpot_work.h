@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// What the force of dashpots on a particle does in a step: the terms of which passes/loss.h adds up the energy that they take.
+// Work of the dashpots' force on a particle in a step: the terms from which passes/loss.h sums the energy that dashpots take.
 
 #ifndef MDANIM_DASHPOT_WORK_H
 #define MDANIM_DASHPOT_WORK_H

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// Rows of which most are equal.
+// Rows of values, most of which are equal.
 
 #ifndef MDANIM_DISTINCT_ROWS_H
 #define MDANIM_DISTINCT_ROWS_H
@@ -26,14 +26,14 @@ template <class Value> struct OnCacheLine {
   bool operator!=(const OnCacheLine &) const { return false; }
 };
 
-// Distinct rows of values, one after the other, each kept once and found by a hash of its bytes: coefficients of springs and of
-// motion, and springs of particles, mostly repeat.
+// Distinct rows of values, one after the other. Each is kept once and found by a hash of its bytes. Coefficients of springs and
+// of motion, and springs of particles, mostly repeat.
 template <class Value> class DistinctRows {
  public:
-  // Its number: that of an equal row that is there, or the next one.
+  // Number of the row: that of an equal row that is already kept, else the next one.
   unsigned find_or_add(const Value *row, std::size_t n)
   {
-    if (size() && is(latest, row, n)) return latest;    // mostly
+    if (size() && is(latest, row, n)) return latest;    // the usual case
     const std::size_t hash = std::hash<std::string_view>()({reinterpret_cast<const char *>(row), n * sizeof(Value)});
     const auto [begin, end] = known.equal_range(hash);
     for (auto it = begin; it != end; ++it)
@@ -44,7 +44,7 @@ template <class Value> class DistinctRows {
     first.push_back(values.size());
     return latest;
   }
-  void close() { known = {}; }    // that was the last
+  void close() { known = {}; }    // no row is added after this
   bool is(unsigned k, const Value *row, std::size_t n) const
   {
     return last_of(k) - first_of(k) == static_cast<std::ptrdiff_t>(n) &&
@@ -52,17 +52,17 @@ template <class Value> class DistinctRows {
   }
 
   const Value *first_of(unsigned k) const { return values.data() + first[k]; }
-  const Value *last_of(unsigned k) const { return values.data() + first[k + 1]; }    // one beyond
+  const Value *last_of(unsigned k) const { return values.data() + first[k + 1]; }    // one beyond its last value
   const Value *data() const { return values.data(); }
   unsigned size() const { return static_cast<unsigned>(first.size() - 1); }
   std::size_t bytes() const
   { return values.capacity() * sizeof(Value) + first.capacity() * sizeof(std::size_t) + known.size() * OF_KNOWN; }
 
  private:
-  static constexpr std::size_t OF_KNOWN = 32;    // bytes of an entry, about
+  static constexpr std::size_t OF_KNOWN = 32;    // bytes of an entry, approximately
 
   std::vector<Value, OnCacheLine<Value>> values;
-  std::vector<std::size_t> first{0};    // of each row, and the end of the last
+  std::vector<std::size_t> first{0};    // start of each row, and the end of the last
   unsigned latest = 0;
   std::unordered_multimap<std::size_t, unsigned> known;    // rows by hash, until all are there
 };

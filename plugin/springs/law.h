@@ -10,24 +10,24 @@
 
 namespace mdanim {
 
-// A spring as it is told.
+// A spring as a scene or an input script gives it.
 struct Spring {
   double K = 0.0;     // [energy/length^2]
   double r0 = 0.0;    // rest length [length]
   double c = 0.0;     // dashpot along the spring [force/velocity]; 0 for none
 };
 
-// What its force is made of: F_i = (push / r - pull) r_ij, since -2K (r - r0) / r = 2K r0 / r - 2K; and the dashpot.
+// Coefficients of a spring's force, F_i = (push / r - pull) r_ij, since -2K (r - r0) / r = 2K r0 / r - 2K; and its dashpot.
 struct SpringCoeffs {
   double push, pull, c;
   explicit SpringCoeffs(const Spring &s) : push(2.0 * s.K * s.r0), pull(2.0 * s.K), c(s.c) {}
   bool operator==(const SpringCoeffs &other) const { return push == other.push && pull == other.pull && c == other.c; }
 };
 
-// So small that it changes no r^2 that is not 0, and coincident particles get zero force instead of NaN.
+// Small enough to change no r^2 that is not 0. Coincident particles get zero force instead of NaN.
 constexpr double R2_FLOOR = 1e-300;
 
-// r^2 as the laws below take it.
+// r^2 as the laws below use it.
 template <class Real> MDANIM_ALWAYS_INLINE Real floored_square(const Vec<Real> &rij) { return dot(rij, rij) + R2_FLOOR; }
 
 // F_i / r_ij of the spring.

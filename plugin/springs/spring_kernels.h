@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// Loops over springs whose r_ij are side by side: what the vector code (spring_kernels_of_set.cpp) is given.
+// Loops over springs whose r_ij are side by side: the interface to the vector code (spring_kernels_of_set.cpp).
 
 #ifndef MDANIM_SPRING_KERNELS_H
 #define MDANIM_SPRING_KERNELS_H
@@ -9,7 +9,7 @@ namespace mdanim {
 struct SpringKernels {
   // r_ij -> F_i of n springs.
   void (*forces)(int n, const double *push, const double *pull, double *x, double *y, double *z);
-  // r_ij -> energies of n springs, in the place of K.
+  // r_ij -> energies of n springs, written in place of K.
   void (*energies)(int n, const double *x, const double *y, const double *z, const double *r0, double *K);
 };
 

@@ -12,8 +12,8 @@
 
 namespace mdanim {
 
-// One row for each particle. Most particles of a lattice have partners of the same kinds equally far on in the arrays: rows that
-// are equal in this are kept once, 4 bytes for each particle instead of 8 for each spring.
+// One row for each particle. Most particles of a lattice have partners of the same kinds at the same distances in the arrays.
+// Such equal rows are kept once: 4 bytes for each particle instead of 8 for each spring.
 class SpringRows {
  public:
   struct Link {
@@ -33,8 +33,8 @@ class SpringRows {
   };
 
   explicit SpringRows(int particles = 0) { kind.reserve(particles); }
-  void add(Row &row);                   // of the next particle
-  void close() { distinct.close(); }    // that was the last
+  void add(Row &row);                   // adds the row of the next particle
+  void close() { distinct.close(); }    // no row is added after this
   bool is(int i, Row &row) const;       // the row of particle i
   Links operator[](int i) const { return {distinct.first_of(kind[i]), end(i)}; }
   int lower(int i) const { return end(i)->offset; }
@@ -68,7 +68,8 @@ inline bool SpringRows::is(int i, Row &row) const
   return same;
 }
 
-// Rows to partners of a higher tag alone, so each spring once, of particles in the order of tags; and the law of each type.
+// Rows to partners of a higher tag only, so that each spring occurs once, of particles in the order of tags; and the law of each
+// bond type.
 struct HalfBonds {
   const SpringRows *rows;
   const SpringCoeffs *law;

@@ -27,7 +27,7 @@ struct SymmetricBlock {
     yz += w * n.y * n.z;
   }
 
-  // By the trigonometric solution of the cubic; exact to 1e-8 of it.
+  // Uses the trigonometric solution of the cubic; exact to 1e-8 of the value.
   double largest_eigenvalue() const
   {
     const double mean = (xx + yy + zz) / 3.0, a = xx - mean, b = yy - mean, c = zz - mean;
@@ -38,7 +38,7 @@ struct SymmetricBlock {
   }
 };
 
-// a [1/time^2] and b [1/time]; infinite where both are 0. The form has no difference that would lose digits.
+// a [1/time^2] and b [1/time]; infinite where both are 0. No difference of nearly equal numbers occurs.
 inline double stable_step(double a, double b)
 {
   const double sum = std::sqrt(b * b + 4.0 * a) + b;

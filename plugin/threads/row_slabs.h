@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// Loops over bodies that write into the cells around them, shared by threads.
+// Loops over bodies that write into the cells around them, shared among threads.
 
 #ifndef MDANIM_ROW_SLABS_H
 #define MDANIM_ROW_SLABS_H
@@ -11,8 +11,8 @@
 
 namespace mdanim {
 
-// Rows of a grid in slabs. What belongs to a slab writes into it and into half of the slabs beside it: threads take every second
-// slab, then the others, and none writes where another does.
+// Rows of a grid in slabs. Work of a slab writes into the slab and into half of the slabs beside it. Threads take every second
+// slab, then the others, so that none writes where another does.
 class RowSlabs {
  public:
   struct Rows {
@@ -56,7 +56,7 @@ class RowSlabs {
 
   template <class RowOf> void sort(const Threads &threads, int slabs, long size, const RowOf &row_of)
   {
-    constexpr double LOOK = 4.0;    // [ns]
+    constexpr double LOOK = 4.0;    // [ns], to look at one body
     slab_of.resize(size), order.resize(size);
     threads.parts(size, LOOK, [&](long from, long to) {
       for (long n = from; n < to; ++n) slab_of[n] = std::clamp(row_of(n) / THICKNESS, 0, slabs - 1);
@@ -68,7 +68,7 @@ class RowSlabs {
     for (long n = 0; n < size; ++n) order[next[slab_of[n]]++] = static_cast<int>(n);
   }
 
-  std::vector<int> slab_of, order, first;    // of each n; all n slab by slab; where those of each slab begin
+  std::vector<int> slab_of, order, first;    // slab of each n; all n slab by slab; where those of each slab begin
 };
 
 }    // namespace mdanim

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// Taking tasks, waiting, sleeping.
+// Threads that take tasks, wait and sleep.
 
 #include "threads/team.h"
 
@@ -19,7 +19,7 @@ namespace mdanim {
 
 namespace {
 
-// Flush to zero and its like: with another mode a helper would compute other bits than the caller.
+// Flush to zero and similar modes: in another mode a helper would compute other bits than the caller.
 unsigned floating_point_mode()
 {
 #if defined(__SSE__)
@@ -48,15 +48,15 @@ std::uint32_t call_of(std::uint64_t state) { return static_cast<std::uint32_t>(s
 
 }    // namespace
 
-// A fork has copied no threads. What of them it did copy says that threads sleep, and cannot be destroyed: destroying a condition
-// variable waits for those. It is left as it is.
+// A fork copies no threads. The memory that it copies says that threads sleep, and cannot be destroyed: the destructor of a
+// condition variable waits for these. So it is left as it is.
 void Team::end_of_process_that_made(Team *team)
 {
   if (team->owner == getpid()) delete team;
 }
 
-// Ten times what a call takes beside its tasks when the threads are awake: about as much again goes into data that go from one
-// core to another. And what it takes a thread to wake up (bench/team.py).
+// LEAST_TASK is ten times the overhead of a call when the threads are awake: about as much again goes into moving data from one
+// core to another. WAKING is the time that a thread takes to wake up (bench/team.py).
 static constexpr double LEAST_TASK = 4e3, WAKING = 12e3;    // [ns]
 
 Threads Threads::of_run(int many)
@@ -80,7 +80,7 @@ std::shared_ptr<Team> Team::of(int threads)
 void Team::grow(int threads)
 {
   owner = getpid();
-  sigset_t all, before;    // signals are for the threads of the host program
+  sigset_t all, before;    // signals are left to the threads of the host program
   sigfillset(&all);
   pthread_sigmask(SIG_SETMASK, &all, &before);
   while (static_cast<int>(helpers.size()) + 1 < threads)
@@ -124,7 +124,7 @@ void Team::share_out(int tasks, Task what, void *of_whom)
   if (asleep.load()) {
     {
       const std::lock_guard<std::mutex> lock(door);
-    }    // a thread between its last look and its sleep
+    }    // a thread that is between its last look and its sleep
     bell.notify_all();
     alone.store(0.0, std::memory_order_relaxed);
   }
@@ -153,7 +153,7 @@ void Team::work(std::uint32_t call, int member)
     if (member) set_floating_point_mode(rounding);
     try {
       task(whose, taken);
-    } catch (...) {    // for the caller, when all tasks are done
+    } catch (...) {    // rethrown by the caller when all tasks are done
       const std::lock_guard<std::mutex> lock(door);
       if (!failure) failure = std::current_exception();
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// Threads that help the one that calls.
+// Threads that help the calling thread.
 
 #ifndef MDANIM_TEAM_H
 #define MDANIM_TEAM_H
@@ -16,26 +16,26 @@
 
 namespace mdanim {
 
-// The threads of this process, which all instances share. The caller of share_out() hands out tasks and takes part; a task is
-// taken by whichever thread comes first. No one waits for a thread that has no processor: what it does not take others do.
+// The threads of this process, which all instances share. The caller of share_out() hands out tasks and takes part. A task is
+// taken by whichever thread comes first. No thread waits for one that has no processor: others do its tasks.
 class Team {
  public:
   static constexpr int MOST_TASKS = 32;    // of one call
   using Task = void (*)(void *whose, int task);
 
-  // The team of the process, with at least so many threads, the caller's among them. It ends with its last owner.
+  // The team of the process, with at least `threads` threads, the caller's among them. It ends with its last owner.
   static std::shared_ptr<Team> of(int threads);
   Team() = default;
   Team(const Team &) = delete;
   Team &operator=(const Team &) = delete;
   ~Team();
 
-  // Whether tasks of so many ns together are to be shared out: those who sleep are woken where the caller has done alone, since
-  // they fell asleep, what is worth so many ns. So waking costs a part of what there was to share, however short each call is.
+  // Whether to share out tasks that take `ns` together. Sleeping threads are woken once the caller has done work of `worth` ns
+  // alone since they fell asleep. So waking costs a fixed part of the shared work, however short each call is.
   bool is_ready(double ns, double worth);
-  // Does all tasks and returns. Thread n prefers task n: what it has in its cache. Where another thread of this process is
-  // calling, or in a process that was forked, the caller does them alone. What a task throws is thrown when all are done, of
-  // several that throw one.
+  // Does all tasks and returns. Thread n prefers task n, whose data are in its cache. The caller does all tasks alone if another
+  // thread of this process is calling, or in a forked process. An exception of a task is thrown when all tasks are done; of
+  // several exceptions one is thrown.
   void share_out(int tasks, Task task, void *whose);
 
  private:
@@ -49,9 +49,9 @@ class Team {
   int owner = 0;    // the process that has started them
   std::atomic_flag called = ATOMIC_FLAG_INIT;
 
-  // The number of the call, and a bit for each task that is taken or not there. A thread that comes late finds another number or
-  // all bits set; one that has set a bit knows that the call goes on until its task is done.
-  alignas(64) std::atomic<std::uint64_t> state{0xffffffffu};    // no call yet, and no task
+  // The number of the call, and a bit for each task that is taken or does not exist. A thread that comes late finds another
+  // number or all bits set. A thread that has set a bit knows that the call lasts until its task is done.
+  alignas(64) std::atomic<std::uint64_t> state{0xffffffffu};    // no call yet, no task
   alignas(64) std::atomic<int> done{0};
   Task task = nullptr;
   void *whose = nullptr;
@@ -65,33 +65,33 @@ class Team {
   std::condition_variable bell;
 };
 
-// What an instance has of the team of its process: so many threads.
+// An instance's share of the team of its process: a number of threads.
 class Threads {
  public:
-  // `least`: the least that a thread is asked for [ns]. Two tasks that take less had better be done by one thread.
-  // `waking`: what it takes a thread to wake up [ns].
+  // `least`: the shortest work for which another thread is used [ns]; one thread is faster for two tasks that take less.
+  // `waking`: the time that a thread takes to wake up [ns].
   explicit Threads(int many = 1, double least = 0.0, double waking = 0.0)
       : number(many), least_task(least), waking(waking), team(Team::of(many))
   {
   }
-  // For steps of a run: a thread is asked for what pays on most processors, or for what the environment says in
-  // MDANIM_LEAST_TASK [ns].
+  // For steps of a run: another thread is used for work that pays on most processors, or for what MDANIM_LEAST_TASK [ns] in the
+  // environment says.
   static Threads of_run(int many);
   int many() const { return number; }
-  // How many of them to ask for what takes one thread so many ns.
+  // How many threads to use for work that takes one thread `ns` nanoseconds.
   int most(double ns) const
   { return static_cast<int>(std::clamp(ns / std::max(least_task, 1.0), 1.0, 1.0 * std::min(number, Team::MOST_TASKS))); }
-  // Whether it is better to share it now.
+  // Whether it is better to share the work now.
   bool pays(double ns) const { return most(ns) > 1 && team->is_ready(ns, 2.0 * waking); }
 
-  // work(n) for n from 0 to tasks - 1, of which there are MOST_TASKS at most; all together they take one thread so many ns.
+  // Calls work(n) for n from 0 to tasks - 1, MOST_TASKS at most; all together take one thread `ns` nanoseconds.
   template <class Work> void each(int tasks, double ns, const Work &work) const
   {
     if (pays(ns)) return share_out(tasks, work);
     for (int n = 0; n < tasks; ++n) work(n);
   }
-  // work(first, end) for parts of all numbers from 0 to size - 1, each of which takes about so many ns. There are several parts
-  // for each thread, for one may cost more than another.
+  // Calls work(first, end) for parts of all numbers from 0 to size - 1, each of which takes about `ns` nanoseconds. There are
+  // several parts for each thread, because one may cost more than another.
   template <class Work> void parts(long size, double ns, const Work &work) const
   {
     const double all = ns * static_cast<double>(size);

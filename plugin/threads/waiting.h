@@ -13,7 +13,7 @@
 
 namespace mdanim {
 
-// A thread waits so long for work before it sleeps, and for others before it offers them its processor. Longer waits bring
+// The time that a thread waits for work before it sleeps, and for others before it yields its processor. Longer waits gain
 // nothing, and take the processor from others where there are more threads than processors.
 constexpr std::chrono::microseconds PATIENCE{50};
 
@@ -26,7 +26,7 @@ inline void pause_processor()
 #endif
 }
 
-// Whether something happens before patience ends.
+// Whether a condition becomes true before PATIENCE ends.
 template <class Happens> bool wait_for(const Happens &happens)
 {
   const auto end = std::chrono::steady_clock::now() + PATIENCE;
@@ -39,7 +39,7 @@ template <class Happens> bool wait_for(const Happens &happens)
   return false;
 }
 
-// Returns when it has happened: another thread is about to do it.
+// Returns when a condition is true; another thread is about to make it so.
 template <class Happens> void wait_until(const Happens &happens)
 {
   if (happens()) return;
