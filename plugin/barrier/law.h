@@ -27,7 +27,8 @@ inline double reach_factor(int a, int b, double thin_ratio)
 // Two springs of stiffness a and b in series, doubled: equal ones give their own stiffness.
 inline double pair_stiffness(double a, double b) { return a + b > 0.0 ? 2.0 * (a * b) / (a + b) : 0.0; }
 
-// q = 1 - r/rc, for r < rc. Exactly zero at r >= rc. U = k rc^2/3 q^3, |F| = k rc q^2
+// q = 1 - r/rc, for r < rc. Exactly zero at r >= rc.
+//   U = k rc^2/3 q^3, |F| = k rc q^2
 inline double barrier_energy(double k, double rc, double q) { return k * rc * rc / 3.0 * (q * q * q); }
 
 inline double barrier_force(double k, double rc, double q) { return k * rc * (q * q); }

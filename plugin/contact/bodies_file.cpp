@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// Words of a table of contact bodies. Nothing is allocated for more numbers than the rest of the text can hold.
+// Words of a table of contact bodies. No more memory is allocated than the rest of the text can fill with numbers.
 
 #include "contact/bodies_file.h"
 
@@ -42,7 +42,7 @@ class Words {
       fail(std::string(what) + " must be a " + (std::numeric_limits<Number>::is_integer ? "whole " : "") + "number" + got(word));
     return value;
   }
-  // How many of something follow.
+  // The number of elements that follow.
   int many(const char *what, int numbers_of_each = 1)
   {
     const int n = number<int>(what);

@@ -12,7 +12,7 @@
 
 namespace mdanim {
 
-// All bodies of a text, by their numbers. Throws std::runtime_error with `name`, the line and what is wrong there.
+// All bodies of a text, by their numbers. Throws std::runtime_error with `name`, the line and the fault there.
 std::map<int, ContactBody> read_bodies(const std::string &name, std::string_view text);
 
 }    // namespace mdanim

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// Arrays are checked once; then numbers in them are taken as they are.
+// Arrays are checked once; after that their numbers are used without checks.
 
 #include "contact/contact_body.h"
 
@@ -48,7 +48,7 @@ ContactBody::ContactBody(const ContactBodyArrays &given)
   if (given.depth) {
     need(are_finite(given.depth, coefficients), "a depth is not a number");
     depth_grid.assign(given.depth, given.depth + coefficients);
-    depth_grid.push_back(0.0);    // kernels read three and one more
+    depth_grid.push_back(0.0);    // kernels read three numbers and one more
   } else {
     need(given.particles == static_cast<int>(nodes), "a cuboid has a particle in each place");
     need(std::find(filled.begin(), filled.end(), 0) == filled.end(), "a cuboid has no empty cells");
@@ -134,7 +134,7 @@ void ContactBody::sort_points()
   for (const int at : place_of_node) is_carrier.push_back(is_corner[at]);
 }
 
-// Particles are at the corners of filled cells, and nowhere else.
+// Throws unless particles are exactly at the corners of filled cells.
 void ContactBody::need_particles_of_cells() const
 {
   std::vector<char> is_corner(places(), 0);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// A body as contact sees it: its undeformed lattice, points of its drawn surface, and the depth below that surface.
-// Places in it are lattice coordinates X: cells from the low corner of its grid, along each axis.
+// The body of an object in contact: its undeformed lattice, points of its drawn surface, and the depth below that surface. Places
+// in it are lattice coordinates X: cells from the low corner of its grid, along each axis.
 
 #ifndef MDANIM_CONTACT_BODY_H
 #define MDANIM_CONTACT_BODY_H
@@ -17,12 +17,12 @@ enum class PointKind : std::uint8_t {
   FLAT = 0,     // inside a side of a cuboid
   SHARP = 1,    // on an edge of a cuboid or in a corner
   DENSE = 2,    // of any other shape
-  FINE = 3      // closer to each other, of a round shape of few cells, which then acts on what is flat with them alone
+  FINE = 3      // closer to each other, for a round shape of few cells, which acts on flat surfaces with these only
 };
 
 // A point of the drawn surface and the area that it stands for.
 struct SurfacePoint {
-  int cell[3];        // that carries it
+  int cell[3];        // cell that carries the point
   Vec3 at, centre;    // X of the point and of the centre of its area
   Vec3 normal;        // outward, body frame
   double area;        // [m^2]
@@ -32,19 +32,19 @@ struct SurfacePoint {
 // The points that a cell carries.
 struct PointCell {
   int place;                // of its low corner in the grid
-  int first, fine, last;    // of ContactBody::points_by_cell(); fine ones from `fine` on
+  int first, fine, last;    // range of ContactBody::points_by_cell(); fine points from `fine` on
   Vec3 low, high;           // a box around their X, from that corner
 };
 
-// What is open of a side that other bodies cover, in X along the first and the second axis across it; none where low is beyond
+// The open part of a side that other bodies cover, in X along the first and the second axis across it; empty where low is beyond
 // high.
 struct OpenPart {
   int side;
   double low[2], high[2];
 };
-constexpr int OPEN_NUMBERS = 5;    // of one: side, low and high along the first axis, then the second
+constexpr int OPEN_NUMBERS = 5;    // of one part: side, low and high along the first axis, then along the second
 
-// As mdanim_contact_body() is given them.
+// The arguments of mdanim_contact_body().
 struct ContactBodyArrays {
   const std::int32_t *count;
   const double *edge;
@@ -57,7 +57,7 @@ struct ContactBodyArrays {
   const std::uint8_t *kind;
   const double *depth;    // null for a cuboid
   int open = 0;
-  const double *open_part = nullptr;    // OPEN_NUMBERS of each
+  const double *open_part = nullptr;    // OPEN_NUMBERS for each part
 };
 
 class ContactBody {
@@ -72,7 +72,7 @@ class ContactBody {
   double edge(int axis) const { return edges[axis]; }
   double spacing() const { return mean_edge; }    // cube root of a cell's volume [m]
   int particles() const { return static_cast<int>(place_of_node.size()); }
-  // Inline, so that a look that asks for one of its fields does not fill the others.
+  // Inline, so that code that asks for one of its fields does not fill the others.
   Lattice lattice() const
   {
     return {{cells[0], cells[1], cells[2]},           filled.data(), {edges[0], edges[1], edges[2]}, mean_edge, row(), layer(),
@@ -81,20 +81,21 @@ class ContactBody {
   const std::vector<SurfacePoint> &points() const { return surface; }
   const std::vector<PointCell> &point_cells() const { return carriers; }
   const std::vector<int> &points_by_cell() const { return by_cell; }
-  // Of a cell, the first and the end of the points that act on a plane or a cuboid, or on a shape that is not flat. Points of a
-  // cuboid are a cell apart, too few for what is curved: its own points are dense.
+  // The first and the end of the points of a cell that act on a plane or a cuboid, or on a shape that is not flat. Points of a
+  // cuboid are a cell apart, too few for a curved shape, whose own points are dense.
   std::pair<int, int> acting(const PointCell &cell, bool on_flat) const
   {
     if (on_flat) return {has_fine ? cell.fine : cell.first, cell.last};
     return {cell.first, is_cuboid() ? cell.first : cell.fine};
   }
   bool carries(int node) const { return is_carrier[node]; }    // points, or centres of their areas
-  // How far the drawn surface stands out of the cells [m].
+  // How far the drawn surface extends beyond the cells [m].
   double overhang() const { return stands_out; }
-  // How far a point may go where its particles go no farther than 1: their weights without signs, 1 within cells.
+  // How far a point may move while its particles move by 1 at most: the sum of the absolute values of their weights, 1 within
+  // cells.
   double leverage() const { return lever; }
 
-  // Places of the grid, x fastest, and the number of the particle there, -1 for none.
+  // Places of the grid, x fastest, and the number of the particle at each, -1 for none.
   int row() const { return cells[0] + 1; }
   int layer() const { return (cells[0] + 1) * (cells[1] + 1); }
   int places() const { return layer() * (cells[2] + 1); }
@@ -102,12 +103,12 @@ class ContactBody {
   int place_of(int node) const { return place_of_node[node]; }
 
   bool is_filled(int i, int j, int k) const { return mdanim::is_filled(lattice(), i, j, k); }
-  bool is_outer(int i, int j, int k) const;    // filled, and some neighbour across a face is not
+  bool is_outer(int i, int j, int k) const;    // filled, with a neighbour across a face that is not
   long filled_cells() const;
 
   // Below a side; sides of a cuboid are -x, +x, -y, +y, -z, +z.
   Depth<double> depth(int side, const Vec3 &X) const;
-  // How far X is outside of what is open of a side, in cells; below 0 where the side acts.
+  // How far X is outside of the open part of a side, in cells; negative where the side acts.
   double covered(int side, const Vec3 &X) const;
   std::size_t bytes() const;
 
@@ -126,7 +127,7 @@ class ContactBody {
   std::vector<char> is_carrier;
   bool has_fine = false;    // points
   double stands_out = 0.0, lever = 1.0;
-  std::vector<OpenPart> open_parts;    // sides without any act everywhere
+  std::vector<OpenPart> open_parts;    // sides without an open part act everywhere
   std::vector<double> depth_grid;      // coefficients of quadratic B-splines on nodes -2 to n + 2
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// Which points may come in, and what a contact does in a step.
+// Lists of points that may touch, and the work of contacts in a step.
 
 #include "contact/contact_field.h"
 
@@ -9,12 +9,12 @@
 namespace mdanim {
 
 static constexpr double AT_ONCE = -1.0;
-static constexpr double TRUSTED = 1.0;    // cells to go for which what was seen of a point is believed when lists are made again
+static constexpr double TRUSTED = 1.0;    // cells to go, with which the last look at a point is still trusted in new lists
 
 // --- lists ---
 
-// A point counts until the centre of its area is a quarter of a cell beyond an edge; the drawn surface of what is not a cuboid
-// stands out of its particles, and farther where cells are stretched.
+// A point counts until the centre of its area is a quarter of a cell beyond an edge. The drawn surface of a shape that is not a
+// cuboid extends beyond its particles, and farther where cells are stretched.
 double ContactField::stands_out(const ContactBody &owner, const ContactBody &host)
 {
   if (!host.is_cuboid()) return STRETCHED * host.overhang();
@@ -64,7 +64,7 @@ void ContactField::settle(const ContactArrays &arrays)
     if (wake[q] < NEVER && wake[q] <= budget) look(q, arrays, false);
 }
 
-// A point that is looked at now and then, and a contact.
+// Cost of a point that is looked at now and then, and of a contact.
 int ContactField::cost() const
 {
   constexpr std::size_t POINT = 5, CONTACT = 150;
@@ -73,7 +73,7 @@ int ContactField::cost() const
 
 // --- contacts ---
 
-// Of a block of contacts from number c on.
+// The number of lanes of a block of contacts from number c on.
 static int lanes_of(std::size_t c, std::size_t end) { return static_cast<int>(std::min<std::size_t>(CONTACT_LANES, end - c)); }
 
 PushTask ContactField::task(PointKind kind, const ContactArrays &arrays, double dt) const
@@ -87,7 +87,7 @@ PushTask ContactField::task(PointKind kind, const ContactArrays &arrays, double 
 PointNow ContactField::point_now(std::size_t q, const ContactArrays &arrays) const
 { return {near.place(q, arrays.place()), near.shift(q, arrays.place()), surface_point(q).area}; }
 
-// X of the point is that of the weights plus `off`, about which everything is linear. False when it cannot be found.
+// X of the point is that of the weights plus `off`; everything is linear about the former. False when it cannot be found.
 bool ContactField::follow(FieldContact &contact, const PushTask &task, const Vec3 &x, MapWeights &weights, Spot<double> &spot,
                           Vec3 &off, Hop &hop) const
 {
@@ -103,7 +103,7 @@ bool ContactField::follow(FieldContact &contact, const PushTask &task, const Vec
     again = false;
     weights = task.is_smooth ? smooth(X, at.body) : trilinear(X, cell, at.body);
     if (!evaluate(at, weights, spot)) return false;
-    if (search.is_collapsed(spot)) {    // from the last place, then from the cells around
+    if (search.is_collapsed(spot)) {    // the search starts at the last place, then from the cells around
       if (task.is_smooth) return false;
       Vec3 from = contact.state.X;
       cell = {contact.cell[0], contact.cell[1], contact.cell[2]};
@@ -134,9 +134,9 @@ bool ContactField::follow(FieldContact &contact, const PushTask &task, const Vec
   return true;
 }
 
-// Beyond the filled cells of a round host X is not continuous from cell to cell. The contact goes on as if it were: a jump of
-// its depth would be energy out of nothing. The mean force of leap-frog acts half along the normal of the cell that is left, half
-// along that of the new one, and so does the depth grow in this step.
+// Beyond the filled cells of a round host X is not continuous from cell to cell. The contact continues as if it were: a jump of
+// its depth would create energy. The mean force of leap-frog acts half along the normal of the old cell and half along that of
+// the new one, and the depth grows accordingly in this step.
 void ContactField::go_on(FieldContact &contact, const Hop &hop, const Spot<double> &spot) const
 {
   ContactState<double> &state = contact.state;
@@ -201,7 +201,8 @@ ContactField::Fate ContactField::push(FieldContact &contact, std::size_t q, cons
   return Fate::STAYS;
 }
 
-// As push(), of what the kernel has worked out. All forces of a block are added at once where that leaves the order of sums.
+// Does the work of push() with results of the kernel. All forces of a block are added at once where that does not change the
+// order of sums.
 void ContactField::take(const FieldContact &contact, std::size_t q, const PushedBlock &pushed, int lane, ContactArrays &arrays,
                         ContactAccount &account) const
 {
@@ -222,7 +223,7 @@ void ContactField::count(const FieldContact &contact, double heat, double damped
   ++account.touching;
 }
 
-// A contact that is over becomes a point to be looked at.
+// Turns a contact that is over into a point to be looked at.
 void ContactField::end(const FieldContact &contact, std::size_t q, Fate fate, const ContactArrays &arrays,
                        ContactAccount &account)
 {
@@ -247,7 +248,7 @@ void ContactField::look(const ContactArrays &arrays, double nearer, double dt)
   known_ahead = 0;
 }
 
-// run(first, end, task) for contacts from `first` to `end` - 1, all of points of one kind, from the first kind to the last.
+// Calls run(first, end, task) for contacts from `first` to `end` - 1, all of points of one kind, from the first kind to the last.
 template <class Do> void ContactField::each_run(double dt, const ContactArrays &arrays, const Do &run) const
 {
   for (std::size_t first = 0, end = 0; first < contacts.size(); first = end) {
@@ -276,7 +277,7 @@ void ContactField::add_forces(ContactArrays &arrays, double dt, ContactAccount &
     if (moves)
       push_run(first, end, left, block, task, arrays, account);
     else
-      for (std::size_t c = first; c < end; ++c) {    // what is known stays as it is
+      for (std::size_t c = first; c < end; ++c) {    // a block that has been computed stays as it is
         FieldContact copy = contacts[c];
         copy.state.change = {};
         push(copy, of_contact[c], task, now[c], arrays, account);
@@ -287,8 +288,8 @@ void ContactField::add_forces(ContactArrays &arrays, double dt, ContactAccount &
   looks = 0;
 }
 
-// Of contacts from `first` to `end` - 1, those that stay go to the places from `left` on; `block` counts those that were worked
-// out ahead.
+// Moves the contacts, among those from `first` to `end` - 1, that continue to the places from `left` on; `block` counts those
+// that were computed ahead.
 void ContactField::push_run(std::size_t first, std::size_t end, std::size_t &left, std::size_t &block, const PushTask &task,
                             ContactArrays &arrays, ContactAccount &account)
 {

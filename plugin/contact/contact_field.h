@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// Points of one object's surface against the undeformed depth of another, its host (docs/physics-contact.md).
-// A contact is born when a point is below every side of the host that faces it, and stays with the nearest of those sides until
-// the point has come out again. A birth is free of energy.
+// Points of one object's surface against the undeformed depth of another, its host (docs/physics-contact.md). A contact begins
+// when a point is below every side of the host that faces it, and stays with the nearest of those sides until the point has come
+// out again. The beginning of a contact neither takes nor gives energy.
 
 #ifndef MDANIM_CONTACT_FIELD_H
 #define MDANIM_CONTACT_FIELD_H
@@ -23,28 +23,28 @@ class ContactField {
 
   void use(const ContactLaw &now) { law = now; }
 
-  static constexpr double STRETCHED = 2.0;    // the most that cells are taken to be, over their undeformed size
+  static constexpr double STRETCHED = 2.0;    // the largest stretch that is assumed of cells
   // How far a point may be outside of its host's particles in contact.
   static double stands_out(const ContactBody &owner, const ContactBody &host);
-  // Points that may come in until lists are made again; contacts and what is known of points stay. `reach`: how far objects may
-  // come nearer; `nearer`: how much they have come nearer at most since the last step. Objects and slots are as they are now; the
-  // finder is of the first; outside of the zone points cannot touch.
+  // Lists points that may touch until lists are made again; contacts and knowledge of points stay. `reach`: how far objects may
+  // come nearer; `nearer`: upper bound of how much they have come nearer since the last step. Objects and slots are the present
+  // ones; the finder is that of the first object; outside of the zone points cannot touch.
   void list(ContactObject &points_of, ContactObject &host_now, const PointFinder &finder, const Zone &zone,
             const ContactArrays &arrays, double reach, double nearer);
-  // Nothing is known of points but of those in contact; to be followed by list().
+  // Forgets all points except those in contact; must be followed by list().
   void forget();
-  // Looks at every point without a contact as it is now; nothing is born. For the setup of a run.
+  // Looks at every point without a contact as it is now; no contact begins. For the setup of a run.
   void settle(const ContactArrays &arrays);
-  // The part of a step that fields may do side by side: contacts begin. `nearer`: how much the objects have come nearer at most
-  // in this step [m]. dt = 0: nothing moves, as at the setup of a run.
+  // The part of a step that fields may do side by side: contacts begin. `nearer`: upper bound of how much the objects have come
+  // nearer in this step [m]. dt = 0: nothing moves, as at the setup of a run.
   void look(const ContactArrays &arrays, double nearer, double dt);
-  // After that, what contacts come to, for add_forces(), which else works it out itself.
+  // After look(), computes contacts ahead for add_forces(), which otherwise computes them itself.
   void work_ahead(const ContactArrays &arrays, double dt);
-  // The part that fields do one after the other.
+  // The part of a step that fields do one after the other.
   void add_forces(ContactArrays &arrays, double dt, ContactAccount &account);
 
-  bool has_something() const { return !contacts.empty() || looks > 0; }    // to add, after look()
-  int cost() const;                                                        // of a step, about, when lists were made [ns]
+  bool has_something() const { return !contacts.empty() || looks > 0; }    // whether there are forces to add, after look()
+  int cost() const;                                                        // of a step, approximately, when lists were made [ns]
   bool is_idle() const { return contacts.empty(); }
   const std::vector<FieldContact> &touching() const { return contacts; }
   void restore(std::vector<FieldContact> those) { contacts = std::move(those); }
@@ -61,14 +61,14 @@ class ContactField {
     std::uint8_t open = 0;    // sides in which the point would have had a potential when it was looked at last
   };
 
-  // What a look at a point comes to.
+  // The result of a look at a point.
   struct Verdict {
     int side = -1;    // of the contact that begins; -1 for none
     double depth = 0.0;
     std::uint8_t open = 0;    // as that of Watch
     double slack = 0.0;       // a motion that cannot yet begin a contact [m]
     bool is_crushed = false;
-    bool is_sure = true;    // no contact, and open is right, though the place of the point is guessed
+    bool is_sure = true;    // no contact, and open is right, although the place of the point is guessed
   };
 
   Placed placed(const ContactArrays &arrays) const { return {*host->body, host->slot.data(), arrays.place()}; }
@@ -86,8 +86,8 @@ class ContactField {
   Ramps ramps(PointKind kind) const;
 
   enum class Fate { STAYS, OUT, LOST, CRUSHED };
-  // A contact that goes on to another cell in a step: how far the point has moved against the host in the cell that it leaves
-  // [m], and how far X is from where it would be there.
+  // A contact that continues in another cell in a step: how far the point has moved against the host in the cell that it leaves
+  // [m], and the difference between X and its place there.
   struct Hop {
     bool happened = false;
     Vec3 moved, jump;
@@ -115,8 +115,8 @@ class ContactField {
   std::vector<FieldContact> contacts;     // by ascending points
   std::vector<std::size_t> of_contact;    // their near points
   std::vector<PointNow> now;              // and their points in this step
-  std::vector<PushedBlock> ahead;         // what they come to, four at a time, kind by kind,
-  std::size_t known_ahead = 0;            // so many of these in this step
+  std::vector<PushedBlock> ahead;         // their results, four at a time, kind by kind,
+  std::size_t known_ahead = 0;            // number of these in this step
   int looks = 0;                          // in this step
   double budget = 0.0;
 };

@@ -10,13 +10,13 @@ namespace mdanim {
 
 static constexpr double LEAST_COSINE = 0.45;    // between the outward normals of the point and of a side that faces it, negated
 static constexpr double DEEPEST_BIRTH = 0.5;    // cells
-static constexpr double PRESSED = 0.5;          // cells are taken to be pressed to half at most: motion in space over that in X
-static constexpr double NEAREST = 2.2;          // cells from the middle of a cell on the surface beyond which there is no contact
+static constexpr double PRESSED = 0.5;          // cells are assumed to be pressed to half at most: motion in space over that in X
+static constexpr double NEAREST = 2.2;          // in cells, from the middle of a cell on the surface; no contact beyond
 static constexpr double JUMP = 0.25;            // cells that X may jump between cells of a round host
 static constexpr int MOST_GUESSES = 3;
-static constexpr double NEAR_PLACE = 0.1;    // cells that a guess may be off its last one
+static constexpr double NEAR_PLACE = 0.1;    // cells that a guess may be away from the last one
 
-// Of a cuboid.
+// The cell of X in a cuboid.
 std::array<int, 3> ContactField::cell_of(const Vec3 &X) const
 {
   const auto along = [&](double at, int axis) {
@@ -25,9 +25,9 @@ std::array<int, 3> ContactField::cell_of(const Vec3 &X) const
   return {along(X.x, 0), along(X.y, 1), along(X.z, 2)};
 }
 
-// Of another shape, for a point at x, from a cell near by. X depends on the cell where it is beyond all filled cells, or where
-// cells are bent so much that it is in two of them. So the cell is the one whose middle is nearest, wherever the search came
-// from. `room`: a motion that cannot change the cell [m].
+// The cell of a point at x in another shape, searched from a cell near by. X depends on the cell where it is beyond all filled
+// cells, or where cells are bent so much that it is in two of them. So the cell is the one whose middle is nearest, wherever the
+// search began. `room`: a motion that cannot change the cell [m].
 std::array<int, 3> ContactField::cell_nearest(const Vec3 &x, std::array<int, 3> cell, const Placed &at, double &room) const
 {
   const Lattice grid = at.body.lattice();
@@ -49,15 +49,15 @@ std::array<int, 3> ContactField::cell_nearest(const Vec3 &x, std::array<int, 3> 
         }
       }
     if (best == cell) {
-      room = PRESSED * (std::sqrt(second) - std::sqrt(least));    // each of the two distances grows and shrinks as much at most
+      room = PRESSED * (std::sqrt(second) - std::sqrt(least));    // each of the two distances changes by this much at most
       return cell;
     }
     cell = best;
   }
 }
 
-// X of a point at x by one step of Newton's method from where it was found last; `off`: how far that is in cells, 1 and more
-// where the step says nothing. A small part of the work of find().
+// X of a point at x by one step of Newton's method from where it was found last. `off`: its distance from there in cells; 1 and
+// more where the step tells nothing. It takes a small part of the work of find().
 void ContactField::guess(std::size_t q, const Vec3 &x, const Placed &at, Spot<double> &spot, Vec3 &X, double &off)
 {
   constexpr double HEALTHY = 0.7, NEARBY = 3.0;    // volume over that of a cell; cells from the middle of one
@@ -85,7 +85,8 @@ void ContactField::guess(std::size_t q, const Vec3 &x, const Placed &at, Spot<do
   off = is_there ? std::sqrt(square) : 1.0;
 }
 
-// X of a point at x, the same bits whatever was known of it: the last search begins in the middle of the cell that X lies in.
+// X of a point at x, with the same bits whatever was known of it: the last search begins in the middle of the cell that X lies
+// in.
 bool ContactField::find(std::size_t q, const Vec3 &x, const Placed &at, Spot<double> &spot, Vec3 &X)
 {
   Watch &known = watch[q];
@@ -116,7 +117,7 @@ bool ContactField::world_normal(const SurfacePoint &point, const ContactArrays &
   return true;
 }
 
-// Half of a flat point counts a cell and a half inside of an edge, half of others on the edge.
+// Ramps: half of a flat point counts one and a half cells inside of an edge, half of other points at the edge.
 Ramps ContactField::ramps(PointKind kind) const
 {
   Ramps ramps;
@@ -128,11 +129,11 @@ Ramps ContactField::ramps(PointKind kind) const
   return ramps;
 }
 
-// The slack of a point that is so far from each side of the host that its own normal does not matter, as judge() would tell it; 0
-// for one that is not. Beside a cuboid some of the sides are far above the point: what keeps it from these are their edges.
+// The slack that judge() would give for a point so far from each side of the host that its own normal does not matter; 0 for a
+// point that is nearer. Beside a cuboid some of its sides are far above the point: their edges separate it from these.
 double ContactField::slack_of_far(const SurfacePoint &point, const Vec3 &X, const Vec3 &X_centre, double off) const
 {
-  const double least = PRESSED * (LEAST_COSINE + 1.0) + 1e-3 + off;    // cells; more than what any normal comes to
+  const double least = PRESSED * (LEAST_COSINE + 1.0) + 1e-3 + off;    // cells; more than any normal can give
   const double h = host->body->spacing();
   if (!host->body->is_cuboid()) {
     const double apart = -host->body->depth(0, X).value / h;
@@ -140,12 +141,12 @@ double ContactField::slack_of_far(const SurfacePoint &point, const Vec3 &X, cons
   }
   const Lattice grid = host->body->lattice();
   const Ramps near_edges = ramps(point.kind);
-  double slack = NEVER, beyond[3];    // before the ramp about the nearer edge, along each axis
+  double slack = NEVER, beyond[3];    // way to the ramp about the nearer edge, along each axis
   for (int d = 0; d < 3; ++d)
     beyond[d] = near_edges.from[d] - std::min(component(X_centre, d), grid.cells[d] - component(X_centre, d));
   for (int s = 0; s < host->body->sides(); ++s) {
     const double depth = host->body->depth(s, X).value / h;
-    double of_side = -depth;    // apart from it
+    double of_side = -depth;    // distance from the side
     for (int d = 0; d < 3; ++d)
       if (d != s / 2) of_side = std::max(of_side, beyond[d]);
     if (of_side <= least) return 0.0;
@@ -157,7 +158,7 @@ double ContactField::slack_of_far(const SurfacePoint &point, const Vec3 &X, cons
 ContactField::Verdict ContactField::judge(const SurfacePoint &point, const Vec3 &X, const Vec3 &X_centre,
                                           const Spot<double> &spot, const Vec3 &normal, double off) const
 {
-  const double far = 1e-5 + off * off, turn = 1e-3 + 0.5 * off;    // that a depth and a cosine of a guess may be wrong, in cells
+  const double far = 1e-5 + off * off, turn = 1e-3 + 0.5 * off;    // errors of a depth and of a cosine of a guess, in cells
   const Lattice grid = host->body->lattice();
   const Ramps near_edges = ramps(point.kind);
   const double h = host->body->spacing();
@@ -171,7 +172,7 @@ ContactField::Verdict ContactField::judge(const SurfacePoint &point, const Vec3 
     const double depth = below.value / h;    // in cells
     const Vec3 inward = spot.gradient(below.slope);
     const double cosine = dot(normal, inward) / std::sqrt(dot(inward, inward));
-    // What must change before the side can begin a contact, in cells: the largest of these three.
+    // Smallest change before the side can begin a contact, in cells: the largest of these three.
     double apart = -depth;
     const double turned = PRESSED * (LEAST_COSINE - cosine);
     if (host->body->is_cuboid())
@@ -185,7 +186,7 @@ ContactField::Verdict ContactField::judge(const SurfacePoint &point, const Vec3 
     const double covered = host->body->covered(s, X);
     verdict.is_sure &= std::fabs(covered) > far + off;
     slack = std::min(slack, PRESSED * h * std::max({apart, turned, depth - DEEPEST_BIRTH}));
-    if (covered >= 0.0) continue;    // another held body is there, and nothing comes to this side
+    if (covered >= 0.0) continue;    // another held body is there, and no point reaches this side
     is_surely_shut |= turned < -turn && depth < -far;
     may_face |= turned < turn && apart < far && depth < DEEPEST_BIRTH + far;
     if (cosine < LEAST_COSINE) continue;
@@ -202,7 +203,7 @@ ContactField::Verdict ContactField::judge(const SurfacePoint &point, const Vec3 
   const bool is_deep = verdict.depth > DEEPEST_BIRTH * h;
   if (host->body->is_cuboid() && is_crushed(spot, *host->body)) {
     verdict.is_crushed = true;
-    verdict.open = EVERY_SIDE, verdict.slack = 0.0;    // X may be another one in the next step
+    verdict.open = EVERY_SIDE, verdict.slack = 0.0;    // X may be different in the next step
   }
   if (side >= 0 && is_smooth(point.kind)) {
     verdict.depth *= Flattened<double>(std::sqrt(dot(inward_of_side, inward_of_side))).value;
@@ -216,7 +217,7 @@ ContactField::Verdict ContactField::judge(const SurfacePoint &point, const Vec3 
   return verdict;
 }
 
-// Whether a contact begins; else when to look again.
+// Whether a contact begins; otherwise sets when to look again.
 bool ContactField::look(std::size_t q, const ContactArrays &arrays, bool may_begin)
 {
   ++looks;
@@ -228,7 +229,7 @@ bool ContactField::look(std::size_t q, const ContactArrays &arrays, bool may_beg
   const auto lost = [&] {
     known.cell = {-1, -1, -1};
     known.open = EVERY_SIDE;
-    wake.set(q, budget);    // is looked for again in the next step
+    wake.set(q, budget);    // searched again in the next step
     return false;
   };
   if (known.cell[0] < 0) {
@@ -271,7 +272,7 @@ bool ContactField::look(std::size_t q, const ContactArrays &arrays, bool may_beg
   }
   known.open = verdict.open;
   if (!may_begin || verdict.side < 0) {
-    // In another cell the depth may be another one.
+    // In another cell the depth may be different.
     const double slack = std::min(verdict.slack, std::max(known.room, verdict.slack - PRESSED * JUMP * h));
     wake.set(q, budget + std::max(0.0, slack));
     return false;

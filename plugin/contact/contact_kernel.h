@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// Contacts of one field, four at a time: what the vector code (contact_kernel_of_set.cpp) is given and answers. Plain data alone,
-// for the reason told in simd/of_set.h.
+// Contacts of one field, four at a time: the interface to the vector code (contact_kernel_of_set.cpp). Plain data only;
+// simd/of_set.h says why.
 
 #ifndef MDANIM_CONTACT_KERNEL_H
 #define MDANIM_CONTACT_KERNEL_H
@@ -11,7 +11,7 @@
 
 namespace mdanim {
 
-// Gathering and scattering set the pace: of eight lanes none would be faster.
+// Gathering and scattering take most of the time: eight lanes would not be faster.
 constexpr int CONTACT_LANES = 4;
 
 // The point of a contact as it is now.
@@ -25,34 +25,34 @@ struct PushTask {
   ContactLaw law;
   double dt;
   Lattice host;
-  const int *slot;            // of the host's particles by their places in the grid
+  const int *slot;            // numbers of the host's particles by their places in the grid
   const PaddedVec3 *place;    // as that of Placed
   double longest;             // depth beyond which a contact is over [m]
   Ramps ramps;
   bool is_smooth;    // the map
 };
 
-// What a contact comes to in a step, besides what it keeps.
+// Results for a contact in a step, besides the values that it keeps.
 template <class Real> struct PushedContact {
   Vec<Real> at_centre;    // force there
   Real heat, damped;      // [J]
 };
 
-// Of up to four contacts. What is told of a lane in `hard` is wrong: its contact is over, or needs a search.
+// Results for up to four contacts. Values of a lane in `hard` are wrong: its contact is over, or needs a search.
 struct PushedBlock {
   int hard, on_ramp;    // one bit for each lane; there is a force at the centre
   PushedContact<double> contact[CONTACT_LANES];
-  FieldContact unused;                // what lanes in `hard` would keep
-  const int *slots[CONTACT_LANES];    // of the host's nodes, from the first on
+  FieldContact unused;                // values that lanes in `hard` would keep
+  const int *slots[CONTACT_LANES];    // numbers of the host's nodes, from the first on
   int nodes;
   long step[27];    // from the first node to this one
   PaddedVec3 on_node[27][CONTACT_LANES];
 };
 
 struct ContactKernels {
-  // The first `n` of the contacts from `first` on, all of points of one kind; those in `hard` stay as they are.
+  // Computes the first `n` of the contacts from `first` on, all of points of one kind; those in `hard` stay as they are.
   void (*push)(const PushTask &, FieldContact *first, const PointNow *now, int n, PushedBlock &pushed);
-  // The forces of lanes from `first` to `end` - 1 on the host's nodes.
+  // Adds the forces of lanes from `first` to `end` - 1 on the host's nodes.
   void (*add_to_nodes)(const PushedBlock &pushed, int first, int end, PaddedVec3 *on);
 };
 

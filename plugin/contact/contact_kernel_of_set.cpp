@@ -12,7 +12,7 @@ constexpr int LANES = CONTACT_LANES;
 static_assert(LANES == 4, "a row is gathered from four");
 constexpr int ALL = (1 << LANES) - 1;
 
-// What is told of each lane, as one vector.
+// number(lane) of each lane, as one vector.
 template <class Number> MDANIM_ALWAYS_INLINE Four gather(const Number &number)
 {
   Four all;
@@ -21,7 +21,7 @@ template <class Number> MDANIM_ALWAYS_INLINE Four gather(const Number &number)
   return all;
 }
 
-// The same of rows, or of three numbers with one more after them.
+// The same for rows, or for three numbers followed by one more.
 template <class OfLane> MDANIM_ALWAYS_INLINE Vec<Four> gather_rows(const OfLane &row)
 {
   Four column[4];
@@ -29,7 +29,7 @@ template <class OfLane> MDANIM_ALWAYS_INLINE Vec<Four> gather_rows(const OfLane 
   return {column[0], column[1], column[2]};
 }
 
-// Records of doubles, one of each lane, as one of vectors, and the other way round.
+// Records of doubles, one for each lane, as one record of vectors, and back.
 template <class Vectors, class OfLane> MDANIM_ALWAYS_INLINE void gather_record(const OfLane &record, Vectors &vectors)
 {
   constexpr int N = sizeof(Vectors) / sizeof(Four);
@@ -72,17 +72,17 @@ MDANIM_ALWAYS_INLINE Depth<Four> depth_by_splines(const Lattice &host, const Vec
                           [&](int j, int k) { return gather_rows([&](int lane) { return first[lane] + row * j + layer * k; }); });
 }
 
-// Where the points of contacts are in the host: about X = `guess`, from which they are `off`, everything is linear.
+// Places of the points of contacts in the host: about X = `guess`, from which they are `off`, everything is linear.
 struct Followed {
   Vec<Four> guess, off;
   Weights<Four> weights;
   Spot<Four> spot;
   int cell[LANES][3];
-  const int *slots[LANES];    // of the host's nodes, from the first on
+  const int *slots[LANES];    // numbers of the host's nodes, from the first on
   int lost;                   // one bit for each lane that is not found
 };
 
-// place(i, j, k) of evaluate_nodes() in all lanes.
+// place(i, j, k) for evaluate_nodes() in all lanes.
 MDANIM_ALWAYS_INLINE auto places_around(const PushTask &task, const Followed &found)
 {
   return [&task, &found](int i, int j, int k) {
@@ -91,7 +91,7 @@ MDANIM_ALWAYS_INLINE auto places_around(const PushTask &task, const Followed &fo
   };
 }
 
-// As ContactField::follow() does, all lanes at once: a lane that has its place repeats the same numbers.
+// Does the work of ContactField::follow() for all lanes at once: a lane that has its place repeats the same numbers.
 template <bool SMOOTH> MDANIM_ALWAYS_INLINE void follow(const PushTask &task, const Vec<Four> &x, Followed &found)
 {
   constexpr int MOST = 4;
@@ -149,7 +149,7 @@ template <bool SMOOTH> MDANIM_ALWAYS_INLINE void follow(const PushTask &task, co
       for (int lane = 0; outside >> lane; ++lane)
         if (outside >> lane & 1 && step_to_neighbour(host, found.cell[lane], {X.x[lane], X.y[lane], X.z[lane]}, LEFT))
           leaves |= 1 << lane;
-      (host.depth ? found.lost : again) |= leaves;    // in a round host X may jump, which ContactField::go_on() sees to
+      (host.depth ? found.lost : again) |= leaves;    // in a round host X may jump; ContactField::go_on() deals with it
     }
     again &= ~found.lost;
     if (round == MOST) found.lost |= again, again = 0;

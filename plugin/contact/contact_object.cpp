@@ -7,7 +7,7 @@
 
 namespace mdanim {
 
-// Those of the particles around X that have a weight.
+// Adds the particles around X that have a weight. False where one of them is not here.
 bool CarriedPoint::add(const ContactObject &owner, const SurfacePoint &point, const Vec3 &X)
 {
   const ContactBody &body = *owner.body;
@@ -41,7 +41,7 @@ void NearPoints::add(const CarriedPoint &point)
   carriers.insert(carriers.end(), point.carrier, point.carrier + point.last);
 }
 
-// A box around where a map that is linear along each axis takes a box is that around where it takes its corners.
+// A map that is linear along each axis maps a box into the box around the images of its corners.
 static Box box_of(const PointCell &cell, const ContactObject &owner, const PaddedVec3 *place, bool &is_there)
 {
   const int row = owner.body->row(), layer = owner.body->layer(), *const slots = owner.slot.data() + cell.place;
@@ -88,7 +88,7 @@ double PointFinder::least_along(const Vec3 &direction) const
                                       [&](const auto &one, const auto &other) { return low(one.second) < low(other.second); });
   double least = Box::FAR;
   const auto try_points_of = [&](const PointCell &cell) {
-    for (int n = cell.first; n < cell.fine; ++n) {    // those are close enough for this
+    for (int n = cell.first; n < cell.fine; ++n) {    // points that are not fine are close enough for this
       const CarriedPoint point(owner, points[n]);
       if (point.is_there) least = std::min(least, dot(direction, point.place(arrays.place())));
     }
@@ -115,7 +115,7 @@ OuterCells::OuterCells(const ContactObject &owner, const ContactArrays &arrays)
   grid = Grid([this](int n) { return &middle[n].x; }, static_cast<int>(middle.size()), SEARCHED * body.spacing());
 }
 
-// By where cells are now, so that the answer does not depend on when lists were made.
+// Uses the present places of cells, so that the answer does not depend on when lists were made.
 std::array<int, 3> OuterCells::nearest(const Vec3 &x, const PaddedVec3 *place) const
 {
   int best = -1;

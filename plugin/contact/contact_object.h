@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// An object in contact: its body and material, and where its particles are.
+// An object in contact: its body and material, and the places of its particles.
 
 #ifndef MDANIM_CONTACT_OBJECT_H
 #define MDANIM_CONTACT_OBJECT_H
@@ -27,23 +27,23 @@ struct ContactObject {
   std::shared_ptr<const ContactBody> body;
   double young;              // [force/distance^2]
   double friction;           // mu
-  double density;            // of the lattice [force time^2/distance^4]: what makes a force of an acceleration, over the volume
-  std::int64_t first_tag;    // of its particles
+  double density;            // of the lattice [force time^2/distance^4]: the ratio of force to acceleration, per volume
+  std::int64_t first_tag;    // tag of the first of its particles
 
   std::vector<int>
-      slot;    // of its particles by their places in the grid, in the arrays of ContactWorld; -1 for what is not there
+      slot;    // numbers of its particles by their places in the grid, in the arrays of ContactWorld; -1 for one that is not here
   int first_slot = 0, last_slot = 0;
-  std::shared_ptr<LateOuterCells> outer;    // none of them after lists were made
-  Vec3 way;                                 // of its first particle in this step
-  double stir = 0.0;                        // the most that a point has gone otherwise in this step
-  bool is_pushed = false;                   // in the last step, by contacts
+  std::shared_ptr<LateOuterCells> outer;    // empty until first asked for after lists were made
+  Vec3 way;                                 // displacement of its first particle in this step
+  double stir = 0.0;                        // the largest displacement of a point relative to that in this step
+  bool is_pushed = false;                   // by contacts, in the last step
 
-  // Whether contacts of the other one, of the same id, are of the same points.
+  // Whether contacts of `other`, an object of the same id, have the same points.
   bool has_points_of(const ContactObject &other) const
   { return first_tag == other.first_tag && (body == other.body || *body == *other.body); }
 };
 
-// What contacts did in a step, and since the beginning.
+// Energies, heat and counts of contacts in a step, and since the beginning.
 struct ContactAccount {
   double energy = 0.0, stick_energy = 0.0;          // now [J]
   int touching = 0;                                 // points, now
@@ -52,7 +52,7 @@ struct ContactAccount {
   double looks = 0.0;                               // at points of objects without a contact, since the beginning
 
   void begin_step() { energy = stick_energy = 0.0, touching = 0; }
-  // What some of them did in this step.
+  // Adds the account of some contacts in this step.
   void add(const ContactAccount &some)
   {
     energy += some.energy;
@@ -71,7 +71,7 @@ class ContactArrays {
  public:
   const ContactKernels *kernels = nullptr;    // null: contacts one at a time, with the same bits
 
-  // For so many particles from now on, on which there are no forces; places are still to be told.
+  // For this number of particles from now on, with zero forces; their places must then be set.
   void renew(std::size_t particles)
   {
     place_rows.swap(rows_before);
@@ -80,9 +80,9 @@ class ContactArrays {
   }
   std::size_t size() const { return force_rows.size(); }
   void clear_forces(int from, int to) { std::fill(force_rows.begin() + from, force_rows.begin() + to, PaddedVec3{}); }
-  PaddedVec3 *place() { return place_rows.data() + 1; }    // slot -1, of what is not there, may be read
+  PaddedVec3 *place() { return place_rows.data() + 1; }    // slot -1, of a particle that is not here, may be read
   const PaddedVec3 *place() const { return place_rows.data() + 1; }
-  const PaddedVec3 *place_before() const { return rows_before.data() + 1; }    // renew() was called
+  const PaddedVec3 *place_before() const { return rows_before.data() + 1; }    // the places before renew() was called
   PaddedVec3 *force() { return force_rows.data(); }
   const PaddedVec3 *force() const { return force_rows.data(); }
   std::size_t bytes() const
@@ -92,7 +92,7 @@ class ContactArrays {
   std::vector<PaddedVec3> place_rows = std::vector<PaddedVec3>(1), rows_before, force_rows;
 };
 
-// A particle's part in a point.
+// The weight of a particle in a point.
 struct Carrier {
   int slot;
   double weight;
@@ -112,20 +112,20 @@ class CarriedPoint {
   Vec3 place(const PaddedVec3 *at) const { return weighted_sum(carrier, carrier + middle, at); }
 
   int number;
-  bool is_there;           // all of those particles are
-  int middle, last = 0;    // carriers of the point, and from `middle` on, if it has its own, of the centre of its area
+  bool is_there;           // whether all of those particles are here
+  int middle, last = 0;    // carriers of the point, and from `middle` on those of the centre of its area, if it has others
   Carrier carrier[2 * 8 + 1];
 
  private:
   bool add(const ContactObject &owner, const SurfacePoint &point, const Vec3 &X);
 };
 
-// Points of one object that are near something, with the particles that carry them.
+// Points of one object that are near another, with the particles that carry them.
 class NearPoints {
  public:
   struct Near {
     int point;
-    int first, middle, last;    // carriers of the point, of the centre of its area; the second are none where both are the same
+    int first, middle, last;    // carriers of the point, then of the centre of its area, empty where both are the same
   };
 
   void clear() { near.clear(), carriers.clear(); }
@@ -160,12 +160,12 @@ class NearPoints {
   std::vector<Carrier> carriers;
 };
 
-// The points of an object whose particles are there, by where the cells that carry them were when lists were made.
+// The points of an object whose particles are here, by the places that the cells that carry them had when lists were made.
 class PointFinder {
  public:
   PointFinder(const ContactObject &owner, const ContactArrays &arrays);
-  // Ascending numbers of all in a zone that act on what is flat, or on what is not, and of some beside it; with those of
-  // `contacts` among them.
+  // Ascending numbers of all points in a zone that act on flat surfaces, or on others, and of some beside it; the points of
+  // `contacts` are among them.
   template <class Contact> std::vector<int> inside(const Zone &zone, bool on_flat, const std::vector<Contact> &contacts) const
   {
     std::vector<std::uint64_t> marked((owner.body->points().size() + 63) / 64, 0);
@@ -183,20 +183,20 @@ class PointFinder {
         found.push_back(static_cast<int>(64 * word) + __builtin_ctzll(left));
     return found;
   }
-  // Where the first of them is along a direction.
+  // The lowest coordinate of the points along a direction.
   double least_along(const Vec3 &direction) const;
 
  private:
   const ContactObject &owner;
   const ContactArrays &arrays;
-  std::vector<std::pair<int, Box>> cells;    // those of the body that carry points, if all their particles are there
+  std::vector<std::pair<int, Box>> cells;    // cells of the body that carry points, if all their particles are here
 };
 
-// Cells on an object's surface, to begin a search in. They are found by where they were when this was made.
+// Cells on an object's surface, from which a search begins. They are found by the places that they had when this was made.
 class OuterCells {
  public:
   OuterCells(const ContactObject &owner, const ContactArrays &arrays);
-  // The one whose middle is nearest, with particles at `place` now; -1 for none of those that were within SEARCHED cells.
+  // The cell whose middle is nearest, with particles at `place` now; -1 if no cell was within SEARCHED cells.
   std::array<int, 3> nearest(const Vec3 &x, const PaddedVec3 *place) const;
   std::size_t bytes() const { return cells.capacity() * (sizeof cells[0] + sizeof middle[0]); }
   static constexpr double SEARCHED = 5.0;
@@ -211,7 +211,7 @@ class OuterCells {
   Grid grid;
 };
 
-// The same, made when they are first asked for, by whichever thread does.
+// The same, made when it is first asked for, by whichever thread does so.
 class LateOuterCells {
  public:
   const OuterCells &of(const ContactObject &owner, const ContactArrays &arrays)
@@ -226,7 +226,7 @@ class LateOuterCells {
   std::optional<OuterCells> cells;
 };
 
-// Ends contacts with points whose particles are not there; `of_contact` numbers those that are among the points near by.
+// Ends contacts of points whose particles are not here; `of_contact` gives the numbers of the others among the points near by.
 template <class Contact>
 void keep_near(std::vector<Contact> &contacts, const std::vector<std::size_t> &of_contact, const NearPoints &near)
 {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// What a contact does in a step, once X of its point is known: depth, the part that counts, forces on the point and the host.
+// The work of a contact in a step, once X of its point is known: depth, the part that counts, forces on the point and the host.
 // Templates over Real (numbers/real.h), compiled for every set of instructions (contact_kernel_of_set.cpp).
 
 #ifndef MDANIM_CONTACT_PUSH_H
@@ -10,15 +10,15 @@
 
 namespace mdanim {
 
-constexpr double SAME_PLACE = 1e-3;    // cells that X may be off its guess without a second evaluation
-constexpr double LEFT = 1e-9;          // cells that X may stand out of its own
-constexpr double RAMPS_END = 2.05;     // cells from an edge from which on all of any point counts
+constexpr double SAME_PLACE = 1e-3;    // cells that X may be away from its guess without a second evaluation
+constexpr double LEFT = 1e-9;          // cells that X may be outside of its own
+constexpr double RAMPS_END = 2.05;     // cells from an edge beyond which the whole area of any point counts
 
-// Volume of a cell that is not believed to be turned over.
+// Volume below which a cell counts as turned over.
 MDANIM_ALWAYS_INLINE double smallest_volume(double spacing) { return 0.02 * spacing * spacing * spacing; }
 
-// A smaller one is crushed: X of a point is soon another one there, and contacts of points that see it through smooth maps are
-// let go.
+// Volume below which a cell is crushed. There X of a point soon jumps to another one, and contacts of points that use smooth maps
+// are let go.
 MDANIM_ALWAYS_INLINE double crushed_volume(double spacing) { return 0.25 * spacing * spacing * spacing; }
 
 // Depth below one side [m], and its gradient by X.
@@ -27,7 +27,7 @@ template <class Real> struct Depth {
   Vec<Real> slope;
 };
 
-// A side of a cuboid: across which axis, and 1 at its upper end, 0 at its lower one.
+// A side of a cuboid: the axis across it, and 1 at the upper end, 0 at the lower one.
 template <class Real> struct CuboidSide {
   Real axis, is_high;
 };
@@ -59,7 +59,7 @@ template <class Real> MDANIM_ALWAYS_INLINE void depth_weights(const Real &x, con
 
 MDANIM_ALWAYS_INLINE int depth_row(const Lattice &host, int axis) { return host.cells[axis] + 1 + 2 * DEPTH_MARGIN; }
 
-// line(j, k): the three coefficients of a line along x, so many nodes from the first along y and z.
+// line(j, k): the three coefficients of a line along x, j and k nodes from the first along y and z.
 template <class Real, class Line>
 MDANIM_ALWAYS_INLINE Depth<Real> depth_by_splines(const Weights<Real> &weights, const Line &line_at)
 {
@@ -82,7 +82,7 @@ MDANIM_ALWAYS_INLINE Depth<Real> depth_by_splines(const Weights<Real> &weights, 
   return found;
 }
 
-// The ramps near sharp edges of a host, of points of one kind: along each axis, in cells.
+// The ramps near sharp edges of a host, for points of one kind: along each axis, in cells.
 struct Ramps {
   double from[3], width[3];
 };
@@ -112,33 +112,33 @@ MDANIM_ALWAYS_INLINE Real part_that_counts(const Ramps &ramps, const Lattice &ho
   return t[0] * t[1] * t[2];
 }
 
-// What a contact brings from the step before, and what changes in it: X of the point, its change from the step before, and X of
-// the anchor of friction, in the host's lattice coordinates.
+// Values that a contact brings from the step before and that change in it: X of the point, its change from the step before, and X
+// of the anchor of friction, in the host's lattice coordinates.
 template <class Real> struct ContactState {
   Vec<Real> X, change, anchor;
   ContactMemory<Real> memory;
 };
 
-// What is asked for when a contact ends.
+// Values that are needed when a contact ends.
 template <class Real> struct ContactOutcome {
   Vec<Real> force;    // on the point [N]
   Vec<Real> moved;    // against the host in the step [m]
   Real energy;        // of the pressure [J]
 };
 
-// Of one point. The host gets -(N_b both + dN_b/dX . moment).
+// Results for one point. The host gets -(N_b both + dN_b/dX . moment).
 template <class Real> struct ContactPush {
   ContactOutcome<Real> outcome;
   Vec<Real> at_centre, both, moment[3];
   Real heat, damped;
 };
 
-// A slope of the part that counts.
+// Whether the part that counts has a slope.
 template <class Real> MDANIM_ALWAYS_INLINE auto is_on_ramp(const Vec<Real> &part_slope)
 { return (part_slope.x != 0.0) | (part_slope.y != 0.0) | (part_slope.z != 0.0); }
 
-// The part that counts is that at the centre of a sharp point's area, X + K shift. Where X moves K changes too: this is what that
-// does to the part, as a gradient in space by the place of the point. `shift` is in lattice coordinates.
+// The part that counts is taken at the centre of a sharp point's area, X + K shift. Where X moves, K changes too: this is its
+// effect on the part, as a gradient in space by the place of the point. `shift` is in lattice coordinates.
 template <class Real, class Place>
 MDANIM_ALWAYS_INLINE Vec<Real> part_turn(const Weights<Real> &weights, const Place &place, const Spot<Real> &spot,
                                          const Vec<Real> &part_slope, const Vec<Real> &shift)
@@ -148,7 +148,7 @@ MDANIM_ALWAYS_INLINE Vec<Real> part_turn(const Weights<Real> &weights, const Pla
   return {pick(counts, turn.x, Real{}), pick(counts, turn.y, Real{}), pick(counts, turn.z, Real{})};
 }
 
-// Of the depth that counts where the host is pressed flat, f = phi d: phi, and what its gradient is more than phi times that of
+// The depth that counts where the host is pressed flat, f = phi d: phi, and the terms of its gradient besides phi times that of
 // d, by the place of the point and by the columns of dx/dX.
 template <class Real> struct FlattenedDepth {
   bool is_flat = false;
@@ -159,7 +159,7 @@ template <class Real> struct FlattenedDepth {
 template <class Real> MDANIM_ALWAYS_INLINE auto is_flattened(const Vec<Real> &normal)
 { return dot(normal, normal) > Flattened<double>::STEEP * Flattened<double>::STEEP; }
 
-// d n^2 = -2 sum_a v_a n . d(dx/dX_a),  v = n as a way of X.
+// d n^2 = -2 sum_a v_a n . d(dx/dX_a),  v = n as a displacement of X.
 template <class Real, class Place>
 MDANIM_ALWAYS_INLINE FlattenedDepth<Real> flattened_depth(const Weights<Real> &weights, const Place &place,
                                                           const Spot<Real> &spot, const Vec<Real> &normal, const Real &depth)
@@ -176,7 +176,7 @@ MDANIM_ALWAYS_INLINE FlattenedDepth<Real> flattened_depth(const Weights<Real> &w
   return flat;
 }
 
-// `off` is X less its guess, about which all is linear; `shift` goes from X to the centre of the point's area; `turn` is
+// `off` is X less its guess, about which everything is linear; `shift` goes from X to the centre of the point's area; `turn` is
 // part_turn(); `below` has the depth that counts, and the slope of d.
 template <class Real>
 MDANIM_ALWAYS_INLINE ContactPush<Real> contact_push(const ContactLaw &law, double dt, const Real &area, const Real &part,
@@ -184,14 +184,14 @@ MDANIM_ALWAYS_INLINE ContactPush<Real> contact_push(const ContactLaw &law, doubl
                                                     const FlattenedDepth<Real> &flat, const Spot<Real> &spot,
                                                     const Vec<Real> &off, const Vec<Real> &shift, ContactState<Real> &state)
 {
-  const Vec<Real> normal = spot.gradient(below.slope);    // of d, in space
+  const Vec<Real> normal = spot.gradient(below.slope);    // gradient of d, in space
   ContactForce<Real> force = contact_pressure(law, area, part, below.value, dt, state.memory);
-  const Real press = force.press;    // along f
+  const Real press = force.press;    // along the gradient of f
   if (flat.is_flat) force.press = flat.part * press;
   ContactPush<Real> push;
   Vec<Real> lean;
   if (law.friction > 0.0) {
-    // At the same depth as the point, by a way along the normal in space, along which the stick spring does no work.
+    // To the depth of the point, along the normal in space; the stick spring does no work on this way.
     lean = state.anchor - state.X;
     lean -= (dot(lean, below.slope) / dot(normal, normal)) * spot.to_material(normal);
     contact_friction(law, area, part, -1.0 * spot.to_space(lean), normal, dt, state.memory, force);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// Which objects are near each other, and the order of all sums: pairs by ascending ids, of each the points of the lower one
+// Finds objects near each other, and fixes the order of all sums: pairs by ascending ids, within each the points of the lower one
 // first; then planes.
 
 #include "contact/contact_world.h"
@@ -13,14 +13,14 @@
 
 namespace mdanim {
 
-static constexpr double AROUND = 3.0;            // spacings around a contact in which particles may have a part in it
+static constexpr double AROUND = 3.0;            // spacings around a contact within which particles may take part in it
 static constexpr double CARRIED = 2.25;          // spacings that a particle may be from a point of its cells
-static constexpr double AT_A_PLANE = 0.75;       // of the skin: half for particles, and for points outside of cells half of that
-static constexpr double BETWEEN_POINTS = 0.6;    // spacings by which a round surface may stand out of its points
+static constexpr double AT_A_PLANE = 0.75;       // of the skin: 1/2 for particles, and half of that for points outside of cells
+static constexpr double BETWEEN_POINTS = 0.6;    // spacings by which a round surface may extend beyond its points
 static constexpr double MOST_SKINS = 32.0;
-// When lists are made, and of a particle when it moves; about.
+// Costs of making lists, and of moving a particle; approximate.
 static constexpr double NS_OF_OBJECT = 5e3, NS_OF_FIELD = 5e3, NS_OF_PARTICLE = 8.0;
-static constexpr int FIELD_COST = 20;    // of one without points
+static constexpr int FIELD_COST = 20;    // cost of a field without points
 
 // --- lists ---
 
@@ -30,7 +30,7 @@ bool ContactWorld::near_plane(const Box &box, const ContactPlane &plane, double 
   return !box.empty() && distance <= gap;
 }
 
-// How far the particles of two objects may be apart when they may touch before lists are made again.
+// How far apart the particles of two objects may be that may touch before lists are made again.
 double ContactWorld::range(int a, int b) const
 {
   const ContactBody &one = *all[a].body, &other = *all[b].body;
@@ -129,8 +129,9 @@ static Vec3 place(const Coordinates &places, std::size_t slot) { return {places[
 
 namespace {
 
-// The most that one of many particles has gone otherwise than `way`, which is that of the first. That of the middle between the
-// first and the last gives fewer looks, but parts of a crowd then have other bits than the whole: a look came too late.
+// The largest displacement of any of many particles relative to `way`, the displacement of the first. The displacement half-way
+// between the first and the last would give fewer looks, but then parts of a crowd had other bits than the whole: a look came too
+// late.
 struct Deviation {
   Vec3 way;
   double square = 0.0;
@@ -143,7 +144,7 @@ struct Deviation {
   void tell(ContactObject &one) const { one.way = way, one.stir = one.body->leverage() * std::sqrt(square); }
 };
 
-// How much two objects have come nearer at most.
+// Upper bound of how much two objects have come nearer.
 double nearer(const ContactObject &a, const ContactObject &b)
 {
   const Vec3 together = a.way - b.way;
@@ -171,7 +172,7 @@ void ContactWorld::list(const std::vector<ContactParticle> &particles, const Coo
     one.outer = std::make_shared<LateOuterCells>();
     one.slot.assign(sights[n].empty() ? 0 : one.body->places(), -1);
     one.first_slot = static_cast<int>(from);
-    changes.clear();    // since the last step, of those that were there
+    changes.clear();    // since the last step, of objects that already existed
     for (; from < particles.size() && particles[from].object == n; ++from) {
       const int at = one.body->place_of(particles[from].node);
       one.slot[at] = static_cast<int>(from);
@@ -207,7 +208,7 @@ void ContactWorld::list(const std::vector<ContactParticle> &particles, const Coo
   listed = true;
 }
 
-// Of all fields, those that may come in. Objects and fields do not depend on each other here.
+// Lists the points of all fields that may touch. Objects and fields do not depend on each other here.
 void ContactWorld::find_points()
 {
   std::vector<std::optional<PointFinder>> finder(all.size());
@@ -286,10 +287,10 @@ void ContactWorld::look(Active &one, double dt)
   }
 }
 
-// What fields do by themselves; what they add to the same particles and sums comes afterwards, in one order.
+// The work that fields do independently. Their contributions to shared particles and sums are added afterwards, in one order.
 void ContactWorld::look_and_work_ahead(double dt)
 {
-  threads.parts(costs.back(), 1.0, [&](long from, long to) {    // costs are in ns, about
+  threads.parts(costs.back(), 1.0, [&](long from, long to) {    // costs are in ns, approximately
     const auto number = [&](long cost) { return std::lower_bound(costs.begin(), costs.end() - 1, cost) - costs.begin(); };
     for (long k = number(from), end = number(to); k < end; ++k) {
       Active &one = active[k];
@@ -313,11 +314,11 @@ void ContactWorld::add_forces(Active &one, double dt)
   if (!one.field->is_idle()) a.is_pushed = b.is_pushed = true;
 }
 
-// On each object fields add in the order of sums. The first ones are those that wait for none, then come those that wait for one
-// of them, and so on.
+// On each object fields are added in the order of sums. First come those that wait for none, then those that wait for one of
+// them, and so on.
 void ContactWorld::list_turns()
 {
-  std::vector<int> before(all.size(), 0), longest(all.size(), 0);    // fields so far, and the longest chain of them
+  std::vector<int> before(all.size(), 0), longest(all.size(), 0);    // number of fields so far, and the longest chain of them
   for (auto &some : turns_after) some.clear();
   for (Active &one : active) {
     if (!one.has_something) continue;
@@ -332,10 +333,10 @@ void ContactWorld::list_turns()
   for (const auto &some : turns_after) turns.insert(turns.end(), some.begin(), some.end());
 }
 
-// Threads take fields in that order, so a thread waits only for one that another thread is at.
+// Threads take fields in that order, so a thread waits only for a field that another thread is working on.
 void ContactWorld::add_forces_side_by_side(double dt)
 {
-  constexpr double PART = 0.3;    // of what they cost
+  constexpr double PART = 0.3;    // of the cost
   list_turns();
   std::vector<std::atomic<int>> added(all.size());
   std::atomic<std::size_t> next{0};

@@ -10,12 +10,12 @@
 
 namespace mdanim {
 
-static constexpr double ALONE = 2.0;     // stiffness where only the dense points of one act, over that of points of both
+static constexpr double ALONE = 2.0;     // stiffness where only the dense points of one body act, over that of points of both
 static constexpr double ONSET = 0.05;    // eps over the spacing
 
 void ContactWorld::take(std::vector<ContactObject> now, std::vector<char> moves)
 {
-  for (ContactObject &one : all) clear_forces(one);    // the new ones know nothing of them
+  for (ContactObject &one : all) clear_forces(one);    // the new objects have no forces yet
   listed = false;
   active.clear(), costs.assign(1, 0);
   std::set<int> same;
@@ -55,7 +55,7 @@ const ContactObject *ContactWorld::misfit(const std::vector<ContactObject> &now)
 
 // --- laws ---
 
-// `density` is that of the lighter body that can move: it is the one that swings.
+// `density` is that of the lighter body that can move, because that one swings.
 ContactLaw ContactWorld::law(const ContactObject &owner, double density, double kappa, double friction, double damping) const
 {
   const double h = owner.body->spacing();
@@ -92,7 +92,7 @@ ContactLaw ContactWorld::law_at_plane(int n) const
 
 PlaneField ContactWorld::new_plane(int n, int plane) { return {all[n], plane, settings.planes[plane], law_at_plane(n)}; }
 
-// Materials may have changed since contacts began.
+// Takes changes of materials since contacts began into account.
 void ContactWorld::renew_laws()
 {
   for (auto &[key, both] : fields) {

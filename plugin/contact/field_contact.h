@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// A point of one object's surface that is in contact with another, its host. Plain data, for the reason told in
-// simd/of_set.h.
+// A point of one object's surface that is in contact with another, its host. Plain data; simd/of_set.h says why.
 
 #ifndef MDANIM_FIELD_CONTACT_H
 #define MDANIM_FIELD_CONTACT_H

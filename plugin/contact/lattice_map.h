@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// From lattice coordinates X of a body to places in space, by the particles of its lattice, and forces the other way round.
+// The map from lattice coordinates X of a body to places in space, by the particles of its lattice, and that of forces back.
 //   x(X) = sum_b N_b(X) x_b    trilinear: the 8 corners of a cell; smooth: quadratic B-splines on up to 27 particles, linear on
 //                              two rows within half a cell of a face: without kinks, and the face is met
 // Weights sum to 1 and reproduce X, so forces that are spread by them keep momentum and angular momentum.
@@ -21,9 +21,9 @@ template <class Real> MDANIM_ALWAYS_INLINE const Real &component(const Vec<Real>
 // The grid of a body's cells, and its depth.
 struct Lattice {
   int cells[3];
-  const std::uint8_t *filled;    // whether a cell is, x fastest
+  const std::uint8_t *filled;    // whether a cell is filled, x fastest
   double edge[3], spacing;       // [m]
-  int row, layer;                // places to the next one along y and z
+  int row, layer;                // distance to the next place along y and z
   const double *depth;    // coefficients of quadratic B-splines on nodes -DEPTH_MARGIN to n + DEPTH_MARGIN; null for a cuboid
 };
 constexpr int DEPTH_MARGIN = 2;
@@ -34,8 +34,8 @@ MDANIM_ALWAYS_INLINE bool is_filled(const Lattice &grid, int i, int j, int k)
          grid.filled[i + grid.cells[0] * (j + static_cast<std::size_t>(grid.cells[1]) * k)];
 }
 
-// From a cell to its neighbour that X lies in, if there is one: to the filled one across the face that X stands out of most, and
-// by more than so many cells.
+// Goes from a cell to the neighbour that X lies in, if there is one: the filled cell across the face that X is farthest beyond,
+// by more than `over` cells.
 MDANIM_ALWAYS_INLINE bool step_to_neighbour(const Lattice &grid, int (&cell)[3], const Vec3 &X, double over)
 {
   int axis = -1, way = 0;
@@ -50,7 +50,7 @@ MDANIM_ALWAYS_INLINE bool step_to_neighbour(const Lattice &grid, int (&cell)[3],
   return true;
 }
 
-// Factors of the weights along an axis, for three nodes from the base on; one that is not used in any lane has no weight.
+// Factors of the weights along an axis, for three nodes from the base on. A node that is not used in any lane has zero weight.
 template <class Real> struct AxisWeights {
   Real w[3], slope[3];
   Real bend;    // derivatives of the slopes are bend, -2 bend and bend
@@ -59,9 +59,9 @@ template <class Real> struct AxisWeights {
 
 template <class Real> using Weights = AxisWeights<Real>[3];
 
-// Weights are written where they stay: a copy of them, which compilers make byte by byte, takes as long as working them out.
+// Weights are written in their final place: copying them, which compilers do byte by byte, takes as long as computing them.
 
-// Of the two nodes of a cell.
+// Weights of the two nodes of a cell.
 template <class Real> MDANIM_ALWAYS_INLINE void linear_weights(const Real &x, const Real &cell, AxisWeights<Real> &of)
 {
   of.w[0] = 1.0 - (x - cell), of.w[1] = x - cell, of.w[2] = Real{};
@@ -103,11 +103,11 @@ template <class Real> struct Spot {
   Vec<Real> x, J[3], K[3];
   Real det{};
 
-  // A change of place in space as one of X, and the other way round.
+  // Converts a displacement in space to one of X, and back.
   MDANIM_ALWAYS_INLINE Vec<Real> to_material(const Vec<Real> &way) const
   { return {dot(K[0], way), dot(K[1], way), dot(K[2], way)}; }
   MDANIM_ALWAYS_INLINE Vec<Real> to_space(const Vec<Real> &way) const { return way.x * J[0] + way.y * J[1] + way.z * J[2]; }
-  // A gradient by X as one in space.
+  // Converts a gradient by X to one in space.
   MDANIM_ALWAYS_INLINE Vec<Real> gradient(const Vec<Real> &slope) const
   { return slope.x * K[0] + slope.y * K[1] + slope.z * K[2]; }
 
@@ -125,11 +125,11 @@ template <class Real> struct Spot {
 template <bool SMOOTH, class Real> MDANIM_ALWAYS_INLINE bool uses(const AxisWeights<Real> &axis, int n)
 { return SMOOTH ? n == 1 || (n == 0 ? axis.uses_first : axis.uses_last) : n < 2; }
 
-// Sums over three nodes begin at +0, so that one without weight does not change them; sums over two begin with the first.
+// Sums over three nodes begin at +0, so that a node without weight does not change them; sums over two begin with the first.
 template <bool SMOOTH, class Real> MDANIM_ALWAYS_INLINE void add(int n, Vec<Real> &sum, const Vec<Real> &term)
 { sum = SMOOTH || n > 0 ? sum + term : term; }
 
-// place(i, j, k) is where the particle is that is so many nodes from the base.
+// place(i, j, k) is the place of the particle that is i, j, k nodes from the base.
 template <bool SMOOTH, class Real, class Place>
 MDANIM_ALWAYS_INLINE void evaluate_nodes(const Weights<Real> &weights, const Place &place, Spot<Real> &spot)
 {
@@ -162,7 +162,7 @@ MDANIM_ALWAYS_INLINE void evaluate_nodes(const Weights<Real> &weights, const Pla
   spot.invert();
 }
 
-// How the gradient by X of along . x(X), of the smooth map, changes on a way of X.
+// Change of the gradient by X of along . x(X), of the smooth map, on a displacement of X.
 template <class Real, class Place>
 MDANIM_ALWAYS_INLINE Vec<Real> change_of_gradient(const Weights<Real> &weights, const Place &place, const Vec<Real> &along,
                                                   const Vec<Real> &way)
@@ -194,7 +194,7 @@ MDANIM_ALWAYS_INLINE Vec<Real> change_of_gradient(const Weights<Real> &weights, 
   return {xx * way.x + xy * way.y + xz * way.z, xy * way.x + yy * way.y + yz * way.z, xz * way.x + yz * way.y + zz * way.z};
 }
 
-// Of every particle b: on(i, j, k, force N_b + dN_b/dX . moment).
+// Calls on(i, j, k, force N_b + dN_b/dX . moment) for every particle b.
 template <bool SMOOTH, class Real, class On>
 MDANIM_ALWAYS_INLINE void spread_to_nodes(const Weights<Real> &weights, const Vec<Real> &force, const Vec<Real> (&moment)[3],
                                           const On &on)

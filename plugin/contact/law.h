@@ -13,7 +13,7 @@
 
 namespace mdanim {
 
-// Of one pair of bodies.
+// The law of one pair of bodies.
 struct ContactLaw {
   double kappa = 0.0;                     // stiffness of the surface [N/m^3]
   double onset = 0.0;                     // eps [m]
@@ -36,7 +36,7 @@ template <class Real> struct Onset {
   }
 };
 
-// What a point in contact remembers of the step before.
+// Values of a point in contact that are kept from the step before.
 template <class Real> struct ContactMemory {
   Real offset{};          // d0 [m]
   Real depth{};           // d [m]
@@ -50,9 +50,9 @@ template <class Real> struct ContactMemory {
 template <class Real> struct ContactForce {
   Real press{};             // -dU/dd and the dashpot [N]: the force is -press times the gradient of d in space
   Real surface_energy{};    // kappa w g [N m], what the gradient of t is multiplied by; U = t times this
-  Vec<Real> pull;           // of the stick spring: it acts at the anchor
-  Vec<Real> drag;           // of its dashpot
-  Real kept{};              // part of the way to the anchor that is left after the slip
+  Vec<Real> pull;           // force of the stick spring: it acts at the anchor
+  Vec<Real> drag;           // force of its dashpot
+  Real kept{};              // part of the way to the anchor that remains after the slip
   Real heat{}, damped{};    // energy that friction and dashpots took in this step [J]
 };
 
@@ -79,11 +79,11 @@ MDANIM_ALWAYS_INLINE ContactForce<Real> contact_pressure(const ContactLaw &law, 
   return force;
 }
 
-// What the dashpot of the depth still takes in the step in which the contact ends.
+// Work of the dashpot of the depth in the step in which the contact ends.
 MDANIM_ALWAYS_INLINE double last_damping_work(const ContactMemory<double> &memory, double depth)
 { return 0.5 * memory.damping * (depth - memory.depth); }
 
-// Friction. `away` is the way from the anchor to the point in space [m], `normal` the gradient of d there.
+// Friction. `away` is the vector from the anchor to the point in space [m], `normal` the gradient of d there.
 template <class Real>
 MDANIM_ALWAYS_INLINE void contact_friction(const ContactLaw &law, const Real &area, const Real &part, const Vec<Real> &away,
                                            const Vec<Real> &normal, double dt, ContactMemory<Real> &memory,
@@ -109,7 +109,7 @@ MDANIM_ALWAYS_INLINE void contact_friction(const ContactLaw &law, const Real &ar
   force.pull = -k * left;
   if (dt > 0.0) {
     force.heat = pick(slips, -0.5 * dot(force.pull + memory.pull, away - left), Real{});
-    // Where less of the point counts than before the spring is softer, and no work is done.
+    // Where less of the point counts than before, the spring is softer, and no work is done.
     force.heat += 0.5 * (memory.stick - k) * dot(left, before);
   }
   memory.pull = force.pull;
@@ -117,8 +117,8 @@ MDANIM_ALWAYS_INLINE void contact_friction(const ContactLaw &law, const Real &ar
   memory.stick_energy = 0.5 * k * dot(left, left);
 }
 
-// Part of a depth that counts where the host is pressed flat, so that the depth that counts, f = phi d, goes on as a distance in
-// space: the gradient of d is 1 in an undeformed cell, and without limit in one that is flattened.
+// Part of a depth that counts where the host is pressed flat, so that the depth that counts, f = phi d, continues to be a
+// distance in space: the gradient of d is 1 in an undeformed cell, and unbounded in a flattened one.
 //   phi(n) = y(n)/n,  y = n below STEEP, STEEP + a (n - STEEP)/(n - STEEP + a) beyond    n = |gradient of d in space|, a = MORE
 template <class Real> struct Flattened {
   static constexpr double STEEP = 1.1, MORE = 1.0;
@@ -132,8 +132,9 @@ template <class Real> struct Flattened {
   }
 };
 
-// Energy that goes with a contact which is let go in a step: what it held, less what its last force still does in half of the
-// step, as leap-frog counts. `energy` is what it held, `deeper` how much deeper it is now, `part` what counts of it now.
+// Energy lost with a contact that is let go in a step: the energy that it held, less the work of its last force in half of the
+// step, as leap-frog counts. `energy` is the energy that it held, `deeper` the change of depth since then, `part` the part that
+// counts now.
 inline double let_go_energy(const ContactLaw &law, double area, const ContactMemory<double> &memory, double energy, double deeper,
                             double part)
 {
@@ -144,8 +145,8 @@ inline double let_go_energy(const ContactLaw &law, double area, const ContactMem
 }
 
 // Part of a point that counts near a sharp edge of the other body, `inside` cells from it: 0 before `from`, 1 a `width` later.
-// The slope rises and falls evenly over ROUND of the width each, as a kink is a force that sets in at once. Ramps of points that
-// are (1 - ROUND) width apart add up to a straight line.
+// The slope rises and falls evenly over ROUND of the width each, because a kink would be a sudden force. Ramps of points that are
+// (1 - ROUND) width apart add up to a straight line.
 template <class Real> struct Ramp {
   static constexpr double ROUND = 0.05;
   Real value, slope;
@@ -156,7 +157,7 @@ template <class Real> struct Ramp {
     const Real r = smaller(larger(over * (inside - from), Real{}), constant<Real>(1.0));
     const Real first = smaller(r, constant<Real>(ROUND)), last = larger(r - (1.0 - ROUND), Real{});
     value = OVER_SUM * (r - first) + (0.5 * OVER_ROUND) * (first * first - last * last);
-    value = pick(r < 1.0, value, constant<Real>(1.0));    // exactly, as where there is no ramp
+    value = pick(r < 1.0, value, constant<Real>(1.0));    // exactly 1, as without a ramp
     slope = (OVER_ROUND * over) * (first - last);
   }
 };

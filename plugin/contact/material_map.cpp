@@ -8,8 +8,8 @@ namespace mdanim {
 
 static constexpr int MOST_STEPS = 16;
 static constexpr double DONE = 1e-11;        // of a cell edge
-static constexpr double FARTHEST = 4.0;      // cells from the middle of the last cell that are believed
-static constexpr double ON_THE_WAY = 0.2;    // cells by which X may stand out of a cell before it is found
+static constexpr double FARTHEST = 4.0;      // cells from the middle of the last cell within which a result is trusted
+static constexpr double ON_THE_WAY = 0.2;    // cells by which X may be outside of a cell before it is found
 
 static double norm(const Vec3 &a) { return std::sqrt(dot(a, a)); }
 

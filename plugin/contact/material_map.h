@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// From lattice coordinates X of a body to places in space (lattice_map.h) and back.
+// The map from lattice coordinates X of a body to places in space (lattice_map.h) and back.
 
 #ifndef MDANIM_MATERIAL_MAP_H
 #define MDANIM_MATERIAL_MAP_H
@@ -13,15 +13,15 @@
 
 namespace mdanim {
 
-// Where the particles of a body are: `slot` numbers them by their place in the grid, -1 for one that is not there, whose place
-// may be read.
+// Places of the particles of a body: `slot` gives their numbers by their place in the grid, -1 for one that is not here, whose
+// place may be read.
 struct Placed {
   const ContactBody &body;
   const int *slot;
   const PaddedVec3 *place;
 };
 
-// Of the particles around a point, from the place `base` in the grid on.
+// Weights of the particles around a point, from the place `base` in the grid on.
 struct MapWeights {
   Weights<double> axis;
   bool is_smooth;
@@ -50,7 +50,7 @@ inline MapWeights smooth(const Vec3 &X, const ContactBody &body)
   return weights;
 }
 
-// False when a particle with a weight is not there.
+// False when a particle with a weight is not here.
 inline bool evaluate(const Placed &host, const MapWeights &weights, Spot<double> &spot)
 {
   const int row = host.body.row(), layer = host.body.layer(), *const slots = host.slot + weights.base;
@@ -75,20 +75,20 @@ inline void spread(const Placed &host, const MapWeights &weights, const Vec3 &fo
                     : spread_to_nodes<false>(weights.axis, force, moment, add);
 }
 
-// The material point that is at a place in space: Newton's method from X in a filled cell, going to the neighbours on the way.
+// Finds the material point at a place in space: Newton's method from X in a filled cell, going to neighbours on the way.
 class MaterialSearch {
  public:
   explicit MaterialSearch(const Placed &host) : host(host) {}
 
-  // X and cell are the guess and become the answer. False when a cell is turned over or is not there.
+  // X and cell are the guess and become the answer. False when a cell is turned over or not here.
   bool solve(const Vec3 &x, std::array<int, 3> &cell, Vec3 &X, bool walk = true) const;
-  // The same from the cells around, for what is lost.
+  // The same from the cells around, for a point that is lost.
   bool solve_around(const Vec3 &x, std::array<int, 3> &cell, Vec3 &X) const;
-  // The same by the smooth map, of a cuboid.
+  // The same by the smooth map of a cuboid.
   bool solve_smooth(const Vec3 &x, Vec3 &X) const;
-  // To the neighbour that X lies in, if there is one; by how much X may stand out is told in cells.
+  // Goes to the neighbour that X lies in, if there is one; X may be `over` cells outside of its cell.
   bool step_to_neighbour(std::array<int, 3> &cell, const Vec3 &X, double over) const;
-  // Whether a cell is too far turned over to be believed.
+  // Whether a cell is too nearly turned over to be trusted.
   bool is_collapsed(const Spot<double> &spot) const;
 
  private:

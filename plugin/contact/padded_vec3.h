@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// A place of a particle or a force on it, as wide as a vector, which the kernels read and write at once. Plain data, for the
-// reason told in simd/of_set.h.
+// A place of a particle or a force on it, as wide as a vector that kernels read and write at once. Plain data; simd/of_set.h says
+// why.
 
 #ifndef MDANIM_PADDED_VEC3_H
 #define MDANIM_PADDED_VEC3_H

@@ -84,7 +84,7 @@ void PlaneField::look(const ContactArrays &arrays, double dt)
   if (dt > 0.0) wake.look_below(budget, [&](std::size_t q) { look(q, arrays, true); });
 }
 
-// What a contact comes to in a step; one that is over stays as it is.
+// Results of a contact in a step; a contact that is over stays as it is.
 PlaneField::Pushed PlaneField::push(PlaneContact &contact, std::size_t q, const ContactArrays &arrays, double dt) const
 {
   const Vec3 downward = -1.0 * plane.normal();    // gradient of the depth

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// Points of one object's surface against a plane across an axis, the exact depth below which is known. The law is that of
+// Points of one object's surface against a plane across an axis, below which the depth is known exactly. The law is that of
 // contact_field.h; the plane is rigid and does not move.
 
 #ifndef MDANIM_PLANE_FIELD_H
@@ -19,7 +19,7 @@ struct ContactPlane {
   double sign;    // 1: objects belong above, -1: below
   double at;      // [m]
   double depth(const Vec3 &x) const { return sign * (at - (axis == 0 ? x.x : axis == 1 ? x.y : x.z)); }
-  // What is no more than so far above it.
+  // The zone up to `gap` above the plane.
   Zone within(double gap) const
   {
     Zone zone;
@@ -73,7 +73,7 @@ class PlaneField {
   ContactLaw law;
   NearPoints near;
   Wakes wake;                             // as that of ContactField
-  std::vector<std::uint8_t> was_below;    // when a near point was looked at last
+  std::vector<std::uint8_t> was_below;    // whether a near point was below when it was looked at last
   std::vector<PlaneContact> contacts;     // by ascending points
   std::vector<std::size_t> of_contact;
   std::vector<Pushed> ahead;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// When points without a contact are looked at: each has what a budget must exceed before it is. Most points are looked at in few
-// steps, so the least of every few points is kept, and a step passes over those whose least is not exceeded.
+// Times at which points without a contact are looked at: each point has a value that a budget must exceed first. Most points are
+// looked at in few steps. So the least value of every few points is kept, and a step skips those whose least is not exceeded.
 
 #ifndef MDANIM_WAKES_H
 #define MDANIM_WAKES_H
@@ -31,7 +31,7 @@ class Wakes {
     least_of[q / BLOCK] = std::min(least_of[q / BLOCK], at);
     least = std::min(least, at);
   }
-  // look(q), which sets what is asked of point q from then on, for every point that a budget exceeds, in ascending order.
+  // Calls look(q), which sets the value of point q anew, for every point whose value a budget exceeds, in ascending order.
   template <class Look> void look_below(double budget, const Look &look)
   {
     if (!(least < budget)) return;
@@ -54,8 +54,8 @@ class Wakes {
  private:
   static constexpr std::size_t BLOCK = 8;
 
-  std::vector<double> wake, least_of;    // of each point, and of each block of points: the least, or less
-  double least = NEVER;                  // of all, or less
+  std::vector<double> wake, least_of;    // value of each point; for each block of points the least of them, or less
+  double least = NEVER;                  // least of all values, or less
 };
 
 }    // namespace mdanim

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// bond_style mdanim/harmonic. Every particle sums its own bonds in an order that its partners' tags tell, lower tags from the
-// lowest up, higher ones from the highest down, and adds the two sums to its force once: so the bits of a force depend on neither
-// the order of particles nor the ranks that hold them. Here are coefficients and rows; forces are in
+// bond_style mdanim/harmonic. Every particle sums its own bonds in an order given by its partners' tags, lower tags from the
+// lowest up, higher ones from the highest down, and adds the two sums to its force once. So the bits of a force depend on neither
+// the order of particles nor the ranks that hold them. This file has coefficients and rows; forces are in
 // bond_mdanim_harmonic_forces.cpp.
 
 #include "lammps/bond_mdanim_harmonic.h"
@@ -29,7 +29,7 @@ using namespace mdanim;
 
 static constexpr int RESTART_VERSION = 1;
 
-static bigint versions = 0;    // of the springs of all instances
+static bigint versions = 0;    // shared by the springs of all instances
 
 BondMdanimHarmonic::BondMdanimHarmonic(LAMMPS *lmp) : Bond(lmp), kernels(widest_kernels()) {}
 
@@ -93,9 +93,8 @@ void BondMdanimHarmonic::init_style()
 
 // --- rows ---
 
-// Whether tags or bonds differ from those that the rows were made from; takes note of them. In the middle of
-// a run only fixes change bonds, and but for those of the bond/ family every change shows in the number of a
-// particle's bonds.
+// Whether tags or bonds differ from those that the rows were made from, which are then stored. During a run only fixes change
+// bonds; except for fixes of the bond/ family every change shows in the number of a particle's bonds.
 bool BondMdanimHarmonic::source_changed()
 {
   const int nlocal = atom->nlocal;
@@ -198,7 +197,7 @@ void BondMdanimHarmonic::look_up(int i, bool halves, Row &row) const
   const auto upper = std::find_if(link.begin(), link.end(), [&](const auto &l) { return tag_of(l) > own; });
   row.lower = static_cast<int>(upper - link.begin());
   std::reverse(upper, link.end());
-  for (auto several = link.begin(); several != upper;) {    // between the same two: in the same order at both ends
+  for (auto several = link.begin(); several != upper;) {    // several bonds between the same two: in the same order at both ends
     const auto end = std::find_if(several, upper, [&](const auto &l) { return l.offset != several->offset; });
     std::reverse(several, end);
     several = end;
@@ -210,8 +209,8 @@ bool BondMdanimHarmonic::has_dashpots() const
   return std::any_of(spring.begin(), spring.end(), [](const Spring &s) { return s.c > 0.0; });
 }
 
-// Coefficients of all types; another version where one differs from before. Without init_style() dashpots cannot begin: nothing
-// has checked that ghosts have velocities, and their account has no forces to start from.
+// Makes coefficients of all types, and a new version where one differs from before. Without init_style() dashpots cannot begin:
+// nothing has checked that ghosts have velocities, and their account has no forces to start from.
 bool BondMdanimHarmonic::refresh_coefficients()
 {
   if (!coefficients_may_differ) return false;
@@ -247,7 +246,7 @@ bool BondMdanimHarmonic::halves(HalfBonds &half) const
   return true;
 }
 
-// --- what LAMMPS asks besides ---
+// --- other functions that LAMMPS calls ---
 
 double BondMdanimHarmonic::equilibrium_distance(int type) { return spring[type].r0; }
 
@@ -259,7 +258,7 @@ double BondMdanimHarmonic::single(int type, double rsq, int, int, double &fforce
   return mdanim::energy(spring[type], std::sqrt(rsq));
 }
 
-// Files have the bonds of particles alone.
+// Restart and data files hold only the bonds of particles.
 void BondMdanimHarmonic::refuse_if_given()
 {
   if (given)

@@ -19,7 +19,7 @@
 namespace LAMMPS_NS {
 
 // Keeps the springs of this rank's particles in rows, each in the order in which their forces are summed, and computes them in
-// plain steps; passes get the same rows. Dashpots beside the springs have an account of the energy that they take.
+// plain steps; passes get the same rows. An account is kept of the energy that dashpots beside the springs take.
 class BondMdanimHarmonic : public Bond, public mdanim::PassSprings {
  public:
   explicit BondMdanimHarmonic(class LAMMPS *);
@@ -36,7 +36,7 @@ class BondMdanimHarmonic : public Bond, public mdanim::PassSprings {
   double memory_usage() override;
   void *extract(const char *, int &) override;
 
-  // From now on these springs and no others, whatever bonds particles have: those of all particles, in the order of their tags,
+  // Uses only these springs from now on, whatever bonds particles have: the springs of all particles, in the order of their tags,
   // on a rank that is alone.
   void take(mdanim::SpringRows &&upper_rows);
 
@@ -53,7 +53,7 @@ class BondMdanimHarmonic : public Bond, public mdanim::PassSprings {
   void equip(const mdanim::Kernels &, const mdanim::Threads &now) override { threads = now; }
 
  private:
-  // What the rows were made from, besides the bonds themselves, which they hold; while all is unchanged they are kept.
+  // Data that the rows were made from, besides the bonds themselves, which they hold. Rows are kept while all of it is unchanged.
   struct Source {
     std::vector<tagint> tag;
     std::vector<int> count;    // of bonds
@@ -65,8 +65,8 @@ class BondMdanimHarmonic : public Bond, public mdanim::PassSprings {
     std::vector<double> push, pull;    // see SpringCoeffs
     std::vector<double> K, r0;         // of energies, see Spring
   };
-  // Forces that particles have received from lower partners so far, for sum_halves(): those from the row in hand to its
-  // farthest partner, in a ring of 2^n places.
+  // Forces that particles have received from lower partners so far, for sum_halves(): those from the present row to its farthest
+  // partner, in a ring of 2^n places.
   struct Ring {
     std::vector<mdanim::Vec3> force;
     int mask;    // 2^n - 1
@@ -74,7 +74,7 @@ class BondMdanimHarmonic : public Bond, public mdanim::PassSprings {
     explicit Ring(int farthest);
     mdanim::Vec3 &of(int i) { return force[i & mask]; }
   };
-  // What a thread needs besides the rows.
+  // Memory that a thread needs besides the rows.
   struct Workspace {
     Stretch stretch;
     Ring received;
@@ -101,22 +101,22 @@ class BondMdanimHarmonic : public Bond, public mdanim::PassSprings {
 
   const mdanim::Kernels &kernels;
   std::vector<mdanim::Spring> spring;       // by bond type
-  std::vector<mdanim::SpringCoeffs> law;    // the same
+  std::vector<mdanim::SpringCoeffs> law;    // by bond type
   bool damped = false;                      // some spring has a dashpot
   bool coefficients_may_differ = false;     // since their laws were made
   bool bonds_are_swapped = false;           // some fix changes partners during a run
   mdanim::SpringRows rows;                  // of local particles, to local ones and ghosts
   bool upper_only = false;                  // only partners of a higher tag, see sum_halves()
   bool given = false;                       // by take(), not by the particles
-  bigint made = 0;                          // version
-  bigint made_after = -1;                   // build of lists
+  bigint made = 0;                          // version of the rows
+  bigint made_after = -1;                   // number of the lists that they were made after
   Source source;
   int farthest = 0;    // partner of a row, where rows are halves
   std::vector<double> energy_of_chunk;
   mdanim::Threads threads;
 
   mdanim::Loss loss;    // to dashpots, on this rank
-  double lost = 0.0;    // when it was asked for last
+  double lost = 0.0;    // when it was last asked for
   double seconds = 0.0;
 };
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // bond_style mdanim/harmonic in plain steps: forces, energies and virials of rows. A thread computes whole chunks of rows. Where
-// springs stand in the rows of their lower ends alone it first computes the rows before its own once more, for what its
-// particles receive from these.
+// springs are only in the rows of their lower ends, it first computes the rows before its own once more, for the forces that its
+// particles receive from them.
 
 #include "lammps/bond_mdanim_harmonic.h"
 
@@ -17,7 +17,7 @@
 using namespace LAMMPS_NS;
 using namespace mdanim;
 
-// Rows are worked off in stretches that stay in the first-level cache.
+// Rows are computed in stretches that stay in the first-level cache.
 static constexpr int STRETCH = 512;
 // Rows whose energies are summed in one chain: the sum depends on no thread.
 static constexpr int CHUNK = 1024;
@@ -61,7 +61,7 @@ void BondMdanimHarmonic::energies(int begin, int end, int n, Stretch &stretch, d
   for (int at = 0; at < n; ++at) sum += share * stretch.K[at];
 }
 
-// Add the dashpots of rows [begin, end) to `stretch`, and what each particle feels of them to `on`.
+// Adds the dashpots of rows [begin, end) to `stretch`, and their forces on each particle to `on`.
 void BondMdanimHarmonic::dashpots(int begin, int end, Stretch &stretch, std::vector<Vec3> &on) const
 {
   for (int i = begin, at = 0; i < end; ++i)
@@ -100,7 +100,7 @@ BondMdanimHarmonic::Ring::Ring(int farthest)
 }
 
 // Half the work, the same bits: F_j = -F_i exactly and a - F = a + (-F), and rows come in ascending order, so that a particle has
-// received from its lower partners in theirs by the time its own row comes. Particles below `first` only hand on.
+// received the forces from its lower partners' rows by the time of its own row. Particles below `first` only pass forces on.
 void BondMdanimHarmonic::sum_halves(int begin, int end, int first, const Stretch &stretch, Ring &received) const
 {
   double *const *f = atom->f;
@@ -117,7 +117,7 @@ void BondMdanimHarmonic::sum_halves(int begin, int end, int first, const Stretch
   }
 }
 
-// The springs of rows [begin, end), of which particles from `first` on get their forces; their energy.
+// Computes the springs of rows [begin, end), of which particles from `first` on get their forces; returns their energy.
 double BondMdanimHarmonic::compute_rows(int begin, int end, int first, std::vector<Vec3> *on, Workspace &with) const
 {
   double sum = 0.0;
@@ -186,8 +186,8 @@ template <class Visit> void BondMdanimHarmonic::each_spring(Visit visit) const
   }
 }
 
-// Virial and energy of each particle on steps that ask for them; half of a bond's share goes to either end, which tallies it in
-// its own row where rows are whole.
+// Virial and energy of each particle in steps that need them. Half of a bond's share goes to either end, which tallies it in its
+// own row where rows are whole.
 void BondMdanimHarmonic::tally()
 {
   const double share = upper_only ? 1.0 : 0.5;

@@ -22,7 +22,7 @@ using namespace LAMMPS_NS;
 namespace mdanim {
 
 static constexpr const char *STYLE = "fix mdanim/liquid";
-static constexpr double PARTICLE = 25.0;    // or lattice cell [ns], about
+static constexpr double PARTICLE = 25.0;    // or lattice cell [ns], approximately
 
 // --- the command ---
 
@@ -59,7 +59,7 @@ void Buoyancy::init(const std::string &fix)
   if (is_quadratic) per_length.init(lmp);
 }
 
-// --- what depends on lists ---
+// --- data that depend on lists ---
 
 void Buoyancy::clear_friction(int groupbit) const
 {
@@ -105,8 +105,8 @@ void Buoyancy::look(const Basin &basin, const std::vector<int> &near)
   });
 }
 
-// The mean of what acts on its parts of lattice cells. Until the next update s is a straight line between its values where the
-// particle and all around it have gone up or down as far as an update lets them.
+// The mean of the values of its parts of lattice cells. Until the next update s is a straight line between its values where the
+// particle and all others around it have gone up or down as far as an update allows.
 InLiquid Buoyancy::look_at_particle(const Basin &basin, std::size_t n, const double *x) const
 {
   const double per_height = 1.0 / basin.shape.cell.z, z = (x[2] - basin.shape.low.z) * per_height, far = basin.pace.stride;
@@ -118,7 +118,7 @@ InLiquid Buoyancy::look_at_particle(const Basin &basin, std::size_t n, const dou
     const double here = on.part_below(z), beside = std::max(0.0, here + on.beside);
     ++parts;
     s += here;
-    lower += on.part_below(z - 2.0 * far);    // the middle of the cell goes as far as the corner
+    lower += on.part_below(z - 2.0 * far);    // the middle of the cell moves as far as the corner
     higher += on.part_below(z + 2.0 * far);
     mean.more += on.more;
     mean.along_x += on.along_x * beside;
@@ -165,14 +165,14 @@ LiquidScales Buoyancy::scales(const Basin &basin, bool in_step) const
           is_quadratic};
 }
 
-// What is the same for all particles.
+// Values that are the same for all particles.
 struct Buoyancy::Acting {
   LiquidScales liquid;
   const double *const *x, *const *v;
   double *const *f;
   const double *volume, *gamma, *per_length, *base;
   double *lambda;
-  InLiquid *kept;         // nullptr where the surface is asked in each step
+  InLiquid *kept;         // nullptr where the surface is evaluated in each step
   double above, below;    // nothing is immersed from `above` up; most particles of a large body need not look up the surface
 };
 
@@ -201,7 +201,8 @@ __attribute__((always_inline)) inline Buoyancy::Wet Buoyancy::act_on(const Actin
   return {i, force.push, force.lambda};
 }
 
-// Threads share particles. What all of them do to the liquid and to the ledger is added up in the order of particles.
+// Threads share particles. The forces of all particles on the liquid and their parts in the ledger are added up in the order of
+// particles.
 void Buoyancy::act(const Basin &basin, const std::vector<int> &these, bool in_step)
 {
   wet.resize(lifts ? these.size() : 0);
@@ -227,7 +228,7 @@ void Buoyancy::act(const Basin &basin, const std::vector<int> &these, bool in_st
 
 // --- the ledger ---
 
-// Power of the lift, and what drag takes, at the velocities of now.
+// Power of the lift, and power that drag takes, at the present velocities.
 Basin::Energies Buoyancy::power() const
 {
   constexpr std::size_t CHUNK = 1024;    // of particles, with sums of its own
@@ -264,8 +265,8 @@ void Buoyancy::begin_ledger()
   ledger_was_set = false;
 }
 
-// Velocities are those of whole steps here, eq. (3.10), which are the means of the half steps before and after: the trapezoidal
-// rule gives the work exactly.
+// Velocities are those of whole steps here, eq. (3.10), the means of the half steps before and after: the trapezoidal rule gives
+// the work exactly.
 void Buoyancy::go_on_with_ledger()
 {
   if (wet.empty() && in_passes.work == 0.0 && in_passes.lost == 0.0 && own.power.work == 0.0 && own.power.lost == 0.0) return;

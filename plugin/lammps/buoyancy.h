@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// What the liquid of fix mdanim/liquid does to particles. Wcislo 1999, sec. 4.3.
+// Forces of the liquid of fix mdanim/liquid on particles. Wcislo 1999, sec. 4.3.
 
 #ifndef MDANIM_STYLES_BUOYANCY_H
 #define MDANIM_STYLES_BUOYANCY_H
@@ -18,49 +18,48 @@
 
 namespace mdanim {
 
-// Lift of particles by their volumes, and drag; and the ledger of both.
-// It is a part of fix mdanim/liquid: it acts on the particles that the fix has found near the liquid, and its ledger stands in
-// the liquid's state.
+// Lift of particles by their volumes, and drag; and the ledger of both. A part of fix mdanim/liquid: it acts on the particles
+// that the fix has found near the liquid, and its ledger is a part of the liquid's state.
 class Buoyancy : protected LAMMPS_NS::Pointers {
  public:
   // `rho` is the liquid's density.
   Buoyancy(LAMMPS_NS::LAMMPS *lmp, double rho) : Pointers(lmp), rho(rho), cells(lmp) {}
 
-  // Takes a keyword of the command; false when it is none of buoyancy, drag, quadratic, lambda and base.
+  // Takes a keyword of the command; false unless it is buoyancy, drag, quadratic, lambda or base.
   bool keyword(int iarg, const char *word, const char *value);
   // Refuses keywords that do not fit together. `fix` begins messages.
   void init(const std::string &fix);
 
-  // New lists: leaves the particles of a group the friction that they have anyway; finds the lattice cells of the particles near
-  // the liquid.
+  // Called for new lists. The first leaves particles of a group only the friction that they have without the liquid; the second
+  // finds the lattice cells of the particles near the liquid.
   void clear_friction(int groupbit) const;
   void find_cells(const std::vector<int> &near, const ParticleTable &table, const std::string &fix)
   { cells.find(threads, near, table, fix); }
   void forget_cells() { cells.clear(); }
   const NearCells &lattice_cells() const { return cells; }
-  // What the liquid has felt of solids since this was called last, and how it pushes them.
+  // Gives the liquid the impulses from solids since the last call, and its push on them.
   void give_impulses(Basin &basin, const std::vector<int> &near);
-  // What acts on particles until this is called again.
+  // Computes the values of the liquid at particles, which hold until the next call.
   void look(const Basin &basin, const std::vector<int> &near);
-  // Adds forces and sets friction; in a step the liquid feels what it does.
+  // Adds forces and sets friction; in a step the reaction acts on the liquid.
   void act(const Basin &basin, const std::vector<int> &near, bool in_step);
-  // The ledger begins at the velocities of now, or where it was set, and goes on by a step.
+  // The ledger begins at the present velocities, or where it was set, and goes on by a step.
   void begin_ledger();
   void go_on_with_ledger();
   void use(const Threads &now) { threads = now; }    // for steps; the bits are the same for any number of them
 
   // For passes (passes/pass_liquid.h): whether they compute the same as act(), with friction in the column that is read; a
-  // particle; all of them; and what passes have found in this step.
+  // particle; all particles; and the results of passes in this step.
   bool acts_in_passes(const Basin &basin, const double *lambda) const;
   std::function<ImmersedMover(int)> immersed(const std::vector<char> &is_near) const;
   LiquidScales scales(const Basin &basin, bool in_step) const;
   void add_power(const Basin::Energies &of_passes, double more_seconds);
 
-  // Of all ranks; and all of it on the first one.
+  // Sum over all ranks; setting it puts all of it on the first rank.
   Basin::Ledger ledger() const;
   void set_ledger(const Basin::Ledger &ledger);
   double density() const { return rho; }
-  // Gravity as a force on a mass [force/mass]; that of the basin is an acceleration.
+  // Gravity as a force on a mass [force/mass]; the basin's gravity is an acceleration.
   double weight(const Basin &basin) const;
   double bytes() const
   {
@@ -70,7 +69,7 @@ class Buoyancy : protected LAMMPS_NS::Pointers {
   }
   double seconds = 0.0;
 
-  // Of a particle, from look() to look(); it goes where the particle goes.
+  // Values of a particle, from look() to look(); they go with the particle.
   std::vector<InLiquid> kept;    // of all local particles, where the liquid acts on lattice cells
 
  private:
@@ -93,9 +92,9 @@ class Buoyancy : protected LAMMPS_NS::Pointers {
 
   std::vector<Wet> wet;
   NearCells cells;
-  std::vector<Basin::OnParts> on_parts;    // of each lattice cell
-  Basin::Ledger own;                       // of this rank
-  Basin::Energies in_passes;               // power of those that are not in `wet`, in this step
+  std::vector<Basin::OnParts> on_parts;    // for each lattice cell
+  Basin::Ledger own;                       // sum of this rank
+  Basin::Energies in_passes;               // power of particles that are not in `wet`, in this step
   bool ledger_was_set = false;             // since the last step
 };
 

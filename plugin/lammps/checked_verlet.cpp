@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// A class of which there is no header cannot be measured with sizeof: its constructor and its init() are watched instead.
+// A class without a header cannot be measured with sizeof: its constructor and its init() are watched instead.
 
 #include "lammps/checked_verlet.h"
 
@@ -48,7 +48,7 @@ bool LAMMPS_NS::verlet_is_as_declared(LAMMPS *lmp)
 {
   alignas(Probe) unsigned char room[sizeof(Probe) + MARGIN];
   std::memset(room, FILL, sizeof room);
-  __asm__ volatile("" : : "r"(room) : "memory");    // the fill is read by what the compiler does not see
+  __asm__ volatile("" : : "r"(room) : "memory");    // the compiler must assume that the fill is read
   auto *const probe = new (room) Probe(lmp, 0, nullptr);
   const void *const *const declared = table_of(probe) + DESTRUCTORS, *const *const found =
                                                                          verlet_table + WORDS_AHEAD + DESTRUCTORS;

@@ -12,7 +12,7 @@
 namespace LAMMPS_NS {
 
 // Whether the library's functions stand in its table where the declaration has them, and its constructor writes the declared
-// members and nothing beyond them. Numbers that the constructor leaves alone are looked at by CheckedVerlet::init().
+// members and nothing beyond them. Numbers that the constructor does not set are checked by CheckedVerlet::init().
 bool verlet_is_as_declared(LAMMPS *lmp);
 
 // Verlet between members that the library must write and words that it must not.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// compute mdanim/timestep. Each particle has a block D = sum of k n n^T over its springs, in the places where they are now. All
-// springs together are at most twice the blocks, and a wall does not move, so dt^2 (2 |D| + k_wall) / m + 4 dt |D'| / m <= 4 is
-// enough, with the same block D' of dashpots (docs/physics-solids.md).
+// compute mdanim/timestep. Each particle has a block D = sum of k n n^T over its springs, in their present places. All springs
+// together are at most twice the blocks, and a wall does not move, so dt^2 (2 |D| + k_wall) / m + 4 dt |D'| / m <= 4 is
+// sufficient, with the same block D' of dashpots (docs/physics-solids.md).
 
 #include "lammps/compute_mdanim_timestep.h"
 
@@ -45,8 +45,8 @@ static bool is_any_of(const std::string &style, std::initializer_list<const char
   return std::any_of(names.begin(), names.end(), [&](const char *name) { return style == name; });
 }
 
-// Null for none. As walls(), looked up whenever they are needed: LAMMPS asks between two runs as well, when any may have been
-// deleted.
+// Null for none. Like walls(), looked up whenever it is needed: LAMMPS calls this between two runs as well, when any may have
+// been deleted.
 const BondMdanimHarmonic *ComputeMdanimTimestep::springs() const
 {
   const auto *bonds = dynamic_cast<const BondMdanimHarmonic *>(force->bond);
@@ -107,7 +107,7 @@ void ComputeMdanimTimestep::compute_vector()
   for (FixMdanimWall *wall : walls()) push.push_back({wall->groupbit, wall->stiffness_values(), wall->stiffness_number()});
 
   const double infinite = stable_step(0.0, 0.0);
-  std::array<double, 3> least = {infinite, infinite, infinite};    // of springs; with dashpots; with walls too
+  std::array<double, 3> least = {infinite, infinite, infinite};    // with springs; with dashpots as well; with walls as well
   tagint worst = 0;
   for (int i = 0; i < atom->nlocal; ++i) {
     if (!(atom->mask[i] & groupbit)) continue;
@@ -120,7 +120,7 @@ void ComputeMdanimTimestep::compute_vector()
       if (periodic) partner = domain->closest_image(i, partner);
       const Vec3 d = place(i) - place(partner);
       const double r = std::sqrt(dot(d, d));
-      if (r == 0.0) continue;    // has no direction, and no force
+      if (r == 0.0) continue;    // has neither direction nor force
       const Spring &spring = bonds->springs()[type];
       stiff.add(2.0 * spring.K, (1.0 / r) * d);
       damp.add(spring.c, (1.0 / r) * d);
@@ -138,7 +138,7 @@ void ComputeMdanimTimestep::compute_vector()
     }
   }
   MPI_Allreduce(least.data(), vector, 3, MPI_DOUBLE, MPI_MIN, world);
-  // Of several that set it the lowest tag, whichever rank has it.
+  // The lowest tag of several particles that set it, on whichever rank.
   const tagint none = MAXTAGINT, own = worst && least[2] == vector[2] ? worst : none;
   tagint first;
   MPI_Allreduce(&own, &first, 1, MPI_LMP_TAGINT, MPI_MIN, world);

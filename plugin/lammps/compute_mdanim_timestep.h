@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// compute mdanim/timestep: the largest stable time step of what springs, dashpots and walls do to a group.
+// compute mdanim/timestep: the largest stable time step for the springs, dashpots and walls of a group.
 
 #ifndef LMP_COMPUTE_MDANIM_TIMESTEP_H
 #define LMP_COMPUTE_MDANIM_TIMESTEP_H

@@ -23,7 +23,7 @@ namespace {
 struct Refusal {
   unsigned need;    // 0: every fix has it
   bool (*is_met)(const LAMMPS &);
-  const char *why;    // {}: what is missed
+  const char *why;    // {}: stands for `missed`
 };
 
 bool is_open(const Domain &box) { return !(box.xperiodic || box.yperiodic || box.zperiodic); }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// What all fixes of this package have in common: how they live in LAMMPS is dealt with once, here.
+// The common base of all fixes of this package: their interface to LAMMPS is dealt with once, here.
 
 #ifndef MDANIM_FIX_BASE_H
 #define MDANIM_FIX_BASE_H
@@ -14,7 +14,7 @@
 
 namespace mdanim {
 
-// What a fix needs of the run, the box and the particles, besides run_style verlet: some of these, joined by |.
+// Requirements of a fix on the run, the box and the particles, besides run_style verlet: some of these, joined by |.
 enum Need : unsigned {
   THREE_DIMENSIONS = 1,
   ORTHOGONAL_BOX = 2,
@@ -24,34 +24,34 @@ enum Need : unsigned {
   PROMPT_LISTS = 32    // lists are rebuilt as soon as a particle has moved by half the skin
 };
 
-// A number that a fix tells: an entry of its vector.
+// A number that a fix outputs: an entry of its vector.
 struct Output {
   std::string name;
   bool extensive;
   std::function<double()> value;    // all ranks together
 };
 
-// A fix with an energy as its scalar. A fix that derives from it says in its constructor what it needs, what it looks up by name
-// and which numbers it tells; init() of the base comes first in its own.
+// A fix with an energy as its scalar. The constructor of a derived fix declares its needs, the members to look up by name and its
+// outputs; its init() calls init() of the base first.
 class FixBase : public LAMMPS_NS::Fix {
  public:
   FixBase(LAMMPS_NS::LAMMPS *lmp, int narg, char **arg);
 
-  // Refuses a run that the fix cannot be in, and looks up again what LAMMPS may have moved, deleted or made anew since the last
-  // one.
+  // Refuses a run that the fix cannot work in, and looks up again the members that LAMMPS may have moved, deleted or made anew
+  // since the last run.
   void init() override;
   double compute_vector(int n) final { return numbers[n].value(); }
   const std::vector<Output> &outputs() const { return numbers; }
 
  protected:
   std::string name() const;    // begins messages
-  // `missed`: what may happen between two rebuilds of lists, where those are to be prompt.
+  // `missed`: events that would be missed between two rebuilds of lists, where those must be prompt.
   void need(unsigned needs, const std::string &missed = "");
-  // Members of the fix, which may be given, or given anew by fix_modify, at any time.
+  // Members to look up, which may be set, by fix_modify as well, at any time.
   void look_up(std::vector<NamedGroup *> groups, std::vector<ParticleValue *> values);
   void tell(std::vector<Output> outputs);
 
-  // Over ranks.
+  // Sum over ranks.
   double sum(double here) const;
   double largest(double here) const;
   double least(double here) const;

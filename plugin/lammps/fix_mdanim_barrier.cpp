@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// fix mdanim/barrier. When LAMMPS rebuilds its lists: boxes of objects, those that meet, the pairs of their particles
-// (barrier/contact_search.h). Every step: forces of the pairs in reach. Each particle sums its own in the order of its partners'
-// tags, so the bits of a force depend on neither the order of particles nor the ranks that hold them.
+// fix mdanim/barrier. When LAMMPS rebuilds its lists: boxes of objects, pairs of boxes that meet, the pairs of their particles
+// (barrier/contact_search.h). Every step: forces of the pairs in reach. Each particle sums its forces in the order of its
+// partners' tags, so the bits of a force depend on neither the order of particles nor the ranks that hold them.
 
 #include "lammps/fix_mdanim_barrier.h"
 
@@ -26,7 +26,7 @@ using namespace FixConst;
 using namespace mdanim;
 
 static const char *const STYLE = "fix mdanim/barrier";
-static constexpr double MOST_SKINS = 64.0;    // that are looked ahead where objects are apart
+static constexpr double MOST_SKINS = 64.0;    // to look ahead where objects are apart
 
 // --- the command ---
 
@@ -135,7 +135,7 @@ double FixMdanimBarrier::survey(std::vector<Box> &boxes)
 // Whether this rank adds forces to a particle.
 bool FixMdanimBarrier::moves(int i) const { return i < atom->nlocal && atom->mask[i] & groupbit; }
 
-// How far every particle may go before two objects meet, as far as is looked ahead.
+// How far every particle may go before two objects meet, up to the look-ahead.
 double FixMdanimBarrier::distance_apart(const std::vector<Box> &boxes, double range) const
 {
   double apart = 0.0;
@@ -177,9 +177,9 @@ void FixMdanimBarrier::find_pairs()
       search.add({i, atom->tag[i], own[i].object, role(i), moves(i), own[i].reach, atom->x[i]});
   search.run();
 
-  // Partners of a particle are mostly of the other kind, and more of them are side by side in a list of that kind alone.
+  // Partners of a particle are mostly of the other kind. More of them are side by side in a list of that kind only.
   constexpr int NONE_YET = -1;
-  std::vector<int> number(search.particles().size());    // in `particle`
+  std::vector<int> number(search.particles().size());    // places in `particle`
   for (const auto &[low, high] : search.pairs()) number[low] = number[high] = NONE_YET;
   for (const int kind : {static_cast<int>(BOUNDARY), 0})
     for (size_t n = 0; n < number.size(); ++n)
@@ -236,7 +236,7 @@ void FixMdanimBarrier::post_force(int)
   for (size_t n = 0; n < particle.size(); ++n) add_to(atom->f[particle[n]], vec3(&on[slot[n]]));
 }
 
-// Puts the pairs in touch into touching_pair; returns how many.
+// Puts the pairs in touch into touching_pair; returns their number.
 int FixMdanimBarrier::find_touching(const Positions &place)
 {
   masks.resize(strip.size() + 1);
@@ -249,7 +249,7 @@ int FixMdanimBarrier::find_touching(const Positions &place)
 // Between outputs, where the energy is not read.
 void FixMdanimBarrier::add_forces(const Positions &place, const ForceSums &total) { push<false>(place, total); }
 
-// On the particles that have candidates; nothing on those that are not moved. TELLS: of energy and pairs in touch, too.
+// Forces on the particles that have candidates; none on those that are not moved. TELLS: computes energy and pairs in touch, too.
 template <bool TELLS> void FixMdanimBarrier::push(const Positions &place, const ForceSums &total)
 {
   if (TELLS) energy = touching = 0.0;
@@ -276,7 +276,7 @@ template <bool TELLS> void FixMdanimBarrier::push(const Positions &place, const 
   for (const int n : unmoved) total.clear(n);
 }
 
-// Together with run_style verlet/mdanim, which leaves ghosts out.
+// Together with run_style verlet/mdanim, which ignores ghosts.
 void FixMdanimBarrier::append_required_atoms(std::vector<int> &particles) const
 { particles.insert(particles.end(), particle.begin(), particle.end()); }
 

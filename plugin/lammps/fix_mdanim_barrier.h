@@ -37,14 +37,14 @@ class FixMdanimBarrier : public mdanim::FixBase, public mdanim::PassParticipant 
   bool sees_absolute_position() const override { return false; }
 
  private:
-  // What a particle contributes to a pair. Owners send that of ghosts at every rebuild.
+  // A particle's contribution to a pair. Owners send that of ghosts at every rebuild.
   struct Own {
     double stiffness, reach;
     int object;    // its number in `objects`, or NONE
   };
   struct ContactPair {
     double stiffness, reach;
-    double share;    // of the pair that this rank counts: 1/2 for each end that it moves, 1 if the other end is never moved
+    double share;    // part of the pair that this rank counts: 1/2 for each end that it moves, 1 if the other end is never moved
   };
 
   int role(int i) const;
@@ -66,22 +66,22 @@ class FixMdanimBarrier : public mdanim::FixBase, public mdanim::PassParticipant 
   std::vector<Own> own;           // local and ghost particles
 
   // Pairs that may touch, numbered ascending by the lower tag and then by the higher one: added up in this order, the forces on
-  // every particle are in ascending order of its partners' tags. There are numbers in between that are not pairs (pair_filter.h).
+  // every particle are in ascending order of its partners' tags. Some numbers in between do not stand for pairs (pair_filter.h).
   std::vector<mdanim::Strip> strip;
-  mdanim::Doubles reach2;           // squares of the reach of pairs, 0 for what is none
-  std::vector<ContactPair> pair;    // and what else is known of them
+  mdanim::Doubles reach2;           // squares of the reach of pairs, 0 for numbers without a pair
+  std::vector<ContactPair> pair;    // and other data of the pairs
   int last_high = 0;                // the higher one of the last pair
   std::vector<int> particle;        // of pairs, local or ghost: first boundary, then barrier, each ascending by tag
-  std::vector<int> unmoved;         // those of them, as places in it, that this rank adds no forces to
+  std::vector<int> unmoved;         // places in it of particles that this rank adds no forces to
   const mdanim::PairFilter *filter;
   std::vector<mdanim::StripMask> masks;    // room for the filter
   std::vector<int> touching_pair;          // in this step
-  // In a step without passes: positions of these particles, forces on them, and where in `on` those of each begin.
+  // In a step without passes: positions of these particles, forces on them, and where the forces on those of each begin in `on`.
   mdanim::Positions here;
   std::vector<double> on;
   std::vector<long> slot;
 
-  double clear = 0.0;                          // no two objects meet before a particle has gone farther
+  double clear = 0.0;                          // no two objects meet before a particle has gone this far
   bigint meeting_objects = 0;                  // pairs of objects whose boxes meet
   double tried_pairs = 0.0, touching = 0.0;    // on this rank; a pair counts half at either end
   double energy = 0.0;

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// fix mdanim/contact. When LAMMPS rebuilds its lists: boxes of objects, those that are near each other, the particles that may
-// have a part in contacts. Every step all ranks tell each other where those are, and each works out all contacts, with the same
-// bits, and takes the forces on its own particles. Contacts are few against springs; what they remember is then the same on all
-// ranks.
+// fix mdanim/contact. When LAMMPS rebuilds its lists: boxes of objects, objects near each other, the particles that may take part
+// in contacts. Every step all ranks exchange the places of these. Each rank computes all contacts, with the same bits, and takes
+// the forces on its own particles. Contacts are few compared with springs; their memory is then the same on all ranks.
 
 #include "lammps/fix_mdanim_contact.h"
 
@@ -35,7 +34,7 @@ using namespace FixConst;
 using namespace mdanim;
 
 static constexpr int LARGEST_FILE = 1 << 30;     // bytes
-static constexpr double NS_OF_PARTICLE = 4.0;    // about
+static constexpr double NS_OF_PARTICLE = 4.0;    // approximately
 static constexpr double USUAL_DAMPING = 0.3;     // beta
 static const char *const LEFT_OUT = ", or leave it out by 'among GROUP'";
 
@@ -76,7 +75,7 @@ FixMdanimContact::FixMdanimContact(LAMMPS *lmp, int narg, char **arg) : FixBase(
     error->all(FLERR, "fix mdanim/contact: nothing can touch; write objects, or plane x|y|z lo|hi and its place");
 }
 
-// How many words it took.
+// Reads a word with its values; returns the number of words.
 int FixMdanimContact::read_word(int iarg, int narg, char **arg)
 {
   ContactSettings &settings = world_of_contact.settings;
@@ -134,7 +133,7 @@ int FixMdanimContact::read_word(int iarg, int narg, char **arg)
   return words;
 }
 
-// Rank 0 reads the file, all take the same text apart.
+// Rank 0 reads the file; all ranks parse the same text.
 void FixMdanimContact::read_bodies_of(const char *file)
 {
   std::string text;
@@ -169,10 +168,10 @@ void FixMdanimContact::init()
   FixBase::init();
   need_molecules_of_pairs();
   threads_now = Threads();
-  world_of_contact.use(nullptr, threads_now);    // until passes tell those of their instructions
+  world_of_contact.use(nullptr, threads_now);    // until passes give those of their instructions
 }
 
-// A rule for a molecule that there is not is a slip of the pen.
+// A rule for a molecule that does not exist is a mistake.
 void FixMdanimContact::need_molecules_of_pairs() const
 {
   std::set<int> named;
@@ -195,7 +194,7 @@ void FixMdanimContact::need_molecules_of_pairs() const
 
 bool FixMdanimContact::is_among(int i) const { return !among.given() || atom->mask[i] & among.bit(); }
 
-// Of the objects that are here, by ascending IDs; the same on all ranks.
+// Surveys the objects of all ranks, by ascending IDs; the same on all ranks.
 std::vector<FixMdanimContact::SurveyedObject> FixMdanimContact::survey() const
 {
   const double *kinds = kind.values(lmp), *youngs = young.values(lmp), *frictions = friction.values(lmp);
@@ -254,7 +253,7 @@ void FixMdanimContact::take_objects(Contacts contacts)
       error->all(FLERR, "fix {} mdanim/contact: object {} (molecule ID) needs YOUNG > 0 and FRICTION >= 0, got {} and {}", id,
                  one.id, one.young, one.friction);
     const double volume = body.edge(0) * body.edge(1) * body.edge(2);
-    const double inertia = one.mass / force->ftm2v;    // that makes a force of an acceleration
+    const double inertia = one.mass / force->ftm2v;    // the ratio of force to acceleration
     const double density = inertia / (volume * static_cast<double>(body.filled_cells()));
     made.push_back({one.id, found->second, one.young, one.friction, density, one.lowest, {}, 0, 0, {}, {}, 0.0, false});
     moves.push_back(static_cast<char>(one.moves));
@@ -314,7 +313,7 @@ void FixMdanimContact::list()
     world_of_contact.narrow(ends);
   }
 
-  std::vector<std::pair<ContactParticle, int>> needed;    // and local numbers
+  std::vector<std::pair<ContactParticle, int>> needed;    // and local indices
   if (!world_of_contact.is_idle())
     for (int i = 0; i < nlocal; ++i) {
       if (objects[i] < 0) continue;
@@ -329,7 +328,7 @@ void FixMdanimContact::list()
     mine.push_back(i);
   }
 
-  // Of the numbers that ranks send in every step, three for each particle.
+  // Counts of the numbers that ranks send in every step, three for each particle.
   counts.assign(comm->nprocs, 0);
   starts.assign(comm->nprocs, 0);
   const int numbers = 3 * static_cast<int>(mine.size());
@@ -339,7 +338,7 @@ void FixMdanimContact::list()
   particles = gather(world, particles);
   std::vector<int> order(particles.size());
   std::iota(order.begin(), order.end(), 0);
-  const bool is_sorted = std::is_sorted(particles.begin(), particles.end());    // as where one rank has all
+  const bool is_sorted = std::is_sorted(particles.begin(), particles.end());    // as where one rank has all particles
   if (!is_sorted) std::sort(order.begin(), order.end(), [&](int p, int q) { return particles[p] < particles[q]; });
   slot.resize(order.size());
   for (std::size_t n = 0; n < order.size(); ++n) slot[order[n]] = static_cast<int>(n);
@@ -360,7 +359,7 @@ void FixMdanimContact::need_lists() const
                id);
 }
 
-// Of all ranks, as LAMMPS has them.
+// Places on all ranks, as LAMMPS has them.
 Coordinates FixMdanimContact::places_now()
 {
   my_places.make_room(mine.size());
@@ -368,7 +367,7 @@ Coordinates FixMdanimContact::places_now()
   return places_of_all(my_places.all());
 }
 
-// From those of this rank's particles.
+// Places on all ranks, from those of this rank's particles.
 Coordinates FixMdanimContact::places_of_all(const Coordinates &of_mine)
 {
   if (comm->nprocs == 1) return of_mine;
@@ -383,7 +382,7 @@ Coordinates FixMdanimContact::places_of_all(const Coordinates &of_mine)
   return all_places.all();
 }
 
-// add(n, force) on those of `mine` that may move.
+// Calls add(n, force) for those of `mine` that may move.
 template <class Add> void FixMdanimContact::give_forces(const Add &add) const
 {
   const PaddedVec3 *forces = world_of_contact.forces();
@@ -396,7 +395,7 @@ template <class Add> void FixMdanimContact::give_forces(const Add &add) const
   });
 }
 
-// With particles where LAMMPS has them.
+// Adds forces with particles where LAMMPS has them.
 void FixMdanimContact::push(double dt)
 {
   const Lap lap(seconds);
@@ -424,7 +423,7 @@ void FixMdanimContact::add_forces(const Positions &place, const ForceSums &force
   give_forces([&force](std::size_t n, const Vec3 &one) { force.add(n, one); });
 }
 
-// --- what it tells ---
+// --- output ---
 
 double FixMdanimContact::compute_scalar() { return world_of_contact.account.energy + world_of_contact.account.stick_energy; }
 

@@ -47,18 +47,18 @@ class FixMdanimContact : public mdanim::FixBase, public mdanim::PassParticipant,
   mdanim::StateRecords pack() const override;
   void unpack(const mdanim::StateRecords &records) override;
 
-  // A body of objects whose particles have this number as their BODY. Throws std::runtime_error.
+  // Sets the body of objects whose particles have this number as their BODY. Throws std::runtime_error.
   void take_body(int kind, const mdanim::ContactBodyArrays &arrays);
 
  private:
-  // What all ranks know of an object, from its particle with the lowest tag; `mass` is that of all of them.
+  // An object's data from its particle with the lowest tag, known to all ranks; `mass` is that of all its particles.
   struct SurveyedObject {
     int id, moves;
     tagint lowest;
     long long particles;
     double kind, young, friction, mass;
   };
-  // Whether contacts may be of other bodies or particles than objects have now: they are then to be replaced.
+  // Whether contacts may belong to other bodies or particles than objects have now: they are then replaced.
   enum class Contacts { STAY, ARE_REPLACED };
   int read_word(int iarg, int narg, char **arg);
   void read_bodies_of(const char *file);
@@ -79,14 +79,14 @@ class FixMdanimContact : public mdanim::FixBase, public mdanim::PassParticipant,
   mdanim::NamedGroup among;    // none: all
   bool is_among(int i) const;
   std::map<int, std::shared_ptr<const mdanim::ContactBody>> bodies;
-  std::optional<mdanim::StateRecords> restarted;    // of a restart file, until bodies are there
+  std::optional<mdanim::StateRecords> restarted;    // state of a restart file, until there are bodies
   mdanim::ContactWorld world_of_contact;
 
   mdanim::ObjectTable objects;        // at the setup; their particles when lists were made
   std::vector<tagint> lowest;         // tags of objects
-  std::vector<int> mine;              // local particles with a part in contacts, in the order of the world of contact
-  std::vector<int> slot;              // in that world, of the particles of all ranks, rank by rank
-  int first_entry = 0;                // of this rank's
+  std::vector<int> mine;              // local particles that take part in contacts, in the order of the world of contact
+  std::vector<int> slot;              // in that world, for the particles of all ranks, rank by rank
+  int first_entry = 0;                // first entry of this rank
   std::vector<int> counts, starts;    // of the numbers that ranks send, three for each particle
   std::vector<double> sent, received;
   mdanim::Positions my_places, all_places;

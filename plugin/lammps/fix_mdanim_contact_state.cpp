@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// What contacts remember, as records of pairs of objects, (a, b), and of objects at planes, (a, 0).
+// The memory of contacts, as records of pairs of objects, (a, b), and of objects at planes, (a, 0).
 
 #include "lammps/fix_mdanim_contact.h"
 
@@ -22,7 +22,7 @@ static constexpr std::int64_t STATE_VERSION = 1;
 
 namespace {
 
-// Whether all of a row from this byte on are numbers.
+// Whether all of a row from this byte on are finite numbers.
 template <class Row> bool has_numbers(const Row &row, std::size_t from)
 {
   double values[sizeof(Row) / sizeof(double)];

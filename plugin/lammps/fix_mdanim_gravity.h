@@ -10,7 +10,7 @@
 
 namespace LAMMPS_NS {
 
-// Adds m g to every particle of its group in plain steps, and tells passes the masses and g.
+// Adds m g to every particle of its group in plain steps, and gives passes the masses and g.
 class FixMdanimGravity : public mdanim::FixBase, public mdanim::PassGravity {
  public:
   FixMdanimGravity(class LAMMPS *, int, char **);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// fix mdanim/leapfrog: loops over the particles; the half steps are in leapfrog.h.
+// fix mdanim/leapfrog: loops over the particles; the half steps are in leapfrog/law.h.
 
 #include "lammps/fix_mdanim_leapfrog.h"
 #include "lammps/keywords.h"
@@ -94,8 +94,8 @@ double FixMdanimLeapfrog::largest_phi_here() const
   return largest;
 }
 
-// visit(i, sums) for the particles that move now. Each chunk has sums of its own, which are added in order: they depend on no
-// thread.
+// Calls visit(i, sums) for the particles that move now. Each chunk has sums of its own, which are added in order: they do not
+// depend on threads.
 template <class Visit> FixMdanimLeapfrog::Sums FixMdanimLeapfrog::each(Visit visit) const
 {
   const int *const mask = atom->mask, *const listed = only ? only->data() : nullptr;
@@ -139,7 +139,7 @@ template <class Drag, class Half> void FixMdanimLeapfrog::half_step_with_drag(Ha
   const Sums all = each([&](int i, Sums &sums) {
     const double m = mass_of(rmass, mass, type, i), kick = half_dt / m;
     const double phi = (own ? own[i] : lambda.number) * kick;
-    if (phi == 0.0) {    // the same bits, for what is out of the liquid
+    if (phi == 0.0) {    // the same bits, for particles out of the liquid
       add_to(v[i], kick * vec3(f[i]));
       return;
     }
@@ -182,7 +182,7 @@ void FixMdanimLeapfrog::drift()
   each([&](int i, Sums &) { add_to(x[i], dt * vec3(v[i])); });
 }
 
-// Where the object of a particle has been. Its molecule ID may have changed since the trace was started.
+// The box in which the object of a particle has been. Its molecule ID may have changed since the trace was started.
 FixMdanimLeapfrog::Way &FixMdanimLeapfrog::way_of(int i)
 {
   const tagint object = atom->molecule[i];
@@ -195,8 +195,8 @@ FixMdanimLeapfrog::Way &FixMdanimLeapfrog::way_of(int i)
   return trace[object - 1];
 }
 
-// The same, and the box of each object grows to where its particles are now. Those of an object mostly stand side by side: their
-// box stays in registers until the object changes.
+// The same, and the box of each object grows to the present places of its particles. Those of an object mostly stand side by
+// side: their box stays in registers until the object changes.
 void FixMdanimLeapfrog::drift_and_trace()
 {
   double *const *x = atom->x, *const *v = atom->v;
@@ -295,7 +295,7 @@ int FixMdanimLeapfrog::pack_forward_comm(int n, int *list, double *buf, int, int
 {
   int m = 0;
   for (int k = 0; k < n; ++k) {
-    if (list[k] < atom->nlocal) sent.push_back(list[k]);    // others pass ghosts on
+    if (list[k] < atom->nlocal) sent.push_back(list[k]);    // other ranks pass ghosts on
     const Known &one = known[list[k]];
     buf[m++] = static_cast<double>(one.object);
     buf[m++] = static_cast<double>(one.home.rank);
@@ -349,11 +349,11 @@ double FixMdanimLeapfrog::bend() const
   return each([&](int i, Sums &sums) { sums.bend += update->dt * dot(vec3(atom->v[i]), vec3(atom->f[i])); }).bend;
 }
 
-// Kinetic energy of this rank's particles, corrected so that the sum of all energies is what leap-frog conserves, to fourth order
-// in dt. That is T + U + dt^2 (v . U'' v / 12 - F . F / 24 m), the energy of the nearby system whose exact motion the steps are
-// (Hairer, Lubich & Wanner, Geometric Numerical Integration, IX.3); without it a vibration of frequency w seems to hold
-// (w dt)^2/24 too little, and an impact to lose what goes into vibrations. U'' v is (F^{n-1} - F^n) / dt, and v the velocity
-// between these two steps.
+// Kinetic energy of this rank's particles, corrected so that the sum of all energies is conserved by leap-frog to fourth order in
+// dt. It is T + U + dt^2 (v . U'' v / 12 - F . F / 24 m), the energy of the nearby system whose exact motion the steps are
+// (Hairer, Lubich & Wanner, Geometric Numerical Integration, IX.3). Without the correction a vibration of frequency w seems to
+// hold (w dt)^2/24 too little, and an impact to lose the energy that goes into vibrations. U'' v is (F^{n-1} - F^n) / dt, and v
+// the velocity between these two steps.
 double FixMdanimLeapfrog::kinetic()
 {
   if (!told)

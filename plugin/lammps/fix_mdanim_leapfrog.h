@@ -15,8 +15,9 @@
 
 namespace LAMMPS_NS {
 
-// Moves particles by the half steps of leapfrog/law.h in plain steps, and tells passes how to; keeps the account of friction,
-// the kinetic energy that fits the other energies to fourth order, and the trace: where each object has been.
+// Moves particles by the half steps of leapfrog/law.h in plain steps, and gives passes their coefficients. Keeps the account of
+// friction, the kinetic energy that fits the other energies to fourth order, and the trace: the box in which each object has
+// been.
 class FixMdanimLeapfrog : public mdanim::FixBase, public mdanim::PassIntegrator {
  public:
   FixMdanimLeapfrog(class LAMMPS *, int, char **);
@@ -31,11 +32,11 @@ class FixMdanimLeapfrog : public mdanim::FixBase, public mdanim::PassIntegrator 
   void write_restart(FILE *) override;
   void restart(char *) override;
 
-  // For trace_c.cpp, all ranks together: where each object, molecule 1 to M, has been since start_trace, its place then included.
-  // Empty, or why there can be no trace.
+  // For trace_c.cpp, all ranks together: starts the trace of each object, molecule 1 to M, its present place included. Returns an
+  // empty string, or why there can be no trace.
   std::string start_trace(int objects);
-  // From now on passes look at particles every so often; boxes are wider by the way that the fastest particle may have gone
-  // meanwhile.
+  // From now on passes look at particles only after this number of passes; boxes are wider by the way that the fastest particle
+  // may have gone meanwhile.
   void look_every(int passes) { look_after = passes; }
   int traced() const { return static_cast<int>(trace.size()); }    // objects; 0 when off
   std::vector<mdanim::Box> traced_boxes() const;
@@ -56,7 +57,7 @@ class FixMdanimLeapfrog : public mdanim::FixBase, public mdanim::PassIntegrator 
   const double *friction_of_particles() const override { return has_drag ? lambda.values(lmp) : nullptr; }
 
  private:
-  // Over the particles of a loop.
+  // Sums over the particles of a loop.
   struct Sums {
     double loss = 0.0, bend = 0.0, kinetic = 0.0, swing = 0.0, largest_phi = 0.0;
 
@@ -85,17 +86,17 @@ class FixMdanimLeapfrog : public mdanim::FixBase, public mdanim::PassIntegrator 
   double half_dt = 0.0;                      // dt/2 in units that turn force/mass into velocity
   double lost = 0.0;                         // energy taken by drag on this rank
   bool told = false;                         // whether kinetic() may be asked for in this step
-  double bent = 0.0;                         // dt v^{n-1/2} . (F^n - F^{n-1}) on this rank, if it may
-  double largest_phi = 0.0;                  // seen on this rank in this run
+  double bent = 0.0;                         // dt v^{n-1/2} . (F^n - F^{n-1}) on this rank, if `told`
+  double largest_phi = 0.0;                  // largest on this rank in this run
   const std::vector<int> *only = nullptr;    // particles to move now; null for all
   std::vector<int> sent;                     // while ghosts are surveyed
   std::vector<Known> known;
   struct Way {
     mdanim::Box box;
-    double fastest = 0.0;    // largest v^2, with its sign changed, of passes that may not have looked
+    double fastest = 0.0;    // negative of the largest v^2 in passes that may not have looked
   };
   Way &way_of(int i);
-  std::vector<Way> trace;    // of the particles of this rank; empty when off
+  std::vector<Way> trace;    // for the objects of this rank's particles; empty when off
   int look_after = 1;        // passes from one look to the next
   int not_seen = 0;          // passes since the last look
   mdanim::Threads threads;

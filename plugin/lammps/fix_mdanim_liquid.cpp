@@ -36,7 +36,7 @@ using namespace mdanim;
 static const char *const STYLE = "fix mdanim/liquid";
 static const char *const LEFT_OUT = ", or leave it out of the group of this fix";
 
-// Keywords of the command alone, and those that fix_modify takes as well.
+// Keywords of the command only, and those that fix_modify takes as well.
 static const std::vector<Keyword> FIXED = {{"volume", "V"},
                                            {"level", "Z"},
                                            {"fill", "REGION2"},
@@ -117,7 +117,7 @@ FixMdanimLiquid::FixMdanimLiquid(LAMMPS *lmp, int narg, char **arg) : FixBase(lm
   bigint seed = 1;
   Vertical vertical = Vertical::LOWER;
   double calm = 0.0, spray = 0.0;
-  std::vector<int> makers;    // where the words of each stand
+  std::vector<int> makers;    // positions of the words of each
   Basin::Pace pace;
   std::vector<Keyword> known = FIXED;
   known.insert(known.end(), FREE.begin(), FREE.end());
@@ -280,7 +280,7 @@ void FixMdanimLiquid::init()
 
 // --- the liquid ---
 
-// Does something with the basin that may find no room for liquid.
+// Calls a function of the basin, which may find no room for liquid.
 template <class Work> void FixMdanimLiquid::in_basin(Work &&work)
 {
   try {
@@ -315,7 +315,7 @@ void FixMdanimLiquid::pour()
                name(), filled.left, filled.wanted, fill_id.empty() ? "the basin" : "the region to fill");
 }
 
-// Found out once for a step; not any more when the update has been.
+// Decided once for a step, and again after the update.
 bool FixMdanimLiquid::is_due()
 {
   if (update->ntimestep % basin->pace.every != 0) return false;
@@ -324,7 +324,7 @@ bool FixMdanimLiquid::is_due()
   return due_then;
 }
 
-// Square of the speed of the fastest solid near the liquid; -1 when there is none.
+// Square of the speed of the fastest solid near the liquid; -1 without any.
 double FixMdanimLiquid::fastest_near()
 {
   if (none_near) return -1.0;
@@ -340,8 +340,8 @@ void FixMdanimLiquid::update_liquid()
   buoyancy->give_impulses(*basin, near);
   in_basin([&] { basin->update(bodies_near(), static_cast<std::uint64_t>(update->ntimestep)); });
   if (top_height(basin->top()) > listed_top) {
-    find_near(neighbor->skin);    // a particle that went one way since lists were made may go as far the other way
-    lowest = -ANYWHERE;           // then, that is not known
+    find_near(neighbor->skin);    // a particle that has gone one way since lists were made may go as far the other way
+    lowest = -ANYWHERE;           // unknown in that case
   }
   buoyancy->look(*basin, near);
   due_then = false;
@@ -358,11 +358,11 @@ void FixMdanimLiquid::setup_post_neighbor()
   const long changed = basin->mark_still(bodies(true));
   if (!basin->is_poured())
     pour();
-  else if (changed)    // what never moves has been moved between two runs
+  else if (changed)    // solids that never move have been moved between two runs
     in_basin([&] { basin->settle(static_cast<std::uint64_t>(update->ntimestep)); });
   changed_since_setup = false;
-  none_near = false;    // between two runs anything may have been set
-  is_split = false;     // as it may be when an error has broken off passes
+  none_near = false;    // between two runs anything may have been changed
+  is_split = false;     // it may be true when an error has broken off passes
   buoyancy->forget_cells();
   asked = -1;
   post_neighbor();
@@ -374,7 +374,7 @@ void FixMdanimLiquid::post_neighbor()
   find_near(0.5 * neighbor->skin);
 }
 
-// Particles that can come near the liquid before they have moved by `margin`. All others have no friction from it.
+// Particles that can come near the liquid before they have moved by `margin`. No other particle has friction from it.
 void FixMdanimLiquid::find_near(double margin)
 {
   near.clear();
@@ -382,7 +382,8 @@ void FixMdanimLiquid::find_near(double margin)
   near_marks.assign(atom->nlocal, 0);
   listed_top = top_height(basin->top());
   const double below = lists_are_prompt ? listed_top + Basin::NEAR * basin->shape.cell.z + margin : ANYWHERE;
-  // The box holds all particles as they stood at the last rebuild: where none was near, and all of it is above, none has come.
+  // The box holds all particles as they stood at the last rebuild: where none was near, and the whole box is above, none has
+  // come.
   lowest = domain->boxlo[2];
   if (none_near && lists_are_prompt && lowest > below + 0.5 * neighbor->skin) return buoyancy->forget_cells();
   lowest = ANYWHERE;

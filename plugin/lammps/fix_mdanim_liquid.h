@@ -66,7 +66,7 @@ class FixMdanimLiquid : public mdanim::FixBase,
   double safe_displacement() const override;
   void write_restart(FILE *) override;
   void restart(char *) override;
-  // A record of the whole: the basin's state with the energies. And what acts on the particles of each object in waves.
+  // One record of the whole: the basin's state with the energies. And one for each object: the values of waves at its particles.
   mdanim::StateRecords pack() const override;
   void unpack(const mdanim::StateRecords &records) override;
 
@@ -119,7 +119,7 @@ class FixMdanimLiquid : public mdanim::FixBase,
 
   enum class Model { SURFACE, PAPER, WAVES };
 
-  // of the command
+  // Settings of the command.
   Model model = Model::SURFACE;
   std::string region_id, fill_id;
   double volume_asked = -1.0, level_asked = 0.0;
@@ -134,7 +134,7 @@ class FixMdanimLiquid : public mdanim::FixBase,
   std::unique_ptr<mdanim::Basin> basin;
   std::unique_ptr<mdanim::Buoyancy> buoyancy;
 
-  // the particles near the liquid
+  // The particles near the liquid.
   bool lists_are_prompt = false;    // made anew as soon as a particle has moved by half the skin
   bool none_near = false;           // on any rank, before the next rebuild of lists
   double listed_top = 0.0;          // of the liquid when particles were listed
@@ -142,15 +142,15 @@ class FixMdanimLiquid : public mdanim::FixBase,
   std::vector<int> near;
   long long lists = 0;    // made so far
 
-  // in passes that move particles near the liquid (PassLiquid)
+  // State of passes that move particles near the liquid (PassLiquid).
   bool in_passes = false;
   std::vector<char> near_marks;       // of all particles of this rank
-  bool is_split = false;              // whether the arrays hold but some particles
-  std::vector<int> near_in_arrays;    // these, as far as they are near the liquid
-  double fastest_in_passes = -1.0;    // of the others: square of the largest speed
+  bool is_split = false;              // whether the arrays hold only some particles
+  std::vector<int> near_in_arrays;    // those of them that are near the liquid
+  double fastest_in_passes = -1.0;    // square of the largest speed of the others
 
   bool changed_since_setup = false;    // by fix_modify
-  bool has_looked = false;             // so that it is known what acts on particles until the next update
+  bool has_looked = false;             // so that the values at particles are known until the next update
   bigint asked = -1;                   // step for which it is known whether an update is due
   bool due_then = false;
   double look_seconds = 0.0;

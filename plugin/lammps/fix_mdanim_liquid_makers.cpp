@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// Words of fix mdanim/liquid for what makes waves.
+// Words of fix mdanim/liquid for makers of waves.
 
 #include "lammps/fix_mdanim_liquid.h"
 #include "liquid/waves/wave_basin.h"

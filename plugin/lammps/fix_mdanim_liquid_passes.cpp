@@ -14,7 +14,7 @@
 using namespace LAMMPS_NS;
 using namespace mdanim;
 
-// What steps alone read may change without a setup, what solids are may not.
+// Settings that only steps read may change without a setup; those of solids may not.
 void FixMdanimLiquid::need_setup() const
 {
   if (changed_since_setup)
@@ -38,7 +38,7 @@ bool FixMdanimLiquid::joins(const double *lambda) { return in_passes = buoyancy-
 
 InLiquid *FixMdanimLiquid::kept() { return buoyancy->kept.data(); }
 
-// In the arrays all are as they were moved last, when this is called.
+// When this is called, the arrays hold the last places of all particles.
 void FixMdanimLiquid::split(const std::vector<int> *in_arrays)
 {
   is_split = in_arrays;
@@ -55,14 +55,14 @@ void FixMdanimLiquid::acted(double work, double lost, double fastest, double sec
   fastest_in_passes = fastest;
 }
 
-// An update looks for all bodies. With passes that act in the liquid it comes before them.
+// An update needs all bodies. With passes that act in the liquid it comes before them.
 bool FixMdanimLiquid::needs_all_atoms() { return !in_passes && is_due(); }
 
-// While the liquid is level and no particle is near it, until one comes.
+// While the liquid is level and no particle is near it: the way until one comes near.
 double FixMdanimLiquid::safe_displacement() const
 { return lists_are_prompt && asleep() ? lowest - (listed_top + Basin::NEAR * basin->shape.cell.z) : 0.0; }
 
-// Square of the speed of the fastest of these; -1 when there is none.
+// Square of the speed of the fastest of these; -1 without any.
 double FixMdanimLiquid::fastest_in_arrays(const std::vector<int> &these) const
 {
   double fastest = -1.0;

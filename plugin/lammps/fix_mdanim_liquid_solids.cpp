@@ -14,7 +14,7 @@
 using namespace LAMMPS_NS;
 using namespace mdanim;
 
-// Bodies that never move (or all others), as far as they reach below a height.
+// Bodies that never move (or all others), as far as they are below a height.
 Basin::AddBodies FixMdanimLiquid::bodies(bool still)
 {
   return [=](Occupancy &into, double below) {
@@ -26,7 +26,7 @@ Basin::AddBodies FixMdanimLiquid::bodies(bool still)
   };
 }
 
-// Those that may move, of which all parts that reach below such a height have been listed.
+// Bodies that may move, of which all parts that are below such a height have been listed.
 Basin::AddBodies FixMdanimLiquid::bodies_near()
 {
   return [=](Occupancy &into, double below) {
@@ -45,7 +45,8 @@ std::vector<int> FixMdanimLiquid::particles_of(bool still) const
   return found;
 }
 
-// Row of cells at a place along y [distance], the last one up to the far wall; any one where that is outside or no number.
+// Row of cells at a place along y [distance], the last one up to the far wall; any row where the place is outside or not a
+// number.
 int FixMdanimLiquid::row_at(double y) const
 {
   const double row = (y - basin->shape.low.y) / basin->shape.cell.y;
@@ -60,10 +61,10 @@ void FixMdanimLiquid::add_particles(Occupancy &into, const std::vector<int> &the
   }
 }
 
-// By their lattice cells, of which this rank has the first corner. Those of which all corners are still never move.
+// Adds bodies by their lattice cells, of which this rank has the first corner. A cell never moves if all its corners are still.
 void FixMdanimLiquid::add_bodies(Occupancy &into, const std::vector<int> &these, const NearCells &cells, bool still, double below)
 {
-  constexpr double CELL = 150.0;    // [ns], about
+  constexpr double CELL = 150.0;    // [ns], approximately
   const double *const *x = atom->x;
   const bool smooth = basin->is_smooth();
   const auto is_still = [this](int i) { return (atom->mask[i] & still_group.bit()) != 0; };
@@ -71,7 +72,7 @@ void FixMdanimLiquid::add_bodies(Occupancy &into, const std::vector<int> &these,
     const int *const corner = cells.cells[n].corner;
     return row_at(0.5 * (x[corner[0]][1] + x[corner[6]][1]));
   };
-  struct alignas(64) Reached {    // so that threads do not write into one line of the cache
+  struct alignas(64) Reached {    // so that threads do not write into the same cache line
     CellBox box;
   };
   std::vector<Reached> reached(RowSlabs::slabs_of(basin->shape.ny));
@@ -94,7 +95,7 @@ void FixMdanimLiquid::add_bodies(Occupancy &into, const std::vector<int> &these,
 
 void FixMdanimLiquid::add_mass(Occupancy &into, const std::vector<int> &these, double below)
 {
-  constexpr double PARTICLE = 20.0;    // [ns], about
+  constexpr double PARTICLE = 20.0;    // [ns], approximately
   const double *const soft = softness.given() ? softness.values(lmp) : nullptr;
   const double pressure = buoyancy->density() * buoyancy->weight(*basin) * basin->shape.cell.z;    // of a cell of liquid
   const double base = basin->shape.cell.x * basin->shape.cell.y * basin->shape.cell.z;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// What the liquid keeps of the whole and of particles, where particles go and in restart files.
+// State of the liquid: its records of the whole and of particles, when particles migrate and in restart files.
 
 #include "lammps/fix_mdanim_liquid.h"
 
@@ -18,7 +18,7 @@ using namespace mdanim;
 
 static constexpr std::int64_t STATE_VERSION = 2;    // of rows of particles
 
-// --- what acts on particles in waves goes with them ---
+// --- values of waves at particles go with them ---
 
 void FixMdanimLiquid::grow_arrays(int most) { buoyancy->kept.resize(most); }
 

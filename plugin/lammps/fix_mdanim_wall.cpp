@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// fix mdanim/wall: asks the region for the nearest point of its surface; the law is in wall.h.
+// fix mdanim/wall: asks the region for the nearest point of its surface; the law is in wall/law.h.
 
 #include "lammps/fix_mdanim_wall.h"
 #include "lammps/keywords.h"
@@ -22,7 +22,7 @@ using namespace LAMMPS_NS;
 using namespace FixConst;
 using namespace mdanim;
 
-static constexpr double MOST = 65536.0;        // times half the skin that are looked ahead
+static constexpr double MOST = 65536.0;        // look-ahead in halves of the skin
 static constexpr double ANY_DEPTH = 1.0e20;    // as large as LAMMPS's INF
 
 // fix ID group mdanim/wall REGION k
@@ -70,20 +70,19 @@ void FixMdanimWall::init()
 {
   FixBase::init();
   take_region(Error::NOPOINTER);
-  // Lists are then rebuilt as soon as a particle has moved by half the skin.
+  // Then lists are rebuilt as soon as a particle has moved by half the skin.
   watching = !region->dynamic_check() && neighbor->every == 1 && neighbor->delay == 0 && !neighbor->build_once;
 }
 
-// Whether x lies outside the region's own side, and if so the vector to it from the nearest point of the
-// surface. A region tells surface points to particles on its own side only, so for this question it is turned
-// inside out.
+// Whether x lies outside the region's own side, and if so the vector to it from the nearest point of the surface. A region gives
+// surface points only for particles on its own side, so for this question it is turned inside out.
 bool FixMdanimWall::behind(const Vec3 &x, Vec3 &d)
 {
   if (region->match(x.x, x.y, x.z)) return false;
   region->interior = !region->interior;
   const int contacts = region->surface(x.x, x.y, x.z, ANY_DEPTH);
   region->interior = !region->interior;
-  if (contacts == 0) return false;    // on the surface itself, or on an axis or centre, where no point is the nearest
+  if (contacts == 0) return false;    // on the surface itself, or on an axis or centre, where no point is nearest
   const Region::Contact *nearest = region->contact;
   for (int n = 1; n < contacts; ++n)
     if (region->contact[n].r < nearest->r) nearest = &region->contact[n];
@@ -99,8 +98,8 @@ Box FixMdanimWall::box_of_all() const
   return box;
 }
 
-// A box is in a convex region when its corners are. Most of a scene's time nothing is near a wall, and this is far less work than
-// to ask for each particle.
+// A box is in a convex region when its corners are. During most of a scene no particle is near a wall, and this is far less work
+// than to test each particle.
 bool FixMdanimWall::is_inside(const Box &box)
 {
   for (int corner = 0; corner < 8; ++corner)
@@ -156,7 +155,7 @@ void FixMdanimWall::post_force(int)
   }
 }
 
-// On those that are watched.
+// Adds forces on particles that are watched.
 void FixMdanimWall::add_forces(const Positions &place, const ForceSums &force)
 {
   begin_sums();

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// fix mdanim/wall: pushes back what leaves a region, however deep and fast. A stock wall stops the run
-// instead.
+// fix mdanim/wall: pushes particles that leave a region back, however deep and fast. A stock wall stops the run instead.
 
 #ifndef LMP_FIX_MDANIM_WALL_H
 #define LMP_FIX_MDANIM_WALL_H
@@ -33,7 +32,7 @@ class FixMdanimWall : public mdanim::FixBase, public mdanim::PassParticipant {
   bool needs_all_atoms() override { return !watching; }
   double safe_displacement() const override { return clear; }
 
-  // Of all local particles, or nullptr where all have stiffness_number().
+  // Stiffness of all local particles, or nullptr where all have stiffness_number().
   const double *stiffness_values() const { return stiffness.values(lmp); }
   double stiffness_number() const { return stiffness.number; }
 
@@ -47,14 +46,14 @@ class FixMdanimWall : public mdanim::FixBase, public mdanim::PassParticipant {
 
   std::string region_id;
   class Region *region = nullptr;
-  bool convex = false;    // its inside, that is
+  bool convex = false;    // whether the inside is convex
   mdanim::ParticleValue stiffness;
 
   bool watching = false;    // only particles in `watched` can be behind before the next rebuild
   std::vector<int> watched;
-  double clear = 0.0;    // no particle is at the wall before one has gone farther
+  double clear = 0.0;    // no particle reaches the wall before one has gone this far
 
-  double energy = 0.0;    // all on this rank
+  double energy = 0.0;    // of this rank
   mdanim::Vec3 on_wall;
   double particles_behind = 0.0;
   double deepest = 0.0;    // in this run

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// Which rank needs which particles of another, and sending them.
+// Finds which rank needs which particles of another, and sends them.
 
 #include "lammps/ghosts.h"
 
@@ -13,7 +13,7 @@ void Ghosts::survey(MPI_Comm world, const std::vector<Home> &home, const SimdBlo
 {
   int ranks = 0;
   MPI_Comm_size(world, &ranks);
-  std::vector<int> asks(ranks, 0), asked(ranks, 0);    // how many particles of each rank, and each rank of this one
+  std::vector<int> asks(ranks, 0), asked(ranks, 0);    // number of particles asked from each rank, and by each rank from this one
   for (const Home &h : home) ++asks[h.rank];
   MPI_Alltoall(asks.data(), 1, MPI_INT, asked.data(), 1, MPI_INT, world);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// Before every pass each rank tells others where its particles are that have springs to theirs: one message to each, from blocks
-// to blocks.
+// Before every pass each rank sends others the places of its particles that have springs to theirs: one message to each, from
+// blocks to blocks.
 
 #ifndef MDANIM_GHOSTS_H
 #define MDANIM_GHOSTS_H
@@ -12,13 +12,14 @@
 
 namespace mdanim {
 
-// Which ranks have this one's particles as ghosts, and which have its ghosts; one message to and from each before every pass.
+// The ranks that have this one's particles as ghosts, and those that own its ghosts; one message to and from each before every
+// pass.
 class Ghosts {
  public:
-  // All ranks together, whenever their blocks have been laid out: where this rank's ghosts are at home, in the order of
+  // Called by all ranks together whenever their blocks have been laid out: owners of this rank's ghosts, in the order of
   // blocks.ghost_places().
   void survey(MPI_Comm world, const std::vector<Home> &home, const SimdBlocks &blocks);
-  // All ranks together: ghosts take the places, and with `velocities` the velocities, that they have at home.
+  // Called by all ranks together: ghosts take the places, and with `velocities` the velocities, that they have at their owners.
   void meet(MPI_Comm world, SimdBlocks &blocks, bool velocities);
   std::size_t bytes() const;
 

@@ -18,7 +18,7 @@ static std::string listed(const std::vector<std::string> &words)
   return text;
 }
 
-// Words of the form that are needed, in their order.
+// Words of the form that must be given, in their order.
 static std::vector<std::string> needed(const std::string &values)
 {
   std::vector<std::string> words;

@@ -10,8 +10,8 @@
 
 namespace mdanim {
 
-// As MPI_Waitall, but a rank that has waited for long leaves the processor to others: there may be more processes than
-// processors, and the one that is waited for may be among those that have none.
+// Like MPI_Waitall, but a rank that has waited for long yields its processor: there may be more processes than processors, and
+// the awaited process may be among those that have none.
 inline void wait_for(int count, MPI_Request *requests)
 {
   using namespace std::chrono;

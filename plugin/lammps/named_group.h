@@ -10,7 +10,7 @@
 
 namespace mdanim {
 
-// LAMMPS deletes such a group without asking the style and may give its bit to another one: it is known by its name.
+// A group by its name: LAMMPS deletes such a group without asking the style and may give its bit to another one.
 class NamedGroup {
  public:
   NamedGroup() = default;    // none

@@ -12,7 +12,8 @@ namespace mdanim {
 
 namespace {
 
-// What find(first, end, found) finds among so many, chunk by chunk, which threads share; joined in their order.
+// The results of find(first, end, found) over `many` numbers, chunk by chunk, shared among threads; joined in the order of
+// chunks.
 template <class Found, class Find>
 void find_in_chunks(const Threads &threads, long many, double ns, std::vector<Found> &found, const Find &find)
 {
@@ -36,10 +37,10 @@ void NearCells::clear()
   particles.clear();
 }
 
-// Corners are numbers of particles, which are looked up anew where these have other places.
+// Corners are indices of particles, which are looked up again after particles have moved in the arrays.
 bool NearCells::find_all(const Threads &threads, const ParticleTable &table)
 {
-  constexpr double PARTICLE = 25.0;    // [ns], about
+  constexpr double PARTICLE = 25.0;    // [ns], approximately
   const long many = atom->nlocal + atom->nghost;
   if (static_cast<long>(tags.size()) == many && std::equal(tags.begin(), tags.end(), atom->tag)) return false;
   tags.assign(atom->tag, atom->tag + many);
@@ -58,7 +59,7 @@ bool NearCells::find_all(const Threads &threads, const ParticleTable &table)
 
 void NearCells::find(const Threads &threads, const std::vector<int> &near, const ParticleTable &table, const std::string &fix)
 {
-  constexpr double CELL = 15.0, PLACING = 10.0;    // [ns], about
+  constexpr double CELL = 15.0, PLACING = 10.0;    // [ns], approximately
   if (!find_all(threads, table) && near == particles) return;
   particles = near;
   of_particle.assign(8 * near.size(), -1);

@@ -19,16 +19,16 @@ class NearCells : protected LAMMPS_NS::Pointers {
  public:
   explicit NearCells(LAMMPS_NS::LAMMPS *lmp) : Pointers(lmp) {}
 
-  // Cells with a corner among `near`, local particles. `table`: corners 1 to 7 of the cell whose corner 0 a particle is, ghosts
-  // as well. `fix` begins messages. Raises a LAMMPS error where a corner is out of reach.
+  // Finds cells with a corner among `near`, local particles. `table`: corners 1 to 7 of the cell whose corner 0 a particle is,
+  // ghosts as well. `fix` begins messages. Raises a LAMMPS error where a corner is out of reach.
   void find(const Threads &threads, const std::vector<int> &near, const ParticleTable &table, const std::string &fix);
 
   struct Cell {
     int corner[8];    // particles, in VTK order
-    int layers;       // of cells around it, where the table tells, else -1
+    int layers;       // number of cells around it, where the table says so, else -1
   };
   std::vector<Cell> cells;
-  void clear();    // so that the table is read anew
+  void clear();    // the table is then read again
   // Calls f(cell) for the cells of the n-th particle near the liquid.
   template <class F> void each_of(std::size_t n, F &&f) const
   {
@@ -46,10 +46,10 @@ class NearCells : protected LAMMPS_NS::Pointers {
   bool find_all(const Threads &threads, const ParticleTable &table);    // whether anything may have changed
 
   std::vector<Cell> all;                  // a corner out of reach is -1
-  std::vector<LAMMPS_NS::tagint> tags;    // of the particles when they were found, with ghosts
+  std::vector<LAMMPS_NS::tagint> tags;    // of the particles, with ghosts, at the time of the search
   std::vector<int> particles;             // near the liquid
   std::vector<int> of_particle;           // the cell that has it at corner k, or -1
-  std::vector<int> number;                // of a local particle in `near`, or -1
+  std::vector<int> number;                // place of a local particle in `near`, or -1
 };
 
 }    // namespace mdanim

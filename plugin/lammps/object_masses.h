@@ -17,8 +17,8 @@
 
 namespace mdanim {
 
-// Masses of objects by their molecule ID, over the particles of all ranks that are among them. They are summed as whole numbers
-// of 2^-32 of the object's heaviest particle, so that the sum is the same on any number of ranks.
+// Masses of objects by their molecule ID, over those particles of all ranks for which is_among(i) is true. They are summed as
+// whole multiples of 2^-32 of the object's heaviest particle, so that the sum is the same on any number of ranks.
 template <class IsAmong> std::map<int, double> object_masses(const LAMMPS_NS::Atom *atom, MPI_Comm world, const IsAmong &is_among)
 {
   constexpr double UNITS = 4294967296.0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// The refusal of particles without an object.
+// Refuses particles without an object.
 
 #include "lammps/object_table.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// Which objects there are: particles with one molecule ID are one object.
+// The objects: particles with one molecule ID are one object.
 
 #ifndef MDANIM_OBJECT_TABLE_H
 #define MDANIM_OBJECT_TABLE_H
@@ -27,7 +27,7 @@ class ObjectTable {
  public:
   static constexpr int NONE = -1;
 
-  // All ranks together: the objects of these particles, some of whose IDs may come twice.
+  // Called by all ranks together: the objects of these particles; an ID may occur several times.
   void make(MPI_Comm world, std::vector<LAMMPS_NS::tagint> ids_here)
   {
     make_unique(ids_here);
@@ -37,21 +37,21 @@ class ObjectTable {
   void set(std::vector<LAMMPS_NS::tagint> ascending) { known = std::move(ascending); }
 
   int size() const { return static_cast<int>(known.size()); }
-  // NONE for an ID that is not there: objects may come and go between two rebuilds of lists.
+  // NONE for an ID that does not occur: objects may come and go between two rebuilds of lists.
   int number_of(LAMMPS_NS::tagint id) const
   {
     const auto found = std::lower_bound(known.begin(), known.end(), id);
     return found != known.end() && *found == id ? static_cast<int>(found - known.begin()) : NONE;
   }
 
-  // All ranks together: eq. (3.14), a box around the particles of each object for which is_among(i). unknown(i) is called for one
-  // of those whose object is not there.
+  // Called by all ranks together: eq. (3.14), a box around the particles of each object for which is_among(i). unknown(i) is
+  // called for such a particle whose object does not occur.
   template <class IsAmong, class Unknown>
   std::vector<Box> place(const LAMMPS_NS::Atom &atom, MPI_Comm world, const IsAmong &is_among, const Unknown &unknown)
   {
     std::vector<Box> here(known.size()), all(known.size());
     of_particle.assign(atom.nlocal, NONE);
-    for (int i = 0; i < atom.nlocal;) {    // those of an object mostly stand side by side
+    for (int i = 0; i < atom.nlocal;) {    // particles of an object mostly stand side by side
       const LAMMPS_NS::tagint id = atom.molecule[i];
       const int one = number_of(id);
       Box box;
@@ -69,7 +69,7 @@ class ObjectTable {
     MPI_Allreduce(here.data(), all.data(), 6 * size(), MPI_DOUBLE, MPI_MIN, world);
     return all;
   }
-  // By place(): of a local particle, NONE where it is not among them.
+  // Object of a local particle, set by place(); NONE where it is not among them.
   int operator[](int i) const { return of_particle[i]; }
   std::size_t bytes() const { return known.capacity() * sizeof(LAMMPS_NS::tagint) + of_particle.capacity() * sizeof(int); }
 
@@ -84,8 +84,7 @@ class ObjectTable {
   std::vector<int> of_particle;
 };
 
-// Raises a LAMMPS error unless the local particle i, in which the fix has a part, belongs to an object. `or_else`: another way
-// out.
+// Raises a LAMMPS error unless the local particle i, which the fix acts on, belongs to an object. `or_else`: another way out.
 void need_object(const LAMMPS_NS::Fix *fix, LAMMPS_NS::LAMMPS *lmp, int i, const char *or_else = "");
 
 }    // namespace mdanim

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// Number or d_NAME: reading the word, finding the property.
+// A number or d_NAME: reads the word and finds the property.
 
 #include "lammps/particle_value.h"
 

@@ -17,8 +17,7 @@ class ParticleValue {
   ParticleValue(LAMMPS_NS::LAMMPS *lmp, const char *what, int iarg, const char *word);
 
   bool constant() const { return name.empty(); }
-  // Look the property up again (it may have moved). Raises a LAMMPS error when it is gone or holds a negative
-  // value.
+  // Looks the property up again (it may have moved). Raises a LAMMPS error when it is gone or holds a negative value.
   void init(LAMMPS_NS::LAMMPS *lmp);
   // Values of all local particles, or nullptr when constant; valid until particles are added or moved.
   const double *values(LAMMPS_NS::LAMMPS *lmp) const;
@@ -37,7 +36,7 @@ class ParticleTable {
   ParticleTable(LAMMPS_NS::LAMMPS *lmp, const char *what, int iarg, const char *word);
 
   bool given() const { return !name.empty(); }
-  int width(LAMMPS_NS::LAMMPS *lmp) const;    // of its rows; 0 when there is no such table
+  int width(LAMMPS_NS::LAMMPS *lmp) const;    // number of its columns; 0 when there is no such table
   int *const *rows(LAMMPS_NS::LAMMPS *lmp) const;
   bool ghosts_have_rows(LAMMPS_NS::LAMMPS *lmp) const;
   std::string name;    // without i2_
@@ -47,7 +46,7 @@ class ParticleTable {
 class ParticleColumn {
  public:
   ParticleColumn() = default;
-  // Raises a LAMMPS error when there is no such property, as values().
+  // Raises a LAMMPS error when there is no such property, like values().
   ParticleColumn(LAMMPS_NS::LAMMPS *lmp, const char *style, const char *keyword, int iarg, const char *word);
 
   bool given() const { return !name.empty(); }

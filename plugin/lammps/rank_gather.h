@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// What ranks know, told to all of them.
+// Data of each rank, gathered on all of them.
 
 #ifndef MDANIM_RANK_GATHER_H
 #define MDANIM_RANK_GATHER_H
@@ -14,7 +14,7 @@
 
 namespace mdanim {
 
-// What all ranks have of something, one rank after the other. Throws std::runtime_error on all ranks when it is too much for one
+// The values of all ranks, one rank after the other. Throws std::runtime_error on all ranks when they are too much for one
 // message.
 template <class T> std::vector<T> gather(MPI_Comm world, const std::vector<T> &here)
 {

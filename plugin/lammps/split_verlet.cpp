@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// What Verlet::run() of LAMMPS does in a step, for fixes and outputs that passes live with.
+// The work of Verlet::run() of LAMMPS in a step, for fixes and outputs that passes allow.
 
 #include "lammps/split_verlet.h"
 
@@ -69,7 +69,7 @@ bool SplitVerlet::rebuild_lists()
   timer->stamp(Timer::COMM);
   if (modify->n_pre_neighbor) modify->pre_neighbor();
   timer->stamp(Timer::MODIFY);
-  // LAMMPS's own list of bonds takes longer than a step to make; it stands as long as particles stay in their places.
+  // LAMMPS's own list of bonds takes longer to make than a step; it holds as long as particles stay in their places.
   const bool same =
       comm->nprocs == 1 && !sorted && atom->nghost == 0 && atom->nlocal == before && modify->get_fix_by_style("^bond/").empty();
   neighbor->build(same ? 0 : 1);

@@ -8,8 +8,8 @@
 
 namespace LAMMPS_NS {
 
-// run_style verlet whose steps can be left after the first half and finished later, with lists that are made when its descendant
-// finds them due: between the halves others may have moved particles through many steps.
+// run_style verlet whose steps can be left after the first half and finished later. Lists are made when a derived class finds
+// them due: between the halves it may have moved particles through many steps.
 class SplitVerlet : public CheckedVerlet {
  protected:
   using CheckedVerlet::CheckedVerlet;
@@ -17,7 +17,7 @@ class SplitVerlet : public CheckedVerlet {
   void finish_step();
   bool rebuild_lists();    // whether every particle is where it was in the arrays
 
-  virtual bool lists_are_due() = 0;    // in this step; asked once
+  virtual bool lists_are_due() = 0;    // in this step; called once
 };
 
 }    // namespace LAMMPS_NS

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// Records from and to arrays, restart files, and rows of particles that are spread over ranks.
+// Conversion of records to and from arrays, restart files, and rows of particles that are spread over ranks.
 
 #include "lammps/stateful.h"
 
@@ -64,14 +64,14 @@ void write_restart(const Stateful &state, LAMMPS *lmp, const std::string &fix, F
 void read_restart(Stateful &state, LAMMPS *lmp, const std::string &fix, const char *buffer)
 {
   try {
-    // LAMMPS hands over no size, so that the head is believed once its version is right.
+    // LAMMPS gives no size, so the head is trusted once its version is right.
     const auto *from = reinterpret_cast<const std::uint8_t *>(buffer);
     const auto head = ByteReader(from, sizeof(RestartHead), "its state in the restart file").get<RestartHead>();
     from += sizeof head;
     if (head.version != RESTART_VERSION)
       fail("its state in the restart file has version {}, {} is needed; write the file with this version of the plugin",
            head.version, RESTART_VERSION);
-    // What LAMMPS hands over is not aligned.
+    // The buffer that LAMMPS gives is not aligned.
     std::vector<std::int64_t> first(head.records + 1);
     std::vector<std::int32_t> key(2 * head.records);
     std::memcpy(first.data(), from, 8 * first.size());

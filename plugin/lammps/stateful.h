@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// State of a fix besides positions, velocities and forces: as records that checkpoints, other instances and restart files hold
-// alike.
+// State of a fix besides positions, velocities and forces: the records shared by checkpoints, other instances and restart files.
 
 #ifndef MDANIM_STATEFUL_H
 #define MDANIM_STATEFUL_H
@@ -29,12 +28,12 @@ class Stateful {
  public:
   // All records, on every rank.
   virtual StateRecords pack() const = 0;
-  // Makes this the state; every rank gives the same. All particles are there, and the setup of a run comes after. An object or
-  // pair without a record is as at the beginning. Throws std::runtime_error on all ranks when records are not this fix's or are
-  // of particles that there are not; then nothing has changed.
+  // Makes this the state; every rank passes the same. All particles must exist, and the setup of a run must follow. An object or
+  // pair without a record is as at the beginning. Throws std::runtime_error on all ranks when records belong to another fix or to
+  // particles that do not exist; then nothing has changed.
   virtual void unpack(const StateRecords &records) = 0;
 
-  std::optional<StateRecords> packed;    // for state_c.cpp, from one call to the next
+  std::optional<StateRecords> packed;    // for state_c.cpp, kept from one call to the next
 
  protected:
   ~Stateful() = default;
@@ -44,32 +43,32 @@ class Stateful {
 void write_restart(const Stateful &state, LAMMPS_NS::LAMMPS *lmp, const std::string &fix, FILE *file);
 void read_restart(Stateful &state, LAMMPS_NS::LAMMPS *lmp, const std::string &fix, const char *buffer);
 
-// What a fix keeps of particles, as records of their objects, (a, 0): a row for each particle, its tag counted from the lowest of
-// the object and values of a fixed size.
+// Values that a fix keeps for particles, as records of their objects, (a, 0): a row for each particle, with its tag counted from
+// the lowest of the object and values of a fixed size.
 class ParticleRows {
  public:
-  // All ranks make it together. All rows have `width` bytes of values.
+  // Made by all ranks together. All rows have `width` bytes of values.
   ParticleRows(LAMMPS_NS::LAMMPS *lmp, std::int64_t version, int width);
 
-  // A row of the local particle i, whose object is 1 or more; `from` are `width` bytes.
+  // Adds a row of the local particle i, whose object is 1 or more; `from` has `width` bytes.
   void add(int i, const void *from);
-  // Adds records of all rows of all ranks: rows sorted by tags. Throws std::runtime_error on all ranks when one is there twice.
+  // Adds records of all rows of all ranks: rows sorted by tags. Throws std::runtime_error on all ranks when a tag occurs twice.
   void pack(StateRecords &into) const;
 
-  // visit(i, values) for every row of a local particle i. Passes over records of other keys. Throws std::runtime_error on all
-  // ranks, before any visit, when a record is of another version or width, or of particles that there are not.
+  // Calls visit(i, values) for every row of a local particle i. Skips records of other keys. Throws std::runtime_error on all
+  // ranks, before any visit, when a record has another version or width, or is of particles that do not exist.
   using Visit = std::function<void(int, const std::uint8_t *)>;
   void unpack(const StateRecords &records, const Visit &visit) const;
 
  private:
   struct StateRow {
     int object;
-    std::int32_t tag;    // from the lowest of the object
+    std::int32_t tag;    // counted from the lowest of the object
     bool operator<(const StateRow &other) const { return std::tie(object, tag) < std::tie(other.object, other.tag); }
   };
   struct Object {
     int id;
-    LAMMPS_NS::tagint lowest;    // tag
+    LAMMPS_NS::tagint lowest;    // lowest tag of the object
   };
   LAMMPS_NS::tagint lowest_tag(int object) const;
 
@@ -77,7 +76,7 @@ class ParticleRows {
   std::int64_t version;
   std::size_t width;
   std::vector<Object> objects;                         // of all ranks, by ascending IDs
-  std::unordered_map<LAMMPS_NS::tagint, int> local;    // particles by tags; LAMMPS's own map may be older than they are here
+  std::unordered_map<LAMMPS_NS::tagint, int> local;    // index of particles by tags; LAMMPS's own map may be out of date here
   std::vector<StateRow> rows;
   Bytes values;
 };

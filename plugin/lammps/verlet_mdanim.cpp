@@ -41,7 +41,7 @@
 using namespace LAMMPS_NS;
 using namespace mdanim;
 
-// What a fix may do in a step that we must know of.
+// Actions of a fix in a step that passes must know of.
 static constexpr int ACTS = FixConst::INITIAL_INTEGRATE | FixConst::POST_INTEGRATE | FixConst::PRE_FORCE | FixConst::PRE_REVERSE |
                             FixConst::POST_FORCE | FixConst::FINAL_INTEGRATE | FixConst::END_OF_STEP;
 
@@ -100,20 +100,20 @@ void VerletMdanim::setup_minimal(int flag)
   Verlet::setup_minimal(flag);
 }
 
-// Lists are about to be made for the first time after init().
+// Called when lists are about to be made for the first time after init().
 void VerletMdanim::begin_setup()
 {
   decided_for = local_then = -1;
   told_why.clear();
-  engine.drop();    // of a run that an error has broken off, which a program has caught
+  engine.drop();    // a run that an error has broken off, which a program has caught
   engine.forget_springs();
   budget.forget();
   spare_bond_list();
 }
 
-// Do without neighbor->bondlist, which takes 100 bytes per particle of a lattice and longer to make than many steps, where it
-// is not wanted: our bond style reads springs from the particles that have them. Of fixes and computes only those count that are
-// known to leave the list alone. It comes back with the next init().
+// Does without neighbor->bondlist where it is not needed: it takes 100 bytes per particle of a lattice and longer to make than
+// many steps, and our bond style reads springs from their particles. Of fixes and computes only those known to ignore the list do
+// not need it. It comes back with the next init().
 void VerletMdanim::spare_bond_list()
 {
   if (!dynamic_cast<PassSprings *>(force->bond) || force->pair || force->angle || force->dihedral || force->improper) return;
@@ -131,14 +131,14 @@ void VerletMdanim::spare_bond_list()
 
 // --- whether passes can be taken ---
 
-// Keeps the reason for plain steps and what to write, "" where the user can do nothing about it.
+// Keeps the reason for plain steps and the text to write, "" where the user can do nothing about it.
 bool VerletMdanim::plain(const std::string &reason)
 {
   why = reason;
   return false;
 }
 
-// Once after each setup, on one rank; a run of one step takes no pass anyway.
+// Called once after each setup, on one rank; a run of one step takes no pass anyway.
 void VerletMdanim::tell_why(int steps)
 {
   if (steps < 2 || why.empty() || why == told_why) return;
@@ -147,7 +147,7 @@ void VerletMdanim::tell_why(int steps)
     utils::logmesg(lmp, "run_style verlet/mdanim: no passes, every step is that of run_style verlet, as {}\n", why);
 }
 
-// Few particles have nothing to gain, and springs that a program has given are numbered by it.
+// Few particles gain nothing. Springs that a program has given are numbered by that program.
 void VerletMdanim::find_why_not_cut()
 {
   constexpr bigint FEW = 1000;
@@ -160,7 +160,7 @@ void VerletMdanim::find_why_not_cut()
     why = "springs of particles with neighbouring IDs lead unequally far; number the particles of a lattice row by row";
 }
 
-// All that acts in a step, if it is known how each has its part in passes.
+// Collects all members that act in a step, if each is known to take part in passes.
 bool VerletMdanim::find_crew()
 {
   PassCrew &crew = engine.crew;
@@ -199,12 +199,12 @@ bool VerletMdanim::find_crew()
     }
   }
   const bool periodic = domain->xperiodic || domain->yperiodic || domain->zperiodic;
-  // Blocks do not know of images, and with several ranks no particle may go beyond the neighbours of its own unseen.
+  // Blocks do not have images, and with several ranks no particle may go beyond the neighbours of its own unseen.
   if (periodic) return plain("the box is periodic; use 'boundary s s s' (or f)");
   if (comm->nprocs > 1 && neighbor->build_once) return plain("lists are never rebuilt; use 'neigh_modify once no'");
   lists_matter = !neighbor->build_once && (modify->n_post_neighbor || modify->n_pre_neighbor || comm->nprocs > 1);
   if (!crew.integrator) return plain("there is no fix mdanim/leapfrog; it moves particles in passes");
-  // Without that check LAMMPS does not keep where particles stood, or not of all.
+  // Without that check LAMMPS does not keep former places of particles, or not all of them.
   if (lists_matter && !neighbor->dist_check) return plain("nothing checks how far particles move; use 'neigh_modify check yes'");
   if (lists_matter && neighbor->includegroup) return plain("lists are of one group alone; use 'neigh_modify include all'");
   if (crew.liquid && !crew.liquid->joins(crew.integrator->friction_of_particles())) crew.liquid = nullptr;
@@ -213,14 +213,14 @@ bool VerletMdanim::find_crew()
   return true;
 }
 
-// Blocks for the springs as they are now, if passes are worth it.
+// Cuts blocks for the springs as they are now, if passes are worth it.
 bool VerletMdanim::cut()
 {
   if (comm->nprocs > 1) return cut_for_ranks();
   return atom->nghost == 0 && engine.cut(atom->nlocal, atom->molecule_flag ? atom->molecule : nullptr);
 }
 
-// The same, once after every rebuild. All ranks or none: some have few particles, or none, and count for as little.
+// The same, once after every rebuild. All ranks take passes or none: a rank with few particles or none has little weight.
 bool VerletMdanim::cut_for_ranks()
 {
   if (decided_for == neighbor->ncalls) return worth_it;
@@ -284,7 +284,7 @@ void VerletMdanim::run_passes(int n)
   }
 }
 
-// LAMMPS itself asks for a setup here, but does not see where it is left out.
+// LAMMPS itself requires a setup here, but does not notice when it is left out.
 void VerletMdanim::refuse_if_moved()
 {
   int moved = local_then >= 0 && (atom->nlocal != local_then || atom->nghost != ghosts_then), anywhere = 0;
@@ -307,7 +307,7 @@ bigint VerletMdanim::next_stop() const
 
 AtomArrays VerletMdanim::arrays() const { return {atom->x, atom->v, atom->f}; }
 
-// Up to `most` times: finish the step that has begun and begin the next. Returns how often.
+// Up to `most` times: finishes the step that has begun and begins the next. Returns how often.
 int VerletMdanim::take_steps(int step, int most)
 {
   const bigint stop = std::min(next_stop(), update->ntimestep + most);
@@ -348,7 +348,7 @@ int VerletMdanim::take_steps(int step, int most)
   return taken;
 }
 
-// Forces of fixes that come after the pass, or what they do at the end of the step.
+// Forces of fixes that come after the pass, or their work at the end of the step.
 void VerletMdanim::act_late(bool at_end)
 {
   for (const Late &one : late) {
@@ -368,7 +368,7 @@ void VerletMdanim::start_passes(bool positions)
 void VerletMdanim::tell_limits()
 {
   constexpr double ANY = std::numeric_limits<double>::max();
-  constexpr int SHRINK = 2;    // of LAMMPS's numbers of boundaries: a side that goes where particles are
+  constexpr int SHRINK = 2;    // LAMMPS's number for a boundary that goes where particles are
   if (comm->nprocs > 1) {
     std::array<BoxShare, 3> shares;
     for (int d = 0; d < 3; ++d)
@@ -383,7 +383,7 @@ void VerletMdanim::tell_limits()
   budget.set_limits(0.5 * neighbor->skin, strangers_have_lists ? SafeDisplacement{0.0, 0.0} : engine.crew.safe_displacement(ANY));
 }
 
-// What is left, as particles stand in the blocks or else in LAMMPS.
+// Measures the budget that is left, with particles as they stand in the blocks or else in LAMMPS.
 void VerletMdanim::measure()
 {
   if (engine.is_running())
@@ -392,7 +392,7 @@ void VerletMdanim::measure()
     budget.measure(atom->nlocal, [this](int i) { return vec3(atom->x[i]); }, neighbor->get_xhold());
 }
 
-// Whether some is left on all ranks.
+// Whether some of the budget is left on all ranks.
 bool VerletMdanim::spend(double way)
 {
   const bool some = budget.spend(way);
@@ -400,12 +400,12 @@ bool VerletMdanim::spend(double way)
   return some;
 }
 
-// Between two passes: sees how far particles really are, and makes lists anew if need be. False where passes do not go on.
+// Between two passes: measures how far particles really are, and makes lists anew if necessary. False where passes do not go on.
 bool VerletMdanim::look_again()
 {
   timer->stamp(Timer::BOND);
   measure();
-  // What dashpots did last is not handed on with particles: several ranks do that in a plain step, when lists are due.
+  // The last values of dashpots do not migrate with particles: several ranks make lists in a plain step, when they are due.
   const bool alone = comm->nprocs == 1, between_passes = alone || !engine.crew.springs->account();
   if (spend(0.0) && !(between_passes && budget.nearly_spent())) return true;
   engine.leave();
@@ -420,12 +420,12 @@ bool VerletMdanim::look_again()
     measure();
   spend(0.0);
   budget.begin(neighbor->ncalls);
-  // Mostly a rank that is alone has particles where they were.
+  // On a rank that is alone, particles are mostly where they were.
   start_passes(!alone || modify->n_pre_exchange || modify->n_pre_neighbor);
   return true;
 }
 
-// Other ranks see where this one's particles are, and this one theirs. Participants look for them in the arrays of LAMMPS.
+// Updates ghosts on all ranks. Participants look for particles in the arrays of LAMMPS.
 void VerletMdanim::meet_ghosts()
 {
   timer->stamp(Timer::BOND);
@@ -440,7 +440,7 @@ void VerletMdanim::meet_ghosts()
   timer->stamp(Timer::COMM);
 }
 
-// As LAMMPS decides it, but later if no participant needs lists now; a file gets the box of now.
+// As LAMMPS decides it, but later if no participant needs lists now; a file gets the present box.
 bool VerletMdanim::lists_are_due()
 {
   const bigint now = update->ntimestep;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// run_style verlet/mdanim: run_style verlet, after which it is called because fixes of LAMMPS look for that word, that takes the
-// steps of springs, gravity and leap-frog in one pass over the particles.
+// run_style verlet/mdanim: derives from run_style verlet, and its name begins with that word because fixes of LAMMPS look for it.
+// It takes the steps of springs, gravity and leap-frog in one pass over the particles.
 
 #ifndef LMP_VERLET_MDANIM_H
 #define LMP_VERLET_MDANIM_H
@@ -15,7 +15,8 @@
 
 namespace LAMMPS_NS {
 
-// Decides which steps are taken by passes, and does for LAMMPS what is not the engine's: steps of its own, lists, ranks, outputs.
+// Decides which steps are taken by passes, and does the work for LAMMPS that is not the engine's: steps of its own, lists, ranks,
+// outputs.
 class VerletMdanim : public SplitVerlet {
  public:
   VerletMdanim(class LAMMPS *, int, char **);
@@ -26,11 +27,11 @@ class VerletMdanim : public SplitVerlet {
   double memory_usage() override;
   long long passes() const { return passed; }
   int ranges() const { return engine.ranges(); }
-  const char *width() const { return engine.width(); }          // of the latest run that took passes; empty before any
+  const char *width() const { return engine.width(); }          // of the latest run with passes; empty before the first
   long long held_back() const { return engine.held_back(); }    // particles, all passes together
 
  private:
-  static constexpr int MOST_THREADS = mdanim::Team::MOST_TASKS;    // no more can have a range each
+  static constexpr int MOST_THREADS = mdanim::Team::MOST_TASKS;    // more threads cannot have a range each
 
   void set_width(const char *word);
   void set_threads(const char *word);
@@ -56,15 +57,15 @@ class VerletMdanim : public SplitVerlet {
   bool spend(double way);
   bool lists_are_due() override;
 
-  const mdanim::Kernels *told = nullptr;    // in the input script
+  const mdanim::Kernels *told = nullptr;    // by the input script
   mdanim::PassEngine engine;
   mdanim::DisplacementBudget budget;
   mdanim::Ghosts ghosts;
   std::vector<int> sent;          // own particles that other ranks have as ghosts
-  bool ghosts_are_met = false;    // where they are now
-  int participants_look = 0;      // on any rank
-  bool worth_it = false;          // all ranks together,
-  bigint decided_for = -1;        // after this build of lists
+  bool ghosts_are_met = false;    // whether they have their present places
+  int participants_look = 0;      // whether a participant reads them in the arrays, on any rank
+  bool worth_it = false;          // on all ranks together,
+  bigint decided_for = -1;        // as of this build of lists
   bool overflowed = false;        // in this run, on some rank
   long long passed = 0;
   int local_then = -1, ghosts_then = 0;    // particles at the end of the last run, negative after a setup
@@ -75,7 +76,7 @@ class VerletMdanim : public SplitVerlet {
     bool acts_at_end;
   };
   std::vector<Late> late;       // the fixes of the crew's late participants
-  std::string why, told_why;    // there are no passes in this run; what was told since the last setup
+  std::string why, told_why;    // why there are no passes in this run; the reason written since the last setup
   bool lists_matter = false, strangers_have_lists = false;
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// The force that holds a particle in its region: a spring to the nearest point of the surface, at any depth. F = -k d,  U = k d^2
-// / 2,  d = vector from the surface to the particle behind it
+// The force that holds a particle in its region: a spring to the nearest point of the surface, at any depth.
+//   F = -k d,  U = k d^2 / 2,  d = vector from the surface to the particle behind it
 
 #ifndef MDANIM_WALL_H
 #define MDANIM_WALL_H
