@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// What acts on a point of a drawn surface that lies below the surface of another body (docs/physics-contact.md).
+// The forces on a point of a drawn surface that lies below the surface of another body (docs/physics-contact.md).
 //   U = kappa w t g(d - d0)    d = depth of the point, w = its area, t = part of it that counts (0 to 1)
 //   g(d) = d^3 / (6 eps) for 0 < d < eps, else (d - eps/2)^2 / 2 + eps^2 / 24: twice continuously differentiable
 // Friction is a spring between the point and a material point of the other body, its anchor: it holds up to mu |F|, then the

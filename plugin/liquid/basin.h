@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// A liquid in its basin, apart from the program that runs it: what all models of a liquid have in common.
+// A liquid in its basin, independent of the program that runs it: the common interface of all models of a liquid.
 
 #ifndef MDANIM_BASIN_H
 #define MDANIM_BASIN_H
@@ -17,9 +17,9 @@
 
 namespace mdanim {
 
-// Cells of liquid, the cells that solids fill, what acts on solids, and when all of this is brought up to date. Solids come in as
-// counts of samples, sums over ranks by RankSums. Every rank holds the whole basin. Places and heights are in cells from its
-// lower corner unless they are said to be in units of distance.
+// Cells of liquid, the cells that solids fill, the forces on solids, and the times at which all of this is updated. Solids are
+// given as counts of samples, summed over ranks by RankSums. Every rank holds the whole basin. Places and heights are in cells
+// from its lower corner unless units of distance are mentioned.
 class Basin {
  public:
   struct Shape {
@@ -27,19 +27,19 @@ class Basin {
     Vec3 low, cell;    // corner, and edges of a cell
   };
   struct Pace {
-    int sweeps = 0;          // of the automaton, per update; 0 chooses by how far solids have travelled
-    int every = 4;           // steps between looks whether an update is due
-    double stride = 0.25;    // that solids travel between updates, in cells
+    int sweeps = 0;          // of the automaton, per update; 0 chooses by the travel of solids
+    int every = 4;           // steps between checks whether an update is due
+    double stride = 0.25;    // travel of solids between updates, in cells
     double period = 0.06;    // between updates while the liquid is not level, in sqrt(cell/g)
   };
-  // Time since the last update, by the steps between looks.
+  // Time since the last update, by the steps between checks.
   struct Wait {
     double before = 0.0;       // [time] in steps of another length
-    std::int64_t steps = 0;    // of dt, since then
+    std::int64_t steps = 0;    // of dt, since `before`
     double dt = 0.0;
-    std::int64_t looked = 0;    // step of the last look
-    // A look at a multiple of `every`, which may be another number than at the last look; steps may be numbered anew. Returns the
-    // steps since then.
+    std::int64_t looked = 0;    // step of the last check
+    // A check at a multiple of `every`, which may differ from the number at the last check; steps may be numbered anew. Returns
+    // the steps since then.
     std::int64_t look(std::int64_t step, int every, double now)
     {
       if (now != dt) {
@@ -65,35 +65,35 @@ class Basin {
     }
   };
   struct Energies {
-    double work = 0.0, lost = 0.0;    // of all that the liquid does to solids but drag; to drag
+    double work = 0.0, lost = 0.0;    // energy from all forces of the liquid on solids except drag; energy lost to drag
   };
-  // What the state holds for the fix. Powers cannot be found again: solids are calmed by their velocities of half steps.
+  // The fix's part of the state. Powers cannot be computed again: solids are calmed by their velocities of half steps.
   struct Ledger {
     Energies sum, power;    // until now; at the last step, per time
   };
   struct Amount {
     bool by_level;
     double value;         // height [distance] or volume [distance^3]
-    bool into_hollows;    // also into what encloses air at the start (Waves::hollows)
+    bool into_hollows;    // also into spaces that enclose air at the start (Waves::hollows)
   };
-  // Whole cells of liquid that were wanted, and those that find no room.
+  // Whole cells of liquid that were wanted, and those without room.
   struct Filled {
     std::int64_t wanted;
     long left;
   };
-  // Impulses until now, sideways, over density [volume * velocity]: on the basin and on what is held in it, friction of the
-  // liquid among them; on solids that move; and the momentum that came with liquid, less what went with it.
+  // Impulses so far, sideways, over density [volume * velocity]: on the basin and on held solids in it, friction of the liquid
+  // among them; on solids that move; and the momentum that came with liquid, less that which left with it.
   struct Impulses {
     Vec3 basin, solids, came;
   };
-  // Liquid that flies.
+  // A drop of liquid that flies.
   struct Droplet {
     Vec3 place;    // [distance], as the radius
     double radius;
   };
   using AtPlace = mdanim::AtPlace<double>;
-  // What acts on the eight parts of a lattice cell, each nearest to one of its corners. s is how much of such a part is below the
-  // surface: surface - z, z that of the corner [cells], within 0 and 1, times share.
+  // The action of the liquid on the eight parts of a lattice cell, each nearest to one of its corners. s is the fraction of such
+  // a part below the surface: surface - z, z that of the corner [cells], within 0 and 1, times share.
   struct OnParts {
     double surface = 0.0, share = 0.0;
     double more = 0.0, beside = 0.0;        // the push upwards is s + more; the surface around makes it s + beside
@@ -101,11 +101,11 @@ class Basin {
     double flow_x = 0.0, flow_y = 0.0;      // velocity of the liquid [distance/time]
     double part_below(double z) const { return std::clamp(surface - z, 0.0, 1.0) * share; }
   };
-  // Adds this rank's bodies, as far as they reach below a height.
+  // Adds this rank's bodies as far as they are below a height.
   using AddBodies = std::function<void(Occupancy &, double below)>;
 
-  static constexpr int MOST_SWEEPS = 4096;    // per update; also parts the keys of their random numbers
-  // Of the random numbers of an update, where a part of it comes several times; the first has that of the step.
+  static constexpr int MOST_SWEEPS = 4096;    // per update; also separates the keys of their random numbers
+  // Key of the random numbers of part `part` of an update, for parts that come several times; the first has the key of the step.
   static constexpr std::uint64_t key_of(std::uint64_t step, int part) { return step + (static_cast<std::uint64_t>(part) << 40); }
 
   static constexpr double NEAR = 8.0;    // cells above the liquid up to which the motion of solids counts
@@ -119,17 +119,18 @@ class Basin {
 
   // --- solids and time ---
 
-  // Marks what never moves; returns how many cells that changes.
+  // Marks bodies that never move; returns the number of cells that this changes.
   virtual long mark_still(const AddBodies &bodies) = 0;
-  // Before liquid is poured: marks what moves.
+  // Before liquid is poured: marks bodies that may move.
   virtual void mark_moving(const AddBodies &bodies) = 0;
-  // The start: liquid into open cells where `within`, of all cells, is not 0, from the lowest up.
+  // The start: pours liquid into open cells where `within`, of all cells, is not 0, from the lowest up.
   virtual Filled fill(const Amount &amount, const std::vector<std::uint8_t> &within, std::uint64_t when) = 0;
-  // What never moves has been moved. Throws std::runtime_error when liquid has no room left, as update().
+  // To be called after bodies that never move have been moved. Throws std::runtime_error when liquid has no room left, as
+  // update().
   virtual void settle(std::uint64_t when) = 0;
-  // Whether an update is due at this step, which is asked every pace.every steps of dt. `fastest` is the square of the speed of
-  // the fastest solid near the liquid, or negative when there is none. Depends on the state alone, so that neither ranks nor
-  // pieces of a run change it.
+  // Whether an update is due at this step; called every pace.every steps of dt. `fastest` is the square of the speed of the
+  // fastest solid near the liquid, or negative when there is none. Depends only on the state, so that neither ranks nor pieces of
+  // a run change it.
   virtual bool is_due(double fastest, double dt, std::int64_t step) = 0;
   virtual void update(const AddBodies &bodies, std::uint64_t when) = 0;
   virtual void use(const Threads &) {}    // for updates
@@ -137,20 +138,20 @@ class Basin {
   // --- what acts on solids, and they on the liquid ---
 
   virtual AtPlace at(const Vec3 & /*place*/) const { return {}; }
-  // Whether on_parts() is to be asked after each update, and not at() in each step; and solids pass on what they do to the
+  // Whether on_parts() is to be called after each update, instead of at() in each step, and solids report their action on the
   // liquid.
   virtual bool acts_on_cells() const { return false; }
-  // Of a lattice cell with its middle at a place, in an order that does not matter.
+  // Action on a lattice cell with its middle at a place; cells may come in any order.
   virtual OnParts on_parts(const Vec3 & /*middle*/) const { return {}; }
   // Upward velocity of the solid around a place [distance/time].
   virtual double rising_at(const Vec3 & /*place*/) const { return 0.0; }
-  // From the height returned down, all within the basin is below the surface, and nothing but Archimedes' lift acts.
+  // From the returned height down, the whole basin is below the surface, and only Archimedes' lift acts.
   virtual double all_below() const = 0;
-  // Rate [1/time] at which what is immersed loses the velocity that differs from that of the solid around.
+  // Rate [1/time] at which immersed particles lose the velocity relative to the solid around them.
   virtual double calms_solids() const { return 0.0; }
-  // On the liquid since the last update, from a solid of this rank.
+  // Takes the impulse on the liquid since the last update, from a solid of this rank.
   virtual void take_impulse(const Vec3 & /*place*/, const Vec3 & /*impulse*/) {}
-  // By which it has pushed such a solid sideways in each step since then, over the weight of liquid of volume 1.
+  // Takes the sideways push on such a solid in each step since then, over the weight of liquid of volume 1.
   virtual void take_push(const Vec3 & /*volume_along*/) {}
 
   Vec3 in_cells(const double *x) const
@@ -161,13 +162,13 @@ class Basin {
     return x[0] >= shape.low.x && x[0] <= shape.low.x + shape.nx * shape.cell.x && x[1] >= shape.low.y &&
            x[1] <= shape.low.y + shape.ny * shape.cell.y;
   }
-  // Of a cell.
+  // Number of a cell.
   std::size_t cell_number(int x, int y, int z) const { return (static_cast<std::size_t>(z) * shape.ny + y) * shape.nx + x; }
 
   // --- output ---
 
   int columns() const { return shape.nx * shape.ny; }
-  double speed_of_waves() const { return std::sqrt(g * shape.cell.z); }    // as deep as a cell [distance/time]
+  double speed_of_waves() const { return std::sqrt(g * shape.cell.z); }    // in liquid one cell deep [distance/time]
   double cell_volume() const { return shape.cell.x * shape.cell.y * shape.cell.z; }
   virtual bool is_smooth() const = 0;    // whether samples of bodies are spread, and columns know the mass in them
   virtual int top() const = 0;           // no liquid in layers from this one up
@@ -178,16 +179,16 @@ class Basin {
   virtual double cells_now() const = 0;    // of liquid
   virtual double cells_at_start() const = 0;
   virtual std::int64_t updates_so_far() const = 0;    // sweeps of the automaton
-  // Time [time] that a liquid with momentum has gone through by this step, and what it has slept at rest; that of solids, or
-  // something is wrong. 0 of others.
+  // Time [time] that a liquid with momentum has computed by this step, and the time that it has slept at rest. The sum must be
+  // the time of solids. 0 for other liquids.
   virtual double clock(std::int64_t /*step*/, double /*dt*/) const { return 0.0; }
   virtual double energy() const { return 0.0; }    // of the liquid since the start, over density g cell^4; 0 without momentum
   virtual Vec3 momentum() const { return {}; }     // of the liquid, over density [volume * velocity]; sideways
   virtual Impulses impulses() const { return {}; }
-  virtual double highest() const { return top(); }    // liquid
+  virtual double highest() const { return top(); }    // of all liquid
   virtual double bytes() const = 0;
   virtual double mean_level() const = 0;    // [distance]
-  // Heights [distance] of all columns, x fastest: the surface that solids feel, and the topmost liquid: NaN where a body hides
+  // Heights [distance] of all columns, x fastest: the surface that acts on solids, and the topmost liquid: NaN where a body hides
   // it, minus infinity where a hull keeps the column dry.
   virtual void surface(double *smooth, double *raw) const = 0;
   virtual double smooth_height(int column) const = 0;    // the same of one column, but dry ones that a hull hides have no height
@@ -199,7 +200,7 @@ class Basin {
 
   // Everything that later steps depend on, except positions and velocities, and the ledger.
   virtual std::vector<std::uint8_t> state(const Ledger &ledger) const = 0;
-  // Takes it up. Throws std::runtime_error, and changes nothing, when it is not of such a basin or damaged.
+  // Sets the state. Throws std::runtime_error, and changes nothing, when it is damaged or not of such a basin.
   virtual Ledger set_state(const std::uint8_t *bytes, std::size_t size) = 0;
 
   const Shape shape;

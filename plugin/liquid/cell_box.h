@@ -11,7 +11,7 @@
 
 namespace mdanim {
 
-// A box of cells, [low, high) along each axis; empty until something is put in.
+// A box of cells, [low, high) along each axis; empty at first.
 struct CellBox {
   int low[3] = {1 << 30, 1 << 30, 1 << 30}, high[3] = {0, 0, 0};
   bool empty() const { return low[0] >= high[0]; }
@@ -35,7 +35,7 @@ struct CellBox {
     if (empty()) return 0;
     return static_cast<std::size_t>(high[0] - low[0]) * (high[1] - low[1]) * (high[2] - low[2]);
   }
-  // Calls f(y, z) for rows of its cells, which threads share; a cell takes about so many ns.
+  // Calls f(y, z) for rows of its cells, shared among threads; a cell takes about `ns` nanoseconds.
   template <class F> void each_row(const Threads &threads, double ns, const F &f) const
   {
     if (empty()) return;
@@ -44,7 +44,7 @@ struct CellBox {
       for (long n = from; n < to; ++n) f(low[1] + static_cast<int>(n % deep), low[2] + static_cast<int>(n / deep));
     });
   }
-  // Calls f(y) for all y of its cells, which threads share.
+  // Calls f(y) for all y of its cells, shared among threads.
   template <class F> void each_y(const Threads &threads, double ns, const F &f) const
   {
     if (empty()) return;

@@ -13,7 +13,7 @@ Occupancy::Occupancy(int nx, int ny, int nz) : nx(nx), ny(ny), nz(nz), count(sta
 
 void Occupancy::add(const Vec3 &place, int weight, CellBox &reached)
 {
-  // Written so that a place that is NaN is outside.
+  // Written so that a place with NaN is outside.
   if (!(place.x >= 0.0 && place.x < nx && place.y >= 0.0 && place.y < ny && place.z >= 0.0 && place.z < nz)) return;
   const int x = static_cast<int>(place.x), y = static_cast<int>(place.y), z = static_cast<int>(place.z);
   count[number(x, y, z)] += weight;
@@ -24,7 +24,7 @@ void Occupancy::add_particle(const Vec3 &place) { add(place, FULL, touched); }
 
 namespace {
 
-// A lattice cell by its mean edges; their triple product is its volume, whatever way it is turned or squeezed.
+// A lattice cell by its mean edges; their triple product is its volume, however it is turned or squeezed.
 struct MeanEdges {
   Vec3 a, b, c;
 
@@ -34,7 +34,7 @@ struct MeanEdges {
         c(0.25 * ((corner[4] - corner[0]) + (corner[5] - corner[1]) + (corner[6] - corner[2]) + (corner[7] - corner[3])))
   {
   }
-  // Of one of 27 samples, when a cell at rest counts as 27 * full.
+  // Weight of one of 27 samples; a cell at rest counts as 27 * full.
   int weight(double full) const { return static_cast<int>(std::min(1.0e3, std::fabs(dot(cross(a, b), c))) * full + 0.5); }
 };
 
@@ -127,9 +127,9 @@ void Occupancy::add_spread(const Vec3 corner[8], CellBox &reached)
     spread_samples<false>(samples, spread);
 }
 
-// The eight cells that are nearest to the middle are within 1.5 of it along each axis. Their corner may be 2.6 away, but of a
-// cell with its corner so far less than 1 % is further than 2.4. Together they leave no gap where corners of lattice cells are
-// within 1 of a middle. The outermost lattice cells that do so spread their samples as well, for those reach beyond the eight.
+// The eight cells nearest to the middle are within 1.5 of it along each axis. Their corner may be 2.6 away, but less than 1 % of
+// a cell with its corner that far is farther than 2.4. Together they leave no gap where corners of lattice cells are within 1 of
+// a middle. The outermost of these lattice cells spread their samples as well, because those reach beyond the eight.
 bool Occupancy::fill_inside(const Vec3 corner[8], int layers, CellBox &reached)
 {
   constexpr double FURTHEST = 2.4, LONGEST = 1.15;
@@ -165,7 +165,7 @@ bool Occupancy::fill_inside(const Vec3 corner[8], int layers, CellBox &reached)
 
 static bool within(int n, int many) { return n >= 0 && n < many; }
 
-// Along each axis the upper of two cells gets its share, in 1/SHARES, and the lower one all the rest, so that nothing is lost.
+// Along each axis the upper of two cells gets its share, in 1/SHARES, and the lower one the whole rest, so that nothing is lost.
 template <bool INSIDE> void Occupancy::spread_samples(const Samples &samples, const Spread &spread)
 {
   constexpr int COUNT = Samples::COUNT;
@@ -174,7 +174,7 @@ template <bool INSIDE> void Occupancy::spread_samples(const Samples &samples, co
   for (int d = 0; d < 3; ++d)
     for (int n = 0; n < COUNT; ++n) {
       const double low = samples.at[d][n] - spread.reach[d], high = samples.at[d][n] + spread.reach[d];
-      lower[d][n] = static_cast<int>(low + 1.0) - 1;    // low is -1 at least where any of it is inside
+      lower[d][n] = static_cast<int>(low + 1.0) - 1;    // low is at least -1 if any part is inside
       const int share = static_cast<int>((high - (lower[d][n] + 1)) * spread.shares[d] + 0.5);
       upper_share[d][n] = static_cast<std::uint32_t>(std::max(0, share));
     }
@@ -230,7 +230,7 @@ void Occupancy::add_mass(const Vec3 &place, double mass, double softness, double
 
 void Occupancy::clear(const Threads &threads)
 {
-  constexpr double CELL = 0.2;    // [ns], about
+  constexpr double CELL = 0.2;    // [ns], approximately
   std::fill(sums.begin(), sums.end(), 0);
   touched.each_row(threads, CELL, [this](int y, int z) {
     const auto first = count.begin() + static_cast<std::ptrdiff_t>(number(0, y, z));
@@ -239,10 +239,10 @@ void Occupancy::clear(const Threads &threads)
   touched = CellBox();
 }
 
-// Only the box that any rank has touched goes from rank to rank.
+// Only the box that any rank has touched is summed over ranks.
 void Occupancy::sum_over(const RankSums &ranks, const Threads &threads)
 {
-  constexpr double CELL = 0.3;    // [ns], about
+  constexpr double CELL = 0.3;    // [ns], approximately
   if (!ranks.alone()) add_all(ranks);
   touched.each_row(threads, CELL, [this](int y, int z) {
     for (std::size_t c = number(touched.low[0], y, z), end = number(touched.high[0], y, z); c < end; ++c)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// Which cells of the automaton a lattice body fills: sample points in its lattice cells, counted in whole
-// numbers, so that the sum over bodies and ranks does not depend on their order. docs/physics-liquid.md.
+// The cells of the automaton that a lattice body fills: sample points in its lattice cells, counted in whole numbers, so that the
+// sum over bodies and ranks does not depend on their order. docs/physics-liquid.md.
 
 #ifndef MDANIM_OCCUPANCY_H
 #define MDANIM_OCCUPANCY_H
@@ -25,25 +25,25 @@ class Occupancy {
 
   Occupancy(int nx, int ny, int nz);
 
-  // A lattice cell by its corner points in VTK order, in units of the automaton's cells from the corner of its grid. Its present
-  // volume is shared out over 3x3x3 points. `spread`: each of them is spread over all cells that the box around its part of the
-  // lattice cell overlaps, in proportion, so that counts change smoothly as a body moves; cells inside a body of any attitude get
-  // 0.98 of FULL_SPREAD and more. With so many `layers` of others around it, unless negative, a lattice cell deep inside only
-  // fills the cells near its middle. Writes into these rows alone; returns false, and does nothing, where others are needed.
-  // `reached` grows by the cells that are written to: touched.take_in(reached) is to follow.
+  // Adds a lattice cell by its corner points in VTK order, in units of the automaton's cells from the corner of its grid. Its
+  // present volume is shared out over 3x3x3 points. `spread`: each of them is spread over all cells that the box around its part
+  // of the lattice cell overlaps, in proportion, so that counts change smoothly as a body moves; cells inside a body of any
+  // attitude get 0.98 of FULL_SPREAD and more. A lattice cell deep inside, with `layers` of others around it (unless negative),
+  // only fills the cells near its middle. Writes only into these rows; returns false, and does nothing, where others are needed.
+  // `reached` grows by the cells that are written to; touched.take_in(reached) must follow.
   bool add(const Vec3 corner[8], bool spread, int layers, const RowSlabs::Rows &rows, CellBox &reached);
   // Before the first mass after clear().
   void begin_mass();
-  // Mass at a place, in cells of liquid, by how much it is compressed by a cell of liquid that stands on the column, in cells,
-  // and its upward velocity, of at most some 1000: shared among the four columns around, in whole numbers. In its row and the one
-  // before or after.
+  // Adds mass at a place, in cells of liquid; its softness, the compression in cells by a cell of liquid that stands on the
+  // column; and its upward velocity, at most about 1000. They are shared among the four columns around, in whole numbers: in the
+  // row of the place and the one before or after.
   void add_mass(const Vec3 &place, double mass, double softness, double rising);
   // The paper's literal rule: the cell that holds a particle is full.
   void add_particle(const Vec3 &place);
 
-  // Forget all counts.
+  // Clears all counts.
   void clear(const Threads &threads);
-  // The counts of all ranks together, on each of them. The same on any number of them.
+  // Sums the counts of all ranks, on each of them. The result is the same on any number of ranks.
   void sum_over(const RankSums &ranks, const Threads &threads);
 
   std::size_t number(int x, int y, int z) const { return (static_cast<std::size_t>(z) * ny + y) * nx + x; }
@@ -65,7 +65,7 @@ class Occupancy {
   struct Spread {
     static constexpr std::uint32_t SHARES = 1024;
     double reach[3];
-    std::uint32_t weight;    // so that weight * SHARES is less than 2^32
+    std::uint32_t weight;    // such that weight * SHARES is less than 2^32
     double shares[3] = {SHARES / std::max(2.0 * reach[0], 1e-9), SHARES / std::max(2.0 * reach[1], 1e-9),
                         SHARES / std::max(2.0 * reach[2], 1e-9)};
   };

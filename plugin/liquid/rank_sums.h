@@ -8,8 +8,8 @@
 
 namespace mdanim {
 
-// All ranks call together; of a process that is alone, this class itself, nothing changes. Whole numbers only: their sums do not
-// depend on the order of ranks.
+// Called by all ranks together. For a process that is alone this class itself is used, which changes nothing. Whole numbers only:
+// their sums do not depend on the order of ranks.
 class RankSums {
  public:
   virtual ~RankSums() = default;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// What the states of liquids begin with, and what all of them are asked for.
+// The beginning of the states of liquids, and the checks that all of them need.
 
 #ifndef MDANIM_STATE_KIND_H
 #define MDANIM_STATE_KIND_H
@@ -11,7 +11,7 @@
 
 namespace mdanim {
 
-// The kind of liquid and the version of its state: a word of up to seven letters and a number, which each kind counts for itself.
+// The kind of liquid and the version of its state: a word of up to seven letters and a number, counted separately for each kind.
 struct StateKind {
   char word[8];
   double version;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// Wcislo 1999, sec. 4: the rules on single blocks and cells, and which layers and blocks they are applied to.
+// Wcislo 1999, sec. 4: the rules on single blocks and cells, and the choice of layers and blocks that they are applied to.
 
 #include "liquid/automaton/automaton.h"
 
@@ -29,7 +29,7 @@ constexpr int SIDES[6][3] = {{-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 0
 
 const auto SOURCES = all_sources();
 
-// Whether a block has solid corners and can change all the same, by its open ones.
+// Whether a block with solid corners can change all the same, by its open corners.
 std::array<bool, 16> all_broken()
 {
   std::array<bool, 16> all;
@@ -41,7 +41,7 @@ const auto BROKEN = all_broken();
 
 }    // namespace
 
-// A cell that turned solid or open, or one that received liquid, and how much.
+// A cell that turned solid or open, or one that received liquid, with the number of units.
 struct Automaton::Spill {
   int x, y, z;
   std::uint8_t units;
@@ -76,7 +76,7 @@ Automaton::Blocks Automaton::make_blocks(int first) const
   return blocks;
 }
 
-// Put a block into the list of broken ones, or take it out.
+// Puts a block into the list of broken ones, or takes it out.
 void Automaton::sort_block(Blocks &blocks, int bx, int by, int z)
 {
   const std::size_t in_layer = static_cast<std::size_t>(blocks.nx) * blocks.ny;
@@ -161,7 +161,7 @@ void Automaton::vertical_pair(Band &band, int z)
     band.layers[z] = band.layers[z + 1] = {ANYTHING, false, true};
 }
 
-// What one thread takes for it, about [ns].
+// Time of one thread for a sweep, approximately [ns].
 double Automaton::cost_of_sweep() const
 {
   constexpr double CELL = 0.25;
@@ -172,8 +172,8 @@ double Automaton::cost_of_sweep() const
 
 void Automaton::sweep(std::uint64_t when)
 {
-  constexpr double LOOK = 0.05;    // at a cell [ns], about
-  // What keeps changing is not worth a look.
+  constexpr double LOOK = 0.05;    // at a cell [ns], approximately
+  // A layer that keeps changing is not worth a look.
   threads.parts(cells.nz, LOOK * static_cast<double>(cells.layer), [this](long from, long to) {
     for (int z = static_cast<int>(from); z < to; ++z) {
       if (!layers[z].known && !layers[z].moved) look(z);
@@ -183,7 +183,7 @@ void Automaton::sweep(std::uint64_t when)
   even.key = draw_key(seed, when, Phase::EVEN_BLOCKS);
   odd.key = draw_key(seed, when, Phase::ODD_BLOCKS);
   if (threads.pays(cost_of_sweep())) return sweep_in_bands();
-  // All four steps in one pass, so that a layer is still in the cache: each needs only what is done by then.
+  // All four steps in one pass, while a layer is still in the cache: each needs only results that are ready by then.
   Band evens{even, 0, even.ny, layers.data()}, odds{odd, 0, odd.ny, layers.data()};
   for (int z = 0; z <= cells.nz; z += 2) {
     horizontal(evens, z);
@@ -195,8 +195,8 @@ void Automaton::sweep(std::uint64_t when)
   }
 }
 
-// Blocks of a horizontal step lie in one band each, and so do the cells one above the other that come after it. A band of the
-// odd blocks lies half in one and half in another band of the even ones, so these are all swept before.
+// Blocks of a horizontal step lie in one band each, and so do the cells one above the other of the vertical step after it. A band
+// of the odd blocks lies half in one and half in another band of the even ones, so these are all swept before.
 void Automaton::sweep_in_bands()
 {
   each_band(even, [this](Band &band) {
@@ -231,7 +231,7 @@ template <class Sweep> void Automaton::each_band(Blocks &blocks, const Sweep &sw
 
 // ---- displacement and filling ----
 
-// Find a cell for the liquid of a newly solid one. Notes it in `arrived`; false when there is none.
+// Finds a cell for the liquid of a newly solid one and notes it in `arrived`; false when there is none.
 bool Automaton::expel(const Spill &spill, std::uint64_t key, std::vector<Spill> &arrived)
 {
   const int x = spill.x, y = spill.y, z = spill.z;
@@ -265,7 +265,7 @@ bool Automaton::expel(const Spill &spill, std::uint64_t key, std::vector<Spill> 
         };
         if (std::abs(w - z) == d || std::abs(v - y) == d) {
           const int low = std::max(x - d, 0), high = std::min(x + d, cells.nx - 1);
-          // Most of the shells around the inner cells of a solid are solid throughout.
+          // Most of the shells around inner cells of a solid are solid throughout.
           if (std::memchr(&cells.open[row + low], Cells::OPEN, high - low + 1))
             for (int u = low; u <= high; ++u) offer(u);
         } else {
@@ -280,7 +280,7 @@ bool Automaton::expel(const Spill &spill, std::uint64_t key, std::vector<Spill> 
 
 long Automaton::displace(const std::uint8_t *solid, std::uint64_t when)
 {
-  constexpr double CELL = 0.2;    // that is not different [ns], about
+  constexpr double CELL = 0.2;    // per cell that is not different [ns], approximately
   struct Changes {
     std::vector<Spill> turned;
     std::vector<std::size_t> stilled;
@@ -363,7 +363,7 @@ long Automaton::fill(long units, const std::uint8_t *within, std::uint64_t when)
 long Automaton::total() const
 {
   long units = 0;
-  // By layers, whose sums fit into the narrower numbers that make fuller vectors.
+  // Layer by layer, so that sums fit into the narrower numbers of which a vector holds more.
   for (std::size_t layer = 0; layer < cells.content.size(); layer += cells.layer)
     units += std::accumulate(&cells.content[layer], &cells.content[layer] + cells.layer, std::uint32_t{0});
   return units;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// The liquid's automaton on a plain integer grid: vertical rule (4.16), random 2x2 permutations, displacement
-// by solids. No rule gains or loses a unit. Wcislo 1999, sec. 4; docs/physics-liquid.md for how damaged lines
-// are read.
+// The liquid's automaton on a plain integer grid: vertical rule (4.16), random 2x2 permutations, displacement by solids. No rule
+// gains or loses a unit. Wcislo 1999, sec. 4; docs/physics-liquid.md tells how damaged lines are read.
 
 #ifndef MDANIM_AUTOMATON_H
 #define MDANIM_AUTOMATON_H
@@ -16,30 +15,30 @@ namespace mdanim {
 
 struct AutomatonKernels;
 
-// Which excess moves up in (4.16), line 2, besides L > 1: only into a cell that holds less, or into any
-// (below Cells::FULLEST).
+// The excess that moves up in (4.16), line 2, besides L > 1: only into a cell that holds less, or into any (below
+// Cells::FULLEST).
 enum class Vertical { LOWER, ANY };
 
-// The cells of a basin and the rules that move liquid in them. It keeps for each layer what no rule can change, and for each 2x2
-// block whether solid cells break it.
+// The cells of a basin and the rules that move liquid in them. It keeps for each layer whether some rule can change it, and for
+// each 2x2 block whether solid cells break it.
 class Automaton {
  public:
   Automaton(int nx, int ny, int nz, std::uint64_t seed, Vertical vertical = Vertical::LOWER);
 
   Cells cells;
 
-  // One sweep: horizontal (even), vertical (a), horizontal (odd), vertical (b). `when` keys its random
-  // numbers. Layers that no rule can change are passed over.
+  // One sweep: horizontal (even), vertical (a), horizontal (odd), vertical (b). `when` keys its random numbers. Layers that no
+  // rule can change are skipped.
   void sweep(std::uint64_t when);
 
-  // Make exactly these cells solid: 0 open, 1 solid, 2 solid and still; nx*ny*nz values, x fastest. The
-  // liquid of a newly solid cell goes, whole, to a random open face neighbour with room for it, else to a
-  // random such cell of the nearest (Chebyshev) shell that has one. Returns how many cells changed between
-  // open and solid. Throws std::runtime_error when there is no room, and leaves everything as it was.
+  // Makes exactly these cells solid: 0 open, 1 solid, 2 solid and still; nx*ny*nz values, x fastest. The liquid of a newly solid
+  // cell goes, whole, to a random open face neighbour with room for it, else to a random such cell of the nearest (Chebyshev)
+  // shell that has one. Returns the number of cells that changed between open and solid. Throws std::runtime_error when there is
+  // no room, and leaves everything as it was.
   long displace(const std::uint8_t *solid, std::uint64_t when);
 
-  // Pour one unit each into empty open cells for which `within` is not 0 (nullptr: all; nx*ny*nz values),
-  // from the lowest layer up; in the last layer cells are drawn by lot. Returns how many found no room.
+  // Pours one unit each into empty open cells for which `within` is not 0 (nullptr: all; nx*ny*nz values), from the lowest layer
+  // up; in the last layer cells are drawn by lot. Returns the number of units without room.
   long fill(long units, const std::uint8_t *within, std::uint64_t when);
 
   long total() const;          // units in all cells
@@ -51,16 +50,16 @@ class Automaton {
 
   void use(const Threads &now) { threads = now; }    // the cells are the same for any number of them
 
-  // Kernels for instruction set 0, 1, … (default: the best of this processor), all with the same results.
-  // Returns their name, or nullptr and changes nothing where this processor lacks them.
+  // Kernels for instruction set 0, 1, … (default: the best of this processor), all with the same results. Returns their name, or
+  // nullptr, and then changes nothing, where this processor lacks them.
   const char *use_instruction_set(int number);
 
  private:
-  friend struct AutomatonProbe;    // of the tests
+  friend struct AutomatonProbe;    // for tests
 
-  // What is known of a layer: a horizontal step cannot change it, so it lasts until liquid comes or goes.
+  // Knowledge of a layer: if a horizontal step cannot change it, that lasts until liquid comes or goes.
   struct Layer {
-    std::uint8_t holds;    // of its open cells; more than is true does no harm but costs time
+    std::uint8_t holds;    // of its open cells; a bit too many does no harm but costs time
     bool known, moved;
   };
 
@@ -76,18 +75,18 @@ class Automaton {
     std::vector<std::vector<Broken>> broken;    // of each layer, in any order
     std::vector<int> slot;                      // of each block in that list, or -1
     std::uint64_t key = 0;
-    std::vector<std::uint16_t> draws;    // of the group of layers at hand: 8 layers, then the other 8
+    std::vector<std::uint16_t> draws;    // for the present group of layers: 8 layers, then the other 8
 
     int block(int bx, int by) const { return by * nx + bx; }
     std::uint32_t word(int block, int z) const;
   };
 
-  // Rows of blocks, the same ones of every layer: what a thread sweeps, and what it knows of layers.
+  // Rows of blocks, the same ones of every layer: the part that a thread sweeps, and its knowledge of layers.
   struct Band {
     Blocks &blocks;
     int first, last;    // [first, last)
     Layer *layers;
-    int group = -1;    // of layers whose draws are at hand
+    int group = -1;    // of layers, whose draws are present
   };
 
   Blocks make_blocks(int first) const;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// When the automaton and the level rule work, and the surface that comes of it. Reasons and measurements: docs/physics-liquid.md.
+// Times at which the automaton and the level rule work, and the resulting surface. Reasons and measurements:
+// docs/physics-liquid.md.
 
 #include "liquid/automaton/automaton_basin.h"
 
@@ -13,7 +14,7 @@
 
 namespace mdanim {
 
-static constexpr double SWEEPS_PER_CELL = 8.0;    // that the fastest solid travels
+static constexpr double SWEEPS_PER_CELL = 8.0;    // per cell of travel of the fastest solid
 static constexpr double LEVEL_RATE = 0.11;        // share of exposed cells moved while a shallow-water wave crosses one cell
 static constexpr double BETWEEN_MOVES = 0.5;      // cells that it crosses meanwhile
 static constexpr double SAMPLED = 4.0;            // cells above the liquid up to which solids are marked
@@ -56,7 +57,7 @@ void AutomatonBasin::mark_moving(const AddBodies &bodies)
   solid.mark_moving([&](Occupancy &into) { bodies(into, poured ? top_layer + SAMPLED : ANYWHERE); }, ranks, threads);
 }
 
-// Liquid leaves the cells that have become solid; returns how many have changed.
+// Liquid leaves the cells that have become solid; returns the number of cells that changed.
 long AutomatonBasin::make_room(std::uint64_t when)
 {
   const Lap lap(liquid_seconds);
@@ -71,7 +72,7 @@ void AutomatonBasin::settle(std::uint64_t when)
 
 // --- the start ---
 
-// Whole layers below the height, and of the layer that it cuts the same part of the open cells.
+// Whole layers below the height, and in the layer that it cuts the same fraction of the open cells.
 std::int64_t AutomatonBasin::units_up_to(double level, const std::vector<std::uint8_t> &within) const
 {
   const double depth = (level - shape.low.z) / shape.cell.z;
@@ -95,7 +96,7 @@ Basin::Filled AutomatonBasin::fill(const Amount &amount, const std::vector<std::
   return {wanted, wanted < 1 ? 0 : pour(wanted, within, when)};
 }
 
-// Solids first, then liquid into what they leave.
+// Solids first, then liquid into the cells that they leave open.
 long AutomatonBasin::pour(std::int64_t wanted, const std::vector<std::uint8_t> &within, std::uint64_t when)
 {
   automaton.displace(solid.codes().data(), when);
@@ -130,15 +131,15 @@ void AutomatonBasin::update(const AddBodies &bodies, std::uint64_t when)
   wait.end();
 }
 
-// Lets the liquid move: sweeps, and the level rule as often as a wave has gone half a cell or solids have changed cells.
+// Moves the liquid: sweeps, and the level rule as often as a wave has gone half a cell or solids have changed cells.
 void AutomatonBasin::flow(long changed, std::uint64_t when)
 {
   bool levelled = false;
   int most = 0;
   {
     const Lap lap(liquid_seconds);
-    // A front goes on by one cell in a move: half a cell of wave between moves makes its speed 2 sqrt(g depth), that of the front
-    // of a broken dam.
+    // A front advances by one cell in a move: half a cell of wave between moves makes its speed 2 sqrt(g depth), that of the
+    // front of a broken dam.
     crossed += std::sqrt(g * top_layer * shape.cell.z) * wait.time() / shortest;
     const int waves = static_cast<int>(std::min<double>(MOST_SWEEPS, crossed / BETWEEN_MOVES));
     crossed = std::min(BETWEEN_MOVES, crossed - waves * BETWEEN_MOVES);
@@ -157,7 +158,7 @@ void AutomatonBasin::flow(long changed, std::uint64_t when)
 
 // --- the surface ---
 
-// Heights and the smooth surface from the cells as they are now.
+// Computes heights and the smooth surface from the present cells.
 void AutomatonBasin::raise_surface(bool just_levelled)
 {
   const Lap lap(liquid_seconds);
@@ -186,18 +187,18 @@ void AutomatonBasin::smooth()
   lowest_eta = *std::min_element(eta.begin(), eta.end());
 }
 
-// Whether what ends the liquid of a column without a height never moves: each side of a wall has a level of its own.
+// Whether the solid that bounds the liquid of a column without a height never moves: each side of a wall has a level of its own.
 bool AutomatonBasin::is_parted(int x, int y) const
 {
   const Cells &c = cells();
   int z = top_layer - 1;
   while (z >= 0 && !c.content[c.at(x, y, z)]) --z;
-  if (z < 0)    // dry: what stands on the floor or hangs above it
+  if (z < 0)    // dry: a solid that stands on the floor or hangs above it
     while (++z < c.nz && c.open[c.at(x, y, z)]) {}
   else if (z + 1 < c.nz && !c.open[c.at(x, y, z + 1)])
-    ++z;    // what shuts the liquid in
+    ++z;    // the solid that shuts the liquid in
   else
-    while (z >= 0 && c.open[c.at(x, y, z)]) --z;    // what a film lies on
+    while (z >= 0 && c.open[c.at(x, y, z)]) --z;    // the solid that a film lies on
   return z >= 0 && z < c.nz && c.still[c.at(x, y, z)];
 }
 
@@ -217,7 +218,7 @@ double AutomatonBasin::shut_in_height() const
 
 // --- what acts on solids ---
 
-// The paper's own words: liquid in any of the cells around.
+// The paper's literal rule: liquid in any of the cells around.
 double AutomatonBasin::liquid_around(const Vec3 &place) const
 {
   if (!(place.z >= 0.0 && place.z < shape.nz)) return 0.0;

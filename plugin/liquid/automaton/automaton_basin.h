@@ -23,18 +23,18 @@ class AutomatonBasin : public Basin {
   enum class Immersion {
     SURFACE,
     PAPER
-  };    // what immerses a particle: the height of the surface, or liquid in the cells around
+  };    // a particle is immersed by the height of the surface, or by liquid in the cells around
 
-  // Empty when a grid can be numbered and its state be kept, else why not.
+  // Empty when a grid can be numbered and its state can be stored, else the reason why not.
   static std::string too_large(int nx, int ny, int nz);
 
-  // Throws std::bad_alloc. `ranks` stays where it is.
+  // Throws std::bad_alloc. `ranks` must outlive the basin.
   AutomatonBasin(const Shape &shape, double g, std::uint64_t seed, Vertical vertical, Immersion immersion, const RankSums &ranks);
 
   long mark_still(const AddBodies &bodies) override;
   void mark_moving(const AddBodies &bodies) override;
   Filled fill(const Amount &amount, const std::vector<std::uint8_t> &within, std::uint64_t when) override;
-  // Units, into open cells where `within` is not 0; returns how many find no room.
+  // Pours units into open cells where `within` is not 0; returns the number of units without room.
   long pour(std::int64_t units, const std::vector<std::uint8_t> &within, std::uint64_t when);
   void settle(std::uint64_t when) override;
   bool is_due(double fastest, double dt, std::int64_t step) override;
@@ -85,7 +85,7 @@ class AutomatonBasin : public Basin {
   bool is_parted(int x, int y) const;
   double shut_in_height() const;
   double liquid_around(const Vec3 &place) const;
-  // Part of the volume around a particle that counts as immersed.
+  // Fraction of the volume around a particle that counts as immersed.
   double immersed(const Vec3 &place) const
   {
     if (!(place.x >= 0.0 && place.x <= shape.nx && place.y >= 0.0 && place.y <= shape.ny)) return 0.0;
@@ -105,15 +105,15 @@ class AutomatonBasin : public Basin {
   // state
   bool poured = false;
   bool calm = false;
-  double crossed = 0.0;    // by a shallow-water wave since liquid was last levelled
-  double travel = 0.0;     // of the fastest particle near the liquid since the last update
+  double crossed = 0.0;    // distance of a shallow-water wave since liquid was last levelled
+  double travel = 0.0;     // distance of the fastest particle near the liquid since the last update
   Wait wait;
   std::int64_t swept = 0;             // sweeps so far
   std::int64_t units = 0;             // of liquid at the start
   std::vector<double> height, eta;    // of the columns; see level.h, surface.h
 
-  // what follows from it
-  std::vector<std::uint8_t> blocked;    // columns whose surface is parted by something still
+  // derived from the state
+  std::vector<std::uint8_t> blocked;    // columns whose surface is parted by a still solid
   int top_layer = 0;
   double lowest_eta = 0.0;
 };

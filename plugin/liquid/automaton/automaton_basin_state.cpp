@@ -38,8 +38,8 @@ static int air_below(const Cells &cells, int x, int y, double height)
   return first - z;
 }
 
-// Of the columns without a height those with air below the surface count as kept dry, as a hull keeps its inside, where the
-// air is two cells deep, and all around as far as it goes on: over what has just gone under the liquid closes a little late.
+// Columns without a height that have air below the surface count as kept dry, as the inside of a hull, where the air is two cells
+// deep, and all around as far as it extends. Over a body that has just gone under, the liquid closes a little late.
 void AutomatonBasin::surface(double *smooth, double *raw) const
 {
   const int nx = shape.nx;
@@ -86,7 +86,7 @@ struct StateHead {
 
 }    // namespace
 
-// The head, raw heights, and a byte for each cell: what it holds, or a code.
+// The head, raw heights, and a byte for each cell: its content, or a code.
 std::vector<std::uint8_t> AutomatonBasin::state(const Ledger &ledger) const
 {
   const StateHead head{KIND, ledger, {shape.nx, shape.ny, shape.nz}, units, swept, calm, wait, travel, crossed};
@@ -129,7 +129,7 @@ Basin::Ledger AutomatonBasin::set_state(const std::uint8_t *bytes, std::size_t s
   crossed = head.crossed;
   height = stored;
 
-  // Solids first: an empty grid loses nothing to them.
+  // Solids first: an empty grid loses no liquid to them.
   Cells &into = automaton.cells;
   std::fill(into.content.begin(), into.content.end(), 0);
   std::vector<std::uint8_t> codes(count, SolidCells::OPEN);

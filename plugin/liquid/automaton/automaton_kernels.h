@@ -14,23 +14,23 @@ namespace mdanim {
 using Pair = std::uint16_t __attribute__((may_alias, aligned(1)));
 static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "pairs of cells are read as little-endian numbers");
 
-// What there is among open cells: none with liquid, one unit, more than one.
+// Contents that occur among open cells: no liquid, one unit, more than one.
 enum Holds : std::uint8_t { ZERO = 1, ONE = 2, MORE = 4, ANYTHING = 7 };
 
 struct AutomatonKernels {
   const char *name;
   bool (*runs_here)();
-  // Draws first … first + n - 1 under a key, halves apart.
+  // Draws first … first + n - 1 under a key, with their halves apart.
   void (*draw_words)(std::uint64_t key, std::uint32_t first, int n, std::uint16_t *low, std::uint16_t *high);
-  // Permute the blocks of a layer whose four cells are open, each by the two bits of its draw at `shift`.
+  // Permutes the blocks of a layer whose four cells are open, each by the two bits of its draw at `shift`.
   void (*permute)(std::uint8_t *content, const std::uint8_t *open, int row, int nx, int ny, const std::uint16_t *draws,
                   int shift);
-  // Eq. (4.16) for n pairs of cells, one above the other. Returns whether anything changed.
+  // Applies eq. (4.16) to n pairs of cells, one above the other. Returns whether anything changed.
   bool (*exchange)(std::uint8_t *lower, std::uint8_t *upper, const std::uint8_t *open_lower, const std::uint8_t *open_upper,
                    std::size_t n, Vertical vertical);
-  // What n cells hold, as bits of Holds.
+  // Contents of n cells, as bits of Holds.
   std::uint8_t (*look)(const std::uint8_t *content, const std::uint8_t *open, std::size_t n);
-  // Whether n cells are other than `solid` (0 open, 1 solid, 2 solid and still) says.
+  // Whether some of n cells differ from `solid` (0 open, 1 solid, 2 solid and still).
   bool (*differ)(const std::uint8_t *solid, const std::uint8_t *open, const std::uint8_t *still, std::size_t n);
 };
 
@@ -48,8 +48,8 @@ MDANIM_INLINE void draw_words(std::uint64_t key, std::uint32_t first, int n, std
   }
 }
 
-// Quarter turns of the ring a b / d c: one if bit 1 of the draw is set, two more if bit 0 is. So 0 1 2 3
-// stand for nothing, both diagonals swapped, +1, -1.
+// Quarter turns of the ring a b / d c: one if bit 1 of the draw is set, two more if bit 0 is. So 0 1 2 3 stand for no change,
+// both diagonals swapped, +1, -1.
 MDANIM_INLINE void permute_row(Pair *__restrict ab, Pair *__restrict dc, const Pair *__restrict open_ab,
                                const Pair *__restrict open_dc, int n, const std::uint16_t *__restrict draws, int shift)
 {
@@ -113,7 +113,7 @@ MDANIM_INLINE bool differ(const std::uint8_t *__restrict solid, const std::uint8
 
 }    // namespace kernel
 
-// The loops once more for each instruction set: what is inlined takes the attribute of where it is.
+// The loops once more for each instruction set: an inlined function takes the attribute of the function around it.
 #define MDANIM_KERNELS(SET, TARGET, RUNS_HERE)                                                                                   \
   namespace SET {                                                                                                                \
   TARGET inline void draw_words(std::uint64_t key, std::uint32_t first, int n, std::uint16_t *low, std::uint16_t *high)          \

@@ -12,11 +12,11 @@ namespace mdanim {
 
 constexpr int LAYERS_PER_WORD = 16;    // of 32 bits, two for each layer
 
-// From which corner of its 2x2 block each corner takes its content; in ring order (0,0) (1,0) (1,1) (0,1).
+// The corner of its 2x2 block from which each corner takes its content; in ring order (0,0) (1,0) (1,1) (0,1).
 using Sources = std::array<std::uint8_t, 4>;
 
-// The horizontal rule for a block: `open` has a bit for each open corner, `draw` is 0 … 3. Permutes open
-// cells only, and which permutation depends on no content: so every arrangement stays as likely as any other.
+// The horizontal rule for a block: `open` has a bit for each open corner, `draw` is 0 … 3. It permutes open cells only. The
+// permutation does not depend on contents, so every arrangement stays as likely as any other.
 inline Sources horizontal_rule(int open, int draw)
 {
   int ring[4], n = 0;
@@ -41,7 +41,7 @@ inline Sources horizontal_rule(int open, int draw)
   return from;
 }
 
-// Move the contents of the block whose first corner is *a.
+// Moves the contents of the block whose first corner is *a.
 inline void permute_block(std::uint8_t *a, int row, const Sources &from)
 {
   const std::uint8_t was[4] = {a[0], a[1], a[row + 1], a[row]};

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// The automaton's grid (Wcislo 1999, sec. 4): whole numbers of liquid in cubic cells, and which cells are
-// solid.
+// The automaton's grid (Wcislo 1999, sec. 4): whole numbers of liquid in cubic cells, some of which are solid.
 
 #ifndef MDANIM_CELLS_H
 #define MDANIM_CELLS_H
@@ -31,7 +30,7 @@ struct Cells {
 
   // Place of a cell in the arrays; -1 and n are the rim.
   std::size_t at(int x, int y, int z) const { return (z + 1) * layer + static_cast<std::size_t>(y + 1) * row + (x + 1); }
-  // Its number among the cells proper, by which draws are keyed: it does not know the rim.
+  // Its number among the cells without the rim, which keys draws.
   std::uint64_t number(int x, int y, int z) const { return (static_cast<std::uint64_t>(z) * ny + y) * nx + x; }
 
   // Calls f(x, y, z) for all cells in the order of their numbers.
@@ -47,7 +46,7 @@ struct Cells {
   std::size_t layer;
   std::vector<std::uint8_t> content;    // 0 none, 1 at rest pressure, more under pressure; always 0 in solid cells
   std::vector<std::uint8_t> open;       // OPEN or SOLID
-  std::vector<std::uint8_t> still;      // 1 where what fills the cell never moves (held objects, the rim), else 0
+  std::vector<std::uint8_t> still;      // 1 where the solid in the cell never moves (held objects, the rim), else 0
 };
 
 }    // namespace mdanim

@@ -63,7 +63,7 @@ void Bodies::search(const Cells &cells)
     for (std::vector<Word> *grid : {&liquid, &empty, &beside}) grid->assign(rows * (row_words + 1) + 1, 0);
     begin.assign(rows, 0);
     end.assign(rows, 0);
-    // A basin is open at the top: what reaches up to there is exposed.
+    // A basin is open at the top: liquid that reaches up to there is exposed.
     for (int y = 0; y < ny; ++y)
       for (int k = 0; k < row_words; ++k) at(empty, row_of(y, nz))[k] = mask(0, nx - 1, k);
   }
@@ -128,7 +128,7 @@ void Bodies::join()
   for (int z = top; z >= 0; --z)
     for (int y = 0; y < ny; ++y) join_row(row_of(y, z));
   for (std::size_t r = 0; r < runs.size(); ++r) {
-    const int from = root(r);    // the first of its body
+    const int from = root(r);    // the first run of its body
     if (from == static_cast<int>(r)) {
       runs[r].body = all.size();
       all.emplace_back();
@@ -152,7 +152,7 @@ void Bodies::join_row(int row)
   }
 }
 
-// Rows that are alike hang together cell by cell, and may as well have the same runs.
+// Rows that are alike are connected cell by cell, and may share their runs.
 bool Bodies::share(int row, int other)
 {
   if (!std::equal(at(liquid, row), at(liquid, row) + row_words, at(liquid, other))) return false;
@@ -168,7 +168,7 @@ void Bodies::find_runs(int row)
   for (int k = 0; k < row_words; ++k)
     for (Word rest = wet[k]; rest != 0;) {
       const int from = __builtin_ctzll(rest);
-      const Word after = ~(rest >> from) & (~Word(0) >> from);    // where this run of ones ends
+      const Word after = ~(rest >> from) & (~Word(0) >> from);    // the end of this run of ones
       const int to = (after == 0 ? 64 : from + __builtin_ctzll(after)) - 1;
       rest = to == 63 ? 0 : rest & (~Word(0) << (to + 1));
       if (from == 0 && begin[row] < static_cast<int>(runs.size()) && runs.back().last == CHUNK * k - 1)

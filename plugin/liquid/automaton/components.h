@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// Bodies of liquid: which cells hang together, where they end, and whether anything in them can move.
+// Bodies of liquid: which cells are connected, where they end, and whether anything in them can move.
 
 #ifndef MDANIM_BODIES_H
 #define MDANIM_BODIES_H
@@ -14,8 +14,8 @@
 
 namespace mdanim {
 
-// A body: cells with content, connected through faces. Exposed: the cell above is open and empty, or is none,
-// for a basin is open at the top. Beside it: open and empty, with a face in common.
+// A body: cells with content, connected through faces. A cell is exposed if the cell above is open and empty, or if there is
+// none, because a basin is open at the top. A cell is beside a body if it is open and empty, with a face in common.
 struct Body {
   long exposed = 0;        // cells
   long excess = 0;         // units above 1 in a cell
@@ -35,12 +35,12 @@ class Bodies {
     int x, y, z, units;
   };
 
-  // Read the cells; all that follows is about the cells as they were then.
+  // Reads the cells; all other functions are about the cells at this time.
   void search(const Cells &cells);
   // Whether all bodies are level, as far as that is known before join(): true is certain.
   bool surely_level() const { return excess.empty() && highest <= lowest; }
-  // Find out which cells are of which body, and describe the bodies. They are numbered by their first cells, counted from the top
-  // layer down and in a layer along y, then x.
+  // Finds the body of each cell, and describes the bodies. They are numbered by their first cells, counted from the top layer
+  // down and in a layer along y, then x.
   void join();
 
   int top = -1;                  // highest layer with liquid; -1 none
@@ -49,16 +49,16 @@ class Bodies {
   std::vector<Body> all;         // after join()
 
   const Word *liquid_row(int y, int z) const { return at(liquid, row_of(y, z)); }
-  // Open and empty; in layers up to top + 1.
+  // Open and empty cells; in layers up to top + 1.
   const Word *empty_row(int y, int z) const { return at(empty, row_of(y, z)); }
   int words() const { return row_words; }
   static Word mask(int first, int last, int word);    // cells first..last
 
   // After join(): the body of a liquid cell.
   int body_of(int x, int y, int z) const;
-  // visit(body, word, bits): the exposed cells of a row, body by body; bits of the word-th word.
+  // Calls visit(body, word, bits) for the exposed cells of a row, body by body; bits of the word-th word.
   template <class Visit> void each_exposed(int y, int z, Visit visit) const;
-  // The same for the cells beside each body; a cell beside two is visited for both, and once for each.
+  // The same for the cells beside each body; a cell beside two bodies is visited for each of them, once.
   template <class Visit> void each_beside(int y, int z, Visit visit);
 
  private:
@@ -76,7 +76,7 @@ class Bodies {
   void describe();
 
   int row_of(int y, int z) const { return (z + 1) * (ny + 2) + (y + 1); }
-  // Between rows lies an empty word, so that neighbours along x need no test of bounds.
+  // An empty word lies between rows, so that neighbours along x need no test of bounds.
   std::size_t word_of(int row) const { return 1 + static_cast<std::size_t>(row) * (row_words + 1); }
   Word *at(std::vector<Word> &grid, int row) const { return &grid[word_of(row)]; }
   const Word *at(const std::vector<Word> &grid, int row) const { return &grid[word_of(row)]; }
@@ -142,7 +142,7 @@ template <class Visit> void Bodies::each_beside(int y, int z, Visit visit)
   seen_at.clear();
 }
 
-// The numbers x of the bits of a word.
+// Calls `visit` with the numbers x of the bits of a word.
 template <class Visit> inline void each_bit(int word, Bodies::Word bits, Visit visit)
 {
   for (; bits != 0; bits &= bits - 1) visit(64 * word + __builtin_ctzll(bits));

@@ -24,14 +24,14 @@ long Leveller::move(Cells &cells, std::uint64_t seed, std::uint64_t when, double
   long moved = 0;
   for (std::size_t b = 0; b < bodies.all.size(); ++b) {
     if (bodies.all[b].level()) continue;
-    const double part = std::min(std::ceil(rate * bodies.all[b].exposed), 1e15);    // a long holds it
+    const double part = std::min(std::ceil(rate * bodies.all[b].exposed), 1e15);    // a long can hold it
     moved += move_in(b, cells, key, std::max({1L, static_cast<long>(part), at_least}));
   }
   unchanged = moved == 0;
   return moved;
 }
 
-// Gather only cells that may come into play; sources from the top down, targets from the bottom up.
+// Gathers only cells that may be used; sources from the top down, targets from the bottom up.
 void Leveller::collect(const Cells &cells)
 {
   const auto add = [&](Groups &groups, int body, int x, int y, int z) {
@@ -73,7 +73,7 @@ void Leveller::Groups::group(std::size_t count)
 long Leveller::move_in(std::size_t body, Cells &cells, std::uint64_t key, long most)
 {
   Item *const giving = sources.begin(body), *const to = targets.begin(body);
-  // By an earlier body.
+  // Whether an earlier body has taken it.
   const auto taken = [&](const Item &item) { return cells.content[item.place] != 0; };
   Item *const end = std::remove_if(to, targets.end(body), taken);
   const long room = std::min<long>(most, end - to);
@@ -97,8 +97,7 @@ long Leveller::move_in(std::size_t body, Cells &cells, std::uint64_t key, long m
   return moved;
 }
 
-// Bring to the front `count` items: all of the layers that come first, and of the last one those with the
-// lowest draws.
+// Brings `count` items to the front: all items of the layers that come first, and of the last one those with the lowest draws.
 void Leveller::draw_lots(Item *from, Item *to, long count, std::uint64_t key)
 {
   if (count == 0 || from + count == to || from[count - 1].z != from[count].z) return;
@@ -154,8 +153,8 @@ bool Leveller::heights(const Cells &cells, double *height, bool just_moved)
   return std::all_of(bodies.all.begin(), bodies.all.end(), [](const Body &b) { return b.level(); });
 }
 
-// Where liquid is uneven, which is marked by minus the topmost layer: what a column holds above the solid cell
-// below its liquid (or the floor), as if it were packed.
+// Where liquid is uneven, which is marked by minus the topmost layer: the units that a column holds above the solid cell below
+// its liquid (or the floor), as if packed.
 void Leveller::pile_up(const Cells &cells, int y, double *height)
 {
   if (std::none_of(height, height + cells.nx, [](double h) { return h < 0.0; })) return;
@@ -178,7 +177,7 @@ void Leveller::pile_up(const Cells &cells, int y, double *height)
     if (height[x] < 0.0) height[x] = std::min(bed[x] + pile[x], cells.nz);
 }
 
-// Of the dry columns of a row those that hold solid cells have no height.
+// Dry columns of a row that hold solid cells have no height.
 void Leveller::forget_solid(const Cells &cells, int y, Bodies::Word *dry, double *height)
 {
   const int words = bodies.words();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// Levelling of connected liquid, fast and in whole units: what makes communicating vessels work. An addition
-// to the paper's rules, see docs/physics-liquid.md.
+// Levelling of connected liquid, fast and in whole units, as in communicating vessels. It is an addition to the paper's rules,
+// see docs/physics-liquid.md.
 
 #ifndef MDANIM_LEVEL_H
 #define MDANIM_LEVEL_H
@@ -14,14 +14,13 @@
 
 namespace mdanim {
 
-// The level rule and the heights of columns, on bodies of connected liquid (bodies.h). Buffers are kept from call to call.
+// The level rule and the heights of columns, on bodies of connected liquid (components.h). Buffers are kept from call to call.
 class Leveller {
  public:
-  // In each body of liquid (bodies.h) move units from the highest exposed cells (first of all excess, q > 1)
-  // to the lowest cells beside the body, by lot within a layer, while that is at least one layer down
-  // (excess: wherever there is room); at most max(1, ceil(rate * exposed cells), at_least) per body. What is
-  // exposed or beside is as found before the call; a cell beside two bodies goes to the first in order that
-  // has a unit for it. Returns units moved.
+  // In each body of liquid (components.h), moves units from the highest exposed cells (first of all excess, q > 1) to the lowest
+  // cells beside the body, by lot within a layer, while these are at least one layer lower (excess: wherever there is room); at
+  // most max(1, ceil(rate * exposed cells), at_least) per body. Exposed cells and cells beside are those before the call; a cell
+  // beside two bodies goes to the first in order that has a unit for it. Returns the number of units moved.
   long move(Cells &cells, std::uint64_t seed, std::uint64_t when, double rate, long at_least);
 
   // Height of the liquid in every column, in cells above the floor, x fastest, shape (ny, nx): of its topmost

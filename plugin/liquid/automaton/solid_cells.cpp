@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// Counts of samples to codes of cells, in the boxes of cells that they touch or have touched.
+// Turns counts of samples into codes of cells, in the boxes of cells that they touch or have touched.
 
 #include "liquid/automaton/solid_cells.h"
 
@@ -35,7 +35,7 @@ void SolidCells::mark_moving(const Add &add, const RankSums &ranks, const Thread
   add(mobile);
   mobile.sum_over(ranks, threads);
   box.take_in(mobile.touched);
-  constexpr double CELL = 1.0;    // [ns], about
+  constexpr double CELL = 1.0;    // [ns], approximately
   std::atomic<long> moving{0};
   box.each_row(threads, CELL, [&](int y, int z) {
     long of_row = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// Which cells of a basin solids fill.
+// The cells of a basin that solids fill.
 
 #ifndef MDANIM_SOLID_CELLS_H
 #define MDANIM_SOLID_CELLS_H
@@ -13,20 +13,20 @@
 
 namespace mdanim {
 
-// Cells at least half of which bodies fill, of all ranks together. Bodies that never move are counted apart, and seldom.
+// Cells at least half filled by bodies of all ranks. Bodies that never move are counted separately, and seldom.
 class SolidCells {
  public:
-  enum Code : std::uint8_t { OPEN = 0, MOVING = 1, STILL = 2 };    // as Automaton::displace takes them
+  enum Code : std::uint8_t { OPEN = 0, MOVING = 1, STILL = 2 };    // the codes of Automaton::displace
   // Adds this rank's bodies to the counts.
   using Add = std::function<void(Occupancy &)>;
 
   SolidCells(int nx, int ny, int nz);
 
-  // Marks what never moves; returns how many cells that changes.
+  // Marks bodies that never move; returns the number of cells that this changes.
   long mark_still(const Add &add, const RankSums &ranks, const Threads &threads);
-  // Marks all else.
+  // Marks all other bodies.
   void mark_moving(const Add &add, const RankSums &ranks, const Threads &threads);
-  // Takes up codes of all cells, x fastest; what was counted is forgotten.
+  // Sets codes of all cells, x fastest; counts are forgotten.
   void assign(const std::vector<std::uint8_t> &codes);
 
   const std::vector<std::uint8_t> &codes() const { return code; }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// A normalised filter by repeated steps of diffusion, then filling from around.
+// A normalised filter by repeated steps of diffusion, after which columns without a value are filled in from around.
 
 #include "liquid/automaton/surface.h"
 
@@ -135,7 +135,7 @@ bool Surface::level() const
   return std::none_of(regions.begin(), regions.end(), [](const Region &r) { return r.lowest < r.highest; });
 }
 
-// A region with one height only has it everywhere, bit for bit.
+// A region with only one height has that height everywhere, bit for bit.
 void Surface::spread_level()
 {
   for (const ColumnRun &run : runs)
@@ -183,7 +183,7 @@ void Surface::step()
   weight.swap(next_weight);
 }
 
-// Give every column that is not known the mean of its known neighbours, ring by ring.
+// Gives every column without a value the mean of its neighbours' values, ring by ring.
 void Surface::fill(bool blocked_too)
 {
   const auto want = [&](std::size_t place, std::vector<std::size_t> &list) {
@@ -221,7 +221,7 @@ double Surface::mean_around(std::size_t place) const
     lowest = known[n] ? std::min(lowest, value[n]) : lowest;
     highest = known[n] ? std::max(highest, value[n]) : highest;
   }
-  // Rounding must not take the mean of equal heights off them.
+  // Rounding must not change the mean of equal heights.
   return std::clamp(((value[left] + value[right]) + (value[down] + value[up])) / count, lowest, highest);
 }
 

@@ -8,12 +8,11 @@
 
 namespace mdanim {
 
-// Smooth heights (ny, nx; x fastest; NaN = none) with a filter close to a Gaussian of sigma = 2
-// cells, normalised over the columns that have a height; columns out of its reach are filled in from around.
-// `blocked` columns (not 0; a held wall that stands through the surface) have no height and pass none on:
-// each side of a wall keeps its own level. They are filled in last, as are places shut in by them where
-// no column has a height. Equal heights stay equal to the last bit; all is 0 where none has one. Writes
-// (ny, nx) values, never NaN.
+// Smooth heights (ny, nx; x fastest; NaN = none) with a filter close to a Gaussian of sigma = 2 cells, normalised over the
+// columns that have a height. Columns out of its reach are filled in from around. `blocked` columns (not 0; a held wall that
+// stands through the surface) have no height and pass none on: each side of a wall keeps its own level. They are filled in last,
+// as are places enclosed by them where no column has a height. Equal heights stay equal to the last bit; all values are 0 where
+// no column has a height. Writes (ny, nx) values, never NaN.
 void smooth_surface(int nx, int ny, const double *height, const std::uint8_t *blocked, double *smooth);
 
 }    // namespace mdanim

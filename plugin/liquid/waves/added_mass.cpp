@@ -14,8 +14,8 @@ namespace {
 
 constexpr double REACH = 2.0;    // of the motion away from a body, in distances to its edge
 constexpr double EDGE = 0.75;    // beyond the middle of the last column that is wet from below: the next one is half covered
-constexpr double ENTRY = 1.0;    // time in which liquid is taken along, in sqrt(cell/g)
-constexpr double FASTEST_GAIN = 3.0;    // in that time, in the masses that move already: light bodies would be thrown back
+constexpr double ENTRY = 1.0;    // time over which liquid is taken along, in sqrt(cell/g)
+constexpr double FASTEST_GAIN = 3.0;    // in that time, over the mass that moves already: light bodies would be thrown back
 constexpr double HIGHEST = 8.0;         // cells of liquid
 constexpr double NOWHERE = 1e9;
 
@@ -90,7 +90,7 @@ void AddedMass::find_distances(const std::vector<int> &with, const Depths *depth
   for (std::size_t n = with.size(); n-- > 0;) pass(with[n], -1);
 }
 
-// (W15): of what hangs together, as of a rigid body.
+// (W15): the acceleration of connected columns, as of a rigid body.
 void AddedMass::find_accelerations(const std::vector<int> &with, const Depths *depths, const Solids *solids, double since)
 {
   accelerations.assign(columns.size(), 0.0);

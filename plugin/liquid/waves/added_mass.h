@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// The liquid that moves up and down with what floats in it. docs/physics-liquid.md, (W14) to (W16).
+// The liquid that moves up and down with floating bodies. docs/physics-liquid.md, (W14) to (W16).
 
 #ifndef MDANIM_ADDED_MASS_H
 #define MDANIM_ADDED_MASS_H
@@ -14,10 +14,10 @@ namespace mdanim {
 class AddedMass {
  public:
   struct Depths {
-    double below = 0.0, above = 0.0;    // of the liquid that touches solids; nothing is taken along where there is none below
+    double below = 0.0, above = 0.0;    // of the liquid that touches solids; none is taken along where there is none below
   };
   struct Solids {
-    double mass = 0.0, velocity = 0.0;    // of those of a column that move; upwards
+    double mass = 0.0, velocity = 0.0;    // of the moving solids of a column; upwards
   };
   struct Column {
     double mass = 0.0, force = 0.0, velocity = 0.0;    // of the liquid that moves along, and its push on the solids, upwards
@@ -25,8 +25,8 @@ class AddedMass {
 
   AddedMass(int nx, int ny);
 
-  // For the columns `with` solids; `depths` and `solids` are of all columns. Where nothing moves, and `since` that or the last
-  // time.
+  // For the columns `with` solids; `depths` and `solids` are of all columns. start() is for the first update, or where nothing
+  // moves; `since` is the time since the last update.
   void start(const std::vector<int> &with, const Depths *depths, const Solids *solids);
   void follow(const std::vector<int> &with, const Depths *depths, const Solids *solids, double since);
   double force_on(int column) const { return columns[column].force; }
@@ -44,8 +44,8 @@ class AddedMass {
 
   // buffers
   std::vector<Column> was;
-  std::vector<double> distances;        // of the middle of each column to the edge of what is wet from below
-  std::vector<double> accelerations;    // of each column
+  std::vector<double> distances;        // from the middle of each column to the edge of the area that is wet from below
+  std::vector<double> accelerations;    // for each column
   std::vector<std::uint8_t> seen;
   std::vector<int> body;
 };

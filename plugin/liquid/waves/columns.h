@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// Columns of the basin and those beside them.
+// Columns of the basin and their neighbours.
 
 #ifndef MDANIM_COLUMNS_H
 #define MDANIM_COLUMNS_H
@@ -27,8 +27,8 @@ inline int neighbour(int column, int side, int nx, int ny)
   }
 }
 
-// What is not known gets known from what is beside it, layer by layer. find(n): whether something beside n is known; take(n): n
-// is known from now on. Returns what never gets known.
+// Spreads knowledge to neighbours, layer by layer. find(n): whether a neighbour of n is known; take(n): n is known from now on.
+// Returns the numbers that never become known.
 template <class Find, class Take> std::vector<int> learn_inward(std::vector<int> left, const Find &find, const Take &take)
 {
   std::vector<int> later, now;
@@ -43,7 +43,7 @@ template <class Find, class Take> std::vector<int> learn_inward(std::vector<int>
   return left;
 }
 
-// Mean of what is known, not NaN, in the columns beside one; NaN where nothing is.
+// Mean of the values, not NaN, in the columns beside one; NaN where there is none.
 inline double mean_beside(const std::vector<double> &values, int column, int nx, int ny)
 {
   double sum = 0.0;
@@ -57,7 +57,7 @@ inline double mean_beside(const std::vector<double> &values, int column, int nx,
   return sum / count;
 }
 
-// Columns without a value, NaN, get the mean of those beside them. Returns those that never get one.
+// Gives columns without a value, NaN, the mean of those beside them. Returns the columns that never get one.
 inline std::vector<int> fill_inward(std::vector<double> &values, const std::vector<int> &empty, int nx, int ny)
 {
   std::vector<double> found(empty.empty() ? 0 : values.size());

@@ -18,16 +18,16 @@ namespace mdanim {
 
 namespace {
 
-constexpr double STEEP = 0.35;      // sqrt(depth): by so much more than its neighbours a surface rises before it sheds drops
-constexpr double DEEPEST = 8.0;     // cells that count for that: a crown does not know of deeper liquid
-constexpr double SHED = 0.6;        // of what rises faster than that
+constexpr double STEEP = 0.35;      // sqrt(depth): excess of a surface's rise over its neighbours' before it sheds drops
+constexpr double DEEPEST = 8.0;     // cells that count for that: a crown does not depend on deeper liquid
+constexpr double SHED = 0.6;        // part of the excess that is shed
 constexpr double LARGEST = 0.15;    // drop, in cells
 constexpr double SMALLEST = 2e-3;
 constexpr int AT_ONCE = 4;          // drops of a column and an update
-constexpr double UNEVEN = 0.8;      // drops differ from their mean by this part of it at most
+constexpr double UNEVEN = 0.8;      // largest deviation of drops from their mean, as a part of it
 constexpr double SCATTER = 0.35;    // of a drop's velocity, over that of its rise
 
-// From -1 to 1.
+// A random number from -1 to 1.
 double scatter(std::uint64_t key, std::uint64_t number) { return static_cast<double>(draw(key, number) >> 11) * 0x1p-52 - 1.0; }
 
 }    // namespace
@@ -64,7 +64,7 @@ Vec3 Drops::momentum() const
   return sum;
 }
 
-// From columns whose surface rises much faster than those around.
+// Sheds drops from columns whose surface rises much faster than those around.
 void Drops::leave(Waves &waves, double dt, std::uint64_t when)
 {
   std::vector<Waves::Top> top(static_cast<std::size_t>(nx) * ny);
@@ -101,7 +101,7 @@ void Drops::leave(Waves &waves, double dt, std::uint64_t when)
     }
 }
 
-// Walls and solids stop drops, which fall along them. On what is below them they land.
+// Walls and solids stop drops, which fall along them. Drops land on solids below them.
 void Drops::fly(const SolidParts &solid, double dt)
 {
   const auto is_solid = [&](const Vec3 &at) {
@@ -114,7 +114,7 @@ void Drops::fly(const SolidParts &solid, double dt)
     x = x < 0.0 ? 0.0 : std::nextafter(static_cast<double>(cells), 0.0);
     v = 0.0;
   };
-  // Along one axis after the other, each from where there is nothing solid.
+  // Along one axis after the other, each time from an open place.
   const auto go = [&](Drop &drop, double &x, double &v, double to) {
     const bool was_solid = is_solid(drop.x);
     const double from = x;
@@ -140,7 +140,7 @@ void Drops::fly(const SolidParts &solid, double dt)
   }
 }
 
-// Into the span that is below where the drop was; what finds no room there waits above it.
+// Into the span below the drop's last place; a drop without room there waits above it.
 void Drops::land(Waves &waves, const std::vector<double> &from)
 {
   std::size_t left = 0;
@@ -158,7 +158,7 @@ void Drops::land(Waves &waves, const std::vector<double> &from)
   drops.resize(left);
 }
 
-// Two by two, with the momentum of both.
+// Joins drops in pairs, with the momentum of both.
 void Drops::merge()
 {
   std::size_t left = 0;

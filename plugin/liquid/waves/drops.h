@@ -25,19 +25,19 @@ class Drops {
 
   Drops(int nx, int ny, std::uint64_t seed) : nx(nx), ny(ny), seed(seed) {}
 
-  // After an update of the waves of the same time. `when` counts updates; the same one gives the same drops.
+  // To be called after an update of the waves of the same time. `when` counts updates; the same number gives the same drops.
   void update(Waves &waves, double dt, std::uint64_t when);
 
   const std::vector<Drop> &all() const { return drops; }
   Units total() const;
   double energy() const;    // as Waves::Energy
-  Vec3 momentum() const;    // as of Waves, and upwards
+  Vec3 momentum() const;    // as Waves::momentum(), and upwards
   std::vector<std::uint8_t> state() const;
-  // Throws std::runtime_error, and changes nothing, when it is damaged.
+  // Throws std::runtime_error, and changes nothing, when the state is damaged.
   void set_state(const std::uint8_t *bytes, std::size_t size);
 
-  double share = 0.0;         // of what rises too fast that leaves: 0 none, 1 all
-  std::size_t most = 2048;    // drops; where there are more, neighbours in the order become one
+  double share = 0.0;         // part of the liquid that rises too fast that leaves: 0 none, 1 all
+  std::size_t most = 2048;    // drops; beyond that, neighbours in the order are joined
 
  private:
   void leave(Waves &waves, double dt, std::uint64_t when);

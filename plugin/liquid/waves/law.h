@@ -9,29 +9,29 @@
 
 namespace mdanim {
 
-// What an update is computed with.
+// Constants and settings of an update.
 struct WaveLaw {
   double dt = 0.1;
   double share = 1.0;                 // of the update, this sub-update
   double film = 1.0 / 1024.0;         // a content up to this does not flow
   double viscosity = 0.02;            // between neighbouring links
-  double calm = 0.0;                  // rate at which all velocities die, see calm_rate()
+  double calm = 0.0;                  // rate at which all velocities decay, see calm_rate()
   double bed = 0.0;                   // friction of the floor, times |u|/H
   double inertia = 8.0 / 21.0;        // of rising columns, in their depth
   double quick = 0.125;               // part of the dispersive head that does not push
-  double breaking = 0.3;              // difference of heads from which on a front loses its inertia, 0 at twice that
-  double overfull = 0.15;             // part of what a full span holds too much that is turned into motion
-  double mean_over = 16.0;            // updates over which the head of a full span at rest is taken
-  double slam = 100.0;                // most that a head falls below its surface, and rises above the basin
+  double breaking = 0.3;              // difference of heads from which a front loses its inertia, completely at twice that
+  double overfull = 0.15;             // part of the excess in a full span that is turned into motion
+  double mean_over = 16.0;            // updates over which the head of a full span at rest is averaged
+  double slam = 100.0;                // greatest fall of a head below its surface, and rise above the basin
   double height = 1.0;                // of the basin
   double fastest = 16.0;              // velocity
   double units_per_cell = 1 << 20;    // of content
 };
 
-// Friction under which waves die to 1/e in a time: half of their energy is in velocities.
+// Friction under which waves decay to 1/e in a time: half of their energy is in velocities.
 constexpr double calm_rate(double time) { return 2.0 / time; }
 
-// (W1) Head of the surface of a span with solids at its ends alone. A full span has the head of its rest.
+// (W1) Head of the surface of a span with solids only at its ends. A full span has the head of its rest.
 template <class Real> struct SpanSurface {
   Real full, rest, phi, head;
 };
@@ -51,7 +51,7 @@ MDANIM_ALWAYS_INLINE SpanSurface<Real> surface(const Real &volume, const Real &c
   return s;
 }
 
-// (W2) How high a link is filled from one side: at least its lower edge.
+// (W2) Height to which a link is filled from one side: at least its lower edge.
 template <class Real>
 MDANIM_ALWAYS_INLINE Real level_at(const WaveLaw &law, const Real &head, const Real &volume, const Real &edge)
 { return pick(volume > constant<Real>(law.film), larger(edge, head), edge); }
@@ -78,7 +78,7 @@ template <class Real> struct Around {
 };
 
 // (W3) Advection of Stelling & Duinmeijer 2003 and viscosity, both as a mean of velocities; (W4) friction. Viscosity acts over
-// the height that two links share: what one gains the other loses.
+// the height that two links share: one gains the momentum that the other loses.
 template <class Real>
 MDANIM_ALWAYS_INLINE Real advected(const WaveLaw &law, const Real &u, const Around<Real> &around, const Real &volume_a,
                                    const Real &volume_b, const Real &height)
@@ -122,7 +122,7 @@ template <class Real> struct SpanSums {
     beside_full = pick(wet > Real{}, larger(beside_full, either), beside_full);
     inflow += inward;
   }
-  // From an edge liquid falls: the side below it does not push back.
+  // Over an edge liquid falls: the side below it does not push back.
   MDANIM_ALWAYS_INLINE void couple(const Real &head, const Real &other, const Real &edge, const Real &height)
   {
     const auto below = head < edge;
@@ -133,7 +133,7 @@ template <class Real> struct SpanSums {
 
 constexpr double POROUS = 0.999;    // d volume/d height of columns that solids partly fill is less
 
-// (W5) A free span: its head is that of its surface and what its rising takes.
+// (W5) A free span: its head is that of its surface and the head that its rise takes.
 template <class Real>
 MDANIM_ALWAYS_INLINE Real free_stiffness(const WaveLaw &law, const Real &steepest, const Real &volume, const Real &slope)
 {
@@ -143,7 +143,7 @@ MDANIM_ALWAYS_INLINE Real free_stiffness(const WaveLaw &law, const Real &steepes
   return slope / larger(constant<Real>(law.dt * law.dt), smooth * constant<Real>(law.inertia) * volume);
 }
 
-// (W6) A full span: what its roof yields, and what it has to let out.
+// (W6) A full span: the yield of its roof, and the liquid that it has to let out.
 template <class Real>
 MDANIM_ALWAYS_INLINE Real full_rhs(const WaveLaw &law, const Real &volume, const Real &capacity, const Real &coming,
                                    const Real &inflow)
@@ -157,7 +157,7 @@ template <class Real>
 MDANIM_ALWAYS_INLINE Real coupling(const Real &head_a, const Real &head_b, const Real &edge, const Real &height)
 { return pick(smaller(head_a, head_b) < edge, Real{}, height); }
 
-// (W7) The head that pushes: of free spans not beside full ones, all but a part of what its rising takes.
+// (W7) The head that pushes: for free spans not beside full ones, all except a part of the head that the rise takes.
 template <class Real>
 MDANIM_ALWAYS_INLINE Real pushing_head(const WaveLaw &law, const Real &head, const Real &delta, const Real &volume,
                                        const Real &full, const Real &beside_full)
@@ -172,7 +172,7 @@ template <class Real> struct UpwindFlux {
   Real u, units;    // velocity; units that pass in this sub-update, a whole number
 };
 
-// To the nearest whole number, of those below 2^51.
+// Rounds to the nearest whole number, for numbers below 2^51.
 template <class Real> MDANIM_ALWAYS_INLINE Real whole(const Real &a)
 {
   const Real big = constant<Real>(6755399441055744.0);    // 1.5 * 2^52
@@ -193,7 +193,7 @@ MDANIM_ALWAYS_INLINE UpwindFlux<Real> pushed(const WaveLaw &law, const Real &u, 
   return {pick(flows, held, none), pick(flows, whole(height * held * constant<Real>(law.dt * law.units_per_cell)), none)};
 }
 
-// (W9) What passes from and to a span, in units.
+// (W9) Units that pass from and to a span.
 template <class Real> struct SpanFluxes {
   Real in{}, out{};
 
@@ -202,7 +202,8 @@ template <class Real> struct SpanFluxes {
     in += larger(inward, Real{});
     out += larger(Real{} - inward, Real{});
   }
-  // Of what leaves and of what enters, so that the content stays between 0 and `most`: 1, or less by more than rounding.
+  // Shares of the leaving and of the entering flux, so that the content stays between 0 and `most`: 1, or less by more than
+  // rounding.
   MDANIM_ALWAYS_INLINE Real out_share(const Real &content) const
   { return pick(out > content, content / larger(out, constant<Real>(1.0)) * constant<Real>(1.0 - 1e-12), constant<Real>(1.0)); }
   MDANIM_ALWAYS_INLINE Real in_share(const Real &content, const Real &most) const

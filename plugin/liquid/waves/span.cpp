@@ -14,12 +14,12 @@ namespace {
 
 double share(int part) { return part / static_cast<double>(SolidParts::FULL); }
 
-// Whether a span has what is open of the cell below it, or above it. Of one shut cell between two spans the upper one has it.
+// Whether a span owns the open part of the cell below it, or above it. Of one shut cell between two spans the upper one owns it.
 bool has_below(const SolidParts &solid, int column, int low) { return low > 0 && solid.shut(column, low - 1); }
 bool has_above(const SolidParts &solid, int column, int high)
 { return high < solid.nz && solid.shut(column, high) && solid.shut(column, high + 1); }
 
-// The open part of a cell of a span, and between which heights the cell takes liquid in.
+// The open part of a cell of a span, and the heights between which the cell takes liquid in.
 struct Slice {
   double low, high, open;
 };
@@ -45,8 +45,8 @@ Span cut(const SolidParts &solid, int column, int low, int high)
   for (int z = low; z < high; ++z) span.capacity += (SolidParts::FULL - part(z)) * SolidParts::UNITS;
   while (span.clear < high - 1 && !part(span.clear)) ++span.clear;
   span.plain = span.clear >= high - 1;
-  // The solid part of an end cell lies at that end; that of a single cell at the lower one, but over the floor of the basin at
-  // the upper one: it is what comes down on the floor.
+  // The solid part of an end cell lies at that end. That of a single cell lies at the lower end, but over the floor of the basin
+  // at the upper one, because it is of a body that comes down on the floor.
   const bool is_gap = low == 0 && high == 1;
   if (!is_gap) span.floor += share(part(low));
   if (is_gap || high - 1 > low) span.roof -= share(part(high - 1));
@@ -63,8 +63,8 @@ Span cut(const SolidParts &solid, int column, int low, int high)
   return span;
 }
 
-constexpr int MOST = 5;                   // cells through which a plate passes that is tilted by 45 degrees
-constexpr double THINNEST = 7.0 / 8.0;    // cells that it holds
+constexpr int MOST = 5;                   // cells that a plate tilted by 45 degrees passes through
+constexpr double THINNEST = 7.0 / 8.0;    // part of a cell, the least that such a plate holds
 
 bool holds_plate(const SolidParts &solid, int column, int from, int to)
 {
@@ -81,7 +81,7 @@ bool goes_on(const SolidParts &solid, int column, int from, int to)
   return true;
 }
 
-// Whether nothing goes from one column to another between two heights.
+// Whether there is no opening from one column to another between two heights.
 bool is_closed(const SolidParts &solid, int column, int other, int from, int to)
 {
   for (int z = std::max(0, from); z < std::min(solid.nz, to); ++z)
@@ -89,13 +89,13 @@ bool is_closed(const SolidParts &solid, int column, int other, int from, int to)
   return true;
 }
 
-// Whether partly solid cells [low, high) between open ones, with slivers in these, are a plate that lies across the column: of
-// one lattice cell, which may be a tenth smaller than a cell, and with as much in all columns beside it, perhaps a cell higher or
+// Whether partly solid cells [low, high) between open ones, with slivers in these, are a plate that lies across the column: one
+// lattice cell thick, which may be a tenth thinner than a cell, and as thick in all columns beside it, perhaps a cell higher or
 // lower. At the rim of a body there is less on one side.
 bool is_plate(const SolidParts &solid, int column, int low, int high)
 { return high - low <= MOST && holds_plate(solid, column, low - 1, high + 1) && goes_on(solid, column, low - 2, high + 2); }
 
-// The face in such a plate below which there is nearest to half of it.
+// The face in such a plate that has nearest to half of it below.
 int middle_of(const SolidParts &solid, int column, int low, int high)
 {
   int all = 0, below = 0, face = low + 1;
@@ -107,8 +107,9 @@ int middle_of(const SolidParts &solid, int column, int low, int high)
   return face;
 }
 
-// The same for some cells [low, high) of a column which an upright wall fills in part, above or below the plate or on both sides:
-// of what the wall leaves open the plate takes as much. Returns the face in its middle, or 0 where there is none.
+// The same for some cells [low, high) of a column that an upright wall fills in part, above or below the plate or on both sides:
+// the plate takes the same fraction of the space that the wall leaves open. Returns the face in its middle, or 0 where there is
+// none.
 int plate_at_wall(const SolidParts &solid, int column, int low, int high)
 {
   const auto part = [&](int z) { return share(solid.at(column, z)); };
@@ -118,7 +119,7 @@ int plate_at_wall(const SolidParts &solid, int column, int low, int high)
   double sum = 0.0;
   for (int z = low; z < high; ++z) sum += over(z);
   double best = sum;
-  int first_over = low;    // from here on the wall above counts
+  int first_over = low;    // from here on there is the wall above
   for (int z = low; z + 1 < high; ++z) {
     sum += under(z) - over(z);
     if (sum > best) best = sum, first_over = z + 1;
@@ -205,7 +206,7 @@ double volume_below(const SolidParts &solid, const Span &span, double height)
   return volume;
 }
 
-// Where they are at the same height it leaves less than half open. Spread samples of a tilted plate leave more than nothing.
+// At equal height the plate leaves less than half open. Spread samples of a tilted plate leave more than nothing.
 bool are_parted(const SolidParts &solid, const Span &a, const Span &b)
 {
   const auto is_below = [&](const Span &lower, const Span &upper) {

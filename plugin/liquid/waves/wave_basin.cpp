@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// When waves go on, what of the basin is solid, and what a particle finds.
+// Times of updates of waves, the solid parts of the basin, and the liquid at a particle.
 
 #include "liquid/waves/wave_basin.h"
 
@@ -16,14 +16,14 @@ namespace mdanim {
 namespace {
 
 constexpr double SAMPLED = 4.0;    // cells above the liquid up to which solids are marked
-constexpr double LONGEST = 0.2;    // that the liquid goes on at once, in sqrt(cell/g)
+constexpr double LONGEST = 0.2;    // time that the liquid advances at once, in sqrt(cell/g)
 constexpr double ROUNDING = 1e-9;
-constexpr double ASLEEP = 1.0 / 64.0;       // cells that a solid may go before liquid at rest looks
-constexpr double SLOW = 1.0;                // time in which what pushes sideways follows, in sqrt(cell/g)
+constexpr double ASLEEP = 1.0 / 64.0;       // cells that a solid may go before liquid at rest is updated
+constexpr double SLOW = 1.0;                // time constant of the sideways push, in sqrt(cell/g)
 constexpr double CALMING = 1.0;             // rate at which columns of solids lose their vibration, in sqrt(g/cell)
-constexpr double YIELDING = 4.0;            // times what its mass says
-constexpr double SOFT = 0.5;                // part of its compression by which the end of a column yields within an update
-constexpr double MASS_STEP = 1.0 / 64.0;    // so that what shakes a little does not wake the liquid
+constexpr double YIELDING = 4.0;            // multiple of the yield that follows from its mass
+constexpr double SOFT = 0.5;                // part of the compression by which the end of a column yields within an update
+constexpr double MASS_STEP = 1.0 / 64.0;    // so that small vibrations do not wake the liquid
 constexpr double FLATTEST = 1.25;           // longest edge of a cell over the shortest
 constexpr double IMPULSE_UNIT = 1.0 / (1LL << 40);
 constexpr double PUSH_UNIT = 1.0 / (1LL << 32);    // cells of liquid
@@ -133,19 +133,19 @@ void WaveBasin::mark_moving(const AddBodies &bodies)
   const Lap lap(occupancy_seconds);
   marked.take_in(mobile.touched);
   mobile.clear(threads);
-  bodies(mobile, poured ? top_layer + SAMPLED : shape.nz);    // what is above the basin has no place in the liquid
+  bodies(mobile, poured ? top_layer + SAMPLED : shape.nz);    // solids above the basin have no place in the liquid
   mobile.sum_over(ranks, threads);
   count_parts();
 }
 
-// Parts of cells from counts, where there is something or was. Counts lie along x and parts along z: in blocks of columns both
-// stay in the cache.
+// Computes parts of cells from counts, where there is something or was. Counts lie along x and parts along z: in blocks of
+// columns both stay in the cache.
 void WaveBasin::count_parts()
 {
   marked.take_in(still.touched);
   marked.take_in(mobile.touched);
   changed.take_in(marked);
-  constexpr double CELL = 1.5, COLUMN = 5.0;    // [ns], about
+  constexpr double CELL = 1.5, COLUMN = 5.0;    // [ns], approximately
   constexpr int BLOCK = 64;                     // columns
   std::atomic<long> with_something{0};
   marked.each_y(threads, CELL, [&](int y) {
@@ -167,7 +167,7 @@ void WaveBasin::count_parts()
   const double period = std::min(pace.period, LONGEST);
   threads.parts(columns(), COLUMN, [&](long first, long end) {
     for (long c = first; c < end; ++c) {
-      // What is elastic yields more than its mass says.
+      // An elastic body yields more than its mass says.
       const double own = mobile.mass_of(c), soft = SOFT * mobile.softness_of(c) / (period * period);
       mass[c] = own > 0.0 ? std::max(MASS_STEP, std::floor(own / (YIELDING + own * soft) / MASS_STEP + 0.5) * MASS_STEP) : 0.0;
       afloat[c] = own > 0.0 ? AddedMass::Solids{own, mobile.momentum_of(c) / own} : AddedMass::Solids{};
@@ -198,7 +198,7 @@ Basin::Filled WaveBasin::fill(const Amount &amount, const std::vector<std::uint8
       return mobile.count[cell] > still.count[cell];
     });
   };
-  // Up to a level, in units, and by one unit more in the first columns.
+  // Pours up to a level, in units, and one unit more in the first columns.
   const auto pour = [&](std::int64_t level, int first) {
     for (int c = 0; c < columns(); ++c)
       height[c] = std::clamp(static_cast<double>(level + (c < first)) / UNITS_PER_CELL, low[c], high[c]);
@@ -231,7 +231,7 @@ Basin::Filled WaveBasin::fill(const Amount &amount, const std::vector<std::uint8
   units = waves.total();
   energy_at_start = energy_now();
   poured = true;
-  stale = true;    // so that the first look updates
+  stale = true;    // so that the first check updates
   wait.looked = static_cast<std::int64_t>(when);
   look();
   find_push(1.0, 0.0);
@@ -240,7 +240,7 @@ Basin::Filled WaveBasin::fill(const Amount &amount, const std::vector<std::uint8
 
 // --- time ---
 
-// Awake, before the next look would come too late.
+// Awake, an update is due before the next check would come too late.
 bool WaveBasin::is_due(double fastest, double dt, std::int64_t step)
 {
   const std::int64_t steps = wait.look(step, pace.every, dt);
@@ -254,7 +254,7 @@ bool WaveBasin::is_due(double fastest, double dt, std::int64_t step)
          since + pace.every * dt > (1.0 + ROUNDING) * LONGEST * unit_of_time;
 }
 
-// All of the time since the last update, in parts. Only liquid that slept leaves out what it has slept.
+// Advances all of the time since the last update, in parts. Only liquid that slept leaves out the time that it slept.
 void WaveBasin::update(const AddBodies &bodies, std::uint64_t)
 {
   const bool slept_until_now = sleeps();
@@ -278,8 +278,8 @@ void WaveBasin::update(const AddBodies &bodies, std::uint64_t)
   stale = false;
 }
 
-// What solids have done to the liquid, and it to them, since the last update. What liquid that was `asleep` gave to solids it got
-// from the basin.
+// Exchanges the impulses of solids on the liquid, and of the liquid on them, since the last update. Impulses that liquid gave to
+// solids while `asleep` came from the basin.
 void WaveBasin::give_impulses(double since, double asleep)
 {
   std::vector<std::int64_t> all = from_solids;
@@ -299,7 +299,7 @@ void WaveBasin::give_impulses(double since, double asleep)
   std::fill(from_solids.begin(), from_solids.end(), 0);
 }
 
-// Part `n` of an update: makers, waves and drops. Drops lose momentum to walls too, and get some by their scatter.
+// Part `n` of an update: makers, waves and drops. Drops also lose momentum to walls, and gain some by their scatter.
 void WaveBasin::go_on(double time, int parts, int n)
 {
   makers.apply(waves, time);
@@ -312,7 +312,7 @@ void WaveBasin::go_on(double time, int parts, int n)
 
 // --- what a particle finds ---
 
-// Parts of a lattice cell are as high as half a cell. Their middles lie half way from the middle of the cell to its corners.
+// Parts of a lattice cell are half a cell high. Their middles lie half-way from the middle of the cell to its corners.
 Basin::OnParts WaveBasin::on_parts(const Vec3 &middle) const
 {
   OnParts on;
@@ -345,7 +345,7 @@ void WaveBasin::find_push(double part, double since)
 
 double WaveBasin::calms_solids() const { return CALMING / unit_of_time; }
 
-// Mean of the columns around with something in them.
+// Mean of the columns around that hold solids.
 double WaveBasin::rising_at(const Vec3 &place) const
 {
   const double px = std::clamp(place.x - 0.5, 0.0, shape.nx - 1.0), py = std::clamp(place.y - 0.5, 0.0, shape.ny - 1.0);
@@ -365,10 +365,10 @@ double WaveBasin::rising_at(const Vec3 &place) const
   return weights > 0.0 ? sum / weights * speed_of_waves() : 0.0;
 }
 
-// std::llround is a call.
+// std::llround is a call, and slower.
 static std::int64_t whole(double x) { return static_cast<std::int64_t>(x + (x < 0.0 ? -0.5 : 0.5)); }
 
-// `impulse` is over the liquid's density.
+// `impulse` is divided by the liquid's density.
 void WaveBasin::take_impulse(const Vec3 &place, const Vec3 &impulse)
 {
   if (!(place.x >= 0.0 && place.x <= shape.nx && place.y >= 0.0 && place.y <= shape.ny)) return;

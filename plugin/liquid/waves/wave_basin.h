@@ -17,22 +17,22 @@
 
 namespace mdanim {
 
-// Waves, the cells that solids fill, and the push of the one on the other. The unit of time of the waves is sqrt(cell/g).
+// Waves, the cells that solids fill, and the push of each on the other. The unit of time of the waves is sqrt(cell/g).
 class WaveBasin : public Basin {
  public:
-  // Empty when there can be such a basin, else why not.
+  // Empty when such a basin is possible, else the reason why not.
   static std::string unusable(const Shape &shape);
 
-  // `calm` [1/time] is the rate at which waves die besides, `spray` the share of drops, see Drops. Throws std::bad_alloc. `ranks`
-  // stays where it is.
+  // `calm` [1/time] is a rate at which waves decay in addition, `spray` the share of drops, see Drops. Throws std::bad_alloc.
+  // `ranks` must outlive the basin.
   WaveBasin(const Shape &shape, double g, double calm, double spray, std::uint64_t seed, const RankSums &ranks);
 
-  // What makes waves, before the first update; lengths, times and volumes in units of the world. Sides are those of WaveMakers.
+  // Makers of waves, to be added before the first update; lengths, times and volumes in units of the world. Sides are those of
+  // WaveMakers.
   void add_wave(int side, double amplitude, double period, double depth);
   void add_current(int side, double speed);
-  // In with a velocity, or out where `rate` [volume/time] is negative: columns whose middle lies between the corners, or one at
-  // least, at the height of the middle.
-  // Velocities up to this one along x or y [distance/time].
+  // Liquid comes in with a velocity, or goes out where `rate` [volume/time] is negative: in columns whose middle lies between the
+  // corners, at least one, at the height of the middle. Velocities are limited to fastest() along x or y [distance/time].
   double fastest(int axis) const { return waves.law.fastest * (axis == 0 ? shape.cell.x : shape.cell.y) / unit_of_time; }
   void add_flow(const Vec3 &low, const Vec3 &high, double rate, double ux, double uy);
 
@@ -103,33 +103,33 @@ class WaveBasin : public Basin {
   WaveMakers makers;
   Drops drops;
   Occupancy still, mobile;
-  CellBox marked, changed;            // cells outside are open; as the waves know them
-  std::vector<std::uint16_t> part;    // solid, of each cell, see SolidParts
-  std::vector<double> mass;           // of what floats in each column, in cells of liquid, as the liquid is told
+  CellBox marked, changed;            // cells outside are open; the cells that the waves know
+  std::vector<std::uint16_t> part;    // solid part of each cell, see SolidParts
+  std::vector<double> mass;           // of floating bodies in each column, in cells of liquid, as given to the liquid
   std::vector<AddedMass::Solids> afloat;
   struct Rising {
-    double there = 0.0, velocity = 0.0;    // 1 where there is any; upwards, over speed_of_waves()
+    double there = 0.0, velocity = 0.0;    // 1 where there are solids; upward velocity, over speed_of_waves()
   };
   std::vector<Rising> rising;
 
   // state
   bool poured = false, stale = false;    // stale: solids have changed that the liquid does not know of
-  double travel = 0.0;                   // of the fastest particle near the liquid since the last update, in cells
+  double travel = 0.0;                   // distance of the fastest particle near the liquid since the last update, in cells
   Wait wait;
-  double gone = 0.0, slept = 0.0;    // [time] that the liquid has gone through in updates, and what it has left out at rest
+  double gone = 0.0, slept = 0.0;    // [time] that the liquid has advanced in updates, and that it has left out at rest
   std::int64_t updates = 0;
   Units units = 0;    // of liquid at the start
   double energy_at_start = 0.0;
   Impulses account;                 // in units of the waves
-  long moving = 0;                  // cells with something in them that moves
-  std::uint64_t still_known = 0;    // a checksum of what never moves
+  long moving = 0;                  // cells with moving solids
+  std::uint64_t still_known = 0;    // a checksum of the solids that never move
 
-  // what follows from it
-  static constexpr std::uint64_t NOTHING_STILL = 1469598103934665603ULL;    // the checksum where there is none
-  std::uint64_t walled_for = NOTHING_STILL;    // that of what never moves for which the waves know their walls
-  // From solids, none between updates: of each column along x, then along y; then what pushes solids along x and y.
+  // derived from the state
+  static constexpr std::uint64_t NOTHING_STILL = 1469598103934665603ULL;    // the checksum without such solids
+  std::uint64_t walled_for = NOTHING_STILL;    // the checksum for which the waves have set their walls
+  // From solids, none between updates: for each column along x, then along y; then the push on solids along x and y.
   std::vector<std::int64_t> from_solids;
-  std::vector<double> heads, tops;     // of columns: the surface that solids feel, and the topmost liquid, see surface()
+  std::vector<double> heads, tops;     // for each column: the surface that acts on solids, and the topmost liquid, see surface()
   std::vector<std::uint8_t> hollow;    // columns that a hull keeps dry below the surface
   int top_layer = 0;
   double crest = 0.0;    // the highest head under open sky

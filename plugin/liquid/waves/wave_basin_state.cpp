@@ -20,7 +20,7 @@ namespace {
 
 constexpr StateKind KIND{"waves", 10.0};
 constexpr std::uint8_t SOLID_CODE = 255;
-constexpr double PUDDLE = 1.0 / 64.0;    // cells that are part of the floor
+constexpr double PUDDLE = 1.0 / 64.0;    // in cells: lower floors belong to the floor of the basin
 constexpr double PI = 3.14159265358979323846;
 
 struct WaveBasinHead {
@@ -75,7 +75,7 @@ double WaveBasin::mean_level() const
   return shape.low.z + shape.cell.z * all / columns();
 }
 
-// Heads of all columns; those without liquid that solids hide have the mean of those around.
+// Finds heads of all columns; columns without liquid that solids hide get the mean of those around.
 void WaveBasin::look()
 {
   std::vector<int> unknown;
@@ -91,7 +91,7 @@ void WaveBasin::look()
   top_layer = std::clamp(static_cast<int>(std::ceil(highest)), 0, shape.nz);
 }
 
-// The head of the topmost liquid, NaN where there is none below a solid. Its top is told where nothing is above it.
+// Finds the head of the topmost liquid, NaN where there is none below a solid. Its top is given where there is no solid above it.
 void WaveBasin::look_at_column(int column)
 {
   const int spans = waves.spans_of(column);
@@ -100,7 +100,7 @@ void WaveBasin::look_at_column(int column)
   for (int n = spans - 1; n >= 0; --n) {
     const Waves::SpanView span = waves.span_view(column, n);
     const bool last = n == spans - 1 && span.high == shape.nz;
-    // A little that stands on a body is not a surface; on the open floor dry ground is.
+    // A thin layer on a body is not a surface; dry ground on the open floor is one.
     const bool on_floor = n == 0 && last && span.floor < PUDDLE;
     if (!on_floor && span.volume < ON_BODY) continue;
     heads[column] = std::min(span.phi, shape.nz + 1.0);
@@ -112,7 +112,7 @@ void WaveBasin::look_at_column(int column)
   }
 }
 
-// At bodies the surface around them: the head of the liquid below them is that of the pressure there.
+// At bodies, the surface around them: the head of the liquid below them is that of the pressure there.
 double WaveBasin::smooth_height(int column) const
 {
   const double around = push.state()[column];
@@ -156,7 +156,7 @@ void WaveBasin::contents(std::uint8_t *out) const
 
 // --- state ---
 
-// The head, masses, what floats, heads and added masses of columns, the makers, the drops, the waves.
+// The head; masses, floating bodies, heads and added masses of columns; the makers, the drops, the waves.
 std::vector<std::uint8_t> WaveBasin::state(const Ledger &ledger) const
 {
   const Bytes of_drops = drops.state();
@@ -203,7 +203,7 @@ Basin::Ledger WaveBasin::set_state(const std::uint8_t *bytes, std::size_t size)
   taken.set_state(flying, head.of_drops);
   WaveMakers(makers).set_state(made, of_makers);
   const std::size_t of_waves = reader.left();
-  waves.set_state(reader.skip(of_waves), of_waves);    // which also tells other makers, by its size
+  waves.set_state(reader.skip(of_waves), of_waves);    // its size also reveals other makers
   drops = taken;
   makers.set_state(made, of_makers);
   mass = masses;

@@ -20,9 +20,9 @@ namespace {
 
 constexpr double ANY_HEIGHT = 1e9;
 constexpr double TWO_PI = 6.283185307179586;
-constexpr double MOST_DUE = 1e18;    // units: more than any basin holds, less than a whole number of 64 bits
+constexpr double MOST_DUE = 1e18;    // units: more than any basin holds, less than an integer of 64 bits can hold
 
-// k of w^2 = k tanh(k depth).
+// Solves w^2 = k tanh(k depth) for k.
 double wave_number(double w, double depth)
 {
   double k = w * w / std::sqrt(tangent_hyperbolic(w * w * depth));
@@ -66,7 +66,7 @@ void WaveMakers::add_drain(const Mouth &mouth, double rate)
 
 void WaveMakers::add_paddle(Side side, double amplitude, double period, double depth)
 {
-  // What comes in at a wall runs away with the velocity of a group.
+  // Liquid that comes in at a wall runs away with the group velocity.
   const double w = TWO_PI / period, k = wave_number(w, depth), twice = 2.0 * k * depth;
   const double flux = amplitude * w / k * 0.5 * (1.0 + over_sine_hyperbolic(twice));
   const Mouth mouth = along(side);
@@ -89,10 +89,10 @@ void WaveMakers::apply(Waves &waves, double dt)
   account.time += dt;
   for (std::size_t n = 0; n < makers.size(); ++n) {
     const Maker &m = makers[n];
-    double volume = m.rate * dt;    // that comes in, or goes out where it is negative
+    double volume = m.rate * dt;    // volume that comes in, or goes out where it is negative
     if (m.kind == DRAIN) volume = -volume;
     if (m.kind == PADDLE) {
-      // In front of a paddle that starts in its first period.
+      // Volume in front of a paddle that starts in its first period.
       const auto pushed = [&](double time) {
         const double periods = time / m.period;
         return m.rate * m.period / TWO_PI * std::min(1.0, periods) * sine_of_turns(periods);
@@ -104,7 +104,7 @@ void WaveMakers::apply(Waves &waves, double dt)
       each_column(m.drain, nx, [&](int column) { volume += m.rate * dt * waves.top_of(column).volume; });
     }
     due[n] = std::clamp(due[n] + volume * UNITS_PER_CELL, -MOST_DUE, MOST_DUE);
-    const Units units = static_cast<Units>(due[n]);    // towards 0
+    const Units units = static_cast<Units>(due[n]);    // rounds towards 0
     due[n] -= static_cast<double>(units);
     const double ux = m.kind == PADDLE ? 0.0 : m.u[0], uy = m.kind == PADDLE ? 0.0 : m.u[1];
     if (m.kind == CURRENT) {
@@ -117,7 +117,7 @@ void WaveMakers::apply(Waves &waves, double dt)
   }
 }
 
-// The same into each column, the remainder into the first ones; returns what found room.
+// Gives the same to each column, and the remainder to the first ones; returns the units that found room.
 Units WaveMakers::come(Waves &waves, const Mouth &mouth, Units units, double ux, double uy)
 {
   const Units columns = columns_of(mouth);
@@ -130,7 +130,7 @@ Units WaveMakers::come(Waves &waves, const Mouth &mouth, Units units, double ux,
   return given;
 }
 
-// Of each column by what it holds.
+// Takes from each column in proportion to its content.
 Units WaveMakers::go(Waves &waves, const Mouth &mouth, Units units)
 {
   double all = 0.0;

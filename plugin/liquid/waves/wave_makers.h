@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// What makes waves and currents: liquid that comes in and goes out, to the unit. docs/physics-liquid.md, "Makers of waves".
+// Makers of waves and currents: liquid that comes in and goes out, exact to the unit. docs/physics-liquid.md, "Makers of waves".
 
 #ifndef MDANIM_WAVE_MAKERS_H
 #define MDANIM_WAVE_MAKERS_H
@@ -14,8 +14,8 @@ namespace mdanim {
 
 class Waves;
 
-// At any time waves.total() is what it was at the start, plus in(), minus out(), but for liquid that flies. Lengths are in cells,
-// times in sqrt(cell/g).
+// At any time waves.total() is its value at the start, plus in(), minus out(), apart from liquid that flies. Lengths are in
+// cells, times in sqrt(cell/g).
 class WaveMakers {
  public:
   enum Side { WEST, EAST, SOUTH, NORTH };
@@ -29,30 +29,30 @@ class WaveMakers {
 
   WaveMakers(int nx, int ny) : nx(nx), ny(ny) {}
 
-  // `rate` in cells per time, for the whole mouth; in with a velocity. What finds no room stays outside.
+  // `rate` in cells per time, for the whole mouth; liquid comes in with a velocity. Liquid that finds no room stays outside.
   void add_inflow(const Mouth &mouth, double rate, double ux, double uy);
   void add_drain(const Mouth &mouth, double rate);
-  // A paddle along a side: from there waves of an amplitude and a period run into liquid of a depth. What the paddle pushes in,
-  // it draws back.
+  // A paddle along a side: waves of an amplitude and a period run from there into liquid of a depth. The paddle draws back the
+  // liquid that it pushes in.
   void add_paddle(Side side, double amplitude, double period, double depth);
   // Liquid goes out at the opposite side and comes in at `from`, at a speed, as deep as it is where it goes out.
   void add_current(Side from, double speed);
 
-  // Before an update of the waves.
+  // To be called before an update of the waves.
   void apply(Waves &waves, double dt);
 
   bool none() const { return makers.empty(); }
   Units in() const { return account.in; }
   Units out() const { return account.out; }
   std::vector<std::uint8_t> state() const;
-  // Of the same makers. Throws std::runtime_error, and changes nothing, when it is not.
+  // Sets a state of the same makers. Throws std::runtime_error, and changes nothing, when it is of others.
   void set_state(const std::uint8_t *bytes, std::size_t size);
 
  private:
   enum Kind { INFLOW, DRAIN, PADDLE, CURRENT };
   struct Maker {
     Kind kind;
-    Mouth mouth, drain;           // where liquid comes in; where a current goes out
+    Mouth mouth, drain;           // mouth where liquid comes in; drain where a current goes out
     double rate, period, u[2];    // rate: cells per time in the whole mouth, of a paddle the largest
   };
 
@@ -62,7 +62,7 @@ class WaveMakers {
 
   const int nx, ny;
   std::vector<Maker> makers;
-  std::vector<double> due;    // of each maker, part of a unit
+  std::vector<double> due;    // of each maker: the part of a unit that is still due
   struct Account {
     double time = 0.0;
     Units in = 0, out = 0;

@@ -12,12 +12,12 @@ namespace mdanim {
 
 namespace {
 
-constexpr int LEAST_PART = SolidParts::FULL / 8;    // a cell that is less solid feels what its neighbours feel
+constexpr int LEAST_PART = SolidParts::FULL / 8;    // a cell with a smaller solid part gets the values of its neighbours
 constexpr double NARROW = 1.0;                      // gaps below bodies that cells do not resolve: liquid seeps in
-constexpr double HIGHEST = 8.0;                     // cells of liquid that press on a body beyond what stands around it
+constexpr double HIGHEST = 8.0;    // cells of liquid: greatest pressure on a body beyond that of the liquid around it
 constexpr int SMOOTHINGS = 4;
 bool is_narrow(const Waves::SpanView &span) { return span.capacity <= NARROW; }
-// Beside the face of a wall, where cells are nearly full: a part of the wall.
+// A gap beside the face of a wall, where cells are nearly full, is a part of the wall.
 bool is_crack(const Waves::SpanView &span) { return is_narrow(span) && span.roof - span.floor > NARROW; }
 
 constexpr double HIDDEN = std::numeric_limits<double>::quiet_NaN();
@@ -71,9 +71,9 @@ void WavePush::cut(const Waves &waves, int column)
       run.phi = below.phi;
       run.floor = below.floor;
     }
-    runs.push_back(run);    // one above each span and one below the lowest, some of them empty
+    runs.push_back(run);    // one above each span and one below the lowest; some are empty
   }
-  // What a crack parts is one run.
+  // Runs parted by a crack are one run.
   for (int first = 0, last = 0; first <= spans; first = ++last) {
     while (last < spans && is_crack(waves.span_view(column, last))) ++last;
     SolidRun *const of_column = &runs[first_run[column]];
@@ -83,9 +83,9 @@ void WavePush::cut(const Waves &waves, int column)
   }
 }
 
-// Head of the liquid beside a run, in another column. What does not reach down to the gap below the run counts where it stands
-// over the run: what a wall holds in a hull takes nothing off the pressure below it. Nor does another gap: liquid seeps into it,
-// too.
+// Head of the liquid beside a run, in another column. Liquid that does not reach down to the gap below the run counts where it
+// stands over the run: liquid in a hull, held by its wall, takes nothing off the pressure below it. Nor does another gap: liquid
+// seeps into it, too.
 bool WavePush::beside(const Waves &waves, int column, double bottom, double top, double &phi) const
 {
   bool any = false;
@@ -107,7 +107,7 @@ bool WavePush::beside(const Waves &waves, int column, double bottom, double top,
   return false;
 }
 
-// Liquid seeps below what stands on something: its head there is between those around.
+// Liquid seeps below a body that stands on another: its head there is between those around.
 void WavePush::seep(const Waves &waves)
 {
   std::vector<int> dry;
@@ -133,7 +133,7 @@ void WavePush::seep(const Waves &waves)
       if (runs[n].told) mean(runs[n], runs[n].phi);
 }
 
-// Head of the surface that is seen from above; NaN where a body hides it or breaks it.
+// Head of the surface as visible from above; NaN where a body hides it or breaks it.
 double WavePush::seen_at(const Waves &waves, int column) const
 {
   const int spans = waves.spans_of(column);
@@ -221,7 +221,7 @@ void WavePush::press(const Waves &waves, SolidRun &run)
   else if (run.above >= 0)
     std::copy_n(waves.around(run.column, run.above).u, 4, run.u);
   if (run.above < 0) return;
-  const double around = std::max(0.0, ambient[run.column] - run.top);    // 0 where that is not known
+  const double around = std::max(0.0, ambient[run.column] - run.top);    // 0 where it is unknown
   const auto pressing = [&](double head) { return std::clamp(head - run.top, 0.0, around + HIGHEST) / thickness; };
   if (run.wet) run.beside = around / thickness;
   if (run.wet) run.over = pressing(run.phi);
@@ -235,7 +235,7 @@ void WavePush::press(const Waves &waves, SolidRun &run)
   if (run.moves) run.over += added.force_on(run.column) / thickness;
 }
 
-// The rise of a head across a face acts on what is solid on both sides of it.
+// The rise of a head across a face acts on the solid parts on both sides of it.
 void WavePush::put(const SolidParts &solid, int column, int z, OnCell on)
 {
   const std::size_t cell = static_cast<std::size_t>(z) * nx * ny + column;
@@ -311,7 +311,7 @@ bool WavePush::is_among(std::size_t own, int x, int y, int z) const
   return all;
 }
 
-// Cells next to bodies feel the mean of what is known around them.
+// Cells next to bodies get the mean of the known values around them.
 void WavePush::spread(const SolidParts &solid)
 {
   next_to.clear();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// What a liquid with momentum does to the bodies in it, cell by cell. docs/physics-liquid.md, "Bodies in waves".
+// The forces of a liquid with momentum on the bodies in it, cell by cell. docs/physics-liquid.md, "Bodies in waves".
 
 #ifndef MDANIM_WAVE_PUSH_H
 #define MDANIM_WAVE_PUSH_H
@@ -15,13 +15,13 @@
 
 namespace mdanim {
 
-// Found once for each update, for the cells that bodies fill and those around them.
+// Computed once for each update, for the cells that bodies fill and those around them.
 class WavePush {
  public:
-  // On a volume in a cell, over the weight of as much liquid. s is the part below `head`.
+  // The force on a volume in a cell, over the weight of as much liquid. s is the fraction below `head`.
   struct OnCell {
-    double head = 0.0, share = 0.0;         // s counts by this: 0 where it is dry below
-    double over = 0.0;                      // of the liquid that stands higher below than the body does, by the body's thickness
+    double head = 0.0, share = 0.0;         // factor of s: 0 where it is dry below
+    double over = 0.0;                      // of the liquid whose head below is higher than the body, per thickness of the body
     double beside = 0.0;                    // the same by the surface around, less what stands on the body
     double along_x = 0.0, along_y = 0.0;    // push sideways, times s + beside where that is positive
     double on_top = 0.0;                    // of the liquid that stands on the body, by the body's thickness
@@ -42,34 +42,33 @@ class WavePush {
   {
   }
 
-  // For all columns with mass in them, `since` the last update, 0 where nothing moves. What
-  // pushes sideways follows the liquid by a part of what has changed: a body is stiffer sideways than the time of an update
-  // shows.
+  // Computes forces for all columns with mass in them; `since` is the time since the last update, 0 where nothing moves. The
+  // sideways push follows the liquid by a part of its change: a body is stiffer sideways than the time of an update shows.
   void find(const Waves &waves, const AddedMass::Solids *solids, double part, double since);
   // The number of a cell among all(); -1 far from all bodies.
   int number_of(std::size_t cell) const { return known[cell]; }
   const std::vector<OnCell> &all() const { return found; }
-  // Of the columns; all that find() depends on besides.
+  // Values of the columns: everything else that find() depends on.
   std::vector<double> &state() { return ambient; }
   const std::vector<double> &state() const { return ambient; }
   std::vector<AddedMass::Column> &added_state() { return added.state(); }
   const std::vector<AddedMass::Column> &added_state() const { return added.state(); }
   double energy() const { return added.energy(); }
-  // Whether below all that is solid in a column there is liquid in a gap that cells do not resolve.
+  // Whether below all solids of a column there is liquid in a gap that cells do not resolve.
   bool is_close(int column) const { return close[column]; }
   double bytes() const
   { return static_cast<double>(known.size() * sizeof known[0] + found.capacity() * (sizeof(OnCell) + sizeof(std::size_t))); }
 
  private:
-  // Solid from one height to another in a column, between two spans or beside one; -1 where there is none.
+  // A solid from one height to another in a column, between two spans or beside one; -1 where there is none.
   struct SolidRun {
     int column, below, above;
     double bottom, top;
-    bool wet, told;    // liquid below; whether that is known: where no liquid gets below, from the columns around
-    bool seeps;        // liquid, into a gap that cells do not resolve
+    bool wet, told;    // whether liquid is below; whether that is known: where no liquid gets below, from the columns around
+    bool seeps;        // whether liquid seeps into a gap that cells do not resolve
     double phi, floor;
     double u[4], over, beside, on_top;
-    bool moves;    // liquid up and down with it
+    bool moves;    // whether it moves liquid up and down
   };
 
   void cut(const Waves &waves, int column);
@@ -93,15 +92,15 @@ class WavePush {
 
   const int nx, ny, nz;
   std::vector<int> known;            // of each cell, its number in `found`, or -1
-  std::vector<OnCell> found;         // of many cells one above the other it is the same
-  std::vector<std::size_t> cells;    // those that are known
+  std::vector<OnCell> found;         // one for many cells above each other with the same values
+  std::vector<std::size_t> cells;    // cells whose values are known
   std::vector<NextTo> next_to;       // a buffer of spread()
   std::vector<SolidRun> runs;
-  std::vector<int> first_run, columns;    // of each column, or -1; those with mass
+  std::vector<int> first_run, columns;    // first run of each column, or -1; columns with mass
   std::vector<double> ambient;            // head around each column, as it acts sideways; NaN far from bodies
   AddedMass added;
   std::vector<std::uint8_t> close;          // see is_close()
-  std::vector<AddedMass::Depths> depths;    // of the run of each column that moves liquid
+  std::vector<AddedMass::Depths> depths;    // for the run of each column that moves liquid
 };
 
 }    // namespace mdanim

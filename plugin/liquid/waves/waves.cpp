@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// Arrays, and what is asked and told from outside.
+// Arrays, and functions that are called from outside.
 
 #include "liquid/waves/waves.h"
 
@@ -45,7 +45,7 @@ Waves::Waves(int nx, int ny, int nz)
   list_wall_faces();
 }
 
-// Makes room for so many rows of further spans and so many further links of each direction. What is in the grid stays.
+// Makes room for `rows` rows of further spans and for further links of each direction. The grid stays.
 void Waves::lay_out(long rows, std::size_t most_further_links)
 {
   further_rows = rows;
@@ -66,7 +66,7 @@ void Waves::lay_out(long rows, std::size_t most_further_links)
     const std::size_t room = content.size() + most_further_links;
     for (std::size_t k = 0; k < std::size(OF_LINKS); ++k) {
       const bool height = OF_LINKS[k] == &WaveLinks::edge || OF_LINKS[k] == &WaveLinks::top;
-      if (n > old) of_links[d][k].resize(old);    // further links were there, spans of new rows come there
+      if (n > old) of_links[d][k].resize(old);    // where further links were, spans of new rows come
       if (room > of_links[d][k].size()) of_links[d][k].resize(room, height ? WaveArrays::NOWHERE : 0.0);
       arrays.links[d].*OF_LINKS[k] = of_links[d][k].data();
     }
@@ -84,7 +84,7 @@ void Waves::pour(const double *height, const double *from, const std::vector<std
   resting = false;
   each_span([&](long i) {
     const double level = !hollow.empty() && hollow[i] ? 0.0 : height[span[i].column];
-    const auto up_to = [&](double z) {    // not a unit less than it can hold
+    const auto up_to = [&](double z) {    // not a unit less than its capacity
       return z >= span[i].roof ? span[i].capacity : static_cast<Units>(volume_below(solid, span[i], z) * UNITS_PER_CELL);
     };
     content[i] = up_to(level) - (from ? up_to(std::min(level, from[span[i].column])) : 0);

@@ -32,68 +32,69 @@ class Waves {
   Waves(const Waves &) = delete;    // arrays point into vectors
   Waves &operator=(const Waves &) = delete;
 
-  // Solid parts of all cells, as SolidParts has them, and for each column the mass of what floats in it, in cells of liquid, 0
-  // where it is held (null: everywhere). Liquid makes way. Throws std::runtime_error when there is no room for it; nothing can be
-  // done with the waves any more after that. `again`: the part of what has changed that will change once more in the next
-  // update. Outside of a box `where` (null: nowhere) nothing has changed.
+  // Sets the solid parts of all cells, as in SolidParts, and for each column the mass of floating bodies in it, in cells of
+  // liquid, 0 where they are held (null: everywhere). Liquid makes way. Throws std::runtime_error when there is no room for it;
+  // the waves cannot be used any more after that. `again`: the part of the change that will come once more in the next update.
+  // Outside of a box `where` (null: the whole basin) nothing has changed.
   void set_solids(const std::uint16_t *part, const double *mass, double again = 1.0, const CellBox *where = nullptr);
-  // Tells which part of each cell is held, as SolidParts has them: a wall, as the sides of the basin are. Plates at such walls
-  // cut columns when solids are set next.
+  // Sets the held part of each cell, as in SolidParts: a wall, like the sides of the basin. Plates at such walls cut columns when
+  // solids are set next.
   void set_walls(const std::uint16_t *held);
-  // Fills all spans of each column up to a height; those that are full get the pressure of that height. `from`: what would be
-  // below this height is left out. `hollow`: so are these spans.
+  // Fills all spans of each column up to a height; full spans get the pressure of that height. `from`: leaves out liquid below
+  // this height. `hollow`: leaves out these spans.
   void pour(const double *height, const double *from = nullptr, const std::vector<std::uint8_t> &hollow = {});
-  // Spans, by their places, that are dry at the start though they begin below a level: what floats encloses them, alone or with
-  // others that they are open to below that level. `floats` is of cells that are not open.
+  // Spans, by their places, that are dry at the start although they begin below a level: floating bodies enclose them, alone or
+  // with others that they are open to below that level. `floats` says of a cell that is not open whether it is a part of a
+  // floating body.
   std::vector<std::uint8_t> hollows(double level, const std::function<bool(int column, int z)> &floats) const;
-  // Velocities of links, in the order of links(), also faster ones than liquid may have: for tests.
+  // Sets velocities of links, in the order of links(), also higher ones than liquid may have: for tests.
   void set_velocities(const double *u);
-  // Returns the time by which the liquid has gone on. `share` is the part that comes now of how far solids are still to move.
+  // Returns the time by which the liquid has advanced. `share` is the part, now, of the motion that solids still have to make.
   double update(double dt, double share = 1.0);
 
   struct SpanNow {
     Span span;
     Units content;
-    double head, phi;    // of the surface, and what pushes
+    double head, phi;    // head of the surface, and the head that pushes
     bool full;
   };
   struct LinkNow {
     int a, b, direction;    // numbers of spans; 0 along x, 1 along y
     double u, height;
-    Units units;    // that passed in the last sub-update
+    Units units;    // units that passed in the last sub-update
   };
-  // Columns in their order, in each from the lowest span up.
+  // Columns in their order, each from the lowest span up.
   std::vector<SpanNow> spans() const;
-  // Those along x, then those along y, by the columns of their first spans.
+  // Links along x, then links along y, by the columns of their first spans.
   std::vector<LinkNow> links() const;
   // Head of the topmost wet span of each column (the floor of the lowest where all are dry), and the column's volume.
   void surface(double *head, double *volume) const;
   Units total() const;
 
-  // What solids feel. `owner` is the body of each cell, or negative; adds to `force`, three numbers for each body.
+  // Adds the forces on solids. `owner` is the body of each cell, or negative; `force` has three numbers for each body.
   void add_forces(const std::int32_t *owner, double *force) const;
-  // Of height, and of motion along the links.
+  // Energy of height, and of motion along the links.
   struct Energy {
     double height, motion;
   };
   Energy energy() const;
   Vec3 momentum() const;    // along the links
-  // Momentum that the liquid has lost to walls and to friction since this was asked last; and what has come and gone with give()
-  // and take().
+  // Momentum that the liquid has lost to walls and to friction since the last call; and momentum that has come and gone with
+  // give() and take().
   Vec3 take_lost() { return std::exchange(lost, Vec3{}); }
   Vec3 take_came() { return std::exchange(came, Vec3{}); }
 
   // --- liquid that comes and goes between updates (waves_exchange.cpp) ---
 
-  // Puts units, with a velocity of as much as liquid may have, into the span of a column that holds a height, or else into the
-  // next one below. Returns how many found room.
+  // Puts units, with a velocity limited to that of liquid, into the span of a column that holds a height, or else into the next
+  // one below. Returns the number of units that found room.
   Units give(int column, double height, Units units, double ux, double uy);
-  // Takes units out of such a span; a film stays. Returns how many.
+  // Takes units out of such a span; a film stays. Returns their number.
   Units take(int column, double height, Units most);
-  double held_below(int column, double height) const;    // of such a span
-  double head_below(int column, double height) const;    // its surface
-  // The topmost span of a column: its floor, surface and volume, the speed at which the surface has just risen, the mean
-  // velocity of the liquid, and how fast the liquid around could shoot up there (Bernoulli).
+  double held_below(int column, double height) const;    // content of such a span below a height
+  double head_below(int column, double height) const;    // head of its surface
+  // The topmost span of a column: its floor, surface and volume, the speed at which the surface has just risen, the mean velocity
+  // of the liquid, and the speed at which the liquid around could shoot up there (Bernoulli).
   struct Top {
     double floor, head, volume, rising, u[2], jet;
   };
@@ -104,26 +105,26 @@ class Waves {
   // The n-th span of a column, from the lowest up.
   struct SpanView {
     int low, high;
-    double floor, roof, phi, surface;    // of heads the one that pushes, and the one that is seen
+    double floor, roof, phi, surface;    // phi: the head that pushes; surface: the visible one
     double volume, capacity;
     bool wet, full;
   };
   int spans_of(int column) const { return spans_in[column]; }
   SpanView span_view(int column, int n) const;
-  // West, east, south and north of a span, through its widest wet link: by how much the head that pushes is higher there, and
-  // the velocity; 0 where there is none.
+  // West, east, south and north of a span, through its widest wet link: how much higher the head that pushes is there, and the
+  // velocity; 0 where there is no link.
   struct Sides {
     double rise[4], u[4];
   };
   Sides around(int column, int n) const;
-  // Momentum along x and y for each column of its liquid, in cells of liquid. Liquid at rest stays so where that is next to
-  // nothing. What would make it faster than it may be is lost.
+  // Adds momentum along x and y to the liquid of each column, in cells of liquid. Liquid at rest stays at rest if it is
+  // negligible. Momentum beyond the greatest velocity is lost.
   void add_impulse(const double *x, const double *y);
   const SolidParts &solids() const { return solid; }
 
-  // Everything that later updates depend on, between updates.
+  // Everything that later updates depend on, as it is between updates.
   std::vector<std::uint8_t> state() const;
-  // Takes it up. Throws std::runtime_error, and changes nothing, when it is not of such a basin or damaged.
+  // Sets the state. Throws std::runtime_error, and changes nothing, when it is damaged or not of such a basin.
   void set_state(const std::uint8_t *bytes, std::size_t size);
 
   bool at_rest() const { return resting; }    // nothing will move before a solid does
@@ -132,16 +133,16 @@ class Waves {
 
   // For tests and benchmarks.
   void use(const WaveKernels &other) { kernels = &other; }
-  void use_general_form();    // for everything
+  void use_general_form();    // for all spans and links
   struct Counts {
     long updates = 0, sub_updates = 0, solutions = 0, iterations = 0, limited = 0;
-    Units displaced = 0;    // by spans that closed
+    Units displaced = 0;    // units displaced by spans that closed
   } counts;
 
   WaveLaw law;
   double tolerance = 2e-3;    // of the solver
   int most_iterations = 200;
-  double rest = 1.0 / 1024.0;    // differences of heads, and velocities, that are none: those of a film
+  double rest = 1.0 / 1024.0;    // differences of heads, and velocities, that count as none: those of a film
 
  private:
   // Place of a link among those of its direction.
@@ -155,11 +156,11 @@ class Waves {
   // A further link of a span, and the next one in its chain.
   struct LinkOfSpan {
     LinkPlace link;
-    bool inward;    // flux along the link comes in
+    bool inward;    // whether flux along the link comes in
     long other;
     int next;
   };
-  // All of a span that lasts from update to update.
+  // The part of a span that lasts from update to update.
   struct SpanState {
     Span span;
     Units content;
@@ -178,12 +179,12 @@ class Waves {
     int column, z;
     Units units;
   };
-  // What is solid of the face between two columns, or of the basin's side where `other` is -1, from one layer to another.
+  // The solid part of the face between two columns, or of the basin's side where `other` is -1, from one layer to another.
   struct WallFace {
     int column, other, low, high;
     double x, y;    // its direction from the column, times the part that is solid
   };
-  // The links on one side of a span, as one.
+  // All links on one side of a span together.
   struct SideLinks {
     double q, u, height;
     long widest;    // the span at the other end of the widest link, or -1
@@ -195,13 +196,13 @@ class Waves {
   long place(int column, int n) const { return n == 0 ? place(column) : further_start + further[column] + n - 1; }
   long along(int d) const { return d == 0 ? 1 : stride; }
   long end_row() const { return 1 + ny + further_rows; }
-  // f(first, end) for parts of all rows, which threads share: no row writes where another reads or writes.
+  // Calls f(first, end) for parts of all rows, shared among threads: no row writes where another reads or writes.
   template <class F> void rows(const F &f) const
   {
-    constexpr double COLUMN = 2.0;    // [ns], about
+    constexpr double COLUMN = 2.0;    // [ns], approximately
     threads.parts(end_row() - 1, COLUMN * static_cast<double>(stride), [&](long from, long to) { f(1 + from, 1 + to); });
   }
-  // Whether f(first, end) is true of any part.
+  // Whether f(first, end) is true for any part.
   template <class F> bool any_row(const F &f) const
   {
     std::atomic<bool> any{false};
@@ -210,10 +211,10 @@ class Waves {
     });
     return any;
   }
-  // The same for all spans and links that are listed; f(one) writes into nothing but its own.
+  // The same for all spans and links that are listed; f(one) writes only into its own.
   template <class All, class F> void each_listed(const All &all, const F &f) const
   {
-    constexpr double ONE = 50.0;    // [ns], about
+    constexpr double ONE = 50.0;    // [ns], approximately
     threads.parts(static_cast<long>(all.size()), ONE, [&](long from, long to) {
       for (long n = from; n < to; ++n) f(all[n]);
     });
@@ -229,8 +230,8 @@ class Waves {
   }
   const WaveLinks &arrays_of(const LinkPlace &link) const { return arrays.links[link.d]; }
   void lay_out(long rows, std::size_t most_further_links);
-  // f(place) for all spans, f(link) for all links, in the order in which they are told; and f(link, other span, inward) for those
-  // of a span, in the order in which they are summed.
+  // Calls f(place) for all spans, f(link) for all links, in their order outside; and f(link, other span, inward) for those of a
+  // span, in the order in which they are summed.
   template <class F> void each_span(const F &f) const { spans_of_columns(0, nx * ny, f); }
   template <class F> void each_link(const F &f) const
   {
@@ -244,18 +245,18 @@ class Waves {
     int first, last;
   };
   int row_of(long i) const { return span[i].column / nx; }
-  // The same of spans in these rows and of links between two of them, in any order, which threads share; f writes into nothing
-  // but the span's or the link's own.
+  // The same for spans in these rows and for links between two of them, in any order, shared among threads; f writes only into
+  // the span or the link.
   template <class F> void each_span_in(const RowRange &rows, const F &f) const
   {
-    constexpr double SPAN = 15.0;    // [ns], about
+    constexpr double SPAN = 15.0;    // [ns], approximately
     const long before = static_cast<long>(rows.first) * nx;
     threads.parts((rows.last - rows.first) * nx, SPAN,
                   [&](long from, long to) { spans_of_columns(before + from, before + to, f); });
   }
   template <class F> void each_link_in(const RowRange &rows, const F &f) const
   {
-    constexpr double LINK = 5.0;    // [ns], about
+    constexpr double LINK = 5.0;    // [ns], approximately
     const auto within = [&](long i) { return row_of(i) >= rows.first && row_of(i) < rows.last; };
     for (int d = 0; d < 2; ++d) {
       const long before = (1 + rows.first) * stride;
@@ -347,25 +348,25 @@ class Waves {
   const long further_start;    // place of the first further span
   long links_start = 0;        // place of the first further link
   long further_rows = 0;
-  SolidParts solid, wall;                   // all of it; what is held
-  std::vector<std::uint8_t> walled_anew;    // columns that are to be cut anew, as walls have changed
+  SolidParts solid, wall;                   // all solids; the held ones
+  std::vector<std::uint8_t> walled_anew;    // columns that must be cut anew because walls have changed
   const WaveKernels *kernels;
   Threads threads;
   bool all_general = false, resting = false, some_full = false;
   Vec3 lost, came;    // see take_lost()
   std::vector<WallFace> wall_faces;
 
-  std::vector<int> spans_in, further;    // of each column: how many spans, and the number of its first further one
+  std::vector<int> spans_in, further;    // of each column: the number of spans, and the number of its first further one
   std::vector<Span> span;                // of each place; column -1 where there is none
   std::vector<Units> content;
   std::vector<std::vector<double>> of_spans, of_links[2];    // behind `arrays`
   std::vector<std::uint8_t> layered[2];                      // links of the grid that go through partly solid cells
   std::vector<LinkState> further_links[2];                   // their places come behind those of the grid
-  std::vector<int> chain;                                    // of each place: its first further link in `link_of_span`, or -1
+  std::vector<int> chain;                                    // first further link of each place in `link_of_span`, or -1
   std::vector<LinkOfSpan> link_of_span;
   WaveArrays arrays;
 
-  // What the general form computes once more.
+  // Spans and links that the general form computes once more.
   std::vector<long> listed_spans, branched;
   std::vector<long> branched_rows;
   std::vector<LinkPlace> listed_links;

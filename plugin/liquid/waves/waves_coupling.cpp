@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// What bodies that float read of the liquid, and what they give to it.
+// Data of the liquid for floating bodies, and the impulses from them.
 
 #include "liquid/waves/waves.h"
 
@@ -37,7 +37,8 @@ Waves::Sides Waves::around(int column, int n) const
   return sides;
 }
 
-// Links of a column share its momentum by how far they are open; so thin a layer as none gets no more than a whole cell would.
+// Links of a column share its momentum in proportion to their open heights; a layer thin enough to count as none gets no more
+// than a whole cell would.
 void Waves::add_impulse(const double *x, const double *y)
 {
   const auto wetted = [&](const LinkPlace &link) {

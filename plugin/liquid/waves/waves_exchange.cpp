@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// Liquid that comes into columns and leaves them between updates: of drops, inflows and drains. No link knows of it, so the
-// caller holds the account.
+// Liquid that comes into columns and leaves them between updates: drops, inflows and drains. Links do not count it, so the caller
+// keeps the account.
 
 #include "liquid/waves/waves.h"
 
@@ -17,8 +17,8 @@ int Waves::span_below(int column, double height) const
   return n;
 }
 
-// How high a link of a span with this head is filled by what the spans hold now: wetted heights are those of the last update, and
-// no part of the state.
+// Height to which a link of a span with this head is filled by the present contents of the spans: wetted heights belong to the
+// last update, and are not a part of the state.
 double Waves::filled(const LinkPlace &link, double head, long other) const
 {
   if (!is_link(link)) return 0.0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// The steps of an update for one span or link of any kind: what the kernels do where everything is regular.
+// The steps of an update for one span or link of any kind; kernels do the same where everything is regular.
 
 #include "liquid/waves/waves.h"
 #include "liquid/waves/waves_link_steps.h"
@@ -21,7 +21,7 @@ void Waves::general_surface(long i)
 {
   const Head free_head = head_of(solid, span[i], content[i]);
   const double volume = static_cast<double>(content[i]) / UNITS_PER_CELL;
-  // A span that the kernel has just made full or free is so by its content alone, which this repeats.
+  // A span that the kernel has just made full or free is so by its content alone, which is repeated here.
   const auto s = ::mdanim::surface(volume, arrays.capacity[i], span[i].roof, free_head.height, arrays.full[i], arrays.rest[i],
                                    arrays.phi[i]);
   arrays.volume[i] = volume;
@@ -38,7 +38,7 @@ void Waves::general_opening(const LinkPlace &link)
   open_at<double>(arrays, law, {arrays_of(link), link.at, e.a, e.b}, [&](double level) { return opening(link, level); });
 }
 
-// Fluxes and heights of a side add up; its velocity is that of the largest one.
+// Fluxes and heights of a side are summed; its velocity is that of the link with the largest.
 Waves::SideLinks Waves::side_of(long i, SideOf side) const
 {
   const int d = side == WEST || side == EAST ? 0 : 1;
@@ -113,7 +113,7 @@ void Waves::general_assembly(long i)
     sums.rhs = full_rhs(law, arrays.volume[i], arrays.capacity[i], arrays.coming[i], sums.inflow);
   } else {
     sums.diagonal = free_stiffness(law, sums.steepest, arrays.volume[i], arrays.slope[i]);
-    // A partly solid column has the head that it will have: liquid under nearly shut cells would go on rising and falling for
+    // A partly solid column has the head that it will have: otherwise liquid under nearly shut cells would rise and fall for
     // ever.
     if (arrays.slope[i] < POROUS) sums.rhs = sums.inflow / (law.dt * law.dt);
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// What is dry inside at the start: hulls that float with their rims above the liquid.
+// Spans that are dry inside at the start: hulls that float with their rims above the liquid.
 
 #include "liquid/waves/columns.h"
 #include "liquid/waves/waves.h"
@@ -11,7 +11,7 @@ namespace mdanim {
 
 namespace {
 
-// Whether a span stands on what floats, and is open below a height to nothing but what floats or other spans.
+// Whether a span stands on a floating body, and below a height is open only to floating bodies and other spans.
 bool is_enclosed(const SolidParts &solid, const Span &span, double level, const std::function<bool(int, int)> &floats)
 {
   if (span.low == 0 || !floats(span.column, span.low - 1)) return false;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// The loops of an update of waves over whole rows of columns, once for each set of instructions
-// (simd/kernels.h). All give the same bits: every lane computes what liquid/waves/law.h says, and sums are taken by
-// rows in eight parts.
+// The loops of an update of waves over whole rows of columns, once for each set of instructions (simd/kernels.h). All give the
+// same bits: every lane computes the expressions of liquid/waves/law.h, and sums are taken by rows in eight parts.
 
 #ifndef MDANIM_WAVES_KERNELS_H
 #define MDANIM_WAVES_KERNELS_H
@@ -14,15 +13,15 @@ namespace mdanim {
 
 // Arrays of links of one direction, see WaveArrays.
 struct WaveLinks {
-  double *edge, *top, *u, *q;               // between which heights; velocity, and the flux that made the present contents
-  double *wet, *height, *faster, *units;    // see Opened; u after advection; what passes
+  double *edge, *top, *u, *q;    // heights between which it is open; velocity, and the flux that made the present contents
+  double *wet, *height, *faster, *units;    // see Opened; u after advection; units that pass
   double *couple;
   double *moving;    // momentum before pressure, of rows
 };
 
-// Arrays of spans and links, row after row. A row is `stride` long, a multiple of 8 that leaves one place at least behind the
-// last column; there is an empty row in front of the first and behind the last. Link i along x joins spans i and i + 1, along y
-// spans i and i + stride. Where there is no span, there is no liquid; where there is no link, its edge is at NOWHERE.
+// Arrays of spans and links, row after row. A row is `stride` long, a multiple of 8 that leaves at least one place behind the
+// last column; there is an empty row before the first and after the last. Link i along x joins spans i and i + 1, along y spans i
+// and i + stride. A place without a span has no liquid; a place without a link has its edge at NOWHERE.
 struct WaveArrays {
   static constexpr double NOWHERE = 1e9;
 
@@ -31,18 +30,18 @@ struct WaveArrays {
   double *capacity, *floor, *roof;    // of spans, in cells
   double *full, *rest, *phi;          // see SpanSurface
   double *volume, *head, *slope;
-  double *yields, *coming;    // 1/mass of what floats above, 0 where it is held; change of the capacity, see (W6)
+  double *yields, *coming;    // 1/mass of floating bodies above, 0 where they are held; change of the capacity, see (W6)
   double *rhs, *beside_full;
-  double *delta, *last_delta;                 // phi - head, of this update and the last one
+  double *delta, *last_delta;                 // phi - head, in this update and in the last one
   double *scale, *x, *r, *p, *next_p, *ap;    // of the solver
-  double *net;                                // units that a span gains
+  double *net;                                // units gained by a span
   double *sums;                               // of rows
   WaveLinks links[2];                         // along x, along y
 };
 
-// Rows [first, end); the first row proper is 1. No row writes where another reads or writes.
+// Rows [first, end); the first row with columns is 1. No row writes where another reads or writes.
 struct WaveKernels {
-  static constexpr int SUMMED = 8;    // numbers of a row are summed in so many parts
+  static constexpr int SUMMED = 8;    // numbers of a row are summed in this number of parts
 
   bool (*surfaces)(const WaveArrays &, const WaveLaw &, long first, long end);             // (W1); whether some span is full
   void (*open_links)(const WaveArrays &, const WaveLaw &, int d, long first, long end);    // (W2) of direction d

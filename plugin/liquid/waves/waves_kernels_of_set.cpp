@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // The loops of an update of waves for one set of instructions (simd/of_set.h).
 
-#pragma GCC diagnostic ignored "-Wpsabi"    // all that takes vectors is inlined
+#pragma GCC diagnostic ignored "-Wpsabi"    // all functions that take vectors are inlined
 
 #include "liquid/waves/waves_kernels.h"
 
 #include "liquid/waves/waves_link_steps.h"
 #include "simd/of_set.h"
 
-// A lambda that takes the attribute of where it is called.
+// A lambda that takes the attribute of the function that calls it.
 #define MDANIM_INLINED __attribute__((always_inline))
 
 namespace mdanim {
@@ -95,7 +95,7 @@ template <class Vector> bool surfaces(const WaveArrays &a, const WaveLaw &law, l
   return any(some_full > Vector{});
 }
 
-// How a link is open up to a level where solids are at the ends of its spans alone.
+// The opening of a link up to a level where solids are only at the ends of its spans.
 template <class Vector> MDANIM_ALWAYS_INLINE auto opening(const LinkAt &at)
 {
   const Vector edge = load<Vector>(at.links.edge + at.link), top = load<Vector>(at.links.top + at.link);
@@ -136,8 +136,8 @@ template <class Vector> void advect(const WaveArrays &a, const WaveLaw &law, int
   });
 }
 
-// The links of span i in the order in which they are summed: from below and from the left, to the right and up. Calls
-// f(links, link, other span, whether flux along the link comes in).
+// Calls f(links, link, other span, whether flux along the link comes in) for the links of span i in the order in which they are
+// summed: from below and from the left, to the right and up.
 template <class F> MDANIM_ALWAYS_INLINE void links_of(const WaveArrays &a, long i, const F &f)
 {
   f(a.links[1], i - a.stride, i - a.stride, true);
@@ -203,7 +203,7 @@ template <class Vector> void guess(const WaveArrays &a, bool again, long first, 
   });
 }
 
-// A x in one place. x(place) is that of the solver, the diagonal of A is 1.
+// A x at one place. x(place) is that of the solver; the diagonal of A is 1.
 template <class Vector, class X> MDANIM_ALWAYS_INLINE Vector apply(const WaveArrays &a, long i, const X &x)
 {
   Vector sum = x(i);
@@ -228,7 +228,7 @@ template <class Vector> void turn(const WaveArrays &a, double beta, long first, 
 {
   const Vector factor = constant<Vector>(beta);
   sum_rows<Vector>(a, first, end, [&](long i) MDANIM_INLINED {
-    // Those of the neighbours once more: so no row waits for another.
+    // Computes p of the neighbours once more, so that no row waits for another.
     const auto p = [&](long j) MDANIM_INLINED { return load<Vector>(a.r + j) + factor * load<Vector>(a.p + j); };
     const Vector own = p(i), ap = apply<Vector>(a, i, p);
     store(a.next_p + i, own);
@@ -324,7 +324,7 @@ template <class Vector> void settle(const WaveArrays &a, const WaveLaw &law, lon
 
 #undef MDANIM_INLINED
 
-// GCC 12 takes choices among eight numbers apart, one by one: only the solver, which has none, is faster with them.
+// GCC 12 splits selections among eight numbers into single ones: only the solver, which has none, is faster with them.
 namespace {
 #if MDANIM_LANES == 8
 using Wide = Eight;

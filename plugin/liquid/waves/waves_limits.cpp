@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// (W9): what passes is scaled down, in whole units, where a span would give more than it has or take more than it can hold.
+// (W9): fluxes are scaled down, in whole units, where a span would give more than it has or take more than it can hold.
 
 #include "liquid/waves/waves.h"
 
@@ -7,7 +7,7 @@
 
 namespace mdanim {
 
-// What goes into spans and out of them. Returns the rows from the first to the last in which some span must be limited.
+// Sums the units into spans and out of them. Returns the rows from the first to the last in which some span must be limited.
 Waves::RowRange Waves::balance()
 {
   std::atomic<int> first{ny}, last{0};
@@ -19,7 +19,7 @@ Waves::RowRange Waves::balance()
     for (long row = from; row < to; ++row)
       if (!kernels->balance(arrays, law, row, row + 1) && row <= ny) widen(static_cast<int>(row) - 1);
   });
-  each_listed(listed_spans, [&](long i) {    // further spans, which lie in the rows after that, among them
+  each_listed(listed_spans, [&](long i) {    // including further spans, which lie in the rows after that
     const SpanFluxes<double> fluxes = fluxes_of(i);
     arrays.net[i] = fluxes.in - fluxes.out;
     if (fluxes.out_share(static_cast<double>(content[i])) != 1.0 ||
@@ -29,13 +29,13 @@ Waves::RowRange Waves::balance()
   return {first, last};
 }
 
-// What is scaled down in one row matters in the rows beside it, thus each time in one row more.
+// A flux scaled down in one row changes the rows beside it, so each time one row more is affected.
 void Waves::limit(const RowRange &tight)
 {
-  constexpr int SCALED = 3;    // times
+  constexpr int SCALED = 3;    // repetitions
   ++counts.limited;
   const RowRange near = {std::max(0, tight.first - SCALED), std::min(ny, tight.last + SCALED)};
-  double *share = arrays.net;    // of a span, of what leaves it or of what enters it
+  double *share = arrays.net;    // of a span, for the leaving or for the entering flux
   const auto scale = [&](bool by_giver) {
     each_link_in(near, [&](const LinkPlace &link) {
       const WaveLinks &l = arrays_of(link);
@@ -49,7 +49,7 @@ void Waves::limit(const RowRange &tight)
   };
   each_span_in(near, [&](long i) { share[i] = fluxes_of(i).out_share(static_cast<double>(content[i])); });
   scale(true);
-  for (int pass = 0; pass < 2; ++pass) {    // what a span gives less in the first one is missing as room in the second
+  for (int pass = 0; pass < 2; ++pass) {    // units that a span gives less in the first pass are missing as room in the second
     std::atomic<bool> fits{true};
     each_span_in(near, [&](long i) {
       share[i] = fluxes_of(i).in_share(static_cast<double>(content[i]), most_in(i));

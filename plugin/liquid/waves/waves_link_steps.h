@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// (W2) and (W8) for one link, or for one in each lane. The kernels and the general form differ only in how a link is open up to a
-// level.
+// (W2) and (W8) for one link, or for one in each lane. The kernels and the general form differ only in the opening of a link up
+// to a level.
 
 #ifndef MDANIM_WAVES_LINK_STEPS_H
 #define MDANIM_WAVES_LINK_STEPS_H
@@ -20,7 +20,7 @@ template <class Real> struct Levels {
   Real edge, a, b;
 };
 
-// How high a link is filled from its two sides.
+// Heights to which a link is filled from its two sides.
 template <class Real> MDANIM_ALWAYS_INLINE Levels<Real> levels_at(const WaveArrays &arrays, const WaveLaw &law, const LinkAt &at)
 {
   const Real edge = load<Real>(at.links.edge + at.link);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// Links between spans of neighbouring columns, and what of all this is not regular.
+// Links between spans of neighbouring columns, and the list of those that are not regular.
 
 #include "liquid/waves/waves.h"
 
@@ -34,7 +34,7 @@ Gap gap_between(const SolidParts &solid, const Span &a, const Span &b)
 
 }    // namespace
 
-// Links of the grid do not move; further ones hold their velocities while places change.
+// Links of the grid keep their places; further ones hold their velocities while places change.
 void Waves::save_further_links()
 {
   for (int d = 0; d < 2; ++d)
@@ -44,7 +44,7 @@ void Waves::save_further_links()
     }
 }
 
-// All links at these columns and at those with several spans.
+// Joins all links at these columns and at those with several spans.
 void Waves::join(const std::vector<int> &columns)
 {
   std::vector<std::uint8_t> wanted[2];    // faces, by the column in front of them
@@ -80,7 +80,7 @@ void Waves::join(const std::vector<int> &columns)
   list_irregular();
 }
 
-// Anew where two columns meet: velocities of the links that were there go over by how far they overlap.
+// Makes links anew where two columns meet: velocities of former links are carried over by their overlap.
 void Waves::join_face(int d, int column, int other, const std::vector<LinkState> &was)
 {
   LinkState lowest{column, 0, 0, false, WaveArrays::NOWHERE, WaveArrays::NOWHERE, 0.0, 0.0};
@@ -121,7 +121,7 @@ void Waves::put_link(const LinkPlace &link, const LinkState &state)
   l.wet[link.at] = l.height[link.at] = l.faster[link.at] = l.units[link.at] = l.couple[link.at] = 0.0;
 }
 
-// Regular is a column without spans, or with one that is plain, linked to all columns around that have spans.
+// A column is regular without spans, or with one that is plain and linked to all columns around that have spans.
 bool Waves::is_regular(int column) const
 {
   if (spans_in[column] == 0) return true;
@@ -136,7 +136,7 @@ bool Waves::is_regular(int column) const
   return linked;
 }
 
-// Spans and links for the general form: those of irregular columns, and links that have such a column beside them.
+// Lists spans and links for the general form: those of irregular columns, and links that have such a column beside them.
 void Waves::list_irregular()
 {
   std::fill(chain.begin(), chain.end(), -1);

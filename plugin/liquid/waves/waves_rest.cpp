@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// (W10): liquid that is nearly at rest comes to rest. Each body of it gets its level, to the unit, and nothing is computed any
-// more until a solid moves.
+// (W10): liquid that is nearly at rest comes to rest. Each body of it gets its level, to the unit, and nothing more is computed
+// until a solid moves.
 
 #include "liquid/waves/waves.h"
 
@@ -10,7 +10,7 @@
 namespace mdanim {
 
 // Bodies are spans joined through links in which liquid stands on both sides. A thin layer joins nothing: it would drip for
-// thousands of updates, or for ever where it passes no whole unit. So puddles, and pools that a rim holds, stay as they are.
+// thousands of updates, or for ever where it passes no whole unit. So puddles, and pools held by a rim, stay as they are.
 void Waves::come_to_rest()
 {
   constexpr double PUDDLE = 16.0;    // films
@@ -50,7 +50,7 @@ void Waves::come_to_rest()
   resting = true;
 }
 
-// The highest level, in whole units, that the body's content reaches; what is left goes to the spans that the next unit of height
+// The highest level, in whole units, that the body's content reaches; the rest goes to the spans that the next unit of height
 // would fill, one after the other.
 void Waves::level_out(const std::vector<long> &body)
 {
@@ -66,7 +66,7 @@ void Waves::level_out(const std::vector<long> &body)
   Units left = 0;
   for (const long i : body) left += content[i];
   Units low = 0, high = static_cast<Units>(nz + 1) * UNITS_PER_CELL;    // held() of low is not too much, that of high is
-  if (all_held(high) <= left) return;                                   // full throughout: nothing has a surface
+  if (all_held(high) <= left) return;                                   // full throughout: no span has a surface
   while (high - low > 1) {
     const Units middle = low + (high - low) / 2;
     (all_held(middle) <= left ? low : high) = middle;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// New solids: spans of columns that have changed are cut anew, and liquid goes over to them.
+// New solids: spans of columns that have changed are cut anew, and liquid is carried over to them.
 
 #include "liquid/waves/columns.h"
 #include "liquid/waves/waves.h"
@@ -14,7 +14,7 @@ namespace mdanim {
 
 namespace {
 
-// No longer open than this is a span that closes; it lets go what it cannot hold any more.
+// A span with a capacity up to this closes; an open one releases the liquid that it cannot hold any more.
 constexpr Units MOST_OVERFULL = 2 * UNITS_PER_CELL;
 
 }    // namespace
@@ -99,7 +99,7 @@ void Waves::put(long i, const SpanState &state)
 }
 
 // Cuts those of the columns that have changed, and gives their liquid to their new spans. Further spans of all columns move up.
-// Returns what has lost its span.
+// Returns liquid that has lost its span.
 std::vector<Waves::Homeless> Waves::carry_over(const std::vector<int> &columns, const std::vector<int> &changed,
                                                const std::vector<SpanState> &was)
 {
@@ -130,8 +130,8 @@ std::vector<Waves::Homeless> Waves::carry_over(const std::vector<int> &columns, 
   return homeless;
 }
 
-// From the old spans of a column to its new ones. As many as before in the same order go on; where spans split or join, liquid
-// goes by the layers in which it stood.
+// Carries liquid from the old spans of a column to its new ones. As many as before, in the same order, continue; where spans
+// split or join, liquid goes by the layers in which it stood.
 std::vector<Waves::SpanState> Waves::share_out(const std::vector<SpanState> &was, const std::vector<Span> &cut,
                                                std::vector<Homeless> &homeless) const
 {
@@ -164,7 +164,7 @@ std::vector<Waves::SpanState> Waves::share_out(const std::vector<SpanState> &was
     if (left > 0) homeless.push_back({old.span.column, std::min(old.span.high - 1, static_cast<int>(old.level)), left});
   }
   for (SpanState &to : now) {
-    if (to.content < to.span.capacity - UNITS_PER_CELL) to.full = 0.0;    // as (W1) has it
+    if (to.content < to.span.capacity - UNITS_PER_CELL) to.full = 0.0;    // as in (W1)
     if (to.content > to.span.capacity + MOST_OVERFULL) {
       homeless.push_back({to.span.column, to.span.high - 1, to.content - to.span.capacity});
       to.content = to.span.capacity;
@@ -173,7 +173,7 @@ std::vector<Waves::SpanState> Waves::share_out(const std::vector<SpanState> &was
   return now;
 }
 
-// To the nearest columns: first into spans at the height of the liquid, then into any.
+// Finds room in the nearest columns: first in spans at the height of the liquid, then in any.
 void Waves::find_homes(const std::vector<Homeless> &homeless)
 {
   for (const Homeless &from : homeless) {

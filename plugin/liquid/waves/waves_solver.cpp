@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// Conjugate gradients for what heads gain in an update. The system is scaled so that its diagonal is 1.
+// Conjugate gradients for the change of heads in an update. The system is scaled so that its diagonal is 1.
 
 #include "liquid/waves/waves.h"
 
@@ -15,7 +15,7 @@ double Waves::sum_of_rows() const
   return sum;
 }
 
-// From 2 delta - last delta, or, `again`, from what is in p.
+// Starts from 2 delta - last delta, or, `again`, from the values in p.
 void Waves::solve(bool again)
 {
   constexpr double NOTHING = 1e-20;
@@ -25,7 +25,7 @@ void Waves::solve(bool again)
       if (with_r) std::copy(arrays.rhs + first * stride, arrays.rhs + end * stride, arrays.r + first * stride);
     });
   };
-  // A x where there are further links, and the sums of rows in which these are.
+  // Completes A x where there are further links, and the sums of rows in which these are.
   const auto complete = [&](double *product, const double *x, const double *with) {
     for (const long i : branched) product[i] = general_product(i, x);
     for (const long row : branched_rows) kernels->sum(arrays, product, with, row, row + 1);

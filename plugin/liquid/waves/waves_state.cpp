@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// All that later updates depend on, as bytes.
+// Everything that later updates depend on, as bytes.
 
 #include "liquid/waves/waves.h"
 
@@ -92,7 +92,7 @@ void Waves::set_state(const std::uint8_t *bytes, std::size_t size)
   if (held != head.units)
     reader.is_damaged("it holds " + std::to_string(held) + " units of liquid, not " + std::to_string(head.units));
 
-  std::fill(content.begin(), content.end(), 0);    // what is empty loses nothing to solids
+  std::fill(content.begin(), content.end(), 0);    // empty spans lose nothing to solids
   set_walls(walls.data());
   set_solids(part.data(), nullptr);
   const SpanRecord *span_record = spans.data();
@@ -113,7 +113,7 @@ void Waves::set_state(const std::uint8_t *bytes, std::size_t size)
     arrays_of(link).q[link.at] = link_record->q;
     ++link_record;
   });
-  some_full = true;    // until the next update has looked
+  some_full = true;    // until the next update has checked
   resting = (head.flags & RESTING) != 0;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// One update, step by step: rows by the kernels, then what is listed by the general form.
+// One update, step by step: rows by the kernels, then listed spans and links by the general form.
 
 #include "liquid/waves/waves.h"
 
@@ -24,7 +24,8 @@ double Waves::update(double dt, double share)
   return gone;
 }
 
-// By velocities in open liquid, by fluxes in thin layers: a puddle that passes less than half a unit keeps its velocity for ever.
+// Judged by velocities in open liquid, by fluxes in thin layers: a puddle that passes less than half a unit keeps its velocity
+// for ever.
 bool Waves::hardly_flows() const
 {
   constexpr double IN_PUDDLES = 0.1;
@@ -97,7 +98,7 @@ void Waves::sub_update(double dt, double share)
       arrays.links[d].q[links_start + n] = arrays.links[d].units[links_start + n] * (1.0 / (law.units_per_cell * law.dt));
 }
 
-// Momentum along x and y before pressure, which friction has just taken a part of.
+// Momentum along x and y before pressure, after friction has taken a part of it.
 Vec3 Waves::moving() const
 {
   double sum[2] = {0.0, 0.0};
@@ -109,8 +110,8 @@ Vec3 Waves::moving() const
   return {sum[0], sum[1], 0.0};
 }
 
-// Nothing pulls at a roof: full spans whose head comes out below it are free. Returns whether there are any; then what was found
-// for all heads is in p.
+// A roof cannot pull: full spans whose head comes out below it become free. Returns whether there are any; then the heads found
+// so far are in p.
 bool Waves::let_go()
 {
   return any_row([this](long first, long end) { return let_go(first, end); });

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// Pressure on the sides of the basin and of what is held in it: phi - z, as in waves_forces.cpp. It is told and changes nothing.
+// Pressure on the sides of the basin and of held bodies in it: phi - z, as in Waves::add_forces(). It is an output and changes
+// nothing.
 
 #include "liquid/waves/columns.h"
 #include "liquid/waves/waves.h"
@@ -20,14 +21,14 @@ void Waves::set_walls(const std::uint16_t *held)
   list_wall_faces();
 }
 
-// Layers of a face with the same solid part are one. Between cells that both are shut there is no liquid.
+// Layers of a face with the same solid part are joined. Between cells that are both shut there is no liquid.
 void Waves::list_wall_faces()
 {
   wall_faces.clear();
   for (int column = 0; column < nx * ny; ++column)
     for (int side = 0; side < 4; ++side) {
       const int other = neighbour(column, side, nx, ny);
-      if (other >= 0 && other < column) continue;    // that one tells of this face
+      if (other >= 0 && other < column) continue;    // the other column reports this face
       const double x = side == 0 ? -1.0 : side == 1 ? 1.0 : 0.0, y = side == 2 ? -1.0 : side == 3 ? 1.0 : 0.0;
       const auto closed = [&](int z) {
         if (other < 0) return 1.0;
@@ -42,7 +43,7 @@ void Waves::list_wall_faces()
     }
 }
 
-// Of the liquid in a column, on a side from one layer to another.
+// Pressure of the liquid in a column, on a side from one layer to another.
 double Waves::pressure_on(int column, int low, int high) const
 {
   double sum = 0.0;
