@@ -8,7 +8,7 @@ import re
 
 from mdanim_lammps.scene.forms import OptionalPart, Slot, Word, alternatives
 from mdanim_lammps.scene.keywords import KEYWORDS
-from mdanim_lammps.scene.scene import QUANTITIES
+from mdanim_lammps.scene.scene import QUANTITIES, RELATIONS
 from mdanim_lammps.scene.schema import Keyword
 
 NAMES = ("ball", "slab", "cup")
@@ -139,7 +139,10 @@ class _Maker:
                 return self.chance.choice(("red", '"#aabbcc"', "steelblue"))
             case "check":
                 subject, quantity = self.chance.choice(list(QUANTITIES))
-                return f"{subject.replace('NAME', 'ball')}.{quantity}"
+                taken = {"object": "(slab)", "place": "(0.1 m, 0 m)"}.get(QUANTITIES[subject, quantity].takes, "")
+                return f"{subject.replace('NAME', 'ball')}.{quantity}{taken}"
+            case "relation":
+                return self.chance.choice(sorted(RELATIONS))
             case "place" if self.chance.random() < 0.5:
                 return self.chance.choice(NAMES)
         number = self.chance.choice(SANE.get(slot.unit, SANE["1"]))

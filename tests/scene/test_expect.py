@@ -60,3 +60,45 @@ def test_mistakes_of_relations_and_tolerances(line, message, hint):
     """What says nothing is refused with a way out."""
     problem = refusal(f"expect {line}")
     assert (problem.message, problem.hint) == (message, hint)
+
+
+TWO = (
+    BALL
+    + """
+object cube[2] { shape box (1, 1, 1) m position (3, 0, 1) m mass 1 kg elasticity 150 kPa }
+liquid water { basin from (-5, -4, -3) m to (5, 4, 3) m density 1000 kg/m^3 level 0 m }
+gravity (0, 0, -9.81) m/s^2
+"""
+)
+
+
+def test_arguments_of_quantities():
+    """Another object of a distance, with its index; a place of a height, in any unit."""
+    e = expected("expect ball.distance(cube[1 + 1]) at 1 s > 2 m", TWO)
+    assert (e.quantity, e.argument, e.what) == ("distance", "cube[2]", "ball.distance(cube[2])")
+    for place in ("(50 cm, -1 m)", "(0.5, -1)", "(0.5, -1) m", "(50, -100) cm"):
+        e = expected(f"expect liquid.height{place} at 1 s = 1 m", TWO)
+        assert (e.quantity, e.argument, e.what) == ("height", (0.5, -1.0), "liquid.height(0.5 m, -1 m)"), place
+
+
+@pytest.mark.parametrize(
+    ("line", "message", "hint"),
+    [
+        ("ball.distance < 1 m", "distance needs another object in brackets", "write distance(cube)"),
+        ("ball.distance(ball) < 1 m", "the distance of ball and itself is 0", "name another object"),
+        ("ball.distance(cub[2]) < 1 m", "no object is called cub[2]", "did you mean 'cube[2]'?"),
+        ("ball.distance() < 1 m", "distance needs another object in brackets, found ')'", ""),
+        ("ball.distance(cube[2] < 1 m", "a ) is missing after cube, found '<'", ""),
+        ("liquid.height < 1 m", "height needs a place (x, y) in brackets", "write height(0.2 m, 0 m)"),
+        ("liquid.height(6 m, 0 m) < 1 m", "the place (6, 0) m lies outside the basin",
+         "the basin goes from (-5, -4) to (5, 4) m"),
+        ("liquid.height(1 kg, 0) < 1 m", "x of (x, y) in expect must be a length, found (1 kg, 0), a mass",
+         "units that fit: m mm cm km"),
+        ("ball.speed(cube[2]) < 1 m/s", "'=' is missing in expect, found '('",
+         "e.g. expect ball.position.z at 1 s = 0.1 m +- 1 cm; or <, >, <=, >="),
+    ],
+)  # fmt: skip
+def test_mistakes_of_arguments(line, message, hint):
+    """What is missing, unknown or out of place in brackets is told."""
+    problem = refusal(f"expect {line}", TWO)
+    assert (problem.message, problem.hint) == (message, hint)

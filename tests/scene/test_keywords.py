@@ -29,6 +29,8 @@ def scene(block: str, **settings: str):
         blocks |= {"contact": {}, "floor": dict(BALL)}
     if block == "contact" or any(settings.get(word, "0") != "0" for word in OF_SURFACES):
         blocks["control"]["contact-model"] = "surface"
+    if "(floor)" in settings.get("expect", ""):
+        blocks["floor"] = dict(BALL)
     if settings.get("sweeps", "auto") != "auto":
         blocks["liquid"]["model"] = "surface"
     top = {"gravity": "(0, 0, -9.81) m/s^2"}
@@ -89,7 +91,8 @@ def test_every_quantity_can_be_expected(quantity):
     kind, what = quantity
     name = kind if kind in GLOBALS else "ball"
     unit = QUANTITIES[quantity][0].replace("1", "")
-    expect = scene("", expect=f"{name}.{what} at 1 s = 0.5 {unit} +- 0.1 {unit}").expects[0]
+    taken = {"object": "(floor)", "place": "(0.1 m, 20 cm)"}.get(QUANTITIES[quantity].takes, "")
+    expect = scene("", expect=f"{name}.{what}{taken} at 1 s = 0.5 {unit} +- 0.1 {unit}").expects[0]
     assert (expect.subject, expect.quantity, expect.value, expect.tolerance, expect.time) == (name, what, 0.5, 0.1, 1.0)
 
 

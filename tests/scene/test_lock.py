@@ -170,9 +170,13 @@ def scenes(draw):
         if wet or (kind != "liquid" and QUANTITIES[kind, quantity].needs != "liquid"):
             subject = kind if kind in GLOBALS else draw(st.sampled_from([b.name for b in bodies]))
             time = draw(st.none() | st.floats(0, control.time))
+            others, takes = [b.name for b in bodies if b.name != subject], QUANTITIES[kind, quantity].takes
+            if takes == "object" and not others:
+                continue
+            argument = {"object": others and draw(st.sampled_from(others)), "place": basin.low[:2] if wet else None}.get(takes)
             relation = draw(st.sampled_from(["=", "<", ">", "<=", ">="]))
             tolerance = draw(st.floats(0, 1e3)) if relation == "=" else 0.0
-            expects.append(records.Expect(subject, quantity, draw(numbers), tolerance, time, relation))
+            expects.append(records.Expect(subject, quantity, draw(numbers), tolerance, time, relation, argument))
     return records.SceneRecord(
         name="scene",
         control=control,

@@ -268,7 +268,7 @@ class Run:
 
         rows = [
             (
-                f"{o.expect.subject}.{o.expect.quantity}",
+                o.expect.what,
                 f"{'' if o.expect.relation == '=' else o.expect.relation + ' '}{number(o.expect.value, 4)}",
                 number(o.found, 4),
                 "met" if o.met else "MISSED",

@@ -33,6 +33,10 @@ class Measured:
     trajectory: Any
     """results.trajectory.Trajectory: for what all frames are read."""
 
+    def solid(self, name: str) -> int:
+        """Number of an object, from 0."""
+        return self.context.system.names.index(name)
+
     def until(self, values: np.ndarray, time: float | None) -> np.ndarray:
         """Those of frames up to a time, or of the whole run."""
         return values if time is None else values[self.times <= time * (1 + 1e-9)]
@@ -60,6 +64,8 @@ class Glance:
     model: Model
     position: np.ndarray
     """Of all particles [m], shape (N, 3)."""
+    velocity: np.ndarray
+    """Of all particles, of which only its own are sure to be those of the frame [m/s], shape (N, 3)."""
     fields: Fields
     """What effects tell of the frame; nothing where the object is out of their reach."""
 

@@ -7,8 +7,6 @@ import operator
 from dataclasses import dataclass
 from functools import lru_cache
 
-import numpy as np
-
 from ..effects.measured import Measure, Measured, Recorded
 from ..features import facets
 from ..scene.formatting import number
@@ -45,7 +43,7 @@ class Outcome:
         when = "" if e.time is None else f" at {number(e.time, 6)} s"
         verdict = "met" if self.met else "MISSED"
         place = f"{e.span}: " if e.span else ""
-        return f"{place}expect {e.subject}.{e.quantity}{when} {self.asked}: found {number(self.found, 6)}, {verdict}"
+        return f"{place}expect {e.what}{when} {self.asked}: found {number(self.found, 6)}, {verdict}"
 
     @property
     def asked(self) -> str:
@@ -88,33 +86,6 @@ def _column(e: Expect) -> str:
 def _measure(e: Expect, m: Measured) -> float:
     if e.quantity in recordable():
         return recordable()[e.quantity].measure(m, m.ledger(_column(e)), e.time)
-    if e.subject not in GLOBALS:
-        kind, axis = e.quantity.split(".")
-        position, velocity = _motion(m, m.context.system.names.index(e.subject), e.time)
-        return float((position if kind == "position" else velocity)["xyz".index(axis)])
     if (e.subject, e.quantity) == ("energy", "residual"):
         return m.largest(m.ledger("residual"), e.time)
-    return measures()[e.subject, e.quantity](m, e)
-
-
-def _motion(m: Measured, solid: int, time: float | None) -> tuple[np.ndarray, np.ndarray]:
-    """Centre of mass and its velocity; between two frames by the cubic that meets both positions and velocities."""
-    x, v = m.center[:, solid], m.velocity[:, solid]
-    if time is None:
-        return x[-1], v[-1]
-    after = min(int(np.searchsorted(m.times, time * (1 - 1e-9))), len(m.times) - 1)
-    if after == 0 or abs(m.times[after] - time) <= 1e-9 * time:
-        return x[after], v[after]
-    before = after - 1
-    dt = m.times[after] - m.times[before]
-    s = (time - m.times[before]) / dt
-    position = (
-        (1 + 2 * s) * (1 - s) ** 2 * x[before]
-        + s * (1 - s) ** 2 * dt * v[before]
-        + s * s * (3 - 2 * s) * x[after]
-        + s * s * (s - 1) * dt * v[after]
-    )
-    velocity = (
-        6 * s * (1 - s) * (x[after] - x[before]) / dt + (1 - 4 * s + 3 * s * s) * v[before] + (3 * s * s - 2 * s) * v[after]
-    )
-    return position, velocity
+    return measures()[e.subject if e.subject in GLOBALS else "NAME", e.quantity](m, e)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""How whole objects move: spin and kinetic energy from their particles, contact forces from their momenta, and the table of
+"""How whole objects move: kinetic energy from their particles, contact forces from their momenta, and the table of
 all objects and frames."""
 
 from __future__ import annotations
@@ -10,31 +10,12 @@ import numpy as np
 
 from .. import features
 from ..effects import acting
+from ..model.spin import spin
 from ..reach import Acting
 from ..scene.scene import Save
 
 if TYPE_CHECKING:
     from .trajectory import Trajectory
-
-
-def spin(mass: np.ndarray, first: np.ndarray, position: np.ndarray, velocity: np.ndarray) -> np.ndarray:
-    """Angular velocity of each object [rad/s], shape (O, 3): its angular momentum about its centre of mass over its inertia.
-
-    Args:
-        mass: of N particles [kg], shape (N,).
-        first: first particle of each object, shape (O,).
-        position, velocity: [m], [m/s], shape (N, 3).
-    """
-    count = np.diff(first, append=len(mass))
-    mean = lambda value: np.add.reduceat(mass[:, None] * value, first) / np.add.reduceat(mass, first)[:, None]
-    arm, speed = position - np.repeat(mean(position), count, axis=0), velocity - np.repeat(mean(velocity), count, axis=0)
-    momentum = np.add.reduceat(mass[:, None] * np.cross(arm, speed), first)
-    square = np.einsum("nd,nd->n", arm, arm)
-    inertia = np.add.reduceat(
-        mass[:, None, None] * (square[:, None, None] * np.eye(3) - arm[:, :, None] * arm[:, None, :]), first
-    )
-    # A line of particles has no inertia about itself: there the spin is zero.
-    return np.einsum("oij,oj->oi", np.linalg.pinv(inertia, hermitian=True), momentum)
 
 
 def kinetic(mass: np.ndarray, first: np.ndarray, velocity: np.ndarray) -> np.ndarray:

@@ -376,7 +376,7 @@ class ObjectTrack:
 
         Raises OutputError where only boundary particles are stored.
         """
-        from .motion import spin
+        from ..model.spin import spin
 
         t = self._trajectory
         if t.metadata.save is not Save.ALL:

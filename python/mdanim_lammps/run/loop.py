@@ -344,7 +344,7 @@ class _Run:
             "seconds": sum(self.seconds.values()),
             "expect": [
                 {
-                    "what": f"{o.expect.subject}.{o.expect.quantity}",
+                    "what": o.expect.what,
                     "time": o.expect.time,
                     "relation": o.expect.relation,
                     "value": o.expect.value,

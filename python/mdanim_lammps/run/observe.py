@@ -95,7 +95,7 @@ class Observer:
             self.geometry.sunk(x, near) if self.apart and sound else None,
             *self.folds.find(objects, x if sound else self.system.position),
             {
-                column: look(Glance(self.context, m, model, x, fields))
+                column: look(Glance(self.context, m, model, x, v, fields))
                 for m, look, model, column in self.recorded
                 if sound and m in objects
             },

@@ -336,7 +336,7 @@ class Expander:
     def raw(self, v: Value, env: Env):
         """A value before its unit is checked."""
         if v.slot.kind == "check":
-            return self.name(v.name, env), v.text
+            return self.name(v.name, env), v.text, v.argument and self.raw(v.argument, env)
         if v.name is not None:
             return self.name(v.name, env)
         return v.text if v.node is None else v.node.run(env)
@@ -346,7 +346,10 @@ class Expander:
         kind = v.slot.kind
         if kind == "color":
             return self._color(s, v, x)
-        if kind in ("text", "choice", "check", "relation") or v.name is not None:
+        if kind == "check":
+            subject, quantity, argument = x
+            return subject, quantity, v.argument and self.checked(s, v.argument, argument)
+        if kind in ("text", "choice", "relation") or v.name is not None:
             return x
         what = label(s, v)
         if kind == "number":

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from enum import Enum
 from pathlib import Path
@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from ..errors import Span
 from ..features import facets
-from .formatting import vector
+from .formatting import number, vector
 from .limits import CONTACT_DAMPING, CONTACT_STIFFNESS, DAMPING, DROPS, FRICTION, SWEEPS
 from .render import COLOR, Camera, Render  # noqa: F401
 from .rotation import IDENTITY, departure, rotation_about, rotation_euler
@@ -369,14 +369,11 @@ class Control(Worded):
     spans: Mapping[str, Span] = field(default_factory=dict, compare=False, repr=False)
 
 
+_OF_FEATURES = {of: quantity for words in facets("words") for of, quantity in getattr(words, "QUANTITIES", {}).items()}
 QUANTITIES = {
-    **{
-        ("NAME", f"{what}.{axis}"): Observable(u, f"{about}, {axis}")
-        for what, u, about in (("position", "m", "centre of mass"), ("velocity", "m/s", "velocity of the centre of mass"))
-        for axis in "xyz"
-    },
+    **{of: quantity for of, quantity in _OF_FEATURES.items() if of[0] == "NAME"},
     ("energy", "residual"): Observable("1", "relative error of the energy ledger"),
-    **{of: quantity for words in facets("words") for of, quantity in getattr(words, "QUANTITIES", {}).items()},
+    **{of: quantity for of, quantity in _OF_FEATURES.items() if of[0] != "NAME"},
 }
 """What ``expect`` can check, by subject and word; NAME stands for any object."""
 
@@ -404,7 +401,21 @@ class Expect:
     """[s]; None is the end of the run (``strain.max``, ``penetration.max``, ``crest``, residuals: the whole run)."""
     relation: str = "="
     """One of RELATIONS."""
+    argument: str | tuple[float, float] | None = None
+    """The other object of a distance, the place of a height [m]; None of quantities that take none."""
     span: Span | None = field(default=None, compare=False, repr=False)
+
+    @property
+    def what(self) -> str:
+        """What is checked, as it is written in scenes."""
+        return self.written(lambda x: number(x, 6))
+
+    def written(self, number: Callable[[float], str]) -> str:
+        """The same with its numbers in this form."""
+        taken = self.argument
+        if isinstance(taken, tuple):
+            taken = ", ".join(f"{number(x)} m" for x in taken)
+        return f"{self.subject}.{self.quantity}" + ("" if taken is None else f"({taken})")
 
     @property
     def unit(self) -> str:
@@ -424,7 +435,7 @@ class Check(Codec):
     def write(self, k: Keyword, value: Any) -> tuple[int, tuple]:
         numbers = [f"{x!r} {value.unit}".rstrip() for x in (value.value, value.tolerance)]
         tolerance = numbers[1] if value.relation == "=" else None
-        return 0, (f"{value.subject}.{value.quantity}", value.time, value.relation, numbers[0], tolerance)
+        return 0, (value.written(repr), value.time, value.relation, numbers[0], tolerance)
 
 
 @dataclass(frozen=True, slots=True)

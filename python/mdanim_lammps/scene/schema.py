@@ -55,6 +55,8 @@ class Observable(NamedTuple):
     about: str
     needs: str = ""
     """The effect that must be on; it has the name of the block that brings it into a scene."""
+    takes: str = ""
+    """Its argument: ``object``, another object; ``place``, a point (x, y) [m]; or nothing."""
 
 
 def meaning(subject: str, quantity: Observable) -> str:

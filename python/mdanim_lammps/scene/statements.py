@@ -15,12 +15,15 @@ from .forms import OptionalPart, Slot, Word, alternatives, literals, pieces
 from .keywords import BLOCKS, KEYWORDS, NOT_SUPPORTED, STATEMENTS, did_you_mean, example, foreign_line, misplaced, nearest
 from .limits import DEEPEST_INCLUDE, DEEPEST_REPEAT, MOST_BYTES, MOST_FILES
 from .reader import ODD, Reader
-from .scene import GLOBALS, RELATIONS
+from .scene import GLOBALS, QUANTITIES, RELATIONS
 from .schema import Keyword
 from .source import Fault, Problems, SceneFile, UnreadableFile, read_text
 from .tokens import Token
 from .tree import Group, Let, Name, Repeat, SettingNode, UnreadableStatement, Value
-from .units import UNITS
+from .units import UNITS, unit
+
+TAKEN = {"object": ("another object", "(cube)"), "place": ("a place (x, y)", "(0.2 m, 0 m)")}
+"""Arguments of quantities in words, and an example."""
 
 
 class Unclosed(Exception):
@@ -451,7 +454,27 @@ class Parser(Reader):
             words.append(self.take())
         if not words:
             raise Fault(name.token, f"expect {name.token} names no quantity", f"e.g. {name.token}.position.z", name.last)
-        return Value(slot, name.token, words[-1], text=".".join(words), name=name)
+        text = ".".join(words)
+        argument = self.argument(text, words[-1], stops(keyword))
+        return Value(slot, name.token, argument.last if argument else words[-1], text=text, name=name, argument=argument)
+
+    def argument(self, quantity: str, last: Token, stops: frozenset[str]) -> Value | None:
+        """What stands in brackets behind a quantity that takes something."""
+        takes = next((q.takes for (_, word), q in QUANTITIES.items() if word == quantity and q.takes), "")
+        if not takes:
+            return None
+        if self.peek.type != "LPAR":
+            raise Fault(last, f"{quantity} needs {TAKEN[takes][0]} in brackets", f"write {quantity}{TAKEN[takes][1]}")
+        if takes == "place":
+            node = self.expression(Slot("vector", "(x, y)", "m", 2, dim=unit("m").dim), stops)
+            return Value(self.slot, node.first, node.last, node)
+        self.take()
+        if self.peek.type != "NAME":
+            raise Fault(self.peek, f"{quantity} needs {TAKEN[takes][0]} in brackets, found {self.peek.found()}")
+        name = self.name()
+        if self.peek.type != "RPAR":
+            raise Fault(self.peek, f"a ) is missing after {name.token}, found {self.peek.found()}")
+        return Value(Slot("object", "NAME"), name.token, self.take(), name=name)
 
     def end_of_statement(self, what: str, settings) -> None:
         t, at = self.peek, self.at

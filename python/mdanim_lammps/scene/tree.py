@@ -34,6 +34,8 @@ class Value:
     """Texts, choices, colours, and the quantity of an expect."""
     name: Name | None = None
     """Object names."""
+    argument: Value | None = None
+    """Of the quantity of an expect."""
 
 
 @dataclass(slots=True, eq=False)

@@ -380,7 +380,7 @@ class Validator:
 
     def expect(self, s: EvaluatedSetting, control: records.Control | None) -> records.Expect | None:
         """One self-check, with the unit of its quantity."""
-        (subject, quantity), time, relation, value, tolerance = s.values
+        (subject, quantity, argument), time, relation, value, tolerance = s.values
         kind = subject if subject in GLOBALS else "NAME"
         known = [q for k, q in QUANTITIES if k == kind]
         if kind == "NAME" and not self.known_subject(subject, quantity, s.span(0)):
@@ -391,6 +391,8 @@ class Validator:
             )
             return None
         of = QUANTITIES[kind, quantity]
+        if of.takes == "object" and not self.known_other(subject, quantity, argument, s.span(0)):
+            return None
         if of.needs in BLOCKS and not self.blocks(of.needs) and not self.out.excused(of.needs):
             self.problem(s.span(0), f"{subject}.{quantity} needs a {of.needs}, and the scene has none")
         if time is not None and (time < 0.0 or (control is not None and time > control.time * (1.0 + 1e-9))):
@@ -419,7 +421,7 @@ class Validator:
             self.problem(s.span(4), f"the tolerance must be >= 0, found {units.show(tolerance)}")
         if part:
             numbers[1] *= abs(numbers[0]) / 100.0
-        return records.Expect(subject, quantity, numbers[0], numbers[1], time, relation, s.span())
+        return records.Expect(subject, quantity, numbers[0], numbers[1], time, relation, argument, s.span())
 
     @staticmethod
     def _tolerance_unfit(relation: str, part: bool, value: float, tolerance: Any) -> tuple[str, str] | None:
@@ -431,6 +433,16 @@ class Validator:
         if part and value == 0.0:
             return "per cent of 0 is nothing", "write a tolerance with the unit of the value"
         return None
+
+    def known_other(self, subject: str, quantity: str, other: str, span: Span) -> bool:
+        """Another object."""
+        if other in self.names and other != subject:
+            return True
+        if other == subject:
+            self.problem(span, f"the {quantity} of {subject} and itself is 0", "name another object")
+        elif not self.out.excused("object"):
+            self.problem(span, f"no object is called {other}", did_you_mean(other, list(self.names)[:2000]))
+        return False
 
     def known_subject(self, subject: str, quantity: str, span: Span) -> bool:
         """An object; or a word for the whole scene, mistyped."""

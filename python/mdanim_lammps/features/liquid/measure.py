@@ -23,7 +23,29 @@ def volume(m: Measured, e: Expect) -> float:
     return m.at(m.ledger(CELLS), e.time) * m.context.grid.cell_volume
 
 
+def height(m: Measured, e: Expect) -> float:
+    """Of the smooth surface at a place [m], straight between the middles of columns and between frames."""
+    frames = range(len(m.times))
+    return m.at(np.array([height_at(e.argument, m.context.grid, m.trajectory.liquid_height(k)) for k in frames]), e.time)
+
+
+def height_at(place: tuple[float, float], grid: Grid, heights: np.ndarray) -> float:
+    """Height z of a surface at (x, y), bilinear between the middles of columns [m], from heights of shape (ny, nx)."""
+    (i, s), (j, t) = (
+        _between((x - low) / cell - 0.5, count) for x, low, cell, count in zip(place, grid.low, grid.cell, grid.shape)
+    )
+    corners = heights[np.ix_([j, min(j + 1, grid.shape[1] - 1)], [i, min(i + 1, grid.shape[0] - 1)])].astype(float)
+    return float(np.array([1 - t, t]) @ corners @ np.array([1 - s, s]))
+
+
+def _between(x: float, count: int) -> tuple[int, float]:
+    """The column before a place, and how far the place is on the way to the next one; the outermost middles go on to the edge."""
+    x = min(max(x, 0.0), count - 1.0)
+    return int(x), x - int(x)
+
+
 MEASURES = {
+    ("liquid", "height"): height,
     ("liquid", "residual"): residual,
     ("liquid", "volume"): volume,
     ("liquid", "level"): lambda m, e: m.at(m.trajectory.liquid_levels, e.time),

@@ -24,6 +24,9 @@ QUANTITIES = {
     ("liquid", "volume"): Observable("m^3", "volume of the liquid", "liquid"),
     ("liquid", "residual"): Observable("1", "cells gained or lost, to the unit", "liquid"),
     ("liquid", "level"): Observable("m", "mean height of the surface", "liquid"),
+    ("liquid", "height"): Observable(
+        "m", "height of the surface at a place: `liquid.height(0.2 m, 0 m)`", "liquid", takes="place"
+    ),
     ("liquid", "crest"): Observable("m", "highest point of the liquid at any frame, without drops", "liquid"),
     ("liquid", "waves"): Observable(
         "J", "energy of waves, of height and motion, since the start; 0 without `model waves`", "liquid"
@@ -55,6 +58,7 @@ def check(v: Any, top: Mapping, held: Mapping) -> None:
     """What else a scene needs that has a liquid; ``held`` are the records of blocks."""
     gravity_fits(v, v.blocks("liquid"))
     ground_below(v, held["liquid"])
+    within_basin(v, held["liquid"])
 
 
 def gravity_fits(v: Any, liquids: list) -> None:
@@ -81,6 +85,15 @@ def ground_below(v: Any, liquid: Any) -> None:
         f"the basin has a floor of its own: leave the ground out, or write ground z {say(liquid.low[2], 'm', 6)}",
         severity="warning",
     )
+
+
+def within_basin(v: Any, liquid: Any) -> None:
+    """Places at which heights are expected lie in the basin."""
+    for s in v.out.settings.get("expect", ()) if liquid is not None else ():
+        _, quantity, place = s.values[0]
+        if quantity == "height" and not all(a <= x <= b for a, x, b in zip(liquid.low, place, liquid.high)):
+            cause = f"the place {vector(place)} m lies outside the basin"
+            v.problem(s.span(0), cause, f"the basin goes from {vector(liquid.low[:2])} to {vector(liquid.high[:2])} m")
 
 
 def check_liquid(v: Any, block: Any, liquid: Any) -> Any:

@@ -1,0 +1,25 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Words of a scene that belong to this feature."""
+
+from __future__ import annotations
+
+from ...scene.schema import Observable
+
+SWITCHES: dict[str, str] = {}
+
+QUANTITIES = {
+    **{
+        ("NAME", f"{what}.{axis}"): Observable(unit, f"{about}, {axis}")
+        for what, unit, about in (
+            ("position", "m", "centre of mass"),
+            ("velocity", "m/s", "velocity of the centre of mass"),
+            ("spin", "rad/s", "angular velocity, angular momentum about the centre of mass over inertia"),
+        )
+        for axis in "xyz"
+    },
+    ("NAME", "speed"): Observable("m/s", "speed of the centre of mass"),
+    ("NAME", "spin"): Observable("rad/s", "magnitude of the angular velocity"),
+    ("NAME", "distance"): Observable(
+        "m", "from the centre of mass to that of another object: `ball.distance(cube)`", takes="object"
+    ),
+}
