@@ -29,7 +29,10 @@ FORMS = {
 """Regular expression of a form, and what to write."""
 BEGINNINGS = re.compile(r'(?:^\s*(?:#|//+|\*)|""")\s*(?:What|Of|So many|Whoever)\s')
 """Comments and docstrings begin with the thing or with a verb. Checked file by file as they are read again."""
-READ_AGAIN = ("plugin/",)
+READ_AGAIN = (
+    "plugin/",
+    *(f"python/mdanim_lammps/{folder}/" for folder in ("api", "engine", "model", "parallel", "reach", "results", "run")),
+)
 """Folders and files whose comments all begin so."""
 
 

@@ -118,7 +118,7 @@ class Run:
 
     @property
     def outcomes(self) -> list[Outcome]:
-        """What came of the ``expect`` lines; empty as long as the run is not complete. Raises OutputError, SceneError."""
+        """Results of the ``expect`` lines; empty as long as the run is not complete. Raises OutputError, SceneError."""
         if self._result:
             return self._result.outcomes
         if not (self.folder / SUMMARY).exists():
@@ -141,12 +141,12 @@ class Run:
 
     @property
     def warnings(self) -> list[Problem]:
-        """What was seen in the run that does not stop it; known only in the program that has run it."""
+        """Problems seen in the run that do not stop it; known only in the program that has run it."""
         return self._result.warnings if self._result else []
 
     @property
     def timeline(self) -> Timeline | None:
-        """What executors did when; None of a run in one process. Raises OutputError."""
+        """Activities of executors over time; None for a run in one process. Raises OutputError."""
         return Timeline.left_in(self.folder)
 
     @property

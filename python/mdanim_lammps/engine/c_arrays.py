@@ -16,7 +16,7 @@ def pointer(array: np.ndarray) -> ctypes.c_void_p:
 
 
 def body_arguments(kind: int, body: ContactBody) -> list:
-    """What ``mdanim_contact_body`` wants behind the ID of the fix (plugin/c_api/contact_c.cpp)."""
+    """The arguments of ``mdanim_contact_body`` that follow the ID of the fix (plugin/c_api/contact_c.cpp)."""
     return [
         ctypes.c_int(kind),
         *map(pointer, (body.count, body.edge)),

@@ -13,7 +13,7 @@ from ..model.system import System, side_by_side
 from .plugin import open_library
 
 NOT_FINITE, INVERTED = 1, 2
-"""What a glance may find."""
+"""Possible findings of a glance."""
 
 
 class _Model(ctypes.Structure):

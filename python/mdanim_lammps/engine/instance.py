@@ -27,7 +27,7 @@ TYPES = 256
 REPEATED = ("comm_modify", "bond_style")
 """Commands before the particles that an instance takes again when it is filled anew: bond styles begin with empty accounts."""
 UNDONE = {"fix": "unfix {}", "region": "region {} delete"}
-"""What takes back a command for what acts on particles; the others may be given again."""
+"""Commands that take back a command for an action on particles; other commands may be given again."""
 GLOBAL, SCALAR, VECTOR = 0, 0, 1  # LAMMPS's constants for extract_fix
 
 
@@ -295,7 +295,7 @@ class Instance:
         return State(x, v, f, self.records())
 
     def records(self) -> dict[str, StateRecords]:
-        """What fixes keep besides, by the ID of the fix; objects are numbered as in the plan."""
+        """Records of fixes, by the ID of the fix; objects are numbered as in the plan."""
         found = {}
         for fix in self._stateful():
             count, size = ctypes.c_longlong(), ctypes.c_longlong()

@@ -11,7 +11,7 @@ MOST_INSTANCES = 6
 
 
 class InstanceCache:
-    """What is put in may come out again as an instance of another plan."""
+    """Unused instances, each of which may be taken out again for another plan."""
 
     def __init__(self):
         self.idle: list[Instance] = []

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What fixes of the plugin tell in their vectors, by the names on their pages (plugin/lammps/fix_base.h)."""
+"""Output of fixes of the plugin in their vectors, by the names on their pages (plugin/lammps/fix_base.h)."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What LAMMPS is told: the one record from which both data and input files and live instances are made."""
+"""The plan for LAMMPS: the one record from which both data and input files and live instances are made."""
 
 from __future__ import annotations
 

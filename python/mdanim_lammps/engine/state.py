@@ -60,7 +60,7 @@ class StateRecords:
         return StateRecords(number[found.keys], found.first, found.data)
 
     def renumbered(self, objects: Sequence[int]) -> StateRecords:
-        """What `take` does, undone: records of a part with the numbers of the whole."""
+        """The reverse of `take`: records of a part with the numbers of the whole."""
         return StateRecords(np.append(0, np.asarray(objects, np.int64) + 1).astype(np.int32)[self.keys], self.first, self.data)
 
     def _ordered(self, keys: np.ndarray, order: np.ndarray) -> StateRecords:
@@ -87,7 +87,7 @@ class State:
     f: np.ndarray
     """Forces [N], shape (N, 3): dashpots see half-step velocities, which x and v do not hold."""
     records: Records = field(default_factory=dict)
-    """What fixes keep besides; a fix that is not there begins anew."""
+    """Further values that fixes keep; a fix that is absent begins anew."""
 
 
 def join(pieces: Iterable[StateRecords]) -> StateRecords:

@@ -142,7 +142,7 @@ class SubPlans:
     # --- springs at both ends: kept by object, for it takes a sort to make them ---------------------------------------
 
     def _ends_of(self, m: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Of one object: springs at each particle, partners (from 1) in it, types in the whole."""
+        """Springs at each particle of one object, partners (from 1) in it, types in the whole."""
         if m not in self._ends:
             mine = slice(self._bond[m], self._bond[m + 1])
             start = self._particle[m]

@@ -40,7 +40,7 @@ def check_threads(threads: int | str) -> int:
 
 
 def asked_threads() -> int | None:
-    """What the environment says; None where it says nothing. Raises UsageError."""
+    """The number of threads in the environment; None where it gives none. Raises UsageError."""
     return check_threads(os.environ[THREADS]) if os.environ.get(THREADS) else None
 
 
@@ -61,7 +61,8 @@ class ThreadChoice:
 
 
 def choose_threads(plan: Plan, most: int) -> ThreadChoice:
-    """What is asked for, or else one thread for each of so many cores, where each has enough to do. Raises UsageError."""
+    """The number that is asked for, or else one thread for each of ``most`` cores, where each has enough to do. Raises
+    UsageError."""
     asked, particles = asked_threads(), plan.system.particles
     of_particle = DAMPED_PASS if plan.damped else PASS
     pays_from = math.ceil(least_task() / of_particle)

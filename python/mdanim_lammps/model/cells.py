@@ -99,7 +99,7 @@ def _voxels(shape: Shape, spacing: float) -> Cells:
             if cells is None:
                 continue
             error = abs(np.count_nonzero(cells.filled) * edge**3 / volume - 1)
-            # What stands out of the shape, or is missing, keeps others at a distance or lets them in. A gain below a
+            # Parts that stand out of the shape keep others at a distance, and missing parts let them in. A gain below a
             # thousandth is not worth an edge 5 % off the spacing.
             out = max(abs(cells.low - low).max(), abs(cells.high - high).max()) / edge
             score = error + 0.1 * out + 0.02 * abs(edge / spacing - 1)

@@ -70,9 +70,9 @@ class ContactBody:
     """Depth below the drawn surface [m], the distance to it, negative outside: coefficients of centred quadratic B-splines on the
     nodes -2 .. n + 2 of each axis, shape ((nz + 5)(ny + 5)(nx + 5),). None for a cuboid: the distance to its six sides."""
     open: np.ndarray
-    """What is open of sides of a cuboid that others cover (model/cover.py): rows of a side, 0 to 5 for -x, +x, -y, +y, -z, +z,
-    and a rectangle, low and high along the first and the second axis across, X, shape (R, 5). A side acts in its rectangles
-    alone, one without any everywhere."""
+    """Open parts of sides of a cuboid that others cover (model/cover.py): rows of a side, 0 to 5 for -x, +x, -y, +y, -z, +z, and
+    a rectangle, low and high along the first and the second axis across, X, shape (R, 5). A side acts only in its rectangles; a
+    side without any acts everywhere."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,7 +95,7 @@ class BodyFrame:
         z, y, x = np.nonzero(self.cells.filled)
         cell = np.stack([x, y, z], axis=1)
         corner = cell[:, None] + np.array(list(product((0, 1), repeat=3)))
-        # What is on the surface is asked for a twentieth of a cell towards the middle of a cell.
+        # Points on the surface are evaluated a twentieth of a cell towards the middle of a cell.
         place = np.zeros((*(self.cells.count + 1)[::-1], 3))
         place[tuple(np.moveaxis(corner, -1, 0)[::-1])] = 0.9 * corner + 0.1 * (cell[:, None] + 0.5)
         place = place[cells_around(self.cells.filled) > 0]

@@ -23,7 +23,7 @@ BEYOND = 8.0
 NOTHING = (1.0, -1.0, 1.0, -1.0)
 """The open part of a side that is covered as a whole."""
 DIGITS = 6
-"""Of what is left open, in cells, so that rounding makes no bodies of its own."""
+"""Digits of the part that is left open, in cells, so that rounding makes no bodies of its own."""
 
 
 def with_covers(models: Sequence[Model], solids: Sequence[Solid]) -> tuple[Model, ...]:
@@ -55,12 +55,12 @@ def with_covers(models: Sequence[Model], solids: Sequence[Solid]) -> tuple[Model
 
 
 def _corners(frame: BodyFrame) -> np.ndarray:
-    """Of a cuboid, body frame [m], shape (8, 3)."""
+    """Corners of a cuboid, body frame [m], shape (8, 3)."""
     return frame.cells.low + np.array(list(product((0, 1), repeat=3))) * frame.cells.count * frame.cells.edge
 
 
 def open_parts(frame: BodyFrame, others: Sequence[np.ndarray]) -> np.ndarray:
-    """What is left open of the sides of a cuboid that others cover, rows as `ContactBody.open`, shape (R, 5).
+    """The parts of the sides of a cuboid that others leave open, rows as `ContactBody.open`, shape (R, 5).
 
     ``others`` are the corners of cuboids in the body frame [m], each of shape (8, 3). Those whose axes are not along its own
     cover nothing.

@@ -25,13 +25,13 @@ STEPS = 1.0 - 0.02 * np.arange(11)
 CLOSE = 1e-3
 """Error of moments of inertia at which a fit is good; and gain for which no part of the time step is given up."""
 YIELD = 1e-4
-"""What an error of second moments, over the trace, is worth over the change of masses: what cannot be reached is left over."""
+"""Weight of an error of second moments, over the trace, against the change of masses: an error that cannot be removed remains."""
 ITERATIONS = 50
-"""Of Newton's method; 3 to 25 do."""
+"""Largest number of steps of Newton's method; 3 to 25 are usual."""
 SPARE = 1e-3
 """Added to limits, as eigenvalues are not exact: what has set the time step goes on to set it."""
 HALVINGS = 40
-"""Of a step of Newton's method."""
+"""Largest number of halvings of a step of Newton's method."""
 ENOUGH = 1e-14
 """Sum of what is left at which it ends."""
 CAUTION = 1e-3

@@ -94,7 +94,7 @@ _MOVES = {(0, 1): "to +x", (0, -1): "to -x", (1, 1): "to +y", (1, -1): "to -y", 
 
 
 def _rooms(planes: Iterable[Plane]) -> Iterator[tuple[str, int, float]]:
-    """What has a wall on both sides along x or y: its name, the axis, how wide it is along it [m]."""
+    """Rooms with a wall on both sides along x or y: name, axis, and width along it [m]."""
     sides = {(p.room, p.axis, p.sign): p.at for p in planes if p.room}
     for (room, axis, sign), at in sides.items():
         if sign > 0 and axis < 2 and (room, axis, -1) in sides:

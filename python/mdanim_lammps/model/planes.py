@@ -29,7 +29,7 @@ class Plane:
     beyond: str
     """Position of an object beyond the plane: ``below the ground``."""
     room: str = ""
-    """What it shuts in together with others: ``the basin``; empty for a plane that stands alone."""
+    """The room that it bounds together with others: ``the basin``; empty for a plane that stands alone."""
 
 
 class Corners(Protocol):

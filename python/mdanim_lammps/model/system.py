@@ -36,7 +36,7 @@ class System(Particles):
     contact_kind: np.ndarray
     """Kind of body of each solid as contact sees it, by which solid has it first, int32, shape (M,)."""
     frames: tuple[BodyFrame, ...]
-    """What the contact body of each kind of the scene is made from."""
+    """The frames from which the contact body of each kind of the scene is made."""
     contact_factor: float = 1.0
     """``control contact-stiffness`` [-]."""
 

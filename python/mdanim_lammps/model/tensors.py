@@ -7,7 +7,8 @@ import numpy as np
 
 
 def largest_eigenvalue(matrices: np.ndarray, squarings: int = 5) -> np.ndarray:
-    """Of positive matrices, shape (M, 3, 3), from below, by high powers: to 1 % by 32nd ones; shape (M,), same unit."""
+    """Largest eigenvalue of positive matrices, shape (M, 3, 3), from below, by high powers: to 1 % by 32nd ones; shape (M,), same
+    unit."""
     trace = lambda a: a[:, 0, 0] + a[:, 1, 1] + a[:, 2, 2]
     product = lambda a, b: sum(a[:, :, k, None] * b[:, None, k, :] for k in range(3))
     unit = power = matrices / trace(matrices)[:, None, None]

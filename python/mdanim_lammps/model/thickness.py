@@ -121,7 +121,7 @@ def _grown(centre: np.ndarray, depth: Callable[[np.ndarray], np.ndarray]) -> np.
 
 
 def _best(at: np.ndarray, r: np.ndarray, ways: np.ndarray, depth) -> tuple[np.ndarray, np.ndarray]:
-    """Of the moves r * ways [m], shape (B, W, 3), from these places the one with the largest depth, and that depth."""
+    """The move with the largest depth among the moves r * ways [m], shape (B, W, 3), from these places, and that depth."""
     moves = r[:, None, None] * ways
     found = depth(at[:, None] + moves)
     best = found.argmax(axis=1)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What acts on the solids of a scene from outside, as effects declare it: what pulls, stops, slows and carries them."""
+"""Actions on the solids of a scene from outside, as effects declare them: forces that pull, stop, slow and carry solids."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ from ..scene.scene import SceneRecord
 
 
 class Bodies(Protocol):
-    """What is known of M solids before their models are made."""
+    """Data of M solids that are known before their models are made."""
 
     radius: np.ndarray
-    """Of a sphere around the centre of mass that holds each [m], shape (M,)."""
+    """Radius of a sphere around the centre of mass that holds each solid [m], shape (M,)."""
     density: np.ndarray
     """[kg/m^3], shape (M,)."""
     mass: np.ndarray
@@ -26,7 +26,7 @@ class Bodies(Protocol):
 
 
 class Motion(Protocol):
-    """What an effect declares of how it moves solids (effects/effect.py); all of it may be asked of any scene."""
+    """Declarations of an effect on how it moves solids (effects/effect.py); all of them may be asked of any scene."""
 
     binds: bool
 
@@ -48,7 +48,7 @@ class Motion(Protocol):
 
 
 class Acting:
-    """What all of some effects declare, together."""
+    """The declarations of several effects together."""
 
     def __init__(self, scene: SceneRecord, effects: Iterable[Motion]):
         self.scene, self.effects = scene, tuple(effects)
@@ -59,12 +59,12 @@ class Acting:
 
     @cached_property
     def acceleration(self) -> np.ndarray:
-        """Of everything that is free to move [m/s^2], shape (3,)."""
+        """Acceleration of everything that is free to move [m/s^2], shape (3,)."""
         return sum((a for e in self.effects if (a := e.acceleration(self.scene)) is not None), np.zeros(3))
 
     @property
     def g(self) -> float:
-        """What pulls down [m/s^2]."""
+        """Acceleration downwards [m/s^2]."""
         return max(0.0, -float(self.acceleration[2]))
 
     @cached_property

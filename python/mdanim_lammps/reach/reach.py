@@ -23,11 +23,11 @@ def wave_speed(system: System) -> np.ndarray:
 
 
 class Reach:
-    """What effects let the solids of a scene do.
+    """Bounds on the motion that effects allow the solids of a scene.
 
     ``region`` and ``closest`` are never too small, hold until the end of the scene, and need no models. ``fall``, ``speed`` and
-    ``closing`` are what limits are compared with: by energy, from the particles at the start. ``flight`` is where solids are at a
-    time when each flies alone, and `window` (reach/window.py) what boxes are widened by until the next look at them.
+    ``closing`` are compared with limits: by energy, from the particles at the start. ``flight`` gives the places of solids at a
+    time when each flies alone, and `window` (reach/window.py) the margin by which boxes are widened until the next look at them.
 
     Args:
         scene: of the solids.
@@ -62,7 +62,7 @@ class Reach:
 
     @property
     def g(self) -> float:
-        """What pulls down [m/s^2]."""
+        """Acceleration downwards [m/s^2]."""
         return self.acting.g
 
     @cached_property
@@ -111,8 +111,8 @@ class Reach:
 
     @cached_property
     def weight_left(self) -> np.ndarray:
-        """What the liquid leaves of each solid's weight when it is immersed, over its weight; below 0 where it floats,
-        shape (M,)."""
+        """Part of each solid's weight that the liquid leaves when the solid is immersed [-]; below 0 where it floats, shape
+        (M,)."""
         return 1.0 - self.acting.lift(self.system) / self.system.mass_of
 
     @cached_property
@@ -141,7 +141,7 @@ class Reach:
 
 
 def largest_of_others(values: np.ndarray) -> np.ndarray:
-    """Of every column, the largest of all rows but one's own; shape (M,) or (M, K)."""
+    """The largest value of each column in all rows but one's own; shape (M,) or (M, K)."""
     order = np.argsort(values, axis=0)[::-1]
     largest = np.broadcast_to(np.take_along_axis(values, order[:1], 0), values.shape).copy()
     if len(values) > 1:

@@ -17,7 +17,7 @@ from .files import write_whole
 from .untrusted import check_room
 
 VERSION = 4
-"""Of the file: 4 has the records of all fixes that keep any."""
+"""Version of the file: 4 has the records of all fixes that keep any."""
 
 
 @dataclass(frozen=True)
@@ -33,17 +33,17 @@ class Checkpoint:
     f: np.ndarray
     """Forces [N], shape (N, 3): dashpots see half-step velocities that x and v do not hold."""
     carried: dict[str, float]
-    """What had been summed up by then: energies lost, deepest penetration, seconds."""
+    """Sums up to this frame: energies lost, deepest penetration, seconds."""
     run: str = ""
     """Which run this is a state of: another scene or time step cannot go on from it."""
     ledger: int = 0
     """Checksum of the ledger's rows up to this frame (`Ledger.checksum`)."""
     records: Records = field(default_factory=dict)
-    """What fixes keep besides, by the ID of the fix."""
+    """Further values that fixes keep, by the ID of the fix."""
 
     @property
     def state(self) -> State:
-        """What an instance takes up."""
+        """The state that an instance takes up."""
         return State(self.x, self.v, self.f, self.records)
 
     def write(self, path: Path) -> None:

@@ -17,7 +17,8 @@ _BITS = np.arange(31, -1, -1, dtype=np.uint32)
 
 
 def shifts(after: np.ndarray) -> np.ndarray:
-    """What `joined` wants to know of pieces that so many bytes of the whole come after, int64, shape (P,): uint32, (P, 32)."""
+    """Coefficients that `joined` needs for pieces followed by ``after`` bytes of the whole, int64, shape (P,): uint32, (P,
+    32)."""
     factor = np.full(len(after), 1 << 31, np.uint32)
     for bit in range(int(after.max(initial=0)).bit_length()):
         factor = np.where(after >> bit & 1, _product(factor, _byte_shifts()[bit]), factor)
@@ -25,7 +26,7 @@ def shifts(after: np.ndarray) -> np.ndarray:
 
 
 def joined(checksums: np.ndarray, of_pieces: np.ndarray) -> np.ndarray:
-    """What these pieces have in the checksum of the whole, of which others may write the rest: that of all is the sum modulo 2.
+    """The part of these pieces in the checksum of the whole, of which others may write the rest: that of all is the sum modulo 2.
 
     ``checksums`` are those of each piece alone, uint32, shape (..., P); ``of_pieces`` as `shifts` gives it. Returns uint32 of
     shape (...).

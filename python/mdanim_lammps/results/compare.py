@@ -16,7 +16,7 @@ from .untrusted import check_folder
 
 @dataclass(frozen=True, slots=True)
 class Difference:
-    """What `compare` found."""
+    """The result of `compare`."""
 
     frames: int
     """Frames compared."""

@@ -13,7 +13,7 @@ from .stored import COST
 
 @dataclass(frozen=True, slots=True)
 class CostShare:
-    """What one effect has cost."""
+    """The cost of one effect."""
 
     seconds: float
     place: str | None = None
@@ -34,7 +34,7 @@ class Cost:
     other: Mapping[str, float] = field(default_factory=dict)
     """Leap-frog, rest of the step, setup (loading and modelling), output, and what a resumed run had cost before [s]."""
     movie: float | None = None
-    """Of a forecast: what the movie will take after the run [s]; None where that is not known."""
+    """Only in a forecast: time of the movie after the run [s]; None where it is unknown."""
 
     @property
     def total(self) -> float:

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 COLUMNS = "id mol type x y z vx vy vz"
-"""What ``in.NAME`` asks for."""
+"""The columns that ``in.NAME`` asks for."""
 
 
 def read_dump(path: Path, particles: int) -> Iterator[tuple[int, np.ndarray, np.ndarray]]:

@@ -25,7 +25,7 @@ BOUNDS = {
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """What an ``expect`` line asked for and what was found."""
+    """The demand of an ``expect`` line and the value found."""
 
     expect: Expect
     found: float
@@ -70,7 +70,7 @@ def recordable() -> dict[str, Recorded]:
 
 
 def recorded(expects: tuple[Expect, ...]) -> dict[tuple[str, str], str]:
-    """What has to be recorded during the run: (solid, quantity) to the ledger's column, in order and once."""
+    """Quantities that must be recorded during the run: (solid, quantity) to the ledger's column, in order and once."""
     return {(e.subject, e.quantity): _column(e) for e in expects if e.quantity in recordable()}
 
 

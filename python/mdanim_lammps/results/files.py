@@ -33,7 +33,7 @@ STOP = "stop"
 PAUSE = "pause"
 """While a file of this name is in the run's folder, the run begins no further frame."""
 JOB = ".ranks-"
-"""What the name of the file begins with by which a run is handed to its ranks, readable for its owner alone. The supervising rank
+"""Beginning of the name of the file by which a run is handed to its ranks, readable for its owner alone. The supervising rank
 empties the file when it has read it; the process that has started the ranks deletes it when it has the result."""
 IN_USE = ".in-use"
 """A file of this name is locked while a run writes into the folder. The lock ends with the processes of the run: a file that a
@@ -41,9 +41,9 @@ killed run leaves is in nothing's way."""
 PATIENCE = 2.0
 """Seconds for which a lock is waited for: processes of a run that was killed may take as long to end."""
 NO_LOCKS = (errno.ENOLCK, errno.ENOSYS, errno.EOPNOTSUPP)
-"""What a file system answers that has no locks: there, two runs in one folder are not noticed."""
+"""Errors of a file system that has no locks: there, two runs in one folder are not noticed."""
 MOST_BYTES_OF_JSON = 1 << 28
-"""Of a JSON file: a certificate has 250 bytes for each object."""
+"""Largest size of a JSON file: a certificate has 250 bytes for each object."""
 MEMORY_OF_JSON = 30
 """Bytes of memory that a byte of JSON can take, as in a list of empty tables."""
 claims: set[int] = set()

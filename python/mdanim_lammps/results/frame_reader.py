@@ -44,7 +44,7 @@ class FrameReader:
                 raise OutputError(f"{path}: damaged: {name} of its frames holds {tables[name].dtype}")
         self._row, self._sums = {name: tables.pop(name) for name in (STEP, TIME)}, tables.pop(CHECKSUM, None)
         self.tables = tables
-        """Of the quantities, in the order of their checksums."""
+        """Tables of the quantities, in the order of their checksums."""
         self._column = {name: number for number, name in enumerate(tables, 1)}
         if self._sums and not (
             self._row[STEP].frames == self._row[TIME].frames == self._sums.frames and self._sums.shape == (1 + len(tables),)

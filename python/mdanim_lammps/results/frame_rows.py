@@ -22,7 +22,7 @@ WAY_OUT = "all ranks write into the output folder: put it with -o DIR on a file 
 
 @dataclass(frozen=True)
 class FrameRows:
-    """What a process must know to write rows into a trajectory file that another process has made."""
+    """Data that a process needs to write rows into a trajectory file that another process has made."""
 
     path: Path
     """Where the file is while it is written."""

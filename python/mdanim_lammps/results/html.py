@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What notebooks show of scenes and runs."""
+"""Scenes and runs as notebooks show them."""
 
 from __future__ import annotations
 

@@ -24,12 +24,11 @@ def kinetic(mass: np.ndarray, first: np.ndarray, velocity: np.ndarray) -> np.nda
 
 
 class ContactForces:
-    """What contact with objects, ground and walls has done to each object since the frame before, as a mean force.
+    """Mean force of contact with objects, ground and walls on each object since the frame before.
 
-    No frame holds forces. But where gravity and contact are all that acts on an object from outside, contact has brought the
-    change of its momentum that gravity has not: exactly, as the leap-frog adds up forces. So the numbers cost nothing in a run.
-    A single object that is held, or has air drag, has the opposite of what contact has done to all others, where there are no
-    planes.
+    No frame holds forces. But where only gravity and contact act on an object from outside, contact has made exactly that change
+    of its momentum that gravity has not made, as the leap-frog adds up forces. So the numbers cost nothing in a run. A single
+    object that is held, or has air drag, gets the opposite of the force of contact on all others, where there are no planes.
 
     Args:
         trajectory: of the run.
@@ -88,7 +87,7 @@ class MotionTable:
             self.columns += ["contact_fx", "contact_fy", "contact_fz"]
 
     def numbers(self, frame: int) -> np.ndarray:
-        """What stands behind frame, time and object in the rows of a frame, shape (O, columns - 3). Raises OutputError."""
+        """The columns after frame, time and object in the rows of a frame, shape (O, columns - 3). Raises OutputError."""
         t, m = self.trajectory, self.trajectory.metadata
         found = [t.centers[frame], t.center_velocities[frame]]
         if self.whole:

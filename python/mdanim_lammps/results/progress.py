@@ -21,7 +21,7 @@ _LOT = 1 << 20
 LONGEST = 1 << 24
 """Bytes of a line at most."""
 MOST_BYTES = 1 << 30
-"""Of the file: a frame takes some 300."""
+"""Largest size of the file [bytes]: a frame takes some 300."""
 MOST_EXECUTORS = 1_000_000
 
 
@@ -69,7 +69,7 @@ class ProgressLog:
         self._write({"cost": {name: round(seconds, 4) for name, seconds in parts.items()}})
 
     def state(self, state: str, message: str = "") -> None:
-        """What the run does now: ``running``, ``paused`` or one of `ENDED`."""
+        """Note the present state of the run: ``running``, ``paused`` or one of `ENDED`."""
         self._write({"state": state} | ({"message": message} if message else {}))
 
     def __enter__(self) -> ProgressLog:

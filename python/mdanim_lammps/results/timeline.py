@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What the executors of a run did when, and which owned which object: timeline.json."""
+"""The activities of executors in a run, and their objects over time: timeline.json."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ TIMELINE = "timeline.json"
 """Name of the file in the output folder."""
 MOST_EXECUTORS = 1_000_000
 MOST_BYTES = 1 << 32
-"""Of the file: 70 bytes for each span of each executor."""
+"""Largest size of the file: 70 bytes for each span of each executor."""
 KINDS = ("simulating", "moving", "waiting", "frozen", "held")
-"""What an executor can be at: running LAMMPS; handing objects on and building instances; waiting for the others at the frame;
+"""Activities of an executor: running LAMMPS; handing objects on and building instances; waiting for the others at the frame;
 frozen at the end of a window that others do again; held by the supervisor, which has not yet taken the frames before."""
 
 
@@ -32,7 +32,7 @@ class Timeline:
     control: str
     """``central`` or ``peers``."""
     names: tuple[str, ...]
-    """Of the objects."""
+    """Names of the objects."""
     frames: list[int] = field(default_factory=list)
     moves: list[int] = field(default_factory=list)
     """Objects that changed their executor on the way to each frame."""
@@ -134,7 +134,8 @@ class Timeline:
 
     @classmethod
     def left_in(cls, folder: Path) -> Timeline | None:
-        """What a run has left in its folder, None where nothing is, as all of it was sequential. Raises OutputError."""
+        """The timeline that a run has left in its folder; None without any, as all of the run was sequential. Raises
+        OutputError."""
         return cls.read(folder) if (folder / TIMELINE).exists() else None
 
     @classmethod

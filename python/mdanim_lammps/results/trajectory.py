@@ -201,7 +201,7 @@ class Trajectory:
         return np.array([self.liquid_height(i).mean(dtype=np.float64) for i in range(len(self))])
 
     def field(self, name: str, frame: int) -> np.ndarray:
-        """What an effect tells of each object in a frame, by one of ``metadata.fields``, shape (O, ...) in their units.
+        """Values of an effect for each object in a frame, by one of ``metadata.fields``, shape (O, ...) in their units.
 
         Raises KeyError that names a near field.
         """
@@ -319,12 +319,12 @@ class Snapshot:
 
     @property
     def position(self) -> np.ndarray:
-        """Of all stored particles [m], shape (N, 3)."""
+        """Positions of all stored particles [m], shape (N, 3)."""
         return self.trajectory.position(self.frame)
 
     @property
     def velocity(self) -> np.ndarray:
-        """Of all stored particles [m/s], shape (N, 3)."""
+        """Velocities of all stored particles [m/s], shape (N, 3)."""
         return self.trajectory.velocity(self.frame)
 
     @property
@@ -362,12 +362,12 @@ class ObjectTrack:
 
     @property
     def center_of_mass(self) -> np.ndarray:
-        """Of the whole object, also where only its boundary is stored [m], shape (F, 3)."""
+        """Centre of mass of the whole object, also where only its boundary is stored [m], shape (F, 3)."""
         return self._trajectory.centers[:, self.index]
 
     @property
     def velocity(self) -> np.ndarray:
-        """Of the centre of mass [m/s], shape (F, 3)."""
+        """Velocity of the centre of mass [m/s], shape (F, 3)."""
         return self._trajectory.center_velocities[:, self.index]
 
     @cached_property

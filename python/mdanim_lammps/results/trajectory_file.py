@@ -63,10 +63,10 @@ class FrameTable:
     """Where the file holds one quantity of all frames."""
 
     offset: int
-    """Of frame 0 [bytes]."""
+    """Place of frame 0 in the file [bytes]."""
     dtype: np.dtype
     shape: tuple[int, ...]
-    """Of one frame."""
+    """Shape in one frame."""
     frames: int
     """Frames that there is room for."""
     pieces: h5py.Dataset | None = None
@@ -206,7 +206,7 @@ def frame_shapes(metadata: TrajectoryMetadata) -> dict[str, tuple[int, ...]]:
 
 
 def _quantities(metadata: TrajectoryMetadata) -> Iterator[tuple[str, str, tuple[int, ...], type, str]]:
-    """What every frame has: name, group above it, shape, type, unit."""
+    """Quantities that every frame has: name, group above it, shape, type, unit."""
     real = np.float32 if metadata.single else np.float64
     n, objects, liquid = len(metadata.id), len(metadata.names), metadata.liquid
     yield "position", "particles/all", (n, 3), real, "m"
@@ -222,7 +222,7 @@ def _quantities(metadata: TrajectoryMetadata) -> Iterator[tuple[str, str, tuple[
 
 
 def _fixed_bytes(particles: int, springs: int, surfaces: Sequence[Surface]) -> int:
-    """What the file holds beside the frames, before packing."""
+    """Size of the file besides the frames, before packing."""
     per_surface = (s.triangle.nbytes + s.index.nbytes + s.weight.nbytes + 3 * len(s.index) for s in surfaces)
     return 22 * particles + 8 * springs + sum(per_surface)
 
@@ -365,7 +365,8 @@ def _write_metadata(group: h5py.Group, metadata: TrajectoryMetadata, dt: float, 
 
 
 def read_metadata(file: h5py.File) -> TrajectoryMetadata:
-    """What never changes during the run. Raises KeyError, OSError, ValueError for a file that is damaged or newer than FORMAT."""
+    """Read the data that never change during the run. Raises KeyError, OSError, ValueError for a file that is damaged or newer
+    than FORMAT."""
     group, particles = file["parameters/mdanim"], file["particles/all"]
     if group.attrs["format"] > FORMAT:
         raise KeyError(f"format {group.attrs['format']}, newer than {FORMAT}: update mdanim-lammps")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What never changes during a run: which particle belongs to which object, and which surfaces the particles carry."""
+"""Data that never change during a run: which particle belongs to which object, and which surfaces the particles carry."""
 
 from __future__ import annotations
 
@@ -79,7 +79,7 @@ class TrajectoryMetadata:
     liquid: LiquidMetadata | None = None
     """None in a scene without liquid."""
     fields: tuple[Field, ...] = ()
-    """What frames hold besides, with a value for each object, by name."""
+    """Further values of frames, one for each object, by name."""
     save: Save = Save.ALL
     single: bool = False
     """Positions and velocities in single precision."""
@@ -176,7 +176,7 @@ def metadata_of(
 
 
 def liquid_metadata(liquid: Liquid, grid: Grid) -> LiquidMetadata:
-    """What a trajectory must know of a scene's liquid."""
+    """Data of a scene's liquid for a trajectory."""
     return LiquidMetadata(liquid.name, grid.low, grid.high, grid.shape, liquid.density, liquid.color or "", most_drops(liquid))
 
 

@@ -78,14 +78,14 @@ def universe_of(trajectory: Trajectory) -> MDAnalysis.Universe:
 
 
 def open_universe(data: str | Path, dump: str | Path | None = None) -> MDAnalysis.Universe:
-    """What ``mdanim-lammps build`` has written, for MDAnalysis; masses and springs included, metres and m/s.
+    """The output of ``mdanim-lammps build``, for MDAnalysis; masses and springs included, metres and m/s.
 
     Args:
         data: ``data.NAME``. MDAnalysis alone does not read it: masses are those of particles, not of atom types.
         dump: ``NAME.lammpstrj`` that ``lmp -in in.NAME`` has left, for frames; None has one frame, the start.
 
     Raises:
-        OutputError: a file is missing, or is not what ``build`` and ``lmp`` write.
+        OutputError: a file is missing, or is not one that ``build`` and ``lmp`` write.
     """
     data = Path(data)
     try:

@@ -66,7 +66,7 @@ def check_hdf5(path: Path, file: h5py.File) -> None:
 
     needed = 0.0
 
-    # What HDF5 calls must not raise; what it returns ends the visit.
+    # A visitor that HDF5 calls. It must not raise; a value that it returns ends the visit.
     def foreign_link(name: str, link) -> str | None:
         return f"{name} leads to another file, {link.filename}" if isinstance(link, h5py.ExternalLink) else None
 
@@ -76,7 +76,7 @@ def check_hdf5(path: Path, file: h5py.File) -> None:
             if found.external or found.is_virtual:
                 return f"the data of {name} lie in another file"
             row = found.dtype.itemsize * float(np.prod(found.shape[1:], dtype=np.float64))
-            # Of quantities of frames one frame is read at a time, of all other tables everything.
+            # Quantities of frames are read one frame at a time, all other tables at once.
             by_frame = name.startswith(BY_FRAME)
             needed += row * (1 if by_frame or not found.shape else len(found))
         return None

@@ -71,7 +71,7 @@ def extra_fields(plan: Plan) -> tuple[Field, ...]:
 
 
 def frame_fields(plan: Plan) -> tuple[Field, ...]:
-    """What all effects tell of a frame."""
+    """The fields of a frame from all effects."""
     return tuple(f for e in plan.effects for f in e.fields(plan.scene))
 
 

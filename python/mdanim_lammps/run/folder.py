@@ -43,7 +43,7 @@ def output_folder(record: SceneRecord, out: str | Path | None = None) -> Path:
         if record.path and record.path.resolve().is_relative_to(folder):
             raise OutputError(f"-o {out}: the output folder holds the scene, and --force would delete it; name another folder")
         path = folder if ".." in path.parts else path
-    # Of a folder without a manifest nothing is read or deleted, but for a study.
+    # In a folder without a manifest nothing is read or deleted, except a study.
     check_plain(path / STUDY)
     check_folder(path if os.path.lexists(path / MARK) else path / STUDY)
     return path

@@ -38,15 +38,15 @@ class Frame:
 
     step: int
     seen: Observation
-    """Of all objects."""
+    """Observation of all objects."""
     checksums: np.ndarray
-    """Of all positions and of all velocities, as the trajectory file has them, uint32, shape (2,)."""
+    """Checksums of all positions and of all velocities, as the trajectory file has them, uint32, shape (2,)."""
     energies: dict[str, float]
     """Every term of the ledger [J]; what is lost counts from the start of this run, not from before a resume."""
     penetration: float
     """Deepest that a boundary particle has been below a surface in this run [m]."""
     fields: Fields = field(default_factory=dict)
-    """What effects tell, by the names of energy.frame_fields."""
+    """Values of effects, by the names of energy.frame_fields."""
     kept: bool = True
     """Whether `FrameSource.state` can be asked for."""
 
@@ -142,7 +142,7 @@ class Sequential:
         self.spent = Account()
         """On what is not an effect's."""
         self.of_step = PER_PARTICLE * plan.system.particles
-        """What a step takes [s]: a guess, until the first ones have been measured."""
+        """Time of a step [s]: a guess, until the first ones have been measured."""
 
     def __enter__(self) -> Sequential:
         self.instance = Instance(self.plan)

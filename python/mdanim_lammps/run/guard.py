@@ -32,7 +32,7 @@ CRUMPLED = 0.05
 them it does not (docs/physics-solids.md)."""
 SQUEEZED = "it is probably hit or squeezed harder than its lattice stands"
 TOO_LONG = "the step is probably too long for what happens here: no cell is inside out"
-"""What a stop is laid to where every margin is kept."""
+"""The cause given for a stop where every margin is kept."""
 FLOWN_APART = (
     "lost its bond partner",
     "springs were given",
@@ -42,20 +42,20 @@ FLOWN_APART = (
     "Out of range atoms",
     "out of range",
 )
-"""What LAMMPS says when particles are where they should not be."""
+"""Parts of messages of LAMMPS about particles where they should not be."""
 
 
 class Guard:
-    """What it has seen of a run so far."""
+    """Watches a run, and keeps its findings so far."""
 
     def __init__(self, ready: Prepared, folder: Path):
         self.ready, self.folder = ready, folder
         self.cells = np.diff(Geometry(ready.system).first_cell)
-        """Of each solid, shape (M,)."""
+        """Number of cells of each solid, shape (M,)."""
         self.sides = [p for e in ready.plan.effects for p in e.planes(ready.scene)]
         self.planes = np.array([s.sign * s.at for s in self.sides])
         self.columns = [s.axis if s.sign > 0 else 3 + s.axis for s in self.sides]
-        """Of an object's reach: that towards the plane, for what is below it."""
+        """Column of an object's reach: the one towards the plane, for objects below it."""
         self.allowed = np.where(ready.system.still, np.inf, ready.system.spacing)[:, None]
         """How far beyond a plane solids may be [m], shape (M, 1); those of which nothing can move, anywhere."""
         self.limit = max(LEAST_RESIDUAL, RESIDUAL_FACTOR * energy_class(ready.scene))
@@ -67,7 +67,7 @@ class Guard:
         self.dents: dict[int, int] = {}
         """Most cells of a solid that have stayed inside out."""
         self.folds: dict[int, tuple[int, np.ndarray, int]] = {}
-        """Of each solid that has folded through itself: the step at which that was seen, the place [m], shape (3,), and the most
+        """For each solid that has folded through itself: the step at which that was seen, the place [m], shape (3,), and the most
         particles that lay among others of it."""
         low, high = ready.system.bounds(ready.system.position)
         self.patience = RINGS * (high - low).max(1) / wave_speed(ready.system) / ready.certificate.timestep
@@ -202,8 +202,8 @@ class Guard:
         return f"the last good frame and checkpoint are kept in {self.folder}"
 
     def warnings(self, ledger: Ledger) -> list[Problem]:
-        """Of a finished run: where bodies have got dents or folded through themselves, and whether it has missed the class of
-        energy of its accuracy."""
+        """Warnings about a finished run: where bodies have got dents or folded through themselves, and whether it has missed the
+        class of energy of its accuracy."""
         scene, goal, found = self.ready.scene, energy_class(self.ready.scene), []
         if self.dents:
             m = max(self.dents, key=lambda m: self.dents[m] / self.cells[m])

@@ -68,7 +68,7 @@ class Interrupted(MdanimError):
 
     exit_code = ExitCode.INTERRUPTED
     cost: Cost | None = None
-    """Of the frames that were run; None where that is not known."""
+    """Cost of the frames that were run; None where it is unknown."""
 
 
 def write_inputs(ready: Prepared, folder: Path) -> None:

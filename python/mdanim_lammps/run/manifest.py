@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What a run was made from: versions, arguments, hashes."""
+"""The manifest of a run, the inputs that it was made from: versions, arguments, hashes."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What is read off the particles of a frame: a few numbers of each object, so that the process that has an object reads them."""
+"""Observation of the particles of a frame: a few numbers of each object, so that the process that has an object reads them."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from .folds import Folds
 
 @dataclass(frozen=True)
 class Observation:
-    """What the particles of m objects tell at a frame."""
+    """Observed values of m objects at a frame."""
 
     objects: np.ndarray
     """These objects, from 0 and ascending, int64, shape (m,)."""
@@ -117,7 +117,7 @@ class Observer:
 
 
 def join(parts: Sequence[Observation]) -> Observation:
-    """What parts of a scene tell, as one; no object is in two of them."""
+    """Joins observations of parts of a scene; no object is in two of them."""
     objects = np.concatenate([part.objects for part in parts])
     order = np.argsort(objects)
     arrays = ("objects", "center", "center_velocity", "reach", "speed")

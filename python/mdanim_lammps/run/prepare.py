@@ -41,7 +41,7 @@ class Prepared:
 
     @property
     def models(self) -> tuple[Model, ...]:
-        """Of every solid, in the order of the scene."""
+        """Models of all solids, in the order of the scene."""
         return self.context.models
 
     @property
@@ -55,7 +55,7 @@ class Prepared:
 
     @property
     def verdicts(self) -> dict[str, Verdict]:
-        """Of every effect, by its name."""
+        """Verdicts on all effects, by their names."""
         return self.resolved.verdicts
 
     @cached_property

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What a simulation has found, beside the files that it has written."""
+"""The result of a simulation, beside the files that it has written."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from ..results.ledger import Ledger
 
 @dataclass
 class Result:
-    """What a simulation has found."""
+    """The result of a simulation."""
 
     folder: Path
     ledger: Ledger
@@ -22,7 +22,7 @@ class Result:
     cost: Cost | None = None
     """Seconds per effect and per other piece of work."""
     warnings: list[Problem] = field(default_factory=list)
-    """What was seen in the run that does not stop it."""
+    """Problems seen in the run that do not stop it."""
 
     @property
     def missed(self) -> list[Outcome]:

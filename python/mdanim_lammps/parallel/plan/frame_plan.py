@@ -18,7 +18,7 @@ from .assign import assign, firsts, total
 from .teams import GAIN, GAIN_BY_THREADS, LEAST, LEAST_BY_THREADS, Team
 
 MARGIN = 0.05
-"""Of a spacing, on top of the reach of every object."""
+"""Part of a spacing, on top of the reach of every object."""
 BALANCED = 1.25
 """Largest load over the mean up to which a window is not made shorter."""
 ASIDE = 1000.0
@@ -37,7 +37,7 @@ with 1.6 times the bundles."""
 
 @dataclass(frozen=True, slots=True)
 class PlannerOptions:
-    """What the planner may be told otherwise, for tests and measurements; no setting changes a bit of the result."""
+    """Options of the planner for tests and measurements; no setting changes a bit of the result."""
 
     safety: float = 1.3
     """Reach of objects over a window, over the way of their fastest particles at its start, see `reach.window`."""
@@ -146,7 +146,7 @@ def grid_box(parts: SubPlans) -> tuple[np.ndarray, np.ndarray]:
 
 
 class PlanContext:
-    """What all plans of a scene have in common: its M objects, the pool as one more, and how far they matter to each other."""
+    """Data shared by all plans of a scene: its M objects, the pool as one more, and how far they matter to each other."""
 
     def __init__(self, parts: SubPlans, executors: int, settings: PlannerOptions):
         whole, system = parts.whole, parts.whole.system
@@ -167,7 +167,7 @@ class PlanContext:
         return np.maximum(1, (step * self.whole.certificate.steps_per_frame * self.particles).astype(np.int64))
 
     def reach(self, speed: np.ndarray, steps: int, doublings: np.ndarray | int = 0) -> np.ndarray:
-        """What boxes are widened by in a window of so many steps, eq. (6.17) [m], shape (M,), the pool's last."""
+        """The margin by which boxes are widened in a window of ``steps`` steps, eq. (6.17) [m], shape (M,), the pool's last."""
         d = window(
             speed,
             steps * self.whole.certificate.timestep,

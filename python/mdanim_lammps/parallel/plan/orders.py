@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What a planner is told after a window, and what it answers."""
+"""Reports to a planner after a window, and its orders."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from .frame_plan import FrameAssignment
 
 @dataclass(frozen=True)
 class Report:
-    """What an executor tells of its objects at the end of a window."""
+    """The report of an executor on its objects at the end of a window."""
 
     objects: np.ndarray
     """Whole numbers, int64, shape (m,)."""
@@ -20,7 +20,7 @@ class Report:
     """Corners of their boxes, eq. (3.14) [m], shape (m, 3)."""
     high: np.ndarray
     speed: np.ndarray
-    """Of the fastest particle of each [m/s], shape (m,)."""
+    """Speed of the fastest particle of each object [m/s], shape (m,)."""
     cost: np.ndarray
     """Processor time for a frame of each [us], int64, shape (m,)."""
     grid_cost: int | None = None
@@ -28,18 +28,18 @@ class Report:
     escaped: tuple[int, ...] = ()
     """Objects that have left their reserved boxes: the window must be done again."""
     fingerprint: str = ""
-    """Of the plan that was followed: all must have followed the same."""
+    """Fingerprint of the plan that was followed: all executors must have followed the same."""
 
 
 @dataclass(frozen=True)
 class Order:
-    """What is to be done next."""
+    """The next thing to do."""
 
     plan: FrameAssignment
     low: np.ndarray
     """Corners of the boxes that are reserved for objects, eq. (6.17), the pool's last [m], shape (M, 3)."""
     high: np.ndarray
     steps: int
-    """Of the window that is to come."""
+    """Steps of the next window."""
     commit: bool
     """Whether the window is done; if not it starts again, from its beginning, with these wider boxes."""

@@ -33,7 +33,7 @@ class Planner:
         self.done = 0
         """Steps on the way from it to the next."""
         self.steps = 0
-        """Of the window that executors are at."""
+        """Steps of the present window of executors."""
         self.context = PlanContext(parts, executors, settings)
         self.objects = self.context.objects
         count = self.context.count
@@ -44,11 +44,11 @@ class Planner:
         self.measured = np.zeros(count, bool)
         self.doublings = np.zeros(count, np.int64)
         self.plan: FrameAssignment | None = None
-        # Of what is still no report will come.
+        # No report will come about objects that never move.
         self.low[: self.objects], self.high[: self.objects] = parts.whole.system.bounds(parts.whole.system.position)
 
     def decide(self, reports: Sequence[Report]) -> Order:
-        """What to do after a window (or before the first), from the reports of all executors in their order.
+        """The order after a window (or before the first), from the reports of all executors in their order.
 
         Raises LammpsFailure when an object is nowhere any more, DivergedError when executors have followed different plans.
         """
@@ -100,7 +100,7 @@ class Planner:
         self.cost[ids], self.measured[ids] = np.maximum(1, smooth), True
 
     def reach(self, steps: int) -> np.ndarray:
-        """What boxes are widened by in a window of so many steps, eq. (6.17) [m], shape (M,), the pool's last."""
+        """The margin by which boxes are widened in a window of ``steps`` steps, eq. (6.17) [m], shape (M,), the pool's last."""
         return self.context.reach(self.speed, steps, self.doublings)
 
     def _make(self, steps: int) -> tuple[FrameAssignment, np.ndarray]:

@@ -17,7 +17,7 @@ LEAST = 8000
 """Particles for each member of a team: below, talking at every step costs more than it spares. Where processors are shared with
 other work, teams of less are slower than one executor."""
 GAIN = 60
-"""What every further member adds to the speed of a team, in percent of one executor; two have been measured at 140 to 180."""
+"""Speed that every further member adds to a team, in percent of one executor; two have been measured at 140 to 180."""
 
 
 LEAST_BY_THREADS, GAIN_BY_THREADS = 1000, 80
@@ -34,7 +34,7 @@ class Team:
 
 
 def time_each(cost: int, size: int, gain: int) -> int:
-    """What an island takes of each of ``size`` executors [µs]."""
+    """Time that an island takes of each of ``size`` executors [µs]."""
     return cost * 100 // (100 + gain * (size - 1))
 
 

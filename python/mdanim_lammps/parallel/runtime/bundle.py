@@ -34,7 +34,7 @@ MOST_STEPS_BETWEEN_LOOKS = 4
 
 @dataclass(frozen=True)
 class Key:
-    """What makes two bundles the same."""
+    """Properties that make two bundles the same."""
 
     objects: tuple[int, ...]
     """Those that it moves, and copies of still ones, ascending."""
@@ -62,9 +62,9 @@ class Wanted:
 
 
 def wanted_bundles(plan: FrameAssignment, objects: int, executor: int, by_threads: bool = False) -> list[Wanted]:
-    """What an executor has to run, those of teams first; ``objects`` is the number of them, the grid not counted.
+    """The bundles that an executor has to run, those of teams first; ``objects`` is the number of them, the grid not counted.
 
-    ``by_threads``: leaders of teams run what is theirs alone.
+    ``by_threads``: leaders of teams run the bundles that are theirs alone.
     """
     team_of = {int(plan.bundle[np.flatnonzero(plan.label == t.island)[0]]): t.members for t in plan.teams}
     mine = (plan.owner == executor) & (plan.bundle >= 0)
@@ -105,7 +105,7 @@ class Bundle:
         """Its particles among all."""
         self.first, self.still = parts.whole.system.first, parts.whole.system.still
         self.particles = np.diff(self.plan.system.first) if len(self.objects) else np.zeros(0, np.int64)
-        """Of each object."""
+        """Number of particles of each object."""
         self.scattered = False
         """Whether the members of its team have, since its last window, each the particles of `stretches` alone."""
         self.aside = np.zeros(len(self.objects), bool)
@@ -124,7 +124,7 @@ class Bundle:
         """Where its members' particles are in its instance, and among all; of a team, once it has told, those that this
         executor has."""
         self._rows: np.ndarray | None = None
-        """Of a team: the particles in its instance that these stretches are for."""
+        """For a team: the particles in its instance that these stretches are for."""
 
     def write_state(self, **arrays: np.ndarray) -> None:
         """Write what this executor has of ``x``, ``v``, ``f`` now into such arrays of all particles."""
@@ -157,7 +157,7 @@ class Bundle:
             scatter(found, *zip(arrays, parts))
 
     def _stretches_of(self, rows: np.ndarray) -> list[tuple[slice, slice]]:
-        """Of these particles of its instance, ascending, where its members' are among them, and among all."""
+        """For these particles of its instance, ascending: the places of its members' particles among them, and among all."""
         object_of = self.plan.system.object[rows]
         here = np.flatnonzero(self.moves[object_of])
         shift = self.first[self.objects] - self.plan.system.first[:-1]
@@ -180,12 +180,12 @@ class Bundle:
         return inside
 
     def records_from(self, records: Records) -> dict[str, StateRecords]:
-        """Of records of all objects those that its instance is to have, numbered as there."""
+        """The records, of those of all objects, that its instance is to have, numbered as there."""
         inside = self.inside
         return {fix: found.where(found.of(inside)).take(self.objects, self.key.grid) for fix, found in records.items()}
 
     def records_to(self, records: Records) -> dict[str, StateRecords]:
-        """What its instance has of the objects that it moves, numbered as all objects are; of pairs with guests too."""
+        """Records of the objects that its instance moves, numbered as all objects are; of pairs with guests too."""
         inside, moved, result = self.inside, np.append(self.members, len(self.first) - 1), {}
         for fix, found in records.items():
             whole = found.renumbered(self.objects)

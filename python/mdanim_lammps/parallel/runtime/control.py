@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What decides: the supervisor for all executors (central control), or every executor alike (peers). Wcislo 1999, sec. 6.2 and
-6.3."""
+"""Control of a run: by the supervisor for all executors (central control), or by every executor alike (peers). Wcislo 1999, sec.
+6.2 and 6.3."""
 
 from __future__ import annotations
 

@@ -73,21 +73,22 @@ class Executor:
         """Objects that never move of which this executor writes the rows."""
         self.frame = resume.frame if resume else 0
         self.step = resume.step if resume else 0
-        # Of all particles, right for those of its own objects; what a team runs is shared out among its members.
+        # Positions of all particles, right for those of its own objects; particles that a team runs are shared out among its
+        # members.
         self.x = np.array(resume.x if resume else self.system.position)
         self.v = np.array(resume.v if resume else self.system.velocity)
         self.f = np.array(resume.f) if resume else np.zeros_like(self.x)
         self.records: Records = resume.records if resume else {}
-        """What fixes keep, of the records that travel with its own objects."""
+        """Values that fixes keep, as records that travel with its own objects."""
         self.started = resume is not None
         """False before step 0: forces come from the scene then."""
         self.control: Controller = make_control(job, self.parts, mail, comm)
         self.bundles: list[Bundle] = []
         self.cache = InstanceCache()
         self.order: Order | None = None
-        """What it follows."""
+        """The order that it follows."""
         self.next: Order | None = None
-        """What it is to follow in the next window."""
+        """The order for the next window."""
         self.teams = TeamCommunicators(comm)
         self.account = Account()
         self.told = 0.0
@@ -97,7 +98,7 @@ class Executor:
         self.led: set[tuple[int, ...]] = set()
         """Teams that it has led since the frame before."""
         self.energies: dict[str, float] = {}
-        """Of its objects at the last frame; losses [J] are those since the frame before."""
+        """Energies of its objects at the last frame; losses [J] are those since the frame before."""
         self.deepest = 0.0
         self.spans: list[tuple[str, int, float, float]] = []
         mail.wait(comm.Ibarrier().Test)
@@ -274,13 +275,13 @@ class Executor:
     # --- what is told ---------------------------------------------------------------------------------------------
 
     def _first_report(self) -> Report:
-        """Of all objects that can move, in equal shares: every executor knows where objects begin."""
+        """The first report, on all objects that can move, in equal shares: every executor knows where objects begin."""
         mine = np.flatnonzero(~self.system.still)[self.me :: self.comm.size]
         low, high = self.system.bounds(self.x)
         return Report(mine, low[mine], high[mine], self.system.top_speed(self.v)[mine], np.zeros(len(mine), np.int64))
 
     def _report(self, steps: int) -> Report:
-        """Of all objects that it has run."""
+        """The report on all objects that it has run."""
         scale = 1e6 * self.job.plan.certificate.steps_per_frame / steps
         found, escaped, grid_cost = [], [], None
         for bundle in self.bundles:

@@ -42,7 +42,7 @@ ONE_THREAD = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_
 
 @dataclass(frozen=True)
 class Task:
-    """What the supervisor is given."""
+    """The task of the supervisor."""
 
     ready: Prepared
     folder: Path

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What supervisor and executors say to each other (docs/distribution.md shows the whole protocol), and how they wait for it."""
+"""Messages between supervisor and executors (docs/distribution.md shows the whole protocol), and waiting for them."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ DROWSE = 0.02
 
 
 class Tag(IntEnum):
-    """What a message is."""
+    """Kinds of messages."""
 
     GRANT = 1
     """Supervisor to executor: `Grant`, or None for an end after the last frame that was granted."""
@@ -92,7 +92,7 @@ class Moved:
     f: np.ndarray
     """Forces [N]: dashpots see half-step velocities that x and v do not hold."""
     records: Records = field(default_factory=dict)
-    """What fixes keep, of the records that travel with these objects."""
+    """Values that fixes keep, as records that travel with these objects."""
 
 
 @dataclass(frozen=True)
@@ -103,13 +103,13 @@ class Share:
     objects: np.ndarray
     """Its own."""
     seen: Observation
-    """Of these, and of its part of those that never move."""
+    """Observation of these objects, and of its part of those that never move."""
     checksums: np.ndarray
-    """Of its rows, as `RowWriter.write` gives them."""
+    """Checksums of its rows, as `RowWriter.write` gives them."""
     energies: dict[str, float]
     penetration: float
     fields: Fields
-    """What effects tell of these objects, by the names of fields."""
+    """Values of effects for these objects, by the names of fields."""
     moves: int
     """Objects that have come to this executor since the frame before."""
     retries: int
@@ -122,7 +122,7 @@ class Share:
 
 @dataclass(frozen=True)
 class Kept:
-    """What a checkpoint needs of a frame; all rows that the executor has written by then are on the disk."""
+    """Data of a frame for a checkpoint; all rows that the executor has written by then are on the disk."""
 
     frame: int
     places: list[slice]
@@ -155,7 +155,7 @@ class Ended:
     account: Account | None
     """None when it was told to abort."""
     spans: list[tuple[str, int, float, float]] = field(default_factory=list)
-    """What it did when: kind, frame, begin and end [s] since all began."""
+    """Its activities: kind, frame, begin and end [s] since all began."""
     cpu: float = 0.0
     """Processor time since all began [s]."""
 
@@ -166,7 +166,7 @@ def gathered(places: Sequence[slice], *arrays: np.ndarray) -> list[np.ndarray]:
 
 
 def scatter(places: Sequence[slice], *pairs: tuple[np.ndarray, np.ndarray]) -> None:
-    """What `gathered` does, undone: into the first array of each pair, from the second."""
+    """The reverse of `gathered`: copies into the first array of each pair, from the second."""
     for whole, part in pairs:
         begin = 0
         for place in places:

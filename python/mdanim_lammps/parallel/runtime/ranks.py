@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What every MPI rank of a distributed run executes: `main`, with the argument JOB.
+"""The program of every MPI rank of a distributed run: `main`, with the argument JOB.
 
 Rank 0 is the supervisor: it takes the job that launch.py has left in this file. Progress goes to its standard output, a line of
 JSON for every frame, and at the end the result. All others are executors.

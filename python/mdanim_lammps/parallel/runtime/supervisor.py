@@ -79,7 +79,7 @@ class Distributed:
         self.granted = self.resumed_at = resume.frame if resume else 0
         self.taken = resume.frame if resume else -1
         self.kept: list[Kept] = []
-        """What executors have sent with the last kept frame."""
+        """Data that executors have sent with the last kept frame."""
         self.kept_at, self.cpu_begun = time.perf_counter(), time.thread_time()
         models = recorded_models(ready.models, ready.plan)
         job = Job(ready.plan, self.lengths, self.control, resume, self.settings, rows, models)
