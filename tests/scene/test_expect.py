@@ -81,6 +81,12 @@ def test_arguments_of_quantities():
         assert (e.quantity, e.argument, e.what) == ("height", (0.5, -1.0), "liquid.height(0.5 m, -1 m)"), place
 
 
+def test_a_liquid_may_be_called_by_its_name():
+    """`liquid` and its own name are the same subject."""
+    for what in ("level", "height(0 m, 0 m)", "residual"):
+        assert expected(f"expect water.{what} = 1", TWO) == expected(f"expect liquid.{what} = 1", TWO)
+
+
 @pytest.mark.parametrize(
     ("line", "message", "hint"),
     [

@@ -371,6 +371,17 @@ def test_strict_wants_units():
     assert "write 2 kg" in error.value.problems[1].hint
 
 
+def test_a_scene_may_ask_for_strictness_itself(tmp_path):
+    """`language strict` holds wherever it stands, for included files too; `language free` is the default."""
+    scene, line = text(mass="2", position="(0, 0, 1)", damping="0.1"), "language strict\n"
+    (tmp_path / "ball.txt").write_text(scene)
+    for strict in (line + scene, scene + line, line + 'include "ball.txt"\n'):
+        with pytest.raises(SceneError) as error:
+            parse_scene(strict, folder=tmp_path)
+        assert ["has no unit" in p.message for p in error.value.problems] == [True, True]
+    assert parse_scene("language free\n" + scene) == parse_scene(scene)
+
+
 def test_strict_sees_through_sums():
     """Refuse a bare number that is added to a quantity."""
     with pytest.raises(SceneError, match="a bare number meets a quantity"):

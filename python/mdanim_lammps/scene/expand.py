@@ -88,6 +88,9 @@ class Expander:
 
     def scene(self, body: list) -> EvaluatedBlock | None:
         """Everything of a scene, the seed first: rand needs it. None for a scene of too many objects."""
+        self.strict |= any(
+            isinstance(s, SettingNode) and s.keyword.name == "language" and s.values[0].text == "strict" for s in body
+        )
         env = Env({}, (), self.seed(body), self.strict, self.shared.lets, self.shared.incomplete)
         self.check_overrides()
         if not self.estimate(body, env):

@@ -54,8 +54,8 @@ control {
   comma, or the sign after the last unit: `rho*a*a kg` is (rho a a) kg, and `1 m + 20 cm` is 1.2 m. Terms
   of a sum that have a unit already keep theirs: `gap + 20 cm` with `let gap = 5 mm` is 20.5 cm. With `let gap = 5` it
   is refused: write `(gap + 20) cm` for 25 cm, `gap m + 20 cm` for 5.2 m.
-- Bare numbers are SI: metres, kilograms, seconds, radians. `check --strict` refuses bare numbers where a
-  unit belongs.
+- Bare numbers are SI: metres, kilograms, seconds, radians. `language strict` in the scene, or `check --strict`,
+  refuses bare numbers where a unit belongs.
 - Dimensions are checked: `mass 3 m` is an error, and so is the sum of a length and a time. An angle is
   not a plain number: write `spin (0, 0, 2) rad/s`, not `1/s`.
 - A name at the place of an operand is a variable; right after a value it is a unit: with `let m = 3`, `m m` is 3
@@ -86,12 +86,15 @@ include "rubber.txt"            # relative to this file
 - `repeat i in a .. b { }` repeats its statements for the whole numbers i from a to b; objects, `expect` and
   `camera` lines, `hold` and other repeats may stand inside.
 - An index is one number, which may be computed: of two repeats write `object box[100*r + c]`; `box[r, c]` is refused.
-- `include "file"` reads another file in its place. A file that includes itself, and more than 16 levels,
+- `include "file"` reads another file in its place, inside a block as well: a file with `density`, `elasticity` and
+  `damping` is a material. A file that includes itself, and more than 16 levels,
   are errors that show the chain of files.
 - There are no conditions and no other loops, so the evaluation of a scene always ends.
 """
 
 _END = """
+A liquid may be called `liquid` or by its name: `expect water.level`.
+
 A line ends with `= value`, `= value +- tolerance`, `= value +- p %` (per cent of the value), or with a bound:
 `< value`, `> value`, `<= value`, `>= value`. `position` and `velocity` are followed by `.x`, `.y` or `.z`. Time is
 written `at 2 s`; without it the check is made at the end of the run, or over the whole run for residuals and maxima.

@@ -446,6 +446,10 @@ class SceneRecord:
     """Stem of the file name: ``beam`` for ``beam.txt``."""
     control: Control
     title: str = setting('<"text">', "Title of the scene, shown by `check` and in the movie.", '"Cube on a beam"', default="")
+    language: str = setting(
+        "<free|strict>",
+        "`strict` refuses bare numbers where a unit belongs, in the whole scene with all that it includes; `check --strict` does "
+        "so for any scene.", "strict", default="free")  # fmt: skip
     solids: tuple[Solid, ...] = ()
     liquid: Liquid | None = None
     contacts: tuple[ContactPair, ...] = ()

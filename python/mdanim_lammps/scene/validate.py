@@ -371,6 +371,8 @@ class Validator:
         if name in PLANES:
             way_out = example(KEYWORDS["liquid"]["basin"]) + " in a liquid" if name == "basin" else example(KEYWORDS[""][name])
             self.problem(span, f"the scene has no {name}", way_out)
+        elif any(name == b.name for b in self.blocks("liquid")):
+            self.problem(span, f"{name} is the liquid; what objects touch is its basin", "write basin")
         else:
             self.unknown_object(name, self.named, span)
         return False
@@ -381,9 +383,11 @@ class Validator:
     def expect(self, s: EvaluatedSetting, control: records.Control | None) -> records.Expect | None:
         """One self-check, with the unit of its quantity."""
         (subject, quantity, argument), time, relation, value, tolerance = s.values
+        if any(subject == b.name for b in self.blocks("liquid")) and subject not in GLOBALS:
+            subject = "liquid"
         kind = subject if subject in GLOBALS else "NAME"
         known = [q for k, q in QUANTITIES if k == kind]
-        if kind == "NAME" and not self.known_subject(subject, quantity, s.span(0)):
+        if kind == "NAME" and not self.known_subject(subject, s.span(0)):
             return None
         if (kind, quantity) not in QUANTITIES:
             self.problem(
@@ -444,14 +448,11 @@ class Validator:
             self.problem(span, f"no object is called {other}", did_you_mean(other, list(self.names)[:2000]))
         return False
 
-    def known_subject(self, subject: str, quantity: str, span: Span) -> bool:
+    def known_subject(self, subject: str, span: Span) -> bool:
         """An object; or a word for the whole scene, mistyped."""
-        if any(subject == b.name for b in self.blocks("liquid")):
-            self.problem(span, f"the liquid is called liquid in expect, found {subject}", f"write liquid.{quantity}")
-            return False
         if subject in self.names:
             return True
         if not self.out.excused("object"):
-            hint = did_you_mean(subject, [*list(self.names)[:2000], *GLOBALS])
+            hint = did_you_mean(subject, [*list(self.names)[:2000], *(b.name for b in self.blocks("liquid")), *GLOBALS])
             self.problem(span, f"no object is called {subject}", hint)
         return False
