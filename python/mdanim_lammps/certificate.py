@@ -42,7 +42,7 @@ MOST_OBJECTS = 100
 
 @dataclass(frozen=True, slots=True)
 class Certificate(OnceMethod):
-    """What is certified before step 0."""
+    """The figures that are certified before step 0."""
 
     timestep: float
     """[s]"""
@@ -64,7 +64,7 @@ class Certificate(OnceMethod):
     margins: tuple[Margin, ...] = ()
     """The bound of each object, the smallest first, and every other limit that the scene has to keep."""
     notes: tuple[Problem, ...] = ()
-    """What is not doubtful, but may not be known, of severity ``note``."""
+    """Remarks that are not doubts, but may not be known, of severity ``note``."""
 
     @property
     def last_frame(self) -> int:

@@ -130,7 +130,7 @@ def _window(text: str, start: int) -> tuple[str, int]:
 
 
 _VERBATIM = re.compile(r"mdanim-lammps [^;\n']*|^ *\d+ \| .*$", re.MULTILINE)
-"""What is not respelled: commands for a shell, and lines of a scene."""
+"""Parts of a text that are not respelled: commands for a shell, and lines of a scene."""
 _IN_PYTHON = tuple(
     (re.compile(option), spelling)
     for option, spelling in (

@@ -57,7 +57,7 @@ def limited() -> bool:
 
 
 def address_space() -> float:
-    """What is left of it [bytes]; infinite without a limit."""
+    """Address space that is left [bytes]; infinite without a limit."""
     if not limited():
         return math.inf
     with suppress(OSError):

@@ -36,7 +36,7 @@ LONG = 60.0
 
 
 def scene_lines(ready: Prepared) -> list[str]:
-    """What is in the scene; below it what is on, and what is off and why."""
+    """Lines on the contents of the scene; below them the effects that are on, and those that are off, with reasons."""
     on = [v.name for v in ready.verdicts.values() if v.on]
     reasons: dict[str, list[str]] = {}
     for v in ready.verdicts.values():
@@ -234,7 +234,7 @@ def threads_line(choice: ThreadChoice) -> str:
 def check_lines(
     ready: Prepared, forecast: Cost | DivergedError | None, threads: ThreadChoice, speedup: SpeedupForecast | None = None
 ) -> list[str]:
-    """What ``check`` prints: scene, certificate, limits, output, cost, threads, what executors gain, and every effect."""
+    """The output of ``check``: scene, certificate, limits, output, cost, threads, gain by executors, and every effect."""
     return [
         *scene_lines(ready),
         certificate_line(ready),
@@ -257,8 +257,8 @@ def check_json(
     threads: ThreadChoice | None = None,
     speedup: SpeedupForecast | None = None,
 ) -> dict:
-    """What ``check --format json`` prints; with the expected cost (cost/forecast.py), how many threads there will be
-    (engine/threads.py), and what executors gain (cost/speedup_forecast.py)."""
+    """The output of ``check --format json``; with the expected cost (cost/forecast.py), the number of threads
+    (engine/threads.py), and the gain by executors (cost/speedup_forecast.py)."""
     return {
         "scene": str(ready.scene.path) if ready.scene.path else ready.scene.name,
         "objects": [

@@ -124,7 +124,7 @@ def documented_exit(*, debug: bool) -> Iterator[None]:
         raise SystemExit(error.exit_code) from None
     except OSError as error:
         if isinstance(error, BrokenPipeError) and stdout_is_closed():
-            # What is left in the buffer of stdout must not fail a second time when Python ends.
+            # The rest in the buffer of stdout must not fail a second time when Python ends.
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
             raise SystemExit(ExitCode.DONE) from None
         if debug:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What the program needs on a machine, examined one after the other, each with a cure."""
+"""The needs of the program on a machine, examined one after the other, each with a cure."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ LEAST_DISK = 1e9
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """What was found of one need."""
+    """The finding on one need."""
 
     severity: int
     what: str
@@ -97,7 +97,7 @@ def _mpi() -> tuple[int, str]:
     from ..parallel.runtime.launch import launcher
 
     mpiexec = launcher()
-    # What ends at once may be gone before mpiexec has spoken to it, and then mpiexec dies of SIGPIPE.
+    # A process that ends at once may be gone before mpiexec has spoken to it, and then mpiexec dies of SIGPIPE.
     done = run([*mpiexec, "-n", "1", sys.executable, "-I", "-c", "pass"], capture_output=True, timeout=30)
     library = MPI.Get_library_version().split("\n")[0].strip(" \0")
     if done.returncode:

@@ -43,7 +43,7 @@ control {{
   friction 0.5                       # without it objects slide as on ice
 }}
 
-# What the run must come to, measured at its end:
+# Results that the run must reach, measured at its end:
 expect energy.residual = 0 +- 1e-3
 """
 
@@ -114,4 +114,4 @@ def doctor() -> None:
 
 
 COMMANDS = (init, explain, doctor)
-"""Of the command line, in the order of its help."""
+"""Commands of the command line, in the order of its help."""

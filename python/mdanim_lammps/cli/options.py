@@ -69,13 +69,13 @@ class Reading:
 @Parameter(name="*")
 @dataclass(frozen=True, kw_only=True)
 class Executing:
-    """What simulates."""
+    """Options for executors."""
 
     executors: Executors = 1
     threads: Annotated[int | None, Parameter(converter=thread_count)] = None
     """Threads of each process that simulates; if left out, as many as pay of all cores divided by executors."""
     control: Literal["central", "peers"] | None = None
-    """What assigns objects to executors: the supervisor, or each executor alike."""
+    """The process that assigns objects to executors: the supervisor, or each executor alike."""
 
     def check(self) -> Executing:
         """Raises UsageError for a number of executors that cannot be, or that this machine cannot hold."""

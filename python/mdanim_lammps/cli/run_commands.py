@@ -246,4 +246,4 @@ def compare(a: Path, b: Path, /) -> None:
 
 
 COMMANDS = (resume, render, view, report, export, timeline, compare)
-"""Of the command line, in the order of its help."""
+"""Commands of the command line, in the order of its help."""

@@ -206,7 +206,7 @@ def study(
     target: str | None = None,
     quiet: Quiet = False,
 ) -> None:
-    """What accuracy costs in time: ladders of settings around the scene's own, measured, with a table, a plot and advice.
+    """Measure what accuracy costs in time: ladders of settings around the scene's own, with a table, a plot and advice.
 
     With --target the cheapest setting that has this error, and what to write into the scene for it.
     Points that were measured before are not measured again: the same command goes on where it was stopped.
@@ -270,4 +270,4 @@ def _aim(record, error: float, output: OutFolder, budget: float, quiet: bool) ->
 
 
 COMMANDS = (run, check, picture, build, study)
-"""Of the command line, in the order of its help."""
+"""Commands of the command line, in the order of its help."""

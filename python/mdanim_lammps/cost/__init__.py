@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What a run will cost on this machine, and what executors will bring."""
+"""Forecasts of the cost of a run on this machine, and of the gain by executors."""

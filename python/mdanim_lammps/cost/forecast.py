@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What a run will cost, told before it: its first steps are run, and all others are taken to cost as much."""
+"""Forecast of the cost of a run: its first steps are run, and all others are assumed to cost as much."""
 
 from __future__ import annotations
 
@@ -115,9 +115,9 @@ def extrapolate(ready: Prepared, folder: Path, *, setup: float = 0.0) -> Cost:
         cost = stopped.cost
     assert cost is not None, "a run that has ended or stopped has a cost"
     whole_own = time.thread_time() - began
-    # What a run does once, before its first frame and after its last one, is not in these differences.
+    # Work that a run does once, before its first frame and after its last one, is not in these differences.
     wall, own, simulated = (last - first for first, last in zip(marks[0], marks[-1]))
-    # What other programs have of the processor is not part of a run. Time is that of this thread: others share its work.
+    # Processor time of other programs is not part of a run. Time is that of this thread: others share its work.
     share = own / wall
     counted = sum(part.seconds for part in cost.effects.values()) + cost.other[LEAPFROG] + cost.other[REST]
     of_step = share * simulated / ((len(marks) - 1) * steps) * c.steps / counted

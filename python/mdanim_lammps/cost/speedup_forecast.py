@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What several executors gain, before the run: which objects will be near each other, and hence which work can be shared out.
+"""Gain by several executors, forecast before the run: which objects will be near each other, and hence which work can be shared
+out.
 
-The objects fly by themselves (gravity, ground, walls, the surface of a liquid; they pass through each other), and at some moments
-the plan that executors would follow is made, by the same pure functions. No MPI and no LAMMPS: the process that starts executors
-has neither.
+The objects fly by themselves (gravity, ground, walls, the surface of a liquid; they pass through each other). At some moments the
+plan that executors would follow is made, by the same pure functions. No MPI and no LAMMPS: the process that starts executors has
+neither.
 """
 
 from __future__ import annotations
@@ -27,7 +28,7 @@ it decides how short windows may be."""
 
 @dataclass(frozen=True, slots=True)
 class SpeedupForecast:
-    """What to expect of some executors in the first second of a film, the mean of some moments."""
+    """Expected gain by some executors in the first second of a film, the mean of some moments."""
 
     executors: int
     seconds: float
@@ -37,9 +38,9 @@ class SpeedupForecast:
     objects: int
     """That can move."""
     largest: int
-    """Of these, in the heaviest island."""
+    """Objects of these in the heaviest island."""
     share: float
-    """Of the work, in that island [-]."""
+    """Part of the work that is in that island [-]."""
     team: float
     """Executors that run it together."""
 

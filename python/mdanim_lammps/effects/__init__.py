@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What an effect is, which effects are on in a scene, and what they are given; the effects themselves are in features/."""
+"""The interface of an effect, the choice of effects that are on in a scene, and their context; effects themselves are in
+features/."""
 
 from .context import Context, Resolved, Verdict
 from .effect import Effect

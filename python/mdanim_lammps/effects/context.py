@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What is known of a scene once its effects are decided on and its solids are made: what every effect is given."""
+"""The context of every effect: data of a scene once its effects are decided on and its solids are made."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class Resolved:
 
     scene: SceneRecord
     verdicts: dict[str, Verdict]
-    """Of every effect, by its name."""
+    """Verdicts on all effects, by their names."""
     effects: tuple[Effect, ...]
     """Those that are on, in the order in which their forces are summed."""
     planes: tuple[Plane, ...]
@@ -59,7 +59,7 @@ class Context:
     models: tuple[Model, ...]
     """The solids one by one, with their surfaces."""
     spacing: Spacing
-    """What the scene is resolved with."""
+    """Spacing that the scene is resolved with."""
     reach: Reach
     """Where solids can be, until when, and how fast."""
     grid: Grid | None

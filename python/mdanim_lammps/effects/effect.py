@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What an effect is: when a scene calls for it, what it writes into LAMMPS's input, what
-it adds to the ledger and to the bound.
-"""
+"""The interface of an effect: when a scene calls for it, its lines in LAMMPS's input, and its parts of the ledger and of the
+bound."""
 
 from __future__ import annotations
 
@@ -63,14 +62,14 @@ class Effect:
     needs: tuple[str, ...] = ()
     """Effects without which this one cannot be; they stand before it in the sum."""
     if_off = ""
-    """What looks wrong when a scene needs the effect and it is switched off."""
+    """Fault that shows when a scene needs the effect and it is switched off."""
 
     def __init__(self, on_surfaces: Effect | None = None):
         self.on_surfaces = on_surfaces
-        """What it is under ``contact-model surface``; None where that is the same."""
+        """The effect that takes its place under ``contact-model surface``; None where it is the same."""
 
     def of(self, scene: SceneRecord) -> Effect:
-        """What it is under the contact model of a scene."""
+        """The effect that takes its place under the contact model of a scene."""
         surface = scene.control.contact_model is ContactModel.SURFACE
         return self.on_surfaces if surface and self.on_surfaces else self
 
@@ -82,7 +81,7 @@ class Effect:
     # --- how it moves solids: what reach/ asks, of any scene -------------------------------------------------------------
 
     def acceleration(self, scene: SceneRecord) -> np.ndarray | None:
-        """What it gives to everything that is free to move [m/s^2], shape (3,); None for nothing."""
+        """Acceleration that it gives to everything that is free to move [m/s^2], shape (3,); None for nothing."""
         return None
 
     def planes(self, scene: SceneRecord) -> tuple[Plane, ...]:
@@ -121,7 +120,7 @@ class Effect:
         return None
 
     def problems(self, resolved: Resolved, models: Sequence[Model], grid: Grid | None) -> list[Problem]:
-        """What of the start it cannot work with."""
+        """Parts of the start that it cannot work with."""
         return []
 
     def columns(self, context: Context) -> dict[Field, np.ndarray]:
@@ -166,11 +165,11 @@ class Effect:
         return None
 
     def energy(self, readings: Readings) -> float:
-        """What stands in its column ``ledger`` now [J]."""
+        """Present value of its column ``ledger`` [J]."""
         return self.potential(readings.context.scene, readings.system.mass, readings.array("x")) if self.has_potential else 0.0
 
     def further_energies(self, readings: Readings) -> dict[str, float]:
-        """What stands in its columns ``further_ledger`` now [J]."""
+        """Present values of its columns ``further_ledger`` [J]."""
         return {}
 
     def potential(self, scene: SceneRecord, mass: np.ndarray, x: np.ndarray) -> float:
@@ -183,7 +182,7 @@ class Effect:
         return ()
 
     def lost(self, readings: Readings) -> dict[str, float]:
-        """What stands in these columns now [J]."""
+        """Present values of these columns [J]."""
         return {}
 
     def margins(self, envelope: Envelope) -> list[Margin]:
@@ -191,7 +190,7 @@ class Effect:
         return []
 
     def fields(self, scene: SceneRecord) -> tuple[Field, ...]:
-        """What it tells of a frame."""
+        """Fields that it has in a frame."""
         return ()
 
     def tell(self, readings: Readings) -> Fields:
@@ -199,11 +198,11 @@ class Effect:
         return {}
 
     def fault(self, scene: SceneRecord, time: float, fields: Fields) -> str:
-        """What of a frame at this time [s] can never be, in words; nothing where all is well."""
+        """Fault of a frame at this time [s] that can never be right, in words; empty where all is well."""
         return ""
 
     def doubts(self, context: Context, time: float, ledger: Callable[[str], np.ndarray]) -> list[Problem]:
-        """What is doubtful about a run of this length [s] that has ended; ``ledger`` gives a column."""
+        """Doubts about a run of this length [s] that has ended; ``ledger`` gives a column."""
         return []
 
     def gained(self, first: Mapping[str, float], now: Mapping[str, float]) -> float | None:
@@ -224,11 +223,11 @@ class Effect:
         return -math.inf
 
     def warnings(self, context: Context) -> list[Problem]:
-        """What is doubtful about the start of a scene that the effect is on in."""
+        """Doubts about the start of a scene that the effect is on in."""
         return []
 
     def notes(self, envelope: Envelope) -> list[Problem]:
-        """What ``check`` tells of a scene in which something can move besides: nothing is doubtful, but it may not be known."""
+        """Further remarks of ``check`` on a scene in which something can move: nothing is doubtful, but it may not be known."""
         return []
 
     def gap(self, context: Context) -> np.ndarray | float:
@@ -253,6 +252,6 @@ class Effect:
 
 
 def stiffness_told(scene: SceneRecord) -> str:
-    """What the reason of an effect that pushes back adds about ``contact-stiffness``; nothing where it is the usual one."""
+    """Addition to the reason of an effect that pushes back, about ``contact-stiffness``; empty where it is the usual one."""
     factor = scene.control.contact_stiffness
     return "" if factor == 1.0 else f", {number(factor)} times as stiff as usual"

@@ -17,7 +17,7 @@ from .margin import Margin
 
 
 class Envelope:
-    """What a scene may reach at a time step, before the first step."""
+    """Bounds that a scene may reach at a time step, before the first step."""
 
     def __init__(self, context: Context, rates: Mapping[str, np.ndarray], timestep: float):
         self.context, self.scene, self.system, self.reach = context, context.scene, context.system, context.reach
@@ -26,7 +26,7 @@ class Envelope:
         """``rates`` are the shares of effects in the bound, by name [1/s^2], each of shape (N,)."""
 
     def own_step(self, name: str, rate: np.ndarray) -> list[Margin]:
-        """What a single effect would bear, by its share in the bound [1/s^2], shape (N,)."""
+        """Margin of the time step that a single effect would bear, by its share in the bound [1/s^2], shape (N,)."""
         free = np.where(self.system.held, 0.0, rate)
         if not free.any():
             return []

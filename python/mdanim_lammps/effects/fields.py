@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 PER = ("particle", "bond", "object", "cell", "column", "row", "run")
-"""What a field has a value of: the last is one number of the whole, a row one of a table of any length."""
+"""Things that a field has one value for each of: ``run`` has one number in all, ``row`` is a row of a table of any length."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,7 +24,7 @@ class Field:
     """One of PER."""
     dtype: str = "float64"
     shape: tuple[int, ...] = ()
-    """Of one value."""
+    """Shape of one value."""
     default: float = 0.0
     """Where nothing tells it."""
     ledger: bool = False

@@ -20,7 +20,7 @@ class Margin:
     value: float
     limit: float
     unit: str
-    """Of value and limit; empty for ratios."""
+    """Unit of value and limit; empty for ratios."""
     text: str
     """Both in a sentence."""
     span: Span | None
@@ -30,7 +30,7 @@ class Margin:
     least: bool = False
     """Whether the value is to be above the limit, not below."""
     hint: str = ""
-    """What to write instead."""
+    """The way out: words to write instead."""
 
     @property
     def used(self) -> float:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What quantities of ``expect`` are measured from: a run that has ended, and objects at a frame."""
+"""Sources of the quantities of ``expect``: a run that has ended, and objects at a frame."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from .fields import Fields
 
 @dataclass(frozen=True)
 class Measured:
-    """What a run has left to be measured; F frames of M solids."""
+    """Data of a run from which quantities are measured; F frames of M solids."""
 
     context: Context
     times: np.ndarray
@@ -63,11 +63,11 @@ class Glance:
     """Its number, from 0."""
     model: Model
     position: np.ndarray
-    """Of all particles [m], shape (N, 3)."""
+    """Positions of all particles [m], shape (N, 3)."""
     velocity: np.ndarray
-    """Of all particles, of which only its own are sure to be those of the frame [m/s], shape (N, 3)."""
+    """Velocities of all particles [m/s], shape (N, 3); only those of the object itself are sure to be those of the frame."""
     fields: Fields
-    """What effects tell of the frame; nothing where the object is out of their reach."""
+    """Fields of effects in the frame; empty where the object is out of their reach."""
 
     @property
     def own(self) -> np.ndarray:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What effects read of a simulation that is under way."""
+"""Values that effects read from a simulation that is under way."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ LEAPFROG = "leap-frog"
 
 
 class Readings(Protocol):
-    """What an instance tells, at the last step of a `run` or after `setup` (engine/instance.py)."""
+    """Values of an instance, at the last step of a `run` or after `setup` (engine/instance.py)."""
 
     context: Context
-    """What it simulates: all solids of the scene, or some."""
+    """The simulated part: all solids of the scene, or some."""
     system: System
 
     def array(self, name: str) -> np.ndarray:

@@ -30,7 +30,7 @@ class Format:
     module: str
     """File of this folder whose function ``write(cut, folder, stem, on_frame)`` writes the files; it returns notes for people."""
     suffixes: tuple[str, ...]
-    """Of what it writes; the first one is that of the name that is asked for."""
+    """Suffixes of the files that it writes; the first one belongs to the name that is asked for."""
     about: str
     pieces: str = ""
     """Names of the files in the folder that is written beside the file of the first suffix; empty where there is none."""
@@ -61,12 +61,12 @@ SPARE = 1 << 20
 
 @dataclass(frozen=True, slots=True)
 class Exported:
-    """What `export` has written."""
+    """The result of `export`."""
 
     files: tuple[Path, ...]
     frames: int
     notes: tuple[str, ...]
-    """What the format cannot hold, or holds otherwise: a scale, a quantity that was left out and why."""
+    """Data that the format cannot hold, or holds otherwise: a scale, a quantity that was left out and why."""
 
 
 def export(

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What is exported of a run: some of its frames and objects."""
+"""The part of a run that is exported: some of its frames and objects."""
 
 from __future__ import annotations
 
@@ -92,7 +92,7 @@ class Cut:
         return (len(times) - 1) / (times[-1] - times[0]) if len(times) > 1 else 30.0
 
     def position(self, frame: int) -> np.ndarray:
-        """Of the particles in a frame of the trajectory [m], shape (N, 3). Raises OutputError where one is nowhere."""
+        """Positions of the particles in a frame of the trajectory [m], shape (N, 3). Raises OutputError where one is nowhere."""
         position = self.trajectory.position(frame)[self._kept]
         check_places(self.trajectory.path, position, frame=frame)
         return position

@@ -15,7 +15,7 @@ from .cut import Body, Cut
 FLUSH = 100_000_000
 """Bytes of points after which they go to the disk, so that a long run need not fit in memory."""
 OPACITY = 0.6
-"""Of the liquid."""
+"""Opacity of the liquid."""
 SUN, SKY = 3.0, 0.5
 """Intensities of the lamp, which is far away, and of the sky."""
 
@@ -82,7 +82,7 @@ def write(cut: Cut, folder: Path, stem: str, on_frame: Callable[[int], None]) ->
 
 
 def _free_name(wanted: str, used: set[str]) -> str:
-    """What USD may call a thing, unlike all names so far."""
+    """A name that USD allows, unlike all names so far."""
     from pxr import Tf
 
     name = Tf.MakeValidIdentifier(wanted)

@@ -13,7 +13,7 @@ from ..scene.formatting import number
 from .cut import Cut
 
 DECIMALS = 5
-"""Of the nanometres that XTC counts in: an ångström has 10 000 parts."""
+"""Digits of the nanometres that XTC counts in: an ångström has 10 000 parts."""
 FARTHEST = 0.99 * 10.0 * 2**31 / 10**DECIMALS
 """From the origin, and between two particles [Å]: XTC has 32 bits for these parts."""
 

@@ -1,18 +1,19 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What can be simulated: one folder per feature, and nothing outside of it knows the feature by its name.
+"""The features that can be simulated: one folder each. No other code knows a feature by its name.
 
 A folder has facets, each a module that is looked for by its name:
 
-``words``    what it adds to the language (scene/): SWITCHES, what calls for each of its effects; QUANTITIES, what ``expect`` can
-             check; MARGINS, what each of its limits means; SCENE, a class with settings that stand outside of all blocks;
+``words``    its part of the language (scene/): SWITCHES, the causes that call for each of its effects; QUANTITIES, which
+             ``expect`` can check; MARGINS, the meaning of each of its limits; SCENE, a class with settings outside of all blocks;
              CHECKS by the word of a block, and check(validator, top, held) of a whole scene (scene/validate.py);
-             touched(scene), whether it brings something that objects may touch; width(scene), what scenes without objects go by
-``measure``  how its quantities are found (effects/measured.py): MEASURES in a run that has ended, RECORDED in one object
+             touched(scene), whether it brings something that objects may touch; width(scene), the width that sets the spacing of
+             scenes without objects
+``measure``  how its quantities are measured (effects/measured.py): MEASURES in a run that has ended, RECORDED in one object
 ``effect``   EFFECTS, the effects that it brings (effects/effect.py): causes, columns, commands, planes, bound, ledger
-``advice``   notes(envelope), what `check` tells of a scene beside what effects tell, whether or not any of them is on
+``advice``   notes(envelope), the remarks of `check` on a scene besides those of effects, whether or not any of them is on
 
-Folders are found, so adding a feature touches no other file. Those in ``MDANIM_FEATURES``, folders of such folders, are
-features too: to try one that is not part of the package. Its code is run, so it may not come from a stranger.
+Folders are found, so adding a feature touches no other file. Those in ``MDANIM_FEATURES``, folders of such folders, are features
+too: to try one that is not part of the package. Its code is run, so it may not come from a stranger.
 """
 
 from __future__ import annotations

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What has been drawn of a picture before the surface of the liquid, for the shader of that to look up."""
+"""The part of a picture drawn before the surface of the liquid, for the shader of the surface to look up."""
 
 from __future__ import annotations
 

@@ -22,7 +22,7 @@ MARGIN = 0.88
 FALL, FAR = 0.25, 4.0
 """How far an object may fall, and go, before it leaves the picture, in sizes of the scene at its start."""
 LARGER = 0.35
-"""What a larger picture is worth: one that shows all 10 % larger may lose this much of 10 % of what happens."""
+"""Value of a larger picture: one that shows everything 10 % larger may lose this much of 10 % of all movement."""
 LEAST = 0.6
 """Share of the objects that move which is seen at any time."""
 NEXT_SHARES = (0.995, 0.98, 0.95, 0.9, 0.8)
@@ -120,7 +120,7 @@ def action_of(trajectory: Trajectory, samples: int = 40) -> Action:
         gone = np.maximum.accumulate(low[:, :, 2] < bottom - FALL * size, axis=0)
     lowest = np.where(gone[:, :, None], np.inf, low).min(axis=0)
     highest = np.where(gone[:, :, None], -np.inf, high).max(axis=0)
-    # What has gone from the first stretch on has no bounds of its own.
+    # A stretch that lasts from the first one on has no bounds of its own.
     lowest, highest = np.minimum(lowest, start_high), np.maximum(highest, start_low)
     outer = len(metadata.names) // 20
     shown_low = np.partition(lowest, outer, axis=0)[outer]

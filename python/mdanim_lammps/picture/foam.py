@@ -22,7 +22,7 @@ MOST = 3.0
 FADE = 0.4
 """Seconds within which foam falls to 1/e; it is looked for in frames of four times that."""
 LEAST = 0.02
-"""What is left after that of a white column; with less there is none."""
+"""Foam that is left after that of a white column; with less there is none."""
 APART = 1.0 / 30.0
 """Seconds, about, between the earlier frames that are looked at: foam behind a front has no gaps."""
 LOW = 1.5
@@ -67,7 +67,7 @@ class Foam:
         return np.zeros(self._grid.shape[1::-1], np.float32) if foam is None else np.minimum(foam, 1.0)
 
     def _look(self, frame: int, read: Callable[[int], Liquid]) -> tuple[np.ndarray | None, np.ndarray, np.ndarray]:
-        """What foam a frame makes, None for none, and its heights."""
+        """The foam that a frame makes, None for none, and its heights."""
         if frame not in self._made:
             smooth, raw, drops = read(frame)
             made = breaking(self._grid, smooth, raw, drops)

@@ -38,7 +38,7 @@ class Spots:
         )
 
     def of(self, columns: np.ndarray) -> np.ndarray:
-        """What is told of columns, shape (ny, nx), for each spot, shape (n, m)."""
+        """Values of columns, shape (ny, nx), at each spot, shape (n, m)."""
         return np.kron(columns[self._near], np.ones((FINER, FINER), columns.dtype))
 
     def heights(self, z: np.ndarray) -> np.ndarray:
@@ -54,7 +54,7 @@ class Spots:
         return against_bodies(self._x, self._y, z, vertices, triangle)
 
     def all(self, told: np.ndarray) -> np.ndarray:
-        """What is told of the spots, bool, among all there are, shape (FINER ny, FINER nx); false elsewhere."""
+        """Values of the spots, bool, among all spots, shape (FINER ny, FINER nx); false elsewhere."""
         whole = np.zeros([FINER * count for count in self._shape], bool)
         whole[self._place] = told
         return whole
@@ -95,7 +95,7 @@ def dry_spots(grid: Grid, smooth: np.ndarray, raw: np.ndarray, vertices: np.ndar
 
 
 def beside(solid: np.ndarray, told: np.ndarray) -> np.ndarray:
-    """What is told of spots; of those in a solid, what is told of the nearest that is in none; (n, m) each."""
+    """Values at spots; at those in a solid, the value at the nearest spot that is in none; (n, m) each."""
     from scipy.ndimage import distance_transform_edt
 
     j, i = distance_transform_edt(solid, return_distances=False, return_indices=True)

@@ -14,7 +14,7 @@ from .rays import FAR, NEAR, ROOM, SKY_PIXELS, axes, direction, sky_axes
 from .window import off_screen_window
 
 PIXELS, MORE_PIXELS = 1024, 2048
-"""Of the lamp's picture, along a side; more where objects are small, and in final quality."""
+"""Pixels of the lamp's picture, along a side; more where objects are small, and in final quality."""
 REACH = 1.5
 """How far what hides the sky is felt, in sizes of an object."""
 BLOCK = 16
@@ -73,7 +73,7 @@ class DepthPictures:
 
 
 class Light:
-    """What falls on lit actors: the lamp with its shadows and, where it is wanted, the sky as far as it is seen from each point.
+    """The light on lit actors: the lamp with its shadows and, where it is wanted, the sky as far as it is seen from each point.
 
     Args:
         data: ``vtkPolyData`` of all objects.

@@ -81,15 +81,15 @@ PUDDLE = 16
 DRIP = 2
 """The same in the midst of a body, where a hull may hold more."""
 PARTS = np.array([0.50, 0.22, 0.13, 0.08, 0.05, 0.02])
-"""Of a drop, in the droplets that are drawn of it: single balls of its size look like glass."""
+"""Parts of a drop, one for each droplet that is drawn of it: single balls of its size look like glass."""
 SCATTERED = 0.4
 """Cells from the middle of a drop within which its droplets lie along each axis."""
 
 
 def droplets(drops: np.ndarray, cell: float) -> np.ndarray:
-    """What is drawn of drops: as much liquid, in balls that lie apart, with the same centre of mass.
+    """The droplets that are drawn of drops: as much liquid, in balls that lie apart, with the same centre of mass.
 
-    How they lie follows from the drop's radius, which does not change while it flies, and differs from drop to drop.
+    Their places follow from the drop's radius, which does not change while it flies, and differs from drop to drop.
 
     Args:
         drops: middles and radii [m], shape (D, 4).

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What a picture shows beside the surfaces when it is asked for: names, springs and bounding boxes of objects."""
+"""Marks that a picture shows beside the surfaces on request: names, springs and bounding boxes of objects."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ BOX_EDGES = np.array([(0, 1), (2, 3), (4, 5), (6, 7), (0, 2), (1, 3), (4, 6), (5
 
 @dataclass(frozen=True)
 class Marks:
-    """What is asked for."""
+    """The marks that are asked for."""
 
     names: bool = False
     springs: bool = False

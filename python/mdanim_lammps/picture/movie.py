@@ -199,7 +199,7 @@ def _draw_apart(trajectory, render, size, shown: Sequence[int], processes: int) 
 
 
 _worker: dict = {}
-"""Of a process that draws: its task, and the painter once there is one."""
+"""State of a process that draws: its task, and the painter once there is one."""
 
 
 def _begin_worker(task: tuple) -> None:

@@ -32,7 +32,7 @@ class Ponds:
     columns: np.ndarray
     """Those that they stand on, bool, shape (ny, nx)."""
     level: np.ndarray
-    """Of their sheet over their columns and those around."""
+    """Level of their sheet over their columns and those around."""
     bottom: np.ndarray
     """The body's face below; infinite where no pond is."""
     quads: np.ndarray

@@ -24,7 +24,7 @@ FLOOR = 5.0
 FINER = {Quality.DRAFT: 1, Quality.FINAL: 2}
 """Pixels that are drawn along each side of one that is shown."""
 SAMPLES = 4
-"""Of each pixel that is drawn, along edges."""
+"""Samples along an edge of each drawn pixel."""
 MOST_PIXELS = 16384
 """That Mesa draws along a side."""
 
@@ -71,7 +71,7 @@ class Painter:
         self._build(render, marks)
 
     def _pixel(self) -> np.ndarray:
-        """What a pixel covers of each object where it comes nearest to the camera [m], shape (M,)."""
+        """Size of a pixel on each object where it comes nearest to the camera [m], shape (M,)."""
         times = self.trajectory.times
         stretches = np.array_split(np.arange(len(times)), len(self.action.low))
         eyes = [np.array([self.view(float(times[n])).eye for n in frames]) for frames in stretches]
@@ -132,7 +132,7 @@ class Painter:
         self._renderer.SetBackground2(high)
         self._renderer.GradientBackgroundOn()
         self._renderer.SetUseHiddenLineRemoval(False)
-        # What is translucent is laid over the rest in the order of adding.
+        # Translucent surfaces are laid over the rest in the order of adding.
         self._renderer.SetUseOIT(False)
         camera = self._renderer.GetActiveCamera()
         camera.SetViewAngle(FIELD_OF_VIEW)

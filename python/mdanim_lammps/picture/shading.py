@@ -12,7 +12,7 @@ HIDDEN = 0.75
 """Share of the light that is missing where nothing is seen of the sky; the rest is thrown back by what hides it."""
 
 REFRACTIVE_INDEX = 1.33
-"""Of the liquid, over that of air."""
+"""Refractive index of the liquid, over that of air."""
 
 VERTEX = {
     "//VTK::PositionVC::Dec": """//VTK::PositionVC::Dec
@@ -126,7 +126,7 @@ float skySeen(vec3 where, vec3 normal, vec3 plane, float slack)
     vec2 slope = vec2(dot(plane, skyRight[k]), dot(plane, skyUp[k])) / max(dot(plane, skyToward[k]), 0.15);
     float height = dot(p, skyToward[k]) - pixel * dot(slope, vec2(texel) + 0.5 - across);
     float nearer = (2.0 - SKY_NEAR - height) - (SKY_FAR - SKY_NEAR) * there - slack * pixel;
-    // What is far away hides nothing: it throws back about as much light as the sky behind it.
+    // A surface far away hides nothing: it throws back about as much light as the sky behind it.
     if (there < 1.0 && nearer > 0.0) hidden += facing * max(0.0, 1.0 - nearer * skyRadius / skyReach);
   }
   return all > 0.0 ? 1.0 - SKY_HIDDEN * hidden / all : 1.0;
@@ -148,9 +148,9 @@ THROUGH_AIR = """
 vec3 seen(vec3 color, vec3 where) { return color; }
 """
 
-# What is seen through liquid takes its colour with the way that the light has gone in it (Beer and Lambert).
+# Light seen through liquid takes its colour with the way that it has gone in it (Beer and Lambert).
 THROUGH_LIQUID = """
-// Of the surface, of a pond that stands on a body above it, and of the body's face below the pond.
+// Heights of the surface, of a pond that stands on a body above it, and of the body's face below the pond.
 vec3 liquidHeight(vec2 where)
 {
   return texture(liquidHeights, (where - basinLow.xy) / (basinHigh.xy - basinLow.xy)).rgb;
@@ -252,7 +252,7 @@ FLOOR = """//VTK::Light::Impl
   vec3 up = vec3(0.0, 0.0, 1.0);
   float lit = shadow(worldPosition, up, 0.0);
 PATTERN
-  // What hides the sky throws back some of the lamp's warmer light: in all, grey is missing.
+  // A surface that hides the sky throws back some of the lamp's warmer light: in all, grey is missing.
   vec3 light = mix(vec3(0.58, 0.62, 0.68), vec3(1.0), lit) - 0.62 * (1.0 - skySeen(worldPosition, up, up, 0.0));
   vec3 color = mix(floorColor, gridColor, marked) * light;
   float away = length(worldPosition.xy - floorCentre.xy) / floorCentre.z;
@@ -319,9 +319,10 @@ NOT_BENT = """
 bool bentAside(vec3 where, vec3 normal, vec3 toEye, out vec3 found) { return false; }
 """
 
-# What is behind the surface is seen aside where the surface slopes: a ray is bent by as much as a level surface does not bend it,
-# so that through a level one all is seen where it is drawn. The bent ray is followed, piece by piece, to where it meets what was
-# drawn before the surface. An object that only hides it from the eye does not end it: outlines are never drawn out.
+# Things behind the surface are seen aside where the surface slopes: a ray is bent by as much as a level surface does not bend it,
+# so that through a level surface all is seen where it is drawn. The bent ray is followed, piece by piece, to where it meets a
+# thing that was drawn before the surface. An object that only hides it from the eye does not end it: outlines are never drawn
+# out.
 BENT = """
 vec3 drawnAt(vec2 pixel)
 {

@@ -64,7 +64,7 @@ class Tank:
         glass = HAIR * np.linalg.norm(self._high - self._low) * np.array([1.0, 1.0, 0.0])
         edges = box_edges(self._low - glass, self._high + glass, 0.85 if dark else 0.25, 0.55, 2.0)
         self.actors = [*self.outer, edges]
-        """What is translucent, in the order in which it is drawn, but for the inner faces."""
+        """Translucent actors, in the order in which they are drawn, except the inner faces."""
         if look == "smooth":
             self._rim = MovingLine(len(self._form.rim), (1.0, 1.0, 1.0), 2.0)
             self.actors.append(self._rim.actor)
@@ -151,7 +151,7 @@ class Tank:
             self._rim.move(rim, self._rim_opacity(smooth, raw))
             # There are no blocks where it is dry.
             self._dry.fill(dry_spots(grid, smooth, raw, vertices, triangle))
-        # What is seen through a column that tells nothing is seen through liquid all the same.
+        # Things seen through a column without a value are seen through liquid all the same.
         top = smooth if self._look == "smooth" else np.where(np.isfinite(raw), raw, smooth)
         dry = kept_dry(raw)
         if dry.any():

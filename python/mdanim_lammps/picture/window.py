@@ -34,7 +34,7 @@ def off_screen_window(renderers: Iterable, size: tuple[int, int], samples: int):
 
 
 def pixels(window) -> np.ndarray:
-    """What was drawn, uint8 RGB, shape (height, width, 3), first row on top."""
+    """The drawn picture, uint8 RGB, shape (height, width, 3), first row on top."""
     from vtkmodules.util.numpy_support import vtk_to_numpy
     from vtkmodules.vtkCommonCore import vtkUnsignedCharArray
 

@@ -45,7 +45,8 @@ class Rated:
     seconds: Measurement
     """Wall time of simulation [s]."""
     error: Measurement
-    """Of the centres of mass against the limit of all, rms over frames and objects, relative to the extent of the motion [-]."""
+    """Error of the centres of mass against the limit of all, rms over frames and objects, relative to the extent of the motion
+    [-]."""
     closed: float | None
     """Largest error against the ``expect`` lines that state a truth, relative to the object's own motion; None without any."""
     front: bool = False
@@ -64,14 +65,14 @@ class Analysis:
     doubt: float
     """How far the limit may be off, relative to the extent; inf where only the own setting has been measured."""
     finest: Setting
-    """Of the runs that the limit comes from."""
+    """Setting of the finest of the runs that the limit comes from."""
     rated: dict[str, Rated]
     """By key of the setting, cheapest first."""
     ladders: dict[str, Convergence]
     measured: dict[str, tuple[Setting, ...]]
     """Settings of each ladder that were measured, coarsest first."""
     until: dict[str, tuple[float, float]]
-    """Of ladders without an order that begin with one: up to when [s], and that order."""
+    """For ladders without an order that begin with one: up to when [s], and that order."""
     touching: bool
     """Whether objects may touch each other or a plane."""
     growth: Growth | None

@@ -66,7 +66,7 @@ class Convergence:
     """Best estimate of the motion [m], shape (F, M, 3): Richardson's limit, by the order of the three finest runs if they have
     one; the finest run where there is no order."""
     errors: tuple[float, ...]
-    """Of each run against the limit, relative to the extent, coarsest first; nan for a finest run that is its own limit."""
+    """Error of each run against the limit, relative to the extent, coarsest first; nan for a finest run that is its own limit."""
     order: float | None
     """Observed order of all runs that converge, or of the three finest; None where errors follow no power of the step."""
     used: int = 0

@@ -42,7 +42,7 @@ class Sample:
     found: tuple[float, ...]
     """Results of the scene's ``expect`` lines, in their order."""
     times: np.ndarray
-    """Of the frames [s], shape (F,)."""
+    """Times of the frames [s], shape (F,)."""
     center: np.ndarray
     """Centres of mass [m], shape (F, M, 3)."""
 

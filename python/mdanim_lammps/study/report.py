@@ -62,7 +62,7 @@ def _finite(x: float) -> float | None:
 
 
 def _figures(r: Rated) -> dict[str, float | bool | None]:
-    """Of a point, for study.json and study.csv."""
+    """Figures of a point, for study.json and study.csv."""
     return {
         "seconds": r.seconds.middle,
         "seconds_spread": r.seconds.spread,

@@ -39,7 +39,7 @@ class Setting:
     fraction: float
     """Time step over the certified bound; 0 where nothing vibrates and the step is left to ``auto``."""
     sweeps: int | None = None
-    """Of the liquid's automaton per update; None is ``auto``."""
+    """Sweeps of the liquid's automaton per update; None is ``auto``."""
     contact: float = 1.0
     """``contact-stiffness``."""
 

@@ -29,9 +29,9 @@ class Point:
     steps: int = 0
     particles: int = 0
     seconds: list[float] = field(default_factory=list)
-    """Of simulation, wall time [s]."""
+    """Wall time of simulation [s]."""
     wall: list[float] = field(default_factory=list)
-    """Of everything, wall time [s]."""
+    """Wall time of everything [s]."""
     drift: list[float] = field(default_factory=list)
     """Largest energy residual."""
     penetration: list[float] = field(default_factory=list)
@@ -70,7 +70,7 @@ class Store:
         self.folder, self.digest = folder, digest
         self.points: dict[str, Point] = {}
         self.times: np.ndarray | None = None
-        """Of the frames [s], shape (F,); None before the first run."""
+        """Times of the frames [s], shape (F,); None before the first run."""
         self.report: dict = {}
         path = folder / FILE
         if force and path.exists():

@@ -149,7 +149,7 @@ class _Search:
         )
 
     def _words(self, setting: Setting) -> str:
-        """What the scene has to say for a setting. A resolution is rounded down, to as many cells; a time step up, as the scene
+        """Words that the scene needs for a setting. A resolution is rounded down, to as many cells; a time step up, as the scene
         takes the longest one below it that fits its frames."""
         control, words = self.scene.control, []
         fraction = {a.fraction: a.value for a in Accuracy}.get(setting.fraction)

@@ -32,7 +32,7 @@ class Checker:
         self._closed = False
 
     def problems(self, text: str) -> list[dict]:
-        """What is wrong with a text, each with its line (0 where it has none), message, way out and severity."""
+        """Problems of a text, each with its line (0 where it has none), message, way out and severity."""
         if half := _SURROGATE.search(text):
             line = text.count("\n", 0, half.start()) + 1
             return [_problem(line, "half of a character of two parts stands here, which is not text", "delete it")]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What a page may ask of a run: to pause, to go on, to stop. It changes two files of the output folder, and nothing else."""
+"""Requests of a page to a run: to pause, to go on, to stop. They change two files of the output folder, and nothing else."""
 
 from __future__ import annotations
 

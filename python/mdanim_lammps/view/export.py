@@ -36,9 +36,9 @@ from .server import packaged_files
 from .tail import Known, Tail
 
 STEPS, STEPS_EXACT = 4095, 65535
-"""Of the box of an object: 0.3 mm of the beam of 1.2 m, and 0.02 mm."""
+"""Steps across the box of an object: 0.3 mm of the beam of 1.2 m, and 0.02 mm."""
 MOST_BYTES = 20_000_000
-"""Of the packed frames: beyond it every n-th frame is left."""
+"""Largest size of the packed frames: beyond it only every n-th frame is kept."""
 MOST_PICTURE = 2_000_000
 """Bytes of a picture of a study that the file takes in."""
 
@@ -116,7 +116,7 @@ class _Rows:
         self.ends.append(self._file.tell())
 
     def row(self, n: int) -> bytes:
-        """Of one frame. Raises OSError."""
+        """Bytes of one frame. Raises OSError."""
         return os.pread(self._file.fileno(), self.ends[n + 1] - self.ends[n], self.ends[n])
 
     def close(self) -> None:
@@ -278,7 +278,7 @@ def _text(data: bytes) -> str:
 
 
 def _asked(e: dict) -> str:
-    """What an expectation of a summary asks for: a value with its tolerance, or a bound."""
+    """The demand of an expectation of a summary: a value with its tolerance, or a bound."""
     relation = e.get("relation", "=")
     return f"{e['value']:.6g} ± {e['tolerance']:.3g}" if relation == "=" else f"{relation} {e['value']:.6g}"
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What a page is sent of a run, as bytes: the scene once, and frames.
+"""The messages on a run that a page is sent, as bytes: the scene once, and frames.
 
 All numbers are little endian, and every array is padded to a multiple of four bytes. Both messages begin with eight bytes:
 
@@ -46,11 +46,11 @@ OPEN, HIDDEN, DRY = 0, 1, 2
 MOST_FOAM = 63
 """White all over."""
 STEPS = 65535
-"""Of a 16-bit number."""
+"""Steps of a 16-bit number."""
 MOST_STRAIN = 0.2
 """Strain that is drawn in the last colour [-]."""
 MOST_POINTS = 1000
-"""Of a line over time in the page."""
+"""Largest number of points of a line over time in the page."""
 ASPECT = 16 / 9
 """Width over height of the picture for which the first camera is chosen."""
 
@@ -104,11 +104,11 @@ class Feed:
     # --- the scene ----------------------------------------------------------------------------------------------
 
     def scene(self) -> bytes:
-        """What does not change."""
+        """Data that do not change."""
         return packed(self.head(), self.buffers())
 
     def head(self) -> dict:
-        """What does not change, without arrays; lengths [m], times [s], masses [kg], colours ``[r, g, b]`` of 0 to 255."""
+        """Data that do not change, without arrays; lengths [m], times [s], masses [kg], colours ``[r, g, b]`` of 0 to 255."""
         m, action = self.metadata, self.action
         view = self._view()
         low, high = background_colors(self.render.background)

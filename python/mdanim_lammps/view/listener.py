@@ -15,7 +15,7 @@ HOST = "127.0.0.1"
 MOST_WAITING = 64
 """Connections that are not pages at a time: the oldest gives way to one more. Each takes two descriptors or three."""
 NO_ROOM = (errno.EMFILE, errno.ENFILE, errno.ENOBUFS, errno.ENOMEM)
-"""What the system answers that has no descriptor or memory for a connection."""
+"""Errors of a system that has no descriptor or memory for a connection."""
 NAP = 0.05
 """Seconds before such a connection is tried again."""
 

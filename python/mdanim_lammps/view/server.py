@@ -76,7 +76,7 @@ class ViewServer:
 
     @property
     def address(self) -> str:
-        """What opens the page: it holds the token, and works in any browser on this machine."""
+        """The address that opens the page: it holds the token, and works in any browser on this machine."""
         return f"http://{HOST}:{self.port}/?t={self.token}"
 
     def _admits(self, given: str) -> bool:

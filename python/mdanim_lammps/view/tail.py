@@ -44,13 +44,13 @@ class Known:
 
 
 class Tail:
-    """What is known of a run, kept up to date by a thread. All public methods may be called by several threads.
+    """The known part of a run, kept up to date by a thread. All public methods may be called by several threads.
 
     Args:
         folder: output folder, where a run is going on, has ended or is about to begin.
 
     Raises:
-        OutputError: there is no run, or what it has left is damaged.
+        OutputError: there is no run, or the files that it has left are damaged.
     """
 
     def __init__(self, folder: Path):
@@ -138,7 +138,7 @@ class Tail:
             return min(self._progress.count, self._feed.frames.total) if self._feed else self._progress.count
 
     def news(self, known: Known) -> dict:
-        """What a page does not know yet, which is then known; empty where there is nothing."""
+        """News for a page, which are then known; empty without any."""
         with self.changed:
             p, told = self._progress, {}
             if known.life != (life := (self._files, p.lives)):

@@ -12,7 +12,7 @@ from ...effects.readings import LEAPFROG, Readings
 from ..springs.effect import all_held
 
 LAMBDA = column("lambda", "N s/m")
-"""What the leap-frog takes as drag, of air and liquid together."""
+"""The coefficient that the leap-frog takes as drag, of air and liquid together."""
 DRAG_LOSS = "drag_loss"
 """Column of the ledger; the leap-frog counts what air and liquid take together."""
 SLOWING = 0.3

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What ``check`` tells of objects that rest on something: what slides, and what falls over."""
+"""Remarks of ``check`` on objects that rest on something: those that slide, and those that fall over."""
 
 from __future__ import annotations
 
@@ -10,5 +10,5 @@ from .towers import towers
 
 
 def notes(envelope: Envelope) -> list[Problem]:
-    """Of a scene in which something can move."""
+    """Remarks on a scene in which something can move."""
     return [*frictionless(envelope), *slopes(envelope), *towers(envelope)]

@@ -74,8 +74,8 @@ class Contact(Effect):
     """A barrier between boundary and inner particles: U(r) = k_c r_c^2/3 (1 - r/r_c)^3 [J] below the reach r_c [m], Wcislo 1999,
     sec. 3.3.
 
-    k_c = 2 s_i s_j/(s_i + s_j) [N/m] with s = E h times what stands behind a particle (docs/physics-contact.md, "The barrier
-    of the paper"; in the bound: "In the bound on the time step").
+    k_c = 2 s_i s_j/(s_i + s_j) [N/m] with s = E h min(1, 2 n/8), where n of the 8 cells around a particle are filled
+    (docs/physics-contact.md, "The barrier of the paper"; in the bound: "In the bound on the time step").
     """
 
     styles = (("fix", "mdanim/barrier"),)
@@ -104,7 +104,7 @@ class Contact(Effect):
         return Verdict(self.name, True, f"{first.name} and {second.name} may meet{self.told(scene)}", second.spans.get("object"))
 
     def told(self, scene) -> str:
-        """What ``check`` adds about this contact."""
+        """Remarks of ``check`` on this contact."""
         return stiffness_told(scene)
 
     def columns(self, context):

@@ -1,4 +1,4 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What ``expect`` can ask of contact."""
+"""Quantities of contact that ``expect`` can ask for."""
 
 MEASURES = {("penetration", "max"): lambda m, e: m.penetration}

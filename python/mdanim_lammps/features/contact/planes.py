@@ -19,23 +19,24 @@ OR_ON_SURFACES = "or write contact-model surface in control, where what touches 
 
 
 STIFFNESS = column("stiffness", "N/m")
-"""What particles push back with."""
+"""Stiffness with which particles push back."""
 DEEPEST = "deepest"
 """In the vector of fix mdanim/wall: the deepest particle behind the region in this run [m]."""
 
 
 def others(found: Sequence[Touch], what: str) -> str:
-    """What a warning about the first of these starts adds about all."""
+    """Addition to a warning about the first of these starts, about all others."""
     if len(found) < 2:
         return ""
     return f"; {whole(len(found))} {what} start so, with {say(sum(t.energy for t in found), 'J')} in all"
 
 
 class Boundary(Effect):
-    """What ground, walls and basins have in common: a plane pushes back what is a depth d beyond it [m], F = s d [N], U = s d^2/2
-    [J].
+    """The common base of ground, walls and basins: a plane pushes a particle back that is a depth d beyond it [m],
+    F = s d [N], U = s d^2/2 [J].
 
-    s = E h times what stands behind a particle [N/m] (docs/physics-contact.md, "The barrier of the paper").
+    s = E h min(1, 2 n/8) [N/m], with n filled cells among the 8 around the particle (docs/physics-contact.md, "The barrier of
+    the paper").
     """
 
     styles = (("fix", "mdanim/wall"),)

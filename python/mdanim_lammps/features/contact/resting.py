@@ -24,15 +24,15 @@ ROLLING = (Sphere, Ellipsoid, Torus)
 
 
 class Slope(NamedTuple):
-    """What may slide, and on what."""
+    """An object that may slide, and the slope under it."""
 
     tangent: float
     friction: float
     object: int
     word: str
-    """What a contact block calls the slope."""
+    """Word of the slope in a contact block."""
     name: str
-    """What a message calls it."""
+    """Name of the slope in a message."""
 
 
 def frictionless(envelope: Envelope) -> list[Problem]:
@@ -63,7 +63,7 @@ def frictionless(envelope: Envelope) -> list[Problem]:
 
 
 def slopes(envelope: Envelope) -> list[Problem]:
-    """What will slide because a slope is steeper than its friction holds: the worst of all. Without friction it is meant to."""
+    """The object that slides worst because a slope is steeper than its friction holds. Without friction it is meant to slide."""
     if envelope.reach.g <= 0.0 or not envelope.reach.moving.any():
         return []
     found, own = _Slopes(envelope), np.array(frictions(envelope.scene))

@@ -31,8 +31,8 @@ SHORT, FULL = 0.8, 1.6
 its surface, so the barrier does not reach what touches that surface and leaves friction alone, however coarse the other body
 is; that of objects which meet others faster than SLOW, over the spacing."""
 SPARE = 1.6
-"""What a share of critical damping above USUAL_DAMPING counts in the bound: both sides of a body and the barrier never act along
-one direction at once, and what `rate` counts too much covers the usual damping."""
+"""Weight in the bound of a share of critical damping above USUAL_DAMPING: both sides of a body and the barrier never act along
+one direction at once, and the excess that `rate` counts covers the usual damping."""
 ALONE = 2.0
 """kappa where only the dense points of one act, over that where both have points."""
 SLOW = 0.3
@@ -51,10 +51,9 @@ DEEPEST = "deepest"
 
 
 class OnSurfaces(Effect):
-    """What objects and planes have in common at drawn surfaces: U = sum kappa w g(d) over points of an area w [m^2] at a depth d
-    [m], with friction up to mu times the normal force, and a dashpot (docs/physics-contact.md, "At the drawn surfaces,
-    with friction").
-    """
+    """The common base of contact of objects and of planes at drawn surfaces: U = sum kappa w g(d) over points of an area w [m^2]
+    at a depth d [m], with friction up to mu times the normal force, and a dashpot (docs/physics-contact.md, "At the drawn
+    surfaces, with friction")."""
 
     styles = (("fix", "mdanim/contact"),)
 
@@ -155,10 +154,10 @@ class SurfaceContact(OnSurfaces, Contact):
         return found
 
     def barrier_stiffness(self, context: Context) -> np.ndarray:
-        """Of each particle [N/m], shape (N,); 0 without a barrier.
+        """Stiffness of the barrier at each particle [N/m], shape (N,); 0 without a barrier.
 
-        The cells of what is not a cuboid stand out of its drawn surface: a barrier would bear it on their corners, so balls would
-        not roll. The surface alone stops it up to SLOW.
+        Cells of a shape that is not a cuboid extend beyond its drawn surface: a barrier would bear it on their corners, so balls
+        would not roll. The surface alone stops it up to SLOW.
         """
         system = context.system
         return np.where((~are_dense(system) | fast(context))[system.object], system.contact_stiffness, 0.0)
@@ -331,7 +330,7 @@ def are_dense(system: System) -> np.ndarray:
 
 
 def shortest_edge(system: System) -> np.ndarray:
-    """Of the cells of each solid [m], shape (M,)."""
+    """Shortest edge of the cells of each solid [m], shape (M,)."""
     return np.array([frame.cells.edge.min() for frame in system.frames])[system.contact_kind]
 
 

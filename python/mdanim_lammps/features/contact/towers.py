@@ -64,7 +64,7 @@ class _Column:
 
 
 def _columns(envelope: Envelope) -> Iterator[_Column]:
-    """Of cuboids and cylinders with an axis upright, on a plane, on what never moves, or held at the foot alone."""
+    """Cuboids and cylinders with an axis upright, on a plane, on a solid that never moves, or held only at the foot."""
     system, moving = envelope.system, envelope.reach.moving
     low, high = _drawn(envelope.scene.solids)
     near = BORN_AT_REST * float(system.spacing.max())
@@ -102,7 +102,7 @@ def _drawn(solids: tuple[Solid, ...]) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _column(envelope: Envelope, members: list[int], height: float) -> _Column | None:
-    """Of these objects, if all are of a kind that stands upright."""
+    """The column of these objects, if all are of a kind that stands upright."""
     system = envelope.system
     bending = [_second_moment(envelope.scene.solids[m]) for m in members]
     if 0.0 in bending:

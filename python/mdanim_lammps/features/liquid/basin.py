@@ -18,7 +18,7 @@ from ...scene.scene import Liquid, LiquidModel, Mesh, SceneRecord, Solid, Torus,
 from .occupied import room
 
 BYTES_PER_CELL = 20.0
-"""What fix mdanim/liquid keeps per cell, measured 18 to 21: content, masks, counts of samples, marks."""
+"""Memory of fix mdanim/liquid per cell, measured 18 to 21: content, masks, counts of samples, marks."""
 NARROWEST = 3
 """Fewest cells along a side: with two, no cell is off the walls, and a slope has no middle."""
 
@@ -77,7 +77,7 @@ def too_large(liquid: Liquid, grid: Grid) -> list[Problem]:
 
 
 def _unusable(liquid: Liquid, grid: Grid) -> list[Problem]:
-    """What is wrong with the grid itself."""
+    """Faults of the grid itself."""
     place = liquid.spans.get("basin")
     axis = int(np.argmin(grid.shape))
     if grid.shape[axis] < NARROWEST:

@@ -199,7 +199,7 @@ class LiquidAutomaton(Effect):
         return PERIOD / EVERY * math.sqrt(min(context.grid.cell) / -context.scene.gravity[2])
 
     def words(self, scene) -> str:
-        """What the command says about the model."""
+        """Words of the command about the model."""
         model = "model paper" if scene.liquid.model is LiquidModel.PAPER else "cells i2_cell"
         return f"{model} still held sweeps {scene.liquid.sweeps or 'auto'} every {EVERY} stride {STRIDE} period {PERIOD}"
 
@@ -274,7 +274,7 @@ def _shallow(liquid, cell: float) -> list[Problem]:
 
 
 def _light(scene, system) -> list[Problem]:
-    """What waves push late: one problem for all of it."""
+    """Solids that waves push late: one problem for all of them."""
     liquid, density = scene.liquid, system.density
     light = [m for m in np.flatnonzero(density < LIGHT * liquid.density).tolist() if not all_held(scene.solids[m])]
     if not light:
@@ -357,7 +357,7 @@ class WavePush(Buoyancy):
         return readings.fix_value(LiquidAutomaton.fix, WAVES)
 
     def further_energies(self, readings):
-        # What closes the sum with the work on solids, which the scalar is minus of.
+        # The energy that closes the sum with the work on solids, of which the scalar is the negative.
         return {"wave_loss": readings.fix_scalar(LiquidAutomaton.fix) - readings.fix_value(LiquidAutomaton.fix, WAVES)}
 
 
@@ -459,7 +459,7 @@ def _reached(name: str, scene) -> Verdict:
 
 
 def _flows(liquid):
-    """What comes in and goes out through boxes: the word, the name of the region, the record."""
+    """Flows of liquid in and out through boxes: the word, the name of the region, the record."""
     for word, flows in (("inflow", liquid.inflow), ("drain", liquid.drain)):
         for n, flow in enumerate(flows):
             yield word, f"{word}-{n}", flow

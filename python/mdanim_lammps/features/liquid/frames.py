@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What a liquid tells of a frame: its surface, its drops, and its accounts."""
+"""Fields of a liquid in a frame: its surface, its drops, and its accounts."""
 
 from __future__ import annotations
 

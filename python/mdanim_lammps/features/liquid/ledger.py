@@ -10,7 +10,7 @@ LIQUID_MOMENTUM = ("liquid_momentum.x", "liquid_momentum.y")
 BASIN_IMPULSE = ("basin_impulse.x", "basin_impulse.y")
 """Further ones: what it has given to walls, floor and all that is held, by pressure and friction [N s]."""
 SOLID_IMPULSE = ("solid_impulse.x", "solid_impulse.y")
-"""What it has given to solids that move, by push and drag [N s]."""
+"""Impulse that it has given to moving solids, by push and drag [N s]."""
 MOMENTUM_RESIDUAL = ("momentum_residual.x", "momentum_residual.y")
 """The sum of these three, less the momentum of liquid that came: what no one accounts for [N s]."""
 MOMENTA = (*LIQUID_MOMENTUM, *BASIN_IMPULSE, *SOLID_IMPULSE, *MOMENTUM_RESIDUAL)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What ``expect`` can ask of a liquid, and of objects in it."""
+"""Quantities of a liquid, and of objects in it, that ``expect`` can ask for."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def volume(m: Measured, e: Expect) -> float:
 
 
 def height(m: Measured, e: Expect) -> float:
-    """Of the smooth surface at a place [m], straight between the middles of columns and between frames."""
+    """Height of the smooth surface at a place [m], linear between the middles of columns and between frames."""
     frames = range(len(m.times))
     return m.at(np.array([height_at(e.argument, m.context.grid, m.trajectory.liquid_height(k)) for k in frames]), e.time)
 

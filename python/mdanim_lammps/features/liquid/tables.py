@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What a liquid is told of solids: their lattice cells, by the particles at their corners."""
+"""Tables of solids for a liquid: their lattice cells, by the particles at their corners."""
 
 from __future__ import annotations
 

@@ -44,8 +44,8 @@ def touched(scene) -> bool:
 
 
 def width(scene) -> tuple[float, str] | None:
-    """What a scene without objects goes by: an eighth of the basin's narrower side [m], so that a balanced basin is 32 cells,
-    and its name."""
+    """The width that sets the spacing of a scene without objects: an eighth of the basin's narrower side [m], so that a balanced
+    basin is 32 cells, and its name."""
     if scene.liquid is None:
         return None
     return min(b - a for a, b in zip(scene.liquid.low[:2], scene.liquid.high[:2])) / 8, scene.liquid.name
@@ -55,7 +55,7 @@ def width(scene) -> tuple[float, str] | None:
 
 
 def check(v: Any, top: Mapping, held: Mapping) -> None:
-    """What else a scene needs that has a liquid; ``held`` are the records of blocks."""
+    """Check further needs of a scene with a liquid; ``held`` are the records of blocks."""
     gravity_fits(v, v.blocks("liquid"))
     ground_below(v, held["liquid"])
     within_basin(v, held["liquid"])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What ``expect`` can ask of how objects move."""
+"""Quantities of the motion of objects that ``expect`` can ask for."""
 
 from __future__ import annotations
 

@@ -15,7 +15,7 @@ DASHPOTS = 0.44
 
 
 def time_of_dashpots(system) -> float:
-    """What dashpots take, over the time of all springs without them."""
+    """Time of dashpots, over the time of all springs without them."""
     if system.damping is None or not len(system.spring):
         return 0.0
     return DASHPOTS / (1.0 - DASHPOTS) * np.count_nonzero(system.damping) / len(system.spring)

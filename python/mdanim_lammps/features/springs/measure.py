@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What ``expect`` can ask of springs."""
+"""Quantities of springs that ``expect`` can ask for."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What a lattice bears: blows, loads, thin parts."""
+"""Strength of a lattice: blows, loads, thin parts."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ CRUSH = 0.2
 MOST_NAMED = 4
 """Objects up to which a cure has a number for each."""
 CORNERS = np.array(list(product((0.0, 1.0), repeat=3)))
-"""Of a unit cube, shape (8, 3)."""
+"""Corners of a unit cube, shape (8, 3)."""
 SIGNS = (-1.0) ** CORNERS.sum(axis=1)
 """1 for an even number of ones in a corner, else -1, shape (8,)."""
 INERTIA = 0.01
@@ -197,7 +197,7 @@ def thinnest(env: Envelope) -> Margin:
 
 
 def turning(env: Envelope) -> list[Problem]:
-    """What is free to turn, and whose masses could not be fitted to the moments of its shape: the worst of all."""
+    """The worst of the solids that are free to turn and whose masses could not be fitted to the moments of their shape."""
     system = env.system
     free = ~np.logical_or.reduceat(system.held, system.first[:-1])
     error = np.where(free, system.inertia_error, 0.0)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// What is drawn beside the objects: boxes of objects and walls, particles, springs.
+// Drawings beside the objects: boxes of objects and walls, particles, springs.
 import {
   Box3, BufferAttribute, BufferGeometry, DynamicDrawUsage, LineBasicMaterial, LineSegments, Points, PointsMaterial, Vector3,
 } from "./vendor.js";

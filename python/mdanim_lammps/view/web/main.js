@@ -139,7 +139,7 @@ function show(frame, key) {
   else if (byId("colour").value === "executor") stage.paint([...ownersAt(run.owners, frame.frame, scene.objects.length)].map(executorColor));
 }
 
-// What is beside the picture of the frame that is seen.
+// Update the values of the visible frame beside the picture.
 function tell(now) {
   [toldKey, toldAt] = [shownKey, now];
   byId("slider").value = shown.frame;

@@ -108,7 +108,7 @@ export function ownersAt(changes, frame, objects) {
   return owner;
 }
 
-// What export.py does to whole numbers, undone: rows of differences to the row before, low bytes first, then high ones.
+// The reverse of export.py for whole numbers: rows of differences to the row before, low bytes first, then high ones.
 export function undoDifferences(bytes, row, rows) {
   const count = row * rows, out = new Uint16Array(count);
   for (let i = 0; i < count; i++) out[i] = (bytes[i] | (bytes[count + i] << 8)) + (i >= row ? out[i - row] : 0);
@@ -134,7 +134,7 @@ export function inOwnBoxes(objects, places, steps, boxes, moving) {
   return { object, position };
 }
 
-// What all but two per cent of some bytes are not above: a few corners do not set the scale of a picture.
+// The value that all but two per cent of some bytes do not exceed: a few corners do not set the scale of a picture.
 export function nearlyMost(bytes) {
   const count = new Uint32Array(256);
   for (const value of bytes) count[value]++;

@@ -17,7 +17,7 @@ export function table(rows) {
   return element("table", {}, ...rows.map((cells) => element("tr", {}, ...cells.map((cell) => element("td", { textContent: cell })))));
 }
 
-// What is known of the picked object at a frame.
+// Show the values of the picked object at a frame.
 export function showObject(scene, frame, k, owner) {
   const place = byId("object");
   place.classList.toggle("faint", k === null);

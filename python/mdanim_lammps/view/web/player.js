@@ -24,7 +24,7 @@ export class Player {
     return Math.min(this.last, Math.floor(this.clock + 1e-6));
   }
 
-  // So many seconds have gone by. At the newest frame of a run that goes on the film waits; at the end it begins again.
+  // Advance by this number of seconds. At the newest frame of a run that goes on the film waits; at the end it begins again.
   tick(seconds) {
     if (this.newest) this.clock = this.last;
     else if (this.playing) {

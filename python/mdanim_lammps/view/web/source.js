@@ -2,7 +2,7 @@
 // Where scene and frames come from: the server of a run, or the block of data in a report.
 import { inOwnBoxes, readFrame, readScene, undoDifferences } from "./message.js";
 
-// What admits this page: of its address, and of the tab when it is loaded again. No other port of this machine is told of it.
+// The token that admits this page: from its address, or from the tab when it is loaded again. No other port gets it.
 function token() {
   const given = new URLSearchParams(location.search).get("t");
   try {
