@@ -29,29 +29,7 @@ FORMS = {
 """Regular expression of a form, and what to write."""
 BEGINNINGS = re.compile(r'(?:^\s*(?:#|//+|\*)|""")\s*(?:What|Of|So many|Whoever)\s')
 """Comments and docstrings begin with the thing or with a verb. Checked file by file as they are read again."""
-READ_AGAIN = (
-    "plugin/",
-    "python/mdanim_lammps/api/",
-    "python/mdanim_lammps/certificate.py",
-    "python/mdanim_lammps/cli/",
-    "python/mdanim_lammps/cost/",
-    "python/mdanim_lammps/effects/",
-    "python/mdanim_lammps/engine/",
-    "python/mdanim_lammps/errors.py",
-    "python/mdanim_lammps/export/",
-    "python/mdanim_lammps/features/",
-    "python/mdanim_lammps/model/",
-    "python/mdanim_lammps/parallel/",
-    "python/mdanim_lammps/picture/",
-    "python/mdanim_lammps/processes.py",
-    "python/mdanim_lammps/reach/",
-    "python/mdanim_lammps/report.py",
-    "python/mdanim_lammps/results/",
-    "python/mdanim_lammps/run/",
-    "python/mdanim_lammps/study/",
-    "python/mdanim_lammps/terminal.py",
-    "python/mdanim_lammps/view/",
-)
+READ_AGAIN = ("plugin/", "python/")
 """Folders and files whose comments all begin so."""
 
 

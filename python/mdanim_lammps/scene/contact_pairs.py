@@ -51,7 +51,7 @@ def frictions(scene: SceneRecord, plane: str = "") -> list[float]:
 
 
 def pair_rules(scene: SceneRecord, names: Sequence[str]) -> list[tuple[int, int, float, float]]:
-    """What contact blocks say of pairs i < j, from 0, of these objects of a scene: i, j, friction, share of critical damping."""
+    """Rules of contact blocks for pairs i < j, from 0, of these objects of a scene: i, j, friction, share of critical damping."""
     own = dict(zip((s.name for s in scene.solids), frictions(scene))) if any(c.friction is None for c in scene.contacts) else {}
     by_name = objects_by_name(names) if scene.contacts else {}
     rules = []

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What a word means: a setting, a block, a shape, an effect, a quantity, a unit, a limit."""
+"""The meaning of a word: a setting, a block, a shape, an effect, a quantity, a unit, a limit."""
 
 from __future__ import annotations
 

@@ -25,7 +25,7 @@ SPOILED = object()
 
 @dataclass(slots=True)
 class Env:
-    """What the value of an expression may depend on."""
+    """The values that an expression may depend on."""
 
     values: dict
     loops: tuple[int, ...] = ()
@@ -53,11 +53,11 @@ class Node:
     def __init__(self, parts, first: Token, last: Token, constant: bool = True):
         self.first, self.last = first, last
         self.terms = ()
-        """Of a sum that is not in brackets: its terms, each with the sign before it."""
+        """Terms of a sum that is not in brackets, each with the sign before it."""
         self.value = None
-        """Of a literal: its value."""
+        """Value of a literal."""
         self.name: Token | None = None
-        """Of a variable, with signs before it or without: its name."""
+        """Name of a variable, with signs before it or without."""
         self.constant = constant and all(p.constant for p in parts)
         self.depth = 1 + max((p.depth for p in parts), default=0)
         if self.depth > DEEPEST_EXPRESSION:

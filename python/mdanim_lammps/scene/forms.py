@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What may follow a keyword, from its form: words that stand as they are, slots for values, optional parts."""
+"""The text after a keyword, from its form: words that stand as they are, slots for values, optional parts."""
 
 from __future__ import annotations
 

@@ -21,7 +21,7 @@ class Block:
 
     name: str
     record: type | None
-    """What it becomes; None for ``effects``, which becomes a mapping."""
+    """The record that it becomes; None for ``effects``, which becomes a mapping."""
     field: str
     """The field of SceneRecord that holds it; a tuple of all where there may be many."""
     about: str

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What a scene may ask for: one named limit each, in one table, checked before the first step (docs/security.md)."""
+"""Limits of a scene: one name each, in one table, checked before the first step (docs/security.md)."""
 
 from __future__ import annotations
 
@@ -77,7 +77,7 @@ MOST_PAIRS = 10**5
 """Pairs of objects that all contact blocks of a scene name together."""
 DROPS = Limit("drops", 1.0, way_out="1 lets all of it fly")
 SWEEPS = Limit("sweeps", 4096, way_out="write sweeps auto, which takes 8 for each cell that the fastest solid travels")
-"""What fix mdanim/liquid takes."""
+"""The limit of fix mdanim/liquid."""
 SPEED = Limit("speed", 1e4, 1e-4, "speed 0.1 shows a second of the scene in ten seconds, speed 10 ten seconds in one")
 SHADOWS = Limit("shadows", 1.0, way_out="1 is the darkest: nothing of the lamp is left in a shadow")
 PIXELS = Limit("the size of a picture", 16384, way_out="the most is 16384 along a side")

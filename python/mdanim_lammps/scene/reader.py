@@ -275,7 +275,7 @@ class Reader:
         raise Fault(t, f"a unit is expected after '{operator}', found {t.found()}", hint)
 
     def _no_value(self, t: Token) -> Fault:
-        """What is wrong where a value should begin."""
+        """The fault where a value should begin."""
         read = [u for u in self.tokens[self.begin : self.at] if u.type != "NEWLINE"]
         what = "a vector (x, y, z)" if self.slot.kind in ("vector", "place") and not read else "a number"
         what += f" is missing after '{read[-1]}'" if read else " is expected here"

@@ -24,7 +24,7 @@ SMOOTH_RATE, LEAST_RATE = 30.0, 15.0
 
 
 def few_pictures(frames: float, speed: float) -> str:
-    """What is wrong with a movie in slow motion of a run with so many frames per second; the empty string where nothing is."""
+    """The fault of a movie in slow motion of a run with ``frames`` frames per second; the empty string without any."""
     if speed >= 1.0 or frames * speed >= LEAST_RATE:
         return ""
     return f"at speed {number(speed)} the movie shows {number(frames * speed, 3)} pictures a second"

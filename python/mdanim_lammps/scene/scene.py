@@ -121,7 +121,7 @@ class Solid:
 
 @dataclass(frozen=True, slots=True)
 class ContactPair:
-    """What holds where some objects touch some others, or a plane."""
+    """The rule of contact where some objects touch some others, or a plane."""
 
     first: str
     """An object, all objects of a repeat, ``ground``, ``walls`` or ``basin``."""
@@ -154,14 +154,14 @@ class Wave:
     FORMS: ClassVar = ("<-x|+x|-y|+y> amplitude <a:m> period <T:s>",)
     side: str
     amplitude: float
-    """Of the waves that run off [m]."""
+    """Amplitude of the waves that run off [m]."""
     period: float
     """[s]"""
 
 
 @dataclass(frozen=True, slots=True)
 class Current:
-    """What goes out at the opposite side comes in at this one."""
+    """A current: liquid that goes out at the opposite side comes in at this one."""
 
     FORMS: ClassVar = ("<-x|+x|-y|+y> speed <u:m/s>",)
     side: str
@@ -343,7 +343,7 @@ class Control(Worded):
         "What objects, ground and walls push back with, over E h, the stiffness of the material behind a surface; from 0.1 to "
         "100. The stiffer it is, the less objects sink into each other, and the shorter time steps get.",
         "4", Rule.POSITIVE, default=1.0, limit=CONTACT_STIFFNESS)  # fmt: skip
-    """What objects and walls push back with, over E h [-]."""
+    """Stiffness with which objects and walls push back, over E h [-]."""
     contact_model: ContactModel = setting(
         None,
         "`surface`: objects touch where their drawn surfaces are, and may have friction. `paper`: the barrier of Wcislo 1999 "
@@ -375,7 +375,7 @@ QUANTITIES = {
     ("energy", "residual"): Observable("1", "relative error of the energy ledger"),
     **{of: quantity for of, quantity in _OF_FEATURES.items() if of[0] != "NAME"},
 }
-"""What ``expect`` can check, by subject and word; NAME stands for any object."""
+"""Quantities that ``expect`` can check, by subject and word; NAME stands for any object."""
 
 GLOBALS = tuple(dict.fromkeys(subject for subject, _ in QUANTITIES if subject != "NAME"))
 """Subjects of ``expect`` that are not objects."""
@@ -407,7 +407,7 @@ class Expect:
 
     @property
     def what(self) -> str:
-        """What is checked, as it is written in scenes."""
+        """The checked quantity, as it is written in scenes."""
         return self.written(lambda x: number(x, 6))
 
     def written(self, number: Callable[[float], str]) -> str:
@@ -425,7 +425,7 @@ class Expect:
 
     @property
     def kind(self) -> Observable:
-        """What is checked."""
+        """The kind of the checked quantity."""
         return QUANTITIES[self.subject if self.subject in GLOBALS else "NAME", self.quantity]
 
 

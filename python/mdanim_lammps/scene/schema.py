@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What a field of a record says about the language: keyword, form, unit, range, default, example.
+"""The language in the fields of a record: keyword, form, unit, range, default, example.
 
 `setting` gives a field its keyword. Parser, range checks, messages, docs/language.md, records and scene.lock.txt follow from it.
 """
@@ -28,7 +28,7 @@ BOX = "from <(x0, y0, z0):m> to <(x1, y1, z1):m>"
 
 
 class Rule(Enum):
-    """What a number must be."""
+    """Conditions on a number."""
 
     ANY = "any number"
     POSITIVE = "> 0"
@@ -48,7 +48,7 @@ class Rule(Enum):
 
 
 class Observable(NamedTuple):
-    """What ``expect`` can check."""
+    """A quantity that ``expect`` can check."""
 
     unit: str
     """``1`` for plain numbers."""
@@ -68,7 +68,8 @@ class Codec:
     """How the values of a setting become what the record holds, and back. This one: a value, or None for ``auto``."""
 
     def read(self, k: Keyword, choice: int, values: tuple) -> Any:
-        """What the record holds, for the values of one alternative. Raises ValueError(message, hint, index of the value)."""
+        """The value of the record's field, from the values of one alternative. Raises ValueError(message, hint, index of the
+        value)."""
         if not values:
             return None
         if k.rule in (Rule.COUNT, Rule.WHOLE):
@@ -148,10 +149,10 @@ class Keyword:
     """One setting of the language."""
 
     form: str
-    """What follows the word: literal words, ``<slot:unit>``, ``[optional]``, `` | `` between alternatives."""
+    """Text after the word: literal words, ``<slot:unit>``, ``[optional]``, `` | `` between alternatives."""
     about: str
     example: str
-    """What could follow the word."""
+    """An example of the text after the word."""
     rule: Rule = Rule.ANY
     """Holds for every number of the setting."""
     limit: Limit | None = None
@@ -167,7 +168,7 @@ class Keyword:
     """Further fields that the values fill, after the first."""
     needed: bool = False
     absent: Any = None
-    """What the record holds where the keyword is not given."""
+    """Value of the record's field where the keyword is not given."""
     default: str = ""
     """The same, as it would be written in a scene."""
     block: str = ""
@@ -182,7 +183,7 @@ class Keyword:
         return dict(zip((self.field, *self.also), value)) if self.also else {self.field: value}
 
     def lines(self, record: Any, number: Callable[[float], str] = repr) -> list[str]:
-        """What follows the keyword, once for every time it is given."""
+        """Text after the keyword, once for every time it is given."""
         value = getattr(record, self.field)
         if self.also:
             value = (value, *(getattr(record, name) for name in self.also))
@@ -241,7 +242,7 @@ def keywords(block: str, record: type | None) -> dict[str, Keyword]:
 
 
 def _default(k: Keyword, record: type) -> str:
-    """What stands for the value of an absent keyword; nothing where none does."""
+    """The text for the value of an absent keyword; empty where none is defined."""
     rest = {f.name: f.default for f in dataclasses.fields(record)}
     value = (k.absent, *(rest[name] for name in k.also)) if k.also else k.absent
     if value is None or (k.also and None in value):
@@ -255,7 +256,7 @@ _BY_DIMENSION = {unit(text).dim: limit for text, limit in LIMITS.items()}
 
 
 def limit_of(keyword: Keyword, slot: Slot) -> Limit:
-    """What a number of this slot may be: the limit of the keyword, or else that of its unit."""
+    """Limit of a number in this slot: that of the keyword, or else that of its unit."""
     return keyword.limit or _BY_DIMENSION[slot.dim]
 
 

@@ -62,7 +62,7 @@ class Cone:
     FORMS: ClassVar = ("cone <r:m> <h:m>",)
 
     radius: float
-    """Of the base [m]."""
+    """Radius of the base [m]."""
     height: float
     """[m]"""
 

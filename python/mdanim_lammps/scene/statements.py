@@ -35,7 +35,7 @@ class Unclosed(Exception):
 
 @dataclass(eq=False)
 class Shared:
-    """What the files of one scene have in common."""
+    """State shared by the files of one scene."""
 
     problems: Problems
     sites: Iterator[int] = field(default_factory=count)
@@ -45,7 +45,7 @@ class Shared:
     """Names given by let or repeat so far."""
     files: int = 0
     bytes: int = 0
-    """Of all files that were included."""
+    """Bytes of all files that were included."""
     incomplete: bool = False
     """A file or a repeat could not be read, so that names may be missing without a mistake of theirs."""
 
@@ -459,7 +459,7 @@ class Parser(Reader):
         return Value(slot, name.token, argument.last if argument else words[-1], text=text, name=name, argument=argument)
 
     def argument(self, quantity: str, last: Token, stops: frozenset[str]) -> Value | None:
-        """What stands in brackets behind a quantity that takes something."""
+        """The value in brackets behind a quantity that has an argument."""
         takes = next((q.takes for (_, word), q in QUANTITIES.items() if word == quantity and q.takes), "")
         if not takes:
             return None

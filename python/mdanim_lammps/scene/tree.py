@@ -23,7 +23,7 @@ class Name:
 
 @dataclass(slots=True, eq=False)
 class Value:
-    """What stands in one slot of a setting."""
+    """The value in one slot of a setting."""
 
     slot: Slot
     first: Token
@@ -35,7 +35,7 @@ class Value:
     name: Name | None = None
     """Object names."""
     argument: Value | None = None
-    """Of the quantity of an expect."""
+    """Argument of the quantity of an expect."""
 
 
 @dataclass(slots=True, eq=False)
@@ -94,4 +94,4 @@ class UnreadableStatement:
 
     word: str
     name: str = ""
-    """What an unreadable let would have named."""
+    """The name that an unreadable let would have defined."""

@@ -99,7 +99,7 @@ class Validator:
     # -- from settings to records
 
     def records(self, kind: Block) -> Any:
-        """What the scene has of one kind of block: a tuple, one record, a mapping, or None."""
+        """The records of one kind of block in the scene: a tuple, one record, a mapping, or None."""
         found = self.blocks(kind.name)
         if kind.record is None:
             return self.settings(found[0]) if found else {}
