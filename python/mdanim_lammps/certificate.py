@@ -31,7 +31,7 @@ WARN = 0.7
 STRONG = 0.5
 """phi = lambda dt / 2m, eq. (3.13), above which the implicit form is inaccurate: beyond 1 it reverses velocities every step."""
 MOST_STEPS = 10**15
-"""Steps of a run at most: so many take years."""
+"""Largest number of steps of a run: more would take years."""
 ROUNDED = 1e-3
 """Part of a frame by which a time may differ from that of a frame: 1.73333 s are 52 frames of 1/30 s."""
 MOST_PARTS = 100
@@ -210,7 +210,8 @@ def may_end_early(control: Control) -> bool:
 
 
 def _end(scene: SceneRecord, frames: int, last: int) -> list[Problem]:
-    """That a run of so many whole frames, and of these steps of a last one, ends before the time of the scene.
+    """The problem that a run of ``frames`` whole frames, and of the ``last`` steps of a last one, ends before the time of the
+    scene.
 
     Raises SceneError where the scene expects something later.
     """

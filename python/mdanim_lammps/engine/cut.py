@@ -22,7 +22,7 @@ def shorter_along_rows(position: np.ndarray) -> np.ndarray:
 
 
 def box_to_cut(places: np.ndarray, spacing: float) -> np.ndarray:
-    """Bounds of what is cut for ranks [m], shape (2, 3): LAMMPS cuts its box around all particles. Were it another when they
-    are inserted, each would begin on another rank, perhaps one that is not beside its own, and LAMMPS would lose it."""
+    """Bounds of the box that is cut for ranks [m], shape (2, 3): LAMMPS cuts its box around all particles. If it were another
+    when they are inserted, each would begin on another rank, perhaps one that is not beside its own, and LAMMPS would lose it."""
     margin = 1e-3 * spacing
     return np.array([places.min(0) - margin, places.max(0) + margin])

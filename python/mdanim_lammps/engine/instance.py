@@ -23,7 +23,7 @@ MANY = 20_000
 SMALL = 8000
 """Particles up to which an instance is worth being filled anew: with more, putting them in takes longer than all the rest."""
 TYPES = 256
-"""A small one has room for so many bond types at least: plans that come later may have more."""
+"""A small one has room for at least this number of bond types: later plans may have more."""
 REPEATED = ("comm_modify", "bond_style")
 """Commands before the particles that an instance takes again when it is filled anew: bond styles begin with empty accounts."""
 UNDONE = {"fix": "unfix {}", "region": "region {} delete"}
@@ -254,7 +254,8 @@ class Instance:
     def array(self, name: str) -> np.ndarray:
         """``x``, ``v`` or ``f`` in tag order, shape (N, 3), or a property ``d_NAME``, shape (N,).
 
-        On one process a view, valid until the next command; on several ranks a copy of what all have, the same until then.
+        On one process a view, valid until the next command; on several ranks a copy of the values of all ranks, the same until
+        then.
         """
         width = 1 if name.startswith("d_") else 3
         return self._gather(name, width) if self._comm else self._view(name, width)
@@ -278,7 +279,7 @@ class Instance:
         return self._local(name).take(self._ascending, axis=0)
 
     def total(self, part: float) -> float:
-        """The sum over ranks of what each has of something."""
+        """The sum of the parts of all ranks."""
         return sum(self._comm.allgather(part)) if self._comm else part
 
     def _view(self, name: str, width: int) -> np.ndarray:
@@ -415,10 +416,11 @@ class Instance:
         self._call("trace objects", self._library.mdanim_trace_start, ctypes.c_int(len(self.plan.system.names)))
 
     def look_every(self, steps: int) -> None:
-        """Let the trace look at particles after every so many steps only, until it is started again; a look takes 1/25 of a step.
+        """Let the trace look at particles only after every ``steps`` steps, until it is started again; a look takes 1/25 of a
+        step.
 
-        Boxes are then wider, by no more than the way of each object's fastest particle in one step less: nothing is
-        ever outside of them.
+        Boxes are then wider, by no more than the way of each object's fastest particle in one step less: nothing is ever outside
+        of them.
         """
         self._call("trace objects", self._library.mdanim_trace_every, ctypes.c_int(steps))
 

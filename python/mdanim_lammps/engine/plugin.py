@@ -109,7 +109,7 @@ def files_too_small() -> str:
 
 
 def has_descriptors(count: int) -> bool:
-    """Whether so many more files can be opened."""
+    """Whether this number of further files can be opened."""
     opened = []
     try:
         for _ in range(count):

@@ -99,7 +99,7 @@ def share_of_cores(comm) -> int:
 
 @contextmanager
 def with_threads(threads: int | None) -> Iterator[None]:
-    """Within it, instances of this process and of those that it starts have so many threads; None changes nothing."""
+    """Within it, instances of this process and of those that it starts have ``threads`` threads; None changes nothing."""
     before = os.environ.get(THREADS)
     if threads is not None:
         os.environ[THREADS] = str(check_threads(threads))

@@ -91,7 +91,8 @@ class BodyFrame:
 
     @cached_property
     def drawn(self) -> np.ndarray:
-        """Which particles lie inside the shape or on it, bool, shape (N,): corners of cells stand out of what is not a cuboid."""
+        """Which particles lie inside the shape or on it, bool, shape (N,): corners of cells may be outside of a shape that is not
+        a cuboid."""
         z, y, x = np.nonzero(self.cells.filled)
         cell = np.stack([x, y, z], axis=1)
         corner = cell[:, None] + np.array(list(product((0, 1), repeat=3)))

@@ -105,8 +105,8 @@ def _left(covers: list[tuple[np.ndarray, np.ndarray]], size: np.ndarray, hair: n
 
 
 def _with_around(one: tuple[float, ...], size: list[float]) -> list[tuple[float, ...]]:
-    """An open part, and strips of what is AROUND it where that is not at an edge of the side: there it slides over the edges of
-    both bodies, which are flush."""
+    """An open part, with strips AROUND it where it does not end at an edge of the side: there it slides over the edges of both
+    bodies, which are flush."""
     span = [one[:2], one[2:]]
     core = [(a - BEYOND * (a <= 0.0), b + BEYOND * (b >= n)) for (a, b), n in zip(span, size)]
     parts = [(*core[0], *core[1])]

@@ -215,7 +215,7 @@ def _inward(filled: np.ndarray) -> list[np.ndarray]:
             outer, line = ~np.roll(padded, -up, axis), padded
             part = np.zeros(padded.shape, np.float32)
             for count in range(2, max(INWARD) + 1):
-                # Cells with so many in line, the first of them included: the next ones are inside.
+                # Cells with ``count`` in line, the first of them included: the next ones are inside.
                 line = padded & np.roll(line, up, axis)
                 part[line] = INWARD[count]
             total += up * part * outer

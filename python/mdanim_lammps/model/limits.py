@@ -14,7 +14,7 @@ from . import shapes
 PRECISION = 1e-8
 """Largest distance between neighbouring numbers at an object's place, over the spacing: it is the strain of rounding."""
 SPARSE_CELLS, SPARSE = 3e7, 20.0
-"""A shape whose bounding box has more cells than this is to fill one in so many of them."""
+"""A shape whose bounding box has more than SPARSE_CELLS cells must fill at least one in SPARSE of them."""
 
 
 def check_places(scene: SceneRecord, h: float) -> list[Problem]:

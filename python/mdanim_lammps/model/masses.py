@@ -33,9 +33,9 @@ SPARE = 1e-3
 HALVINGS = 40
 """Largest number of halvings of a step of Newton's method."""
 ENOUGH = 1e-14
-"""Sum of what is left at which it ends."""
+"""Sum of the remaining errors at which it ends."""
 CAUTION = 1e-3
-"""Part of what is left that is added to slopes: far from the limits' right places a step would be endless."""
+"""Part of the remaining errors that is added to slopes: far from the limits' right places a step would be endless."""
 FAR = 0.5
 """Part of what was left with which a step counts as good where the function no longer shows it."""
 

@@ -40,7 +40,7 @@ class Corners(Protocol):
 
 
 def box_sides(effect: str, box: Corners, axes: int, room: str) -> tuple[Plane, ...]:
-    """The planes on both sides of a box across the first so many axes; ``room`` is what the box is called."""
+    """The planes on both sides of a box across the first ``axes`` axes; ``room`` is the name of the box."""
     return tuple(
         Plane(effect, f"the {effect}", axis, sign, at, f"outside the {effect} at {'-' if sign > 0 else '+'}{AXES[axis]}", room)
         for axis in range(axes)

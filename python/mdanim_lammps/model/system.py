@@ -173,8 +173,8 @@ def as_parts(models: Sequence[Model], system: System) -> tuple[Model, ...]:
 
 
 def side_by_side(size: np.ndarray, *begins: np.ndarray) -> list[tuple[slice, ...]]:
-    """Pieces of so many rows that begin at these places of one array or several, ascending, as stretches:
-    pieces that follow each other in all of them are one."""
+    """Pieces of ``size`` rows that begin at these places of one array or several, ascending, as stretches: pieces that follow
+    each other in all of them are one."""
     if not len(size):
         return []
     apart = np.flatnonzero(np.any([np.diff(b) != size[:-1] for b in begins], axis=0)) + 1

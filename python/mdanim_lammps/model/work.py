@@ -25,7 +25,8 @@ MESH_POINT_TIME, MESH_CELL_TIME = 25e-6, 11e-6
 
 
 def memory(scene: SceneRecord, h: float, particles: int) -> float:
-    """Memory [bytes] of so many particles in all, at a spacing of h [m]; equal objects share surfaces and points of contact."""
+    """Memory [bytes] of this number of particles in all, at a spacing of h [m]; equal objects share surfaces and points of
+    contact."""
     return PARTICLE_BYTES * particles + sum(_bytes(shape, h, _touches(scene)) for shape in {s.shape for s in scene.solids})
 
 

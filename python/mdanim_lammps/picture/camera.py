@@ -26,7 +26,7 @@ LARGER = 0.35
 LEAST = 0.6
 """Share of the objects that move which is seen at any time."""
 NEXT_SHARES = (0.995, 0.98, 0.95, 0.9, 0.8)
-"""Shares of what is seen that are tried as the next to be kept."""
+"""Shares of the visible movement that are tried as the next to be kept."""
 MOMENT = 0.03
 """Share of the run for which the picture follows what comes and goes beyond where it is worth it."""
 LEAD = 1.0 / 3.0

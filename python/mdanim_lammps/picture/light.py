@@ -26,8 +26,8 @@ class DepthPictures:
 
     Args:
         data: ``vtkPolyData``.
-        centre: middle of what is shown [m].
-        radius: of what is shown [m].
+        centre: middle of the shown sphere [m].
+        radius: of that sphere [m].
         frames: `axes` of each direction, shape (K, 3, 3); K is a square number.
         pixels: of each along a side.
     """

@@ -127,7 +127,7 @@ def render_movie(
 
 
 def processes_for(pictures: int) -> int:
-    """How many processes draw a movie of so many pictures on this host."""
+    """Number of processes that draw a movie of this number of pictures on this host."""
     return max(1, min(cores(), pictures // FRAMES_PER_PROCESS))
 
 

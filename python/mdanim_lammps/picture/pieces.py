@@ -18,7 +18,7 @@ class MovingMesh:
         self.reshape(vertices, triangle)
 
     def reshape(self, vertices: int, triangle: np.ndarray) -> None:
-        """Have so many vertices, which are still to be moved, and these triangles, shape (T, 3)."""
+        """Set the number of vertices, which are still to be moved, and the triangles, shape (T, 3)."""
         from vtkmodules.util.numpy_support import vtk_to_numpy
         from vtkmodules.vtkCommonCore import vtkFloatArray, vtkPoints
 

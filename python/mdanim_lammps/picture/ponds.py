@@ -20,7 +20,7 @@ ON_BODY = 0.9
 HELD = 0.3
 """Share of the columns within `SHORE` of a pond of at most `PUDDLE` columns that are in a body, at least: else it is a film."""
 REACH = 1.5
-"""Columns over which what is drawn on is a mean of what is known."""
+"""Columns over which the drawn level is a mean of the known ones."""
 SQUARE = np.ones((3, 3), bool)
 """A column and the eight around it."""
 

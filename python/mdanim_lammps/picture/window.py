@@ -12,7 +12,8 @@ from ..errors import SetupError
 
 
 def off_screen_window(renderers: Iterable, size: tuple[int, int], samples: int):
-    """A window of so many pixels, each with so many samples. Raises SetupError with what is missing."""
+    """A window of this size [pixels] with ``samples`` samples for each pixel. Raises SetupError that names the missing
+    library."""
     from vtkmodules.vtkRenderingCore import vtkRenderWindow
 
     window = vtkRenderWindow()

@@ -104,7 +104,7 @@ class Ledger:
 
         Args:
             path: the file.
-            most: only so many of its first rows; None for all.
+            most: the largest number of rows to read, from the first; None for all.
 
         Raises OutputError, also where the rows would not fit in memory.
         """

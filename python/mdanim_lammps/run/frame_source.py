@@ -112,7 +112,7 @@ class FrameSource(Protocol):
         particles go. Raises OutputError."""
 
     def advance(self, frame: int, steps: int) -> Frame:
-        """The state so many steps later, which is frame ``frame``. Raises LammpsFailure, DivergedError, OutputError."""
+        """The state ``steps`` steps later, which is frame ``frame``. Raises LammpsFailure, DivergedError, OutputError."""
 
     def stop(self, frame: int) -> int:
         """Make an end soon after frame ``frame``; returns the last frame that will come, which is a kept one."""
@@ -201,7 +201,7 @@ class Sequential:
 
 
 def run_window(instance: Instance, steps: int) -> None:
-    """Run so many steps. Raises LammpsFailure."""
+    """Run ``steps`` steps. Raises LammpsFailure."""
     try:
         instance.run(steps)
     except DivergedError as error:

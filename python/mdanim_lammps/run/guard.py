@@ -159,7 +159,7 @@ class Guard:
             )
 
     def fields(self, step: int, fields: Fields) -> None:
-        """Raise DivergedError where an effect finds in what is told of a frame what can never be."""
+        """Raise DivergedError where an effect finds a fault in the fields of a frame."""
         time = step * self.ready.certificate.timestep
         for effect in self.ready.plan.effects:
             if fault := effect.fault(self.ready.scene, time, fields):

@@ -271,6 +271,6 @@ class _Search:
 
 
 def _rounded(x: float, unit: str, digits: int, *, up: bool) -> str:
-    """A positive quantity in so many digits, rounded up or down."""
+    """A positive quantity with ``digits`` digits, rounded up or down."""
     digit = 10.0 ** (math.floor(math.log10(x)) + 1 - digits)
     return say(digit * (math.ceil(x / digit - 1e-6) if up else math.floor(x / digit + 1e-6)), unit, digits)

@@ -67,7 +67,7 @@ class Listener(socket.socket):
             self._waiting = deque(other for other in self._waiting if other is not connection)
 
     def _keep(self, most: int) -> None:
-        """Break off the oldest connections, but for so many."""
+        """Break off the oldest connections, except the ``most`` latest."""
         with self._turn:
             self._waiting = deque(other for other in self._waiting if other.fileno() >= 0)
             while len(self._waiting) > most:

@@ -55,8 +55,8 @@ def plane_stiffness(reach: float) -> float:
 
 
 def barrier(fix: str, system: System, thin: tuple[str, ...] = ("group thin type 4 8",)) -> list[str]:
-    """Commands for a barrier of this name, with the columns ``stiffness`` and ``reach``; ``thin`` make the group of what is a
-    barrier itself, as nothing is inside."""
+    """Commands for a barrier of this name, with the columns ``stiffness`` and ``reach``; ``thin`` make the group of particles
+    that are a barrier themselves, because there are none inside."""
     groups = ["group inner type 1 2 5 6", "group boundary type 3 4 7 8", *thin]
     words = f"fix {fix} mobile mdanim/barrier boundary inner d_stiffness d_reach"
     return [*groups, f"{words} thin thin {THIN!r}" if (system.layer == Layer.THIN).any() else words]

@@ -38,7 +38,7 @@ ALONE = 2.0
 SLOW = 0.3
 """Closing speed over the wave speed up to which a short barrier stops all that meets."""
 SLOW_NEEDLE = 0.1
-"""The same of what is one cell across along two axes."""
+"""The same for a body that is one cell across along two axes."""
 UNGUARDED, NEEDLE = 0.35, 0.2
 """Closing speed over the wave speed from which something passes what is one cell thin and no barrier (`guards`), and what is one
 cell across along two axes (bench/contact.py)."""
@@ -165,8 +165,8 @@ class SurfaceContact(OnSurfaces, Contact):
     def barrier_reach(self, context: Context) -> np.ndarray:
         """Reach of the barrier of each particle [m], shape (N,); of a pair the larger one counts.
 
-        Particles on the surface of what is slow have none: how far the barrier of another body reaches out of its inside is
-        that body's own, as its layers are.
+        Particles on the surface of a slow body have none: the distance by which the barrier of another body reaches out of its
+        inside is that body's own, as its layers are.
         """
         system = context.system
         quick = fast(context)[system.object]

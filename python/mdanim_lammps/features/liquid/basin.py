@@ -291,7 +291,8 @@ def _leaks(cells: float) -> str:
 
 
 def _enough(solid: Solid, wide: float, still: bool) -> float:
-    """Thickness from which a solid parts the liquid [cells]; 0 of what is not a held wall, so wide [m] in two directions.
+    """Thickness from which a solid parts the liquid [cells]; 0 for a solid that is not a held wall at least ``wide`` [m] in two
+    directions.
 
     A mesh may be a hull.
     """

@@ -22,7 +22,7 @@ class Assignment:
     """Which executor runs which objects in a frame."""
 
     owner: np.ndarray
-    """Executor of every object, int64, shape (M,); of what is still, as it was."""
+    """Executor of every object, int64, shape (M,); unchanged for objects that never move."""
     teams: tuple[Team, ...]
     """By island; no executor is in two of them."""
     load: np.ndarray

@@ -57,7 +57,7 @@ class FrameAssignment:
     """Which executors run what in a frame of M objects."""
 
     owner: np.ndarray
-    """Executor of every object, int64, shape (M,); of what is still, as it was."""
+    """Executor of every object, int64, shape (M,); unchanged for objects that never move."""
     label: np.ndarray
     """Island of every object, -1 for what is still, int64, shape (M,)."""
     bundle: np.ndarray
@@ -205,11 +205,11 @@ class PlanContext:
     def longest_window(
         self, length: int, left: int, make: Callable[[int], tuple[FrameAssignment, np.ndarray]]
     ) -> tuple[int, FrameAssignment, np.ndarray]:
-        """The longest window that leaves the loads in balance: in a shorter one boxes are widened by less, and fewer
-        islands merge.
+        """The longest window that leaves the loads in balance: in a shorter one boxes are widened by less, and fewer islands
+        merge.
 
         Windows end at a frame at the latest, ``left`` of its ``length`` steps. Where none is in balance, the one with the
-        smallest largest load. ``make`` gives the plan for so many steps, and what boxes are widened by; returned with the steps.
+        smallest largest load. ``make`` gives the plan for a number of steps, and the margin of boxes; returned with the steps.
         """
         best, least = None, 0
         for halvings in range(self.settings.finest.bit_length()):

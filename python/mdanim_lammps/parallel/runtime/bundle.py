@@ -85,7 +85,7 @@ def wanted_bundles(plan: FrameAssignment, objects: int, executor: int, by_thread
 
 
 def _instance(plan: Plan, comm: MPI.Comm | None, cache: InstanceCache, threads_for: int) -> Instance:
-    """An instance with the threads of so many executors."""
+    """An instance with the threads of several executors."""
     if threads_for == 1:
         return cache.instance(plan, comm)
     with with_threads(min(MOST_THREADS, threads_for * (asked_threads() or 1))):

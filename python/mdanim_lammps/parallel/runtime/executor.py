@@ -272,7 +272,7 @@ class Executor:
         mine = self.order.plan.owner[: self.objects] == self.me
         return np.flatnonzero(mine & (self.order.plan.label[: self.objects] >= 0))
 
-    # --- what is told ---------------------------------------------------------------------------------------------
+    # --- reports --------------------------------------------------------------------------------------------------
 
     def _first_report(self) -> Report:
         """The first report, on all objects that can move, in equal shares: every executor knows where objects begin."""
