@@ -26,7 +26,7 @@ from .readings import Readings
 
 
 class Effect:
-    """One physical effect. A subclass is one file in this folder and says everything that is to be said about it.
+    """One physical effect. A subclass is one file in a folder of features/ and holds everything that belongs to the effect.
 
     An effect that is off leaves no trace: no column, no command, no term.
     """
@@ -36,7 +36,7 @@ class Effect:
     styles: tuple[tuple[str, str], ...] = ()
     """Styles of the plugin that it uses: kind and name."""
     order = 1000
-    """Where its forces stand in the sum of all, ascending, by name where two have the same."""
+    """Place of its forces in the sum of all, ascending, by name where two have the same."""
     fix = ""
     """ID of its LAMMPS fix of ours, which times itself; empty when it has none."""
     ledger = ""
@@ -46,13 +46,13 @@ class Effect:
     has_potential = False
     """Whether its energy is a `potential`, that of a uniform field; no other effect has the same column then."""
     has_arbitrary_zero = False
-    """Whether only changes of the energy in its column ``ledger`` mean something; that of a potential always is so."""
+    """Whether only changes of the energy in its column ``ledger`` have a meaning; that is always so for a potential."""
     on_grid = False
-    """Whether it lives in the cells of a `grid`, as one thing that one process has."""
+    """Whether it uses the cells of a `grid`, as a whole that one process has."""
     touches = False
     """Whether it acts where surfaces meet."""
     at_surfaces = False
-    """Whether it costs next to nothing until surfaces meet something."""
+    """Whether it costs next to nothing until surfaces meet."""
     brakes = False
     """Whether it makes dashpots along springs."""
     binds = False
@@ -60,7 +60,7 @@ class Effect:
     keeps_apart = False
     """Whether objects cannot be inside each other where it is on."""
     needs: tuple[str, ...] = ()
-    """Effects without which this one cannot be; they stand before it in the sum."""
+    """Effects that this one requires; they stand before it in the sum."""
     if_off = ""
     """Fault that shows when a scene needs the effect and it is switched off."""
 
@@ -115,8 +115,8 @@ class Effect:
     # --- what it brings into a run --------------------------------------------------------------------------------------
 
     def grid(self, scene: SceneRecord, h: float) -> Grid | None:
-        """Cells that it lives in, for a particle spacing h [m]; None where it needs none. Raises SceneError where they do not fit
-        in memory."""
+        """Cells that it uses, for a particle spacing h [m]; None where it needs none. Raises SceneError where they do not fit in
+        memory."""
         return None
 
     def problems(self, resolved: Resolved, models: Sequence[Model], grid: Grid | None) -> list[Problem]:
@@ -157,11 +157,11 @@ class Effect:
         return None
 
     def max_timestep(self, context: Context) -> float:
-        """Longest time step that still shows what it does [s]; stability is another matter, see `rate`."""
+        """Longest time step that still resolves its motion [s]; stability is another matter, see `rate`."""
         return math.inf
 
     def friction(self, context: Context) -> np.ndarray | None:
-        """The most that it adds to each particle's lambda, eq. (3.9) [N*s/m], shape (N,)."""
+        """Upper bound of its addition to each particle's lambda, eq. (3.9) [N*s/m], shape (N,)."""
         return None
 
     def energy(self, readings: Readings) -> float:
@@ -186,7 +186,8 @@ class Effect:
         return {}
 
     def margins(self, envelope: Envelope) -> list[Margin]:
-        """Limits that a scene in which something can move has to keep because of the effect, each with what the scene reaches."""
+        """Limits that a scene in which something can move has to keep because of the effect, each with the value that the scene
+        reaches."""
         return []
 
     def fields(self, scene: SceneRecord) -> tuple[Field, ...]:
@@ -206,7 +207,7 @@ class Effect:
         return []
 
     def gained(self, first: Mapping[str, float], now: Mapping[str, float]) -> float | None:
-        """How much more there is of something than there should be, which must be 0, by two rows of the ledger; None of an effect
+        """Excess of a quantity that must be conserved, by two rows of the ledger; 0, or something is wrong. None for an effect
         that counts nothing."""
         return None
 
@@ -215,7 +216,7 @@ class Effect:
         return {}
 
     def acts_on(self, context: Context) -> bool:
-        """Whether it has anything to act on in a part of a scene: some of its solids, and the cells of a grid or not."""
+        """Whether it acts on anything in a part of a scene: some of its solids, with or without the cells of a grid."""
         return True
 
     def matters_below(self, context: Context) -> float:
@@ -242,12 +243,13 @@ class Effect:
     def clocks(self, readings: Readings) -> dict[str, float]:
         """Wall seconds so far of each of its pieces.
 
-        What runs under the clock of another style has its part of that clock, as ``python bench/effects.py shares`` measures it.
+        A piece that runs under the clock of another style has its part of that clock, as ``python bench/effects.py shares``
+        measures it.
         """
         return {self.fix: readings.fix_seconds(self.fix)} if self.fix else {}
 
     def penetration(self, readings: Readings) -> float:
-        """Deepest that something has been where it should not be, in this run [m]."""
+        """Largest depth at which something has been where it should not be, in this run [m]."""
         return 0.0
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""A scene at its time step, before the first step: what limits are compared with."""
+"""A scene at its time step, before the first step: the values that are compared with limits."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ class Envelope:
         ]
 
     def place(self, m: int, *keywords: str) -> Span | None:
-        """Where the first of these keywords of a solid stands; its name where there is none."""
+        """Place of the first of these keywords of a solid; its name where there is none."""
         spans = self.scene.solids[m].spans
         return next((spans[k] for k in (*keywords, "object") if k in spans), None)
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""Named fields: what effects tell of a frame, each declared once."""
+"""Named fields: values that effects give for a frame, each declared once."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class Field:
     shape: tuple[int, ...] = ()
     """Shape of one value."""
     default: float = 0.0
-    """Where nothing tells it."""
+    """The value where no effect gives one."""
     ledger: bool = False
     """Whether it is a column of the ledger that is not an energy."""
     whole: bool = False
@@ -49,10 +49,10 @@ Fields = Mapping[str, Any]
 
 
 def join_fields(declared: Iterable[Field], still: np.ndarray, parts: Iterable[tuple[np.ndarray, Fields]]) -> dict[str, Any]:
-    """The fields of a whole scene, from what parts of it tell.
+    """The fields of a whole scene, from those of its parts.
 
-    Those per object are put together and have their default where an object never moves, which any part may have; those per run
-    are added up; of all others one part has all.
+    Fields per object are put together and have their default where an object never moves, which any part may have; those per run
+    are added up; all others come whole from one part.
 
     Args:
         declared: all fields of the scene.

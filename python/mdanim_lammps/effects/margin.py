@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""A quantity beside its limit: what the certificate tells of every limit that a scene has to keep."""
+"""A quantity beside its limit: the entry of the certificate for every limit that a scene has to keep."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class Margin:
     text: str
     """Both in a sentence."""
     span: Span | None
-    """Scene line of what would change it."""
+    """Scene line of the setting that would change it."""
     severity: str
     """``ok``, ``warning`` or ``refused``."""
     least: bool = False

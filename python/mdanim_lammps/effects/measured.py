@@ -31,7 +31,7 @@ class Measured:
     ledger: Callable[[str], np.ndarray]
     """Gives a column of the ledger, shape (F,)."""
     trajectory: Any
-    """results.trajectory.Trajectory: for what all frames are read."""
+    """results.trajectory.Trajectory: for quantities that need all frames."""
 
     def solid(self, name: str) -> int:
         """Number of an object, from 0."""
@@ -46,7 +46,7 @@ class Measured:
         return float(np.abs(self.until(values, time)).max())
 
     def at(self, values: np.ndarray, time: float | None) -> float:
-        """The value at a time, straight between frames; without a time at the end."""
+        """The value at a time, linear between frames; without a time at the end."""
         return float(values[-1] if time is None else np.interp(time, self.times, values))
 
 

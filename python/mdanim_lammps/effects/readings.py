@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 LEAPFROG = "leap-frog"
-"""Clock of the integrator; what effects take of it is not counted with the integrator's own time."""
+"""Clock of the integrator; the parts of it that effects take are not counted with the integrator's own time."""
 
 
 class Readings(Protocol):

@@ -48,7 +48,7 @@ def decide(effects: tuple[Effect, ...], scene: SceneRecord, h: float | None = No
 
 
 def acting(effects: tuple[Effect, ...], scene: SceneRecord) -> tuple[Effect, ...]:
-    """Those that a scene does not switch off, neither themselves nor what they need."""
+    """Effects that a scene does not switch off, neither themselves nor those that they require."""
     off: set[str] = set()
     for effect in effects:
         if scene.effects.get(effect.name) is Switch.OFF or off.intersection(effect.needs):

@@ -124,7 +124,7 @@ class Instance:
         )
 
     def _populate(self, ends: Ends | None, places: np.ndarray) -> None:
-        """Particles at these places, and what acts on them, into a box that is empty."""
+        """Put particles at these places, and the actions on them, into a box that is empty."""
         plan = self.plan
         self._insert(ends, places)
         if len(plan.bonds) and not ends:
@@ -363,9 +363,8 @@ class Instance:
         self._write("f", state.f)
 
     def lay_aside(self, solids: Sequence[int]) -> None:
-        """Take these solids of the plan out of what goes on, without a new setup: from now on they stand as in the plan, at rest,
-        they exert no forces and feel none. This cannot be undone, and works on one process alone.
-        """
+        """Take these solids of the plan out of the simulation, without a new setup: from now on they stand as in the plan, at
+        rest; they exert no forces and feel none. This cannot be undone, and works only on one process."""
         system = self.plan.system
         # In no group but "all" nothing acts on them. Their springs are as long as in the plan and hold no energy. A displacement
         # of more than the skin makes LAMMPS build its neighbour lists anew before the next forces.

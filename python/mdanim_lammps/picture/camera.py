@@ -28,9 +28,9 @@ LEAST = 0.6
 NEXT_SHARES = (0.995, 0.98, 0.95, 0.9, 0.8)
 """Shares of the visible movement that are tried as the next to be kept."""
 MOMENT = 0.03
-"""Share of the run for which the picture follows what comes and goes beyond where it is worth it."""
+"""Share of the run for which the picture follows objects that come and go after they are worth it."""
 LEAD = 1.0 / 3.0
-"""Share of all movement in a stretch from which on an object is what moves there."""
+"""Share of all movement in a stretch from which on an object leads it."""
 NEAR = 0.1
 """Distance at which an object meets others, in sizes of its own."""
 ALONG = 1e-6

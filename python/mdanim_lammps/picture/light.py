@@ -16,7 +16,7 @@ from .window import off_screen_window
 PIXELS, MORE_PIXELS = 1024, 2048
 """Pixels of the lamp's picture, along a side; more where objects are small, and in final quality."""
 REACH = 1.5
-"""How far what hides the sky is felt, in sizes of an object."""
+"""Distance to which surfaces that hide the sky have an effect, in sizes of an object."""
 BLOCK = 16
 """Pixels of the lamp's picture, along a side, of which the nearest to the lamp is known."""
 

@@ -9,7 +9,7 @@ picture taken from the lamp (light.py).
 from .rays import FAR, NEAR, ROOM, SKY_PIXELS, SKY_SIDE, sky_axes
 
 HIDDEN = 0.75
-"""Share of the light that is missing where nothing is seen of the sky; the rest is thrown back by what hides it."""
+"""Share of the light that is missing where nothing is seen of the sky; surfaces that hide it throw the rest back."""
 
 REFRACTIVE_INDEX = 1.33
 """Refractive index of the liquid, over that of air."""

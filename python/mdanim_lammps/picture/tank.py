@@ -18,7 +18,7 @@ from .pieces import Lookup, MovingLine, MovingMesh, box_edges, lit_actor, plane
 from .ponds import Ponds, parted
 
 CLEAR = 1.0
-"""How far one sees in the liquid, in half diagonals of the basin: by then 1/e is left of what lies behind."""
+"""Distance that one sees in the liquid, in half diagonals of the basin: by then 1/e is left of the light from behind."""
 COVER = {"smooth": 0.24, "cells": 0.35}
 """How much the skin of the liquid covers, seen straight on."""
 

@@ -13,7 +13,7 @@ FLIGHT = 0.005
 
 
 class Flight:
-    """Boxes of objects that fly by themselves and bounce back from planes; what comes to a liquid stays where it is."""
+    """Boxes of objects that fly by themselves and bounce back from planes; an object that comes to a liquid stays where it is."""
 
     def __init__(self, acting: Acting, system: System):
         held = np.logical_or.reduceat(system.held, system.first[:-1])

@@ -47,7 +47,7 @@ class Reach:
         return region.sweeps(self.acting, choose_spacing(self.scene)[0] if self._h is None else self._h)
 
     def closest(self) -> tuple[Solid, Solid, float]:
-        """Two solids of which one can move, and what stays between their boxes at least, along one axis [m]; see
+        """Two solids of which one can move, and the least distance that remains between their boxes, along one axis [m]; see
         `region.closest`."""
         return region.closest(self.scene, self.region)
 
@@ -95,11 +95,11 @@ class Reach:
 
     @cached_property
     def fall(self) -> np.ndarray:
-        """Height of each solid's fall [m], shape (M,), down to the ground, the floor of the basin, or the lowest object; none of
-        what stands still at the start.
+        """Height of each solid's fall [m], shape (M,), down to the ground, the floor of the basin, or the lowest object; 0 for
+        solids that stand still at the start.
 
-        As if through air: in a liquid, heights count by what it leaves of the weight. Below the surface a light solid gains
-        height; where there are others it may meet them at the surface already.
+        As if through air: in a liquid, heights count by the part of the weight that it leaves. Below the surface a light solid
+        gains height; where there are others it may meet them at the surface already.
         """
         (bottom, floor), surface = self.heights, self.acting.surface
         bottom = np.where(self.stands, np.minimum(bottom, floor), bottom)

@@ -45,7 +45,7 @@ class Sweeps:
 
 
 def closest(scene: SceneRecord, swept: Sweeps) -> tuple[Solid, Solid, float]:
-    """Two solids of which one can move, and what stays between their boxes at least, along one axis [m].
+    """Two solids of which one can move, and the least distance that remains between their boxes, along one axis [m].
 
     The first two found whose boxes overlap, with 0.0; where there are none, those whose boxes come nearest. Raises ValueError
     where no solid can meet another: one solid, or all held.
@@ -68,10 +68,10 @@ def closest(scene: SceneRecord, swept: Sweeps) -> tuple[Solid, Solid, float]:
 
 
 def sweeps(acting: Acting, h: float) -> Sweeps:
-    """The region that every solid can reach, for what acts on them and a particle spacing h [m].
+    """The region that every solid can reach, for the actions on them and a particle spacing h [m].
 
     Along an axis on which nothing but gravity and drag of air acts, the centre of mass moves on its parabola. Along one on which
-    a wall, the ground or a liquid may act, it gets no further than at the largest speed that energy allows. A plane acts along
+    a wall, the ground or a liquid may act, it gets no farther than at the largest speed that energy allows. A plane acts along
     its own axis, one with friction along all of them. Raises SceneError for a mesh that is not a body.
     """
     scene, (limit_low, limit_high) = acting.scene, acting.limits

@@ -242,7 +242,8 @@ class Guard:
         ]
 
     def _missed(self, ledger: Ledger, goal: float) -> Problem:
-        """The energies do not add up as well as they should: with the frame that most of it came in, and what happened there."""
+        """The energies do not add up as well as they should: names the frame in which most of the error arose, and the events
+        there."""
         scene, rows = self.ready.scene, ledger.rows
         change = [abs(b["residual"] - a["residual"]) for a, b in pairwise(rows)]
         worst = change.index(max(change))

@@ -379,7 +379,7 @@ class _Run:
         log.frame(frame, row, self.seconds["simulation"], self.source.new_owners())
 
     def _gained(self) -> float | None:
-        """How much more there is of what effects count than there should be: 0, or something is wrong."""
+        """Excess of the quantities that effects count: 0, or something is wrong."""
         rows = self.ledger.rows
         return next((more for e in self.effects if (more := e.gained(rows[0], rows[-1])) is not None), None)
 
