@@ -181,6 +181,7 @@ def scenes(draw):
         name="scene",
         control=control,
         title=draw(texts),
+        language=draw(st.sampled_from(["free", "strict"])),
         gravity=(0.0, 0.0, -draw(positive)) if wet else draw(vectors),
         solids=bodies,
         liquid=liquid,
