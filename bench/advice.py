@@ -160,7 +160,7 @@ if __name__ == "__main__":
     options = parser.parse_args()
     bench.REPEATS = options.runs
     lines, wrong = [], 0
-    print("| scene | study up to | order | own setting is told | against the finer run | all settings differ by up to | ± |")
+    print("| scene | study up to | order | own setting, estimated | against the finer run | all settings differ by up to | ± |")
     print("|---|---|---|---|---|---|---|")
     for scene in options.scenes:
         for k, t in enumerate(check(scene, budget=options.budget)):

@@ -27,6 +27,13 @@ FORMS = {
     r"\bis no good\b": "is inaccurate, slow, wrong: which of them?",
 }
 """Regular expression of a form, and what to write."""
+FORMS_OF_PAGES = {
+    rf"\b{BE} (?:not )?told\b(?! from| apart)": "reported, printed, given, computed",
+    r"\b[Ww]hy so\b": "the reasons",
+    r"\bgone on with\b": "continued",
+    r"\b[Nn]ot drawn are\b": "the subject first: ... are not drawn",
+}
+"""Forms that only pages are searched for: README.md and docs/, which were read again."""
 BEGINNINGS = re.compile(r'(?:^\s*(?:#|//+|\*)|""")\s*(?:What|Of|So many|Whoever)\s')
 """Comments and docstrings begin with the thing or with a verb. Checked file by file as they are read again."""
 READ_AGAIN = ("plugin/", "python/")
@@ -44,9 +51,10 @@ def ours() -> list[Path]:
 def found(path: Path) -> list[str]:
     """Lines of a file with a form that is not English, each with its place and the cure."""
     name = path.relative_to(REPOSITORY).as_posix()
+    forms = FORMS | (FORMS_OF_PAGES if name == "README.md" or re.match(r"docs/(?!decisions/).*\.md$", name) else {})
     lines = []
     for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
-        for form, better in FORMS.items():
+        for form, better in forms.items():
             if match := re.search(form, line):
                 lines.append(f"{name}:{number}: '{match[0].strip()}': write {better}")
         if name.startswith(READ_AGAIN) and BEGINNINGS.search(line):
