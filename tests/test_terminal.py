@@ -85,8 +85,8 @@ def test_characters_that_the_terminal_lacks(scene, encoding, command):
 def test_sigterm_is_told(scene):
     """SIGTERM before the run has begun ends with the code of Ctrl-C and a message."""
     code = (
-        "import time\nfrom mdanim_lammps import cli\nfrom mdanim_lammps.cli import scene_commands\n"
-        "scene_commands.load = lambda *a, **k: (print('ready', flush=True), time.sleep(60))\ncli.main(['check', 'x.txt'])"
+        "import time\nfrom mdanim_lammps import cli\nfrom mdanim_lammps.cli.options import Reading\n"
+        "Reading.load = lambda *a, **k: (print('ready', flush=True), time.sleep(60))\ncli.main(['check', 'x.txt'])"
     )
     process = subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     assert process.stdout.readline() == "ready\n"

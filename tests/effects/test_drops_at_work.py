@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """Drops of a scene, from its text to frames: a stone throws liquid up, and every unit of it is accounted for."""
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import numpy as np
 import pytest
+from mdanim_lammps.features.liquid.frames import CELLS, DROPS, DUE
 from mdanim_lammps.run.frame_source import Sequential
 from mdanim_lammps.run.loop import trajectory_writer
 from mdanim_lammps.run.prepare import prepare
@@ -26,6 +27,18 @@ object stone { shape sphere 7 cm  position (0.25, 0.25, 0.5) m  density 2500 kg/
 """
 
 
+NONE = np.empty((0, 4))
+
+
+@dataclass(frozen=True)
+class Liquid:
+    """Cells now, cells that there should be, and the drops of a frame, shape (D, 4)."""
+
+    cells: float
+    start: float
+    drops: np.ndarray
+
+
 def frames(drops: float, seconds: float) -> list:
     """Liquids of all frames of a fall into the pool."""
     scene = parse_scene(STONE)
@@ -36,7 +49,7 @@ def frames(drops: float, seconds: float) -> list:
         found = [source.begin(None, out.rows)]
         found += [source.advance(n, each) for n in range(1, round(100 * seconds) + 1)]
         out.close(finished=False)
-        return [frame.liquid for frame in found]
+        return [Liquid(*(f.fields.get(n, NONE) for n in (CELLS, DUE, DROPS))) for f in found]
 
 
 @pytest.fixture(scope="module")

@@ -189,7 +189,7 @@ def test_what_waves_do_to_particles_must_be_numbers(prepared):
         data = found.data.copy()
         data[found.first[1] + 8 + 4 :][: 8 * 10] = np.frombuffer(np.full(10, np.nan).tobytes(), np.uint8)
         damaged = {**kept.records, "liquid": replace(found, data=data)}
-        with pytest.raises(SetupError, match="no number"):
+        with pytest.raises(SetupError, match="not a number"):
             instance.put(step, replace(kept, records=damaged))
         assert instance.records()["liquid"] == found
 

@@ -33,9 +33,9 @@ def test_force_deletes_no_folders(folder, tmp_path, name):
     other = tmp_path / "a.csv" / "surfaces-000000.vtp"
     other.parent.mkdir()
     other.write_text("mine")
-    for to, place in (("vtk", "a.pvd"), ("csv", "a.csv")):
-        with pytest.raises(OutputError, match="holds files that are not of an export"):
-            export(folder, to, tmp_path / place, force=True)
+    with pytest.raises(OutputError, match="holds files that are not of an export"):
+        export(folder, "vtk", tmp_path / "a.pvd", force=True)
+    export(folder, "csv", tmp_path / "a.csv", force=True)  # into that folder, with a name of its own
     assert inside.read_text() == other.read_text() == "mine"
 
 

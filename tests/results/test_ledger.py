@@ -39,7 +39,7 @@ def test_a_floating_body_has_what_it_trades_in_play():
 
 def test_cells_are_written_to_the_unit(tmp_path):
     """Whole cells of a liquid stand in the file as integers, others to 2^-20 of one; every float comes back to the bit."""
-    ledger = Ledger(("kinetic",), ("liquid_cells", "draft.box"))
+    ledger = Ledger(("kinetic",), ("liquid_cells", "draft.box"), counts=("liquid_cells",))
     ledger.add(0.1, {"kinetic": 1 / 3, "liquid_cells": 2_000_001.0, "draft.box": 0.1})
     ledger.add(0.2, {"kinetic": 1 / 3, "liquid_cells": 2.0**32 - 2.0**-20, "draft.box": 0.1})
     ledger.write(tmp_path / "ledger.csv")

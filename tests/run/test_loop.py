@@ -216,7 +216,11 @@ def test_disk_full_is_told(fall, tmp_path):
     from mdanim_lammps.results.files import disk_errors
 
     (tmp_path / "checkpoint").touch()
-    with pytest.raises(OutputError, match="make room and resume"), disk_errors(tmp_path / "x"), open("/dev/full", "w") as file:
+    with (
+        pytest.raises(OutputError, match="make room and resume"),
+        disk_errors(tmp_path / "ledger.csv"),
+        open("/dev/full", "w") as file,
+    ):
         file.write("x" * 100000)
 
 

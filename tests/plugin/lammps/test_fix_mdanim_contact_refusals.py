@@ -176,7 +176,7 @@ BAD = {
     "no area": with_entry("area", 3, 0.0),
     "area that is not a number": with_entry("area", 3, np.nan),
     "infinite area": with_entry("area", 3, np.inf),
-    "unknown kind": with_entry("kind", 3, 3),
+    "unknown kind": with_entry("kind", 3, 4),
     "depth that is not a number": {**CUBE, "depth": np.full(7**3, np.nan)},
     "open part of no side": {**CUBE, "open": np.array([[6.0, 0, 1, 0, 1]])},
     "open part of half a side": {**CUBE, "open": np.array([[0.5, 0, 1, 0, 1]])},

@@ -364,7 +364,7 @@ def test_refuses_with_a_cure(tmp_path, command, message):
         ("buoyancy 1 drag 0.1", "drag needs lambda"),
         ("buoyancy 1 lambda d_lambda", "there is no drag"),
         ("drag 0.1 lambda d_lambda", "add buoyancy"),
-        ("cells i2_none", "no property of 7 integers"),
+        ("cells i2_none", "not a property of 7 integers"),
         ("faces i2_none", "faces is not there any more; write model waves"),
     ],
 )

@@ -10,7 +10,7 @@ from mdanim_lammps.engine.instance import Instance
 from mdanim_lammps.engine.state import State, StateRecords
 
 sys.path.insert(0, str(Path(__file__).parent))
-from make import FILE, SCENES, plan_of
+from make_states import FILE, SCENES, plan_of
 
 STORED = dict(np.load(FILE))
 RECORDS = {

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""Make the stored states: ``python tests/plugin/records/make.py``.
+"""Make the stored states: ``python tests/plugin/records/make_states.py``.
 
 Each scene is run into the middle of what happens in it, and positions, velocities, forces and all records of fixes are stored in
 states.npz. Make them again only when the contents of a record are meant to change: its version has to change too, as checkpoints
