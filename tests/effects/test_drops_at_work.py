@@ -7,7 +7,7 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 import pytest
-from mdanim_lammps.features.liquid.frames import CELLS, DROPS, DUE
+from mdanim_lammps.features.liquid.frames import CELLS, DROPS, DUE, HEIGHTS
 from mdanim_lammps.run.frame_source import Sequential
 from mdanim_lammps.run.loop import trajectory_writer
 from mdanim_lammps.run.prepare import prepare
@@ -27,16 +27,15 @@ object stone { shape sphere 7 cm  position (0.25, 0.25, 0.5) m  density 2500 kg/
 """
 
 
-NONE = np.empty((0, 4))
-
-
 @dataclass(frozen=True)
 class Liquid:
-    """Cells now, cells that there should be, and the drops of a frame, shape (D, 4)."""
+    """Fields of a liquid in a frame."""
 
     cells: float
     start: float
-    drops: np.ndarray
+    """Cells that there should be."""
+    heights: np.ndarray
+    drops: np.ndarray | None
 
 
 def frames(drops: float, seconds: float) -> list:
@@ -49,7 +48,7 @@ def frames(drops: float, seconds: float) -> list:
         found = [source.begin(None, out.rows)]
         found += [source.advance(n, each) for n in range(1, round(100 * seconds) + 1)]
         out.close(finished=False)
-        return [Liquid(*(f.fields.get(n, NONE) for n in (CELLS, DUE, DROPS))) for f in found]
+        return [Liquid(*(f.fields.get(name) for name in (CELLS, DUE, HEIGHTS, DROPS))) for f in found]
 
 
 @pytest.fixture(scope="module")
