@@ -211,16 +211,13 @@ def test_summary_says_what_was_run(fall):
 
 def test_disk_full_is_told(fall, tmp_path):
     """End with an OutputError that says how to go on when nothing can be written."""
-    if not os.path.exists("/dev/full") or shutil.disk_usage("/").free == 0:
+    full = "/dev/full"
+    if not os.path.exists(full) or shutil.disk_usage("/").free == 0:
         pytest.skip("no /dev/full here")
     from mdanim_lammps.results.files import disk_errors
 
     (tmp_path / "checkpoint").touch()
-    with (
-        pytest.raises(OutputError, match="make room and resume"),
-        disk_errors(tmp_path / "ledger.csv"),
-        open("/dev/full", "w") as file,
-    ):
+    with pytest.raises(OutputError, match="make room and resume"), disk_errors(tmp_path / "ledger.csv"), open(full, "w") as file:
         file.write("x" * 100000)
 
 
