@@ -11,7 +11,7 @@ from collections.abc import Callable
 import numpy as np
 from contact_at_rest import hertz, lattice, rest
 from contact_world import MODELS, STUFF, WAVE, World, inertia
-from timing import markdown
+from timing import print_tables
 
 G = 9.81
 
@@ -221,12 +221,5 @@ TABLES: dict[str, Callable[[], tuple[list[str], list[list]]]] = {
 }  # fmt: skip
 
 
-def main(words: list[str]) -> None:
-    """Print the tables."""
-    for word in words or TABLES:
-        print(f"\n{TABLES[word].__doc__}\n")
-        print(markdown(*TABLES[word]()))
-
-
 if __name__ == "__main__":
-    main(sys.argv[1:])
+    print_tables(TABLES, sys.argv[1:])

@@ -15,7 +15,7 @@ import sys
 from pathlib import Path
 
 import numpy as np
-from timing import markdown
+from timing import print_tables
 
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT / "tests" / "lab"))
@@ -112,12 +112,5 @@ def program() -> tuple[list[str], list[list]]:
 TABLES = {"bars": bars, "balls": balls, "program": program}
 
 
-def main(words: list[str]) -> None:
-    """Print the tables."""
-    for word in words or TABLES:
-        print(f"\n{TABLES[word].__doc__}\n")
-        print(markdown(*TABLES[word]()))
-
-
 if __name__ == "__main__":
-    main(sys.argv[1:])
+    print_tables(TABLES, sys.argv[1:])

@@ -9,7 +9,7 @@ import os
 import platform
 import statistics
 import time
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -61,6 +61,13 @@ def markdown(head: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
 
     lines = [head, ["---"] * len(head), *([cell(v) for v in row] for row in rows)]
     return "\n".join("| " + " | ".join(line) + " |" for line in lines)
+
+
+def print_tables(tables: Mapping[str, Callable[[], tuple[Sequence[str], Iterable]]], words: Sequence[str]) -> None:
+    """Print the tables of these words, all without one: each is made by a function whose docstring is its title."""
+    for word in words or tables:
+        print(f"\n{tables[word].__doc__}\n")
+        print(markdown(*tables[word]()))
 
 
 def machine() -> str:

@@ -10,7 +10,7 @@ import sys
 
 import numpy as np
 from contact_world import World
-from timing import markdown
+from timing import print_tables
 
 G = 9.81
 RADIUS = 0.1
@@ -84,12 +84,5 @@ def slope() -> tuple[list[str], list[list]]:
 TABLES = {"blow": blow, "slope": slope}
 
 
-def main(words: list[str]) -> None:
-    """Print the tables."""
-    for word in words or TABLES:
-        print(f"\n{TABLES[word].__doc__}\n")
-        print(markdown(*TABLES[word]()))
-
-
 if __name__ == "__main__":
-    main(sys.argv[1:])
+    print_tables(TABLES, sys.argv[1:])

@@ -130,15 +130,10 @@ def test_cubes_come_to_rest_in_the_bowl(tmp_path):
 
 
 @pytest.mark.mpi
-@pytest.mark.parametrize(
-    ("scene", "steps", "tolerance"),
-    [
-        ("pool", 200, 1e-12),
-        ("bowl", 800, 0.02),
-    ],  # a setup has forces without dashpots: a body that falls and is damped hardly sees it
-)
+# A setup has forces without dashpots, which the bowl has: cubes that fall hardly see it.
+@pytest.mark.parametrize(("scene", "steps", "tolerance"), [("pool", 200, 1e-12), ("bowl", 800, 0.02)])
 def test_a_restart_file_goes_on(tmp_path, scene, steps, tolerance):
-    """Compare two halves with a run in one piece: places at the end, and all energies."""
+    """Compare two halves with a run in one piece: all energies at the end."""
     run(tmp_path, 1, scene, "-var", "steps", str(steps))
     again = tmp_path / "ranks1" / f"in.{scene}_restart"
     shutil.copy(SCENES / again.name, again)
