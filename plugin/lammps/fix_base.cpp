@@ -39,7 +39,7 @@ const Refusal REFUSALS[] = {
     {OPEN_BOX, [](const LAMMPS &lmp) { return is_open(*lmp.domain); },
      "the box is periodic; put 'boundary s s s' (or f) before the box is made"},
     {OBJECTS, [](const LAMMPS &lmp) { return lmp.atom->molecule_flag != 0; },
-     "objects are numbers apart by molecule IDs; use 'atom_style bond' or 'fix ID all property/atom mol'"},
+     "objects are told apart by molecule IDs; use 'atom_style bond' or 'fix ID all property/atom mol'"},
     {ATOM_MAP, [](const LAMMPS &lmp) { return lmp.atom->map_style != Atom::MAP_NONE; },
      "needs an atom map; put 'atom_modify map array' before the box is made"},
     {PROMPT_LISTS, [](const LAMMPS &lmp) { return is_prompt(*lmp.neighbor); },

@@ -401,3 +401,13 @@ def test_contact_that_cannot_be_leaves_nothing(prepared):
     )
     assert live_fixes(apart) == {"gravity"}
     assert not [word for model in MODELS for word in traces(model)["contact"] if word in written(apart)]
+
+
+def test_declarations_of_motion_may_be_asked_of_any_scene(prepared):
+    """What effects say of how they move solids, of a scene without a ground, a liquid or gravity."""
+    ready = prepared(FULL[FULL.index("object a") : FULL.index("liquid w")] + "control { time 1 }")
+    for effect in (e.of(ready.scene) for e in features.effects()):
+        pulls = effect.acceleration(ready.scene)
+        assert len(effect.planes(ready.scene)) == 0 and (pulls is None or not pulls.any())
+        assert effect.surface(ready.scene) is None and np.all(effect.lift(ready.scene, ready.system) == 0.0)
+        assert effect.pushes_below(ready.scene) == -np.inf

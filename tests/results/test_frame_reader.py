@@ -2,14 +2,17 @@
 """Frames are read as soon as they are written, and only where they are whole."""
 
 import os
+from contextlib import nullcontext
+from pathlib import Path
 
 import h5py
 import numpy as np
 import pytest
 from mdanim_lammps import Trajectory
 from mdanim_lammps.errors import OutputError
-from mdanim_lammps.results.trajectory_file import part_of
+from mdanim_lammps.results.trajectory_file import FrameTable, part_of
 from mdanim_lammps.results.trajectory_writer import TrajectoryWriter
+from mdanim_lammps.results.untrusted import check_frames
 from mdanim_lammps.view.feed import Feed
 from picture_samples import flat, pool_scene, raw_of, wet_frames, write
 
@@ -124,3 +127,13 @@ def test_what_is_read_may_be_changed(tmp_path, pool):
         np.testing.assert_array_equal(
             whole.objects[whole.names[-1]].position(1), frames[1][2][whole.objects[whole.names[-1]].particles]
         )
+
+
+@pytest.mark.parametrize(
+    ("name", "dtype", "damaged"), [("fields/hits", "i4", False), ("fields/hits", "S3", True), ("position", "i4", True)]
+)
+def test_fields_of_effects_may_be_whole_numbers(name, dtype, damaged):
+    """Positions and the like are floats; a field may hold any kind of number."""
+    table = FrameTable(1, np.dtype(dtype), (2,), 3)
+    with pytest.raises(OutputError, match=f"damaged: {name} holds") if damaged else nullcontext():
+        check_frames(Path("x"), {name: (2,)}, {name: table}, np.arange(3), np.arange(3.0))

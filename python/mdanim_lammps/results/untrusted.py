@@ -175,7 +175,9 @@ def check_frames(
     """
     for name, shape in shapes.items():
         found = tables[name]
-        if found.shape != shape or found.frames < len(steps) or found.dtype.kind != "f":
+        if found.shape != shape or found.frames < len(steps):
             raise OutputError(f"{path}: damaged: {name} has frames of the shape {found.shape}, not {shape}, or too few")
+        if found.dtype.kind not in ("fiu" if name.startswith("fields/") else "f"):
+            raise OutputError(f"{path}: damaged: {name} holds {found.dtype}")
     if (np.diff(steps) <= 0).any() or not np.isfinite(times).all() or (np.diff(times) <= 0.0).any():
         raise OutputError(f"{path}: damaged: the times of its frames do not ascend")

@@ -321,10 +321,10 @@ class Buoyancy(Effect):
         return ["fix_modify liquid buoyancy d_volume"]
 
     def lift(self, scene, system):
-        return scene.liquid.density * np.add.reduceat(system.volume, system.first[:-1])
+        return 0.0 if scene.liquid is None else scene.liquid.density * np.add.reduceat(system.volume, system.first[:-1])
 
     def surface(self, scene):
-        return liquid_level(scene.liquid)
+        return None if scene.liquid is None else liquid_level(scene.liquid)
 
     def rate(self, context):
         scene, system = context.scene, context.system

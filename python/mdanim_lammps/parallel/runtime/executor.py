@@ -299,11 +299,10 @@ class Executor:
 
     def _commit(self) -> None:
         """Take the states of all instances, and what was lost and how deep something was meanwhile."""
-        told: list[tuple[np.ndarray, Fields]] = []
         records = []
         for bundle in self.bundles:
             instance, lost = bundle.instance, bundle.newly_lost()
-            depth, fields = penetration(instance), tell(instance)
+            depth = penetration(instance)
             kept = instance.records()  # together with the team, as all above
             bundle.write_state(x=self.x, v=self.v, f=self.f)
             if not self._leads(bundle):
@@ -314,17 +313,21 @@ class Executor:
             self._count(lost)
             self.records = bundle.records_elsewhere(self.records)
             records.append(bundle.records_to(kept))
-            told.append((bundle.objects, fields))
-        self.fields = join_fields(frame_fields(self.job.plan), self.system.still, told)
         self.records = join_all([self.records, *records])
         self.started = True
 
     def _weigh(self) -> None:
-        """Energies of a frame."""
+        """Energies and fields of a frame."""
+        declared = frame_fields(self.job.plan)
+        of_objects = {field.name for field in declared if field.per == "object"}
+        told: list[tuple[np.ndarray, Fields]] = []
         for bundle in self.bundles:
-            energies = stored(bundle.instance)  # together with the team
+            energies, fields = stored(bundle.instance), tell(bundle.instance)  # together with the team
             if self._leads(bundle):
                 self._count(energies)
+                # Of objects that it has laid aside, and of guests, another bundle has the values.
+                told.append((bundle.members, {n: v[bundle.moves] if n in of_objects else v for n, v in fields.items()}))
+        self.fields = join_fields(declared, self.system.still, told)
 
     def _count(self, energies: dict[str, float]) -> None:
         for term, e in energies.items():
