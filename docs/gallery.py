@@ -10,11 +10,12 @@ import argparse
 import html
 import sys
 import urllib.parse
-from dataclasses import replace
 from pathlib import Path
 
 from mdanim_lammps import Interrupted, MdanimError, OutputError, Run, Scene
+from mdanim_lammps.cli.options import Reading
 from mdanim_lammps.errors import ExitCode
+from mdanim_lammps.report import count
 from mdanim_lammps.results.files import disk_errors, write_whole
 from mdanim_lammps.results.overwriting import MADE, check_overwriting
 from mdanim_lammps.run.folder import movie_file, output_folder
@@ -27,12 +28,13 @@ STYLE = (
 )
 
 
-def make_gallery(folder: Path, out: Path, *, values=(), accuracy=None, size=None, force=False) -> tuple[int, int]:
+def make_gallery(folder: Path, out: Path, reading: Reading, *, size=None, force=False) -> tuple[int, int]:
     """Run every ``NAME.txt`` of a folder into ``out``/NAME, and write ``out``/index.html; returns how many, and how many failed.
 
-    ``values`` are those of ``let`` names. Raises Interrupted, and OutputError where there are no scenes, or no page
-    can be written.
+    Raises Interrupted, UsageError for words of ``reading`` that cannot be read, and OutputError where there are no scenes, or no
+    page can be written.
     """
+    reading.overrides()
     scenes = sorted(folder.glob("*.txt"))
     if not scenes:
         raise OutputError(f"{folder} holds no scenes, files NAME.txt; name a folder that does")
@@ -44,10 +46,8 @@ def make_gallery(folder: Path, out: Path, *, values=(), accuracy=None, size=None
         print(f"gallery  {number} of {len(scenes)}: {path}", file=sys.stderr, flush=True)
         title = path.stem
         try:
-            record = Scene.load(path).where(values).record
+            record = reading.load(path)
             title = record.title or title
-            if accuracy:
-                record = replace(record, control=replace(record.control, accuracy=Accuracy(accuracy)))
             movie = movie_of(Scene(record), output_folder(record, out / path.stem), size, force=force)
             shown = f'<video src="{urllib.parse.quote(movie.relative_to(out).as_posix())}" controls loop muted></video>'
         except Interrupted:
@@ -92,12 +92,9 @@ def main(words: list[str] | None = None) -> None:
     open_streams()
     stop_on_sigterm()
     with documented_exit(debug=False):
-        values = dict(word.split("=", 1) for word in asked.set)
-        options = {"values": values, "accuracy": asked.accuracy, "size": asked.size, "force": asked.force}
-        made, failed = make_gallery(asked.folder, asked.out, **options)
-        print(
-            f"gallery  {asked.out / 'index.html'}   {made} scene{'s' * (made != 1)}" + f", {failed} of them failed" * (failed > 0)
-        )
+        reading = Reading(set=tuple(asked.set), accuracy=asked.accuracy)
+        made, failed = make_gallery(asked.folder, asked.out, reading, size=asked.size, force=asked.force)
+        print(f"gallery  {asked.out / 'index.html'}   {count(made, 'scene')}" + f", {failed} of them failed" * (failed > 0))
         if failed:
             raise SystemExit(ExitCode.DIVERGED)
 

@@ -51,18 +51,22 @@ class Reading:
     accuracy: Literal["preview", "balanced", "reference"] | None = None
     """Cells across the thinnest part: 2, 4, 8; time step 0.7, 0.5, 0.25 of the bound."""
 
-    def load(self, path: Path, *, strict: bool = False) -> SceneRecord:
-        """The scene of a file. Raises SceneError, UsageError."""
-        from ..scene.parse import load_scene
-        from ..scene.scene import Accuracy
-
+    def overrides(self) -> dict[str, str]:
+        """Values of `let` by name. Raises UsageError."""
         pairs = {}
         for text in self.set:
             name, equals, value = text.partition("=")
             if not equals or not name.strip():
                 raise UsageError(f"--set {text}: expected NAME=VALUE, e.g. --set rho=0.8")
             pairs[name.strip()] = value.strip()
-        scene = load_scene(path, overrides=pairs, strict=strict)
+        return pairs
+
+    def load(self, path: Path, *, strict: bool = False) -> SceneRecord:
+        """The scene of a file. Raises SceneError, UsageError."""
+        from ..scene.parse import load_scene
+        from ..scene.scene import Accuracy
+
+        scene = load_scene(path, overrides=self.overrides(), strict=strict)
         return replace(scene, control=replace(scene.control, accuracy=Accuracy(self.accuracy))) if self.accuracy else scene
 
 
