@@ -98,17 +98,6 @@ class Loss {
   std::vector<Vec3> &latest() { return force; }
   std::vector<Vec3> &latest_seen() { return seen; }
 
-  // Whether no force has acted in the last step.
-  bool idle() const { return power == 0.0 && tail == 0.0; }
-
-  // Replaces a computation while idle.
-  void rest()
-  {
-    kept = 0;
-    bend = 0.0;
-    begun = true;    // from nothing
-  }
-
   // Energy lost up to the last step.
   double total() const { return sum + tail; }
   std::size_t bytes() const

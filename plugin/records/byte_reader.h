@@ -8,10 +8,10 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
-#include <limits>
 #include <stdexcept>
 #include <string>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace mdanim {
@@ -54,13 +54,6 @@ class ByteReader {
     if (count < 0) is_cut_off();
     return get_all<Value>(static_cast<std::size_t>(count));
   }
-  // A reader for the next `size` bytes of the record; this one goes on behind them.
-  ByteReader get_part(std::size_t size, const std::string &part_name)
-  {
-    const std::uint8_t *const from = skip(size);
-    return {from, size, part_name};
-  }
-  ByteReader get_rest(const std::string &part_name) { return get_part(left(), part_name); }
 
   void expect_version(std::int64_t version)
   {

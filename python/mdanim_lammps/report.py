@@ -257,7 +257,7 @@ def check_json(
     threads: ThreadChoice | None = None,
     speedup: SpeedupForecast | None = None,
 ) -> dict:
-    """The output of ``check --format json``; with the expected cost (cost/forecast.py), the number of threads
+    """The output of ``check --json``; with the expected cost (cost/forecast.py), the number of threads
     (engine/threads.py), and the gain by executors (cost/speedup_forecast.py)."""
     return {
         "scene": str(ready.scene.path) if ready.scene.path else ready.scene.name,

@@ -90,7 +90,6 @@ class WaveBasin : public Basin {
   void set_walls();
   void count_parts();
   std::size_t part_number(int column, int z) const { return static_cast<std::size_t>(column) * shape.nz + z; }
-  void take_solids();
   void look();
   void find_push(double part, double since);
   void look_at_column(int column);

@@ -8,7 +8,6 @@ from dataclasses import replace
 from pathlib import Path
 
 from ..errors import MdanimError
-from ..model.spacing import choose_spacing
 from ..results.files import STOP
 from ..run.prepare import Prepared, prepare
 from ..scene.scene import Save
@@ -49,7 +48,7 @@ def _coarser(ready: Prepared) -> Prepared | None:
         return None
     control = ready.scene.control
     for factor in COARSER:
-        spacing = factor * choose_spacing(ready.scene)[0]
+        spacing = factor * ready.context.spacing.h
         try:
             return prepare(
                 replace(ready.scene, control=replace(control, resolution=spacing, timestep=None, save=Save.BOUNDARY, single=True))

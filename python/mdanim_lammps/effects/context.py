@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 from ..errors import Problem, Span
 from ..model.grid import Grid
 from ..model.model import Model
-from ..model.planes import Plane
 from ..model.spacing import Spacing
 from ..model.system import System
 from ..reach import Reach
@@ -38,8 +37,6 @@ class Resolved:
     """Verdicts on all effects, by their names."""
     effects: tuple[Effect, ...]
     """Those that are on, in the order in which their forces are summed."""
-    planes: tuple[Plane, ...]
-    """The planes of those that are on."""
     warnings: tuple[Problem, ...]
     """About effects that the scene calls for and switches off."""
 

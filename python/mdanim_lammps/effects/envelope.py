@@ -21,7 +21,7 @@ class Envelope:
 
     def __init__(self, context: Context, rates: Mapping[str, np.ndarray], timestep: float):
         self.context, self.scene, self.system, self.reach = context, context.scene, context.system, context.reach
-        self.on, self.planes = context.resolved.effects, context.resolved.planes
+        self.on, self.planes = context.resolved.effects, context.reach.acting.planes
         self.rates, self.dt = rates, timestep
         """``rates`` are the shares of effects in the bound, by name [1/s^2], each of shape (N,)."""
 

@@ -64,4 +64,4 @@ def resolve(effects: tuple[Effect, ...], scene: SceneRecord, h: float | None = N
     effects = tuple(e.of(scene) for e in effects)
     verdicts, warnings = decide(effects, scene, h)
     on = tuple(e for e in effects if verdicts[e.name].on)
-    return Resolved(scene, verdicts, on, tuple(p for e in on for p in e.planes(scene)), tuple(warnings))
+    return Resolved(scene, verdicts, on, tuple(warnings))

@@ -114,8 +114,6 @@ def make_plan(context: Context, certificate: Certificate) -> Plan:
     """Gather what the effects that are on ask for."""
     system, effects = context.system, context.resolved.effects
     columns: dict[str, np.ndarray] = {}
-    units: dict[str, str]
-    """SI unit of each of them."""
     tables: dict[str, np.ndarray] = {}
     asked: dict[str, tuple[str, ...]] = {}
     units: dict[str, str] = {}

@@ -10,10 +10,13 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from fractions import Fraction
+from typing import TYPE_CHECKING
 
 from ..errors import UsageError
 from ..processes import affinity, cores, quota
-from .plan import Plan
+
+if TYPE_CHECKING:
+    from .plan import Plan
 
 THREADS = "MDANIM_THREADS"
 """Environment variable with the number of threads of an instance: the processes of executors inherit it."""

@@ -171,7 +171,7 @@ class Painter:
         self._marks = MarkActors(marks, metadata, dark, self.size[1] * self._finer)
         for actor in self._marks.actors:
             self._front.AddViewProp(actor)
-        self._write(render, low)
+        self._write(low)
         self._renderers = [self._renderer, self._front] if self._behind else [self._renderer]
         for actor in (actor for renderer in self._renderers for actor in renderer.GetActors()):
             look = actor.GetProperty()
@@ -222,7 +222,7 @@ class Painter:
         uniforms.SetUniform3f("highColor", list(high))
         return actor
 
-    def _write(self, render: Render, background: np.ndarray) -> None:
+    def _write(self, background: np.ndarray) -> None:
         from vtkmodules.vtkRenderingCore import vtkTextActor
 
         width, height = (n * self._finer for n in self.size)

@@ -74,11 +74,6 @@ def recorded(expects: tuple[Expect, ...]) -> dict[tuple[str, str], str]:
     return {(e.subject, e.quantity): _column(e) for e in expects if e.quantity in recordable()}
 
 
-def asked(expects: tuple[Expect, ...]) -> tuple[tuple[str, str], ...]:
-    """Subjects and words of those lines whose subject is not an object, once."""
-    return tuple(dict.fromkeys((e.subject, e.quantity) for e in expects if e.subject in GLOBALS))
-
-
 def _column(e: Expect) -> str:
     return f"{recordable()[e.quantity].column}.{e.subject}"
 

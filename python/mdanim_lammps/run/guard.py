@@ -52,7 +52,7 @@ class Guard:
         self.ready, self.folder = ready, folder
         self.cells = np.diff(Geometry(ready.system).first_cell)
         """Number of cells of each solid, shape (M,)."""
-        self.sides = [p for e in ready.plan.effects for p in e.planes(ready.scene)]
+        self.sides = ready.context.reach.acting.planes
         self.planes = np.array([s.sign * s.at for s in self.sides])
         self.columns = [s.axis if s.sign > 0 else 3 + s.axis for s in self.sides]
         """Column of an object's reach: the one towards the plane, for objects below it."""

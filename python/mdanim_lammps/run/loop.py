@@ -181,12 +181,10 @@ class _Run:
             and all(((r.keys >= 0) & (r.keys <= len(ready.system.names))).all() for r in resume.records.values())
         ):
             raise OutputError(f"{folder / CHECKPOINT} is damaged; run the scene again with --force")
-        self.recorded = recorded(ready.scene.expects)
-        self.grid = ready.plan.grid
         self.extras = extra_fields(ready.plan)
         self.ledger = Ledger(
             ledger_terms(ready.plan),
-            (*self.recorded.values(), *(field.name for field in self.extras)),
+            (*recorded(ready.scene.expects).values(), *(field.name for field in self.extras)),
             least_energy(ready.scene, ready.system),
             potential_terms(ready.plan),
             tuple(field.name for field in self.extras if field.whole),
@@ -362,7 +360,9 @@ class _Run:
         if not self.resume:
             return trajectory_writer(self.ready, self.folder, frames=self.certificate.last_frame + 1)
         path = self.folder / "trajectory.h5"
-        return TrajectoryWriter.append(path, self.ready.scene, self.ready.models, after_step=self.resume.step, grid=self.grid)
+        return TrajectoryWriter.append(
+            path, self.ready.scene, self.ready.models, after_step=self.resume.step, grid=self.ready.plan.grid
+        )
 
     def _record(self, out: TrajectoryWriter, log: ProgressLog, frame: int, now: Frame) -> None:
         """Check the energies, then append the frame to ledger and trajectory, and tell of it. Raises DivergedError before a bad

@@ -80,7 +80,6 @@ class Expander:
         self.strict = strict
         self.shared = shared
         self.rounds = self.objects = 0
-        self.loop_names: tuple[str, ...] = ()
         self.overrides = dict(overrides or {})
         self.used: set[str] = set()
 
@@ -169,7 +168,7 @@ class Expander:
         """The indices of the repeats for messages."""
         if not env.loops:
             return ""
-        return " (with " + ", ".join(f"{n} = {i}" for n, i in zip(self.loop_names, env.loops)) + ")"
+        return " (with " + ", ".join(f"{n} = {i}" for n, i in zip(env.counters, env.loops)) + ")"
 
     def run(self, body: list, env: Env, out: EvaluatedBlock) -> None:
         """Carry out statements; settings and blocks go to ``out``."""
@@ -269,7 +268,6 @@ class Expander:
         if high < low:
             cause = f"this repeat runs from {low} to {high}: not at all"
             self.problems.add(s.source.span(s.token, s.variable), cause, "the first index is the smaller one", "warning")
-        outer, self.loop_names = self.loop_names, (*self.loop_names, name)
         for i in range(low, high + 1):
             self.rounds += 1
             if self.rounds > MOST_ROUNDS or self.objects > MOST_OBJECTS:
@@ -279,7 +277,6 @@ class Expander:
             env.values[name] = float(i)
             self.scope(s.body, env.within(name, i), out)
         env.values.pop(name, None)
-        self.loop_names = outer
 
     def group(self, s: Group, env: Env, out: EvaluatedBlock) -> None:
         """One block with a scope of its own."""

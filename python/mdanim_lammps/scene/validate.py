@@ -76,7 +76,7 @@ class Validator:
                 words.check(self, top, held)
         self.contact_fits(control, held["solids"])
         held["control"] = control = self.frames(control, held["render"])
-        self.cameras(control)
+        self.cameras()
         top["expects"] = self.expects(control)
         if not held["solids"] and not self.blocks("liquid") and not self.out.excused("object") and not self.problems.errors:
             cause = "the scene has neither an object nor a liquid: there is nothing to compute"
@@ -93,7 +93,7 @@ class Validator:
         """The render block alone; None after an error."""
         self.one_of_each()
         found = self.records(BLOCKS["render"])
-        self.cameras(None)
+        self.cameras()
         return found
 
     # -- from settings to records
@@ -324,7 +324,7 @@ class Validator:
                 return None
         return contact
 
-    def cameras(self, control: records.Control | None) -> None:
+    def cameras(self) -> None:
         """Cameras look at something; several are points of one path, each with a time of its own, in order."""
         settings = [s for block in self.blocks("render")[:1] for s in block.settings.get("camera", ())]
         last = -math.inf

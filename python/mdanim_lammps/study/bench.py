@@ -70,10 +70,10 @@ class Bench:
         """
         left = {}
         for setting in sorted(wanted, key=lambda s: (s not in first, self._work(s))):
-            if self._has(setting):
+            if self.has(setting):
                 continue
             # All others are compared with the scene's own setting: time is reserved for that setting, and for repeats.
-            waiting = setting != self.own and not self._has(self.own)
+            waiting = setting != self.own and not self.has(self.own)
             room = FOR_REPEATS * self.budget + ((self.predict(self.own) or 0.0) if waiting else 0.0)
             share = self.left if setting == self.own else self.left - room
             expected = self.predict(setting)
@@ -87,7 +87,7 @@ class Bench:
         self._repeat(wanted)
         return left | {s: p.problem for s in wanted if (p := self.store.points.get(s.key)) and p.problem}
 
-    def _has(self, setting: Setting) -> bool:
+    def has(self, setting: Setting) -> bool:
         """Whether a setting has been measured."""
         point = self.store.points.get(setting.key)
         return bool(point and point.tracks)

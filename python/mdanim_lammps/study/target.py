@@ -255,8 +255,7 @@ class _Search:
 
     def _run(self, setting: Setting) -> bool:
         """Measure a setting that is not measured yet; whether the setting is measured now."""
-        point = self.store.points.get(setting.key)
-        if point and point.tracks:
+        if self.bench.has(setting):
             return True
         expected = self.bench.predict(setting)
         if expected is not None and expected > self.bench.left:

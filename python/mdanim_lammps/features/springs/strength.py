@@ -46,7 +46,7 @@ def amplitude(env: Envelope) -> Margin:
     scene, system = env.scene, env.system
     meets = len(system.names) > 1 or len(env.planes) > 0
     ratio = np.where(meets, env.reach.speed / env.reach.wave, 0.0)
-    hard = (len(env.planes) > 0 or not env.reach.moving.all()) and not env.context.grid is not None  # a liquid breaks the fall
+    hard = (len(env.planes) > 0 or not env.reach.moving.all()) and env.context.grid is None  # a liquid breaks the fall
     spot = _spots(env) if hard else np.full(len(ratio), np.inf)
     limit = np.minimum(FOLDS, spot)
     m = int((ratio / limit).argmax())
