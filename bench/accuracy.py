@@ -197,8 +197,8 @@ def target(percent: float = 2.0, budget: float = 600.0):
 
     scene = cantilever(percent / 100.0)
     with tempfile.TemporaryDirectory() as folder:
+        choice = find_choice(scene, percent / 100.0, budget=budget, folder=Path(folder), on_progress=told)
         store = Store(Path(folder), scene_hash(scene))
-        choice = find_choice(scene, percent / 100.0, budget=budget, store=store, on_progress=told)
         found = set(store.points)
         full_ladder(scene, store, choice)
         points = list(store.points.values())

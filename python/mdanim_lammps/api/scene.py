@@ -33,8 +33,6 @@ from ..scene.keywords import Named
 from ..scene.parse import load_scene, parse_scene
 from ..scene.scene import Accuracy, Save, SceneRecord
 from ..study.bench import BUDGET
-from ..study.setting import same_frames, scene_hash
-from ..study.store import Store
 from ..study.study import Study, run_study
 from ..study.target import Choice, find_choice
 from ..terminal import progress_bar
@@ -231,9 +229,8 @@ class Scene:
         Points are kept with those of `study`, and arguments are as there. Raises UsageError for a scene that says both resolution
         and timestep, DivergedError where no setting could be found, SceneError, RefusedError, OutputError.
         """
-        scene = same_frames(self.record)
-        store = Store(output_folder(self.record, folder) / STUDY, scene_hash(scene), force=force)
-        return find_choice(scene, error, budget=budget, store=store, on_progress=on_progress)
+        home = output_folder(self.record, folder) / STUDY
+        return find_choice(self.record, error, budget=budget, folder=home, force=force, on_progress=on_progress)
 
     def picture(self, path: str | Path, *, at: float = 0.0, size: tuple[int, int] | None = None) -> Path:
         """Draw the scene before it is run, at its start or after ``at`` seconds of a quick, coarse run; see `draw_picture`."""

@@ -210,10 +210,10 @@ class Expander:
             self.problems.fault(s.source, fault, self.where(env))
             value = SPOILED
         if name in self.overrides:
-            value = self.override(name, s, value)
+            value = self.override(name, value)
         env.values[name] = value
 
-    def override(self, name: str, s: Let, original) -> object:
+    def override(self, name: str, original) -> object:
         """The value of ``--set name=value``, which must be of the kind of the let's."""
         given = self.overrides[name]
         source = SceneFile(f"--set {name}", str(given).strip())
@@ -345,7 +345,7 @@ class Expander:
         """A value as the slot wants it."""
         kind = v.slot.kind
         if kind == "color":
-            return self._color(s, v, x)
+            return self._color(v, x)
         if kind == "check":
             subject, quantity, argument = x
             return subject, quantity, v.argument and self.checked(s, v.argument, argument)
@@ -404,7 +404,7 @@ class Expander:
             )
         return x
 
-    def _color(self, s: SettingNode, v: Value, x: str) -> str:
+    def _color(self, v: Value, x: str) -> str:
         try:
             return color(x)
         except ValueError as e:

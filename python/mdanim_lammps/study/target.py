@@ -77,7 +77,8 @@ def find_choice(
     error: float,
     *,
     budget: float = BUDGET,
-    store: Store | None = None,
+    folder: Path | None = None,
+    force: bool = False,
     on_progress: Callable[[str], None] = lambda line: None,
 ) -> Choice:
     """Measure until a setting meets a target error, or the budget is spent.
@@ -92,7 +93,8 @@ def find_choice(
         scene: with a resolution or a time step to choose.
         error: the target, a fraction.
         budget: wall time [s].
-        store: a study of this scene whose points are used again; None measures in a temporary folder.
+        folder: of a study of this scene, whose points are used again; None measures in a temporary folder.
+        force: throw away the study of another scene in this folder.
         on_progress: called with each line of progress.
 
     Raises UsageError for a scene with nothing to choose and an error that is not between 0 and 1, DivergedError when no setting
@@ -103,8 +105,8 @@ def find_choice(
     if None not in (scene.control.resolution, scene.control.timestep):
         raise UsageError("the scene says both resolution and timestep, so a target has nothing to choose; leave one of them out")
     scene = same_frames(scene)
-    if store is not None:
-        return _Search(scene, error, store, budget, on_progress).go()
+    if folder is not None:
+        return _Search(scene, error, Store(folder, scene_hash(scene), force=force), budget, on_progress).go()
     with tempfile.TemporaryDirectory(prefix="mdanim-") as temporary:
         return _Search(scene, error, Store(Path(temporary), scene_hash(scene)), budget, on_progress).go()
 

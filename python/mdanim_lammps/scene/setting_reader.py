@@ -1,0 +1,250 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Reads one setting by the form of its keyword: the words that stand as they are, and a value for each slot."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from functools import cache
+from itertools import count
+
+from .forms import OptionalPart, Slot, Word, alternatives, literals, pieces
+from .keywords import KEYWORDS, NOT_SUPPORTED, STATEMENTS, did_you_mean, example, misplaced, nearest
+from .reader import ODD, Reader
+from .scene import GLOBALS, QUANTITIES, RELATIONS
+from .schema import Keyword
+from .source import Fault, Problems, SceneFile
+from .tokens import Token
+from .tree import Name, SettingNode, Value
+from .units import UNITS, unit
+
+TAKEN = {"object": ("another object", "(cube)"), "place": ("a place (x, y)", "(0.2 m, 0 m)")}
+"""Arguments of quantities in words, and an example."""
+
+
+@dataclass(eq=False)
+class Shared:
+    """State shared by the files of one scene."""
+
+    problems: Problems
+    sites: Iterator[int] = field(default_factory=count)
+    lets: dict[str, int] = field(default_factory=dict)
+    """Names given by let so far, and the line."""
+    names: set[str] = field(default_factory=set)
+    """Names given by let or repeat so far."""
+    files: int = 0
+    bytes: int = 0
+    """Bytes of all files that were included."""
+    incomplete: bool = False
+    """A file or a repeat could not be read, so that names may be missing without a mistake of theirs."""
+
+
+@cache
+def stops(keyword: Keyword) -> frozenset[str]:
+    """Words that end a value of a keyword; of a word with a hyphen its beginning, which is a token of its own."""
+    return literals(keyword.form) | {word.partition("-")[0] for word in KEYWORDS[keyword.block]} | STATEMENTS.keys()
+
+
+class SettingReader(Reader):
+    """Reads words, names and settings of one file."""
+
+    def __init__(self, source: SceneFile, shared: Shared):
+        super().__init__(source, shared.names, shared.sites)
+        self.shared = shared
+
+    def word(self) -> Token:
+        """A word, hyphens included (``air-drag``)."""
+        first = last = self.take()
+        while self.peek.type == "MINUS" and self.peek.start == last.end:
+            if self.ahead(1).type != "NAME" or self.ahead(1).start != self.peek.end:
+                break
+            self.take()
+            last = self.take()
+        if last is first:
+            return first
+        return Token("NAME", self.source.text[first.start : last.end], first.start, first.line, first.column)
+
+    def name(self) -> Name:
+        """NAME or NAME[index]."""
+        token = last = self.take()
+        if self.peek.type != "LSQB":
+            return Name(token, last)
+        self.take()
+        index = self.expression(Slot("number", "index"), frozenset())
+        last = self.peek
+        if last.type == "COMMA":
+            hint = f"make one number of them, e.g. {token}[100*i + j]"
+            raise Fault(last, f"{token}[...] has one index, found {last.found()}", hint)
+        if last.type != "RSQB":
+            raise Fault(last, f"a ] is missing after the index of {token}, found {last.found()}", f"write {token}[1]")
+        self.take()
+        return Name(token, last, index)
+
+    def entry(self, word: Token, keyword: Keyword, repeats: int) -> SettingNode:
+        if repeats and not keyword.many:
+            raise Fault(word, f"{keyword.name} cannot stand in a repeat", "it is given once")
+        if self.peek.type == "EQUAL" or self.peek == ":":
+            raise Fault(self.peek, f"no '{self.peek}' is needed after {keyword.name}", example(keyword))
+        choice = self.choose(word, keyword)
+        words, values = [], []
+        self.match(alternatives(keyword.form)[choice], keyword, words, values)
+        self.end_of_statement(keyword.name, KEYWORDS[keyword.block])
+        return SettingNode(self.source, word, keyword, choice, tuple(words), tuple(values))
+
+    def choose(self, word: Token, keyword: Keyword) -> int:
+        """The alternative of the form that the next word calls for."""
+        t = self.peek
+        options = alternatives(keyword.form)
+        for n, parts in enumerate(options):
+            if isinstance(parts[0], Word) and parts[0].text == t:
+                return n
+        starts = [p[0].text for p in options if isinstance(p[0], Word)]
+        free = [n for n, p in enumerate(options) if not isinstance(p[0], Word)]
+        mistyped = t.type == "NAME" and t not in self.shared.names and (nearest(str(t), starts) or not free)
+        if not free or mistyped:
+            if t.type in ("NEWLINE", "END", "RBRACE"):
+                self._missing(word, keyword)
+            hint = did_you_mean(str(t), starts) if len(starts) > 1 or mistyped else example(keyword)
+            raise Fault(t, f"{keyword.name} cannot be followed by {t.found()}", misplaced(keyword, str(t), starts) or hint)
+        return free[0]
+
+    def _missing(self, word: Token, keyword: Keyword) -> None:
+        rest = self.source.lines[word.line - 1][word.column + len(word) - 1 :].strip()
+        hint = example(keyword)
+        if rest.startswith("#") and "color" in keyword.form:
+            hint = "'#' starts a comment: put the colour in quotes, \"#rrggbb\""
+        cause = f"nothing follows {word}"
+        if word in UNITS and word in self.shared.names:
+            cause = f"nothing follows the unit {word}: a name right after a value is its unit"
+            hint = f"for the value of let {word} write ({word})"
+        raise Fault(word, cause, hint)
+
+    def match(self, parts: tuple, keyword: Keyword, words: list, values: list) -> None:
+        """Read the parts of one alternative."""
+        for n, part in enumerate(parts):
+            t = self.peek
+            if isinstance(part, Word):
+                if part.text != t and not (part.text == "+-" and t.type == "PLUS_MINUS"):
+                    raise Fault(t, f"'{part.text}' is missing in {keyword.name}, found {t.found()}", example(keyword))
+                words.append(str(self.take()))
+            elif isinstance(part, OptionalPart):
+                first = part.parts[0]
+                if isinstance(first, Word):
+                    present = first.text == t or (first.text == "+-" and t.type == "PLUS_MINUS")
+                else:
+                    following = parts[n + 1].text if n + 1 < len(parts) else None
+                    present = t.type not in ("NEWLINE", "END", "RBRACE") and t != following
+                    present = present and not (following is None and str(t) in KEYWORDS[keyword.block])
+                if present:
+                    self.match(part.parts, keyword, words, values)
+                else:
+                    values += [None] * sum(isinstance(p, Slot) for p in pieces(part.parts))
+            else:
+                if t.type in ("NEWLINE", "END", "RBRACE"):
+                    self._missing(self.tokens[self.at - 1], keyword)
+                more = n + 1 < len(parts) and isinstance(parts[n + 1], Slot)
+                values.append(self.value(part, keyword, more))
+
+    def value(self, slot: Slot, keyword: Keyword, more: bool) -> Value:
+        t = self.peek
+        if slot.kind == "text":
+            token = self.text(keyword.name, example(keyword))
+            return Value(slot, token, token, text=str(token)[1:-1])
+        if slot.kind == "choice":
+            return self.choice(slot, keyword)
+        if slot.kind == "color":
+            if t.type == "STRING":
+                self.take()
+                return Value(slot, t, t, text=str(t)[1:-1])
+            if t.type != "NAME":
+                raise Fault(t, f"{keyword.name} needs a colour, found {t.found()}", 'write a name such as red, or "#rrggbb"')
+            name = self.word()
+            return Value(slot, t, self.tokens[self.at - 1], text=str(name))
+        if slot.kind == "check":
+            return self.check(slot, keyword)
+        if slot.kind == "relation":
+            if t not in RELATIONS:
+                raise Fault(t, f"'=' is missing in {keyword.name}, found {t.found()}", f"{example(keyword)}; or <, >, <=, >=")
+            self.take()
+            return Value(slot, t, t, text=RELATIONS[str(t)])
+        if slot.kind == "place" and t.type == "NAME":
+            name = self.name()
+            return Value(slot, name.token, name.last, name=name)
+        node = self.expression(slot, stops(keyword), more)
+        return Value(slot, node.first, node.last, node)
+
+    def text(self, what: str, hint: str) -> Token:
+        t = self.peek
+        if t.type == "BAD_STRING":
+            raise Fault(t, "this text is never closed", 'add a " at its end')
+        if t.type != "STRING":
+            raise Fault(t, f"{what} needs a text in quotes, found {t.found()}", ODD.get(str(t)) or hint)
+        return self.take()
+
+    def choice(self, slot: Slot, keyword: Keyword) -> Value:
+        first = last = self.take()
+        text = str(first)
+        if first.type in ("PLUS", "MINUS") and self.peek.type == "NAME":
+            last = self.take()
+            text += str(last)
+        if text not in slot.choices:
+            gone = keyword.gone.get(text.strip('"').partition(" ")[0])
+            cause = f"'{text.strip()}' is not one of the choices of {keyword.name}{' any more' * bool(gone)}"
+            raise Fault(first, cause, gone or did_you_mean(text, slot.choices), last)
+        return Value(slot, first, last, text=text)
+
+    def check(self, slot: Slot, keyword: Keyword) -> Value:
+        """NAME.QUANTITY of an expect."""
+        if self.peek.type != "NAME":
+            hint = f"NAME is an object, or one of {', '.join(GLOBALS)}"
+            raise Fault(self.peek, f"expect needs NAME.QUANTITY, found {self.peek.found()}", hint)
+        name, words = self.name(), []
+        while self.peek.type == "DOT":
+            self.take()
+            if self.peek.type != "NAME":
+                raise Fault(self.peek, f"the quantity is missing after {name.token}., found {self.peek.found()}")
+            words.append(self.take())
+        if not words:
+            raise Fault(name.token, f"expect {name.token} names no quantity", f"e.g. {name.token}.position.z", name.last)
+        text = ".".join(words)
+        argument = self.argument(text, words[-1], stops(keyword))
+        return Value(slot, name.token, argument.last if argument else words[-1], text=text, name=name, argument=argument)
+
+    def argument(self, quantity: str, last: Token, stops: frozenset[str]) -> Value | None:
+        """The value in brackets behind a quantity that has an argument."""
+        takes = next((q.takes for (_, word), q in QUANTITIES.items() if word == quantity and q.takes), "")
+        if not takes:
+            return None
+        if self.peek.type != "LPAR":
+            raise Fault(last, f"{quantity} needs {TAKEN[takes][0]} in brackets", f"write {quantity}{TAKEN[takes][1]}")
+        if takes == "place":
+            node = self.expression(Slot("vector", "(x, y)", "m", 2, dim=unit("m").dim), stops)
+            return Value(self.slot, node.first, node.last, node)
+        self.take()
+        if self.peek.type != "NAME":
+            raise Fault(self.peek, f"{quantity} needs {TAKEN[takes][0]} in brackets, found {self.peek.found()}")
+        name = self.name()
+        if self.peek.type != "RPAR":
+            raise Fault(self.peek, f"a ) is missing after {name.token}, found {self.peek.found()}")
+        return Value(Slot("object", "NAME"), name.token, self.take(), name=name)
+
+    def end_of_statement(self, what: str, settings) -> None:
+        t, at = self.peek, self.at
+        if t.type in ("NEWLINE", "RBRACE", "END"):
+            return
+        if t.type == "NAME":
+            word, self.at = str(self.word()), at
+            if word in settings or word in STATEMENTS:
+                return
+            if word in NOT_SUPPORTED:
+                raise Fault(t, f"{word} is not supported yet", NOT_SUPPORTED[word])
+        hint = ODD.get(str(t), "")
+        if t.type == "COMMA":
+            hint = "a decimal number is written with a point"
+        elif t.type == "RPAR":
+            hint = "this ) closes nothing"
+        elif t.type == "NAME":
+            hint = did_you_mean(str(t), settings) or "one setting per line"
+        elif t.type == "LBRACE":
+            hint = f"{what} is a setting, not a block"
+        raise Fault(t, f"{t.found()} cannot follow here; {what} is complete", hint)
