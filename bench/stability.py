@@ -77,7 +77,9 @@ def tunnelling(long: bool) -> tuple[str, bool]:
     from contacts import PASSES_AT, PLATE_PASSES_AT, plate_tunnelling_speed, tunnelling_speed
 
     lines = [
-        "| two of, or block on | " + " | ".join(f"displaced by ({x:g}, {y:g}) h" for x, y in OFFSETS) + " | least | taken as |",
+        "| two objects, or block on | "
+        + " | ".join(f"displaced by ({x:g}, {y:g}) h" for x, y in OFFSETS)
+        + " | least | taken as |",
         "|---" * (len(OFFSETS) + 3) + "|",
     ]
     good = True

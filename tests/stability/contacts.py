@@ -40,8 +40,8 @@ def collision(name, why, drift, overlap, lost, **scene) -> Case:
 
 
 BOUNCES = (
-    "speed lost below 1: they part again; what is missing vibrates on inside them. The overlap is less than the one "
-    "spacing between a surface and the guards below it"
+    "a speed lost below 1 means that they separate again; the rest of the energy is vibration inside them. "
+    "The overlap is less than the spacing between a surface and the barrier particles below it"
 )
 HALF = "springs are resolved at half of the bound: the energy of leap-frog holds to 1e-3 (docs/physics-solids.md)"
 CONTRASTS = [
@@ -56,7 +56,7 @@ CONTRASTS = [
         left=(1000.0, 1.0),
     ),
     collision(
-        "density 1:1000", f"{BOUNCES}. The heavy one hardly notices", 1e-4, 0.5, 0.9, speed=0.2, cells=4, left=(1.0, 1000.0)
+        "density 1:1000", f"{BOUNCES}. The heavy one hardly slows down", 1e-4, 0.5, 0.9, speed=0.2, cells=4, left=(1.0, 1000.0)
     ),
     collision("stiff and heavy, 1:1000 each", BOUNCES, 1e-4, 0.5, 0.9, speed=0.2, cells=4, left=(1000.0, 1000.0)),
     collision(
@@ -66,7 +66,7 @@ CONTRASTS = [
 IMPACTS = [
     collision(
         f"impact at {speed:g} c",
-        f"{BOUNCES}. {HALF}; above 0.5 c surface cells fold up, and 1 to 2 % is what is asked",
+        f"{BOUNCES}. {HALF}; above 0.5 c surface cells fold up, and 1 to 2 % is allowed",
         1e-3 if speed <= 0.5 else 1e-2 if speed < 1.0 else 2e-2,
         overlap,
         0.95,
@@ -81,8 +81,8 @@ WORST = (0.5, 0.5)
 TUNNELS = [
     collision(
         f"0.9 of the tunnelling speed, {cells} cells",
-        "they must not pass; so hard a blow crushes cells, and 2 % of the "
-        "energy is what is asked beyond the wave speed. The overlap gets past the first layer of guards; deeper ones push out",
+        "they must not pass. So hard a blow crushes cells; beyond the wave speed 2 % of the energy is allowed. "
+        "The overlap passes the first layer of barrier particles; deeper ones push out",
         2e-2,
         1.5,
         0.9,
@@ -175,8 +175,8 @@ def heavy_on_slab(stress: float, bottom: float) -> Case:
         text,
         play,
         {"speed left": 1e-4, "cells turned over": 0, "height of its bottom, off by / h": 0.06},
-        "what is left is a slow slide into the hollows of the lattice below; its height is that of an independent model in NumPy "
-        "with edges as stiff as faces",
+        "the remaining motion is a slow slide into the hollows of the lattice below; the height is that of an independent model "
+        "in NumPy with edges as stiff as faces",
     )
 
 
@@ -233,7 +233,7 @@ TOWERS = [
         tower(offset=0.25, cells=6),
         stand,
         STANDS,
-        "nothing but the corrugation of the barrier holds it: askew by 0.25 h takes cubes of 6 cells",
+        "only the corrugation of the barrier holds it; an offset of 0.25 h needs cubes of 6 cells",
     ),
 ]
 
@@ -271,7 +271,7 @@ TOUCH = [
             0.0,
             0.1,
             "surfaces that touch are 0.6 h inside the reach of the barrier, which drives them apart, softly. All energy "
-            "starts in the stiffest pairs, so the drift is larger than of an impact",
+            "starts in the stiffest pairs, so the drift is larger than after an impact",
         ),
         (", at the reach of the barrier", 0.6, 1e-12, "nothing acts, nothing moves"),
     )
@@ -335,11 +335,11 @@ PLATES += [
         onto_plate(0.9 * fast, cells, WORST),
         dropped("plate"),
         {"energy drift": 1e-2, "passed": 0},
-        "a plate can bend but not give way as a whole, so it is passed more easily than a cube",
+        "a plate bends but cannot move away as a whole, so objects pass it more easily than a cube",
     )
     for cells, fast in PLATE_PASSES_AT.items()
 ]
-NEEDLES = struck("needle", (20, 1, 1), 3, (0.1, 0.75), "thin both ways: every particle of it is an edge")
+NEEDLES = struck("needle", (20, 1, 1), 3, (0.1, 0.75), "it is thin in two directions: every particle is on an edge")
 
 
 def crossed(speed: float) -> str:
@@ -380,7 +380,7 @@ CORNERS = [
         corners(speed),
         corner_on_corner,
         {"energy drift": 1e-4, "cells turned over": 0, "not handed over": 0.05},
-        "equal cubes on one line hand over their speed; braces bring the corners back (docs/physics-solids.md, Braces)",
+        "equal cubes on one line exchange their speeds; braces bring the corners back (docs/physics-solids.md, Braces)",
     )
     for speed in (0.05, 0.2)
 ]

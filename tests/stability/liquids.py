@@ -67,8 +67,7 @@ def floats(name, why="", time=3000.0, below=0.6, **scene) -> Case:
         pool(**scene),
         come_to_rest(time),
         {"immersed share": 0.02, "cells of liquid": 0, "speed left": 1e-3, "cells turned over": 0, "below the floor / h": below},
-        f"{why}Archimedes within 2 % of the side, what nodes can tell of a body of 5 cells; "
-        "not a unit of liquid lost at any look",
+        f"{why}Archimedes within 2 % of the side, the resolution of a body of 5 cells; no unit of liquid is lost at any check",
     )
 
 
@@ -84,7 +83,7 @@ FLOATS = [
     floats("density 3", "It lies on the floor. ", density=3000.0, young=1e4, g=0.003),
     floats(
         "density 100",
-        "It lies on the floor; drag of air ends its bouncing, which a liquid so light would not. ",
+        "It lies on the floor; air drag ends its bouncing, because so light a liquid does not. ",
         density=1e5,
         young=1e6,
         g=0.01,
@@ -137,13 +136,13 @@ FULL = [
         KEPT,
         "no free cell: nothing can move, nothing is lost",
     ),
-    Case("one free cell", tub("volume 935", standing()), keep(935), KEPT, "one unit has room to wander"),
+    Case("one free cell", tub("volume 935", standing()), keep(935), KEPT, "one unit has room to move"),
     Case(
         "brimful by a floating cube",
         tub("volume 968", loose()),
         keep(968),
         KEPT,
-        "liquid and what floats in it fill the basin to the cell",
+        "liquid and the floating cube fill the basin completely",
     ),
     Case(
         "one unit in a dry basin", tub("volume 1", loose(3.0)), keep(1), KEPT, "the cube lands on a floor with one cell of liquid"
@@ -157,7 +156,7 @@ def no(name: str, text: str, words: str) -> Case:
         text,
         lambda text, long: refused(text, SceneError, words),
         {"not refused": 0},
-        "told before anything runs, with its place",
+        "refused before the run, with its place in the scene",
     )
 
 

@@ -44,7 +44,7 @@ SPINS = [
         block("a", (4, 4, 4), (0, 0, 0), more=f"spin (0, 0, {rate * C!r})") + CONTROL,
         turn,
         {"energy drift": 3e-3, "angular momentum": 1e-12, "cells turned over": 0, "stretch": 0.4},
-        "springs pull along the line of centres, so momentum holds to rounding; the energy in the stretch to 0.3 %",
+        "springs pull along the line of centres, so angular momentum holds to rounding, and the energy of the stretch to 0.3 %",
     )
     for rate in (0.02, 0.1, 0.276)
 ]
@@ -72,7 +72,11 @@ DRAGGED = block("a", (5, 5, 5), (0, 0, 0), more=f"drag {0.5 * 125!r}") + CONTROL
 BACK = {"strain left": 1e-9, "elastic energy left": 1e-20, "cells turned over": 0}
 SQUASHED = [
     Case(
-        f"squeezed to {share:g}", DRAGGED, squash(share), BACK, "all shape comes back, right side out; down to 0.2 of the height"
+        f"squeezed to {share:g}",
+        DRAGGED,
+        squash(share),
+        BACK,
+        "the shape comes back, with no cell inverted, down to 0.2 of the height",
     )
     for share in (0.6, 0.4, 0.2)
 ]
@@ -81,7 +85,7 @@ TANGLED = Case(
     DRAGGED,
     squash(0.1),
     {"strain left": 1.0, "elastic energy left": 1.0, "cells turned over": 125},
-    "below 0.2 it stays tangled, for springs cannot tell a cell from its mirror image; it stays finite and gains nothing",
+    "below 0.2 it stays tangled, because springs do not distinguish a cell from its mirror image; it gains no energy",
 )
 
 # --- slender ------------------------------------------------------------------------------------------------------
@@ -107,8 +111,8 @@ BEAMS = [
         f"gravity (0, 0, {-g!r})\n" + block("a", (100 * n, n, n), (0, 0, 0), more="hold face -x") + CONTROL,
         swing,
         {"energy drift": 1e-3, "cells turned over": 0, "stretch": 0.2, "tip fell, short of 0.8 length by": 0.0},
-        "it folds down round its clamp, as far as it is long, with no more stretch than bending so far asks for; "
-        "200 000 steps of lashing keep the energy to 1e-3",
+        "it folds down around its clamp, by up to its length, and stretches no more than this bending requires; "
+        "200 000 steps keep the energy to 1e-3",
     )
     for n, g in ((1, 1e-5), (2, 1e-5))
 ]
@@ -165,8 +169,8 @@ DRAGS = [
             "beyond the terminal speed": 1e-12,
             "energy drift at the end": 1e-2,
         },
-        "never beyond the terminal speed. The implicit form, eq. (3.12), is off by about phi^2/4 in the first step; above "
-        "phi = 0.5 the exponential one is exact",
+        "the speed never exceeds the terminal speed. The implicit form, eq. (3.12), is off by about phi^2/4 in the first step; "
+        "above phi = 0.5 the exponential one is exact",
     )
     for phi in (1e-6, 1e-3, 0.1, 0.5, 1.0, 1e2, 1e6)
 ]
@@ -199,8 +203,8 @@ WEIGHTS = [
     for load, deepest, crushed, why in (
         (0.0, 0.0, 0, "no gravity, nothing moves"),
         (0.05, 0.06, 0, "ground gives way by load times h"),
-        (0.2, 0.25, 0, "the most that a lattice stands (docs/physics-solids.md)"),
-        (0.5, 0.6, 64, "beyond 0.2 E it is crushed; told before the run. It comes to rest all the same"),
+        (0.2, 0.25, 0, "the largest load that a lattice bears (docs/physics-solids.md)"),
+        (0.5, 0.6, 64, "beyond 0.2 E it is crushed, and `check` warns. It still comes to rest"),
     )
 ]
 
@@ -219,7 +223,7 @@ FALLS = [
         f"gravity (0, 0, {-g!r})\n" + block("a", (4, 4, 4), (0, 0, 0)) + CONTROL,
         fall,
         {"height fallen": 1e-10, "energy drift": 1e-10},
-        "leap-frog is exact for a constant force: rounding is left, of coordinates up to 10^13 h in the long form",
+        "leap-frog is exact for a constant force; rounding remains, of coordinates up to 10^13 h in the long form",
     )
     for g in (1.0, 1e6)
 ]
@@ -302,7 +306,7 @@ ROTATED = Case(
     meeting(np.eye(3), ""),
     rotate,
     {"positions / h": 1e-9},
-    "no law knows a direction; an impact magnifies the rounding of rotated numbers by a few powers of ten",
+    "no law depends on direction; an impact magnifies the rounding of rotated numbers by a few powers of ten",
 )
 
 

@@ -14,16 +14,16 @@ CHANGED: dict[str, tuple[dict[str, float], str]] = {
     "impact at 0.2 c": ({"overlap of the surfaces / h": 0.25}, "a surface is softer at first than the full reach of a barrier"),
     "impact at 0.5 c": (
         {"energy drift": 2e-3},
-        "all points of two equal faces meet in one step: a force that sets in so is followed to 2e-3",
+        "all points of two equal faces meet in one step; leap-frog follows so sudden a force to 2e-3",
     ),
     "touching at t = 0": (
         {"parting speed / c": 1e-12, "still within reach / h": 0.6 + 1e-9},
-        "what touches has no stress, and stays",
+        "objects that touch at the start have no stress, and stay",
     ),
     "corner on corner at 0.2 c": (
         {"energy drift": 1.5e-2, "not handed over": 0.25},
-        "corners that are exactly on one line press their own cells flat; what is let go then is told, but lost to the motion: "
-        "9e-3 of the energy are off at this step, 5e-3 at half of it",
+        "corners that are exactly on one line press their own cells flat; the energy of the released "
+        "contacts is reported (`let_go`), but lost to the motion. The energy is 9e-3 off at this step, 5e-3 off at half of it",
     ),
     "weight of 0.05 E on its foot": (
         {"below the ground / h": 0.08},
@@ -31,7 +31,7 @@ CHANGED: dict[str, tuple[dict[str, float], str]] = {
     ),
     "weight of 0.5 E on its foot": (
         {"below the ground / h": 2.5},
-        "beyond 0.2 E a lattice is crushed, and deeper here; told before the run",
+        "beyond 0.2 E a lattice is crushed, and deeper here; `check` warns",
     ),
 }
 """Other limits, and why."""

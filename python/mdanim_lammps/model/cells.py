@@ -82,7 +82,7 @@ GOOD_VOLUME = 0.05
 
 
 def _voxels(shape: Shape, spacing: float) -> Cells:
-    """Cubic cells whose centre is inside, with the edge and alignment whose volume is nearest the true one.
+    """Cubic cells whose centre is inside, with the edge and alignment whose volume and extent are nearest to the true ones.
 
     The edge stays within 4 % of the spacing where that gives a good volume, else within 12 %, else 20 %.
     Along each axis either a corner or the centre of a cell falls on the middle of the shape. Only fillings in
