@@ -4,9 +4,9 @@
 import numpy as np
 import pytest
 from mdanim_lammps.features.springs.effect import spring_norm
-from mdanim_lammps.model import build_models, shapes
+from mdanim_lammps.model import build_models, masses, shapes
 from mdanim_lammps.model.lattice import cells_around
-from mdanim_lammps.model.masses import HEAVIEST, STEPS, exposed, inertia
+from mdanim_lammps.model.masses import HEAVIEST, STEPS, exposed, inertia, pairwise
 from mdanim_lammps.model.system import assemble
 from mdanim_lammps.model.tensors import largest_eigenvalue, solve
 from mdanim_lammps.scene.scene import Box, Cone, Cylinder, Ellipsoid, HoldAll, Mesh, Sphere, SpringConstant, Torus
@@ -122,6 +122,25 @@ def test_masses_do_not_depend_on_springs():
         np.testing.assert_array_equal(other.mass, one.mass)
     small = model(Sphere(0.5e-6), 0.125e-6)
     np.testing.assert_allclose(small.mass, one.mass, rtol=1e-9)
+
+
+@pytest.mark.parametrize("count", [1, 7, 129, 4096, 10_001, 283_409])
+def test_sums_by_blocks_have_the_bits_of_sums_of_rows(monkeypatch, count):
+    """So blocks, which stay in the cache, change no mass."""
+    monkeypatch.setattr(masses, "BLOCK", 256)
+    rows = np.random.default_rng(count).standard_normal((3, count))
+    np.testing.assert_array_equal(pairwise(lambda some: rows[:, some].sum(axis=1), 0, count), rows.sum(axis=1))
+
+
+@pytest.mark.parametrize("shape", [Sphere(0.5), Cone(0.02, 1.0), FILES[0]], ids=shape_id)
+def test_a_body_of_many_blocks_has_the_masses_of_one(monkeypatch, shape):
+    """With 64 particles in a block, those at their limits or those that are not are summed, whichever are fewer."""
+    h = shapes.thickness(shape) / 4
+    one = model(shape, h)
+    monkeypatch.setattr(masses, "BLOCK", 64)
+    many = model(shape, h)
+    np.testing.assert_allclose(many.mass, one.mass, rtol=1e-9)
+    assert many.inertia_error == pytest.approx(one.inertia_error, abs=1e-9)
 
 
 def test_outer_faces_at_a_corner():

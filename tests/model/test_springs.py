@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from mdanim_lammps.model import lattice as lattice_module
 from mdanim_lammps.model.lattice import AXES, OFFSETS, Cells, make_lattice
-from mdanim_lammps.model.springs import dashpots, spring_constants, stiffness, types
+from mdanim_lammps.model.springs import dashpots, distinct_rows, spring_constants, stiffness, types
 from mdanim_lammps.scene.scene import Box, SpringConstant, Young
 from model_samples import model
 from spring_lab import NU, cantilever, stretched
@@ -127,3 +127,14 @@ def test_types_keep_every_bit():
     assert np.array_equal(table[kind - 1], constants)
     kind, table = types(np.repeat(np.arange(256.0), 3)[:, None] * np.ones(3))
     assert kind.tolist() == np.repeat(np.arange(1, 257), 3).tolist() and len(table) == 256
+
+
+def test_distinct_rows_are_told_apart_by_bits(monkeypatch):
+    """0.0 and -0.0 are two rows; the first ones come in the order in which they appear, also where all keys collide."""
+    rows = np.array([[3.0, 0.0], [1.0, 2.0], [3.0, -0.0], [1.0, 2.0], [3.0, 0.0], [0.5, 0.5]])
+    first, which = distinct_rows(rows)
+    assert first.tolist() == [0, 1, 2, 5] and which.tolist() == [0, 1, 2, 1, 0, 3]
+    unique = np.unique
+    monkeypatch.setattr(np, "unique", lambda a, **k: unique(a if a.ndim > 1 else 0 * a, **k))
+    first, which = distinct_rows(rows)
+    assert first.tolist() == [0, 1, 2, 5] and which.tolist() == [0, 1, 2, 1, 0, 3]

@@ -8,6 +8,7 @@ are fitted to the ten moments of the shape: mass, centre and second moments.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,7 +16,7 @@ import numpy as np
 from ..scene.scene import Young
 from .lattice import OFFSETS, Lattice
 from .model import Layer
-from .springs import rest_lengths, stiffness
+from .springs import distinct_rows, rest_lengths, stiffness
 from .tensors import largest_eigenvalue, solve
 
 HEAVIEST = 3.0
@@ -36,6 +37,10 @@ ENOUGH = 1e-14
 """Sum of the remaining errors at which it ends."""
 CAUTION = 1e-3
 """Part of the remaining errors that is added to slopes: far from the limits' right places a step would be endless."""
+SIX = ((0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1))
+"""Places of the components of a symmetric matrix."""
+BLOCK = 16384
+"""Particles whose sums are taken together: ten rows of them, twice, lie in a cache."""
 FAR = 0.5
 """Part of what was left with which a step counts as good where the function no longer shows it."""
 
@@ -120,13 +125,12 @@ def _spring_rates(lattice: Lattice, near: np.ndarray) -> np.ndarray:
     direction = OFFSETS * edge / rest_lengths(edge)[:, None]
     touched = near[lattice.spring].any(axis=1)
     pair, kind, k = lattice.spring[touched], lattice.kind[touched], stiffness(lattice, Young(1.0))[touched]
-    block = np.empty((np.count_nonzero(near), 3, 3))
-    for a in range(3):
-        for b in range(a, 3):
-            term = k * (direction[:, a] * direction[:, b])[kind]
-            total = sum(np.bincount(end, term, len(near)) for end in pair.T)
-            block[:, a, b] = block[:, b, a] = total[near]
-    return 2.0 * largest_eigenvalue(block, squarings=10)
+    block = np.empty((np.count_nonzero(near), 6))
+    for column, (a, b) in enumerate(SIX):
+        term = k * (direction[:, a] * direction[:, b])[kind]
+        block[:, column] = sum(np.bincount(end, term, len(near)) for end in pair.T)[near]
+    first, which = distinct_rows(block)  # few: most particles have as many springs as others
+    return 2.0 * largest_eigenvalue(_matrix(block[first].T).transpose(2, 0, 1), squarings=10)[which]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -158,7 +162,7 @@ class _Problem:
         self.basis = np.concatenate([np.ones((1, len(x))), [x, y, z], products - self.means[:, None]])
         self.asked = np.concatenate([[1.0, 0.0, 0.0, 0.0], _six(self.moments) - self.means])
         self.give = np.array([0.0] * 4 + [YIELD] * 6)
-        self.whole = self._products(self.share)
+        self.whole = self._products()
         # Across a single cell the squares of the places are all one: nothing to fit.
         self.asked[np.diag(self.whole) < 1e-20] = 0.0
 
@@ -184,30 +188,50 @@ class _Problem:
         return Fit(ones, self._error(ones))
 
     def _at(self, factor: np.ndarray, lower: np.ndarray) -> _Trial:
-        change = np.zeros_like(lower)
-        for f, row in zip(factor, self.basis):
-            change += f * row
-        weight = np.clip(1.0 + change, lower, HEAVIEST)
-        left = self.asked - self._sums(self.share * weight) - self.give * factor
-        # The integral of the clipped line from 0 to the change.
-        area = (self.share * (weight * (change + 1.0 - 0.5 * weight) - 0.5)).sum()
+        weight = np.empty_like(lower)
+
+        def part(rows: slice) -> np.ndarray:
+            """Sums over some particles: the moments, shape (10,), and the integral of the clipped line from 0 to the change."""
+            change, basis, share, w = np.zeros(rows.stop - rows.start), self.basis[:, rows], self.share[rows], weight[rows]
+            for f, row in zip(factor, basis):
+                change += f * row
+            np.clip(1.0 + change, lower[rows], HEAVIEST, out=w)
+            area = (share * (w * (change + 1.0 - 0.5 * w) - 0.5)).sum()
+            return np.append((share * w * basis).sum(axis=1), area)
+
+        *sums, area = pairwise(part, 0, len(lower))
+        left = self.asked - sums - self.give * factor
         height = area - (self.asked * factor).sum() + 0.5 * (self.give * factor**2).sum()
         return _Trial(factor, weight, left, float(height), float(np.abs(left).sum()))
 
     def _sums(self, mass: np.ndarray) -> np.ndarray:
-        return np.array([(mass * row).sum() for row in self.basis])
+        return pairwise(lambda rows: (mass[rows] * self.basis[:, rows]).sum(axis=1), 0, len(mass))
 
     def _slope(self, weight: np.ndarray, lower: np.ndarray) -> np.ndarray:
-        """-dr/dlambda, shape (10, 10): of all particles less those at a limit."""
-        at_limit = np.flatnonzero((weight <= lower) | (weight >= HEAVIEST))
-        return self.whole - self._products(self.share, at_limit) + np.diag(self.give + 1e-12)
+        """-dr/dlambda, shape (10, 10): of all particles less those at a limit, or of the free ones where they are fewer."""
+        stopped = (weight <= lower) | (weight >= HEAVIEST)
+        at_limit = np.flatnonzero(stopped)
+        if len(at_limit) > max(BLOCK, len(weight) // 2):
+            free = self._products(np.flatnonzero(~stopped))
+        else:
+            free = self.whole - self._products(at_limit)
+        return free + np.diag(self.give + 1e-12)
 
-    def _products(self, mass: np.ndarray, some=slice(None)) -> np.ndarray:
-        """Sums of m f_k f_l over some particles, shape (10, 10)."""
-        basis, found = self.basis[:, some], np.empty((len(self.basis), len(self.basis)))
-        for k, row in enumerate(mass[some] * basis):
-            found[k, k:] = found[k:, k] = (row * basis[k:]).sum(axis=1)
-        return found
+    def _products(self, some: np.ndarray | None = None) -> np.ndarray:
+        """Sums of share f_k f_l over all particles or some, shape (10, 10)."""
+
+        def part(rows: slice) -> np.ndarray:
+            chosen = rows if some is None else some[rows]
+            # Rows side by side in memory are summed five times as fast. A body of one stretch keeps the order that it always had.
+            basis = self.basis[:, chosen] if one else np.take(self.basis, chosen, axis=1)
+            found = np.empty((len(basis), len(basis)))
+            for k, row in enumerate(self.share[chosen] * basis):
+                found[k, k:] = found[k:, k] = (row * basis[k:]).sum(axis=1)
+            return found
+
+        count = len(self.share) if some is None else len(some)
+        one = some is None or count <= BLOCK
+        return pairwise(part, 0, count)
 
     def _error(self, weight: np.ndarray) -> float:
         """Largest eigenvalue of I^(-1/2) (J - I) I^(-1/2) for the moments of inertia I of the shape and J of the particles."""
@@ -217,6 +241,16 @@ class _Problem:
         return float(np.abs(np.linalg.eigvals(np.linalg.solve(true, off))).max())
 
 
+def pairwise(part: Callable[[slice], np.ndarray], first: int, last: int) -> np.ndarray:
+    """Sum of ``part`` over stretches of at most BLOCK rows, which stay in cache. Stretches are halved and added as numpy's sum
+    of a whole row does it: the bits are the same."""
+    if last - first <= BLOCK:
+        return part(slice(first, last))
+    half = (last - first) // 2
+    middle = first + half - half % 8
+    return pairwise(part, first, middle) + pairwise(part, middle, last)
+
+
 def inertia(moments: np.ndarray) -> np.ndarray:
     """Tensor of inertia over the mass from second moments [m^2], both of shape (3, 3): tr(S) 1 - S."""
     return np.trace(moments) * np.eye(3) - moments
@@ -224,8 +258,9 @@ def inertia(moments: np.ndarray) -> np.ndarray:
 
 def _six(matrix: np.ndarray) -> np.ndarray:
     """xx, yy, zz, yz, xz, xy of a symmetric matrix."""
-    return matrix[[0, 1, 2, 1, 0, 0], [0, 1, 2, 2, 2, 1]]
+    return matrix[tuple(np.transpose(SIX))]
 
 
 def _matrix(six: np.ndarray) -> np.ndarray:
+    """The symmetric matrix, shape (3, 3, ...), of the six components, shape (6, ...)."""
     return six[[[0, 5, 4], [5, 1, 3], [4, 3, 2]]]

@@ -74,20 +74,26 @@ def types(constants: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     Springs with the constants (S, 3) are of one type when all bits of them agree; types are numbered by first appearance, so that
     they do not depend on a sort of floating-point numbers.
     """
+    first, inverse = distinct_rows(constants)
+    return (inverse + 1).astype(np.min_scalar_type(len(first))), constants[first]
+
+
+def distinct_rows(rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Number of the first row of each kind, ascending, shape (T,), and the kind of each row, shape (S,), for float64 rows of
+    shape (S, K). Rows are of one kind when all bits of them agree."""
     # A mixed key per row is enough to find equal rows quickly; equality itself is checked on all bits below.
-    bits = constants.view(np.uint64)
+    bits, key = rows.view(np.uint64), np.zeros(len(rows), np.uint64)
     with np.errstate(over="ignore"):
-        key = (bits[:, 0] * np.uint64(0x9E3779B97F4A7C15)) ^ (bits[:, 1] * np.uint64(0xC2B2AE3D27D4EB4F))
-        key = (key ^ (key >> np.uint64(29))) + bits[:, 2] * np.uint64(0x165667B19E3779F9)
-    _, first, inverse = np.unique(key, return_index=True, return_inverse=True)
+        for column in bits.T:
+            key = (key ^ (key >> np.uint64(29))) * np.uint64(0x9E3779B97F4A7C15) + column * np.uint64(0xC2B2AE3D27D4EB4F)
+    found = np.unique(key, return_index=True, return_inverse=True)
+    if not np.array_equal(bits[found[1][found[2].reshape(-1)]], bits):  # two different rows with one key
+        found = np.unique(bits, axis=0, return_index=True, return_inverse=True)
+    first, inverse = found[1], found[2].reshape(-1)
     order = np.argsort(first)
-    rank = np.empty(len(order), np.min_scalar_type(len(order)))
-    rank[order] = np.arange(1, len(order) + 1)
-    kind, distinct = rank[inverse.reshape(-1)], constants[first[order]]
-    if not np.array_equal(distinct[kind - 1], constants):  # two different rows with one key
-        distinct, inverse = np.unique(constants, axis=0, return_inverse=True)
-        kind = (inverse.reshape(-1) + 1).astype(np.min_scalar_type(len(distinct)))
-    return kind, distinct
+    rank = np.empty(len(order), np.intp)
+    rank[order] = np.arange(len(order))
+    return first[order], rank[inverse]
 
 
 def dashpots(zeta: float, k: np.ndarray, mass: np.ndarray, spring: np.ndarray) -> np.ndarray:
