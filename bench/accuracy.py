@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What accuracy costs: prints the tables and findings of docs/accuracy.md, as they stand there.
+"""Cost of accuracy: prints the tables and findings of docs/accuracy.md, as they stand there.
 
 ``python bench/accuracy.py [--budget SECONDS] [--plots FOLDER] [PART ...]`` with parts out of beam, corner, row, float,
 cantilever, crowd (a study of each scene under the budget), classes (energy drift and seconds of preview, balanced, reference)

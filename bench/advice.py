@@ -101,7 +101,7 @@ class Told:
     """The results of a study, or of one that was cut short, beside a run that is finer in everything."""
 
     finest: Setting
-    """Of the runs that the study's limit comes from."""
+    """Setting of the runs that the study's limit comes from."""
     order: float | None
     doubt: float
     """How well the study says that it knows its errors, a fraction."""
@@ -111,7 +111,7 @@ class Told:
     """Largest difference of these two, of all settings, a fraction."""
     advice: str
     refuted: tuple[str, ...]
-    """What the finer run contradicts by more than the study's doubt."""
+    """Values that the finer run contradicts by more than the study's doubt."""
 
 
 def check(name: str, *, budget: float = 300.0, only: tuple[str, ...] = ()) -> list[Told]:

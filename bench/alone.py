@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What each effect costs where it acts, alone beside the springs: ``python bench/alone.py [rounds]``.
+"""Cost of each effect where it acts, alone beside the springs: ``python bench/alone.py [rounds]``.
 
 One cube of 19^3 particles per variant, all at the same time step; contact stands in bench/pressed.py, effects that have nothing
 to do in bench/sleeping.py, all of a scene one by one in bench/effects.py.

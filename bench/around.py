@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What stands around the steps of a run: ``python bench/around.py [rounds]``.
+"""Time around the steps of a run: ``python bench/around.py [rounds]``.
 
 Scenes of scenes/, each in processes of their own: seconds until the first step (the program's start, the scene, modelling,
 LAMMPS), the share of the run that output and the guard take, and pictures per second of the movie at 1280x720.

@@ -34,7 +34,7 @@ EAGER = "2"
 WARM_PART, WARM_PARTICLE_STEPS = 0.3, 6e6
 """The middle of a run: after this part of its steps, but no more of them than particles times steps come to."""
 SAME, ROUNDED = ("x", "v", "f", "records"), ("ledger",)
-"""What is hashed: the same by all ways, and with sums that each rounds by itself."""
+"""Hashed arrays: the same by all ways, and sums that each way rounds by itself."""
 ACCOUNTS = np.s_[16:48]
 """Bytes of the liquid's record that tell energies: they belong to the ledger (heads of automaton_basin_state.cpp and
 wave_basin_state.cpp)."""
@@ -103,7 +103,7 @@ def files() -> dict[str, Path]:
 
 
 def plan_of(name: str):
-    """What is run for a scene."""
+    """Plan to run for a scene."""
     from mdanim_lammps.run.prepare import prepare
     from mdanim_lammps.scene.parse import load_scene, parse_scene
 
@@ -122,7 +122,7 @@ def middle_of(plan):
 
 
 def hashes(instance) -> dict[str, str]:
-    """Of all that a run comes to."""
+    """Hashes of all that a run comes to."""
     from mdanim_lammps.engine.state import NO_RECORDS
     from mdanim_lammps.run.energy import energies
 
@@ -216,7 +216,7 @@ def apart(hashed: dict[str, dict[str, dict[str, str]]]) -> list[str]:
 
 
 def compare(hashed: dict, stored: dict) -> list[str]:
-    """What is other than stored, of the scenes and ways that both have."""
+    """Differences from the stored ones, of the scenes and ways that both have."""
     wrong, compared = [], 0
     for scene, found in hashed.items():
         for way, values in found.items():

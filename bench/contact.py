@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What the two laws of contact do: ``python bench/contact.py [TABLE ...]``, all of TABLES without a word.
+"""The two laws of contact, measured: ``python bench/contact.py [TABLE ...]``, all of TABLES without a word.
 
 Every row is a short scene of its own; the tables are those of docs/physics-contact.md.
 """
@@ -87,7 +87,7 @@ SLABS = {"held": f"{STUFF}  hold all", "ten times as stiff": STUFF.replace("1 MP
 BLOW = 0.01
 """Speed of a blow on a corner [c]."""
 HALF_TURN = math.radians(30.0), math.radians(60.0)
-"""Of the cube, about (1, 1, 0) and then about z."""
+"""Turn of the cube, about (1, 1, 0) and then about z."""
 
 
 def turned_cube() -> np.ndarray:
@@ -110,7 +110,7 @@ def corner() -> tuple[list[str], list[list]]:
 
 
 def blow(slab: str, cells: int, model: str) -> list[str]:
-    """Of a cube of so many cells; the blow is over when its speed has changed and changes no more."""
+    """Rows of a cube of this many cells; the blow is over when its speed has changed and changes no more."""
     turn, h, v = turned_cube(), 100 / cells, BLOW * WAVE
     rows = " ".join(f"({x!r}, {y!r}, {z!r})" for x, y, z in turn.tolist())
     low = 50.0 * np.abs(turn[2]).sum()

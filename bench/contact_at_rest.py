@@ -10,7 +10,7 @@ from contact_world import DENSITY, MODELS, STUFF, WAVE, YOUNG, World
 LOADS = (0.001, 0.01)
 """rho g L / E with L = SIZE."""
 SIZE = 0.2
-"""Of all bodies, about [m]."""
+"""Size of all bodies, about [m]."""
 LYING = "orientation axis (1, 0, 0) angle 90 deg"
 SHAPES = {
     "cube": ("box (20, 20, 20) cm", 10.0, 10.0, ""),
@@ -41,7 +41,7 @@ VOLUME = {
 CURVED = {"ball": (10.0, 10.0), "roller": (12.5, 0.0)}
 """Curvature along and across at the point in which others touch it [1/m]; others are flat there, but for those in NO_POINT."""
 NO_POINT = {("torus", name) for name in SHAPES} | {(name, "torus") for name in SHAPES}
-"""What touches along a ring."""
+"""Pairs that touch along a ring."""
 HALF_ANGLE = 0.1 / 0.16
 """Tangent of that of the cone's tip."""
 
@@ -71,7 +71,7 @@ def rest() -> tuple[list[str], list[list]]:
 
 
 def lies(below: str, above: str, load: float) -> str:
-    """Of one pair; nothing where it has fallen off."""
+    """Row of one pair; empty if it has fallen off."""
     depth, way = sunk(below, above, load), approach(below, above, load)
     return (f"{depth:.3f}" if depth > 0.0 else "-") + (f" ({way:.3f})" if way else "")
 

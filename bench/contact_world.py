@@ -7,7 +7,7 @@ import numpy as np
 
 STUFF = "density 1000  elasticity 1 MPa"
 YOUNG, DENSITY = 1e6, 1000.0
-"""Of STUFF [Pa], [kg/m^3]."""
+"""Stiffness [Pa] and density [kg/m^3] of STUFF."""
 WAVE = math.sqrt(1.2 * YOUNG / DENSITY)
 """Wave speed of STUFF [m/s]."""
 MODELS = ("surface", "paper")
@@ -36,12 +36,12 @@ class World:
 
     @property
     def place(self) -> np.ndarray:
-        """Of the centre of the last object [m], shape (3,)."""
+        """Place of the centre of the last object [m], shape (3,)."""
         return self.mass @ self.instance.array("x")[self.mine] / self.mass.sum()
 
     @property
     def velocity(self) -> np.ndarray:
-        """Of the same [m/s], shape (3,)."""
+        """Velocity of the same [m/s], shape (3,)."""
         return self.mass @ self.instance.array("v")[self.mine] / self.mass.sum()
 
     def spin(self) -> np.ndarray:

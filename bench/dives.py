@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What the pace of the updates of waves changes: ``python bench/dives.py``.
+"""Effect of the pace of the updates of waves: ``python bench/dives.py``.
 
 Cubes of 6, 12 and 24 cells dive as fast as if fallen from their own height. Printed are the deepest place of their middle and the
 highest thereafter, over their edge, and updates.

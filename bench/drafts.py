@@ -70,7 +70,7 @@ class Pool:
         return self.ready.system.center_of_mass(self.instance.array(name))[0]
 
     def corners(self) -> np.ndarray:
-        """Of the lattice cells, shape (C, 8, 3)."""
+        """Corners of the lattice cells, shape (C, 8, 3)."""
         return self.instance.array("x")[self.ready.system.hexahedron]
 
     def share(self) -> float:
@@ -101,7 +101,7 @@ def settled(**what) -> str:
 
 
 def in_waves(density: int, **way) -> dict:
-    """What to do with a cube that is dropped, in a liquid with momentum."""
+    """Settings for a cube that is dropped, in a liquid with momentum."""
     return dict(density=density, model="waves", calm=10 * (6 / way.get("g", 0.01)) ** 0.5, **way)
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What the driver of a distributed run takes of every frame beside LAMMPS: ``python bench/driver.py [executors] [control]``.
+"""Time of every frame that the driver of a distributed run takes beside LAMMPS: ``python bench/driver.py [executors] [control]``.
 
 1000 objects of 100 particles fly about, and some meet. Milliseconds of processor time of a frame, of the executor that took most;
 medians over the frames but the first ten, and the least. Under ``supervisor`` is what goes on beside the executors.
@@ -54,7 +54,7 @@ PARTS = {
 
 
 def ranks(folder: Path, control: str) -> None:
-    """What every rank does: run, and write what its methods took, frame by frame."""
+    """Work of every rank: run, and write what its methods took, frame by frame."""
     import importlib
 
     from mdanim_lammps.parallel.plan.frame_plan import PlannerOptions

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What effects cost: ``python bench/effects.py added|shares [rounds]``, ``... forecast [scene ...]`` prints a table in Markdown
+"""Cost of effects: ``python bench/effects.py added|shares [rounds]``, ``... forecast [scene ...]`` prints a table in Markdown
 (docs/cost.md).
 
 ``added``: one scene with its effects added one by one. ``shares``: parts of clocks that several effects share, as they are to be
@@ -161,7 +161,7 @@ def added(rounds: int) -> None:
 
 
 DIRECTIONS, AXES = 13, 3
-"""Of the springs of a particle to partners after it: all, and those along the edges of cells."""
+"""Springs of a particle to partners after it: all, and those along the edges of cells."""
 
 
 def along_axes(plan):

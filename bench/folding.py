@@ -20,7 +20,7 @@ from mdanim_lammps.scene.parse import parse_scene
 H, C, MOST = 0.03, math.sqrt(1.2 * 360e3 / 1000), 30
 """Spacing [m], wave speed [m/s], fastest landing tried [c/100]."""
 
-# Of each row: numbers of cells across, then for a width d the shape, the height of its middle at a touch, its orientation.
+# Rows: numbers of cells across, then for a width d the shape, the height of its middle at a touch, its orientation.
 ROWS = {
     "ball": ((4, 5, 6, 7, 8, 9, 10, 12, 14, 16), lambda d: (f"sphere {d / 2}", d / 2, "euler (0, 0, 0) deg")),
     "ellipsoid": ((4, 5, 6, 7), lambda d: (f"ellipsoid ({d / 2}, {d / 2}, {d})", d, "euler (0, 0, 0) deg")),

@@ -37,7 +37,7 @@ RIGID = 6
 
 
 def masses(body) -> dict[str, np.ndarray]:
-    """Of the particles of a model [kg], shape (N,)."""
+    """Masses of the particles of a model [kg], shape (N,)."""
     return {"fitted": body.mass, "w = 1": body.share / body.share.sum() * body.mass.sum()}
 
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// What this machine can do at most, on one core: bandwidth of a triad in memory and in cache, throughput of square root
+// Limits of this machine, on one core: bandwidth of a triad in memory and in cache, throughput of square root
 // and division. Prints JSON. Built by bench/limits.py with -O3 -march=native.
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What this machine can do at most, on one core: ``python bench/limits.py``; needs a C++ compiler.
+"""Limits of this machine, on one core: ``python bench/limits.py``; needs a C++ compiler.
 
 A particle-step that reads and writes positions and velocities moves 96 bytes, and 18 springs at half each are 9 square roots and
 divisions: neither can be beaten by code that does the same arithmetic with the same bits.
@@ -16,7 +16,7 @@ from timing import markdown
 
 SOURCE = Path(__file__).with_suffix(".cpp")
 BYTES, ROOTS = 96, 9
-"""Of a particle-step."""
+"""Bytes and roots of a particle-step."""
 
 
 def measure(rounds: int = 7, quick: bool = False) -> list[dict]:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What the liquid costs in a run: ``python bench/liquid.py [deep|shallow] [steps] [model]``.
+"""Cost of the liquid in a run: ``python bench/liquid.py [deep|shallow] [steps] [model]``.
 
 A cube of 10⁵ particles in a basin half full, of 2·10⁶ cells (deep) or of 10⁵ columns (shallow): while it plunges in, while it
 rolls afloat and waves go on, afloat at rest (no update comes), and while it is still far above (the liquid sleeps). Printed are
@@ -21,7 +21,7 @@ UPDATES = 4
 PLUNGING, AFLOAT, REST, ABOVE = "plunging in", "afloat, waves go on", "afloat, at rest", "nothing near"
 CASES = (PLUNGING, AFLOAT, REST, ABOVE)
 DENSITY = 900
-"""Of the cube at rest: it lies upright."""
+"""Density of the cube at rest: it lies upright."""
 HIGHER = 0.0004
 """So much higher, over its edge, lies its middle at rest than if it were rigid."""
 QUIET, LONGEST = 0.5, 120.0
@@ -93,7 +93,7 @@ BASINS = {"deep": dict(edge=46, basin=128, top=128, level=64), "shallow": dict(e
 
 
 def table(rounds: int, steps: int = 200) -> str:
-    """What stands on the page."""
+    """Table of the page."""
     rows = []
     for basin, model in (("deep", "waves"), ("shallow", "waves"), ("deep", "surface")):
         scene = BASINS[basin]

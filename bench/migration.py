@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What it costs to move an object to another process: ``mpiexec -n 2 python bench/migration.py [rounds]``.
+"""Cost of moving an object to another process: ``mpiexec -n 2 python bench/migration.py [rounds]``.
 
 Rank 0 has it in a live instance, and rank 1 makes one that goes on from the same state: pack, send, part, instance, setup. The
 time from end to end is that of rank 0, until it hears that all is ready. Then instances are made and closed one after the other.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What modelling costs and how good its bodies are: prints the figures of docs/physics-solids.md.
+"""Cost of modelling, and quality of its bodies: prints the figures of docs/physics-solids.md.
 
 python bench/modelling.py cost       seconds and peak memory of a large box, ball and mesh, and of 10 000
 objects python bench/modelling.py physics    stiffness of bars, cantilevers against Timoshenko

@@ -49,7 +49,7 @@ def largest(text: str, time: float) -> np.ndarray:
 
 
 def table() -> str:
-    """Of all cases."""
+    """Table of all cases."""
     rows = [(name, *(f"{n:.2g}" for n in largest(text, time))) for name, text, time in CASES]
     return markdown(["largest until then, N s", "liquid", "basin", "solids", "residual"], rows)
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What a picture costs: python bench/pictures.py FOLDER ... prints seconds of one core per picture of 1280 x 720, in draft and in
+"""Cost of a picture: python bench/pictures.py FOLDER ... prints seconds of one core per picture of 1280 x 720, in draft and in
 final quality, and the memory of the process that draws, for output folders of runs. Without a folder: what the command
 ``mdanim-lammps picture scenes/beam.txt`` takes."""
 

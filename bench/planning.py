@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What the plan of a frame costs, and how much it moves: ``python bench/planning.py [times|crowd|gains]``.
+"""Time of the plan of a frame, and number of its moves: ``python bench/planning.py [times|crowd|gains]``.
 
 times: for random boxes as in a loose pile; milliseconds, the least of some rounds. The parts are measured alone.
 crowd: objects that fly about in a box and bounce off its sides, for 100 frames; means over the frames but the first.

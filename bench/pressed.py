@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What contact costs: two blocks pressed together, and the same two apart: ``python bench/pressed.py [cells] [rounds]``.
+"""Cost of contact: two blocks pressed together, and the same two apart: ``python bench/pressed.py [cells] [rounds]``.
 
 Two blocks of cells^3 cells, under each law of contact. At rest: one lies on the other. In a blow: they meet head on at a tenth of
 the wave speed and are taken where they are pressed most. Apart: the very same particles, one block moved so far away that contact
@@ -30,15 +30,15 @@ LAWS = {"paper": "contact-model paper", "surface": "contact-model surface", "fri
 WAVE = (1.2 * 1e6 / 1000.0) ** 0.5
 """Wave speed of the blocks [m/s]."""
 SPEED = 0.05 * WAVE
-"""Of each block [m/s]."""
+"""Speed of each block [m/s]."""
 DRIFT = 0.1 * WAVE
-"""Of all, sideways [m/s]: a motion that all share makes no new lists, but must be looked at now and then."""
+"""Speed of all, sideways [m/s]: a common motion makes no new lists, but must be looked at now and then."""
 APART = 5
 """How far one block is moved away, in edges."""
 SETTLING = 125
 """Steps of a block at rest, for each cell across."""
 STEPS, WARM = 50, 5
-"""Of a round, and those before its clock starts."""
+"""Steps of a round, and those before its clock starts."""
 FRESH = 3
 """Times that both are made anew: where particles come to lie in memory may make a tenth."""
 

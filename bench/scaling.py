@@ -59,9 +59,9 @@ GOALS = {"blocks": ("by_cpu", 1.8), "one": ("by_wall", 1.4)}
 """Speed of two executors over that of one process: by processor time of the rank that takes most, or, where one has threads for
 both, by wall time."""
 LONGER = {"crowd": 4}
-"""So many times as many frames: balls have met only after the first ones."""
+"""Factor of the number of frames: balls have met only after the first ones."""
 LONGER_GOALS = 7
-"""So many times as many for the goals."""
+"""The same factor for the goals."""
 COLORS = {"central": "#0072b2", "peers": "#d55e00"}
 
 
@@ -148,7 +148,7 @@ def rounds_of(names, cases, rounds: int, frames: int) -> tuple[dict, dict]:
 
 
 def label(case) -> str:
-    """What a case is called in a table."""
+    """Name of a case in a table."""
     return "one process" if case[0] == 0 else f"{case[0]}, {case[1]}"
 
 
@@ -255,7 +255,7 @@ def cases_of(runs: dict) -> dict:
 
 
 def stored(options) -> dict:
-    """What parts have written."""
+    """Figures that parts have written."""
     return json.loads(options.json.read_text()) if options.json.exists() else {}
 
 
@@ -265,7 +265,7 @@ def store(options, found: dict) -> None:
 
 
 def told_of(options, *parts: str) -> dict[str, str]:
-    """What scaling.json says of a part, as the page has it; nothing where it says nothing."""
+    """Figures of scaling.json for a part, as on the page; empty if it has none."""
     data, told = stored(options), {}
     for part in parts:
         text = f"`python bench/scaling.py {part}`"
@@ -361,7 +361,7 @@ def _share(side: int, edge: int, frames: int) -> dict:
 
 
 def rank(folder: Path) -> None:
-    """What every rank of such a run does."""
+    """Work of every rank of such a run."""
     from mdanim_lammps.parallel.plan.frame_plan import PlannerOptions
     from mdanim_lammps.parallel.runtime import supervisor
     from mdanim_lammps.parallel.runtime.executor import serve

@@ -43,7 +43,7 @@ def fit(data: dict, crowd_scene) -> dict:
         name: [(int(case.split()[0]), r) for case, runs in of.items() if case != "0" for r in runs]
         for name, of in (("hail", hail), ("crowd", crowd))
     }
-    # Of the supervisor: so much for a frame, for an object in it, and for a particle.
+    # Time of the supervisor for a frame, for an object in it, and for a particle.
     seen = np.array([(1, r[0]["objects"], r[0]["particles"]) for r in data["supervisor"].values()])
     medians = np.array([statistics.median(s for r in runs for s in r["seconds"]) for runs in data["supervisor"].values()])
     per_frame, per_object, per_particle = nnls(seen / medians[:, None], np.ones(len(medians)))[0].tolist()
@@ -68,7 +68,7 @@ def fit(data: dict, crowd_scene) -> dict:
 
 
 LATENCY, BANDWIDTH = 2e-4, 1e9
-"""Of a message [s]: mostly the nap of the process that waits for it (messages.NAP); of a network of ten gigabit [bytes/s]."""
+"""Latency of a message [s], mostly the nap of the process that waits for it (messages.NAP); a network of 10 Gbit [bytes/s]."""
 SHARE = 120
 """Bytes of an executor's share of a frame for each of its objects."""
 MOVES = 0.004

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What an effect costs that is on and has nothing to do: ``python bench/sleeping.py [seconds]`` prints a
+"""Cost of an effect that is on and has nothing to do: ``python bench/sleeping.py [seconds]`` prints a
 table in Markdown (docs/cost.md).
 
 One live scene at a time, its particles at one place in memory: the effect's fixes are taken away and made again between short
@@ -60,7 +60,7 @@ CASES = {
     "the same with liquid drag": dict(v=3, more=SEA.format(drag=4, model="surface"), off=WET),
 }
 STEPS, WARM = 100, 5
-"""Of a block: two rebuilds of lists at 3 m/s; and those before its clock starts."""
+"""Steps of a block, with two rebuilds of lists at 3 m/s; and those before its clock starts."""
 HALF_WIDTH = 0.0025
 """Half the interval that is close enough."""
 LEAST, DRAWS = 40, 1000

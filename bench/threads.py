@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What threads bring: ``python bench/threads.py [rounds [threads [scene ...]]] [--write]``.
+"""Gain of threads: ``python bench/threads.py [rounds [threads [scene ...]]] [--write]``.
 
 A scene is a name of bench/scene_texts.py, such as ``cube 30``, ``heap 208``, ``pool 46``, ``automaton 46``, ``float 1e5``,
 ``hail 64``, or the name of a file in scenes/. Told is the wall time of a step by one thread and by several, in turns, beside the
@@ -91,7 +91,7 @@ class Servers:
             process.join()
 
     def seconds(self, who: str, number: int = 1) -> tuple[float, float]:
-        """Of a step, on so many processes at once: those that passed, and those of the thread that calls."""
+        """Seconds of a step, on this many processes at once: wall time, and time of the thread that calls."""
         for pipe in self.pipes[:number]:
             pipe.send((who, self.steps))
         wall, here = max(pipe.recv() for pipe in self.pipes[:number])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What benches share: interleaved rounds, medians and minima, JSON, tables in Markdown.
+"""Common parts of benches: interleaved rounds, medians and minima, JSON, tables in Markdown.
 
 A bench that ``bench/all.py`` prints is a module with ``measure(rounds, quick) -> rows`` and ``table(rows) -> str``; rows are
 dicts of numbers and words that JSON holds.

@@ -10,7 +10,7 @@ from numpy.polynomial import legendre
 from scipy.linalg import eigh
 
 POISSON = 0.25
-"""Of the lattice, docs/physics-solids.md."""
+"""Poisson's ratio of the lattice, docs/physics-solids.md."""
 SHEAR = 10.0 * (1.0 + POISSON) / (12.0 + 11.0 * POISSON)
 """Cowper's coefficient of a rectangular cross section."""
 

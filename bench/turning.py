@@ -14,7 +14,7 @@ from timing import print_tables
 
 G = 9.81
 RADIUS = 0.1
-"""Of the ball [m]."""
+"""Radius of the ball [m]."""
 MU, ALONG, DOWN = 0.2, 2.0, 0.5
 """Friction of a blow, speed along the ground and towards it [m/s]."""
 SLOPE, ROUGH = math.radians(15.0), 0.6

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What the view costs a run, how soon it answers and how fast the page is: python bench/view.py [--only PART] [scene ...]
+"""Cost of the view for a run, how soon it answers and how fast the page is: python bench/view.py [--only PART] [scene ...]
 
 page: in Chromium without a graphics card, from the address to the first picture that is drawn; pictures a second while the film
 plays, and processor time of the browser for each. pause: from a page's "pause" to the page's knowing. cost: processor time of the

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What vectors of each width take, beside the limit of this machine: ``python bench/widths.py [rounds]``.
+"""Time of vectors of each width, beside the limit of this machine: ``python bench/widths.py [rounds]``.
 
 Bodies in free fall with drag of air, as in bench/step.py, and damped ones. All widths take turns. Told is the least processor
 time of a particle's step in any of them, what the widest one, which passes take, takes over the best one (the median of ratios of

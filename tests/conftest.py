@@ -15,7 +15,7 @@ SCENES = Path(__file__).parent.parent / "scenes"
 
 
 LEAST_TASK = 30e3
-"""Of the tests [ns]: a range has 1000 particles or more."""
+"""Least task of the tests [ns]: a range has 1000 particles or more."""
 
 
 @pytest.fixture(scope="session", autouse=True)

@@ -36,7 +36,7 @@ FORMS_OF_PAGES = {
 """Forms that only pages are searched for: README.md and docs/, which were read again."""
 BEGINNINGS = re.compile(r'(?:^\s*(?:#|//+|\*)|""")\s*(?:What|Of|So many|Whoever)\s')
 """Comments and docstrings begin with the thing or with a verb. Checked file by file as they are read again."""
-READ_AGAIN = ("plugin/", "python/")
+READ_AGAIN = ("plugin/", "python/", "tests/", "bench/")
 """Folders and files whose comments all begin so."""
 
 

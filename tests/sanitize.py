@@ -87,7 +87,7 @@ SET = ("-DMDANIM_SET=common", "-DMDANIM_LANES=4", "-DMDANIM_SETS=MDANIM_A_SET(co
 LEFT_OUT = ("bodies_file.cpp",)
 """Files that read files."""
 WORDS = {"friction": "friction 0.4", "surface": "contact-model surface"}
-"""Of control, of those of TEXT that need more; the others are under the paper's own law of contact."""
+"""Control words for those of TEXT that need more; the other texts use the paper's contact."""
 
 
 def library(name: str) -> str:
@@ -125,7 +125,7 @@ def environment() -> dict[str, str]:
         "PYTHONPATH": str(PACKAGE),
         # The second gives the first what C++ throws exceptions with, which Python alone does not load.
         "LD_PRELOAD": f"{library('libasan.so')}:{library('libstdc++.so')}",
-        # What GCC's UBSan finds it tells on stderr, then it aborts, of which ASan writes a report.
+        # GCC's UBSan prints its finding to stderr, then aborts, and ASan writes a report of that.
         "ASAN_OPTIONS": f"detect_leaks=0:handle_abort=1:log_path={REPORTS}/report",
         "UBSAN_OPTIONS": f"print_stacktrace=1:abort_on_error=1:log_path={REPORTS}/report",
         "CXXFLAGS": FLAGS,  # of the test library
@@ -134,7 +134,7 @@ def environment() -> dict[str, str]:
 
 
 def reports() -> dict[str, str]:
-    """What sanitizers have reported so far, by file."""
+    """Reports of the sanitizers so far, by file."""
     return {path.name: path.read_text(errors="replace") for path in sorted(REPORTS.iterdir())}
 
 

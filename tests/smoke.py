@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What a stranger does first, with an installed package and nothing else: ``python tests/smoke.py`` (``make smoke``)."""
+"""First steps of a stranger with an installed package and nothing else: ``python tests/smoke.py`` (``make smoke``)."""
 
 from __future__ import annotations
 

@@ -12,12 +12,12 @@ BENCH = REPOSITORY / "bench"
 
 
 def said(code: str) -> str:
-    """What a line of Python prints in bench/, in a process of its own."""
+    """Output of a line of Python in bench/, in a process of its own."""
     return subprocess.run([sys.executable, "-c", code], cwd=BENCH, check=True, capture_output=True, text=True).stdout
 
 
 def test_the_start_of_a_run_can_be_measured():
-    """What bench/around.py runs in a process of its own goes through."""
+    """The part of bench/around.py that runs in a process of its own succeeds."""
     assert float(said("import around; print(around.start_up('float', None))")) > 0.0
 
 

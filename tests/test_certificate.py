@@ -69,7 +69,7 @@ def two(model, control=""):
 
 
 CONTACT = {"paper": 2 * plane_stiffness(1.6) * 0.4 * 8, "surface": 16 + 2 * plane_stiffness(0.8) * 0.4 * 8}
-"""What contact adds to CORNER (docs/physics-contact.md): the barrier; at the surfaces 2 (3/4 + 1/4) 8, and the barrier behind."""
+"""Addition of contact to CORNER (docs/physics-contact.md): the barrier; at surfaces 2 (3/4 + 1/4) 8, and the barrier behind."""
 MODELS = pytest.mark.parametrize("model", CONTACT)
 
 
@@ -119,7 +119,7 @@ def test_step_above_the_bound_is_refused(prepared):
 
 
 def scene(time, frames=30.0):
-    """What fit_steps reads of a scene."""
+    """Parts of a scene that fit_steps reads."""
     return SimpleNamespace(control=SimpleNamespace(time=time, frames=frames, spans={}))
 
 
@@ -209,7 +209,7 @@ control {{ time 0.8 s  frames 100 fps  resolution {h} cm  contact-model {model} 
 
 
 def dents(ready, folder):
-    """What a run tells of cells that have stayed inside out, whether it goes on with them or is stopped; empty where none has."""
+    """Warning of a run with cells that have stayed inside out, whether it goes on or is stopped; empty if there are none."""
     try:
         return " ".join(w.message for w in simulate(ready, folder).warnings if "inside out" in w.message)
     except DivergedError as stopped:
@@ -279,7 +279,7 @@ def test_a_cube_folds_up_where_little_of_it_lands(prepared, tmp_path, turned, sh
 
 
 def test_a_cure_has_a_number_for_each_object(prepared):
-    """What is written for each of them in one pass leaves no warning; of many objects, one number for all of them."""
+    """Numbers of the cure, written for each object in one pass, leave no warning; of many objects all have one number."""
     cube = BALL.format(shape="box (0.24, 0.24, 0.24)", h=3, model="surface", young=360, extra=ON_CORNER)
     ball = "object ball[1] { shape sphere 0.05 position (1, 0, 2) density 1000 elasticity 40 kPa }\n"
     found = margin(prepared(cube + ball).certificate, "amplitude")

@@ -132,7 +132,7 @@ def test_a_run_of_the_edited_text_runs_nothing_of_the_folder(theirs_run):
 
 
 def test_processes_that_draw_run_nothing_of_the_folder(theirs_run):
-    """Of a movie."""
+    """Processes that draw a movie run nothing of the folder."""
     script = (
         "from mdanim_lammps.picture.movie import render_movie\nfrom mdanim_lammps.scene.render import Render\n"
         "render_movie('scene.out', Render(size=(160, 90)), 'movie.mp4', processes=2)\n"
@@ -187,7 +187,7 @@ ALLOWED = {
 
 @pytest.mark.parametrize("path", sorted(ROOT.rglob("*.py")), ids=lambda p: str(p.relative_to(ROOT)))
 def test_processes_are_started_in_one_place(path):
-    """What starts a process of Python elsewhere would have it begin in the current folder."""
+    """A process of Python started elsewhere would begin in the current folder."""
     found = set()
     for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
         if isinstance(node, ast.Import):
@@ -269,7 +269,7 @@ def test_a_worker_that_is_killed_is_noticed():
 
 
 def test_workers_end_at_once():
-    """What they have begun is broken off, what they have not begun is cancelled, and no process stays."""
+    """Begun work is broken off, other work is cancelled, and no process stays."""
     with Workers(2) as workers:
         futures = [workers.submit(time.sleep, 100) for _ in range(5)]
         time.sleep(0.5)

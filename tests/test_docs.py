@@ -98,7 +98,7 @@ def test_the_check_sees_links_and_anchors():
 
 @pytest.mark.parametrize("room", ["engine", "run", "parallel", "parallel/plan", "parallel/runtime", "cost", "view"])
 def test_architecture_names_every_module(room):
-    """Of the rooms whose modules the table of rooms names one by one, all of them."""
+    """The table of rooms names all modules of the rooms whose modules it names one by one."""
     table = text_of(ROOT / "docs" / "architecture.md")
     modules = [m for m in (ROOT / "python" / "mdanim_lammps" / room).glob("*.py") if not m.name.startswith("__")]
     assert modules

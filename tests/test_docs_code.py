@@ -169,7 +169,7 @@ def runs(tmp_path_factory):
 @pytest.mark.mpi
 @pytest.mark.parametrize("page", PAGES)
 def test_page(page, runs, tmp_path):
-    """What a page says, in its order: a tutorial in an empty folder, a how-to beside the runs that it names."""
+    """Code of a page, in its order: a tutorial in an empty folder, a how-to beside the runs that it names."""
     newcomer = Newcomer(page, tmp_path if "Save it as" in (DOCS / f"{page}.md").read_text(encoding="utf-8") else runs)
     newcomer.read()
     if page == "quickstart":

@@ -111,7 +111,7 @@ def test_messages_name_options_as_they_are_written(shell, python):
 
 
 def test_a_command_speaks_as_a_shell_and_python_as_python(tmp_path):
-    """Of the same folder, one after the other in one process."""
+    """Both use the same folder, one after the other in one process."""
     (tmp_path / "good.txt").write_text(GOOD)
     scene = Scene.load(tmp_path / "good.txt")
     scene.run()

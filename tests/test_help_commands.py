@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What helps a newcomer: init, explain, doctor, completion, problems as JSON, colours in editors."""
+"""Help for a newcomer: init, explain, doctor, completion, problems as JSON, colours in editors."""
 
 import json
 import re

@@ -78,7 +78,7 @@ def test_the_least_limit_counts(tmp_path, files, expected):
 
 
 def test_a_limit_of_the_shell_counts():
-    """Of 2 GB less than 2 GB are free, and more than 1 GB."""
+    """With a limit of 2 GB, between 1 and 2 GB are free."""
     code = "import mdanim_lammps.processes as p; print(p.limited(), p.available_memory())"
     run = subprocess.run(
         [sys.executable, "-c", code],

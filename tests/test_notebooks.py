@@ -11,7 +11,7 @@ NOTEBOOKS = sorted((Path(__file__).parents[1] / "docs" / "notebooks").glob("*.ip
 
 @pytest.fixture(scope="module")
 def outputs(tmp_path_factory):
-    """What the cells of each notebook show: all run in one kernel, where each begins without names of the one before it."""
+    """Outputs of the cells of each notebook: all run in one kernel, where each begins without names of the one before it."""
     import nbformat
     from nbclient import NotebookClient
 
@@ -43,7 +43,7 @@ def test_nothing_is_warned_of(outputs):
 
 
 def test_are_stored_without_output():
-    """What they show is made when the docs are built; differences of versions stay readable."""
+    """Outputs are made when the docs are built; differences of versions stay readable."""
     assert len(NOTEBOOKS) == 3
     for path in NOTEBOOKS:
         cells = json.loads(path.read_text(encoding="utf-8"))["cells"]

@@ -9,7 +9,7 @@ from paths import REPOSITORY
 
 
 def headers(*arguments):
-    """What CMake asks for."""
+    """Headers that CMake asks for."""
     return subprocess.run([sys.executable, REPOSITORY / "plugin" / "headers.py", *arguments], capture_output=True, text=True)
 
 

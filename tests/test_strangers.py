@@ -139,7 +139,7 @@ def test_facts_that_are_none(copy, capsys, name, text):
 
 
 def test_more_frames_told_than_there_are(copy, capsys):
-    """What a run says of itself is not a measure of its trajectory."""
+    """The progress that a run writes is not a measure of its trajectory."""
     folder = copy()
     lines = (folder / PROGRESS).read_text().splitlines()
     frames = [n for n, line in enumerate(lines) if '"frame"' in line]

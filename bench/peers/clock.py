@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What peers share: steps until the simulated time or the limit is over, and the figures as JSON."""
+"""Common parts of peers: steps until the simulated time or the limit is over, and the figures as JSON."""
 
 import json
 import sys

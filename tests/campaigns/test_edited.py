@@ -26,7 +26,7 @@ def folder(tmp_path_factory):
 
 
 def text_of(chance: random.Random) -> str:
-    """Of all words, mutilated, word salad, noise, long or empty."""
+    """Text of all words, mutilated, word salad, noise, long or empty."""
     match chance.randrange(6):
         case 0 | 1:
             return scene(chance, set())

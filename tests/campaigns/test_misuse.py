@@ -16,7 +16,7 @@ ODD = (
     *("plane", "objects", "bodies", "pair", "stiffness 0", "friction -1", "damping 1e9", "every 0", "energy"),
 )
 SECONDS = 60.0
-"""What a script of 50 steps may take."""
+"""Limit for a script of 50 steps [s]."""
 SIGNALS = "(Segmentation|Aborted|terminate called|Floating point exception|Bus error|double free|corrupted)"
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What a run cost, by effect and scene line, and what it will cost, told before."""
+"""Cost of a run by effect and scene line, and its forecast."""
 
 import json
 import os

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What executors will bring, told before the run."""
+"""Forecast of the gain of executors."""
 
 import subprocess
 import sys

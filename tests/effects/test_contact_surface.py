@@ -45,7 +45,7 @@ control {{ time 1 s  resolution 5 cm  contact-model surface {control} }}
 
 
 def commands(plan, name):
-    """What an effect of a plan writes for LAMMPS."""
+    """Commands that an effect of a plan writes for LAMMPS."""
     return next(e for e in plan.effects if e.name == name).commands(plan.context)
 
 
@@ -56,7 +56,7 @@ BARRIER = [
 ]
 
 SOLID = "group solid type 1:8"
-"""What is laid aside leaves this group."""
+"""Objects that are laid aside leave this group."""
 
 
 def test_objects_and_planes_in_lammps_terms(prepared):
@@ -74,7 +74,7 @@ def test_objects_and_planes_in_lammps_terms(prepared):
 
 
 def test_stiffness_damping_and_pairs(prepared):
-    """What the scene says beside the usual, once; pairs by molecules, lower one first."""
+    """Settings of the scene that are not the usual ones are written once; pairs by molecules, lower one first."""
     more = "contact cube slab { friction 0.1 }\ncontact cube cube { contact-damping 0.7 }"
     plan = prepared(pile(more, "contact-stiffness 2 contact-damping 0.5 friction 0.25")).plan
     law = "mdanim/contact d_body d_young d_friction stiffness 2.0 damping 0.5 among solid"

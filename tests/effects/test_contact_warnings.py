@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What is told of contact before a run: friction that does not act, speeds of falls that cannot be."""
+"""Warnings of contact before a run: friction without effect, speeds of falls that cannot occur."""
 
 import numpy as np
 import pytest

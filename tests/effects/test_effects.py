@@ -134,7 +134,7 @@ def pool(liquid="level 0.25 m", block="", top=""):
 
 
 def commands(ready, name):
-    """What an effect writes for LAMMPS."""
+    """Commands that an effect writes for LAMMPS."""
     return next(e for e in features.effects() if e.name == name).commands(ready.context)
 
 
@@ -404,7 +404,7 @@ def test_contact_that_cannot_be_leaves_nothing(prepared):
 
 
 def test_declarations_of_motion_may_be_asked_of_any_scene(prepared):
-    """What effects say of how they move solids, of a scene without a ground, a liquid or gravity."""
+    """Effects declare how they move solids for a scene without a ground, a liquid or gravity, too."""
     ready = prepared(FULL[FULL.index("object a") : FULL.index("liquid w")] + "control { time 1 }")
     for effect in (e.of(ready.scene) for e in features.effects()):
         pulls = effect.acceleration(ready.scene)

@@ -58,7 +58,7 @@ class Afloat:
         return self
 
     def particles(self, name: str) -> slice:
-        """Of an object."""
+        """Rows of an object."""
         n = self.system.names.index(name)
         return slice(self.system.first[n], self.system.first[n + 1])
 
@@ -121,7 +121,7 @@ def test_a_hull_with_a_light_load_floats_dry(tmp_path):
     ],
 )
 def test_a_hull_is_dry_at_the_start_where_its_rim_is_above_the_level(tmp_path, z, more, full):
-    """What is held is a part of the basin, and full up to the level, as are what liquid could run into and what `fill` tells."""
+    """Held objects are part of the basin. Room that liquid could flow into, and that of `fill`, is full up to the level, too."""
     fill, more = (FILL, "") if more == "fill" else ("", more)
     with Afloat(tmp_path, HULL.replace("elasticity", more + " elasticity").format(z=z, density=700), more=fill) as scene:
         assert (scene.held_inside("hull") > 0.001) == full

@@ -37,7 +37,7 @@ def tank(tmp_path, more, *, cell=4.0, raft="elasticity 3 MPa  hold all", control
 
 
 def frequency(times, heights) -> float:
-    """Of the sine that is the best fit to heights [Hz]."""
+    """Frequency of the sine that fits heights best [Hz]."""
     trial = np.arange(0.4, 1.4, 1e-3)
 
     def missed(f):

@@ -27,7 +27,7 @@ def run(folder, text):
 
 
 def test_a_hull_that_glides_and_the_walls_that_its_waves_reach(tmp_path):
-    """What the hull has lost is what push and drag took, to 2 % of what it had at first: push is that of the last update. Waves
+    """The hull loses what push and drag take, to 2 % of its first momentum: push is that of the last update. Waves
     come back from the walls; the account is open by 8 % of the most that it holds."""
     liquid, basin, solids, residual, hull = run(tmp_path, LAKE.format("") + HULL.format(shape=SLENDER, v="1.5, 0, 0", time=1.5))
     lost = hull - hull[0]
@@ -51,7 +51,7 @@ def test_drag_along_and_across_still_water(tmp_path):
 
 
 def test_a_blunt_face_gives_the_liquid_more_than_it_loses(tmp_path):
-    """What falls short, docs/physics-liquid.md: a box that starts with its face to the flow. The ledger tells it."""
+    """Known limit of docs/physics-liquid.md: a box that starts with its face to the flow. The ledger shows it."""
     liquid, basin, solids, residual, hull = run(tmp_path, LAKE.format("") + HULL.format(shape=BLUNT, v="1.5, 0, 0", time=0.3))
     np.testing.assert_allclose(solids, hull - hull[0], atol=0.02 * hull[0, 0])
     assert residual[-1, 0] > 0.5 * -solids[-1, 0]

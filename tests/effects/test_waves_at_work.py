@@ -55,7 +55,7 @@ def test_at_rest_lift_is_archimedes_and_nothing_pushes_sideways(way):
 @pytest.mark.parametrize("z", [15.5, 12.3, 11.5])
 @pytest.mark.parametrize("way", [dict(roll=20, pitch=35, yaw=10), dict(roll=13, pitch=52, yaw=70)])
 def test_lift_is_the_weight_of_what_is_below_the_surface(way, z):
-    """Of a tilted cube of 6 cells, to 0.3 % of its volume; particles alone, with cells half beyond the faces, miss 1 %."""
+    """Lift of a tilted cube of 6 cells, to 0.3 % of its volume; particles alone, with cells half beyond the faces, miss 1 %."""
     ready = scene(density=500, young=1e5, z=z, **way)
     with Instance(ready.plan) as instance:
         instance.setup()
@@ -175,7 +175,7 @@ def test_energy_goes_from_a_body_to_waves_and_is_accounted():
 
 
 def test_momentum_goes_from_a_body_to_the_liquid(tmp_path):
-    """What a hull that glides loses the liquid has, as long as no wave comes to a wall: to 5 %, as push is smoothed in time."""
+    """A gliding hull loses what the liquid gains, until a wave comes to a wall: to 5 %, because the push is smoothed in time."""
     path = tmp_path / "glide.txt"
     path.write_text(
         "gravity (0, 0, -9.81)\nliquid lake { basin from (-2, -1.5, 0) m to (2, 1.5, 0.8) m  density 1000  level 0.4 m }\n"
@@ -309,7 +309,7 @@ def below_shelf(t: float, z: float, tilt: float) -> float:
 @pytest.mark.parametrize("z", [20.0, 20.6, 21.25, 21.9])
 @pytest.mark.parametrize("tilt", [0.0, 5.0, 20.0])
 def test_shelves_hold(t, z, tilt):
-    """Of one or two cells, flat and tilted, at any height: nothing drips through."""
+    """Shelves of one or two cells, flat and tilted, at any height: nothing drips through."""
     assert below_shelf(t, z, tilt) == 0
 
 

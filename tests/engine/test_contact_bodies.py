@@ -34,7 +34,7 @@ def test_a_block_bounces_off_a_held_anvil(prepared):
 
 
 def test_a_fix_without_its_bodies_refuses_to_run(prepared, monkeypatch):
-    """What the handing over is for: the fix says which object has no body."""
+    """Without its body an object is named by the fix, which shows why bodies are handed over."""
     plan = with_surfaces(prepared(scene()).plan)
     monkeypatch.setattr(Plan, "contact_bodies", property(lambda plan: {}))
     with Instance(plan) as instance, pytest.raises(DivergedError, match="no such body was given"):

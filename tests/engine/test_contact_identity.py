@@ -52,7 +52,7 @@ def same(a: State, b: State) -> None:
 
 
 def cut(state: State, plan, objects) -> State:
-    """What a part has of a state of the whole."""
+    """The part of a state of the whole."""
     at = rows(plan, objects)
     records = {fix: found.take(objects, False) for fix, found in state.records.items()}
     return State(state.x[at], state.v[at], state.f[at], records)
@@ -89,7 +89,7 @@ def test_a_heap_goes_on_in_an_instance_of_its_own_and_back(prepared):
 
 
 def test_a_heap_that_is_laid_aside_touches_nothing(prepared):
-    """Of two heaps one is laid aside while its objects touch; the other goes on as before, also through where the first began."""
+    """Two heaps: one is laid aside while its objects touch; the other goes on as before, also through where the first began."""
     fast = "velocity (1.6, 0, 0) m/s"  # it has gone farther than two skins, and so is put where it began
     text = PAIRS.replace("(70, 0, 5.1) cm velocity (0.1, 0.4, 0) m/s", f"(38, 0, 5.1) cm {fast}")
     plan = prepared(text.replace("(72, 3, 17.2) cm", f"(40, 3, 17.2) cm {fast}")).plan

@@ -89,7 +89,7 @@ def test_passes_with_ghosts_give_the_bits_of_one_rank(tmp_path, name, ranks):
     assert len(set(found["taken"])) == 1 and found["taken"][0] > 200
     assert np.array_equal(found["frames"], frames)
     assert np.array_equal(found["trace"], trace)
-    # What dashpots take is estimated in steps in which particles change ranks, loss.h; the plain step on two ranks is off by 2 %.
+    # Loss by dashpots is estimated in steps in which particles change ranks (loss.h); on two ranks the plain step is 2 % off.
     np.testing.assert_allclose(found["energies"], energies, rtol=3e-3 if "damped" in name else 1e-12, atol=1e-12)
 
 

@@ -29,7 +29,7 @@ def particles(system, objects) -> np.ndarray:
 
 
 def cut(state: State, rows: np.ndarray, objects, liquid: bool) -> State:
-    """What a part with these objects has of a state of the whole."""
+    """The part of a state of the whole that belongs to these objects."""
     records = {fix: found.take(objects, liquid) for fix, found in state.records.items()}
     return State(state.x[rows], state.v[rows], state.f[rows], {fix: found for fix, found in records.items() if len(found)})
 
@@ -327,7 +327,7 @@ def test_solids_that_are_laid_aside(prepared):
 
 
 def test_what_is_laid_aside_touches_nothing(prepared):
-    """Of two that are about to hit each other one is laid aside, and stands where it began: the other one flies on through it."""
+    """Two objects are about to collide. One is laid aside where it began, and the other one flies through it."""
     plan = prepared("""
 object left { shape box (10, 10, 10) cm  position (0, 0, 0) cm  mass 1 kg  elasticity 100 kPa  velocity (2, 0, 0) m/s }
 object right { shape box (10, 10, 10) cm  position (15, 0, 0) cm  mass 1 kg  elasticity 100 kPa }

@@ -18,7 +18,7 @@ KEYS = {"End": "\ue010", "Home": "\ue011", "Left": "\ue012", "Right": "\ue014", 
 
 
 def missing() -> str:
-    """What is missing for a browser, with the way to get it; empty where there is one."""
+    """Missing programs for a browser, with the way to get them; empty if there are none."""
     absent = [name for name in ("chromium", "chromedriver") if shutil.which(name) is None]
     return f"no {' and no '.join(absent)}: {INSTALL}" if absent else ""
 
@@ -53,7 +53,7 @@ class Browser:
         self.ask("POST", "/url", {"url": address})
 
     def js(self, code: str, *arguments):
-        """What a function body returns; of a promise, what it gives."""
+        """Result of a function body; for a promise, its value."""
         return self.ask("POST", "/execute/sync", {"script": code, "args": list(arguments)})
 
     def until(self, expression: str, seconds: float = 60.0):
@@ -66,7 +66,7 @@ class Browser:
         return found
 
     def messages(self) -> list[str]:
-        """What the console has said since it was last asked."""
+        """Messages of the console since the last call."""
         return [entry["message"] for entry in self.ask("POST", "/se/log", {"type": "browser"})]
 
     def click(self, x: float, y: float) -> None:

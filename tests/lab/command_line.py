@@ -47,7 +47,7 @@ def inside(folder: str | Path | None):
 
 
 def call(*arguments, cwd=None, main=None) -> subprocess.CompletedProcess[str]:
-    """What `run` does, without the second that a process takes to start: for tests of what commands say and leave. ``main`` is
+    """Call `run` without the second that a process takes to start: for tests of messages and files of commands. ``main`` is
     that of another program."""
     from mdanim_lammps import cli
 

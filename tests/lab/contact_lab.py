@@ -132,7 +132,7 @@ def scene(cuboids) -> tuple[lab.Body, dict]:
 
 
 def commands(cuboids, words: str, dt: float, more=()) -> list[str]:
-    """What follows the particles: the group of those that move, contact, leap-frog."""
+    """Commands after the particles: the group of those that move, contact, leap-frog."""
     first = np.cumsum([0] + [len(one.particles.x) for one in cuboids])
     moving = " ".join(f"{a + 1}:{b}" for one, a, b in zip(cuboids, first, first[1:]) if not one.held)
     return [

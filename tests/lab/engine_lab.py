@@ -121,7 +121,7 @@ def cut_into_ranges(lanes: int, particles: int, springs, krc, objects, wanted: i
 
 
 def order(own: int, tags, objects, bonds: dict[int, list[int]]) -> tuple[list[int], list[tuple[int, int]]]:
-    """Of a rank's own particles, then ghosts, and the bonds of own ones by tag: indices in the line, and springs as places in it.
+    """Order of own particles, then ghosts, and the bonds of own ones by tag: indices in the line, springs as places in it.
 
     Raise LookupError with the tag of a partner that is not among the particles.
     """
@@ -178,7 +178,7 @@ class Budget:
         return bool(functions().mdanim_budget_state(self._handle) & 2)
 
     def left(self) -> float:
-        """What is left, found by spending it, to 1e-9."""
+        """Remaining time, found by spending it, to 1e-9."""
         low, high = -1e6, 1e6  # how much it would have to get
         spent = 0.0
         for _ in range(60):

@@ -15,7 +15,7 @@ SOLID = "density 1000 elasticity 0.2 MPa"
 
 
 WIDTHS = ("common", "avx2", "avx512")
-"""Of verlet/mdanim."""
+"""Instruction sets of verlet/mdanim."""
 
 
 FALL = "gravity (0, 0, -9.81)\n"
@@ -54,7 +54,7 @@ EFFECTS = {
     "walls and contact": "walls from (-8, -8, -8) cm to (14, 8, 12) cm\n"
     f"object a {{ shape box (5, 5, 5) cm position (0, 0, 0) {SOLID} velocity (2, 0, -2) }}\n"
     f"object b {{ shape box (5, 5, 5) cm position (6.5, 0, 2) cm {SOLID} velocity (-1, 0, 1) }}",
-    # What is common to both is faster than what they hit each other with.
+    # Both share a velocity above that of their collision.
     "contact in flight": f"object a {{ shape sphere 4 cm position (0, 0, 0) {SOLID} velocity (4, 5.1, 0) }}\n"
     f"object b {{ shape box (5, 6, 7) cm position (9, 0, 0.5) cm {SOLID} velocity (2, 5, 0) }}",
     "beside each other": f"object a {{ shape sphere 4 cm position (0, 0, 0) {SOLID} velocity (1, 0, 0) }}\n"

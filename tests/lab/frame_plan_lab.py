@@ -15,7 +15,7 @@ plan, bundles = (partial(make, room=BUNDLE_PARTICLES) for make in (planning.plan
 
 
 def scene(count, seed=0, still=0.1, volume=20.0, heavy=0.02):
-    """What a plan is made of: random boxes, a few of them heavy."""
+    """Objects to plan for: random boxes, a few of them heavy."""
     rng = np.random.default_rng(seed)
     low = rng.uniform(0.0, (volume * count) ** (1.0 / 3.0), (count, 3))
     edge = rng.uniform(0.5, 1.0, (count, 3))

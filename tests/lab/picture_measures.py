@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What is measured in pictures: where a point is seen, which pixels have a colour."""
+"""Measures of pictures: where a point is seen, which pixels have a colour."""
 
 from __future__ import annotations
 

@@ -17,7 +17,7 @@ control { time 0.1 s  frames 50 fps  resolution 5 cm }
 
 
 def report(parts, owner, cost=1000, shift=0.0, speed=1.0, fingerprint="", **more):
-    """What each of two executors tells of the cubes that it has; cost [us] and speed of all, or of each."""
+    """Reports of two executors on the cubes that they have; cost [us] and speed of all, or of each."""
     system = parts.whole.system
     low, high = (f.reduceat(system.position, system.first[:-1]) + shift for f in (np.minimum, np.maximum))
     cost, speed = (np.broadcast_to(value, len(low)) for value in (cost, speed))

@@ -20,7 +20,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 PLUGIN, TESTS = ROOT / "plugin", ROOT / "tests" / "lab" / "plugin"
 FOLDER = ROOT / "build" / "mdanimtest"
-"""Of the library alone: as LAMMPS_PLUGIN_PATH it makes LAMMPS load the styles of the tests."""
+"""Folder of the library alone: as LAMMPS_PLUGIN_PATH it makes LAMMPS load the styles of the tests."""
 FILE = FOLDER / "mdanimtestplugin.so"
 FLOORS = ("simd/kernels", "threads/team", "records/state_records", "geometry/aligned_array", "lammps/stateful")
 PASSES = ("passes/cutter", "passes/displacement_budget", "passes/range_cut", "passes/tag_order")
@@ -94,7 +94,7 @@ def _command() -> list[str]:
 
 
 def _digest() -> str:
-    """Of all that the library is made from."""
+    """Digest of all files that the library is made from."""
     found = hashlib.sha256(f"{_command()} {SETS}".encode())
     for path in sorted(p for folder in (PLUGIN, TESTS) for p in folder.rglob("*") if p.suffix in (".h", ".cpp")):
         if path in SOURCES or path in OF_SET or path.suffix == ".h":

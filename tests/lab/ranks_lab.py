@@ -13,7 +13,7 @@ import plugin_path
 
 
 def on_ranks(program: Path, ranks: int, *arguments: object, timeout: float = 900.0) -> str:
-    """What a Python program prints on so many ranks; ``-m mpi4py`` ends all of them when one raises."""
+    """Output of a Python program on this many ranks; ``-m mpi4py`` ends all of them when one raises."""
     done = subprocess.run(
         [plugin_path.BIN / "mpiexec", "-n", str(ranks), sys.executable, "-m", "mpi4py", program, *map(str, arguments)],
         capture_output=True,

@@ -18,7 +18,7 @@ namespace {
 constexpr int CELLS = 5, NODES = CELLS + 1, ROW = 4, OBJECTS = ROW * ROW * 2, STEPS = 60, BETWEEN_LISTS = 12;
 constexpr double H = 0.01, DT = 1e-4, SKIN = 0.01, APART = (CELLS - 0.02) * H;
 
-// What a body is made of, and its points: on each side of a cuboid, or along rays of a ball.
+// Nodes and cells of a body, and its points: on each side of a cuboid, or along rays of a ball.
 struct Shape {
   std::vector<std::int32_t> node, cell;
   std::vector<std::uint8_t> filled, kind;

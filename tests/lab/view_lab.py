@@ -44,7 +44,7 @@ class Held:
         self.thread.start()
 
     def wait_for(self, state: str) -> ProgressTail:
-        """What progress.jsonl says when it says this."""
+        """The line of progress.jsonl with this state, once there."""
         deadline = time.monotonic() + 60
         while time.monotonic() < deadline:
             tail = ProgressTail(self.folder)

@@ -57,7 +57,7 @@ class Drops:
         function("drops_free")(self.handle)
 
     def update(self, dt=0.1):
-        """What comes after an update of the waves."""
+        """Act after an update of the waves."""
         self.when += 1
         function("drops_update")(self.handle, self.w.handle, dt, self.when)
 
@@ -106,7 +106,7 @@ class Makers:
         function("makers_current")(self.handle, side, speed)
 
     def update(self, count=1, dt=0.1):
-        """Of the makers, then of the waves."""
+        """Update the makers, then the waves."""
         for _ in range(count):
             function("makers_apply")(self.handle, self.w.handle, dt)
             self.w.update(dt=dt)

@@ -180,7 +180,7 @@ class Body:
         self.mass = density * self.volume
 
     def share(self, shape) -> np.ndarray:
-        """Of each cell, filled."""
+        """Filled share of each cell."""
         if self.size.ndim:
             return box(shape, self.x - self.size / 2, self.x + self.size / 2)
         return sphere(shape, self.x, float(self.size))
@@ -219,7 +219,7 @@ class Bobbing(NamedTuple):
 
 
 def swings(z, draft: float, dt=DT) -> Bobbing:
-    """Of a box let go from above its rest; z over the first height, after each dt."""
+    """Swings of a box let go from above its rest; z over the first height, after each dt."""
     down = np.flatnonzero((z[:-1] > 0) & (z[1:] <= 0))
     times = dt * (down + 1 + z[down] / (z[down] - z[down + 1]))
     turns = [z[n] for n in range(1, len(z) - 1) if (z[n] - z[n - 1]) * (z[n + 1] - z[n]) < 0]

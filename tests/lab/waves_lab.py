@@ -88,7 +88,7 @@ class Links(NamedTuple):
 
 
 class Counts(NamedTuple):
-    """What was done so far; `displaced` are units of spans that closed."""
+    """Work done so far; `displaced` are units of spans that closed."""
 
     updates: int
     sub_updates: int
@@ -224,7 +224,7 @@ class Waves:
 
     @property
     def energy(self) -> np.ndarray:
-        """Of height, and of motion along the links."""
+        """Energy of height, and of motion along the links."""
         found = np.empty(2)
         function("energy")(self.handle, found)
         return found
@@ -246,7 +246,7 @@ class Waves:
 
     @property
     def counts(self) -> Counts:
-        """What was done so far."""
+        """Work done so far."""
         found = np.empty(6, np.int64)
         function("counts")(self.handle, found)
         return Counts(*map(int, found))

@@ -41,7 +41,7 @@ def ready(words: str = WIND, v: float = 0.0):
 
 
 def words() -> dict:
-    """Of the language."""
+    """Words of the language."""
     scene = ready().scene
     return {
         "page": language_page(),
@@ -96,7 +96,7 @@ def run(folder: Path) -> dict:
 
 
 def left(folder: Path) -> str:
-    """What the guard says of an object beyond the fence."""
+    """Message of the guard for an object beyond the fence."""
     guard = Guard(ready(), folder)
     x = guard.ready.system.position.copy()
     x[guard.ready.system.object == 0, 0] -= 10.0

@@ -49,7 +49,7 @@ def falling(*solids, h=0.1, liquid=WATER):
 
 
 def problems(*solids, h=0.1, effects=None, **liquid):
-    """What is wrong with these solids and this liquid."""
+    """Problems of these solids and this liquid."""
     made = replace(falling(*solids, h=h, liquid=replace(WATER, **liquid)), effects=effects or {})
     resolved = resolve(features.effects(), made)
     return [p for e in resolved.effects for p in e.problems(resolved, build_models(made), grid_of(made))]

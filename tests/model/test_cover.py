@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What held cuboids leave open of each other's sides."""
+"""Parts of the sides of held cuboids that other held cuboids leave open."""
 
 import numpy as np
 import pytest
@@ -15,7 +15,7 @@ def slab(name, size, place, more="hold all"):
 
 
 def frames(*slabs):
-    """What each object's contact body is made from, with cells of 5 cm."""
+    """Frames of which contact bodies are made, with cells of 5 cm."""
     return [m.frame for m in build_models(parse_scene("".join(slabs) + "control { time 1 s  resolution 5 cm }"))]
 
 
@@ -55,13 +55,13 @@ def test_slabs_side_by_side_cover_one_side_of_each():
     ids=lambda item: item[0],
 )
 def test_others_cover_nothing(other):
-    """What is not flush, can move, is not a cuboid, is askew, or meets in an edge."""
+    """Neighbours that are not flush, can move, are not cuboids, are askew, or meet in an edge cover nothing."""
     assert all(frame.open is None for frame in frames(LEFT, other[1]))
 
 
 @pytest.mark.parametrize("turn", ["angle 90 deg", "angle 180 deg", "angle 1e-10 deg"])
 def test_turns_and_rounding_change_no_cover(turn):
-    """Of bodies whose axes are along each other's; both turned together as well."""
+    """Covers of bodies whose axes are along each other's stay the same when both are turned together."""
     left, _ = frames(LEFT, slab("right", (40, 40, 10), (20, 0, -5), f"hold all\n orientation axis (0, 0, 1) {turn}"))
     assert left.open.tolist() == frames(LEFT, RIGHT)[0].open.tolist()
     c, s = np.cos(np.radians(37)), np.sin(np.radians(37))
@@ -85,7 +85,7 @@ def test_a_higher_wall_is_open_above_its_neighbour():
 
 
 def test_two_neighbours_cover_a_side_together():
-    """Of a T: no place is open where they meet."""
+    """Two slabs that form a T leave no place open where they meet."""
     left, *_ = frames(LEFT, slab("one", (40, 20, 10), (20, 10, -5)), slab("two", (40, 20, 10), (20, -10, -5)))
     assert all(covered(left, 1, (y, z)) for y in np.linspace(0, 8, 17) for z in (0, 1, 2))
 

@@ -21,11 +21,11 @@ MOVES = {"up": (0, 0, 1), "down": (0, 0, -1), "to +x": (1, 0, 0), "to -x": (-1, 
 
 BOTH = pytest.mark.parametrize("model", ContactModel, ids=lambda model: model.value)
 PAPER = {"contact_model": ContactModel.PAPER}
-"""Of starts that are less than a quarter of a cell deep, which contact at the surfaces allows."""
+"""Control word for the paper's contact: contact at the surfaces allows starts less than a quarter of a cell deep."""
 
 
 def problems(*solids, h=0.25, **rest):
-    """What is wrong with these solids, at spacing h."""
+    """Problems of these solids, at spacing h."""
     made = scene(*solids, resolution=h, **rest)
     return check_geometry(made, build_models(made), [p for e in features.effects() for p in e.planes(made)])
 

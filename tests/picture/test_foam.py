@@ -21,7 +21,7 @@ NO_DROPS = np.zeros((0, 4))
 
 
 def foam(smooth, raw=None, drops=NO_DROPS):
-    """What a liquid of GRID makes."""
+    """Foam of a liquid of GRID."""
     return breaking(GRID, smooth, smooth if raw is None else raw, drops)
 
 

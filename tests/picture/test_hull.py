@@ -101,7 +101,7 @@ def test_undersides_are_the_lowest_points_around():
     lowest = undersides(GRID, np.array(particles))
     expected = np.full((14, 20), 0.2)
     expected[6:9, 9:11] = 0.6
-    # Of two the lower one counts, and nothing is below the floor.
+    # The lower one of two counts, and nothing is below the floor.
     expected[6:9, 11:14] = 0.2
     np.testing.assert_array_equal(lowest, expected)
 

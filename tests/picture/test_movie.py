@@ -140,7 +140,7 @@ def test_where_it_cannot_be_written(short, tmp_path):
 
 
 def test_failing_encoder_is_named(short, tmp_path, monkeypatch):
-    """What ffmpeg says is the cause; without ffmpeg the cure is told."""
+    """The message of ffmpeg is the cause; without ffmpeg the cure is printed."""
     fake = tmp_path / "ffmpeg"
     fake.write_text("#!/bin/sh\necho 'No space left on device' >&2\nexit 1\n")
     fake.chmod(0o755)
@@ -178,7 +178,7 @@ def test_killed_process_is_named(short, tmp_path, monkeypatch):
 
 
 def test_a_failing_painter_is_named(short, tmp_path, monkeypatch):
-    """What a process that draws fails of is told as one process tells it."""
+    """An error of a process that draws is reported as by one process."""
     with pytest.raises(UsageError, match="looks at 'nobody'"):
         render_movie(short, Render(camera=(Camera((0, 0, 1), "nobody"),), size=(160, 90)), tmp_path / "movie.mp4", processes=2)
 

@@ -71,7 +71,7 @@ def inside_and_outside():
 
 
 def test_points_are_in_bodies_or_above_a_face_that_looks_up():
-    """Of two boxes one above the other, which share a part, and beside them."""
+    """Points at two boxes one above the other, which share a part, and beside them."""
     vertices, triangle = boxes(((-0.5, -0.5, 0.0), (0.5, 0.5, 0.4)), ((-0.5, -0.5, 0.3), (0.5, 0.5, 0.6)), turn=0.3)
     x, y = np.array([-0.1, 0.02, 0.9]), np.array([0.03, 0.1])
     for z, is_in, floor in (
@@ -90,7 +90,7 @@ def test_points_are_in_bodies_or_above_a_face_that_looks_up():
 
 
 def test_a_dry_hull_is_dry_up_to_its_faces():
-    """Of a hull that lies across the columns all of the inside is dry, nothing outside; columns alone cannot tell that."""
+    """A hull lies across the columns: all of the inside is dry, nothing outside; columns alone cannot tell that."""
     inside, outside = inside_and_outside()
     raw = told(-np.inf)
     found = dry_spots(GRID, np.full(raw.shape, 0.5), raw, *hull())
@@ -191,7 +191,7 @@ def test_one_sheet_hangs_down_within_the_planks_only():
 
 @pytest.mark.parametrize(("rim", "drawn"), [(0.8, True), (0.45, False)])
 def test_a_small_pond_is_drawn_only_within_walls(rim, drawn):
-    """Of nine columns in a cup, and on a block; neither hangs down to the floor."""
+    """Ponds of nine columns, in a cup and on a block; neither hangs down to the floor."""
     x, y = middles()
     cup = boxes(
         ((-0.3, -0.3, 0.3), (0.3, 0.3, 0.4)),

@@ -39,7 +39,7 @@ def test_a_plugin_that_is_cut_short_is_refused(tmp_path, monkeypatch, kept):
 
 
 def test_the_styles_are_all_that_a_scene_asks_for():
-    """What the engine's commands name, a plugin that lacks it is refused for."""
+    """A plugin that lacks a style of the engine's commands is refused."""
     sources = "".join(path.read_text() for path in Path(plugin.__file__).parents[1].rglob("*.py"))
     named = {*re.findall(r"mdanim/[a-z]+", sources)} - {"mdanim/test"}
     assert named <= {name for _, name in all_styles()}
@@ -76,7 +76,7 @@ def test_the_shared_object_needs_neither_liblammps_nor_libmpi():
     assert "lammps" not in needed.lower().replace("mdanim_lammps", "") and "libmpi" not in needed
 
 
-# What a host tells of itself, told differently: the plugin asks through these functions of the LAMMPS library.
+# Properties of a host, changed: the plugin asks for them through these functions of the LAMMPS library.
 HOSTS = {
     "another tagint": (
         "int lammps_extract_setting(void *, const char *what) { return what[0] == 't' ? 8 : what[0] == 'b' ? 8 : 4; }",

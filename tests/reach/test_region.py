@@ -38,7 +38,7 @@ POOL = "liquid w {{ basin from (-1, -1, {z}) to (3, 1, {top}) density 1000 level
 
 
 def reach(scene):
-    """Of what acts on its objects."""
+    """Reach of the effects that act on its objects."""
     return Reach(scene, acting(features.effects(), scene))
 
 

@@ -34,7 +34,7 @@ def test_state_comes_back(tmp_path, liquid):
 
 
 def test_records_of_all_fixes_come_back(tmp_path):
-    """Of objects and pairs, of two fixes, one of which has none now."""
+    """Records are of objects and pairs, of two fixes, one of which has none now."""
     rub = StateRecords(np.array([[1, 0], [1, 3]], np.int32), np.array([0, 2, 5]), np.arange(5, dtype=np.uint8))
     written = replace(state(None), records={"rub": rub, "heat": NO_RECORDS})
     written.write(tmp_path / "checkpoint")

@@ -10,7 +10,7 @@ from mdanim_lammps.results.checksums import joined, shifts
 
 
 def piecewise(data: bytes, edges: list[int]) -> np.ndarray:
-    """What each piece between these edges has in the checksum of all, uint32."""
+    """Share of each piece between these edges in the checksum of all, uint32."""
     pieces = list(pairwise(edges))
     alone = np.array([zlib.crc32(data[a:b]) for a, b in pieces], np.uint32)
     factors = shifts(np.array([len(data) - b for _, b in pieces], np.int64))

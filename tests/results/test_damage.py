@@ -38,7 +38,7 @@ control { time 0.2 s  frames 50 fps  resolution 4 cm }
 HALF = 5
 """Frame at which the cut run was stopped."""
 SECONDS = 10.0
-"""What reading or resuming of such a small run may never take."""
+"""Limit for reading or resuming such a small run [s]."""
 
 
 @pytest.fixture(scope="module")
@@ -129,7 +129,7 @@ def outcome(task, ready, folder: Path, whole: Path, said) -> None:
 
 
 def tried(task, ready, folder: Path, whole: Path) -> str:
-    """What a task on a damaged folder ends with; a crash, a traceback and a hang fail."""
+    """End of a task on a damaged folder; a crash, a traceback and a hang fail."""
     fork = multiprocessing.get_context("fork")
     said = fork.SimpleQueue()
     child = fork.Process(target=outcome, args=(task, ready, folder, whole, said))

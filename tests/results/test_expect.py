@@ -26,7 +26,7 @@ BOX = SimpleNamespace(system=SimpleNamespace(names=("box",)), grid=SimpleNamespa
 
 
 def found(subject, quantity, time=None, level=None, fed=False, **columns):
-    """What one expect line finds in a run of three frames at 0, 1 and 2 s in which nothing moves, with these columns of the
+    """Value of one expect line in a run of three frames at 0, 1 and 2 s in which nothing moves, with these columns of the
     ledger and levels."""
     still = np.zeros((3, 1, 3))
     BOX.scene = SimpleNamespace(liquid=SimpleNamespace(fed=fed))

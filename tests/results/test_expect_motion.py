@@ -19,7 +19,7 @@ CONTEXT = SimpleNamespace(system=SimpleNamespace(names=("a", "b[1]")))
 
 
 def found(quantity, time, argument=None):
-    """What a line finds for `a`, thrown from (1, 2, 3) with (3, 0, 4) under gravity; `b[1]` flies from 0 with (0, 2, 0)."""
+    """Value of a line for `a`, thrown from (1, 2, 3) with (3, 0, 4) under gravity; `b[1]` flies from 0 with (0, 2, 0)."""
     t = TIMES[:, None]
     velocity = np.stack([[3.0, 0.0, 4.0] - t * [0.0, 0.0, 9.81], np.tile([0.0, 2.0, 0.0], (3, 1))], axis=1)
     place = np.stack([[1.0, 2.0, 3.0] + t * [3.0, 0.0, 4.0] - 0.5 * t**2 * [0.0, 0.0, 9.81], t * [0.0, 2.0, 0.0]], axis=1)

@@ -28,7 +28,7 @@ def pool():
 
 
 def test_frames_are_read_before_they_are_on_the_disk(tmp_path, pool):
-    """What is written and not flushed is there to the bit, also once the file is renamed; what is not written is refused."""
+    """A frame that is written and not flushed is there to the bit, also once the file is renamed; others are refused."""
     scene, models, frames, grid = pool
     path = tmp_path / "trajectory.h5"
     with TrajectoryWriter(path, scene, models, frames=FRAMES, dt=0.01, steps_per_frame=10, grid=grid) as out:

@@ -27,7 +27,7 @@ expect cork.position.z at 0.4 s = 0.1 m +- 1 m
 render { size (64, 48) }
 """
 MADE = {name: tuple(f"s{suffix}" for suffix in kind.suffixes) for name, kind in FORMATS.items()} | {"report": ("report.html",)}
-"""What commands make of a run; ``report`` a page, the others are formats of an export."""
+"""Files that commands make from a run; ``report`` a page, the others are formats of an export."""
 ROOT = pytest.mark.skipif(os.geteuid() != 0, reason="only root may mount a small file system")
 PAGE = 4096
 """Bytes that a file system in memory gives."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What is overwritten and deleted: what this program has made, and nothing else."""
+"""Overwriting and deleting: only files that this program has made."""
 
 import os
 import subprocess
@@ -85,7 +85,7 @@ def test_a_manifest_names_no_other_files(tmp_path, name):
     ("command", "suffix"), [("picture", ".png"), ("render", ".mp4"), ("report", ".html")], ids=lambda w: w.strip(".")
 )
 def test_files_of_others_ask_for_force(tmp_path, command, suffix):
-    """What this program has made before is replaced by the next one."""
+    """A file that this program has made is replaced by the next one."""
     path = tmp_path / "good.txt"
     path.write_text(GOOD + "render { size (64, 48) }\n")
     if command != "picture":

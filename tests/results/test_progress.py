@@ -91,7 +91,7 @@ def test_a_run_begun_anew_is_noticed(tmp_path):
      '{"frame": 1, "row": ["x", 2, 3], "seconds": 0}', '{"cost": 3}', '{"frame": 1, "row": [1, NaN, 3], "seconds": 0}'],
 )  # fmt: skip
 def test_lines_of_a_stranger_are_left_out(tmp_path, line):
-    """What no run writes neither ends the reader nor counts."""
+    """Lines that no run writes neither end the reader nor count."""
     with log(tmp_path) as out:
         out.frame(0, row(0), 0.0)
         (tmp_path / PROGRESS).open("a", encoding="latin-1").write(line + "\n")

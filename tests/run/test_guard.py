@@ -61,7 +61,7 @@ def run(text, folder, *, insist=False):
 
 
 def seen(ready, x, v):
-    """What all objects of a scene without ``expect`` lines tell."""
+    """Observations of all objects of a scene without ``expect`` lines."""
     everything = np.arange(len(ready.system.names))
     return Observer(ready.plan, ()).observe(everything, everything, x, v)
 

@@ -178,7 +178,7 @@ def test_a_finished_ledger_is_written_once(tmp_path, monkeypatch):
 
 
 def test_no_frame_takes_longer_in_a_long_run(tmp_path, monkeypatch):
-    """Of the table of all frames' steps, which is as long as the run, one is made, not one for each frame."""
+    """The table of all frames' steps, which is as long as the run, is made once, not for each frame."""
     made, lengths = [], Certificate.lengths.fget
     monkeypatch.setattr(Certificate, "lengths", property(lambda c: made.append(1) or lengths(c)))
     (tmp_path / "a.txt").write_text(FALL.replace("time 0.3 s", "time 0.1 s").split("expect")[0])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What is read off particles part by part is what is read off all at once, to the bit."""
+"""Observations of particles part by part equal those of all at once, to the bit."""
 
 from dataclasses import fields
 
@@ -32,7 +32,7 @@ def splash(tmp_path_factory):
 
 
 def in_parts(splash, parts, x, v):
-    """What executors would tell: each sees numbers of its own objects alone, the others are lost."""
+    """Observations of executors: each sees numbers of its own objects alone, the others are lost."""
     ready, height = splash[0], splash[3]
     observer = Observer(ready.plan, recorded_models(ready.models, ready.plan))
     found = []
@@ -71,7 +71,7 @@ def test_means_are_those_of_the_system(splash):
 
 @pytest.mark.parametrize("value", [np.nan, -np.inf])
 def test_the_first_number_that_is_not_finite(splash, value):
-    """Of all parts, whichever of them have such."""
+    """The first of all parts that have such numbers."""
     ready, x, v, _ = splash
     x, v, first = x.copy(), v.copy(), ready.system.first
     x[first[2] + 7, 1] = v[first[1] + 5, 2] = v[first[1] + 6, 0] = value
@@ -93,7 +93,7 @@ def test_what_is_inside_another_is_told_once(splash):
 
 
 def test_out_of_reach_of_the_liquid(splash):
-    """What is above the liquid needs no heights of it: in it is nothing of it."""
+    """An object above the liquid needs no heights of it, and nothing of it is in the liquid."""
     ready, x, v, height = splash
     x = x + [0.0, 0.0, 10.0]
     observer = Observer(ready.plan, ready.models)

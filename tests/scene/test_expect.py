@@ -38,7 +38,7 @@ def test_relations(written, relation):
 
 @pytest.mark.parametrize(("value", "tolerance"), [("0.12 m", 0.0024), ("-12 cm", 0.0024), ("2 m", 0.04)])
 def test_a_tolerance_in_per_cent_is_of_the_value(value, tolerance):
-    """Of its size, whatever its sign and unit."""
+    """Per cent of its size, whatever its sign and unit."""
     assert expected(f"expect ball.position.z = {value} +- 2 %").tolerance == pytest.approx(tolerance, rel=1e-15)
     assert expected(f"expect ball.position.z = {value} ± (1 + 1)%").tolerance == pytest.approx(tolerance, rel=1e-15)
 
@@ -57,7 +57,7 @@ def test_a_tolerance_in_per_cent_is_of_the_value(value, tolerance):
     ],
 )  # fmt: skip
 def test_mistakes_of_relations_and_tolerances(line, message, hint):
-    """What says nothing is refused with a way out."""
+    """Lines that demand nothing are refused with a way out."""
     problem = refusal(f"expect {line}")
     assert (problem.message, problem.hint) == (message, hint)
 
@@ -105,6 +105,6 @@ def test_a_liquid_may_be_called_by_its_name():
     ],
 )  # fmt: skip
 def test_mistakes_of_arguments(line, message, hint):
-    """What is missing, unknown or out of place in brackets is told."""
+    """Arguments that are missing, unknown or out of place are refused."""
     problem = refusal(f"expect {line}", TWO)
     assert (problem.message, problem.hint) == (message, hint)

@@ -55,7 +55,7 @@ def test_page_is_up_to_date():
 
 @pytest.mark.parametrize("k", WORDS, ids=lambda k: f"{k.block}.{k.name}")
 def test_example_of_each_keyword_parses(k):
-    """What a message proposes can be written."""
+    """Examples that messages propose can be written."""
     scene(k.block, **{k.name: k.example})
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What a scene may ask for: whatever is beyond a limit is refused at its line, with the limit and a way out."""
+"""Limits of a scene: a value beyond one is refused at its line, with the limit and a way out."""
 
 import math
 import os

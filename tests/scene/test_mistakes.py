@@ -282,7 +282,7 @@ def test_a_mistake_in_a_repeat_is_told_once():
 
 
 def test_a_spoiled_let_is_told_once():
-    """What follows from a bad let is not told again."""
+    """Mistakes that follow from a bad let are not reported again."""
     with pytest.raises(SceneError) as error:
         parse_scene(text("let a = 1/0\nlet b = a + 1\n", mass="b kg"))
     assert len(error.value.problems) == 1

@@ -26,7 +26,7 @@ def test_slow_motion_has_frames_for_a_smooth_movie():
 
 
 def test_a_moment_in_slow_motion_has_frames():
-    """What is shorter than a frame of a movie at its own speed is long enough for one in slow motion."""
+    """A stretch shorter than a frame of a movie at its own speed is long enough for one in slow motion."""
     moment = text().replace("time 3 s", "time 0.02 s")
     assert parse_scene(moment + "render { speed 0.1 }\n").control.frames == 300.0
     with pytest.raises(SceneError, match="not one frame of 1/30 s"):

@@ -118,7 +118,7 @@ def scene(seed: int) -> str:
 
 
 def check(seed: int) -> str:
-    """What becomes of one scene: ``good``, or ``refused``; anything else is a fault."""
+    """Result of one scene: ``good``, or ``refused``; anything else is a fault."""
     from mdanim_lammps.errors import MdanimError
     from mdanim_lammps.run.prepare import prepare
     from mdanim_lammps.scene.lock import lock_text

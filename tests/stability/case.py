@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What a hard case is: a scene, what is measured in it, how much of that is allowed, and why. Building blocks for scenes.
+"""Hard cases: a scene, what is measured in it, how much of that is allowed, and why. Building blocks for scenes.
 
 Units: spacing 1 m. Solids of density 1 and elasticity 1 unless told, so the wave speed is C and a time of 1 is h sqrt(rho/E).
 """
@@ -40,7 +40,7 @@ class Case:
 
 
 def broken(case: Case, found: dict[str, float]) -> list[str]:
-    """What is beyond its limit, in words; a NaN is."""
+    """Quantities beyond their limits, in words; a NaN is."""
     return [
         f"{what} is {found[what]:.4g}, the most is {most:g} ({case.why})"
         for what, most in case.most.items()

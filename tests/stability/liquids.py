@@ -199,7 +199,7 @@ MASKS = Case(
 # --- with momentum ------------------------------------------------------------------------------------------------
 
 RESTLESS = ("density 0.01 of the liquid", "density 0.01, released from the bottom")
-"""What does not come to rest in waves: a body of up to 0.1 of the liquid's density shakes on, at one to four sqrt(g cell)."""
+"""Cases that do not come to rest in waves: a body of up to 0.1 of the liquid's density moves at one to four sqrt(g cell)."""
 
 
 def in_waves(case: Case) -> Case:

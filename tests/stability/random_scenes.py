@@ -111,7 +111,7 @@ def control(step: float | None = None, more: str = "contact-model paper") -> str
 
 @dataclass
 class Tally:
-    """What random scenes did."""
+    """Counts of random scenes."""
 
     drift: list[float] = field(default_factory=list)
     """Largest energy residual of each, at the certified step."""
@@ -122,7 +122,7 @@ class Tally:
     kinds: dict[str, int] = field(default_factory=dict)
     """Number of scenes of each place."""
     particles: int = 0
-    """Of the largest."""
+    """Size of the largest."""
     contact: list[bool] = field(default_factory=list)
     """Which have contact in their bound."""
     diverged: list[bool] = field(default_factory=list)

@@ -37,7 +37,7 @@ def ask(link, **what) -> dict:
 
 
 def heard(link, wanted) -> dict:
-    """What a page knows when this holds of it."""
+    """State of a page once this holds of it."""
     known = link.__dict__.pop("known", {})
     while not wanted(known):
         said = link.recv(60)
@@ -72,7 +72,7 @@ def test_problems_have_their_lines(folder):
 
 
 def test_the_text_is_that_of_the_scene(folder):
-    """Of a folder alone it is that from which the run was made, as long as that is still the same; else the lock of the run."""
+    """For a folder alone it is the text of the run, as long as that has not changed; else the lock of the run."""
     assert (Editor(folder).text, Editor(folder).name) == (FALL, "fall")
     lock = (folder / "scene.lock.txt").read_text()
     (folder.parent / "fall.txt").write_text(FALL + "# changed\n")
@@ -106,7 +106,7 @@ def test_a_run_of_the_edited_text(folder):
 
 
 def test_a_run_that_cannot_begin_says_why(folder):
-    """What only shows when models are built, as two objects in one place."""
+    """Some mistakes show only when models are built, as two objects in one place."""
     cube = SHORT[SHORT.index("object cube") : SHORT.index("object plate")]
     text = SHORT + cube.replace("object cube", "object twin")
     with served(folder, editor=Editor(folder, folder.parent / "fall.txt")) as view, page(view) as link:

@@ -41,7 +41,7 @@ def block_of(page: str) -> bytes:
 
 
 def restored(data: bytes, row: int, rows: int) -> np.ndarray:
-    """What `differences` was given, by a sum."""
+    """Input of `differences`, by a sum."""
     half = len(data) // 2
     low, high = np.frombuffer(data[:half], "u1"), np.frombuffer(data[half:], "u1")
     return np.cumsum((low + 256 * high.astype("u2")).reshape(rows, row), axis=0, dtype="u2")
@@ -175,7 +175,7 @@ def test_long_runs_are_thinned(folder, tmp_path, monkeypatch):
 
 
 def test_a_long_run_need_not_fit_in_memory(tmp_path):
-    """Of 500 frames of 4000 vertices, 12 MB as they are kept, a few are in memory at a time."""
+    """A few of 500 frames of 4000 vertices, 12 MB as they are kept, are in memory at a time."""
     x = np.random.default_rng(2).normal(size=(4000, 3))
     values = {"position": x, "center_of_mass": np.zeros((1, 3)), "center_of_mass_velocity": np.ones((1, 3))}
     frames = SimpleNamespace(value=lambda name, n: (1.0 + 0.001 * n) * values[name], time=float, path=tmp_path)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What a page is sent holds what the trajectory holds."""
+"""Messages to a page hold what the trajectory holds."""
 
 import json
 import struct
@@ -118,7 +118,7 @@ def models_at(models):
 
 
 def test_heights_are_those_of_the_centre_of_mass(slab, monkeypatch):
-    """Of all frames that there are, or of fewer of them from the first to the last."""
+    """Heights of all frames, or of fewer of them from the first to the last."""
     folder, feed = slab
     with Trajectory(folder) as t:
         heights = t.objects["ball"].center_of_mass[:, 2]

@@ -45,7 +45,7 @@ def test_others_code_has_its_licences():
 
 
 def test_the_page_is_small():
-    """What others' code and ours add to the wheel."""
+    """Size that others' code and ours add to the wheel."""
     assert sum(p.stat().st_size for p in WEB.iterdir()) < 800_000
 
 

@@ -26,7 +26,7 @@ def scene(tmp_path) -> Path:
 
 
 def told(link, wanted) -> dict:
-    """What a page knows when this holds of it."""
+    """State of a page once this holds of it."""
     known = {}
     while not wanted(known):
         said = link.recv(60)

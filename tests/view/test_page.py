@@ -241,7 +241,7 @@ def test_the_camera_line_is_of_the_language(browser, beam, tmp_path):
 
 
 def test_liquid_is_seen_through(browser, scenes, tmp_path):
-    """What lies behind it turns blue; without the liquid it does not."""
+    """A body behind it turns blue; without the liquid it does not."""
     (tmp_path / "float.txt").write_text(
         (scenes / "float.txt").read_text().replace("time 6 s", "time 0.2 s").replace(" at 6 s", "")
     )

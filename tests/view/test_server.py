@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What the server of a view answers, what it refuses (docs/security.md), and when it ends."""
+"""Answers and refusals of the server of a view (docs/security.md), and its end."""
 
 import http.client
 import json
@@ -102,7 +102,7 @@ def test_two_pages_at_a_time(view):
 
 
 def test_long_runs_are_told_in_part(tmp_path, folder):
-    """Of more rows than a message holds, every n-th is sent."""
+    """If a message cannot hold all rows, every n-th is sent."""
     text = (folder / PROGRESS).read_text().splitlines()
     row = json.loads(text[1])["row"]
     (tmp_path / "manifest.json").write_bytes((folder / "manifest.json").read_bytes())
@@ -116,7 +116,7 @@ def test_long_runs_are_told_in_part(tmp_path, folder):
 
 
 def test_a_run_begun_anew_is_told_anew(folder, tmp_path):
-    """Of another file of the same name, everything is told again, also where it has fewer frames; the number of files goes up."""
+    """For another file of the same name all is sent again, also if it has fewer frames; the number of files goes up."""
     again = tmp_path / "again.out"
     shutil.copytree(folder, again)
     tail, known = Tail(again), Known()
@@ -223,7 +223,7 @@ def test_the_token_is_nowhere_else(folder, view, tmp_path):
 
 
 def test_a_browser_is_led_to_the_page_by_a_private_file(view, monkeypatch, tmp_path, capsys):
-    """What every user of this machine can read, the arguments of a browser, names a file that its owner alone can read."""
+    """The arguments of a browser, which every user of this machine can read, name a file that its owner alone can read."""
     opened = []
     monkeypatch.setenv("DISPLAY", ":0")
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
@@ -310,7 +310,7 @@ WRONG += ['{"get": 1}', '{"get": 1, "layers": 4}', '{"heights": 99}', '{"heights
 
 @pytest.mark.parametrize("text", WRONG, ids=lambda text: repr(text)[:30])
 def test_messages_are_checked(view, folder, text):
-    """What no page of ours sends ends its connection, and only that."""
+    """A message that no page of ours sends ends its connection, and only that."""
     before = sorted(p.name for p in folder.iterdir())
     with page(view) as link:
         link.send(text)

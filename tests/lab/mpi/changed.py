@@ -60,13 +60,13 @@ class Case:
 
 
 CASES = {
-    # Of a third of the beam, and of molecule 2.
+    # A third of the beam, and molecule 2.
     "delete_bonds": Case(("group g id 1:45", "delete_bonds g multi", RUN, RUN_ON)),
     "delete_bonds remove": Case(("group g molecule 2", "delete_bonds g multi remove", RUN, RUN_ON)),
     "delete_bonds and undo": Case(("group g id 1:45", "delete_bonds g multi", RUN, "delete_bonds g multi undo", RUN)),
     "set bond": Case(("group g id 20:90", "set group g bond 1", RUN, RUN_ON)),
     # Every third particle of the beam is another object's, and then the beam is whole again.
-    # Of eight lanes too few would have springs then.
+    # With eight lanes too few would have springs then.
     "set mol": Case(
         ("group g id 1:130:3", "set group g mol 4", RUN, "set group g mol 1", RUN), style="verlet/mdanim width common"
     ),
@@ -99,7 +99,7 @@ CASES = {
     "set mass": Case(("group g id 20:90", "set group g mass 1.7", RUN, RUN_ON)),
     "bond_coeff": Case(("bond_coeff 1 0.2 1.05", RUN, RUN_ON)),
     "second springs": Case((RUN,), DOUBLED),
-    # What is removed leaves its place to the last spring of a particle, so the two ends may have theirs in different orders.
+    # A removed spring leaves its place to the last spring of a particle, so the two ends may have theirs in different orders.
     "second springs deleted": Case(("group g id 1:100", "delete_bonds g bond 1 remove", RUN), DOUBLED),
     "bond_coeff pre no": Case(("bond_coeff 1 0.2 1.05", RUN_ON, RUN)),
 }

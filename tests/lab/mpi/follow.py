@@ -44,7 +44,7 @@ def seen(instance: Instance) -> dict[str, np.ndarray]:
 
 
 def follow(path: Path, comm=None) -> dict[str, np.ndarray]:
-    """What is seen at the start, after some steps, after more, and after those were taken back and gone again,
+    """Observations at the start, after some steps, after more, and after those were taken back and gone again,
     here and elsewhere."""
     plan = prepare(load_scene(path)).plan
     film: dict[str, np.ndarray] = {}

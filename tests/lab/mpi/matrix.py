@@ -51,7 +51,7 @@ def run(case: dict, ready, world) -> None:
 
 
 class Spoiled:
-    """What one case does to all ranks while it runs: ``rotate`` gives every island to the next executor in every plan,
+    """A change of one case to all ranks while it runs: ``rotate`` gives every island to the next executor in every plan,
     ``forget`` lets instances begin without records ("all"), or without those of pairs."""
 
     def __init__(self, case: dict):

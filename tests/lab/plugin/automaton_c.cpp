@@ -16,7 +16,7 @@ using mdanim::Vertical;
 
 namespace mdanim {
 
-// What tests need of the inside of an automaton.
+// Inside of an automaton, as far as tests need it.
 struct AutomatonProbe {
   Automaton &a;
 

@@ -172,7 +172,7 @@ MDANIM_EXPORT int mdanim_cut_blocks(void *made) { return static_cast<int>(static
 
 MDANIM_EXPORT int mdanim_cut_entries(void *made) { return static_cast<int>(static_cast<MadeCut *>(made)->cut.entry.size()); }
 
-// Of each block start, lanes, end and whether it is damped; of each entry its offset and push, pull and c of every lane.
+// Blocks: start, lanes, end and whether damped, for each; of each entry its offset and push, pull and c of every lane.
 MDANIM_EXPORT void mdanim_cut_tell(void *p, int *block, int *offset, double *coeffs)
 {
   const auto &[cutter, cut, ranges] = *static_cast<MadeCut *>(p);

@@ -7,7 +7,7 @@
 using mdanim::WavePush;
 using mdanim::Waves;
 
-// Of each cell: 1 where the push is known, head, share, over, on_top, along_x, along_y, beside.
+// Arrays by cell: 1 if the push is known, head, share, over, on_top, along_x, along_y, beside.
 MDANIM_EXPORT void mdanim_wave_push(void *waves, int nx, int ny, int nz, const double *mass, double *out)
 {
   WavePush push(nx, ny, nz);

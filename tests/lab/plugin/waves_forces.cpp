@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// What solids feel: pressure phi - z on every face between solid and wet cells. At rest it is Archimedes' lift, and what pushes
+// Forces on solids: pressure phi - z on every face between solid and wet cells. At rest it is Archimedes' lift, and what pushes
 // sideways adds up to nothing. Under a moving body phi holds what the liquid around it takes to be moved.
 
 #include "liquid/waves/waves.h"

@@ -41,7 +41,7 @@ def depths(count, edge, X):
 
 
 def ramps(count, is_flat, X):
-    """What of a point counts across each axis (P, 3), the slope of that, and cells that are missing to the first of it."""
+    """Weight of a point across each axis (P, 3), its slope, and the cells that it lacks to the first of it."""
     rise = np.where(is_flat[:, None], np.minimum(1.0, 0.25 * np.array(count)), 0.5)
     middle = np.where(is_flat[:, None], 1.5 * rise, 0.0)
     rounded = 0.05  # of the width at either end, where the slope rises and falls evenly
@@ -63,7 +63,7 @@ def ramps(count, is_flat, X):
 
 
 def flattened(n):
-    """What of a depth counts whose gradient is n long, and -d(log of that)/dn over n."""
+    """Factor of a depth whose gradient has the length n, and -d(log of the factor)/dn over n."""
     over = np.maximum(n - STEEP, 0.0)
     y = STEEP + MORE * over / (over + MORE)
     flat = n > STEEP
@@ -82,13 +82,13 @@ def onset(d, eps):
 
 @dataclass
 class Law:
-    """Of the points of one object in another, or against a plane."""
+    """Law for the points of one object in another, or against a plane."""
 
     kappa: float
     onset: float
     friction: float
     eta: float
-    """Of the dashpot, by area [N s/m^3]."""
+    """Dashpot by area [N s/m^3]."""
 
 
 @dataclass
@@ -104,7 +104,7 @@ class Account:
 
 @dataclass
 class Memory:
-    """Of all points of an object in one host: side -1 where there is no contact."""
+    """Memory of all points of an object in one host: side -1 for no contact."""
 
     side: np.ndarray
     open: np.ndarray
@@ -377,7 +377,7 @@ class Twin:
         account.deepest = max(account.deepest, float(d.max(initial=0.0)))
 
     def _let_go(self, law, area, memory, points, depth, t):
-        """What contacts in crushed cells held goes with them, less what their forces still do in half of the step."""
+        """Energy of contacts in crushed cells is released, less the work of their forces in half of the step."""
         value, slope = onset(memory.depth[points] - memory.offset[points], law.onset)
         k, energy = law.kappa * area[points], memory.energy[points]
         was = energy / np.maximum(k * value, 1e-300)

@@ -26,7 +26,7 @@ def draw(seed, when, cell):
 
 
 def neighbour(a, step):
-    """Of every cell the value of its neighbour at (dz, dy, dx); False outside the grid."""
+    """Value of the neighbour of every cell at (dz, dy, dx); False outside the grid."""
     padded = np.pad(a, 1)
     return padded[tuple(slice(1 + d, 1 + d + n) for d, n in zip(step, a.shape))]
 

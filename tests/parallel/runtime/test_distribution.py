@@ -25,7 +25,7 @@ def same(alone: Path, together: Path) -> None:
     one, two = (Ledger.read(f / "ledger.csv") for f in (alone, together))
     assert (one.terms, one.extras) == (two.terms, two.extras)
     scale = max(np.abs(one.array(t)).max() for t in one.terms)
-    # What dashpots take is known to second order only where a bundle begins anew: 4.4e-6 of all energy where 16 balls do.
+    # Loss by dashpots is of second order only where a bundle begins anew: 4.4e-6 of all energy for 16 balls.
     timeline = Timeline.read(together)
     begun = np.count_nonzero(timeline.moves) + sum(timeline.retries)
     for column in one.columns:
@@ -110,7 +110,7 @@ def test_objects_that_fly_about_change_their_executors(scene):
     assert sum(timelines["plain peers2"].retries) == 0
     assert windows(timelines["windows central3"]) > 1 == windows(timelines["plain central2"])
     for timeline in timelines.values():
-        # What came to an executor is what left another, and no frame is without an owner for what can move.
+        # An object that came to an executor left another one, and in no frame is a movable object without an owner.
         table = timeline.owner()
         assert (table >= 0).all() and (table < timeline.executors).all()
         assert (table[1:] != table[:-1]).sum() <= sum(timeline.moves)

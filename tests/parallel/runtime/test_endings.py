@@ -409,7 +409,7 @@ def test_a_rank_that_cannot_begin_is_told(place, monkeypatch):
 
 
 def test_most_of_the_wall_time_is_accounted_for(place):
-    """Of a run of two executors the parts of the cost add up to the wall time."""
+    """The parts of the cost of a run of two executors add up to the wall time."""
     ready, folder = readied(place, films.FLYING)
     result = simulate_on(2, "central", ready, folder)
     assert 0.95 <= result.cost.covered <= 1.02, json.dumps(result.cost.to_json(), indent=1)

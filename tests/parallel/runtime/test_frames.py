@@ -137,7 +137,7 @@ def test_a_disk_that_is_full_for_an_executor(tmp_path, monkeypatch, settings):
 
 
 def test_a_sync_that_fails_for_an_executor(tmp_path, monkeypatch):
-    """What may not be on the disk has no checkpoint."""
+    """A frame that may not be on the disk has no checkpoint."""
     ready, folder = readied(tmp_path, SHORT)
     code = "import errno\ndef fdatasync(file):\n    raise OSError(errno.EIO, os.strerror(errno.EIO))\nos.fdatasync = fdatasync"
     on_executor_1(tmp_path, monkeypatch, code)

@@ -83,7 +83,7 @@ def test_a_history_that_is_lost_is_seen(scene, forget):
 
 
 def test_two_objects_that_part_lose_their_record(scene):
-    """What two objects remember of each other ends when they are out of reach, and with it what would have to travel."""
+    """The record of two objects ends when they are out of reach, and with it what would have to travel."""
     found = film(scene, films.BOUNCE, {"met": SEQUENTIAL | {"stop": 6}})
     assert (1, 2) in records(found["met"]) and (1, 2) not in records(found["sequential"])
     ways_gone = [

@@ -43,7 +43,7 @@ def test_stateful_fixes_are_listed(pool):
 
 
 def test_the_liquid_is_one_record(pool):
-    """Of the whole, (0, 0), and taken up again to the byte."""
+    """The record of the whole, (0, 0), is taken up again to the byte."""
     state = state_lab.pack(pool, "water")
     assert state.key.tolist() == [[0, 0]]
     assert state.first.tolist() == [0, len(state.data)] and len(state.data) > 8**3
@@ -114,7 +114,7 @@ def records_of(found: dict, name: str) -> Records:
 
 @pytest.fixture(scope="module")
 def alone(tmp_path_factory):
-    """What `remember` finds on one rank."""
+    """Records that `remember` finds on one rank."""
     folder = tmp_path_factory.mktemp("alone")
     return remember(folder) | {"folder": folder}
 

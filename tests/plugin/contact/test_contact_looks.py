@@ -23,7 +23,7 @@ LOWER = {"boxes": "box (6, 6, 6) cm", "balls": "sphere 3 cm", "ball over box": "
 
 
 def looks(prepared, name: str, speed: float) -> float:
-    """Of two objects that rest near each other; far away another one flies off at so many m/s, which asks for new lists."""
+    """Looks at two objects that rest near each other; far away another one flies off at this speed, which asks for new lists."""
     shape, height = PAIRS[name]
     text = (
         f"object a {{ shape {LOWER[name]}  position (0, 0, 0) cm  {SOLID} }}\n"

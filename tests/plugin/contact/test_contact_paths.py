@@ -11,9 +11,9 @@ from twin.maps import smooth_spot
 HOST = Cuboid((3, 3, 2))
 ON_CORNER = {"axis": (1.0, -1.0, 0.0), "angle": 54.7356}
 CORNER = np.array([1.5, 1.5, 1.0])
-"""Of the host: the particle that is pressed in."""
+"""Corner of the host: the particle that is pressed in."""
 STEPS = 400
-"""Of each leg."""
+"""Steps of each leg."""
 LET_GO, TOUCHING = 3, 5
 """Entries of the vector of fix mdanim/contact."""
 
@@ -34,7 +34,7 @@ class Path:
 
     @property
     def energy(self) -> float:
-        """What is in contacts and springs, and what was let go."""
+        """Energy of contacts and springs, and of released contacts."""
         fix = lambda *which: self.lmp.extract_fix("contact", 0, *which)
         return fix(0) + fix(1, LET_GO) + self.lmp.get_thermo("ebond")
 

@@ -160,7 +160,7 @@ def test_two_particles_in_one_place_feel_no_spring(tmp_path):
 
 
 def dashpot_loss(lmp) -> float:
-    """What dashpots have taken so far, on this rank."""
+    """Loss by dashpots so far, on this rank [J]."""
     import ctypes
 
     import plugin_path
@@ -182,7 +182,7 @@ def missing(tmp_path, dt: float, commands=()) -> tuple[float, float]:
 
 
 def test_dashpot_loss_is_the_energy_that_is_missing(tmp_path):
-    """What is lost is what is missing; the rest falls with the third power of the time step, by the ends of the account."""
+    """The loss is the missing energy; the rest falls with the third power of the time step, by the ends of the account."""
     errors = []
     for dt in (0.16, 0.08, 0.04):
         found, lost = missing(tmp_path, dt)

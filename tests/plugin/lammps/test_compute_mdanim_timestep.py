@@ -91,7 +91,7 @@ def test_on_several_ranks(tmp_path):
 
 
 def test_says_what_is_not_in_it(tmp_path, capfd):
-    """Of fixes whose forces it does not know it warns by name; other springs are refused, and arguments."""
+    """It warns by name of fixes whose forces it does not know; it refuses other springs, and arguments."""
     barrier = ["group inner type 1", "group boundary type 2", "fix touch all mdanim/barrier boundary inner 1.0 1.6"]
     lmp = lab.load(BODY, tmp_path, [f"log {tmp_path}/log", *barrier, *RUN, "run 0"])
     lmp.close()

@@ -238,13 +238,13 @@ def test_momentum_and_angular_momentum_stay(tmp_path, name):
         pytest.param("beside an edge", 0.0, 5e-5, id="over an edge"),
         pytest.param("on a corner, rough", 0.0, 3e-4, id="corner, friction"),
         pytest.param("on an edge, rough", 0.0, 3e-4, id="edge, friction"),
-        # What dashpots take is told to the first order of the step: 4 % of 0.08 at this one, half of that at half of it.
+        # Loss by dashpots is of the first order of the step: 4 % of 0.08 at this one, half of that at half of it.
         pytest.param("on a corner, rough", 0.3, 3e-3, id="corner, dashpots"),
         pytest.param("on an edge, rough", 0.3, 3e-3, id="edge, dashpots"),
     ],
 )
 def test_the_books_of_a_blow_close(tmp_path, name, damping, most):
-    """What is there, and what friction and dashpots took, over the energy at the start."""
+    """Energy at the end, and the losses by friction and dashpots, over the energy at the start."""
     case, dt = replace(MEETINGS[name], damping=damping), 0.05
     body, _ = contact_lab.scene(case.cuboids)
     more = ["fix_modify contact energy yes"]
@@ -296,7 +296,7 @@ def test_contacts_begin_without_energy(tmp_path, name):
     ],
 )
 def test_what_starts_in_touch_or_overlapping_stays(tmp_path, place, speed, depth):
-    """What overlaps at the start exerts no force: all that happens is the way of the start."""
+    """Objects that overlap at the start exert no force: they only follow their start."""
     place, way = {**place, "velocity": (0.0, 0.0, -speed)}, 1.1 * speed * 200 * STEP
     place["centre"] = tuple(np.array(place["centre"]) - (0.0, 0.0, depth))
     pair = (replace(SLAB, friction=0.5), Cuboid((2, 2, 2), friction=0.5, **place))

@@ -65,7 +65,7 @@ BAD = {
 def test_a_mistake_is_told_with_its_line(tmp_path, name):
     """One line is another one."""
     n, line, why = BAD[name]
-    # What is wrong with a body as a whole is told at its beginning.
+    # A mistake of a body as a whole is reported at its beginning.
     told = at("body") + 1 if name == "no length" else n + 1
     text = "\n".join([*LINES[:n], line, *LINES[n + 1 :]])
     with pytest.raises(Exception, match=re.escape(f"bodies:{told}: ") + ".*" + re.escape(why)):

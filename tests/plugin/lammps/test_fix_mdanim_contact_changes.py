@@ -75,7 +75,7 @@ def coarse() -> dict:
 
 
 def test_a_body_with_fewer_points_takes_the_place_of_another(tmp_path):
-    """Of objects near each other, not in touch; until the next setup the old one acts."""
+    """The objects are near each other, not in touch; until the next setup the old body acts."""
     lmp = load((CUBES[0], Cuboid((2, 2, 2), (0.0, 0.0, 2.1))), tmp_path)
     contact_lab.give_body(lmp, "contact", 1, coarse())
     lmp.command("run 5 pre no post no")
@@ -85,7 +85,7 @@ def test_a_body_with_fewer_points_takes_the_place_of_another(tmp_path):
 
 
 def test_another_body_of_objects_in_touch_is_refused(touching):
-    """What contacts remember is of points that are gone."""
+    """Contacts remember points that are gone."""
     contact_lab.give_body(touching, "contact", 1, coarse())
     for _ in range(2):
         with pytest.raises(Exception, match=r"object 2 .* another body .*unfix"):

@@ -196,7 +196,7 @@ def test_bodies_that_do_not_fit_are_refused(fix, name):
 
 
 def test_filled_cells_have_their_particles(fix):
-    """Of a body that is not a cuboid."""
+    """Filled cells of a body that is not a cuboid."""
     shape = {**CUBE, "depth": np.ones(7**3)}
     contact_lab.give_body(fix, "contact", 0, shape)
     with pytest.raises(RuntimeError, match="a filled cell lacks a particle"):

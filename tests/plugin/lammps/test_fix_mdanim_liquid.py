@@ -203,7 +203,7 @@ def test_level_liquid_sleeps_and_wakes(tmp_path):
 
 
 def test_updates_come_after_a_stride(tmp_path):
-    """Of a block that sinks through the pool: a longer stride has fewer, each of one sweep here,
+    """Updates of a block that sinks through the pool: a longer stride has fewer, each of one sweep here,
     and one that is never done none."""
     seen = []
     for stride in (0.1, 1.0, 1e6):
@@ -222,7 +222,7 @@ def test_updates_come_after_a_stride(tmp_path):
 
 
 def test_updates_come_after_a_period(tmp_path):
-    """Of a dam that has just broken, with nothing near it: at looks every 4 steps of 0.3, a period of 6 sees every fifth."""
+    """A dam has just broken, with nothing near it: at looks every 4 steps of 0.3, a period of 6 sees every fifth."""
     seen = []
     for period in (0.06, 0.6, 1e6):  # times sqrt(cell/g) = 10
         lmp = lab.load(

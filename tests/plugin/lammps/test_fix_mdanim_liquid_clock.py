@@ -35,7 +35,7 @@ def clock(lmp) -> float:
 
 
 def period_of(times, volume) -> float:
-    """Of the sine that is the best fit to a volume."""
+    """Period of the sine that fits a volume best."""
 
     def missed(period):
         base = np.stack([np.sin(2 * np.pi * times / period), np.cos(2 * np.pi * times / period), np.ones_like(times)], axis=1)

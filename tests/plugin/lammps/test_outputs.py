@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What fixes tell has names, which are those of the lists on their pages."""
+"""Outputs of fixes have names, which are those of the lists on their pages."""
 
 import re
 
@@ -33,7 +33,7 @@ def on_page(style: str) -> list[str]:
 
 @pytest.mark.parametrize("model", ["paper", "surface"])
 def test_names_are_those_of_the_pages(model):
-    """Of each fix that a scene has, in the order of its vector; a name finds its entry."""
+    """Names of each fix of a scene are in the order of its vector; a name finds its entry."""
     with Instance(prepare(parse_scene(SCENE.format(model))).plan) as instance:
         instance.setup()
         seen = set()

@@ -31,7 +31,7 @@ WHY = {
 
 
 def log_of(tmp_path, commands, order=None) -> str:
-    """Of two runs with a setup and one without."""
+    """Log of two runs with a setup and one without."""
     log = tmp_path / "log"
     lmp = lab.load(
         BLOCK,

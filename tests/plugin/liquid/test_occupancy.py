@@ -10,7 +10,7 @@ from plugin_library import library
 from scipy.spatial.transform import Rotation
 
 CORNERS = np.array([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)], float)
-"""Of a lattice cell, in VTK order."""
+"""Corners of a lattice cell, in VTK order."""
 
 
 def counted(cells, shape=(16, 16, 16), spread=True, layers=None):

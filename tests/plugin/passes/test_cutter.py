@@ -9,7 +9,7 @@ import pytest
 from engine_lab import cut
 
 OVERHEAD = 2
-"""What a block costs besides its entries, as cutter.cpp has it."""
+"""Cost of a block besides its entries, as in cutter.cpp."""
 
 
 def random_springs(random, particles: int, many: int) -> tuple[np.ndarray, np.ndarray]:
@@ -37,7 +37,7 @@ def springs_of(blocks) -> dict[tuple[int, int], tuple[float, ...]]:
 
 
 def cost(springs: set[tuple[int, int]], begin: int, end: int) -> int:
-    """Of a block of these particles."""
+    """Cost of a block of these particles."""
     return OVERHEAD + len({j - i for i, j in springs if begin <= i < end})
 
 

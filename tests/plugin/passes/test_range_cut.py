@@ -29,7 +29,7 @@ def several(*bodies):
 
 
 def springs_in_order(blocks, low_first, ranges):
-    """Of each particle its partners in the order in which their forces are added, by the order in which a pass has them.
+    """Partners of each particle in the order in which their forces are added, by the order in which a pass has them.
 
     ``low_first``: partners below it, else those above it. A border's springs come before all others of both ranges.
     """
@@ -104,7 +104,7 @@ def test_a_border_moves_to_an_object_that_begins_near(layers, border):
 
 
 def test_ranges_cost_alike():
-    """Of a long bar each of four ranges has a quarter of the particles, up to a chunk."""
+    """Each of four ranges of a long bar has a quarter of the particles, up to a chunk."""
     particles, springs, krc, objects = several(lattice((5, 5, 300)))
     _, first = cut_into_ranges(4, particles, springs, krc, objects, 4)
     shares = np.diff([*first, particles])

@@ -325,7 +325,7 @@ class Executor:
             energies, fields = stored(bundle.instance), tell(bundle.instance)  # together with the team
             if self._leads(bundle):
                 self._count(energies)
-                # Of objects that it has laid aside, and of guests, another bundle has the values.
+                # Another bundle has the values of guests and of objects that this one has laid aside.
                 told.append((bundle.members, {n: v[bundle.moves] if n in of_objects else v for n, v in fields.items()}))
         self.fields = join_fields(declared, self.system.still, told)
 

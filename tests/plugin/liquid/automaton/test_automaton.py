@@ -96,7 +96,7 @@ def test_a_full_box_is_at_rest_and_a_drop_is_not():
     q[3] = 0
     a.content = np.roll(q, 1, axis=0)
     assert not a.at_rest
-    # What was found of the layers does not outlive a plain sweep or a filling.
+    # Findings on layers do not outlive a plain sweep or a filling.
     a.sweep(4, plain=True)
     assert a.at_rest
     a.fill(1)

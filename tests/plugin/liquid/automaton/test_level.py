@@ -288,7 +288,7 @@ def test_a_sunken_block_is_an_ordinary_column():
 
 
 def test_films_drops_and_dry_columns():
-    """What stands neither on liquid nor on the floor tells nothing; dry columns tell 0, or nothing."""
+    """Films and drops, which stand neither on liquid nor on the floor, have no height; dry columns have 0, or none."""
     solid = np.zeros((6, 1, 12), np.uint8)
     content = np.zeros_like(solid)
     solid[:, 0, [1, 3, 5, 8]] = 2  # partitions

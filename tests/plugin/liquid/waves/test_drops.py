@@ -16,7 +16,7 @@ def put(drops, *records):
 
 
 def momentum(w):
-    """Of the liquid along x, in a channel along x."""
+    """Momentum of the liquid along x, in a channel along x."""
     links = w.links
     return (links.u * links.height)[links.direction == 0].sum()
 
@@ -74,7 +74,7 @@ def test_a_drop_lands_on_what_is_topmost():
 
 
 def test_solids_stop_drops():
-    """What flies at a block falls along it, what flies up below a roof comes down again, each into the liquid below."""
+    """A drop that meets a block falls along it, one that meets a roof from below comes down again, each into the liquid below."""
     part = np.zeros((16, 3, 12), int)
     part[:9, :, 6:8] = 4096  # a block
     part[9, :, :6] = 4096  # a roof

@@ -92,7 +92,7 @@ def paddle(period, depth=8, cells=160, amplitude=0.2, side=WEST):
 
 @pytest.mark.parametrize(("period", "cells"), [(12.0, 160), (20.0, 320)])
 def test_a_paddle_makes_waves_of_its_amplitude_and_length(period, cells):
-    """Of 2 pi/sqrt(k tanh(k depth)): the crest within 6 %, the length within 4 %."""
+    """With the period 2 pi/sqrt(k tanh(k depth)): the crest within 6 %, the length within 4 %."""
     w = 2 * np.pi / period
     k = w * w
     for _ in range(200):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What waves do to bodies cell by cell, against the pressure on the faces of cells, which is summed in another way."""
+"""Push of waves on bodies cell by cell, against the pressure on the faces of cells, which is summed in another way."""
 
 import ctypes
 

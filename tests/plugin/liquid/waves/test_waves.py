@@ -437,7 +437,7 @@ def test_the_way_of_solids_leaves_no_trace():
 
 
 def test_rest_is_part_of_the_state():
-    """What sleeps goes on sleeping."""
+    """Sleeping liquid stays asleep."""
     w = lab.Waves((8, 5, 6))
     w.pour(4)
     w.update()

@@ -12,7 +12,7 @@ NZ, NY, NX = SHAPE = (16, 24, 24)
 INNER, HIGH = 10.0, 9.0
 """Width and height of the room in a cup [cells]."""
 CORNERS = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]], float)
-"""Of a lattice cell, in VTK order."""
+"""Corners of a lattice cell, in VTK order."""
 
 
 def box(size, at):

@@ -34,7 +34,7 @@ def test_an_absurd_velocity_is_held_where_it_enters(way, u):
 
 
 def test_an_impulse_that_is_too_large_is_lost_to_the_basin():
-    """What the liquid does not take of it stands in the account."""
+    """Impulse that the liquid does not take is in the account."""
     w = lab.Waves((9, 8, 8))
     w.pour(4)
     w.update()

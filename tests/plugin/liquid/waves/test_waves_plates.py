@@ -10,7 +10,7 @@ from plugin_library import library
 
 SHAPE = (20, 16, 16)
 CORNERS = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]], float)
-"""Of a lattice cell, in VTK order."""
+"""Corners of a lattice cell, in VTK order."""
 
 
 def turned(degrees):
