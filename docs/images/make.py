@@ -46,6 +46,7 @@ PICTURES = {
     "wake": 0.8,
     "bottle": 0.9,
     "weir": 4.6,
+    "henge": 0.5,
 }
 """Scene and the moment to show [s]."""
 STEPS = {"falls": 0.0, "stands": 1.0, "pushed": 0.27, "rolls": 0.5, "splashes": 0.4, "show": 0.3}

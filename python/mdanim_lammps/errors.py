@@ -35,6 +35,8 @@ class Span:
     """The whole source line, for the caret picture; empty where there is no text (``--set``)."""
     included_from: tuple[Span, ...] = ()
     """The ``include`` lines that lead to this file, outermost first."""
+    used_at: tuple[Span, ...] = ()
+    """Where what stands here is used, outermost first: the ``place`` of its group, the ``use`` of its properties."""
 
     def __str__(self) -> str:
         return f"{self.file}:{self.line}:{self.column}"
@@ -102,6 +104,7 @@ class Problem:
         picture = f"{gutter}{text}\n{' ' * (len(gutter) - 2)}| {pad}{caret}"
         hint = f"  {self.hint}" if self.hint else ""
         chain = "".join(f"\n        included from {s}" for s in reversed(self.span.included_from))
+        chain += "".join(f"\n        used at {s}" for s in reversed(self.span.used_at))
         return f"{head}\n{picture}{hint}{chain}"
 
 
@@ -115,6 +118,7 @@ def problem_json(problem: Problem) -> dict:
         "severity": problem.severity,
         "message": problem.message,
         "hint": problem.hint,
+        "used_at": [str(span) for span in reversed(problem.span.used_at)] if problem.span else [],
     }
 
 

@@ -3,85 +3,38 @@
 
 from __future__ import annotations
 
-import math
+import zlib
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 
+from ..errors import Span
 from . import units
-from .colors import color
+from .evaluated import EvaluatedBlock, around
 from .expressions import SPOILED, Env
-from .formatting import estimate, number, whole
-from .keywords import did_you_mean, example
-from .limits import MOST_OBJECTS, MOST_ROUNDS
-from .schema import Rule, limit_of
+from .formatting import estimate, whole
+from .keywords import BLOCKS, did_you_mean
+from .limits import DEEPEST_GROUP, MOST_OBJECTS, MOST_PLACES, MOST_ROUNDS
+from .setting_reader import Shared
 from .source import Fault, Problems, SceneFile
-from .statements import Shared, parse_override
-from .tree import Group, Let, Name, Repeat, SettingNode, UnreadableStatement, Value
-
-LARGE = 5.0
-"""Size of a shape [m] from which on a number without unit gets a note."""
+from .statements import parse_override
+from .tree import Group, Let, Repeat, Set, SettingNode, Template, UnreadableStatement
+from .values import Evaluator, finite, kinds
 
 
-@dataclass(slots=True, eq=False)
-class EvaluatedSetting:
-    """A setting with its values."""
-
-    entry: SettingNode
-    values: tuple
-
-    def span(self, n: int | None = None):
-        """Place of the n-th value, or of the keyword and all values."""
-        v = self.entry.values[n] if n is not None else None
-        if v is None:
-            ends = [v.last for v in self.entry.values if v is not None]
-            return self.entry.source.span(self.entry.token, ends[-1] if ends else None)
-        return self.entry.source.span(v.first, v.last)
-
-
-@dataclass(slots=True, eq=False)
-class EvaluatedBlock:
-    """One block, or the scene itself, with its settings."""
-
-    block: str
-    group: Group | None = None
-    names: tuple[str, ...] = ()
-    settings: dict[str, list[EvaluatedSetting]] = field(default_factory=dict)
-    blocks: list[EvaluatedBlock] = field(default_factory=list)
-    broken: set[str] = field(default_factory=set)
-    """Words whose statement could not be used; that was reported already."""
-    where: str = ""
-    """``(i = 1, j = 2)``, in a repeat."""
-
-    @property
-    def name(self) -> str:
-        """``ball[3]``, or the names of both objects."""
-        return " ".join(self.names)
-
-    def excused(self, *words: str) -> bool:
-        """Whether these words may be missing because something could not be read."""
-        return not self.broken.isdisjoint((*words, "include", "repeat"))
-
-    def first(self, word: str) -> EvaluatedSetting | None:
-        """The setting of a keyword, if there is one."""
-        found = self.settings.get(word)
-        return found[0] if found else None
-
-    def value(self, word: str, default=None):
-        """The first value of a keyword's setting; the default where it is absent or ``auto``."""
-        found = self.settings.get(word)
-        return found[0].values[0] if found and found[0].values else default
-
-
-class Expander:
+class Expander(Evaluator):
     """Walks the statements with an environment of variables."""
 
     def __init__(self, shared: Shared, overrides: Mapping[str, str | float] | None, strict: bool):
-        self.problems: Problems = shared.problems
-        self.strict = strict
+        super().__init__(shared.problems, strict)
         self.shared = shared
-        self.rounds = self.objects = 0
+        self.rounds = self.objects = self.places = 0
+        self.templates: dict[str, tuple[Template, Env]] = {}
+        """Groups by name, each with what is known where it stands."""
+        self.inside: EvaluatedBlock | None = None
+        """The place of the group whose body is carried out."""
+        self.placed: set[str] = set()
+        """Groups that are placed somewhere."""
         self.overrides = dict(overrides or {})
-        self.used: set[str] = set()
 
     # -- the whole scene
 
@@ -96,6 +49,10 @@ class Expander:
             return None
         out = EvaluatedBlock("")
         self.run(body, env, out)
+        for name, (s, _) in self.templates.items():
+            if name not in self.placed and not self.problems.errors:
+                cause = f"the group {name} is not placed, so it is not a part of the scene"
+                self.problems.add(s.source.span(s.name), cause, f"write place {name} {{ }}", "warning")
         return out
 
     def seed(self, body: list) -> int:
@@ -124,11 +81,11 @@ class Expander:
     def estimate(self, body: list, env: Env) -> bool:
         """Refuse a scene of too many objects before any is made."""
         quiet = Expander(Shared(Problems()), self.overrides, False)
-        worst: list[Repeat] = []
+        worst: list[Span] = []
         objects, rounds = quiet.count(body, Env({}, seed=env.seed), worst)
         if objects <= MOST_OBJECTS and rounds <= MOST_ROUNDS:
             return True
-        span = worst[0].source.span(worst[0].token, worst[0].variable) if worst else None
+        span = worst[0] if worst else None
         if objects > MOST_OBJECTS:
             cause = f"this scene has about {estimate(objects)} objects; the most is {whole(MOST_OBJECTS)}"
         else:
@@ -140,8 +97,13 @@ class Expander:
         """About how many objects and rounds a body makes; inner repeats at the middle of the outer one."""
         objects = rounds = 0.0
         for s in body:
-            if isinstance(s, Group):
+            if isinstance(s, Group) and s.of is not None:
+                o, r = self.count_placed(s, env, worst)
+                objects, rounds = objects + o, rounds + r
+            elif isinstance(s, Group):
                 objects += 1
+            elif isinstance(s, Template):
+                self.define(s, env)
             elif isinstance(s, Let):
                 self.let(s, env)
             elif isinstance(s, Repeat):
@@ -158,17 +120,22 @@ class Expander:
                 while len(env.values) > known:
                     env.values.popitem()
                 if n * max(o, 1.0) > MOST_OBJECTS or n * (1.0 + r) > MOST_ROUNDS:
-                    worst.append(s)
+                    worst.append(s.source.span(s.token, s.variable))
                 objects, rounds = objects + n * o, rounds + n * (1.0 + r)
         return objects, rounds
 
-    # -- statements
+    def count_placed(self, s: Group, env: Env, worst: list) -> tuple[float, float]:
+        """The same of a placed group. Groups that place each other too often are stopped while they are made."""
+        self.places += 1
+        if self.places > MOST_PLACES or str(s.of) not in self.templates or len(env.used_at) == DEEPEST_GROUP:
+            return 0.0, 1.0
+        template, within = self.surroundings(s, env, "")
+        o, r = self.count(template.body, within, worst)
+        if o > MOST_OBJECTS or r > MOST_ROUNDS:
+            worst.append(s.source.span(s.of))
+        return o, 1.0 + r
 
-    def where(self, env: Env) -> str:
-        """The indices of the repeats for messages."""
-        if not env.loops:
-            return ""
-        return " (with " + ", ".join(f"{n} = {i}" for n, i in zip(env.counters, env.loops)) + ")"
+    # -- statements
 
     def run(self, body: list, env: Env, out: EvaluatedBlock) -> None:
         """Carry out statements; settings and blocks go to ``out``."""
@@ -177,9 +144,13 @@ class Expander:
             if isinstance(s, SettingNode):
                 self.setting(s, env, out)
             elif isinstance(s, Group):
-                self.group(s, env, out)
+                (self.group if s.of is None else self.place)(s, env, out)
+            elif isinstance(s, Template):
+                self.define(s, env)
             elif isinstance(s, Repeat):
                 self.repeat(s, env, out)
+            elif isinstance(s, Set):
+                pass  # `sets` has seen to it
             elif isinstance(s, UnreadableStatement):
                 out.broken.add(s.word)
                 if s.name:
@@ -187,7 +158,7 @@ class Expander:
             elif s.token in env.values:
                 first = own.get(str(s.token))
                 place = f"first given at {first.source.span(first.token)}" if first else "it is known outside already"
-                self.problems.add(s.source.span(s.token), f"'{s.token}' is given twice", place)
+                self.problems.add(s.source.span(s.token, None, env.used_at), f"'{s.token}' is given twice", place)
             else:
                 own[str(s.token)] = s
                 self.let(s, env)
@@ -202,16 +173,33 @@ class Expander:
     def let(self, s: Let, env: Env) -> None:
         """Evaluate a let; ``--set`` takes its place."""
         name = str(s.token)
-        try:
-            value = s.node.run(env)
-            if not _finite(value):
-                raise Fault(s.node.first, f"{name} is not a finite number", last=s.node.last)
-        except Fault as fault:
-            self.problems.fault(s.source, fault, self.where(env))
-            value = SPOILED
+        value = self.value_of(s, env)
         if name in self.overrides:
             value = self.override(name, value)
+        if name in env.given:
+            value = self.replaced(*env.given[name], value)
         env.values[name] = value
+
+    def value_of(self, s: Let | Set, env: Env) -> object:
+        """The value of a let or a set; SPOILED after a problem."""
+        try:
+            value = s.node.run(env)
+            if not finite(value):
+                raise Fault(s.node.first, f"{s.token} is not a finite number", last=s.node.last)
+            return value
+        except Fault as fault:
+            self.fault(s.source, fault, env)
+            return SPOILED
+
+    def replaced(self, s: Set, value: object, original: object) -> object:
+        """The value of a ``set`` of a place, which must be of the kind of the let's."""
+        try:
+            if SPOILED not in (value, original):
+                self._same_kind(f"set {s.token}", s.source, s.node, value, original)
+        except Fault as fault:
+            self.problems.fault(s.source, fault)
+            return SPOILED
+        return value
 
     def override(self, name: str, original) -> object:
         """The value of ``--set name=value``, which must be of the kind of the let's."""
@@ -222,17 +210,17 @@ class Expander:
             return SPOILED
         try:
             value = node.run(Env({}, seed=1, strict=self.strict))
-            if not _finite(value):
+            if not finite(value):
                 raise Fault(node.first, f"{name} is not a finite number")
             if original is not SPOILED:
-                self._same_kind(name, source, node, value, original)
+                self._same_kind(f"--set {name}", source, node, value, original)
         except Fault as fault:
             self.problems.fault(source, fault)
             return SPOILED
         return value
 
-    def _same_kind(self, name: str, source: SceneFile, node, value, original) -> None:
-        one, other = _kinds(value), _kinds(original)
+    def _same_kind(self, how: str, source: SceneFile, node, value, original) -> None:
+        one, other, name = kinds(value), kinds(original), how.split()[1]
         if len(one) != len(other):
             raise Fault(node.first, f"{name} is {units.show(original)} in the scene, and a value of that kind is needed")
         for a, b in zip(one, other):
@@ -240,7 +228,7 @@ class Expander:
                 cause = f"{name} is {units.describe(b)} in the scene, found {units.show(value)}"
                 raise Fault(node.first, cause, f"units that fit: {' '.join(units.units_of(b))}", node.last)
             if a != b and a == units.NONE:
-                cause = f"--set {name} has no unit and is read as {units.show(value)} {units.symbol(b)}"
+                cause = f"{how} has no unit and is read as {units.show(value)} {units.symbol(b)}"
                 cause += f"; the scene has {units.show(original)}"
                 self.problems.add(source.span(node.first, node.last), cause, "write the unit", "warning")
 
@@ -258,225 +246,112 @@ class Expander:
         """Run the body once for every index."""
         name = str(s.variable)
         if name in env.values:
-            self.problems.add(s.source.span(s.variable), f"'{name}' is given twice", "take another name for this repeat")
+            hint = "take another name for this repeat"
+            self.problems.add(s.source.span(s.variable, None, env.used_at), f"'{name}' is given twice", hint)
             return
         try:
             low, high = self.bounds(s, env)
         except Fault as fault:
-            self.problems.fault(s.source, fault, self.where(env))
+            self.fault(s.source, fault, env)
             return
+        span = s.source.span(s.token, s.variable, env.used_at)
         if high < low:
             cause = f"this repeat runs from {low} to {high}: not at all"
-            self.problems.add(s.source.span(s.token, s.variable), cause, "the first index is the smaller one", "warning")
+            self.problems.add(span, cause, "the first index is the smaller one", "warning")
         for i in range(low, high + 1):
-            self.rounds += 1
-            if self.rounds > MOST_ROUNDS or self.objects > MOST_OBJECTS:
-                cause = f"this scene has more than {whole(MOST_OBJECTS)} objects or {whole(MOST_ROUNDS)} rounds of repeats"
-                self.problems.add(s.source.span(s.token, s.variable), cause, "repeat less often", key="objects")
+            if self.too_many(span):
                 break
             env.values[name] = float(i)
             self.scope(s.body, env.within(name, i), out)
         env.values.pop(name, None)
 
-    def group(self, s: Group, env: Env, out: EvaluatedBlock) -> None:
-        """One block with a scope of its own."""
+    def too_many(self, span: Span) -> bool:
+        """Whether one more round, of a repeat or a placed group, is more than a scene may have."""
+        self.rounds += 1
+        if self.rounds <= MOST_ROUNDS and self.objects <= MOST_OBJECTS:
+            return False
+        cause = f"this scene has more than {whole(MOST_OBJECTS)} objects or {whole(MOST_ROUNDS)} rounds of repeats"
+        self.problems.add(span, cause, "repeat less often", key="objects")
+        return True
+
+    # -- blocks and groups
+
+    def group(self, s: Group, env: Env, out: EvaluatedBlock) -> EvaluatedBlock | None:
+        """One block with a scope of its own; None where it has no name."""
         try:
             names = tuple(self.name(name, env) for name in s.names)
         except Fault as fault:
-            self.problems.fault(s.source, fault, self.where(env))
+            self.fault(s.source, fault, env)
             out.broken.add(s.block)
-            return
-        filled = EvaluatedBlock(s.block, s, names, where=self.where(env))
-        self.objects += 1
+            return None
+        if env.prefix and not BLOCKS[s.block].of_objects:  # names of a contact block may be of other objects
+            names = tuple(f"{env.prefix}.{name}" for name in names)
+        filled = EvaluatedBlock(s.block, s, names, where=self.where(env), used_at=env.used_at, inside=self.inside)
+        self.objects += s.of is None
         self.scope(s.body, env, filled)
         out.blocks.append(filled)
+        return filled
 
-    def name(self, name: Name, env: Env) -> str:
-        """``ball[12]``"""
-        if name.index is None:
-            return str(name.token)
-        v = name.index.run(env)
-        if type(v) is not float or v != v or abs(v) > 1e15 or abs(v - round(v)) > 1e-9:
-            raise Fault(name.index.first, f"an index is a whole number, found {units.show(v)}", last=name.index.last)
-        return f"{name.token}[{round(v)}]"
-
-    # -- settings
-
-    def setting(self, s: SettingNode, env: Env, out: EvaluatedBlock) -> None:
-        """Evaluate a setting and put it into its block."""
-        word = s.keyword.name
-        given = out.settings.get(word)
-        if given and not s.keyword.many:
-            first = given[0].entry
-            cause = f"{word} is given twice" + f" in {out.block} {out.name}".rstrip()
-            self.problems.add(s.source.span(s.token), cause, f"first given at {first.source.span(first.token)}")
-            return
-        if word == "seed":
-            env = replace(env, seed=None)
-        try:
-            values = s.known if s.known is not None else self.values(s, env)
-        except Fault as fault:
-            self.problems.fault(s.source, fault, self.where(env))
-            out.broken.add(word)
-            return
-        if given:
-            given.append(EvaluatedSetting(s, values))
+    def define(self, s: Template, env: Env) -> None:
+        """Keep a group with the names that are known where it stands."""
+        if str(s.name) in self.templates:
+            first = self.templates[str(s.name)][0]
+            cause = f"the group {s.name} is given twice"
+            self.problems.add(s.source.span(s.name), cause, f"first given at {first.source.span(first.name)}")
         else:
-            out.settings[word] = [EvaluatedSetting(s, values)]
+            self.templates[str(s.name)] = s, replace(env, values=dict(env.values))
 
-    def values(self, s: SettingNode, env: Env) -> tuple:
-        """All values of a setting in SI units; raises Fault."""
-        raw = [None if v is None else self.raw(v, env) for v in s.values]
-        result = tuple([None if v is None else self.checked(s, v, x) for v, x in zip(s.values, raw)])
-        self._half_units(s, raw)
-        if s.constant:
-            s.known = result
-        return result
-
-    def raw(self, v: Value, env: Env):
-        """A value before its unit is checked."""
-        if v.slot.kind == "check":
-            return self.name(v.name, env), v.text, v.argument and self.raw(v.argument, env)
-        if v.name is not None:
-            return self.name(v.name, env)
-        return v.text if v.node is None else v.node.run(env)
-
-    def checked(self, s: SettingNode, v: Value, x):
-        """A value as the slot wants it."""
-        kind = v.slot.kind
-        if kind == "color":
-            return self._color(v, x)
-        if kind == "check":
-            subject, quantity, argument = x
-            return subject, quantity, v.argument and self.checked(s, v.argument, argument)
-        if kind in ("text", "choice", "relation") or v.name is not None:
-            return x
-        what = label(s, v)
-        if kind == "number":
-            if isinstance(x, tuple):
-                raise Fault(v.first, f"{what} is a number, found the vector {units.show(x)}", last=v.last)
-            return x if v.slot.unit == "?" else self.number(s, v, x, what, v.first, v.last)
-        if not isinstance(x, tuple) or len(x) != v.slot.length:
-            found = f"{len(x)} numbers" if isinstance(x, tuple) else f"the number {units.show(x)}"
-            hint = (
-                "a decimal number is written with a point: 0.5, not 0,5"
-                if isinstance(x, tuple) and len(x) > v.slot.length
-                else ""
-            )
-            raise Fault(
-                v.first,
-                f"{what} is a vector {v.slot.text}, found {found}",
-                hint or (f"write {v.slot.text}" if " | " in s.keyword.form else example(s.keyword)),
-                v.last,
-            )
-        names = v.slot.text.strip("()").split(", ")
-        return tuple([self.number(s, v, c, f"{n} of {what}", v.first, v.last) for c, n in zip(x, names)])
-
-    def number(self, s: SettingNode, v: Value, x, what: str, first, last) -> float:
-        """One number in SI units that has the right dimension and obeys the rule."""
-        dim = v.slot.dim
-        rule = s.keyword.rule
-        if type(x) is not float:
-            if x.dim != dim:
-                raise Fault(
-                    first,
-                    f"{what} must be {units.describe(dim)}, found {_found(s, v, x)}, {units.describe(x.dim)}",
-                    _unit_hint(dim, x.dim),
-                    last,
-                )
-            x = x.value
-        elif self.strict and dim != units.NONE:
-            raise Fault(
-                first, f"{what} has no unit: {number(x, 6)}", f"write {number(x, 6)} {units.symbol(dim)} (strict mode)", last
-            )
-        if x - x != 0.0:
-            raise Fault(first, f"{what} is not a finite number", "a calculation in it overflows", last)
-        if rule is not Rule.ANY and not rule.holds(x):
-            raise Fault(first, f"{what} must be {rule.value}, found {_found(s, v, units.quantity(x, dim))}", last=last)
-        limit = limit_of(s.keyword, v.slot)
-        least = limit.least if rule is Rule.POSITIVE else -limit.most
-        if not least <= x <= limit.most:
-            size = "small" if x < least else "large"
-            least, most = (units.show(units.quantity(b, dim)) for b in (limit.least, limit.most))
-            goes = f"goes from {least} to {most}" if rule is Rule.POSITIVE else f"goes up to {most}"
-            raise Fault(
-                first, f"{what} is too {size}: it {goes}, found {units.show(units.quantity(x, dim))}", limit.way_out, last
-            )
-        return x
-
-    def _color(self, v: Value, x: str) -> str:
-        try:
-            return color(x)
-        except ValueError as e:
-            raise Fault(v.first, str(e.args[0]), e.args[1], v.last) from None
-
-    def _half_units(self, s: SettingNode, raw: list) -> None:
-        """``cylinder 10 20 cm`` is 10 m by 20 cm, and ``sphere 10`` a ball of 10 m: most likely not what was meant."""
-        measured = [
-            (v, x) for v, x in zip(s.values, raw) if v is not None and v.slot.unit not in ("1", "?") and not isinstance(x, str)
-        ]
-        bare = [v for v, x in measured if _bare(x)]
-        if bare and len(bare) < len(measured):
-            unit = bare[0].slot.unit
-            self.problems.add(
-                s.source.span(bare[0].first, bare[0].last),
-                f"this value of {s.keyword.name} has no unit and is read in {unit}, the other one has a unit",
-                "write a unit after each value",
-                "warning",
-            )
+    def place(self, s: Group, env: Env, out: EvaluatedBlock) -> None:
+        """Carry out the body of a group under a name of its own."""
+        name, span = str(s.of), s.source.span(s.of, None, env.used_at)
+        self.places += 1
+        if self.places > MOST_PLACES:
+            cause = f"this scene places groups more than {whole(MOST_PLACES)} times"
+            self.problems.add(span, cause, "place fewer, or put more into one group", key="objects")
             return
-        for v, x in measured if s.keyword.name == "shape" else ():
-            if v.slot.unit == "m" and (largest := max(_floats(x))) >= LARGE and _bare(x):
-                told = f"this size has no unit and is read in metres: {units.show(units.quantity(largest, v.slot.dim))}"
-                self.problems.add(s.source.span(v.first, v.last), told, "write its unit: 10 cm, or 10 m", "note")
-        for v, x in measured:
-            if v.slot.unit == "rad" and _bare(x) and max(map(abs, _floats(x))) > 2.0 * math.pi:
-                self.problems.add(
-                    s.source.span(v.first, v.last),
-                    f"an angle without a unit is read in radians: {units.show(x)} rad",
-                    "write deg after it if degrees are meant",
-                    "warning",
-                )
+        if self.too_many(span):
+            return
+        filled = self.group(s, env, out)
+        self.placed.add(name)
+        if name not in self.templates:
+            if not out.excused("group"):
+                hint = did_you_mean(name, self.templates) or f"write group {name} {{ ... }} above it"
+                self.told(env, s.source, s.of, f"no group is called {name}", hint)
+            out.broken.add("object")
+        elif any(block.group.of == name for block in around(self.inside)):
+            self.told(env, s.source, s.of, f"the group {name} places itself", "take this place out of it")
+        elif len(env.used_at) == DEEPEST_GROUP:
+            self.told(env, s.source, s.of, f"groups are placed more than {DEEPEST_GROUP} levels deep in each other")
+        elif filled is not None:
+            template, within = self.surroundings(s, env, filled.name)
+            outer, self.inside = self.inside, filled
+            self.run(template.body, within, out)
+            self.inside = outer
 
+    def surroundings(self, s: Group, env: Env, prefix: str) -> tuple[Template, Env]:
+        """A placed group, and what its body knows: names from where the group stands, and what the place gives to its lets.
 
-def label(s: SettingNode, v: Value) -> str:
-    """How a value is called in messages: ``mass``, ``r of sphere``."""
-    if len(s.values) == 1 and not s.words:
-        return s.keyword.name
-    if len(s.values) == 1 and v.slot.kind != "number":
-        return " ".join((s.keyword.name, *s.words))
-    before = s.words[0] if s.words and s.keyword.name == "shape" else s.keyword.name
-    return f"{v.slot.text} of {before}" if v.slot.kind == "number" else f"{v.slot.text} in {before}"
-
-
-def _found(s: SettingNode, v: Value, x) -> str:
-    """A value for messages, together with the expression that it comes from."""
-    if v.node.constant and v.slot.length == 1:
-        return units.show(x)
-    text = s.source.excerpt(v.first, v.last)
-    return text if v.node.constant else f"{text} = {units.show(x)}" if v.slot.length == 1 else f"{units.show(x)} in {text}"
-
-
-def _unit_hint(dim: units.Dim, found: units.Dim) -> str:
-    if dim == units.NONE:
-        return "leave out the unit"
-    if dim == units.unit("rad/s").dim and found == units.unit("1/s").dim:
-        return "write rad/s or rpm: one turn is 2*pi rad"
-    return f"units that fit: {' '.join(units.units_of(dim))}"
-
-
-def _kinds(x) -> list:
-    return [units.dimension(c) for c in x] if isinstance(x, tuple) else [units.dimension(x)]
-
-
-def _floats(x) -> list[float]:
-    return [units.magnitude(c) for c in x] if isinstance(x, tuple) else [units.magnitude(x)]
-
-
-def _finite(x) -> bool:
-    return all(math.isfinite(c) for c in _floats(x))
-
-
-def _bare(x) -> bool:
-    """No unit, and not merely zeros (zero needs none)."""
-    return all(d == units.NONE for d in _kinds(x)) and any(_floats(x))
+        ``rand`` in it depends on the name under which it is placed, so that one more place does not change the others.
+        """
+        template, known = self.templates[str(s.of)]
+        lets = [str(t.token) for t in template.body if isinstance(t, Let)]
+        given: dict[str, tuple[Set, object]] = {}
+        for v in (v for v in s.body if isinstance(v, Set)):
+            name = str(v.token)
+            if name in given:
+                self.told(env, v.source, v.token, f"{name} is set twice", "remove one of them")
+            elif name not in lets:
+                hint = did_you_mean(name, lets) if lets else "what a place may set are the lets of its group"
+                self.told(env, v.source, v.token, f"the group {s.of} has no 'let {name}'", hint)
+            else:
+                given[name] = v, self.value_of(v, env)
+        within = replace(
+            known,
+            values=dict(known.values),
+            loops=(zlib.crc32(prefix.encode()),),
+            counters=("",),
+            prefix=prefix,
+            used_at=(*env.used_at, s.source.span(s.of)),
+            given=given,
+        )
+        return template, within

@@ -7,6 +7,7 @@ import math
 import operator
 from dataclasses import dataclass, field, replace
 
+from ..errors import Span
 from . import functions, units
 from .functions import FUNCTIONS
 from .keywords import did_you_mean
@@ -38,7 +39,13 @@ class Env:
     incomplete: bool = False
     """A part of the scene could not be read: a name without a value is not a new problem."""
     counters: tuple[str, ...] = ()
-    """Names of the indices in ``loops``."""
+    """Names of the indices in ``loops``; empty for the number of a placed group."""
+    prefix: str = ""
+    """Name of the placed group around, ``cart[2]``; empty outside of all."""
+    used_at: tuple[Span, ...] = ()
+    """Where the groups around are placed, outermost first."""
+    given: dict = field(default_factory=dict)
+    """What the place of the group around gives to its lets: each ``set``, and its value."""
 
     def within(self, counter: str, i: int) -> Env:
         """The same surroundings inside round ``i`` of a repeat."""

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from difflib import get_close_matches
 
 from ..features import facets
+from .placement import Placement
 from .scene import ContactPair, Control, Liquid, Render, SceneRecord, Solid, Switch
 from .schema import Keyword, Words, keywords
 
@@ -23,7 +24,7 @@ class Block:
     record: type | None
     """The record that it becomes; None for ``effects``, which becomes a mapping."""
     field: str
-    """The field of SceneRecord that holds it; a tuple of all where there may be many."""
+    """The field of SceneRecord that holds it, a tuple of all where there may be many; empty where it becomes something else."""
     about: str
     names: tuple[str, ...] = ()
     """Fields of the record that take the names after its word."""
@@ -32,20 +33,34 @@ class Block:
     of_objects: bool = False
     """Whether the names are those of objects, repeats and planes of the scene, not a name of its own."""
     many: bool = False
+    holds: tuple[str, ...] = ()
+    """Blocks that may stand in it."""
+    form: str = ""
+    """Its names, where they are not as many as the fields."""
 
     @property
     def head(self) -> str:
         """The word and what follows it up to the brace: ``object NAME[index]``."""
+        if self.form:
+            return f"{self.name} {self.form}"
         return " ".join((self.name, *(["NAME[index]" if self.indexed else "NAME"] * len(self.names))))
 
 
 BLOCKS = {b.name: b for b in (
     Block("object", Solid, "solids", "An elastic solid. Names are free; in a `repeat` an index keeps them apart.",
           names=("name",), indexed=True, many=True),
+    Block("group", None, "", "Objects that are placed together, once or several times, each time by a `place`. A group "
+          "itself is not a part of the scene. Objects, repeats, `contact` blocks of these objects and other placed groups may "
+          "stand in it; positions are those of its own frame. Its `let`s are settings that a `place` may change.",
+          names=("name",), holds=("object", "contact", "place")),
+    Block("place", Placement, "", "Puts a group somewhere: its object `wheel[1]` becomes `cart.wheel[1]`. Each place of a group "
+          "has a name of its own: `place cart as left`, or `place cart[i]` in a repeat. `set length = 3 cm` changes a `let` "
+          "of the group.", names=("name",), indexed=True, many=True, form="GROUP[index] | place GROUP as NAME[index]"),
     Block("liquid", Liquid, "liquid", "The liquid of the scene; there is at most one, and it needs gravity along -z.",
           names=("name",)),
     Block("contact", ContactPair, "contacts", "What holds where two objects touch, instead of what follows from each: "
-          "`contact ball floor { friction 0.1 }`. The name of a repeat without its index stands for all of its objects; "
+          "`contact ball floor { friction 0.1 }`. The name of a repeat without its index stands for all of its objects, that "
+          "of a placed group for all in it; in a group its own objects are meant first. "
           "`ground`, `walls` and `basin` may stand for one of the two. No pair may be named twice.",
           names=("first", "second"), indexed=True, of_objects=True, many=True),
     Block("effects", None, "effects", "Switches effects on or off by hand. `auto`, the default, runs only what the scene "
@@ -82,6 +97,7 @@ KEYWORDS: dict[str, dict[str, Keyword]] = {
 STATEMENTS = {
     "let": ("let name = expression", "Gives a number, a quantity or a vector a name. `--set name=value` overrides it."),
     "repeat": ("repeat i in a .. b { ... }", "Repeats what is in the braces for i = a, a + 1, ... b; nests."),
+    "set": ("set name = expression", "In a `place`: gives a `let` of the group another value."),
     "include": ('include "file"', "Reads another file in this place; its name is relative to the including file."),
 }
 """Statements that are not settings: how they are written, what they do."""

@@ -17,12 +17,16 @@ MOST_FILES = 1000
 """Includes of one scene."""
 DEEPEST_INCLUDE = 16
 DEEPEST_REPEAT = 16
+DEEPEST_GROUP = 8
+"""Groups that are placed inside each other."""
 DEEPEST_BRACKET = 60
 DEEPEST_EXPRESSION = 150
 """Steps of an expression that depend on each other."""
 MOST_OBJECTS = 10**6
 MOST_ROUNDS = 2 * 10**6
 """Rounds of all repeats together."""
+MOST_PLACES = 10**5
+"""Placed groups, those in each other counted each."""
 MOST_PROBLEMS = 50
 """Problems that are shown; the rest is counted."""
 

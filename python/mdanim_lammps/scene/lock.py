@@ -27,7 +27,7 @@ def lock_text(scene: SceneRecord, meshes: Mapping[Path, str] | None = None) -> s
         "",
         *(f"{name} {text}" for name, texts in settings.items() if not KEYWORDS[""][name].many for text in texts),
     ]
-    for block in reversed(BLOCKS.values()):
+    for block in (block for block in reversed(BLOCKS.values()) if block.field):
         held = getattr(scene, block.field)
         for record in held if block.many else (held,):
             lines += _block(block, _with_mesh(record, meshes or {}))

@@ -6,7 +6,7 @@ from __future__ import annotations
 from . import units
 from .formatting import say, whole
 from .keywords import BLOCKS, KEYWORDS, all_keywords
-from .limits import LIMITS, MOST_FRAMES, MOST_OBJECTS, MOST_ROUNDS, Limit
+from .limits import LIMITS, MOST_FRAMES, MOST_OBJECTS, MOST_PLACES, MOST_ROUNDS, Limit
 from .scene import QUANTITIES
 from .schema import Keyword, Rule, meaning, syntax, units_shown
 
@@ -90,6 +90,34 @@ include "rubber.txt"            # relative to this file
   `damping` is a material. A file that includes itself, and more than 16 levels,
   are errors that show the chain of files.
 - There are no conditions and no other loops, so the evaluation of a scene always ends.
+
+### group, place
+
+```
+group cart {                    # not in the scene yet: what it is made of, in a frame of its own
+  let r = 8 cm
+  object body { ... position (0, 0, 2*r + 6 cm) }
+  repeat i in 1 .. 2 { object wheel[i] { ... position ((i - 1.5)*36 cm, 0, r) } }
+  contact wheel ground { friction 0.8 }
+}
+place cart as left { position (-1, 0, 0) m  velocity (1, 0, 0) m/s }
+repeat k in 1 .. 3 {
+  place cart[k] { position (k, 0, 0) m  orientation axis (0, 0, 1) angle 30*k deg  set r = 6 cm }
+}
+expect cart[2].wheel[1].position.z = 6 cm +- 1 mm
+```
+
+- A `group` says what is placed together, a `place` puts it somewhere, turned, and with a velocity and a spin. All of
+  it turns: positions, orientations, velocities and spins of its objects. A box in `hold within box` can be turned by
+  right angles only.
+- Objects are called by the place that they are in, `cart[2].wheel[1]`, in `expect`, `look` and everywhere else. In a
+  `contact` block `cart[2]` stands for all objects of the place, `cart[2].wheel` for all of its wheels, `cart.wheel`
+  for those of all carts.
+- `set r = 6 cm` in a place takes the place of `let r` of the group, in the unit of the `let`. A group knows the names
+  that stand above it, not those around its place. `rand` in it depends on the name of the place.
+- Groups may be placed in groups, 8 levels deep. In a group stand objects, repeats, `contact` blocks, places and
+  `include`s.
+- Messages about a group name the line in it, and below that each place that it is used at.
 """
 
 _END = """
@@ -124,12 +152,17 @@ def language_page() -> str:
     parts += [f"| {kind.split(' ', 1)[1]} | {' '.join(f'`{u}`' for u in names.split())} |\n" for _, kind, names in units.LISTED]
     parts += [_AFTER_UNITS, "\n## Outside of all blocks\n\n", _table(KEYWORDS[""].values())]
     for block in BLOCKS.values():
-        parts += [f"\n## {block.name}\n\n", f"```\n{block.head} {{ ... }}\n```\n\n{block.about}\n\n"]
-        parts.append(_table(KEYWORDS[block.name].values()))
+        forms = block.head.replace(" | ", " { ... }\n")
+        parts += [f"\n## {block.name}\n\n", f"```\n{forms} {{ ... }}\n```\n\n{block.about}\n\n"]
+        parts[-1] = parts[-1] if KEYWORDS[block.name] else parts[-1].removesuffix("\n")
+        parts.append(_table(KEYWORDS[block.name].values()) if KEYWORDS[block.name] else "")
     parts += ["\n## What `expect` can check\n\n", "| quantity | unit | meaning |\n|---|---|---|\n"]
     parts += [f"| `{k}.{q}` | {x.unit if x.unit != '1' else '-'} | {meaning(k, x)} |\n" for (k, q), x in QUANTITIES.items()]
     parts += [_END, _LIMITS]
-    numbers = [("objects", MOST_OBJECTS), ("rounds of all repeats together", MOST_ROUNDS), ("frames", MOST_FRAMES)]
+    numbers = [
+        ("objects", MOST_OBJECTS), ("rounds of all repeats together", MOST_ROUNDS),
+        ("placed groups", MOST_PLACES), ("frames", MOST_FRAMES),
+    ]  # fmt: skip
     parts += [f"| {what} | {whole(most)} | - |\n" for what, most in numbers]
     parts += [
         f"| {what} | {say(x.most, unit, 6)} | {say(x.least, unit, 6) if x.least else '-'} |\n" for what, unit, x in _limits()

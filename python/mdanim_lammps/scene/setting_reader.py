@@ -10,6 +10,7 @@ from itertools import count
 
 from .forms import OptionalPart, Slot, Word, alternatives, literals, pieces
 from .keywords import KEYWORDS, NOT_SUPPORTED, STATEMENTS, did_you_mean, example, misplaced, nearest
+from .limits import DEEPEST_GROUP
 from .reader import ODD, Reader
 from .scene import GLOBALS, QUANTITIES, RELATIONS
 from .schema import Keyword
@@ -45,6 +46,21 @@ def stops(keyword: Keyword) -> frozenset[str]:
     return literals(keyword.form) | {word.partition("-")[0] for word in KEYWORDS[keyword.block]} | STATEMENTS.keys()
 
 
+def joined(parts: list[Name]) -> Name:
+    """Parts of a name as one name."""
+    whole = None
+    for part in reversed(parts):
+        whole = Name(part.token, whole.last if whole else part.last, part.index, whole)
+    return whole
+
+
+def quantity_of(parts: list[Name]) -> int:
+    """Where the quantity begins in NAME.QUANTITY: the longest tail that is one; else all behind the first name and its index."""
+    least = next((n for n in range(len(parts), 1, -1) if parts[n - 1].index is not None), 1)
+    known = {quantity for _, quantity in QUANTITIES}
+    return next((n for n in range(least, len(parts)) if ".".join(p.token for p in parts[n:]) in known), least)
+
+
 class SettingReader(Reader):
     """Reads words, names and settings of one file."""
 
@@ -65,6 +81,22 @@ class SettingReader(Reader):
         return Token("NAME", self.source.text[first.start : last.end], first.start, first.line, first.column)
 
     def name(self) -> Name:
+        """NAME or NAME[index], and behind a point what it has inside it: ``cart[2].wheel[1]``."""
+        parts = [self.part_of_name()]
+        while self.peek.type == "DOT":
+            parts.append(self.inner_part(parts))
+        return joined(parts)
+
+    def inner_part(self, parts: list[Name]) -> Name:
+        """One part of a name behind a point."""
+        dot = self.take()
+        if self.peek.type != "NAME":
+            raise Fault(self.peek, f"a name is missing after {parts[-1].token}., found {self.peek.found()}")
+        if len(parts) > DEEPEST_GROUP:
+            raise Fault(dot, f"this name has more than {DEEPEST_GROUP + 1} parts", f"groups nest {DEEPEST_GROUP} deep")
+        return self.part_of_name()
+
+    def part_of_name(self) -> Name:
         """NAME or NAME[index]."""
         token = last = self.take()
         if self.peek.type != "LSQB":
@@ -198,17 +230,18 @@ class SettingReader(Reader):
         if self.peek.type != "NAME":
             hint = f"NAME is an object, or one of {', '.join(GLOBALS)}"
             raise Fault(self.peek, f"expect needs NAME.QUANTITY, found {self.peek.found()}", hint)
-        name, words = self.name(), []
+        parts = [self.part_of_name()]
         while self.peek.type == "DOT":
-            self.take()
-            if self.peek.type != "NAME":
-                raise Fault(self.peek, f"the quantity is missing after {name.token}., found {self.peek.found()}")
-            words.append(self.take())
-        if not words:
+            if self.ahead(1).type != "NAME":
+                raise Fault(self.ahead(1), f"the quantity is missing after {parts[-1].token}., found {self.ahead(1).found()}")
+            parts.append(self.inner_part(parts))
+        at = quantity_of(parts)
+        name, last = joined(parts[:at]), parts[-1].last
+        if at == len(parts):
             raise Fault(name.token, f"expect {name.token} names no quantity", f"e.g. {name.token}.position.z", name.last)
-        text = ".".join(words)
-        argument = self.argument(text, words[-1], stops(keyword))
-        return Value(slot, name.token, argument.last if argument else words[-1], text=text, name=name, argument=argument)
+        text = ".".join(part.token for part in parts[at:])
+        argument = self.argument(text, last, stops(keyword))
+        return Value(slot, name.token, argument.last if argument else last, text=text, name=name, argument=argument)
 
     def argument(self, quantity: str, last: Token, stops: frozenset[str]) -> Value | None:
         """The value in brackets behind a quantity that has an argument."""

@@ -43,12 +43,12 @@ class SceneFile:
         if self.folder is None:
             self.folder = self.path.parent if self.path else Path.cwd()
 
-    def span(self, first: Token, last: Token | None = None) -> Span:
+    def span(self, first: Token, last: Token | None = None, used_at: tuple[Span, ...] = ()) -> Span:
         """The stretch from one token to another (cut at the end of the line of the first)."""
         line = self.lines[first.line - 1] if first.line <= len(self.lines) else ""
         last = last or first
         end = last.column + len(last) if last.line == first.line else len(line) + 1
-        return Span(self.name, first.line, first.column, max(1, end - first.column), line, self.included_from)
+        return Span(self.name, first.line, first.column, max(1, end - first.column), line, self.included_from, used_at)
 
     def excerpt(self, first: Token, last: Token) -> str:
         """The text from one token to another, on one line."""
@@ -128,10 +128,10 @@ class Problems:
             if span and span.file not in self._files:
                 self._files.append(span.file)
 
-    def fault(self, source: SceneFile, fault: Fault, where: str = "", key=None) -> None:
+    def fault(self, source: SceneFile, fault: Fault, where: str = "", used_at: tuple[Span, ...] = ()) -> None:
         """Note a Fault of a file."""
         if not isinstance(fault, Silent):
-            self.add(source.span(fault.token, fault.last), fault.message + where, fault.hint, key=key)
+            self.add(source.span(fault.token, fault.last, used_at), fault.message + where, fault.hint)
 
     def ordered(self) -> list[Problem]:
         """All problems in the order of the text."""

@@ -15,7 +15,7 @@ from .reader import ODD
 from .setting_reader import SettingReader, Shared
 from .source import Fault, Problems, SceneFile, UnreadableFile, read_text
 from .tokens import Token
-from .tree import Group, Let, Repeat, UnreadableStatement
+from .tree import Group, Let, Repeat, Set, Template, UnreadableStatement
 
 
 class Unclosed(Exception):
@@ -118,8 +118,10 @@ class Parser(SettingReader):
             return [self.repeat(word, block, repeats)]
         if word == "include":
             return self.include(word, block, repeats)
+        if word == "set" and block == "place":
+            return [self.set(word)]
         if word in BLOCKS and (not block or self.opens_block()):
-            if block:
+            if block and word not in BLOCKS[block].holds:
                 raise Unclosed(word)
             return [self.group(word, str(word), repeats)]
         if word in KEYWORDS[block]:
@@ -128,7 +130,7 @@ class Parser(SettingReader):
 
     def unknown(self, word: Token, block: str, opened: Token | None, repeats: int) -> list:
         """A word that has no meaning here: report it, and read on with what was most likely meant."""
-        here = [*KEYWORDS[block], *(() if block else (*BLOCKS, *STATEMENTS))]
+        here = [*KEYWORDS[block], *((*BLOCKS[block].holds, *STATEMENTS) if block else (*BLOCKS, *STATEMENTS))]
         homes = [b for b in KEYWORDS if word in KEYWORDS[b]]
         if "" in homes and opened is not None and self._first_on_line(word) and word.column <= opened.column:
             raise Unclosed(word)
@@ -147,7 +149,7 @@ class Parser(SettingReader):
         elif owner is not None and not guess:
             hint = f"it belongs to {owner.name}: write {owner.name} {word} ..."
         self.problem(Fault(word, f"'{word}' is not {kind}", hint))
-        if guess in BLOCKS and self.opens_block() and not block:
+        if guess in BLOCKS and self.opens_block() and (not block or guess in BLOCKS[block].holds):
             return [self.group(word, guess, repeats)]
         if guess in KEYWORDS[block] and not self.opens_block():
             return [self.entry(word, KEYWORDS[block][guess], repeats)]
@@ -172,22 +174,65 @@ class Parser(SettingReader):
             raise missing
         self.problem(missing)
 
-    def group(self, word: Token, block: str, repeats: int) -> Group:
+    def group(self, word: Token, block: str, repeats: int) -> Group | Template:
         if repeats and not BLOCKS[block].many:
             raise Fault(word, f"{block} cannot stand in a repeat", "only objects, expect lines and lets are repeated")
+        if block == "place":
+            return self.place(word)
         kind, names = BLOCKS[block], []
         for _ in kind.names:
             if self.peek.type != "NAME":
                 hint = f"e.g. {block} {' '.join(('ball', 'floor')[: len(kind.names)])} {{"
                 raise Fault(self.peek, f"a name is missing after {block}, found {self.peek.found()}", hint)
             names.append(name := self.name())
-            if name.index is not None and not kind.indexed:
-                raise Fault(name.token, f"only objects have an index, found {block} {name.token}[...]", last=name.last)
+            if (name.index is not None or name.inner is not None) and not kind.indexed:
+                cause = "have an index" if name.index is not None else "have a point in their name"
+                raise Fault(name.token, f"only objects {cause}, found {block} {name.token}...", last=name.last)
         if not names and self.peek.type == "NAME":
             raise Fault(self.peek, f"{block} has no name, found {self.peek.found()}", f"write {block} {{ ... }}")
         title = " ".join((block, *(name.token for name in names)))
         self.brace(title, KEYWORDS[block])
-        return Group(self.source, word, block, tuple(names), self.body(block, word, 0, title))
+        body = self.body(block, word, 0, title)
+        return (
+            Template(self.source, names[0].token, body)
+            if block == "group"
+            else Group(self.source, word, block, tuple(names), body)
+        )
+
+    def place(self, word: Token) -> Group:
+        """``place GROUP[index] { ... }`` or ``place GROUP as NAME[index] { ... }``."""
+        if self.peek.type != "NAME":
+            raise Fault(self.peek, f"the name of a group is missing after place, found {self.peek.found()}", "e.g. place cart {")
+        of, name = self.peek, self.part_of_name()
+        if self.peek == "as":
+            if name.index is not None:
+                hint = f"write place {of} as {of}[1]"
+                raise Fault(of, f"a group has no index, found place {of}[...] as", hint, name.last)
+            self.take()
+            if self.peek.type != "NAME":
+                raise Fault(self.peek, f"a name is missing after as, found {self.peek.found()}", f"e.g. place {of} as left {{")
+            name = self.part_of_name()
+        title = f"place {of}"
+        self.brace(title, KEYWORDS["place"])
+        return Group(self.source, word, "place", (name,), self.body("place", word, 0, title), of)
+
+    def set(self, word: Token) -> Set:
+        """``set name = value``, in a place."""
+        name = self.peek
+        if name.type != "NAME":
+            raise Fault(name, f"a name is missing after set, found {name.found()}", "e.g. set length = 3 cm")
+        self.take()
+        return Set(self.source, name, self.given("set", name))
+
+    def given(self, word: str, name: Token) -> Node:
+        """The value after the = of a let or a set."""
+        if self.peek.type != "EQUAL":
+            raise Fault(self.peek, f"an = is missing after {word} {name}, found {self.peek.found()}", f"write {word} {name} = 3")
+        self.take()
+        settings = {*KEYWORDS["place"], "set"} if word == "set" else ()
+        node = self.expression(Slot("let", str(name)), frozenset(settings))
+        self.end_of_statement(word, settings)
+        return node
 
     # -- let, repeat, include
 
@@ -203,12 +248,7 @@ class Parser(SettingReader):
     def let(self, word: Token) -> Let:
         name = self.new_name("let")
         self.shared.lets.setdefault(str(name), name.line)
-        if self.peek.type != "EQUAL":
-            raise Fault(self.peek, f"an = is missing after let {name}, found {self.peek.found()}", f"write let {name} = 3")
-        self.take()
-        node = self.expression(Slot("let", str(name)), frozenset())
-        self.end_of_statement("let", ())
-        return Let(self.source, name, node)
+        return Let(self.source, name, self.given("let", name))
 
     def repeat(self, word: Token, block: str, repeats: int) -> Repeat:
         if repeats == DEEPEST_REPEAT:

@@ -14,11 +14,13 @@ from .tokens import Token
 
 @dataclass(slots=True, eq=False)
 class Name:
-    """``ball`` or ``ball[index]``."""
+    """``ball``, ``ball[index]``, or with the group that it is in, ``cart[index].ball``."""
 
     token: Token
     last: Token
     index: Node | None = None
+    inner: Name | None = None
+    """What follows a point."""
 
 
 @dataclass(slots=True, eq=False)
@@ -86,6 +88,26 @@ class Group:
     block: str
     names: tuple[Name, ...]
     body: list
+    of: Token | None = None
+    """The group that a ``place`` puts somewhere."""
+
+
+@dataclass(slots=True, eq=False)
+class Template:
+    """``group NAME { ... }``: objects that are placed together."""
+
+    source: SceneFile
+    name: Token
+    body: list
+
+
+@dataclass(slots=True, eq=False)
+class Set:
+    """``set name = value``, in a place."""
+
+    source: SceneFile
+    token: Token
+    node: Node
 
 
 @dataclass(slots=True, eq=False)

@@ -17,11 +17,12 @@ from ..features import facets
 from . import keywords, units
 from . import scene as records
 from .contact_pairs import PLANES, objects_by_name, pairs_of
-from .expand import EvaluatedBlock, EvaluatedSetting
+from .evaluated import EvaluatedBlock, EvaluatedSetting, around
 from .formatting import number, say, whole
 from .keywords import BLOCKS, KEYWORDS, Block, did_you_mean, example
-from .limits import MOST_FRAMES, MOST_PAIRS
+from .limits import LIMITS, MOST_FRAMES, MOST_PAIRS
 from .meshes import refusal_of_mesh
+from .placement import Placement
 from .render import SMOOTH_RATE, few_pictures
 from .scene import GLOBALS, QUANTITIES, Vector
 from .source import Problems, SceneFile
@@ -49,6 +50,8 @@ class Validator:
             self.by_kind.setdefault(block.block, []).append(block)
         self.names = dict.fromkeys((*names, *(b.name for b in self.blocks("object"))))
         """Names of all objects, in the order of the scene."""
+        self.places: dict[int, Placement | None] = {}
+        """Where groups stand in the world, by the id of their block."""
         self.paired: dict[tuple[int | str, int], Span] = {}
         """Places of the contact blocks, by the pairs that they are of."""
 
@@ -66,7 +69,7 @@ class Validator:
     def scene(self, name: str, path: Path | None) -> records.SceneRecord | None:
         """All records; None after an error."""
         self.one_of_each()
-        held = {block.field: self.records(block) for block in BLOCKS.values()}
+        held = {block.field: self.records(block) for block in BLOCKS.values() if block.field}
         top, control = self.settings(self.out), held["control"]
         if not self.blocks("control") and not self.out.excused("control"):
             self.problem(self.top, "the scene has no control block: how long is it?", "write control { time 3 s }", key="control")
@@ -109,7 +112,8 @@ class Validator:
     def record(self, kind: Block, block: EvaluatedBlock) -> Any:
         """One block with the checks of its kind (``check_KIND``); None after an error."""
         if kind.of_objects:
-            places = (block.group.source.span(name.token, name.last) for name in block.group.names)
+            block.names = tuple(self.meant(block, name) for name in block.names)
+            places = (block.group.source.span(name.token, name.last, block.used_at) for name in block.group.names)
             if sum(map(self.known_body, block.names, places)) < len(block.names):
                 return None
         if not self.complete(block):
@@ -125,7 +129,43 @@ class Validator:
             if kind.name in getattr(words, "CHECKS", {}):
                 record = words.CHECKS[kind.name](self, block, record)
         check = getattr(self, f"check_{kind.name}", lambda block, record: record)
-        return check(block, record)
+        return self.in_world(block, check(block, record))
+
+    def meant(self, block: EvaluatedBlock, name: str) -> str:
+        """The full name of what a name in a group means: its own objects first, then those of the groups around."""
+        own = (f"{place.name}.{name}" for place in around(block.inside))
+        return next((full for full in own if full in self.named), name)
+
+    def in_world(self, block: EvaluatedBlock, record: Any) -> Any:
+        """An object, or the place of a group, moved along with the groups that it stands in; None after an error."""
+        if block.inside is None or not isinstance(record, records.Solid | Placement):
+            return record
+        if (around := self.place_of(block.inside)) is None:
+            return None
+        try:
+            record = around.moved(record)
+        except ValueError as e:
+            way_out = "write hold face or hold all, or turn the group by 90 deg or 180 deg"
+            self.problem(block.first("hold").span(), f"{e}{block.where}", way_out)
+            return None
+        for what, unit, v in (
+            ("position", "m", record.position),
+            ("velocity", "m/s", record.velocity),
+            ("spin", "rad/s", record.spin),
+        ):
+            if (most := max(map(abs, v))) > LIMITS[unit].most:
+                cause = (
+                    f"the {what} of {record.name} is too large: {say(most, unit)}, and the most is {say(LIMITS[unit].most, unit)}"
+                )
+                self.problem(block.head, cause, LIMITS[unit].way_out)
+                return None
+        return record
+
+    def place_of(self, block: EvaluatedBlock) -> Placement | None:
+        """Where a group stands in the world; None after an error."""
+        if id(block) not in self.places:
+            self.places[id(block)] = self.record(BLOCKS["place"], block)
+        return self.places[id(block)]
 
     def settings(self, block: EvaluatedBlock) -> dict[str, Any] | None:
         """Fields of the record, from the settings of a block; None where a value is wrong. Absent ones keep their default."""
@@ -150,8 +190,7 @@ class Validator:
 
     def head(self, block: EvaluatedBlock) -> Span:
         """Place of a block's name, or of its word."""
-        g = block.group
-        return g.source.span(g.names[0].token, g.names[-1].last) if g.names else g.source.span(g.token)
+        return block.head
 
     def one_of_each(self) -> None:
         """Blocks that may stand only once."""
@@ -169,7 +208,7 @@ class Validator:
     def names_once(self) -> None:
         """No two blocks of one name, and no name that expect uses for something else."""
         first: dict[str, EvaluatedBlock] = {}
-        for block in (b for b in self.out.blocks if b.block in ("object", "liquid")):  # as they stand in the scene
+        for block in (b for b in self.out.blocks if b.block in ("object", "liquid", "place")):  # as they stand in the scene
             if block.name in first:
                 self.problem(
                     self.head(block),
@@ -254,7 +293,7 @@ class Validator:
         for word, found in block.settings.items():
             s = found[0]
             values = [v for v in s.entry.values if v is not None]
-            spans[word] = s.entry.source.span(values[0].first, values[-1].last) if values else s.span()
+            spans[word] = s.between(values[0].first, values[-1].last) if values else s.span()
         spans[block.block] = self.head(block)
         return spans
 

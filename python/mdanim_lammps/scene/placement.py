@@ -1,0 +1,80 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Where a group of objects is placed, how it is turned and how it moves; the same for an object in it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+from .rotation import IDENTITY, product
+from .scene import Orientation, Solid
+from .schema import Vector, setting
+from .shapes import HoldWithin
+
+RIGHT = 1e-9
+"""Largest part across of an axis that is turned by right angles; a rotation by 90 deg leaves 1e-16."""
+
+
+@dataclass(frozen=True, slots=True)
+class Placement:
+    """A rigid motion from the frame of a group into that of its surroundings: r = position + rotation r'."""
+
+    name: str
+    position: Vector = setting(
+        "<(x, y, z):m>", "Where the origin of the group goes; all that is in it is moved along.",
+        "(1, 0, 0) m", default=(0.0, 0.0, 0.0))  # fmt: skip
+    """[m]"""
+    rotation: tuple[Vector, Vector, Vector] = setting(
+        "axis <(x, y, z)> angle <a:rad> | euler <(rx, ry, rz):rad> | matrix <(xx, xy, xz)> <(yx, yy, yz)> <(zx, zy, zz)>",
+        "Rotation about the origin of the group: positions, orientations, velocities and spins in it are turned.",
+        "axis (0, 0, 1) angle 90 deg", name="orientation", default=IDENTITY, codec=Orientation())  # fmt: skip
+    """Rotation matrix, rows."""
+    velocity: Vector = setting(
+        "<(vx, vy, vz):m/s>", "Velocity of the origin at the start; it is added to that of each object in the group.",
+        "(1, 0, 0) m/s", default=(0.0, 0.0, 0.0))  # fmt: skip
+    """[m/s]"""
+    spin: Vector = setting(
+        "<(wx, wy, wz):rad/s>",
+        "Angular velocity of the whole group at the start, about its origin and the axes of the world: objects in it get the "
+        "spin, and the velocity of their place.",
+        "(0, 0, 2) rad/s", default=(0.0, 0.0, 0.0))  # fmt: skip
+    """[rad/s]"""
+
+    def moved(self, what: Solid | Placement) -> Solid | Placement:
+        """An object, or a group within this one, in the surroundings.
+
+        r = p + R r', v = V + R v' + W x (R r'), w = W + R w'. Raises ValueError for a held box that is turned by other
+        than right angles.
+        """
+        arm = turned(self.rotation, what.position)
+        held = {"hold": tuple(map(self.held, what.hold))} if isinstance(what, Solid) else {}
+        return replace(
+            what,
+            position=_sum(self.position, arm),
+            rotation=product(self.rotation, what.rotation) if self.rotation != IDENTITY else what.rotation,
+            velocity=_sum(self.velocity, turned(self.rotation, what.velocity), _cross(self.spin, arm)),
+            spin=_sum(self.spin, turned(self.rotation, what.spin)),
+            **held,
+        )
+
+    def held(self, hold):
+        """What is held, of an object in the group: a box is moved along, faces are those of the object."""
+        if not isinstance(hold, HoldWithin):
+            return hold
+        if any(RIGHT < abs(x) < 1.0 - RIGHT for row in self.rotation for x in row):
+            raise ValueError("a held box lies along the axes of the world, and its group is turned")
+        right = tuple(tuple(float(round(x)) for x in row) for row in self.rotation)
+        a, b = (_sum(self.position, turned(right, corner)) for corner in (hold.low, hold.high))
+        return HoldWithin(tuple(map(min, a, b)), tuple(map(max, a, b)))
+
+
+def turned(rotation: tuple[Vector, Vector, Vector], v: Vector) -> Vector:
+    """R v; the same bits where nothing is turned."""
+    return v if rotation == IDENTITY else tuple(sum(a * b for a, b in zip(row, v)) for row in rotation)
+
+
+def _sum(*vectors: Vector) -> Vector:
+    return tuple(sum(parts) for parts in zip(*vectors))
+
+
+def _cross(a: Vector, b: Vector) -> Vector:
+    return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
