@@ -27,6 +27,8 @@ def scene(block: str, **settings: str):
     blocks = {"object": dict(BALL), "liquid": dict(WATER), "control": {"time": "3 s"}, "render": {}, "effects": {}}
     if block == "contact":
         blocks |= {"contact": {}, "floor": dict(BALL)}
+    if block == "place":
+        blocks |= {"place": {}}
     if block == "contact" or any(settings.get(word, "0") != "0" for word in OF_SURFACES):
         blocks["control"]["contact-model"] = "surface"
     if "(floor)" in settings.get("expect", ""):
@@ -41,9 +43,8 @@ def scene(block: str, **settings: str):
     chosen |= settings
     text = "".join(f"{word} {value}\n" for word, value in top.items())
     for name, content in blocks.items():
-        head = {"object": "object ball", "liquid": "liquid water", "contact": "contact ball floor", "floor": "object floor"}.get(
-            name, name
-        )
+        heads = {"object": "object ball", "liquid": "liquid water", "contact": "contact ball floor", "floor": "object floor"}
+        head = (heads | {"place": "group few { } place few"}).get(name, name)
         text += f"{head} {{\n" + "".join(f"  {w} {v}\n" for w, v in content.items()) + "}\n"
     return parse_scene(text)
 
