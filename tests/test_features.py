@@ -19,14 +19,7 @@ LIQUID = re.compile(r"liquid|pool")
 
 NAMING = {
     "report.py",
-    "results/compare.py",
-    "results/motion.py",
     "results/stored.py",
-    "results/trajectory.py",
-    "results/trajectory_file.py",
-    "results/trajectory_metadata.py",
-    "results/trajectory_writer.py",
-    "results/untrusted.py",
     "run/energy.py",
     "run/loop.py",
     "scene/contact_pairs.py",
@@ -41,13 +34,6 @@ NAMING = {
 """May only shrink."""
 KNOWING = {
     "report.py",
-    "results/compare.py",
-    "results/motion.py",
-    "results/trajectory.py",
-    "results/trajectory_file.py",
-    "results/trajectory_metadata.py",
-    "results/trajectory_writer.py",
-    "results/untrusted.py",
     "run/energy.py",
     "scene/keywords.py",
     "scene/render.py",

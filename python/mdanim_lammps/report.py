@@ -9,13 +9,15 @@ from pathlib import Path
 from .certificate import margin_lines, note_lines
 from .cost.speedup_forecast import SpeedupForecast
 from .effects import Verdict
+from .effects.kept import records_of
 from .engine.threads import ThreadChoice
 from .errors import DivergedError, problem_json
 from .model import plan_spacing, work
 from .results.cost import Cost
 from .results.timeline import Timeline
 from .results.trajectory_file import trajectory_bytes
-from .results.trajectory_metadata import most_drops
+from .results.trajectory_metadata import kept_fields
+from .run.energy import frame_fields
 from .run.loop import Progress
 from .run.prepare import Prepared
 from .run.result import Result
@@ -107,7 +109,8 @@ def output_line(ready: Prepared) -> str:
     """One line: how large the trajectory will be."""
     c, control = ready.certificate, ready.scene.control
     frames = 1 + c.last_frame
-    size = trajectory_bytes(ready.models, frames, control.save, control.single, ready.plan.grid, most_drops(ready.scene.liquid))
+    fields = kept_fields(records_of(ready.scene, ready.plan.grid), frame_fields(ready.plan), len(ready.models))
+    size = trajectory_bytes(ready.models, frames, control.save, control.single, fields)
     return f"output   {count(frames, 'frame')}, trajectory of {number(size / 1e6)} MB"
 
 

@@ -7,7 +7,8 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 import pytest
-from mdanim_lammps.features.liquid.frames import CELLS, DROPS, DUE, HEIGHTS
+from mdanim_lammps.features.liquid.kept import DROPS, HEIGHT
+from mdanim_lammps.features.liquid.ledger import CELLS, DUE
 from mdanim_lammps.run.frame_source import Sequential
 from mdanim_lammps.run.loop import trajectory_writer
 from mdanim_lammps.run.prepare import prepare
@@ -34,7 +35,7 @@ class Liquid:
     cells: float
     start: float
     """Cells that there should be."""
-    heights: np.ndarray
+    height: np.ndarray
     drops: np.ndarray | None
 
 
@@ -48,7 +49,7 @@ def frames(drops: float, seconds: float) -> list:
         found = [source.begin(None, out.rows)]
         found += [source.advance(n, each) for n in range(1, round(100 * seconds) + 1)]
         out.close(finished=False)
-        return [Liquid(*(f.fields.get(name) for name in (CELLS, DUE, HEIGHTS, DROPS))) for f in found]
+        return [Liquid(*(f.fields.get(name) for name in (CELLS, DUE, HEIGHT.name, DROPS.name))) for f in found]
 
 
 @pytest.fixture(scope="module")
@@ -71,7 +72,7 @@ def test_liquid_and_drops_are_the_same_sum_in_each_frame(splash):
     """To the unit; drops hold a share of it that can be seen, and not much of it."""
     assert all(liquid.cells == liquid.start == splash[0].cells for liquid in splash)
     # Neither the stone nor its cavity is in the pool before it comes, so heights alone hold the volume there.
-    shown = splash[0].heights[0].mean() * 0.25
+    shown = splash[0].height.mean() * 0.25
     assert shown == pytest.approx(splash[0].cells * 0.025**3, rel=1e-2)
     flying = [4.0 / 3.0 * np.pi * (liquid.drops[:, 3] ** 3).sum() for liquid in splash]
     assert 1e-5 < max(flying) < 0.1 * shown

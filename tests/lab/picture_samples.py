@@ -209,7 +209,13 @@ def wet_frames(models, *liquids):
     """Frames of models at rest with these heights; raw ones are whole cells, NaN in the columns of a body."""
     position = np.concatenate([m.position for m in models])
     for i, (smooth, raw) in enumerate(liquids):
-        yield i * 10, 0.1 * i, position, np.zeros_like(position), (smooth, raw)
+        yield i * 10, 0.1 * i, position, np.zeros_like(position), {"liquid_height": smooth, "liquid_raw": raw}
+
+
+def with_drops(frame, drops):
+    """The frame, with drops that fly."""
+    *rest, heights = frame
+    return *rest, heights | {"liquid_drops": drops}
 
 
 def raw_of(grid, smooth, models=()):

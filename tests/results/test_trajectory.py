@@ -18,6 +18,8 @@ import pytest
 from MDAnalysis.analysis.rms import RMSD
 from mdanim_lammps.api.run import STAY_OPEN, Run
 from mdanim_lammps.errors import OutputError
+from mdanim_lammps.features.ground.kept import Ground
+from mdanim_lammps.features.walls.kept import Room
 from mdanim_lammps.features.walls.words import Walls
 from mdanim_lammps.model.model import Layer
 from mdanim_lammps.results.frame_rows import RowWriter
@@ -135,7 +137,8 @@ def test_file_alone_is_enough(slab, tmp_path):
         out.write(0, 0.0, *falling_frame(models))
     with Trajectory(tmp_path / "t.h5") as t:
         c = t.metadata
-        assert (c.title, c.scene_text, c.ground, c.walls) == (scene.title, text, 0.0, ((-1, -2, 0), (1, 2, 3)))
+        assert (c.title, c.scene_text) == (scene.title, text)
+        assert c.kept == {"ground": Ground(0.0), "walls": Room((-1, -2, 0), (1, 2, 3))}
         assert c.colors == ("#102030", "", "") and c.still.tolist() == [True, False, False]
         assert (t.dt, t.steps_per_frame) == (0.01, 10)
         np.testing.assert_array_equal(c.held, np.concatenate([m.held for m in models]))

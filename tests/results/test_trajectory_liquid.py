@@ -11,14 +11,17 @@ from dataclasses import replace
 import h5py
 import numpy as np
 import pytest
+from mdanim_lammps.effects.fields import Field
+from mdanim_lammps.effects.kept import records_of
 from mdanim_lammps.errors import OutputError
-from mdanim_lammps.features.liquid.frames import MOST_DROPS
+from mdanim_lammps.features.liquid.kept import MOST_DROPS
 from mdanim_lammps.model.grid import Grid
 from mdanim_lammps.results.trajectory import Trajectory
 from mdanim_lammps.results.trajectory_file import trajectory_bytes
+from mdanim_lammps.results.trajectory_metadata import kept_fields
 from mdanim_lammps.results.trajectory_writer import TrajectoryWriter
 from paths import LAB
-from picture_samples import KILLED, dam, flat, pool_scene, raw_of, splash, wet_frames, write
+from picture_samples import KILLED, dam, flat, pool_scene, raw_of, splash, wet_frames, with_drops, write
 
 
 def pool(spacing=0.1):
@@ -35,12 +38,12 @@ def test_heights_of_a_liquid_come_back(tmp_path):
     with Trajectory(write(tmp_path / "t.h5", scene, models, frames, grid)) as t:
         assert t.liquid.grid == grid and t.liquid.shape == (20, 14, 10)
         assert (t.liquid.name, t.liquid.density, t.liquid.color) == ("water", 1000.0, "#204060")
-        for i, (_, _, _, _, (smooth, raw)) in enumerate(frames):
-            np.testing.assert_array_equal(t.liquid_height(i), smooth.astype(np.float32))
-            np.testing.assert_array_equal(t.liquid_raw(i), raw.astype(np.float32))
+        for i, (_, _, _, _, heights) in enumerate(frames):
+            np.testing.assert_array_equal(t.liquid_height(i), heights["liquid_height"].astype(np.float32))
+            np.testing.assert_array_equal(t.liquid_raw(i), heights["liquid_raw"].astype(np.float32))
         assert np.isnan(t.liquid_raw(0)).any() and not np.isnan(t.liquid_raw(0)).all()
         # Means of float32 heights below 1 m: their rounding.
-        np.testing.assert_allclose(t.liquid_levels, [f[4][0].mean() for f in frames], rtol=0, atol=6e-8)
+        np.testing.assert_allclose(t.liquid_levels, [f[4]["liquid_height"].mean() for f in frames], rtol=0, atol=6e-8)
 
 
 def test_heights_are_h5md_observables(tmp_path):
@@ -64,15 +67,16 @@ def test_drops_come_back(tmp_path):
     scene = replace(scene, liquid=replace(scene.liquid, drops=0.5))
     random = np.random.default_rng(1)
     drops = [random.uniform(0.1, 1.0, (n, 4)) for n in (0, 7, MOST_DROPS)]
-    with Trajectory(write(tmp_path / "t.h5", scene, models, [(*f, d) for f, d in zip(frames, drops)], grid)) as t:
+    with Trajectory(write(tmp_path / "t.h5", scene, models, [with_drops(f, d) for f, d in zip(frames, drops)], grid)) as t:
         for n, expected in enumerate(drops):
             np.testing.assert_array_equal(t.liquid_drops(n), expected.astype(np.float32))
             t.check(n)
     with TrajectoryWriter(tmp_path / "u.h5", scene, models, frames=1, dt=0.01, steps_per_frame=10, grid=grid) as out:
-        for wrong in (None, np.ones((MOST_DROPS + 1, 4)), np.ones((2, 3))):
-            with pytest.raises(ValueError, match=r"shape \(D, 4\) with D <= 2048"):
-                out.write(*frames[0], wrong)
-        out.write(*frames[0], drops[1])
+        wrong = (frames[0], *(with_drops(frames[0], np.ones(shape)) for shape in ((MOST_DROPS + 1, 4), (2, 3))))
+        for frame in wrong:
+            with pytest.raises(ValueError, match=r"liquid_drops must have the shape \(2048, 4\) or fewer rows, found"):
+                out.write(*frame)
+        out.write(*with_drops(frames[0], drops[1]))
 
 
 def test_a_liquid_without_drops_has_none(tmp_path):
@@ -84,17 +88,25 @@ def test_a_liquid_without_drops_has_none(tmp_path):
     with h5py.File(path) as file:
         assert "drops" not in file["observables/liquid"]
     with TrajectoryWriter(tmp_path / "u.h5", scene, models, frames=1, dt=0.01, steps_per_frame=10, grid=grid) as out:
-        with pytest.raises(ValueError, match="be None without"):
-            out.write(*frames[0], np.ones((1, 4)))
+        with pytest.raises(ValueError, match="frames of this trajectory have no liquid_drops"):
+            out.write(*with_drops(frames[0], np.ones((1, 4))))
         out.write(*frames[0])
 
 
-@pytest.mark.parametrize("heights", [None, (np.zeros((14, 20)),), (np.zeros((20, 14)), np.zeros((20, 14)))])
+@pytest.mark.parametrize(
+    "heights",
+    [
+        {},
+        {"liquid_height": np.zeros((14, 20))},
+        {"liquid_height": np.zeros((20, 14)), "liquid_raw": np.zeros((20, 14))},
+        {"liquid_height": np.zeros((14, 20)), "liquid_raw": np.zeros((14, 19))},
+    ],
+)
 def test_heights_must_fit_the_basin(tmp_path, heights):
     """Missing heights, one of two, and x for y are refused before anything is written."""
     scene, models, grid, frames = pool()
     with TrajectoryWriter(tmp_path / "t.h5", scene, models, frames=1, dt=0.01, steps_per_frame=10, grid=grid) as out:
-        with pytest.raises(ValueError, match=r"shapes \[\(14, 20\), \(14, 20\)\]"):
+        with pytest.raises(ValueError, match=r"liquid_(height|raw) must have the shape \(14, 20\)"):
             out.write(*frames[0][:4], heights)
         out.write(*frames[0])
     with Trajectory(tmp_path / "t.h5") as t:
@@ -127,7 +139,7 @@ def test_heights_survive_a_kill_and_a_resume(tmp_path):
             expected = splash(grid, level=0.1 + 0.01 * k).astype(np.float32)
             np.testing.assert_array_equal(t.liquid_height(k), expected)
             np.testing.assert_array_equal(t.liquid_raw(k), expected)
-        np.testing.assert_array_equal(t.liquid_raw(3), heights[1].astype(np.float32))
+        np.testing.assert_array_equal(t.liquid_raw(3), heights["liquid_raw"].astype(np.float32))
 
 
 @pytest.mark.parametrize("other", [None, Grid((-1.0, -0.7, 0.0), (1.0, 0.7, 1.0), (10, 7, 5))])
@@ -144,7 +156,7 @@ def test_size_with_a_liquid_is_known_before(tmp_path):
     scene, models, grid = pool_scene(spacing=0.02)
     heights = splash(grid)
     path = write(tmp_path / "t.h5", scene, models, wet_frames(models, *[(heights, heights)] * 60), grid)
-    said = trajectory_bytes(models, 60, grid=grid)
+    said = trajectory_bytes(models, 60, fields=kept_fields(records_of(scene, grid), (), len(models)))
     assert said == pytest.approx(path.stat().st_size, rel=0.1)
     assert said > 2 * trajectory_bytes(models, 60)
 
@@ -156,11 +168,28 @@ def test_compare_sees_the_liquid(tmp_path):
     scene, models, grid, frames = pool()
     a = write(tmp_path / "a.h5", scene, models, frames, grid)
     assert compare(a, write(tmp_path / "b.h5", scene, models, frames, grid)).equal
-    step, time, x, v, (smooth, raw) = frames[1]
-    raised = smooth.copy()
+    step, time, x, v, heights = frames[1]
+    raised = heights["liquid_height"].copy()
     raised[3, 4] += 0.25
-    b = write(tmp_path / "c.h5", scene, models, [frames[0], (step, time, x, v, (raised, raw)), frames[2]], grid)
+    b = write(
+        tmp_path / "c.h5", scene, models, [frames[0], (step, time, x, v, heights | {"liquid_height": raised}), frames[2]], grid
+    )
     found = compare(a, b)
     assert (found.frame, found.object) == (1, "water")
     # Heights below 1 m in float32.
     assert found.distance == pytest.approx(0.25, abs=1e-7)
+
+
+def test_fields_of_objects_beside_drops(tmp_path):
+    """Each has its own checksum, whatever else a frame has."""
+    scene, models, grid, frames = pool()
+    scene, force = replace(scene, liquid=replace(scene.liquid, drops=0.5)), np.arange(len(models) * 3.0).reshape(-1, 3)
+    path = tmp_path / "t.h5"
+    fields = (Field("push", "N", per="object", shape=(3,)),)
+    with TrajectoryWriter(path, scene, models, frames=1, dt=0.01, steps_per_frame=10, grid=grid, fields=fields) as out:
+        *rest, told = with_drops(frames[0], np.ones((2, 4)))
+        out.write(*rest, told | {"push": force})
+    with Trajectory(path) as t:
+        t.check(0)
+        np.testing.assert_array_equal(t.field("push", 0), force)
+        assert len(t.liquid_drops(0)) == 2

@@ -5,7 +5,7 @@ from dataclasses import fields
 
 import numpy as np
 import pytest
-from mdanim_lammps.features.liquid.frames import HEIGHTS
+from mdanim_lammps.features.liquid.kept import HEIGHT
 from mdanim_lammps.run.observe import Observer, join, recorded_models
 from scene_texts import SPLASH
 
@@ -27,7 +27,7 @@ def splash(tmp_path_factory):
         ready,
         x,
         rng.normal(0.0, 10.0 ** rng.uniform(-9, 3, x.shape)),
-        {HEIGHTS: np.full((2, *ready.plan.grid.shape[1::-1]), 0.13)},
+        {HEIGHT.name: np.full(ready.plan.grid.shape[1::-1], 0.13)},
     )
 
 

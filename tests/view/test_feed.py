@@ -15,7 +15,7 @@ from mdanim_lammps.picture.surfaces import shaded_mesh
 from mdanim_lammps.results.trajectory_writer import TrajectoryWriter
 from mdanim_lammps.scene.render import Camera, Floor, Render
 from mdanim_lammps.view.feed import ASPECT, DRY, HIDDEN, MOST_FOAM, MOST_STRAIN, OPEN, PARTICLES, STRAIN, Feed, first_action
-from picture_samples import column_centres, falling, flat, pool_scene, raw_of, slab_scene, wet_frames, write
+from picture_samples import column_centres, falling, flat, pool_scene, raw_of, slab_scene, wet_frames, with_drops, write
 
 HEAD = 36
 
@@ -212,8 +212,8 @@ def test_liquid(tmp_path):
     raw[1:9, 28:36] = -np.inf
     scene = replace(scene, liquid=replace(scene.liquid, drops=1.0))
     drops = [np.full((n, 4), 0.25 * n) for n in (1, 3)]
-    frames = zip(wet_frames(models, (smooth, raw), (smooth, raw)), drops)
-    write(tmp_path / "trajectory.h5", scene, models, [(*frame, flying) for frame, flying in frames], grid)
+    frames = map(with_drops, wet_frames(models, (smooth, raw), (smooth, raw)), drops)
+    write(tmp_path / "trajectory.h5", scene, models, frames, grid)
     feed = Feed(tmp_path)
     head, arrays = unpacked(feed.scene())
     (_, _, _, V, count, C, D), data = parts(feed.frame(1))

@@ -112,6 +112,10 @@ class Effect:
         """Part of the mass of each immersed solid that it carries [kg], shape (M,)."""
         return 0.0
 
+    def untold(self, scene: SceneRecord) -> str:
+        """Reason why frames do not tell its forces on objects from those of contact; empty where they do."""
+        return ""
+
     # --- what it brings into a run --------------------------------------------------------------------------------------
 
     def grid(self, scene: SceneRecord, h: float) -> Grid | None:

@@ -23,6 +23,7 @@ class Field:
     per: str = "run"
     """One of PER."""
     dtype: str = "float64"
+    """Type of an array per object, and of the table in a trajectory."""
     shape: tuple[int, ...] = ()
     """Shape of one value."""
     default: float = 0.0
@@ -31,12 +32,26 @@ class Field:
     """Whether it is a column of the ledger that is not an energy."""
     whole: bool = False
     """Whether it counts something, and is written as a whole number where it is one."""
+    table: str = ""
+    """Its table in a trajectory, below ``/observables``; empty where a trajectory does not have it."""
+    counts: tuple[int, ...] = ()
+    """How many things there are, along each axis of the table: objects; rows and columns of cells; the most rows that fit."""
 
     def __post_init__(self):
         if self.per not in PER:
             raise ValueError(f"field {self.name} is per {self.per}, not per one of {', '.join(PER)}")
         if self.ledger and (self.per != "run" or self.shape):
             raise ValueError(f"field {self.name} is a column of the ledger, so it is one number per run")
+
+    @property
+    def whole_shape(self) -> tuple[int, ...]:
+        """Shape of all values in one frame."""
+        return (*self.counts, *self.shape)
+
+    def fits(self, value: Any) -> bool:
+        """Whether an array has the shape of its values in one frame; of a field per row there may be fewer."""
+        found, most = np.shape(value), self.whole_shape
+        return found == most or (self.per == "row" and len(found) == len(most) and found[1:] == most[1:] and found[0] < most[0])
 
 
 def column(name: str, unit: str) -> Field:

@@ -12,6 +12,7 @@ import numpy as np
 from ..errors import OutputError, UsageError
 from ..picture.liquid import Sheet
 from ..picture.palette import LIQUID, object_colors, rgb, vertex_colors
+from ..picture.scenery import scenery
 from ..picture.surfaces import ShadedMesh, shaded_mesh
 from ..results.trajectory import Trajectory
 from ..results.trajectory_metadata import TrajectoryMetadata
@@ -61,7 +62,7 @@ class Cut:
         """Indices into ``trajectory.names``, shape (O,)."""
         m = trajectory.metadata
         self._kept = np.isin(m.object_of, self.objects)
-        self.liquid = None if objects else m.liquid
+        self.liquid = None if objects else scenery(m).liquid
         sizes = np.diff(m.first)[self.objects]
         self.metadata: TrajectoryMetadata = replace(
             m,
@@ -76,7 +77,7 @@ class Cut:
             held=m.held[self._kept],
             bond=m.bond[np.isin(m.bond, m.id[self._kept]).all(axis=1)] if len(m.bond) else m.bond,
             surface_of=m.surface_of[self.objects],
-            liquid=self.liquid,
+            kept=m.kept if self.liquid else {name: record for name, record in m.kept.items() if name != "liquid"},
         )
         """That of the trajectory, for these objects alone."""
 

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from ..picture.camera import FIELD_OF_VIEW, CameraPath, View, action_of, automatic_view
+from ..picture.scenery import scenery
 from ..scene.render import Render
 from .cut import Body, Cut
 
@@ -161,7 +162,7 @@ def _camera(stage, cut: Cut, render: Render) -> None:
     else:
         pool = t.liquid
         basin = (pool.low, pool.high) if pool else None
-        views = [automatic_view(action_of(t), width / height, t.metadata.walls, basin)]
+        views = [automatic_view(action_of(t), width / height, scenery(t.metadata).walls, basin)]
         place.Set(matrix(views[0]))
     far = max(float(np.linalg.norm(view.eye - view.look)) for view in views)
     camera.CreateClippingRangeAttr(Gf.Vec2f(0.001 * far, 100.0 * far))

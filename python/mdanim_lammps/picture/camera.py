@@ -14,6 +14,7 @@ from ..results.trajectory import Trajectory
 from ..results.untrusted import check_places
 from ..scene.keywords import did_you_mean
 from ..scene.render import Camera
+from .scenery import scenery
 
 FIELD_OF_VIEW = 30.0
 """Vertical angle of view [degrees]."""
@@ -114,9 +115,10 @@ def action_of(trajectory: Trajectory, samples: int = 40) -> Action:
     start_low, start_high = (centers[0] + below).min(axis=0), (centers[0] + above).max(axis=0)
     size = max(float(np.linalg.norm(start_high - start_low)), np.finfo(float).tiny)
     gone = np.zeros(low.shape[:2], dtype=bool)
-    if metadata.ground is None:
+    there = scenery(metadata)
+    if there.ground is None:
         # Nothing falls out of a basin, which has a floor of its own.
-        bottom = min(start_low[2], metadata.liquid.low[2]) if metadata.liquid else start_low[2]
+        bottom = min(start_low[2], there.liquid.low[2]) if there.liquid else start_low[2]
         gone = np.maximum.accumulate(low[:, :, 2] < bottom - FALL * size, axis=0)
     lowest = np.where(gone[:, :, None], np.inf, low).min(axis=0)
     highest = np.where(gone[:, :, None], -np.inf, high).max(axis=0)
@@ -131,12 +133,12 @@ def action_of(trajectory: Trajectory, samples: int = 40) -> Action:
         np.maximum(np.minimum(shown_low, start_low), start_low - far),
         np.minimum(np.maximum(shown_high, start_high), start_high + far),
     )
-    if metadata.liquid is not None:
+    if there.liquid is not None:
         # The basin is seen whole, whatever happens in it.
-        bounds = np.minimum(bounds[0], metadata.liquid.low), np.maximum(bounds[1], metadata.liquid.high)
-    if metadata.ground is not None:
-        bounds[0][2] = min(bounds[0][2], max(metadata.ground, start_low[2] - FAR * size))
-    basin = (metadata.liquid.low, metadata.liquid.high) if metadata.liquid is not None else None
+        bounds = np.minimum(bounds[0], there.liquid.low), np.maximum(bounds[1], there.liquid.high)
+    if there.ground is not None:
+        bounds[0][2] = min(bounds[0][2], max(there.ground, start_low[2] - FAR * size))
+    basin = (there.liquid.low, there.liquid.high) if there.liquid is not None else None
     leads = what_leads(low, high, basin) & ~gone
     return Action(low, high, bounds, bool(gone.any()), ~metadata.still, leads)
 

@@ -15,6 +15,7 @@ from .light import Light
 from .marks import MarkActors, Marks
 from .palette import background_colors, is_dark, vertex_colors
 from .pieces import MovingMesh, box_edges, lit_actor, plane
+from .scenery import scenery
 from .surfaces import shaded_mesh
 from .tank import Tank
 from .window import fewer_pixels, off_screen_window, pixels, silent
@@ -63,7 +64,7 @@ class Painter:
             )
         self.action = action or action_of(trajectory)
         self._path = CameraPath(render.camera, trajectory) if render.camera else None
-        walls, pool = trajectory.metadata.walls, trajectory.liquid
+        _, walls, pool = scenery(trajectory.metadata)
         basin = (pool.low, pool.high) if pool else None
         aspect = self.size[0] / self.size[1]
         self._still = None if self._path else automatic_view(self.action, aspect, walls, basin)
@@ -138,11 +139,12 @@ class Painter:
         camera.SetViewAngle(FIELD_OF_VIEW)
 
         metadata, dark, sky = self.trajectory.metadata, is_dark(low), render.quality is Quality.FINAL
+        there = scenery(metadata)
         width, height = (n * self._finer for n in self.size)
         # In final quality the liquid's surface looks up what is behind it, so that has to be drawn before.
-        self._behind = Behind((width, height)) if sky and metadata.liquid and render.liquid == "smooth" else None
+        self._behind = Behind((width, height)) if sky and there.liquid and render.liquid == "smooth" else None
         self._front = self._in_front() if self._behind else self._renderer
-        self._tank = Tank(self.trajectory, render.liquid, dark, sky, self._behind) if metadata.liquid else None
+        self._tank = Tank(self.trajectory, render.liquid, dark, sky, self._behind) if there.liquid else None
         floor = None if render.floor is Floor.NONE else self._floor_height()
         (x, y, _), reach = self.action.centre, FLOOR * self.action.size
         self._surface = MovingMesh(len(self._mesh.carry), self._mesh.triangle)
@@ -158,8 +160,8 @@ class Painter:
             self._actors.append(self._make_floor(floor, low, high, render))
         for actor in self._actors:
             self._renderer.AddActor(actor)
-        if metadata.walls is not None:
-            self._renderer.AddActor(box_edges(*metadata.walls, 0.8 if dark else 0.35))
+        if there.walls is not None:
+            self._renderer.AddActor(box_edges(*there.walls, 0.8 if dark else 0.35))
         if self._tank:
             for actor in self._tank.inner:
                 self._renderer.AddActor(actor)
@@ -198,10 +200,10 @@ class Painter:
 
     def _floor_height(self) -> float | None:
         """The ground; without one the lowest point of the action, unless something falls through there."""
-        metadata = self.trajectory.metadata
-        if metadata.ground is not None:
+        there = scenery(self.trajectory.metadata)
+        if there.ground is not None:
             # The ground would hide a basin that is sunk into it.
-            return min(metadata.ground, metadata.liquid.low[2] if metadata.liquid else metadata.ground)
+            return min(there.ground, there.liquid.low[2] if there.liquid else there.ground)
         return None if self.action.escaped else float(self.action.bounds[0][2])
 
     def _make_floor(self, height: float, low: np.ndarray, high: np.ndarray, render: Render):

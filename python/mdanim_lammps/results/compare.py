@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
+from ..effects.kept import kinds
 from ..errors import OutputError
 from ..scene.formatting import number, say
 from .trajectory import Trajectory
@@ -25,9 +26,9 @@ class Difference:
     time: float = 0.0
     """[s]"""
     object: str = ""
-    """Object, or liquid, that differs most there."""
+    """Object, or record of a feature, that differs most there."""
     distance: float = 0.0
-    """By how much [m], of a liquid the heights; 0 when only velocities differ."""
+    """By how much [m]; 0 when only velocities differ."""
     largest: float = 0.0
     """Largest distance in any frame [m]."""
 
@@ -59,41 +60,30 @@ def compare(a: Path, b: Path) -> Difference:
                 f"{a} has {len(first)} frames and {b} {len(second)}, or their times differ: "
                 "run both scenes with the same control block"
             )
+        records = first.metadata.kept, second.metadata.kept
+        for name, kind in kinds().items():
+            if kind.UNLIKE and records[0].get(name) != records[1].get(name):
+                raise OutputError(f"{a} and {b} hold different {kind.UNLIKE}: there is nothing to compare")
         fields = first.metadata.fields
         if fields != second.metadata.fields:
             raise OutputError(f"{a} and {b} hold frames with different fields: there is nothing to compare")
-        if first.liquid != second.liquid:
-            raise OutputError(f"{a} and {b} hold different liquids or basins: there is nothing to compare")
         found = None
         largest = 0.0
         for i in range(len(first)):
             x, y = first.position(i), second.position(i)
-            same = np.array_equal(x, y) and np.array_equal(first.velocity(i), second.velocity(i))
-            same = same and all(np.array_equal(*(t.field(f.name, i) for t in (first, second)), equal_nan=True) for f in fields)
-            rise = _rise(first, second, i)
-            if same and rise is None:
+            told = [{field.name: t.field(field.name, i) for field in fields} for t in (first, second)]
+            unlike = [f for f in fields if not np.array_equal(*(values[f.name] for values in told), equal_nan=True)]
+            bodies = not np.array_equal(x, y) or not np.array_equal(first.velocity(i), second.velocity(i))
+            if not bodies and not unlike:
                 continue
-            distance = np.linalg.norm(x - y, axis=1)
-            largest = max(largest, float(distance.max()), rise or 0.0)
-            if found is None:
+            apart = [part for record in records[0].values() if (part := record.apart(*told)) is not None]
+            if bodies or not apart or any(f.per == "object" for f in unlike):
+                distance = np.linalg.norm(x - y, axis=1)
                 worst = int(distance.argmax())
-                name, by = first.names[first.metadata.object_of[worst]], float(distance[worst])
-                if same or (rise or 0.0) > by:
-                    name, by = first.liquid.name, rise
-                found = (i, float(first.times[i]), name, by)
+                apart.insert(0, (first.names[first.metadata.object_of[worst]], float(distance[worst])))
+            name, by = max(apart, key=lambda part: part[1])
+            largest = max(largest, by)
+            found = found or (i, float(first.times[i]), name, by)
         if found is None:
             return Difference(len(first))
         return Difference(len(first), *found, largest)
-
-
-def _rise(first: Trajectory, second: Trajectory, frame: int) -> float | None:
-    """Largest difference between the liquids' heights in a frame [m]; None where they are equal, or there is none."""
-    if first.liquid is None:
-        return None
-    pairs = [(t.liquid_height(frame), t.liquid_raw(frame)) for t in (first, second)]
-    drops = [t.liquid_drops(frame) for t in (first, second)]
-    if all(np.array_equal(x, y, equal_nan=True) for x, y in (*zip(*pairs), drops)):
-        return None
-    # A raw height that only one of them has (NaN, minus infinity) is not a height.
-    both = [np.isfinite(x) & np.isfinite(y) for x, y in zip(*pairs)]
-    return float(max(np.abs(x[b] - y[b]).max(initial=0.0) for x, y, b in zip(*pairs, both)))

@@ -42,16 +42,16 @@ class ContactForces:
         if (scene := trajectory.scene) is None:
             self.why = "the scene of this run, or one of its meshes, cannot be read here"
             return
-        uniform = Acting(scene, acting(features.effects(), scene))
+        effects = acting(features.effects(), scene)
+        uniform = Acting(scene, effects)
         self._gravity = uniform.acceleration
         held = np.add.reduceat(m.held, m.first[:-1]) > 0
-        self._told = ~held & ~m.still & np.array([not solid.drag for solid in scene.solids])
+        self._told = ~held & ~m.still & ~uniform.slowed
         self._alone = np.flatnonzero(~self._told)
         if len(self._alone) != 1 or uniform.planes:
             self._alone = self._alone[:0]
-        if scene.liquid:
-            self.why = "lift and drag of the liquid act as well, and frames do not tell them apart"
-        elif not self._told.any():
+        self.why = next((why for e in effects if (why := e.untold(scene))), "")
+        if not self.why and not self._told.any():
             self.why = "every object is held or has air drag, whose forces frames do not tell apart"
 
     def since(self, frame: int) -> np.ndarray:

@@ -14,22 +14,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..errors import OutputError, SceneError, SetupError
+from ..features import facets
 from ..scene.keywords import Named, did_you_mean
 from ..scene.scene import Save, SceneRecord
 from .frame_reader import EVERYTHING, FrameReader
 from .html import html_table
-from .trajectory_file import (
-    DROPS,
-    FIELDS,
-    LIQUID,
-    NOT_WRITTEN,
-    find_trajectory,
-    frame_shapes,
-    open_trajectory,
-    read_metadata,
-    row_checksum,
-)
-from .trajectory_metadata import LiquidMetadata
+from .trajectory_file import NOT_WRITTEN, find_trajectory, frame_shapes, open_trajectory, read_metadata, row_checksum
 from .untrusted import check_frames, check_hdf5, check_metadata, check_steps
 
 if TYPE_CHECKING:
@@ -44,7 +34,11 @@ _UNFOLDS = re.compile(r"\b(repeat|include)\b")
 """Statements that a scene which is written out does not have."""
 
 
-class Trajectory:
+TRACKS = tuple(facet.Track for facet in facets("kept") if hasattr(facet, "Track"))
+"""Classes of features with what they add to a `Trajectory`."""
+
+
+class Trajectory(*TRACKS):
     """A finished, running or crashed run, read frame by frame; F frames, O objects, N stored particles.
 
     Every value is checked against the checksum that was stored with it: reading raises OutputError where the file is damaged.
@@ -174,41 +168,15 @@ class Trajectory:
         with self._damage():
             return self.frames.values("center_of_mass_velocity", len(self))
 
-    @property
-    def liquid(self) -> LiquidMetadata | None:
-        """The liquid and its basin; None in a scene without."""
-        return self.metadata.liquid
-
-    def liquid_height(self, frame: int) -> np.ndarray:
-        """Smooth height z of the liquid over each column of cells [m], float32, shape (ny, nx)."""
-        return self._liquid(LIQUID[0], frame)
-
-    def liquid_raw(self, frame: int) -> np.ndarray:
-        """Top of the topmost liquid cell of each column, z [m], float32, shape (ny, nx); NaN where a solid
-        hides it, minus infinity where one keeps the column dry, as a hull does."""
-        return self._liquid(LIQUID[1], frame)
-
-    def liquid_drops(self, frame: int) -> np.ndarray:
-        """Middle and radius of each drop of the liquid that flies [m], float32, shape (D, 4)."""
-        if self.liquid is None or not self.liquid.most_drops:
-            return np.zeros((0, 4), np.float32)
-        rows = self._liquid(DROPS, frame)
-        return rows[rows[:, 3] > 0.0]
-
-    @cached_property
-    def liquid_levels(self) -> np.ndarray:
-        """Mean height z of the liquid over the basin [m], shape (F,)."""
-        return np.array([self.liquid_height(i).mean(dtype=np.float64) for i in range(len(self))])
-
     def field(self, name: str, frame: int) -> np.ndarray:
-        """Values of an effect for each object in a frame, by one of ``metadata.fields``, shape (O, ...) in their units.
+        """Values of an effect in a frame, by the name of one of ``metadata.fields``, in its shape and unit.
 
         Raises KeyError that names a near field.
         """
-        known = [field.name for field in self.metadata.fields]
+        known = {field.name: field.table for field in self.metadata.fields}
         if name not in known:
             raise KeyError(f"frames have no field {name!r}; {did_you_mean(name, known) or 'no effect of it tells any'}")
-        return self._read(f"{FIELDS}/{name}", frame)
+        return self._read(known[name], frame)
 
     def surface(self, frame: int) -> pyvista.PolyData:
         """Surfaces of all objects in one frame [m], as one mesh.
@@ -265,11 +233,6 @@ class Trajectory:
             for name, mass, size in zip(self.names, self.metadata.object_mass, np.diff(self.metadata.first))
         ]
         return html_table(f"{self.path}: {len(self)} frames{end}", ("object", "mass", "stored particles"), rows)
-
-    def _liquid(self, name: str, frame: int) -> np.ndarray:
-        if self.liquid is None:
-            raise OutputError(f"{self.path}: there is no liquid in this run")
-        return self._read(name, frame)
 
     def _read(self, name: str, frame: int, particles: slice = EVERYTHING) -> np.ndarray:
         """One quantity of a frame, or of some particles in it; the whole of it is checked when it is read for the first time."""

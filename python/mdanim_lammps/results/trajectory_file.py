@@ -13,21 +13,21 @@ import gc
 import math
 import os
 import zlib
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ..effects.fields import Field
+from ..effects.kept import Kept, kinds
 from ..errors import OutputError
-from ..model.grid import Grid
 from ..model.model import Model, Surface
 from ..scene.scene import Save
 from .files import disk_errors, sync
-from .trajectory_metadata import LiquidMetadata, TrajectoryMetadata, distinct_surfaces, stored_particles
+from .trajectory_metadata import FIELDS, TrajectoryMetadata, distinct_surfaces, stored_particles
 from .untrusted import check_plain
 
 if TYPE_CHECKING:
@@ -36,14 +36,6 @@ if TYPE_CHECKING:
 FILE_NAME = "trajectory.h5"
 FORMAT = 3
 """Version of ``/parameters/mdanim``; a reader refuses what is newer. Version 1 has no liquid, 2 no checksums."""
-
-LIQUID = ("liquid/height", "liquid/raw")
-"""Heights of a liquid: smooth, and of the topmost cells; below ``/observables``."""
-DROPS = "liquid/drops"
-"""Middle and radius of each drop; a radius of 0 is none."""
-
-FIELDS = "fields"
-"""Below ``/observables``: what effects tell of each object, by name."""
 
 STEP, TIME, CHECKSUM = "step", "time", "checksum"
 _ROW = (STEP, TIME, CHECKSUM)
@@ -84,7 +76,7 @@ class FrameTable:
 
 
 def trajectory_bytes(
-    models: Sequence[Model], frames: int, save: Save = Save.ALL, single: bool = False, grid: Grid | None = None, drops: int = 0
+    models: Sequence[Model], frames: int, save: Save = Save.ALL, single: bool = False, fields: Iterable[Field] = ()
 ) -> int:
     """Size of the trajectory file [bytes] before anything is run, rather too large than too small.
 
@@ -93,13 +85,11 @@ def trajectory_bytes(
         frames: number of frames, the first included.
         save: which particles are stored.
         single: whether positions and velocities take 4 bytes a number instead of 8.
-        grid: cells of the liquid, if there is one.
-        drops: that a frame has room for.
+        fields: that frames have besides (`trajectory_metadata.kept_fields`).
     """
     stored = sum(int(stored_particles(model, save).sum()) for model in models)
     per_frame = stored * 6 * (4 if single else 8) + len(models) * 6 * 8 + 16 + 4 * 7
-    if grid:
-        per_frame += 2 * 4 * grid.shape[0] * grid.shape[1] + 4 * 4 * drops
+    per_frame += sum(math.prod(of.whole_shape) * np.dtype(of.dtype).itemsize for of in fields)
     surfaces = distinct_surfaces(models, [stored_particles(model, save) for model in models])[0]
     springs = sum(len(model.spring) for model in models)
     return frames * per_frame + _fixed_bytes(stored, springs, surfaces) + _METADATA_BYTES
@@ -184,8 +174,7 @@ def datasets_of_frames(file: h5py.File) -> dict[str, h5py.Dataset]:
         found[CHECKSUM] = own[CHECKSUM]
     found |= {name: particles[f"{name}/value"] for name in ("position", "velocity")}
     names = ["center_of_mass", "center_of_mass_velocity"]
-    if "observables/liquid" in file:
-        names += [*LIQUID, *([DROPS] if DROPS in file["observables"] else [])]
+    names += [table for kind in kinds().values() for table in _shapes(file, kind)]
     names += [f"{FIELDS}/{name}" for name in _names_of_fields(file)]
     return found | {name: file[f"observables/{name}/value"] for name in names}
 
@@ -208,17 +197,13 @@ def frame_shapes(metadata: TrajectoryMetadata) -> dict[str, tuple[int, ...]]:
 def _quantities(metadata: TrajectoryMetadata) -> Iterator[tuple[str, str, tuple[int, ...], type, str]]:
     """Quantities that every frame has: name, group above it, shape, type, unit."""
     real = np.float32 if metadata.single else np.float64
-    n, objects, liquid = len(metadata.id), len(metadata.names), metadata.liquid
+    n, objects = len(metadata.id), len(metadata.names)
     yield "position", "particles/all", (n, 3), real, "m"
     yield "velocity", "particles/all", (n, 3), real, "m s-1"
     yield "center_of_mass", "observables", (objects, 3), np.float64, "m"
     yield "center_of_mass_velocity", "observables", (objects, 3), np.float64, "m s-1"
-    for name in LIQUID if liquid else ():
-        yield name, "observables", liquid.shape[1::-1], np.float32, "m"
-    if liquid and liquid.most_drops:
-        yield DROPS, "observables", (liquid.most_drops, 4), np.float32, "m"
-    for field in metadata.fields:
-        yield f"{FIELDS}/{field.name}", "observables", (objects, *field.shape), np.dtype(field.dtype).type, field.unit
+    for of in metadata.fields:
+        yield of.table, "observables", of.whole_shape, np.dtype(of.dtype).type, of.unit
 
 
 def _fixed_bytes(particles: int, springs: int, surfaces: Sequence[Surface]) -> int:
@@ -293,15 +278,8 @@ def _write_tables(file: h5py.File, metadata: TrajectoryMetadata, frames: int, dt
         for key, dataset in ((STEP, step), (TIME, time)):
             if key not in group:
                 group[key] = dataset
-    if liquid := metadata.liquid:
-        file["observables/liquid"].attrs.update(
-            name=_text([liquid.name]),
-            low=liquid.low,
-            high=liquid.high,
-            shape=np.array(liquid.shape, dtype=np.int64),
-            density=liquid.density,
-            color=_text([liquid.color]),
-        )
+    for record in metadata.kept.values():
+        file.require_group(record.GROUP).attrs.update({key: _attribute(value) for key, value in record.write().items()})
 
 
 def _room(group: h5py.Group, shape: tuple[int, ...], real: type) -> h5py.Dataset:
@@ -338,10 +316,6 @@ def _write_metadata(group: h5py.Group, metadata: TrajectoryMetadata, dt: float, 
         save=_text([metadata.save.value]),
         single=metadata.single,
     )
-    if metadata.ground is not None:
-        group.attrs["ground"] = metadata.ground
-    if metadata.walls is not None:
-        group.attrs["walls"] = np.array(metadata.walls)
     for name, array in (
         ("scene", _text([metadata.scene_text])),
         ("name", _text(metadata.names)),
@@ -370,7 +344,7 @@ def read_metadata(file: h5py.File) -> TrajectoryMetadata:
     group, particles = file["parameters/mdanim"], file["particles/all"]
     if group.attrs["format"] > FORMAT:
         raise KeyError(f"format {group.attrs['format']}, newer than {FORMAT}: update mdanim-lammps")
-    walls = group.attrs.get("walls")
+    kept = _read_kept(file)
     return TrajectoryMetadata(
         title=_string(group.attrs["title"]),
         names=_texts(group["name"]),
@@ -386,10 +360,8 @@ def read_metadata(file: h5py.File) -> TrajectoryMetadata:
         bond=file["connectivity/bonds"][:],
         surfaces=_read_surfaces(group["surface"]),
         surface_of=group["surface_of"][:],
-        ground=float(group.attrs["ground"]) if "ground" in group.attrs else None,
-        walls=None if walls is None else (tuple(walls[0].tolist()), tuple(walls[1].tolist())),
-        liquid=_read_liquid(file),
-        fields=_read_fields(file),
+        kept=kept,
+        fields=(*(of for record in kept.values() for of in record.fields()), *_read_fields(file)),
         save=Save(_string(group.attrs["save"])),
         single=bool(group.attrs["single"]),
         scene_text=_texts(group["scene"])[0],
@@ -413,20 +385,33 @@ def _read_surfaces(group: Mapping[str, h5py.Dataset]) -> tuple[Surface, ...]:
     )
 
 
-def _read_liquid(file: h5py.File) -> LiquidMetadata | None:
-    if "observables/liquid" not in file:
-        return None
-    attributes = file["observables/liquid"].attrs
-    low, high, shape = (tuple(attributes[key].tolist()) for key in ("low", "high", "shape"))
-    name, color = (_string(attributes[key]) for key in ("name", "color"))
-    drops = file[f"observables/{DROPS}/value"].shape[1] if DROPS in file["observables"] else 0
-    return LiquidMetadata(name, low, high, shape, float(attributes["density"]), color, drops)
+def _read_kept(file: h5py.File) -> dict[str, Kept]:
+    found = {}
+    for name, kind in kinds().items():
+        if kind.GROUP in file:
+            attributes = {key: _plain(value) for key, value in file[kind.GROUP].attrs.items()}
+            found[name] = kind.read(attributes, _shapes(file, kind))
+    return {name: record for name, record in found.items() if record is not None}
+
+
+def _shapes(file: h5py.File, kind: type[Kept]) -> dict[str, tuple[int, ...]]:
+    """Shapes in one frame of those tables of a kind of records that there are."""
+    tables, above = [of.table for of in kind.TABLES], file["observables"]
+    return {table: above[f"{table}/value"].shape[1:] for table in tables if table in above}
 
 
 def _read_fields(file: h5py.File) -> tuple[Field, ...]:
     values = {name: file[f"observables/{FIELDS}/{name}/value"] for name in _names_of_fields(file)}
     return tuple(
-        Field(name, _string(value.attrs["units"]), per="object", dtype=value.dtype.name, shape=value.shape[2:])
+        Field(
+            name,
+            _string(value.attrs["units"]),
+            "object",
+            value.dtype.name,
+            value.shape[2:],
+            table=f"{FIELDS}/{name}",
+            counts=(len(file["parameters/mdanim/name"]),),
+        )
         for name, value in values.items()
     )
 
@@ -455,6 +440,19 @@ def _text(lines: Sequence[str]) -> np.ndarray:
 
 def _texts(dataset: h5py.Dataset) -> tuple[str, ...]:
     return tuple(line.decode() for line in dataset[:])
+
+
+def _attribute(value: Any) -> Any:
+    """Value of a record as an attribute of HDF5."""
+    return _text([value]) if isinstance(value, str) else np.array(value) if isinstance(value, tuple) else value
+
+
+def _plain(value: Any) -> Any:
+    """The same back: text, a number, or tuples of numbers."""
+    if isinstance(value, str) or (isinstance(value, np.ndarray) and value.dtype.kind in "SO"):
+        return _string(value)
+    tuples = lambda x: tuple(map(tuples, x)) if isinstance(x, list) else x
+    return tuples(value.tolist()) if isinstance(value, np.ndarray | np.generic) else value
 
 
 def _string(attribute: str | np.ndarray) -> str:

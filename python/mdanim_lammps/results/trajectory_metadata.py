@@ -3,42 +3,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
 
 from ..effects.fields import Field
-from ..features.liquid.frames import MOST_DROPS
+from ..effects.kept import Kept, records_of
 from ..model.grid import Grid
 from ..model.model import Layer, Model, Surface
-from ..scene.scene import Liquid, Save, SceneRecord, Vector
+from ..scene.scene import Save, SceneRecord
 from .weights import Weights
 
-
-@dataclass(frozen=True, slots=True)
-class LiquidMetadata:
-    """The liquid, and the cells of the basin that holds it."""
-
-    name: str
-    low: Vector
-    """Lower corner of the basin [m]."""
-    high: Vector
-    """Upper corner [m]."""
-    shape: tuple[int, int, int]
-    """Cells along x, y, z."""
-    density: float
-    """[kg/m^3]"""
-    color: str = ""
-    """``#rrggbb``, or empty where the renderer chooses."""
-    most_drops: int = 0
-    """Drops that a frame has room for."""
-
-    @property
-    def grid(self) -> Grid:
-        """The cells alone."""
-        return Grid(self.low, self.high, self.shape)
+FIELDS = "fields"
+"""Tables of what effects tell of each object, by name."""
 
 
 @dataclass(frozen=True)
@@ -72,14 +51,10 @@ class TrajectoryMetadata:
     """Different surfaces; ``index`` counts from an object's first stored particle."""
     surface_of: np.ndarray
     """Which of ``surfaces`` each object has, int64, shape (O,)."""
-    ground: float | None = None
-    """Height of the ground plane [m]."""
-    walls: tuple[Vector, Vector] | None = None
-    """Lower and upper corner of the box that objects never leave [m]."""
-    liquid: LiquidMetadata | None = None
-    """None in a scene without liquid."""
+    kept: Mapping[str, Kept] = field(default_factory=dict)
+    """Records of features, by name."""
     fields: tuple[Field, ...] = ()
-    """Further values of frames, one for each object, by name."""
+    """Further values of frames, each with its table, in the order of their checksums."""
     save: Save = Save.ALL
     single: bool = False
     """Positions and velocities in single precision."""
@@ -137,14 +112,14 @@ def metadata_of(
     """Collect what a trajectory of these models must know; objects in the order of ``models``.
 
     Args:
-        scene: for title, colours, ground, walls and ``control save``.
+        scene: for title, colours, ``control save``, and what its features keep.
         models: one per solid, named like the solids.
         scene_text: the expanded scene, kept so that pictures need nothing but the trajectory.
         grid: cells of the scene's liquid; None where there is none, or where it is switched off.
-        fields: what effects tell of a frame; those per object are stored.
+        fields: what effects tell of a frame; those per object are stored, besides those of features.
     """
     solids = {solid.name: solid for solid in scene.solids}
-    records = [solids[model.name] for model in models]
+    named, records = [solids[model.name] for model in models], records_of(scene, grid)
     stored = [stored_particles(model, scene.control.save) for model in models]
     offsets = np.cumsum([0] + [len(model.position) for model in models])
     surfaces, surface_of = distinct_surfaces(models, stored)
@@ -153,7 +128,7 @@ def metadata_of(
     return TrajectoryMetadata(
         title=scene.title,
         names=tuple(model.name for model in models),
-        colors=tuple(solid.color or "" for solid in records),
+        colors=tuple(solid.color or "" for solid in named),
         still=np.array([bool(model.held.all()) for model in models], dtype=bool),
         object_mass=np.array([model.mass.sum() for model in models], dtype=np.float64),
         first=np.cumsum([0] + [int(kept.sum()) for kept in stored]),
@@ -165,24 +140,19 @@ def metadata_of(
         bond=np.concatenate([np.zeros((0, 2), np.int32), *bonds]).astype(np.int32),
         surfaces=surfaces,
         surface_of=surface_of,
-        ground=scene.ground,
-        walls=(scene.walls.low, scene.walls.high) if scene.walls else None,
-        liquid=liquid_metadata(scene.liquid, grid) if grid else None,
-        fields=tuple(sorted((field for field in fields if field.per == "object"), key=lambda field: field.name)),
+        kept=records,
+        fields=kept_fields(records, fields, len(models)),
         save=scene.control.save,
         single=scene.control.single,
         scene_text=scene_text,
     )
 
 
-def liquid_metadata(liquid: Liquid, grid: Grid) -> LiquidMetadata:
-    """Data of a scene's liquid for a trajectory."""
-    return LiquidMetadata(liquid.name, grid.low, grid.high, grid.shape, liquid.density, liquid.color or "", most_drops(liquid))
-
-
-def most_drops(liquid: Liquid | None) -> int:
-    """Drops that a frame of a scene needs room for."""
-    return MOST_DROPS if liquid and liquid.drops else 0
+def kept_fields(records: Mapping[str, Kept], fields: Iterable[Field], objects: int) -> tuple[Field, ...]:
+    """Fields that frames of a trajectory have: those of the records of features, and those per object, by name."""
+    told = sorted((of for of in fields if of.per == "object"), key=lambda of: of.name)
+    tables = (replace(of, table=f"{FIELDS}/{of.name}", counts=(objects,)) for of in told)
+    return (*(of for record in records.values() for of in record.fields()), *tables)
 
 
 def distinct_surfaces(models: Sequence[Model], stored: Sequence[np.ndarray]) -> tuple[tuple[Surface, ...], np.ndarray]:

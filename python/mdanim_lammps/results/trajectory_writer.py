@@ -10,6 +10,7 @@ from types import MappingProxyType
 import numpy as np
 
 from ..effects.fields import Field, Fields
+from ..effects.kept import kinds, records_of
 from ..errors import OutputError
 from ..model.grid import Grid
 from ..model.model import Model
@@ -20,10 +21,7 @@ from .frame_rows import FrameRows, RowWriter
 from .trajectory import Trajectory
 from .trajectory_file import (
     CHECKSUM,
-    DROPS,
-    FIELDS,
     FORMAT,
-    LIQUID,
     NOT_WRITTEN,
     STEP,
     TIME,
@@ -45,14 +43,14 @@ class TrajectoryWriter:
 
     Args:
         path: the finished file, usually ``FOLDER/trajectory.h5``.
-        scene: for names, colours, ground, walls and ``control save``.
+        scene: for names, colours, ``control save``, and what its features keep.
         models: one per solid; frames have the particles of all models one after the other.
         frames: number of frames of the whole run, the first included.
         dt: time step [s].
         steps_per_frame: time steps between frames.
         scene_text: the expanded scene, so that pictures need no other file.
-        grid: cells of the scene's liquid; every frame then has heights. None without liquid.
-        fields: what effects tell of a frame; those per object are stored.
+        grid: cells that effects of the scene use; None without any.
+        fields: what effects tell of a frame; those per object are stored, besides those of features.
 
     Raises:
         OutputError: the file cannot be written, e.g. because the disk is full.
@@ -100,11 +98,10 @@ class TrajectoryWriter:
                     f"{old.path}: holds {len(old.names)} objects with {old.metadata.total} particles, "
                     f"not this scene's; start afresh with --force or another -o folder"
                 )
-            if (old.liquid and old.liquid.grid) != grid:
-                raise OutputError(
-                    f"{old.path}: holds {_described(old.liquid and old.liquid.grid)}, this scene "
-                    f"{_described(grid)}; start afresh with --force or another -o folder"
-                )
+            now = records_of(scene, grid)
+            for name, kind in kinds().items():
+                if why := kind.parted(old.metadata.kept.get(name), now.get(name)):
+                    raise OutputError(f"{old.path}: {why}; start afresh with --force or another -o folder")
             keep = int(np.searchsorted(old.steps, after_step, side="right"))
             last = int(old.steps[keep - 1]) if keep else NOT_WRITTEN
             if last != after_step:
@@ -147,13 +144,7 @@ class TrajectoryWriter:
         self._writer, self._closed = RowWriter(self.rows), False
 
     def write(
-        self,
-        step: int,
-        time: float,
-        position: np.ndarray,
-        velocity: np.ndarray,
-        liquid: tuple[np.ndarray, np.ndarray] | None = None,
-        drops: np.ndarray | None = None,
+        self, step: int, time: float, position: np.ndarray, velocity: np.ndarray, fields: Fields = MappingProxyType({})
     ) -> None:
         """Add a frame.
 
@@ -162,23 +153,22 @@ class TrajectoryWriter:
             time: simulated time [s].
             position: of all particles, stored or not [m], shape (N, 3).
             velocity: [m/s], shape (N, 3).
-            liquid: heights z of the liquid over the columns of its cells, smooth and raw [m], each of shape
-                (ny, nx); raw ones are NaN where a solid hides
-                the liquid, minus infinity where one keeps the column dry, as a hull does. None without liquid.
-            drops: middle and radius of drops of a liquid that sheds some [m], shape (D, 4); None for another.
+            fields: values of ``metadata.fields``, by name.
 
         Raises:
             OutputError: the frame cannot be written; those before it are kept.
-            ValueError: an array has another shape, the step is not larger, or the file has all its frames.
+            ValueError: an array has another shape or is not one of a frame, the step is not larger, or the file has all its
+                frames.
         """
         for name, array in (("position", position), ("velocity", velocity)):
             if np.shape(array) != (self.metadata.total, 3):
                 raise ValueError(f"{name} must have shape ({self.metadata.total}, 3), found {np.shape(array)}")
-        self._check_frame(step, liquid, drops)
+        if unknown := set(fields) - {of.name for of in self.metadata.fields}:
+            raise ValueError(f"frames of this trajectory have no {', '.join(sorted(unknown))}")
+        self._check_frame(step, fields)
         checksums = self._writer.write(self._count, [slice(0, self.metadata.total)], position, velocity)
         means = (centers(self._mass, self._starts, values) for values in (position, velocity))
-        told = {"liquid_heights": liquid, "liquid_drops": drops}
-        self.add(step, time, checksums, *means, {name: value for name, value in told.items() if value is not None})
+        self.add(step, time, checksums, *means, fields)
 
     def add(
         self,
@@ -202,15 +192,12 @@ class TrajectoryWriter:
             OutputError: the frame cannot be written; those before it are kept.
             ValueError: as in `write`.
         """
-        liquid, drops = fields.get("liquid_heights"), fields.get("liquid_drops")
-        self._check_frame(step, liquid, drops)
-        values = {
-            "center_of_mass": center,
-            "center_of_mass_velocity": center_velocity,
-            **(dict(zip(LIQUID, liquid)) if liquid is not None else {}),
-            **{f"{FIELDS}/{field.name}": fields[field.name] for field in self.metadata.fields},
-            **({} if drops is None else {DROPS: np.pad(drops, ((0, self._most_drops - len(drops)), (0, 0)))}),
-        }
+        self._check_frame(step, fields)
+        values = {"center_of_mass": center, "center_of_mass_velocity": center_velocity}
+        for of in self.metadata.fields:
+            value = fields[of.name]
+            rest = of.whole_shape[0] - len(value) if of.per == "row" else 0
+            values[of.table] = np.pad(value, ((0, rest), *((0, 0) for _ in of.shape))) if rest else value
         values = {name: np.ascontiguousarray(value, self._tables[name].dtype) for name, value in values.items()}
         sums = [row_checksum(step, time), *checksums.tolist(), *map(checksum, values.values())]
         for name, value in (values | {CHECKSUM: np.array(sums, np.uint32), TIME: np.float64(time)}).items():
@@ -219,18 +206,12 @@ class TrajectoryWriter:
         self._last_step = int(step)
         self._pending.append(self._last_step)
 
-    @property
-    def _most_drops(self) -> int:
-        return self.metadata.liquid.most_drops if self.metadata.liquid else 0
-
-    def _check_frame(self, step: int, liquid: Sequence[np.ndarray] | None, drops: np.ndarray | None) -> None:
-        expected = [self.metadata.liquid.shape[1::-1]] * 2 if self.metadata.liquid else []
-        found = [np.shape(height) for height in (() if liquid is None else liquid)]
-        if found != expected:
-            raise ValueError(f"liquid must be heights of shapes {expected}, found {found}")
-        most, shape = self._most_drops, None if drops is None else np.shape(drops)
-        if (shape is None) != (most == 0) or (shape and (shape[1:] != (4,) or shape[0] > most)):
-            raise ValueError(f"drops must have shape (D, 4) with D <= {most}, or be None without, found {shape}")
+    def _check_frame(self, step: int, fields: Fields) -> None:
+        for of in self.metadata.fields:
+            if of.name not in fields or not of.fits(fields[of.name]):
+                found = np.shape(fields[of.name]) if of.name in fields else None
+                rows = " or fewer rows" if of.per == "row" else ""
+                raise ValueError(f"{of.name} must have the shape {of.whole_shape}{rows}, found {found}")
         if step <= self._last_step:
             raise ValueError(f"step must be larger than that of the frame before ({self._last_step}), found {step}")
         if self._count == self._frames:
@@ -283,7 +264,3 @@ class TrajectoryWriter:
         """Let no frame from this one on count."""
         self._put(STEP, keep, np.full(self._frames - keep, NOT_WRITTEN, np.int64))
         self._writer.sync()
-
-
-def _described(grid: Grid | None) -> str:
-    return f"a liquid in {' x '.join(map(str, grid.shape))} cells" if grid else "no liquid"

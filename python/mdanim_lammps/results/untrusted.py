@@ -27,8 +27,9 @@ if TYPE_CHECKING:
     from .trajectory_metadata import TrajectoryMetadata
 
 
-BY_FRAME = ("particles/all/position/value", "particles/all/velocity/value", "observables/liquid/", "observables/fields/")
-"""Tables of an HDF5 file of which one frame is read at a time."""
+BY_FRAME = ("particles/all/position/value", "particles/all/velocity/value", "observables/")
+"""Tables of an HDF5 file of which one frame is read at a time, but for those of AT_ONCE."""
+AT_ONCE = ("observables/center_of_mass/", "observables/center_of_mass_velocity/")
 
 
 def check_folder(folder: Path) -> None:
@@ -77,7 +78,7 @@ def check_hdf5(path: Path, file: h5py.File) -> None:
                 return f"the data of {name} lie in another file"
             row = found.dtype.itemsize * float(np.prod(found.shape[1:], dtype=np.float64))
             # Quantities of frames are read one frame at a time, all other tables at once.
-            by_frame = name.startswith(BY_FRAME)
+            by_frame = name.startswith(BY_FRAME) and not name.startswith(AT_ONCE)
             needed += row * (1 if by_frame or not found.shape else len(found))
         return None
 
@@ -97,8 +98,7 @@ def check_metadata(path: Path, m: TrajectoryMetadata) -> None:
     must(count > 0, "it holds no object")
     must(len(set(m.names)) == count, "two objects have one name")
     must(all(name and name.isprintable() for name in m.names), "a name of an object cannot be printed")
-    colors = (*m.colors, *([m.liquid.color] if m.liquid else []))
-    must(all(re.fullmatch("(#[0-9a-fA-F]{6})?", color) for color in colors), "a colour is not written as #rrggbb")
+    must(all(re.fullmatch("(#[0-9a-fA-F]{6})?", color) for color in m.colors), "a colour is not written as #rrggbb")
     for kinds, names in (("iu", ("first", "id", "layer", "bond", "surface_of")), ("f", ("mass", "object_mass"))):
         for name in names:
             must(getattr(m, name).dtype.kind in kinds, f"{name} holds {getattr(m, name).dtype}")
@@ -139,13 +139,8 @@ def check_metadata(path: Path, m: TrajectoryMetadata) -> None:
         must(color is None or (color.shape == (vertices, 3) and color.dtype == np.uint8), "a vertex has no colour")
     for mass in (m.object_mass, m.mass):
         must((np.isfinite(mass) & (mass > 0.0)).all(), "a mass is not above 0, NaN or infinite")
-    must(m.ground is None or np.isfinite(m.ground), "the ground is NaN or infinite")
-    walls = np.zeros((2, 3)) if m.walls is None else np.array(m.walls)
-    must(walls.shape == (2, 3) and np.isfinite(walls).all(), "the walls are not a box")
-    if m.liquid is not None:
-        low, high, shape = (np.array(getattr(m.liquid, name)) for name in ("low", "high", "shape"))
-        must(low.shape == high.shape == shape.shape == (3,), "the basin is not a box")
-        must(np.isfinite([low, high]).all() and (low < high).all() and (shape > 0).all(), "the basin is not a box")
+    for record in m.kept.values():
+        must(not (fault := record.fault()), fault)
     check_room(8.0 * m.total, path)
 
 

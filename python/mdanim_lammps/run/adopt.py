@@ -54,7 +54,7 @@ def adopt_dump(folder: Path, scene: SceneRecord) -> str:
             )
             with out, ProgressLog(folder, columns=("time",), energies=0, frames=frames, executors=1) as log:
                 for frame, (step, x, v) in enumerate(read_dump(dump, ready.system.particles)):
-                    out.write(step, step * dt, x, v, None)
+                    out.write(step, step * dt, x, v)
                     log.frame(frame, {"time": step * dt}, 0.0)
                 out.flush()
                 out.close()

@@ -114,7 +114,7 @@ def write_start(ready: Prepared, folder: Path) -> Path:
     with trajectory_writer(ready, folder, frames=1) as out:
         if ready.plan.grid is None:
             # As the system says; LAMMPS, which takes a quarter of a second to start, is asked for a liquid alone.
-            out.write(0, 0.0, ready.system.position, ready.system.velocity, None)
+            out.write(0, 0.0, ready.system.position, ready.system.velocity)
         else:
             with Sequential(ready.plan, ready.models) as source:
                 _add(out, source.begin(None, out.rows), 0.0)

@@ -24,6 +24,7 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import OutputError
+from ..features.liquid.kept import DROPS, HEIGHT, RAW
 from ..picture.camera import FIELD_OF_VIEW, Action, CameraPath, action_of, automatic_view
 from ..picture.foam import Foam
 from ..picture.liquid import Sheet, without_puddles
@@ -31,10 +32,9 @@ from ..picture.palette import LIQUID, background_colors, is_dark, object_colors,
 from ..picture.ponds import one_sheet
 from ..picture.rays import direction
 from ..picture.render import grid_spacing
+from ..picture.scenery import scenery
 from ..picture.surfaces import shaded_mesh
 from ..results.trajectory import Trajectory
-from ..results.trajectory_file import DROPS
-from ..results.trajectory_file import LIQUID as LIQUID_TABLES
 from ..results.untrusted import check_places
 from ..scene.render import Floor, Render
 
@@ -91,7 +91,9 @@ class Feed:
         self.first = np.searchsorted(of, np.arange(len(m.names)))
         self.count = np.diff(np.append(self.first, len(of)))
         self._frame_time = trajectory.dt * trajectory.steps_per_frame
-        self._foam = Foam(m.liquid.grid, self._frame_time) if m.liquid else None
+        self.scenery = scenery(m)
+        pool = self.scenery.liquid
+        self._foam = Foam(pool.grid, self._frame_time) if pool else None
 
     def close(self) -> None:
         """Close the trajectory."""
@@ -109,23 +111,24 @@ class Feed:
 
     def head(self) -> dict:
         """Data that do not change, without arrays; lengths [m], times [s], masses [kg], colours ``[r, g, b]`` of 0 to 255."""
-        m, action = self.metadata, self.action
+        m, there, action = self.metadata, self.scenery, self.action
         view = self._view()
         low, high = background_colors(self.render.background)
         size = max(action.size, np.finfo(np.float32).tiny)
         floor = None if action.escaped else float(action.bounds[0][2])
-        if m.ground is not None:
-            floor = min(m.ground, m.liquid.low[2]) if m.liquid else m.ground
-        elif m.liquid:
-            floor = min(float(action.bounds[0][2]), m.liquid.low[2])
+        if there.ground is not None:
+            floor = min(there.ground, there.liquid.low[2]) if there.liquid else there.ground
+        elif there.liquid:
+            floor = min(float(action.bounds[0][2]), there.liquid.low[2])
         if self.render.floor is Floor.NONE:
             floor = None
         colors = object_colors(m.colors, m.still)
         liquid = None
-        if m.liquid:
-            color = (255 * rgb(m.liquid.color or LIQUID)).round().tolist()
-            liquid = {"name": m.liquid.name, "low": m.liquid.low, "high": m.liquid.high, "shape": m.liquid.shape, "color": color}
-            liquid["drops"] = m.liquid.most_drops
+        if there.liquid:
+            color = (255 * rgb(there.liquid.color or LIQUID)).round().tolist()
+            pool = there.liquid
+            liquid = {"name": pool.name, "low": pool.low, "high": pool.high, "shape": pool.shape, "color": color}
+            liquid["drops"] = pool.most_drops
         return {
             "title": self.title,
             "frames": self.frames.total,
@@ -140,7 +143,7 @@ class Feed:
             "shadows": self.render.shadows,
             "grid": grid_spacing(size),
             "lamp": direction(self.render.light).tolist(),
-            "walls": m.walls,
+            "walls": there.walls,
             "background": [(255 * c).round().tolist() for c in (low, high)],
             "dark": is_dark(low),
             "fieldOfView": FIELD_OF_VIEW,
@@ -160,8 +163,8 @@ class Feed:
         found = {"triangle": self.triangle.astype("<u4"), "object": self.object_of_vertex.astype("<u4")}
         if self.metadata.skin.painted.any():
             found["tint"] = vertex_colors(self.metadata)[self._of_skin].ravel()
-        if self.metadata.liquid:
-            sheet = Sheet(self.metadata.liquid.grid)
+        if self.scenery.liquid:
+            sheet = Sheet(self.scenery.liquid.grid)
             found |= {"sheet": sheet.triangle.astype("<u4"), "rim": sheet.rim.astype("<u4")}
         return found
 
@@ -185,12 +188,12 @@ class Feed:
         return first_action(self.metadata, *self._boxes(vertices))
 
     def _view(self):
-        m = self.metadata
+        there = self.scenery
         if self.render.camera and self.finished:
             with Trajectory(self.folder) as trajectory:
                 return CameraPath(self.render.camera, trajectory).at(0.0)
-        basin = (m.liquid.low, m.liquid.high) if m.liquid else None
-        return automatic_view(self.action, ASPECT, m.walls, basin)
+        basin = (there.liquid.low, there.liquid.high) if there.liquid else None
+        return automatic_view(self.action, ASPECT, there.walls, basin)
 
     def _boxes(self, vertices: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Lower corner and size of each object's box [m], each of shape (O, 3)."""
@@ -228,11 +231,11 @@ class Feed:
         """Heights, u16, and states with foam, u8, of the columns of a frame, each of shape (C,); None without a liquid."""
         if self._foam is None:
             return None
-        grid, (smooth, raw, _) = self.metadata.liquid.grid, self._liquid(n)
+        grid, (smooth, raw, _) = self.scenery.liquid.grid, self._liquid(n)
         read = lambda k: (*without_puddles(grid, *self._liquid(k)[:2]), self.drops(k))
         vertices = self.vertices(self.frames.value("position", n))
         smooth, cut = one_sheet(grid, *without_puddles(grid, smooth, raw), vertices, self.triangle)
-        low, high = self.metadata.liquid.low[2], self.metadata.liquid.high[2]
+        low, high = self.scenery.liquid.low[2], self.scenery.liquid.high[2]
         height = np.rint(np.clip((smooth - low) / (high - low), 0.0, 1.0) * STEPS).astype("<u2")
         state = np.where(cut, DRY, np.where(np.isfinite(raw), OPEN, HIDDEN)).astype("u1")
         foam = np.rint(MOST_FOAM * self._foam.at(n, read)).astype("u1")
@@ -240,14 +243,14 @@ class Feed:
 
     def drops(self, n: int) -> np.ndarray:
         """Middle and radius of each drop of a frame [m], shape (D, 4)."""
-        if self.metadata.liquid is None or not self.metadata.liquid.most_drops:
+        if self.scenery.liquid is None or not self.scenery.liquid.most_drops:
             return np.zeros((0, 4), np.float32)
-        rows = self.frames.value(DROPS, n)
+        rows = self.frames.value(DROPS.table, n)
         return rows[rows[:, 3] > 0.0]
 
     def _liquid(self, n: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Smooth and raw heights, and drops, of a frame."""
-        smooth, raw = (self.frames.value(name, n) for name in LIQUID_TABLES)
+        smooth, raw = (self.frames.value(of.table, n) for of in (HEIGHT, RAW))
         return smooth, raw, self.drops(n)
 
     def heights(self, k: int, count: int) -> tuple[list[float], list[float]]:
@@ -274,15 +277,16 @@ class Feed:
 def first_action(metadata, low: np.ndarray, size: np.ndarray) -> Action:
     """Where things will probably happen, from the boxes of frame 0 [m], each of shape (O, 3): from there down to the ground,
     and a little to all sides."""
+    there = scenery(metadata)
     least, most = low.min(axis=0), (low + size).max(axis=0)
     room = 0.15 * float(np.linalg.norm(most - least))
     bounds = least - room * np.array([1.0, 1.0, 0.0]), most + room * np.array([1.0, 1.0, 0.3])
-    if metadata.liquid is not None:
-        bounds = np.minimum(bounds[0], metadata.liquid.low), np.maximum(bounds[1], metadata.liquid.high)
-    if metadata.ground is not None:
-        bounds[0][2] = min(bounds[0][2], max(metadata.ground, least[2] - 4.0 * float(np.linalg.norm(most - least))))
+    if there.liquid is not None:
+        bounds = np.minimum(bounds[0], there.liquid.low), np.maximum(bounds[1], there.liquid.high)
+    if there.ground is not None:
+        bounds[0][2] = min(bounds[0][2], max(there.ground, least[2] - 4.0 * float(np.linalg.norm(most - least))))
     corners = np.stack([bounds[0], bounds[1]])[:, None]
-    sinks, one = metadata.ground is None and metadata.liquid is None, np.ones(1, dtype=bool)
+    sinks, one = there.ground is None and there.liquid is None, np.ones(1, dtype=bool)
     return Action(corners[:1], corners[1:], bounds, sinks, one, one[None])
 
 

@@ -320,6 +320,9 @@ class Buoyancy(Effect):
     def commands(self, context):
         return ["fix_modify liquid buoyancy d_volume"]
 
+    def untold(self, scene):
+        return "lift and drag of the liquid act as well, and frames do not tell them apart" if scene.liquid else ""
+
     def lift(self, scene, system):
         return 0.0 if scene.liquid is None else scene.liquid.density * np.add.reduceat(system.volume, system.first[:-1])
 

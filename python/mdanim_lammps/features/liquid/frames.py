@@ -15,6 +15,7 @@ from ...errors import Problem, SetupError
 from ...model.grid import Grid
 from ...scene.formatting import exact, number, say
 from ...scene.scene import LiquidModel, SceneRecord
+from .kept import DROPS, HEIGHT, MOST_DROPS, RAW
 from .ledger import CELLS, CREST, DUE, MOMENTA
 from .ledger import WAVES as ENERGY
 
@@ -32,11 +33,9 @@ OVERFLOW = 0.05
 """Part of what inflows bring that may be missing without a word: updates lag behind."""
 CLOCK_ROUNDING = 1e-9
 """Part by which two sums of a million times may differ [-]."""
-MOST_DROPS = 2048
-"""Drops of a liquid that fly at once, as in plugin/liquid/drops.h: where there are more, they merge."""
 FIX = "liquid"
-HEIGHTS, DROPS, TIME = "liquid_heights", "liquid_drops", "liquid_clock"
-"""Fields: the two heights of each column of cells, the drops that fly, the time that a liquid with momentum has gone through."""
+TIME = "liquid_clock"
+"""Field: the time that a liquid with momentum has gone through."""
 
 
 def is_wavy(scene: SceneRecord) -> bool:
@@ -55,8 +54,9 @@ def fields(scene: SceneRecord) -> tuple[Field, ...]:
         Field(ENERGY, "J", ledger="waves" in asked),
         *(Field(name, "N s", ledger=True) for name in MOMENTA if is_wavy(scene)),
         *(Field(TIME, "s") for _ in range(is_wavy(scene))),
-        Field(HEIGHTS, "m", per="column", shape=(2,)),
-        *(Field(DROPS, "m", per="row", shape=(4,)) for _ in range(bool(scene.liquid.drops))),
+        HEIGHT,
+        RAW,
+        *(DROPS for _ in range(bool(scene.liquid.drops))),
     )
 
 
@@ -68,10 +68,10 @@ def tell(readings: Readings) -> Fields:
         DUE: readings.fix_value(FIX, AT_START),
         CREST: readings.fix_value(FIX, HIGHEST),
         ENERGY: readings.fix_value(FIX, WAVES),
-        HEIGHTS: heights(readings),
+        **dict(zip((HEIGHT.name, RAW.name), heights(readings))),
     }
     if scene.liquid.drops:
-        found[DROPS] = drops(readings)
+        found[DROPS.name] = drops(readings)
     if is_wavy(scene):
         found[TIME] = readings.fix_value(FIX, CLOCK)
         found |= dict(zip(MOMENTA, momenta(readings)))

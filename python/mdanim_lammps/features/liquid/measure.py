@@ -8,7 +8,7 @@ import numpy as np
 from ...effects.measured import Glance, Measured, Recorded
 from ...model.grid import Grid
 from ...scene.scene import Expect
-from .frames import HEIGHTS
+from .kept import HEIGHT
 from .ledger import CELLS, CREST, DUE, WAVES
 
 
@@ -112,7 +112,7 @@ def _immersed(g: Glance) -> float:
 def _height(g: Glance) -> np.ndarray:
     """Smooth height z over each column [m], shape (ny, nx): out of reach that of a liquid that is nowhere."""
     grid = g.context.grid
-    return g.fields[HEIGHTS][0] if HEIGHTS in g.fields else np.full(grid.shape[1::-1], grid.low[2])
+    return g.fields[HEIGHT.name] if HEIGHT.name in g.fields else np.full(grid.shape[1::-1], grid.low[2])
 
 
 RECORDED = {"draft": Recorded("draft", _draft, Measured.at), "immersed": Recorded("immersed", _immersed, Measured.at)}

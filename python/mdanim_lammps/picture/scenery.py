@@ -1,0 +1,26 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""What stands around the objects of a trajectory, for those that draw it."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from ..features.liquid.kept import Pool
+from ..results.trajectory_metadata import TrajectoryMetadata
+from ..scene.scene import Vector
+
+
+class Scenery(NamedTuple):
+    """None for what is not there."""
+
+    ground: float | None
+    """Height of the ground plane [m]."""
+    walls: tuple[Vector, Vector] | None
+    """Lower and upper corner of the box that objects never leave [m]."""
+    liquid: Pool | None
+
+
+def scenery(metadata: TrajectoryMetadata) -> Scenery:
+    """That of a trajectory."""
+    ground, walls, liquid = (metadata.kept.get(name) for name in ("ground", "walls", "liquid"))
+    return Scenery(ground and ground.height, walls and (walls.low, walls.high), liquid)
