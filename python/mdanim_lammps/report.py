@@ -3,9 +3,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import asdict
 from pathlib import Path
 
+from . import features
 from .certificate import margin_lines, note_lines
 from .cost.speedup_forecast import SpeedupForecast
 from .effects import Verdict
@@ -49,7 +51,7 @@ def scene_lines(ready: Prepared) -> list[str]:
     title = f"'{ready.scene.title}'  " if ready.scene.title else ""
     return [
         f"scene    {file}  {title}{count(len(ready.system.names), 'object')} ({count(ready.system.particles, 'particle')})"
-        f"{_liquid(ready)}",
+        f"{''.join(line for line, _ in _counted(ready))}",
         *_listed("effects: ", on or ["none"]),
         *_listed("off: ", off),
     ]
@@ -87,16 +89,9 @@ def size_line(scene: SceneRecord) -> str | None:
     )
 
 
-def _liquid(ready: Prepared) -> str:
-    """``, 1 liquid (38 400 cells)``, and by how much the volume asked for was rounded; empty without a liquid."""
-    grid, liquid = ready.plan.grid, ready.scene.liquid
-    if grid is None:
-        return ""
-    rounded = ""
-    if liquid.volume is not None:
-        off = grid.units(liquid.volume) * grid.cell_volume / liquid.volume - 1.0
-        rounded = f", its volume rounded by {'+' * (off > 0.0)}{number(100 * off, 2)} %" if abs(off) > 1e-9 else ""
-    return f", 1 liquid ({count(grid.cells, 'cell')}{rounded})"
+def _counted(ready: Prepared) -> Iterator[tuple[str, dict]]:
+    """What effects count, on or off: see `effects.Effect.counted`."""
+    return (e.of(ready.scene).counted(ready.context) for e in features.effects())
 
 
 def certificate_line(ready: Prepared) -> str:
@@ -126,9 +121,9 @@ def progress_line(p: Progress) -> str:
         return f"t={p.time:.2f} s  paused; goes on when {p.paused} is deleted"
     each = p.seconds / max(1, p.step - p.first_step)
     left = each * (p.steps - p.step)
-    liquid = "" if p.gained is None else f"liquid residual {exact(p.gained)}  "
+    counted = "" if p.gained is None else f"{p.counted} {exact(p.gained)}  "
     return (
-        f"t={p.time:.2f} s  step {p.step}/{p.steps}  energy residual {number(p.residual, 2)}  {liquid}"
+        f"t={p.time:.2f} s  step {p.step}/{p.steps}  energy residual {number(p.residual, 2)}  {counted}"
         f"{1e3 * each:.2f} ms/step  {left:.0f} s left"
     )
 
@@ -267,9 +262,7 @@ def check_json(
         "objects": [
             {"name": m.name, "particles": len(m.position), "springs": len(m.spring), "cell": list(m.cell)} for m in ready.models
         ],
-        "liquid": None
-        if ready.plan.grid is None
-        else {"name": ready.scene.liquid.name, "cells": list(ready.plan.grid.shape), "cell": list(ready.plan.grid.cell)},
+        **{key: value for _, told in _counted(ready) for key, value in told.items()},
         "effects": {
             v.name: {"on": v.on, "reason": v.reason, "place": str(v.span) if v.span else None} for v in ready.verdicts.values()
         },

@@ -11,9 +11,10 @@ from mdanim_lammps import Trajectory
 from mdanim_lammps.engine.geometry import INVERTED, NOT_FINITE, Geometry
 from mdanim_lammps.engine.plugin import open_lammps
 from mdanim_lammps.errors import DivergedError, ExitCode
+from mdanim_lammps.features.liquid.balance import load_energy
 from mdanim_lammps.results.checkpoint import Checkpoint
 from mdanim_lammps.results.ledger import Ledger
-from mdanim_lammps.run.energy import least_energy, load_energy
+from mdanim_lammps.run.energy import least_energy
 from mdanim_lammps.run.guard import CLASSES, LEAST_RESIDUAL, RESIDUAL_FACTOR, Guard, energy_class, fastest
 from mdanim_lammps.run.loop import simulate, write_inputs
 from mdanim_lammps.run.observe import Observer

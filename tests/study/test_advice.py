@@ -9,7 +9,7 @@ from mdanim_lammps.scene.parse import parse_scene
 from mdanim_lammps.study import bench
 from mdanim_lammps.study.error import distance, extent
 from mdanim_lammps.study.measure import measure
-from mdanim_lammps.study.setting import Setting, finer
+from mdanim_lammps.study.setting import finer
 from mdanim_lammps.study.target import find_choice
 from paths import REPOSITORY
 
@@ -39,7 +39,7 @@ def test_a_target_counts_cells_and_contact(tmp_path):
     scene = parse_scene(SCENES["a bounce"])
     choice = find_choice(scene, 0.1, budget=60.0)
     assert choice.met and choice.cells > 2
-    own = Setting(choice.cells, choice.fraction, None, choice.contact)
+    own = choice.setting
     run, truth, alone = (
         measure(scene, s, tmp_path).center for s in (own, finer(own, 2.0 * own.cells), replace(own, cells=8.0, contact=1.0))
     )

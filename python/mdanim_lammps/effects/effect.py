@@ -51,6 +51,8 @@ class Effect:
     """Whether it uses the cells of a `grid`, as a whole that one process has."""
     touches = False
     """Whether it acts where surfaces meet."""
+    presses = False
+    """Whether it is on only where objects are likely to be pressed against something."""
     at_surfaces = False
     """Whether it costs next to nothing until surfaces meet."""
     brakes = False
@@ -61,6 +63,8 @@ class Effect:
     """Whether objects cannot be inside each other where it is on."""
     needs: tuple[str, ...] = ()
     """Effects that this one requires; they stand before it in the sum."""
+    gains = ""
+    """Name of what it counts, see `gained`."""
     if_off = ""
     """Fault that shows when a scene needs the effect and it is switched off."""
 
@@ -180,6 +184,18 @@ class Effect:
         """Its energy in a uniform field [J]; mass [kg], shape (n,), and x [m], shape (n, 3), are those of particles or, for
         the same energy, of objects and their centres of mass."""
         raise NotImplementedError
+
+    def weighed(self, scene: SceneRecord, system: System) -> float:
+        """Weights of all that it has a part in, times their distances from the origin [J]: as much as a run rounds."""
+        return 0.0
+
+    def unsettled(self, scene: SceneRecord, system: System) -> float:
+        """Energy of vibrations that no account follows [J]."""
+        return 0.0
+
+    def counted(self, context: Context) -> tuple[str, dict]:
+        """What ``check`` prints behind the number of particles, and its entries in the output for programs."""
+        return "", {}
 
     def losses(self, scene: SceneRecord) -> tuple[str, ...]:
         """The columns of ledger.csv with the energies that it has taken so far."""

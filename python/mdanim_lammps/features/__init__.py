@@ -10,8 +10,9 @@ A folder has facets, each a module that is looked for by its name:
              scenes without objects
 ``measure``  how its quantities are measured (effects/measured.py): MEASURES in a run that has ended, RECORDED in one object
 ``effect``   EFFECTS, the effects that it brings (effects/effect.py): causes, columns, commands, planes, bound, ledger
-``kept``     KEPT, the records that a trajectory keeps of it (effects/kept.py): attributes, tables of frames; Track, what it adds to
-             a results.trajectory.Trajectory
+``kept``     KEPT, the records that a trajectory keeps of it (effects/kept.py): attributes, tables of frames; Track, what it adds
+             to a results.trajectory.Trajectory
+``vary``     VARIED, settings that a study varies (effects/varied.py)
 ``advice``   notes(envelope), the remarks of `check` on a scene besides those of effects, whether or not any of them is on
 
 Folders are found, so adding a feature touches no other file. Those in ``MDANIM_FEATURES``, folders of such folders, are features

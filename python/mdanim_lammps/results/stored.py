@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from ..effects.varied import varied
 from .files import MARK, read_json
 from .forms import flag, many, maybe, number, positive, record, table, text, whole
 
@@ -53,7 +54,9 @@ CERTIFICATE = record(
         "margins": many(record({"severity": text, "name": text, "object": text, "text": text})),
     }
 )
-SETTING = record({"cells": positive, "fraction": number}, {"sweeps": maybe(whole), "contact": positive})
+SETTING = record(
+    {"cells": positive, "fraction": number}, {v.name: maybe(whole) if v.usual is None else positive for v in varied()}
+)
 RUNS = record({**dict.fromkeys(("seconds", "wall", "drift", "penetration"), many(number)), "found": many(many(maybe(number)))})
 STUDY = record(
     {},

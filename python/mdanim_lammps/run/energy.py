@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from .. import features
 from ..effects.fields import Field
 from ..engine.instance import Instance
 from ..engine.plan import Plan
@@ -18,44 +19,19 @@ LEAST_STRAIN = 1e-9
 ROUNDED_STEPS = 1e8
 """Steps whose rounding errors, which add up like a random walk, are below the least energy."""
 
-UNEVEN = 200.0
-"""Times `load_energy`: a vibration has up to 4 times that, and the account of the highest ones, at half of the bound, is off by
-5 % of them; a class of accuracy is 0.001."""
-IN_BALANCE = 0.02
-"""Part by which the densities of a solid and of the liquid may differ: at 1 % already it sinks or rises with energies that have
-an account."""
-
 
 def least_energy(scene: SceneRecord, system: System) -> float:
     """Energy below which no account is kept [J]: the largest of three.
 
     That of all solids at a strain of `LEAST_STRAIN`, or at the strain that the rounding of positions, so far from the origin,
-    makes in `ROUNDED_STEPS`; the energy that rounding of the weights of all solids and of a full basin, times their heights,
-    makes in so many; and `UNEVEN` times the `load_energy` of solids that are as dense as the liquid, and so can hang in it.
+    makes in `ROUNDED_STEPS`; the energy that rounding of the `weighed` of all effects makes in so many; and their `unsettled`.
     """
+    effects = [e.of(scene) for e in features.effects()]
     farthest = np.abs(system.position).max(initial=0.0)
     strain = max(LEAST_STRAIN, np.sqrt(ROUNDED_STEPS) * np.spacing(farthest) / system.spacing.min(initial=np.inf))
-    potential = float((system.mass * np.abs(system.position @ np.array(scene.gravity))).sum())
-    if scene.liquid:
-        low, high = np.array(scene.liquid.low), np.array(scene.liquid.high)
-        heights = np.abs(scene.gravity) * np.maximum(np.abs(low), np.abs(high))
-        potential += scene.liquid.density * float(np.prod(high - low) * heights.sum())
     elastic = strain**2 * float((system.young[system.object] * system.volume).sum())
-    rounded = float(np.sqrt(ROUNDED_STEPS) * np.spacing(potential))
-    return max(elastic, rounded, UNEVEN * float(load_energy(scene, system).sum()))
-
-
-def load_energy(scene: SceneRecord, system: System) -> np.ndarray:
-    """Energy that weight and lift strain each solid by that hangs in the liquid, about: sum f_i^2 / (2 E h) [J], shape (M,).
-
-    Weight acts on the fitted masses of particles, lift on their volumes by cells: f_i = g (m_i - rho V_i). A solid as dense as
-    the liquid rests as a whole and vibrates by it; others sink, lie or float, with energies that are far larger: 0 for them.
-    """
-    density = scene.liquid.density if scene.liquid else np.inf
-    hangs = np.abs(density - system.density) <= IN_BALANCE * system.density
-    load = np.linalg.norm(scene.gravity) * (system.mass - system.density[system.object] * system.volume)
-    of_particles = np.where(system.held, 0.0, 0.5 * load**2 / (system.young * system.spacing)[system.object])
-    return np.where(hangs, np.add.reduceat(of_particles, system.first[:-1]), 0.0)
+    rounded = float(np.sqrt(ROUNDED_STEPS) * np.spacing(sum(e.weighed(scene, system) for e in effects)))
+    return max(elastic, rounded, *(e.unsettled(scene, system) for e in effects))
 
 
 def ledger_terms(plan: Plan) -> tuple[str, ...]:

@@ -58,7 +58,9 @@ class Progress:
     first_step: int = 0
     """Step from which these seconds count: not 0 after a resume."""
     gained: float | None = None
-    """Cells of liquid more than at the start; None without a liquid."""
+    """Excess of what an effect counts, such as cells of liquid more than at the start; None where nothing is counted."""
+    counted: str = ""
+    """Name of that in the line of a run."""
     paused: str = ""
     """The file that holds a paused run: it goes on when this is deleted. Empty while the run goes on."""
 
@@ -280,7 +282,7 @@ class _Run:
             row["residual"],
             seconds,
             self.first_step,
-            self._gained(),
+            *self._gained(),
             str(paused) if paused.exists() else "",
         )
 
@@ -378,10 +380,11 @@ class _Run:
         _add(out, now, when)
         log.frame(frame, row, self.seconds["simulation"], self.source.new_owners())
 
-    def _gained(self) -> float | None:
-        """Excess of the quantities that effects count: 0, or something is wrong."""
+    def _gained(self) -> tuple[float | None, str]:
+        """Excess of the quantities that effects count, 0, or something is wrong; and its name."""
         rows = self.ledger.rows
-        return next((more for e in self.effects if (more := e.gained(rows[0], rows[-1])) is not None), None)
+        found = ((e.gained(rows[0], rows[-1]), e.gains) for e in self.effects)
+        return next((of for of in found if of[0] is not None), (None, ""))
 
     def _save(self, out: TrajectoryWriter, frame: int, now: Frame) -> None:
         """Make everything up to this frame safe; the checkpoint last, so that it never is ahead of the trajectory."""

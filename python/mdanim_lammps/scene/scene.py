@@ -372,7 +372,7 @@ class Control(Worded):
 _OF_FEATURES = {of: quantity for words in facets("words") for of, quantity in getattr(words, "QUANTITIES", {}).items()}
 QUANTITIES = {
     **{of: quantity for of, quantity in _OF_FEATURES.items() if of[0] == "NAME"},
-    ("energy", "residual"): Observable("1", "relative error of the energy ledger"),
+    ("energy", "residual"): Observable("1", "relative error of the energy ledger", bound=True),
     **{of: quantity for of, quantity in _OF_FEATURES.items() if of[0] != "NAME"},
 }
 """Quantities that ``expect`` can check, by subject and word; NAME stands for any object."""

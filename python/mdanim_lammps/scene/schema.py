@@ -57,6 +57,8 @@ class Observable(NamedTuple):
     """The effect that must be on; it has the name of the block that brings it into a scene."""
     takes: str = ""
     """Its argument: ``object``, another object; ``place``, a point (x, y) [m]; or nothing."""
+    bound: bool = False
+    """Whether an ``expect`` says how large it may be, and nothing of what is true."""
 
 
 def meaning(subject: str, quantity: Observable) -> str:

@@ -9,10 +9,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ..effects.varied import varied
 from ..scene.formatting import number, say
 from ..scene.scene import Expect
 from .error import Convergence, Growth, converge, difference, distance, extent, growth, order_until
-from .setting import ALL, Ladder, Setting
+from .setting import ALL, Ladder, Setting, values
 from .store import Point
 
 SHARP = 0.1
@@ -151,9 +152,10 @@ def analyse(
     return replace(a, rated={key: replace(r, front=key in front) for key, r in rated.items()})
 
 
-COVERED = {ALL: ("resolution", "contact", "time step"), "resolution": ("time step",), "contact": ("time step",)}
+_ALONG = tuple(v.name for v in varied() if v.finer_is)
+COVERED = {ALL: ("resolution", *_ALONG, "time step"), **dict.fromkeys(("resolution", *_ALONG), ("time step",))}
 """Ladders that vary what another one varies too: the time step falls with the spacing and with stiffer contact."""
-FIRST = (ALL, "resolution", "contact", "sweeps", "time step")
+FIRST = (ALL, "resolution", *_ALONG, *(v.name for v in varied() if not v.finer_is), "time step")
 """Ladders by how much they vary."""
 
 
@@ -186,10 +188,6 @@ def _value(seen: Sequence[float], usual: float) -> Measurement:
     return Measurement(middle, max(max(seen) - min(seen), usual * middle))
 
 
-BOUNDS = (("energy", "residual"), ("penetration", "max"), ("liquid", "residual"))
-"""Quantities of which an ``expect`` says how large they may be."""
-
-
 def sharp(
     expects: Sequence[Expect], names: Sequence[str], track: np.ndarray, times: np.ndarray, sharpness: float = SHARP
 ) -> dict[int, float]:
@@ -208,7 +206,7 @@ def sharp(
                 way[e.subject] = max(way[e.subject], told)
     for k, e in enumerate(expects):
         kind = e.quantity.split(".")[0]
-        if e.relation != "=" or (e.subject, e.quantity) in BOUNDS:
+        if e.relation != "=" or e.kind.bound:
             continue
         if kind in ("position", "velocity"):
             own = track[:, names.index(e.subject)]
@@ -257,7 +255,7 @@ def advice(a: Analysis) -> str:
     if a.off(own) < 1e-6:
         says += ": no setting makes a difference that could be seen"
     elif against := worse(a):
-        what = "more cells" if against.contact == a.own.contact else "stiffer contact"
+        what = next((v.finer_is for v, value in values(against) if value != getattr(a.own, v.name)), "more cells")
         says += f"; {what} alone ({against}) makes it worse, as errors of the cells and of the contact have opposite signs"
     elif cause := _cause(a):
         says += f", most of the error from the {cause}" + lost(a, cause, ", which has")
@@ -309,7 +307,7 @@ def better(a: Analysis) -> Rated | None:
 def worse(a: Analysis) -> Setting | None:
     """The finest setting of a single ladder that is farther from the truth than the own one, wherever that is: errors cancel."""
     own = a.rated[a.own.key]
-    for name in ("contact", "resolution") if ALL in a.ladders else ():
+    for name in (*_ALONG, "resolution") if ALL in a.ladders else ():
         finest = a.measured.get(name, (a.own,))[-1]
         if finest != a.own and a.better(own, a.rated[finest.key]):
             return finest

@@ -13,7 +13,7 @@ from ..run.prepare import Prepared
 from ..scene.formatting import say
 from ..scene.scene import SceneRecord
 from .measure import Sample, TooLong, measure
-from .setting import Setting
+from .setting import Setting, values
 from .store import Point, Store
 
 BUDGET = 120.0
@@ -22,8 +22,6 @@ REPEATS = 3
 """Runs of a point, if the budget allows: the smallest number with a median."""
 FOR_REPEATS = 0.2
 """Share of the budget that new points leave for repeats: without a spread there is no ranking."""
-PRESSED = 1.3
-"""Part of contact in the bound over that of springs, at a corner and a ``contact-stiffness`` of 1 (docs/physics-contact.md)."""
 
 
 class Bench:
@@ -60,7 +58,8 @@ class Bench:
         Stiffer contact shortens the step where it is part of the bound.
         """
         steps = (self.own.fraction or 1.0) / (setting.fraction or 1.0) * (setting.cells / self.own.cells)
-        steps *= math.sqrt((1.0 + PRESSED * setting.contact) / (1.0 + PRESSED * self.own.contact))
+        for (v, value), (_, own) in zip(values(setting), values(self.own)):
+            steps *= math.sqrt(v.stiffness(value) / v.stiffness(own))
         return steps * (setting.cells / self.own.cells) ** 3
 
     def measure_all(self, wanted: Sequence[Setting], first: Sequence[Setting] = ()) -> dict[Setting, str]:
@@ -113,7 +112,6 @@ class Bench:
             f"{setting}{f', run {repeat + 1}' if repeat else ''}: {guess}; {max(0.0, self.left):.0f} s of the budget left"
         )
         try:
-            # Only the automaton draws numbers: without a liquid another seed changes nothing.
             sample: Sample = measure(self.scene, setting, self.store.folder, limit=limit, repeat=repeat)
         except (SceneError, RefusedError, DivergedError) as error:
             problem = error.problems[0].message if isinstance(error, SceneError) else str(error).splitlines()[0]

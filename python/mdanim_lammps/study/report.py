@@ -8,12 +8,13 @@ import math
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ..effects.varied import varied
 from ..picture.plot import own_style
 from ..results.files import write_whole
 from ..scene.formatting import number, say
 from .analysis import Rated, lost, off
 from .error import ROUND_OFF, distance
-from .setting import ALL
+from .setting import ALL, values
 from .store import Store
 
 if TYPE_CHECKING:
@@ -21,7 +22,7 @@ if TYPE_CHECKING:
 
     from .study import Study
 
-COLORS = {"time step": "#1f77b4", "resolution": "#d62728", "sweeps": "#2ca02c", "contact": "#9467bd", ALL: "#444444"}
+COLORS = {"time step": "#1f77b4", "resolution": "#d62728", **{v.name: v.color for v in varied()}, ALL: "#444444"}
 
 
 def write_report(study: Study, store: Store, budget: float) -> None:
@@ -85,8 +86,7 @@ def _write_csv(study: Study, path: Path) -> None:
                 "ladders": " + ".join(_where(study, r)),
                 "cells": s.cells,
                 "fraction": s.fraction,
-                "sweeps": "auto" if s.sweeps is None else s.sweeps,
-                "contact": s.contact,
+                **{v.name: "auto" if value is None else value for v, value in values(s)},
                 "timestep": p.timestep,
                 "particles": p.particles,
                 "steps": p.steps,
@@ -113,8 +113,7 @@ def table(study: Study) -> Table:
 
     a = study.analysis
     closed = any(r.closed is not None for r in a.rated.values())
-    swept = any(r.point.setting.sweeps is not None for r in a.rated.values())
-    touched = any(r.point.setting.contact != 1.0 for r in a.rated.values())
+    changed = [v for v in varied() if any(getattr(r.point.setting, v.name) != v.usual for r in a.rated.values())]
     out = Table(box=SIMPLE_HEAD, pad_edge=False)
     for r in a.rated.values():
         s = r.point.setting
@@ -122,14 +121,13 @@ def table(study: Study) -> Table:
             "": "*" if r.front else "",
             "cells": f"{s.cells:g}",
             "step/bound": f"{s.fraction:.2f}" if s.fraction else "auto",
-            "sweeps": ("auto" if s.sweeps is None else str(s.sweeps)) if swept else None,
-            "contact": f"{s.contact:g}" if touched else None,
+            **{v.name: _written(value) for v, value in values(s) if v in changed},
             "particles": f"{r.point.particles}",
             "seconds": _spread(r.seconds.middle, r.seconds.spread, len(r.point.seconds)),
             "error": off(r.error.middle, a.doubt),
             "off expect": _off(r.closed) if closed else None,
             "energy drift": number(max(r.point.drift), 2),
-            "sunk in": say(max(r.point.penetration), "m") if touched else None,
+            "sunk in": say(max(r.point.penetration), "m") if any(v.by_depth for v in changed) else None,
             "ladder": " + ".join(_where(study, r)) + (", own" if s == a.own else ""),
         }
         shown = {name: text for name, text in cells.items() if text is not None}
@@ -138,6 +136,10 @@ def table(study: Study) -> Table:
                 out.add_column(name, justify="left" if name in ("", "ladder") else "right")
         out.add_row(*shown.values())
     return out
+
+
+def _written(value: float | None) -> str:
+    return "auto" if value is None else f"{value:g}"
 
 
 def _off(x: float | None) -> str:
@@ -202,8 +204,7 @@ def draw(study: Study, path: Path) -> None:
             text = {
                 "time step": f"{s.fraction:.2g}",
                 "resolution": f"{s.cells:g}",
-                "sweeps": f"{s.sweeps}",
-                "contact": f"{s.contact:g}",
+                **{v.name: _written(value) for v, value in values(s)},
                 ALL: f"{s.cells:g}",
             }[name]
             axes.annotate(

@@ -13,7 +13,7 @@ from ..scene.scene import SceneRecord
 from .analysis import Analysis, advice, analyse
 from .bench import BUDGET, Bench
 from .report import write_report
-from .setting import LADDERS, TOUCHING, Ladder, ladders, own_setting, same_frames, scene_hash, together
+from .setting import LADDERS, Ladder, ladders, own_setting, same_frames, scene_hash, together
 from .store import Point, Store
 
 
@@ -83,7 +83,7 @@ def run_study(
         store.times,
         scene.expects,
         ready.system.names,
-        touching=any(ready.verdicts[name].on for name in TOUCHING),
+        touching=any(e.presses for e in ready.plan.effects),
     )
     study = Study(scene, folder, store.points, tuple(found), analysis, left)
     write_report(study, store, budget)

@@ -9,6 +9,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from ..effects.varied import varied
 from ..errors import DivergedError, UsageError
 from ..run.prepare import prepare
 from ..scene.formatting import number, say
@@ -17,7 +18,7 @@ from .analysis import Analysis, analyse
 from .bench import BUDGET, Bench
 from .error import ROUND_OFF, distance, extent
 from .measure import TooLong
-from .setting import TOUCHING, Ladder, Setting, finer, own_setting, same_frames, scene_hash, thinnest
+from .setting import Ladder, Setting, finer, own_setting, same_frames, scene_hash, thinnest, values
 from .store import Store
 
 START = (2, 3, 4)
@@ -40,10 +41,7 @@ class Choice:
 
     error: float
     """The target, a fraction."""
-    cells: float
-    fraction: float
-    contact: float
-    """``contact-stiffness``."""
+    setting: Setting
     timestep: float | None
     """[s]; None where nothing vibrates."""
     words: str
@@ -58,6 +56,16 @@ class Choice:
     """Wall time of simulation [s]."""
 
     @property
+    def cells(self) -> float:
+        """Across the thinnest part."""
+        return self.setting.cells
+
+    @property
+    def fraction(self) -> float:
+        """Time step over the certified bound; 0 where nothing vibrates."""
+        return self.setting.fraction
+
+    @property
     def met(self) -> bool:
         """Whether the target is met."""
         return max(self.reached, self.closed or 0.0) <= self.error
@@ -68,8 +76,8 @@ class Choice:
             "" if (self.closed or 0.0) < ROUND_OFF else f", closed form {number(100 * self.closed, 2)} %"
         )
         step = f", time step {say(self.timestep, 's')}" if self.timestep else ""
-        contact = f", contact-stiffness {number(self.contact)}" if self.contact != 1.0 else ""
-        return f"{self.cells:g} cells across{step}{contact} ({got})"
+        more = "".join(v.told(value, number) for v, value in values(self.setting))
+        return f"{self.cells:g} cells across{step}{more} ({got})"
 
 
 def find_choice(
@@ -83,8 +91,8 @@ def find_choice(
 ) -> Choice:
     """Measure until a setting meets a target error, or the budget is spent.
 
-    The resolution is refined from 2 cells on, and contact gets stiffer with it where objects touch and the scene does not say how
-    stiff it is (`setting.finer`); each next number of cells follows from the order seen so far. The time step is
+    The resolution is refined from 2 cells on, and with it what the scene does not say, as contact where objects touch
+    (`setting.finer`); each next number of cells follows from the order seen so far. The time step is
     the largest one of the accuracy classes whose own error stays below a quarter of the target. A resolution or a time step that
     the scene says stays, and its accuracy does not count. The error is that of docs/accuracy.md, and where the scene states
     closed forms at least as sharp as the target, these must be met too.
@@ -121,8 +129,7 @@ class _Search:
         self.own = own_setting(scene, self.ready)
         self.bench = Bench(scene, self.ready, self.own, store, budget, on_progress)
         self.name = "resolution" if scene.control.resolution is None else "time step"
-        said = self.own.contact != 1.0 or "contact-stiffness" in scene.control.spans
-        self.stiffens = not said and any(self.ready.verdicts[name].on for name in TOUCHING)
+        self.along = [v for v in varied() if v.finer_is and not v.said(scene) and not v.why_not(self.ready.context)]
         self.step_error = 0.0  # of the time step at START[0] cells, relative to the extent
 
     def go(self) -> Choice:
@@ -139,9 +146,7 @@ class _Search:
         point = a.rated[best.key].point
         return Choice(
             self.target,
-            best.cells,
-            best.fraction,
-            best.contact,
+            best,
             point.timestep if best.fraction else None,
             self._words(best),
             self._estimated(a, best),
@@ -160,8 +165,7 @@ class _Search:
             words.append(f"accuracy {fraction}" if fraction else f"timestep {_rounded(step, 's', 5, up=True)}")
         if control.resolution is None:
             words.append(f"resolution {_rounded(thinnest(self.scene) / setting.cells, 'm', 4, up=False)}")
-        if setting.contact != control.contact_stiffness:
-            words.append(f"contact-stiffness {number(setting.contact, 6)}")
+        words += [f"{v.word} {number(value, 6)}" for v, value in values(setting) if value != v.of(self.scene)]
         return "  ".join(words)
 
     def _first(self) -> list[Setting]:
@@ -174,8 +178,8 @@ class _Search:
         return [self._with(replace(self.own, fraction=fraction), n) for n in START]
 
     def _with(self, setting: Setting, cells: float) -> Setting:
-        """A setting with other cells across, and contact as stiff as goes with them."""
-        return finer(setting, cells) if self.stiffens else replace(setting, cells=cells)
+        """A setting with other cells across, and what goes with them."""
+        return finer(setting, cells, self.along)
 
     def _fraction(self) -> float:
         """The largest time step of the accuracy classes whose error takes no more than its share of the target.

@@ -83,7 +83,7 @@ class Contact(Effect):
     order = 40
     fix = "contact"
     ledger = "contact"
-    keeps_apart = touches = at_surfaces = True
+    keeps_apart = touches = presses = at_surfaces = True
     if_off = "objects pass through each other"
 
     def called_for(self, scene, reach):

@@ -41,7 +41,7 @@ class Boundary(Effect):
 
     styles = (("fix", "mdanim/wall"),)
     ledger = "wall"
-    touches = at_surfaces = True
+    touches = presses = at_surfaces = True
 
     def columns(self, context):
         return {STIFFNESS: context.system.contact_stiffness}

@@ -5,7 +5,7 @@ from ...scene.schema import Observable
 
 SWITCHES = {"contact": "two objects that can meet"}
 
-QUANTITIES = {("penetration", "max"): Observable("m", "deepest overlap of two objects")}
+QUANTITIES = {("penetration", "max"): Observable("m", "deepest overlap of two objects", bound=True)}
 
 MARGINS = {
     "contact": "the time step that contact alone would bear, by its largest curvature over a plane (an estimate)",

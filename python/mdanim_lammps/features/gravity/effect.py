@@ -35,6 +35,9 @@ class Gravity(Effect):
     def acceleration(self, scene):
         return np.array(scene.gravity, float)
 
+    def weighed(self, scene, system):
+        return float((system.mass * np.abs(system.position @ np.array(scene.gravity))).sum())
+
     def potential(self, scene, mass, x):
         # No matrix product: the threads that it may start cost more than it. Axis by axis einsum is four times as fast.
         return -float(sum(g * np.einsum("i,i->", mass, x[:, d]) for d, g in enumerate(scene.gravity) if g))

@@ -17,13 +17,14 @@ from ...errors import Problem, SceneError
 from ...model.planes import Plane, box_sides
 from ...model.system import System
 from ...model.tensors import largest_eigenvalue
-from ...scene.formatting import number, say
+from ...scene.formatting import number, say, whole
 from ...scene.scene import LiquidModel
 from ..air_drag import effect as air_drag
 from ..contact.planes import Boundary
 from ..contact.surface import SurfacePlanes
 from ..springs.effect import all_held
 from . import frames
+from .balance import UNEVEN, full_basin, load_energy
 from .basin import check_basin, leaky_walls, liquid_level, open_hulls, plan_grid, too_large
 from .frames import COUPLING, FLOW, OCCUPANCY, WAVES, is_wavy
 from .ledger import CELLS, DUE
@@ -74,6 +75,7 @@ class Basin(Boundary):
 
     name = fix = "basin"
     order = 70
+    presses = False  # what floats may never touch it
     if_off = "objects fall through the floor of the basin"
 
     def called_for(self, scene, reach):
@@ -158,6 +160,26 @@ class LiquidAutomaton(Effect):
 
     def doubts(self, context, time, ledger):
         return frames.overflow(context, time, ledger)
+
+    def weighed(self, scene, system):
+        return full_basin(scene) if scene.liquid else 0.0
+
+    def unsettled(self, scene, system):
+        return UNEVEN * float(load_energy(scene, system).sum()) if scene.liquid else 0.0
+
+    def counted(self, context):
+        grid, liquid = context.grid, context.scene.liquid
+        if grid is None or liquid is None:
+            return "", {"liquid": None}
+        off, rounded = 0.0, ""
+        if liquid.volume is not None:
+            off = grid.units(liquid.volume) * grid.cell_volume / liquid.volume - 1.0
+        if abs(off) > 1e-9:
+            rounded = f", its volume rounded by {'+' * (off > 0.0)}{number(100 * off, 2)} %"
+        told = f", 1 liquid ({whole(grid.cells)} cell{'' if grid.cells == 1 else 's'}{rounded})"
+        return told, {"liquid": {"name": liquid.name, "cells": list(grid.shape), "cell": list(grid.cell)}}
+
+    gains = "liquid residual"
 
     def gained(self, first, now):
         return now[CELLS] - now.get(DUE, first[CELLS])

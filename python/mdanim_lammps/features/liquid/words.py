@@ -22,7 +22,7 @@ QUANTITIES = {
     ("NAME", "draft"): Observable("m", "immersed depth of an object, from the surface to its lowest point", "liquid"),
     ("NAME", "immersed"): Observable("1", "share of an object's volume below the surface", "liquid"),
     ("liquid", "volume"): Observable("m^3", "volume of the liquid", "liquid"),
-    ("liquid", "residual"): Observable("1", "cells gained or lost, to the unit", "liquid"),
+    ("liquid", "residual"): Observable("1", "cells gained or lost, to the unit", "liquid", bound=True),
     ("liquid", "level"): Observable("m", "mean height of the surface", "liquid"),
     ("liquid", "height"): Observable(
         "m", "height of the surface at a place: `liquid.height(0.2 m, 0 m)`", "liquid", takes="place"
