@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from typing import Self
 
 
-class Kept:
+class KeptRecord:
     """A record of a feature; a subclass is a frozen dataclass, and stands in `KEPT` of the feature's module ``kept``."""
 
     GROUP: ClassVar = "parameters/mdanim"
@@ -60,12 +60,12 @@ class Kept:
         return None
 
 
-def kinds() -> dict[str, type[Kept]]:
+def kinds() -> dict[str, type[KeptRecord]]:
     """The kinds of records of all features, by name."""
     return {name: kind for facet in facets("kept") for name, kind in facet.KEPT.items()}
 
 
-def records_of(scene: SceneRecord, grid: Grid | None) -> dict[str, Kept]:
+def records_of(scene: SceneRecord, grid: Grid | None) -> dict[str, KeptRecord]:
     """The records of a scene whose effects use these cells, by name."""
     found = {name: kind.of(scene, grid) for name, kind in kinds().items()}
     return {name: record for name, record in found.items() if record is not None}

@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..effects.fields import Field
-from ..effects.kept import Kept, kinds
+from ..effects.kept import KeptRecord, kinds
 from ..errors import OutputError
 from ..model.model import Model, Surface
 from ..scene.scene import Save
@@ -385,7 +385,7 @@ def _read_surfaces(group: Mapping[str, h5py.Dataset]) -> tuple[Surface, ...]:
     )
 
 
-def _read_kept(file: h5py.File) -> dict[str, Kept]:
+def _read_kept(file: h5py.File) -> dict[str, KeptRecord]:
     found = {}
     for name, kind in kinds().items():
         if kind.GROUP in file:
@@ -394,7 +394,7 @@ def _read_kept(file: h5py.File) -> dict[str, Kept]:
     return {name: record for name, record in found.items() if record is not None}
 
 
-def _shapes(file: h5py.File, kind: type[Kept]) -> dict[str, tuple[int, ...]]:
+def _shapes(file: h5py.File, kind: type[KeptRecord]) -> dict[str, tuple[int, ...]]:
     """Shapes in one frame of those tables of a kind of records that there are."""
     tables, above = [of.table for of in kind.TABLES], file["observables"]
     return {table: above[f"{table}/value"].shape[1:] for table in tables if table in above}

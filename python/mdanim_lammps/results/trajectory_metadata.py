@@ -10,7 +10,7 @@ from functools import cached_property
 import numpy as np
 
 from ..effects.fields import Field
-from ..effects.kept import Kept, records_of
+from ..effects.kept import KeptRecord, records_of
 from ..model.grid import Grid
 from ..model.model import Layer, Model, Surface
 from ..scene.scene import Save, SceneRecord
@@ -51,7 +51,7 @@ class TrajectoryMetadata:
     """Different surfaces; ``index`` counts from an object's first stored particle."""
     surface_of: np.ndarray
     """Which of ``surfaces`` each object has, int64, shape (O,)."""
-    kept: Mapping[str, Kept] = field(default_factory=dict)
+    kept: Mapping[str, KeptRecord] = field(default_factory=dict)
     """Records of features, by name."""
     fields: tuple[Field, ...] = ()
     """Further values of frames, each with its table, in the order of their checksums."""
@@ -148,7 +148,7 @@ def metadata_of(
     )
 
 
-def kept_fields(records: Mapping[str, Kept], fields: Iterable[Field], objects: int) -> tuple[Field, ...]:
+def kept_fields(records: Mapping[str, KeptRecord], fields: Iterable[Field], objects: int) -> tuple[Field, ...]:
     """Fields that frames of a trajectory have: those of the records of features, and those per object, by name."""
     told = sorted((of for of in fields if of.per == "object"), key=lambda of: of.name)
     tables = (replace(of, table=f"{FIELDS}/{of.name}", counts=(objects,)) for of in told)

@@ -6,11 +6,11 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from ...effects.kept import Kept
+from ...effects.kept import KeptRecord
 
 
 @dataclass(frozen=True, slots=True)
-class Ground(Kept):
+class Ground(KeptRecord):
     """The floor plane."""
 
     height: float

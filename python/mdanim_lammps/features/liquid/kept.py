@@ -10,7 +10,7 @@ from functools import cached_property
 import numpy as np
 
 from ...effects.fields import Field
-from ...effects.kept import Kept
+from ...effects.kept import KeptRecord
 from ...errors import OutputError
 from ...model.grid import Grid
 from ...scene.scene import Vector
@@ -26,7 +26,7 @@ DROPS = Field("liquid_drops", "m", per="row", dtype="float32", shape=(4,), table
 
 
 @dataclass(frozen=True, slots=True)
-class Pool(Kept):
+class Pool(KeptRecord):
     """The liquid, and the cells of the basin that holds it."""
 
     GROUP = "observables/liquid"

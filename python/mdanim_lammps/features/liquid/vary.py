@@ -9,7 +9,7 @@ from ...effects.varied import Varied
 from .frames import is_wavy
 
 
-class Sweeps(Varied):
+class SweepCount(Varied):
     """Sweeps of the automaton per update."""
 
     name, letter, order, color = "sweeps", "s", 10, "#2ca02c"
@@ -37,4 +37,4 @@ class Sweeps(Varied):
         return "" if value is None else f", {value} sweep{'' if value == 1 else 's'}"
 
 
-VARIED = (Sweeps(),)
+VARIED = (SweepCount(),)

@@ -7,12 +7,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...effects.kept import Kept
+from ...effects.kept import KeptRecord
 from ...scene.scene import Vector
 
 
 @dataclass(frozen=True, slots=True)
-class Room(Kept):
+class Room(KeptRecord):
     """The box that objects never leave."""
 
     low: Vector
