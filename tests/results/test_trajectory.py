@@ -24,7 +24,7 @@ from mdanim_lammps.features.walls.words import Walls
 from mdanim_lammps.model.model import Layer
 from mdanim_lammps.results.frame_rows import RowWriter
 from mdanim_lammps.results.trajectory import Trajectory
-from mdanim_lammps.results.trajectory_file import datasets_of_frames, frame_tables, part_of, trajectory_bytes
+from mdanim_lammps.results.trajectory_file import datasets_of_frames, frame_tables, open_trajectory, part_of, trajectory_bytes
 from mdanim_lammps.results.trajectory_writer import TrajectoryWriter
 from mdanim_lammps.scene.scene import Save
 from paths import LAB
@@ -208,6 +208,20 @@ def test_no_lock_is_needed_to_read(slab, tmp_path):
         with Trajectory(path) as t:
             np.testing.assert_array_equal(t.position(1), frames[1][2])
             np.testing.assert_array_equal(t.universe.trajectory[1].positions, frames[1][2].astype(np.float32))
+
+
+def test_others_open_what_we_hold(slab, tmp_path):
+    """HDF5 opens a file twice in one process with the same flags of locking only: what we hold since it was locked elsewhere is
+    no hindrance to others, and the other way round."""
+    scene, models, frames = slab
+    path = write(tmp_path / "trajectory.h5", scene, models, frames)
+    with open(path, "rb") as other:
+        fcntl.flock(other, fcntl.LOCK_EX)
+        ours = open_trajectory(path)
+    with ours, h5py.File(path, "r") as theirs:
+        assert list(ours) == list(theirs)
+    with h5py.File(path, "r", locking=False) as theirs, open_trajectory(path) as ours:
+        assert list(ours) == list(theirs)
 
 
 def test_many_runs_hold_few_files(slab, tmp_path):

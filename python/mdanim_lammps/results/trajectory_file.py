@@ -113,23 +113,18 @@ def find_trajectory(path: Path) -> Path:
 
 
 def open_trajectory(path: Path) -> h5py.File:
-    """Open a file for reading: with a lock as other readers of this process take it, since HDF5 opens a file twice in one way
-    only, and without one where the lock is refused, as what is read is checked. Raises OutputError."""
+    """Open a file for reading, through a file of Python's: HDF5 then takes no lock, which another process or a file system may
+    refuse, and lets others in this process open the file in their own way. Raises OutputError."""
     import h5py
 
-    def opened(locking="best-effort") -> h5py.File:
-        try:
-            return h5py.File(path, "r", locking=locking)
-        except OSError as error:
-            if locking and "lock" in str(error):
-                return opened(locking=False)
-            raise
+    def opened() -> h5py.File:
+        return h5py.File(path.open("rb"), "r")
 
     try:
         try:
             return opened()
         except OSError as error:
-            if error.errno != errno.EMFILE and "Too many open files" not in str(error):
+            if error.errno != errno.EMFILE:
                 raise
             gc.collect()  # files of trajectories that nothing refers to any more
             return opened()
