@@ -123,7 +123,7 @@ def test_contact_blocks_of_a_group():
 
 
 def test_names_that_stand_for_several_objects():
-    """Of a group, of one of its places, of a repeat in it, of that in all places."""
+    """A name of a group, of one of its places, of a repeat in it, of that in all places."""
     names = ["cart[1].body", "cart[1].wheel[1]", "cart[2].wheel[1]", "cart[2].wheel[2]", "ball"]
     found = objects_by_name(names)
     assert found["cart"] == [0, 1, 2, 3]
@@ -145,7 +145,7 @@ def test_names_of_objects_in_groups_elsewhere():
 
 
 def test_lock_of_groups():
-    """What stands in scene.lock.txt are the objects, at their places; it reads back the same."""
+    """The objects stand in scene.lock.txt, at their places; it reads back the same."""
     text = (
         PAIR
         + "place pair as x[1] { position (1, 2, 3) m orientation axis (1, 2, 3) angle 50 deg }\ncontact x.a x.b { friction 1 }\n"
@@ -214,7 +214,7 @@ def test_mistakes(text, line, column, words, hint, used_at):
 
 
 def test_group_that_is_not_placed():
-    """It is no part of the scene; say so."""
+    """It is not a part of the scene; say so."""
     scene = parse_scene(PAIR + f"object c {{ {BALL} position (0, 0, 0) m }}\n" + CONTROL)
     assert [s.name for s in scene.solids] == ["c"]
     assert "the group pair is not placed" in scene.warnings[0].message

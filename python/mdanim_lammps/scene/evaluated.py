@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 
 from ..errors import Span
 from .tokens import Token
-from .tree import Group, SettingNode
+from .tree import Group, SettingNode, Use
 
 
 @dataclass(slots=True, eq=False)
@@ -48,6 +48,8 @@ class EvaluatedBlock:
     """``(with i = 1, j = 2)``, in a repeat."""
     used_at: tuple[Span, ...] = ()
     """Where the groups are placed that it stands in."""
+    uses: list[Use] = field(default_factory=list)
+    """Settings that it takes from lets."""
     inside: EvaluatedBlock | None = None
     """The ``place`` block of the group that it stands in."""
 
@@ -66,7 +68,7 @@ class EvaluatedBlock:
 
     def excused(self, *words: str) -> bool:
         """Whether these words may be missing because something could not be read."""
-        return not self.broken.isdisjoint((*words, "include", "repeat"))
+        return not self.broken.isdisjoint((*words, "include", "repeat", "use"))
 
     def first(self, word: str) -> EvaluatedSetting | None:
         """The setting of a keyword, if there is one."""

@@ -10,14 +10,14 @@ from dataclasses import replace
 from ..errors import Span
 from . import units
 from .evaluated import EvaluatedBlock, around
-from .expressions import SPOILED, Env
+from .expressions import SPOILED, Env, Properties
 from .formatting import estimate, whole
-from .keywords import BLOCKS, did_you_mean
+from .keywords import BLOCKS, KEYWORDS, did_you_mean
 from .limits import DEEPEST_GROUP, MOST_OBJECTS, MOST_PLACES, MOST_ROUNDS
 from .setting_reader import Shared
 from .source import Fault, Problems, SceneFile
 from .statements import parse_override
-from .tree import Group, Let, Repeat, Set, SettingNode, Template, UnreadableStatement
+from .tree import Group, Let, Repeat, Set, SettingNode, Template, UnreadableStatement, Use
 from .values import Evaluator, finite, kinds
 
 
@@ -150,7 +150,9 @@ class Expander(Evaluator):
             elif isinstance(s, Repeat):
                 self.repeat(s, env, out)
             elif isinstance(s, Set):
-                pass  # `sets` has seen to it
+                pass  # `surroundings` has seen to it
+            elif isinstance(s, Use):
+                out.uses.append(s)
             elif isinstance(s, UnreadableStatement):
                 out.broken.add(s.word)
                 if s.name:
@@ -182,6 +184,10 @@ class Expander(Evaluator):
 
     def value_of(self, s: Let | Set, env: Env) -> object:
         """The value of a let or a set; SPOILED after a problem."""
+        if s.node is None:
+            return self.properties(s, env)
+        if (name := s.node.name) is s.node.first and type(value := env.values.get(str(name))) is Properties:
+            return value
         try:
             value = s.node.run(env)
             if not finite(value):
@@ -204,6 +210,10 @@ class Expander(Evaluator):
     def override(self, name: str, original) -> object:
         """The value of ``--set name=value``, which must be of the kind of the let's."""
         given = self.overrides[name]
+        if type(original) is Properties:
+            cause = f"--set {name}: in the scene it stands for settings of an object, which no --set can give"
+            self.problems.add(None, cause, "give a value inside it a let of its own", key=("--set", name))
+            return original
         source = SceneFile(f"--set {name}", str(given).strip())
         node = parse_override(source, self.problems)
         if node is None:
@@ -219,7 +229,59 @@ class Expander(Evaluator):
             return SPOILED
         return value
 
+    def properties(self, s: Let, env: Env) -> Properties:
+        """Settings in braces, evaluated where the let stands."""
+        found = EvaluatedBlock("let", names=(str(s.token),), used_at=env.used_at)
+        self.scope(s.body, env, found)
+        self.take_uses(found, env)
+        return Properties(found.settings, found.broken, len(env.used_at))
+
+    def take_uses(self, out: EvaluatedBlock, env: Env) -> None:
+        """Give a block the settings that it uses, where it has none of its own."""
+        own, origin = set(out.settings), {}
+        own |= {other for word in own for other in KEYWORDS["object"][word].one_of}
+        for s in out.uses:
+            found = env.values.get(str(s.token))
+            if type(found) is not Properties:
+                self.no_properties(s, found, env, out)
+                continue
+            out.broken |= found.broken
+            for word, given in found.settings.items():
+                if word in own:
+                    continue
+                if (first := origin.setdefault(word, s)) is not s:
+                    cause = f"both {first.token} and {s.token} give {word}"
+                    self.told(env, s.source, s.token, cause, f"write {word} in the {out.block} itself, or use one of them")
+                else:
+                    place = s.source.span(s.token)
+                    used_at = [(*env.used_at, place, *one.used_at[found.depth :]) for one in given]
+                    out.settings[word] = [replace(one, used_at=at) for one, at in zip(given, used_at)]
+
+    def no_properties(self, s: Use, found: object, env: Env, out: EvaluatedBlock) -> None:
+        """Say why a name cannot be used; nothing may be missing in the block that uses it."""
+        out.broken |= set(KEYWORDS["object"])
+        if found is SPOILED or (found is None and env.incomplete):
+            return
+        known = [name for name, value in env.values.items() if type(value) is Properties]
+        line = env.later.get(str(s.token))
+        if found is not None:
+            cause, hint = (
+                f"{s.token} is {units.show(found)}, not settings of an object",
+                f"write let {s.token} = {{ density ... }}",
+            )
+        elif line is not None and line > s.token.line:
+            cause, hint = f"'{s.token}' is used before its let", f"it stands at line {line}; move it up"
+        else:
+            cause = f"no let gives settings the name {s.token}"
+            hint = did_you_mean(str(s.token), known) if known else f"write let {s.token} = {{ density ... }} above"
+        self.told(env, s.source, s.token, cause, hint)
+
     def _same_kind(self, how: str, source: SceneFile, node, value, original) -> None:
+        if Properties in (type(value), type(original)):
+            if type(value) is type(original):
+                return
+            is_, one = ("settings", "such a let") if type(original) is Properties else ("a value", "a value")
+            raise Fault(node.first, f"{how.split()[1]} stands for {is_} in the scene, and {one} is needed", last=node.last)
         one, other, name = kinds(value), kinds(original), how.split()[1]
         if len(one) != len(other):
             raise Fault(node.first, f"{name} is {units.show(original)} in the scene, and a value of that kind is needed")
@@ -289,6 +351,8 @@ class Expander(Evaluator):
         filled = EvaluatedBlock(s.block, s, names, where=self.where(env), used_at=env.used_at, inside=self.inside)
         self.objects += s.of is None
         self.scope(s.body, env, filled)
+        if filled.uses:
+            self.take_uses(filled, env)
         out.blocks.append(filled)
         return filled
 

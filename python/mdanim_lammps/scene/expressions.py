@@ -24,6 +24,18 @@ SPOILED = object()
 """Stands for a let that could not be evaluated; that was reported where it happened."""
 
 
+@dataclass(frozen=True, slots=True)
+class Properties:
+    """Settings of an object that a ``let`` gives a name."""
+
+    settings: dict
+    """Evaluated settings by word."""
+    broken: set
+    """Words whose setting could not be used; that was reported already."""
+    depth: int
+    """Groups that are placed around the let."""
+
+
 @dataclass(slots=True)
 class Env:
     """The values that an expression may depend on."""
@@ -45,7 +57,7 @@ class Env:
     used_at: tuple[Span, ...] = ()
     """Where the groups around are placed, outermost first."""
     given: dict = field(default_factory=dict)
-    """What the place of the group around gives to its lets: each ``set``, and its value."""
+    """Values that the place of the group around gives to its lets, each behind its ``set``."""
 
     def within(self, counter: str, i: int) -> Env:
         """The same surroundings inside round ``i`` of a repeat."""
@@ -156,6 +168,8 @@ def name(token: Token) -> Node:
             raise _unknown(token, env)
         if value is SPOILED:
             raise Silent(token, "")
+        if type(value) is Properties:
+            raise Fault(token, f"'{text}' stands for settings of an object, and a number is needed here", f"write use {text}")
         return value
 
     node = Computed(run, (), token, token, constant=False)

@@ -97,6 +97,7 @@ KEYWORDS: dict[str, dict[str, Keyword]] = {
 STATEMENTS = {
     "let": ("let name = expression", "Gives a number, a quantity or a vector a name. `--set name=value` overrides it."),
     "repeat": ("repeat i in a .. b { ... }", "Repeats what is in the braces for i = a, a + 1, ... b; nests."),
+    "use": ("use name", "In an object: gives it the settings of `let name = { ... }`, unless it has its own."),
     "set": ("set name = expression", "In a `place`: gives a `let` of the group another value."),
     "include": ('include "file"', "Reads another file in this place; its name is relative to the including file."),
 }

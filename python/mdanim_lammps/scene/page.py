@@ -75,6 +75,8 @@ Products, quotients and powers of these are units too: `kg*m/s^2`. `h` (hour) ma
 
 ```
 let n = 8                       # a number, a quantity (150 kPa) or a vector
+let wood = { density 500 kg/m^3  elasticity 2 MPa  color saddlebrown }
+object beam { use wood  elasticity 3 MPa ... }
 repeat i in 1 .. n {            # i = 1, 2, ... 8; nests
   object ball[i] { ... }
 }
@@ -83,6 +85,8 @@ include "rubber.txt"            # relative to this file
 
 - `let name = expression` gives a value a name. `--set name=value` on the command line takes its place. A
   `let` inside braces is known up to the closing brace.
+- `let name = { ... }` gives settings of an object a name. `use name` in an object stands for them; what the object says itself
+  counts instead. Such settings may use others, and are evaluated where the `let` stands.
 - `repeat i in a .. b { }` repeats its statements for the whole numbers i from a to b; objects, `expect` and
   `camera` lines, `hold` and other repeats may stand inside.
 - An index is one number, which may be computed: of two repeats write `object box[100*r + c]`; `box[r, c]` is refused.

@@ -57,7 +57,7 @@ class Placement:
         )
 
     def held(self, hold):
-        """What is held, of an object in the group: a box is moved along, faces are those of the object."""
+        """Particles that are held, of an object in the group: a box is moved along, faces are those of the object."""
         if not isinstance(hold, HoldWithin):
             return hold
         if any(RIGHT < abs(x) < 1.0 - RIGHT for row in self.rotation for x in row):

@@ -15,7 +15,7 @@ from .reader import ODD
 from .setting_reader import SettingReader, Shared
 from .source import Fault, Problems, SceneFile, UnreadableFile, read_text
 from .tokens import Token
-from .tree import Group, Let, Repeat, Set, Template, UnreadableStatement
+from .tree import Group, Let, Repeat, Set, Template, UnreadableStatement, Use
 
 
 class Unclosed(Exception):
@@ -120,6 +120,8 @@ class Parser(SettingReader):
             return self.include(word, block, repeats)
         if word == "set" and block == "place":
             return [self.set(word)]
+        if word == "use" and self.peek.type != "EQUAL":
+            return [self.use(word, block, repeats)]
         if word in BLOCKS and (not block or self.opens_block()):
             if block and word not in BLOCKS[block].holds:
                 raise Unclosed(word)
@@ -248,7 +250,26 @@ class Parser(SettingReader):
     def let(self, word: Token) -> Let:
         name = self.new_name("let")
         self.shared.lets.setdefault(str(name), name.line)
+        if self.peek.type == "EQUAL" and self.ahead(1).type == "LBRACE":
+            self.take()
+            opened = self.take()
+            return Let(self.source, name, None, self.body("object", opened, 0, f"let {name}"))
         return Let(self.source, name, self.given("let", name))
+
+    def use(self, word: Token, block: str, repeats: int) -> Use:
+        """``use name``, in an object."""
+        if block != "object":
+            raise Fault(word, "use can only stand in an object", "write object NAME { use wood ... }")
+        if repeats:
+            raise Fault(word, "use cannot stand in a repeat", "it is given once")
+        name = self.peek
+        if name.type != "NAME":
+            raise Fault(
+                name, f"a name is missing after use, found {name.found()}", "e.g. use wood, with let wood = { density ... }"
+            )
+        self.take()
+        self.end_of_statement("use", KEYWORDS["object"])
+        return Use(self.source, name)
 
     def repeat(self, word: Token, block: str, repeats: int) -> Repeat:
         if repeats == DEEPEST_REPEAT:

@@ -20,7 +20,7 @@ class Name:
     last: Token
     index: Node | None = None
     inner: Name | None = None
-    """What follows a point."""
+    """The part behind a point."""
 
 
 @dataclass(slots=True, eq=False)
@@ -42,9 +42,13 @@ class Value:
 
 @dataclass(slots=True, eq=False)
 class Let:
+    """``let name = value``, or ``let name = { settings of an object }``."""
+
     source: SceneFile
     token: Token
-    node: Node
+    node: Node | None
+    body: list | None = None
+    """Statements in braces; None for a value."""
 
 
 @dataclass(slots=True, eq=False)
@@ -108,6 +112,14 @@ class Set:
     source: SceneFile
     token: Token
     node: Node
+
+
+@dataclass(slots=True, eq=False)
+class Use:
+    """``use name``: the settings of a let stand here, too."""
+
+    source: SceneFile
+    token: Token
 
 
 @dataclass(slots=True, eq=False)
