@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 from mdanim_lammps.engine.instance import Instance
 from mdanim_lammps.engine.plan import Plan
-from mdanim_lammps.engine.sub_plan import SubPlans
 from mdanim_lammps.errors import DivergedError, SetupError
 from mpi.bodies import Surfaces, film, scene, with_surfaces
 from paths import MPI
@@ -48,17 +47,6 @@ def test_bodies_for_a_fix_of_another_style_are_refused(prepared):
     effect.fix = "leapfrog"
     with pytest.raises(SetupError, match="give body 0 to fix leapfrog"), Instance(replace(plan, effects=(effect,))):
         pass
-
-
-def test_an_instance_that_is_filled_anew_has_the_new_bodies(prepared):
-    """With other objects, whose kinds have other numbers, it goes as a new one does."""
-    parts = SubPlans(with_surfaces(prepared(scene()).plan))
-    others = SubPlans(with_surfaces(prepared(scene("sphere 6 cm"), "ball").plan))
-    for plan in (others.part((0, 1), False), parts.part((1, 2), False), parts.part((0, 1), False)):
-        with Instance(parts.part((0, 1, 2), False)) as used, Instance(plan) as new:
-            film(used)
-            assert used.refill(plan)
-            assert np.array_equal(film(used), film(new))
 
 
 @pytest.mark.mpi

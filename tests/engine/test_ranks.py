@@ -195,15 +195,14 @@ def same(film, alone) -> None:
             assert np.array_equal(film[key], value, equal_nan=True), key
 
 
-def left_behind(folder: Path, count: int, how: str) -> tuple[float, int]:
+def left_behind(folder: Path, count: int) -> tuple[float, int]:
     """Memory that an instance leaves [bytes], and files that all of them do."""
     path = folder / "small.txt"
     path.write_text(MEETING)
-    memory, files = on_ranks(CYCLES, 1, path, count, how).split()
+    memory, files = on_ranks(CYCLES, 1, path, count).split()
     return float(memory), int(files)
 
 
-@pytest.mark.parametrize("how", ["new", "spare"])
 @pytest.mark.parametrize(
     ("count", "most"),
     [
@@ -212,9 +211,9 @@ def left_behind(folder: Path, count: int, how: str) -> tuple[float, int]:
         pytest.param(6000, 4e2, id="thousands", marks=[pytest.mark.soak, pytest.mark.timeout(0)]),
     ],
 )
-def test_instances_leave_nothing_behind(tmp_path, count, most, how):
-    """Make and close, or fill anew, one after the other: no file stays open, and no memory is lost beyond what an
+def test_instances_leave_nothing_behind(tmp_path, count, most):
+    """Make and close, one after the other: no file stays open, and no memory is lost beyond what an
     allocator keeps."""
-    memory, files = left_behind(tmp_path, count, how)
+    memory, files = left_behind(tmp_path, count)
     assert files == 0
     assert memory < most, f"{memory:.0f} bytes an instance"

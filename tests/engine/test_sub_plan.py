@@ -12,7 +12,7 @@ from mdanim_lammps.engine.state import State
 from mdanim_lammps.engine.sub_plan import SubPlans
 from mdanim_lammps.errors import SetupError
 from mdanim_lammps.model.system import System
-from mdanim_lammps.run.energy import energies, loss_terms, stored
+from mdanim_lammps.run.energy import stored
 from mdanim_lammps.run.prepare import prepare
 from mdanim_lammps.scene.parse import load_scene
 from mdanim_lammps.scene.scene import ContactModel
@@ -242,67 +242,6 @@ def test_a_state_of_other_particles_is_refused(prepared):
         other.setup()
         with pytest.raises(ValueError, match=r"shape \(64, 3\), the plan has \d+ particles"):
             one.put(0, other.state())
-
-
-@pytest.mark.parametrize(
-    "chain",
-    [
-        pytest.param([(1, 4), (0, 2), (2, 3), (0, 1, 2, 3, 4, 5), (0, 2)], id="that meet"),
-        pytest.param([(3,), (2,), (0,), (1,)], id="alone"),
-    ],
-)
-def test_an_instance_filled_anew_is_as_a_new_one(prepared, chain):
-    """Damped, dragged and thin objects, more and fewer, one after the other in one instance: bits and energies,
-    losses from 0, of new ones."""
-    plan = prepared(SHELF).plan
-    parts = SubPlans(plan)
-    with Instance(plan) as whole:
-        whole.setup()
-        start = evolve(whole, 500)
-
-    def go(instance, objects):
-        instance.put(500, cut(start, particles(plan.system, objects), objects, False))
-        state = evolve(instance, 300)
-        return state, energies(instance, instance.system.center_of_mass(state.x))
-
-    with Instance(parts.part(chain[0], False)) as used:
-        go(used, chain[0])
-        used.lay_aside([0])
-        lost = []
-        for objects in chain[1:]:
-            part = parts.part(objects, False)
-            assert used.refill(part) and used.plan is part and used.step == 0
-            assert used.context is part.context and used.system is part.system  # what effects read
-            with Instance(part) as new:
-                found, wanted = go(used, objects), go(new, objects)
-            equal(found[0], wanted[0], objects)
-            assert found[1] == wanted[1]
-            lost += [found[1][term] for term in loss_terms(part)]
-        assert min(lost) == 0.0 < max(lost)
-
-
-def test_an_instance_is_not_filled_with_what_it_has_no_place_for(prepared):
-    """Other columns, more types of springs than there is room for, and the liquid take a new one; the old one is as it was."""
-    parts = SubPlans(prepared(SHELF).plan)
-    pond = SubPlans(prepared(POND.replace("MODEL", "")).plan)
-    rich = prepared(
-        "\n".join(
-            f"object o{k} {{ shape box (5, 5, 5) cm  position ({10 * k}, 0, 0) cm  mass 1 kg  elasticity {k} kPa }}"
-            for k in range(1, 90)
-        )
-        + "control { time 0.1 s  resolution 2.5 cm }"
-    ).plan
-    assert len(rich.coefficients) > 256
-    with Instance(parts.part((0,), False)) as instance, Instance(pond.part((0,), True)) as wet:
-        instance.setup()
-        before = instance.state()
-        for other in (parts.part((0, 1), False), pond.part((0,), True)):
-            assert not instance.refill(other)
-        assert not wet.refill(pond.part((0,), False))
-        equal(instance.state(), before)
-    with Instance(SubPlans(rich).part((0, 1), False)) as small:
-        assert not small.refill(rich)
-        assert small.refill(SubPlans(rich).part((3, 4), False))
 
 
 def test_solids_that_are_laid_aside(prepared):

@@ -62,11 +62,6 @@ def prelude(plan: Plan) -> list[str]:
     ]
 
 
-def told_once(commands: list[str]) -> list[str]:
-    """Those of `prelude` that LAMMPS is given once, and not again when an instance is filled anew."""
-    return [command for command in commands if not command.startswith("comm_modify")]
-
-
 def physics(plan: Plan, threads: int = 1) -> list[str]:
     """Commands after the particles exist: groups, effects, integrator, time step."""
     effects = [c for e in plan.effects for c in e.commands(plan.context)]

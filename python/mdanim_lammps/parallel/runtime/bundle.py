@@ -11,8 +11,6 @@ import numpy as np
 from mpi4py import MPI
 
 from ...engine.instance import Instance
-from ...engine.instance_cache import InstanceCache
-from ...engine.plan import Plan
 from ...engine.state import Records, State, StateRecords
 from ...engine.sub_plan import SubPlans
 from ...engine.threads import MOST_THREADS, asked_threads, with_threads
@@ -84,23 +82,17 @@ def wanted_bundles(plan: FrameAssignment, objects: int, executor: int, by_thread
     return [w for *_, w in sorted(found, key=lambda f: f[:2])]
 
 
-def _instance(plan: Plan, comm: MPI.Comm | None, cache: InstanceCache, threads_for: int) -> Instance:
-    """An instance with the threads of several executors."""
-    if threads_for == 1:
-        return cache.instance(plan, comm)
-    with with_threads(min(MOST_THREADS, threads_for * (asked_threads() or 1))):
-        return Instance(plan, comm)
-
-
 class Bundle:
-    """A live one. What is done with its instance in the end is its owner's."""
+    """A live one; its owner closes its instance."""
 
-    def __init__(self, parts: SubPlans, wanted: Wanted, comm: MPI.Comm | None, cache: InstanceCache):
+    def __init__(self, parts: SubPlans, wanted: Wanted, comm: MPI.Comm | None):
         self.objects = np.array(wanted.key.objects, np.intp)
         """All in its instance, also those that it has laid aside."""
         self.plan = parts.part(wanted.key.objects, wanted.key.grid)
         self.comm = comm
-        self.instance = _instance(self.plan, comm, cache, threads_for=len(wanted.key.team) if wanted.key.by_threads else 1)
+        threads_for = len(wanted.key.team) if wanted.key.by_threads else 1
+        with with_threads(None if threads_for == 1 else min(MOST_THREADS, threads_for * (asked_threads() or 1))):
+            self.instance = Instance(self.plan, comm)
         self.places = parts.whole.system.stretches(self.objects)
         """Its particles among all."""
         self.first, self.still = parts.whole.system.first, parts.whole.system.still

@@ -14,7 +14,6 @@ import numpy as np
 from mpi4py import MPI
 
 from ...effects.fields import Fields, join_fields
-from ...engine.instance_cache import InstanceCache
 from ...engine.state import Records, State, StateRecords, join_all
 from ...engine.sub_plan import SubPlans
 from ...errors import MdanimError
@@ -84,7 +83,6 @@ class Executor:
         """False before step 0: forces come from the scene then."""
         self.control: Controller = make_control(job, self.parts, mail, comm)
         self.bundles: list[Bundle] = []
-        self.cache = InstanceCache()
         self.order: Order | None = None
         """The order that it follows."""
         self.next: Order | None = None
@@ -110,9 +108,6 @@ class Executor:
         """All frames. Raises LammpsFailure, MdanimError, Aborted; then its instances are left as they are, because other members
         of a team may never come to close theirs."""
         self._follow(self._decide(self._first_report()))
-        few = np.flatnonzero(~self.system.still)[:2]
-        if len(few) == 2 and self.parts.gap.any():  # pairs will meet
-            self.cache.stock(self.parts.part(few, False))
         if not self.started:
             self._commit()
             self._weigh()
@@ -127,7 +122,6 @@ class Executor:
             self._send(grant.keep)
         for bundle in self.bundles:
             self._close(bundle)
-        self.cache.close()
         self.teams.close()
         self.rows.close()
         self.mail.send(SUPERVISOR, Tag.ENDED, Ended(self.account, self.spans, time.process_time() - self.cpu_origin))
@@ -247,7 +241,7 @@ class Executor:
                 moved = self.mail.take(Tag.TEAM, key.ranks[0], self.comm)
                 scatter(self._places(everything), (self.x, moved.x), (self.v, moved.v), (self.f, moved.f))
                 records = moved.records
-        bundle = Bundle(self.parts, wanted, self.teams.of(key.ranks), self.cache)
+        bundle = Bundle(self.parts, wanted, self.teams.of(key.ranks))
         self._start(bundle, records)
         return bundle
 
@@ -258,10 +252,7 @@ class Executor:
 
     def _close(self, bundle: Bundle) -> None:
         add_clocks(self.account, bundle.instance)
-        if bundle.key.by_threads:  # what comes next has fewer threads
-            bundle.instance.close()
-        else:
-            self.cache.keep(bundle.instance)
+        bundle.instance.close()
 
     def _leads(self, bundle: Bundle) -> bool:
         return bundle.key.team[0] == self.me
