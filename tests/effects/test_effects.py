@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from mdanim_lammps import features
-from mdanim_lammps.effects import decide
+from mdanim_lammps.effects import resolve
 from mdanim_lammps.engine.commands import input_script
 from mdanim_lammps.engine.data_file import data_text
 from mdanim_lammps.engine.instance import Instance
@@ -57,7 +57,8 @@ LINES = {
 
 def verdicts(text):
     """Verdicts and warnings for a scene text."""
-    return decide(features.effects(), parse_scene(text))
+    found = resolve(features.effects(), parse_scene(text))
+    return found.verdicts, found.warnings
 
 
 @pytest.mark.parametrize("effect", [e.name for e in features.effects()])

@@ -32,6 +32,8 @@ def thread_count(_, tokens) -> int:
         raise ValueError(error) from None
 
 
+SceneFile = Annotated[Path, Parameter(help="The scene file.")]
+RunFolder = Annotated[Path, Parameter(help="The output folder of a run.")]
 Quiet = Annotated[bool, Parameter(alias="-q", help="Print errors only.")]
 Verbose = Annotated[bool, Parameter(alias="-v", help="Print every effect with its reason.")]
 AllowUnstable = Annotated[bool, Parameter(help="Insist on a time step above the certified bound.")]

@@ -15,7 +15,7 @@ from cyclopts import Parameter
 from ..errors import ExitCode, Problem, RefusedError, UsageError
 from ..terminal import progress_bar
 from ..view.beside import Viewer, show_address
-from .options import AllowUnstable, Executing, Look, OutFile, Quiet, View, whole_number
+from .options import AllowUnstable, Executing, Look, OutFile, Quiet, RunFolder, View, whole_number
 from .steps import adopt, announce, draw_movie, frame_range, prepare, simulate_and_draw
 
 if TYPE_CHECKING:
@@ -53,7 +53,7 @@ def resume(
 
 
 def render(
-    folder: Path,
+    folder: RunFolder,
     /,
     *,
     look: Look = Look(),
@@ -67,8 +67,6 @@ def render(
 
     Parameters
     ----------
-    folder
-        The output folder of a run.
     fps
         Pictures per second of the movie.
     frames
@@ -107,7 +105,7 @@ def _warn_of_slow_motion(render: Render, frames: float) -> None:
 
 
 def view(
-    folder: Path,
+    folder: RunFolder,
     /,
     *,
     port: Annotated[int, Parameter(converter=whole_number)] = 0,
@@ -118,8 +116,6 @@ def view(
 
     Parameters
     ----------
-    folder
-        The output folder of a run.
     port
         Port of this machine on which the page is served; a free one unless it is given.
     open

@@ -16,12 +16,12 @@ from ..errors import Problem, RefusedError, SceneError, UsageError, problem_json
 from ..scene.formatting import number, say
 from ..terminal import progress_bar
 from ..view.beside import Viewer
-from .options import AllowUnstable, Executing, Executors, Look, OutFile, OutFolder, Quiet, Reading, Verbose, View
+from .options import AllowUnstable, Executing, Executors, Look, OutFile, OutFolder, Quiet, Reading, SceneFile, Verbose, View
 from .steps import STARTED, announce, lmp_command, percent_of, prepare, print_lines, print_warnings, seconds_of, simulate_and_draw
 
 
 def run(
-    scene: Path,
+    scene: SceneFile,
     /,
     *,
     reading: Reading = Reading(),
@@ -38,8 +38,6 @@ def run(
 
     Parameters
     ----------
-    scene
-        The scene file.
     movie
         Make movie.mp4 at the end.
     edit
@@ -62,7 +60,7 @@ def run(
 
 
 def check(
-    scene: Path,
+    scene: SceneFile,
     /,
     *,
     reading: Reading = Reading(),
@@ -76,8 +74,6 @@ def check(
 
     Parameters
     ----------
-    scene
-        The scene file.
     strict
         Bare numbers need a unit.
     json
@@ -118,7 +114,7 @@ def _check(scene: Path, reading: Reading, executors: int, strict: bool, allow_un
 
 
 def picture(
-    scene: Path,
+    scene: SceneFile,
     /,
     *,
     reading: Reading = Reading(),
@@ -134,8 +130,6 @@ def picture(
 
     Parameters
     ----------
-    scene
-        The scene file.
     at
         The moment that is drawn, e.g. "0.8 s": a quick, coarse preview run goes there first.
     names
@@ -167,7 +161,7 @@ def picture(
 
 
 def build(
-    scene: Path,
+    scene: SceneFile,
     /,
     *,
     reading: Reading = Reading(),
@@ -176,13 +170,7 @@ def build(
     quiet: Quiet = False,
     verbose: Verbose = False,
 ) -> None:
-    """Write data.NAME and in.NAME only; 'lmp -in in.NAME' then runs without Python.
-
-    Parameters
-    ----------
-    scene
-        The scene file.
-    """
+    """Write data.NAME and in.NAME only; 'lmp -in in.NAME' then runs without Python."""
     from ..run.folder import open_run, output_folder
 
     record = reading.load(scene)
@@ -196,7 +184,7 @@ def build(
 
 
 def study(
-    scene: Path,
+    scene: SceneFile,
     /,
     *,
     reading: Reading = Reading(),
@@ -213,8 +201,6 @@ def study(
 
     Parameters
     ----------
-    scene
-        The scene file.
     budget
         Wall time, e.g. "30 s"; if left out, 2 min.
     ladders

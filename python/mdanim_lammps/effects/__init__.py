@@ -4,6 +4,6 @@ features/."""
 
 from .context import Context, Resolved, Verdict
 from .effect import Effect
-from .resolve import acting, decide, resolve
+from .resolve import acting, resolve
 
-__all__ = ["Context", "Effect", "Resolved", "Verdict", "acting", "decide", "resolve"]
+__all__ = ["Context", "Effect", "Resolved", "Verdict", "acting", "resolve"]

@@ -10,8 +10,12 @@ from .context import Resolved, Verdict
 from .effect import Effect
 
 
-def decide(effects: tuple[Effect, ...], scene: SceneRecord, h: float | None = None) -> tuple[dict[str, Verdict], list[Problem]]:
-    """Verdict of each effect, by name, with the scene's own switches applied; and warnings about needed ones switched off."""
+def resolve(effects: tuple[Effect, ...], scene: SceneRecord, h: float | None = None) -> Resolved:
+    """Decide on every effect of a scene, whose particle spacing is h [m] where that is known: by what the scene calls for and by
+    its own switches, with warnings about needed ones switched off.
+
+    Raises SceneError for a mesh that is not a closed solid.
+    """
     effects = tuple(e.of(scene) for e in effects)
     verdicts: dict[str, Verdict] = {}
     warnings: list[Problem] = []
@@ -44,7 +48,7 @@ def decide(effects: tuple[Effect, ...], scene: SceneRecord, h: float | None = No
         missing = next((name for name in effect.needs if not verdicts[name].on), None)
         if (own := verdicts[effect.name]).on and missing:
             verdicts[effect.name] = Verdict(effect.name, False, f"{missing} is off", own.span)
-    return verdicts, warnings
+    return Resolved(scene, verdicts, tuple(e for e in effects if verdicts[e.name].on), tuple(warnings))
 
 
 def acting(effects: tuple[Effect, ...], scene: SceneRecord) -> tuple[Effect, ...]:
@@ -54,14 +58,3 @@ def acting(effects: tuple[Effect, ...], scene: SceneRecord) -> tuple[Effect, ...
         if scene.effects.get(effect.name) is Switch.OFF or off.intersection(effect.needs):
             off.add(effect.name)
     return tuple(e.of(scene) for e in effects if e.name not in off)
-
-
-def resolve(effects: tuple[Effect, ...], scene: SceneRecord, h: float | None = None) -> Resolved:
-    """Decide on every effect of a scene, whose particle spacing is h [m] where that is known.
-
-    Raises SceneError for a mesh that is not a closed solid.
-    """
-    effects = tuple(e.of(scene) for e in effects)
-    verdicts, warnings = decide(effects, scene, h)
-    on = tuple(e for e in effects if verdicts[e.name].on)
-    return Resolved(scene, verdicts, on, tuple(warnings))

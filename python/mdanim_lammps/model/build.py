@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property, lru_cache, singledispatch
 
@@ -26,14 +25,11 @@ from .spacing import plan_spacing
 from .springs import dashpots, equivalent_modulus, rest_lengths, stiffness, types
 
 
-def build_models(
-    scene: SceneRecord, h: float | None = None, progress: Callable[[int, int], None] | None = None
-) -> tuple[Model, ...]:
+def build_models(scene: SceneRecord, h: float | None = None) -> tuple[Model, ...]:
     """Make the model of every solid, in the order of the scene, all with one particle spacing h [m]; None is that of the scene.
 
-    ``progress(done, total)`` is called after each solid. Objects of equal shape, elasticity and mass share
-    their arrays of springs, masses, layers, surface and contact body, which are read-only; positions, velocities and held
-    are their own.
+    Objects of equal shape, elasticity and mass share their arrays of springs, masses, layers, surface and contact body, which are
+    read-only; positions, velocities and held are their own.
 
     Raises SceneError with all problems of all solids in one pass: those of plan_spacing, a body that falls
     apart at this spacing, a ``hold`` without particles.
@@ -41,7 +37,7 @@ def build_models(
     h = plan_spacing(scene).h if h is None else h
     shared = _Shared(h)
     models, problems = [], []
-    for done, solid in enumerate(scene.solids, 1):
+    for solid in scene.solids:
         try:
             models.append(_make_model(solid, shared))
         except TooThin as error:
@@ -50,8 +46,6 @@ def build_models(
             problems.append(Problem(solid.spans.get("shape"), f"{solid.name}: {error}", error.hint))
         except _NothingHeld as error:
             problems.append(Problem(solid.spans.get("hold"), f"{solid.name}: {error}", error.hint))
-        if progress is not None:
-            progress(done, len(scene.solids))
     if problems:
         raise SceneError(problems)
     return with_covers(models, scene.solids)

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -64,7 +63,7 @@ class Prepared:
         return lock_text(self.scene, mesh_files(self.scene))
 
 
-def prepare(scene: SceneRecord, *, allow_unstable: bool = False, progress: Callable[[int, int], None] | None = None) -> Prepared:
+def prepare(scene: SceneRecord, *, allow_unstable: bool = False) -> Prepared:
     """Build, check and certify a scene.
 
     Raises SceneError with all problems of its geometry, RefusedError when it does not fit in memory or its time step is
@@ -83,15 +82,15 @@ def prepare(scene: SceneRecord, *, allow_unstable: bool = False, progress: Calla
         )
     spacing = plan_spacing(scene)
     try:
-        return _prepare(scene, spacing, allow_unstable, progress)
+        return _prepare(scene, spacing, allow_unstable)
     except MemoryError:
         raise SceneError([too_large(scene, spacing)]) from None
 
 
-def _prepare(scene: SceneRecord, spacing: Spacing, allow_unstable: bool, progress: Callable[[int, int], None] | None) -> Prepared:
+def _prepare(scene: SceneRecord, spacing: Spacing, allow_unstable: bool) -> Prepared:
     resolved = resolve(features.effects(), scene, spacing.h)
     grid = next((cells for e in resolved.effects if (cells := e.grid(scene, spacing.h))), None)
-    models = build_models(scene, spacing.h, progress)
+    models = build_models(scene, spacing.h)
     planes = [p for e in features.effects() for p in e.of(scene).planes(scene)]  # also of those that are off
     problems = check_geometry(scene, models, planes) + [p for e in resolved.effects for p in e.problems(resolved, models, grid)]
     problems += _unmeasurable(resolved)

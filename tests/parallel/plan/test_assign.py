@@ -145,16 +145,6 @@ def test_by_hand(label, cost, owner, executors, expected):
     assert found.owner.tolist() == expected
 
 
-def test_a_pinned_island_stays_while_others_go():
-    """Take the larger island away from an executor rather than its pool, and bring larger objects to the pool."""
-    cost, pinned = np.array([50, 60, 20]), np.array([True, False, False])
-    assert assign(np.array([0, 1, 2]), cost, np.array([0, 0, 1]), 2).owner.tolist() == [1, 0, 1]
-    found = assign(np.array([0, 1, 2]), cost, np.array([0, 0, 1]), 2, pinned=pinned)
-    assert found.owner.tolist() == [0, 1, 0] and found.load.tolist() == [70, 60]
-    joined = assign(np.array([0, 0, 1]), cost, np.array([0, 1, 1]), 2, pinned=pinned)
-    assert joined.owner.tolist() == [0, 0, 1] and joined.load.tolist() == [110, 20]
-
-
 def test_near_ones_are_dealt_out_together():
     """Give everyone a run of the order at first, so that neighbours seldom are of different executors."""
     rng = np.random.default_rng(2)
@@ -245,10 +235,3 @@ def test_members_stay_in_their_team():
     before = (Team(0, (2, 0)),)
     assert heavy(cost, owner, 4, before).teams[0].members == (2, 0)
     assert heavy(cost, owner, 4).teams[0].members == (2, 3)
-
-
-def test_the_pool_leads_its_team():
-    """Leave a pinned heavy island with its owner though a heavier one is there as well."""
-    cost = np.array([9000, 12000, 10])
-    found = heavy(cost, [1, 1, 0], 4, pinned=np.array([True, False, False]))
-    assert found.owner[0] == 1 and found.owner[1] != 1 and len(found.teams) == 2

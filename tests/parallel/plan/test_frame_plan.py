@@ -116,24 +116,13 @@ def test_larger_boxes_after_a_violation():
     assert second.label.tolist() == [0, 0, 1] and second.bundle.tolist() == [3, 3, 2]
 
 
-def test_the_pool_stays_and_connects():
-    """Bring to the pool what is near it, and leave it where it is."""
+def test_the_pool_connects():
+    """What is near the pool is in its island."""
     low = np.array([(0.0, 0.0, 1.0), (5.0, 0.0, 1.0), (0.0, 0.0, 9.0), (-1.0, -1.0, 0.0)])
     high = np.array([(1.0, 1.0, 2.0), (6.0, 1.0, 2.0), (1.0, 1.0, 10.0), (7.0, 2.0, 1.0)])
-    pinned = np.array([False, False, False, True])
-    made = plan(
-        low,
-        high,
-        np.full(4, 0.05),
-        np.array([40, 20, 30, 10]),
-        np.array([0, 1, 1, 1]),
-        2,
-        particles=np.full(4, 100),
-        still=np.zeros(4, bool),
-        gap=0.1,
-        pinned=pinned,
-    )
-    assert made.label.tolist() == [0, 0, 1, 0] and made.owner.tolist() == [1, 1, 0, 1]
+    rest = dict(particles=np.full(4, 100), still=np.zeros(4, bool), gap=0.1)
+    made = plan(low, high, np.full(4, 0.05), np.array([40, 20, 30, 10]), np.array([0, 1, 1, 1]), 2, **rest)
+    assert made.label.tolist() == [0, 0, 1, 0] and made.owner.tolist() == [0, 0, 1, 0]
 
 
 def test_teams_are_handed_on():

@@ -36,7 +36,6 @@ def assign(
     executors: int,
     *,
     particles: np.ndarray | None = None,
-    pinned: np.ndarray | None = None,
     order: np.ndarray | None = None,
     teams: Sequence[Team] = (),
     gain: int = GAIN,
@@ -56,7 +55,6 @@ def assign(
     :param owner: executor that has it now, -1 for none, shape (M,)
     :param executors: their number K
     :param particles: of every object, shape (M,); without it there are no teams
-    :param pinned: objects that never leave their owner (a pool), bool, shape (M,)
     :param order: a number for every object, near for objects that are near, shape (M,): what is dealt out is so by runs of it
     :param teams: those of the frame before
     """
@@ -68,19 +66,14 @@ def assign(
     isle = label[moving]
     weight = np.maximum(total(isle, cost[moving]), 1)
     home = _homes(isle, np.maximum(cost[moving], 1), owner[moving], executors)
-    fixed = np.zeros(len(weight), bool)
-    if pinned is not None:
-        held = np.flatnonzero(pinned & (label >= 0) & (owner >= 0))[::-1]
-        home[label[held]] = owner[held]
-        fixed[label[held]] = True
     first = moving[firsts(isle)]
     rank = np.argsort(first if order is None else order[first], kind="stable")
-    place, load = _place(weight, home, fixed, (), executors, rank, gain)
+    place, load = _place(weight, home, (), executors, rank, gain)
     formed: tuple[Team, ...] = ()
     if particles is not None and executors > 1:
-        formed = form(weight, total(isle, particles[moving]), home, fixed, executors, teams, gain, least)
+        formed = form(weight, total(isle, particles[moving]), home, executors, teams, gain, least)
     if formed:
-        together, new = _place(weight, home, fixed, formed, executors, rank, gain)
+        together, new = _place(weight, home, formed, executors, rank, gain)
         better, worse = (20, 19) if teams else (19, 20)  # a new team has to be better by a twentieth, an old one not much worse
         if new.max() * worse <= load.max() * better:
             place, load = together, new
@@ -120,19 +113,16 @@ def _homes(isle: np.ndarray, cost: np.ndarray, owner: np.ndarray, executors: int
 # --- balance ------------------------------------------------------------------------------------------------
 
 
-def _place(weight, home, fixed, teams, executors, rank, gain) -> tuple[np.ndarray, np.ndarray]:
-    """Executors of islands, and all loads, with these teams; ``fixed`` islands (I,) stay at home."""
-    place, fixed, base = home.copy(), fixed.copy(), total(home[fixed], weight[fixed], executors)
+def _place(weight, home, teams, executors, rank, gain) -> tuple[np.ndarray, np.ndarray]:
+    """Executors of islands, and all loads, with these teams."""
+    place, alone, base = home.copy(), np.ones(len(weight), bool), np.zeros(executors, np.int64)
     for team in teams:
-        i, leader = team.island, team.members[0]
-        if fixed[i]:
-            base[leader] -= weight[i]
-        place[i], fixed[i] = leader, True
-        base[list(team.members)] += time_each(int(weight[i]), len(team.members), gain)
-    largest = max(int(base.max()), int(weight[~fixed].max(initial=0)))
-    rest = np.flatnonzero(~fixed)
-    number = np.cumsum(~fixed) - 1
-    place[rest], load = _balance(weight[rest], home[rest], base, largest, number[rank[~fixed[rank]]])
+        place[team.island], alone[team.island] = team.members[0], False
+        base[list(team.members)] += time_each(int(weight[team.island]), len(team.members), gain)
+    largest = max(int(base.max()), int(weight[alone].max(initial=0)))
+    rest = np.flatnonzero(alone)
+    number = np.cumsum(alone) - 1
+    place[rest], load = _balance(weight[rest], home[rest], base, largest, number[rank[alone[rank]]])
     return place, load
 
 

@@ -91,7 +91,6 @@ def plan(
     still: np.ndarray,
     gap: float,
     feels: np.ndarray | None = None,
-    pinned: np.ndarray | None = None,
     previous: FrameAssignment | None = None,
     gain: int = GAIN,
     least: int = LEAST,
@@ -100,7 +99,7 @@ def plan(
     """The plan of a frame, from what all executors have reported. O(M log M + pairs that are near). Raises ValueError for boxes
     that are not finite or turned inside out, a cost below 0, an owner out of range.
 
-    A pool is one more object: its box, pinned and never still. After a guard was violated the same call with larger ``d`` gives
+    A pool is one more object: its box, never still. After a guard was violated the same call with larger ``d`` gives
     the plan to try again with.
 
     :param low: boxes of the particles, eq. (3.14) [m], (M, 3), with ``high``
@@ -111,7 +110,6 @@ def plan(
     :param still: objects held as a whole, bool, shape (M,)
     :param gap: reach of contact [m]
     :param feels: objects that all others feel, bool, shape (M,): without contact, the pool alone; None for all
-    :param pinned: objects that never leave their owner, bool, shape (M,)
     :param previous: the last plan for which bundles were built
     """
     met = islands.pairs(*islands.boxes(low, high, d), gap)
@@ -125,7 +123,6 @@ def plan(
         owner,
         executors,
         particles=particles,
-        pinned=pinned,
         order=order,
         gain=gain,
         least=least,

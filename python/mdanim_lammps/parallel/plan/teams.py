@@ -38,7 +38,7 @@ def time_each(cost: int, size: int, gain: int) -> int:
     return cost * 100 // (100 + gain * (size - 1))
 
 
-def form(weight, particles, home, fixed, executors, previous, gain, least) -> tuple[Team, ...]:
+def form(weight, particles, home, executors, previous, gain, least) -> tuple[Team, ...]:
     """Teams for islands above the mean by more than a tenth, of as many as bring them back to it.
 
     A team shrinks only when the smaller one would keep to the mean. Leaders are at home where they can be, members those that
@@ -46,7 +46,6 @@ def form(weight, particles, home, fixed, executors, previous, gain, least) -> tu
 
     :param weight: cost of every island [µs], shape (I,), with its ``particles``
     :param home: executor that has most of it, -1 for none, shape (I,)
-    :param fixed: islands that stay there, bool, shape (I,)
     :param previous: teams of the frame before, known by their leaders
     :param gain: as `GAIN` [%], and ``least`` as `LEAST`
     """
@@ -54,7 +53,7 @@ def form(weight, particles, home, fixed, executors, previous, gain, least) -> tu
     found = np.flatnonzero((most >= 2) & (weight * executors > weight.sum()))
     if not len(found):
         return ()
-    heavy = [int(i) for i in found[np.lexsort((found, -weight[found], ~fixed[found]))]]
+    heavy = [int(i) for i in found[np.lexsort((found, -weight[found]))]]
     before = {team.members[0]: team.members for team in previous}
     cost = {i: int(weight[i]) for i in heavy}
     size, old = {}, {}
@@ -94,8 +93,6 @@ def form(weight, particles, home, fixed, executors, previous, gain, least) -> tu
     for i in wanted:
         leader = int(home[i])
         if leader not in free:
-            if fixed[i]:
-                continue
             leader = min(free - {int(home[j]) for j in wanted} or free, key=lambda e: (load[e], e))
         free.remove(leader)
         members[i] = [leader]
