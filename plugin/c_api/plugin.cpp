@@ -11,6 +11,7 @@
 #include "lammps/fix_mdanim_gravity.h"
 #include "lammps/fix_mdanim_leapfrog.h"
 #include "lammps/fix_mdanim_liquid.h"
+#include "lammps/fix_mdanim_rigid.h"
 #include "lammps/fix_mdanim_wall.h"
 #include "lammps/verlet_mdanim.h"
 
@@ -151,6 +152,7 @@ MDANIM_EXPORT void lammpsplugin_init(void *handle_of_lammps, void *handle, void 
       fix("mdanim/barrier", "a barrier between objects", &make_fix<FixMdanimBarrier>),
       fix("mdanim/contact", "objects and planes touch, with friction", &make_fix<FixMdanimContact>),
       fix("mdanim/liquid", "liquid that solids float and sink in", &make_fix<FixMdanimLiquid>),
+      fix("mdanim/rigid", "objects that do not deform", &make_fix<FixMdanimRigid>),
       fix("mdanim/wall", "walls that withstand any impact", &make_fix<FixMdanimWall>),
       run("verlet/mdanim", "verlet with springs, gravity and leap-frog in one pass", &make_run),
   };

@@ -9,6 +9,7 @@
 #include "lammps/keywords.h"
 #include "lammps/object_masses.h"
 #include "lammps/rank_gather.h"
+#include "lammps/shared_file.h"
 #include "numbers/stopwatch.h"
 
 #include "atom.h"
@@ -23,8 +24,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstring>
-#include <filesystem>
-#include <fstream>
 #include <numeric>
 #include <set>
 #include <stdexcept>
@@ -33,7 +32,6 @@ using namespace LAMMPS_NS;
 using namespace FixConst;
 using namespace mdanim;
 
-static constexpr int LARGEST_FILE = 1 << 30;     // bytes
 static constexpr double NS_OF_PARTICLE = 4.0;    // approximately
 static constexpr double USUAL_DAMPING = 0.3;     // beta
 static const char *const LEFT_OUT = ", or leave it out by 'among GROUP'";
@@ -133,24 +131,9 @@ int FixMdanimContact::read_word(int iarg, int narg, char **arg)
   return words;
 }
 
-// Rank 0 reads the file; all ranks parse the same text.
 void FixMdanimContact::read_bodies_of(const char *file)
 {
-  std::string text;
-  int bytes = -1;
-  if (comm->me == 0) {
-    std::error_code none;
-    std::ifstream in(file, std::ios::binary | std::ios::ate);
-    const bool is_file = in && std::filesystem::is_regular_file(file, none);
-    const std::streamoff size = is_file ? static_cast<std::streamoff>(in.tellg()) : -1;
-    if (size > LARGEST_FILE) error->one(FLERR, "fix mdanim/contact: {} has {} bytes, more than {}", file, size, LARGEST_FILE);
-    if (size >= 0) text.resize(size);
-    if (size >= 0 && in.seekg(0).read(text.data(), size)) bytes = static_cast<int>(size);
-  }
-  MPI_Bcast(&bytes, 1, MPI_INT, 0, world);
-  if (bytes < 0) error->all(FLERR, "fix mdanim/contact: cannot read the bodies in {}", file);
-  text.resize(bytes);
-  MPI_Bcast(text.data(), bytes, MPI_CHAR, 0, world);
+  const std::string text = read_shared_file(lmp, "fix mdanim/contact", "bodies", file);
   try {
     for (auto &[number, body] : read_bodies(file, text)) bodies[number] = std::make_shared<const ContactBody>(std::move(body));
   } catch (const std::exception &problem) {

@@ -37,6 +37,9 @@ class ObjectTable {
   void set(std::vector<LAMMPS_NS::tagint> ascending) { known = std::move(ascending); }
 
   int size() const { return static_cast<int>(known.size()); }
+  LAMMPS_NS::tagint id(int number) const { return known[number]; }
+  // Whether they are the same objects.
+  bool operator==(const ObjectTable &other) const { return known == other.known; }
   // NONE for an ID that does not occur: objects may come and go between two rebuilds of lists.
   int number_of(LAMMPS_NS::tagint id) const
   {

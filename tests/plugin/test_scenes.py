@@ -99,6 +99,16 @@ def test_energy_is_kept_with_drag(tmp_path):
     assert t["TotEng"] == pytest.approx(t["TotEng"][0], rel=1.5e-3)
 
 
+@pytest.mark.mpi
+def test_a_rigid_slab_tumbles_alike_on_any_number_of_ranks(tmp_path):
+    """Dumps are the same byte for byte; the slab has hit the block, turns, and no energy is lost."""
+    alone, output = run(tmp_path, 1, "tumble", "-var", "steps", "400")
+    t = table(output)
+    assert t["f_rigid[3]"][-1] > 1.1 * t["f_rigid[3]"][0]
+    assert t["TotEng"] == pytest.approx(t["TotEng"][0], rel=1.5e-3)
+    assert alone == run(tmp_path, 3, "tumble", "-var", "steps", "400")[0]
+
+
 def last_table(output):
     """That of the last ``run``: these scripts have a ``run 0`` before it, which finds the time step."""
     return table(output[output.rindex("   Step ") :])

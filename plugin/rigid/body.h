@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// A rigid body under forces, by the leap-frog of the particles: Wcislo 1999, eq. (3.10), without friction.
+
+#ifndef MDANIM_BODY_H
+#define MDANIM_BODY_H
+
+#include "numbers/matrix3.h"
+#include "rigid/rotation.h"
+
+namespace mdanim {
+
+// v and L are those at whole steps, or half a step later between begin_step() and finish_step().
+struct RigidBody {
+  double mass = 0.0;
+  Vec3 moments;    // about its principal axes, ascending
+  Vec3 centre, velocity;
+  Quaternion q;    // takes its principal axes into space
+  Vec3 L;          // angular momentum about the centre, in space
+
+  Vec3 force, torque;
+  Matrix3 turn;    // matrix(q)
+  Vec3 over;       // 1 / moments
+  Vec3 spin;       // angular velocity, in space
+
+  // To be called after mass, moments, q or L were set.
+  void refresh()
+  {
+    over = {inverse(moments.x), inverse(moments.y), inverse(moments.z)};
+    turn = matrix(q);
+    find_spin();
+  }
+
+  // v <- v + dt/2m F, L <- L + dt/2 T; `half` is dt/2 in units of velocity times mass/force.
+  void kick(double half)
+  {
+    velocity += (half / mass) * force;
+    L += half * torque;
+    find_spin();
+  }
+  // Position and rotation after dt, with v and L as they are.
+  void drift(double dt)
+  {
+    centre += dt * velocity;
+    rotate_freely(q, L, over, dt);
+    turn = matrix(q);
+    find_spin();
+  }
+
+  // Place and velocity of a point of the body, given along its axes, or by its place in space from the centre.
+  Vec3 place(const Vec3 &own) const { return centre + turn * own; }
+  Vec3 velocity_at(const Vec3 &from_centre) const { return velocity + cross(spin, from_centre); }
+
+  double translation() const { return 0.5 * mass * dot(velocity, velocity); }
+  double rotation() const { return 0.5 * dot(L, spin); }
+
+ private:
+  static double inverse(double moment) { return moment > 0.0 ? 1.0 / moment : 0.0; }
+  void find_spin()
+  {
+    const Vec3 body = transposed_times(turn, L);
+    spin = turn * Vec3{over.x * body.x, over.y * body.y, over.z * body.z};
+  }
+};
+
+}    // namespace mdanim
+
+#endif
