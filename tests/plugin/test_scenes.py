@@ -104,7 +104,7 @@ def test_a_rigid_slab_tumbles_alike_on_any_number_of_ranks(tmp_path):
     """Dumps are the same byte for byte; the slab has hit the block, turns, and no energy is lost."""
     alone, output = run(tmp_path, 1, "tumble", "-var", "steps", "400")
     t = table(output)
-    assert t["f_rigid[3]"][-1] > 1.1 * t["f_rigid[3]"][0]
+    assert t["f_contact"].max() > 0.1 and t["f_rigid[3]"][-1] < 0.5 * t["f_rigid[3]"][0]
     assert t["TotEng"] == pytest.approx(t["TotEng"][0], rel=1.5e-3)
     assert alone == run(tmp_path, 3, "tumble", "-var", "steps", "400")[0]
 
