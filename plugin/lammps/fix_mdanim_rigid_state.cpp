@@ -33,13 +33,13 @@ struct KeptPlace {
   Vec3 own;
 };
 
-struct Row {
+struct PlaceRow {
   std::int64_t object, tag;
   Vec3 own;
-  bool operator<(const Row &other) const { return std::tie(object, tag) < std::tie(other.object, other.tag); }
+  bool operator<(const PlaceRow &other) const { return std::tie(object, tag) < std::tie(other.object, other.tag); }
 };
 
-struct KeptRecords : Stateful {
+struct RestartedBodies : Stateful {
   StateRecords records;
   StateRecords pack() const override { return records; }
   void unpack(const StateRecords &given) override { records = given; }
@@ -56,14 +56,14 @@ template <class Kept> bool is_finite(const Kept &kept)    // of doubles alone
 StateRecords FixMdanimRigid::pack() const
 {
   if (restarted) return *restarted;
-  std::vector<Row> here;
+  std::vector<PlaceRow> here;
   for (int i = 0; i < atom->nlocal && !bodies.empty(); ++i)
     if (moves(i)) here.push_back({atom->molecule[i], atom->tag[i], vec3(own[i])});
-  std::vector<Row> rows = gather(world, here);
+  std::vector<PlaceRow> rows = gather(world, here);
   std::sort(rows.begin(), rows.end());
   StateRecords records;
   for (auto first = rows.begin(); first != rows.end();) {
-    const auto last = std::find_if(first, rows.end(), [&](const Row &row) { return row.object != first->object; });
+    const auto last = std::find_if(first, rows.end(), [&](const PlaceRow &row) { return row.object != first->object; });
     std::vector<KeptPlace> places;
     for (auto row = first; row != last; ++row) places.push_back({row->tag - first->tag, row->own});
     const RigidBody &body = bodies[objects.number_of(static_cast<tagint>(first->object))];
@@ -129,7 +129,7 @@ void FixMdanimRigid::write_restart(FILE *file) { mdanim::write_restart(*this, lm
 
 void FixMdanimRigid::restart(char *buffer)
 {
-  KeptRecords kept;
+  RestartedBodies kept;
   mdanim::read_restart(kept, lmp, name(), buffer);
   restarted = std::move(kept.records);
 }
