@@ -44,9 +44,9 @@ class Pool:
 
     def __init__(self, fast=0.0, drag=None, model="surface", calm=None, **lets):
         from mdanim_lammps.engine.instance import Instance
+        from mdanim_lammps.features.liquid.record import LiquidModel
         from mdanim_lammps.run.prepare import prepare
         from mdanim_lammps.scene.parse import load_scene
-        from mdanim_lammps.scene.scene import LiquidModel
 
         if fast:  # in wave speeds c
             lets["v"] = -fast * (1.2 * 1000 / lets["density"]) ** 0.5

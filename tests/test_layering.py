@@ -46,7 +46,7 @@ ROOMS = [
 ]
 
 
-LANGUAGE = {"formatting", "forms", "limits", "rotation", "schema", "shapes", "units"}
+LANGUAGE = {"formatting", "forms", "limits", "naming", "rotation", "schema", "shapes", "units"}
 """Modules of scene/ that know no word of a scene: words of features are written with them."""
 
 
@@ -55,7 +55,7 @@ def room_of(*parts: str) -> str:
     if parts[0] == "scene" and len(parts) > 1 and parts[1] in LANGUAGE:
         return "language"
     if parts[0] == "features":  # what finds them, their words, and all the rest
-        return "registry" if len(parts) < 3 else "words" if parts[2] == "words" else "features"
+        return "registry" if len(parts) < 3 else "words" if parts[2] in ("words", "record") else "features"
     return parts[0]
 
 

@@ -15,9 +15,9 @@ from mdanim_lammps.features.liquid import frames as liquid
 from mdanim_lammps.features.liquid.frames import WAVES
 from mdanim_lammps.features.liquid.ledger import LIQUID_MOMENTUM
 from mdanim_lammps.features.liquid.measure import immersed_share
+from mdanim_lammps.features.liquid.record import LiquidModel
 from mdanim_lammps.run.prepare import prepare
 from mdanim_lammps.scene.parse import load_scene, parse_scene
-from mdanim_lammps.scene.scene import LiquidModel
 from paths import SCENES
 from twin import in_waves
 from waves_forms import swings

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 from mdanim_lammps.features.liquid.basin import plan_grid
+from mdanim_lammps.features.liquid.record import Liquid
 from mdanim_lammps.model.model import Layer, Model, Surface
 from mdanim_lammps.model.springs import types
 from mdanim_lammps.results.trajectory_writer import TrajectoryWriter
@@ -170,7 +171,7 @@ def falling(models, frames, dt=0.1, floor=0.3, g=9.81):
 def pool_scene(models=None, spacing=0.05, color=None, **control):
     """A basin half full of water and, unless others are given, a crate and a ball above it; and the grid."""
     models = models or [box("crate", (0.4, 0.4, 0.3), (4, 4, 3), (-0.35, 0.1, 0.45)), ball("ball", 0.16, 0.08, (0.45, -0.3, 0.2))]
-    liquid = records.Liquid("water", (-1.0, -0.7, 0.0), (1.0, 0.7, 1.0), 1000.0, volume=1.4, color=color)
+    liquid = Liquid("water", (-1.0, -0.7, 0.0), (1.0, 0.7, 1.0), 1000.0, volume=1.4, color=color)
     scene = records.SceneRecord(
         name="pool",
         title="A crate in a tank of water",

@@ -12,12 +12,13 @@ from mdanim_lammps import features
 from mdanim_lammps.effects import resolve
 from mdanim_lammps.errors import SceneError, Span
 from mdanim_lammps.features.liquid import basin
+from mdanim_lammps.features.liquid.record import Current, Inflow, Liquid, LiquidModel
 from mdanim_lammps.model import build_models, shapes
 from mdanim_lammps.model.spacing import choose_spacing
 from mdanim_lammps.model.system import assemble
 from mdanim_lammps.run.prepare import prepare
 from mdanim_lammps.scene.rotation import rotation_euler
-from mdanim_lammps.scene.scene import Box, Current, HoldAll, HoldFaces, Inflow, Liquid, LiquidModel, Mesh, Side, Switch
+from mdanim_lammps.scene.scene import Box, HoldAll, HoldFaces, Mesh, Side, Switch
 from model_samples import MESHES, SHAPES, scene, shape_id, solid
 from paths import REPOSITORY
 

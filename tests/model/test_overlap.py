@@ -9,9 +9,10 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from mdanim_lammps import features
+from mdanim_lammps.features.liquid.record import Liquid
 from mdanim_lammps.features.walls.words import Walls
 from mdanim_lammps.model import build_models, check_geometry, overlap, shapes
-from mdanim_lammps.scene.scene import Box, ContactModel, Cylinder, HoldAll, Liquid, Mesh, Sphere, Torus
+from mdanim_lammps.scene.scene import Box, ContactModel, Cylinder, HoldAll, Mesh, Sphere, Torus
 from model_samples import MESHES, SHAPES, rotation, scene, shape_id, solid
 
 CUBE = Box((1.0, 1.0, 1.0))

@@ -3,10 +3,12 @@
 
 import pytest
 from mdanim_lammps.errors import SceneError
-from mdanim_lammps.scene.contact_pairs import any_friction, frictions, objects_by_name, pair_rules, pairs_of
+from mdanim_lammps.features.contact.pairs import any_friction, frictions, pair_rules
+from mdanim_lammps.features.contact.words import ContactPair
 from mdanim_lammps.scene.lock import lock_text
+from mdanim_lammps.scene.naming import objects_by_name, pairs_of
 from mdanim_lammps.scene.parse import parse_scene
-from mdanim_lammps.scene.scene import ContactModel, ContactPair
+from mdanim_lammps.scene.scene import ContactModel
 from scene_parts import ball, text
 
 SURFACE = "contact-model surface"
@@ -165,7 +167,7 @@ def test_a_name_with_two_meanings():
 
 def test_too_many_pairs(monkeypatch):
     """Refuse before they are listed."""
-    monkeypatch.setattr("mdanim_lammps.scene.validate.MOST_PAIRS", 8)
+    monkeypatch.setattr("mdanim_lammps.features.contact.words.MOST_PAIRS", 8)
     (found,) = problems(pile("contact b b { friction 1 }"))
     assert "name more than 8 pairs" in found.message and "in the objects" in found.hint
 

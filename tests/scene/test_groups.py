@@ -3,8 +3,8 @@
 
 import pytest
 from mdanim_lammps.errors import SceneError
-from mdanim_lammps.scene.contact_pairs import objects_by_name
 from mdanim_lammps.scene.lock import lock_text
+from mdanim_lammps.scene.naming import objects_by_name
 from mdanim_lammps.scene.parse import parse_scene
 from mdanim_lammps.scene.rotation import product, rotation_about
 

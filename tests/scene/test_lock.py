@@ -7,6 +7,8 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from mdanim_lammps.errors import SceneError
+from mdanim_lammps.features.contact.words import ContactPair
+from mdanim_lammps.features.liquid import record as liquids
 from mdanim_lammps.features.walls.words import Walls
 from mdanim_lammps.scene import scene as records
 from mdanim_lammps.scene.keywords import BLOCKS, KEYWORDS, STATEMENTS
@@ -132,9 +134,9 @@ def scenes(draw):
         by_volume = draw(st.booleans())
         share = draw(st.floats(0.1, 0.9))
         taken = {b.name for b in bodies}
-        model = draw(st.sampled_from(records.LiquidModel))
-        waves = model is records.LiquidModel.WAVES
-        liquid = records.Liquid(
+        model = draw(st.sampled_from(liquids.LiquidModel))
+        waves = model is liquids.LiquidModel.WAVES
+        liquid = liquids.Liquid(
             name=draw(words.filter(lambda w: w not in taken)),
             low=basin.low,
             high=basin.high,
@@ -145,10 +147,10 @@ def scenes(draw):
             model=model,
             calm=draw(st.none() | positive) if waves else None,
             drops=draw(st.sampled_from([0.0, 0.25, 1.0])) if waves else 0.0,
-            wave=draw(st.sampled_from([(), (records.Wave("-x", 0.1, 2.0), records.Wave("+y", 0.02, 3.0))])) if waves else (),
-            current=draw(st.sampled_from([(), (records.Current("+x", 0.3),)])) if waves else (),
-            inflow=draw(st.sampled_from([(), (records.Inflow(basin.low, basin.high, 0.1, (0.1, -0.2, 0.0)),)])) if waves else (),
-            drain=draw(st.sampled_from([(), (records.Drain(basin.low, basin.high, 0.1),)])) if waves else (),
+            wave=draw(st.sampled_from([(), (liquids.Wave("-x", 0.1, 2.0), liquids.Wave("+y", 0.02, 3.0))])) if waves else (),
+            current=draw(st.sampled_from([(), (liquids.Current("+x", 0.3),)])) if waves else (),
+            inflow=draw(st.sampled_from([(), (liquids.Inflow(basin.low, basin.high, 0.1, (0.1, -0.2, 0.0)),)])) if waves else (),
+            drain=draw(st.sampled_from([(), (liquids.Drain(basin.low, basin.high, 0.1),)])) if waves else (),
             sweeps=None if waves else draw(st.none() | st.integers(1, 100)),
             fill=draw(st.none() | st.just((basin.low, basin.high))),
             color=draw(colors),
@@ -157,7 +159,7 @@ def scenes(draw):
     contacts = ()
     if len(bodies) > 1 and draw(st.booleans()):
         mu, beta = draw(st.tuples(frictions, dampings).filter(lambda both: both != (None, None)))
-        contacts = (records.ContactPair(*draw(sides), mu, beta),)
+        contacts = (ContactPair(*draw(sides), mu, beta),)
     cameras = draw(
         st.lists(
             st.builds(records.Camera, vectors, vectors | st.sampled_from([b.name for b in bodies]), up=vectors.filter(any)),

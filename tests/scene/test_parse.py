@@ -6,6 +6,7 @@ import time
 
 import pytest
 from mdanim_lammps.errors import SceneError
+from mdanim_lammps.features.liquid.record import LiquidModel
 from mdanim_lammps.features.walls.words import Walls
 from mdanim_lammps.scene import scene as records
 from mdanim_lammps.scene.expressions import random_unit
@@ -245,7 +246,7 @@ def test_liquid_options():
     sea = scene.liquid
     assert (sea.name, sea.level, sea.volume, sea.drag, sea.sweeps) == ("sea", 0.5, None, None, 4)
     assert sea.density == 1000.0
-    assert sea.model is records.LiquidModel.PAPER
+    assert sea.model is LiquidModel.PAPER
     assert sea.fill == ((0.0, 0.0, 0.0), (0.5, 1.0, 0.6))
     assert (sea.color, scene.render.liquid) == ("#000080", "cells")
 

@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 from case import CONTROL, C, Case, block, refused, velocity
 from mdanim_lammps.errors import SceneError
-from mdanim_lammps.scene.scene import LiquidModel
+from mdanim_lammps.features.liquid.record import LiquidModel
 from trial import START, UNITS, Trial
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "lab"))

@@ -15,10 +15,11 @@ from mdanim_lammps import Scene
 from mdanim_lammps.certificate import fit_steps
 from mdanim_lammps.cli.scene_commands import study as study_command
 from mdanim_lammps.errors import DivergedError, OutputError, RefusedError, UsageError
+from mdanim_lammps.features.liquid.record import LiquidModel
 from mdanim_lammps.run.loop import Interrupted, simulate
 from mdanim_lammps.run.prepare import prepare
 from mdanim_lammps.scene.parse import load_scene, parse_scene
-from mdanim_lammps.scene.scene import Accuracy, LiquidModel
+from mdanim_lammps.scene.scene import Accuracy
 from mdanim_lammps.study import bench
 from mdanim_lammps.study.measure import Sample, TooLong, measure
 from mdanim_lammps.study.setting import LADDERS, Setting, ladders, own_setting, same_frames, scene_hash, with_setting

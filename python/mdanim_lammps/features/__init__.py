@@ -4,7 +4,9 @@
 A folder has facets, each a module that is looked for by its name:
 
 ``words``    its part of the language (scene/): SWITCHES, the causes that call for each of its effects; QUANTITIES, which
-             ``expect`` can check; MARGINS, the meaning of each of its limits; SCENE, a class with settings outside of all blocks;
+             ``expect`` can check; MARGINS, the meaning of each of its limits; classes with settings, SCENE outside of all blocks,
+             OBJECT, CONTROL and RENDER in these; BLOCKS of its own; TOUCHED, words for what objects touch, with the kind of block
+             that brings it; MISPLACED, words that people write behind a setting, and what to write instead;
              CHECKS by the word of a block, and check(validator, top, held) of a whole scene (scene/validate.py);
              touched(scene), whether it brings something that objects may touch; width(scene), the width that sets the spacing of
              scenes without objects
@@ -47,7 +49,10 @@ def facets(kind: str) -> Iterator[ModuleType]:
     for name in names():
         module = f"{__name__}.{name}.{kind}"
         if find_spec(module):
-            yield import_module(module)
+            found = import_module(module)
+            if getattr(found.__spec__, "_initializing", False):
+                raise ImportError(f"{module} imports what is made of it; it may import scene/schema.py, not scene/scene.py")
+            yield found
 
 
 @lru_cache(maxsize=1)

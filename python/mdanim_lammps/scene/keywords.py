@@ -7,68 +7,33 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from dataclasses import replace
 from difflib import get_close_matches
 
 from ..features import facets
 from .placement import Placement
-from .scene import ContactPair, Control, Liquid, Render, SceneRecord, Solid, Switch
-from .schema import Keyword, Words, keywords
-
-
-@dataclass(frozen=True, slots=True)
-class Block:
-    """One kind of block in braces."""
-
-    name: str
-    record: type | None
-    """The record that it becomes; None for ``effects``, which becomes a mapping."""
-    field: str
-    """The field of SceneRecord that holds it, a tuple of all where there may be many; empty where it becomes something else."""
-    about: str
-    names: tuple[str, ...] = ()
-    """Fields of the record that take the names after its word."""
-    indexed: bool = False
-    """Whether a name may have an index, ``ball[3]``."""
-    of_objects: bool = False
-    """Whether the names are those of objects, repeats and planes of the scene, not a name of its own."""
-    many: bool = False
-    holds: tuple[str, ...] = ()
-    """Blocks that may stand in it."""
-    form: str = ""
-    """Its names, where they are not as many as the fields."""
-
-    @property
-    def head(self) -> str:
-        """The word and what follows it up to the brace: ``object NAME[index]``."""
-        if self.form:
-            return f"{self.name} {self.form}"
-        return " ".join((self.name, *(["NAME[index]" if self.indexed else "NAME"] * len(self.names))))
-
+from .scene import Control, Render, SceneRecord, Solid, Switch
+from .schema import Block, Keyword, Words, keywords
 
 BLOCKS = {b.name: b for b in (
     Block("object", Solid, "solids", "An elastic solid. Names are free; in a `repeat` an index keeps them apart.",
-          names=("name",), indexed=True, many=True),
+          names=("name",), indexed=True, many=True, in_group=True, enough=True),
     Block("group", None, "", "Objects that are placed together, once or several times, each time by a `place`. A group "
           "itself is not a part of the scene. Objects, repeats, `contact` blocks of these objects and other placed groups may "
           "stand in it; positions are those of its own frame. Its `let`s are settings that a `place` may change.",
-          names=("name",), holds=("object", "contact", "place")),
+          names=("name",)),
     Block("place", Placement, "", "Puts a group somewhere: its object `wheel[1]` becomes `cart.wheel[1]`. Each place of a group "
           "has a name of its own: `place cart as left`, or `place cart[i]` in a repeat. `set length = 3 cm` changes a `let` "
-          "of the group.", names=("name",), indexed=True, many=True, form="GROUP[index] | place GROUP as NAME[index]"),
-    Block("liquid", Liquid, "liquid", "The liquid of the scene; there is at most one, and it needs gravity along -z.",
-          names=("name",)),
-    Block("contact", ContactPair, "contacts", "What holds where two objects touch, instead of what follows from each: "
-          "`contact ball floor { friction 0.1 }`. The name of a repeat without its index stands for all of its objects, that "
-          "of a placed group for all in it; in a group its own objects are meant first. "
-          "`ground`, `walls` and `basin` may stand for one of the two. No pair may be named twice.",
-          names=("first", "second"), indexed=True, of_objects=True, many=True),
+          "of the group.", names=("name",), indexed=True, many=True, in_group=True,
+          form="GROUP[index] | place GROUP as NAME[index]"),
+    *sorted((b for words in facets("words") for b in getattr(words, "BLOCKS", ())), key=lambda b: b.order),
     Block("effects", None, "effects", "Switches effects on or off by hand. `auto`, the default, runs only what the scene "
           "calls for; `off` on an effect that the scene needs is a warning."),
     Block("control", Control, "control", "How long, how finely, what is saved. Needed: `time`."),
     Block("render", Render, "render", "How the pictures look. Nothing here changes the motion."),
 )}  # fmt: skip
 """Blocks by name."""
+BLOCKS["group"] = replace(BLOCKS["group"], holds=tuple(b.name for b in BLOCKS.values() if b.in_group))
 
 SCENE = SceneRecord
 """The record of a whole scene."""
@@ -131,10 +96,7 @@ NOT_SUPPORTED = {
 }
 """Words that people look for, which the language does not have, and what to write instead."""
 
-MISPLACED = {
-    "ground x": "the ground is level, at a height z; for a wall across x write walls from (-2, -2, 0) m to (2, 2, 3) m",
-    "ground y": "up is z: write ground z 0 m; for a wall across y write walls from (-2, -2, 0) m to (2, 2, 3) m",
-}
+MISPLACED = {at: way_out for words in facets("words") for at, way_out in getattr(words, "MISPLACED", {}).items()}
 """A setting with a word that people write behind it, and what to write instead."""
 
 SYNONYMS = {

@@ -64,24 +64,6 @@ LIMITS = {
 }
 """By SI unit: what any value of that unit may be."""
 
-DAMPING = Limit("damping", 100.0, way_out="1 is critical damping: nothing vibrates any more")
-CONTACT_STIFFNESS = Limit(
-    "contact-stiffness",
-    100.0,
-    0.1,
-    "1 is as stiff as the material itself; 4 halves how deep objects sink in, for a shorter time step",
-)
-"""Softer, objects pass through each other before they are crushed; stiffer, only time is lost."""
-FRICTION = Limit(
-    "friction", 10.0, way_out="rubber on dry concrete has 1; above 10 objects stick to walls, as glue would hold them"
-)
-"""At 10 an object stays on a slope of 84 degrees."""
-CONTACT_DAMPING = Limit("contact-damping", 1.0, way_out="1 is critical damping: nothing chatters any more")
-MOST_PAIRS = 10**5
-"""Pairs of objects that all contact blocks of a scene name together."""
-DROPS = Limit("drops", 1.0, way_out="1 lets all of it fly")
-SWEEPS = Limit("sweeps", 4096, way_out="write sweeps auto, which takes 8 for each cell that the fastest solid travels")
-"""The limit of fix mdanim/liquid."""
 SPEED = Limit("speed", 1e4, 1e-4, "speed 0.1 shows a second of the scene in ten seconds, speed 10 ten seconds in one")
 SHADOWS = Limit("shadows", 1.0, way_out="1 is the darkest: nothing of the lamp is left in a shadow")
 PIXELS = Limit("the size of a picture", 16384, way_out="the most is 16384 along a side")

@@ -9,14 +9,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import Enum
 from pathlib import Path
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 from ..errors import Span
 from .formatting import number, vector
 from .limits import PIXELS, SHADOWS, SPEED
-from .schema import Codec, Keyword, OneOf, Rule, Vector, Worded, Words, setting
+from .schema import COLOR, Codec, Keyword, OneOf, Rule, Vector, Worded, Words, of_features, setting, with_words
 
-COLOR = 'a CSS name or "#rrggbb". Absent: chosen automatically.'
 LOWEST_LAMP = math.sin(math.radians(5.0))
 """Height of a lamp over its distance; shadows of a lower one are longer than any picture."""
 SMOOTH_RATE, LEAST_RATE = 30.0, 15.0
@@ -117,13 +116,16 @@ class Render(Worded):
         "What is drawn on the floor: lines that tell sizes, nothing, squares, or no floor at all.",
         "checker", default=Floor.GRID, codec=Words(Floor))  # fmt: skip
     background: str | None = setting("<color>", f"Background: {COLOR}", "white", default=None)
-    liquid: str = setting(
-        "<smooth|cells>",
-        "`smooth`: the surface of the liquid as a smooth sheet. `cells`: the columns of the automaton as they are.",
-        "cells", default="smooth")  # fmt: skip
     camera: tuple[Camera, ...] = setting(
         None,
         "Where the camera stands and what it looks at; several lines with times T make a smooth path. `look NAME` follows an "
         "object. Absent: chosen so that everything is seen.",
         "from (4, -4, 2) m look (0, 0, 0.5) m", default=(), many=True, codec=OneOf(Camera))  # fmt: skip
     spans: Mapping[str, Span] = field(default_factory=dict, compare=False, repr=False)
+
+    if TYPE_CHECKING:
+        __getattr__ = of_features
+
+
+if not TYPE_CHECKING:
+    Render = with_words(Render, "RENDER")

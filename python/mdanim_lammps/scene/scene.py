@@ -8,15 +8,14 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from enum import Enum
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any
 
 from ..errors import Span
 from ..features import facets
 from .formatting import number, vector
-from .limits import CONTACT_DAMPING, CONTACT_STIFFNESS, DAMPING, DROPS, FRICTION, SWEEPS
-from .render import COLOR, Camera, Render  # noqa: F401
+from .render import Camera, Render  # noqa: F401
 from .rotation import IDENTITY, departure, rotation_about, rotation_euler
-from .schema import BOX, Codec, Keyword, Observable, OneOf, Rule, Vector, Worded, Words, setting, with_words
+from .schema import COLOR, Codec, Keyword, Observable, OneOf, Rule, Vector, Worded, Words, of_features, setting, with_words
 from .shapes import (
     Box,
     Cone,
@@ -88,26 +87,12 @@ class Solid:
     density: float | None = setting(
         "<rho:kg/m^3>", "Mass per volume.", "900 kg/m^3", Rule.POSITIVE, default=None, one_of=("mass", "density"))  # fmt: skip
     """[kg/m^3]"""
-    damping: float = setting(
-        "<zeta>", "Internal damping, as a fraction of critical damping in each spring.",
-        "0.05", Rule.NOT_NEGATIVE, default=0.0, limit=DAMPING)  # fmt: skip
-    """Fraction of critical damping at the bond level [-]."""
     velocity: Vector = setting("<(vx, vy, vz):m/s>", "Velocity at the start.", "(0, 0, -1) m/s", default=(0.0, 0.0, 0.0))
     """[m/s]"""
     spin: Vector = setting(
         "<(wx, wy, wz):rad/s>", "Angular velocity at the start, about the axes of the world.",
         "(0, 0, 2) rad/s", default=(0.0, 0.0, 0.0))  # fmt: skip
     """Angular velocity, world frame [rad/s]."""
-    drag: float = setting(
-        "<lambda:N*s/m>", "Air drag of the whole object, F = -lambda v, eq. (3.9).",
-        "0.5 N*s/m", Rule.NOT_NEGATIVE, default=0.0)  # fmt: skip
-    """lambda of the whole object, eq. (3.9) [N*s/m]."""
-    friction: float | None = setting(
-        "<mu>",
-        "Coefficient of friction; two objects in touch have sqrt(mu_A mu_B), an object has its own against ground, walls and "
-        "basin. Not with `contact-model paper`. Absent: that of `control`.",
-        "0.4", Rule.NOT_NEGATIVE, default=None, limit=FRICTION)  # fmt: skip
-    """mu [-]; None is that of the scene."""
     hold: tuple[Hold, ...] = setting(
         None,
         "Particles that never move: both faces across an axis of the object, one face, all of them (a wedge, an obstacle), or "
@@ -118,154 +103,8 @@ class Solid:
     spans: Mapping[str, Span] = field(default_factory=dict, compare=False, repr=False)
     """Where each keyword's value stands; ``spans["object"]`` is the object's name."""
 
-
-@dataclass(frozen=True, slots=True)
-class ContactPair:
-    """The rule of contact where some objects touch some others, or a plane."""
-
-    first: str
-    """An object, all objects of a repeat, ``ground``, ``walls`` or ``basin``."""
-    second: str
-    friction: float | None = setting(
-        "<mu>", "Coefficient of friction of these two. Absent: sqrt(mu_A mu_B), or that of the object against a plane.",
-        "0.1", Rule.NOT_NEGATIVE, default=None, limit=FRICTION)  # fmt: skip
-    """mu [-]; None is that of the two objects."""
-    contact_damping: float | None = setting(
-        "<beta>", "Damping of their contact. Absent: that of `control`.",
-        "0.1", Rule.NOT_NEGATIVE, default=None, limit=CONTACT_DAMPING)  # fmt: skip
-    """Share of critical damping [-]; None is that of the scene."""
-    spans: Mapping[str, Span] = field(default_factory=dict, compare=False, repr=False)
-    """Where each keyword's value stands; ``spans["contact"]`` is that of the names."""
-
-
-class LiquidModel(Enum):
-    WAVES = "waves"
-    """A liquid with momentum."""
-    SURFACE = "surface"
-    """An automaton without momentum; lift by the part of each particle's volume below the surface."""
-    PAPER = "paper"
-    """The paper's rules, word by word."""
-
-
-@dataclass(frozen=True, slots=True)
-class Wave:
-    """A paddle along a side of the basin."""
-
-    FORMS: ClassVar = ("<-x|+x|-y|+y> amplitude <a:m> period <T:s>",)
-    side: str
-    amplitude: float
-    """Amplitude of the waves that run off [m]."""
-    period: float
-    """[s]"""
-
-
-@dataclass(frozen=True, slots=True)
-class Current:
-    """A current: liquid that goes out at the opposite side comes in at this one."""
-
-    FORMS: ClassVar = ("<-x|+x|-y|+y> speed <u:m/s>",)
-    side: str
-    speed: float
-    """[m/s]"""
-
-
-@dataclass(frozen=True, slots=True)
-class Inflow:
-    """Liquid from outside."""
-
-    FORMS: ClassVar = (f"{BOX} rate <q:m^3/s> [velocity <(vx, vy, vz):m/s>]",)
-    low: Vector
-    """[m]"""
-    high: Vector
-    """[m]"""
-    rate: float
-    """[m^3/s]"""
-    velocity: Vector = (0.0, 0.0, 0.0)
-    """[m/s]"""
-
-
-@dataclass(frozen=True, slots=True)
-class Drain:
-    """Liquid to outside."""
-
-    FORMS: ClassVar = (f"{BOX} rate <q:m^3/s>",)
-    low: Vector
-    """[m]"""
-    high: Vector
-    """[m]"""
-    rate: float
-    """[m^3/s]"""
-
-
-@dataclass(frozen=True, slots=True)
-class Liquid(Worded):
-    """The one liquid of a scene."""
-
-    name: str
-    low: Vector = setting(
-        BOX, "Solid floor and side walls; for objects the walls go on upward.",
-        "from (-1, -1, 0) m to (1, 1, 1.2) m", name="basin", also=("high",))  # fmt: skip
-    """Lower corner of the basin [m]."""
-    high: Vector
-    """Upper corner of the basin [m]."""
-    density: float = setting("<rho:kg/m^3>", "Mass per volume.", "1000 kg/m^3", Rule.POSITIVE)
-    """[kg/m^3]"""
-    volume: float | None = setting(
-        "<V:m^3>", "Volume, rounded to whole cells.",
-        "2 m^3", Rule.POSITIVE, default=None, one_of=("volume", "level"))  # fmt: skip
-    """[m^3]; exactly one of volume and level is given."""
-    level: float | None = setting(
-        "<z:m>", "Height of the surface at the start; hulls that reach above it are dry.", "0.5 m", default=None,
-        one_of=("volume", "level"))  # fmt: skip
-    """Initial height of the surface [m]."""
-    fill: tuple[Vector, Vector] | None = setting(
-        BOX, "Part of the basin that the liquid starts in, behind a dam that is gone at once. Absent: all of it.",
-        "from (-1, -1, 0) m to (0, 1, 1.2) m", default=None)  # fmt: skip
-    """Lower and upper corner of the part of the basin that the liquid starts in [m]; None is all of it."""
-    drag: float | None = setting(
-        "auto | <gamma:1/s>",
-        "Immersed solids feel F = -gamma rho V v with the immersed volume V and the velocity v against the liquid; `auto` is "
-        "gamma = sqrt(g/L) for a body of size L; with `model waves` 0.15 sqrt(g/L) + 0.25 v/L, so that what is slow glides on.",
-        "4 1/s", Rule.NOT_NEGATIVE, default=None)  # fmt: skip
-    """gamma [1/s]; None is ``auto``."""
-    model: LiquidModel = setting(
-        None,
-        "`waves`: a liquid with momentum that splashes, sloshes and pushes; open hulls float dry. `surface`: the paper's "
-        "automaton, which makes room, levels and lifts, and nothing else: quicker, and at rest at once. `paper`: the "
-        "literal rules of the paper, with a warning: not Archimedes, objects denser than about 0.4 of the liquid sink.",
-        "surface", default=LiquidModel.WAVES, codec=Words(LiquidModel),
-        gone={"pressure": "write model waves, in which open hulls float by the air in them, or model surface"})  # fmt: skip
-    calm: float | None = setting(
-        "auto | <T:s>", "With `model waves`: time in which waves die to 1/e, besides by drag and depth; `auto` is 50 √(depth/g).",
-        "20 s", Rule.POSITIVE, default=None)  # fmt: skip
-    """Time in which waves die to 1/e [s]; None is ``auto``."""
-    drops: float = setting(
-        "<share>", "With `model waves`: share of what shoots up from impacts and fronts that flies as drops, and comes back.",
-        "0.5", Rule.NOT_NEGATIVE, default=0.0, limit=DROPS)  # fmt: skip
-    wave: tuple[Wave, ...] = setting(
-        None, "With `model waves`: waves of this amplitude and period run into the basin from a side.",
-        "-x amplitude 2 cm period 1 s", Rule.POSITIVE, default=(), many=True, codec=OneOf(Wave))  # fmt: skip
-    current: tuple[Current, ...] = setting(
-        None, "With `model waves`: liquid comes in at this side, and as much goes out at the opposite one.",
-        "-x speed 20 cm/s", Rule.POSITIVE, default=(), many=True, codec=OneOf(Current))  # fmt: skip
-    inflow: tuple[Inflow, ...] = setting(
-        None, "With `model waves`: liquid comes into the columns of this box, at the height of its middle.",
-        "from (-1, -1, 1) m to (-0.8, 1, 1) m rate 0.002 m^3/s", default=(), many=True, codec=OneOf(Inflow))  # fmt: skip
-    drain: tuple[Drain, ...] = setting(
-        None, "With `model waves`: liquid goes out of the columns of this box, at the height of its middle.",
-        "from (0.8, -1, 0) m to (1, 1, 0) m rate 0.002 m^3/s", default=(), many=True, codec=OneOf(Drain))  # fmt: skip
-    sweeps: int | None = setting(
-        "auto | <n>", "Sweeps of the automaton per update; not with `model waves`.",
-        "4", Rule.COUNT, default=None, limit=SWEEPS)  # fmt: skip
-    """Automaton sweeps per update; None is ``auto``."""
-    color: str | None = setting("<color>", f"Colour in pictures: {COLOR}", "deepskyblue", default=None)
-    """``#rrggbb``; None lets the renderer choose."""
-    spans: Mapping[str, Span] = field(default_factory=dict, compare=False, repr=False)
-
-    @property
-    def fed(self) -> bool:
-        """Whether liquid comes from outside or goes there."""
-        return bool(self.wave or self.current or self.inflow or self.drain)
+    if TYPE_CHECKING:
+        __getattr__ = of_features
 
 
 # --- control, pictures, self-checks -----------------------------------------------------------------------
@@ -338,27 +177,11 @@ class Control(Worded):
         default=Accuracy.BALANCED, codec=Words(Accuracy), gone={
             "error": 'mdanim-lammps study SCENE --target "2 %" finds the setting for an error and prints what to write',
         })  # fmt: skip
-    contact_stiffness: float = setting(
-        "<factor>",
-        "What objects, ground and walls push back with, over E h, the stiffness of the material behind a surface; from 0.1 to "
-        "100. The stiffer it is, the less objects sink into each other, and the shorter time steps get.",
-        "4", Rule.POSITIVE, default=1.0, limit=CONTACT_STIFFNESS)  # fmt: skip
-    """Stiffness with which objects and walls push back, over E h [-]."""
     contact_model: ContactModel = setting(
         None,
         "`surface`: objects touch where their drawn surfaces are, and may have friction. `paper`: the barrier of Wcislo 1999 "
         "between particles, which keeps objects about half a spacing apart, without friction.",
         "paper", default=ContactModel.SURFACE, codec=Words(ContactModel))  # fmt: skip
-    friction: float = setting(
-        "<mu>", "Coefficient of friction of objects that have none of their own. Not with `contact-model paper`.",
-        "0.5", Rule.NOT_NEGATIVE, default=0.0, limit=FRICTION)  # fmt: skip
-    """mu [-]"""
-    contact_damping: float | None = setting(
-        "<beta>",
-        "Damping of contacts that have friction, as a fraction of critical damping: it ends chatter. Not with `contact-model "
-        "paper`. Absent: 0.3.",
-        "0.3", Rule.NOT_NEGATIVE, default=None, limit=CONTACT_DAMPING)  # fmt: skip
-    """Share of critical damping where there is friction [-]; None is 0.3."""
     seed: int = setting("<n>", "Seed of `rand` and of the liquid.", "7", Rule.WHOLE, default=1)
     save: Save = setting(
         "<all|boundary> [<single|double>]",
@@ -367,6 +190,9 @@ class Control(Worded):
     single: bool = False
     """Trajectory in single precision."""
     spans: Mapping[str, Span] = field(default_factory=dict, compare=False, repr=False)
+
+    if TYPE_CHECKING:
+        __getattr__ = of_features
 
 
 _OF_FEATURES = {of: quantity for words in facets("words") for of, quantity in getattr(words, "QUANTITIES", {}).items()}
@@ -451,8 +277,6 @@ class SceneRecord:
         "`strict` refuses bare numbers where a unit belongs, in the whole scene with all that it includes; `check --strict` does "
         "so for any scene.", "strict", default="free")  # fmt: skip
     solids: tuple[Solid, ...] = ()
-    liquid: Liquid | None = None
-    contacts: tuple[ContactPair, ...] = ()
     effects: Mapping[str, Switch] = field(default_factory=dict)
     """Only what ``effects { }`` says; everything else is ``auto``."""
     render: Render = field(default_factory=Render)
@@ -470,10 +294,9 @@ class SceneRecord:
     """Problems of severity ``warning`` that were found while reading."""
 
     if TYPE_CHECKING:
-
-        def __getattr__(self, name: str) -> Any:
-            """Settings that features add."""
+        __getattr__ = of_features
 
 
 if not TYPE_CHECKING:
+    Solid, Control = with_words(Solid, "OBJECT"), with_words(Control, "CONTROL")
     SceneRecord = with_words(SceneRecord, "SCENE")

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import dataclasses
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from enum import Enum
 from typing import Any, NamedTuple
@@ -25,6 +25,8 @@ Vector = tuple[float, float, float]
 
 BOX = "from <(x0, y0, z0):m> to <(x1, y1, z1):m>"
 """Two corners of a box of the world, the lower one first."""
+COLOR = 'a CSS name or "#rrggbb". Absent: chosen automatically.'
+"""How a colour is given."""
 
 
 class Rule(Enum):
@@ -193,6 +195,42 @@ class Keyword:
         return [write(alternatives(self.form)[c], values, number) for c, values in filter(None, found)]
 
 
+@dataclass(frozen=True, slots=True)
+class Block:
+    """One kind of block in braces."""
+
+    name: str
+    record: type | None
+    """The record that it becomes; None for ``effects``, which becomes a mapping."""
+    field: str
+    """The field of SceneRecord that holds it, a tuple of all where there may be many; empty where it becomes something else."""
+    about: str
+    names: tuple[str, ...] = ()
+    """Fields of the record that take the names after its word."""
+    indexed: bool = False
+    """Whether a name may have an index, ``ball[3]``."""
+    of_objects: bool = False
+    """Whether the names are those of objects, repeats and planes of the scene, not a name of its own."""
+    many: bool = False
+    holds: tuple[str, ...] = ()
+    """Blocks that may stand in it."""
+    in_group: bool = False
+    """Whether it may stand in a group."""
+    enough: bool = False
+    """Whether a scene with such a block has something to compute."""
+    order: int = 0
+    """Place among the blocks of features, ascending."""
+    form: str = ""
+    """Its names, where they are not as many as the fields."""
+
+    @property
+    def head(self) -> str:
+        """The word and what follows it up to the brace: ``object NAME[index]``."""
+        if self.form:
+            return f"{self.name} {self.form}"
+        return " ".join((self.name, *(["NAME[index]" if self.indexed else "NAME"] * len(self.names))))
+
+
 def setting(
     form: str | None,
     about: str,
@@ -203,11 +241,13 @@ def setting(
     name: str = "",
     absent: Any = dataclasses.MISSING,
     codec: Codec | None = None,
+    after: str = "",
     **facts: Any,
 ) -> Any:
     """A field of a record together with its keyword, which is called as the field unless ``name`` says otherwise.
 
     ``default`` is that of the field, ``absent`` one that the field itself does not have; without both the keyword must be given.
+    ``after`` is the field behind which a setting that a feature adds is told.
     ``facts`` are further fields of Keyword.
     """
     codec = codec or PLAIN
@@ -219,13 +259,15 @@ def setting(
         form, about, example, rule, codec=codec, name=name, needed=needed,
         absent=None if value is dataclasses.MISSING else value, **facts,
     )  # fmt: skip
-    return dataclasses.field(default=default, metadata={"keyword": keyword})
+    return dataclasses.field(default=default, metadata={"keyword": keyword, "after": after})
 
 
 def with_words(record: type, kind: str) -> type:
     """A record with the settings that features add to it: those in the class ``kind`` of their words, each with a default."""
     found = [getattr(words, kind) for words in facets("words") if hasattr(words, kind)]
     fields = [(name, of, vars(words)[name]) for words in found for name, of in vars(words)["__annotations__"].items()]
+    if not fields:
+        return record
     made = dataclasses.make_dataclass(record.__name__, fields, bases=(record,), frozen=True, slots=True)
     made.__module__, made.__doc__ = record.__module__, record.__doc__
     return made
@@ -234,13 +276,26 @@ def with_words(record: type, kind: str) -> type:
 def keywords(block: str, record: type | None) -> dict[str, Keyword]:
     """The keywords of a record's fields by name, defaults written out."""
     found = {}
-    for field in dataclasses.fields(record) if record else ():
+    for field in _in_order(dataclasses.fields(record) if record else ()):
         if (k := field.metadata.get("keyword")) is not None:
             k = dataclasses.replace(k, block=block, field=field.name, name=k.name or field.name.replace("_", "-"))
             if not k.needed and not k.many and not k.one_of:
                 k = dataclasses.replace(k, default=_default(k, record))
             found[k.name] = k
     return found
+
+
+def _in_order(fields: Iterable[dataclasses.Field]) -> list[dataclasses.Field]:
+    """The fields of a record, those of features where they are told."""
+    found: list[dataclasses.Field] = []
+    for field in fields:
+        behind = next((n for n, f in enumerate(found, 1) if f.name == field.metadata.get("after")), len(found))
+        found.insert(behind, field)
+    return found
+
+
+def of_features(record: Any, name: str) -> Any:
+    """Settings that features add to a record, for those who check types."""
 
 
 def _default(k: Keyword, record: type) -> str:

@@ -16,12 +16,12 @@ from ..errors import Span
 from ..features import facets
 from . import keywords, units
 from . import scene as records
-from .contact_pairs import PLANES, objects_by_name, pairs_of
 from .evaluated import EvaluatedBlock, EvaluatedSetting, around
 from .formatting import number, say, whole
 from .keywords import BLOCKS, KEYWORDS, Block, did_you_mean, example
-from .limits import LIMITS, MOST_FRAMES, MOST_PAIRS
+from .limits import LIMITS, MOST_FRAMES
 from .meshes import refusal_of_mesh
+from .naming import objects_by_name
 from .placement import Placement
 from .render import SMOOTH_RATE, few_pictures
 from .scene import GLOBALS, QUANTITIES, Vector
@@ -52,13 +52,20 @@ class Validator:
         """Names of all objects, in the order of the scene."""
         self.places: dict[int, Placement | None] = {}
         """Where groups stand in the world, by the id of their block."""
-        self.paired: dict[tuple[int | str, int], Span] = {}
-        """Places of the contact blocks, by the pairs that they are of."""
+        self.touched = {word: kind for words in facets("words") for word, kind in getattr(words, "TOUCHED", {}).items()}
+        """Words for what objects touch, and the kinds of block that bring it; empty for a setting of that name."""
+        self.memory: dict[str, Any] = {}
+        """What checks of features keep from one block to the next."""
 
     @cached_property
     def named(self) -> dict[str, list[int]]:
         """Numbers of the objects that each name of a contact block may stand for."""
         return objects_by_name(self.names)
+
+    @cached_property
+    def own_names(self) -> dict[str, str]:
+        """Names of blocks that ``expect`` knows by their word, each with the word."""
+        return {b.name: b.block for b in self.out.blocks if b.block in GLOBALS}
 
     def problem(self, span: Span | None, message: str, hint: str = "", severity: str = "error", key=None) -> None:
         self.problems.add(span, message, hint, severity, key)
@@ -77,12 +84,12 @@ class Validator:
         for words in facets("words"):
             if hasattr(words, "check"):
                 words.check(self, top, held)
-        self.contact_fits(control, held["solids"])
         held["control"] = control = self.frames(control, held["render"])
         self.cameras()
         top["expects"] = self.expects(control)
-        if not held["solids"] and not self.blocks("liquid") and not self.out.excused("object") and not self.problems.errors:
-            cause = "the scene has neither an object nor a liquid: there is nothing to compute"
+        enough = [block for block in BLOCKS.values() if block.enough]
+        if not any(held[b.field] for b in enough) and not self.out.excused("object") and not self.problems.errors:
+            cause = f"the scene has neither an {' nor a '.join(b.name for b in enough)}: there is nothing to compute"
             self.problem(self.top, cause, "write object NAME { ... }", key="empty")
         if self.problems.errors or control is None:
             return None
@@ -208,7 +215,8 @@ class Validator:
     def names_once(self) -> None:
         """No two blocks of one name, and no name that expect uses for something else."""
         first: dict[str, EvaluatedBlock] = {}
-        for block in (b for b in self.out.blocks if b.block in ("object", "liquid", "place")):  # as they stand in the scene
+        own = {kind.name for kind in BLOCKS.values() if kind.names and not kind.of_objects}
+        for block in (b for b in self.out.blocks if b.block in own):  # as they stand in the scene
             if block.name in first:
                 self.problem(
                     self.head(block),
@@ -221,23 +229,6 @@ class Validator:
                     self.head(block), f"an object cannot be called {block.name}: expect uses this word", "take another name"
                 )
             first.setdefault(block.name, block)
-
-    def contact_fits(self, control: records.Control | None, solids: list[records.Solid]) -> None:
-        """The contact of the paper has neither friction nor damping; that of surfaces has damping where it has friction."""
-        if control is None:
-            return
-        blocks, words = self.blocks("contact"), {"friction": control.friction, "contact-damping": control.contact_damping}
-        asked = [("a contact block", self.head(b)) for b in blocks]
-        asked += [("friction", s.spans["friction"]) for s in solids if s.friction]
-        asked += [(word, control.spans[word]) for word, value in words.items() if value]
-        if control.contact_model is records.ContactModel.PAPER and asked:
-            what, span = asked[0]
-            cause = f"{what} needs contact-model surface; the contact of the paper has no friction"
-            self.problem(span, cause, "take contact-model paper out of control", key="contact-model")
-        elif [what for what, _ in asked] == ["contact-damping"]:
-            cause = "contact-damping of control acts where there is friction, and nothing in the scene has any"
-            way_out = "write friction 0.5 in control, or contact-damping in a contact block"
-            self.problem(control.spans["contact-damping"], cause, way_out, severity="warning")
 
     def frames(self, control: records.Control | None, render: records.Render | None) -> records.Control | None:
         """Control with as many frames as slow motion asks for, unless it says how many: at least one, and not too many."""
@@ -330,39 +321,6 @@ class Validator:
             return None
         return solid
 
-    def check_contact(self, block: EvaluatedBlock, contact: records.ContactPair) -> records.ContactPair | None:
-        """Two things that can touch, no pair of them twice, and something to say about them."""
-        place = self.head(block)
-        if contact.friction is None and contact.contact_damping is None and not block.excused(*KEYWORDS["contact"]):
-            cause = f"contact {block.name} says nothing{block.where}"
-            self.problem(place, cause, "write friction 0.1 or contact-damping 0 in it, or leave it out")
-            return None
-        planes = [name for name in block.names if name in PLANES and name not in self.named]
-        if planes and contact.contact_damping is not None:
-            cause = f"the contact-damping of {planes[0]} is that of control; a contact block cannot change it"
-            self.problem(contact.spans["contact-damping"], cause, "write contact-damping in control")
-            return None
-        if len(planes) == 2:
-            self.problem(place, f"{planes[0]} and {planes[1]} never touch", "write the name of an object for one of them")
-            return None
-        first, second = (self.named.get(name, ()) for name in block.names)
-        if first == second and len(first) == 1:
-            cause = f"{contact.first} does not touch itself{block.where}"
-            self.problem(place, cause, "write the names of two objects, or ground, walls or basin for one")
-            return None
-        if len(self.paired) + max(1, len(first)) * max(1, len(second)) > MOST_PAIRS:
-            cause = f"the contact blocks of the scene name more than {whole(MOST_PAIRS)} pairs of objects"
-            self.problem(place, cause, "write friction in the objects, or in control", key="pairs")
-            return None
-        for pair in [(planes[0], i) for i in (*first, *second)] if planes else pairs_of(first, second):
-            if (given := self.paired.setdefault(pair, place)) is not place:
-                names = list(self.names)
-                one, other = (i if isinstance(i, str) else names[i] for i in pair)
-                cause = f"the contact of {one} and {other} is given twice{block.where}"
-                self.problem(place, cause, f"first given at {given}", key=("contact", id(block.group)))
-                return None
-        return contact
-
     def cameras(self) -> None:
         """Cameras look at something; several are points of one path, each with a time of its own, in order."""
         settings = [s for block in self.blocks("render")[:1] for s in block.settings.get("camera", ())]
@@ -400,18 +358,19 @@ class Validator:
 
     def known_body(self, name: str, span: Span) -> bool:
         """Whether a name of a contact block stands for something; an unknown one is a problem."""
-        plane = name in PLANES and bool(self.blocks("liquid") if name == "basin" else self.out.first(name))
+        kind = self.touched.get(name)
+        plane = bool(self.blocks(kind) if kind else name in self.touched and self.out.first(name))
         twice = "a plane of the scene" if plane else "a repeat" if name in self.names and len(self.named[name]) > 1 else ""
         if name in self.named and twice:
             self.problem(span, f"{name} is the name of an object and of {twice}", "give the object another name")
             return False
-        if name in self.named or plane or self.out.excused("object", "liquid", name):
+        if name in self.named or plane or self.out.excused("object", *filter(None, self.touched.values()), name):
             return True
-        if name in PLANES:
-            way_out = example(KEYWORDS["liquid"]["basin"]) + " in a liquid" if name == "basin" else example(KEYWORDS[""][name])
-            self.problem(span, f"the scene has no {name}", way_out)
-        elif any(name == b.name for b in self.blocks("liquid")):
-            self.problem(span, f"{name} is the liquid; what objects touch is its basin", "write basin")
+        if kind is not None:
+            self.problem(span, f"the scene has no {name}", example(KEYWORDS[kind][name]) + (f" in a {kind}" if kind else ""))
+        elif found := [(word, k) for word, k in self.touched.items() if any(name == b.name for b in self.blocks(k))]:
+            word, kind = found[0]
+            self.problem(span, f"{name} is the {kind}; what objects touch is its {word}", f"write {word}")
         else:
             self.unknown_object(name, self.named, span)
         return False
@@ -422,8 +381,8 @@ class Validator:
     def expect(self, s: EvaluatedSetting, control: records.Control | None) -> records.Expect | None:
         """One self-check, with the unit of its quantity."""
         (subject, quantity, argument), time, relation, value, tolerance = s.values
-        if any(subject == b.name for b in self.blocks("liquid")) and subject not in GLOBALS:
-            subject = "liquid"
+        if subject not in GLOBALS:
+            subject = self.own_names.get(subject, subject)
         kind = subject if subject in GLOBALS else "NAME"
         known = [q for k, q in QUANTITIES if k == kind]
         if kind == "NAME" and not self.known_subject(subject, s.span(0)):
@@ -492,6 +451,6 @@ class Validator:
         if subject in self.names:
             return True
         if not self.out.excused("object"):
-            hint = did_you_mean(subject, [*list(self.names)[:2000], *(b.name for b in self.blocks("liquid")), *GLOBALS])
+            hint = did_you_mean(subject, [*list(self.names)[:2000], *self.own_names, *GLOBALS])
             self.problem(span, f"no object is called {subject}", hint)
         return False

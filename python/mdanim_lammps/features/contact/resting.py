@@ -13,9 +13,9 @@ from ...effects.envelope import Envelope
 from ...errors import Problem
 from ...model.planes import Plane
 from ...model.system import System
-from ...scene.contact_pairs import any_friction, frictions, pair_rules
 from ...scene.formatting import number
 from ...scene.scene import Box, ContactModel, Ellipsoid, SceneRecord, Sphere, Torus
+from .pairs import any_friction, frictions, pair_rules
 
 LEVEL = 1e-6
 """Tangent of a slope that is nothing but rounding."""

@@ -20,9 +20,9 @@ from ...model.overlap import BORN_AT_REST
 from ...model.planes import AXES
 from ...model.system import System
 from ...reach import largest_of_others
-from ...scene.contact_pairs import USUAL_DAMPING, any_friction, damping, frictions, pair_rules
 from ...scene.scene import Box, SceneRecord
 from .barrier import GAP, Contact, barrier, barrier_rate
+from .pairs import USUAL_DAMPING, any_friction, damping, frictions, pair_rules
 from .planes import STIFFNESS, Boundary
 from .resting import one_sided
 

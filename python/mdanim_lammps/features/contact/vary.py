@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from ...effects.varied import Varied
 from ...scene.formatting import number
-from ...scene.limits import CONTACT_STIFFNESS
+from .words import CONTACT_STIFFNESS
 
 PRESSED = 1.3
 """Part of contact in the bound over that of springs, at a corner and a ``contact-stiffness`` of 1 (docs/physics-contact.md)."""

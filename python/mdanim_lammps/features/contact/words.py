@@ -1,7 +1,32 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """Words of a scene that belong to this feature."""
 
-from ...scene.schema import Observable
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from ...errors import Span
+from ...scene.formatting import whole
+from ...scene.limits import Limit
+from ...scene.naming import pairs_of
+from ...scene.schema import Block, Observable, Rule, setting
+
+CONTACT_STIFFNESS = Limit(
+    "contact-stiffness",
+    100.0,
+    0.1,
+    "1 is as stiff as the material itself; 4 halves how deep objects sink in, for a shorter time step",
+)
+"""Softer, objects pass through each other before they are crushed; stiffer, only time is lost."""
+FRICTION = Limit(
+    "friction", 10.0, way_out="rubber on dry concrete has 1; above 10 objects stick to walls, as glue would hold them"
+)
+"""At 10 an object stays on a slope of 84 degrees."""
+CONTACT_DAMPING = Limit("contact-damping", 1.0, way_out="1 is critical damping: nothing chatters any more")
+MOST_PAIRS = 10**5
+"""Pairs of objects that all contact blocks of a scene name together."""
 
 SWITCHES = {"contact": "two objects that can meet"}
 
@@ -12,3 +37,136 @@ MARGINS = {
     "wall": "the time step that ground, walls and basin alone would bear",
     "closing speed": "how fast objects may meet so that nothing passes through; softer or thinner objects bear less",
 }
+
+
+@dataclass(frozen=True, slots=True)
+class ContactPair:
+    """The rule of contact where some objects touch some others, or a plane."""
+
+    first: str
+    """An object, all objects of a repeat, ``ground``, ``walls`` or ``basin``."""
+    second: str
+    friction: float | None = setting(
+        "<mu>", "Coefficient of friction of these two. Absent: sqrt(mu_A mu_B), or that of the object against a plane.",
+        "0.1", Rule.NOT_NEGATIVE, default=None, limit=FRICTION)  # fmt: skip
+    """mu [-]; None is that of the two objects."""
+    contact_damping: float | None = setting(
+        "<beta>", "Damping of their contact. Absent: that of `control`.",
+        "0.1", Rule.NOT_NEGATIVE, default=None, limit=CONTACT_DAMPING)  # fmt: skip
+    """Share of critical damping [-]; None is that of the scene."""
+    spans: Mapping[str, Span] = field(default_factory=dict, compare=False, repr=False)
+    """Where each keyword's value stands; ``spans["contact"]`` is that of the names."""
+
+
+class FrictionWords:
+    """Settings of an object."""
+
+    friction: float | None = setting(
+        "<mu>",
+        "Coefficient of friction; two objects in touch have sqrt(mu_A mu_B), an object has its own against ground, walls and "
+        "basin. Not with `contact-model paper`. Absent: that of `control`.",
+        "0.4", Rule.NOT_NEGATIVE, default=None, limit=FRICTION, after="drag")  # fmt: skip
+    """mu [-]; None is that of the scene."""
+
+
+OBJECT = FrictionWords
+
+
+class ContactControl:
+    """Settings of ``control``."""
+
+    contact_stiffness: float = setting(
+        "<factor>",
+        "What objects, ground and walls push back with, over E h, the stiffness of the material behind a surface; from 0.1 to "
+        "100. The stiffer it is, the less objects sink into each other, and the shorter time steps get.",
+        "4", Rule.POSITIVE, default=1.0, limit=CONTACT_STIFFNESS, after="accuracy")  # fmt: skip
+    """Stiffness with which objects and walls push back, over E h [-]."""
+    friction: float = setting(
+        "<mu>", "Coefficient of friction of objects that have none of their own. Not with `contact-model paper`.",
+        "0.5", Rule.NOT_NEGATIVE, default=0.0, limit=FRICTION, after="contact_model")  # fmt: skip
+    """mu [-]"""
+    contact_damping: float | None = setting(
+        "<beta>",
+        "Damping of contacts that have friction, as a fraction of critical damping: it ends chatter. Not with `contact-model "
+        "paper`. Absent: 0.3.",
+        "0.3", Rule.NOT_NEGATIVE, default=None, limit=CONTACT_DAMPING, after="friction")  # fmt: skip
+    """Share of critical damping where there is friction [-]; None is 0.3."""
+
+
+CONTROL = ContactControl
+
+
+class ContactWords:
+    """Rules of pairs in a scene."""
+
+    contacts: tuple[ContactPair, ...] = ()
+
+
+SCENE = ContactWords
+
+BLOCKS = (
+    Block("contact", ContactPair, "contacts", "What holds where two objects touch, instead of what follows from each: "
+          "`contact ball floor { friction 0.1 }`. The name of a repeat without its index stands for all of its objects, that "
+          "of a placed group for all in it; in a group its own objects are meant first. "
+          "`ground`, `walls` and `basin` may stand for one of the two. No pair may be named twice.",
+          names=("first", "second"), indexed=True, of_objects=True, many=True, in_group=True, order=20),
+)  # fmt: skip
+
+
+# --- checks: v is the scene/validate.Validator ----------------------------------------------------------------------
+
+
+def check(v: Any, top: Mapping, held: Mapping) -> None:
+    """The contact of the paper has neither friction nor damping; that of surfaces has damping where it has friction."""
+    control = held["control"]
+    if control is None:
+        return
+    blocks, words = v.blocks("contact"), {"friction": control.friction, "contact-damping": control.contact_damping}
+    asked = [("a contact block", v.head(b)) for b in blocks]
+    asked += [("friction", s.spans["friction"]) for s in held["solids"] if s.friction]
+    asked += [(word, control.spans[word]) for word, value in words.items() if value]
+    if control.contact_model.value == "paper" and asked:
+        what, span = asked[0]
+        cause = f"{what} needs contact-model surface; the contact of the paper has no friction"
+        v.problem(span, cause, "take contact-model paper out of control", key="contact-model")
+    elif [what for what, _ in asked] == ["contact-damping"]:
+        cause = "contact-damping of control acts where there is friction, and nothing in the scene has any"
+        way_out = "write friction 0.5 in control, or contact-damping in a contact block"
+        v.problem(control.spans["contact-damping"], cause, way_out, severity="warning")
+
+
+def check_contact(v: Any, block: Any, contact: ContactPair) -> ContactPair | None:
+    """Two things that can touch, no pair of them twice, and something to say about them."""
+    place, paired = v.head(block), v.memory.setdefault("contact", {})
+    if contact.friction is None and contact.contact_damping is None and not block.excused("friction", "contact-damping"):
+        cause = f"contact {block.name} says nothing{block.where}"
+        v.problem(place, cause, "write friction 0.1 or contact-damping 0 in it, or leave it out")
+        return None
+    planes = [name for name in block.names if name in v.touched and name not in v.named]
+    if planes and contact.contact_damping is not None:
+        cause = f"the contact-damping of {planes[0]} is that of control; a contact block cannot change it"
+        v.problem(contact.spans["contact-damping"], cause, "write contact-damping in control")
+        return None
+    if len(planes) == 2:
+        v.problem(place, f"{planes[0]} and {planes[1]} never touch", "write the name of an object for one of them")
+        return None
+    first, second = (v.named.get(name, ()) for name in block.names)
+    if first == second and len(first) == 1:
+        cause = f"{contact.first} does not touch itself{block.where}"
+        v.problem(place, cause, "write the names of two objects, or ground, walls or basin for one")
+        return None
+    if len(paired) + max(1, len(first)) * max(1, len(second)) > MOST_PAIRS:
+        cause = f"the contact blocks of the scene name more than {whole(MOST_PAIRS)} pairs of objects"
+        v.problem(place, cause, "write friction in the objects, or in control", key="pairs")
+        return None
+    for pair in [(planes[0], i) for i in (*first, *second)] if planes else pairs_of(first, second):
+        if (given := paired.setdefault(pair, place)) is not place:
+            names = list(v.names)
+            one, other = (i if isinstance(i, str) else names[i] for i in pair)
+            cause = f"the contact of {one} and {other} is given twice{block.where}"
+            v.problem(place, cause, f"first given at {given}", key=("contact", id(block.group)))
+            return None
+    return contact
+
+
+CHECKS = {"contact": check_contact}

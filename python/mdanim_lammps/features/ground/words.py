@@ -17,6 +17,13 @@ class GroundWords:
 
 SCENE = GroundWords
 
+TOUCHED = {"ground": ""}
+
+MISPLACED = {
+    "ground x": "the ground is level, at a height z; for a wall across x write walls from (-2, -2, 0) m to (2, 2, 3) m",
+    "ground y": "up is z: write ground z 0 m; for a wall across y write walls from (-2, -2, 0) m to (2, 2, 3) m",
+}
+
 
 def touched(scene) -> bool:
     """Whether it brings something into a scene that objects may touch."""

@@ -14,8 +14,9 @@ from ...model.grid import Grid
 from ...model.model import Model
 from ...processes import available_memory
 from ...scene.formatting import at_least, estimate, number, say
-from ...scene.scene import Liquid, LiquidModel, Mesh, SceneRecord, Solid, Torus, Vector
+from ...scene.scene import Mesh, SceneRecord, Solid, Torus, Vector
 from .occupied import room
+from .record import Liquid, LiquidModel
 
 BYTES_PER_CELL = 20.0
 """Memory of fix mdanim/liquid per cell, measured 18 to 21: content, masks, counts of samples, marks."""

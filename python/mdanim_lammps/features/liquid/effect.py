@@ -15,7 +15,6 @@ from ...effects.margin import Margin
 from ...errors import Problem, SceneError
 from ...model.planes import Plane, box_sides
 from ...scene.formatting import number, say, whole
-from ...scene.scene import LiquidModel
 from ..contact.planes import Boundary
 from ..contact.surface import SurfacePlanes
 from ..springs.effect import all_held
@@ -25,6 +24,7 @@ from .basin import check_basin, leaky_walls, liquid_level, open_hulls, plan_grid
 from .forces import Buoyancy, LiquidDrag, free_solid
 from .frames import FLOW, OCCUPANCY, is_wavy
 from .ledger import CELLS, DUE
+from .record import LiquidModel
 from .tables import lattice_cells, layers_of_cells
 
 EVERY = 4

@@ -14,10 +14,11 @@ from ...effects.readings import Readings
 from ...errors import Problem, SetupError
 from ...model.grid import Grid
 from ...scene.formatting import exact, number, say
-from ...scene.scene import LiquidModel, SceneRecord
+from ...scene.scene import SceneRecord
 from .kept import DROPS, HEIGHT, MOST_DROPS, RAW
 from .ledger import CELLS, CREST, DUE, MOMENTA
 from .ledger import WAVES as ENERGY
+from .record import LiquidModel
 
 NOW, AT_START, WAVES, HIGHEST = "cells", "cells_at_start", "waves", "crest"
 FLOW, OCCUPANCY, COUPLING = "flow_seconds", "occupancy_seconds", "coupling_seconds"

@@ -10,7 +10,8 @@ import numpy as np
 
 from ...model.grid import Grid
 from ...model.model import Model
-from ...scene.scene import LiquidModel, Vector
+from ...scene.scene import Vector
+from .record import LiquidModel
 
 SHUT = 31 / 32
 """Solid part of a cell from which waves take it for shut (plugin/liquid/waves/span.h)."""

@@ -8,8 +8,9 @@ from collections.abc import Mapping
 from typing import Any
 
 from ...scene.formatting import say, vector
-from ...scene.schema import Observable
+from ...scene.schema import Block, Observable, setting
 from ...scene.units import show
+from .record import Liquid
 
 SWITCHES = {
     "basin": "the basin of a liquid and an object that can move",
@@ -36,6 +37,35 @@ QUANTITIES = {
 MARGINS = {
     "sweeps": "how often the liquid is swept while an object travels one cell; below 4 it is pushed up before it can flow away"
 }
+
+
+BLOCKS = (
+    Block("liquid", Liquid, "liquid", "The liquid of the scene; there is at most one, and it needs gravity along -z.",
+          names=("name",), order=10, enough=True),
+)  # fmt: skip
+
+TOUCHED = {"basin": "liquid"}
+
+
+class LiquidWords:
+    """The liquid in a scene."""
+
+    liquid: Liquid | None = None
+
+
+SCENE = LiquidWords
+
+
+class LiquidPictures:
+    """Settings of ``render``."""
+
+    liquid: str = setting(
+        "<smooth|cells>",
+        "`smooth`: the surface of the liquid as a smooth sheet. `cells`: the columns of the automaton as they are.",
+        "cells", default="smooth", after="background")  # fmt: skip
+
+
+RENDER = LiquidPictures
 
 
 def touched(scene) -> bool:

@@ -34,6 +34,8 @@ class WallsWords:
 
 SCENE = WallsWords
 
+TOUCHED = {"walls": ""}
+
 
 def touched(scene) -> bool:
     """Whether it brings something into a scene that objects may touch."""

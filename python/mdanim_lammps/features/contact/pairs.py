@@ -1,56 +1,16 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""Which objects the names of contact blocks stand for, and the friction of objects and pairs that follows."""
+"""Friction and damping of objects and of pairs, as contact blocks, objects and ``control`` say."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Sequence
 from math import sqrt
-from typing import TYPE_CHECKING
 
-if TYPE_CHECKING:
-    from .scene import SceneRecord
+from ...scene.naming import objects_by_name, pairs_of
+from ...scene.scene import SceneRecord
 
-PLANES = ("ground", "walls", "basin")
-"""Words of a contact block that are not objects."""
 USUAL_DAMPING = 0.3
 """Share of critical damping of a contact with friction: enough to end chatter."""
-
-
-def objects_by_name(names: Iterable[str]) -> dict[str, list[int]]:
-    """Objects, from 0 and ascending, that a name stands for: one by its own name, all of a repeat by the name without index, all
-    of a group by its name. Without any index it stands for those of all places of the group: ``cart.wheel``.
-
-    Some of the objects of a scene give the same as all of them; so a name that is both has all of these objects.
-    """
-    found: dict[str, list[int]] = {}
-    for number, name in enumerate(names):
-        for other in _names_of(name):
-            found.setdefault(other, []).append(number)
-    return found
-
-
-def _names_of(name: str) -> Iterator[str]:
-    """Its own name, and names of several objects that it is one of, each once."""
-    yield name
-    if "[" not in name and "." not in name:
-        return
-    parts, told = name.split("."), {name}
-    for n in range(1, len(parts) + 1):
-        whole = ".".join(parts[:n])
-        bare = ".".join(part.partition("[")[0] for part in parts[:n])
-        for other in (whole, whole.rpartition("[")[0] if whole.endswith("]") else whole, bare):
-            if other not in told:
-                told.add(other)
-                yield other
-
-
-def pairs_of(first: Sequence[int], second: Sequence[int]) -> Iterator[tuple[int, int]]:
-    """Pairs (i, j), i < j, of an object of one set and another object of the other, each once."""
-    both = set(first) & set(second)
-    for i in first:
-        for j in second:
-            if i < j or (j < i and not (i in both and j in both)):
-                yield min(i, j), max(i, j)
 
 
 def frictions(scene: SceneRecord, plane: str = "") -> list[float]:
