@@ -134,16 +134,8 @@ def test_there_are_scripts():
 PLUGIN = Path(__file__).parents[1] / "plugin"
 FOLDERS = [
     *("numbers", "simd", "threads", "geometry", "records"),  # plain floors
-    *(
-        "springs",
-        "leapfrog",
-        "buoyancy",
-        "barrier",
-        "passes",
-        "wall",
-        "contact",
-        "rigid",
-    ),  # effects; passes know those before them
+    # effects; passes know those before them
+    *("springs", "leapfrog", "buoyancy", "barrier", "passes", "wall", "contact", "rigid"),
     *("liquid", "liquid/automaton", "liquid/waves"),
     *("lammps", "c_api"),
 ]
