@@ -384,7 +384,7 @@ def test_a_run_that_ends_early_says_so(prepared, time, frames):
     advised = re.fullmatch(r"write 'time (\S+) s'", note.hint)[1]
     assert f"the run ends with frame {whole}, at {advised} s" in note.message and note.severity == "note"
     assert float(advised) == pytest.approx(whole / frames, rel=1e-5)
-    with pytest.raises(SceneError, match=f"lies behind the last whole frame, at {advised} s"):
+    with pytest.raises(SceneError, match=f"is after the last whole frame, at {advised} s"):
         prepared(text.format(time, frames, f"expect a.position.z at {time} s = 0 +- 1 m"))
     exact = prepared(text.format(advised, frames, "")).certificate
     assert (exact.frames, exact.last_steps, exact.timestep) == (whole, 0, early.timestep)

@@ -220,7 +220,7 @@ def _end(scene: SceneRecord, frames: int, last: int) -> list[Problem]:
         return []
     end = f"{number(frames / control.frames, 6)} s"
     late = [e for e in scene.expects if e.time is not None and e.time > frames / control.frames * (1.0 + 1e-9)]
-    cause = f"lies behind the last whole frame, at {end}: no time step fits the time {number(control.time, 6)} s"
+    cause = f"is after the last whole frame, at {end}: no time step fits the time {number(control.time, 6)} s"
     if late:
         raise SceneError(
             [Problem(e.span, f"{number(e.time, 6)} s {cause}", "write an earlier time, or a longer one") for e in late]

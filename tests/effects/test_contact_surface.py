@@ -319,7 +319,7 @@ def test_only_what_may_be_met_fast_is_a_barrier_where_it_is_thin(prepared):
     assert {m.name: m.limit for m in ready.certificate.margins}["closing speed"] == pytest.approx(0.2 * WAVE)
 
 
-FREE, SLIDES = "contacts are frictionless", "what stands or lies on something slides off it"
+FREE, SLIDES = "contacts are frictionless", "objects slide off what they stand or lie on"
 
 
 @pytest.mark.parametrize(
@@ -360,7 +360,9 @@ def test_what_hops_for_ever_is_told_with_both_lines(prepared, capfd):
     ready = prepared(pile())
     (line,) = [line for line in note_lines(ready.certificate) if FREE in line]
     name = ready.system.names[int(np.flatnonzero(~ready.system.still)[0])]
-    assert f"friction 0.5 in control, and damping 0.2 in object {name}: without damping what lands hops for ever" in line
+    assert (
+        f"friction 0.5 in control, and damping 0.2 in object {name}: without damping an object that lands keeps hopping" in line
+    )
     announce(ready, quiet=False, verbose=False)
     assert line in capfd.readouterr().out
     (line,) = [line for line in note_lines(prepared(pile(cube="damping 0.1")).certificate) if FREE in line]

@@ -95,7 +95,7 @@ def explain(*word: str) -> None:
 
 def gallery(*_: Annotated[str, Parameter(allow_leading_hyphen=True)]) -> None:
     """Was a command: ``python docs/gallery.py DIR``."""
-    raise UsageError("gallery is a script of the repository, no command any more: python docs/gallery.py DIR -o gallery")
+    raise UsageError("gallery is now a script of the repository: python docs/gallery.py DIR -o gallery")
 
 
 def doctor() -> None:

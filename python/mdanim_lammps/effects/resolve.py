@@ -39,7 +39,7 @@ def resolve(effects: tuple[Effect, ...], scene: SceneRecord, h: float | None = N
                 Problem(
                     span,
                     f"{effect.name} cannot be switched on: {own.reason}",
-                    "effects are called for by what stands in the scene",
+                    "an effect is on if the contents of the scene call for it",
                     severity="warning",
                 )
             )

@@ -309,8 +309,8 @@ class Instance:
         """Take these solids of the plan out of the simulation, without a new setup: from now on they stand as in the plan, at
         rest; they exert no forces and feel none. This cannot be undone, and works only on one process."""
         system = self.plan.system
-        # In no group but "all" nothing acts on them. Their springs are as long as in the plan and hold no energy. A displacement
-        # of more than the skin makes LAMMPS build its neighbour lists anew before the next forces.
+        # No fix acts on atoms that are in group "all" only. Their springs are as long as in the plan and hold no energy. A
+        # displacement of more than the skin makes LAMMPS build its neighbour lists anew before the next forces.
         (x, v, f), mask = map(self.array, "xvf"), self._local("mask", 1)
         for rows in system.stretches(solids):
             place = system.position[rows]

@@ -24,5 +24,5 @@ def output_place(library: ctypes.CDLL, handle: ctypes.c_void_p, fix: str, name: 
     place.restype, place.argtypes = ctypes.c_int, [ctypes.c_void_p, ctypes.c_char_p, ctypes.c_char_p]
     found = place(handle, fix.encode(), name.encode())
     if found < 0:
-        raise SetupError(f"fix {fix} tells no {name}; it tells {', '.join(output_names(library, handle, fix)) or 'nothing'}")
+        raise SetupError(f"fix {fix} has no output {name}; it has {', '.join(output_names(library, handle, fix)) or 'nothing'}")
     return found

@@ -75,7 +75,7 @@ def _stl(data: bytes) -> Polygons:
     if told < 0:
         raise UnreadableMesh("is too short for an STL file")
     if (room := (len(data) - 84) // 50) < told:
-        raise UnreadableMesh(f"is cut short, or no STL file: it tells {told} triangles and has bytes for {room}")
+        raise UnreadableMesh(f"is cut short, or no STL file: it declares {told} triangles and has bytes for {room}")
     triangle = np.frombuffer(data, [("normal", "<f4", 3), ("corner", "<f4", (3, 3)), ("more", "<u2")], told, 84)
     return _polygons(triangle["corner"].reshape(-1, 3), np.full(told, 3), np.arange(3 * told))
 
@@ -168,7 +168,7 @@ class _Element:
         return sum(np.dtype(many or kind).itemsize for _, kind, many in self.columns)
 
     def cut(self, rows: int) -> UnreadableMesh:
-        return UnreadableMesh(f"is cut short: it tells {self.rows} rows of '{self.name}' and has {rows}")
+        return UnreadableMesh(f"is cut short: it declares {self.rows} rows of '{self.name}' and has {rows}")
 
 
 def _ply(data: bytes) -> Polygons:
@@ -212,7 +212,7 @@ def _ply_header(data: bytes) -> tuple[str, list[_Element], int]:
         except (KeyError, ValueError, IndexError):
             raise UnreadableMesh(f"line {line}: {_shown(text.strip().encode())} is not a line of a PLY header") from None
     if order is None:
-        raise UnreadableMesh("does not tell its format")
+        raise UnreadableMesh("does not name its format")
     return order, elements, end.end()
 
 

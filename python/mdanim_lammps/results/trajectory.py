@@ -175,7 +175,7 @@ class Trajectory(*TRACKS):
         """
         known = {field.name: field.table for field in self.metadata.fields}
         if name not in known:
-            raise KeyError(f"frames have no field {name!r}; {did_you_mean(name, known) or 'no effect of it tells any'}")
+            raise KeyError(f"frames have no field {name!r}; {did_you_mean(name, known) or 'no effect of the scene has any'}")
         return self._read(known[name], frame)
 
     def surface(self, frame: int) -> pyvista.PolyData:

@@ -147,7 +147,7 @@ def check_metadata(path: Path, m: TrajectoryMetadata) -> None:
 def check_steps(path: Path, dt: float, steps_per_frame: int) -> None:
     """Refuse a time step [s] and steps of a frame that are not those of a run. Raises OutputError."""
     if not (0.0 < dt < math.inf and 1 <= steps_per_frame <= 2**53):
-        raise OutputError(f"{path}: damaged: it tells of {steps_per_frame} steps of {dt} s in a frame")
+        raise OutputError(f"{path}: damaged: it declares {steps_per_frame} steps of {dt} s in a frame")
 
 
 def check_places(path: Path, *places: np.ndarray, frame: int | None = None) -> None:

@@ -74,7 +74,7 @@ def prepare(scene: SceneRecord, *, allow_unstable: bool = False) -> Prepared:
             [
                 Problem(
                     next(iter(scene.spans.values()), None),
-                    "the scene has no object, and runs without one are not built yet",
+                    "a scene needs at least one object",
                     "write one; one that never moves will do, e.g.  object stone { shape box (10, 10, 10) cm  "
                     "position (0, 0, 0) m  density 2000  elasticity 1 MPa  hold all }",
                 )

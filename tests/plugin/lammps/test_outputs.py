@@ -47,7 +47,7 @@ def test_names_are_those_of_the_pages(model):
             page = next(s for s in STYLES if names == on_page(s))
             seen.add(page)
         assert seen == STYLES - ({"mdanim/contact"} if model == "paper" else {"mdanim/wall"})
-        with pytest.raises(SetupError, match="fix leapfrog tells no heat; it tells phi, kinetic, seconds"):
+        with pytest.raises(SetupError, match="fix leapfrog has no output heat; it has phi, kinetic, seconds"):
             instance.fix_value("leapfrog", "heat")
 
 

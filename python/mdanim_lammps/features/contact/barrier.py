@@ -182,6 +182,6 @@ class Contact(Effect):
 
     def penetration(self, readings):
         # A guard lies one spacing below its surface, so r = h means that surfaces touch; between lattice points, and for
-        # thin objects, this says rather too much.
+        # thin objects, this overestimates.
         nearest = readings.fix_value(self.fix, NEAREST)
         return max(0.0, (1.0 / REACH - nearest) * REACH * float(readings.system.spacing.max()))

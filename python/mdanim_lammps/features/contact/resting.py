@@ -51,11 +51,11 @@ def frictionless(envelope: Envelope) -> list[Problem]:
     hint = f"write friction 0.5 in control{' in place of contact-model paper' if paper else ''}"
     hops = [m for m in np.flatnonzero(envelope.reach.moving).tolist() if scene.solids[m].damping == 0.0]
     if len(hops) == envelope.reach.moving.sum():
-        hint += f", and damping 0.2 in object {system.names[hops[0]]}: without damping what lands hops for ever"
+        hint += f", and damping 0.2 in object {system.names[hops[0]]}: without damping an object that lands keeps hopping"
     return [
         Problem(
             scene.control.spans.get("contact-model") or scene.control.spans.get("control"),
-            f"contacts are frictionless{', as in the paper' if paper else ''}: what stands or lies on something slides off it",
+            f"contacts are frictionless{', as in the paper' if paper else ''}: objects slide off what they stand or lie on",
             hint,
             severity="note",
         )

@@ -293,8 +293,8 @@ def _light(scene, system) -> list[Problem]:
     return [
         Problem(
             spans.get("density") or spans.get("mass") or spans.get("object"),
-            f"{system.names[m]}{others}: {number(density[m] / liquid.density, 2)} times as dense as {liquid.name}; what is "
-            f"lighter than {LIGHT} shakes in waves, and comes up late",
+            f"{system.names[m]}{others}: {number(density[m] / liquid.density, 2)} times as dense as {liquid.name}; bodies "
+            f"below {LIGHT} shake in waves, and come up late",
             f"write a density of {number(LIGHT * liquid.density)} kg/m^3, or model surface in liquid {liquid.name}",
             severity="warning",
         )

@@ -57,7 +57,7 @@ class Planner:
             if not here.all():
                 raise self._flown(int(report.objects[here.argmin()]))
         if len({r.fingerprint for r in reports}) > 1:
-            raise DivergedError("executors have followed different plans: this must never be, please report it")
+            raise DivergedError("internal error: executors followed different plans; please report it")
         escaped = sorted({m for r in reports for m in r.escaped})
         if escaped:
             self.doublings[escaped] += 1
