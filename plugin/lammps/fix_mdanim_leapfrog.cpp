@@ -208,8 +208,10 @@ void FixMdanimLeapfrog::drift_and_trace()
     Way &way = way_of(i);
     Box box;
     for (; i < nlocal && molecule[i] == object; ++i) {
-      if (!(mask[i] & groupbit)) continue;    // it never moves: its place is in the box since the start
-      add_to(x[i], dt * vec3(v[i]));
+      if (mask[i] & groupbit)
+        add_to(x[i], dt * vec3(v[i]));
+      else if (v[i][0] == 0.0 && v[i][1] == 0.0 && v[i][2] == 0.0)
+        continue;    // it does not move: its place is in the box already
       box.include(x[i]);
     }
     way.box.unite(box);

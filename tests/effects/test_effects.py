@@ -198,8 +198,8 @@ def test_the_liquid_in_lammps_terms(prepared):
 
 def test_the_paper_needs_no_lattice_cells(prepared):
     """Carry the table of lattice cells only for the model that reads it."""
-    assert "cell" in prepared(pool()).plan.tables
-    assert not prepared(pool("level 0.25 m\n model paper")).plan.tables
+    assert "cell" in prepared(pool()).plan.columns
+    assert "cell" not in prepared(pool("level 0.25 m\n model paper")).plan.columns
 
 
 def test_walls_of_a_basin_go_on_upward(prepared):
@@ -248,7 +248,7 @@ def test_drags_of_air_and_liquid_add_up(prepared):
 def test_every_lattice_cell_is_in_the_table(prepared):
     """Find each cell once, at its first corner, the others as tags in VTK order."""
     ready = prepared(pool(top="object ball { shape sphere 8 cm position (20, 20, 45) cm density 900 elasticity 100 kPa }"))
-    system, table = ready.system, ready.plan.tables["cell"]
+    system, table = ready.system, ready.plan.columns["cell"]
     owner = np.flatnonzero(table.any(axis=1))
     found = np.column_stack([owner, table[owner, :7] - 1])
     assert np.array_equal(found, system.hexahedron[np.argsort(system.hexahedron[:, 0])])
@@ -261,7 +261,7 @@ def test_layers_of_cells_around_each(prepared):
     ready = prepared(
         pool(top="object slab { shape box (35, 30, 30) cm position (25, 25, 75) cm density 900 elasticity 100 kPa }")
     )
-    system, table = ready.system, ready.plan.tables["cell"]
+    system, table = ready.system, ready.plan.columns["cell"]
     layers = layers_of_cells(system)
     of_object = system.object[system.hexahedron[:, 0]]
     for m in range(2):
@@ -383,7 +383,7 @@ def test_a_scene_of_nothing_is_nothing(prepared):
     """Leave springs, the integrator and nothing else to a free ball: no column, no group, no neighbourhood of another's."""
     ready = prepared(BARE)
     assert live_fixes(ready) == set()
-    assert not ready.plan.columns and not ready.plan.tables
+    assert not ready.plan.columns
     lines = [line for line in written(ready).splitlines() if line.startswith(("fix ", "group ", "region ", "fix_modify "))]
     assert lines == [
         "fix model all property/atom rmass ghost yes",

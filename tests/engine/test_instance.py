@@ -82,6 +82,7 @@ def test_both_ends_are_ascending():
 @pytest.mark.parametrize("text", SCENES)
 def test_lammps_reads_back_our_data_file(prepared, tmp_path, text):
     """Find in LAMMPS every particle, property and spring of the data file, bit for bit."""
+    from mdanim_lammps.engine.columns import property_of
     from mdanim_lammps.engine.commands import prelude
     from mdanim_lammps.engine.plugin import open_lammps
 
@@ -95,8 +96,9 @@ def test_lammps_reads_back_our_data_file(prepared, tmp_path, text):
     assert np.array_equal(lmp.numpy.extract_atom("v")[: plan.system.particles][order], plan.system.velocity)
     assert np.array_equal(lmp.numpy.extract_atom("rmass")[: plan.system.particles][order], plan.system.mass)
     assert np.array_equal(lmp.numpy.extract_atom("molecule")[: plan.system.particles][order], plan.system.object + 1)
-    for name, values in (*((f"d_{c}", v) for c, v in plan.columns.items()), *((f"i2_{t}", v) for t, v in plan.tables.items())):
-        assert np.array_equal(lmp.numpy.extract_atom(name)[: plan.system.particles][order], values), name
+    for name, field in plan.fields.items():
+        found = lmp.numpy.extract_atom(property_of(field, plan.slots).name)[: plan.system.particles]
+        assert np.array_equal(found[order], plan.columns[name]), name
     bonds = lmp.numpy.gather_bonds()
     found = {(min(i, j) - 1, max(i, j) - 1): t for t, i, j in bonds.tolist()}
     assert found == {(i, j): t for (i, j), t in zip(plan.bonds.tolist(), plan.bond_kind.tolist())}

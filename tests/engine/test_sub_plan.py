@@ -175,11 +175,9 @@ def test_a_part_says_what_a_plan_of_its_own_would_say(prepared):
         assert np.array_equal(a, b) if isinstance(b, np.ndarray) else a == b, field
     a, b = ([system.frames[k].shape for k in system.contact_kind] for system in (part.system, own_plan.system))
     assert a == b
-    for name in ("columns", "tables"):
-        a, b = getattr(part, name), getattr(own_plan, name)
-        assert a.keys() == b.keys()
-        for key in a.keys() - {"body"}:
-            assert np.array_equal(a[key], b[key]), key
+    assert part.fields == own_plan.fields
+    for name in part.fields.keys() - {"body"}:
+        assert np.array_equal(part.columns[name], own_plan.columns[name]), name
     assert [e.name for e in part.effects] == [e.name for e in own_plan.effects]
     coefficients = part.coefficients[part.bond_kind - 1]
     assert np.array_equal(coefficients, own_plan.coefficients[own_plan.bond_kind - 1])

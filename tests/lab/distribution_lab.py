@@ -9,12 +9,13 @@ import subprocess
 import sys
 from pathlib import Path
 
+import plugin_library
 import plugin_path
 import pytest
 from mdanim_lammps.run.loop import write_inputs
 from mdanim_lammps.run.prepare import Prepared, prepare
 from mdanim_lammps.scene.parse import load_scene
-from paths import MPI
+from paths import LAB, MPI
 
 MATRIX = MPI / "matrix.py"
 
@@ -29,9 +30,9 @@ WINDOWS = {"worth": 0, "finest": 8}
 """Windows shorter than a frame wherever loads are not in balance."""
 
 
-def ways(scene: Path, cases: dict[str, dict], ranks: int = 5, timeout: float = 60.0, *, effect: bool = False) -> dict[str, Path]:
-    """Run a scene in all of these ways, the sequential one first; returns the folder of each. ``effect``: with that of
-    memory_effect.py."""
+def ways(scene: Path, cases: dict[str, dict], ranks: int = 5, timeout: float = 60.0, *, features: str = "") -> dict[str, Path]:
+    """Run a scene in all of these ways, the sequential one first; returns the folder of each. ``features``: a folder of
+    tests/lab/features whose features there are, too."""
     folder = scene.parent
     cases = {"sequential": SEQUENTIAL} | cases
     work = [{"folder": str(folder / case.get("in", name)), **case} for name, case in cases.items()]
@@ -47,15 +48,24 @@ def ways(scene: Path, cases: dict[str, dict], ranks: int = 5, timeout: float = 6
             MATRIX,
             folder / "cases.json",
             str(timeout),
-            *(["effect"] if effect else []),
         ],
         capture_output=True,
         text=True,
         timeout=timeout + 10.0,
-        env={**plugin_path.environment(), "PYTHONPATH": os.pathsep.join(filter(None, sys.path))},
+        env={
+            **plugin_path.environment(),
+            **(of_features(features) if features else {}),
+            "PYTHONPATH": os.pathsep.join(filter(None, sys.path)),
+        },
     )
     assert done.returncode == 0, done.stdout + done.stderr
     return {name: folder / case.get("in", name) for name, case in cases.items()}
+
+
+def of_features(folder: str) -> dict[str, str]:
+    """Variables with which a program finds the features of a folder of tests/lab/features, and the styles of the tests."""
+    styles = os.pathsep.join([plugin_path.folder(), str(plugin_library.build().parent)])
+    return {"MDANIM_FEATURES": str(LAB / "features" / folder), "LAMMPS_PLUGIN_PATH": styles}
 
 
 def readied(place: Path, text: str) -> tuple[Prepared, Path]:

@@ -22,7 +22,16 @@ PLUGIN, TESTS = ROOT / "plugin", ROOT / "tests" / "lab" / "plugin"
 FOLDER = ROOT / "build" / "mdanimtest"
 """Folder of the library alone: as LAMMPS_PLUGIN_PATH it makes LAMMPS load the styles of the tests."""
 FILE = FOLDER / "mdanimtestplugin.so"
-FLOORS = ("simd/kernels", "threads/team", "records/state_records", "geometry/aligned_array", "lammps/stateful")
+FLOORS = (
+    "simd/kernels",
+    "threads/team",
+    "records/state_records",
+    "geometry/aligned_array",
+    "lammps/stateful",
+    "lammps/fix_base",
+    "lammps/named_group",
+    "lammps/particle_value",
+)
 PASSES = ("passes/cutter", "passes/displacement_budget", "passes/range_cut", "passes/tag_order")
 SOURCES = (
     *sorted(TESTS.glob("*.cpp")),

@@ -62,7 +62,7 @@ def told() -> dict:
         "warnings": [w.message for w in here.warnings],
         "script": input_script(here.plan),
         "data": "".join(data_text(here.plan)),
-        "unit": here.plan.units["sail"],
+        "unit": here.plan.fields["sail"].unit,
         "off": [off.verdicts["wind"].on, off.verdicts["wind"].reason, [w.message for w in off.warnings]],
         "calm": [calm.verdicts["wind"].on, calm.verdicts["contact"].on, calm.certificate.cause, "sail" in calm.plan.columns],
         "may come back": ready(v=-20).verdicts["contact"].on,

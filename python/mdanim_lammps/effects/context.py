@@ -66,6 +66,12 @@ class Context:
     def scene(self) -> SceneRecord:
         return self.resolved.scene
 
+    @property
+    def pushed(self) -> str:
+        """LAMMPS's group of all particles on which forces between things count: those that move by forces, and those that are
+        driven, for the work that they do."""
+        return "mobile" if self.system.moved is None else "moving"
+
     def on(self, name: str) -> bool:
         """Whether an effect of this name is on."""
         return self.resolved.on(name)

@@ -5,8 +5,7 @@ bound."""
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
-from types import MappingProxyType
+from collections.abc import Callable, Iterable, Mapping, Sequence
 
 import numpy as np
 
@@ -15,7 +14,7 @@ from ..model.grid import Grid
 from ..model.model import Model
 from ..model.planes import Plane
 from ..model.system import System
-from ..reach import Bodies, Reach
+from ..reach import Bodies, Drive, Reach
 from ..scene.formatting import number
 from ..scene.scene import ContactModel, SceneRecord
 from .context import Context, Resolved, Verdict
@@ -59,6 +58,8 @@ class Effect:
     """Whether it makes dashpots along springs."""
     binds = False
     """Whether it holds the particles of a solid together."""
+    sees_driven = True
+    """Whether held particles act on it as they move where they are driven; else a scene with both is refused."""
     keeps_apart = False
     """Whether objects cannot be inside each other where it is on."""
     needs: tuple[str, ...] = ()
@@ -120,6 +121,15 @@ class Effect:
         """Reason why frames do not tell its forces on objects from those of contact; empty where they do."""
         return ""
 
+    def joins(self, scene: SceneRecord) -> Iterable[tuple[int, int]]:
+        """Pairs of solids, by number, that it couples wherever they are: one process simulates both."""
+        return ()
+
+    def drives(self, scene: SceneRecord) -> Mapping[int, Drive]:
+        """Motions that it gives to the held particles of solids, by number. Its fix, in the group `Context.pushed`, sets their
+        positions and velocities, and counts the work that they do."""
+        return {}
+
     # --- what it brings into a run --------------------------------------------------------------------------------------
 
     def grid(self, scene: SceneRecord, h: float) -> Grid | None:
@@ -132,17 +142,11 @@ class Effect:
         return []
 
     def columns(self, context: Context) -> dict[Field, np.ndarray]:
-        """Per-particle properties that its commands name as ``d_NAME``, each of shape (N,), by their `fields.column`.
+        """Values at the start of all particles, springs or objects, each of shape (N, ...), (S, ...) or (M, ...), by their
+        `fields.column`: its commands name them as ``d_NAME`` and the like.
 
         With ``body``, the kind of each particle's body (System.contact_kind), its fix is given the contact bodies of all kinds.
         """
-        return {}
-
-    tags_of: Mapping[str, int] = MappingProxyType({})
-    """For each of its tables how many of the first columns are tags (from 1, 0 for none); a part of a plan numbers these anew."""
-
-    def tables(self, context: Context) -> dict[str, np.ndarray]:
-        """Per-particle whole numbers that its commands name as ``i2_NAME``, int32, each of shape (N, K)."""
         return {}
 
     def commands(self, context: Context) -> list[str]:
@@ -197,12 +201,16 @@ class Effect:
         """What ``check`` prints behind the number of particles, and its entries in the output for programs."""
         return "", {}
 
+    def sources(self, scene: SceneRecord) -> tuple[str, ...]:
+        """The columns of ledger.csv with energies that it has brought in from outside so far; `lost` has their values, too."""
+        return ()
+
     def losses(self, scene: SceneRecord) -> tuple[str, ...]:
         """The columns of ledger.csv with the energies that it has taken so far."""
         return ()
 
     def lost(self, readings: Readings) -> dict[str, float]:
-        """Present values of these columns [J]."""
+        """Present values of the columns of `losses` and `sources` [J]."""
         return {}
 
     def margins(self, envelope: Envelope) -> list[Margin]:

@@ -3,13 +3,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-PER = ("particle", "bond", "object", "cell", "column", "row", "run")
+PER = ("particle", "bond", "object", "pair", "cell", "column", "row", "run")
 """Things that a field has one value for each of: ``run`` has one number in all, ``row`` is a row of a table of any length."""
 
 
@@ -36,6 +36,10 @@ class Field:
     """Its table in a trajectory, below ``/observables``; empty where a trajectory does not have it."""
     counts: tuple[int, ...] = ()
     """How many things there are, along each axis of the table: objects; rows and columns of cells; the most rows that fit."""
+    state: bool = False
+    """Whether it changes during a run and later steps depend on it; a frame has it too."""
+    tags: int = 0
+    """How many of its first values are tags (from 1, 0 for none); a part of a plan numbers these anew."""
 
     def __post_init__(self):
         if self.per not in PER:
@@ -54,34 +58,89 @@ class Field:
         return found == most or (self.per == "row" and len(found) == len(most) and found[1:] == most[1:] and found[0] < most[0])
 
 
-def column(name: str, unit: str) -> Field:
-    """A property of each particle, which fixes look up as ``d_NAME``."""
-    return Field(name, unit, per="particle")
+def column(name: str, unit: str, per: str = "particle", **more: Any) -> Field:
+    """Values that fixes look up as properties of particles (engine/columns.py): ``d_NAME`` or, with a shape or for springs,
+    ``d2_NAME``; those of whole numbers begin with i."""
+    return Field(name, unit, per, **more)
+
+
+def pair_rows(field: Field) -> np.dtype:
+    """Type of a row of a field per pair: the two objects, from 0 and a < b, and the value."""
+    return np.dtype([("a", "i4"), ("b", "i4"), ("value", field.dtype, field.shape)])
 
 
 Fields = Mapping[str, Any]
 """Values by the names of fields: arrays, numbers for those per run."""
 
 
-def join_fields(declared: Iterable[Field], still: np.ndarray, parts: Iterable[tuple[np.ndarray, Fields]]) -> dict[str, Any]:
+Rows = Callable[[str], np.ndarray]
+"""For a kind of thing that objects have, of PARTS: first row of each object in an array of all, and behind the last, shape
+(M + 1,)."""
+PARTS = ("particle", "bond", "object")
+"""Kinds of things of which each object has its own, in rows side by side."""
+
+
+def rows_of(first: np.ndarray, objects: np.ndarray) -> np.ndarray:
+    """The rows of some objects, int64, by ``first`` of `Rows`."""
+    size = first[objects + 1] - first[objects]
+    return np.repeat(first[objects] - np.cumsum(size) + size, size) + np.arange(size.sum())
+
+
+def part_of_fields(declared: Iterable[Field], fields: Fields, rows: Rows, objects: np.ndarray, chosen: np.ndarray) -> Fields:
+    """Those of the fields of a part that are of some of its objects.
+
+    Args:
+        declared: the fields.
+        fields: their values in the part.
+        rows: of the part.
+        objects: their numbers in the whole, ascending, int64, shape (m,).
+        chosen: the objects to keep, bool, shape (m,); of a pair one of them is enough.
+    """
+    found, kept = dict(fields), np.flatnonzero(chosen)
+    for field in declared:
+        values = fields.get(field.name)
+        if values is not None and field.per in PARTS:
+            found[field.name] = values[rows_of(rows(field.per), kept)]
+        elif values is not None and field.per == "pair":
+            values = found[field.name] = values[chosen[values["a"]] | chosen[values["b"]]]
+            values["a"], values["b"] = objects[values["a"]], objects[values["b"]]
+    return found
+
+
+def join_fields(
+    declared: Iterable[Field], rows: Rows, still: np.ndarray, parts: Iterable[tuple[np.ndarray, Fields]], start: Fields
+) -> dict[str, Any]:
     """The fields of a whole scene, from those of its parts.
 
-    Fields per object are put together and have their default where an object never moves, which any part may have; those per run
-    are added up; all others come whole from one part.
+    Fields of things that objects have are put together; where an object never moves, which any part may have, they are as at the
+    start, or have their default. Those per pair come together in order, those per run are added up, all others come whole from
+    one part.
 
     Args:
         declared: all fields of the scene.
+        rows: of the whole.
         still: objects that never move, bool, shape (M,).
         parts: numbers of objects, int64, shape (m,), and fields of these, or of all objects.
+        start: values at the start, of those that have some.
     """
     parts, found = list(parts), {}
     for field in declared:
         told = [(objects, fields[field.name]) for objects, fields in parts if field.name in fields]
-        if field.per == "object":
-            found[field.name] = np.full((len(still), *field.shape), field.default, field.dtype)
+        if field.per in PARTS:
+            first = rows(field.per)
+            first_values = start.get(field.name)
+            empty = np.full((first[-1], *field.shape), field.default, field.dtype)
+            found[field.name] = whole = empty if first_values is None else np.array(first_values)
             for objects, values in told:
-                moving = ~still[objects]
-                found[field.name][objects[moving]] = (values[objects] if len(values) == len(still) else values)[moving]
+                moving = objects[~still[objects]]
+                mine = rows_of(first, moving)
+                if len(values) == first[-1]:
+                    whole[mine] = values[mine]
+                else:
+                    size = first[objects + 1] - first[objects]
+                    whole[mine] = values[np.repeat(~still[objects], size)]
+        elif field.per == "pair":
+            found[field.name] = np.sort(np.concatenate([np.empty(0, pair_rows(field)), *(v for _, v in told)]), order=["a", "b"])
         elif told:
             found[field.name] = sum(value for _, value in told) if field.per == "run" and len(told) > 1 else told[0][1]
     return found

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 import numpy as np
 
 from ..model.system import System
+from .fields import Field
 
 if TYPE_CHECKING:
     from .context import Context
@@ -26,6 +27,12 @@ class Readings(Protocol):
 
     def array(self, name: str) -> np.ndarray:
         """Positions ``x`` [m], shape (N, 3), or a property ``d_NAME`` of each particle, shape (N,)."""
+
+    def column(self, name: str) -> np.ndarray:
+        """Values of a declared column now: of particles, shape (N, ...), springs, (S, ...), or objects, (M, ...)."""
+
+    def pairs(self, fix: str, field: Field) -> np.ndarray:
+        """Values that a fix keeps for pairs of objects, in its records: `fields.pair_rows` by ascending pairs."""
 
     def elastic_energy(self) -> float:
         """Energy of all springs [J]."""

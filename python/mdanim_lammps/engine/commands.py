@@ -5,12 +5,15 @@ from __future__ import annotations
 
 import numpy as np
 
-from .plan import HELD, Plan
+from .columns import property_of
+from .plan import DRIVEN, HELD, Plan
 
 SKIN = 1.5
 """Neighbour skin over the spacing: lists are rebuilt when a particle has moved half of it (bench/skin.py)."""
 BALANCE = ("balance 1.0 rcb", "fix balance all balance 1000 1.1 rcb")
 """Cut space so that every rank has the same share of particles, now and in the course of a run; changes no bit of the result."""
+MOVING = (f"variable {DRIVEN} atom d_{DRIVEN}", f"group {DRIVEN} variable {DRIVEN}", f"group moving union mobile {DRIVEN}")
+"""Make the groups of what is driven, and of all that moves (effects.Context.pushed)."""
 GHOST = 3.0
 """Least communication cutoff over the spacing; where there are springs it is longer, see `prelude`."""
 
@@ -43,8 +46,7 @@ def prelude(plan: Plan) -> list[str]:
     # The last is LAMMPS's own estimate for bonds: below it, it warns at every rebuild.
     cutoff = max(GHOST * plan.spacing, 1.001 * (reach + skin), 1.5 * longest + 1.001 * skin)
     velocities = " vel yes" if plan.damped else ""
-    columns = "".join(f" d_{name}" for name in plan.columns)
-    tables = "".join(f" i2_{name} {table.shape[1]}" for name, table in plan.tables.items())
+    columns = "".join(f" {property_of(field, plan.slots).word}" for field in plan.fields.values())
     return [
         "units si",
         "atom_style bond",
@@ -58,7 +60,7 @@ def prelude(plan: Plan) -> list[str]:
         "pair_style none",
         "special_bonds lj/coul 1 1 1",
         *(["bond_style mdanim/harmonic"] if len(plan.bonds) else []),
-        f"fix model all property/atom rmass{columns}{tables} ghost yes",
+        f"fix model all property/atom rmass{columns} ghost yes",
     ]
 
 
@@ -71,6 +73,7 @@ def physics(plan: Plan, threads: int = 1) -> list[str]:
     return [
         "mass * 1.0",  # wanted by atom_style bond; the particles' own masses (rmass) are what counts
         f"group mobile type 1:{HELD}",
+        *(MOVING if DRIVEN in plan.columns else ()),
         *effects,
         f"fix leapfrog mobile mdanim/leapfrog{drag}",
         f"timestep {plan.certificate.timestep!r}",

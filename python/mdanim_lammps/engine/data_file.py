@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from ..model.contact_body import ContactBody
+from .columns import spread
 from .commands import bond_coeffs, box
 from .plan import Plan
 
@@ -38,11 +39,9 @@ def data_text(plan: Plan) -> Iterator[str]:
     yield from rows("%d %d %d %r %r %r\n", tag, system.object + 1, plan.kind, *system.position.T)
     yield "\nVelocities\n\n"
     yield from rows("%d %r %r %r\n", tag, *system.velocity.T)
-    numbers = [column for table in plan.tables.values() for column in table.T]
-    yield "\nModel # mass" + "".join(f" {name}" for name in (*plan.columns, *plan.tables)) + "\n\n"
-    yield from rows(
-        "%d %r" + " %r" * len(plan.columns) + " %d" * len(numbers) + "\n", tag, system.mass, *plan.columns.values(), *numbers
-    )
+    numbers = [one for name in plan.columns for one in spread(plan, name).reshape(n, -1).T]
+    yield "\nModel # mass" + "".join(f" {name}" for name in plan.columns) + "\n\n"
+    yield from rows(f"%d{' %r' * (1 + len(numbers))}\n", tag, system.mass, *numbers)
     if s:
         yield "\nBond Coeffs # mdanim/harmonic\n\n" + "\n".join(bond_coeffs(plan)) + "\n"
         yield "\nBonds\n\n"

@@ -8,8 +8,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from ..effects.fields import Field
 from ..errors import DivergedError, SetupError
 from .c_arrays import body_arguments, pointer
+from .columns import Property, from_records, gathered, property_of, spread, to_records, values_of_pairs
 from .commands import BALANCE, SKIN, bond_coeffs, box, physics, prelude
 from .cut import box_to_cut, shorter_along_rows
 from .outputs import output_place
@@ -84,10 +86,8 @@ class Instance:
         places = shorter_along_rows(plan.system.position) if self._comm else plan.system.position
         low, high = (box_to_cut(places, plan.spacing) if self._comm else box(plan)).tolist()
         # property/atom must exist before the particles, and a box before both.
-        # On one process the bond style takes the springs as they are; of several, each needs those of its own particles
-        # at both ends.
-        ends = plan.ends() if self._comm and len(plan.bonds) else None
-        room = f" extra/bond/per/atom {np.diff(ends.first).max()}" if ends else ""
+        ends = self._ends()
+        room = f" extra/bond/per/atom {max(plan.slots, np.diff(ends.first).max())}" if ends else ""
         bounds = " ".join(f"{a!r} {b!r}" for a, b in zip(low, high))
         lmp.commands_list(
             [
@@ -122,11 +122,17 @@ class Instance:
             ]
         )
 
+    def _ends(self) -> Ends | None:
+        """Springs for particles to have: None on one process, where the bond style takes them as they are; of several, each needs
+        those of its own particles at both ends, and so do columns of springs."""
+        plan = self.plan
+        return plan.ends() if (self._comm or plan.slots) and len(plan.bonds) else None
+
     def _insert(self, ends: Ends | None, position: np.ndarray) -> None:
         """Hand all particles, and springs if they are to have them, to the plugin; each rank takes those in its part of space."""
         plan, system = self.plan, self.plan.system
         n = system.particles
-        names = list(plan.columns)
+        names = [name for name, field in plan.fields.items() if field.per == "particle" and self._property(name).is_number]
         properties = np.array([plan.columns[c] for c in names], dtype=np.float64).reshape(len(names), n)
         tag = np.arange(1, n + 1, dtype=np.int32)
         molecule = (system.object + 1).astype(np.int32)
@@ -142,16 +148,9 @@ class Instance:
             pointer(properties),
             *(map(pointer, ends) if ends else [None] * 3),
         )
-        for name, table in plan.tables.items():
-            self._call(
-                f"set i2_{name}",
-                self._library.mdanim_set_table,
-                name.encode(),
-                ctypes.c_int(table.shape[1]),
-                ctypes.c_int(n),
-                pointer(tag),
-                pointer(np.ascontiguousarray(table, np.int32)),
-            )
+        for name in plan.fields:
+            if name not in names:
+                self._put_column(name, spread(plan, name))
 
     def _cut_space(self, position: np.ndarray) -> None:
         """Give every rank its share of the particles, and all of them their places."""
@@ -195,13 +194,34 @@ class Instance:
         return self._step.value
 
     def array(self, name: str) -> np.ndarray:
-        """``x``, ``v`` or ``f`` in tag order, shape (N, 3), or a property ``d_NAME``, shape (N,).
+        """``x``, ``v`` or ``f`` in tag order, shape (N, 3), or a property ``d_NAME``, shape (N,), ``d2_NAME``, shape (N, K).
 
         On one process a view, valid until the next command; on several ranks a copy of the values of all ranks, the same until
         then.
         """
-        width = 1 if name.startswith("d_") else 3
+        width = 3
+        if "_" in name:
+            width = self._property(name.split("_", 1)[1]).width or 1
         return self._gather(name, width) if self._comm else self._view(name, width)
+
+    def column(self, name: str) -> np.ndarray:
+        """Values of a column of the plan now, of particles, springs or objects in the order of the plan, shape (N, ...), (S, ...)
+        or (M, ...); a copy."""
+        return gathered(self.plan, name, self.array(self._property(name).name))
+
+    def _property(self, name: str) -> Property:
+        return property_of(self.plan.fields[name], self.plan.slots)
+
+    def pairs(self, fix: str, field: Field) -> np.ndarray:
+        """Values that a fix keeps for pairs of objects, see `values_of_pairs`. Raises SetupError."""
+        return values_of_pairs(self._records_of(fix), field)
+
+    def _put_column(self, name: str, rows: np.ndarray) -> None:
+        """Set the property of a column, in tag order."""
+        self._gathered.clear()
+        here = self._local(self._property(name).name, rows.shape[1] if rows.ndim > 1 else 1)
+        if len(here):
+            here[...] = rows[self._local("id", 1) - 1].reshape(here.shape)
 
     def rows(self) -> np.ndarray | slice:
         """Which rows of `array` are those of the particles that this rank has, ascending: the same object until that changes; all
@@ -227,7 +247,7 @@ class Instance:
 
     def _view(self, name: str, width: int) -> np.ndarray:
         where = self._extract_atom(self._handle, name.encode())
-        if where and width == 3:  # rows, of which the first tells where all are
+        if where and width > 1:  # rows, of which the first tells where all are
             where = ctypes.c_void_p.from_address(where).value
         if self._views.get(name, (None,))[0] != where or not where:  # making a view takes longer than a small scene's step
             self._views[name] = where, self._local(name, width)
@@ -240,20 +260,23 @@ class Instance:
 
     def records(self) -> dict[str, StateRecords]:
         """Records of fixes, by the ID of the fix; objects are numbered as in the plan."""
-        found = {}
-        for fix in self._stateful():
-            count, size = ctypes.c_longlong(), ctypes.c_longlong()
-            self._call(
-                f"pack the state of fix {fix}", self._library.mdanim_state_pack, fix.encode(), *map(ctypes.byref, (count, size))
-            )
-            keys, first = np.empty((count.value, 2), np.int32), np.empty(count.value + 1, np.int64)
-            data = np.empty(size.value, np.uint8)
-            pointers = map(pointer, (keys, first, data))
-            self._call(f"give the state of fix {fix}", self._library.mdanim_state_get, fix.encode(), *pointers)
-            found[fix] = StateRecords(keys, first, data)
-        return found
+        columns = {name: self.column(name) for name in self.plan.states}
+        return {fix: self._records_of(fix) for fix in self._stateful()} | to_records(self.plan, columns)
+
+    def _records_of(self, fix: str) -> StateRecords:
+        count, size = ctypes.c_longlong(), ctypes.c_longlong()
+        self._call(
+            f"pack the state of fix {fix}", self._library.mdanim_state_pack, fix.encode(), *map(ctypes.byref, (count, size))
+        )
+        keys, first = np.empty((count.value, 2), np.int32), np.empty(count.value + 1, np.int64)
+        data = np.empty(size.value, np.uint8)
+        pointers = map(pointer, (keys, first, data))
+        self._call(f"give the state of fix {fix}", self._library.mdanim_state_get, fix.encode(), *pointers)
+        return StateRecords(keys, first, data)
 
     def _put_records(self, records: Records) -> None:
+        for name in self.plan.states:
+            self._put_column(name, spread(self.plan, name, from_records(self.plan, name, records)))
         for fix in self._stateful():
             mine = records.get(fix, NO_RECORDS)
             self._call(
@@ -292,7 +315,7 @@ class Instance:
             places = shorter_along_rows(state.x)
             sides = zip("xyz", *box_to_cut(places, self.plan.spacing).tolist())
             self._command("change_box all " + " ".join(f"{d} final {low!r} {high!r}" for d, low, high in sides) + " units box")
-            self._insert(self.plan.ends() if len(self.plan.bonds) else None, places)
+            self._insert(self._ends(), places)
             for command in physics(self.plan):
                 if command.startswith("group "):  # the new particles are in none yet
                     self._command(command)
@@ -322,7 +345,7 @@ class Instance:
         """View of a per-particle array of this rank, shape (n, 3), or (n,) for a width of 1."""
         n = self._lmp.extract_setting("nlocal")
         if n == 0:
-            return np.zeros((0, width) if width > 1 else 0, np.int32 if name == "id" else np.float64)
+            return np.zeros((0, width) if width > 1 else 0, np.int32 if name.startswith("i") else np.float64)
         return self._lmp.numpy.extract_atom(name)[:n]
 
     def _write(self, name: str, values: np.ndarray) -> None:

@@ -4,18 +4,22 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 
 from ..certificate import Certificate, strong_drag
 from ..effects import Context, Effect
+from ..effects.fields import Field, column
 from ..model.contact_body import ContactBody
 from ..model.grid import Grid
 from ..model.springs import types
 from ..model.system import System
 from ..scene.scene import SceneRecord
+from .columns import Places, most_bonds, places
 
 HELD = 4
 """Atom types 1-4 are the layers of free particles (model.Layer), 5-8 those of held ones."""
@@ -23,6 +27,10 @@ HELD = 4
 
 BODY = "body"
 """Column of the kinds of particles' bodies, model.system.System.contact_kind."""
+
+
+DRIVEN = "driven"
+"""Column of held particles that are driven: 1, others 0; only where there are some."""
 
 
 class Ends(NamedTuple):
@@ -48,11 +56,12 @@ class Plan:
     effects: tuple[Effect, ...]
     """Those that are on, in the order in which their forces are summed."""
     columns: dict[str, np.ndarray]
-    """Per-particle properties ``d_NAME`` that some effect asks for, each of shape (N,)."""
-    units: dict[str, str]
-    """SI unit of each of them."""
-    tables: dict[str, np.ndarray]
-    """Per-particle whole numbers ``i2_NAME`` that some effect asks for, int32, each of shape (N, K)."""
+    """Columns that some effect asks for, by name: values at the start of all particles, springs or objects, each of shape
+    (N, ...), (S, ...) or (M, ...)."""
+    fields: dict[str, Field]
+    """What each of them is."""
+    slots: int
+    """Springs that a column of springs has room for at each particle."""
     bonds: np.ndarray
     """Springs as 0-based pairs i < j, int32, shape (S, 2)."""
     bond_kind: np.ndarray
@@ -60,7 +69,7 @@ class Plan:
     coefficients: np.ndarray
     """k [N/m], r0 [m], dashpot [N*s/m] of each bond type, shape (T, 3)."""
     asked: dict[str, tuple[str, ...]]
-    """Columns and tables that each effect asks for, by its name."""
+    """Columns that each effect asks for, by its name."""
     spacing: float
     """Longest cell edge of all solids of the scene [m]; skin and cutoffs follow from it."""
     exponential: bool
@@ -89,6 +98,24 @@ class Plan:
         """The springs at both ends."""
         return both_ends(self.bonds, self.bond_kind, self.system.particles)
 
+    @cached_property
+    def places(self) -> Places:
+        """Where both ends of each spring have its values."""
+        return places(self.bonds, self.system.particles)
+
+    @property
+    def states(self) -> tuple[str, ...]:
+        """Columns that are part of the state."""
+        return tuple(name for name, field in self.fields.items() if field.state)
+
+    def rows(self, per: str) -> np.ndarray:
+        """First row of each object in an array of all particles, springs (``bond``) or objects, and behind the last, shape
+        (M + 1,)."""
+        objects = np.arange(len(self.system.names) + 1)
+        if per == "bond":
+            return np.searchsorted(self.system.object[self.bonds[:, 0]], objects)
+        return self.system.first if per == "particle" else objects
+
     @property
     def name(self) -> str:
         """The scene's name as it may stand in a LAMMPS file name."""
@@ -113,22 +140,6 @@ class Plan:
 def make_plan(context: Context, certificate: Certificate) -> Plan:
     """Gather what the effects that are on ask for."""
     system, effects = context.system, context.resolved.effects
-    columns: dict[str, np.ndarray] = {}
-    tables: dict[str, np.ndarray] = {}
-    asked: dict[str, tuple[str, ...]] = {}
-    units: dict[str, str] = {}
-    for effect in effects:
-        declared, own_tables = effect.columns(context), effect.tables(context)
-        own_columns = {field.name: values for field, values in declared.items()}
-        for field, values in declared.items():
-            what = f"{effect.name}: column {field.name} [{field.unit}]"
-            if field.per != "particle" or np.shape(values) != (system.particles,):
-                raise ValueError(f"{what} is per {field.per}, with values of shape {np.shape(values)}")
-            if units.setdefault(field.name, field.unit) != field.unit:
-                raise ValueError(f"{what} is in {units[field.name]} elsewhere")
-        columns.update(own_columns)
-        tables.update(own_tables)
-        asked[effect.name] = (*own_columns, *own_tables)
     if any(e.binds for e in effects):
         bonds, kind = system.spring, system.spring_type
         merged, coefficients = types(system.constants * (1.0, 1.0, float(any(e.brakes for e in effects))))
@@ -136,13 +147,14 @@ def make_plan(context: Context, certificate: Certificate) -> Plan:
             kind = merged[kind - 1]
     else:
         bonds, kind, coefficients = system.spring[:0], np.zeros(0, np.uint8), np.zeros((0, 3))
+    columns, fields, asked = _columns(context, {"particle": system.particles, "bond": len(bonds), "object": len(system.names)})
     return Plan(
         context=context,
         certificate=certificate,
         effects=effects,
-        columns=columns,
-        units=units,
-        tables=tables,
+        columns={name: columns[name] for name in fields},
+        fields=fields,
+        slots=most_bonds(bonds) if any(field.per == "bond" for field in fields.values()) else 0,
         bonds=bonds,
         bond_kind=kind,
         coefficients=coefficients,
@@ -150,6 +162,27 @@ def make_plan(context: Context, certificate: Certificate) -> Plan:
         spacing=float(system.spacing.max()),
         exponential=bool(strong_drag(context, certificate.timestep)),
     )
+
+
+def _columns(context: Context, counts: Mapping[str, int]) -> tuple[dict[str, np.ndarray], dict[str, Field], dict]:
+    """Values and fields of all columns, by name, whole numbers last; and the names of those that each effect asks for. ``counts``
+    are the things that there may be values of."""
+    columns: dict[str, np.ndarray] = {}
+    fields: dict[str, Field] = {}
+    asked: dict[str, tuple[str, ...]] = {}
+    for effect in context.resolved.effects:
+        declared = effect.columns(context)
+        for field, values in declared.items():
+            what = f"{effect.name}: column {field.name} [{field.unit}]"
+            if field.per not in counts or np.shape(values) != (counts[field.per], *field.shape):
+                raise ValueError(f"{what} is per {field.per}, with values of shape {np.shape(values)}")
+            if fields.setdefault(field.name, field) != field:
+                raise ValueError(f"{what} is declared otherwise elsewhere: {fields[field.name]}")
+            columns[field.name] = np.asarray(values, field.dtype)
+        asked[effect.name] = tuple(field.name for field in declared)
+    if (moved := context.system.moved) is not None:
+        columns[DRIVEN], fields[DRIVEN] = moved.astype(float), column(DRIVEN, "1")
+    return columns, dict(sorted(fields.items(), key=lambda item: np.dtype(item[1].dtype).kind == "i")), asked
 
 
 def both_ends(bonds: np.ndarray, kind: np.ndarray, n: int) -> Ends:

@@ -12,7 +12,7 @@ import numpy as np
 
 from ..effects import Context, Effect
 from ..model.system import System
-from .plan import Ends, Plan, both_ends
+from .plan import DRIVEN, Ends, Plan, both_ends
 
 
 @dataclass(frozen=True)
@@ -69,8 +69,13 @@ class SubPlans:
         system = self._system(objects, runs)
         context = replace(whole.context, system=system, grid=whole.grid if grid else None)
         effects = self._effects(context)
-        wanted = {name for e in effects for name in whole.asked[e.name]}
-        tags_of = {name: columns for e in effects for name, columns in e.tags_of.items()}
+        wanted = {name for e in effects for name in whole.asked[e.name]} | ({DRIVEN} if system.driven.any() else set())
+        takers = {"particle": take, "bond": _Taker(runs, self._bond), "object": _Taker(runs, range(len(self._particle)))}
+
+        def part(name: str) -> np.ndarray:
+            field, values = whole.fields[name], whole.columns[name]
+            return take.tags(values, field.tags) if field.tags else takers[field.per](values)
+
         used = self._used(objects)
         number = np.zeros(len(whole.coefficients) + 1, whole.bond_kind.dtype)
         number[used] = np.arange(1, len(used) + 1)
@@ -78,11 +83,11 @@ class SubPlans:
             context=context,
             certificate=whole.certificate,
             effects=effects,
-            columns={name: take(column) for name, column in whole.columns.items() if name in wanted},
-            units={name: unit for name, unit in whole.units.items() if name in wanted},
-            tables={name: take.tags(table, tags_of[name]) for name, table in whole.tables.items() if name in wanted},
+            columns={name: part(name) for name in whole.columns if name in wanted},
+            fields={name: field for name, field in whole.fields.items() if name in wanted},
+            slots=whole.slots,
             bonds=system.spring if len(whole.bonds) else system.spring[:0],
-            bond_kind=number[_Taker(runs, self._bond)(whole.bond_kind)],
+            bond_kind=number[takers["bond"](whole.bond_kind)],
             coefficients=whole.coefficients[used - 1],
             asked={e.name: whole.asked[e.name] for e in effects},
             spacing=whole.spacing,
@@ -137,6 +142,7 @@ class SubPlans:
             hexahedron=lambda: particle.renumber(s.hexahedron, cell),
             contact_kind=lambda: s.contact_kind[index],
             frames=lambda: s.frames,
+            driven=lambda: s.driven[index],
         )
 
     # --- springs at both ends: kept by object, for it takes a sort to make them ---------------------------------------

@@ -3,7 +3,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Container
+from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache, singledispatch
 
 import numpy as np
@@ -25,11 +26,12 @@ from .spacing import plan_spacing
 from .springs import dashpots, equivalent_modulus, rest_lengths, stiffness, types
 
 
-def build_models(scene: SceneRecord, h: float | None = None) -> tuple[Model, ...]:
+def build_models(scene: SceneRecord, h: float | None = None, driven: Container[int] = ()) -> tuple[Model, ...]:
     """Make the model of every solid, in the order of the scene, all with one particle spacing h [m]; None is that of the scene.
 
-    Objects of equal shape, elasticity and mass share their arrays of springs, masses, layers, surface and contact body, which are
-    read-only; positions, velocities and held are their own.
+    ``driven`` are the numbers of those whose held particles some effect moves. Objects of equal shape, elasticity and mass share
+    their arrays of springs, masses, layers, surface and contact body, which are read-only; positions, velocities and held are
+    their own.
 
     Raises SceneError with all problems of all solids in one pass: those of plan_spacing, a body that falls
     apart at this spacing, a ``hold`` without particles.
@@ -37,9 +39,10 @@ def build_models(scene: SceneRecord, h: float | None = None) -> tuple[Model, ...
     h = plan_spacing(scene).h if h is None else h
     shared = _Shared(h)
     models, problems = [], []
-    for solid in scene.solids:
+    for m, solid in enumerate(scene.solids):
         try:
-            models.append(_make_model(solid, shared))
+            model = _make_model(solid, shared)
+            models.append(replace(model, driven=True) if m in driven else model)
         except TooThin as error:
             problems.append(_too_thin(solid, h, error))
         except MeshError as error:

@@ -31,7 +31,7 @@ def with_covers(models: Sequence[Model], solids: Sequence[Solid]) -> tuple[Model
 
     Decided from the poses of the whole scene, so it is the same for every part of it.
     """
-    held = [n for n, model in enumerate(models) if isinstance(model.frame.shape, Box) and model.held.all()]
+    held = [n for n, model in enumerate(models) if isinstance(model.frame.shape, Box) and model.still]
     if len(held) < 2:
         return tuple(models)
     gap = FLUSH * max(models[n].spacing for n in held)

@@ -109,6 +109,13 @@ class Model(Particles):
     surface: Surface
     frame: BodyFrame
     """Its shape and cells; objects of equal shape share one, and with it the contact body."""
+    driven: bool = False
+    """Whether some effect moves its held particles."""
+
+    @property
+    def still(self) -> bool:
+        """Whether it never moves: all of it is held, and nothing drives it."""
+        return bool(self.held.all()) and not self.driven
 
     @property
     def spacing(self) -> float:

@@ -62,7 +62,7 @@ class _BoundingBoxes:
         self.vertices = vertices
         self.low = np.array([v.min(axis=0) for v in vertices])
         self.high = np.array([v.max(axis=0) for v in vertices])
-        self.fixed = np.array([bool(m.held.all()) for m in models])
+        self.fixed = np.array([m.still for m in models])
         spacing = max(m.spacing for m in models)
         self.hair = HAIR * spacing
         self.allowed = (BORN_AT_REST if on_surfaces else HAIR) * spacing

@@ -37,6 +37,8 @@ class System(Particles):
     """Kind of body of each solid as contact sees it, by which solid has it first, int32, shape (M,)."""
     frames: tuple[BodyFrame, ...]
     """The frames from which the contact body of each kind of the scene is made."""
+    driven: np.ndarray
+    """Solids whose held particles some effect moves, bool, shape (M,)."""
     contact_factor: float = 1.0
     """``control contact-stiffness`` [-]."""
 
@@ -78,7 +80,12 @@ class System(Particles):
     @cached_property
     def still(self) -> np.ndarray:
         """Solids that are held as a whole and never move, bool, shape (M,)."""
-        return np.logical_and.reduceat(self.held, self.first[:-1])
+        return np.logical_and.reduceat(self.held, self.first[:-1]) & ~self.driven
+
+    @property
+    def moved(self) -> np.ndarray | None:
+        """Held particles that some effect moves, bool, shape (N,); None where there are none."""
+        return self.held & self.driven[self.object] if self.driven.any() else None
 
     def stretches(self, solids: Sequence[int]) -> list[slice]:
         """Particles of some solids, in their order; one stretch of those that are side by side:
@@ -159,6 +166,7 @@ def assemble(models: Sequence[Model], scene: SceneRecord) -> System:
         hexahedron=join([m.hexahedron + o if o else m.hexahedron for m, o in zip(models, offsets)]),
         contact_kind=np.array([kind[id(m.frame)] for m in models], np.int32),
         frames=frames,
+        driven=np.array([m.driven for m in models], bool),
         contact_factor=scene.control.contact_stiffness,
     )
 

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """Where solids can be, until when, and how fast."""
 
-from .acting import Acting, Bodies, Motion
+from .acting import Acting, Bodies, Drive, Motion
 from .reach import Reach, largest_of_others, wave_speed
 from .region import bounding_radius
 
-__all__ = ["Acting", "Bodies", "Motion", "Reach", "bounding_radius", "largest_of_others", "wave_speed"]
+__all__ = ["Acting", "Bodies", "Drive", "Motion", "Reach", "bounding_radius", "largest_of_others", "wave_speed"]

@@ -3,7 +3,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Protocol
 
@@ -23,6 +24,18 @@ class Bodies(Protocol):
     """[kg/m^3], shape (M,)."""
     mass: np.ndarray
     """[kg], shape (M,)."""
+
+
+@dataclass(frozen=True, slots=True)
+class Drive:
+    """Bounds of a motion that an effect gives the held particles of a solid."""
+
+    low: tuple[float, float, float]
+    """How far they may go from their places at the start, at least along each axis [m]."""
+    high: tuple[float, float, float]
+    """The same at most [m]."""
+    speed: float
+    """Largest speed of any of them [m/s]."""
 
 
 class Motion(Protocol):
@@ -45,6 +58,10 @@ class Motion(Protocol):
     def surface(self, scene: SceneRecord) -> float | None: ...
 
     def lift(self, scene: SceneRecord, system: System) -> np.ndarray | float: ...
+
+    def joins(self, scene: SceneRecord) -> Iterable[tuple[int, int]]: ...
+
+    def drives(self, scene: SceneRecord) -> Mapping[int, Drive]: ...
 
 
 class Acting:
@@ -81,6 +98,26 @@ class Acting:
     def rough(self) -> np.ndarray:
         """Solids that planes may push along themselves, bool, shape (M,)."""
         return self._any(e.rough(self.scene) for e in self.effects)
+
+    @cached_property
+    def joined(self) -> np.ndarray:
+        """Solids that something pulls at which another solid moves, bool, shape (M,)."""
+        found = np.zeros(len(self.scene.solids), bool)
+        found[[m for e in self.effects for pair in e.joins(self.scene) for m in pair]] = True
+        return found
+
+    @cached_property
+    def drives(self) -> dict[int, Drive]:
+        """Motions of held particles, by the numbers of their solids."""
+        return {m: drive for e in self.effects for m, drive in e.drives(self.scene).items()}
+
+    @cached_property
+    def driven_at(self) -> np.ndarray:
+        """Speed at which the held particles of each solid may be moved [m/s], shape (M,)."""
+        found = np.zeros(len(self.scene.solids))
+        for m, drive in self.drives.items():
+            found[m] = drive.speed
+        return found
 
     def _any(self, told: Iterable[np.ndarray | None]) -> np.ndarray:
         found = np.zeros(len(self.scene.solids), bool)

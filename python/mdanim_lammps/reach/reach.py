@@ -71,6 +71,11 @@ class Reach:
         return ~self.system.still
 
     @cached_property
+    def free(self) -> np.ndarray:
+        """Solids of which something moves as forces make it, bool, shape (M,): what is held and driven does not."""
+        return ~np.logical_and.reduceat(self.system.held, self.system.first[:-1])
+
+    @cached_property
     def wave(self) -> np.ndarray:
         """Speed of waves in each solid, see `wave_speed` [m/s], shape (M,)."""
         return wave_speed(self.system)
@@ -91,7 +96,7 @@ class Reach:
         """Height of each solid's fall through air [m], shape (M,), as if nothing stood; none where all solids stand or are held,
         as nothing comes that might throw one of them down."""
         bottom, floor = self.heights
-        return bottom - (bottom if (self.stands | ~self.moving).all() else floor)
+        return bottom - (bottom if (self.stands | ~self.free).all() else floor)
 
     @cached_property
     def fall(self) -> np.ndarray:
@@ -121,17 +126,19 @@ class Reach:
         return self.speed_after(self.fall)
 
     def speed_after(self, fall: np.ndarray) -> np.ndarray:
-        """The start's speed, with that of a fall [m], shape (M,)."""
+        """The start's speed, with that of a fall [m], shape (M,), and at which it is driven."""
         start = np.maximum.reduceat((self.system.velocity**2).sum(1), self.system.first[:-1])
-        return np.where(self.moving, np.sqrt(np.maximum(0.0, start + 2.0 * self.g * fall)), 0.0)
+        return np.where(self.free, np.sqrt(np.maximum(0.0, start + 2.0 * self.g * fall)), 0.0) + self.acting.driven_at
 
     def closing(self, fall: np.ndarray) -> np.ndarray:
         """Speed at which each solid may meet another [m/s], shape (M,): all fall alike, so only the start tells them apart until
         one has landed; ``fall`` [m], shape (M,), is how far."""
         low, high = self.system.bounds(self.system.velocity)
         apart = np.maximum(high + largest_of_others(-low), largest_of_others(high) - low)
-        apart = np.sqrt((np.maximum(apart, 0.0) ** 2).sum(1))
-        return np.where(self.system.still, 0.0, np.sqrt(apart**2 + 2.0 * self.g * np.maximum(0.0, fall)))
+        driven = self.acting.driven_at + largest_of_others(self.acting.driven_at)
+        apart = np.sqrt((np.maximum(apart, 0.0) ** 2).sum(1)) + driven
+        fall = np.where(self.free, np.maximum(0.0, fall), 0.0)
+        return np.where(self.system.still, 0.0, np.sqrt(apart**2 + 2.0 * self.g * fall))
 
     # --- at a time ------------------------------------------------------------------------------------------------------
 

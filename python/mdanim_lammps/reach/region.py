@@ -86,10 +86,11 @@ def sweeps(acting: Acting, h: float) -> Sweeps:
         wet = (low - radius[:, None])[:, 2] <= wet_below
         return reached | wet[:, None], wet
 
-    hit = touched(calm)[0].any(axis=1)
+    hit = touched(calm)[0].any(axis=1) | acting.joined
     radius = np.where(hit, wild, calm)
     by_axis, _ = touched(radius)
     by_axis[~hit] = False
+    by_axis |= acting.joined[:, None]
     by_axis |= (acting.rough & by_axis.any(axis=1))[:, None]  # friction acts along the other axes
     far = bodies.speed * scene.control.time
     # A body that has bounced may fall into a liquid that its parabola misses.
@@ -104,6 +105,8 @@ def sweeps(acting: Acting, h: float) -> Sweeps:
     low[held] = high[held] = bodies.middle[held]
     half[bodies.fixed] = bodies.half[bodies.fixed] + REACH * bodies.h
     half[bodies.clamped] = _clamped(scene, bodies)[bodies.clamped] + REACH * bodies.h
+    for m, drive in acting.drives.items():
+        low[m], high[m] = low[m] + drive.low, high[m] + drive.high
     return Sweeps(low - half, high + half, bodies.fixed)
 
 
@@ -134,6 +137,9 @@ class _Movers:
         self.loose = np.zeros(len(solids)) if acting.bound else self.tip * scene.control.time
         self.pull = acting.most_pull(self)
         self.speed = _speed(acting, self)
+        if acting.joined.any():  # nothing is known of what pulls: what is faster than waves is refused
+            self.speed = np.where(acting.joined, np.maximum(self.speed, self.wave), self.speed)
+        self.driven_at = acting.driven_at
 
     def size(self, speed: np.ndarray) -> np.ndarray:
         """Radius of a body when this speed [m/s] is converted into deformation [m], shape (M,)."""
@@ -196,7 +202,7 @@ def _clamped(scene: SceneRecord, bodies: _Movers) -> np.ndarray:
     A solid that is held in one place may swing around that place like a pendulum. A cuboid held at whole faces bends by twice
     the deflection of a cantilever, 1.5 rho g L^4 / (E t^2), and by its own velocity, 1.7 v L^2 / (c t).
     """
-    speed = np.sqrt((bodies.velocity**2).sum(axis=1) + bodies.tip**2 + 4.0 * bodies.pull * bodies.radius)
+    speed = np.sqrt((bodies.velocity**2).sum(axis=1) + bodies.tip**2 + 4.0 * bodies.pull * bodies.radius) + bodies.driven_at
     pendulum = 3.0 * bodies.radius * (SLACK + STRETCH * speed / bodies.wave)
     half = np.repeat(pendulum[:, None], 3, axis=1)
     for k in np.flatnonzero(bodies.clamped):
@@ -204,7 +210,7 @@ def _clamped(scene: SceneRecord, bodies: _Movers) -> np.ndarray:
         if not (isinstance(solid.shape, Box) and any(isinstance(h, HoldFaces) for h in solid.hold)):
             continue
         length, thin, c = 2.0 * bodies.radius[k], min(solid.shape.size), bodies.wave[k]
-        moving = np.linalg.norm(solid.velocity) + bodies.tip[k]
+        moving = np.linalg.norm(solid.velocity) + bodies.tip[k] + bodies.driven_at[k]
         sag = 2.0 * 1.8 * bodies.pull[k] * length**4 / (c * thin) ** 2 + 1.7 * moving * length**2 / (c * thin)
         half[k] = np.minimum(half[k], SLACK * bodies.half[k] + SAG * sag)
     return half

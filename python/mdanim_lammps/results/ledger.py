@@ -30,8 +30,9 @@ class Ledger:
     """One row per frame: time [s], one energy per effect that is on [J], and the residual.
 
     residual = (total now - total at the start) / (largest energy in play so far). The total is the sum of all columns,
-    losses included; the energy in play is the sum of the columns' absolute values, each of ``potentials`` counted from its own
-    lowest value so far: their zeros are arbitrary, and a floating body trades one for the other.
+    losses included, less what ``sources`` have brought in; the energy in play is the sum of the columns' absolute values, each
+    of ``potentials`` counted from its own lowest value so far: their zeros are arbitrary, and a floating body trades one for the
+    other.
     """
 
     terms: tuple[str, ...]
@@ -44,6 +45,8 @@ class Ledger:
     """Terms whose zero is arbitrary: only how far they have changed says how much is in play."""
     counts: tuple[str, ...] = ()
     """Extras that count something; whole numbers of them are written as such."""
+    sources: tuple[str, ...] = ()
+    """Terms that count what was brought in from outside: the total is without them."""
     rows: list[dict[str, float]] = field(default_factory=list)
     _peak: float = 0.0
     _lowest: dict[str, float] = field(default_factory=dict)
@@ -64,7 +67,7 @@ class Ledger:
         in_play = sum(abs(row[t]) for t in self.terms if t not in potentials) + sum(potentials.values())
         self._lowest = {t: min(self._lowest.get(t, e), e) for t, e in potentials.items()}
         self._peak = max(self._peak, in_play) if self.rows else in_play
-        change = sum(row[t] - first[t] for t in self.terms)
+        change = sum((first[t] - row[t] if t in self.sources else row[t] - first[t]) for t in self.terms)
         scale = max(self._peak - sum(self._lowest.values()), self.floor)
         row["residual"] = change / scale if scale else 0.0
         return row

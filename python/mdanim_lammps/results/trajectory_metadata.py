@@ -129,7 +129,7 @@ def metadata_of(
         title=scene.title,
         names=tuple(model.name for model in models),
         colors=tuple(solid.color or "" for solid in named),
-        still=np.array([bool(model.held.all()) for model in models], dtype=bool),
+        still=np.array([model.still for model in models], dtype=bool),
         object_mass=np.array([model.mass.sum() for model in models], dtype=np.float64),
         first=np.cumsum([0] + [int(kept.sum()) for kept in stored]),
         total=int(offsets[-1]),

@@ -3,12 +3,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
 
 from .. import features
-from ..effects.fields import Field
+from ..effects.fields import Field, Fields, join_fields
 from ..engine.instance import Instance
 from ..engine.plan import Plan
 from ..model.system import System
@@ -36,7 +37,12 @@ def least_energy(scene: SceneRecord, system: System) -> float:
 
 def ledger_terms(plan: Plan) -> tuple[str, ...]:
     """Columns of the ledger: kinetic energy, and those of the effects that are on."""
-    of_effects = (term for e in plan.effects for term in (e.ledger, *e.further_ledger, *e.losses(plan.scene)) if term)
+    of_effects = (
+        term
+        for e in plan.effects
+        for term in (e.ledger, *e.further_ledger, *e.losses(plan.scene), *e.sources(plan.scene))
+        if term
+    )
     return ("kinetic", *dict.fromkeys(of_effects))
 
 
@@ -47,13 +53,14 @@ def extra_fields(plan: Plan) -> tuple[Field, ...]:
 
 
 def frame_fields(plan: Plan) -> tuple[Field, ...]:
-    """The fields of a frame from all effects."""
-    return tuple(f for e in plan.effects for f in e.fields(plan.scene))
+    """The fields of a frame from all effects, and their columns that are part of the state."""
+    return (*(f for e in plan.effects for f in e.fields(plan.scene)), *(plan.fields[name] for name in plan.states))
 
 
 def tell(instance: Instance) -> dict[str, Any]:
-    """The values of the fields that the effects of an instance have, by their names."""
-    return {name: value for e in instance.plan.effects for name, value in e.tell(instance).items()}
+    """The values of the fields that an instance has, by their names."""
+    of_effects = {name: value for e in instance.plan.effects for name, value in e.tell(instance).items()}
+    return of_effects | {name: instance.column(name) for name in instance.plan.states}
 
 
 def potential_terms(plan: Plan) -> tuple[str, ...]:
@@ -62,8 +69,13 @@ def potential_terms(plan: Plan) -> tuple[str, ...]:
 
 
 def loss_terms(plan: Plan) -> tuple[str, ...]:
-    """Those of them that only grow: what effects have taken so far."""
-    return tuple(dict.fromkeys(term for e in plan.effects for term in e.losses(plan.scene)))
+    """Those of them that are sums since the start: what effects have taken, and what they have brought in."""
+    return tuple(dict.fromkeys(term for e in plan.effects for term in (*e.losses(plan.scene), *e.sources(plan.scene))))
+
+
+def source_terms(plan: Plan) -> tuple[str, ...]:
+    """Those of them that count what was brought in from outside."""
+    return tuple(dict.fromkeys(term for e in plan.effects for term in e.sources(plan.scene)))
 
 
 def energies(instance: Instance, center: np.ndarray) -> dict[str, float]:
@@ -99,3 +111,8 @@ def losses(instance: Instance) -> dict[str, float]:
         for term, energy in effect.lost(instance).items():
             found[term] += energy
     return found
+
+
+def whole_fields(plan: Plan, parts: Iterable[tuple[np.ndarray, Fields]]) -> dict[str, Any]:
+    """The fields of a frame, from those of parts of the plan (fields.join_fields)."""
+    return join_fields(frame_fields(plan), plan.rows, plan.system.still, parts, plan.columns)

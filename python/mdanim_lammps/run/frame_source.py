@@ -11,7 +11,7 @@ from typing import Protocol
 
 import numpy as np
 
-from ..effects.fields import Fields, join_fields
+from ..effects.fields import Fields
 from ..effects.readings import LEAPFROG
 from ..engine.instance import Instance
 from ..engine.plan import Plan
@@ -20,7 +20,7 @@ from ..errors import DivergedError
 from ..model.model import Model
 from ..results.checkpoint import Checkpoint
 from ..results.frame_rows import FrameRows, RowWriter
-from .energy import energies, frame_fields, tell
+from .energy import energies, tell, whole_fields
 from .guard import fastest
 from .observe import Observation, Observer
 
@@ -192,7 +192,7 @@ class Sequential:
     def _frame(self, frame: int) -> Frame:
         instance = self.instance
         x, v = instance.array("x"), instance.array("v")
-        fields = join_fields(frame_fields(self.plan), self.plan.system.still, [(self.objects, tell(instance))])
+        fields = whole_fields(self.plan, [(self.objects, tell(instance))])
         with self.spent.clock("guard"):
             seen = self.observer.observe(self.objects, self.objects, x, v, fields)
         with self.spent.clock("output"):

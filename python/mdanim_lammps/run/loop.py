@@ -30,7 +30,7 @@ from ..results.trajectory import Trajectory
 from ..results.trajectory_writer import TrajectoryWriter
 from ..scene.formatting import number
 from ..scene.meshes import mesh_files
-from .energy import extra_fields, frame_fields, least_energy, ledger_terms, loss_terms, potential_terms
+from .energy import extra_fields, frame_fields, least_energy, ledger_terms, loss_terms, potential_terms, source_terms
 from .frame_source import COST_SECONDS, Account, Frame, FrameSource, LammpsFailure, Sequential, clock
 from .guard import Guard
 from .prepare import Prepared
@@ -190,6 +190,7 @@ class _Run:
             least_energy(ready.scene, ready.system),
             potential_terms(ready.plan),
             tuple(field.name for field in self.extras if field.whole),
+            source_terms(ready.plan),
         )
 
     # --- the order of things ----------------------------------------------------------------------------------------

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -63,6 +64,9 @@ class Prepared:
         return lock_text(self.scene, mesh_files(self.scene))
 
 
+_WITHOUT = "leave one of both out, or write  effects { %s off }"
+
+
 def prepare(scene: SceneRecord, *, allow_unstable: bool = False) -> Prepared:
     """Build, check and certify a scene.
 
@@ -90,10 +94,11 @@ def prepare(scene: SceneRecord, *, allow_unstable: bool = False) -> Prepared:
 def _prepare(scene: SceneRecord, spacing: Spacing, allow_unstable: bool) -> Prepared:
     resolved = resolve(features.effects(), scene, spacing.h)
     grid = next((cells for e in resolved.effects if (cells := e.grid(scene, spacing.h))), None)
-    models = build_models(scene, spacing.h)
+    drives = {m for e in resolved.effects for m in e.drives(scene)}
+    models = build_models(scene, spacing.h, driven=drives)
     planes = [p for e in features.effects() for p in e.of(scene).planes(scene)]  # also of those that are off
     problems = check_geometry(scene, models, planes) + [p for e in resolved.effects for p in e.problems(resolved, models, grid)]
-    problems += _unmeasurable(resolved)
+    problems += _unmeasurable(resolved) + _undriven(resolved, models)
     if problems:
         raise SceneError(problems)
     system = assemble(models, scene)
@@ -116,3 +121,29 @@ def _unmeasurable(resolved: Resolved) -> list[Problem]:
         for e in resolved.scene.expects
         if (needs := e.kind.needs) and not resolved.on(needs)
     ]
+
+
+def _undriven(resolved: Resolved, models: Sequence[Model]) -> list[Problem]:
+    """A problem for each solid that cannot be driven: nothing of it is held, two effects would move it, or an effect that is on
+    takes what is held for something that stands."""
+    found: list[Problem] = []
+    by: dict[int, str] = {}
+    blind = next((e.name for e in resolved.effects if not e.sees_driven), None)
+    for effect in resolved.effects:
+        for m in effect.drives(resolved.scene):
+            solid, name = resolved.scene.solids[m], resolved.scene.solids[m].name
+            place = solid.spans.get("hold", solid.spans.get("object"))
+            if not models[m].held.any():
+                found.append(
+                    Problem(place, f"{effect.name} drives {name}, and nothing of it is held", "write what of it is held")
+                )
+            elif m in by:
+                found.append(Problem(place, f"{name} is driven by {by[m]} and by {effect.name}", "leave one of them out"))
+            elif blind:
+                found.append(
+                    Problem(
+                        place, f"{name} is driven, and {blind} takes what is held for something that stands", _WITHOUT % blind
+                    )
+                )
+            by[m] = effect.name
+    return found

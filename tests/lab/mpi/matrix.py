@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""Run one scene in many ways in one start of MPI: ``mpiexec -n 5 python matrix.py CASES.json SECONDS [effect]``.
+"""Run one scene in many ways in one start of MPI: ``mpiexec -n 5 python matrix.py CASES.json SECONDS``.
 
 Each way is a supervisor and executors on some of the ranks, or the sequential program on one of them.
 """
@@ -10,9 +10,6 @@ import sys
 import time
 from dataclasses import replace
 from pathlib import Path
-
-if "effect" in sys.argv:
-    from mpi import memory_effect  # noqa: F401  before the table of effects is read
 
 import numpy as np
 from mdanim_lammps.parallel.plan import frame_plan

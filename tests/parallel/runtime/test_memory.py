@@ -20,7 +20,7 @@ def library():
 
 def film(scene, text, cases, **more):
     """The folder of each way, with the effect."""
-    return ways(scene(text), cases, effect=True, **more)
+    return ways(scene(text), cases, features="remembers", **more)
 
 
 def records(folder) -> dict[tuple[int, int], bytes]:

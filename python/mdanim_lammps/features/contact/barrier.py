@@ -7,7 +7,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from ...effects.context import Verdict
+from ...effects.context import Context, Verdict
 from ...effects.effect import Effect, stiffness_told
 from ...effects.envelope import Envelope
 from ...effects.fields import column
@@ -54,12 +54,12 @@ def plane_stiffness(reach: float) -> float:
     return float(np.linalg.eigvalsh(hessian)[:, -1].max())
 
 
-def barrier(fix: str, system: System, thin: tuple[str, ...] = ("group thin type 4 8",)) -> list[str]:
+def barrier(fix: str, context: Context, thin: tuple[str, ...] = ("group thin type 4 8",)) -> list[str]:
     """Commands for a barrier of this name, with the columns ``stiffness`` and ``reach``; ``thin`` make the group of particles
     that are a barrier themselves, because there are none inside."""
     groups = ["group inner type 1 2 5 6", "group boundary type 3 4 7 8", *thin]
-    words = f"fix {fix} mobile mdanim/barrier boundary inner d_stiffness d_reach"
-    return [*groups, f"{words} thin thin {THIN!r}" if (system.layer == Layer.THIN).any() else words]
+    words = f"fix {fix} {context.pushed} mdanim/barrier boundary inner d_stiffness d_reach"
+    return [*groups, f"{words} thin thin {THIN!r}" if (context.system.layer == Layer.THIN).any() else words]
 
 
 def barrier_rate(system: System, s: np.ndarray, reach: float) -> np.ndarray:
@@ -115,7 +115,7 @@ class Contact(Effect):
         return REACH * context.system.spacing
 
     def commands(self, context):
-        return barrier(self.fix, context.system)
+        return barrier(self.fix, context)
 
     def rate(self, context):
         system = context.system

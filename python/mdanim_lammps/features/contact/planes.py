@@ -51,7 +51,10 @@ class Boundary(Effect):
         raise NotImplementedError
 
     def commands(self, context):
-        return [f"region {self.fix} {self.region(context.scene)}", f"fix {self.fix} mobile mdanim/wall {self.fix} d_stiffness"]
+        return [
+            f"region {self.fix} {self.region(context.scene)}",
+            f"fix {self.fix} {context.pushed} mdanim/wall {self.fix} d_stiffness",
+        ]
 
     def margins(self, envelope):
         return envelope.own_step("wall", envelope.rates[self.name])

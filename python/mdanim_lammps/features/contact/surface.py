@@ -73,10 +73,11 @@ class OnSurfaces(Effect):
         """The column with the friction of each particle's object."""
         return "friction"
 
-    def law(self, scene: SceneRecord, touched: str) -> list[str]:
+    def law(self, context: Context, touched: str) -> list[str]:
         """The command of the fix, with what objects touch, behind that of the group of all that is there: what is laid aside
         leaves it."""
-        words = [f"fix {self.fix} mobile mdanim/contact d_body d_young d_{self.friction_column(scene)}"]
+        scene, group = context.scene, context.pushed
+        words = [f"fix {self.fix} {group} mdanim/contact d_body d_young d_{self.friction_column(scene)}"]
         words.append(f"stiffness {scene.control.contact_stiffness!r}")
         if damping(scene) != USUAL_DAMPING:
             words.append(f"damping {damping(scene)!r}")
@@ -181,7 +182,7 @@ class SurfaceContact(OnSurfaces, Contact):
     def commands(self, context):
         scene, system = context.scene, context.system
         rules = [f"pair {i + 1} {j + 1} {mu!r} {beta!r}" for i, j, mu, beta in pair_rules(scene, system.names)]
-        return [*self.law(scene, " ".join(["objects", *rules])), *barrier(self.behind, system, self.thin(system))]
+        return [*self.law(context, " ".join(["objects", *rules])), *barrier(self.behind, context, self.thin(system))]
 
     def tunnelling(self, envelope):
         found, system = super().tunnelling(envelope), envelope.system
@@ -294,9 +295,8 @@ class SurfacePlanes(OnSurfaces, Boundary):
         return f"friction_{self.name}" if named else "friction"
 
     def commands(self, context):
-        scene = context.scene
-        planes = (f"plane {AXES[p.axis]} {'lo' if p.sign > 0 else 'hi'} {p.at!r}" for p in self.planes(scene))
-        return self.law(scene, " ".join(planes))
+        planes = (f"plane {AXES[p.axis]} {'lo' if p.sign > 0 else 'hi'} {p.at!r}" for p in self.planes(context.scene))
+        return self.law(context, " ".join(planes))
 
     def rate(self, context):
         """a_i = kappa w_i / m_i with w_i as in `SurfaceContact.rate`: the plane does not move, so there is no factor 2."""

@@ -30,7 +30,7 @@ class Gravity(Effect):
 
     def commands(self, context):
         x, y, z = context.scene.gravity
-        return [f"fix gravity mobile mdanim/gravity {x!r} {y!r} {z!r}"]
+        return [f"fix gravity {context.pushed} mdanim/gravity {x!r} {y!r} {z!r}"]
 
     def acceleration(self, scene):
         return np.array(scene.gravity, float)

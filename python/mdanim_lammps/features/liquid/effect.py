@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import math
-from types import MappingProxyType
 
 import numpy as np
 
@@ -27,6 +26,10 @@ from .ledger import CELLS, DUE
 from .record import LiquidModel
 from .tables import lattice_cells, layers_of_cells
 
+CELLS_OF = column("cell", "1", dtype="int32", shape=(7,), tags=7)
+"""The further corners of the lattice cell of which a particle is the first one, see `lattice_cells`."""
+CELLS_AND_LAYERS = column("cell", "1", dtype="int32", shape=(8,), tags=7)
+"""The same, and the layers of cells around that one."""
 EVERY = 4
 """Steps after which the fix looks whether cells are to be updated."""
 STRIDE = 0.25
@@ -89,6 +92,7 @@ class LiquidAutomaton(Effect):
 
     styles = (("fix", "mdanim/liquid"),)
     name = fix = "liquid"
+    sees_driven = False
     on_grid = True
     order = 90
     needs = ("gravity",)
@@ -195,10 +199,8 @@ class LiquidAutomaton(Effect):
     def warnings(self, context):
         return [*open_hulls(context.scene, context.models), *leaky_walls(context.scene, context.models, context.grid)]
 
-    tags_of = MappingProxyType({"cell": 7})
-
-    def tables(self, context):
-        return {} if context.scene.liquid.model is LiquidModel.PAPER else {"cell": lattice_cells(context.system)}
+    def columns(self, context):
+        return {} if context.scene.liquid.model is LiquidModel.PAPER else {CELLS_OF: lattice_cells(context.system)}
 
     def clocks(self, readings):
         return {"flow": readings.fix_value(self.fix, FLOW), "occupancy": readings.fix_value(self.fix, OCCUPANCY)}
@@ -232,13 +234,6 @@ class LiquidAutomaton(Effect):
 class LiquidWaves(LiquidAutomaton):
     """A liquid with momentum: columns of whole units move by their pressure rho g h [Pa] (docs/physics-liquid.md, "Waves")."""
 
-    def tables(self, context):
-        system = context.system
-        cells = lattice_cells(system)
-        layers = np.zeros((system.particles, 1), np.int32)
-        layers[system.hexahedron[:, 0], 0] = layers_of_cells(system)
-        return {"cell": np.hstack([cells, layers])}
-
     def margins(self, envelope):
         return []
 
@@ -247,7 +242,12 @@ class LiquidWaves(LiquidAutomaton):
 
     def columns(self, context):
         system = context.system
-        return {column("softness", "m^3/Pa"): system.volume / system.young[system.object]}
+        layers = np.zeros((system.particles, 1), np.int32)
+        layers[system.hexahedron[:, 0], 0] = layers_of_cells(system)
+        return {
+            column("softness", "m^3/Pa"): system.volume / system.young[system.object],
+            CELLS_AND_LAYERS: np.hstack([lattice_cells(system), layers]),
+        }
 
     def words(self, scene):
         calm = scene.liquid.calm or calm_time(scene)

@@ -91,6 +91,7 @@ def plan(
     still: np.ndarray,
     gap: float,
     feels: np.ndarray | None = None,
+    joined: np.ndarray | None = None,
     previous: FrameAssignment | None = None,
     gain: int = GAIN,
     least: int = LEAST,
@@ -110,11 +111,14 @@ def plan(
     :param still: objects held as a whole, bool, shape (M,)
     :param gap: reach of contact [m]
     :param feels: objects that all others feel, bool, shape (M,): without contact, the pool alone; None for all
+    :param joined: objects that belong together wherever they are, as pairs, int64, shape (J, 2)
     :param previous: the last plan for which bundles were built
     """
     met = islands.pairs(*islands.boxes(low, high, d), gap)
     if feels is not None:
         met = met[feels[met].any(axis=1)]
+    if joined is not None and len(joined):
+        met = np.concatenate([met, joined])
     label = islands.components(len(low), met, still)
     order = z_order(low, high)
     given = assign(
@@ -155,6 +159,7 @@ class PlanContext:
         self.particles = np.append(np.diff(system.first), [0] * (self.count - self.objects)).astype(np.int64)
         self.still = np.append(system.still, np.zeros(self.count - self.objects, bool))
         self.gap = float(parts.gap.max(initial=0.0))
+        self.joined = np.array([pair for e in whole.effects for pair in e.joins(whole.scene)], np.int64).reshape(-1, 2)
         self.feels = None if self.gap else np.arange(self.count) == self.objects
         least, self.gain = (LEAST_BY_THREADS, GAIN_BY_THREADS) if settings.by_threads else (LEAST, GAIN)
         self.least = least if settings.least is None else settings.least
@@ -194,6 +199,7 @@ class PlanContext:
             still=self.still,
             gap=self.gap,
             feels=self.feels,
+            joined=self.joined,
             previous=previous,
             gain=self.gain,
             least=self.least,

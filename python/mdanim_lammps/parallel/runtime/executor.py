@@ -13,12 +13,12 @@ from contextlib import contextmanager, nullcontext
 import numpy as np
 from mpi4py import MPI
 
-from ...effects.fields import Fields, join_fields
+from ...effects.fields import Fields, part_of_fields
 from ...engine.state import Records, State, StateRecords, join_all
 from ...engine.sub_plan import SubPlans
 from ...errors import MdanimError
 from ...results.frame_rows import RowWriter
-from ...run.energy import frame_fields, stored, tell
+from ...run.energy import frame_fields, stored, tell, whole_fields
 from ...run.frame_source import COST_SECONDS, Account, LammpsFailure, add_clocks, penetration
 from ...run.observe import Observer
 from ..plan.orders import Order, Report
@@ -310,15 +310,20 @@ class Executor:
     def _weigh(self) -> None:
         """Energies and fields of a frame."""
         declared = frame_fields(self.job.plan)
-        of_objects = {field.name for field in declared if field.per == "object"}
         told: list[tuple[np.ndarray, Fields]] = []
         for bundle in self.bundles:
             energies, fields = stored(bundle.instance), tell(bundle.instance)  # together with the team
             if self._leads(bundle):
                 self._count(energies)
                 # Another bundle has the values of guests and of objects that this one has laid aside.
-                told.append((bundle.members, {n: v[bundle.moves] if n in of_objects else v for n, v in fields.items()}))
-        self.fields = join_fields(declared, self.system.still, told)
+                own = part_of_fields(declared, fields, bundle.plan.rows, bundle.objects, bundle.moves)
+                told.append((bundle.members, own))
+        self.fields = whole_fields(self.job.plan, told)
+
+    def _own_fields(self) -> Fields:
+        """Values of its own objects."""
+        plan, objects = self.job.plan, np.arange(self.objects)
+        return part_of_fields(frame_fields(plan), self.fields, plan.rows, objects, np.isin(objects, self.own))
 
     def _count(self, energies: dict[str, float]) -> None:
         for term, e in energies.items():
@@ -353,7 +358,7 @@ class Executor:
                 checksums,
                 self.energies,
                 self.deepest,
-                self.fields,
+                self._own_fields(),
                 self.moves,
                 self.retries,
                 tuple(sorted(self.led)),

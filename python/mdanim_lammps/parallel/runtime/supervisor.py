@@ -18,12 +18,11 @@ import numpy as np
 from mpi4py import MPI
 
 from ... import errors
-from ...effects.fields import join_fields
 from ...engine.state import State, join_all
 from ...engine.sub_plan import SubPlans
 from ...errors import DivergedError
 from ...results.timeline import Timeline
-from ...run.energy import frame_fields, ledger_terms, loss_terms, potentials
+from ...run.energy import ledger_terms, loss_terms, potentials, whole_fields
 from ...run.frame_source import Account, Frame, LammpsFailure
 from ...run.observe import join, recorded_models
 from ...run.prepare import Prepared
@@ -196,7 +195,7 @@ class Distributed:
             np.bitwise_xor.reduce([share.checksums for share in shares]),
             energies | potentials(self.ready.plan, seen.center) | self.losses,
             max(s.penetration for s in shares),
-            join_fields(frame_fields(self.ready.plan), self.ready.system.still, [(s.objects, s.fields) for s in shares]),
+            whole_fields(self.ready.plan, [(s.objects, s.fields) for s in shares]),
             keep,
         )
 
