@@ -7,7 +7,7 @@ from collections import deque
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
@@ -35,6 +35,7 @@ from ..run.loop import Progress, simulate
 from ..run.prepare import Prepared, prepare
 from ..run.result import Result
 from ..scene.formatting import number
+from ..scene.lammps_lines import check_alone
 from ..scene.render import Quality
 from ..scene.scene import SceneRecord
 from ..terminal import in_notebook, progress_bar
@@ -170,15 +171,18 @@ class Run:
         control: str | None = None,
         movie: bool | None = None,
         allow_unstable: bool = False,
+        trust: bool = False,
         progress: bool | None = None,
         on_progress: Callable[[Progress], None] | None = None,
     ) -> Run:
         """Go on from the last checkpoint, as if the run had never stopped; returns this run.
 
-        ``movie`` draws a movie at the end, None where the run was to make one; other arguments are those of `Scene.run`.
+        ``movie`` draws a movie at the end, None where the run was to make one. ``trust`` lets the commands for LAMMPS that the
+        scene has be run again: what they have made begins anew. Other arguments are those of `Scene.run`.
         Raises RefusedError for a run that is complete, OutputError where there is no checkpoint, and what `Scene.run` raises.
         """
-        with resumed(self.folder, lambda scene: prepare(scene, allow_unstable=allow_unstable)) as (ready, checkpoint, draws):
+        make = partial(prepare, allow_unstable=allow_unstable)
+        with resumed(self.folder, make, trust) as (ready, checkpoint, draws):
             return self.go(
                 ready,
                 movie=draws if movie is None else movie,
@@ -288,10 +292,13 @@ def quiet_unless(progress: bool | None) -> bool:
 
 
 @contextmanager
-def resumed(folder: Path, make: Callable[[SceneRecord], Prepared]) -> Iterator[tuple[Prepared, Checkpoint, bool]]:
+def resumed(
+    folder: Path, make: Callable[[SceneRecord], Prepared], trust: bool = False
+) -> Iterator[tuple[Prepared, Checkpoint, bool]]:
     """Claim the folder of a run that was stopped; gives its scene as `make` prepares it, where it goes on, and whether it was to
-    end with a movie. Raises RefusedError for a run that is complete, OutputError, SceneError, and what ``make`` raises."""
-    scene = stored_scene(folder)
+    end with a movie. ``trust`` lets its commands for LAMMPS be run. Raises RefusedError for a run that is complete, OutputError,
+    SceneError, and what ``make`` raises."""
+    scene = replace(stored_scene(folder), trusted=trust)
     with claimed(folder):
         if (folder / SUMMARY).exists():
             raise RefusedError(f"{folder} is complete; draw it again with 'mdanim-lammps render {folder}'")
@@ -316,6 +323,7 @@ def run_frames(
     more than this machine can hold.
     """
     check_executors(executors, ready.system.particles)
+    check_alone(ready.scene, executors, control)
     with with_threads(threads):
         if executors == 1 and control is None:
             return simulate(ready, folder, resume=resume, **options)

@@ -30,6 +30,7 @@ from ..run.loop import Progress, simulate, write_start
 from ..run.prepare import Prepared, prepare
 from ..scene.formatting import say
 from ..scene.keywords import Named
+from ..scene.lammps_lines import check_alone
 from ..scene.parse import load_scene, parse_scene
 from ..scene.scene import Accuracy, Save, SceneRecord
 from ..study.bench import BUDGET
@@ -58,19 +59,26 @@ class Scene:
         self.record, self._read, self.values = record, read, dict(values or {})
 
     @classmethod
-    def load(cls, path: str | Path, *, strict: bool = False, **overrides: float | str) -> Scene:
+    def load(cls, path: str | Path, *, strict: bool = False, trust: bool = False, **overrides: float | str) -> Scene:
         """Read a scene file; keyword arguments override its ``let`` names, as ``--set`` does. Names that are words of this method
-        too are given to `where`.
+        too are given to `where`. ``trust`` lets the commands for LAMMPS that the scene has be run, as ``--trust`` does.
 
-        Raises SceneError with all problems in ``.problems``, UsageError for a ``strict`` that is not True or False.
+        Raises SceneError with all problems in ``.problems``, UsageError for ``strict`` or ``trust`` that is not True or False.
         """
-        check_flags(strict=strict)
-        read = partial(load_scene, path, strict=strict)
+        check_flags(strict=strict, trust=trust)
+        read = partial(load_scene, path, strict=strict, trust=trust)
         return cls(read(overrides=overrides), read, overrides)
 
     @classmethod
     def from_text(
-        cls, text: str, name: str = "scene", *, folder: str | Path | None = None, strict: bool = False, **overrides: float | str
+        cls,
+        text: str,
+        name: str = "scene",
+        *,
+        folder: str | Path | None = None,
+        strict: bool = False,
+        trust: bool = False,
+        **overrides: float | str,
     ) -> Scene:
         """Read a scene from a text.
 
@@ -79,13 +87,14 @@ class Scene:
             name: of the scene and of its output folder.
             folder: where its includes and meshes are; None is the current folder.
             strict: refuse numbers that have a dimension but no unit.
+            trust: let its commands for LAMMPS be run.
             overrides: values of its ``let`` names, such as ``h=0.5`` or ``h="50 cm"``. Names that are words of this method too
                 are given to `where`.
 
-        Raises SceneError with all problems in ``.problems``, UsageError for a ``strict`` that is not True or False.
+        Raises SceneError with all problems in ``.problems``, UsageError for ``strict`` or ``trust`` that is not True or False.
         """
-        check_flags(strict=strict)
-        read = partial(parse_scene, text, name, strict=strict, folder=folder)
+        check_flags(strict=strict, trust=trust)
+        read = partial(parse_scene, text, name, strict=strict, folder=folder, trust=trust)
         return cls(read(overrides=overrides), read, overrides)
 
     def where(self, values: Mapping[str, float | str] | None = None, /, **named: float | str) -> Scene:
@@ -134,6 +143,7 @@ class Scene:
         """
         check_flags(force=force, movie=movie, progress=progress)
         started = time.perf_counter()
+        check_alone(self.record, executors, control)
         ready = self.prepared
         options = {"executors": executors, "threads": threads, "control": control, "started": started}
         with open_run(ready, folder, force=force, draws=movie) as made:

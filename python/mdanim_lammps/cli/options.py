@@ -53,6 +53,9 @@ class Reading:
     accuracy: Literal["preview", "balanced", "reference"] | None = None
     """Cells across the thinnest part: 2, 4, 8; time step 0.7, 0.5, 0.25 of the bound."""
 
+    trust: bool = False
+    """Run the commands for LAMMPS that the scene has."""
+
     def overrides(self) -> dict[str, str]:
         """Values of `let` by name. Raises UsageError."""
         pairs = {}
@@ -68,7 +71,7 @@ class Reading:
         from ..scene.parse import load_scene
         from ..scene.scene import Accuracy
 
-        scene = load_scene(path, overrides=self.overrides(), strict=strict)
+        scene = load_scene(path, overrides=self.overrides(), strict=strict, trust=self.trust)
         return replace(scene, control=replace(scene.control, accuracy=Accuracy(self.accuracy))) if self.accuracy else scene
 
 

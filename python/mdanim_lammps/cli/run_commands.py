@@ -30,6 +30,7 @@ def resume(
     movie: Annotated[bool | None, Parameter(negative="--no-movie")] = None,
     view: View = False,
     allow_unstable: AllowUnstable = False,
+    trust: bool = False,
     quiet: Quiet = False,
 ) -> None:
     """Continue a run from its last checkpoint, as if it had never stopped.
@@ -40,12 +41,14 @@ def resume(
         The output folder of a run that was stopped.
     movie
         Make movie.mp4 at the end; if left out, where the run was to make one.
+    trust
+        Run the commands for LAMMPS that the scene has; what they have made begins anew.
     """
     from ..api.run import resumed
 
     executing.check()
     make = partial(prepare, allow_unstable=allow_unstable)
-    with Viewer(view) as viewer, resumed(folder, make) as (ready, checkpoint, draws):
+    with Viewer(view) as viewer, resumed(folder, make, trust) as (ready, checkpoint, draws):
         announce(ready, quiet, False, executing)
         viewer.start(folder)
         movie = draws if movie is None else movie

@@ -14,6 +14,7 @@ from cyclopts import Parameter
 
 from ..errors import Problem, RefusedError, SceneError, UsageError, problem_json
 from ..scene.formatting import number, say
+from ..scene.lammps_lines import check_alone
 from ..terminal import progress_bar
 from ..view.beside import Viewer
 from .options import AllowUnstable, Executing, Executors, Look, OutFile, OutFolder, Quiet, Reading, SceneFile, Verbose, View
@@ -49,6 +50,7 @@ def run(
 
     executing.check()
     record = reading.load(scene)
+    check_alone(record, executing.executors, executing.control)
     out = output_folder(record, output.out)
     ready = prepare(record, allow_unstable=allow_unstable)
     announce(ready, quiet, verbose, executing)
@@ -101,7 +103,9 @@ def _check(scene: Path, reading: Reading, executors: int, strict: bool, allow_un
     from ..report import check_json, check_lines
 
     Executing(executors=executors).check()
-    ready = prepare(reading.load(scene, strict=strict), allow_unstable=allow_unstable)
+    record = reading.load(scene, strict=strict)
+    check_alone(record, executors, None)
+    ready = prepare(record, allow_unstable=allow_unstable)
     setup = time.perf_counter() - STARTED
     cost = forecast(ready, setup=setup)
     threads = choose_threads(ready.plan, max(1, cores() // executors))

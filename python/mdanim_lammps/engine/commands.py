@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..scene.lammps_lines import check_trust
 from .columns import property_of
 from .plan import DRIVEN, HELD, Plan
 
@@ -81,6 +82,12 @@ def physics(plan: Plan, threads: int = 1) -> list[str]:
     ]
 
 
+def lines_of_scene(plan: Plan) -> list[str]:
+    """Commands that the scene has as they stand, behind all others; none that nobody has trusted."""
+    check_trust(plan.scene)
+    return [command.text for command in plan.scene.lammps]
+
+
 def _with_bodies(plan: Plan, commands: list[str]) -> list[str]:
     """The same with the file of contact bodies named to fixes that look them up."""
     fixes = tuple(f"fix {fix} " for fix in plan.body_fixes)
@@ -112,6 +119,7 @@ def input_script(plan: Plan) -> str:
             "",
             *_with_bodies(plan, physics(plan)),
             "",
+            *(["# Commands of the scene, as they stand.", *lines, ""] if (lines := lines_of_scene(plan)) else []),
             "# Several ranks: cut space so that every rank has the same share; changes no bit of the result.",
             *BALANCE,
             "",

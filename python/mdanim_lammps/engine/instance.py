@@ -9,7 +9,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from ..effects.fields import Field
-from ..errors import DivergedError, SetupError
+from ..errors import DivergedError, Problem, SceneError, SetupError
+from ..scene.lammps_lines import check_trust
 from .c_arrays import body_arguments, pointer
 from .columns import Property, from_records, gathered, property_of, spread, to_records, values_of_pairs
 from .commands import BALANCE, SKIN, bond_coeffs, box, physics, prelude
@@ -121,6 +122,25 @@ class Instance:
                 "uncompute thermo_press",
             ]
         )
+        if plan.scene.lammps:
+            self._run_lines_of_scene()
+
+    def _run_lines_of_scene(self) -> None:
+        """Run the commands that the scene has as they stand. Raises SceneError at the line that LAMMPS does not take, and for
+        lines behind which the particles or the steps are other ones."""
+        check_trust(self.plan.scene)
+        dt = self._lmp.extract_global("dt")
+        for command in self.plan.scene.lammps:
+            try:
+                self._lmp.commands_string(command.text)
+            except Exception as error:
+                words = " ".join(str(error).split()).removeprefix("ERROR: ")
+                raise SceneError([Problem(command.span, f"LAMMPS does not take this line: {words}")]) from error
+            here = self._lmp.get_natoms(), self._step.value, self._lmp.extract_global("dt")
+            if here != (self.plan.system.particles, 0, dt):
+                cause = f"behind this line there are {here[0]:.0f} particles at step {here[1]} with a time step of {here[2]!r} s"
+                way_out = "particles and steps are those of the scene: take out what makes or deletes particles, or runs"
+                raise SceneError([Problem(command.span, cause, way_out)])
 
     def _ends(self) -> Ends | None:
         """Springs for particles to have: None on one process, where the bond style takes them as they are; of several, each needs

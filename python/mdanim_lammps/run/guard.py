@@ -146,6 +146,8 @@ class Guard:
     def energy(self, step: int, residual: float, speed: np.ndarray) -> None:
         """Raise DivergedError when the energies do not add up any more. ``residual`` as in results/ledger.py, ``speed`` as in
         `Observation`."""
+        if self.ready.scene.lammps:
+            return  # the work of its commands is not in the ledger
         if not abs(residual) <= self.limit:
             raise self.error_at(
                 step,
@@ -247,6 +249,9 @@ class Guard:
         scene, rows = self.ready.scene, ledger.rows
         change = [abs(b["residual"] - a["residual"]) for a, b in pairwise(rows)]
         worst = change.index(max(change))
+        if scene.lammps:
+            cause = f"the energy residual {number(ledger.residual)} holds the work of the scene's commands for LAMMPS"
+            return Problem(scene.lammps[0].span, cause, "the ledger knows nothing of it", severity="warning")
         cause, cure = "", ", a smaller timestep, or some damping: impacts add energy to undamped objects"
         touched = {e.ledger for e in self.ready.plan.effects if e.touches}
         met = any(rows[k].get(term) for k in (worst, worst + 1) for term in touched)

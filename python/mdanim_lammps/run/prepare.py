@@ -19,6 +19,7 @@ from ..model.overlap import check_geometry
 from ..model.spacing import Spacing, plan_spacing, too_large
 from ..model.system import System, as_parts, assemble
 from ..reach import Reach
+from ..scene.lammps_lines import check_trust, note
 from ..scene.lock import lock_text
 from ..scene.meshes import mesh_files
 from ..scene.scene import SceneRecord
@@ -73,6 +74,7 @@ def prepare(scene: SceneRecord, *, allow_unstable: bool = False) -> Prepared:
     Raises SceneError with all problems of its geometry, RefusedError when it does not fit in memory or its time step is
     above the bound.
     """
+    check_trust(scene)
     if not scene.solids:
         raise SceneError(
             [
@@ -106,7 +108,7 @@ def _prepare(scene: SceneRecord, spacing: Spacing, allow_unstable: bool) -> Prep
     context = Context(resolved, system, as_parts(models, system), spacing, reach, grid)
     certificate = certify(context, allow_unstable=allow_unstable)
     plan = make_plan(context, certificate)
-    warnings = [*scene.warnings, *resolved.warnings, *(w for e in resolved.effects for w in e.warnings(context))]
+    warnings = [*scene.warnings, *note(scene), *resolved.warnings, *(w for e in resolved.effects for w in e.warnings(context))]
     return Prepared(context, (*warnings, *margin_warnings(certificate)), certificate, plan, allow_unstable)
 
 

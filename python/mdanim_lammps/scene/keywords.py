@@ -12,7 +12,7 @@ from difflib import get_close_matches
 
 from ..features import facets
 from .placement import Placement
-from .scene import Control, Render, SceneRecord, Solid, Switch
+from .scene import Command, Control, Render, SceneRecord, Solid, Switch
 from .schema import Block, Keyword, Words, keywords
 
 BLOCKS = {b.name: b for b in (
@@ -27,6 +27,8 @@ BLOCKS = {b.name: b for b in (
           "of the group.", names=("name",), indexed=True, many=True, in_group=True,
           form="GROUP[index] | place GROUP as NAME[index]"),
     *sorted((b for words in facets("words") for b in getattr(words, "BLOCKS", ())), key=lambda b: b.order),
+    Block("lammps", Command, "lammps", "Commands for LAMMPS as they stand, a line each, up to a line with a } alone; run after "
+          "those of the scene, and only with `--trust`: [what they can do](#lammps-commands).", many=True, raw=True),
     Block("effects", None, "effects", "Switches effects on or off by hand. `auto`, the default, runs only what the scene "
           "calls for; `off` on an effect that the scene needs is a warning."),
     Block("control", Control, "control", "How long, how finely, what is saved. Needed: `time`."),

@@ -31,6 +31,8 @@ def lock_text(scene: SceneRecord, meshes: Mapping[Path, str] | None = None) -> s
         held = getattr(scene, block.field)
         for record in held if block.many else (held,):
             lines += _block(block, _with_mesh(record, meshes or {}))
+    if scene.lammps:
+        lines += ["", "lammps {", *(f"  {line}" for command in scene.lammps for line in command.text.split("\n")), "}"]
     checks = [f"{name} {text}" for name, texts in settings.items() if KEYWORDS[""][name].many for text in texts]
     return "\n".join([*lines, *(["", *checks] if checks else [])]) + "\n"
 
@@ -43,6 +45,8 @@ def _with_mesh(record: Any, meshes: Mapping[Path, str]) -> Any:
 
 def _block(block: Block, record: Any) -> list[str]:
     """Lines of a block, values in one column; none for what the scene does not have."""
+    if block.raw:
+        return []
     if block.record is None:
         settings = [(word, member.value) for word, member in record.items()]
     else:

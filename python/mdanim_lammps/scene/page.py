@@ -122,6 +122,30 @@ expect cart[2].wheel[1].position.z = 6 cm +- 1 mm
 - Groups may be placed in groups, 8 levels deep. In a group stand objects, repeats, `contact` blocks, places and
   `include`s.
 - Messages about a group name the line in it, and below that each place that it is used at.
+
+### LAMMPS commands
+
+```
+lammps {
+  variable push equal 0.01*(step*dt<0.5)
+  fix wind mobile addforce v_push 0 0
+}
+```
+
+- For what the language does not have. Such a scene is run, checked, drawn at a time and built with `--trust` alone
+  (from Python `Scene.load(path, trust=True)`): commands of LAMMPS can read and write files and start programs. Read
+  them before, and write `--trust` for `resume` again.
+- The lines are given to LAMMPS as they stand, in SI units, after all commands of the scene; names of `let` mean
+  nothing in them. `group` `mobile` is all that can move, `type`, `mol` (objects, from 1), fixes and the rest are
+  those of `in.NAME`, which `build` writes with the lines in it. Blanks at their beginning and empty lines are left
+  out. A line with a `}` alone ends them.
+- Particles, their number, the time step and the steps are those of the scene: a line that changes them is refused,
+  and so is one that LAMMPS does not take, with its place.
+- No promise is made for what they do. The bound on the time step does not know their forces, the ledger does not have
+  their work: it stands in the residual, at which a run then does not stop. A resumed run runs them again, and what
+  they have made (averages, thermostats) begins anew, so its bits may be others. Where particles are is kept and drawn
+  as ever.
+- They act on all objects together, so several executors are refused; threads, and ranks of `lmp`, are not.
 """
 
 _END = """

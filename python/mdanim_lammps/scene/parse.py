@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from ..errors import Problem, SceneError, Span, escaped
@@ -19,14 +20,16 @@ from .validate import validate, validate_render
 Overrides = Mapping[str, str | float]
 
 
-def load_scene(path: str | os.PathLike, overrides: Overrides | None = None, strict: bool = False) -> SceneRecord:
+def load_scene(
+    path: str | os.PathLike, overrides: Overrides | None = None, strict: bool = False, trust: bool = False
+) -> SceneRecord:
     """Read a scene file.
 
-    ``overrides`` are the values of ``--set name=value``: numbers, or text such as ``"12 cm"``. ``strict``
-    refuses numbers that have a dimension but no unit. Raises SceneError with every problem of the file.
+    ``overrides`` are the values of ``--set name=value``: numbers, or text such as ``"12 cm"``. ``strict`` refuses numbers that
+    have a dimension but no unit. ``trust`` lets its commands for LAMMPS be run. Raises SceneError with every problem of the file.
     """
     source = _file(path)
-    return _scene(source, name_of(source.name), overrides, strict)
+    return _scene(source, name_of(source.name), overrides, strict, trust)
 
 
 def name_of(path: str) -> str:
@@ -71,15 +74,18 @@ def parse_scene(
     overrides: Overrides | None = None,
     strict: bool = False,
     folder: str | os.PathLike | None = None,
+    trust: bool = False,
 ) -> SceneRecord:
     """Read a scene from a text; ``folder`` is where its includes and meshes are (default: the current one).
 
-    Raises SceneError with every problem of the text; ``name`` stands in for the file name.
+    ``trust`` lets its commands for LAMMPS be run; ``name`` stands in for the file name. Raises SceneError with every problem of
+    the text.
     """
-    return _scene(SceneFile(name, text, folder=Path(folder) if folder is not None else None), name, overrides, strict)
+    source = SceneFile(name, text, folder=Path(folder) if folder is not None else None)
+    return _scene(source, name, overrides, strict, trust)
 
 
-def _scene(source: SceneFile, name: str, overrides: Overrides | None, strict: bool) -> SceneRecord:
+def _scene(source: SceneFile, name: str, overrides: Overrides | None, strict: bool = False, trust: bool = False) -> SceneRecord:
     problems = Problems()
     problems.begin(source)
     if not source.text.strip():
@@ -89,4 +95,4 @@ def _scene(source: SceneFile, name: str, overrides: Overrides | None, strict: bo
     out = Expander(shared, overrides, strict).scene(body)
     scene = validate(out, problems, name, source) if out is not None else None
     problems.stop()
-    return scene
+    return replace(scene, trusted=trust)

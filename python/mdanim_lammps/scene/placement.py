@@ -5,6 +5,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
+from .formatting import say
+from .limits import LIMITS
 from .rotation import IDENTITY, product
 from .scene import Orientation, Solid
 from .schema import Vector, setting
@@ -65,6 +67,18 @@ class Placement:
         right = tuple(tuple(float(round(x)) for x in row) for row in self.rotation)
         a, b = (_sum(self.position, turned(right, corner)) for corner in (hold.low, hold.high))
         return HoldWithin(tuple(map(min, a, b)), tuple(map(max, a, b)))
+
+
+def beyond_limits(what: Solid | Placement) -> tuple[str, str] | None:
+    """Cause and way out where the sum of all motions is more than a scene may have; None where it is not."""
+    for word, unit in (("position", "m"), ("velocity", "m/s"), ("spin", "rad/s")):
+        limit, most = LIMITS[unit], max(map(abs, getattr(what, word)))
+        if most > limit.most:
+            return (
+                f"the {word} of {what.name} is too large: {say(most, unit)}, the most is {say(limit.most, unit)}",
+                limit.way_out,
+            )
+    return None
 
 
 def turned(rotation: tuple[Vector, Vector, Vector], v: Vector) -> Vector:

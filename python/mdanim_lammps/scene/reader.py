@@ -71,6 +71,28 @@ class Reader:
         del self.tokens[: self.at]
         self.at = 0
 
+    def raw_lines(self) -> list[Token]:
+        """Lines of text behind the { that was taken, up to a line that is a } alone; each as one token, without blanks around.
+
+        One line may hold it all: ``{ fix push mobile addforce 1 0 0 }``.
+        """
+        opened, text = self.tokens[self.at - 1], self.source.text
+        found, at, line = [], opened.end, opened.line
+        while at < len(text):
+            end = text.find("\n", at) if "\n" in text[at:] else len(text)
+            said = text[at:end].strip()
+            last = said == "}" or (not found and line == opened.line and said.endswith("}"))
+            said = said.removesuffix("}").rstrip() if last else said
+            if said:
+                start = text.index(said, at)
+                found.append(Token("RAW", said, start, line, start - text.rfind("\n", 0, start)))
+            if last:
+                self.tokens = self.tokens[: self.at]
+                self.coming = tokens(text, text.rindex("}", at, end) + 1, line)
+                return found
+            at, line = end + 1, line + 1
+        raise Fault(opened, "these lines are never closed", "write a } in a line of its own where they end")
+
     def skip_newlines(self) -> None:
         while self.peek.type == "NEWLINE":
             self.at += 1

@@ -107,6 +107,14 @@ class Solid:
         __getattr__ = of_features
 
 
+@dataclass(frozen=True, slots=True)
+class Command:
+    """A command for LAMMPS as it stands; of several lines where they continue each other."""
+
+    text: str
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
 # --- control, pictures, self-checks -----------------------------------------------------------------------
 
 
@@ -277,6 +285,9 @@ class SceneRecord:
         "`strict` refuses bare numbers where a unit belongs, in the whole scene with all that it includes; `check --strict` does "
         "so for any scene.", "strict", default="free")  # fmt: skip
     solids: tuple[Solid, ...] = ()
+    lammps: tuple[Command, ...] = ()
+    trusted: bool = field(default=False, compare=False)
+    """Whether who reads the scene has said that its commands for LAMMPS may be run (``--trust``); no file says so."""
     effects: Mapping[str, Switch] = field(default_factory=dict)
     """Only what ``effects { }`` says; everything else is ``auto``."""
     render: Render = field(default_factory=Render)

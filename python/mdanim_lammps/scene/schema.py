@@ -216,6 +216,8 @@ class Block:
     """Blocks that may stand in it."""
     in_group: bool = False
     """Whether it may stand in a group."""
+    raw: bool = False
+    """Whether it holds lines of another language; its record is made of each command."""
     enough: bool = False
     """Whether a scene with such a block has something to compute."""
     order: int = 0

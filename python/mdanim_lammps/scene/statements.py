@@ -177,7 +177,7 @@ class Parser(SettingReader):
         self.problem(missing)
 
     def group(self, word: Token, block: str, repeats: int) -> Group | Template:
-        if repeats and not BLOCKS[block].many:
+        if repeats and (BLOCKS[block].raw or not BLOCKS[block].many):
             raise Fault(word, f"{block} cannot stand in a repeat", "only objects, expect lines and lets are repeated")
         if block == "place":
             return self.place(word)
@@ -194,12 +194,12 @@ class Parser(SettingReader):
             raise Fault(self.peek, f"{block} has no name, found {self.peek.found()}", f"write {block} {{ ... }}")
         title = " ".join((block, *(name.token for name in names)))
         self.brace(title, KEYWORDS[block])
+        if kind.raw:
+            return Group(self.source, word, block, (), [], raw=tuple(self.raw_lines()))
         body = self.body(block, word, 0, title)
-        return (
-            Template(self.source, names[0].token, body)
-            if block == "group"
-            else Group(self.source, word, block, tuple(names), body)
-        )
+        if block == "group":
+            return Template(self.source, names[0].token, body)
+        return Group(self.source, word, block, tuple(names), body)
 
     def place(self, word: Token) -> Group:
         """``place GROUP[index] { ... }`` or ``place GROUP as NAME[index] { ... }``."""

@@ -52,10 +52,10 @@ class Token(str):
         return {"NEWLINE": "the end of the line", "END": "the end of the file"}.get(self.type, f"'{self}'")
 
 
-def tokens(text: str) -> Iterator[Token]:
-    """The tokens of a text, at the end an END without end."""
-    line, begin = 1, 0
-    for match in _TOKEN.finditer(text):
+def tokens(text: str, start: int = 0, line: int = 1) -> Iterator[Token]:
+    """The tokens of a text from a place on that is in this line, at the end an END without end."""
+    begin = text.rfind("\n", 0, start) + 1
+    for match in _TOKEN.finditer(text, start):
         kind, word, start = match.lastgroup, match.group(), match.start()
         if kind == "BLANK":
             continue

@@ -94,6 +94,8 @@ class Group:
     body: list
     of: Token | None = None
     """The group that a ``place`` puts somewhere."""
+    raw: tuple[Token, ...] = ()
+    """Lines of a block that holds the text of another language."""
 
 
 @dataclass(slots=True, eq=False)

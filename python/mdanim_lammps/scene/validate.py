@@ -19,10 +19,11 @@ from . import scene as records
 from .evaluated import EvaluatedBlock, EvaluatedSetting, around
 from .formatting import number, say, whole
 from .keywords import BLOCKS, KEYWORDS, Block, did_you_mean, example
-from .limits import LIMITS, MOST_FRAMES
+from .lammps_lines import commands
+from .limits import MOST_FRAMES
 from .meshes import refusal_of_mesh
 from .naming import objects_by_name
-from .placement import Placement
+from .placement import Placement, beyond_limits
 from .render import SMOOTH_RATE, few_pictures
 from .scene import GLOBALS, QUANTITIES, Vector
 from .source import Problems, SceneFile
@@ -111,6 +112,8 @@ class Validator:
     def records(self, kind: Block) -> Any:
         """The records of one kind of block in the scene: a tuple, one record, a mapping, or None."""
         found = self.blocks(kind.name)
+        if kind.raw:
+            return tuple(command for block in found for command in commands(block))
         if kind.record is None:
             return self.settings(found[0]) if found else {}
         made = tuple(r for r in (self.record(kind, b) for b in (found if kind.many else found[:1])) if r is not None)
@@ -147,25 +150,16 @@ class Validator:
         """An object, or the place of a group, moved along with the groups that it stands in; None after an error."""
         if block.inside is None or not isinstance(record, records.Solid | Placement):
             return record
-        if (around := self.place_of(block.inside)) is None:
+        if (place := self.place_of(block.inside)) is None:
             return None
         try:
-            record = around.moved(record)
+            record = place.moved(record)
         except ValueError as e:
             way_out = "write hold face or hold all, or turn the group by 90 deg or 180 deg"
             self.problem(block.first("hold").span(), f"{e}{block.where}", way_out)
             return None
-        for what, unit, v in (
-            ("position", "m", record.position),
-            ("velocity", "m/s", record.velocity),
-            ("spin", "rad/s", record.spin),
-        ):
-            if (most := max(map(abs, v))) > LIMITS[unit].most:
-                cause = (
-                    f"the {what} of {record.name} is too large: {say(most, unit)}, and the most is {say(LIMITS[unit].most, unit)}"
-                )
-                self.problem(block.head, cause, LIMITS[unit].way_out)
-                return None
+        if beyond := beyond_limits(record):
+            self.problem(block.head, *beyond)
         return record
 
     def place_of(self, block: EvaluatedBlock) -> Placement | None:
