@@ -154,9 +154,7 @@ def test_the_effects_of_a_scene_are_those_of_its_model():
         resolved = resolve(features.effects(), scene)
         names = [type(e).__name__ for e in resolved.effects if e.name in ("contact", "ground", "walls")]
         surface = model == "surface"
-        assert names == (
-            ["SurfaceContact", "SurfaceGround", "SurfaceWalls"] if surface else ["Contact", "GroundPlane", "WallPlanes"]
-        )
+        assert names == [f"{'Surface' if surface else 'Barrier'}{of}" for of in ("Contact", "Planes", "Planes")]
     assert [e.name for e in features.effects()] == list(resolved.verdicts)
 
 

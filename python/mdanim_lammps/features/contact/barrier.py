@@ -70,15 +70,9 @@ def barrier_rate(system: System, s: np.ndarray, reach: float) -> np.ndarray:
     return 2.0 * plane_stiffness(round(over_spacing, 3)) * k / system.mass
 
 
-class Contact(Effect):
-    """A barrier between boundary and inner particles: U(r) = k_c r_c^2/3 (1 - r/r_c)^3 [J] below the reach r_c [m], Wcislo 1999,
-    sec. 3.3.
+class ObjectContact(Effect):
+    """Objects that push each other apart; subclasses have the laws of the two contact models (docs/physics-contact.md)."""
 
-    k_c = 2 s_i s_j/(s_i + s_j) [N/m] with s = E h min(1, 2 n/8), where n of the 8 cells around a particle are filled
-    (docs/physics-contact.md, "The barrier of the paper"; in the bound: "In the bound on the time step").
-    """
-
-    styles = (("fix", "mdanim/barrier"),)
     name = "contact"
     order = 40
     fix = "contact"
@@ -107,19 +101,8 @@ class Contact(Effect):
         """Remarks of ``check`` on this contact."""
         return stiffness_told(scene)
 
-    def columns(self, context):
-        system = context.system
-        return {STIFFNESS: system.contact_stiffness, GAP: self.gap(context)[system.object]}
-
     def gap(self, context):
         return REACH * context.system.spacing
-
-    def commands(self, context):
-        return barrier(self.fix, context)
-
-    def rate(self, context):
-        system = context.system
-        return barrier_rate(system, system.contact_stiffness, REACH * system.spacing.max())
 
     def margins(self, envelope):
         return [*envelope.own_step("contact", envelope.rates[self.name]), self._closing_speed(envelope)]
@@ -157,6 +140,28 @@ class Contact(Effect):
 
     def acts_on(self, context):
         return len(context.system.names) > 1 and not context.system.held.all()
+
+
+class BarrierContact(ObjectContact):
+    """A barrier between boundary and inner particles: U(r) = k_c r_c^2/3 (1 - r/r_c)^3 [J] below the reach r_c [m], Wcislo 1999,
+    sec. 3.3.
+
+    k_c = 2 s_i s_j/(s_i + s_j) [N/m] with s = E h min(1, 2 n/8), where n of the 8 cells around a particle are filled
+    (docs/physics-contact.md, "The barrier of the paper"; in the bound: "In the bound on the time step").
+    """
+
+    styles = (("fix", "mdanim/barrier"),)
+
+    def columns(self, context):
+        system = context.system
+        return {STIFFNESS: system.contact_stiffness, GAP: self.gap(context)[system.object]}
+
+    def commands(self, context):
+        return barrier(self.fix, context)
+
+    def rate(self, context):
+        system = context.system
+        return barrier_rate(system, system.contact_stiffness, REACH * system.spacing.max())
 
     def warnings(self, context):
         scene = context.scene

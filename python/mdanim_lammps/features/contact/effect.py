@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """Contact of objects: at their drawn surfaces, or by the barrier of the paper."""
 
-from .barrier import Contact
+from .barrier import BarrierContact
 from .surface import SurfaceContact
 
-EFFECTS = (Contact(SurfaceContact()),)
+EFFECTS = (BarrierContact(SurfaceContact()),)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""Ground and walls: what leaves them is pushed back in proportion to its depth."""
+"""Planes that push solids back, and the law of the paper for them: in proportion to depth."""
 
 from __future__ import annotations
 
@@ -7,12 +7,14 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from ...effects.context import Verdict
 from ...effects.effect import Effect
 from ...effects.fields import column
 from ...errors import Problem
-from ...model.planes import innermost
+from ...model.planes import Plane, innermost
 from ...model.touching import WAY_NAMES, Touch, behind_planes
 from ...scene.formatting import at_least, say, whole
+from ...scene.scene import SceneRecord
 
 OR_ON_SURFACES = "or write contact-model surface in control, where what touches holds no energy"
 """The other way out of a start within the reach of the paper's contact."""
@@ -31,33 +33,69 @@ def others(found: Sequence[Touch], what: str) -> str:
     return f"; {whole(len(found))} {what} start so, with {say(sum(t.energy for t in found), 'J')} in all"
 
 
-class Boundary(Effect):
-    """The common base of ground, walls and basins: a plane pushes a particle back that is a depth d beyond it [m],
-    F = s d [N], U = s d^2/2 [J].
+class Sides:
+    """Planes of a feature that objects touch, and what calls for them: an effect of either contact model is made of them."""
+
+    name = ""
+    """Of the effect, and the ID of its fix."""
+    order = 1000
+    """As `Effect.order`."""
+    if_off = ""
+    presses = True
+    """As `Effect.presses`."""
+
+    def called_for(self, scene: SceneRecord) -> Verdict:
+        """Whether the scene calls for them."""
+        raise NotImplementedError
+
+    def planes(self, scene: SceneRecord) -> tuple[Plane, ...]:
+        """The planes; none of a scene without them."""
+        raise NotImplementedError
+
+    def region(self, scene: SceneRecord) -> str:
+        """The style and arguments of LAMMPS's region between them."""
+        raise NotImplementedError
+
+
+class Planes(Effect):
+    """Sides that push solids back; subclasses have the laws of the two contact models (docs/physics-contact.md)."""
+
+    ledger = "wall"
+    touches = at_surfaces = True
+
+    def __init__(self, sides: Sides, on_surfaces: Effect | None = None):
+        super().__init__(on_surfaces)
+        self.sides, self.name, self.fix, self.order = sides, sides.name, sides.name, sides.order
+        self.if_off, self.presses = sides.if_off, sides.presses
+
+    def called_for(self, scene, reach):
+        return self.sides.called_for(scene)
+
+    def planes(self, scene):
+        return self.sides.planes(scene)
+
+    def margins(self, envelope):
+        return envelope.own_step("wall", envelope.rates[self.name])
+
+    def energy(self, readings):
+        return readings.fix_scalar(self.fix)
+
+
+class BarrierPlanes(Planes):
+    """A plane pushes a particle back that is a depth d beyond it [m], F = s d [N], U = s d^2/2 [J].
 
     s = E h min(1, 2 n/8) [N/m], with n filled cells among the 8 around the particle (docs/physics-contact.md, "The barrier of
     the paper").
     """
 
     styles = (("fix", "mdanim/wall"),)
-    ledger = "wall"
-    touches = presses = at_surfaces = True
 
     def columns(self, context):
         return {STIFFNESS: context.system.contact_stiffness}
 
-    def region(self, scene) -> str:
-        """The region command's style and arguments."""
-        raise NotImplementedError
-
     def commands(self, context):
-        return [
-            f"region {self.fix} {self.region(context.scene)}",
-            f"fix {self.fix} {context.pushed} mdanim/wall {self.fix} d_stiffness",
-        ]
-
-    def margins(self, envelope):
-        return envelope.own_step("wall", envelope.rates[self.name])
+        region = f"region {self.fix} {self.sides.region(context.scene)}"
+        return [region, f"fix {self.fix} {context.pushed} mdanim/wall {self.fix} d_stiffness"]
 
     def warnings(self, context):
         scene = context.scene
@@ -76,9 +114,6 @@ class Boundary(Effect):
                 severity="warning",
             )
         ]
-
-    def energy(self, readings):
-        return readings.fix_scalar(self.fix)
 
     def penetration(self, readings):
         return readings.fix_value(self.fix, DEEPEST)

@@ -5,13 +5,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from itertools import product
 
 import numpy as np
 
 from ...effects.context import Context
-from ...effects.effect import Effect
-from ...effects.fields import column
+from ...effects.fields import Field, column
+from ...effects.readings import Readings
 from ...errors import Problem
 from ...model.boxes import box_pairs
 from ...model.contact_body import FINE, ContactBody
@@ -21,9 +22,9 @@ from ...model.planes import AXES
 from ...model.system import System
 from ...reach import largest_of_others
 from ...scene.scene import Box, SceneRecord
-from .barrier import GAP, Contact, barrier, barrier_rate
+from .barrier import GAP, ObjectContact, barrier, barrier_rate
 from .pairs import USUAL_DAMPING, any_friction, damping, frictions, pair_rules
-from .planes import STIFFNESS, Boundary
+from .planes import STIFFNESS, BarrierPlanes, Planes, Sides
 from .resting import one_sided
 
 SHORT, FULL = 0.8, 1.6
@@ -50,30 +51,30 @@ DEEPEST = "deepest"
 """In the fix's vector: the deepest point below a surface in this run [m]."""
 
 
-class OnSurfaces(Effect):
-    """The common base of contact of objects and of planes at drawn surfaces: U = sum kappa w g(d) over points of an area w [m^2]
-    at a depth d [m], with friction up to mu times the normal force, and a dashpot (docs/physics-contact.md, "At the drawn
-    surfaces, with friction")."""
+class SurfaceLaw:
+    """What contact of objects, and of planes, at drawn surfaces have in common: U = sum kappa w g(d) over points of an area
+    w [m^2] at a depth d [m], with friction up to mu times the normal force, and a dashpot (docs/physics-contact.md, "At the drawn
+    surfaces, with friction").
+    """
 
-    styles = (("fix", "mdanim/contact"),)
+    def __init__(self, fix: str, plane: str = ""):
+        self.fix, self.plane = fix, plane
+        """ID of the fix; the word of contact blocks for what objects touch, empty for other objects."""
 
-    def columns(self, context):
+    def columns(self, context: Context) -> dict[Field, np.ndarray]:
+        """As `Effect.columns`."""
         scene, system = context.scene, context.system
         return {
             column("body", "1"): system.contact_kind[system.object].astype(float),
             column("young", "Pa"): system.young[system.object],
-            column(self.friction_column(scene), "1"): np.array(self.frictions(scene))[system.object],
+            column(self.friction_column(scene), "1"): np.array(frictions(scene, self.plane))[system.object],
         }
-
-    def frictions(self, scene: SceneRecord) -> list[float]:
-        """Coefficient of friction of each object [-]."""
-        return frictions(scene)
 
     def friction_column(self, scene: SceneRecord) -> str:
         """The column with the friction of each particle's object."""
-        return "friction"
+        return f"friction_{self.plane}" if any(self.plane in (c.first, c.second) for c in scene.contacts) else "friction"
 
-    def law(self, context: Context, touched: str) -> list[str]:
+    def commands(self, context: Context, touched: str) -> list[str]:
         """The command of the fix, with what objects touch, behind that of the group of all that is there: what is laid aside
         leaves it."""
         scene, group = context.scene, context.pushed
@@ -85,14 +86,20 @@ class OnSurfaces(Effect):
 
     def rubs(self, scene: SceneRecord) -> bool:
         """Whether some contact may have friction."""
-        return any(self.frictions(scene))
+        return any(frictions(scene, self.plane)) or (not self.plane and any(c.friction for c in scene.contacts))
 
     def damping(self, scene: SceneRecord) -> float:
         """Largest share of critical damping of a contact [-]."""
-        return damping(scene) if self.rubs(scene) else 0.0
+        most = damping(scene) if self.rubs(scene) else 0.0
+        return most if self.plane else max(most, *(c.contact_damping or 0.0 for c in scene.contacts), 0.0)
 
-    def losses(self, scene):
+    def losses(self, scene: SceneRecord) -> tuple[str, ...]:
+        """As `Effect.losses`."""
         return (*[HEAT] * self.rubs(scene), *[DAMPED] * (self.damping(scene) > 0.0))
+
+    def lost(self, readings: Readings, terms: Iterable[str]) -> dict[str, float]:
+        """Present values of these columns [J]."""
+        return {term: readings.fix_value(self.fix, TAKEN[term]) for term in terms}
 
     def dashpots(self, context: Context, kappa: np.ndarray) -> np.ndarray | None:
         """eta_i s_i / m_i [1/s], shape (N,), of the part of the damping that counts in the bound; None where none does.
@@ -108,21 +115,12 @@ class OnSurfaces(Effect):
         eta = 2.0 * beta * np.sqrt(kappa * (system.density * h) / 2.0)
         return eta[system.object] * borne_area(system) / system.mass
 
-    def lost(self, readings):
-        return {term: readings.fix_value(self.fix, TAKEN[term]) for term in self.losses(readings.context.scene)}
-
-    def warnings(self, context):
-        # Surfaces that touch at the start are free of stress; those deeper in each other are refused (model/overlap.py).
-        return []
-
-    def clocks(self, readings):
-        return {self.fix: readings.fix_seconds(self.fix)}
-
-    def penetration(self, readings):
+    def penetration(self, readings: Readings) -> float:
+        """As `Effect.penetration`."""
         return readings.fix_value(self.fix, DEEPEST)
 
 
-class SurfaceContact(OnSurfaces, Contact):
+class SurfaceContact(ObjectContact):
     """Points of each drawn surface against the depth below that of the other body, and a short barrier behind it.
 
     kappa = f 2 E_A E_B/(E_A + E_B)/max(h_A, h_B) [N/m^3] (docs/physics-contact.md, "At the drawn surfaces, with friction").
@@ -131,6 +129,7 @@ class SurfaceContact(OnSurfaces, Contact):
     styles = (("fix", "mdanim/contact"), ("fix", "mdanim/barrier"))
     behind = "barrier"
     """ID of the barrier's fix."""
+    law = SurfaceLaw(ObjectContact.fix)
 
     @property
     def fixes(self):
@@ -138,8 +137,7 @@ class SurfaceContact(OnSurfaces, Contact):
 
     def columns(self, context):
         system = context.system
-        own = super().columns(context)
-        own |= {STIFFNESS: self.barrier_stiffness(context), GAP: self.barrier_reach(context)}
+        own = self.law.columns(context) | {STIFFNESS: self.barrier_stiffness(context), GAP: self.barrier_reach(context)}
         thin = system.layer == Layer.THIN
         return {**own, column("thin", "1"): (thin & self.guards(context)[system.object]).astype(float)} if thin.any() else own
 
@@ -182,7 +180,7 @@ class SurfaceContact(OnSurfaces, Contact):
     def commands(self, context):
         scene, system = context.scene, context.system
         rules = [f"pair {i + 1} {j + 1} {mu!r} {beta!r}" for i, j, mu, beta in pair_rules(scene, system.names)]
-        return [*self.law(context, " ".join(["objects", *rules])), *barrier(self.behind, context, self.thin(system))]
+        return [*self.law.commands(context, " ".join(["objects", *rules])), *barrier(self.behind, context, self.thin(system))]
 
     def tunnelling(self, envelope):
         found, system = super().tunnelling(envelope), envelope.system
@@ -221,7 +219,7 @@ class SurfaceContact(OnSurfaces, Contact):
 
     def drag_rate(self, context):
         """Points of the own body and of another, and the factor 2 as in `rate`."""
-        one = self.dashpots(context, self.stiffness(context))
+        one = self.law.dashpots(context, self.stiffness(context))
         return None if one is None else 4.0 * one
 
     def stiffness(self, context: Context) -> np.ndarray:
@@ -248,7 +246,7 @@ class SurfaceContact(OnSurfaces, Contact):
             return []
         spans = scene.solids[found[0]].spans
         more = f" and {len(found) - 1} more" if len(found) > 1 else ""
-        rubs = self.rubs(scene)
+        rubs = self.law.rubs(scene)
         so = ": friction with others works as 0" if rubs else ""
         return [
             Problem(
@@ -260,17 +258,14 @@ class SurfaceContact(OnSurfaces, Contact):
             )
         ]
 
-    def rubs(self, scene):
-        return super().rubs(scene) or any(c.friction for c in scene.contacts)
-
     def told(self, scene):
-        return super().told(scene) + ("" if self.rubs(scene) else "; no object has friction")
-
-    def damping(self, scene):
-        return max(super().damping(scene), *(c.contact_damping or 0.0 for c in scene.contacts), 0.0)
+        return super().told(scene) + ("" if self.law.rubs(scene) else "; no object has friction")
 
     def losses(self, scene):
-        return (*super().losses(scene), LET_GO)
+        return (*self.law.losses(scene), LET_GO)
+
+    def lost(self, readings):
+        return self.law.lost(readings, self.losses(readings.context.scene))
 
     def energy(self, readings):
         return readings.fix_scalar(self.fix) + readings.fix_scalar(self.behind)
@@ -278,25 +273,30 @@ class SurfaceContact(OnSurfaces, Contact):
     def clocks(self, readings):
         return {**super().clocks(readings), self.behind: readings.fix_seconds(self.behind)}
 
+    def penetration(self, readings):
+        return self.law.penetration(readings)
 
-class SurfacePlanes(OnSurfaces, Boundary):
+
+class SurfacePlanes(Planes):
     """Planes that points of drawn surfaces are pushed back by: kappa = f E/h [N/m^3] (docs/physics-contact.md, "At the drawn
     surfaces, with friction").
     """
 
+    styles = (("fix", "mdanim/contact"),)
+
+    def __init__(self, sides: Sides):
+        super().__init__(sides)
+        self.law = SurfaceLaw(sides.name, sides.name)
+
     def rough(self, scene):
         return np.full(len(scene.solids), any_friction(scene)) if scene.contacts else np.array(frictions(scene)) > 0.0
 
-    def frictions(self, scene):
-        return frictions(scene, self.name)
-
-    def friction_column(self, scene):
-        named = any(self.name in (c.first, c.second) for c in scene.contacts)
-        return f"friction_{self.name}" if named else "friction"
+    def columns(self, context):
+        return self.law.columns(context)
 
     def commands(self, context):
         planes = (f"plane {AXES[p.axis]} {'lo' if p.sign > 0 else 'hi'} {p.at!r}" for p in self.planes(context.scene))
-        return self.law(context, " ".join(planes))
+        return self.law.commands(context, " ".join(planes))
 
     def rate(self, context):
         """a_i = kappa w_i / m_i with w_i as in `SurfaceContact.rate`: the plane does not move, so there is no factor 2."""
@@ -308,12 +308,26 @@ class SurfacePlanes(OnSurfaces, Boundary):
         return self.rate(context)
 
     def drag_rate(self, context):
-        return self.dashpots(context, self.stiffness(context))
+        return self.law.dashpots(context, self.stiffness(context))
+
+    def losses(self, scene):
+        return self.law.losses(scene)
+
+    def lost(self, readings):
+        return self.law.lost(readings, self.losses(readings.context.scene))
+
+    def penetration(self, readings):
+        return self.law.penetration(readings)
 
     def stiffness(self, context: Context) -> np.ndarray:
         """kappa of the surface of each solid against a plane, which has no points of its own [N/m^3], shape (M,)."""
         system = context.system
         return surface_stiffness(context.scene, system, np.where(are_dense(system), ALONE, 1.0))
+
+
+def touching_planes(sides: Sides) -> Planes:
+    """The effect of these sides, in both forms."""
+    return BarrierPlanes(sides, SurfacePlanes(sides))
 
 
 def surface_stiffness(scene: SceneRecord, system: System, share: np.ndarray | float = 1.0) -> np.ndarray:

@@ -7,18 +7,18 @@ from ...effects.context import Verdict
 from ...effects.effect import stiffness_told
 from ...model.planes import Plane
 from ...scene.formatting import say
-from ..contact.planes import Boundary
-from ..contact.surface import SurfacePlanes
+from ..contact.planes import Sides
+from ..contact.surface import touching_planes
 
 
-class GroundPlane(Boundary):
-    """A floor plane at a height z [m], by the law of `Boundary` (docs/physics-contact.md)."""
+class GroundSides(Sides):
+    """A floor plane at a height z [m]."""
 
-    name = fix = "ground"
+    name = "ground"
     order = 50
     if_off = "objects fall for ever"
 
-    def called_for(self, scene, reach):
+    def called_for(self, scene):
         if scene.ground is None:
             return Verdict(self.name, False, "no ground in the scene")
         return Verdict(
@@ -32,8 +32,4 @@ class GroundPlane(Boundary):
         return f"plane 0 0 {scene.ground!r} 0 0 1"
 
 
-class SurfaceGround(SurfacePlanes, GroundPlane):
-    """The same by the law of `SurfacePlanes` (docs/physics-contact.md)."""
-
-
-EFFECTS = (GroundPlane(SurfaceGround()),)
+EFFECTS = (touching_planes(GroundSides()),)

@@ -14,8 +14,8 @@ from ...effects.margin import Margin
 from ...errors import Problem, SceneError
 from ...model.planes import Plane, box_sides
 from ...scene.formatting import number, say, whole
-from ..contact.planes import Boundary
-from ..contact.surface import SurfacePlanes
+from ..contact.planes import Sides
+from ..contact.surface import touching_planes
 from ..springs.effect import all_held
 from . import frames
 from .balance import UNEVEN, full_basin, load_energy
@@ -57,17 +57,15 @@ def top_of_reach(grid) -> float:
     return grid.high[2] + NEAR * grid.cell[2]
 
 
-class Basin(Boundary):
-    """Floor and side walls of a basin [m], by the law of `Boundary`; the walls go on upward, so that nothing falls beside the
-    basin (docs/physics-contact.md).
-    """
+class BasinSides(Sides):
+    """Floor and side walls of a basin [m]; the walls go on upward, so that nothing falls beside the basin."""
 
-    name = fix = "basin"
+    name = "basin"
     order = 70
     presses = False  # what floats may never touch it
     if_off = "objects fall through the floor of the basin"
 
-    def called_for(self, scene, reach):
+    def called_for(self, scene):
         if scene.liquid is None:
             return Verdict(self.name, False, "no liquid in the scene")
         if free_solid(scene) is None:
@@ -327,8 +325,4 @@ def _block(low, high) -> str:
     return "block " + " ".join(f"{a!r} {b!r}" for a, b in zip(low, high))
 
 
-class SurfaceBasin(SurfacePlanes, Basin):
-    """The same by the law of `SurfacePlanes` (docs/physics-contact.md)."""
-
-
-EFFECTS = (Basin(SurfaceBasin()), LiquidAutomaton(), Buoyancy(), LiquidDrag())
+EFFECTS = (touching_planes(BasinSides()), LiquidAutomaton(), Buoyancy(), LiquidDrag())

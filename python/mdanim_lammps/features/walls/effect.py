@@ -6,18 +6,18 @@ from __future__ import annotations
 from ...effects.context import Verdict
 from ...effects.effect import stiffness_told
 from ...model.planes import box_sides
-from ..contact.planes import Boundary
-from ..contact.surface import SurfacePlanes
+from ..contact.planes import Sides
+from ..contact.surface import touching_planes
 
 
-class WallPlanes(Boundary):
-    """The six sides of a box [m], by the law of `Boundary` (docs/physics-contact.md)."""
+class WallSides(Sides):
+    """The six sides of a box [m]."""
 
-    name = fix = "walls"
+    name = "walls"
     order = 60
     if_off = "objects leave the scene"
 
-    def called_for(self, scene, reach):
+    def called_for(self, scene):
         if scene.walls is None:
             return Verdict(self.name, False, "no walls in the scene")
         return Verdict(self.name, True, f"walls around the scene{stiffness_told(scene)}", scene.spans.get("walls"))
@@ -30,8 +30,4 @@ class WallPlanes(Boundary):
         return "block " + " ".join(f"{a!r} {b!r}" for a, b in zip(low, high))
 
 
-class SurfaceWalls(SurfacePlanes, WallPlanes):
-    """The same by the law of `SurfacePlanes` (docs/physics-contact.md)."""
-
-
-EFFECTS = (WallPlanes(SurfaceWalls()),)
+EFFECTS = (touching_planes(WallSides()),)
