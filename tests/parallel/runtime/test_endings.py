@@ -196,9 +196,11 @@ if os.environ.get("PMI_RANK") == "{rank}":
 """
 
 
-def faulty(place: Path, monkeypatch, **fault) -> None:
-    """Make a method of a rank fail at one of its calls, in all runs to come."""
-    (place / "sitecustomize.py").write_text(FAULT.format(**fault))
+def faulty(place: Path, monkeypatch, rank: int, module: str, method: str, time: int, what: str) -> None:
+    """Make a ``KIND.METHOD`` of a rank fail at one of its calls, in all runs to come."""
+    kind, method = method.split(".")
+    fault = FAULT.format(rank=rank, module=module, kind=kind, method=method, time=time, what=what)
+    (place / "sitecustomize.py").write_text(fault)
     monkeypatch.setenv("PYTHONPATH", environment(place)["PYTHONPATH"])
 
 
@@ -209,12 +211,11 @@ def test_a_full_disk_ends_all_ranks(place, monkeypatch, control):
     faulty(
         place,
         monkeypatch,
-        rank=0,
-        module="results.trajectory_writer",
-        kind="TrajectoryWriter",
-        method="add",
-        time=3,
-        what="from mdanim_lammps.errors import OutputError; raise OutputError('no room: make room and resume')",
+        0,
+        "results.trajectory_writer",
+        "TrajectoryWriter.add",
+        3,
+        "from mdanim_lammps.errors import OutputError; raise OutputError('no room: make room and resume')",
     )
     with pytest.raises(OutputError, match="no room"):
         simulate_on(2, control, ready, folder)
@@ -227,16 +228,7 @@ def test_a_full_disk_ends_all_ranks(place, monkeypatch, control):
 def test_an_executor_that_raises_is_told(place, monkeypatch, capfd, settings, text):
     """Whatever it is, it comes up here, and others that wait for it in LAMMPS are ended."""
     ready, folder = readied(place, text)
-    faulty(
-        place,
-        monkeypatch,
-        rank=2,
-        module="parallel.runtime.bundle",
-        kind="Bundle",
-        method="run",
-        time=3,
-        what="raise ValueError('out of the blue')",
-    )
+    faulty(place, monkeypatch, 2, "parallel.runtime.bundle", "Bundle.run", 3, "raise ValueError('out of the blue')")
     begin = time.monotonic()
     with pytest.raises(ExecutorLost, match="executor 1: ValueError: out of the blue"):
         simulate_on(2, "peers", ready, folder, settings=PlannerOptions(**settings))
@@ -250,16 +242,7 @@ def test_a_planner_that_raises_is_told(place, monkeypatch, heard):
     ready, folder = readied(place, LONG)
     if not heard:
         monkeypatch.setenv("MDANIM_MPIEXEC", f"sh -c '{plugin_path.BIN / 'mpiexec'} \"$@\" 2>/dev/null' sh")
-    faulty(
-        place,
-        monkeypatch,
-        rank=0,
-        module="parallel.plan.planner",
-        kind="Planner",
-        method="decide",
-        time=3,
-        what="raise ValueError('no plan')",
-    )
+    faulty(place, monkeypatch, 0, "parallel.plan.planner", "Planner.decide", 3, "raise ValueError('no plan')")
     begin = time.monotonic()
     with pytest.raises(ExecutorLost, match="no plan"):
         simulate_on(2, "central", ready, folder)
@@ -278,7 +261,7 @@ def test_a_fault_of_mpi_is_told(place, monkeypatch, rank, module, kind, method):
     """An exception of MPI in one living rank ends all ranks as any other does: the others would wait for it for ever."""
     ready, folder = readied(place, LONG)
     what = "from mpi4py import MPI; raise MPI.Exception(MPI.ERR_TRUNCATE)"
-    faulty(place, monkeypatch, rank=rank, module=f"parallel.{module}", kind=kind, method=method, time=1, what=what)
+    faulty(place, monkeypatch, rank, f"parallel.{module}", f"{kind}.{method}", 1, what)
     begin = time.monotonic()
     with pytest.raises(ExecutorLost, match="Message truncated"):
         simulate_on(2, "central", ready, folder)
@@ -394,16 +377,7 @@ def test_a_job_is_not_written_into_a_file_that_is_there(place, monkeypatch):
 def test_a_rank_that_cannot_begin_is_told(place, monkeypatch):
     """Before the first frame too."""
     ready, folder = readied(place, LONG)
-    faulty(
-        place,
-        monkeypatch,
-        rank=1,
-        module="parallel.runtime.executor",
-        kind="Executor",
-        method="_first_report",
-        time=1,
-        what="raise MemoryError('too large')",
-    )
+    faulty(place, monkeypatch, 1, "parallel.runtime.executor", "Executor._first_report", 1, "raise MemoryError('too large')")
     with pytest.raises(ExecutorLost, match="MemoryError: too large"):
         simulate_on(2, "central", ready, folder)
 
