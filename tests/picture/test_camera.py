@@ -54,6 +54,20 @@ def test_wide_and_tall_scenes_fit(tmp_path, size):
         assert largest > 0.6  # of 2: the action fills the picture
 
 
+def test_a_start_is_seen_above_its_ground(tmp_path):
+    """Of one frame the ground below is seen, as in the movie that follows; without a ground the objects fill the picture."""
+    models = [box("a", (0.2, 0.2, 0.2), (1, 1, 1), (0, 0, 0.6))]
+    size = {}
+    for ground in (0.0, None):
+        with moving(tmp_path, models, [((0, 0, 0),)], ground=ground) as t:
+            view = automatic_view(action_of(t), 16 / 9)
+            below, _ = project(view, np.array([(0.0, 0.0, 0.0)]), 16 / 9)
+            assert (np.abs(below).max() < 1.0) == (ground is not None)
+            seen, _ = project(view, t.metadata.skin.vertices(t.position(0)), 16 / 9)
+            size[ground] = np.ptp(seen, axis=0).max()
+    assert size[None] == pytest.approx(2.0 * MARGIN, rel=0.01) and size[0.0] < 0.5 * size[None]
+
+
 def test_action_counts_every_frame(tmp_path):
     """A single frame between the sampled ones is not forgotten."""
     models = [box("a", (0.2, 0.2, 0.2), (1, 1, 1), (0, 0, 0.1))]

@@ -189,7 +189,8 @@ def automatic_view(action: Action, aspect: float, walls=None, basin=None) -> Vie
     turn = np.radians(-65.0 if extent[0] >= extent[1] else -25.0)
     back = np.array([np.cos(elevation) * np.cos(turn), np.cos(elevation) * np.sin(turn), np.sin(elevation)])
     boxes = np.clip(action.low, low, high), np.clip(action.high, low, high)
-    fixed = [np.zeros((0, 3))]
+    # Where nothing has moved yet, the way down to the ground is shown, as objects will go there.
+    fixed = [_corners(low, high) if len(action.low) == 1 else np.zeros((0, 3))]
     if walls is not None and np.linalg.norm(np.subtract(*walls)) < 2.0 * action.size:
         fixed.append(_corners(*np.array(walls, dtype=float)))
     if basin is not None:
