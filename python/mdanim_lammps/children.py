@@ -167,14 +167,9 @@ def _listen(ask, tasks: queue.SimpleQueue) -> None:
     """Take tasks until the parent has ended, which ends this process at once."""
     try:
         while True:
-            tasks.put(_loaded(ask))
+            tasks.put(pickle.load(ask))
     finally:
         os._exit(1)
-
-
-def _loaded(ask) -> tuple:
-    fn, args, kwargs = pickle.load(ask)
-    return fn, args, kwargs
 
 
 def _done(task: tuple) -> bytes:

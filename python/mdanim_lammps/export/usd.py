@@ -59,7 +59,8 @@ def write(cut: Cut, folder: Path, stem: str, on_frame: Callable[[int], None]) ->
     if cut.sheds_drops:
         drops = UsdGeom.Points.Define(stage, f"/scene/{_free_name(f'{cut.liquid.name}_drops', used)}")
         UsdShade.MaterialBindingAPI.Apply(drops.GetPrim()).Bind(materials[cut.bodies[-1].color, True])
-    render = _render(cut)
+    record = cut.trajectory.scene
+    render = record.render if record else Render()
     _camera(stage, cut, render)
     _lights(stage, render)
     waiting = 0
@@ -119,12 +120,6 @@ def _material(stage, path: str, body: Body, Sdf, UsdShade):
         color.ConnectToSource(reader.CreateOutput("result", Sdf.ValueTypeNames.Float3))
     material.CreateSurfaceOutput().ConnectToSource(shader.CreateOutput("surface", Sdf.ValueTypeNames.Token))
     return material
-
-
-def _render(cut: Cut) -> Render:
-    """How the scene wants to be seen."""
-    scene = cut.trajectory.scene
-    return Render() if scene is None else scene.render
 
 
 def _lights(stage, render: Render) -> None:

@@ -24,7 +24,8 @@ def write(cut: Cut, folder: Path, stem: str, on_frame: Callable[[int], None]) ->
     XTCWriter = MDAnalysis.coordinates.XTC.XTCWriter
 
     m, start = cut.metadata, cut.position(cut.frames[0])
-    scale = scale_of(cut)
+    # A power of ten with which neighbours are 1 to 10 angstrom apart, as atoms are.
+    scale = float(10.0 ** np.ceil(-np.log10(cut.spacing)))
     note = f"1 m of the scene is {scale:g} angstrom, 1 s is 1 ps"
     universe = MDAnalysis.Universe.empty(len(m.id), n_residues=len(m.names), atom_resindex=m.object_of, trajectory=True)
     universe.add_TopologyAttr("names", np.array([f"L{kind}" for kind in range(9)], dtype=object)[cut.types])
@@ -64,8 +65,3 @@ def _check_whole(path: Path, frames: int) -> None:
             file.read()  # raises OSError where the last frame is cut short
             return
     raise OSError(f"{path.name} has {found} frames instead of {frames}")
-
-
-def scale_of(cut: Cut) -> float:
-    """Ångström for a metre: the power of ten with which neighbours are 1 to 10 Å apart, as atoms are."""
-    return float(10.0 ** np.ceil(-np.log10(cut.spacing)))

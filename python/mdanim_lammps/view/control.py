@@ -13,21 +13,11 @@ COMMANDS = ("pause", "go", "stop")
 
 def command(folder: Path, what: str) -> None:
     """Ask the run of a folder to do one of `COMMANDS`. Raises ValueError for another word, OutputError."""
-    if what == "pause":
-        _make(folder / PAUSE)
-    elif what == "go":
-        _remove(folder / PAUSE)
-    elif what == "stop":
-        _make(folder / STOP)
-    else:
+    if what not in COMMANDS:
         raise ValueError(what)
-
-
-def _make(path: Path) -> None:
+    path = folder / (STOP if what == "stop" else PAUSE)
     with disk_errors(path):
-        os.close(os.open(path, os.O_WRONLY | os.O_CREAT | os.O_NOFOLLOW | os.O_CLOEXEC, 0o666))
-
-
-def _remove(path: Path) -> None:
-    with disk_errors(path):
-        path.unlink(missing_ok=True)
+        if what == "go":
+            path.unlink(missing_ok=True)
+        else:
+            os.close(os.open(path, os.O_WRONLY | os.O_CREAT | os.O_NOFOLLOW | os.O_CLOEXEC, 0o666))

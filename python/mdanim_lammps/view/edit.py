@@ -52,13 +52,10 @@ class Editor:
         self.name, self._home = (scene or folder).stem, source.absolute().parent
         self.out = folder.with_name(f"{folder.stem}.edited.out")
         self._checker = Checker(self.name, self._home)
+        self.problems = self._checker.problems
         self._process: Child | None = None
         self._turn = threading.Lock()
         self._asked, self._closed = 0, False
-
-    def problems(self, text: str) -> list[dict]:
-        """See `Checker.problems`."""
-        return self._checker.problems(text)
 
     def run(self, text: str, tail: Tail) -> None:
         """Run a text, which the tail follows from now on; a run that was started before ends. What the program says if it fails
