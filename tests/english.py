@@ -34,7 +34,7 @@ FORMS_OF_PAGES = {
     r"\b[Nn]ot drawn are\b": "the subject first: ... are not drawn",
 }
 """Forms that only pages are searched for: README.md and docs/, which were read again."""
-BEGINNINGS = re.compile(r'(?:^\s*(?:#|//+|\*)|""")\s*(?:What|Of|So many|Whoever)\s')
+BEGINNINGS = re.compile(r'(?:^\s*(?:#|//+|\*)|""")\s*(?:What|Of|So many|Whoever|That|Those)\s')
 """Comments and docstrings begin with the thing or with a verb. Checked file by file as they are read again."""
 READ_AGAIN = ("plugin/", "python/", "tests/", "bench/")
 """Folders and files whose comments all begin so."""

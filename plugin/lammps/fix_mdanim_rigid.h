@@ -58,7 +58,7 @@ class FixMdanimRigid : public mdanim::FixBase, public mdanim::Stateful {
   void unpack(const mdanim::StateRecords &records) override;
 
  private:
-  // Those of the particles of an object.
+  // Sums over the particles of an object.
   struct MassProperties {
     double mass = 0.0;
     mdanim::Vec3 centre;

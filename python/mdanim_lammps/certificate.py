@@ -281,7 +281,7 @@ def _margins(envelope: Envelope, limit: np.ndarray) -> list[Margin]:
 
 
 def _notes(envelope: Envelope) -> list[Problem]:
-    """Those of the effects that are on, and the advice of all features."""
+    """Notes of the effects that are on, and the advice of all features."""
     if not envelope.reach.moving.any():
         return []
     return [

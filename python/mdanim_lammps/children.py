@@ -36,7 +36,7 @@ def command(module: str, *arguments: object) -> list[str]:
 
 
 def environment(more: Mapping[str, str] = {}) -> dict[str, str]:
-    """That of this process and ``more``; children of children take no modules from the current folder either."""
+    """Environment of this process and ``more``; children of children take no modules from the current folder either."""
     found = os.environ | {"PYTHONSAFEPATH": "1"} | more
     if "PYTHONPATH" in found:  # an empty part, as of "$UNSET:/opt/lib", names the current folder
         found["PYTHONPATH"] = os.pathsep.join(filter(None, found["PYTHONPATH"].split(os.pathsep)))

@@ -90,7 +90,7 @@ def size_line(scene: SceneRecord) -> str | None:
 
 
 def _counted(ready: Prepared) -> Iterator[tuple[str, dict]]:
-    """What effects count, on or off: see `effects.Effect.counted`."""
+    """Counts of effects, on or off: see `effects.Effect.counted`."""
     return (e.of(ready.scene).counted(ready.context) for e in features.effects())
 
 

@@ -29,7 +29,7 @@ def random_content(seed: int, objects: int = 7) -> dict[tuple[int, int], bytes]:
 
 @pytest.mark.parametrize("seed", range(20))
 def test_a_part_has_the_records_of_its_objects(seed):
-    """Those of which all objects are in it, under the numbers of the part; and back."""
+    """Records of which all objects are in it, under the numbers of the part; and back."""
     rng, whole = np.random.default_rng(seed), random_content(seed)
     objects = np.flatnonzero(rng.random(7) < 0.6)
     number = {0: 0} | {int(m) + 1: k + 1 for k, m in enumerate(objects)}

@@ -124,7 +124,7 @@ def test_an_undamaged_file_of_that_kind_is_read(tmp_path):
 
 @pytest.mark.parametrize("channels", [0, 3, 4])
 def test_a_file_may_have_colours(tmp_path, channels):
-    """Those of its points, with or without opacity; new points take that of the nearest one, and a file without has none."""
+    """Colours of its points, with or without opacity; new points take that of the nearest one, and a file without has none."""
     import pyvista
 
     points, triangles = shapes.surface(Sphere(0.1), 0.02)

@@ -121,7 +121,7 @@ def test_every_form_is_read(tmp_path, name):
     ("prefix", "kind", "read_as"), [("", "uchar", [10, 20, 30]), ("diffuse_", "uchar", [10, 20, 30]), ("", "float", None)]
 )
 def test_colours_of_points_have_two_names(prefix, kind, read_as):
-    """Those that are not bytes are passed over: whether they end at 1 or at 255 is not told."""
+    """Colours that are not bytes are passed over: whether they end at 1 or at 255 is not told."""
     names = "".join(f"property {kind} {prefix}{name}\n" for name in ("red", "green", "blue"))
     text = GOOD["ascii.ply"].replace(b"property float z\n", b"property float z\n" + names.encode())
     for point in POINTS:

@@ -55,7 +55,7 @@ def test_wide_and_tall_scenes_fit(tmp_path, size):
 
 
 def test_a_start_is_seen_above_its_ground(tmp_path):
-    """Of one frame the ground below is seen, as in the movie that follows; without a ground the objects fill the picture."""
+    """The ground below a single frame is seen, as in the movie that follows; without a ground the objects fill the picture."""
     models = [box("a", (0.2, 0.2, 0.2), (1, 1, 1), (0, 0, 0.6))]
     size = {}
     for ground in (0.0, None):

@@ -110,7 +110,7 @@ def test_a_rigid_slab_tumbles_alike_on_any_number_of_ranks(tmp_path):
 
 
 def last_table(output):
-    """That of the last ``run``: these scripts have a ``run 0`` before it, which finds the time step."""
+    """Log of the last ``run``: these scripts have a ``run 0`` before it, which finds the time step."""
     return table(output[output.rindex("   Step ") :])
 
 

@@ -124,7 +124,7 @@ def test_a_folder_is_not_trusted_by_what_is_in_it(evil, tmp_path, capsys):
 
 
 def test_text_of_a_page_is_not_trusted(evil, tmp_path):
-    """What is edited in the page of a view is checked, and not run."""
+    """Lines in a text that is edited in the page of a view are checked, and not run."""
     from mdanim_lammps.view.check import found_problems
 
     scene, mark = evil

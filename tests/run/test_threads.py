@@ -179,7 +179,7 @@ class Node:
     ],
 )
 def test_ranks_of_a_host_share_its_cores(monkeypatch, masks, quota, expected):
-    """Those that a launcher has bound to cores have them; a limit of time is for all of them together."""
+    """Ranks that a launcher has bound to cores have them; a limit of time is for all of them together."""
     monkeypatch.setattr("mdanim_lammps.engine.threads.affinity", lambda: masks[0])
     monkeypatch.setattr("mdanim_lammps.engine.threads.quota", lambda: quota)
     assert share_of_cores(Node(*masks)) == expected

@@ -388,7 +388,7 @@ def test_a_text_is_edited_and_run(browser, tmp_path):
 
 
 def test_a_file_leads_to_the_page(browser, beam, tmp_path, monkeypatch):
-    """That with which a browser is opened; the page keeps its token when it is loaded again, and says what to do without one."""
+    """The address opens a browser; the page keeps its token when it is loaded again, and says what to do without one."""
     opened = []
     monkeypatch.setenv("DISPLAY", ":0")
     monkeypatch.setattr("webbrowser.open", opened.append)

@@ -56,7 +56,7 @@ class RunStatus:
     state: str
     """``built`` (not begun), ``preparing``, ``running``, ``paused``, ``stopped``, ``failed``, ``killed`` or ``done``."""
     frames: int
-    """That are in the trajectory."""
+    """Frames in the trajectory."""
     total: int
     """Frames of the whole run; 0 while that is not known."""
     message: str = ""
@@ -131,7 +131,7 @@ class Run:
 
     @property
     def missed(self) -> list[Outcome]:
-        """Those outcomes that were not met."""
+        """Outcomes that were not met."""
         return [o for o in self.outcomes if not o.met]
 
     @property

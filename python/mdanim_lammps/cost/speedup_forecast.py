@@ -36,7 +36,7 @@ class SpeedupForecast:
     faster: float
     """All work over what the busiest executor has of it: the most by which they can be faster than one."""
     objects: int
-    """That can move."""
+    """Objects that can move."""
     largest: int
     """Objects of these in the heaviest island."""
     share: float

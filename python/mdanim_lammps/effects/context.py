@@ -36,7 +36,7 @@ class Resolved:
     verdicts: dict[str, Verdict]
     """Verdicts on all effects, by their names."""
     effects: tuple[Effect, ...]
-    """Those that are on, in the order in which their forces are summed."""
+    """Effects that are on, in the order in which their forces are summed."""
     warnings: tuple[Problem, ...]
     """About effects that the scene calls for and switches off."""
 

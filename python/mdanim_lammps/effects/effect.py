@@ -198,7 +198,7 @@ class Effect:
         return 0.0
 
     def counted(self, context: Context) -> tuple[str, dict]:
-        """What ``check`` prints behind the number of particles, and its entries in the output for programs."""
+        """Text that ``check`` prints behind the number of particles, and its entries in the output for programs."""
         return "", {}
 
     def sources(self, scene: SceneRecord) -> tuple[str, ...]:

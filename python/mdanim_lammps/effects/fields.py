@@ -87,7 +87,7 @@ def rows_of(first: np.ndarray, objects: np.ndarray) -> np.ndarray:
 
 
 def part_of_fields(declared: Iterable[Field], fields: Fields, rows: Rows, objects: np.ndarray, chosen: np.ndarray) -> Fields:
-    """Those of the fields of a part that are of some of its objects.
+    """Fields of a part, of some of its objects alone.
 
     Args:
         declared: the fields.

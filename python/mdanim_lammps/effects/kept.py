@@ -29,13 +29,13 @@ class KeptRecord:
 
     @classmethod
     def of(cls, scene: SceneRecord, grid: Grid | None) -> Self | None:
-        """That of a scene whose effects use these cells; None where there is nothing to keep."""
+        """The record of a scene whose effects use these cells; None where there is nothing to keep."""
         raise NotImplementedError
 
     @classmethod
     def read(cls, attributes: Mapping[str, Any], shapes: Mapping[str, tuple[int, ...]]) -> Self | None:
-        """That of a file, from the attributes of its group and the shapes in one frame of those of TABLES that there are. Raises
-        KeyError, ValueError."""
+        """The record of a file, from the attributes of its group and the shapes in one frame of those of TABLES that there are.
+        Raises KeyError, ValueError."""
         raise NotImplementedError
 
     def write(self) -> dict[str, Any]:
@@ -43,7 +43,7 @@ class KeptRecord:
         raise NotImplementedError
 
     def fields(self) -> tuple[Field, ...]:
-        """Those of TABLES that frames have, each with its ``counts``."""
+        """Fields of TABLES that frames have, each with its ``counts``."""
         return ()
 
     def fault(self) -> str:

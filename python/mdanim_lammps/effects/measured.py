@@ -38,7 +38,7 @@ class Measured:
         return self.context.system.names.index(name)
 
     def until(self, values: np.ndarray, time: float | None) -> np.ndarray:
-        """Those of frames up to a time, or of the whole run."""
+        """Values of frames up to a time, or of the whole run."""
         return values if time is None else values[self.times <= time * (1 + 1e-9)]
 
     def largest(self, values: np.ndarray, time: float | None) -> float:

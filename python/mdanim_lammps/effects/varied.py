@@ -16,13 +16,13 @@ class Varied:
     """A setting; a subclass stands in `VARIED` of its feature's module ``vary``, as an instance."""
 
     name: ClassVar[str]
-    """Of its ladder, of its field of a study's Setting, and of its column in tables."""
+    """Name of its ladder, of its field of a study's Setting, and of its column in tables."""
     letter: ClassVar[str]
     """In names of files."""
     order: ClassVar[int]
     """Place among all, ascending."""
     color: ClassVar[str]
-    """Of its line in the plot."""
+    """Colour of its line in the plot."""
     usual: ClassVar[Any]
     """The value that goes without saying; None where that is ``auto``."""
     word: ClassVar[str]

@@ -57,7 +57,7 @@ class Instance:
         self._gathered: dict[str, np.ndarray] = {}
         """Arrays of all ranks in tag order, and ``where`` each tag comes, rank by rank, until something changes them."""
         self._tags = self._ascending = self._rows = np.zeros(0, np.int32)
-        """Those of this rank's particles, as they were when it was looked last; their places by ascending tags; and `rows`."""
+        """Tags of this rank's particles, as they were at the last look; their places by ascending tags; and `rows`."""
         for function in (self._library.mdanim_bond_lost, self._library.mdanim_bond_seconds):
             function.restype, function.argtypes = ctypes.c_double, [ctypes.c_void_p]
         try:

@@ -54,12 +54,12 @@ class Plan:
     context: Context
     certificate: Certificate
     effects: tuple[Effect, ...]
-    """Those that are on, in the order in which their forces are summed."""
+    """Effects that are on, in the order in which their forces are summed."""
     columns: dict[str, np.ndarray]
     """Columns that some effect asks for, by name: values at the start of all particles, springs or objects, each of shape
     (N, ...), (S, ...) or (M, ...)."""
     fields: dict[str, Field]
-    """What each of them is."""
+    """Declarations of these arrays, by their names."""
     slots: int
     """Springs that a column of springs has room for at each particle."""
     bonds: np.ndarray

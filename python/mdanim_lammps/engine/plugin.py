@@ -28,7 +28,7 @@ VERSION = 20250722
 ABI = 15
 """Number of the plugin's own C interface, `mdanim_abi`."""
 STYLES = (("compute", "mdanim/timestep"), ("fix", "mdanim/leapfrog"), ("integrate", "verlet/mdanim"))
-"""Those of the plugin that no effect is needed for: kind and name."""
+"""Styles of the plugin that need no effect: kind and name."""
 
 _FILE = Path(__file__).resolve().parent.parent / "plugin" / "mdanimplugin.so"
 

@@ -34,7 +34,7 @@ class StateRecords:
         )
 
     def where(self, chosen: np.ndarray) -> StateRecords:
-        """Those records for which ``chosen`` is true, bool, shape (R,)."""
+        """Records for which ``chosen`` is true, bool, shape (R,)."""
         return self if chosen.all() else self._ordered(self.keys, np.flatnonzero(chosen))
 
     def of(self, inside: np.ndarray) -> np.ndarray:

@@ -79,7 +79,7 @@ class Cut:
             surface_of=m.surface_of[self.objects],
             kept=m.kept if self.liquid else {name: record for name, record in m.kept.items() if name != "liquid"},
         )
-        """That of the trajectory, for these objects alone."""
+        """Metadata of the trajectory, for these objects alone."""
 
     @property
     def times(self) -> np.ndarray:

@@ -21,7 +21,7 @@ ASIDE = 1e-3
 
 
 class Spots:
-    """Those of the columns around some, n along y and m along x.
+    """Spots of the columns around some, n along y and m along x.
 
     Args:
         grid: the columns.

@@ -30,7 +30,7 @@ class Ponds:
     """All ponds of a frame; heights are z [m], shape (ny, nx)."""
 
     columns: np.ndarray
-    """Those that they stand on, bool, shape (ny, nx)."""
+    """Columns that they stand on, bool, shape (ny, nx)."""
     level: np.ndarray
     """Level of their sheet over their columns and those around."""
     bottom: np.ndarray

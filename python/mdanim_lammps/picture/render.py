@@ -27,7 +27,7 @@ FINER = {Quality.DRAFT: 1, Quality.FINAL: 2}
 SAMPLES = 4
 """Samples along an edge of each drawn pixel."""
 MOST_PIXELS = 16384
-"""That Mesa draws along a side."""
+"""Pixels that Mesa draws along a side."""
 
 
 class Painter:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What stands around the objects of a trajectory, for those that draw it."""
+"""Surroundings of the objects of a trajectory: ground, walls, liquid, for the modules that draw them."""
 
 from __future__ import annotations
 
@@ -21,6 +21,6 @@ class Scenery(NamedTuple):
 
 
 def scenery(metadata: TrajectoryMetadata) -> Scenery:
-    """That of a trajectory."""
+    """The scenery of a trajectory."""
     ground, walls, liquid = (metadata.kept.get(name) for name in ("ground", "walls", "liquid"))
     return Scenery(ground and ground.height, walls and (walls.low, walls.high), liquid)

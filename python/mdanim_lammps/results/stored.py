@@ -87,6 +87,6 @@ def read_manifest(folder: Path) -> dict:
 
 
 def read_facts(folder: Path) -> dict[str, dict]:
-    """Those of `FACTS` that a folder has. Raises OutputError where one is damaged."""
+    """Files of `FACTS` that a folder has. Raises OutputError where one is damaged."""
     paths = {name: folder / f"{name}.json" for name in FACTS}
     return {name: read_json(path, FACTS[name]) for name, path in paths.items() if path.exists()}

@@ -64,17 +64,17 @@ def tell(instance: Instance) -> dict[str, Any]:
 
 
 def potential_terms(plan: Plan) -> tuple[str, ...]:
-    """Those of them whose zero is arbitrary."""
+    """Terms whose zero is arbitrary."""
     return tuple(dict.fromkeys(e.ledger for e in plan.effects if e.has_potential or e.has_arbitrary_zero))
 
 
 def loss_terms(plan: Plan) -> tuple[str, ...]:
-    """Those of them that are sums since the start: what effects have taken, and what they have brought in."""
+    """Terms that are sums since the start: what effects have taken, and what they have brought in."""
     return tuple(dict.fromkeys(term for e in plan.effects for term in (*e.losses(plan.scene), *e.sources(plan.scene))))
 
 
 def source_terms(plan: Plan) -> tuple[str, ...]:
-    """Those of them that count what was brought in from outside."""
+    """Terms that count what was brought in from outside."""
     return tuple(dict.fromkeys(term for e in plan.effects for term in e.sources(plan.scene)))
 
 

@@ -48,7 +48,7 @@ class Observation:
 
 
 def recorded_models(models: Sequence[Model], plan: Plan) -> tuple[Model, ...]:
-    """Those of the models that an `Observer` of a plan needs."""
+    """Models that an `Observer` of a plan needs."""
     wanted = {name for name, _ in recorded(plan.scene.expects)}
     return tuple(model for model in models if model.name in wanted)
 

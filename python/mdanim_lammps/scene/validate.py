@@ -56,7 +56,7 @@ class Validator:
         self.touched = {word: kind for words in facets("words") for word, kind in getattr(words, "TOUCHED", {}).items()}
         """Words for what objects touch, and the kinds of block that bring it; empty for a setting of that name."""
         self.memory: dict[str, Any] = {}
-        """What checks of features keep from one block to the next."""
+        """Memory of the checks of features from one block to the next."""
 
     @cached_property
     def named(self) -> dict[str, list[int]]:

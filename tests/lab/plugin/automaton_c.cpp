@@ -96,7 +96,7 @@ MDANIM_EXPORT void mdanim_automaton_free(void *a) { delete &automaton(a); }
 MDANIM_EXPORT const char *mdanim_automaton_use(void *a, int instruction_set)
 { return automaton(a).use_instruction_set(instruction_set); }
 
-// That share whatever they can.
+// Automata that share whatever they can.
 MDANIM_EXPORT void mdanim_automaton_threads(void *a, int threads) { automaton(a).use(mdanim::Threads(threads)); }
 
 MDANIM_EXPORT void mdanim_automaton_sweep(void *a, std::uint64_t when, int count)

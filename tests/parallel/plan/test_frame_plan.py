@@ -117,7 +117,7 @@ def test_larger_boxes_after_a_violation():
 
 
 def test_the_pool_connects():
-    """What is near the pool is in its island."""
+    """Objects near the pool are in its island."""
     low = np.array([(0.0, 0.0, 1.0), (5.0, 0.0, 1.0), (0.0, 0.0, 9.0), (-1.0, -1.0, 0.0)])
     high = np.array([(1.0, 1.0, 2.0), (6.0, 1.0, 2.0), (1.0, 1.0, 10.0), (7.0, 2.0, 1.0)])
     rest = dict(particles=np.full(4, 100), still=np.zeros(4, bool), gap=0.1)

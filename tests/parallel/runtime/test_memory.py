@@ -24,7 +24,7 @@ def film(scene, text, cases, **more):
 
 
 def records(folder) -> dict[tuple[int, int], bytes]:
-    """Those of the fix at a checkpoint, by objects."""
+    """Records of the fix at a checkpoint, by objects."""
     found = Checkpoint.read(folder / "checkpoint").records["memory"]
     return {
         tuple(key): found.data[a:b].tobytes() for key, (a, b) in zip(found.keys.tolist(), zip(found.first[:-1], found.first[1:]))

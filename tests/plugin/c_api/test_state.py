@@ -108,7 +108,7 @@ def test_records_that_overlap_are_refused(pool):
 
 
 def records_of(found: dict, name: str) -> Records:
-    """Those of one moment of `remember`."""
+    """Records of one moment of `remember`."""
     return Records(*(found[f"{name} {field}"] for field in Records._fields))
 
 

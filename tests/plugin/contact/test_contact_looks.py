@@ -40,7 +40,7 @@ def looks(prepared, name: str, speed: float) -> float:
 
 @pytest.mark.parametrize("name", PAIRS)
 def test_new_lists_alone_ask_for_no_look(prepared, name):
-    """Those of objects that come no nearer: no point is looked up more often than without."""
+    """Looks at objects that come no nearer: no point is looked up more often than without."""
     still = looks(prepared, name, 0.0)
     assert still > 10.0
     assert looks(prepared, name, 2.0) < 1.5 * still

@@ -323,7 +323,7 @@ def test_an_object_of_a_scene_is_made_rigid(tmp_path):
 
 
 def test_bodies_take_degrees_of_freedom(tmp_path):
-    """Of a compute temp: six are left of each."""
+    """A compute temp counts six of each body."""
     lmp = lab.load(TWO, tmp_path, ["group stiff molecule 1 2", "fix r stiff mdanim/rigid", "compute t stiff temp", "run 0"])
     moving = TWO.molecule < 3
     kinetic = 0.5 * (TWO.mass * (lab.by_tag(lmp, "v") ** 2).sum(1))[moving].sum()

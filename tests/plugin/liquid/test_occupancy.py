@@ -75,7 +75,7 @@ def test_counts_follow_a_body_smoothly(seed):
 @pytest.mark.parametrize("edge", [1.0, 0.8, 0.6])
 @pytest.mark.parametrize("seed", range(6))
 def test_cells_deep_inside_are_filled_without_samples(seed, edge):
-    """Those that are filled would have been, to 1/32, most of what is full is among them, and no other count changes."""
+    """Filled cells would have been filled, to 1/32, most full cells are among them, and no other count changes."""
     side, at = 14, np.random.default_rng(seed).uniform(9.5, 10.5, 3)
     turn = Rotation.random(random_state=seed) if seed else None
     first = np.array(list(product(range(side), repeat=3)))

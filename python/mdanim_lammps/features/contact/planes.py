@@ -37,7 +37,7 @@ class Sides:
     """Planes of a feature that objects touch, and what calls for them: an effect of either contact model is made of them."""
 
     name = ""
-    """Of the effect, and the ID of its fix."""
+    """Name of the effect, and the ID of its fix."""
     order = 1000
     """As `Effect.order`."""
     if_off = ""

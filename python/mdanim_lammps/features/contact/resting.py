@@ -36,7 +36,7 @@ class Slope(NamedTuple):
 
 
 def frictionless(envelope: Envelope) -> list[Problem]:
-    """That objects will slide, once, where some may come to rest and nothing has friction."""
+    """Note that objects will slide, once, where some may come to rest and nothing has friction."""
     scene, system = envelope.scene, envelope.system
     if any_friction(scene) or envelope.reach.g <= 0.0 or not envelope.reach.moving.any():
         return []
@@ -85,7 +85,7 @@ def slopes(envelope: Envelope) -> list[Problem]:
 
 
 def one_sided(scene: SceneRecord, system: System) -> list[Problem]:
-    """That friction of one object works as 0 against others that have none: once, for the pair that is nearest at the start.
+    """Warning that friction of one object is 0 against others that have none: once, for the pair that is nearest at the start.
 
     A warning where that is within a spacing, else a note.
     """

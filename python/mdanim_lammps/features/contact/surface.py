@@ -52,7 +52,7 @@ DEEPEST = "deepest"
 
 
 class SurfaceLaw:
-    """What contact of objects, and of planes, at drawn surfaces have in common: U = sum kappa w g(d) over points of an area
+    """The common law of contact of objects, and of planes, at drawn surfaces: U = sum kappa w g(d) over points of an area
     w [m^2] at a depth d [m], with friction up to mu times the normal force, and a dashpot (docs/physics-contact.md, "At the drawn
     surfaces, with friction").
     """
@@ -239,7 +239,7 @@ class SurfaceContact(ObjectContact):
         return [*self.full_reaches(context), *one_sided(context.scene, context.system)]
 
     def full_reaches(self, context: Context) -> list[Problem]:
-        """That the barrier keeps fast objects apart: without friction, whatever was written."""
+        """Warning that the barrier keeps fast objects apart: without friction, whatever was written."""
         scene, system = context.scene, context.system
         found = np.flatnonzero(fast(context))
         if not len(found):

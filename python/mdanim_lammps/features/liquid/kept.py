@@ -99,7 +99,7 @@ def _described(pool: Pool | None) -> str:
 
 
 class Track:
-    """What a trajectory with a liquid tells besides."""
+    """Further quantities of a trajectory with a liquid."""
 
     @property
     def liquid(self) -> Pool | None:

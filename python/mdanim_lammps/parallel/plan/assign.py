@@ -155,7 +155,7 @@ def _unload(weight, home, base, cap, mean, rank) -> tuple[np.ndarray, np.ndarray
 
 
 def _fitting(weight, home, room) -> np.ndarray:
-    """Those that stay: of each executor's islands, by size, all that still fit. The room that is left halves with every turn."""
+    """Islands that stay: of each executor's, by size, all that still fit. The room that is left halves with every turn."""
     stay = np.zeros(len(weight), bool)
     sort = np.lexsort((-weight, home))
     bound = np.searchsorted(home[sort], np.arange(len(room) + 1))

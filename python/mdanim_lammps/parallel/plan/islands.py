@@ -93,7 +93,7 @@ def _rows_around(key: np.ndarray, others: np.ndarray, rows: tuple[int, int]) -> 
 
 
 def _look(low, high, gap, mine, others, rows) -> Iterator[np.ndarray]:
-    """Those boxes of ``others`` in the given slots that meet mine, in blocks of shape (2, P)."""
+    """Boxes of ``others`` in the given slots that meet mine, in blocks of shape (2, P)."""
     low_a, high_a, low_b, high_b = (side[:, rows] for rows in (mine, others) for side in (low, high))
     first, last = map(np.concatenate, zip(*rows))
     size = last - first
@@ -111,7 +111,7 @@ def _look(low, high, gap, mine, others, rows) -> Iterator[np.ndarray]:
 
 
 def _meeting(one, two, a, b, gap) -> tuple[np.ndarray, np.ndarray]:
-    """Those pairs of box a of one set and box b of another, (low, high) each of shape (3, M), that meet."""
+    """Pairs of box a of one set and box b of another, (low, high) each of shape (3, M), that meet."""
     for axis in range(3):
         (low_a, high_a), (low_b, high_b) = ((side[axis] for side in boxes) for boxes in (one, two))
         meet = (low_a[a] - high_b[b] <= gap) & (low_b[b] - high_a[a] <= gap)

@@ -35,7 +35,7 @@ class Key:
     """Properties that make two bundles the same."""
 
     objects: tuple[int, ...]
-    """Those that it moves, and copies of still ones, ascending."""
+    """Objects that it moves, and copies of still ones, ascending."""
     grid: bool
     team: tuple[int, ...]
     """Executors that run it, its leader first."""
@@ -185,7 +185,7 @@ class Bundle:
         return result
 
     def records_elsewhere(self, records: Records) -> dict[str, StateRecords]:
-        """Those that its instance has nothing to say about, because an object of them is not in it."""
+        """Records that its instance has nothing to say about, because an object of them is not in it."""
         inside = self.inside
         return {fix: found.where(~found.of(inside)) for fix, found in records.items()}
 

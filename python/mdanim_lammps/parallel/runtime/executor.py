@@ -222,7 +222,7 @@ class Executor:
         return Moved(*gathered(self._places(objects), self.x, self.v, self.f), self._records_of(objects))
 
     def _records_of(self, objects: np.ndarray) -> dict[str, StateRecords]:
-        """Those that travel with such objects."""
+        """Records that travel with such objects."""
         return {fix: found.where(np.isin(found.home(self.system.still), objects)) for fix, found in self.records.items()}
 
     def _unpack(self, objects: np.ndarray, moved: Moved) -> None:

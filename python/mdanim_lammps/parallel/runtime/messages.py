@@ -134,7 +134,7 @@ class Kept:
     f: np.ndarray
     """[N], shape (n, 3)."""
     records: Records
-    """Those that travel with the objects that the executor owns."""
+    """Records that travel with the objects that the executor owns."""
 
 
 @dataclass(frozen=True)

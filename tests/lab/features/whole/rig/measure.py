@@ -1,4 +1,4 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What ``expect`` can ask of the rig."""
+"""Quantities of the rig for ``expect``."""
 
 MEASURES = {("rig", "work"): lambda m, e: m.at(m.ledger("work"), e.time)}
