@@ -69,25 +69,33 @@ def ended(process: subprocess.Popen, seconds: float) -> tuple[int, str]:
     return process.returncode, said
 
 
+def written(folder: Path) -> int:
+    """Frames that a film has by now; none where it is just being made."""
+    try:
+        with Trajectory(folder) as film:
+            return len(film)
+    except OutputError:
+        return 0
+
+
 def goes_on(place: Path, frame: int, *arguments: object) -> None:
     """Resume up to some frames later, and compare with the sequential film from the start."""
-    folder, frame = place / "film.out", max(frame, 1)  # a film of one frame has no time
-    for patience in (2.5, 6.0, 15.0):  # a busy machine may not have begun by then
-        process = subprocess.Popen(
-            command("resume", folder, "--no-movie", *arguments),
-            env=environment(),
-            text=True,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.PIPE,
-        )
-        time.sleep(patience)
-        process.send_signal(signal.SIGINT)
-        code, said = ended(process, 20.0)
-        assert code in (130, -signal.SIGINT), said  # the latter where Python itself had not begun
-        with Trajectory(folder) as film:
-            frames = len(film)
-        if frames > frame:
-            break
+    folder = place / "film.out"
+    frame = max(frame, 1, written(folder))  # a film of one frame has no time
+    process = subprocess.Popen(
+        command("resume", folder, "--no-movie", *arguments),
+        env=environment(),
+        text=True,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+    )
+    deadline = time.monotonic() + 30.0
+    while (frames := written(folder)) <= frame and process.poll() is None and time.monotonic() < deadline:
+        time.sleep(0.05)
+    process.send_signal(signal.SIGINT)
+    code, said = ended(process, 20.0)
+    assert code == 130, said
+    frames = written(folder)
     assert frames > frame
     (place / "whole.txt").write_text((place / "film.txt").read_text().replace(WHOLE, f"time {(frames - 1) / 100:g} s"))
     subprocess.run(command(place / "whole.txt", "--no-movie", "-q"), env=environment(), check=True)
