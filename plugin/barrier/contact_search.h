@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // The search from boxes that meet to pairs of particles that may touch. Wcislo 1999, eq. (3.14), (3.15).
 
-#ifndef MDANIM_CONTACT_SEARCH_H
-#define MDANIM_CONTACT_SEARCH_H
+#pragma once
 
 #include "barrier/pair_filter.h"
 #include "geometry/aligned_array.h"
@@ -76,5 +75,3 @@ class ContactSearch {
 };
 
 }    // namespace mdanim
-
-#endif

@@ -2,12 +2,9 @@
 // The force between a boundary particle of one object and an inner particle of another. Wcislo 1999, sec. 3.3 (boundary against
 // sub-boundary); the form of the law is ours, docs/fix_mdanim_barrier.md.
 
-#ifndef MDANIM_BARRIER_H
-#define MDANIM_BARRIER_H
+#pragma once
 
 #include "numbers/vec3.h"
-
-#include <cmath>
 
 namespace mdanim {
 
@@ -41,5 +38,3 @@ inline Vec3 direction(const Vec3 &rij, double r, bool i_has_lower_tag)
 }
 
 }    // namespace mdanim
-
-#endif

@@ -2,8 +2,7 @@
 // Tests which particles are near each other: the interface to the vector code (pair_filter_of_set.cpp). Plain data only;
 // simd/of_set.h says why.
 
-#ifndef MDANIM_PAIR_FILTER_H
-#define MDANIM_PAIR_FILTER_H
+#pragma once
 
 namespace mdanim {
 
@@ -37,5 +36,3 @@ struct PairFilter {
 };
 
 }    // namespace mdanim
-
-#endif

@@ -2,8 +2,7 @@
 // The forces of a liquid on a particle in a step, for a double or all lanes of a vector unit at once (real.h). Wcislo 1999, sec.
 // 4.3; docs/physics-liquid.md.
 
-#ifndef MDANIM_IMMERSED_H
-#define MDANIM_IMMERSED_H
+#pragma once
 
 #include "buoyancy/law.h"
 #include "buoyancy/liquid_scales.h"
@@ -97,5 +96,3 @@ MDANIM_ALWAYS_INLINE LiquidForce<Real> liquid_force(const LiquidScales &liquid, 
 }
 
 }    // namespace mdanim
-
-#endif

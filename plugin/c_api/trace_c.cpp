@@ -5,6 +5,7 @@
 #include "c_api/abi.h"
 #include "c_api/guarded.h"
 #include "lammps/fix_mdanim_leapfrog.h"
+#include "lammps/object_table.h"
 
 #include "atom.h"
 #include "lammps.h"
@@ -60,8 +61,7 @@ void top_speeds(void *handle, int objects, double *speed)
 {
   const auto lammps = static_cast<LAMMPS *>(handle);
   const Atom &atom = *lammps->atom;
-  if (!atom.molecule_flag)
-    throw std::runtime_error("objects are told apart by molecule IDs, and there are none; use 'atom_style bond'");
+  if (!atom.molecule_flag) throw std::runtime_error(mdanim::NO_OBJECTS);
   std::fill_n(speed, objects, 0.0);
   for (int i = 0; i < atom.nlocal; ++i) {
     const tagint object = atom.molecule[i];

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // Contact bodies as a table of text (docs/fix_mdanim_contact.md).
 
-#ifndef MDANIM_BODIES_FILE_H
-#define MDANIM_BODIES_FILE_H
+#pragma once
 
 #include "contact/contact_body.h"
 
@@ -16,5 +15,3 @@ namespace mdanim {
 std::map<int, ContactBody> read_bodies(const std::string &name, std::string_view text);
 
 }    // namespace mdanim
-
-#endif

@@ -2,8 +2,7 @@
 // The body of an object in contact: its undeformed lattice, points of its drawn surface, and the depth below that surface. Places
 // in it are lattice coordinates X: cells from the low corner of its grid, along each axis.
 
-#ifndef MDANIM_CONTACT_BODY_H
-#define MDANIM_CONTACT_BODY_H
+#pragma once
 
 #include "contact/contact_push.h"
 
@@ -132,5 +131,3 @@ class ContactBody {
 };
 
 }    // namespace mdanim
-
-#endif

@@ -3,8 +3,7 @@
 // when a point is below every side of the host that faces it, and stays with the nearest of those sides until the point has come
 // out again. The beginning of a contact neither takes nor gives energy.
 
-#ifndef MDANIM_CONTACT_FIELD_H
-#define MDANIM_CONTACT_FIELD_H
+#pragma once
 
 #include "contact/contact_kernel.h"
 #include "contact/contact_object.h"
@@ -12,7 +11,6 @@
 
 #include <array>
 #include <cstdint>
-#include <limits>
 #include <vector>
 
 namespace mdanim {
@@ -122,5 +120,3 @@ class ContactField {
 };
 
 }    // namespace mdanim
-
-#endif

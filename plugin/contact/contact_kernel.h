@@ -2,8 +2,7 @@
 // Contacts of one field, four at a time: the interface to the vector code (contact_kernel_of_set.cpp). Plain data only;
 // simd/of_set.h says why.
 
-#ifndef MDANIM_CONTACT_KERNEL_H
-#define MDANIM_CONTACT_KERNEL_H
+#pragma once
 
 #include "contact/contact_push.h"
 #include "contact/field_contact.h"
@@ -57,5 +56,3 @@ struct ContactKernels {
 };
 
 }    // namespace mdanim
-
-#endif

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // An object in contact: its body and material, and the places of its particles.
 
-#ifndef MDANIM_CONTACT_OBJECT_H
-#define MDANIM_CONTACT_OBJECT_H
+#pragma once
 
 #include "contact/contact_body.h"
 #include "contact/material_map.h"
@@ -240,5 +239,3 @@ void keep_near(std::vector<Contact> &contacts, const std::vector<std::size_t> &o
 }
 
 }    // namespace mdanim
-
-#endif

@@ -2,8 +2,7 @@
 // The work of a contact in a step, once X of its point is known: depth, the part that counts, forces on the point and the host.
 // Templates over Real (numbers/real.h), compiled for every set of instructions (contact_kernel_of_set.cpp).
 
-#ifndef MDANIM_CONTACT_PUSH_H
-#define MDANIM_CONTACT_PUSH_H
+#pragma once
 
 #include "contact/lattice_map.h"
 #include "contact/law.h"
@@ -215,5 +214,3 @@ MDANIM_ALWAYS_INLINE ContactPush<Real> contact_push(const ContactLaw &law, doubl
 }
 
 }    // namespace mdanim
-
-#endif

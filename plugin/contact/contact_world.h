@@ -2,8 +2,7 @@
 // All objects in contact, the pairs of them that may touch, and their forces. Knows neither LAMMPS nor ranks: its input is the
 // same on all of them, and so is its output.
 
-#ifndef MDANIM_CONTACT_WORLD_H
-#define MDANIM_CONTACT_WORLD_H
+#pragma once
 
 #include "contact/contact_field.h"
 #include "contact/contact_object.h"
@@ -13,7 +12,6 @@
 
 #include <array>
 #include <map>
-#include <memory>
 #include <utility>
 #include <vector>
 
@@ -178,5 +176,3 @@ class ContactWorld {
 };
 
 }    // namespace mdanim
-
-#endif

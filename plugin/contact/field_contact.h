@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // A point of one object's surface that is in contact with another, its host. Plain data; simd/of_set.h says why.
 
-#ifndef MDANIM_FIELD_CONTACT_H
-#define MDANIM_FIELD_CONTACT_H
+#pragma once
 
 #include "contact/contact_push.h"
 
@@ -18,5 +17,3 @@ struct FieldContact {
 };
 
 }    // namespace mdanim
-
-#endif

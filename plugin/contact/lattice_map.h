@@ -5,8 +5,7 @@
 // Weights sum to 1 and reproduce X, so forces that are spread by them keep momentum and angular momentum.
 // Templates over Real (numbers/real.h), compiled for every set of instructions (contact_kernel_of_set.cpp).
 
-#ifndef MDANIM_LATTICE_MAP_H
-#define MDANIM_LATTICE_MAP_H
+#pragma once
 
 #include "numbers/vec3.h"
 
@@ -216,5 +215,3 @@ MDANIM_ALWAYS_INLINE void spread_to_nodes(const Weights<Real> &weights, const Ve
 }
 
 }    // namespace mdanim
-
-#endif

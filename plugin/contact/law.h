@@ -6,8 +6,7 @@
 // anchor is dragged along.
 // Templates over Real (real.h): several contacts at once have the bits of each alone.
 
-#ifndef MDANIM_CONTACT_H
-#define MDANIM_CONTACT_H
+#pragma once
 
 #include "numbers/vec3.h"
 
@@ -163,5 +162,3 @@ template <class Real> struct Ramp {
 };
 
 }    // namespace mdanim
-
-#endif

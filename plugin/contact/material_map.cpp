@@ -2,6 +2,7 @@
 
 #include "contact/material_map.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace mdanim {

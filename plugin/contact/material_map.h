@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // The map from lattice coordinates X of a body to places in space (lattice_map.h) and back.
 
-#ifndef MDANIM_MATERIAL_MAP_H
-#define MDANIM_MATERIAL_MAP_H
+#pragma once
 
 #include "contact/contact_body.h"
 #include "contact/lattice_map.h"
 #include "contact/padded_vec3.h"
 
-#include <algorithm>
 #include <array>
 
 namespace mdanim {
@@ -96,5 +94,3 @@ class MaterialSearch {
 };
 
 }    // namespace mdanim
-
-#endif

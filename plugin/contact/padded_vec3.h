@@ -2,8 +2,7 @@
 // A place of a particle or a force on it, as wide as a vector that kernels read and write at once. Plain data; simd/of_set.h says
 // why.
 
-#ifndef MDANIM_PADDED_VEC3_H
-#define MDANIM_PADDED_VEC3_H
+#pragma once
 
 #include "numbers/vec3.h"
 
@@ -15,5 +14,3 @@ struct alignas(4 * sizeof(double)) PaddedVec3 {
 };
 
 }    // namespace mdanim
-
-#endif

@@ -3,7 +3,6 @@
 #include "contact/plane_field.h"
 
 #include <algorithm>
-#include <limits>
 
 namespace mdanim {
 

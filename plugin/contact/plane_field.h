@@ -2,8 +2,7 @@
 // Points of one object's surface against a plane across an axis, below which the depth is known exactly. The law is that of
 // contact_field.h; the plane is rigid and does not move.
 
-#ifndef MDANIM_PLANE_FIELD_H
-#define MDANIM_PLANE_FIELD_H
+#pragma once
 
 #include "contact/contact_object.h"
 #include "contact/law.h"
@@ -82,5 +81,3 @@ class PlaneField {
 };
 
 }    // namespace mdanim
-
-#endif

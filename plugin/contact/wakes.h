@@ -2,8 +2,7 @@
 // Times at which points without a contact are looked at: each point has a value that a budget must exceed first. Most points are
 // looked at in few steps. So the least value of every few points is kept, and a step skips those whose least is not exceeded.
 
-#ifndef MDANIM_WAKES_H
-#define MDANIM_WAKES_H
+#pragma once
 
 #include <algorithm>
 #include <cstddef>
@@ -59,5 +58,3 @@ class Wakes {
 };
 
 }    // namespace mdanim
-
-#endif

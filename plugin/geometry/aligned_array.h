@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // Aligned numbers for the vector units, and positions of particles made of them.
 
-#ifndef MDANIM_POSITIONS_H
-#define MDANIM_POSITIONS_H
+#pragma once
 
 #include "numbers/vec3.h"
 
@@ -54,5 +53,3 @@ struct Positions {
 };
 
 }    // namespace mdanim
-
-#endif

@@ -3,8 +3,7 @@
 // Wcislo 1999, eq. (3.14): S(A) = axis-aligned bounding box of the particles of A; (3.15): S(A) and S(B)
 // intersect.
 
-#ifndef MDANIM_BOXES_H
-#define MDANIM_BOXES_H
+#pragma once
 
 #include <algorithm>
 #include <cmath>
@@ -204,5 +203,3 @@ inline std::vector<std::pair<int, int>> meeting_pairs(const std::vector<Box> &bo
 }
 
 }    // namespace mdanim
-
-#endif

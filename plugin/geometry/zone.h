@@ -2,8 +2,7 @@
 // The space near an object in which something may be: a box, cut off across a direction. For two balls beside each other along a
 // diagonal the boxes alone exclude little.
 
-#ifndef MDANIM_ZONE_H
-#define MDANIM_ZONE_H
+#pragma once
 
 #include "geometry/boxes.h"
 #include "numbers/vec3.h"
@@ -38,5 +37,3 @@ struct Zone {
 };
 
 }    // namespace mdanim
-
-#endif

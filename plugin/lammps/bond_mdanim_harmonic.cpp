@@ -15,7 +15,6 @@
 #include "force.h"
 #include "memory.h"
 #include "modify.h"
-#include "neighbor.h"
 #include "update.h"
 #include "utils.h"
 

@@ -2,8 +2,7 @@
 // bond_style mdanim/harmonic: springs whose forces do not depend on the order of particles or on the number
 // of ranks.
 
-#ifndef LMP_BOND_MDANIM_HARMONIC_H
-#define LMP_BOND_MDANIM_HARMONIC_H
+#pragma once
 
 #include "bond.h"
 #include "numbers/vec3.h"
@@ -121,5 +120,3 @@ class BondMdanimHarmonic : public Bond, public mdanim::PassSprings {
 };
 
 }    // namespace LAMMPS_NS
-
-#endif

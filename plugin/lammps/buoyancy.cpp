@@ -3,7 +3,6 @@
 
 #include "lammps/buoyancy.h"
 
-#include "buoyancy/law.h"
 #include "numbers/stopwatch.h"
 
 #include "atom.h"
@@ -14,7 +13,6 @@
 #include "update.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
 
 using namespace LAMMPS_NS;

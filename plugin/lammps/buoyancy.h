@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // Forces of the liquid of fix mdanim/liquid on particles. Wcislo 1999, sec. 4.3.
 
-#ifndef MDANIM_STYLES_BUOYANCY_H
-#define MDANIM_STYLES_BUOYANCY_H
+#pragma once
 
 #include "lammps/near_cells.h"
 #include "lammps/particle_value.h"
@@ -11,7 +10,6 @@
 #include "pointers.h"
 #include "threads/team.h"
 
-#include <cmath>
 #include <functional>
 #include <string>
 #include <vector>
@@ -99,5 +97,3 @@ class Buoyancy : protected LAMMPS_NS::Pointers {
 };
 
 }    // namespace mdanim
-
-#endif

@@ -2,8 +2,7 @@
 // run_style verlet of LAMMPS, whose declaration in lammps/verlet.h is compared with the library that is in the process: another
 // build of the same version, or one with another standard library, may have another class.
 
-#ifndef MDANIM_CHECKED_VERLET_H
-#define MDANIM_CHECKED_VERLET_H
+#pragma once
 
 #include "lammps/verlet.h"
 
@@ -29,5 +28,3 @@ class CheckedVerlet : public Verlet {
 };
 
 }    // namespace LAMMPS_NS
-
-#endif

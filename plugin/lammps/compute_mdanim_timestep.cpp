@@ -18,7 +18,6 @@
 #include "force.h"
 #include "modify.h"
 #include "update.h"
-#include "utils.h"
 
 #include <algorithm>
 #include <array>

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // compute mdanim/timestep: the largest stable time step for the springs, dashpots and walls of a group.
 
-#ifndef LMP_COMPUTE_MDANIM_TIMESTEP_H
-#define LMP_COMPUTE_MDANIM_TIMESTEP_H
+#pragma once
 
 #include "compute.h"
 
@@ -25,5 +24,3 @@ class ComputeMdanimTimestep : public Compute {
 };
 
 }    // namespace LAMMPS_NS
-
-#endif

@@ -3,6 +3,8 @@
 
 #include "lammps/fix_base.h"
 
+#include "lammps/object_table.h"
+
 #include "atom.h"
 #include "domain.h"
 #include "error.h"
@@ -38,8 +40,7 @@ const Refusal REFUSALS[] = {
     {ORTHOGONAL_BOX, [](const LAMMPS &lmp) { return !lmp.domain->triclinic; }, "the box is triclinic; use an orthogonal one"},
     {OPEN_BOX, [](const LAMMPS &lmp) { return is_open(*lmp.domain); },
      "the box is periodic; put 'boundary s s s' (or f) before the box is made"},
-    {OBJECTS, [](const LAMMPS &lmp) { return lmp.atom->molecule_flag != 0; },
-     "objects are told apart by molecule IDs; use 'atom_style bond' or 'fix ID all property/atom mol'"},
+    {OBJECTS, [](const LAMMPS &lmp) { return lmp.atom->molecule_flag != 0; }, NO_OBJECTS},
     {ATOM_MAP, [](const LAMMPS &lmp) { return lmp.atom->map_style != Atom::MAP_NONE; },
      "needs an atom map; put 'atom_modify map array' before the box is made"},
     {PROMPT_LISTS, [](const LAMMPS &lmp) { return is_prompt(*lmp.neighbor); },
@@ -55,6 +56,8 @@ FixBase::FixBase(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg)
   energy_global_flag = 1;
   global_freq = 1;
 }
+
+bool FixBase::lists_are_prompt() const { return is_prompt(*neighbor); }
 
 std::string FixBase::name() const { return fmt::format("fix {} {}", id, style); }
 

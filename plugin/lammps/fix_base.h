@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // The common base of all fixes of this package: their interface to LAMMPS is dealt with once, here.
 
-#ifndef MDANIM_FIX_BASE_H
-#define MDANIM_FIX_BASE_H
+#pragma once
 
 #include "fix.h"
 #include "lammps/named_group.h"
@@ -44,7 +43,8 @@ class FixBase : public LAMMPS_NS::Fix {
   const std::vector<Output> &outputs() const { return numbers; }
 
  protected:
-  std::string name() const;    // begins messages
+  std::string name() const;         // begins messages
+  bool lists_are_prompt() const;    // see PROMPT_LISTS
   // `missed`: events that would be missed between two rebuilds of lists, where those must be prompt.
   void need(unsigned needs, const std::string &missed = "");
   // Members to look up, which may be set, by fix_modify as well, at any time.
@@ -69,5 +69,3 @@ class FixBase : public LAMMPS_NS::Fix {
 };
 
 }    // namespace mdanim
-
-#endif

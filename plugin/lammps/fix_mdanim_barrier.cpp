@@ -18,7 +18,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <utility>
 
 using namespace LAMMPS_NS;
@@ -161,9 +160,9 @@ void FixMdanimBarrier::find_pairs()
   const double ghosts = std::min({comm->cutghost[0], comm->cutghost[1], comm->cutghost[2]});
   if (comm->nprocs > 1 && ghosts < range)
     error->all(FLERR,
-               "fix {} mdanim/barrier: particles of other ranks are seen up to {:.6g}, reach and skin need {:.6g}; use "
+               "{}: particles of other ranks are seen up to {:.6g}, reach and skin need {:.6g}; use "
                "'comm_modify cutoff {:.6g}'",
-               id, ghosts, range, 1.001 * range);
+               name(), ghosts, range, 1.001 * range);
 
   const auto meeting = meeting_pairs(boxes, range);
   meeting_objects = static_cast<bigint>(meeting.size());

@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // fix mdanim/barrier: objects repel each other. Wcislo 1999, sec. 3.3, eq. (3.14), (3.15).
 
-#ifndef LMP_FIX_MDANIM_BARRIER_H
-#define LMP_FIX_MDANIM_BARRIER_H
+#pragma once
 
 #include "barrier/pair_filter.h"
 #include "geometry/boxes.h"
 #include "lammps/fix_base.h"
 #include "lammps/object_table.h"
-#include "numbers/vec3.h"
 #include "passes/pass_participant.h"
 #include "simd/kernels.h"
 
@@ -89,5 +87,3 @@ class FixMdanimBarrier : public mdanim::FixBase, public mdanim::PassParticipant 
 };
 
 }    // namespace LAMMPS_NS
-
-#endif

@@ -21,7 +21,6 @@
 #include "utils.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <cstring>
 #include <numeric>
@@ -169,8 +168,7 @@ void FixMdanimContact::need_molecules_of_pairs() const
   MPI_Allreduce(here.data(), found.data(), static_cast<int>(here.size()), MPI_INT, MPI_MAX, world);
   const auto missing = std::find(found.begin(), found.end(), 0);
   if (missing != found.end())
-    error->all(FLERR, "fix {} mdanim/contact: pair names molecule {}, and no particle has this ID", id,
-               ids_named[missing - found.begin()]);
+    error->all(FLERR, "{}: pair names molecule {}, and no particle has this ID", name(), ids_named[missing - found.begin()]);
 }
 
 // --- objects ---
@@ -226,15 +224,14 @@ void FixMdanimContact::take_objects(Contacts contacts)
   for (const SurveyedObject &one : survey()) {
     const auto found = bodies.find(static_cast<int>(one.kind));
     if (found == bodies.end())
-      error->all(FLERR, "fix {} mdanim/contact: object {} (molecule ID) has body {}, and no such body was given", id, one.id,
-                 one.kind);
+      error->all(FLERR, "{}: object {} (molecule ID) has body {}, and no such body was given", name(), one.id, one.kind);
     const ContactBody &body = *found->second;
     if (one.particles != body.particles())
-      error->all(FLERR, "fix {} mdanim/contact: object {} (molecule ID) has {} particles, its body {} has {}", id, one.id,
-                 one.particles, one.kind, body.particles());
+      error->all(FLERR, "{}: object {} (molecule ID) has {} particles, its body {} has {}", name(), one.id, one.particles,
+                 one.kind, body.particles());
     if (!(one.young > 0.0) || !(one.friction >= 0.0))
-      error->all(FLERR, "fix {} mdanim/contact: object {} (molecule ID) needs YOUNG > 0 and FRICTION >= 0, got {} and {}", id,
-                 one.id, one.young, one.friction);
+      error->all(FLERR, "{}: object {} (molecule ID) needs YOUNG > 0 and FRICTION >= 0, got {} and {}", name(), one.id, one.young,
+                 one.friction);
     const double volume = body.edge(0) * body.edge(1) * body.edge(2);
     const double inertia = one.mass / force->ftm2v;    // the ratio of force to acceleration
     const double density = inertia / (volume * static_cast<double>(body.filled_cells()));
@@ -246,9 +243,9 @@ void FixMdanimContact::take_objects(Contacts contacts)
   if (contacts == Contacts::STAY)
     if (const ContactObject *one = world_of_contact.misfit(made))
       error->all(FLERR,
-                 "fix {} mdanim/contact: object {} (molecule ID) has {} than in the last run, and touches others: what contacts "
+                 "{}: object {} (molecule ID) has {} than in the last run, and touches others: what contacts "
                  "remember does not fit; 'unfix' the fix and define it anew",
-                 id, one->id,
+                 name(), one->id,
                  one->first_tag != world_of_contact.with_id(one->id)->first_tag ? "other particles" : "another body");
   objects.set(std::move(ids));
   world_of_contact.take(std::move(made), std::move(moves));
@@ -258,9 +255,9 @@ void FixMdanimContact::refuse_new_object(int i) const
 {
   need_object(this, lmp, i, LEFT_OUT);
   error->one(FLERR,
-             "fix {} mdanim/contact: object {} (molecule ID) has come since the setup of this run, with particle {}; let it come "
+             "{}: object {} (molecule ID) has come since the setup of this run, with particle {}; let it come "
              "between two runs, the second without 'pre no'{}",
-             id, atom->molecule[i], atom->tag[i], LEFT_OUT);
+             name(), atom->molecule[i], atom->tag[i], LEFT_OUT);
 }
 
 // --- lists, when LAMMPS rebuilds its own ---
@@ -272,7 +269,7 @@ void FixMdanimContact::setup_post_neighbor()
     try {
       unpack(StateRecords(*restarted));
     } catch (const std::exception &problem) {
-      error->all(FLERR, "fix {} mdanim/contact: {}", id, problem.what());
+      error->all(FLERR, "{}: {}", name(), problem.what());
     }
   }
   world_of_contact.forget();
@@ -321,16 +318,20 @@ void FixMdanimContact::list()
   particles = gather(world, particles);
   std::vector<int> order(particles.size());
   std::iota(order.begin(), order.end(), 0);
-  const bool is_sorted = std::is_sorted(particles.begin(), particles.end());    // as where one rank has all particles
-  if (!is_sorted) std::sort(order.begin(), order.end(), [&](int p, int q) { return particles[p] < particles[q]; });
+  if (!std::is_sorted(particles.begin(), particles.end()))    // as it is where one rank has all particles
+    std::sort(order.begin(), order.end(), [&](int p, int q) { return particles[p] < particles[q]; });
   slot.resize(order.size());
-  for (std::size_t n = 0; n < order.size(); ++n) slot[order[n]] = static_cast<int>(n);
-  if (!is_sorted) std::sort(particles.begin(), particles.end());
-  for (const ContactParticle &one : particles)
+  std::vector<ContactParticle> ascending;
+  ascending.reserve(order.size());
+  for (const int n : order) {
+    slot[n] = static_cast<int>(ascending.size());
+    ascending.push_back(particles[n]);
+  }
+  for (const ContactParticle &one : ascending)
     if (one.node < 0 || one.node >= world_of_contact.object(one.object).body->particles())
-      error->all(FLERR, "fix {} mdanim/contact: tags of object {} (molecule ID) do not follow each other", id,
+      error->all(FLERR, "{}: tags of object {} (molecule ID) do not follow each other", name(),
                  world_of_contact.object(one.object).id);
-  world_of_contact.list(particles, places_now());
+  world_of_contact.list(ascending, places_now());
 }
 
 // --- forces ---
@@ -338,8 +339,7 @@ void FixMdanimContact::list()
 void FixMdanimContact::need_lists() const
 {
   if (!world_of_contact.is_listed())
-    error->all(FLERR, "fix {} mdanim/contact: its objects were read anew and no setup came after; leave out 'pre no' of this run",
-               id);
+    error->all(FLERR, "{}: its objects were read anew and no setup came after; leave out 'pre no' of this run", name());
 }
 
 // Places on all ranks, as LAMMPS has them.

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // fix mdanim/contact: objects touch each other and planes at their drawn surfaces, with friction.
 
-#ifndef LMP_FIX_MDANIM_CONTACT_H
-#define LMP_FIX_MDANIM_CONTACT_H
+#pragma once
 
 #include "contact/contact_world.h"
 #include "lammps/fix_base.h"
@@ -94,5 +93,3 @@ class FixMdanimContact : public mdanim::FixBase, public mdanim::PassParticipant,
 };
 
 }    // namespace LAMMPS_NS
-
-#endif

@@ -12,7 +12,6 @@
 #include <cmath>
 #include <cstring>
 #include <map>
-#include <stdexcept>
 #include <string>
 
 using namespace LAMMPS_NS;
@@ -30,12 +29,6 @@ template <class Row> bool has_numbers(const Row &row, std::size_t from)
   std::memcpy(values, reinterpret_cast<const std::uint8_t *>(&row) + from, bytes);
   return std::all_of(values, values + bytes / sizeof(double), [](double value) { return std::isfinite(value); });
 }
-
-struct KeptRecords : Stateful {
-  StateRecords records;
-  StateRecords pack() const override { return records; }
-  void unpack(const StateRecords &given) override { records = given; }
-};
 
 }    // namespace
 
@@ -105,12 +98,9 @@ void FixMdanimContact::unpack(const StateRecords &records)
   restarted.reset();
 }
 
-void FixMdanimContact::write_restart(FILE *file)
-{ mdanim::write_restart(*this, lmp, fmt::format("fix {} mdanim/contact", id), file); }
+void FixMdanimContact::write_restart(FILE *file) { mdanim::write_restart(*this, lmp, name(), file); }
 
 void FixMdanimContact::restart(char *buffer)
 {
-  KeptRecords kept;
-  mdanim::read_restart(kept, lmp, fmt::format("fix {} mdanim/contact", id), buffer);
-  restarted = std::move(kept.records);
+  mdanim::read_restart([this](const StateRecords &all) { restarted = all; }, lmp, name(), buffer);
 }

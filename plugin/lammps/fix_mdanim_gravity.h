@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // fix mdanim/gravity: m g on every particle. Wcislo 1999, eq. (3.8).
 
-#ifndef LMP_FIX_MDANIM_GRAVITY_H
-#define LMP_FIX_MDANIM_GRAVITY_H
+#pragma once
 
 #include "lammps/fix_base.h"
 #include "numbers/vec3.h"
@@ -29,5 +28,3 @@ class FixMdanimGravity : public mdanim::FixBase, public mdanim::PassGravity {
 };
 
 }    // namespace LAMMPS_NS
-
-#endif

@@ -3,6 +3,7 @@
 
 #include "lammps/fix_mdanim_leapfrog.h"
 #include "lammps/keywords.h"
+#include "lammps/object_table.h"
 
 #include "leapfrog/law.h"
 #include "numbers/stopwatch.h"
@@ -13,7 +14,6 @@
 #include "force.h"
 #include "output.h"
 #include "update.h"
-#include "utils.h"
 
 #include <algorithm>
 #include <cmath>
@@ -77,9 +77,9 @@ void FixMdanimLeapfrog::setup(int)
   const double phi = largest(largest_phi_here());
   if (phi > 0.5 && comm->me == 0)
     error->warning(FLERR,
-                   "fix {} mdanim/leapfrog: phi = lambda dt/2m reaches {:.3g}; above 0.5 use drag exp or a "
+                   "{}: phi = lambda dt/2m reaches {:.3g}; above 0.5 use drag exp or a "
                    "smaller time step",
-                   id, phi);
+                   name(), phi);
 }
 
 void FixMdanimLeapfrog::reset_dt() { half_dt = 0.5 * update->dt * force->ftm2v; }
@@ -187,11 +187,10 @@ FixMdanimLeapfrog::Way &FixMdanimLeapfrog::way_of(int i)
 {
   const tagint object = atom->molecule[i];
   if (object < 1 || object > traced())
-    error->one(
-        FLERR,
-        "fix {} mdanim/leapfrog: particle {} has molecule ID {}, but objects 1 to {} are traced; molecule IDs must stay as "
-        "they were when the trace was started (mdanim_trace_start)",
-        id, atom->tag[i], object, traced());
+    error->one(FLERR,
+               "{}: particle {} has molecule ID {}, but objects 1 to {} are traced; molecule IDs must stay as "
+               "they were when the trace was started (mdanim_trace_start)",
+               name(), atom->tag[i], object, traced());
   return trace[object - 1];
 }
 
@@ -228,7 +227,7 @@ bool FixMdanimLeapfrog::looks()
 
 std::string FixMdanimLeapfrog::start_trace(int objects)
 {
-  if (!atom->molecule_flag) return "objects are told apart by molecule IDs, and there are none; use 'atom_style bond'";
+  if (!atom->molecule_flag) return NO_OBJECTS;
   const auto [first, last] = std::minmax_element(atom->molecule, atom->molecule + atom->nlocal);
   tagint bounds[2] = {objects, -1};    // the largest ID, and the smallest with its sign changed
   if (atom->nlocal) bounds[0] = *last, bounds[1] = -*first;
@@ -360,9 +359,9 @@ double FixMdanimLeapfrog::kinetic()
 {
   if (!told)
     error->all(FLERR,
-               "fix {} mdanim/leapfrog: kinetic energy, f_{}[2], is worked out in steps with output alone; ask for it in "
+               "{}: kinetic energy, f_{}[2], is worked out in steps with output alone; ask for it in "
                "these, as thermo_style does",
-               id, id);
+               name(), id);
   const Sums all = each([&](int i, Sums &sums) {
     const double mass = mass_of(atom->rmass, atom->mass, atom->type, i);
     const Vec3 v = vec3(atom->v[i]), f = vec3(atom->f[i]);

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // fix mdanim/leapfrog: advances particles by the leap-frog with friction. Wcislo 1999, eq. (3.12).
 
-#ifndef LMP_FIX_MDANIM_LEAPFROG_H
-#define LMP_FIX_MDANIM_LEAPFROG_H
+#pragma once
 
 #include "geometry/boxes.h"
 #include "lammps/fix_base.h"
@@ -103,5 +102,3 @@ class FixMdanimLeapfrog : public mdanim::FixBase, public mdanim::PassIntegrator 
 };
 
 }    // namespace LAMMPS_NS
-
-#endif

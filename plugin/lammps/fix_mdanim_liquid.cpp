@@ -22,7 +22,6 @@
 #include "utils.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
 #include <iterator>
 #include <limits>
@@ -275,7 +274,6 @@ void FixMdanimLiquid::init()
                "{}: ghosts have no rows of i2_{}, which cells needs on several ranks; add 'ghost yes' to its fix property/atom",
                name(), lattice_cells.name);
   use(Threads());    // until passes tell how many there are
-  lists_are_prompt = neighbor->every == 1 && neighbor->delay == 0 && !neighbor->build_once;
 }
 
 // --- the liquid ---
@@ -381,11 +379,11 @@ void FixMdanimLiquid::find_near(double margin)
   ++lists;
   near_marks.assign(atom->nlocal, 0);
   listed_top = top_height(basin->top());
-  const double below = lists_are_prompt ? listed_top + Basin::NEAR * basin->shape.cell.z + margin : ANYWHERE;
+  const double below = lists_are_prompt() ? listed_top + Basin::NEAR * basin->shape.cell.z + margin : ANYWHERE;
   // The box holds all particles as they stood at the last rebuild: where none was near, and the whole box is above, none has
   // come.
   lowest = domain->boxlo[2];
-  if (none_near && lists_are_prompt && lowest > below + 0.5 * neighbor->skin) return buoyancy->forget_cells();
+  if (none_near && lists_are_prompt() && lowest > below + 0.5 * neighbor->skin) return buoyancy->forget_cells();
   lowest = ANYWHERE;
   buoyancy->clear_friction(groupbit);
   for (int i = 0; i < atom->nlocal; ++i) {

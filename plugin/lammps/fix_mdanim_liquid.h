@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // fix mdanim/liquid: a basin of liquid that solids displace, and that lifts and slows them. Wcislo 1999, sec. 4.
 
-#ifndef LMP_FIX_MDANIM_LIQUID_H
-#define LMP_FIX_MDANIM_LIQUID_H
+#pragma once
 
 #include "lammps/buoyancy.h"
 #include "lammps/fix_base.h"
@@ -135,10 +134,9 @@ class FixMdanimLiquid : public mdanim::FixBase,
   std::unique_ptr<mdanim::Buoyancy> buoyancy;
 
   // The particles near the liquid.
-  bool lists_are_prompt = false;    // made anew as soon as a particle has moved by half the skin
-  bool none_near = false;           // on any rank, before the next rebuild of lists
-  double listed_top = 0.0;          // of the liquid when particles were listed
-  double lowest = 0.0;              // particle of this rank when lists were made
+  bool none_near = false;     // on any rank, before the next rebuild of lists
+  double listed_top = 0.0;    // of the liquid when particles were listed
+  double lowest = 0.0;        // particle of this rank when lists were made
   std::vector<int> near;
   long long lists = 0;    // made so far
 
@@ -157,5 +155,3 @@ class FixMdanimLiquid : public mdanim::FixBase,
 };
 
 }    // namespace LAMMPS_NS
-
-#endif

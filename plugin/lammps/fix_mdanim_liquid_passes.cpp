@@ -7,7 +7,6 @@
 
 #include "atom.h"
 #include "error.h"
-#include "neighbor.h"
 
 #include <algorithm>
 
@@ -60,7 +59,7 @@ bool FixMdanimLiquid::needs_all_atoms() { return !in_passes && is_due(); }
 
 // While the liquid is level and no particle is near it: the way until one comes near.
 double FixMdanimLiquid::safe_displacement() const
-{ return lists_are_prompt && asleep() ? lowest - (listed_top + Basin::NEAR * basin->shape.cell.z) : 0.0; }
+{ return lists_are_prompt() && asleep() ? lowest - (listed_top + Basin::NEAR * basin->shape.cell.z) : 0.0; }
 
 // Square of the speed of the fastest of these; -1 without any.
 double FixMdanimLiquid::fastest_in_arrays(const std::vector<int> &these) const

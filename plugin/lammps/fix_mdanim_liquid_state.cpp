@@ -7,7 +7,6 @@
 #include "fmt/format.h"
 #include "lammps.h"
 
-#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <stdexcept>
@@ -75,4 +74,7 @@ void FixMdanimLiquid::unpack(const StateRecords &records)
 
 void FixMdanimLiquid::write_restart(FILE *file) { mdanim::write_restart(*this, lmp, name(), file); }
 
-void FixMdanimLiquid::restart(char *buffer) { mdanim::read_restart(*this, lmp, name(), buffer); }
+void FixMdanimLiquid::restart(char *buffer)
+{
+  mdanim::read_restart([this](const StateRecords &all) { unpack(all); }, lmp, name(), buffer);
+}

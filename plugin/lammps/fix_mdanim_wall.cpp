@@ -12,7 +12,6 @@
 #include "error.h"
 #include "neighbor.h"
 #include "region.h"
-#include "utils.h"
 
 #include <algorithm>
 #include <cmath>
@@ -50,7 +49,7 @@ FixMdanimWall::FixMdanimWall(LAMMPS *lmp, int narg, char **arg) : FixBase(lmp, n
 void FixMdanimWall::take_region(int iarg)
 {
   region = domain->get_region_by_id(region_id);
-  if (!region) error->all(FLERR, "fix {} mdanim/wall: region {} has been deleted", id, region_id);
+  if (!region) error->all(FLERR, "{}: region {} has been deleted", name(), region_id);
   if (region->openflag)
     error->all(FLERR, iarg,
                "fix mdanim/wall: region {} has open faces, it has no inside; use INF for a face that shall not "
@@ -70,8 +69,7 @@ void FixMdanimWall::init()
 {
   FixBase::init();
   take_region(Error::NOPOINTER);
-  // Then lists are rebuilt as soon as a particle has moved by half the skin.
-  watching = !region->dynamic_check() && neighbor->every == 1 && neighbor->delay == 0 && !neighbor->build_once;
+  watching = !region->dynamic_check() && lists_are_prompt();
 }
 
 // Whether x lies outside the region's own side, and if so the vector to it from the nearest point of the surface. A region gives

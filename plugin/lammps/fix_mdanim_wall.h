@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // fix mdanim/wall: pushes particles that leave a region back, however deep and fast. A stock wall stops the run instead.
 
-#ifndef LMP_FIX_MDANIM_WALL_H
-#define LMP_FIX_MDANIM_WALL_H
+#pragma once
 
 #include "geometry/boxes.h"
 #include "lammps/fix_base.h"
@@ -60,5 +59,3 @@ class FixMdanimWall : public mdanim::FixBase, public mdanim::PassParticipant {
 };
 
 }    // namespace LAMMPS_NS
-
-#endif

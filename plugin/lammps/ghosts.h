@@ -2,8 +2,7 @@
 // Before every pass each rank sends others the places of its particles that have springs to theirs: one message to each, from
 // blocks to blocks.
 
-#ifndef MDANIM_GHOSTS_H
-#define MDANIM_GHOSTS_H
+#pragma once
 
 #include "passes/simd_blocks.h"
 
@@ -34,5 +33,3 @@ class Ghosts {
 };
 
 }    // namespace mdanim
-
-#endif

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // Words of a command. The message for one that ends too early says how it is written and what is missing.
 
-#ifndef MDANIM_WORDS_H
-#define MDANIM_WORDS_H
+#pragma once
 
 #include "lmptype.h"
 
@@ -30,5 +29,3 @@ int words_of_keyword(LAMMPS_NS::LAMMPS *lmp, const std::string &style, const std
                      char **arg);
 
 }    // namespace mdanim
-
-#endif

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // Waiting for other ranks.
 
-#ifndef MDANIM_PATIENCE_H
-#define MDANIM_PATIENCE_H
+#pragma once
 
 #include <chrono>
 #include <mpi.h>
@@ -22,5 +21,3 @@ inline void wait_for(int count, MPI_Request *requests)
 }
 
 }    // namespace mdanim
-
-#endif

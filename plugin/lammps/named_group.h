@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // A style's argument that is a group besides its own, or none.
 
-#ifndef MDANIM_NAMED_GROUP_H
-#define MDANIM_NAMED_GROUP_H
+#pragma once
 
 #include "pointers.h"
 
@@ -28,5 +27,3 @@ class NamedGroup {
 };
 
 }    // namespace mdanim
-
-#endif

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // Lattice cells of the particles near the liquid.
 
-#ifndef MDANIM_NEAR_CELLS_H
-#define MDANIM_NEAR_CELLS_H
+#pragma once
 
 #include "lammps/particle_value.h"
 #include "pointers.h"
@@ -53,5 +52,3 @@ class NearCells : protected LAMMPS_NS::Pointers {
 };
 
 }    // namespace mdanim
-
-#endif

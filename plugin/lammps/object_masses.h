@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-2.0-only */
 
-#ifndef MDANIM_OBJECT_MASSES_H
-#define MDANIM_OBJECT_MASSES_H
+#pragma once
 
 #include "lammps/particle_value.h"
 #include "lammps/rank_gather.h"
@@ -50,5 +49,3 @@ template <class IsAmong> std::map<int, double> object_masses(const LAMMPS_NS::At
 }
 
 }    // namespace mdanim
-
-#endif

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // The objects: particles with one molecule ID are one object.
 
-#ifndef MDANIM_OBJECT_TABLE_H
-#define MDANIM_OBJECT_TABLE_H
+#pragma once
 
 #include "geometry/boxes.h"
 #include "lammps/rank_gather.h"
@@ -21,6 +20,9 @@ class LAMMPS;
 }    // namespace LAMMPS_NS
 
 namespace mdanim {
+
+constexpr const char *NO_OBJECTS =
+    "objects are told apart by molecule IDs, and there are none; use 'atom_style bond' or 'fix ID all property/atom mol'";
 
 // Objects by ascending molecule IDs, numbered from 0, the same on all ranks; and the number of each local particle's object.
 class ObjectTable {
@@ -91,5 +93,3 @@ class ObjectTable {
 void need_object(const LAMMPS_NS::Fix *fix, LAMMPS_NS::LAMMPS *lmp, int i, const char *or_else = "");
 
 }    // namespace mdanim
-
-#endif

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // A style's argument that is one number for all particles or, as d_NAME, a custom property of each particle.
 
-#ifndef MDANIM_PARTICLE_VALUE_H
-#define MDANIM_PARTICLE_VALUE_H
+#pragma once
 
 #include "pointers.h"
 
@@ -61,5 +60,3 @@ inline double mass_of(const double *rmass, const double *mass, const int *type, 
 { return rmass ? rmass[i] : mass[type[i]]; }
 
 }    // namespace mdanim
-
-#endif

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // Data of each rank, gathered on all of them.
 
-#ifndef MDANIM_RANK_GATHER_H
-#define MDANIM_RANK_GATHER_H
+#pragma once
 
 #include "fmt/format.h"
 
@@ -35,5 +34,3 @@ template <class T> std::vector<T> gather(MPI_Comm world, const std::vector<T> &h
 }
 
 }    // namespace mdanim
-
-#endif

@@ -7,7 +7,6 @@
 #include "bond.h"
 #include "comm.h"
 #include "domain.h"
-#include "fix.h"
 #include "force.h"
 #include "modify.h"
 #include "neighbor.h"

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // A step of run_style verlet in two parts.
 
-#ifndef MDANIM_SPLIT_VERLET_H
-#define MDANIM_SPLIT_VERLET_H
+#pragma once
 
 #include "lammps/checked_verlet.h"
 
@@ -21,5 +20,3 @@ class SplitVerlet : public CheckedVerlet {
 };
 
 }    // namespace LAMMPS_NS
-
-#endif

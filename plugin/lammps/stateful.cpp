@@ -3,6 +3,7 @@
 
 #include "lammps/stateful.h"
 
+#include "lammps/object_table.h"
 #include "lammps/rank_gather.h"
 #include "records/byte_reader.h"
 #include "records/byte_writer.h"
@@ -61,7 +62,7 @@ void write_restart(const Stateful &state, LAMMPS *lmp, const std::string &fix, F
   }
 }
 
-void read_restart(Stateful &state, LAMMPS *lmp, const std::string &fix, const char *buffer)
+void read_restart(const TakeRecords &take, LAMMPS *lmp, const std::string &fix, const char *buffer)
 {
   try {
     // LAMMPS gives no size, so the head is trusted once its version is right.
@@ -76,7 +77,7 @@ void read_restart(Stateful &state, LAMMPS *lmp, const std::string &fix, const ch
     std::vector<std::int32_t> key(2 * head.records);
     std::memcpy(first.data(), from, 8 * first.size());
     std::memcpy(key.data(), from + 8 * first.size(), 4 * key.size());
-    state.unpack(unflatten({head.records, key.data(), first.data(), from + 8 * first.size() + 4 * key.size()}));
+    take(unflatten({head.records, key.data(), first.data(), from + 8 * first.size() + 4 * key.size()}));
   } catch (const std::exception &problem) {
     lmp->error->all(FLERR, "{}: {}", fix, problem.what());
   }
@@ -87,7 +88,7 @@ void read_restart(Stateful &state, LAMMPS *lmp, const std::string &fix, const ch
 ParticleRows::ParticleRows(LAMMPS *lmp, std::int64_t version, int width) : lmp(lmp), version(version), width(width)
 {
   const Atom &atom = *lmp->atom;
-  if (!atom.molecule) fail("objects are told apart by molecule IDs, and there are none; use 'atom_style bond'");
+  if (!atom.molecule) fail(NO_OBJECTS);
   std::vector<Object> here;
   for (int i = 0; i < atom.nlocal; ++i) {
     local.emplace(atom.tag[i], i);

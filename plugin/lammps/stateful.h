@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // State of a fix besides positions, velocities and forces: the records shared by checkpoints, other instances and restart files.
 
-#ifndef MDANIM_STATEFUL_H
-#define MDANIM_STATEFUL_H
+#pragma once
 
 #include "records/state_records.h"
 
@@ -41,7 +40,8 @@ class Stateful {
 
 // For Fix::write_restart and Fix::restart: LAMMPS's restart files hold the same bytes. `fix` begins messages.
 void write_restart(const Stateful &state, LAMMPS_NS::LAMMPS *lmp, const std::string &fix, FILE *file);
-void read_restart(Stateful &state, LAMMPS_NS::LAMMPS *lmp, const std::string &fix, const char *buffer);
+using TakeRecords = std::function<void(const StateRecords &)>;
+void read_restart(const TakeRecords &take, LAMMPS_NS::LAMMPS *lmp, const std::string &fix, const char *buffer);
 
 // Values that a fix keeps for particles, as records of their objects, (a, 0): a row for each particle, with its tag counted from
 // the lowest of the object and values of a fixed size.
@@ -82,5 +82,3 @@ class ParticleRows {
 };
 
 }    // namespace mdanim
-
-#endif

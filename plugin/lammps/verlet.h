@@ -3,8 +3,7 @@
 // order in which its library has them; those that we do not use only have the right size. lammps/checked_verlet.h compares this
 // declaration with the library of the process.
 
-#ifndef MDANIM_VERLET_H
-#define MDANIM_VERLET_H
+#pragma once
 
 #include "pointers.h"
 
@@ -48,5 +47,3 @@ class Verlet : public Integrate {
 };
 
 }    // namespace LAMMPS_NS
-
-#endif

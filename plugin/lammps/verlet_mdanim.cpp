@@ -8,7 +8,6 @@
 #include "lammps/verlet_mdanim.h"
 
 #include "lammps/mpi_wait.h"
-#include "passes/loss.h"
 
 #include "angle.h"
 #include "atom.h"

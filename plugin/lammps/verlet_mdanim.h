@@ -2,8 +2,7 @@
 // run_style verlet/mdanim: derives from run_style verlet, and its name begins with that word because fixes of LAMMPS look for it.
 // It takes the steps of springs, gravity and leap-frog in one pass over the particles.
 
-#ifndef LMP_VERLET_MDANIM_H
-#define LMP_VERLET_MDANIM_H
+#pragma once
 
 #include "lammps/ghosts.h"
 #include "lammps/split_verlet.h"
@@ -81,5 +80,3 @@ class VerletMdanim : public SplitVerlet {
 };
 
 }    // namespace LAMMPS_NS
-
-#endif

@@ -2,8 +2,7 @@
 // The two half steps of a velocity under force and friction, for a double or all lanes of a vector unit at once (real.h).
 // Wcislo 1999, eq. (3.3), (3.10), (3.12), (3.13); symbols as there: phi = lambda dt / 2m.
 
-#ifndef MDANIM_LEAPFROG_H
-#define MDANIM_LEAPFROG_H
+#pragma once
 
 #include "numbers/vec3.h"
 
@@ -101,5 +100,3 @@ template <class Real> struct Exponential {
 };
 
 }    // namespace mdanim
-
-#endif

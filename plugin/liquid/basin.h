@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // A liquid in its basin, independent of the program that runs it: the common interface of all models of a liquid.
 
-#ifndef MDANIM_BASIN_H
-#define MDANIM_BASIN_H
+#pragma once
 
 #include "buoyancy/immersed.h"
 #include "liquid/occupancy.h"
@@ -12,7 +11,6 @@
 #include <cmath>
 #include <cstdint>
 #include <functional>
-#include <string>
 #include <vector>
 
 namespace mdanim {
@@ -212,5 +210,3 @@ class Basin {
 };
 
 }    // namespace mdanim
-
-#endif

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // Boxes of cells.
 
-#ifndef MDANIM_CELL_BOX_H
-#define MDANIM_CELL_BOX_H
+#pragma once
 
 #include "threads/team.h"
 
@@ -62,5 +61,3 @@ struct CellBox {
 };
 
 }    // namespace mdanim
-
-#endif

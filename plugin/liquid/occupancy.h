@@ -2,8 +2,7 @@
 // The cells of the automaton that a lattice body fills: sample points in its lattice cells, counted in whole numbers, so that the
 // sum over bodies and ranks does not depend on their order. docs/physics-liquid.md.
 
-#ifndef MDANIM_OCCUPANCY_H
-#define MDANIM_OCCUPANCY_H
+#pragma once
 
 #include "liquid/cell_box.h"
 #include "liquid/rank_sums.h"
@@ -81,5 +80,3 @@ class Occupancy {
 };
 
 }    // namespace mdanim
-
-#endif

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // Sums and minima of whole numbers over ranks, without MPI.
 
-#ifndef MDANIM_RANK_SUMS_H
-#define MDANIM_RANK_SUMS_H
+#pragma once
 
 #include <cstdint>
 
@@ -21,5 +20,3 @@ class RankSums {
 };
 
 }    // namespace mdanim
-
-#endif

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // The beginning of the states of liquids, and the checks that all of them need.
 
-#ifndef MDANIM_STATE_KIND_H
-#define MDANIM_STATE_KIND_H
+#pragma once
 
 #include "records/byte_reader.h"
 
@@ -39,5 +38,3 @@ struct StateGrid {
 };
 
 }    // namespace mdanim
-
-#endif

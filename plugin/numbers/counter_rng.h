@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // Random numbers that depend only on their own key: the same on every rank, in every order, after every resume.
 
-#ifndef MDANIM_COUNTER_RNG_H
-#define MDANIM_COUNTER_RNG_H
+#pragma once
 
 #include <cstdint>
 
@@ -43,5 +42,3 @@ inline std::uint64_t draw_key(std::uint64_t seed, std::uint64_t when, Phase phas
 inline std::uint64_t draw(std::uint64_t key, std::uint64_t cell) { return mix64(key ^ mix64(cell)); }
 
 }    // namespace mdanim
-
-#endif

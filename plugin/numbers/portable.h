@@ -2,8 +2,7 @@
 // Functions made of sums, products and quotients only: their bits are those of IEEE 754 on every processor. C libraries have
 // other versions for processors with fused multiply-add, whose last bits differ.
 
-#ifndef MDANIM_PORTABLE_H
-#define MDANIM_PORTABLE_H
+#pragma once
 
 #include <cmath>
 
@@ -51,5 +50,3 @@ inline double over_sine_hyperbolic(double x)
 }
 
 }    // namespace mdanim
-
-#endif

@@ -2,8 +2,7 @@
 // The number type of the laws: a double, or a vector of doubles, one for each lane of a vector unit. Laws are templates over this
 // `Real`, so plain styles and passes over blocks compute the same operations in the same order, hence the same bits.
 
-#ifndef MDANIM_REAL_H
-#define MDANIM_REAL_H
+#pragma once
 
 #include <type_traits>
 
@@ -46,5 +45,3 @@ template <class Yes> MDANIM_ALWAYS_INLINE bool any(const Yes &yes)
 }
 
 }    // namespace mdanim
-
-#endif

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // Wall time of one style: LAMMPS lumps all fixes into one line of its timing.
 
-#ifndef MDANIM_STOPWATCH_H
-#define MDANIM_STOPWATCH_H
+#pragma once
 
 #include <chrono>
 
@@ -23,5 +22,3 @@ class Lap {
 };
 
 }    // namespace mdanim
-
-#endif

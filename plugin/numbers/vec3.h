@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // Vectors in space; sums are always taken as (x + y) + z, so that mirrored arguments give mirrored bits.
 
-#ifndef MDANIM_VEC3_H
-#define MDANIM_VEC3_H
+#pragma once
 
 #include "numbers/real.h"
 
@@ -47,5 +46,3 @@ MDANIM_ALWAYS_INLINE void add_to(double *a, const Vec3 &b)
 }
 
 }    // namespace mdanim
-
-#endif

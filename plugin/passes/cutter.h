@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // Cutting particles and their springs into blocks for the vector units (pass.h).
 
-#ifndef MDANIM_CUTTER_H
-#define MDANIM_CUTTER_H
+#pragma once
 
 #include "passes/pass.h"
 #include "springs/distinct_rows.h"
@@ -66,5 +65,3 @@ class Cutter {
 };
 
 }    // namespace mdanim
-
-#endif

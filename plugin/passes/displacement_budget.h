@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // How far particles may still go before lists must be made anew.
 
-#ifndef MDANIM_DISPLACEMENT_BUDGET_H
-#define MDANIM_DISPLACEMENT_BUDGET_H
+#pragma once
 
 #include "geometry/boxes.h"
 #include "numbers/vec3.h"
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <functional>
 #include <limits>
 
@@ -98,5 +96,3 @@ template <class Where> void DisplacementBudget::measure(int particles, Where whe
 }
 
 }    // namespace mdanim
-
-#endif

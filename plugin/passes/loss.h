@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // Energy that velocity-dependent forces take during a run.
 
-#ifndef MDANIM_LOSS_H
-#define MDANIM_LOSS_H
+#pragma once
 
 #include "numbers/vec3.h"
 #include "passes/pass.h"
@@ -126,5 +125,3 @@ class Loss {
 };
 
 }    // namespace mdanim
-
-#endif

@@ -2,8 +2,7 @@
 // One step of all particles, block by block: the interface to the vector code (pass_kernel.h). Plain data only; simd/of_set.h
 // says why.
 
-#ifndef MDANIM_PASS_H
-#define MDANIM_PASS_H
+#pragma once
 
 #include "buoyancy/liquid_scales.h"
 #include "springs/dashpot_work.h"
@@ -143,5 +142,3 @@ struct Pass {
 };
 
 }    // namespace mdanim
-
-#endif

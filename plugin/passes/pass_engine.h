@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // The engine of run_style verlet/mdanim, without LAMMPS and without MPI.
 
-#ifndef MDANIM_PASS_ENGINE_H
-#define MDANIM_PASS_ENGINE_H
+#pragma once
 
 #include "passes/pass_run.h"
 #include "passes/simd_blocks.h"
@@ -70,5 +69,3 @@ class PassEngine {
 };
 
 }    // namespace mdanim
-
-#endif

@@ -7,8 +7,7 @@
 // nothing as long as positions are finite: F = 0, and a sum that starts at +0 is never -0. Positions of a block can move on at
 // once, for all that is still to come reads its own and upper ones.
 
-#ifndef MDANIM_PASS_KERNEL_H
-#define MDANIM_PASS_KERNEL_H
+#pragma once
 
 #include "buoyancy/immersed.h"
 #include "leapfrog/law.h"
@@ -467,5 +466,3 @@ void pass_of_range(Pass &pass)
 
 }    // namespace
 }    // namespace mdanim
-
-#endif

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // How a fix with a liquid takes part in passes over blocks (pass.h).
 
-#ifndef MDANIM_PASS_LIQUID_H
-#define MDANIM_PASS_LIQUID_H
+#pragma once
 
 #include "buoyancy/immersed.h"
 #include "passes/pass.h"
@@ -44,5 +43,3 @@ class PassLiquid {
 };
 
 }    // namespace mdanim
-
-#endif

@@ -2,8 +2,7 @@
 // How the bond style and fixes take part in passes over blocks (pass.h), which keep positions and velocities in arrays of their
 // own.
 
-#ifndef MDANIM_PASS_PARTICIPANT_H
-#define MDANIM_PASS_PARTICIPANT_H
+#pragma once
 
 #include "geometry/aligned_array.h"
 #include "numbers/vec3.h"
@@ -196,5 +195,3 @@ inline bool PassParticipant::join(PassCrew &crew)
 }
 
 }    // namespace mdanim
-
-#endif

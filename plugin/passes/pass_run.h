@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // Steps taken by passes, from the first to the last before LAMMPS's arrays must be up to date again.
 
-#ifndef MDANIM_PASS_RUN_H
-#define MDANIM_PASS_RUN_H
+#pragma once
 
 #include "passes/pass_participant.h"
 #include "passes/simd_blocks.h"
@@ -73,5 +72,3 @@ class PassRun {
 };
 
 }    // namespace mdanim
-
-#endif

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // Cutting blocks into ranges, which threads take through a pass side by side.
 
-#ifndef MDANIM_RANGE_CUT_H
-#define MDANIM_RANGE_CUT_H
+#pragma once
 
 #include "passes/cutter.h"
 
@@ -29,5 +28,3 @@ struct RangeCut {
 RangeCut cut_into_ranges(Cutter &cutter, Cut &cut, int wanted);
 
 }    // namespace mdanim
-
-#endif

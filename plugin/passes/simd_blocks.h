@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // Particles in blocks for the vector units, and their state in arrays of their own (pass.h).
 
-#ifndef MDANIM_SIMD_BLOCKS_H
-#define MDANIM_SIMD_BLOCKS_H
+#pragma once
 
 #include "geometry/aligned_array.h"
 #include "numbers/vec3.h"
@@ -173,5 +172,3 @@ template <class Tell> void SimdBlocks::set_motion(Friction friction, Tell mover)
 }
 
 }    // namespace mdanim
-
-#endif

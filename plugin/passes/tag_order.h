@@ -2,8 +2,7 @@
 // Particles of a rank and those of others that they have springs to, in tag order, each spring once: the line that is cut into
 // blocks where a rank does not have all particles in that order itself.
 
-#ifndef MDANIM_TAG_ORDER_H
-#define MDANIM_TAG_ORDER_H
+#pragma once
 
 #include "passes/cutter.h"
 
@@ -65,5 +64,3 @@ class TagOrder {
 };
 
 }    // namespace mdanim
-
-#endif

@@ -2,8 +2,7 @@
 // Reads the bytes of a record in the order in which ByteWriter wrote them; they need not be aligned. All functions throw
 // std::runtime_error with a message that begins with the name of the record.
 
-#ifndef MDANIM_BYTE_READER_H
-#define MDANIM_BYTE_READER_H
+#pragma once
 
 #include <cmath>
 #include <cstdint>
@@ -84,5 +83,3 @@ class ByteReader {
 };
 
 }    // namespace mdanim
-
-#endif

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // Writes the bytes of a record, value after value as they lie in memory. ByteReader reads them in the same order.
 
-#ifndef MDANIM_BYTE_WRITER_H
-#define MDANIM_BYTE_WRITER_H
+#pragma once
 
 #include <cstdint>
 #include <type_traits>
@@ -45,5 +44,3 @@ class ByteWriter {
 };
 
 }    // namespace mdanim
-
-#endif

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // Records of objects and of pairs of objects: the form shared by checkpoints, other instances and restart files.
 
-#ifndef MDANIM_STATE_RECORDS_H
-#define MDANIM_STATE_RECORDS_H
+#pragma once
 
 #include "records/byte_writer.h"
 
@@ -37,5 +36,3 @@ void flatten(const StateRecords &records, std::int32_t *key, std::int64_t *first
 StateRecords unflatten(const FlatState &flat);
 
 }    // namespace mdanim
-
-#endif

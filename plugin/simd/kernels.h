@@ -2,8 +2,7 @@
 // The vector code for one set of instructions, and which sets this processor runs. This is the only dispatch: an effect declares
 // the table of its loops here, and defines it in a file NAME_of_set.cpp (of_set.h).
 
-#ifndef MDANIM_KERNELS_H
-#define MDANIM_KERNELS_H
+#pragma once
 
 #include <vector>
 
@@ -34,5 +33,3 @@ inline const Kernels &widest_kernels() { return *kernels_here().front(); }
 const Kernels *kernels_named(const char *name);
 
 }    // namespace mdanim
-
-#endif

@@ -3,12 +3,9 @@
 // MDANIM_SET and MDANIM_LANES. None of their inline functions may be linked into the rest of the program, which runs on
 // processors without these instructions: all that they include is always inlined or in an unnamed namespace.
 
-#ifndef MDANIM_OF_SET_H
-#define MDANIM_OF_SET_H
+#pragma once
 
 #define MDANIM_JOINED(name, set) name##_##set
 #define MDANIM_EXPANDED(name, set) MDANIM_JOINED(name, set)
 // The name for this set: wave_kernels_avx2 for wave_kernels.
 #define MDANIM_OF_SET(name) MDANIM_EXPANDED(name, MDANIM_SET)
-
-#endif

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // Vectors of numbers in memory, for the kernels (of_set.h).
 
-#ifndef MDANIM_VECTORS_H
-#define MDANIM_VECTORS_H
+#pragma once
 
 #include "numbers/vec3.h"
 
@@ -84,5 +83,3 @@ template <class Vector> MDANIM_ALWAYS_INLINE void store(double *const *to, long 
 
 }    // namespace
 }    // namespace mdanim
-
-#endif

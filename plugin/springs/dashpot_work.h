@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // Work of the dashpots' force on a particle in a step: the terms from which passes/loss.h sums the energy that dashpots take.
 
-#ifndef MDANIM_DASHPOT_WORK_H
-#define MDANIM_DASHPOT_WORK_H
+#pragma once
 
 #include "numbers/vec3.h"
 
@@ -22,5 +21,3 @@ MDANIM_ALWAYS_INLINE DashpotWork<Real> dashpot_work(const Vec<Real> &now, const 
 { return {dot(now, first + last), dot(now, first - seen), dot(before, last - first)}; }
 
 }    // namespace mdanim
-
-#endif

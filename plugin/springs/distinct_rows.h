@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // Rows of values, most of which are equal.
 
-#ifndef MDANIM_DISTINCT_ROWS_H
-#define MDANIM_DISTINCT_ROWS_H
+#pragma once
 
 #include <cstddef>
 #include <cstring>
@@ -68,5 +67,3 @@ template <class Value> class DistinctRows {
 };
 
 }    // namespace mdanim
-
-#endif

@@ -3,8 +3,7 @@
 // Wcislo 1999, eq. (3.6), (3.7) with the sign set right: V(r) = k/2 (r - r0)^2 = K (r - r0)^2 with LAMMPS's K = k/2,
 //   F_i = -2K (r - r0) n,  n = (r_i - r_j) / r.
 
-#ifndef MDANIM_SPRING_H
-#define MDANIM_SPRING_H
+#pragma once
 
 #include "numbers/vec3.h"
 
@@ -42,5 +41,3 @@ MDANIM_ALWAYS_INLINE Real dashpot_factor(const Real &c, const Vec<Real> &rij, co
 MDANIM_ALWAYS_INLINE double energy(const Spring &s, double r) { return s.K * (r - s.r0) * (r - s.r0); }
 
 }    // namespace mdanim
-
-#endif

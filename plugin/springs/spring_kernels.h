@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // Loops over springs whose r_ij are side by side: the interface to the vector code (spring_kernels_of_set.cpp).
 
-#ifndef MDANIM_SPRING_KERNELS_H
-#define MDANIM_SPRING_KERNELS_H
+#pragma once
 
 namespace mdanim {
 
@@ -14,5 +13,3 @@ struct SpringKernels {
 };
 
 }    // namespace mdanim
-
-#endif

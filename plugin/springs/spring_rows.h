@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // The springs of all particles, in rows.
 
-#ifndef MDANIM_SPRING_ROWS_H
-#define MDANIM_SPRING_ROWS_H
+#pragma once
 
 #include "springs/distinct_rows.h"
 #include "springs/law.h"
@@ -76,5 +75,3 @@ struct HalfBonds {
 };
 
 }    // namespace mdanim
-
-#endif

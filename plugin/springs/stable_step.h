@@ -2,8 +2,7 @@
 // The largest stable time step of leap-frog with lagged dashpots (docs/physics-solids.md): dt^2 a + 2 dt b <= 4 for every
 // particle.
 
-#ifndef MDANIM_STABLE_STEP_H
-#define MDANIM_STABLE_STEP_H
+#pragma once
 
 #include "numbers/vec3.h"
 
@@ -46,5 +45,3 @@ inline double stable_step(double a, double b)
 }
 
 }    // namespace mdanim
-
-#endif

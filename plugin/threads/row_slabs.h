@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // Loops over bodies that write into the cells around them, shared among threads.
 
-#ifndef MDANIM_ROW_SLABS_H
-#define MDANIM_ROW_SLABS_H
+#pragma once
 
 #include "threads/team.h"
 
@@ -72,5 +71,3 @@ class RowSlabs {
 };
 
 }    // namespace mdanim
-
-#endif

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // Threads that help the calling thread.
 
-#ifndef MDANIM_TEAM_H
-#define MDANIM_TEAM_H
+#pragma once
 
 #include <algorithm>
 #include <atomic>
@@ -115,5 +114,3 @@ class Threads {
 };
 
 }    // namespace mdanim
-
-#endif

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // Waiting for another thread.
 
-#ifndef MDANIM_WAITING_H
-#define MDANIM_WAITING_H
+#pragma once
 
 #include <chrono>
 #include <sched.h>
@@ -47,5 +46,3 @@ template <class Happens> void wait_until(const Happens &happens)
 }
 
 }    // namespace mdanim
-
-#endif

@@ -2,8 +2,7 @@
 // The force that holds a particle in its region: a spring to the nearest point of the surface, at any depth.
 //   F = -k d,  U = k d^2 / 2,  d = vector from the surface to the particle behind it
 
-#ifndef MDANIM_WALL_H
-#define MDANIM_WALL_H
+#pragma once
 
 #include "numbers/vec3.h"
 
@@ -14,5 +13,3 @@ inline Vec3 wall_force(double k, const Vec3 &d) { return {-k * d.x, -k * d.y, -k
 inline double wall_energy(double k, const Vec3 &d) { return 0.5 * k * dot(d, d); }
 
 }    // namespace mdanim
-
-#endif

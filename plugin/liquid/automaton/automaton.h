@@ -2,8 +2,7 @@
 // The liquid's automaton on a plain integer grid: vertical rule (4.16), random 2x2 permutations, displacement by solids. No rule
 // gains or loses a unit. Wcislo 1999, sec. 4; docs/physics-liquid.md tells how damaged lines are read.
 
-#ifndef MDANIM_AUTOMATON_H
-#define MDANIM_AUTOMATON_H
+#pragma once
 
 #include "liquid/automaton/cells.h"
 #include "threads/team.h"
@@ -112,5 +111,3 @@ class Automaton {
 };
 
 }    // namespace mdanim
-
-#endif

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // The liquid without momentum in its basin. Wcislo 1999, sec. 4; docs/physics-liquid.md.
 
-#ifndef MDANIM_AUTOMATON_BASIN_H
-#define MDANIM_AUTOMATON_BASIN_H
+#pragma once
 
 #include "buoyancy/law.h"
 #include "liquid/automaton/automaton.h"
@@ -119,5 +118,3 @@ class AutomatonBasin : public Basin {
 };
 
 }    // namespace mdanim
-
-#endif

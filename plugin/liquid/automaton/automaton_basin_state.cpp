@@ -8,9 +8,7 @@
 
 #include <array>
 #include <cmath>
-#include <cstring>
 #include <limits>
-#include <stdexcept>
 
 namespace mdanim {
 

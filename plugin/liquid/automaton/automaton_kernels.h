@@ -2,8 +2,7 @@
 // The automaton's loops over whole layers, compiled for several instruction sets: the processor's best is
 // chosen when the program runs. Integers only, so all give the same cells.
 
-#ifndef MDANIM_AUTOMATON_KERNELS_H
-#define MDANIM_AUTOMATON_KERNELS_H
+#pragma once
 
 #include "liquid/automaton/automaton.h"
 #include "numbers/counter_rng.h"
@@ -155,5 +154,3 @@ constexpr int INSTRUCTION_SETS = sizeof(KERNELS) / sizeof(KERNELS[0]);
 #undef MDANIM_INLINE
 
 }    // namespace mdanim
-
-#endif

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // The automaton's horizontal rule on a single 2x2 block. Wcislo 1999, sec. 4; docs/physics-liquid.md.
 
-#ifndef MDANIM_AUTOMATON_RULES_H
-#define MDANIM_AUTOMATON_RULES_H
+#pragma once
 
 #include <array>
 #include <cstdint>
@@ -54,5 +53,3 @@ inline void permute_block(std::uint8_t *a, int row, const Sources &from)
 inline int open_corners(const std::uint8_t *a, int row) { return (a[0] & 1) | (a[1] & 2) | (a[row + 1] & 4) | (a[row] & 8); }
 
 }    // namespace mdanim
-
-#endif

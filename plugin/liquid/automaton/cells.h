@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // The automaton's grid (Wcislo 1999, sec. 4): whole numbers of liquid in cubic cells, some of which are solid.
 
-#ifndef MDANIM_CELLS_H
-#define MDANIM_CELLS_H
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -50,5 +49,3 @@ struct Cells {
 };
 
 }    // namespace mdanim
-
-#endif

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // Bodies of liquid: which cells are connected, where they end, and whether anything in them can move.
 
-#ifndef MDANIM_BODIES_H
-#define MDANIM_BODIES_H
+#pragma once
 
 #include "liquid/automaton/cells.h"
 
@@ -149,5 +148,3 @@ template <class Visit> inline void each_bit(int word, Bodies::Word bits, Visit v
 }
 
 }    // namespace mdanim
-
-#endif

@@ -2,8 +2,7 @@
 // Levelling of connected liquid, fast and in whole units, as in communicating vessels. It is an addition to the paper's rules,
 // see docs/physics-liquid.md.
 
-#ifndef MDANIM_LEVEL_H
-#define MDANIM_LEVEL_H
+#pragma once
 
 #include "liquid/automaton/cells.h"
 #include "liquid/automaton/components.h"
@@ -64,5 +63,3 @@ class Leveller {
 };
 
 }    // namespace mdanim
-
-#endif

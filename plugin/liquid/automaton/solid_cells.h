@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // The cells of a basin that solids fill.
 
-#ifndef MDANIM_SOLID_CELLS_H
-#define MDANIM_SOLID_CELLS_H
+#pragma once
 
 #include "liquid/occupancy.h"
 #include "liquid/rank_sums.h"
@@ -40,5 +39,3 @@ class SolidCells {
 };
 
 }    // namespace mdanim
-
-#endif

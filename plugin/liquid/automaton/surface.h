@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // The smooth surface that acts on solids: column heights made smooth, also where a body stands in the column.
 
-#ifndef MDANIM_SURFACE_H
-#define MDANIM_SURFACE_H
+#pragma once
 
 #include <cstdint>
 
@@ -16,5 +15,3 @@ namespace mdanim {
 void smooth_surface(int nx, int ny, const double *height, const std::uint8_t *blocked, double *smooth);
 
 }    // namespace mdanim
-
-#endif

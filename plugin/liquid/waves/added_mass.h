@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // The liquid that moves up and down with floating bodies. docs/physics-liquid.md, (W14) to (W16).
 
-#ifndef MDANIM_ADDED_MASS_H
-#define MDANIM_ADDED_MASS_H
+#pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -51,5 +49,3 @@ class AddedMass {
 };
 
 }    // namespace mdanim
-
-#endif

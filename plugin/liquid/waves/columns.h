@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // Columns of the basin and their neighbours.
 
-#ifndef MDANIM_COLUMNS_H
-#define MDANIM_COLUMNS_H
+#pragma once
 
 #include <cmath>
 #include <vector>
@@ -66,5 +65,3 @@ inline std::vector<int> fill_inward(std::vector<double> &values, const std::vect
 }
 
 }    // namespace mdanim
-
-#endif

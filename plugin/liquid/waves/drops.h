@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // Spray: whole units that leave steep fronts and impacts, fly as points and come back. docs/physics-liquid.md, "Drops".
 
-#ifndef MDANIM_DROPS_H
-#define MDANIM_DROPS_H
+#pragma once
 
 #include "liquid/waves/span.h"
 #include "numbers/vec3.h"
@@ -51,5 +50,3 @@ class Drops {
 };
 
 }    // namespace mdanim
-
-#endif

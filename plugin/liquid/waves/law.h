@@ -2,8 +2,7 @@
 // The equations of waves, for one span or link of columns of liquid, or for one in each lane (real.h). The cell, g and the
 // density of the liquid are 1. The numbers (W1) … are those of docs/physics-liquid.md.
 
-#ifndef MDANIM_LAWS_WAVES_H
-#define MDANIM_LAWS_WAVES_H
+#pragma once
 
 #include "numbers/real.h"
 
@@ -223,5 +222,3 @@ template <class Real> MDANIM_ALWAYS_INLINE Real scaled_down(const Real &units, c
 }
 
 }    // namespace mdanim
-
-#endif

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // Columns of a basin, cut by solids into open spans, each of which holds liquid in whole units. docs/physics-liquid.md, "Waves".
 
-#ifndef MDANIM_SPAN_H
-#define MDANIM_SPAN_H
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -69,5 +68,3 @@ bool are_parted(const SolidParts &solid, const Span &a, const Span &b);
 double open_below(const SolidParts &solid, const Span &a, const Span &b, double height);
 
 }    // namespace mdanim
-
-#endif

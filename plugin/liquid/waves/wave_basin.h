@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // The liquid with momentum in its basin. docs/physics-liquid.md, "Waves".
 
-#ifndef MDANIM_WAVE_BASIN_H
-#define MDANIM_WAVE_BASIN_H
+#pragma once
 
 #include "liquid/basin.h"
 #include "liquid/waves/drops.h"
@@ -135,5 +134,3 @@ class WaveBasin : public Basin {
 };
 
 }    // namespace mdanim
-
-#endif

@@ -10,8 +10,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
-#include <stdexcept>
 #include <string>
 
 namespace mdanim {

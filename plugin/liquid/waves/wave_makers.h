@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // Makers of waves and currents: liquid that comes in and goes out, exact to the unit. docs/physics-liquid.md, "Makers of waves".
 
-#ifndef MDANIM_WAVE_MAKERS_H
-#define MDANIM_WAVE_MAKERS_H
+#pragma once
 
 #include "liquid/waves/span.h"
 
@@ -70,5 +69,3 @@ class WaveMakers {
 };
 
 }    // namespace mdanim
-
-#endif

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // The forces of a liquid with momentum on the bodies in it, cell by cell. docs/physics-liquid.md, "Bodies in waves".
 
-#ifndef MDANIM_WAVE_PUSH_H
-#define MDANIM_WAVE_PUSH_H
+#pragma once
 
 #include "liquid/occupancy.h"
 #include "liquid/waves/added_mass.h"
@@ -104,5 +103,3 @@ class WavePush {
 };
 
 }    // namespace mdanim
-
-#endif

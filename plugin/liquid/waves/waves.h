@@ -2,8 +2,7 @@
 // A liquid with momentum: spans of columns that hold whole units, joined by links with velocities. docs/physics-liquid.md,
 // "Waves". The cell, g and the density of the liquid are 1, so times are in sqrt(cell/g).
 
-#ifndef MDANIM_WAVES_H
-#define MDANIM_WAVES_H
+#pragma once
 
 #include "liquid/cell_box.h"
 #include "liquid/waves/span.h"
@@ -373,5 +372,3 @@ class Waves {
 };
 
 }    // namespace mdanim
-
-#endif

@@ -4,7 +4,6 @@
 #include "liquid/waves/waves.h"
 #include "liquid/waves/waves_link_steps.h"
 
-#include <algorithm>
 #include <cmath>
 
 namespace mdanim {

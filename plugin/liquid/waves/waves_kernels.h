@@ -2,8 +2,7 @@
 // The loops of an update of waves over whole rows of columns, once for each set of instructions (simd/kernels.h). All give the
 // same bits: every lane computes the expressions of liquid/waves/law.h, and sums are taken by rows in eight parts.
 
-#ifndef MDANIM_WAVES_KERNELS_H
-#define MDANIM_WAVES_KERNELS_H
+#pragma once
 
 #include "liquid/waves/law.h"
 
@@ -61,5 +60,3 @@ struct WaveKernels {
 };
 
 }    // namespace mdanim
-
-#endif

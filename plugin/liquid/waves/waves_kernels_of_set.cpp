@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // The loops of an update of waves for one set of instructions (simd/of_set.h).
 
-#pragma GCC diagnostic ignored "-Wpsabi"    // all functions that take vectors are inlined
-
 #include "liquid/waves/waves_kernels.h"
 
 #include "liquid/waves/waves_link_steps.h"

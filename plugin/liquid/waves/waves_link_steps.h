@@ -2,8 +2,7 @@
 // (W2) and (W8) for one link, or for one in each lane. The kernels and the general form differ only in the opening of a link up
 // to a level.
 
-#ifndef MDANIM_WAVES_LINK_STEPS_H
-#define MDANIM_WAVES_LINK_STEPS_H
+#pragma once
 
 #include "liquid/waves/waves_kernels.h"
 #include "simd/vectors.h"
@@ -54,5 +53,3 @@ MDANIM_ALWAYS_INLINE void push_at(const WaveArrays &arrays, const WaveLaw &law, 
 }
 
 }    // namespace mdanim
-
-#endif

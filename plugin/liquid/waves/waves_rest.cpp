@@ -5,7 +5,6 @@
 #include "liquid/waves/waves.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace mdanim {
 

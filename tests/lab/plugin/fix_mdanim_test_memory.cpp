@@ -6,7 +6,6 @@
 #include "geometry/boxes.h"
 
 #include "atom.h"
-#include "comm.h"
 #include "error.h"
 #include "fmt/format.h"
 #include "memory.h"
@@ -155,4 +154,6 @@ void FixMdanimTestMemory::write_restart(FILE *file)
 { mdanim::write_restart(*this, lmp, fmt::format("fix {} mdanim/test/memory", id), file); }
 
 void FixMdanimTestMemory::restart(char *buffer)
-{ mdanim::read_restart(*this, lmp, fmt::format("fix {} mdanim/test/memory", id), buffer); }
+{
+  mdanim::read_restart([this](const StateRecords &all) { unpack(all); }, lmp, name(), buffer);
+}

@@ -6,15 +6,13 @@
 // whose boxes are nearer than REACH remember for how many steps they have been; as long as they are, their particles are pushed
 // along x by K_PAIR for each of these steps, those of the object with the lower ID to lower x.
 
-#ifndef LMP_FIX_MDANIM_TEST_MEMORY_H
-#define LMP_FIX_MDANIM_TEST_MEMORY_H
+#pragma once
 
 #include "fix.h"
 #include "lammps/stateful.h"
 
 #include <cstdint>
 #include <map>
-#include <vector>
 
 namespace LAMMPS_NS {
 
@@ -46,5 +44,3 @@ class FixMdanimTestMemory : public Fix, public mdanim::Stateful {
 };
 
 }    // namespace LAMMPS_NS
-
-#endif
