@@ -1,122 +1,161 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// Points of one object's surface against the undeformed depth of another, its host (docs/physics-contact.md). A contact begins
-// when a point is below every side of the host that faces it, and stays with the nearest of those sides until the point has come
-// out again. The beginning of a contact neither takes nor gives energy.
+// Points of one object's surface against a host: the undeformed depth of another object (lattice_field.h), or a plane
+// (plane_field.h). A contact begins when a point is below every side of the host that faces it, and stays until the point has
+// come out again. The beginning of a contact neither takes nor gives energy (docs/physics-contact.md).
+//
+// Another kind of host is a class derived from FieldOf, with its rows of contacts, and a line of ContactWorld::make().
 
 #pragma once
 
-#include "contact/contact_kernel.h"
 #include "contact/contact_object.h"
+#include "contact/law.h"
 #include "contact/wakes.h"
+#include "records/byte_writer.h"
 
-#include <array>
-#include <cstdint>
+#include <algorithm>
+#include <cstddef>
 #include <vector>
 
 namespace mdanim {
 
+// Data for new lists of a field.
+struct FieldLists {
+  ContactObject &owner, &host;    // the present objects; the host of a plane is the owner
+  const PointFinder &points, &of_host;
+  const Zone *host_zone;    // of the host's particles near the owner; null for a plane
+  const ContactArrays &arrays;
+  double skin;    // how far objects may come nearer until lists are made again
+};
+
 class ContactField {
  public:
   ContactField(ContactObject &owner, ContactObject &host, const ContactLaw &law) : owner(&owner), host(&host), law(law) {}
+  ContactField(const ContactField &) = delete;
+  ContactField &operator=(const ContactField &) = delete;
+  virtual ~ContactField() = default;
 
   void use(const ContactLaw &now) { law = now; }
-
-  static constexpr double STRETCHED = 2.0;    // the largest stretch that is assumed of cells
-  // How far a point may be outside of its host's particles in contact.
-  static double stands_out(const ContactBody &owner, const ContactBody &host);
-  // Lists points that may touch until lists are made again; contacts and knowledge of points stay. `reach`: how far objects may
-  // come nearer; `nearer`: upper bound of how much they have come nearer since the last step. Objects and slots are the present
-  // ones; the finder is that of the first object; outside of the zone points cannot touch.
-  void list(ContactObject &points_of, ContactObject &host_now, const PointFinder &finder, const Zone &zone,
-            const ContactArrays &arrays, double reach, double nearer);
+  // Lists points that may touch until lists are made again; contacts and knowledge of points stay.
+  virtual void list(const FieldLists &with) = 0;
   // Forgets all points except those in contact; must be followed by list().
-  void forget();
+  virtual void forget() = 0;
   // Looks at every point without a contact as it is now; no contact begins. For the setup of a run.
   void settle(const ContactArrays &arrays);
-  // The part of a step that fields may do side by side: contacts begin. `nearer`: upper bound of how much the objects have come
-  // nearer in this step [m]. dt = 0: nothing moves, as at the setup of a run.
-  void look(const ContactArrays &arrays, double nearer, double dt);
+  // The part of a step that fields may do side by side: contacts begin. dt = 0: nothing moves, as at the setup of a run.
+  void look(const ContactArrays &arrays, double dt);
   // After look(), computes contacts ahead for add_forces(), which otherwise computes them itself.
-  void work_ahead(const ContactArrays &arrays, double dt);
+  virtual void work_ahead(const ContactArrays &arrays, double dt) = 0;
   // The part of a step that fields do one after the other.
-  void add_forces(ContactArrays &arrays, double dt, ContactAccount &account);
+  virtual void add_forces(ContactArrays &arrays, double dt, ContactAccount &account) = 0;
 
-  bool has_something() const { return !contacts.empty() || looks > 0; }    // whether there are forces to add, after look()
-  int cost() const;                                                        // of a step, approximately, when lists were made [ns]
-  bool is_idle() const { return contacts.empty(); }
-  const std::vector<FieldContact> &touching() const { return contacts; }
-  void restore(std::vector<FieldContact> those) { contacts = std::move(those); }
-  std::size_t bytes() const;
+  virtual std::size_t touching() const = 0;    // number of contacts
+  bool is_idle() const { return touching() == 0; }
+  bool has_something() const { return !is_idle() || looks > 0; }    // whether there are forces to add, after look()
+  virtual int cost() const = 0;                                     // of a step, approximately, when lists were made [ns]
+  virtual Vec3 force_on_plane() const { return {}; }                // in this step
+  virtual void put_rows(ByteWriter &writer) const = 0;              // of contacts, without their number
+  virtual std::size_t bytes() const = 0;
 
- private:
+ protected:
   static constexpr double NEVER = Wakes::NEVER;
-  static constexpr std::uint8_t EVERY_SIDE = 63;
+  static constexpr double AT_ONCE = -1.0;
 
-  struct Watch {
-    std::array<int, 3> cell = {-1, -1, -1};    // where it was found last, -1 for nowhere
-    Vec3 X;
-    double room = 0.0;        // a motion that leaves it in this cell [m]
-    std::uint8_t open = 0;    // sides in which the point would have had a potential when it was looked at last
-  };
-
-  // The result of a look at a point.
-  struct Verdict {
-    int side = -1;    // of the contact that begins; -1 for none
-    double depth = 0.0;
-    std::uint8_t open = 0;    // as that of Watch
-    double slack = 0.0;       // a motion that cannot yet begin a contact [m]
-    bool is_crushed = false;
-    bool is_sure = true;    // no contact, and open is right, although the place of the point is guessed
-  };
-
-  Placed placed(const ContactArrays &arrays) const { return {*host->body, host->slot.data(), arrays.place()}; }
-  const SurfacePoint &surface_point(std::size_t q) const { return owner->body->points()[near.point(q)]; }
-  bool is_smooth(PointKind kind) const { return kind != PointKind::FLAT && host->body->is_cuboid(); }
-  bool look(std::size_t q, const ContactArrays &arrays, bool may_begin);
-  bool find(std::size_t q, const Vec3 &x, const Placed &at, Spot<double> &spot, Vec3 &X);
-  void guess(std::size_t q, const Vec3 &x, const Placed &at, Spot<double> &spot, Vec3 &X, double &off);
-  std::array<int, 3> cell_of(const Vec3 &X) const;
-  std::array<int, 3> cell_nearest(const Vec3 &x, std::array<int, 3> cell, const Placed &at, double &room) const;
-  double slack_of_far(const SurfacePoint &point, const Vec3 &X, const Vec3 &X_centre, double off) const;
-  Verdict judge(const SurfacePoint &point, const Vec3 &X, const Vec3 &X_centre, const Spot<double> &spot, const Vec3 &normal,
-                double off) const;
-  bool world_normal(const SurfacePoint &point, const ContactArrays &arrays, Vec3 &normal) const;
-  Ramps ramps(PointKind kind) const;
-
-  enum class Fate { STAYS, OUT, LOST, CRUSHED };
-  // A contact that continues in another cell in a step: how far the point has moved against the host in the cell that it leaves
-  // [m], and the difference between X and its place there.
-  struct Hop {
-    bool happened = false;
-    Vec3 moved, jump;
-  };
-  PushTask task(PointKind kind, const ContactArrays &arrays, double dt) const;
-  PointNow point_now(std::size_t q, const ContactArrays &arrays) const;
-  bool follow(FieldContact &contact, const PushTask &task, const Vec3 &x, MapWeights &weights, Spot<double> &spot, Vec3 &off,
-              Hop &hop) const;
-  void go_on(FieldContact &contact, const Hop &hop, const Spot<double> &spot) const;
-  Fate push(FieldContact &contact, std::size_t q, const PushTask &task, const PointNow &now, ContactArrays &arrays,
-            ContactAccount &account) const;
-  void take(const FieldContact &contact, std::size_t q, const PushedBlock &pushed, int lane, ContactArrays &arrays,
-            ContactAccount &account) const;
-  void count(const FieldContact &contact, double heat, double damped, ContactAccount &account) const;
-  void push_run(std::size_t first, std::size_t end, std::size_t &left, std::size_t &block, const PushTask &task,
-                ContactArrays &arrays, ContactAccount &account);
-  template <class Do> void each_run(double dt, const ContactArrays &arrays, const Do &run) const;
-  void end(const FieldContact &contact, std::size_t q, Fate fate, const ContactArrays &arrays, ContactAccount &account);
+  // Upper bound of how much points and host have come nearer since the last step [m].
+  virtual double approach() const = 0;
+  // Looks at a point without a contact: whether a contact begins; otherwise sets when to look again.
+  virtual bool look_at(std::size_t q, const ContactArrays &arrays, bool may_begin) = 0;
+  // For the forces of a step, once contacts have begun.
+  virtual void begin_step(const ContactArrays &arrays) = 0;
 
   ContactObject *owner, *host;
   ContactLaw law;
   NearPoints near;
-  Wakes wake;    // of near points, against `budget`
-  std::vector<Watch> watch;
-  std::vector<FieldContact> contacts;     // by ascending points
-  std::vector<std::size_t> of_contact;    // their near points
-  std::vector<PointNow> now;              // and their points in this step
-  std::vector<PushedBlock> ahead;         // their results, four at a time, kind by kind,
-  std::size_t known_ahead = 0;            // number of these in this step
-  int looks = 0;                          // in this step
+  Wakes wake;                             // of near points, against `budget`
+  std::vector<std::size_t> of_contact;    // near points of contacts
+  int looks = 0;                          // at points of objects, in this step
   double budget = 0.0;
+};
+
+// A field whose contacts are rows of a kind, by ascending points, and which keeps a Known of each near point.
+template <class Contact, class Known> class FieldOf : public ContactField {
+ public:
+  using ContactField::ContactField;
+
+  void restore(std::vector<Contact> rows) { contacts = std::move(rows); }
+  std::size_t touching() const final { return contacts.size(); }
+  void put_rows(ByteWriter &writer) const final { writer.put_all(contacts); }
+  void forget() final
+  {
+    near.clear(), wake.clear(), known.clear(), of_contact.clear();
+    budget = 0.0;
+  }
+
+ protected:
+  // Lists points in a zone that are not farther than `reach` from the host. `trusted`: the longest way to go with which the last
+  // look at a point is still trusted. distance(x): lower bound of the distance from the host.
+  template <class Distance>
+  void list_points(const FieldLists &with, const Zone &zone, bool on_flat, double reach, double trusted, const Distance &distance)
+  {
+    std::vector<int> points_before(near.size());
+    for (std::size_t q = 0; q < near.size(); ++q) points_before[q] = near.point(q);
+    const std::vector<Known> known_before = std::move(known);
+    const Wakes wake_before = std::move(wake);
+    const double spent = budget + approach();
+    forget();
+    std::size_t before = 0, contact = 0;
+    for (const int p : with.points.inside(zone, on_flat, contacts)) {
+      while (contact < contacts.size() && contacts[contact].point < p) ++contact;
+      const bool touches = contact < contacts.size() && contacts[contact].point == p;
+      while (before < points_before.size() && points_before[before] < p) ++before;
+      const CarriedPoint point(*owner, p);
+      if (!point.is_there) continue;
+      const double out = distance(point.place(with.arrays.place()));
+      const bool is_known = before < points_before.size() && points_before[before] == p;
+      if (!touches && out > reach) continue;
+      near.add(point);
+      if (touches) of_contact.push_back(near.size() - 1);
+      known.push_back(is_known ? known_before[before] : Known{});
+      const double seen = is_known && wake_before[before] < NEVER ? std::min(wake_before[before] - spent, trusted) : AT_ONCE;
+      wake.push_back(touches ? NEVER : std::max({out, seen, AT_ONCE}));
+    }
+    drop_lost_contacts();
+  }
+
+  void begin(std::size_t q, const Contact &contact)
+  {
+    const auto where = std::lower_bound(of_contact.begin(), of_contact.end(), q);
+    contacts.insert(contacts.begin() + (where - of_contact.begin()), contact);
+    of_contact.insert(where, q);
+    wake.set(q, NEVER);
+  }
+  // Moves contact `c` to place `left`, the number of those before it that continue.
+  void keep(std::size_t c, std::size_t &left)
+  {
+    if (left < c) contacts[left] = contacts[c], of_contact[left] = of_contact[c];
+    ++left;
+  }
+  void keep_first(std::size_t left) { contacts.resize(left), of_contact.resize(left); }
+  std::size_t bytes_of_rows() const
+  {
+    return near.bytes() + wake.bytes() + known.capacity() * sizeof(Known) + contacts.capacity() * sizeof(Contact) +
+           of_contact.capacity() * sizeof(std::size_t);
+  }
+
+  std::vector<Known> known;
+  std::vector<Contact> contacts;
+
+ private:
+  // Ends contacts of points whose particles are not here.
+  void drop_lost_contacts()
+  {
+    if (of_contact.size() == contacts.size()) return;
+    std::size_t left = 0, n = 0;
+    for (const std::size_t q : of_contact) {
+      while (contacts[n].point != near.point(q)) ++n;
+      contacts[left++] = contacts[n];
+    }
+    contacts.resize(left);
+  }
 };
 
 }    // namespace mdanim

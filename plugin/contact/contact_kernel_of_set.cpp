@@ -91,7 +91,7 @@ MDANIM_ALWAYS_INLINE auto places_around(const PushTask &task, const Followed &fo
   };
 }
 
-// Does the work of ContactField::follow() for all lanes at once: a lane that has its place repeats the same numbers.
+// Does the work of follow() in contact_follow.h for all lanes at once: a lane that has its place repeats the same numbers.
 template <bool SMOOTH> MDANIM_ALWAYS_INLINE void follow(const PushTask &task, const Vec<Four> &x, Followed &found)
 {
   constexpr int MOST = 4;
@@ -149,7 +149,7 @@ template <bool SMOOTH> MDANIM_ALWAYS_INLINE void follow(const PushTask &task, co
       for (int lane = 0; outside >> lane; ++lane)
         if (outside >> lane & 1 && step_to_neighbour(host, found.cell[lane], {X.x[lane], X.y[lane], X.z[lane]}, LEFT))
           leaves |= 1 << lane;
-      (host.depth ? found.lost : again) |= leaves;    // in a round host X may jump; ContactField::go_on() deals with it
+      (host.depth ? found.lost : again) |= leaves;    // in a round host X may jump; go_on() in contact_follow.cpp deals with it
     }
     again &= ~found.lost;
     if (round == MOST) found.lost |= again, again = 0;

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <mutex>
@@ -41,6 +42,13 @@ struct ContactObject {
   bool has_points_of(const ContactObject &other) const
   { return first_tag == other.first_tag && (body == other.body || *body == *other.body); }
 };
+
+// Upper bound of how much two objects have come nearer in this step.
+inline double nearer(const ContactObject &a, const ContactObject &b)
+{
+  const Vec3 together = a.way - b.way;
+  return std::sqrt(dot(together, together)) + a.stir + b.stir;
+}
 
 // Energies, heat and counts of contacts in a step, and since the beginning.
 struct ContactAccount {
@@ -224,18 +232,5 @@ class LateOuterCells {
   std::once_flag made;
   std::optional<OuterCells> cells;
 };
-
-// Ends contacts of points whose particles are not here; `of_contact` gives the numbers of the others among the points near by.
-template <class Contact>
-void keep_near(std::vector<Contact> &contacts, const std::vector<std::size_t> &of_contact, const NearPoints &near)
-{
-  if (of_contact.size() == contacts.size()) return;
-  std::size_t left = 0, n = 0;
-  for (const std::size_t q : of_contact) {
-    while (contacts[n].point != near.point(q)) ++n;
-    contacts[left++] = contacts[n];
-  }
-  contacts.resize(left);
-}
 
 }    // namespace mdanim

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
+// Contacts of points with a plane.
 
 #include "contact/plane_field.h"
 
@@ -6,52 +7,19 @@
 
 namespace mdanim {
 
-static constexpr double AT_ONCE = -1.0;
-static constexpr double NEVER = Wakes::NEVER;
-
-void PlaneField::list(ContactObject &points_of, const PointFinder &finder, const ContactArrays &arrays, double reach)
+void PlaneField::list(const FieldLists &with)
 {
-  owner = &points_of;
-  std::vector<int> points_before(near.size());
-  for (std::size_t q = 0; q < near.size(); ++q) points_before[q] = near.point(q);
-  const std::vector<std::uint8_t> below_before = std::move(was_below);
-  near.clear(), wake.clear(), was_below.clear(), of_contact.clear();
-  budget = 0.0;
-  std::size_t before = 0, contact = 0;
-  for (const int p : finder.inside(plane.within(reach), true, contacts)) {
-    while (contact < contacts.size() && contacts[contact].point < p) ++contact;
-    const bool touches = contact < contacts.size() && contacts[contact].point == p;
-    while (before < points_before.size() && points_before[before] < p) ++before;
-    const CarriedPoint point(*owner, p);
-    if (!point.is_there) continue;
-    const double above = -plane.depth(point.place(arrays.place()));
-    if (!touches && above > reach) continue;
-    near.add(point);
-    if (touches) of_contact.push_back(near.size() - 1);
-    was_below.push_back(before < points_before.size() && points_before[before] == p ? below_before[before] : 0);
-    wake.push_back(touches ? NEVER : std::max(above, AT_ONCE));
-  }
-  keep_near(contacts, of_contact, near);
+  owner = host = &with.owner;
+  const double reach = REACH * with.skin;
+  list_points(with, plane.within(reach), true, reach, AT_ONCE, [this](const Vec3 &x) { return -plane.depth(x); });
 }
 
-void PlaneField::forget()
-{
-  near.clear(), wake.clear(), was_below.clear(), of_contact.clear();
-  budget = 0.0;
-}
-
-void PlaneField::settle(const ContactArrays &arrays)
-{
-  for (std::size_t q = 0; q < near.size(); ++q)
-    if (wake[q] < NEVER && wake[q] <= budget) look(q, arrays, false);
-}
-
-bool PlaneField::look(std::size_t q, const ContactArrays &arrays, bool may_begin)
+bool PlaneField::look_at(std::size_t q, const ContactArrays &arrays, bool may_begin)
 {
   const Vec3 x = near.place(q, arrays.place());
   const double depth = plane.depth(x);
-  const bool was = was_below[q];
-  was_below[q] = depth > 0.0;
+  const bool was_below = known[q];
+  known[q] = depth > 0.0;
   if (depth <= 0.0 || !may_begin) {
     wake.set(q, budget - std::min(depth, 0.0));
     return false;
@@ -61,11 +29,8 @@ bool PlaneField::look(std::size_t q, const ContactArrays &arrays, bool may_begin
   contact.plane = number;
   contact.anchor = x;
   contact.memory.depth = depth;
-  contact.memory.offset = was ? depth : 0.0;
-  const auto where = std::lower_bound(of_contact.begin(), of_contact.end(), q);
-  contacts.insert(contacts.begin() + (where - of_contact.begin()), contact);
-  of_contact.insert(where, q);
-  wake.set(q, NEVER);
+  contact.memory.offset = was_below ? depth : 0.0;
+  begin(q, contact);
   return true;
 }
 
@@ -75,16 +40,14 @@ int PlaneField::cost() const
   return static_cast<int>(near.size() + CONTACT * contacts.size());
 }
 
-void PlaneField::look(const ContactArrays &arrays, double dt)
+void PlaneField::begin_step(const ContactArrays &)
 {
   on_plane = {};
   ahead.clear();
-  budget += owner->stir - dot(plane.normal(), owner->way);
-  if (dt > 0.0) wake.look_below(budget, [&](std::size_t q) { look(q, arrays, true); });
 }
 
 // Results of a contact in a step; a contact that is over stays as it is.
-PlaneField::Pushed PlaneField::push(PlaneContact &contact, std::size_t q, const ContactArrays &arrays, double dt) const
+PlaneField::OnPoint PlaneField::push(PlaneContact &contact, std::size_t q, const ContactArrays &arrays, double dt) const
 {
   const Vec3 downward = -1.0 * plane.normal();    // gradient of the depth
   const Vec3 x = near.place(q, arrays.place());
@@ -113,34 +76,28 @@ void PlaneField::add_forces(ContactArrays &arrays, double dt, ContactAccount &ac
   for (std::size_t c = 0; c < contacts.size(); ++c) {
     PlaneContact contact = contacts[c];
     const std::size_t q = of_contact[c];
-    const Pushed pushed = is_known ? ahead[c] : push(contact, q, arrays, dt);
-    if (pushed.depth <= 0.0) {
+    const OnPoint found = is_known ? ahead[c] : push(contact, q, arrays, dt);
+    if (found.depth <= 0.0) {
       if (!moves) continue;
       account.heat += contact.memory.stick_energy;
-      account.damped += last_damping_work(contact.memory, pushed.depth);
-      was_below[q] = 0;
-      wake.set(q, budget - pushed.depth);
+      account.damped += last_damping_work(contact.memory, found.depth);
+      known[q] = 0;
+      wake.set(q, budget - found.depth);
       continue;
     }
-    near.add_force(q, pushed.on_point, arrays.force());
-    on_plane -= pushed.on_point;
-    account.energy += pushed.energy;
+    near.add_force(q, found.force, arrays.force());
+    on_plane -= found.force;
+    account.energy += found.energy;
     account.stick_energy += contact.memory.stick_energy;
-    account.heat += pushed.heat;
-    account.damped += pushed.damped;
-    account.deepest = std::max(account.deepest, pushed.depth);
+    account.heat += found.heat;
+    account.damped += found.damped;
+    account.deepest = std::max(account.deepest, found.depth);
     ++account.touching;
     if (!moves) continue;
-    contacts[left] = contact, of_contact[left] = of_contact[c];
-    ++left;
+    contacts[c] = contact;
+    keep(c, left);
   }
-  if (moves) contacts.resize(left), of_contact.resize(left);
-}
-
-std::size_t PlaneField::bytes() const
-{
-  return near.bytes() + wake.bytes() + was_below.capacity() + contacts.capacity() * sizeof(PlaneContact) +
-         ahead.capacity() * sizeof(Pushed) + of_contact.capacity() * sizeof(std::size_t);
+  if (moves) keep_first(left);
 }
 
 }    // namespace mdanim

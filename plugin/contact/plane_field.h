@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// Points of one object's surface against a plane across an axis, below which the depth is known exactly. The law is that of
-// contact_field.h; the plane is rigid and does not move.
+// Points of one object's surface against a plane across an axis, below which the depth is known exactly. The plane is rigid and
+// does not move.
 
 #pragma once
 
-#include "contact/contact_object.h"
-#include "contact/law.h"
-#include "contact/wakes.h"
+#include "contact/contact_field.h"
 
 #include <cstdint>
 #include <vector>
@@ -36,47 +34,37 @@ struct PlaneContact {
   ContactMemory<double> memory;
 };
 
-class PlaneField {
+// Known of a point: whether it was below when it was looked at last.
+class PlaneField : public FieldOf<PlaneContact, std::uint8_t> {
  public:
+  // Reach of lists over the skin: 1/2 for particles, and half of that for points outside of cells.
+  static constexpr double REACH = 0.75;
+
   PlaneField(ContactObject &owner, int number, const ContactPlane &plane, const ContactLaw &law)
-      : owner(&owner), number(number), plane(plane), law(law)
+      : FieldOf(owner, owner, law), number(number), plane(plane)
   {
   }
 
-  // As those of ContactField.
-  void use(const ContactLaw &now) { law = now; }
-  void list(ContactObject &points_of, const PointFinder &finder, const ContactArrays &arrays, double reach);
-  void forget();
-  void settle(const ContactArrays &arrays);
-  void look(const ContactArrays &arrays, double dt);
-  void work_ahead(const ContactArrays &arrays, double dt);
-  void add_forces(ContactArrays &arrays, double dt, ContactAccount &account);
-  int cost() const;
-
-  const std::vector<PlaneContact> &touching() const { return contacts; }
-  void restore(std::vector<PlaneContact> those) { contacts = std::move(those); }
-  const Vec3 &force_on_plane() const { return on_plane; }
-  std::size_t bytes() const;
+  void list(const FieldLists &with) override;
+  void work_ahead(const ContactArrays &arrays, double dt) override;
+  void add_forces(ContactArrays &arrays, double dt, ContactAccount &account) override;
+  int cost() const override;
+  Vec3 force_on_plane() const override { return on_plane; }
+  std::size_t bytes() const override { return bytes_of_rows() + ahead.capacity() * sizeof(OnPoint); }
 
  private:
-  struct Pushed {
-    Vec3 on_point;
+  struct OnPoint {
+    Vec3 force;
     double depth, energy, heat, damped;
   };
-  Pushed push(PlaneContact &contact, std::size_t q, const ContactArrays &arrays, double dt) const;
-  bool look(std::size_t q, const ContactArrays &arrays, bool may_begin);
+  double approach() const override { return owner->stir - dot(plane.normal(), owner->way); }
+  bool look_at(std::size_t q, const ContactArrays &arrays, bool may_begin) override;
+  void begin_step(const ContactArrays &arrays) override;
+  OnPoint push(PlaneContact &contact, std::size_t q, const ContactArrays &arrays, double dt) const;
 
-  ContactObject *owner;
   int number;
   ContactPlane plane;
-  ContactLaw law;
-  NearPoints near;
-  Wakes wake;                             // as that of ContactField
-  std::vector<std::uint8_t> was_below;    // whether a near point was below when it was looked at last
-  std::vector<PlaneContact> contacts;     // by ascending points
-  std::vector<std::size_t> of_contact;
-  std::vector<Pushed> ahead;
-  double budget = 0.0;
+  std::vector<OnPoint> ahead;
   Vec3 on_plane;
 };
 

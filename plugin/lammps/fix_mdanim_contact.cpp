@@ -51,7 +51,7 @@ FixMdanimContact::FixMdanimContact(LAMMPS *lmp, int narg, char **arg) : FixBase(
         {"let_go", true, [&] { return account.let_go; }},
         {"deepest", false, [&] { return account.deepest; }},
         {"touching", true, [&] { return account.touching; }},
-        {"near", true, [this] { return static_cast<double>(world_of_contact.pairs()); }},
+        {"near", true, [this] { return static_cast<double>(world_of_contact.near.pairs().size()); }},
         clock(),
         {"force_x", true, [this] { return world_of_contact.force_on_planes().x; }},
         {"force_y", true, [this] { return world_of_contact.force_on_planes().y; }},
@@ -284,21 +284,21 @@ void FixMdanimContact::list()
   const int nlocal = atom->nlocal;
   const std::vector<Box> boxes =
       objects.place(*atom, world, [this](int i) { return is_among(i); }, [this](int i) { refuse_new_object(i); });
-  world_of_contact.look_ahead(boxes, neighbor->skin);
-  std::vector<double> ends = world_of_contact.ends();
-  if (!ends.empty()) {
+  world_of_contact.near.look_ahead(boxes, neighbor->skin);
+  std::vector<double> extents = world_of_contact.near.initial_extents();
+  if (!extents.empty()) {
     for (int i = 0; i < nlocal; ++i)
-      if (objects[i] >= 0) world_of_contact.see(objects[i], vec3(atom->x[i]), ends);
-    MPI_Allreduce(MPI_IN_PLACE, ends.data(), static_cast<int>(ends.size()), MPI_DOUBLE, MPI_MIN, world);
-    world_of_contact.narrow(ends);
+      if (objects[i] >= 0) world_of_contact.near.lower_extents(objects[i], vec3(atom->x[i]), extents);
+    MPI_Allreduce(MPI_IN_PLACE, extents.data(), static_cast<int>(extents.size()), MPI_DOUBLE, MPI_MIN, world);
+    world_of_contact.near.drop_separated_pairs(extents);
   }
 
   std::vector<std::pair<ContactParticle, int>> needed;    // and local indices
-  if (!world_of_contact.is_idle())
+  if (!world_of_contact.near.none())
     for (int i = 0; i < nlocal; ++i) {
       if (objects[i] < 0) continue;
       const ContactParticle particle{objects[i], static_cast<int>(atom->tag[i] - lowest[objects[i]])};
-      if (world_of_contact.needs(particle, vec3(atom->x[i]))) needed.push_back({particle, i});
+      if (world_of_contact.near.needs(particle, vec3(atom->x[i]))) needed.push_back({particle, i});
     }
   if (!std::is_sorted(needed.begin(), needed.end())) std::sort(needed.begin(), needed.end());
   std::vector<ContactParticle> particles;

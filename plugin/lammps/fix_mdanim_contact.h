@@ -40,7 +40,7 @@ class FixMdanimContact : public mdanim::FixBase, public mdanim::PassParticipant,
     threads_now = threads;
   }
   void add_forces(const mdanim::Positions &place, const mdanim::ForceSums &force) override;
-  double safe_displacement() const override { return world_of_contact.distance_apart(); }
+  double safe_displacement() const override { return world_of_contact.near.distance_apart(); }
   bool sees_absolute_position() const override { return !world_of_contact.settings.planes.empty(); }
 
   mdanim::StateRecords pack() const override;

@@ -45,7 +45,7 @@ FIELD = np.dtype(
         ("energy", "f8"),
     ]
 )
-"""FieldContact in plugin/contact/contact_field.h."""
+"""FieldContact in plugin/contact/field_contact.h."""
 PLANE = np.dtype([("point", "i4"), ("plane", "i4"), ("anchor", "f8", 3), *MEMORY])
 """PlaneContact in plugin/contact/plane_field.h."""
 

@@ -146,7 +146,7 @@ Told film(int threads, const ContactKernels *kernels, const Body &cube, const Bo
   for (int step = 0; step < STEPS; ++step) {
     place_all(step, x, boxes);
     if (step % BETWEEN_LISTS == 0) {
-      world.look_ahead(boxes, SKIN);
+      world.near.look_ahead(boxes, SKIN);
       world.list(particles, places);
     }
     world.step(places, step ? DT : 0.0);
@@ -159,14 +159,9 @@ Told film(int threads, const ContactKernels *kernels, const Body &cube, const Bo
       told.numbers.push_back(sum);
     told.most = std::max(told.most, 1.0 * sums.touching);
   }
-  const auto keep = [&told](const auto &contacts) {
-    const char *const bytes = reinterpret_cast<const char *>(contacts.data());
-    told.remembered.insert(told.remembered.end(), bytes, bytes + contacts.size() * sizeof contacts[0]);
-  };
-  for (const auto &[key, both] : world.pair_contacts()) keep(both.first), keep(both.second);
-  for (const auto &[key, contacts] : world.plane_contacts()) keep(contacts);
-  std::printf("%d threads: %d pairs, %.0f points at most, %.3g J of heat, %.0f looks\n", threads, world.pairs(), told.most,
-              world.account.heat, world.account.looks);
+  for (const auto &[key, record] : world.records()) told.remembered.insert(told.remembered.end(), record.begin(), record.end());
+  std::printf("%d threads: %zu pairs, %.0f points at most, %.3g J of heat, %.0f looks\n", threads, world.near.pairs().size(),
+              told.most, world.account.heat, world.account.looks);
   return told;
 }
 

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-2.0-only
+
+#include "contact/contact_laws.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace mdanim {
+
+static constexpr double ALONE = 2.0;     // stiffness where only the dense points of one body act, over that of points of both
+static constexpr double ONSET = 0.05;    // eps over the spacing
+
+static ContactLaw law_of(const ContactObject &owner, double density, double kappa, double friction, double damping)
+{
+  const double h = owner.body->spacing();
+  return {kappa, ONSET * h, friction, damping > 0.0 ? 2.0 * damping * std::sqrt(0.5 * kappa * density * h) / kappa : 0.0};
+}
+
+ContactLaw ContactSettings::law_of_pair(const ContactObject &owner, const ContactObject &host, double density) const
+{
+  const bool ascend = owner.id < host.id;
+  const ContactObject &lower = ascend ? owner : host, &higher = ascend ? host : owner;    // so that both laws have the same bits
+  const double h = std::max(lower.body->spacing(), higher.body->spacing());
+  const bool both = lower.body->is_cuboid() == higher.body->is_cuboid();
+  const double kappa = (both ? 1.0 : ALONE) * stiffness * 2.0 * lower.young * higher.young / (lower.young + higher.young) / h;
+  double mu = std::sqrt(lower.friction * higher.friction), beta = mu > 0.0 ? damping : 0.0;
+  if (const auto own = pairs.find({lower.id, higher.id}); own != pairs.end())
+    mu = own->second.friction, beta = own->second.damping;
+  return law_of(owner, density, kappa, mu, beta);
+}
+
+ContactLaw ContactSettings::law_at_plane(const ContactObject &one) const
+{
+  const double kappa = (one.body->is_cuboid() ? 1.0 : ALONE) * stiffness * one.young / one.body->spacing();
+  return law_of(one, one.density, kappa, one.friction, one.friction > 0.0 ? damping : 0.0);
+}
+
+}    // namespace mdanim

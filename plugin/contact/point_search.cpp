@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// Newton's method in a cell, and the cell that a point is in.
+
+#include "contact/point_search.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace mdanim {
+
+static constexpr double NEVER = std::numeric_limits<double>::infinity();
+
+// The cell of X in a cuboid.
+std::array<int, 3> PointSearch::cell_of(const Vec3 &X) const
+{
+  const auto along = [&](double place, int axis) {
+    return std::clamp(static_cast<int>(std::floor(place + LEFT)), 0, at.body.count(axis) - 1);
+  };
+  return {along(X.x, 0), along(X.y, 1), along(X.z, 2)};
+}
+
+// The cell of a point at x in another shape, searched from a cell near by. X depends on the cell where it is beyond all filled
+// cells, or where cells are bent so much that it is in two of them. So the cell is the one whose middle is nearest, wherever the
+// search began. `room`: a motion that cannot change the cell [m].
+std::array<int, 3> PointSearch::cell_nearest(const Vec3 &x, std::array<int, 3> cell, double &room) const
+{
+  const Lattice grid = at.body.lattice();
+  const int across = 1 + grid.row + grid.layer;    // from a cell's low corner to its high one
+  for (;;) {
+    std::array<int, 3> best = cell, from, to;
+    for (int d = 0; d < 3; ++d) from[d] = std::max(cell[d] - 1, 0), to[d] = std::min(cell[d] + 1, grid.cells[d] - 1);
+    double least = NEVER, second = NEVER;
+    for (int k = from[2]; k <= to[2]; ++k)
+      for (int j = from[1]; j <= to[1]; ++j) {
+        const std::uint8_t *const filled = grid.filled + grid.cells[0] * (j + static_cast<std::size_t>(grid.cells[1]) * k);
+        const int *const slots = at.slot + at.body.place(0, j, k);
+        for (int i = from[0]; i <= to[0]; ++i) {
+          if (!filled[i] || slots[i] < 0 || slots[i + across] < 0) continue;
+          const Vec3 away = 0.5 * (at.place[slots[i]].value + at.place[slots[i + across]].value) - x;
+          const double square = dot(away, away);
+          second = std::min(second, std::max(square, least));
+          if (square < least) least = square, best = {i, j, k};
+        }
+      }
+    if (best == cell) {
+      room = PRESSED * (std::sqrt(second) - std::sqrt(least));    // each of the two distances changes by this much at most
+      return cell;
+    }
+    cell = best;
+  }
+}
+
+void PointSearch::guess(PointTrack &known, const Vec3 &x, bool by_splines, Spot<double> &spot, Vec3 &X, double &off) const
+{
+  constexpr double HEALTHY = 0.7, NEARBY = 3.0;    // volume over that of a cell; cells from the middle of one
+  const double h = at.body.spacing();
+  off = NEVER;
+  if (!evaluate(at, by_splines ? smooth(known.X, at.body) : trilinear(known.X, known.cell, at.body), spot)) return;
+  if (!(spot.det > HEALTHY * h * h * h)) return;
+  const Vec3 change = spot.to_material(x - spot.x);
+  X = known.X + change;
+  const double square = dot(change, change);
+  if (!(square < 1.0)) return;
+  std::array<int, 3> cell = known.cell;
+  bool is_there = true;
+  if (by_splines)
+    cell = cell_of(X);
+  else
+    is_there = !MaterialSearch(at).step_to_neighbour(cell, X, LEFT);
+  double room = NEVER;
+  if (!at.body.is_cuboid() && cell_nearest(x, cell, room) != cell) return;
+  const Vec3 away = X - Vec3{cell[0] + 0.5, cell[1] + 0.5, cell[2] + 0.5};
+  if (dot(away, away) > NEARBY * NEARBY) return;
+  known.cell = cell, known.X = X, known.room = room;
+  off = is_there ? std::sqrt(square) : 1.0;
+}
+
+bool PointSearch::find(PointTrack &known, const Vec3 &x, bool by_splines, Spot<double> &spot, Vec3 &X) const
+{
+  const MaterialSearch search(at);
+  std::array<int, 3> cell = known.cell;
+  X = known.X;
+  if (!search.solve(x, cell, X)) return false;
+  known.room = NEVER;
+  cell = at.body.is_cuboid() ? cell_of(X) : cell_nearest(x, cell, known.room);
+  X = {cell[0] + 0.5, cell[1] + 0.5, cell[2] + 0.5};
+  if (!search.solve(x, cell, X, false)) return false;
+  known.cell = cell, known.X = X;
+  if (by_splines) return search.solve_smooth(x, X) && evaluate(at, smooth(X, at.body), spot);
+  return evaluate(at, trilinear(X, cell, at.body), spot);
+}
+
+}    // namespace mdanim

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// X of a point in a host, in lattice coordinates, from where it was found last.
+
+#pragma once
+
+#include "contact/contact_object.h"
+#include "contact/material_map.h"
+
+#include <array>
+#include <cstdint>
+
+namespace mdanim {
+
+// Knowledge of a point without a contact.
+struct PointTrack {
+  std::array<int, 3> cell = {-1, -1, -1};    // where it was found last, -1 for nowhere
+  Vec3 X;
+  double room = 0.0;        // a motion that leaves it in this cell [m]
+  std::uint8_t open = 0;    // sides in which the point would have had a potential when it was looked at last
+};
+
+constexpr double PRESSED = 0.5;    // cells are assumed to be pressed to half at most: motion in space over that in X
+
+// A host with its particles where they are now.
+class PointSearch {
+ public:
+  PointSearch(const ContactObject &host, const ContactArrays &arrays) : at{*host.body, host.slot.data(), arrays.place()} {}
+
+  // X of a point at x by one step of Newton's method from where it was found last. `off`: its distance from there in cells; 1 and
+  // more where the step tells nothing. It takes a small part of the work of find(). `by_splines`: by the smooth map.
+  void guess(PointTrack &known, const Vec3 &x, bool by_splines, Spot<double> &spot, Vec3 &X, double &off) const;
+  // X of a point at x, with the same bits whatever was known of it: the last search begins in the middle of the cell that X lies
+  // in. False where it cannot be found.
+  bool find(PointTrack &known, const Vec3 &x, bool by_splines, Spot<double> &spot, Vec3 &X) const;
+
+ private:
+  std::array<int, 3> cell_of(const Vec3 &X) const;
+  std::array<int, 3> cell_nearest(const Vec3 &x, std::array<int, 3> cell, double &room) const;
+
+  Placed at;
+};
+
+}    // namespace mdanim
