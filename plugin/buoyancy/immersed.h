@@ -8,6 +8,7 @@
 #include "buoyancy/liquid_scales.h"
 #include "numbers/vec3.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace mdanim {
@@ -20,26 +21,47 @@ template <class Real> struct AtPlace {
   Real rising{};      // upward velocity of the solid around [distance/time]
 };
 
-// Waves at a particle, from one update of the liquid to the next. In memory, numbers that do not depend on where the basin stands
-// have half the digits.
+// The numbers of waves at a particle, from one update of the liquid to the next. A new one is a line here: rows of blocks,
+// records and checks follow. EXACT numbers depend on where the basin stands; in memory the others have half the digits.
+enum ExactNumber {
+  BASE,    // base - slope z, within 0 and 1, is the fraction of the particle's volume below the surface
+  SLOPE,
+  EXACT_NUMBERS
+};
+enum SmallNumber {
+  MORE,    // the push upwards is that fraction plus this
+  ALONG_X,
+  ALONG_Y,    // push sideways
+  FLOW_X,
+  FLOW_Y,    // velocity of the liquid [distance/time]
+  RISING,    // see AtPlace
+  SMALL_NUMBERS
+};
+
 template <class Real, class Small = Real> struct InWaves {
-  Real base{}, slope{};          // the fraction of its volume below the surface is base - slope z, within 0 and 1
-  Small more{};                  // the push upwards is that fraction plus this
-  Small along_x{}, along_y{};    // push sideways
-  Small flow_x{}, flow_y{};      // velocity of the liquid
-  Small rising{};                // see AtPlace
+  Real exact[EXACT_NUMBERS] = {};
+  Small small[SMALL_NUMBERS] = {};
 
   MDANIM_ALWAYS_INLINE AtPlace<Real> at(const Real &z) const
   {
-    const Real part = smaller(larger(base - slope * z, constant<Real>(0.0)), constant<Real>(1.0));
-    return {part, {along_x, along_y, part + more}, {flow_x, flow_y, Real{}}, rising};
+    const Real part = smaller(larger(exact[BASE] - exact[SLOPE] * z, constant<Real>(0.0)), constant<Real>(1.0));
+    return {part, {small[ALONG_X], small[ALONG_Y], part + small[MORE]}, {small[FLOW_X], small[FLOW_Y], Real{}}, small[RISING]};
   }
-  bool acts() const { return base != 0 || slope != 0 || more != 0 || along_x != 0 || along_y != 0; }
-  bool is_finite() const { return std::isfinite(base + slope + more + along_x + along_y + flow_x + flow_y + rising); }
+  bool acts() const
+  { return exact[BASE] != 0 || exact[SLOPE] != 0 || small[MORE] != 0 || small[ALONG_X] != 0 || small[ALONG_Y] != 0; }
+  bool is_finite() const
+  {
+    Real sum{};
+    for (const Real &number : exact) sum += number;
+    for (const Small &number : small) sum += number;
+    return std::isfinite(sum);
+  }
   InWaves<Real, float> rounded() const
   {
-    const auto round = [](Real of) { return static_cast<float>(of); };
-    return {base, slope, round(more), round(along_x), round(along_y), round(flow_x), round(flow_y), round(rising)};
+    InWaves<Real, float> of;
+    std::copy_n(exact, EXACT_NUMBERS, of.exact);
+    for (int k = 0; k < SMALL_NUMBERS; ++k) of.small[k] = static_cast<float>(small[k]);
+    return of;
   }
 };
 
@@ -49,10 +71,19 @@ struct InLiquid {
   double impulse_x = 0.0, impulse_y = 0.0;    // on the liquid, over its density, since the last update
 };
 
-// A particle in the liquid.
+// The numbers of a particle in the liquid.
+enum ParticleNumber {
+  VOLUME,
+  OWN_MASS,
+  GAMMA,
+  PER_LENGTH,    // of drag: rates [1/time], [1/distance]
+  LAMBDA,        // friction that it has without the liquid
+  LISTED,        // 1 near the liquid, else 0
+  PARTICLE_NUMBERS
+};
+
 template <class Real> struct Immersed {
-  Real volume, mass;
-  Real gamma, per_length;    // of drag: rates [1/time], [1/distance]
+  Real of[PARTICLE_NUMBERS] = {};
 };
 
 template <class Real> struct LiquidForce {
@@ -76,20 +107,20 @@ template <class Real>
 MDANIM_ALWAYS_INLINE LiquidForce<Real> liquid_force(const LiquidScales &liquid, const Immersed<Real> &particle,
                                                     const AtPlace<Real> &at, const Vec<Real> &v)
 {
-  Vec<Real> push = lift_along(liquid, particle.volume, at.push);
+  Vec<Real> push = lift_along(liquid, particle.of[VOLUME], at.push);
   const auto friction = [&](const Real &rate) {
-    return liquid_lambda(rate, liquid.rho, particle.volume, at.immersed) * liquid.per_force;
+    return liquid_lambda(rate, liquid.rho, particle.of[VOLUME], at.immersed) * liquid.per_force;
   };
   const Vec<Real> relative = v - at.flow;
-  const Real lambda = friction(particle.gamma);
+  const Real lambda = friction(particle.of[GAMMA]);
   Real braking = lambda;
   if (liquid.quadratic) {
-    const Real more = friction(particle.per_length * root(dot(relative, relative)));
+    const Real more = friction(particle.of[PER_LENGTH] * root(dot(relative, relative)));
     push -= more * relative;
     braking += more;
   }
   push += lambda * at.flow;
-  const Real calmed = smaller(particle.mass, constant<Real>(liquid.rho) * particle.volume);
+  const Real calmed = smaller(particle.of[OWN_MASS], constant<Real>(liquid.rho) * particle.of[VOLUME]);
   push.z -= (liquid.calming * at.immersed * calmed * liquid.per_force) * (v.z - at.rising);
   braking = liquid.impulse * braking;
   return {push, lambda, braking * relative.x, braking * relative.y};

@@ -76,8 +76,8 @@ void Buoyancy::give_impulses(Basin &basin, const std::vector<int> &near)
   const double *const volumes = volume.values(lmp);
   for (const int i : near) {
     InLiquid &of = kept[i];
-    if (of.waves.along_x != 0.0 || of.waves.along_y != 0.0)
-      basin.take_push((volumes ? volumes[i] : volume.number) * Vec3{of.waves.along_x, of.waves.along_y, 0.0});
+    if (const Vec3 along{of.waves.small[ALONG_X], of.waves.small[ALONG_Y], 0.0}; along.x != 0.0 || along.y != 0.0)
+      basin.take_push((volumes ? volumes[i] : volume.number) * along);
     if (of.impulse_x == 0.0 && of.impulse_y == 0.0) continue;
     basin.take_impulse(basin.in_cells(atom->x[i]), {of.impulse_x, of.impulse_y, 0.0});
     of.impulse_x = of.impulse_y = 0.0;
@@ -118,18 +118,18 @@ InLiquid Buoyancy::look_at_particle(const Basin &basin, std::size_t n, const dou
     s += here;
     lower += on.part_below(z - 2.0 * far);    // the middle of the cell moves as far as the corner
     higher += on.part_below(z + 2.0 * far);
-    mean.more += on.more;
-    mean.along_x += on.along_x * beside;
-    mean.along_y += on.along_y * beside;
-    mean.flow_x += on.flow_x;
-    mean.flow_y += on.flow_y;
+    mean.small[MORE] += on.more;
+    mean.small[ALONG_X] += on.along_x * beside;
+    mean.small[ALONG_Y] += on.along_y * beside;
+    mean.small[FLOW_X] += on.flow_x;
+    mean.small[FLOW_Y] += on.flow_y;
   });
   if (parts == 0) return {};
   const double part = 1.0 / parts;
-  for (double *value : {&mean.more, &mean.along_x, &mean.along_y, &mean.flow_x, &mean.flow_y}) *value *= part;
-  mean.slope = part * (lower - higher) / (2.0 * far) * per_height;
-  mean.base = part * s + mean.slope * x[2];
-  if (mean.acts()) mean.rising = basin.rising_at(basin.in_cells(x));
+  for (double &value : mean.small) value *= part;
+  mean.exact[SLOPE] = part * (lower - higher) / (2.0 * far) * per_height;
+  mean.exact[BASE] = part * s + mean.exact[SLOPE] * x[2];
+  if (mean.acts()) mean.small[RISING] = basin.rising_at(basin.in_cells(x));
   return {mean.rounded()};
 }
 
@@ -138,16 +138,16 @@ InLiquid Buoyancy::look_at_particle(const Basin &basin, std::size_t n, const dou
 bool Buoyancy::acts_in_passes(const Basin &basin, const double *lambda) const
 { return basin.acts_on_cells() && lifts && slows && lambda == lambda_column.values(lmp); }
 
-std::function<ImmersedMover(int)> Buoyancy::immersed(const std::vector<char> &is_near) const
+std::function<Immersed<double>(int)> Buoyancy::immersed(const std::vector<char> &is_near) const
 {
   const auto of = [this](const ParticleValue &value) {
     return [values = value.values(lmp), number = value.number](int i) { return values ? values[i] : number; };
   };
   const double *const lambda = lambda_column.values(lmp), *const base = base_column.given() ? base_column.values(lmp) : nullptr;
-  return [=, &is_near, volume = of(volume), gamma = of(gamma), per_length = of(per_length)](int i) -> ImmersedMover {
+  return [=, &is_near, volume = of(volume), gamma = of(gamma), per_length = of(per_length)](int i) -> Immersed<double> {
     const double mass = mass_of(atom->rmass, atom->mass, atom->type, i);
-    if (!is_near[i]) return {0.0, mass, 0.0, 0.0, lambda[i]};
-    return {volume(i), mass, gamma(i), is_quadratic ? per_length(i) : 0.0, base ? base[i] : 0.0};
+    if (!is_near[i]) return {{0.0, mass, 0.0, 0.0, lambda[i], 0.0}};
+    return {{volume(i), mass, gamma(i), is_quadratic ? per_length(i) : 0.0, base ? base[i] : 0.0, 1.0}};
   };
 }
 
@@ -186,9 +186,9 @@ __attribute__((always_inline)) inline Buoyancy::Wet Buoyancy::act_on(const Actin
     else
       at = basin.at(basin.in_cells(x));
   }
-  const Immersed<double> particle{now.volume ? now.volume[i] : volume.number, mass_of(atom->rmass, atom->mass, atom->type, i),
-                                  now.gamma ? now.gamma[i] : gamma.number,
-                                  now.per_length ? now.per_length[i] : per_length.number};
+  const Immersed<double> particle{{now.volume ? now.volume[i] : volume.number, mass_of(atom->rmass, atom->mass, atom->type, i),
+                                   now.gamma ? now.gamma[i] : gamma.number,
+                                   now.per_length ? now.per_length[i] : per_length.number}};
   const auto force = liquid_force(now.liquid, particle, at, vec3(now.v[i]));
   if (now.lambda) now.lambda[i] = (now.base ? now.base[i] : 0.0) + force.lambda;
   if (now.kept) {

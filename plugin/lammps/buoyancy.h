@@ -49,7 +49,7 @@ class Buoyancy : protected LAMMPS_NS::Pointers {
   // For passes (passes/pass_liquid.h): whether they compute the same as act(), with friction in the column that is read; a
   // particle; all particles; and the results of passes in this step.
   bool acts_in_passes(const Basin &basin, const double *lambda) const;
-  std::function<ImmersedMover(int)> immersed(const std::vector<char> &is_near) const;
+  std::function<Immersed<double>(int)> immersed(const std::vector<char> &is_near) const;
   LiquidScales scales(const Basin &basin, bool in_step) const;
   void add_power(const Basin::Energies &of_passes, double more_seconds);
 

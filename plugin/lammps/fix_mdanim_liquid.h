@@ -56,7 +56,7 @@ class FixMdanimLiquid : public mdanim::FixBase,
   const std::vector<int> &near_particles() const override { return near; }
   long long listed() const override { return lists; }
   bool is_near(int i) const override { return near_marks[i]; }
-  std::function<mdanim::ImmersedMover(int)> immersed() const override { return buoyancy->immersed(near_marks); }
+  std::function<mdanim::Immersed<double>(int)> immersed() const override { return buoyancy->immersed(near_marks); }
   mdanim::InLiquid *kept() override;
   void split(const std::vector<int> *in_arrays) override;
   bool is_due() override;

@@ -4,7 +4,7 @@
 
 #pragma once
 
-#include "buoyancy/liquid_scales.h"
+#include "buoyancy/immersed.h"
 #include "springs/dashpot_work.h"
 
 namespace mdanim {
@@ -28,7 +28,7 @@ struct Block {
   unsigned motion;       // row of Pass::motion
   int object;            // molecule - 1
   int chunk;             // row of Pass::sums
-  int immersed;          // row of what is kept and of Pass::immersed_of; negative where no particle is near a liquid
+  int immersed;          // row of Pass::immersed; negative where no particle is near a liquid
   bool at_border;        // of a range of blocks: some of what is loaded for it belongs to another range
   int crossing;          // its row of Pass::crossed; negative where none of its springs crosses the border above it
 };
@@ -69,24 +69,11 @@ enum Motion { MASS, KICK, DT, FOREIGN_LANE, OWNED_LANE, STAY, SHARE, PUSH, BRAKE
 // is not the block's own; OWNED_LANE: 1 for a particle of this rank. With friction also, see leapfrog/law.h: STAY: 1 - phi or e;
 // SHARE: 1 / (1 + phi); PUSH: g dt/2m; BRAKED_MASS: m, 0 without friction; PHI.
 
-// Values kept for a particle (InLiquid), one number for each lane: a row of Pass::kept, and one of Pass::kept_floats.
-enum Kept { BASE, SLOPE, IMPULSE_X, IMPULSE_Y, KEPT };
-enum KeptFloat { MORE, ALONG_X, ALONG_Y, FLOW_X, FLOW_Y, RISING, KEPT_FLOATS };
-
-// A row of Pass::immersed, one number for each lane; see Immersed. LAMBDA is the friction that a particle has without the liquid;
-// LISTED is 1 for particles near the liquid.
-enum ImmersedMotion { VOLUME, OWN_MASS, GAMMA, PER_LENGTH, LAMBDA, LISTED, IMMERSED_MOTIONS };
-
-// The same values of one particle.
-struct ImmersedMover {
-  double volume, mass, gamma, per_length, lambda;
-};
-
 // Values that a particle's motion depends on.
 struct Mover {
   double pulled;                 // mass that gravity pulls at
   double mass, kick, dt, phi;    // see Motion
-  bool in_liquid;                // its friction is in ImmersedMotion
+  bool in_liquid;                // its friction is in Pass::immersed
 };
 
 // A row of Pass::trace: a box, see boxes.h, and the negative of the largest v^2.
@@ -101,6 +88,17 @@ struct PassSums {
   double bend;                      // dt v^{n+1/2} . F^n
   DashpotSums dashpots;
   double liquid_work, liquid_lost;    // power of the liquid's forces but friction's; what its friction takes
+};
+
+// Rows of blocks that a liquid acts on, one number for each lane.
+enum Impulse { IMPULSE_X = EXACT_NUMBERS, IMPULSE_Y, KEPT_NUMBERS };
+struct ImmersedRows {
+  double *kept;                 // rows of KEPT_NUMBERS, the exact ones and the impulses of particles on the liquid
+  const float *small;           // rows of SMALL_NUMBERS
+  const double *particle;       // rows of PARTICLE_NUMBERS,
+  const unsigned *particles;    // and which of them goes with a row of the others
+  LiquidScales liquid;
+  double top_of_near;    // below it the speed of what is LISTED counts
 };
 
 struct Pass {
@@ -123,17 +121,12 @@ struct Pass {
   double *external_force;    // rows of forces from elsewhere, (3, lanes) each, to be added after gravity; zero after a pass:
   int force_providers;       // so many in a row for a block that has any
   Friction friction;
-  double *kept;                   // rows of KEPT numbers
-  const float *kept_floats;       // rows of KEPT_FLOATS numbers
-  const double *immersed;         // rows of IMMERSED_MOTIONS numbers,
-  const unsigned *immersed_of;    // and which of them goes with a row of `kept`
-  LiquidScales liquid;
-  double top_of_near;    // below it the speed of what is LISTED counts
-  double *total;         // (N, 3): sum of all forces on the particles of blocks that are held back
-  double *trace;         // rows of TRACE, one of each object: to be grown; null for none
-  bool looks;            // where particles are after this pass; else the trace takes note of their speeds alone
-  bool bends;            // `bend` is asked for
-  PassSums *sums;        // of every chunk, zero before a pass
+  ImmersedRows immersed;
+  double *total;     // (N, 3): sum of all forces on the particles of blocks that are held back
+  double *trace;     // rows of TRACE, one of each object: to be grown; null for none
+  bool looks;        // where particles are after this pass; else the trace takes note of their speeds alone
+  bool bends;        // `bend` is asked for
+  PassSums *sums;    // of every chunk, zero before a pass
 
   double fastest;         // largest v^2 of what has moved
   double squares;         // sum of v^2, with lanes of others: finite where all of them are

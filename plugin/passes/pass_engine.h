@@ -46,7 +46,7 @@ class PassEngine {
 
   long long held_back() const { return moved_alone; }    // particles, all passes together
   const char *width() const { return kernels ? kernels->name : ""; }
-  int ranges() const { return blocks ? static_cast<int>(blocks->ranges().size()) : 0; }
+  int ranges() const { return blocks ? static_cast<int>(blocks->ranges().all().size()) : 0; }
   std::size_t bytes() const;
 
  private:

@@ -9,7 +9,6 @@
 
 #pragma once
 
-#include "buoyancy/immersed.h"
 #include "leapfrog/law.h"
 #include "passes/pass.h"
 #include "simd/vectors.h"
@@ -22,12 +21,9 @@ namespace {
 
 constexpr int LANES = MDANIM_LANES;
 typedef double Vector __attribute__((vector_size(8 * LANES)));
-typedef float Floats __attribute__((vector_size(4 * LANES)));
 using Vector3 = Vec<Vector>;
 
 MDANIM_ALWAYS_INLINE Vector load(const double *from) { return load<Vector>(from); }
-
-MDANIM_ALWAYS_INLINE Vector load_floats(const float *from) { return __builtin_convertvector(load<Floats>(from), Vector); }
 
 MDANIM_ALWAYS_INLINE Vector3 load(const double *const *from, long i) { return load<Vector>(from, i); }
 
@@ -258,36 +254,9 @@ MDANIM_ALWAYS_INLINE void advance(const Pass &pass, const Block &block, const do
   }
 }
 
-// The motion of a block that a liquid acts on (buoyancy/immersed.h). Not inlined: most blocks are dry.
+// The same in a liquid (immersed_kernel.h).
 template <Friction FRICTION, bool DAMPED>
-__attribute__((noinline)) void move_immersed(const Pass &pass, const Block &block, const double *total, Tally &tally)
-{
-  const double *const motion = pass.motion + static_cast<unsigned long>(block.motion) * (MOTIONS * LANES);
-  const double *const own =
-      pass.immersed + static_cast<unsigned long>(pass.immersed_of[block.immersed]) * (IMMERSED_MOTIONS * LANES);
-  double *const kept = pass.kept + static_cast<long>(block.immersed) * (KEPT * LANES);
-  const float *const kept_floats = pass.kept_floats + static_cast<long>(block.immersed) * (KEPT_FLOATS * LANES);
-  const auto of = [own](ImmersedMotion what) { return load(own + what * LANES); };
-  const auto waves = [kept](Kept what) { return load(kept + what * LANES); };
-  const auto small = [kept_floats](KeptFloat what) { return load_floats(kept_floats + what * LANES); };
-  const InWaves<Vector> in_waves{waves(BASE),    waves(SLOPE),  small(MORE),   small(ALONG_X),
-                                 small(ALONG_Y), small(FLOW_X), small(FLOW_Y), small(RISING)};
-  const Immersed<Vector> particle{of(VOLUME), of(OWN_MASS), of(GAMMA), of(PER_LENGTH)};
-  const AtPlace<Vector> at = in_waves.at(load(pass.x[2] + block.start));
-  const auto force = liquid_force(pass.liquid, particle, at, load(pass.v, block.start));
-  store(kept + IMPULSE_X * LANES, waves(IMPULSE_X) + force.impulse_x);
-  store(kept + IMPULSE_Y * LANES, waves(IMPULSE_Y) + force.impulse_y);
-  const Vector kick = load(motion + KICK * LANES), phi = (of(LAMBDA) + force.lambda) * kick;
-  tally.largest_phi = larger(phi, tally.largest_phi);
-  const auto then = [&](const Vector3 &middle, const Vector3 &last, const Vector3 &place) {
-    add_lanes(tally.sums.liquid_work, dot(force.push, middle));
-    add_lanes(tally.sums.liquid_lost, force.lambda * dot(middle, middle));
-    const Vector square = of(LISTED) > 0.0 ? dot(last, last) : constant<Vector>(-1.0);
-    tally.fastest_near = place.z < pass.top_of_near ? larger(square, tally.fastest_near) : tally.fastest_near;
-  };
-  const Vector mass = phi > 0.0 ? particle.mass : Vector{};
-  advance<FRICTION, DAMPED>(pass, block, total, load_own(total) + force.push, half_steps<FRICTION>(phi, kick), mass, tally, then);
-}
+void move_immersed(const Pass &pass, const Block &block, const double *total, Tally &tally);
 
 template <Friction FRICTION, bool DAMPED>
 MDANIM_ALWAYS_INLINE void move(const Pass &pass, const Block &block, const double *total, Tally &tally)

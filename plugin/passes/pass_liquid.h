@@ -26,7 +26,7 @@ class PassLiquid {
   virtual long long listed() const = 0;
   virtual bool is_near(int i) const = 0;
   // Coefficients of a particle for passes. They hold until particles move to other places of the arrays.
-  virtual std::function<ImmersedMover(int i)> immersed() const = 0;
+  virtual std::function<Immersed<double>(int i)> immersed() const = 0;
   // Kept values of all particles in LAMMPS's arrays.
   virtual InLiquid *kept() = 0;
   // From now on the arrays hold only these particles, until this is called again; null for all particles.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // The pass over a range of blocks for one set of instructions.
 
-#include "passes/pass_kernel.h"
+#include "passes/immersed_kernel.h"
 #include "simd/of_set.h"
 
 namespace mdanim {

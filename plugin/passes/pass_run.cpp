@@ -23,7 +23,7 @@ static constexpr double MORE_IN_LIQUID = 0.26;
 PassRun::PassRun(SimdBlocks &blocks, const Kernels &kernels, const Threads &threads, const PassCrew &crew,
                  const AtomArrays &atoms, double dt, Fresh fresh)
     : blocks(blocks), kernels(kernels), threads(threads), crew(crew), atoms(atoms), dt(dt),
-      ns(blocks.ranges().size() > 1 ? ns_of_pass(blocks.size(), blocks.damped()) : 0.0)
+      ns(blocks.ranges().all().size() > 1 ? ns_of_pass(blocks.size(), blocks.damped()) : 0.0)
 {
   if (fresh.positions) blocks.take_in(atoms.x, atoms.v);
   if (fresh.motion)
@@ -100,15 +100,15 @@ void PassRun::step(long long next, const std::function<void(bool at_end)> &late)
 void PassRun::take_pass()
 {
   std::fill(chunk_sums.begin(), chunk_sums.end(), PassSums{});
-  blocks.begin_pass(pass);
-  const std::vector<Range> &ranges = blocks.ranges();
+  blocks.ranges().begin_pass(pass);
+  const std::vector<Range> &ranges = blocks.ranges().all();
   of_range.assign(ranges.size(), pass);
   for (std::size_t n = 0; n < ranges.size(); ++n) of_range[n].range = &ranges[n];
-  if (pass.trace && blocks.objects_are_mixed())
+  if (pass.trace && blocks.ranges().objects_are_mixed())
     for (Pass &one : of_range) kernels.pass(one);
   else
     threads.each(static_cast<int>(ranges.size()), ns, [this](int n) { kernels.pass(of_range[n]); });
-  blocks.end_pass(pass);
+  blocks.ranges().end_pass(pass);
   pass.fastest = pass.squares = pass.largest_phi = 0.0;
   pass.fastest_near = -1.0;
   for (const Pass &one : of_range) {

@@ -3,11 +3,9 @@
 
 #include "passes/simd_blocks.h"
 
-#include "geometry/boxes.h"
 #include "leapfrog/law.h"
 
 #include <algorithm>
-#include <unordered_set>
 #include <utility>
 
 namespace mdanim {
@@ -18,8 +16,8 @@ static constexpr int PAGE = 512, LINE = 8;    // doubles
 
 SimdBlocks::SimdBlocks(const Cutter &of, Cut &&cut, RangeCut &&ranges)
     : cutter(of), lanes(of.lanes()), particles(cut.particles), many_chunks(cut.chunks), has_damped(of.damped()),
-      all(std::move(cut.block)), entries(std::move(cut.entry)), cuts(std::move(ranges)), range(cuts.ranges()),
-      border(cuts.ranges() - 1)
+      all(std::move(cut.block)), entries(std::move(cut.entry)), immersed(lanes),
+      range(std::move(ranges), (damped() ? 6 : 3) * lanes)
 {
   // A processor compares loads with pending stores by their place in a page only. So the places of a particle in all arrays that
   // a thread works on are spread evenly over a page.
@@ -37,6 +35,7 @@ SimdBlocks::SimdBlocks(const Cutter &of, Cut &&cut, RangeCut &&ranges)
   };
   double *(*const of_all[])[3] = {&x, &v, &last, &seen, &held_part};
   for (int kind = 0; kind < kinds; ++kind) add(*of_all[kind], kind, 0, particles + cut.farthest + 2 * lanes);
+  const RangeCut &cuts = range.cut();
   for (int n = 0; n < cuts.ranges(); ++n) {
     const int end = n + 1 < cuts.ranges() ? cuts.first[n + 1] : particles + cut.farthest;
     double *(*const of_range[])[3] = {&range[n].f, &range[n].part};
@@ -44,8 +43,6 @@ SimdBlocks::SimdBlocks(const Cutter &of, Cut &&cut, RangeCut &&ranges)
   }
   memory.assign(size);
   for (const auto &[array, place] : arrays) *array = memory.data() + place;
-  crossed.assign((damped() ? 6 : 3) * lanes * cuts.crossing.size());
-  shared_trace.assign(2 * TRACE * range.size());
 }
 
 SimdBlocks::SimdBlocks(const Cutter &of, Cut &&cut, RangeCut &&ranges, const std::vector<int> &places, int own)
@@ -163,6 +160,19 @@ bool SimdBlocks::friction_acts() const
     if ((slowed[b] || all[b].immersed >= 0) && !all[b].held_back) return true;
   return false;
 }
+
+void SimdBlocks::immerse(const Threads &threads, PassLiquid &liquid, Pass &pass)
+{
+  if (!immersed.knows(liquid)) {
+    for (Block &block : all) block.immersed = -1;
+    for (const int i : liquid.near_particles()) all[home[ours(i)]].immersed = 0;
+    immersed.list(liquid, all, own_particle());
+  }
+  immersed.take_in(threads, liquid, all, own_particle(), pass.immersed);
+}
+
+void SimdBlocks::give_out_impulses(const Threads &threads, PassLiquid &liquid) const
+{ immersed.give_out(threads, liquid, all, own_particle()); }
 
 void SimdBlocks::take_in(const double *const *from_x, const double *const *from_v)
 {
@@ -306,83 +316,18 @@ void SimdBlocks::fill(Pass &pass, double *const *forces)
     pass.held_part[d] = held_part[d];
   }
   pass.total = reordered ? total.data() : forces[0];
-  fill_ranges(pass);
-}
-
-// --- ranges ---
-
-void SimdBlocks::fill_ranges(Pass &pass)
-{
-  pass.crossing = cuts.crossing.data();
-  pass.crossing_entry = cuts.entry.data();
-  pass.crossed = crossed.data();
-  for (std::size_t n = 0; n < border.size(); ++n) {
-    Border &own = border[n];
-    own.first = n ? cuts.end_of_border[n - 1] : 0;
-    own.crossings = cuts.end_of_border[n] - own.first;
-    own.first_entry = own.first ? cuts.crossing[own.first - 1].end : 0;
-    own.claimed = own.crossed = turn;
-    std::copy_n(range[n + 1].f, 3, own.f);
-    std::copy_n(range[n + 1].part, 3, own.part);
-  }
-  const auto is_below = [](const Block &block, int particle) { return block.start < particle; };
-  const auto first = [&](std::size_t n) {
-    if (n == range.size()) return active;
-    return static_cast<int>(std::lower_bound(all.begin(), all.begin() + active, cuts.first[n], is_below) - all.begin());
-  };
-  for (std::size_t n = 0; n < range.size(); ++n) {
-    Range &own = range[n];
-    own.first = first(n);
-    own.blocks = first(n + 1) - own.first;
-    own.first_entry = own.first ? all[own.first - 1].end : 0;
-    own.end = n + 1 < range.size() ? cuts.first[n + 1] : particles;
-    own.below = n && border[n - 1].crossings ? &border[n - 1] : nullptr;
-    own.above = n < border.size() && border[n].crossings ? &border[n] : nullptr;
-    const auto shared = [&](int before, int after) {
-      return own.blocks && before >= 0 && after < active && all[before].object == all[after].object ? all[after].object : -1;
-    };
-    own.shared[0] = shared(own.first - 1, own.first);
-    own.shared[1] = shared(own.first + own.blocks - 1, own.first + own.blocks);
-    own.shared_trace = shared_trace.data() + 2 * TRACE * n;
-  }
-  mixed = false;
-  std::unordered_set<int> seen;
-  for (int n = 0; range.size() > 1 && n < active && !mixed; ++n)
-    if (n == 0 || all[n].object != all[n - 1].object) mixed = !seen.insert(all[n].object).second;
-}
-
-void SimdBlocks::begin_pass(Pass &pass)
-{
-  pass.turn = ++turn;
-  const Box nothing;
-  for (std::size_t n = 0; n < 2 * range.size(); ++n) {
-    double *const row = shared_trace.data() + TRACE * n;
-    std::copy_n(nothing.bound, 6, row);
-    row[FASTEST] = 0.0;
-  }
-}
-
-void SimdBlocks::end_pass(const Pass &pass)
-{
-  if (!pass.trace) return;    // otherwise objects that several ranges have blocks of
-  for (const Range &own : range)
-    for (int side = 0; side < 2; ++side)
-      for (int k = 0; own.shared[side] >= 0 && k < TRACE; ++k) {
-        double &known = pass.trace[TRACE * own.shared[side] + k];
-        known = std::min(known, own.shared_trace[TRACE * side + k]);
-      }
+  range.fill(all, active, particles, pass);
 }
 
 std::size_t SimdBlocks::bytes() const
 {
-  std::size_t of_providers = external_force.bytes() + crossed.bytes() + shared_trace.bytes() + cuts.bytes();
+  std::size_t of_providers = external_force.bytes() + range.bytes();
   for (const ForceProvider &b : force_providers)
     of_providers += b.particle.capacity() * sizeof(int) + b.ghosts.capacity() * sizeof(Ghost) + b.slot.capacity() * sizeof(long);
   return of_providers + all.capacity() * sizeof(Block) + entries.capacity() * sizeof(Entry) + motions.bytes() + memory.bytes() +
          (home.capacity() + outside.capacity() + index.capacity() + place.capacity() + ghosts.capacity() + waiting.capacity()) *
              sizeof(int) +
-         total.capacity() * sizeof(double) + kept.bytes() + kept_floats.bytes() + immersed_motions.bytes() +
-         immersed_of.capacity() * sizeof(unsigned) + immersed.capacity() * sizeof(int);
+         total.capacity() * sizeof(double) + immersed.bytes();
 }
 
 }    // namespace mdanim

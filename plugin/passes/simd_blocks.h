@@ -5,10 +5,11 @@
 
 #include "geometry/aligned_array.h"
 #include "numbers/vec3.h"
+#include "passes/block_ranges.h"
 #include "passes/cutter.h"
+#include "passes/immersed_blocks.h"
 #include "passes/pass.h"
 #include "passes/pass_participant.h"
-#include "passes/range_cut.h"
 #include "threads/team.h"
 
 #include <vector>
@@ -51,7 +52,7 @@ class SimdBlocks {
   void immerse(const Threads &threads, PassLiquid &liquid, Pass &pass);
   void give_out_impulses(const Threads &threads, PassLiquid &liquid) const;
   // Share of the liquid in the time of a pass in which a particle in the liquid takes `more` than another, relative to that.
-  double share_of_liquid(double more) const { return more * immersed_particles / (particles + more * immersed_particles); }
+  double share_of_liquid(double more) const { return more * immersed.particles() / (particles + more * immersed.particles()); }
 
   void take_in(const double *const *x, const double *const *v);
   void give_out(const Threads &threads, double *const *x, double *const *v) const;
@@ -77,12 +78,8 @@ class SimdBlocks {
   void unpack(const std::vector<int> &particles, bool velocities, const double *from);
 
   void fill(Pass &pass, double *const *f);    // f: where forces on those that are held back go
-  void begin_pass(Pass &pass);
-  const std::vector<Range> &ranges() const { return range; }    // of the blocks that have something to do in a pass
-  void end_pass(const Pass &pass);                              // for all ranges
-  // Whether several ranges have blocks of an object that do not follow each other: with a trace, threads would write into one
-  // row.
-  bool objects_are_mixed() const { return mixed; }
+  BlockRanges &ranges() { return range; }
+  const BlockRanges &ranges() const { return range; }
   void give_out_forces(double *const *f) const;    // forces are there after a pass and this call
   std::size_t bytes() const;
 
@@ -98,10 +95,15 @@ class SimdBlocks {
   int at(int i) const { return reordered ? index[i] : i; }
   int ours(int i) const { return reordered ? place[i] : i; }    // the way back
   bool is_ghost(int place) const { return reordered && place >= owned; }
+  // The index in LAMMPS's arrays of the own particle at a place; -1 for a ghost.
+  auto own_particle() const
+  {
+    return [this](int i) {
+      const int found = at(i);
+      return is_ghost(found) ? -1 : found;
+    };
+  }
   void set_row(const Mover &mover, Friction friction, int lane, double *row) const;
-  void fill_ranges(Pass &pass);
-  void list_immersed(const PassLiquid &liquid);
-  template <class Work> long each_immersed(const Threads &threads, PassLiquid &liquid, const Work &work) const;
   void set_apart(const std::vector<bool> &moves);    // by the first particle of a block: whether any of it moves
 
   const Cutter &cutter;
@@ -109,8 +111,7 @@ class SimdBlocks {
   const bool has_damped;
   bool reordered = false;    // by lay_out_at()
   std::vector<Block> all;
-  int active = 0;        // the first blocks, which have work in a pass
-  bool mixed = false;    // see objects_are_mixed()
+  int active = 0;    // the first blocks, which have work in a pass
   std::vector<Entry> entries;
   std::vector<int> home;       // block of each particle
   std::vector<bool> slowed;    // blocks with friction
@@ -128,23 +129,13 @@ class SimdBlocks {
   std::vector<int> index, place;       // index of a particle in LAMMPS's arrays, and back
   std::vector<int> ghosts, waiting;    // in our order; `outside` in LAMMPS's
   std::vector<double> total;           // see Pass, in our order
-  std::vector<int> immersed;           // blocks with particles near a liquid
-  double immersed_particles = 0.0;     // of those that are not held back
-  Doubles kept;                        // see Pass
-  Floats kept_floats;
-  DistinctRows<double> immersed_motions;
-  std::vector<unsigned> immersed_of;    // see Pass
-  long long listed = -1;                // by the liquid
-  int owned = 0;                        // number of own particles in LAMMPS's arrays; ghosts come after them
+  ImmersedBlocks immersed;
+  int owned = 0;    // number of own particles in LAMMPS's arrays; ghosts come after them
   DistinctRows<double> motions;
   Doubles memory;    // of the arrays
   double *x[3] = {}, *v[3] = {};
   double *last[3] = {}, *seen[3] = {}, *held_part[3] = {};    // where damped
-  RangeCut cuts;
-  std::vector<Range> range;
-  std::vector<Border> border;
-  Doubles crossed, shared_trace;
-  unsigned turn = 0;    // passes so far
+  BlockRanges range;
 };
 
 template <class Tell> void SimdBlocks::set_motion(Friction friction, Tell mover)
@@ -166,7 +157,7 @@ template <class Tell> void SimdBlocks::set_motion(Friction friction, Tell mover)
     block.motion = motions.find_or_add(row.data(), row.size());
   }
   set_apart(moves);
-  listed = -1;
+  immersed.forget();
   slowed.clear();
   for (const Block &block : all) slowed.push_back(slow[block.start]);
 }

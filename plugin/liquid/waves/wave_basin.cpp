@@ -324,13 +324,13 @@ Basin::OnParts WaveBasin::on_parts(const Vec3 &middle) const
   if (number >= 0) {
     const WavePush::OnCell &found = push.all()[number];
     head = found.head;
-    on.share = found.share;
-    on.more = found.over - found.on_top;
-    on.beside = found.beside;
-    on.along_x = found.along_x * (shape.cell.z / shape.cell.x);
-    on.along_y = found.along_y * (shape.cell.z / shape.cell.y);
-    on.flow_x = found.flow_x * shape.cell.x / unit_of_time;
-    on.flow_y = found.flow_y * shape.cell.y / unit_of_time;
+    on.share = found.of[WavePush::OnCell::SHARE];
+    on.more = found.of[WavePush::OnCell::OVER] - found.of[WavePush::OnCell::ON_TOP];
+    on.beside = found.of[WavePush::OnCell::BESIDE];
+    on.along_x = found.of[WavePush::OnCell::ALONG_X] * (shape.cell.z / shape.cell.x);
+    on.along_y = found.of[WavePush::OnCell::ALONG_Y] * (shape.cell.z / shape.cell.y);
+    on.flow_x = found.of[WavePush::OnCell::FLOW_X] * shape.cell.x / unit_of_time;
+    on.flow_y = found.of[WavePush::OnCell::FLOW_Y] * shape.cell.y / unit_of_time;
   }
   on.surface = 2.0 * head - middle.z + 0.5;
   return on;

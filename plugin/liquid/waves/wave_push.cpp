@@ -245,8 +245,8 @@ void WavePush::put(const SolidParts &solid, int column, int z, OnCell on)
     const double both = (solid.at(column, z) + solid.at(other, z)) / static_cast<double>(SolidParts::FULL);
     return std::clamp(ambient[other] - ambient[column], -HIGHEST, HIGHEST) / std::max(1.0, both);
   };
-  on.along_x = rise(0) - rise(1);
-  on.along_y = rise(2) - rise(3);
+  on.of[OnCell::ALONG_X] = rise(0) - rise(1);
+  on.of[OnCell::ALONG_Y] = rise(2) - rise(3);
   if (found.empty() || !(found.back() == on)) found.push_back(on);
   known[cell] = static_cast<int>(found.size()) - 1;
   cells.push_back(cell);
@@ -258,12 +258,12 @@ void WavePush::fill(const Waves &waves, int column)
   const auto of_run = [&](int z, const SolidRun &run) {
     OnCell on;
     on.head = run.phi;
-    on.share = run.wet ? std::clamp(run.phi - run.floor, 0.0, 1.0) : 0.0;
-    on.over = run.over;
-    on.beside = run.beside;
-    on.on_top = run.on_top;
-    on.flow_x = 0.5 * (run.u[0] + run.u[1]);
-    on.flow_y = 0.5 * (run.u[2] + run.u[3]);
+    on.of[OnCell::SHARE] = run.wet ? std::clamp(run.phi - run.floor, 0.0, 1.0) : 0.0;
+    on.of[OnCell::OVER] = run.over;
+    on.of[OnCell::BESIDE] = run.beside;
+    on.of[OnCell::ON_TOP] = run.on_top;
+    on.of[OnCell::FLOW_X] = 0.5 * (run.u[0] + run.u[1]);
+    on.of[OnCell::FLOW_Y] = 0.5 * (run.u[2] + run.u[3]);
     put(solid, column, z, on);
   };
   const SolidRun *run = &runs[first_run[column]];
@@ -288,9 +288,9 @@ void WavePush::fill(const Waves &waves, int column)
       looked = true;
       OnCell on;
       on.head = span.phi;
-      on.share = span.wet ? std::clamp(span.phi - span.floor, 0.0, 1.0) : 0.0;
-      on.flow_x = 0.5 * (sides.u[0] + sides.u[1]);
-      on.flow_y = 0.5 * (sides.u[2] + sides.u[3]);
+      on.of[OnCell::SHARE] = span.wet ? std::clamp(span.phi - span.floor, 0.0, 1.0) : 0.0;
+      on.of[OnCell::FLOW_X] = 0.5 * (sides.u[0] + sides.u[1]);
+      on.of[OnCell::FLOW_Y] = 0.5 * (sides.u[2] + sides.u[3]);
       put(solid, column, z, on);
     }
   }
@@ -335,25 +335,17 @@ void WavePush::spread(const SolidParts &solid)
           const OnCell &from = found[known[cells[n]]];
           const double weight = solid.at(column, z) * (dx ? 0.5 : 1.0) * (dy ? 0.5 : 1.0) * (dz ? 0.5 : 1.0);
           sum.weight += weight;
-          sum.on.share += weight * from.share;
-          if (from.share > 0.0) {
+          for (int k = 0; k < OnCell::NUMBERS; ++k) sum.on.of[k] += weight * from.of[k];
+          if (from.of[OnCell::SHARE] > 0.0) {
             sum.wet += weight;
             sum.on.head += weight * from.head;
           }
-          sum.on.over += weight * from.over;
-          sum.on.beside += weight * from.beside;
-          sum.on.along_x += weight * from.along_x;
-          sum.on.along_y += weight * from.along_y;
-          sum.on.on_top += weight * from.on_top;
-          sum.on.flow_x += weight * from.flow_x;
-          sum.on.flow_y += weight * from.flow_y;
         }
   }
   for (NextTo &sum : next_to) {
     OnCell &on = sum.on;
     if (sum.wet > 0.0) on.head /= sum.wet;
-    for (double *value : {&on.share, &on.over, &on.beside, &on.on_top, &on.along_x, &on.along_y, &on.flow_x, &on.flow_y})
-      *value /= sum.weight;
+    for (double &value : on.of) value /= sum.weight;
     found.push_back(on);
     cells.push_back(sum.cell);
   }

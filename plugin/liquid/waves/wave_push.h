@@ -7,6 +7,7 @@
 #include "liquid/waves/added_mass.h"
 #include "liquid/waves/waves.h"
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -19,19 +20,20 @@ class WavePush {
  public:
   // The force on a volume in a cell, over the weight of as much liquid. s is the fraction below `head`.
   struct OnCell {
-    double head = 0.0, share = 0.0;         // factor of s: 0 where it is dry below
-    double over = 0.0;                      // of the liquid whose head below is higher than the body, per thickness of the body
-    double beside = 0.0;                    // the same by the surface around, less what stands on the body
-    double along_x = 0.0, along_y = 0.0;    // push sideways, times s + beside where that is positive
-    double on_top = 0.0;                    // of the liquid that stands on the body, by the body's thickness
-    double flow_x = 0.0, flow_y = 0.0;      // velocity of the liquid
-
-    bool operator==(const OnCell &other) const
-    {
-      return head == other.head && share == other.share && over == other.over && beside == other.beside &&
-             along_x == other.along_x && along_y == other.along_y && on_top == other.on_top && flow_x == other.flow_x &&
-             flow_y == other.flow_y;
-    }
+    enum Number {
+      SHARE,     // factor of s: 0 where it is dry below
+      OVER,      // of the liquid whose head below is higher than the body, per thickness of the body
+      BESIDE,    // the same by the surface around, less what stands on the body
+      ALONG_X,
+      ALONG_Y,    // push sideways, times s + beside where that is positive
+      ON_TOP,     // of the liquid that stands on the body, by the body's thickness
+      FLOW_X,
+      FLOW_Y,    // velocity of the liquid
+      NUMBERS
+    };
+    double head = 0.0;
+    std::array<double, NUMBERS> of{};
+    bool operator==(const OnCell &other) const { return head == other.head && of == other.of; }
   };
 
   WavePush(int nx, int ny, int nz)

@@ -16,9 +16,11 @@ MDANIM_EXPORT void mdanim_wave_push(void *waves, int nx, int ny, int nz, const d
   push.find(*static_cast<Waves *>(waves), solids.data(), 1.0, 0.0);
   for (std::size_t cell = 0; cell < static_cast<std::size_t>(nx) * ny * nz; ++cell, out += 8) {
     const int n = push.number_of(cell);
-    const WavePush::OnCell *on = n < 0 ? nullptr : &push.all()[n];
-    const double found[] = {on ? 1.0 : 0.0,        on ? on->head : 0.0,    on ? on->share : 0.0,   on ? on->over : 0.0,
-                            on ? on->on_top : 0.0, on ? on->along_x : 0.0, on ? on->along_y : 0.0, on ? on->beside : 0.0};
+    using On = WavePush::OnCell;
+    const On on = n < 0 ? On{} : push.all()[n];
+    const double found[] = {n < 0 ? 0.0 : 1.0,  on.head,           on.of[On::SHARE],
+                            on.of[On::OVER],    on.of[On::ON_TOP], on.of[On::ALONG_X],
+                            on.of[On::ALONG_Y], on.of[On::BESIDE]};
     for (int k = 0; k < 8; ++k) out[k] = found[k];
   }
 }

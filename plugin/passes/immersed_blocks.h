@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// The blocks that a liquid acts on, and what is kept for their particles.
+
+#pragma once
+
+#include "geometry/aligned_array.h"
+#include "passes/pass.h"
+#include "passes/pass_liquid.h"
+#include "springs/distinct_rows.h"
+#include "threads/team.h"
+
+#include <atomic>
+#include <vector>
+
+namespace mdanim {
+
+// In all functions own(place) is the index in LAMMPS's arrays of the particle at a place, -1 for a ghost.
+class ImmersedBlocks {
+ public:
+  explicit ImmersedBlocks(int lanes) : lanes(lanes) {}
+
+  void forget() { listed = -1; }    // coefficients of particles have changed
+  bool knows(const PassLiquid &liquid) const { return listed == liquid.listed(); }
+  // Lists the blocks whose `immersed` is not negative.
+  template <class Own> void list(const PassLiquid &liquid, std::vector<Block> &all, const Own &own);
+  // Takes in what is kept for particles; blocks that are held back are left out.
+  template <class Own>
+  void take_in(const Threads &threads, PassLiquid &liquid, const std::vector<Block> &all, const Own &own, ImmersedRows &rows);
+  // Gives the impulses of particles on the liquid back.
+  template <class Own>
+  void give_out(const Threads &threads, PassLiquid &liquid, const std::vector<Block> &all, const Own &own) const;
+
+  double particles() const { return particles_in; }    // of blocks that are not held back
+  std::size_t bytes() const
+  {
+    return kept.bytes() + small.bytes() + coefficients.bytes() + coefficients_of.capacity() * sizeof(unsigned) +
+           blocks.capacity() * sizeof(int);
+  }
+
+ private:
+  // Calls work(kept values of a particle, number of the block, its lane) for all own particles that the liquid acts on in passes,
+  // shared among threads. Returns the number of these particles.
+  template <class Own, class Work>
+  long each(const Threads &threads, PassLiquid &liquid, const std::vector<Block> &all, const Own &own, const Work &work) const;
+  template <class Array> auto *number_at(Array &array, long block, int numbers, int number, int lane) const
+  { return array.data() + (block * numbers + number) * lanes + lane; }
+
+  const int lanes;
+  long long listed = -1;      // by the liquid
+  std::vector<int> blocks;    // with particles near the liquid
+  double particles_in = 0.0;
+  Doubles kept;    // see ImmersedRows
+  Floats small;
+  DistinctRows<double> coefficients;
+  std::vector<unsigned> coefficients_of;
+};
+
+template <class Own> void ImmersedBlocks::list(const PassLiquid &liquid, std::vector<Block> &all, const Own &own)
+{
+  blocks.clear();
+  coefficients_of.clear();
+  coefficients = {};
+  const auto mover = liquid.immersed();
+  std::vector<double> row(PARTICLE_NUMBERS * lanes);
+  for (std::size_t b = 0; b < all.size(); ++b) {
+    Block &block = all[b];
+    if (block.immersed < 0) continue;
+    block.immersed = static_cast<int>(blocks.size());
+    blocks.push_back(static_cast<int>(b));
+    for (int lane = 0; lane < lanes; ++lane) {
+      const int i = lane < block.lanes ? own(block.start + lane) : -1;
+      const Immersed<double> of_lane = i >= 0 ? mover(i) : Immersed<double>{};
+      for (int k = 0; k < PARTICLE_NUMBERS; ++k) row[k * lanes + lane] = of_lane.of[k];
+    }
+    coefficients_of.push_back(coefficients.find_or_add(row.data(), row.size()));
+  }
+  kept.assign(blocks.size() * KEPT_NUMBERS * lanes);
+  small.assign(blocks.size() * SMALL_NUMBERS * lanes);
+  listed = liquid.listed();
+}
+
+template <class Own, class Work>
+long ImmersedBlocks::each(const Threads &threads, PassLiquid &liquid, const std::vector<Block> &all, const Own &own,
+                          const Work &work) const
+{
+  constexpr double PARTICLE = 10.0;    // [ns], approximately
+  InLiquid *const of = liquid.kept();
+  std::atomic<long> many{0};
+  threads.parts(static_cast<long>(blocks.size()), PARTICLE * lanes, [&](long from, long to) {
+    long of_part = 0;
+    for (long n = from; n < to; ++n) {
+      const Block &block = all[blocks[n]];
+      if (block.held_back) continue;
+      for (int lane = 0; lane < block.lanes; ++lane) {
+        const int i = own(block.start + lane);
+        if (i < 0) continue;
+        work(of[i], n, lane);
+        ++of_part;
+      }
+    }
+    many += of_part;
+  });
+  return many;
+}
+
+template <class Own>
+void ImmersedBlocks::take_in(const Threads &threads, PassLiquid &liquid, const std::vector<Block> &all, const Own &own,
+                             ImmersedRows &rows)
+{
+  particles_in = static_cast<double>(each(threads, liquid, all, own, [this](const InLiquid &of, long block, int lane) {
+    const auto put = [&](int number, double value) { *number_at(kept, block, KEPT_NUMBERS, number, lane) = value; };
+    for (int k = 0; k < EXACT_NUMBERS; ++k) put(k, of.waves.exact[k]);
+    for (int k = 0; k < SMALL_NUMBERS; ++k) *number_at(small, block, SMALL_NUMBERS, k, lane) = of.waves.small[k];
+    put(IMPULSE_X, of.impulse_x);
+    put(IMPULSE_Y, of.impulse_y);
+  }));
+  rows = {kept.data(), small.data(), coefficients.data(), coefficients_of.data(), liquid.scales(), liquid.top_of_near()};
+}
+
+template <class Own>
+void ImmersedBlocks::give_out(const Threads &threads, PassLiquid &liquid, const std::vector<Block> &all, const Own &own) const
+{
+  each(threads, liquid, all, own, [this](InLiquid &of, long block, int lane) {
+    of.impulse_x = *number_at(kept, block, KEPT_NUMBERS, IMPULSE_X, lane);
+    of.impulse_y = *number_at(kept, block, KEPT_NUMBERS, IMPULSE_Y, lane);
+  });
+}
+
+}    // namespace mdanim
