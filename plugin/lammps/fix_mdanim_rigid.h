@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // fix mdanim/rigid: objects that do not deform.
 
-#ifndef LMP_FIX_MDANIM_RIGID_H
-#define LMP_FIX_MDANIM_RIGID_H
+#pragma once
 
 #include "lammps/fix_base.h"
 #include "lammps/object_table.h"
@@ -121,5 +120,3 @@ template <int N, class Terms> std::vector<std::array<double, N>> FixMdanimRigid:
 }
 
 }    // namespace LAMMPS_NS
-
-#endif

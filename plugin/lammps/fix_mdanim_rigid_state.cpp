@@ -39,12 +39,6 @@ struct PlaceRow {
   bool operator<(const PlaceRow &other) const { return std::tie(object, tag) < std::tie(other.object, other.tag); }
 };
 
-struct RestartedBodies : Stateful {
-  StateRecords records;
-  StateRecords pack() const override { return records; }
-  void unpack(const StateRecords &given) override { records = given; }
-};
-
 template <class Kept> bool is_finite(const Kept &kept)    // of doubles alone
 {
   const auto *numbers = reinterpret_cast<const double *>(&kept);
@@ -129,7 +123,5 @@ void FixMdanimRigid::write_restart(FILE *file) { mdanim::write_restart(*this, lm
 
 void FixMdanimRigid::restart(char *buffer)
 {
-  RestartedBodies kept;
-  mdanim::read_restart(kept, lmp, name(), buffer);
-  restarted = std::move(kept.records);
+  mdanim::read_restart([this](const StateRecords &all) { restarted = all; }, lmp, name(), buffer);
 }

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // A file that one rank reads for all.
 
-#ifndef MDANIM_SHARED_FILE_H
-#define MDANIM_SHARED_FILE_H
+#pragma once
 
 #include <string>
 
@@ -17,5 +16,3 @@ namespace mdanim {
 std::string read_shared_file(LAMMPS_NS::LAMMPS *lmp, const std::string &style, const std::string &what, const char *file);
 
 }    // namespace mdanim
-
-#endif

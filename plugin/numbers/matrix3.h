@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // Square matrices of three rows.
 
-#ifndef MDANIM_MATRIX3_H
-#define MDANIM_MATRIX3_H
+#pragma once
 
 #include "numbers/vec3.h"
 
@@ -22,5 +21,3 @@ inline Vec3 transposed_times(const Matrix3 &m, const Vec3 &v)
 }
 
 }    // namespace mdanim
-
-#endif

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // Sums whose bits do not depend on the order of their terms: particles of a body may be spread over ranks in any way.
 
-#ifndef MDANIM_UNORDERED_SUM_H
-#define MDANIM_UNORDERED_SUM_H
+#pragma once
 
 #include <cmath>
 #include <cstdint>
@@ -43,5 +42,3 @@ struct UnorderedSum {
 };
 
 }    // namespace mdanim
-
-#endif

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // A rigid body under forces, by the leap-frog of the particles: Wcislo 1999, eq. (3.10), without friction.
 
-#ifndef MDANIM_BODY_H
-#define MDANIM_BODY_H
+#pragma once
 
 #include "numbers/matrix3.h"
 #include "rigid/rotation.h"
@@ -63,5 +62,3 @@ struct RigidBody {
 };
 
 }    // namespace mdanim
-
-#endif

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // Moments of inertia and their principal axes.
 
-#ifndef MDANIM_INERTIA_H
-#define MDANIM_INERTIA_H
+#pragma once
 
 #include "numbers/matrix3.h"
 #include "rigid/rotation.h"
@@ -72,5 +71,3 @@ inline PrincipalAxes principal_axes(const Inertia &inertia)
 }
 
 }    // namespace mdanim
-
-#endif

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // Rotations as unit quaternions, and the free rotation of a rigid body, by + - * / and square roots alone.
 
-#ifndef MDANIM_ROTATION_H
-#define MDANIM_ROTATION_H
+#pragma once
 
 #include "numbers/matrix3.h"
 #include "numbers/vec3.h"
@@ -108,5 +107,3 @@ inline void rotate_freely(Quaternion &q, const Vec3 &L, const Vec3 &over, double
 }
 
 }    // namespace mdanim
-
-#endif

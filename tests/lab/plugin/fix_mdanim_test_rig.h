@@ -7,8 +7,7 @@
 // each particle (d2_way), on the largest length of each spring (d2_most), on the steps that an object has gone through (d_turns),
 // and on those in which a tether was longer than LENGTH, a record of the pair; their work is counted, too.
 
-#ifndef LMP_FIX_MDANIM_TEST_RIG_H
-#define LMP_FIX_MDANIM_TEST_RIG_H
+#pragma once
 
 #include "lammps/fix_base.h"
 #include "lammps/stateful.h"
@@ -66,5 +65,3 @@ class FixMdanimTestRig : public mdanim::FixBase, public mdanim::Stateful {
 };
 
 }    // namespace LAMMPS_NS
-
-#endif
