@@ -155,5 +155,6 @@ void FixMdanimTestMemory::write_restart(FILE *file)
 
 void FixMdanimTestMemory::restart(char *buffer)
 {
-  mdanim::read_restart([this](const StateRecords &all) { unpack(all); }, lmp, name(), buffer);
+  const auto take = [this](const StateRecords &all) { unpack(all); };
+  mdanim::read_restart(take, lmp, fmt::format("fix {} mdanim/test/memory", id), buffer);
 }
