@@ -39,6 +39,8 @@ STEPS, STEPS_EXACT = 4095, 65535
 """Steps across the box of an object: 0.3 mm of the beam of 1.2 m, and 0.02 mm."""
 MOST_BYTES = 20_000_000
 """Largest size of the packed frames: beyond it only every n-th frame is kept."""
+LEVEL = 6
+"""Of compression: 9 makes a report smaller by 0.3 to 1.2 %, in twice the time, and in twenty times where frames repeat."""
 MOST_PICTURE = 2_000_000
 """Bytes of a picture of a study that the file takes in."""
 
@@ -91,7 +93,7 @@ def write_report(
 
 def compressed(pieces: Iterable[bytes], most: int | None) -> bytes | None:
     """Pieces end to end, as gzip; None where that has more bytes than ``most``."""
-    packer = zlib.compressobj(9, wbits=31)
+    packer = zlib.compressobj(LEVEL, wbits=31)
     packed = bytearray()
     for piece in pieces:
         packed += packer.compress(piece)
