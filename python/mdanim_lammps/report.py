@@ -104,7 +104,7 @@ def output_line(ready: Prepared) -> str:
     """One line: how large the trajectory will be."""
     c, control = ready.certificate, ready.scene.control
     frames = 1 + c.last_frame
-    fields = kept_fields(records_of(ready.scene, ready.plan.grid), frame_fields(ready.plan), len(ready.models))
+    fields = kept_fields(records_of(ready.scene, ready.plan.grid), frame_fields(ready.plan), ready.models, control.save)
     size = trajectory_bytes(ready.models, frames, control.save, control.single, fields)
     return f"output   {count(frames, 'frame')}, trajectory of {number(size / 1e6)} MB"
 

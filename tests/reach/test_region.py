@@ -6,7 +6,7 @@ import random
 import numpy as np
 import pytest
 from mdanim_lammps import features
-from mdanim_lammps.effects import acting, decide
+from mdanim_lammps.effects import acting, resolve
 from mdanim_lammps.engine.instance import Instance
 from mdanim_lammps.reach import Reach, bounding_radius
 from mdanim_lammps.reach.region import Sweeps, _overlaps
@@ -90,13 +90,13 @@ def test_what_can_meet(scene, meet):
 
 def test_contact_is_off_with_the_nearest_pair():
     """Name the nearest two, what is left between them, and the scene line."""
-    verdict = decide(features.effects(), pair(DOWN))[0]["contact"]
+    verdict = resolve(features.effects(), pair(DOWN)).verdicts["contact"]
     assert not verdict.on and verdict.span.line == 10
     # 2 m less two radii with a tenth of slack, less 2.5 spacings of reach for each.
     assert "nearest are a and b, with 1.53 m to spare" in verdict.reason
-    verdict = decide(features.effects(), pair(DOWN, a="velocity (9, 0, 0)"))[0]["contact"]
+    verdict = resolve(features.effects(), pair(DOWN, a="velocity (9, 0, 0)")).verdicts["contact"]
     assert verdict.on and verdict.reason == "a and b may meet; no object has friction" and verdict.span.line == 10
-    verdict = decide(features.effects(), pair(DOWN, a="velocity (9, 0, 0)\n friction 0.3"))[0]["contact"]
+    verdict = resolve(features.effects(), pair(DOWN, a="velocity (9, 0, 0)\n friction 0.3")).verdicts["contact"]
     assert verdict.on and verdict.reason == "a and b may meet"
 
 

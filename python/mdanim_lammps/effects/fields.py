@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -35,7 +36,8 @@ class Field:
     table: str = ""
     """Its table in a trajectory, below ``/observables``; empty where a trajectory does not have it."""
     counts: tuple[int, ...] = ()
-    """How many things there are, along each axis of the table: objects; rows and columns of cells; the most rows that fit."""
+    """How many things there are, along each axis of the table: objects; rows and columns of cells; the most rows that fit, of a
+    field per row or pair."""
     state: bool = False
     """Whether it changes during a run and later steps depend on it; a frame has it too."""
     tags: int = 0
@@ -49,13 +51,29 @@ class Field:
 
     @property
     def whole_shape(self) -> tuple[int, ...]:
-        """Shape of all values in one frame."""
-        return (*self.counts, *self.shape)
+        """Shape of its table in one frame; a row of a pair begins with the numbers of both objects, from 1."""
+        return (*self.counts, 2 + math.prod(self.shape)) if self.per == "pair" else (*self.counts, *self.shape)
 
     def fits(self, value: Any) -> bool:
-        """Whether an array has the shape of its values in one frame; of a field per row there may be fewer."""
-        found, most = np.shape(value), self.whole_shape
-        return found == most or (self.per == "row" and len(found) == len(most) and found[1:] == most[1:] and found[0] < most[0])
+        """Whether an array has the shape of its table in one frame; of a field per row or pair there may be fewer rows."""
+        found, most, fewer = np.shape(value), self.whole_shape, self.per in ("row", "pair")
+        return found == most or (fewer and len(found) == len(most) and found[1:] == most[1:] and found[0] < most[0])
+
+    def to_table(self, value: Any) -> Any:
+        """Values of a frame as they are in its table, without unused rows."""
+        if self.per != "pair":
+            return value
+        return np.column_stack([value["a"] + 1, value["b"] + 1, value["value"].reshape(len(value), math.prod(self.shape))])
+
+    def from_table(self, rows: np.ndarray) -> np.ndarray:
+        """The reverse of `to_table`; rows that are unused are zeros."""
+        if self.per != "pair":
+            return rows
+        rows = rows[rows[:, 0] > 0]
+        found = np.empty(len(rows), pair_rows(self))
+        found["a"], found["b"] = rows[:, 0] - 1, rows[:, 1] - 1
+        found["value"] = rows[:, 2:].reshape(len(rows), *self.shape)
+        return found
 
 
 def column(name: str, unit: str, per: str = "particle", **more: Any) -> Field:
@@ -78,6 +96,8 @@ Rows = Callable[[str], np.ndarray]
 (M + 1,)."""
 PARTS = ("particle", "bond", "object")
 """Kinds of things of which each object has its own, in rows side by side."""
+OF_OBJECTS = (*PARTS, "pair")
+"""Kinds of things that there are because of objects."""
 
 
 def rows_of(first: np.ndarray, objects: np.ndarray) -> np.ndarray:

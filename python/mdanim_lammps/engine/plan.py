@@ -59,7 +59,7 @@ class Plan:
     """Columns that some effect asks for, by name: values at the start of all particles, springs or objects, each of shape
     (N, ...), (S, ...) or (M, ...)."""
     fields: dict[str, Field]
-    """Declarations of these arrays, by their names."""
+    """The declarations of these columns."""
     slots: int
     """Springs that a column of springs has room for at each particle."""
     bonds: np.ndarray

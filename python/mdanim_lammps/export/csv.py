@@ -35,11 +35,12 @@ def write(cut: Cut, folder: Path, stem: str, on_frame: Callable[[int], None]) ->
         notes.append("elastic energy is left out: the scene of this run, or one of its meshes, cannot be read here")
     with open(folder / f"{stem}.csv", "w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
-        writer.writerow([*table.columns, *(["elastic"] if system else [])])
+        writer.writerow([*table.columns, *(["elastic"] if system else []), *cut.of_objects(cut.frames[0])])
         for done, frame in enumerate(cut.frames.tolist(), 1):
             numbers = table.numbers(frame)
             if system:
                 numbers = np.column_stack([numbers, elastic(system, t.position(frame))[cut.objects]])
+            numbers = np.column_stack([numbers, *cut.of_objects(frame).values()])
             time = float(t.times[frame])
             rows = (["" if number != number else number for number in row] for row in numbers.tolist())
             writer.writerows((frame, time, name, *row) for name, row in zip(cut.metadata.names, rows))

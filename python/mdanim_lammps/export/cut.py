@@ -9,6 +9,7 @@ from functools import cached_property
 
 import numpy as np
 
+from ..effects.fields import PARTS
 from ..errors import OutputError, UsageError
 from ..picture.liquid import Sheet
 from ..picture.palette import LIQUID, object_colors, rgb, vertex_colors
@@ -63,6 +64,7 @@ class Cut:
         m = trajectory.metadata
         self._kept = np.isin(m.object_of, self.objects)
         self.liquid = None if objects else scenery(m).liquid
+        self._kept_bonds = np.isin(m.bond, m.id[self._kept]).all(axis=1)
         sizes = np.diff(m.first)[self.objects]
         self.metadata: TrajectoryMetadata = replace(
             m,
@@ -75,7 +77,7 @@ class Cut:
             mass=m.mass[self._kept],
             layer=m.layer[self._kept],
             held=m.held[self._kept],
-            bond=m.bond[np.isin(m.bond, m.id[self._kept]).all(axis=1)] if len(m.bond) else m.bond,
+            bond=m.bond[self._kept_bonds],
             surface_of=m.surface_of[self.objects],
             kept=m.kept if self.liquid else {name: record for name, record in m.kept.items() if name != "liquid"},
         )
@@ -128,6 +130,37 @@ class Cut:
         for end in self.bonds.T:
             np.maximum.at(strain, end, stretch)
         return strain
+
+    def of_particles(self, frame: int) -> dict[str, np.ndarray]:
+        """Fields of effects in a frame of the trajectory at each particle, by name, shape (N, ...): its own values, those of its
+        object, and the largest of its springs."""
+        m, t, found = self.metadata, self.trajectory, {}
+        for field in m.fields:
+            if field.per not in PARTS:
+                continue
+            values = t.field(field.name, frame)
+            if field.per == "particle":
+                values = values[self._kept]
+            elif field.per == "object":
+                values = values[self.objects][m.object_of]
+            else:
+                mine, values = values[self._kept_bonds], np.zeros((len(m.id), *field.shape))
+                for end in self.bonds.T:
+                    np.maximum.at(values, end, mine)
+            found[field.name] = values
+        return found
+
+    def of_objects(self, frame: int) -> dict[str, np.ndarray]:
+        """Numbers of effects in a frame of the trajectory for each object, by name; parts of a vector are ``NAME_x``, or
+        ``NAME_1``, and so on, each of shape (O,)."""
+        found = {}
+        for field in self.metadata.fields:
+            if field.per != "object":
+                continue
+            parts = self.trajectory.field(field.name, frame)[self.objects].reshape(len(self.objects), -1).T
+            ends = "xyz" if field.shape == (3,) else map(str, range(1, len(parts) + 1))
+            found |= {f"{field.name}_{end}" if field.shape else field.name: part for end, part in zip(ends, parts)}
+        return found
 
     @cached_property
     def _rest(self) -> np.ndarray:

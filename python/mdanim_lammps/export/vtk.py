@@ -38,6 +38,7 @@ def write(cut: Cut, folder: Path, stem: str, on_frame: Callable[[int], None]) ->
                     "layer": m.layer,
                     "velocity": cut.velocity(frame),
                     "strain": cut.strain(x),
+                    **cut.of_particles(frame),
                 },
             ),
         }

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
+from ..effects.fields import OF_OBJECTS
 from ..effects.kept import kinds
 from ..errors import OutputError
 from ..scene.formatting import number, say
@@ -72,12 +73,12 @@ def compare(a: Path, b: Path) -> Difference:
         for i in range(len(first)):
             x, y = first.position(i), second.position(i)
             told = [{field.name: t.field(field.name, i) for field in fields} for t in (first, second)]
-            unlike = [f for f in fields if not np.array_equal(*(values[f.name] for values in told), equal_nan=True)]
+            unlike = [f for f in fields if not _equal(*(values[f.name] for values in told))]
             bodies = not np.array_equal(x, y) or not np.array_equal(first.velocity(i), second.velocity(i))
             if not bodies and not unlike:
                 continue
             apart = [part for record in records[0].values() if (part := record.apart(*told)) is not None]
-            if bodies or not apart or any(f.per == "object" for f in unlike):
+            if bodies or not apart or any(f.per in OF_OBJECTS for f in unlike):
                 distance = np.linalg.norm(x - y, axis=1)
                 worst = int(distance.argmax())
                 apart.insert(0, (first.names[first.metadata.object_of[worst]], float(distance[worst])))
@@ -87,3 +88,10 @@ def compare(a: Path, b: Path) -> Difference:
         if found is None:
             return Difference(len(first))
         return Difference(len(first), *found, largest)
+
+
+def _equal(a: np.ndarray, b: np.ndarray) -> bool:
+    """Whether two arrays have the same values; NaN is equal to NaN."""
+    if a.dtype.names:
+        return a.shape == b.shape and all(_equal(a[name], b[name]) for name in a.dtype.names)
+    return np.array_equal(a, b, equal_nan=True)

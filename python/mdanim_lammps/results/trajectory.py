@@ -171,12 +171,18 @@ class Trajectory(*TRACKS):
     def field(self, name: str, frame: int) -> np.ndarray:
         """Values of an effect in a frame, by the name of one of ``metadata.fields``, in its shape and unit.
 
-        Raises KeyError that names a near field.
+        They are of all objects, of stored particles (as `position`) or of stored springs (as ``metadata.bond``); those of pairs
+        of objects are rows ``a``, ``b``, the numbers of both from 0, and ``value``.
+
+        Raises KeyError that names a near field, OutputError.
         """
-        known = {field.name: field.table for field in self.metadata.fields}
+        known = {field.name: field for field in self.metadata.fields}
         if name not in known:
             raise KeyError(f"frames have no field {name!r}; {did_you_mean(name, known) or 'no effect of the scene has any'}")
-        return self._read(known[name], frame)
+        found = known[name].from_table(self._read(known[name].table, frame))
+        if known[name].per == "pair" and not ((found["a"] < found["b"]) & (found["b"] < len(self.names))).all():
+            raise OutputError(f"{self.path}: damaged: a row of {name} in frame {frame} is of objects that are not there")
+        return found
 
     def surface(self, frame: int) -> pyvista.PolyData:
         """Surfaces of all objects in one frame [m], as one mesh.

@@ -15,7 +15,7 @@ import os
 import zlib
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -261,6 +261,7 @@ def _write_tables(file: h5py.File, metadata: TrajectoryMetadata, frames: int, dt
     time = particles.create_dataset("position/time", data=np.full(frames, np.nan))
     time.attrs["unit"] = "s"
     quantities = list(_quantities(metadata))
+    kinds_of_fields = {of.table: of.per for of in metadata.fields if of.table == f"{FIELDS}/{of.name}" and of.per != "object"}
     own.create_dataset(CHECKSUM, data=np.zeros((frames, 1 + len(quantities)), np.uint32))
     for name, above, shape, real, unit in quantities:
         group = file.require_group(f"{above}/{name}")
@@ -268,6 +269,8 @@ def _write_tables(file: h5py.File, metadata: TrajectoryMetadata, frames: int, dt
         # H5MD's own attribute is `unit`, but MDAnalysis refuses a file whose length unit it does not
         # know, and it knows no metre; so `units` says it everywhere and `unit` where it is understood.
         value.attrs["units"] = unit
+        if name in kinds_of_fields:
+            value.attrs["per"] = kinds_of_fields[name]
         if unit != "m":
             value.attrs["unit"] = unit
         for key, dataset in ((STEP, step), (TIME, time)):
@@ -397,18 +400,19 @@ def _shapes(file: h5py.File, kind: type[KeptRecord]) -> dict[str, tuple[int, ...
 
 def _read_fields(file: h5py.File) -> tuple[Field, ...]:
     values = {name: file[f"observables/{FIELDS}/{name}/value"] for name in _names_of_fields(file)}
-    return tuple(
-        Field(
-            name,
-            _string(value.attrs["units"]),
-            "object",
-            value.dtype.name,
-            value.shape[2:],
-            table=f"{FIELDS}/{name}",
-            counts=(len(file["parameters/mdanim/name"]),),
-        )
-        for name, value in values.items()
-    )
+    counts = {
+        "object": len(file["parameters/mdanim/name"]),
+        "particle": len(file["particles/all/id"]),
+        "bond": len(file["connectivity/bonds"]),
+    }
+    found = []
+    for name, value in values.items():
+        per, rows, shape = _string(value.attrs.get("per", "object")), value.shape[1], value.shape[2:]
+        if per == "pair":
+            shape = () if shape == (3,) else (shape[0] - 2,)
+        of = Field(name, _string(value.attrs["units"]), per, value.dtype.name, shape, table=f"{FIELDS}/{name}")
+        found.append(replace(of, counts=(rows if per == "pair" else counts[per],)))
+    return tuple(found)
 
 
 def _names_of_fields(file: h5py.File) -> list[str]:

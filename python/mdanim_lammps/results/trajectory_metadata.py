@@ -9,7 +9,7 @@ from functools import cached_property
 
 import numpy as np
 
-from ..effects.fields import Field
+from ..effects.fields import OF_OBJECTS, Field
 from ..effects.kept import KeptRecord, records_of
 from ..model.grid import Grid
 from ..model.model import Layer, Model, Surface
@@ -116,14 +116,14 @@ def metadata_of(
         models: one per solid, named like the solids.
         scene_text: the expanded scene, kept so that pictures need nothing but the trajectory.
         grid: cells of the scene's liquid; None where there is none, or where it is switched off.
-        fields: what effects tell of a frame; those per object are stored, besides those of features.
+        fields: what effects tell of a frame; those of things that objects have are stored, besides those of features.
     """
     solids = {solid.name: solid for solid in scene.solids}
     named, records = [solids[model.name] for model in models], records_of(scene, grid)
     stored = [stored_particles(model, scene.control.save) for model in models]
     offsets = np.cumsum([0] + [len(model.position) for model in models])
     surfaces, surface_of = distinct_surfaces(models, stored)
-    bonds = [m.spring[kept[m.spring].all(axis=1)] + (o + 1) for m, kept, o in zip(models, stored, offsets)]
+    bonds = [m.spring[stored_springs(m, kept)] + (o + 1) for m, kept, o in zip(models, stored, offsets)]
     everywhere = _joined(stored, bool)
     return TrajectoryMetadata(
         title=scene.title,
@@ -141,17 +141,32 @@ def metadata_of(
         surfaces=surfaces,
         surface_of=surface_of,
         kept=records,
-        fields=kept_fields(records, fields, len(models)),
+        fields=kept_fields(records, fields, models, scene.control.save),
         save=scene.control.save,
         single=scene.control.single,
         scene_text=scene_text,
     )
 
 
-def kept_fields(records: Mapping[str, KeptRecord], fields: Iterable[Field], objects: int) -> tuple[Field, ...]:
-    """Fields that frames of a trajectory have: those of the records of features, and those per object, by name."""
-    told = sorted((of for of in fields if of.per == "object"), key=lambda of: of.name)
-    tables = (replace(of, table=f"{FIELDS}/{of.name}", counts=(objects,)) for of in told)
+def stored_springs(model: Model, stored: np.ndarray) -> np.ndarray:
+    """Springs of one object that the trajectory holds, those between `stored_particles`, bool, shape (S,)."""
+    return stored[model.spring].all(axis=1)
+
+
+def kept_fields(
+    records: Mapping[str, KeptRecord], fields: Iterable[Field], models: Sequence[Model], save: Save
+) -> tuple[Field, ...]:
+    """Fields that frames of a trajectory have: those of the records of features, and those per object, pair of objects, stored
+    particle or stored spring, by name."""
+    told = sorted((of for of in fields if of.per in OF_OBJECTS), key=lambda of: of.name)
+    counts = {"object": len(models)}
+    if any(of.per in ("particle", "bond") for of in told):
+        stored = [stored_particles(model, save) for model in models]
+        counts["particle"] = sum(int(kept.sum()) for kept in stored)
+        counts["bond"] = sum(int(stored_springs(model, kept).sum()) for model, kept in zip(models, stored))
+    tables = (
+        replace(of, table=f"{FIELDS}/{of.name}", counts=of.counts if of.per == "pair" else (counts[of.per],)) for of in told
+    )
     return (*(of for record in records.values() for of in record.fields()), *tables)
 
 

@@ -32,7 +32,7 @@ from .trajectory_file import (
     part_of,
     row_checksum,
 )
-from .trajectory_metadata import metadata_of
+from .trajectory_metadata import metadata_of, stored_particles, stored_springs
 
 
 class TrajectoryWriter:
@@ -50,7 +50,7 @@ class TrajectoryWriter:
         steps_per_frame: time steps between frames.
         scene_text: the expanded scene, so that pictures need no other file.
         grid: cells that effects of the scene use; None without any.
-        fields: what effects tell of a frame; those per object are stored, besides those of features.
+        fields: what effects tell of a frame; those of things that objects have are stored, besides those of features.
 
     Raises:
         OutputError: the file cannot be written, e.g. because the disk is full.
@@ -141,6 +141,12 @@ class TrajectoryWriter:
         # Masses of all particles, stored or not: the centre of mass is that of the whole object.
         self._mass = np.concatenate([model.mass for model in models])
         self._starts = np.cumsum([0] + [len(model.position) for model in models][:-1])
+        self._stored: dict[str, np.ndarray] = {}
+        """Particles and springs that the file has, of all, bool, for fields of these."""
+        if any(of.per in ("particle", "bond") for of in self.metadata.fields):
+            kept = [stored_particles(model, self.metadata.save) for model in models]
+            springs = [stored_springs(model, particles) for model, particles in zip(models, kept)]
+            self._stored = {"particle": np.concatenate(kept), "bond": np.concatenate(springs)}
         self._writer, self._closed = RowWriter(self.rows), False
 
     def write(
@@ -165,7 +171,8 @@ class TrajectoryWriter:
                 raise ValueError(f"{name} must have shape ({self.metadata.total}, 3), found {np.shape(array)}")
         if unknown := set(fields) - {of.name for of in self.metadata.fields}:
             raise ValueError(f"frames of this trajectory have no {', '.join(sorted(unknown))}")
-        self._check_frame(step, fields)
+        self._check_frame(step)
+        self._tables_of(fields)
         checksums = self._writer.write(self._count, [slice(0, self.metadata.total)], position, velocity)
         means = (centers(self._mass, self._starts, values) for values in (position, velocity))
         self.add(step, time, checksums, *means, fields)
@@ -192,12 +199,8 @@ class TrajectoryWriter:
             OutputError: the frame cannot be written; those before it are kept.
             ValueError: as in `write`.
         """
-        self._check_frame(step, fields)
-        values = {"center_of_mass": center, "center_of_mass_velocity": center_velocity}
-        for of in self.metadata.fields:
-            value = fields[of.name]
-            rest = of.whole_shape[0] - len(value) if of.per == "row" else 0
-            values[of.table] = np.pad(value, ((0, rest), *((0, 0) for _ in of.shape))) if rest else value
+        self._check_frame(step)
+        values = {"center_of_mass": center, "center_of_mass_velocity": center_velocity, **self._tables_of(fields)}
         values = {name: np.ascontiguousarray(value, self._tables[name].dtype) for name, value in values.items()}
         sums = [row_checksum(step, time), *checksums.tolist(), *map(checksum, values.values())]
         for name, value in (values | {CHECKSUM: np.array(sums, np.uint32), TIME: np.float64(time)}).items():
@@ -206,12 +209,22 @@ class TrajectoryWriter:
         self._last_step = int(step)
         self._pending.append(self._last_step)
 
-    def _check_frame(self, step: int, fields: Fields) -> None:
+    def _tables_of(self, fields: Fields) -> dict[str, np.ndarray]:
+        """Values of all tables of fields in a frame."""
+        found = {}
         for of in self.metadata.fields:
-            if of.name not in fields or not of.fits(fields[of.name]):
-                found = np.shape(fields[of.name]) if of.name in fields else None
-                rows = " or fewer rows" if of.per == "row" else ""
-                raise ValueError(f"{of.name} must have the shape {of.whole_shape}{rows}, found {found}")
+            value = of.to_table(fields[of.name]) if of.name in fields else None
+            if value is not None and of.per in self._stored and len(value) == len(self._stored[of.per]):
+                value = value[self._stored[of.per]]
+            if value is None or not of.fits(value):
+                rows = " or fewer rows" if of.per in ("row", "pair") else ""
+                shape = None if value is None else np.shape(value)
+                raise ValueError(f"{of.name} must have the shape {of.whole_shape}{rows}, found {shape}")
+            rest = of.whole_shape[0] - len(value) if of.per in ("row", "pair") else 0
+            found[of.table] = np.pad(value, ((0, rest), *((0, 0) for _ in np.shape(value)[1:]))) if rest else value
+        return found
+
+    def _check_frame(self, step: int) -> None:
         if step <= self._last_step:
             raise ValueError(f"step must be larger than that of the frame before ({self._last_step}), found {step}")
         if self._count == self._frames:

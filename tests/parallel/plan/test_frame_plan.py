@@ -125,6 +125,17 @@ def test_the_pool_connects():
     assert made.label.tolist() == [0, 0, 1, 0] and made.owner.tolist() == [0, 0, 1, 0]
 
 
+def test_what_is_joined_is_one_island():
+    """However far apart it is; what is still and joined is a guest, which connects nothing else."""
+    low = np.arange(0.0, 60.0, 10.0)[:, None] * (1.0, 0.0, 0.0)
+    at = dict(low=low, high=low + 1.0, d=np.full(6, 0.1), cost=np.full(6, 10), owner=np.arange(6) % 3, executors=3)
+    at |= dict(particles=np.full(6, 100), still=np.arange(6) == 5, gap=0.0, feels=np.zeros(6, bool))
+    assert plan(**at).label.tolist() == [0, 1, 2, 3, 4, -1]
+    made = plan(**at, joined=np.array([(0, 3), (3, 4), (1, 5), (2, 5)]))
+    assert made.label.tolist() == [0, 1, 2, 0, 0, -1] and made.guests.tolist() == [[1, 5], [2, 5]]
+    assert len(set(made.owner[[0, 3, 4]])) == 1
+
+
 def test_teams_are_handed_on():
     """Keep a team for an island that would get none anew."""
     count = 41

@@ -5,8 +5,12 @@ import numpy as np
 import pytest
 import whole
 from distribution_lab import SEQUENTIAL, WINDOWS, matrix, ways
+from mdanim_lammps.export import export
+from mdanim_lammps.export.cut import Cut
 from mdanim_lammps.results.checkpoint import Checkpoint
 from mdanim_lammps.results.compare import compare
+from mdanim_lammps.results.ledger import Ledger
+from mdanim_lammps.results.trajectory import Trajectory
 
 pytestmark = pytest.mark.mpi
 
@@ -42,3 +46,60 @@ def test_all_forms_give_the_same(found, way):
     assert alone.records.keys() == {"contact", "rig", "column way", "column most", "column turns"}
     assert alone.records == other.records
     assert other.carried["work"] == pytest.approx(alone.carried["work"], rel=1e-9)
+
+
+def test_frames_have_its_columns(found):
+    """Values of particles, springs, objects and pairs, with their units; those of the checkpoint at the end."""
+    folder = found["all move central3"]
+    with Trajectory(folder) as trajectory:
+        of = {field.name: field for field in trajectory.metadata.fields}
+        told = {name: trajectory.field(name, len(trajectory) - 1) for name in of}
+        bonds, particles, objects = len(trajectory.metadata.bond), len(trajectory.metadata.id), len(trajectory.names)
+        lengths = trajectory.field("most", 0)
+        i, j = np.searchsorted(trajectory.metadata.id, trajectory.metadata.bond.T)
+        apart = np.linalg.norm(np.subtract(*(trajectory.position(0)[k] for k in (i, j))), axis=1)
+    assert {name: field.unit for name, field in of.items()} == {
+        "most": "m",
+        "reached": "m",
+        "taut": "1",
+        "turns": "1",
+        "way": "m",
+    }
+    assert told["way"].shape == (particles, 3) and told["most"].shape == (bonds,) and told["turns"].shape == (objects,)
+    np.testing.assert_allclose(lengths, apart, rtol=1e-12)
+    assert (told["most"] >= lengths).all() and (told["most"] > lengths).any()
+    steps = told["turns"].max()
+    assert (told["turns"] == steps).all() and np.abs(told["way"]).max() > 0.005
+    assert (
+        told["taut"]["a"].tolist() == [0, 2, 4, 6]
+        and (told["taut"]["value"] > 0).all()
+        and (told["taut"]["value"] <= steps).all()
+    )
+    records = Checkpoint.read(folder / "checkpoint").records
+    assert np.array_equal(records["column most"].data.view(float), told["most"])
+
+
+def test_the_work_of_what_is_driven_closes_the_ledger(found):
+    """A table shakes a rider and tethers, in all forms: what it gives is a column, and nothing is missing or too much."""
+    for folder in found.values():
+        ledger = Ledger.read(folder / "ledger.csv")
+        assert np.abs(ledger.array("residual")).max() < 2e-4  # 7e-5: the order of leap-frog
+        assert np.abs(ledger.array("work")).max() > 1.0
+
+
+def test_exports_have_its_columns(found, tmp_path):
+    """A table has those of objects, ParaView's points have those of particles, springs and objects."""
+    folder = found["teams peers2"]
+    export(folder, "csv", tmp_path / "table.csv", frames=slice(8, 9))
+    header, *rows = (tmp_path / "table.csv").read_text().splitlines()
+    assert header.split(",")[-2:] == ["reached", "turns"] and len(rows) == 8
+    with Trajectory(folder) as trajectory:
+        points = Cut(trajectory, ["arm", "far"], 1, slice(8, 9)).of_particles(8)
+        most, turns = trajectory.field("most", 8), trajectory.field("turns", 8)
+        inside = np.isin(trajectory.metadata.object_of, (2, 5))
+        i, j = np.searchsorted(trajectory.metadata.id, trajectory.metadata.bond.T)
+    largest = np.zeros(len(inside))
+    np.maximum.at(largest, i, most)
+    np.maximum.at(largest, j, most)
+    assert np.array_equal(points["most"], largest[inside]) and (points["turns"] == turns[0]).all()
+    assert points["way"].shape == (inside.sum(), 3) and points["reached"].shape == (inside.sum(),)

@@ -15,7 +15,7 @@ FREQUENCY = 12.0
 """[Hz]"""
 TETHER = 400.0
 """Stiffness of a tether [N/m]; as it is at the start, it is free of stress."""
-TAUT = Field("taut", "1", per="pair")
+TAUT = Field("taut", "1", per="pair", counts=(8,))
 """Steps in which a tether was longer than at the start."""
 HOME = column("home", "m", shape=(3,))
 WAY = column("way", "m", shape=(3,), state=True)
