@@ -156,7 +156,7 @@ def test_size_with_a_liquid_is_known_before(tmp_path):
     scene, models, grid = pool_scene(spacing=0.02)
     heights = splash(grid)
     path = write(tmp_path / "t.h5", scene, models, wet_frames(models, *[(heights, heights)] * 60), grid)
-    said = trajectory_bytes(models, 60, fields=kept_fields(records_of(scene, grid), (), len(models)))
+    said = trajectory_bytes(models, 60, fields=kept_fields(records_of(scene, grid), (), models, scene.control.save))
     assert said == pytest.approx(path.stat().st_size, rel=0.1)
     assert said > 2 * trajectory_bytes(models, 60)
 

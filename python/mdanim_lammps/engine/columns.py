@@ -78,6 +78,11 @@ def property_of(field: Field, slots: int) -> Property:
     )
 
 
+def wide_columns(plan: Plan) -> list[str]:
+    """Columns of several floating-point numbers: a line of a data file, of 255 signs in LAMMPS, has no room for them."""
+    return [name for name, field in plan.fields.items() if property_of(field, plan.slots).name.startswith("d2_")]
+
+
 def spread(plan: Plan, name: str, values: np.ndarray | None = None) -> np.ndarray:
     """A column as its property has it, shape (N,) or (N, width); None for its values at the start."""
     field, system = plan.fields[name], plan.system

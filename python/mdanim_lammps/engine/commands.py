@@ -6,7 +6,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..scene.lammps_lines import check_trust
-from .columns import property_of
+from .columns import property_of, wide_columns
 from .plan import DRIVEN, HELD, Plan
 
 SKIN = 1.5
@@ -47,7 +47,9 @@ def prelude(plan: Plan) -> list[str]:
     # The last is LAMMPS's own estimate for bonds: below it, it warns at every rebuild.
     cutoff = max(GHOST * plan.spacing, 1.001 * (reach + skin), 1.5 * longest + 1.001 * skin)
     velocities = " vel yes" if plan.damped else ""
-    columns = "".join(f" {property_of(field, plan.slots).word}" for field in plan.fields.values())
+    wide = wide_columns(plan)
+    words = {name: f" {property_of(field, plan.slots).word}" for name, field in plan.fields.items()}
+    columns, tables = ("".join(word for name, word in words.items() if (name in wide) == of_wide) for of_wide in (False, True))
     return [
         "units si",
         "atom_style bond",
@@ -61,6 +63,7 @@ def prelude(plan: Plan) -> list[str]:
         "pair_style none",
         "special_bonds lj/coul 1 1 1",
         *(["bond_style mdanim/harmonic"] if len(plan.bonds) else []),
+        *([f"fix tables all property/atom{tables} ghost yes"] if wide else []),
         f"fix model all property/atom rmass{columns} ghost yes",
     ]
 
@@ -94,6 +97,18 @@ def _with_bodies(plan: Plan, commands: list[str]) -> list[str]:
     return [f"{c} bodies contact.{plan.name}" if fixes and c.startswith(fixes) else c for c in commands]
 
 
+def _wide_columns(plan: Plan) -> list[str]:
+    """Commands that set them from their file, number by number in its order."""
+    if not (wide := wide_columns(plan)):
+        return []
+    tables = [property_of(plan.fields[name], plan.slots) for name in wide]
+    numbers = [f"{table.name}[{n}]" for table in tables for n in range(1, table.width + 1)]
+    lines = [f"variable columns atomfile columns.{plan.name}"]
+    for number in numbers:
+        lines += [f"set group all {number} v_columns", "next columns"]
+    return lines[:-1]
+
+
 def input_script(plan: Plan) -> str:
     """The text of ``in.NAME``: runs alone with ``lmp -in in.NAME``, on any number of ranks, to the same bits."""
     c = plan.certificate
@@ -116,6 +131,7 @@ def input_script(plan: Plan) -> str:
             "",
             *prelude(plan),
             f"read_data data.{plan.name} fix model NULL Model",
+            *_wide_columns(plan),
             "",
             *_with_bodies(plan, physics(plan)),
             "",

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from ..model.contact_body import ContactBody
-from .columns import spread
+from .columns import spread, wide_columns
 from .commands import bond_coeffs, box
 from .plan import Plan
 
@@ -39,13 +39,24 @@ def data_text(plan: Plan) -> Iterator[str]:
     yield from rows("%d %d %d %r %r %r\n", tag, system.object + 1, plan.kind, *system.position.T)
     yield "\nVelocities\n\n"
     yield from rows("%d %r %r %r\n", tag, *system.velocity.T)
-    numbers = [one for name in plan.columns for one in spread(plan, name).reshape(n, -1).T]
-    yield "\nModel # mass" + "".join(f" {name}" for name in plan.columns) + "\n\n"
+    narrow = [name for name in plan.columns if name not in wide_columns(plan)]
+    numbers = [one for name in narrow for one in spread(plan, name).reshape(n, -1).T]
+    yield "\nModel # mass" + "".join(f" {name}" for name in narrow) + "\n\n"
     yield from rows(f"%d{' %r' * (1 + len(numbers))}\n", tag, system.mass, *numbers)
     if s:
         yield "\nBond Coeffs # mdanim/harmonic\n\n" + "\n".join(bond_coeffs(plan)) + "\n"
         yield "\nBonds\n\n"
         yield from rows("%d %d %d %d\n", np.arange(1, s + 1), plan.bond_kind, plan.bonds[:, 0] + 1, plan.bonds[:, 1] + 1)
+
+
+def write_wide_columns(plan: Plan, path: Path) -> None:
+    """Write ``columns.NAME``, for a variable `atomfile`: for each number of each table a line per particle. Raises OSError."""
+    n = plan.system.particles
+    with open(path, "w", encoding="ascii") as file:
+        for name in wide_columns(plan):
+            for numbers in spread(plan, name).T:
+                file.write(f"# {name}\n{n}\n")
+                file.writelines(rows("%d %r\n", np.arange(1, n + 1), numbers))
 
 
 def write_data(plan: Plan, path: Path) -> None:

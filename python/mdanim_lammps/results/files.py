@@ -94,7 +94,11 @@ def _way_out(path: Path, error: OSError) -> str:
 
 def _is_of_a_run(name: str) -> bool:
     """Whether a run writes a file of this name, not what is made of a run: an export, a page, a picture."""
-    return name in (*RESULTS, MARK) or name.startswith(("in.", "data.", "contact.")) or bool(re.fullmatch(MESHES[1], name))
+    return (
+        name in (*RESULTS, MARK)
+        or name.startswith(("in.", "data.", "contact.", "columns."))
+        or bool(re.fullmatch(MESHES[1], name))
+    )
 
 
 @contextmanager
@@ -157,7 +161,9 @@ def _results(folder: Path) -> Iterator[Path]:
         if script.is_file() and _is_script(script):
             name = script.name.removeprefix("in.")
             # Also the dump that `lmp` leaves of it: it would be taken for the dump of the new run.
-            yield from (folder / own for own in (script.name, f"data.{name}", f"contact.{name}", f"{name}.lammpstrj"))
+            yield from (
+                folder / own for own in (script.name, f"data.{name}", f"contact.{name}", f"columns.{name}", f"{name}.lammpstrj")
+            )
 
 
 def _inside(folder: Path, name: str, own: str) -> list[Path]:

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from .. import features
-from ..effects.fields import Field, Fields, join_fields
+from ..effects.fields import OF_OBJECTS, Field, Fields, join_fields
 from ..engine.instance import Instance
 from ..engine.plan import Plan
 from ..model.system import System
@@ -116,3 +116,9 @@ def losses(instance: Instance) -> dict[str, float]:
 def whole_fields(plan: Plan, parts: Iterable[tuple[np.ndarray, Fields]]) -> dict[str, Any]:
     """The fields of a frame, from those of parts of the plan (fields.join_fields)."""
     return join_fields(frame_fields(plan), plan.rows, plan.system.still, parts, plan.columns)
+
+
+def start_fields(plan: Plan) -> dict[str, Any]:
+    """Fields of things that objects have before the first step, as they are declared."""
+    told = whole_fields(plan, ())
+    return {field.name: told[field.name] for field in frame_fields(plan) if field.per in OF_OBJECTS}

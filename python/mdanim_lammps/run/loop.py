@@ -16,8 +16,9 @@ import numpy as np
 from .. import __version__
 from ..effects.measured import Measured
 from ..effects.readings import LEAPFROG
+from ..engine.columns import wide_columns
 from ..engine.commands import input_script
-from ..engine.data_file import write_bodies, write_data
+from ..engine.data_file import write_bodies, write_data, write_wide_columns
 from ..errors import ExitCode, MdanimError, OutputError
 from ..interrupts import Interrupts
 from ..results.checkpoint import Checkpoint
@@ -30,7 +31,16 @@ from ..results.trajectory import Trajectory
 from ..results.trajectory_writer import TrajectoryWriter
 from ..scene.formatting import number
 from ..scene.meshes import mesh_files
-from .energy import extra_fields, frame_fields, least_energy, ledger_terms, loss_terms, potential_terms, source_terms
+from .energy import (
+    extra_fields,
+    frame_fields,
+    least_energy,
+    ledger_terms,
+    loss_terms,
+    potential_terms,
+    source_terms,
+    start_fields,
+)
 from .frame_source import COST_SECONDS, Account, Frame, FrameSource, LammpsFailure, Sequential, clock
 from .guard import Guard
 from .prepare import Prepared
@@ -86,6 +96,8 @@ def write_inputs(ready: Prepared, folder: Path) -> None:
     write_whole(folder / f"data.{plan.name}", lambda part: write_data(plan, part))
     if plan.body_fixes:
         write_whole(folder / f"contact.{plan.name}", lambda part: write_bodies(plan, part))
+    if wide_columns(plan):
+        write_whole(folder / f"columns.{plan.name}", lambda part: write_wide_columns(plan, part))
     write_whole(folder / f"in.{plan.name}", input_script(plan))
 
 
@@ -116,7 +128,7 @@ def write_start(ready: Prepared, folder: Path) -> Path:
     with trajectory_writer(ready, folder, frames=1) as out:
         if ready.plan.grid is None:
             # As the system says; LAMMPS, which takes a quarter of a second to start, is asked for a liquid alone.
-            out.write(0, 0.0, ready.system.position, ready.system.velocity)
+            out.write(0, 0.0, ready.system.position, ready.system.velocity, start_fields(ready.plan))
         else:
             with Sequential(ready.plan, ready.models) as source:
                 _add(out, source.begin(None, out.rows), 0.0)

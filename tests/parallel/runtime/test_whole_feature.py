@@ -1,14 +1,21 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """A feature with all that one may have, tests/lab/features/whole, gives the same bits in all forms of the distribution."""
 
+import os
+import signal
+import subprocess
+import sys
+
 import numpy as np
+import plugin_path
 import pytest
 import whole
-from distribution_lab import SEQUENTIAL, WINDOWS, matrix, ways
+from distribution_lab import SEQUENTIAL, WINDOWS, matrix, of_features, ways
 from mdanim_lammps.export import export
 from mdanim_lammps.export.cut import Cut
 from mdanim_lammps.results.checkpoint import Checkpoint
 from mdanim_lammps.results.compare import compare
+from mdanim_lammps.results.dump import read_dump
 from mdanim_lammps.results.ledger import Ledger
 from mdanim_lammps.results.trajectory import Trajectory
 
@@ -103,3 +110,54 @@ def test_exports_have_its_columns(found, tmp_path):
     np.maximum.at(largest, j, most)
     assert np.array_equal(points["most"], largest[inside]) and (points["turns"] == turns[0]).all()
     assert points["way"].shape == (inside.sum(), 3) and points["reached"].shape == (inside.sum(),)
+
+
+PROGRAM = """
+import os, signal, sys
+from pathlib import Path
+from mdanim_lammps.results.checkpoint import Checkpoint
+from mdanim_lammps.run import loop
+from mdanim_lammps.run.prepare import prepare
+from mdanim_lammps.scene.parse import load_scene
+
+scene, folder, kill = Path(sys.argv[1]), Path(sys.argv[2]), int(sys.argv[3])
+ready, loop.CHECKPOINT_SECONDS = prepare(load_scene(scene)), 0.0
+if kill:
+    folder.mkdir()
+    loop.write_inputs(ready, folder)
+resume = None if kill else Checkpoint.read(folder / "checkpoint")
+assert kill or resume.frame == 4
+loop.simulate(ready, folder, resume=resume, on_progress=lambda p: p.frame == kill and os.kill(os.getpid(), signal.SIGKILL))
+"""
+"""Runs a scene and is killed in the middle of a frame, which counts from 1; with 0 it goes on."""
+
+
+@pytest.fixture(scope="module")
+def killed(found):
+    """The folder of a run that was killed and gone on with."""
+    folder = found["sequential"].parent / "killed"
+    env = {**plugin_path.environment(), **of_features("whole"), "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
+    for kill in (5, 0):
+        command = [sys.executable, "-c", PROGRAM, folder.parent / "scene.txt", folder, str(kill)]
+        done = subprocess.run(command, env=env, capture_output=True, text=True, timeout=120)
+        assert done.returncode == (-signal.SIGKILL if kill else 0), done.stderr
+    return folder
+
+
+def test_a_run_that_is_killed_goes_on(found, killed):
+    """From the checkpoint of the frame before, to the same frames, state and work."""
+    test_all_forms_give_the_same(found | {"killed": killed}, "killed")
+
+
+def test_plain_lammps_gives_the_same(found, killed):
+    """The script and data of the scene for two frames, with two ranks; columns come by the section Model and by their file."""
+    env = {**plugin_path.environment(), **of_features("whole")}
+    script = killed / "in.scene"
+    text, steps = script.read_text().split("\nrun ")
+    script.write_text(f"{text}\nrun {int(steps) // 4}\n")
+    command = [plugin_path.BIN / "mpiexec", "-n", "2", plugin_path.BIN / "lmp", "-in", "in.scene", "-log", "none", "-nocite"]
+    done = subprocess.run(command, cwd=killed, env=env, capture_output=True, text=True, timeout=120)
+    assert done.returncode == 0, done.stdout[-2000:] + done.stderr
+    with Trajectory(found["sequential"]) as trajectory:
+        film = np.array([trajectory.position(n) for n in range(3)])
+    assert np.array_equal([x for _, x, _ in read_dump(killed / "scene.lammpstrj", film.shape[1])], film)
