@@ -198,7 +198,7 @@ def test_effects_with_nothing_to_act_on_are_left_out(prepared):
     assert [e.name for e in dry.effects] == ["springs", "damping", "gravity", "contact", "basin", "air-drag"]
     bodies = {"body", "young", "friction"}
     assert set(dry.columns) == {*bodies, "stiffness", "reach", "lambda"} and dry.grid is None
-    assert set(pond.part((0,), True).columns) == {*bodies, "lambda", "volume", "gamma", "air"}
+    assert set(pond.part((0,), True).columns) == {*bodies, "lambda", "volume", "gamma", "air", "cell"}
 
 
 @pytest.mark.parametrize(
