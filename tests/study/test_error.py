@@ -261,5 +261,5 @@ def test_advice_for_a_scene_without_order():
         points[s.key] = Point(s, 1e-3, 100, 10, [1.0], [1.0], [1e-5], [0.0], [()], [wild])
     found = analyse(points, [ladder], own, TIMES, (), ["a", "b"])
     assert found.chaotic
-    assert "forgets how it began" in advice(found)
+    assert "is chaotic" in advice(found)
     assert "e-fold every 0.06" in advice(found)

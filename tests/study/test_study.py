@@ -147,7 +147,7 @@ def test_ctrl_c_keeps_what_is_there(tmp_path, monkeypatch):
         return simulate(*arguments, **options)
 
     monkeypatch.setattr("mdanim_lammps.study.measure.simulate", interrupted)
-    with pytest.raises(Interrupted, match="the same command goes on"):
+    with pytest.raises(Interrupted, match="the same command continues"):
         run_study(scene, tmp_path / "study", budget=30.0)
     assert len(json.loads((tmp_path / "study" / "study.json").read_text())["points"]) == 2
     assert sorted(p.name for p in (tmp_path / "study").iterdir()) == ["study.json", "tracks"]

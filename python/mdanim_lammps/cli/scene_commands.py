@@ -201,7 +201,7 @@ def study(
     """Measure what accuracy costs in time: ladders of settings around the scene's own, with a table, a plot and advice.
 
     With --target the cheapest setting that has this error, and what to write into the scene for it.
-    Points that were measured before are not measured again: the same command goes on where it was stopped.
+    Points that were measured before are not measured again: the same command continues where it was stopped.
 
     Parameters
     ----------

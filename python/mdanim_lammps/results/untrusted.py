@@ -127,12 +127,12 @@ def check_metadata(path: Path, m: TrajectoryMetadata) -> None:
         particles == 0 or (m.id[0] >= 1 and (np.diff(m.id) > 0).all() and m.id[-1] <= m.total), "tags of particles do not ascend"
     )
     must(np.isin(m.bond, m.id).all(), "a spring joins a particle that is not stored")
-    must(((m.surface_of >= 0) & (m.surface_of < len(m.surfaces))).all(), "an object wears a surface that is not there")
+    must(((m.surface_of >= 0) & (m.surface_of < len(m.surfaces))).all(), "an object has a surface that is not there")
     fewest = np.full(len(m.surfaces), np.iinfo(np.int64).max)
     np.minimum.at(fewest, m.surface_of, sizes)
     for surface, size in zip(m.surfaces, fewest):
         vertices = len(surface.index)
-        must(((surface.index >= 0) & (surface.index < size)).all(), "a surface hangs on a particle that its object does not have")
+        must(((surface.index >= 0) & (surface.index < size)).all(), "a surface has a particle that its object does not have")
         must(((surface.triangle >= 0) & (surface.triangle < vertices)).all(), "a triangle has a vertex that is not there")
         must(np.isfinite(surface.weight).all(), "a weight of a surface is NaN or infinite")
         color = surface.color

@@ -30,7 +30,7 @@ for a moment, and come back."""
 CRUMPLED = 0.05
 """Part of the cells of a solid that may stay inside out: a dent, with which a body keeps its shape and its energy. With more of
 them it does not (docs/physics-solids.md)."""
-SQUEEZED = "it is probably hit or squeezed harder than its lattice stands"
+SQUEEZED = "it is probably hit or squeezed harder than its lattice bears"
 TOO_LONG = "the step is probably too long for what happens here: no cell is inside out"
 """The cause given for a stop where every margin is kept."""
 FLOWN_APART = (
@@ -115,7 +115,7 @@ class Guard:
             raise self.error_at(
                 step,
                 f"{stuck[m]} of its {self.cells[m]} cells have been inside out since step "
-                f"{since[owner == m].min()}; springs cannot tell mirrored from right, so they would stay so",
+                f"{since[owner == m].min()}; springs do not tell a cell from its mirror image, so these would stay so",
                 m,
                 "amplitude",
                 "load",

@@ -241,12 +241,12 @@ def advice(a: Analysis) -> str:
     """One plain sentence."""
     own = a.rated[a.own.key]
     if a.scale == 0.0:
-        return "Nothing moves in this scene: every setting gives the same, take the cheapest."
+        return "Nothing moves in this scene, so all settings give the same result: take the cheapest."
     if a.chaotic:
         fold = f"grow e-fold every {number(a.growth.folding, 2)} s and " if math.isfinite(a.growth.folding) else ""
         return (
-            f"This scene forgets how it began: differences between runs {fold}exceed 1 % of the motion from "
-            f"t = {number(a.growth.parted)} s on whatever the setting, so no setting follows it to the end; choose by looks, "
+            f"This scene is chaotic: differences between runs {fold}exceed 1 % of the motion from "
+            f"t = {number(a.growth.parted)} s on with any setting, so no setting is right to the end; choose by appearance, "
             f"by the energy drift and by time."
         )
     if math.isinf(a.doubt):

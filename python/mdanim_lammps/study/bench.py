@@ -119,6 +119,6 @@ class Bench:
             return self.store.points[setting.key]
         except (Interrupted, KeyboardInterrupt) as error:
             raise Interrupted(
-                f"interrupted; {len(self.store.points)} points are kept in {self.store.folder}, the same command goes on"
+                f"interrupted; {len(self.store.points)} points are kept in {self.store.folder}, the same command continues"
             ) from error
         return self.store.add(sample)

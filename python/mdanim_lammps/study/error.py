@@ -117,7 +117,7 @@ def _orders(steps: Sequence[float], tracks: Sequence[np.ndarray], scale: float) 
     every, used, why = _order_of_all(steps, tracks, scale)
     ratio = _ratio(*tracks[-3:])
     if ratio is None:
-        return None, 0, why or "the finest runs do not approach each other one way"
+        return None, 0, why or "the last two steps of the ladder go in different directions"
     orders = [order for order in (every, _order_of_three(steps[-3:], ratio)) if order is not None]
     return orders or None, used or 3, why
 

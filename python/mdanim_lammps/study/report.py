@@ -171,7 +171,7 @@ def order_lines(study: Study) -> list[str]:
     g = study.analysis.growth
     if study.analysis.chaotic and math.isfinite(g.folding):
         lines.append(
-            f"runs part: differences grow e-fold every {number(g.folding, 2)} s, "
+            f"runs diverge: differences grow e-fold every {number(g.folding, 2)} s, "
             f"beyond 1 % of the motion from t = {number(g.parted)} s on"
         )
     return lines + [f"{name}: left out, {why}" for name, why in study.left_out.items()]
