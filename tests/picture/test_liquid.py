@@ -15,7 +15,7 @@ from mdanim_lammps.picture.render import Painter
 from mdanim_lammps.results.trajectory import Trajectory
 from mdanim_lammps.scene.render import Camera, Render
 from picture_measures import SIZE, dry, hue_mask, project, spot
-from picture_samples import box, column_centres, dam, flat, pool_scene, raw_of, splash, wet_frames, write
+from picture_samples import box, column_centres, dam, flat, pool_scene, raw_of, splash, wet_frames, with_drops, write
 
 GRID = Grid((-1.0, -0.7, 0.2), (1.0, 0.7, 1.2), (20, 14, 10))
 SIDE = Render(camera=(Camera((0.0, -4.5, 0.9), (0.0, 0.0, 0.45)),))
@@ -407,7 +407,7 @@ def test_drops_are_seen_where_they_fly(tmp_path):
     place = np.array([0.0, -0.5, 0.8])
     drops = [np.zeros((0, 4)), np.array([[*place, 0.04]]), np.zeros((0, 4))]
     frames = wet_frames(models, *[(flat(grid), raw_of(grid, flat(grid), models))] * 3)
-    path = write(tmp_path / "t.h5", scene, models, [(*f, d) for f, d in zip(frames, drops)], grid)
+    path = write(tmp_path / "t.h5", scene, models, map(with_drops, frames, drops), grid)
     with Trajectory(path) as t, Painter(t, SIDE, size=SIZE) as painter:
         without, one, after = (painter.frame(n)[:-30].astype(float) / 255 for n in range(3))  # the time stands below
         (x, y), _ = (a[0] for a in project(painter.view(1), place[None], SIZE[0] / SIZE[1]))
@@ -438,7 +438,8 @@ def test_what_sinks_has_not_fallen_out_of_the_scene(tmp_path):
         frames = []
         for i in range(5):
             x = models[0].position - [0.0, 0.0, drop * i / 4]
-            frames.append((10 * i, 0.1 * i, x, np.zeros_like(x), (flat(grid), flat(grid))))
+            heights = {"liquid_height": flat(grid), "liquid_raw": flat(grid)}
+            frames.append((10 * i, 0.1 * i, x, np.zeros_like(x), heights))
         with Trajectory(write(tmp_path / f"{drop}.h5", scene, models, frames, grid)) as t:
             assert action_of(t).escaped is escaped
 
