@@ -190,6 +190,22 @@ CPP_CLASS = (
 )
 
 
+MOST_MEMBERS, MOST_LINES = 30, 400
+TOO_LARGE = {"Instance", "Executor"}
+"""May only shrink."""
+
+
+def test_no_class_is_too_large():
+    """Of members in its own body, and of lines."""
+    found = {}
+    for path in ROOT.rglob("*.py"):
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.ClassDef):
+                members = sum(isinstance(n, ast.FunctionDef | ast.Assign | ast.AnnAssign) for n in node.body)
+                found[node.name] = members > MOST_MEMBERS or node.end_lineno - node.lineno > MOST_LINES - 1
+    assert {name for name, large in found.items() if large} == TOO_LARGE
+
+
 @pytest.mark.parametrize(
     ("folder", "pattern", "known"),
     [

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -38,30 +39,56 @@ class Drive:
     """Largest speed of any of them [m/s]."""
 
 
-class Motion(Protocol):
-    """Declarations of an effect on how it moves solids (effects/effect.py); all of them may be asked of any scene."""
+class Motion:
+    """How an effect moves solids; all of it may be asked of any scene."""
 
-    binds: bool
+    binds = False
+    """Whether it holds the particles of a solid together."""
 
-    def acceleration(self, scene: SceneRecord) -> np.ndarray | None: ...
+    def acceleration(self, scene: SceneRecord) -> np.ndarray | None:
+        """Acceleration that it gives to everything that is free to move [m/s^2], shape (3,); None for nothing."""
+        return None
 
-    def planes(self, scene: SceneRecord) -> tuple[Plane, ...]: ...
+    def planes(self, scene: SceneRecord) -> tuple[Plane, ...]:
+        """The planes that push solids back, whether the effect is on or not."""
+        return ()
 
-    def slows(self, scene: SceneRecord) -> np.ndarray | None: ...
+    def slows(self, scene: SceneRecord) -> np.ndarray | None:
+        """Solids that it slows down wherever they are, bool, shape (M,)."""
+        return None
 
-    def rough(self, scene: SceneRecord) -> np.ndarray | None: ...
+    def rough(self, scene: SceneRecord) -> np.ndarray | None:
+        """Solids that its planes may push along themselves, bool, shape (M,)."""
+        return None
 
-    def pushes_below(self, scene: SceneRecord) -> float: ...
+    def pushes_below(self, scene: SceneRecord) -> float:
+        """Height below which it may push solids in any direction [m]; minus infinity where it does so nowhere."""
+        return -math.inf
 
-    def most_push(self, scene: SceneRecord, bodies: Bodies) -> np.ndarray | float: ...
+    def most_push(self, scene: SceneRecord, bodies: Bodies) -> np.ndarray | float:
+        """Largest force of that kind on each solid over its mass [m/s^2], shape (M,)."""
+        return 0.0
 
-    def surface(self, scene: SceneRecord) -> float | None: ...
+    def surface(self, scene: SceneRecord) -> float | None:
+        """Height below which solids are immersed in it [m]; None where it immerses nothing."""
+        return None
 
-    def lift(self, scene: SceneRecord, system: System) -> np.ndarray | float: ...
+    def lift(self, scene: SceneRecord, system: System) -> np.ndarray | float:
+        """Part of the mass of each immersed solid that it carries [kg], shape (M,)."""
+        return 0.0
 
-    def joins(self, scene: SceneRecord) -> Iterable[tuple[int, int]]: ...
+    def untold(self, scene: SceneRecord) -> str:
+        """Reason why frames do not tell its forces on objects from those of contact; empty where they do."""
+        return ""
 
-    def drives(self, scene: SceneRecord) -> Mapping[int, Drive]: ...
+    def joins(self, scene: SceneRecord) -> Iterable[tuple[int, int]]:
+        """Pairs of solids, by number, that it couples wherever they are: one process simulates both."""
+        return ()
+
+    def drives(self, scene: SceneRecord) -> Mapping[int, Drive]:
+        """Motions that it gives to the held particles of solids, by number. Its fix, in the group `Context.pushed`, sets their
+        positions and velocities, and counts the work that they do."""
+        return {}
 
 
 class Acting:

@@ -189,10 +189,6 @@ class Validator:
 
     # -- several blocks at once
 
-    def head(self, block: EvaluatedBlock) -> Span:
-        """Place of a block's name, or of its word."""
-        return block.head
-
     def one_of_each(self) -> None:
         """Blocks that may stand only once."""
         for kind, rule in BLOCKS.items():
@@ -213,15 +209,13 @@ class Validator:
         for block in (b for b in self.out.blocks if b.block in own):  # as they stand in the scene
             if block.name in first:
                 self.problem(
-                    self.head(block),
+                    block.head,
                     f"the name {block.name} is given twice{block.where}",
-                    f"first given at {self.head(first[block.name])}",
+                    f"first given at {first[block.name].head}",
                     key=("name", id(block.group)),
                 )
             elif block.block == "object" and block.name in GLOBALS:
-                self.problem(
-                    self.head(block), f"an object cannot be called {block.name}: expect uses this word", "take another name"
-                )
+                self.problem(block.head, f"an object cannot be called {block.name}: expect uses this word", "take another name")
             first.setdefault(block.name, block)
 
     def frames(self, control: records.Control | None, render: records.Render | None) -> records.Control | None:
@@ -252,13 +246,13 @@ class Validator:
         for word, keyword in KEYWORDS[block.block].items():
             key = ("missing", id(block.group), keyword.one_of or word)
             if keyword.needed and word not in block.settings and not block.excused(word):
-                self.problem(self.head(block), f"{title} has no {word}{block.where}", example(keyword), key=key)
+                self.problem(block.head, f"{title} has no {word}{block.where}", example(keyword), key=key)
                 good = False
             if keyword.one_of and keyword.one_of[0] == word:
                 given = [w for w in keyword.one_of if w in block.settings]
                 if not given and not block.excused(*keyword.one_of):
                     this = " or ".join(keyword.one_of)
-                    self.problem(self.head(block), f"{title} has no {this}{block.where}", example(keyword), key=key)
+                    self.problem(block.head, f"{title} has no {this}{block.where}", example(keyword), key=key)
                     good = False
                 elif len(given) > 1:
                     second = max((block.first(w) for w in given), key=lambda s: (s.entry.token.line, s.entry.token.column))
@@ -279,7 +273,7 @@ class Validator:
             s = found[0]
             values = [v for v in s.entry.values if v is not None]
             spans[word] = s.between(values[0].first, values[-1].last) if values else s.span()
-        spans[block.block] = self.head(block)
+        spans[block.block] = block.head
         return spans
 
     def corners(self, s: EvaluatedSetting, what: str) -> tuple[Vector, Vector]:
@@ -400,7 +394,7 @@ class Validator:
             if x is None:
                 numbers.append(0.0)
                 continue
-            if n == 4 and (cause := self._tolerance_unfit(relation, part, numbers[0], x)):
+            if n == 4 and (cause := _tolerance_unfit(relation, part, numbers[0], x)):
                 self.problem(s.span(n), *cause)
                 return None
             if units.dimension(x) not in (dim, units.NONE):
@@ -418,17 +412,6 @@ class Validator:
         if part:
             numbers[1] *= abs(numbers[0]) / 100.0
         return records.Expect(subject, quantity, numbers[0], numbers[1], time, relation, argument, s.span())
-
-    @staticmethod
-    def _tolerance_unfit(relation: str, part: bool, value: float, tolerance: Any) -> tuple[str, str] | None:
-        """Cause and way out where a tolerance says nothing."""
-        if relation != "=":
-            return f"a tolerance cannot follow '{relation}'", f"write the bound itself, or = {number(value, 6)} +- ..."
-        if part and units.dimension(tolerance) != units.NONE:
-            return f"per cent is of a plain number, found {units.show(tolerance)}", "leave out the unit, or the per cent"
-        if part and value == 0.0:
-            return "per cent of 0 is nothing", "write a tolerance with the unit of the value"
-        return None
 
     def known_other(self, subject: str, quantity: str, other: str, span: Span) -> bool:
         """Another object."""
@@ -448,3 +431,14 @@ class Validator:
             hint = did_you_mean(subject, [*list(self.names)[:2000], *self.own_names, *GLOBALS])
             self.problem(span, f"no object is called {subject}", hint)
         return False
+
+
+def _tolerance_unfit(relation: str, part: bool, value: float, tolerance: Any) -> tuple[str, str] | None:
+    """Cause and way out where a tolerance says nothing."""
+    if relation != "=":
+        return f"a tolerance cannot follow '{relation}'", f"write the bound itself, or = {number(value, 6)} +- ..."
+    if part and units.dimension(tolerance) != units.NONE:
+        return f"per cent is of a plain number, found {units.show(tolerance)}", "leave out the unit, or the per cent"
+    if part and value == 0.0:
+        return "per cent of 0 is nothing", "write a tolerance with the unit of the value"
+    return None

@@ -122,7 +122,7 @@ def check(v: Any, top: Mapping, held: Mapping) -> None:
     if control is None:
         return
     blocks, words = v.blocks("contact"), {"friction": control.friction, "contact-damping": control.contact_damping}
-    asked = [("a contact block", v.head(b)) for b in blocks]
+    asked = [("a contact block", b.head) for b in blocks]
     asked += [("friction", s.spans["friction"]) for s in held["solids"] if s.friction]
     asked += [(word, control.spans[word]) for word, value in words.items() if value]
     if control.contact_model.value == "paper" and asked:
@@ -137,7 +137,7 @@ def check(v: Any, top: Mapping, held: Mapping) -> None:
 
 def check_contact(v: Any, block: Any, contact: ContactPair) -> ContactPair | None:
     """Two things that can touch, no pair of them twice, and something to say about them."""
-    place, paired = v.head(block), v.memory.setdefault("contact", {})
+    place, paired = block.head, v.memory.setdefault("contact", {})
     if contact.friction is None and contact.contact_damping is None and not block.excused("friction", "contact-damping"):
         cause = f"contact {block.name} says nothing{block.where}"
         v.problem(place, cause, "write friction 0.1 or contact-damping 0 in it, or leave it out")

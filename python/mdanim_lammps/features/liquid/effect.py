@@ -187,13 +187,6 @@ class LiquidAutomaton(Effect):
     def problems(self, resolved, models, grid):
         return check_basin(resolved.scene, models, grid, resolved.on(Buoyancy.name))
 
-    def pushes_below(self, scene):
-        # Waves rise up to the rim of the basin.
-        return -math.inf if scene.liquid is None else scene.liquid.high[2]
-
-    def most_push(self, scene, bodies):
-        return 0.0 if scene.liquid is None else math.hypot(*scene.gravity) * (scene.liquid.density / bodies.density)
-
     def warnings(self, context):
         return [*open_hulls(context.scene, context.models), *leaky_walls(context.scene, context.models, context.grid)]
 

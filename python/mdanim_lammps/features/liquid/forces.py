@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from ...effects.context import Verdict
@@ -58,6 +60,13 @@ class Buoyancy(Effect):
 
     def untold(self, scene):
         return "lift and drag of the liquid act as well, and frames do not tell them apart" if scene.liquid else ""
+
+    def pushes_below(self, scene):
+        # Waves rise up to the rim of the basin.
+        return -math.inf if scene.liquid is None else scene.liquid.high[2]
+
+    def most_push(self, scene, bodies):
+        return 0.0 if scene.liquid is None else math.hypot(*scene.gravity) * (scene.liquid.density / bodies.density)
 
     def lift(self, scene, system):
         return 0.0 if scene.liquid is None else scene.liquid.density * np.add.reduceat(system.volume, system.first[:-1])

@@ -98,7 +98,7 @@ def gravity_fits(v: Any, liquids: list) -> None:
     given = v.out.first("gravity")
     g = given.values[0] if given else (0.0, 0.0, 0.0)
     if g[0] != 0.0 or g[1] != 0.0 or g[2] >= 0.0:
-        span = given.span(0) if given else v.head(liquids[0])
+        span = given.span(0) if given else liquids[0].head
         found = f"found {show(g)} m/s^2" if given else "the scene has no gravity"
         v.problem(span, f"a liquid needs gravity along -z, {found}", "e.g. gravity (0, 0, -9.81) m/s^2", key="gravity")
 
