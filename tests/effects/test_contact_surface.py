@@ -13,7 +13,6 @@ from mdanim_lammps.engine.instance import Instance
 from mdanim_lammps.engine.sub_plan import SubPlans
 from mdanim_lammps.errors import SceneError
 from mdanim_lammps.features.contact.barrier import plane_stiffness
-from mdanim_lammps.features.contact.surface import carried_area
 from mdanim_lammps.run.energy import ledger_terms, loss_terms
 from mdanim_lammps.run.loop import simulate
 from mdanim_lammps.scene.parse import parse_scene
@@ -212,7 +211,7 @@ def test_particles_carry_the_surface(prepared, shape, sides):
     """The areas of all particles add up to that of the drawn surface; weights below 0 add to them."""
     text = f"object a {{ shape {shape} position (0, 0, 0) m mass 1 kg elasticity 1 MPa }}\ncontrol {{ time 1 s resolution 5 cm }}"
     (body,) = prepared(text).system.contact_bodies.values()
-    carried = carried_area(body)
+    carried = body.carried
     assert carried.shape == body.node.shape and (carried >= 0.0).all()
     if sides:
         assert carried.sum() == pytest.approx(sides, rel=1e-12)

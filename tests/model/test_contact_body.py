@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """Points and depths of undeformed bodies, and how systems and plans come by them."""
 
-from dataclasses import replace
+from dataclasses import fields, replace
 from functools import cache
 from itertools import product
 
@@ -14,6 +14,7 @@ from mdanim_lammps.model.cells import fill_cells
 from mdanim_lammps.model.contact_body import DENSE, FINE, FLAT, SHARP, BodyFrame, make_contact_body
 from mdanim_lammps.model.distance import TRIANGLE_REACH, distance
 from mdanim_lammps.model.lattice import CORNERS, Cells, make_lattice
+from mdanim_lammps.model.nearest import Nearest, nearest_distances
 from mdanim_lammps.model.spread import spread
 from mdanim_lammps.model.system import assemble
 from mdanim_lammps.run.prepare import prepare
@@ -109,7 +110,7 @@ def test_types_are_those_of_the_plugin():
     """Contiguous arrays of the types that the C function takes, not to be changed."""
     expected = dict(count="i4", node="i4", filled="u1", cell="i4", kind="u1")
     for body in map(body_of, SHAPES):
-        for name in body.__slots__:
+        for name in (field.name for field in fields(body)):
             array = getattr(body, name)
             if array is None:
                 continue
@@ -378,3 +379,18 @@ def test_a_frame_keeps_its_body(made):
     frame = BodyFrame(BALL, cells_of(BALL))
     assert frame.contact is frame.contact
     assert made == [BALL]
+
+
+@pytest.mark.parametrize("spread_on", ["cube", "ball", "line"])
+def test_distances_by_parts_have_the_bits_of_one_tree(spread_on):
+    """Inside, outside and on the places themselves; places on a line have one part along the others."""
+    random = np.random.default_rng(4)
+    place = random.uniform(-1.0, 1.0, (3000, 3))
+    if spread_on == "cube":
+        place[np.arange(3000), random.integers(3, size=3000)] = random.choice([-1.0, 1.0], 3000)
+    elif spread_on == "ball":
+        place /= np.linalg.norm(place, axis=1)[:, None]
+    else:
+        place[:, 1:] = 0.5
+    points = np.concatenate([random.uniform(-2.0, 2.0, (2000, 3)), place[:50]])
+    np.testing.assert_array_equal(nearest_distances(place, points), Nearest(place)(points)[0])

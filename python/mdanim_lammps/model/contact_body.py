@@ -3,7 +3,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, fields
 from functools import cached_property
 from itertools import product
 
@@ -13,6 +14,7 @@ from ..scene.scene import Box, Ellipsoid, Shape, Sphere
 from .distance import distance
 from .embed import nearest_cell
 from .lattice import Cells, any_corner, cells_around
+from .nearest import blocks
 from .shapes import contains, thickness
 from .spread import spread
 
@@ -39,7 +41,7 @@ OUTSIDE = 2
 is left at each next node."""
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, eq=False)
 class ContactBody:
     """P points of the drawn surface of a body of N particles, and how deep its inside is; read-only arrays.
 
@@ -73,6 +75,14 @@ class ContactBody:
     """Open parts of sides of a cuboid that others cover (model/cover.py): rows of a side, 0 to 5 for -x, +x, -y, +y, -z, +z, and
     a rectangle, low and high along the first and the second axis across, X, shape (R, 5). A side acts only in its rectangles; a
     side without any acts everywhere."""
+
+    @cached_property
+    def carried(self) -> np.ndarray:
+        """w_i, the area of the surface that each particle carries [m^2], shape (N,): the larger one of that of its fine points
+        and that of all others, as either act. Points beyond the cell that carries them have weights below 0."""
+        fine = self.kind == FINE
+        sets = [np.flatnonzero(some) for some in (fine, ~fine) if some.any()]
+        return np.max([_carried(self, some) for some in sets], axis=0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -123,10 +133,40 @@ def make_contact_body(shape: Shape, cells: Cells, open_parts: np.ndarray | None 
         depth=None if isinstance(shape, Box) else _depth(shape, cells),
         open=open_parts,
     )
-    for name in body.__slots__:
-        if (array := getattr(body, name)) is not None:
+    for field in fields(body):
+        if (array := getattr(body, field.name)) is not None:
             array.setflags(write=False)
     return body
+
+
+def _carried(body: ContactBody, some: np.ndarray) -> np.ndarray:
+    """Area that each particle carries [m^2], shape (N,), of some points, whose numbers are ascending."""
+    cells, nodes = body.count.astype(np.int64), body.count.astype(np.int64) + 1
+    particle = np.zeros(nodes.prod(), np.int32)
+    particle[body.node] = np.arange(len(body.node), dtype=np.int32)
+
+    def parts(rows: slice) -> tuple[np.ndarray, list[np.ndarray]]:
+        """The lowest corner of the cell of some points, and how the absolute weights of its eight corners come about."""
+        z, rest = np.divmod(body.cell[some[rows]], cells[0] * cells[1])
+        y, x = np.divmod(rest, cells[0])
+        inside = [body.at[some[rows], axis] - at for axis, at in enumerate((x, y, z))]
+        return (z * nodes[1] + y) * nodes[0] + x, [(1.0 - t, t) for t in inside]
+
+    def weight(part: list[np.ndarray], way: tuple[int, int, int]) -> np.ndarray:
+        return np.abs(math.prod(side[end] for side, end in zip(part, way)))
+
+    ways, stretches = list(product((0, 1), repeat=3)), list(blocks(len(some)))
+    area = body.area[some]
+    for rows in stretches:
+        part = parts(rows)[1]
+        area[rows] *= sum(weight(part, way) for way in ways)
+    carried = np.zeros(len(body.node))
+    for way in ways:
+        for rows in stretches:
+            low, part = parts(rows)
+            corner = low + way @ np.array([1, nodes[0], nodes[0] * nodes[1]])
+            np.add.at(carried, particle[corner], weight(part, way) * area[rows])
+    return carried
 
 
 # --- cuboids ----------------------------------------------------------------------------------------------------------

@@ -5,12 +5,13 @@ from __future__ import annotations
 
 import math
 from functools import singledispatch
+from itertools import pairwise
 
 import numpy as np
 
 from ..scene.scene import Cone, Cylinder, Ellipsoid, Mesh, Shape, Sphere, Torus
 from . import mesh, shapes
-from .nearest import Nearest, blocks
+from .nearest import Nearest, blocks, nearest_distances
 
 MOST_SAMPLES = 8_000_000
 """Samples of a mesh; a body with more than 100 000 cells on its surface has them further apart."""
@@ -62,9 +63,14 @@ def _(shape: Cone, points, spacing):
 
 def _to_outline(shape: Shape, points: np.ndarray, outline) -> np.ndarray:
     """Signed distance to what an outline (r, z) [m] makes when it turns about z."""
-    corner = np.array(outline)
-    place = np.stack([np.hypot(points[:, 0], points[:, 1]), points[:, 2]], axis=1)[:, None]
-    return np.copysign(_to_segments(place, corner[:-1], corner[1:]).min(axis=1), shapes.depth(shape, points))
+    corner, away = np.array(outline), np.full(len(points), np.inf)
+    for rows in blocks(len(points)):
+        x, y, z = points[rows].T
+        place = np.stack([np.hypot(x, y), z])
+        for a, b in pairwise(corner):
+            np.minimum(away[rows], _to_segments(place, a[:, None], b[:, None]), out=away[rows])
+        away[rows] = np.copysign(away[rows], shapes.depth(shape, points[rows]))
+    return away
 
 
 @distance.register
@@ -103,8 +109,9 @@ def _(shape: Mesh, points, spacing):
         length, near = nearest(points[part], NEAR, within=TRIANGLE_REACH * spacing)
         part, near = part[length[:, 0] < np.inf], near[length[:, 0] < np.inf]
         # Where fewer are close, any other one does no harm.
-        corners = body.points[body.triangles[triangle[near.clip(max=len(sample) - 1)]]]
-        away[part] = _to_triangles(points[part, None], *np.moveaxis(corners, 2, 0)).min(axis=1)
+        tried = body.triangles[triangle[near.clip(max=len(sample) - 1)]]
+        corners = (body.points.T[:, tried[..., corner]] for corner in range(3))
+        away[part] = _to_triangles(points[part].T[..., None], *corners).min(axis=1)
     return np.where(mesh.contains(body, points), away, -away)
 
 
@@ -116,24 +123,25 @@ def _to_samples(body: mesh.Triangles, points: np.ndarray, spacing: float) -> np.
     away = np.zeros(len(points))
     for level in reversed(apart):
         close = away <= LEVEL_REACH * level
-        away[close], _ = Nearest(mesh.scatter(body, level)[0])(points[close])
+        away[close] = nearest_distances(mesh.scatter(body, level)[0], points[close])
     return away
 
 
 def _to_segments(p: np.ndarray, a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """Distance of points to segments from a to b, the last axis is that of components."""
+    """Distance of points to segments from a to b, the first axis is that of components."""
     along, out = b - a, p - a
-    t = ((out * along).sum(axis=-1) / (along**2).sum(axis=-1)).clip(0, 1)
-    return np.linalg.norm(out - t[..., None] * along, axis=-1)
+    t = ((out * along).sum(axis=0) / (along**2).sum(axis=0)).clip(0, 1)
+    return np.sqrt(((out - t * along) ** 2).sum(axis=0))
 
 
 def _to_triangles(p: np.ndarray, a: np.ndarray, b: np.ndarray, c: np.ndarray) -> np.ndarray:
-    """Distance of points to triangles, the last axis is that of components."""
-    normal = np.cross(b - a, c - a)
-    sides = [(np.cross(v - u, p - u) * normal).sum(axis=-1) for u, v in ((a, b), (b, c), (c, a))]
+    """Distance of points to triangles, the first axis is that of components."""
+    cross = lambda u, v: np.cross(u, v, axis=0)
+    normal = cross(b - a, c - a)
+    sides = [(cross(v - u, p - u) * normal).sum(axis=0) for u, v in ((a, b), (b, c), (c, a))]
     edge = np.minimum(np.minimum(_to_segments(p, a, b), _to_segments(p, b, c)), _to_segments(p, c, a))
-    length = np.linalg.norm(normal, axis=-1)
+    length = np.sqrt((normal**2).sum(axis=0))
     # A triangle without area is its edges.
     over = (np.minimum.reduce(sides) >= 0) & (length > 0)
-    height = abs(((p - a) * normal).sum(axis=-1)) / np.where(over, length, 1)
+    height = abs(((p - a) * normal).sum(axis=0)) / np.where(over, length, 1)
     return np.where(over, height, edge)

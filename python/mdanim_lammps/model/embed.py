@@ -53,8 +53,9 @@ def _embedded(points: np.ndarray, triangles: np.ndarray, lattice: Lattice) -> Su
     near, t = nearest_cell(points, lattice.position[lattice.hexahedron[outer, 0]], lattice.cells.edge)
     weight = np.empty((len(t), len(CORNERS)))
     for rows in blocks(len(t)):
-        at = t[rows, None, :]
-        weight[rows] = np.where(CORNERS == 1, at, 1 - at).prod(axis=2)
+        (x, far_x), (y, far_y), (z, far_z) = ((1 - at, at) for at in t[rows].T)
+        for c, (i, j, k) in enumerate(CORNERS.tolist()):
+            weight[rows, c] = (far_x if i else x) * (far_y if j else y) * (far_z if k else z)
     return Surface(np.asarray(triangles, np.int32), lattice.hexahedron[outer[near]], weight)
 
 

@@ -6,7 +6,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from itertools import product
 
 import numpy as np
 
@@ -15,7 +14,6 @@ from ...effects.fields import Field, column
 from ...effects.readings import Readings
 from ...errors import Problem
 from ...model.boxes import box_pairs
-from ...model.contact_body import FINE, ContactBody
 from ...model.model import Layer
 from ...model.overlap import BORN_AT_REST
 from ...model.planes import AXES
@@ -350,32 +348,13 @@ def shortest_edge(system: System) -> np.ndarray:
 
 def own_area(system: System) -> np.ndarray:
     """w_i, the area of the surface that each particle carries [m^2], shape (N,)."""
-    of_kind = {kind: carried_area(body) for kind, body in system.contact_bodies.items()}
-    return np.concatenate([of_kind[kind] for kind in system.contact_kind.tolist()])
+    return np.concatenate([system.contact_bodies[kind].carried for kind in system.contact_kind.tolist()])
 
 
 def borne_area(system: System) -> np.ndarray:
     """s_i, the area of another surface that each particle may bear [m^2], shape (N,): h^2 within a face, less where fewer cells
     are behind it."""
     return (np.cbrt(system.cell_volume) ** 2)[system.object] * np.minimum(1.0, 2.0 * system.share)
-
-
-def carried_area(body: ContactBody) -> np.ndarray:
-    """w_i of one body, shape (N,): the larger one of those of its fine points and of all others, as either act. Points beyond the
-    cell that carries them have weights below 0."""
-    cells, nodes = body.count.astype(np.int64), body.count + 1
-    z, rest = np.divmod(body.cell, cells[0] * cells[1])
-    y, x = np.divmod(rest, cells[0])
-    corner = np.stack([x, y, z], axis=1)
-    inside = body.at - corner
-    weight, flat = [], []
-    for way in product((0, 1), repeat=3):
-        weight.append(np.abs(np.where(way, inside, 1.0 - inside)).prod(axis=1))
-        flat.append((corner + way) @ np.array([1, nodes[0], nodes[0] * nodes[1]], np.int64))
-    area = np.array(weight) * (body.area * np.sum(weight, axis=0))
-    node, fine = np.searchsorted(body.node, np.array(flat)), body.kind == FINE
-    sets = [fine, ~fine] if fine.any() else [~fine]
-    return np.max([np.bincount(node[:, some].ravel(), area[:, some].ravel(), len(body.node)) for some in sets], axis=0)
 
 
 def fast(context: Context) -> np.ndarray:
