@@ -38,6 +38,7 @@ def test_the_language_has_its_words(windy):
         "gust   a limit that check prints with its margin",
     ]
     assert words["read back"] == [WIND, 0.0, 0.0]
+    assert words["of objects"][words["of objects"].index("density") + 1] == "sail"
 
 
 def test_check_tells_of_it(windy):
@@ -78,6 +79,19 @@ def test_frames_have_its_field(windy):
     for force in run["force"]:
         np.testing.assert_allclose(force, [[run["mass"] * WIND / TAU, 0, 0], [0, 0, 0]], rtol=1e-12)
     assert run["unit"] == "N"
+
+
+def test_a_trajectory_keeps_it(windy):
+    """Its record is read back, by a property that it adds."""
+    assert windy["run"]["kept"] == [WIND, 0.0, 0.0]
+
+
+def test_a_study_varies_it(windy):
+    """A ladder, a field of the setting, its name in files; left out with a reason where there is no wind."""
+    found = windy["varied"]
+    assert found["ladders"]["lulls"][2].endswith(", lulls 4") and found["sizes"] == [1.0, 0.5, 0.25]
+    assert found["key"].endswith("-w2") and found["put"] == [1, 2, 4] and found["same"]
+    assert found["calm"] == "no wind"
 
 
 def test_its_plane_is_one_of_the_scene(windy):

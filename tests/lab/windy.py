@@ -22,9 +22,11 @@ from mdanim_lammps.run.loop import simulate, write_inputs
 from mdanim_lammps.run.observe import Observer
 from mdanim_lammps.run.prepare import prepare
 from mdanim_lammps.scene.explain import explain
+from mdanim_lammps.scene.keywords import KEYWORDS
 from mdanim_lammps.scene.lock import lock_text
 from mdanim_lammps.scene.page import language_page
 from mdanim_lammps.scene.parse import parse_scene
+from mdanim_lammps.study.setting import ladders, own_setting, scene_hash, with_setting
 
 SCENE = """
 {words}
@@ -46,6 +48,7 @@ def words() -> dict:
     return {
         "page": language_page(),
         "explained": [explain(word) for word in ("wind", "wind.work", "gust")],
+        "of objects": list(KEYWORDS["object"]),
         "read back": parse_scene(lock_text(scene), scene.name).wind,
     }
 
@@ -79,6 +82,7 @@ def run(folder: Path) -> dict:
     with Trajectory(folder) as trajectory:
         force = [trajectory.field("wind_force", frame).tolist() for frame in (0, len(trajectory) - 1)]
         (field,) = trajectory.metadata.fields
+        kept = trajectory.wind
     return {
         "terms": result.ledger.terms,
         "residual": result.ledger.residual,
@@ -90,8 +94,24 @@ def run(folder: Path) -> dict:
         "expect": [[o.found, bool(o.met)] for o in result.outcomes],
         "force": force,
         "unit": field.unit,
+        "kept": kept,
         "summary": json.loads((folder / "summary.json").read_text())["effects"],
         "cost": list(result.cost.effects),
+    }
+
+
+def varied() -> dict:
+    """By a study."""
+    here = ready(WIND + "\nlulls 2")
+    own = own_setting(here.scene, here)
+    found, _ = ladders(here.scene, here, own)
+    return {
+        "ladders": {ladder.name: [str(s) for s in ladder.settings] for ladder in found},
+        "sizes": [ladder.step(s) for ladder in found if ladder.name == "lulls" for s in ladder.settings],
+        "key": own.key,
+        "put": [with_setting(here.scene, s).lulls for ladder in found if ladder.name == "lulls" for s in ladder.settings],
+        "same": scene_hash(here.scene) == scene_hash(ready().scene),
+        "calm": ladders(ready("").scene, ready(""), own)[1]["lulls"],
     }
 
 
@@ -109,4 +129,4 @@ def left(folder: Path) -> str:
 
 if __name__ == "__main__":
     home = Path(sys.argv[1])
-    print(json.dumps({"words": words(), "told": told(), "run": run(home / "windy.out"), "left": left(home)}))
+    print(json.dumps({"words": words(), "told": told(), "run": run(home / "windy.out"), "left": left(home), "varied": varied()}))

@@ -63,6 +63,8 @@ LIMITS = {
     "1": Limit("a plain number", 2.0**53, 1e-9),
 }
 """By SI unit: what any value of that unit may be."""
+OTHER_UNIT = Limit("a value of this unit", 1e18, 1e-18)
+"""For a setting of a feature whose unit is none of these, and that says no limit of its own."""
 
 SPEED = Limit("speed", 1e4, 1e-4, "speed 0.1 shows a second of the scene in ten seconds, speed 10 ten seconds in one")
 SHADOWS = Limit("shadows", 1.0, way_out="1 is the darkest: nothing of the lamp is left in a shadow")

@@ -17,7 +17,7 @@ from ..errors import UsageError
 from ..features import facets
 from .formatting import number
 from .forms import Slot, alternatives, write
-from .limits import LIMITS, Limit
+from .limits import LIMITS, OTHER_UNIT, Limit
 from .units import unit
 
 Vector = tuple[float, float, float]
@@ -316,7 +316,7 @@ _BY_DIMENSION = {unit(text).dim: limit for text, limit in LIMITS.items()}
 
 def limit_of(keyword: Keyword, slot: Slot) -> Limit:
     """Limit of a number in this slot: that of the keyword, or else that of its unit."""
-    return keyword.limit or _BY_DIMENSION[slot.dim]
+    return keyword.limit or _BY_DIMENSION.get(slot.dim, OTHER_UNIT)
 
 
 def syntax(keyword: Keyword) -> str:

@@ -35,7 +35,8 @@ class Wind(Effect):
         return (Plane(self.name, "the fence", 0, 1, FAR, "beyond the fence"),) if any(scene.wind) else ()
 
     def columns(self, context):
-        return {column("sail", "m^2"): np.linspace(1.0, 2.0, context.system.particles)}
+        own = np.array([solid.sail for solid in context.scene.solids])[context.system.object]
+        return {column("sail", "m^2"): own * np.linspace(1.0, 2.0, context.system.particles)}
 
     def commands(self, context):
         return ["fix wind mobile mdanim/gravity " + " ".join(repr(float(a)) for a in self.acceleration(context.scene))]

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from mdanim_lammps.scene.schema import Observable, Vector, setting
+from mdanim_lammps.scene.schema import Observable, Rule, Vector, setting
 
 SWITCHES = {"wind": "`wind`"}
 
@@ -18,6 +18,18 @@ class WindWords:
     wind: Vector = setting(
         "<(wx, wy, wz):m/s>", "Velocity of the air. Absent: it is at rest.", "(3, 0, 0) m/s", default=(0.0,) * 3
     )
+    lulls: int = setting("<n>", "How often the wind is looked up.", "2", Rule.COUNT, default=1)
 
 
 SCENE = WindWords
+
+
+class SailWords:
+    """Settings of an object."""
+
+    sail: float = setting(
+        "<A:m^2>", "Its sail. Absent: as large as particles have it.", "2 m^2", Rule.POSITIVE, default=1.0, after="density"
+    )
+
+
+OBJECT = SailWords

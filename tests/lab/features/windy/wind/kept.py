@@ -1,0 +1,45 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""The wind in a trajectory."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from mdanim_lammps.effects.kept import KeptRecord
+from mdanim_lammps.scene.schema import Vector
+
+
+@dataclass(frozen=True, slots=True)
+class Weather(KeptRecord):
+    """The air."""
+
+    UNLIKE = "winds"
+
+    wind: Vector
+    """[m/s]"""
+
+    @classmethod
+    def of(cls, scene, grid):
+        return cls(scene.wind) if any(scene.wind) else None
+
+    @classmethod
+    def read(cls, attributes, shapes):
+        return cls(attributes["wind"]) if "wind" in attributes else None
+
+    def write(self):
+        return {"wind": self.wind}
+
+    def fault(self):
+        return "" if len(self.wind) == 3 else "the wind is not a vector"
+
+
+class WindTrack:
+    """What a trajectory tells of the air."""
+
+    @property
+    def wind(self):
+        """[m/s]; None where it is at rest."""
+        return self.metadata.kept["wind"].wind if "wind" in self.metadata.kept else None
+
+
+KEPT, Track = {"wind": Weather}, WindTrack
