@@ -130,24 +130,6 @@ void give_springs(LAMMPS *lmp, int springs, const int *pair, const int *type)
   bond->take(std::move(rows));
 }
 
-void set_table(LAMMPS *lmp, const char *name, int columns, int n, const int *tag, const int *values)
-{
-  Atom *atom = lmp->atom;
-  int is_double = 0, width = 0;
-  const int index = atom->find_custom(name, is_double, width);
-  if (index < 0 || is_double || !width)
-    fail(std::string("there is no per-particle table i2_") + name + "; use 'fix ID all property/atom i2_" + name + " " +
-         number(columns) + "'");
-  if (width != columns)
-    fail(std::string("the per-particle table i2_") + name + " has " + number(width) + " columns, " + number(columns) +
-         " are given");
-  for (int i = 0; i < n; ++i) {
-    const int here = atom->map(tag[i]);
-    if (here < 0 || here >= atom->nlocal) continue;    // on another rank
-    std::copy_n(values + static_cast<size_t>(i) * columns, columns, atom->iarray[index][here]);
-  }
-}
-
 // This rank's value of bond_style mdanim/harmonic; 0 with another bond style.
 double of_bonds(void *handle, const char *what)
 {
@@ -182,14 +164,6 @@ MDANIM_EXPORT int mdanim_insert(void *handle, int n, const int *tag, const int *
 MDANIM_EXPORT int mdanim_give_springs(void *handle, int springs, const int *pair, const int *type, char *error, int error_size)
 {
   return guarded(error, error_size, [&] { give_springs(static_cast<LAMMPS *>(handle), springs, pair, type); });
-}
-
-// Write whole numbers, shape (n, columns), into the property i2_NAME of the particles with these tags. Every rank calls it
-// with the same arguments. Returns 0, or 1 with a message in `error`.
-MDANIM_EXPORT int mdanim_set_table(void *handle, const char *name, int columns, int n, const int *tag, const int *values,
-                                   char *error, int error_size)
-{
-  return guarded(error, error_size, [&] { set_table(static_cast<LAMMPS *>(handle), name, columns, n, tag, values); });
 }
 
 // Wall seconds that bond_style mdanim/harmonic has spent on this rank.

@@ -64,6 +64,28 @@ def test_what_is_driven_moves(driven):
     assert "driven" not in stands.plan.columns and not any("moving" in line for line in physics(stands.plan))
 
 
+class Joins(Drives):
+    """Joins the post to the ball."""
+
+    def joins(self, scene):
+        return [(1, 2)]
+
+    def drives(self, scene):
+        return {}
+
+
+def test_what_is_joined_may_be_pulled_anywhere(monkeypatch):
+    """The ball would stay where it is; what is joined to it may pull it, slower than waves."""
+    usual, text = features.effects(), TEXT.format(table="hold all", more="")
+    alone = prepare(parse_scene(text)).context.reach
+    monkeypatch.setattr(features, "effects", lambda: (*usual, Joins("rope")))
+    joined = prepare(parse_scene(text))
+    reach, time = joined.context.reach, 0.1
+    grown = alone.region.low[2] - reach.region.low[2]
+    assert (grown >= 0.99 * reach.wave[2] * time).all()  # the estimate of the wave speed before models are made
+    assert np.array_equal(alone.region.low[0], reach.region.low[0]) and joined.resolved.on("contact")
+
+
 def test_what_is_driven_covers_nothing():
     """Two flush slabs that are held cover each other's sides; one that goes away does not."""
     scene = parse_scene(TEXT.format(table="hold all", more=""))

@@ -124,7 +124,7 @@ def to_records(plan: Plan, values: Mapping[str, np.ndarray]) -> dict[str, StateR
 
 
 def from_records(plan: Plan, name: str, records: Records) -> np.ndarray:
-    """Values of a column by its records; those of objects without one are as at the start. Raises ValueError where a record does
+    """Values of a column by its records; those of objects without one are as at the start. Raises SetupError where a record does
     not fit its object."""
     values = np.array(plan.columns[name])
     mine = records.get(PREFIX + name)
@@ -134,7 +134,7 @@ def from_records(plan: Plan, name: str, records: Records) -> np.ndarray:
     for (m, other), begin, end in zip(mine.keys.tolist(), mine.first[:-1].tolist(), mine.first[1:].tolist()):
         rows = values[first[m - 1] : first[m]] if m else values[:0]
         if other or not m or rows.nbytes != end - begin:
-            raise ValueError(f"the record of column {name} of object {m} has {end - begin} bytes, not {rows.nbytes}")
+            raise SetupError(f"the record of column {name} of object {m} has {end - begin} bytes, not {rows.nbytes}")
         rows[...] = mine.data[begin:end].view(values.dtype).reshape(rows.shape)
     return values
 

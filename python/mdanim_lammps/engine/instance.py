@@ -280,8 +280,10 @@ class Instance:
 
     def records(self) -> dict[str, StateRecords]:
         """Records of fixes, by the ID of the fix; objects are numbered as in the plan."""
-        columns = {name: self.column(name) for name in self.plan.states}
-        return {fix: self._records_of(fix) for fix in self._stateful()} | to_records(self.plan, columns)
+        found = {fix: self._records_of(fix) for fix in self._stateful()}
+        if states := self.plan.states:
+            found |= to_records(self.plan, {name: self.column(name) for name in states})
+        return found
 
     def _records_of(self, fix: str) -> StateRecords:
         count, size = ctypes.c_longlong(), ctypes.c_longlong()
