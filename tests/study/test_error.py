@@ -100,7 +100,7 @@ def test_no_order_where_the_finest_runs_turn():
     way = distance(track(), _beside(track(), 1.0))
     tracks[-1] = _beside(tracks[-2], apart / way)
     found = converge(steps, tracks, 2.0)
-    assert found.order is None and "one way" in found.why
+    assert found.order is None and "different directions" in found.why
 
 
 def test_a_ladder_that_is_cut_short_is_doubted_more():

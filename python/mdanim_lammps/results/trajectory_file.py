@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import errno
 import gc
+import io
 import math
 import os
 import zlib
@@ -112,13 +113,20 @@ def find_trajectory(path: Path) -> Path:
     raise OutputError(f"{file}: no such trajectory; run the scene first, or name the folder that a run wrote")
 
 
+class _Source(io.BufferedReader):
+    """A file that is closed without a warning when nothing refers to it any more, as an `h5py.File` is."""
+
+    def __del__(self):
+        self.close()
+
+
 def open_trajectory(path: Path) -> h5py.File:
     """Open a file for reading, through a file of Python's: HDF5 then takes no lock, which another process or a file system may
     refuse, and lets others in this process open the file in their own way. Raises OutputError."""
     import h5py
 
     def opened() -> h5py.File:
-        return h5py.File(path.open("rb"), "r")
+        return h5py.File(_Source(path.open("rb", buffering=0)), "r")
 
     try:
         try:
