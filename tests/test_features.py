@@ -72,7 +72,7 @@ def test_every_feature_says_what_it_is():
     assert {"gravity", "contact", "liquid"} <= set(features.names())
     for name in features.names():
         assert import_module(f"mdanim_lammps.features.{name}").__doc__
-    for effect in (form for e in features.effects() for form in (e, e.on_surfaces) if form):
+    for effect in (form for e in features.effects() for form in e.forms):
         assert "docs/physics-" in type(effect).__doc__ or "eq. (" in type(effect).__doc__, (
             "its law, unit, and where it is derived"
         )

@@ -138,7 +138,7 @@ def test_file_alone_is_enough(slab, tmp_path):
     with Trajectory(tmp_path / "t.h5") as t:
         c = t.metadata
         assert (c.title, c.scene_text) == (scene.title, text)
-        assert c.kept == {"ground": Ground(0.0), "walls": Room((-1, -2, 0), (1, 2, 3))}
+        assert c.kept == {"ground": Ground(0.0), "walls": Room(((-1, -2, 0), (1, 2, 3)))}
         assert c.colors == ("#102030", "", "") and c.still.tolist() == [True, False, False]
         assert (t.dt, t.steps_per_frame) == (0.01, 10)
         np.testing.assert_array_equal(c.held, np.concatenate([m.held for m in models]))

@@ -10,8 +10,7 @@ import numpy as np
 
 from ..model.grid import Grid
 from ..reach import Motion, Reach
-from ..scene.formatting import number
-from ..scene.scene import ContactModel, SceneRecord
+from ..scene.scene import SceneRecord
 from .context import Context, Verdict
 from .facets import Accounts, Advice, Bounds, Frames
 from .fields import Field
@@ -51,14 +50,14 @@ class Effect(Motion, Bounds, Accounts, Frames, Advice):
     if_off = ""
     """Fault that shows when a scene needs the effect and it is switched off."""
 
-    def __init__(self, on_surfaces: Effect | None = None):
-        self.on_surfaces = on_surfaces
-        """The effect that takes its place under ``contact-model surface``; None where it is the same."""
+    @property
+    def forms(self) -> tuple[Effect, ...]:
+        """All that `of` may give."""
+        return (self,)
 
     def of(self, scene: SceneRecord) -> Effect:
-        """The effect that takes its place under the contact model of a scene."""
-        surface = scene.control.contact_model is ContactModel.SURFACE
-        return self.on_surfaces if surface and self.on_surfaces else self
+        """The effect that takes its place in a scene."""
+        return self
 
     def called_for(self, scene: SceneRecord, reach: Reach) -> Verdict:
         """Whether the scene, by itself, calls for the effect; ``reach`` tells where solids can be by all effects that are not
@@ -100,9 +99,3 @@ class Effect(Motion, Bounds, Accounts, Frames, Advice):
     def fixes(self) -> tuple[str, ...]:
         """IDs of the fixes whose scalars are its energy."""
         return (self.fix,) if self.fix else ()
-
-
-def stiffness_told(scene: SceneRecord) -> str:
-    """Addition to the reason of an effect that pushes back, about ``contact-stiffness``; empty where it is the usual one."""
-    factor = scene.control.contact_stiffness
-    return "" if factor == 1.0 else f", {number(factor)} times as stiff as usual"

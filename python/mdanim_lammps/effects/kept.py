@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -34,13 +35,14 @@ class KeptRecord:
 
     @classmethod
     def read(cls, attributes: Mapping[str, Any], shapes: Mapping[str, tuple[int, ...]]) -> Self | None:
-        """The record of a file, from the attributes of its group and the shapes in one frame of those of TABLES that there are.
-        Raises KeyError, ValueError."""
-        raise NotImplementedError
+        """The record of a file, from the attributes of its group and the shapes in one frame of those of TABLES that there are;
+        None where there are no attributes of these names. Raises KeyError, ValueError, TypeError."""
+        found = {f.name: attributes[f.name] for f in dataclasses.fields(cls) if f.name in attributes}
+        return cls(**found) if found else None
 
     def write(self) -> dict[str, Any]:
         """Attributes from which it is read."""
-        raise NotImplementedError
+        return {f.name: getattr(self, f.name) for f in dataclasses.fields(self)}
 
     def fields(self) -> tuple[Field, ...]:
         """Fields of TABLES that frames have, each with its ``counts``."""

@@ -83,7 +83,7 @@ def all_styles() -> tuple[tuple[str, str], ...]:
     """Every style that a scene may ask for: kind and name."""
     from ..features import effects
 
-    forms = (form for e in effects() for form in (e, e.on_surfaces) if form)
+    forms = (form for e in effects() for form in e.forms)
     return tuple(sorted({*STYLES, *(style for form in forms for style in form.styles)}))
 
 

@@ -23,4 +23,4 @@ class Scenery(NamedTuple):
 def scenery(metadata: TrajectoryMetadata) -> Scenery:
     """The scenery of a trajectory."""
     ground, walls, liquid = (metadata.kept.get(name) for name in ("ground", "walls", "liquid"))
-    return Scenery(ground and ground.height, walls and (walls.low, walls.high), liquid)
+    return Scenery(ground and ground.ground, walls and walls.walls, liquid)

@@ -8,7 +8,6 @@ from functools import lru_cache
 import numpy as np
 
 from ...effects.context import Context, Verdict
-from ...effects.effect import Effect, stiffness_told
 from ...effects.envelope import Envelope
 from ...effects.fields import column
 from ...effects.margin import Margin
@@ -19,6 +18,7 @@ from ...model.touching import REACH, THIN, WAY_NAMES, touching
 from ...reach import largest_of_others
 from ...scene.formatting import at_least, say
 from ..springs.effect import all_held
+from .forms import Form, stiffness_told
 from .planes import OR_ON_SURFACES, STIFFNESS, others
 
 TUNNEL = (0.5, 0.65, 0.8)
@@ -70,14 +70,14 @@ def barrier_rate(system: System, s: np.ndarray, reach: float) -> np.ndarray:
     return 2.0 * plane_stiffness(round(over_spacing, 3)) * k / system.mass
 
 
-class ObjectContact(Effect):
+class ObjectContact(Form):
     """Objects that push each other apart; subclasses have the laws of the two contact models (docs/physics-contact.md)."""
 
     name = "contact"
     order = 40
     fix = "contact"
     ledger = "contact"
-    keeps_apart = touches = presses = at_surfaces = True
+    keeps_apart = presses = True
     if_off = "objects pass through each other"
 
     def called_for(self, scene, reach):

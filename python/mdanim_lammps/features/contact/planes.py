@@ -8,13 +8,13 @@ from collections.abc import Sequence
 import numpy as np
 
 from ...effects.context import Verdict
-from ...effects.effect import Effect
 from ...effects.fields import column
 from ...errors import Problem
 from ...model.planes import Plane, innermost
 from ...model.touching import WAY_NAMES, Touch, behind_planes
 from ...scene.formatting import at_least, say, whole
 from ...scene.scene import SceneRecord
+from .forms import Form
 
 OR_ON_SURFACES = "or write contact-model surface in control, where what touches holds no energy"
 """The other way out of a start within the reach of the paper's contact."""
@@ -57,13 +57,12 @@ class Sides:
         raise NotImplementedError
 
 
-class Planes(Effect):
+class Planes(Form):
     """Sides that push solids back; subclasses have the laws of the two contact models (docs/physics-contact.md)."""
 
     ledger = "wall"
-    touches = at_surfaces = True
 
-    def __init__(self, sides: Sides, on_surfaces: Effect | None = None):
+    def __init__(self, sides: Sides, on_surfaces: Form | None = None):
         super().__init__(on_surfaces)
         self.sides, self.name, self.fix, self.order = sides, sides.name, sides.name, sides.order
         self.if_off, self.presses = sides.if_off, sides.presses

@@ -13,22 +13,15 @@ from ...effects.kept import KeptRecord
 class Ground(KeptRecord):
     """The floor plane."""
 
-    height: float
-    """[m]"""
+    ground: float
+    """Its height [m]."""
 
     @classmethod
     def of(cls, scene, grid):
         return None if scene.ground is None else cls(scene.ground)
 
-    @classmethod
-    def read(cls, attributes, shapes):
-        return cls(float(attributes["ground"])) if "ground" in attributes else None
-
-    def write(self):
-        return {"ground": self.height}
-
     def fault(self):
-        return "" if math.isfinite(self.height) else "the ground is NaN or infinite"
+        return "" if math.isfinite(self.ground) else "the ground is NaN or infinite"
 
 
 KEPT = {"ground": Ground}

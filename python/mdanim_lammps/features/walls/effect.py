@@ -4,8 +4,8 @@
 from __future__ import annotations
 
 from ...effects.context import Verdict
-from ...effects.effect import stiffness_told
 from ...model.planes import box_sides
+from ..contact.forms import stiffness_told
 from ..contact.planes import Sides
 from ..contact.surface import touching_planes
 

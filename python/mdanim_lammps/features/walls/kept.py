@@ -15,24 +15,15 @@ from ...scene.scene import Vector
 class Room(KeptRecord):
     """The box that objects never leave."""
 
-    low: Vector
-    """Lower corner [m]."""
-    high: Vector
-    """Upper corner [m]."""
+    walls: tuple[Vector, Vector]
+    """Its lower and upper corner [m]."""
 
     @classmethod
     def of(cls, scene, grid):
-        return cls(scene.walls.low, scene.walls.high) if scene.walls else None
-
-    @classmethod
-    def read(cls, attributes, shapes):
-        return cls(*attributes["walls"]) if "walls" in attributes else None
-
-    def write(self):
-        return {"walls": (self.low, self.high)}
+        return cls((scene.walls.low, scene.walls.high)) if scene.walls else None
 
     def fault(self):
-        box = np.array((self.low, self.high))
+        box = np.array(self.walls)
         return "" if box.shape == (2, 3) and np.isfinite(box).all() else "the walls are not a box"
 
 

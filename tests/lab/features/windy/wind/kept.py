@@ -22,19 +22,12 @@ class Weather(KeptRecord):
     def of(cls, scene, grid):
         return cls(scene.wind) if any(scene.wind) else None
 
-    @classmethod
-    def read(cls, attributes, shapes):
-        return cls(attributes["wind"]) if "wind" in attributes else None
-
-    def write(self):
-        return {"wind": self.wind}
-
     def fault(self):
         return "" if len(self.wind) == 3 else "the wind is not a vector"
 
 
 class WindTrack:
-    """What a trajectory tells of the air."""
+    """Property of a trajectory with wind."""
 
     @property
     def wind(self):
