@@ -10,6 +10,8 @@ from pathlib import Path
 import plugin_path
 import pytest
 from command_line import GOOD, call, run
+from mdanim_lammps import Scene
+from mdanim_lammps.report import check_json, scene_lines
 
 
 @pytest.fixture
@@ -61,7 +63,7 @@ def test_effects_are_told_in_short_lines(scene, scenes):
         "              basin, liquid, buoyancy, liquid-drag (no liquid in the scene), air-drag (no object has drag)",
     ]
     for name in ("crowd", "float"):
-        lines = run("check", scenes / f"{name}.txt").stdout.split("certify")[0].splitlines()
+        lines = scene_lines(Scene.load(scenes / f"{name}.txt").prepared)
         assert max(map(len, lines)) <= 110
         words = " ".join(lines[1:]).replace(",", " ").split()
         assert all(e.name in words for e in features.effects())
@@ -69,11 +71,10 @@ def test_effects_are_told_in_short_lines(scene, scenes):
 
 def test_a_liquid_is_announced(scenes):
     """Say how many cells the liquid has, and by how much its volume was rounded where it was."""
-    text = run("check", scenes / "float.txt").stdout
-    assert "1 object (405 particles), 1 liquid (38 400 cells)\n" in text
-    rounded = run("check", scenes / "float.txt", "--set", "a=0.3").stdout
-    assert "its volume rounded by" in rounded
-    data = json.loads(run("check", scenes / "float.txt", "--json").stdout)
+    ready = Scene.load(scenes / "float.txt").prepared
+    assert scene_lines(ready)[0].endswith("1 object (405 particles), 1 liquid (38 400 cells)")
+    assert "its volume rounded by" in scene_lines(Scene.load(scenes / "float.txt", a=0.3).prepared)[0]
+    data = check_json(ready)
     assert data["liquid"]["cells"] == [40, 40, 24] and data["liquid"]["cell"] == pytest.approx([0.05, 0.05, 0.05])
 
 

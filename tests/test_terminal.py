@@ -68,8 +68,7 @@ def test_another_broken_pipe_is_an_error(capsys):
     assert "Broken pipe" in capsys.readouterr().err
 
 
-@pytest.mark.parametrize("encoding", ["latin-1", "ascii"])
-@pytest.mark.parametrize("command", [["check"], ["check", "--json"]])
+@pytest.mark.parametrize(("encoding", "command"), [("ascii", ["check"]), ("latin-1", ["check"]), ("ascii", ["check", "--json"])])
 def test_characters_that_the_terminal_lacks(scene, encoding, command):
     """Print a title beyond the encoding of stdout with escapes instead of failing."""
     done = subprocess.run(
