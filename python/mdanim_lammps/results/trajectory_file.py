@@ -409,7 +409,7 @@ def _shapes(file: h5py.File, kind: type[KeptRecord]) -> dict[str, tuple[int, ...
 def _read_fields(file: h5py.File) -> tuple[Field, ...]:
     values = {name: file[f"observables/{FIELDS}/{name}/value"] for name in _names_of_fields(file)}
     counts = {
-        "object": len(file["parameters/mdanim/name"]),
+        "object": len(file["parameters/mdanim"]["name"]),
         "particle": len(file["particles/all/id"]),
         "bond": len(file["connectivity/bonds"]),
     }
