@@ -8,6 +8,7 @@ import pytest
 from mdanim_lammps.errors import SceneError, UsageError
 from mdanim_lammps.scene import keywords as language
 from mdanim_lammps.scene import scene as records
+from mdanim_lammps.scene import schema
 from mdanim_lammps.scene.limits import Limit
 from mdanim_lammps.scene.lock import lock_text
 from mdanim_lammps.scene.page import language_page
@@ -155,3 +156,14 @@ def test_words_of_an_enumeration_are_taken_in_python():
             Render(quality=wrong)
     with pytest.raises(UsageError, match="it is one of preview, balanced, reference"):
         replace(control, accuracy="fine")
+
+
+def test_a_setting_of_a_feature_needs_a_type(monkeypatch):
+    """Without one it would not be a field, and nobody would hear of it."""
+
+    class Words:
+        OBJECT = type("Bare", (), {"__annotations__": {}, "sail": setting("<A>", "A sail.", "2", default=1.0)})
+
+    monkeypatch.setattr(schema, "facets", lambda kind: [Words])
+    with pytest.raises(TypeError, match="the setting sail of OBJECT has no type"):
+        schema.with_words(records.Solid, "OBJECT")

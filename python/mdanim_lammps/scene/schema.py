@@ -268,6 +268,10 @@ def with_words(record: type, kind: str) -> type:
     """A record with the settings that features add to it: those in the class ``kind`` of their words, each with a default."""
     found = [getattr(words, kind) for words in facets("words") if hasattr(words, kind)]
     fields = [(name, of, vars(words)[name]) for words in found for name, of in vars(words)["__annotations__"].items()]
+    typed = {name for name, _, _ in fields}
+    for name in (n for words in found for n, value in vars(words).items() if isinstance(value, dataclasses.Field)):
+        if name not in typed:
+            raise TypeError(f"the setting {name} of {kind} has no type: write {name}: TYPE = setting(...)")
     if not fields:
         return record
     made = dataclasses.make_dataclass(record.__name__, fields, bases=(record,), frozen=True, slots=True)
