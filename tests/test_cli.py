@@ -134,7 +134,7 @@ def test_compare_and_render_use_an_output_folder(scene):
             ["cube is 4 cm below the floor of the basin", "move it up by 4 cm", "2 cells wide along x"],
             id="basin",
         ),
-        pytest.param(["check", "alone.txt"], 3, ["no object", "hold all"], id="liquid alone"),
+        pytest.param(["check", "alone.txt"], 3, ["at least one object", "hold all"], id="liquid alone"),
         pytest.param(
             ["check", "dry.txt"], 3, ["liquid.level needs the liquid, which is off", "switch the liquid on"], id="liquid off"
         ),
