@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include "gravity/law.h"
 #include "lammps/fix_base.h"
 #include "numbers/vec3.h"
 #include "passes/pass_participant.h"
@@ -20,11 +21,19 @@ class FixMdanimGravity : public mdanim::FixBase, public mdanim::PassGravity {
   double compute_scalar() override;
 
   double pulled(int i) const override;
+  bool steady() const override { return path.empty(); }
   const mdanim::Vec3 &acceleration() const override { return g; }
   void took(double more) override { seconds += more; }
 
  private:
+  void read_path(int narg, char **arg);
+  double now() const;
+  void pull() const;
+  mdanim::Vec3 momentum() const;    // of the particles here that it pulls at
+
   mdanim::Vec3 g;
+  mdanim::AccelerationPath path;    // empty where g stays
+  mdanim::AccelerationWork work;    // of what is here, counted where there is a path
 };
 
 }    // namespace LAMMPS_NS

@@ -103,6 +103,7 @@ class PassGravity : public PassMember {
  public:
   bool join(PassCrew &crew) final;
   virtual double pulled(int i) const = 0;    // the mass that it pulls at
+  virtual bool steady() const = 0;           // whether the acceleration is the same in all steps; passes need that
   virtual const Vec3 &acceleration() const = 0;
   virtual void took(double seconds) = 0;
 };

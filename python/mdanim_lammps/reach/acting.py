@@ -49,6 +49,15 @@ class Motion:
         """Acceleration that it gives to everything that is free to move [m/s^2], shape (3,); None for nothing."""
         return None
 
+    def accelerations(self, scene: SceneRecord) -> tuple[np.ndarray, np.ndarray] | None:
+        """Least and largest `acceleration` along each axis until the end [m/s^2], each of shape (3,); None for nothing."""
+        a = self.acceleration(scene)
+        return None if a is None else (a, a)
+
+    def swing(self, scene: SceneRecord) -> float:
+        """Speed that an acceleration that changes gives besides that of a fall [m/s]: the most between any two moments."""
+        return 0.0
+
     def planes(self, scene: SceneRecord) -> tuple[Plane, ...]:
         """The planes that push solids back, whether the effect is on or not."""
         return ()
@@ -103,13 +112,36 @@ class Acting:
 
     @cached_property
     def acceleration(self) -> np.ndarray:
-        """Acceleration of everything that is free to move [m/s^2], shape (3,)."""
+        """Acceleration of everything that is free to move, at the start [m/s^2], shape (3,)."""
         return sum((a for e in self.effects if (a := e.acceleration(self.scene)) is not None), np.zeros(3))
+
+    @cached_property
+    def accelerations(self) -> tuple[np.ndarray, np.ndarray]:
+        """The least and the largest along each axis until the end [m/s^2], each of shape (3,)."""
+        told = [a for e in self.effects if (a := e.accelerations(self.scene)) is not None]
+        return sum((low for low, _ in told), np.zeros(3)), sum((high for _, high in told), np.zeros(3))
+
+    @property
+    def changes(self) -> bool:
+        """Whether the acceleration changes with time."""
+        low, high = self.accelerations
+        return bool((low != high).any())
+
+    @property
+    def strongest(self) -> float:
+        """No acceleration is larger [m/s^2]."""
+        low, high = self.accelerations
+        return float(np.linalg.norm(np.maximum(np.abs(low), np.abs(high)) if self.changes else self.acceleration))
+
+    @cached_property
+    def swing(self) -> float:
+        """Speed that changes of the acceleration give, besides that of a fall [m/s]."""
+        return sum((e.swing(self.scene) for e in self.effects), 0.0)
 
     @property
     def g(self) -> float:
-        """Acceleration downwards [m/s^2]."""
-        return max(0.0, -float(self.acceleration[2]))
+        """Acceleration downwards, the largest [m/s^2]."""
+        return max(0.0, -float(self.accelerations[0][2]))
 
     @cached_property
     def limits(self) -> tuple[np.ndarray, np.ndarray]:
@@ -169,5 +201,4 @@ class Acting:
 
     def most_pull(self, bodies: Bodies) -> np.ndarray:
         """Largest force from outside on each solid over its mass [m/s^2], shape (M,)."""
-        g = float(np.linalg.norm(self.acceleration))
-        return np.full(len(bodies.mass), g) + sum(e.most_push(self.scene, bodies) for e in self.effects)
+        return np.full(len(bodies.mass), self.strongest) + sum(e.most_push(self.scene, bodies) for e in self.effects)

@@ -128,7 +128,8 @@ class Reach:
     def speed_after(self, fall: np.ndarray) -> np.ndarray:
         """The start's speed, with that of a fall [m], shape (M,), and at which it is driven."""
         start = np.maximum.reduceat((self.system.velocity**2).sum(1), self.system.first[:-1])
-        return np.where(self.free, np.sqrt(np.maximum(0.0, start + 2.0 * self.g * fall)), 0.0) + self.acting.driven_at
+        fallen = np.sqrt(np.maximum(0.0, start + 2.0 * self.g * fall)) + self.acting.swing
+        return np.where(self.free, fallen, 0.0) + self.acting.driven_at
 
     def closing(self, fall: np.ndarray) -> np.ndarray:
         """Speed at which each solid may meet another [m/s], shape (M,): all fall alike, so only the start tells them apart until
@@ -138,7 +139,7 @@ class Reach:
         driven = self.acting.driven_at + largest_of_others(self.acting.driven_at)
         apart = np.sqrt((np.maximum(apart, 0.0) ** 2).sum(1)) + driven
         fall = np.where(self.free, np.maximum(0.0, fall), 0.0)
-        return np.where(self.system.still, 0.0, np.sqrt(apart**2 + 2.0 * self.g * fall))
+        return np.where(self.system.still, 0.0, np.sqrt(apart**2 + 2.0 * self.g * fall) + self.acting.swing)
 
     # --- at a time ------------------------------------------------------------------------------------------------------
 

@@ -173,7 +173,7 @@ def _speed(acting: Acting, bodies: _Movers) -> np.ndarray:
     gained = bodies.pull * acting.scene.control.time
     most = gained + np.sqrt(gained**2 + start)
     g, floor = acting.acceleration, acting.limits[0][2]
-    if np.isfinite(acting.wet_below) or g[0] or g[1] or g[2] > 0.0 or not np.isfinite(floor):
+    if acting.changes or np.isfinite(acting.wet_below) or g[0] or g[1] or g[2] > 0.0 or not np.isfinite(floor):
         return most
     way = np.maximum(0.0, bodies.position[:, 2] - floor) + bodies.radius
     return np.minimum(most, np.sqrt(start + 2.0 * bodies.pull * way))
@@ -182,6 +182,11 @@ def _speed(acting: Acting, bodies: _Movers) -> np.ndarray:
 def _flight(acting: Acting, bodies: _Movers) -> tuple[np.ndarray, np.ndarray]:
     """Lowest and highest point of every centre of mass in free flight along each axis [m], each of shape (M, 3)."""
     v, g, time = bodies.velocity, acting.acceleration, acting.scene.control.time
+    if acting.changes:  # at most straight on, and pulled one way or the other all the time
+        least, most = acting.accelerations
+        low = np.minimum(v, 0.0) * time + 0.5 * np.minimum(least, 0.0) * time**2
+        high = np.maximum(v, 0.0) * time + 0.5 * np.maximum(most, 0.0) * time**2
+        return bodies.position + low, bodies.position + high
     end = v * time + 0.5 * g * time**2
     with np.errstate(divide="ignore", invalid="ignore"):
         turns = -v / g  # when the velocity along this axis is 0

@@ -22,7 +22,8 @@ def standing(acting: Acting, system: System) -> np.ndarray:
     their centre of mass above it; bool, shape (M,). None where nothing pulls along -z, or something along x or y.
     """
     found = np.zeros(len(system.names), bool)
-    x, y, z = acting.acceleration
+    least, most = acting.accelerations
+    (x, y, _), z = np.maximum(np.abs(least), np.abs(most)), float(most[2])
     if z >= 0.0 or math.hypot(x, y) > -LEVEL * z:
         return found
     low, high = system.bounds(system.position)

@@ -123,6 +123,21 @@ expect cart[2].wheel[1].position.z = 6 cm +- 1 mm
   `include`s.
 - Messages about a group name the line in it, and below that each place that it is used at.
 
+### Gravity that changes
+
+```
+let T = 0.5 s
+repeat i in 0 .. 100 {
+  let t = i*20 ms
+  gravity at t (2.5*sin(2*pi*t/T), 0, -9.81) m/s^2      # the ground shakes: this is what is felt on it
+}
+```
+
+- Between its points gravity goes straight; before the first and behind the last it is as there. Twenty points in a
+  period follow a sine to 1.2 per cent of its height, forty to 0.3.
+- Steps are taken one by one, not in passes; it has no potential, and its work stands in the ledger as `gravity_work`.
+- A liquid lies under one gravity: both together are refused. Forces of contact in `csv` are left out.
+
 ### LAMMPS commands
 
 ```

@@ -80,6 +80,15 @@ class Codec:
             return tuple(map(int, values[0])) if isinstance(values[0], tuple) else int(values[0])
         return values[0] if len(values) == 1 else values
 
+    def gather(self, values: tuple) -> Any:
+        """The value of the record's fields, from those of all times that a setting is given. Raises ValueError(message, hint,
+        number of the one that is wrong)."""
+        return values
+
+    def scatter(self, value: Any) -> tuple:
+        """The same back."""
+        return value
+
     def write(self, k: Keyword, value: Any) -> tuple[int, tuple] | None:
         """Alternative and values that are read as this; None where nothing is written."""
         for choice, parts in enumerate(alternatives(k.form)):
@@ -184,6 +193,13 @@ class Keyword:
     def read(self, choice: int, values: tuple) -> dict[str, Any]:
         """Fields of the record. Raises ValueError(message, hint, value's number)."""
         value = self.codec.read(self, choice, values)
+        return dict(zip((self.field, *self.also), value)) if self.also and not self.many else {self.field: value}
+
+    def gathered(self, reads: list[dict[str, Any]]) -> dict[str, Any]:
+        """Fields of the record, from all times that the setting is given. Raises ValueError(message, hint, number of one)."""
+        if not self.many:
+            return reads[0]
+        value = self.codec.gather(tuple(read[self.field] for read in reads))
         return dict(zip((self.field, *self.also), value)) if self.also else {self.field: value}
 
     def lines(self, record: Any, number: Callable[[float], str] = repr) -> list[str]:
@@ -191,7 +207,7 @@ class Keyword:
         value = getattr(record, self.field)
         if self.also:
             value = (value, *(getattr(record, name) for name in self.also))
-        found = [self.codec.write(self, v) for v in (value if self.many else (value,))]
+        found = [self.codec.write(self, v) for v in (self.codec.scatter(value) if self.many else (value,))]
         return [write(alternatives(self.form)[c], values, number) for c, values in filter(None, found)]
 
 
@@ -285,7 +301,7 @@ def keywords(block: str, record: type | None) -> dict[str, Keyword]:
     for field in _in_order(dataclasses.fields(record) if record else ()):
         if (k := field.metadata.get("keyword")) is not None:
             k = dataclasses.replace(k, block=block, field=field.name, name=k.name or field.name.replace("_", "-"))
-            if not k.needed and not k.many and not k.one_of:
+            if not k.needed and (not k.many or k.also) and not k.one_of:
                 k = dataclasses.replace(k, default=_default(k, record))
             found[k.name] = k
     return found
@@ -308,6 +324,9 @@ def _default(k: Keyword, record: type) -> str:
     """The text for the value of an absent keyword; empty where none is defined."""
     rest = {f.name: f.default for f in dataclasses.fields(record)}
     value = (k.absent, *(rest[name] for name in k.also)) if k.also else k.absent
+    if k.many:
+        value = k.codec.scatter(value)[0]
+        return write(alternatives(k.form)[0], k.codec.write(k, value)[1], number)
     if value is None or (k.also and None in value):
         written = k.codec.write(k, None) if not k.also else None
     else:

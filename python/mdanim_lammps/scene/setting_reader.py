@@ -151,8 +151,8 @@ class SettingReader(Reader):
             hint = f"for the value of let {word} write ({word})"
         raise Fault(word, cause, hint)
 
-    def match(self, parts: tuple, keyword: Keyword, words: list, values: list) -> None:
-        """Read the parts of one alternative."""
+    def match(self, parts: tuple, keyword: Keyword, words: list, values: list, behind: Word | Slot | None = None) -> None:
+        """Read the parts of one alternative; ``behind`` is the part that follows them."""
         for n, part in enumerate(parts):
             t = self.peek
             if isinstance(part, Word):
@@ -168,13 +168,13 @@ class SettingReader(Reader):
                     present = t.type not in ("NEWLINE", "END", "RBRACE") and t != following
                     present = present and not (following is None and str(t) in KEYWORDS[keyword.block])
                 if present:
-                    self.match(part.parts, keyword, words, values)
+                    self.match(part.parts, keyword, words, values, parts[n + 1] if n + 1 < len(parts) else behind)
                 else:
                     values += [None] * sum(isinstance(p, Slot) for p in pieces(part.parts))
             else:
                 if t.type in ("NEWLINE", "END", "RBRACE"):
                     self._missing(self.tokens[self.at - 1], keyword)
-                more = n + 1 < len(parts) and isinstance(parts[n + 1], Slot)
+                more = isinstance(parts[n + 1] if n + 1 < len(parts) else behind, Slot)
                 values.append(self.value(part, keyword, more))
 
     def value(self, slot: Slot, keyword: Keyword, more: bool) -> Value:

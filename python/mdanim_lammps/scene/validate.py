@@ -78,7 +78,7 @@ class Validator:
         """All records; None after an error."""
         self.one_of_each()
         held = {block.field: self.records(block) for block in BLOCKS.values() if block.field}
-        top, control = self.settings(self.out), held["control"]
+        top, control = self.settings(self.out) or {}, held["control"]
         if not self.blocks("control") and not self.out.excused("control"):
             self.problem(self.top, "the scene has no control block: how long is it?", "write control { time 3 s }", key="control")
         self.names_once()
@@ -181,10 +181,12 @@ class Validator:
                     message, hint, at = e.args
                     self.problem(s.span(at), message, hint)
                     good = False
-            if k.many:
-                values[k.field] = tuple(r[k.field] for r in read)
-            elif read:
-                values |= read[0]
+            try:
+                values |= k.gathered(read) if read else {}
+            except ValueError as e:
+                message, hint, at = e.args
+                self.problem(found[at].span(), message, hint)
+                good = False
         return values if good else None
 
     # -- several blocks at once

@@ -25,7 +25,7 @@ def on_page(style: str) -> list[str]:
     """Names on the page of a style, in their order."""
     text = (REPOSITORY / "docs" / f"fix_{style.replace('/', '_')}.md").read_text()
     if style == "mdanim/gravity":
-        return ["seconds"] if "one entry, `seconds`" in text else []
+        return ["work", "seconds"] if "two entries: `work`" in text and "and `seconds`" in text else []
     block = text[text.index("The vector has") :].split("\n\n")[1]
     found = re.findall(r"^\d+\. (?:– \d+\. )?((?:`\w+` ?)+):", block, re.M)
     return re.findall(r"\w+", " ".join(found))

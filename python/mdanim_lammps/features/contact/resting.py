@@ -38,7 +38,7 @@ class Slope(NamedTuple):
 def frictionless(envelope: Envelope) -> list[Problem]:
     """Note that objects will slide, once, where some may come to rest and nothing has friction."""
     scene, system = envelope.scene, envelope.system
-    if any_friction(scene) or envelope.reach.g <= 0.0 or not envelope.reach.moving.any():
+    if any_friction(scene) or envelope.reach.acting.changes or envelope.reach.g <= 0.0 or not envelope.reach.moving.any():
         return []
     sinks = (envelope.reach.moving & (envelope.reach.weight_left > 0.0)).any()
     if not any(sinks or p.effect != "basin" for p in floors(envelope)):
@@ -64,7 +64,7 @@ def frictionless(envelope: Envelope) -> list[Problem]:
 
 def slopes(envelope: Envelope) -> list[Problem]:
     """The object that slides worst because a slope is steeper than its friction holds. Without friction it is meant to slide."""
-    if envelope.reach.g <= 0.0 or not envelope.reach.moving.any():
+    if envelope.reach.acting.changes or envelope.reach.g <= 0.0 or not envelope.reach.moving.any():
         return []
     found, own = _Slopes(envelope), np.array(frictions(envelope.scene))
     steep = [s for s in (*found.on_floors(), *found.on_solids(own)) if s.tangent > s.friction]

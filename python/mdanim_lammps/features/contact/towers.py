@@ -32,7 +32,12 @@ def towers(envelope: Envelope) -> list[Problem]:
     more of the column, and on a plane as a whole one.
     """
     g, scene = envelope.reach.g, envelope.scene
-    if scene.control.contact_model is ContactModel.PAPER or g <= 0.0 or math.hypot(*scene.gravity[:2]) > LEVEL * g:
+    if (
+        scene.control.contact_model is ContactModel.PAPER
+        or g <= 0.0
+        or envelope.reach.acting.changes
+        or math.hypot(*scene.gravity[:2]) > LEVEL * g
+    ):
         return []
     found = [t for t in _columns(envelope) if t.height > TALL * t.most]
     if not found:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""Gravity: m g on every particle, Wcislo 1999, eq. (3.8)."""
+"""Gravity: m g on every particle, Wcislo 1999, eq. (3.8); g may change with time."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ import numpy as np
 
 from ...effects.context import Verdict
 from ...effects.effect import Effect
+from .words import acceleration_at
 
 
 class Gravity(Effect):
@@ -22,8 +23,13 @@ class Gravity(Effect):
     has_potential = True
     if_off = "nothing falls"
 
+    def of(self, scene):
+        return ChangingGravity() if scene.gravity_path else self
+
     def called_for(self, scene, reach):
         span = scene.spans.get("gravity")
+        if any(any(g) for _, g in scene.gravity_path):
+            return Verdict(self.name, True, f"gravity changes, through {len(scene.gravity_path)} points", span)
         if any(scene.gravity):
             return Verdict(self.name, True, "the gravity vector is not zero", span)
         return Verdict(self.name, False, "no gravity in the scene", span)
@@ -41,6 +47,54 @@ class Gravity(Effect):
     def potential(self, scene, mass, x):
         # No matrix product: the threads that it may start cost more than it. Axis by axis einsum is four times as fast.
         return -float(sum(g * np.einsum("i,i->", mass, x[:, d]) for d, g in enumerate(scene.gravity) if g))
+
+
+GRAVITY_WORK = "gravity_work"
+"""Column of the ledger: work that a gravity that changes has done."""
+
+
+class ChangingGravity(Gravity):
+    """The same with g(t), straight from point to point of a path [m/s^2].
+
+    A field that changes has no energy that is conserved: its work, the integral of sum m g(t) v dt, is counted step by step and
+    comes from outside, W = sum_n dt (g_n + g_{n+1})/2 P^{n+1/2} with P = sum m v (plugin/gravity/law.h).
+    """
+
+    ledger = ""
+    has_potential = False
+
+    def of(self, scene):
+        return self
+
+    def commands(self, context):
+        points = " ".join(f"{t!r} {x!r} {y!r} {z!r}" for t, (x, y, z) in context.scene.gravity_path)
+        return [f"fix gravity {context.pushed} mdanim/gravity path {points}"]
+
+    def accelerations(self, scene):
+        end = scene.control.time
+        points = [g for t, g in scene.gravity_path if 0.0 < t < end]
+        points += [acceleration_at(scene.gravity_path, t) for t in (0.0, end)]
+        return np.min(points, axis=0), np.max(points, axis=0)
+
+    def swing(self, scene):
+        times = np.array([0.0, *(t for t, _ in scene.gravity_path if 0.0 < t < scene.control.time), scene.control.time])
+        g = np.array([acceleration_at(scene.gravity_path, t) for t in times])
+        g[:, 2] = np.maximum(g[:, 2], 0.0)  # falls are counted by their heights
+        gained = np.cumsum(0.5 * (g[1:] + g[:-1]) * np.diff(times)[:, None], axis=0)
+        return float(np.linalg.norm(np.ptp(np.concatenate([np.zeros((1, 3)), gained]), axis=0)))
+
+    def untold(self, scene):
+        return "gravity changes with time, and frames do not tell what it has done between them"
+
+    def weighed(self, scene, system):
+        low, high = self.accelerations(scene)
+        return float((system.mass * (np.abs(system.position) @ np.maximum(np.abs(low), np.abs(high)))).sum())
+
+    def sources(self, scene):
+        return (GRAVITY_WORK,)
+
+    def lost(self, readings):
+        return {GRAVITY_WORK: readings.fix_value(self.fix, "work")}
 
 
 EFFECTS = (Gravity(),)

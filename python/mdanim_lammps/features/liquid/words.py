@@ -95,10 +95,15 @@ def gravity_fits(v: Any, liquids: list) -> None:
     """A liquid lies flat only under gravity along -z."""
     if not liquids or v.out.excused("gravity"):
         return
-    given = v.out.first("gravity")
-    g = given.values[0] if given else (0.0, 0.0, 0.0)
+    several = v.out.settings.get("gravity", ())
+    if len(several) > 1:
+        cause = "gravity changes here, and a liquid lies under one gravity: its waves, its levels and its lift are those of one g"
+        v.problem(several[1].span(), cause, "write gravity once, or take the liquid out", key="gravity")
+        return
+    given = several[0] if several else None
+    g = given.values[1] if given else (0.0, 0.0, 0.0)
     if g[0] != 0.0 or g[1] != 0.0 or g[2] >= 0.0:
-        span = given.span(0) if given else liquids[0].head
+        span = given.span(1) if given else liquids[0].head
         found = f"found {show(g)} m/s^2" if given else "the scene has no gravity"
         v.problem(span, f"a liquid needs gravity along -z, {found}", "e.g. gravity (0, 0, -9.81) m/s^2", key="gravity")
 

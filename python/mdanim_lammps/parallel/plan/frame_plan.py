@@ -173,7 +173,7 @@ class PlanContext:
         d = window(
             speed,
             steps * self.whole.certificate.timestep,
-            float(np.linalg.norm(self.whole.context.reach.acting.acceleration)),
+            self.whole.context.reach.acting.strongest,
             MARGIN * self.whole.spacing,
             self.settings.safety,
         )
