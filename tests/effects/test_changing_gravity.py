@@ -66,7 +66,9 @@ def test_flight_and_work(tmp_path):
     kinetic = 0.5 * mass * (v[at] ** 2).sum(axis=1)
     telescopes = mass * dt**2 / 8.0 * (acceleration(fine) ** 2).sum(axis=1).max()
     np.testing.assert_allclose(work, kinetic - kinetic[0], atol=1.1 * telescopes)
-    assert run.ledger.residual < 1e-6
+    # The kinetic energy of the ledger is that of a smooth path through the steps: dt^2/12 m (g^2 - v dg/dt) is left of the work.
+    left = mass * dt**2 / 12.0 * ((acceleration(fine) ** 2).sum(axis=1).max() + steepest * np.linalg.norm(v, axis=1).max())
+    assert run.ledger.residual < 1.1 * left / kinetic.max() < 1e-4
     assert "gravity" not in run.ledger.rows[0]
 
 

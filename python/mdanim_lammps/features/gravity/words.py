@@ -67,7 +67,7 @@ class GravityWords:
         "after; not with a liquid.",
         "(0, 0, -9.81) m/s^2", default=(0.0, 0.0, 0.0), many=True, also=("gravity_path",),
         codec=Points())  # fmt: skip
-    """That of the start [m/s^2]."""
+    """The acceleration at the start [m/s^2]."""
     gravity_path: tuple[tuple[float, Vector], ...] = ()
     """Points (T, g) between which it changes [s, m/s^2]; empty where it does not."""
 
