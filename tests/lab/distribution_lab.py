@@ -12,6 +12,7 @@ from pathlib import Path
 import plugin_library
 import plugin_path
 import pytest
+from mdanim_lammps.results.ledger import Ledger
 from mdanim_lammps.run.loop import write_inputs
 from mdanim_lammps.run.prepare import Prepared, prepare
 from mdanim_lammps.scene.parse import load_scene
@@ -66,6 +67,21 @@ def of_features(folder: str) -> dict[str, str]:
     """Variables with which a program finds the features of a folder of tests/lab/features, and the styles of the tests."""
     styles = os.pathsep.join([plugin_path.folder(), str(plugin_library.build().parent)])
     return {"MDANIM_FEATURES": str(LAB / "features" / folder), "LAMMPS_PLUGIN_PATH": styles}
+
+
+EXACT = ("time", "gravity", "liquid_cells", "strain.", "draft.", "immersed.")
+"""Columns of the ledger that no sum over executors is in: their bits are those of the sequential program."""
+MEASURED = "".join(f"expect {what} = 0 +- 10\n" for what in ("raft.draft", "above.draft", "stone.immersed", "buoy.strain.max"))
+"""Measured of objects of the scene POOL."""
+
+
+def same_file(one: Path, other: Path) -> None:
+    """Every byte of the trajectory, its checksums among them, and what the ledger tells of single objects."""
+    assert (one / "trajectory.h5").read_bytes() == (other / "trajectory.h5").read_bytes()
+    ledgers = [Ledger.read(folder / "ledger.csv") for folder in (one, other)]
+    for column in ledgers[0].columns:
+        if column.startswith(EXACT):
+            assert ledgers[0].array(column).tobytes() == ledgers[1].array(column).tobytes(), column
 
 
 def readied(place: Path, text: str) -> tuple[Prepared, Path]:

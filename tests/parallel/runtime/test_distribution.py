@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """The distributed program against the sequential one: the same film to the last bit, however objects are dealt out."""
 
+import itertools
 import json
 import re
 from pathlib import Path
@@ -8,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import plugin_path
 import pytest
-from distribution_lab import SEQUENTIAL, WINDOWS, matrix, ways
+from distribution_lab import MEASURED, SEQUENTIAL, WINDOWS, matrix, same_file, ways
 from mdanim_lammps.results.compare import compare
 from mdanim_lammps.results.ledger import Ledger
 from mdanim_lammps.results.timeline import KINDS, Timeline
@@ -20,8 +21,9 @@ pytestmark = pytest.mark.mpi
 
 
 def same(alone: Path, together: Path) -> None:
-    """All frames to the last bit; energies and all that is measured but for rounding."""
-    assert compare(alone, together).equal
+    """The file of the frames to the byte; energies and all that is measured but for rounding."""
+    assert compare(alone, together).equal  # tells where they differ
+    same_file(alone, together)
     one, two = (Ledger.read(f / "ledger.csv") for f in (alone, together))
     assert (one.terms, one.extras) == (two.terms, two.extras)
     scale = max(np.abs(one.array(t)).max() for t in one.terms)
@@ -139,19 +141,26 @@ def test_only_what_meets_others_begins_again(scene):
         assert (times[third[0]] == 1).all() and (third == third[0]).all() and times.max() == 2
 
 
-@pytest.mark.parametrize(
-    ("text", "control", "more"),
-    [
-        pytest.param(films.HEAVY, "central", 3, id="solid"),
-        pytest.param(films.POOL, "peers", 2, id="liquid"),
-        pytest.param(films.WAVES, "peers", 2, id="waves"),
-        pytest.param(films.POOL, "central", 3, id="liquid of three", marks=pytest.mark.soak),
-        pytest.param(films.FLYING, "central", 3, id="islands"),
-    ],
-)
-@BY_RANKS_AND_BY_THREADS
-def test_a_team_runs_what_is_too_heavy_for_one(scene, text, control, more, by_threads):
+HEAVY = {
+    "solid": (films.HEAVY, "central", 3),
+    "liquid": (films.POOL + MEASURED, "peers", 2),
+    "waves": (films.WAVES, "peers", 2),
+    "liquid of three": (films.POOL, "central", 3),
+    "islands": (films.FLYING, "central", 3),
+}
+LONG = {("liquid of three", False), ("liquid of three", True), ("islands", False)}
+
+
+def team(name: str, by_threads: bool):
+    """A case of the next test."""
+    shared = "threads" if by_threads else "ranks"
+    return pytest.param(name, by_threads, id=f"by {shared}-{name}", marks=[pytest.mark.soak] * ((name, by_threads) in LONG))
+
+
+@pytest.mark.parametrize(("name", "by_threads"), [*itertools.starmap(team, itertools.product(HEAVY, (False, True)))])
+def test_a_team_runs_what_is_too_heavy_for_one(scene, name, by_threads):
     """Several executors run one island together, or one has threads for all of them, also where its box is too small at first."""
+    text, control, more = HEAVY[name]
     team = {"least": 50, "by_threads": by_threads}
     cases = matrix((2,), [control], settings=team) | matrix(
         (more,), [control], "windows ", settings=WINDOWS | team | {"safety": 0.5}

@@ -31,21 +31,29 @@ def records(folder) -> dict[tuple[int, int], bytes]:
     }
 
 
+AGAIN, TEAMS = WINDOWS | {"safety": 0.3}, {"least": 50}
 FORMS = {
     "flying": (
         films.FLYING,
-        matrix((1, 2, 3))
-        | matrix((3,), name="again ", settings=WINDOWS | {"safety": 0.3})
-        | matrix((3,), name="all move ", rotate=True)
-        | matrix((2,), name="teams ", settings={"least": 50}),
+        matrix((3,), ["central"], "again ", settings=AGAIN)
+        | matrix((3,), ["peers"], "all move ", rotate=True)
+        | matrix((2,), ["peers"], "teams ", settings=TEAMS),
     ),
-    "bounce": (films.BOUNCE, matrix((2,), name="teams ", settings=WINDOWS | {"least": 50, "safety": 0.3})),
-    "mixed": (films.MIXED, matrix((2, 3)) | matrix((2,), name="all move ", rotate=True)),
+    "flying, long": (
+        films.FLYING,
+        matrix((1, 2, 3))
+        | matrix((3,), name="again ", settings=AGAIN)
+        | matrix((3,), name="all move ", rotate=True)
+        | matrix((2,), name="teams ", settings=TEAMS),
+    ),
+    "bounce": (films.BOUNCE, matrix((2,), name="teams ", settings=AGAIN | TEAMS)),
+    "mixed": (films.MIXED, matrix((3,), ["central"]) | matrix((2,), ["peers"], "all move ", rotate=True)),
+    "mixed, long": (films.MIXED, matrix((2, 3)) | matrix((2,), name="all move ", rotate=True)),
     "rafts": (films.RAFTS, matrix((3,)) | matrix((2,), ["peers"], "all move ", rotate=True)),
 }
 
 
-@pytest.mark.parametrize("name", FORMS)
+@pytest.mark.parametrize("name", [pytest.param(n, marks=[pytest.mark.soak] * n.endswith("long")) for n in FORMS])
 def test_a_history_is_the_same_in_all_forms(scene, name):
     """Frames and records of one process, and those of executors: migration, windows begun again, teams."""
     text, cases = FORMS[name]
