@@ -3,6 +3,7 @@
 
 import ast
 import os
+import signal
 import subprocess
 import sys
 import time
@@ -275,6 +276,26 @@ def test_workers_end_at_once():
         time.sleep(0.5)
     assert all(child.poll() is not None for child in workers.children)
     assert all(f.cancelled() for f in futures[2:])
+
+
+def test_ctrl_c_is_for_the_parent_alone():
+    """A terminal sends it to all processes of its group; workers go on until their parent ends them."""
+    with Workers(1) as workers:
+        child = workers.submit(os.getpid).result()
+        assert os.getpgid(child) != os.getpgid(0)
+        os.kill(child, signal.SIGINT)
+        assert workers.submit(pow, 2, 5).result() == 32
+
+
+def test_a_worker_that_does_not_end_is_killed(monkeypatch):
+    """One that ignores SIGTERM has some seconds, and no more."""
+    monkeypatch.setattr(children, "ENDING", 0.3)
+    with Workers(1) as workers:
+        workers.submit(signal.signal, signal.SIGTERM, signal.SIG_IGN).exception()
+        workers.submit(exec, "import signal, time\nsignal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGTERM])\ntime.sleep(100)")
+        time.sleep(0.3)
+        child = workers.children[0]
+    assert child.wait(10) == -signal.SIGKILL
 
 
 def test_workers_end_with_their_parent(tmp_path):

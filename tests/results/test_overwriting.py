@@ -9,10 +9,10 @@ import time
 import pytest
 from command_line import GOOD, call
 from mdanim_lammps import Scene
-from mdanim_lammps.errors import OutputError
+from mdanim_lammps.errors import OutputError, UsageError
 from mdanim_lammps.export import export
 from mdanim_lammps.results.files import claimed, delete_results, scratch
-from mdanim_lammps.results.overwriting import check_overwriting
+from mdanim_lammps.results.overwriting import check_overwriting, place_of
 
 SMALL = GOOD + "render { size (64, 48)  movie 'films/a.mp4' }\n".replace("'", '"')
 
@@ -119,11 +119,26 @@ def test_what_cannot_be_overwritten(tmp_path):
     (tmp_path / "folder.png").mkdir()
     (tmp_path / "empty.png").touch()
     (tmp_path / "link.png").symlink_to(tmp_path / "empty.png")
-    for name, words in (("folder.png", "is a folder"), ("empty.png", "force=True"), ("link.png", "force=True")):
+    (tmp_path / "dangling.png").symlink_to(tmp_path / "nowhere.png")  # what is written through it lands elsewhere
+    asks = dict.fromkeys(("empty.png", "link.png", "dangling.png"), "force=True")
+    for name, words in {"folder.png": "is a folder", **asks}.items():
         with pytest.raises(OutputError, match=words):
             check_overwriting(tmp_path / name, force=False)
     check_overwriting(tmp_path / "none.png", force=False)
     check_overwriting(tmp_path / "empty.png", force=True)
+
+
+def test_where_a_file_goes(tmp_path):
+    """A folder takes it under its usual name, the letters of a suffix may be capitals; another kind, and a folder that is not
+    there, are refused."""
+    default = tmp_path / "good.png"
+    assert place_of(default, None) == default
+    assert place_of(default, tmp_path) == default
+    assert place_of(default, tmp_path / "OTHER.PNG") == tmp_path / "OTHER.PNG"
+    with pytest.raises(UsageError, match=r"this file is written as .png; give it a name such as other.png"):
+        place_of(default, tmp_path / "other.jpg")
+    with pytest.raises(OutputError, match="there is no folder"):
+        place_of(default, tmp_path / "none" / "other.png")
 
 
 def test_an_export_deletes_no_folders_inside_of_it(tmp_path):
