@@ -56,7 +56,7 @@ def test_ignored_signals_stay_ignored():
 
 
 def test_another_program_keeps_its_handlers():
-    """Of a program that imports this package; Python's own are replaced."""
+    """A program may import this package; handlers of Python itself are replaced."""
     mine, ours = lambda *_: None, lambda *_: None
     signal.signal(signal.SIGINT, mine)
     signal.signal(signal.SIGTERM, signal.SIG_DFL)

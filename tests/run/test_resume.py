@@ -106,7 +106,7 @@ def test_a_stop_ends_a_pause(whole, tmp_path):
 
 
 def test_an_output_folder_holds_neither_scene_nor_mesh(tmp_path):
-    """What empties the folder would delete them."""
+    """A run that empties the folder would delete them."""
     home = tmp_path / "home"
     home.mkdir()
     (home / "hard.txt").write_text(HARD)
