@@ -25,7 +25,7 @@ struct ContactSettings {
   std::vector<ContactPlane> planes;
   std::map<std::pair<int, int>, PairLaw> pairs;    // by ids, the lower one first
 
-  // Of points of an object against another one; `density` is that of the lighter one that can move, because that one swings.
+  // Law for points of an object against another one; `density` is that of the lighter one that can move, because that one swings.
   ContactLaw law_of_pair(const ContactObject &owner, const ContactObject &host, double density) const;
   ContactLaw law_at_plane(const ContactObject &one) const;
 };

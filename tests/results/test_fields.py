@@ -52,7 +52,7 @@ def write(path, save=Save.ALL, told=None):
 
 @pytest.mark.parametrize("save", [Save.ALL, Save.BOUNDARY])
 def test_fields_come_back(tmp_path, save):
-    """Those of particles and springs that are stored; the size of the file is known before."""
+    """Fields of particles and springs that are stored; the size of the file is known before."""
     models, told = write(tmp_path / "trajectory.h5", save)
     with Trajectory(tmp_path) as found:
         m = found.metadata

@@ -38,7 +38,7 @@ TRACKS = tuple(facet.Track for facet in facets("kept") if hasattr(facet, "Track"
 """Classes of features with what they add to a `Trajectory`."""
 
 
-class Trajectory(*TRACKS):
+class Trajectory(*TRACKS):  # type: ignore[misc]  # features are found when the program starts
     """A finished, running or crashed run, read frame by frame; F frames, O objects, N stored particles.
 
     Every value is checked against the checksum that was stored with it: reading raises OutputError where the file is damaged.

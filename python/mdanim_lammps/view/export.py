@@ -40,7 +40,7 @@ STEPS, STEPS_EXACT = 4095, 65535
 MOST_BYTES = 20_000_000
 """Largest size of the packed frames: beyond it only every n-th frame is kept."""
 LEVEL = 6
-"""Of compression: 9 makes a report smaller by 0.3 to 1.2 %, in twice the time, and in twenty times where frames repeat."""
+"""Level of compression: 9 makes a report smaller by 0.3 to 1.2 %, in twice the time, and in twenty times where frames repeat."""
 MOST_PICTURE = 2_000_000
 """Bytes of a picture of a study that the file takes in."""
 
