@@ -81,7 +81,7 @@ def test_values_come_back_from_properties(name):
 
 
 def test_states_are_records_of_objects():
-    """Columns of objects that never move stay as at the start; a part knows its own, whatever the numbers of objects are there."""
+    """Columns of objects that never move stay as at the start; a part knows its own, whatever the numbers of objects are."""
     made, names = plan(), ("way", "load", "most", "hits")
     now = {name: made.columns[name] + 7 for name in names}
     records = to_records(made, now)
