@@ -5,6 +5,7 @@ python bench/modelling.py cost       seconds and peak memory of a large box, bal
 objects python bench/modelling.py physics    stiffness of bars, cantilevers against Timoshenko
 python bench/modelling.py masses     moments of inertia, and what their fit costs
 python bench/modelling.py shapes     how well cells fill round bodies
+python bench/modelling.py spacings   impulses where two spacings meet
 python bench/modelling.py forecast   processor seconds and memory that are told before modelling, and those it took
 """
 
@@ -68,47 +69,70 @@ def cost() -> None:
 
 
 TOLD = {
-    "box": ("box (1, 1, 1) m", 1 / 80),
-    "plate": ("box (2, 2, 0.04) m", 0.01),
-    "ball": ("sphere 0.5 m", 1 / 80),
-    "larger ball": ("sphere 0.5 m", 1 / 120),
-    "needle": ("cone 1 cm 100 m", 0.005),
-    "rod": ("cylinder 1 cm 100 m", 0.005),
-    "ring": ("torus 1 m 0.1 m", 0.0125),
-    "lens": ("ellipsoid (0.6, 0.4, 0.1) m", 0.0125),
-    "duck": ('mesh "duck.ply" scale 0.03', 0.006),
-    "boat": ('mesh "boat.stl" scale 0.01', 0.012),
-    "bottle": ('mesh "bottle.stl" scale 0.01', 0.004),
+    "cuboid": "box (1, 1, 1) m",
+    "plate": "box (2, 2, 0.04) m",
+    "ball": "sphere 0.5 m",
+    "cylinder": "cylinder 0.4 m 1 m",
+    "rod": "cylinder 1 cm {long} m",
+    "cone": "cone 0.5 m 1 m",
+    "needle": "cone 1 cm {long} m",
+    "ring": "torus 1 m 0.1 m",
+    "lens": "ellipsoid (0.6, 0.4, 0.1) m",
+    "mesh of 12 triangles": 'mesh "{tests}/cuboid.obj"',
+    "boat, mesh of 448": 'mesh "{scenes}/boat.stl" scale 0.01',
+    "bottle, mesh of 1 200": 'mesh "{scenes}/bottle.stl" scale 0.01',
+    "duck, mesh of 4 212": 'mesh "{scenes}/duck.ply" scale 0.03',
 }
+SIZES = (1e3, 1e4, 1e5, 1e6)
+MESHES = {"tests": f"{ROOT}/tests/lab/meshes", "scenes": f"{ROOT}/scenes/meshes"}
 
 
-def told(name: str) -> None:
+def told(name: str, size: float) -> None:
     """Print one row; runs in a process of its own."""
     from mdanim_lammps.model import plan_spacing, work
+    from mdanim_lammps.model.spacing import estimate_particles
     from mdanim_lammps.run.prepare import prepare
     from mdanim_lammps.scene.parse import parse_scene
 
-    shape, h = TOLD[name]
-    shape = shape.replace('mesh "', f'mesh "{ROOT}/scenes/meshes/')
-    case = parse_scene(
-        f"ground z 0 m\nobject a {{ shape {shape} position (0, 0, 300) m density 500 elasticity 1 MPa }}\n"
-        f"gravity (0, 0, -9.81) m/s^2\ncontrol {{ time 1 s resolution {h!r} m }}"
-    )
+    def text(shape: str, h: float) -> str:
+        return (
+            f"ground z 0 m\nobject a {{ shape {shape} position (0, 0, 3000) m density 500 elasticity 1 MPa }}\n"
+            f"gravity (0, 0, -9.81) m/s^2\ncontrol {{ time 1 s resolution {h!r} m }}"
+        )
+
+    # Needles keep their four cells across and grow along; all other shapes are cut finer.
+    shape, h = TOLD[name].format(long=f"{size / (1800 if 'cone' in TOLD[name] else 4200):.4g}", **MESHES), 0.005
+    if "{long}" not in TOLD[name]:
+        (body,) = parse_scene(text(shape, h)).solids
+        low, high = 1e-4, float(shapes.thickness(body.shape))
+        while high / low > 1.001:
+            h = (low * high) ** 0.5
+            low, high = (h, high) if estimate_particles(body.shape, h) > size else (low, h)
+    import pyvista  # noqa: F401  libraries are loaded once, in 1 to 2 s
+    import scipy.linalg
+    import scipy.ndimage
+    import scipy.spatial
+    import scipy.special  # noqa: F401
+
+    case = parse_scene(text(shape, h))
     plan, start = plan_spacing(case), time.process_time()
     particles = prepare(case).system.particles
     took, peak = time.process_time() - start, resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e6
     seconds = work.seconds(case, plan.h, plan.total)
-    print(f"| {name} | {particles:,} | {seconds:.1f} | {took:.1f} | {plan.memory * 1e-9:.2f} | {peak:.2f} |")
+    print(
+        f"| {name} | {particles:,} | {seconds:.2f} | {took:.2f} | {seconds / took:.2f} | {plan.memory * 1e-9:.2f} | {peak:.2f} |",
+        flush=True,
+    )
 
 
 def forecast() -> None:
-    print(
-        "| body | particles | told [s] | took [s] | told [GB] | peak without LAMMPS [GB] |\n|---|---|---|---|---|---|", flush=True
-    )
-    for name in TOLD:
-        process = multiprocessing.get_context("spawn").Process(target=told, args=(name,))
-        process.start()
-        process.join()
+    print("| body | particles | told [s] | took [s] | told over took | told [GB] | peak without LAMMPS [GB] |")
+    print("|---|---|---|---|---|---|---|", flush=True)
+    for size in SIZES:
+        for name in TOLD:
+            process = multiprocessing.get_context("spawn").Process(target=told, args=(name, size))
+            process.start()
+            process.join()
 
 
 def physics() -> None:
@@ -160,8 +184,48 @@ def round_bodies() -> None:
             print(f"| {shape_id(shape)} | {cells} | {edge:.3f} | {volume:.4f} | {particles} |")
 
 
+SPACINGS = {
+    "ball": ("sphere 3 cm", 3.0, "", 0.04),
+    "ball, plate held at its edges": ("sphere 3 cm", 3.0, "hold faces x  hold faces y", 0.06),
+    "ball, plate all held": ("sphere 3 cm", 3.0, "hold all", 0.05),
+    "cube, flat": ("box (5, 5, 5) cm", 2.5, "", 0.04),
+    "cube, on a corner": ("box (5, 5, 5) cm orientation axis (1, 1, 0) angle 54.7 deg", 4.33, "", 0.04),
+}
+
+
+def spacings() -> None:
+    """A body hits a plate, 3 cm thick, at 0.5 m/s: both fine, the plate coarse, both coarse."""
+    import tempfile
+
+    from mdanim_lammps import Scene
+
+    fine, coarse, material = "resolution 7.5 mm", "resolution 15 mm", "density 1000 elasticity 200 kPa"
+    print("| blow | fine | plate coarse | both coarse | largest energy residual |", flush=True)
+    print("|---|---|---|---|---|", flush=True)
+    for name, (shape, half, hold, end) in SPACINGS.items():
+        rows, residual = [], 0.0
+        for plate, body in ((fine, fine), (coarse, fine), (coarse, coarse)):
+            case = Scene.from_text(
+                f"object plate {{ shape box (24, 24, 3) cm position (0, 0, 0) m {material} {hold} {plate} }}\n"
+                f"object body {{ shape {shape} position (0.4, 0.4, {half + 1.6}) cm {material} {body} "
+                f"velocity (0, 0, -0.5) m/s }}\ncontrol {{ time {end} s frames 200 fps }}"
+            )
+            with tempfile.TemporaryDirectory() as folder:
+                run = case.run(folder + "/run")
+                rows.append(1.0 + run.trajectory.objects["body"].velocity[-1, 2] / 0.5)
+                residual = max(residual, run.ledger.residual)
+        print(f"| {name} | {rows[0]:.3f} | {rows[1]:.3f} | {rows[2]:.3f} | {residual:.1e} |", flush=True)
+
+
 if __name__ == "__main__":
-    parts = {"cost": cost, "physics": physics, "masses": masses, "shapes": round_bodies, "forecast": forecast}
+    parts = {
+        "cost": cost,
+        "spacings": spacings,
+        "physics": physics,
+        "masses": masses,
+        "shapes": round_bodies,
+        "forecast": forecast,
+    }
     for part in sys.argv[1:] or parts:
         parts[part]()
         print()

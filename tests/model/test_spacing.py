@@ -262,3 +262,40 @@ def test_a_nub_is_taken_away_and_a_needle_is_not():
     np.testing.assert_array_equal(_without_nubs(with_nub), block)
     needle = np.ones((6, 1, 1), bool)
     np.testing.assert_array_equal(_without_nubs(needle), needle)
+
+
+def test_an_object_with_a_resolution_of_its_own_has_it_alone():
+    """A marble of 5 mm cells on a plate: the plate's thickness sets the spacing of the rest, the marble does not."""
+    made = scene(
+        solid(Box((1.0, 1.0, 0.08)), "plate"), solid(Sphere(0.02), "marble", resolution=0.005), accuracy=Accuracy.BALANCED
+    )
+    plan = plan_spacing(made)
+    assert (plan.h, plan.of, plan.set_by) == (pytest.approx(0.02), (pytest.approx(0.02), 0.005), "plate")
+    plate, marble = build_models(made)
+    assert plate.spacing == pytest.approx(0.02, rel=0.05) and marble.spacing == pytest.approx(0.005, rel=0.05)
+    assert plan.particles[1] == pytest.approx(len(marble.position), rel=0.1)
+    assert plan_spacing(scene(*made.solids[1:])).h == 0.005  # nothing else asks
+
+
+def test_the_same_shape_at_two_spacings_is_two_bodies():
+    """Equal objects share arrays; those of another spacing do not."""
+    models = build_models(scene(*(solid(Sphere(0.1), f"b{k}", resolution=h) for k, h in enumerate((0.05, 0.025, 0.05)))))
+    assert models[0].frame is models[2].frame is not models[1].frame
+    assert len(models[1].position) > 3 * len(models[0].position)
+
+
+def test_a_spacing_of_its_own_is_checked_and_named():
+    """Too thin for its own spacing, or too large for the memory: the message points at the object's line."""
+    with pytest.raises(SceneError, match=r"marble: thinner than the spacing allows, 4 cm at its thinnest, spacing 5 cm") as error:
+        plan_spacing(scene(solid(BEAM), solid(Sphere(0.02), "marble", resolution=0.05), resolution=0.02))
+    assert "write resolution 2 cm in it" in str(error.value)
+    with pytest.raises(SceneError, match="ball: about") as error:
+        plan_spacing(scene(solid(BEAM), solid(Sphere(1.0), "ball", resolution=1e-4), resolution=0.02))
+    assert "in it" in str(error.value)
+
+
+def test_scaled_spacings_are_those_of_objects_alone():
+    """A study makes all spacings finer together; a preview takes them away."""
+    made = scene(solid(BEAM), solid(Sphere(0.2), "ball", resolution=0.05), resolution=0.02)
+    assert [s.resolution for s in spacing.scaled(made, 0.5).solids] == [None, 0.025]
+    assert [s.resolution for s in spacing.scaled(made, None).solids] == [None, None]

@@ -251,3 +251,16 @@ def test_friction_of_pairs():
 def test_whether_anything_has_friction(control, contacts, settings, expected):
     """The scene, an object, or a pair."""
     assert any_friction(parse_scene(pile(contacts, f"{SURFACE} {control}", **settings))) == expected
+
+
+def test_the_contact_of_the_paper_needs_one_spacing():
+    """A resolution of an object with contact-model paper is refused at its word; without the model it is read."""
+    text = (
+        "object a { shape sphere 1 m position (0, 0, 0) m mass 1 kg elasticity 1 MPa resolution 10 cm }\n"
+        "control { time 1 s contact-model paper }"
+    )
+    with pytest.raises(SceneError) as error:
+        parse_scene(text)
+    (found,) = error.value.problems
+    assert found.message.startswith("a has a resolution of its own") and (found.span.line, found.span.column) == (1, 88)
+    assert parse_scene(text.replace(" contact-model paper", "")).solids[0].resolution == 0.1

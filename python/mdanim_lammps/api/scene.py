@@ -22,6 +22,7 @@ from ..children import Workers
 from ..deprecated import OnceMethod, warn
 from ..engine.threads import THREADS, asked_threads
 from ..errors import MdanimError, UsageError
+from ..model.spacing import scaled
 from ..picture.marks import Marks
 from ..processes import cores
 from ..results.html import THUMBNAIL, html_table
@@ -313,6 +314,7 @@ def draw_picture(
         # The fewest frames that end at this time, at least those of the scene.
         frames = math.ceil(record.control.frames * at * (1.0 - 1e-9)) / at
         control = replace(control, time=at, frames=frames, accuracy=Accuracy.PREVIEW, resolution=None, timestep=None)
+        record = scaled(record, None)
     with TemporaryDirectory(prefix="mdanim-picture-") as name:
         folder, ready = Path(name), prepare(replace(record, control=control, expects=()))
         if at > 0.0:

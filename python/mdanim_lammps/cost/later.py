@@ -8,6 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from ..errors import MdanimError
+from ..model.spacing import scaled
 from ..results.files import STOP
 from ..run.prepare import Prepared, prepare
 from ..scene.scene import Save
@@ -49,10 +50,9 @@ def _coarser(ready: Prepared) -> Prepared | None:
     control = ready.scene.control
     for factor in COARSER:
         spacing = factor * ready.context.spacing.h
+        coarse = replace(control, resolution=spacing, timestep=None, save=Save.BOUNDARY, single=True)
         try:
-            return prepare(
-                replace(ready.scene, control=replace(control, resolution=spacing, timestep=None, save=Save.BOUNDARY, single=True))
-            )
+            return prepare(replace(scaled(ready.scene, factor), control=coarse))
         except MdanimError:
             continue
     return None

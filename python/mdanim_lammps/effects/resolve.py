@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from ..errors import Problem
 from ..reach import Reach
 from ..scene.scene import SceneRecord, Switch
@@ -10,7 +12,7 @@ from .context import Resolved, Verdict
 from .effect import Effect
 
 
-def resolve(effects: tuple[Effect, ...], scene: SceneRecord, h: float | None = None) -> Resolved:
+def resolve(effects: tuple[Effect, ...], scene: SceneRecord, h: Sequence[float] | None = None) -> Resolved:
     """Decide on every effect of a scene, whose particle spacing is h [m] where that is known: by what the scene calls for and by
     its own switches, with warnings about needed ones switched off.
 

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Container
+from collections.abc import Container, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache, singledispatch
 
@@ -26,8 +26,9 @@ from .spacing import plan_spacing
 from .springs import dashpots, equivalent_modulus, rest_lengths, stiffness, types
 
 
-def build_models(scene: SceneRecord, h: float | None = None, driven: Container[int] = ()) -> tuple[Model, ...]:
-    """Make the model of every solid, in the order of the scene, all with one particle spacing h [m]; None is that of the scene.
+def build_models(scene: SceneRecord, h: float | Sequence[float] | None = None, driven: Container[int] = ()) -> tuple[Model, ...]:
+    """Make the model of every solid, in the order of the scene, with a particle spacing h [m], one for all or one for each; None
+    is that of the scene.
 
     ``driven`` are the numbers of those whose held particles some effect moves. Objects of equal shape, elasticity and mass share
     their arrays of springs, masses, layers, surface and contact body, which are read-only; positions, velocities and held are
@@ -36,15 +37,15 @@ def build_models(scene: SceneRecord, h: float | None = None, driven: Container[i
     Raises SceneError with all problems of all solids in one pass: those of plan_spacing, a body that falls
     apart at this spacing, a ``hold`` without particles.
     """
-    h = plan_spacing(scene).h if h is None else h
-    shared = _Shared(h)
+    spacing = np.broadcast_to(plan_spacing(scene).of if h is None else h, len(scene.solids)).tolist()
+    shared = _Shared()
     models, problems = [], []
     for m, solid in enumerate(scene.solids):
         try:
-            model = _make_model(solid, shared)
+            model = _make_model(solid, spacing[m], shared)
             models.append(replace(model, driven=True) if m in driven else model)
         except TooThin as error:
-            problems.append(_too_thin(solid, h, error))
+            problems.append(_too_thin(solid, spacing[m], error))
         except MeshError as error:
             problems.append(Problem(solid.spans.get("shape"), f"{solid.name}: {error}", error.hint))
         except _NothingHeld as error:
@@ -85,8 +86,8 @@ class _Material:
 class _Shared:
     """Makes every body and material of one scene once; lives as long as one call of build_models."""
 
-    def __init__(self, h: float):
-        self.body = lru_cache(maxsize=None)(lambda shape: _make_body(shape, h))
+    def __init__(self):
+        self.body = lru_cache(maxsize=None)(_make_body)
         self.material = lru_cache(maxsize=None)(_make_material)
 
 
@@ -127,8 +128,8 @@ def _freeze(*arrays: np.ndarray) -> None:
 # --- one object ---------------------------------------------------------------------------------------------
 
 
-def _make_model(solid: Solid, shared: _Shared) -> Model:
-    body = shared.body(solid.shape)
+def _make_model(solid: Solid, h: float, shared: _Shared) -> Model:
+    body = shared.body(solid.shape, h)
     lattice = body.lattice
     held = _held(solid, lattice)
     mass = solid.mass if solid.mass is not None else solid.density * shapes.volume(solid.shape)
@@ -223,7 +224,7 @@ MOST_TRIED = 3e7
 
 def _too_thin(solid: Solid, h: float, error: TooThin) -> Problem:
     """Name a sufficient resolution, by trying finer ones."""
-    tried, left = [h], MOST_TRIED
+    tried, left, where = [h], MOST_TRIED, "control" if solid.resolution is None else "it"
     # Two digits, so that the resolution that is tried is the one in the message.
     for trial in [float(f"{finer:.2g}") for finer in h * 0.8 ** np.arange(1, 6)]:
         left -= bounding_cells(solid.shape, trial)
@@ -237,7 +238,7 @@ def _too_thin(solid: Solid, h: float, error: TooThin) -> Problem:
         return Problem(
             solid.spans.get("shape"),
             f"{solid.name}: thinner than the spacing allows, {error} at {say(h, 'm')}",
-            f"write resolution {say(trial, 'm')} in control, or make its thin parts thicker",
+            f"write resolution {say(trial, 'm')} in {where}, or make its thin parts thicker",
         )
     found = [say(size, "m") for size in tried]
     return Problem(

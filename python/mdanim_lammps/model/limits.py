@@ -4,6 +4,8 @@ boxes. Limits of single numbers are in scene/limits.py."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from ..errors import Problem
@@ -17,10 +19,10 @@ SPARSE_CELLS, SPARSE = 3e7, 20.0
 """A shape whose bounding box has more than SPARSE_CELLS cells must fill at least one in SPARSE of them."""
 
 
-def check_places(scene: SceneRecord, h: float) -> list[Problem]:
-    """A problem for every object so far from the origin that its particles, ``h`` [m] apart, cannot be distinguished well."""
+def check_places(scene: SceneRecord, spacings: Sequence[float]) -> list[Problem]:
+    """A problem for every object so far from the origin that its particles, so far apart [m], cannot be distinguished well."""
     farthest = max((abs(x) for s in scene.solids for x in s.position), default=0.0)
-    if np.spacing(farthest) <= PRECISION * h:
+    if np.spacing(farthest) <= PRECISION * min(spacings, default=1.0):
         return []
     return [
         Problem(
@@ -29,7 +31,7 @@ def check_places(scene: SceneRecord, h: float) -> list[Problem]:
             f"{say(float(np.spacing(far)), 'm')} apart, too coarse for particles that are {say(h, 'm')} apart",
             "move the scene nearer to the origin, or make everything larger",
         )
-        for s in scene.solids
+        for s, h in zip(scene.solids, spacings)
         if np.spacing(far := max(map(abs, s.position))) > PRECISION * h
     ]
 

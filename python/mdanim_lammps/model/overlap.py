@@ -65,8 +65,8 @@ class _BoundingBoxes:
         self.fixed = np.array([m.still for m in models])
         spacing = max(m.spacing for m in models)
         self.hair = HAIR * spacing
-        self.allowed = (BORN_AT_REST if on_surfaces else HAIR) * spacing
-        """Depth of a start that is no problem [m]."""
+        self.allowed = (BORN_AT_REST if on_surfaces else HAIR) * np.array([m.spacing for m in models])
+        """Depth of a start in a plane that is no problem [m], shape (n,); in another one, the larger of both."""
         self.outer_low, self.outer_high = self.low, self.high
         if on_surfaces:
             return
@@ -166,7 +166,7 @@ def _pair(scene: SceneRecord, bodies: _BoundingBoxes, planes: tuple[Plane, ...],
         )
 
     depth = deepest(np.zeros(3))
-    if depth <= bodies.allowed:
+    if depth <= max(bodies.allowed[i], bodies.allowed[j]):
         return None
     axis, sign, step = _way_out(planes, bodies, i, j)
     if bodies.on_surfaces:  # surfaces may touch where boxes overlap

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""One particle spacing for all objects (Wcislo 1999, sec. 5.2), and whether the scene fits in memory."""
+"""The particle spacing of a scene (Wcislo 1999, sec. 5.2) and of objects with one of their own, and whether the scene fits in
+memory."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
@@ -23,7 +24,9 @@ class Spacing:
     """The spacing of a scene, what asked for it, and what it costs."""
 
     h: float
-    """Particle spacing [m]."""
+    """Particle spacing of all that has none of its own [m]."""
+    of: tuple[float, ...]
+    """Particle spacing of each solid [m]."""
     set_by: str
     """Name of the solid with the thinnest part, ``resolution``, or what a scene without solids goes by."""
     particles: tuple[int, ...]
@@ -47,33 +50,35 @@ def plan_spacing(scene: SceneRecord) -> Spacing:
     its bounding box, or whose mesh is not a body, and where the particles would not fit in memory.
     """
     h, set_by, thin = choose_spacing(scene)
-    problems = check_places(scene, h)
+    of = spacings(scene, h)
+    problems = check_places(scene, of)
     too_thin: dict[tuple, list[str]] = {}  # objects of a repeat are one problem
-    for solid, t in zip(scene.solids, thin):
-        if h > t * (1 + 1e-9):
-            too_thin.setdefault((_span(solid), t), []).append(solid.name)
-    for (span, t), names in too_thin.items():
+    for solid, own, t in zip(scene.solids, of, thin):
+        if own > t * (1 + 1e-9):
+            too_thin.setdefault((_span(solid), t, own, solid.resolution is None), []).append(solid.name)
+    for (span, t, own, shared), names in too_thin.items():
         more = f" and {whole(len(names) - 1)} more" if len(names) > 1 else ""
         problems.append(
             Problem(
                 span,
-                f"{names[0]}{more}: thinner than the spacing allows, {say(t, 'm')} at its thinnest, spacing {say(h, 'm')}",
-                f"write resolution {say(t / 2, 'm')} in control, or make it thicker",
+                f"{names[0]}{more}: thinner than the spacing allows, {say(t, 'm')} at its thinnest, spacing {say(own, 'm')}",
+                f"write resolution {say(t / 2, 'm')} {'in control' if shared else 'in it'}, or make it thicker",
             )
         )
     if problems:
         raise SceneError(problems)
-    particles = tuple(estimate_particles(solid.shape, h) for solid in scene.solids)
-    if sparse := [p for s, n in zip(scene.solids, particles) if (p := check_sparse(s, h, n))]:
+    particles = tuple(estimate_particles(solid.shape, own) for solid, own in zip(scene.solids, of))
+    if sparse := [p for s, own, n in zip(scene.solids, of, particles) if (p := check_sparse(s, own, n))]:
         raise SceneError(sparse)
-    plan = Spacing(h, set_by, particles, work.memory(scene, h, sum(particles)), available_memory())
+    plan = Spacing(h, of, set_by, particles, work.memory(scene, of, sum(particles)), available_memory())
     if plan.memory > plan.available:
         raise SceneError([too_large(scene, plan)])
     return plan
 
 
 def choose_spacing(scene: SceneRecord) -> tuple[float, str, list[float]]:
-    """The spacing [m], what asked for it, and the thinnest part of every solid [m]; whether it will do is not looked at.
+    """The spacing of the scene [m], what asked for it, and the thinnest part of every solid [m]; whether it will do is not looked
+    at. Solids with a spacing of their own do not ask for one, unless all have one: then the least is that of the scene.
 
     Raises SceneError with a problem for every solid whose mesh is not a body.
     """
@@ -89,6 +94,17 @@ def choose_spacing(scene: SceneRecord) -> tuple[float, str, list[float]]:
     return *_choose(scene, thin), thin
 
 
+def spacings(scene: SceneRecord, h: float) -> tuple[float, ...]:
+    """Spacing of each solid [m], its own or else that of the scene, h [m]."""
+    return tuple(h if s.resolution is None else s.resolution for s in scene.solids)
+
+
+def scaled(scene: SceneRecord, factor: float | None) -> SceneRecord:
+    """The scene with the spacings that solids have of their own times a factor; None takes them away."""
+    own = lambda s: s.resolution and (None if factor is None else factor * s.resolution)
+    return replace(scene, solids=tuple(s if s.resolution is None else replace(s, resolution=own(s)) for s in scene.solids))
+
+
 def _cells_needed(solid: Solid, accuracy: Accuracy) -> int:
     """A body that never moves need not bend, so two cells, the least that have an inside, are enough."""
     return min(accuracy.cells, 2) if any(isinstance(h, HoldAll) for h in solid.hold) else accuracy.cells
@@ -99,7 +115,9 @@ def _choose(scene: SceneRecord, thin: list[float]) -> tuple[float, str]:
     if control.resolution is not None:
         return control.resolution, "resolution"
     if thin:
-        wanted = [t / _cells_needed(s, control.accuracy) for s, t in zip(scene.solids, thin)]
+        wanted = [t / _cells_needed(s, control.accuracy) if s.resolution is None else np.inf for s, t in zip(scene.solids, thin)]
+        if np.isinf(wanted).all():
+            wanted = [s.resolution for s in scene.solids]
         k = int(np.argmin(wanted))
         return wanted[k], scene.solids[k].name
     for words in facets("words"):
@@ -129,7 +147,11 @@ def too_large(scene: SceneRecord, plan: Spacing) -> Problem:
     if plan.memory <= plan.available:
         found += ", and memory has run out all the same"
     # Particles go with 1/h^3; a tenth on top, because surfaces go with 1/h^2 only.
-    coarser = plan.h * 1.1 * max(1.0, plan.memory / max(plan.available, 1e6)) ** (1 / 3)
+    factor = 1.1 * max(1.0, plan.memory / max(plan.available, 1e6)) ** (1 / 3)
+    coarser, most = plan.h * factor, int(np.argmax(plan.particles)) if plan.particles else None
+    if most is not None and (own := scene.solids[most].resolution) is not None:
+        span = scene.solids[most].spans.get("resolution")
+        return Problem(span, f"{scene.solids[most].name}: {found}", f"try resolution {say(own * factor, 'm')} in it")
     if plan.set_by == "resolution":
         return Problem(scene.control.spans.get("resolution"), found, f"try resolution {say(coarser, 'm')}")
     if mesh := _without_scale(scene, plan):

@@ -3,8 +3,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import lru_cache
 from math import ceil, hypot, pi
+
+import numpy as np
 
 from ..features import facets
 from ..scene.scene import Box, Cone, ContactModel, Cylinder, Ellipsoid, Mesh, SceneRecord, Shape, Sphere, Torus
@@ -18,21 +21,25 @@ PARTICLE_BYTES, VERTEX_BYTES, POINT_BYTES, SAMPLE_BYTES = 1500.0, 200.0, 300.0, 
 point of contact; of a sample of a mesh, from which distances are taken."""
 SAMPLES = 64
 """Samples of a mesh for each cell of its surface."""
-PARTICLE_TIME, VERTEX_TIME, POINT_TIME, CELL_TIME = 5e-6, 1.1e-6, 3.5e-6, 0.3e-6
-"""Processor time [s] of each of them, and of a cell of the bounding box."""
-MESH_POINT_TIME, MESH_CELL_TIME = 25e-6, 11e-6
-"""The same of meshes, whose points are found among samples and whose distances to triangles are searched."""
+PARTICLE_TIME, VERTEX_TIME, POINT_TIME, CELL_TIME = 4.5e-6, 2.4e-6, 1.1e-6, 0.5e-6
+"""Processor time [s] of each of them, and of a cell of the bounding box, as `bench/modelling.py forecast` has it."""
+MESH_POINT_TIME, MESH_CELL_TIME, MESH_TIME = 17e-6, 37e-6, 0.18
+"""The same of meshes, whose points are found among samples, and distances among triangles; and what any mesh takes."""
 
 
-def memory(scene: SceneRecord, h: float, particles: int) -> float:
-    """Memory [bytes] of this number of particles in all, at a spacing of h [m]; equal objects share surfaces and points of
-    contact."""
-    return PARTICLE_BYTES * particles + sum(_bytes(shape, h, _touches(scene)) for shape in {s.shape for s in scene.solids})
+def memory(scene: SceneRecord, h: float | Sequence[float], particles: int) -> float:
+    """Memory [bytes] of this number of particles in all, at a spacing of h [m], one for all or one for each solid; equal
+    objects share surfaces and points of contact."""
+    return PARTICLE_BYTES * particles + sum(_bytes(shape, own, _touches(scene)) for shape, own in _bodies(scene, h))
 
 
-def seconds(scene: SceneRecord, h: float, particles: int) -> float:
+def seconds(scene: SceneRecord, h: float | Sequence[float], particles: int) -> float:
     """Processor time [s] of models and time step, with the same arguments."""
-    return PARTICLE_TIME * particles + sum(_seconds(shape, h, _touches(scene)) for shape in {s.shape for s in scene.solids})
+    return PARTICLE_TIME * particles + sum(_seconds(shape, own, _touches(scene)) for shape, own in _bodies(scene, h))
+
+
+def _bodies(scene: SceneRecord, h: float | Sequence[float]) -> set[tuple[Shape, float]]:
+    return set(zip((s.shape for s in scene.solids), np.broadcast_to(h, len(scene.solids)).tolist()))
 
 
 def _touches(scene: SceneRecord) -> bool:
@@ -52,8 +59,9 @@ def _seconds(shape: Shape, h: float, touches: bool) -> float:
     if isinstance(shape, Box):
         return 0.0
     cells, points, mesh = bounding_cells(shape, h), _points(shape, h), isinstance(shape, Mesh)
-    contact = MESH_POINT_TIME * points + MESH_CELL_TIME * cells if mesh else POINT_TIME * points
-    return VERTEX_TIME * vertices(shape, h) + CELL_TIME * cells + touches * contact
+    if mesh:
+        return MESH_TIME + CELL_TIME * cells + touches * (MESH_POINT_TIME * points + MESH_CELL_TIME * cells)
+    return VERTEX_TIME * vertices(shape, h) + CELL_TIME * cells + touches * POINT_TIME * points
 
 
 def _points(shape: Shape, h: float) -> float:

@@ -3,12 +3,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from functools import cached_property
 
 import numpy as np
 
-from ..model.spacing import choose_spacing
+from ..model.spacing import choose_spacing, spacings
 from ..model.system import System
 from ..scene.scene import SceneRecord, Solid
 from . import region
@@ -32,11 +32,13 @@ class Reach:
     Args:
         scene: of the solids.
         effects: that act on them.
-        h: particle spacing [m]; None is that of the scene.
+        h: particle spacing of each solid [m]; None is what the scene asks for.
         system: the solids as particles; None before they are made.
     """
 
-    def __init__(self, scene: SceneRecord, effects: Iterable[Motion], h: float | None = None, system: System | None = None):
+    def __init__(
+        self, scene: SceneRecord, effects: Iterable[Motion], h: Sequence[float] | None = None, system: System | None = None
+    ):
         self.scene, self.acting, self._h, self._system = scene, Acting(scene, effects), h, system
 
     # --- never too small, before models are made ------------------------------------------------------------------------
@@ -44,7 +46,8 @@ class Reach:
     @cached_property
     def region(self) -> region.Sweeps:
         """A box for each solid that holds it at all times. Raises SceneError for a mesh that is not a closed solid."""
-        return region.sweeps(self.acting, choose_spacing(self.scene)[0] if self._h is None else self._h)
+        of = spacings(self.scene, choose_spacing(self.scene)[0]) if self._h is None else self._h
+        return region.sweeps(self.acting, np.array(of))
 
     def closest(self) -> tuple[Solid, Solid, float]:
         """Two solids of which one can move, and the least distance that remains between their boxes, along one axis [m]; see

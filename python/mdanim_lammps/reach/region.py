@@ -67,8 +67,9 @@ def closest(scene: SceneRecord, swept: Sweeps) -> tuple[Solid, Solid, float]:
 # --- boxes --------------------------------------------------------------------------------------------------
 
 
-def sweeps(acting: Acting, h: float) -> Sweeps:
-    """The region that every solid can reach, for the actions on them and a particle spacing h [m].
+def sweeps(acting: Acting, h: np.ndarray) -> Sweeps:
+    """The region that every solid can reach, for the actions on them and their particle spacings h [m], shape
+    (M,).
 
     Along an axis on which nothing but gravity and drag of air acts, the centre of mass moves on its parabola. Along one on which
     a wall, the ground or a liquid may act, it gets no farther than at the largest speed that energy allows. A plane acts along
@@ -101,10 +102,10 @@ def sweeps(acting: Acting, h: float) -> Sweeps:
     low, high = np.minimum(low, bodies.position), np.maximum(high, bodies.position)
 
     half = np.repeat(radius[:, None], 3, axis=1)
-    held = bodies.clamped | bodies.fixed
+    held, reach = bodies.clamped | bodies.fixed, REACH * bodies.h[:, None]
     low[held] = high[held] = bodies.middle[held]
-    half[bodies.fixed] = bodies.half[bodies.fixed] + REACH * bodies.h
-    half[bodies.clamped] = _clamped(scene, bodies)[bodies.clamped] + REACH * bodies.h
+    half[bodies.fixed] = bodies.half[bodies.fixed] + reach[bodies.fixed]
+    half[bodies.clamped] = _clamped(scene, bodies)[bodies.clamped] + reach[bodies.clamped]
     for m, drive in acting.drives.items():
         low[m], high[m] = low[m] + drive.low, high[m] + drive.high
     return Sweeps(low - half, high + half, bodies.fixed)
@@ -113,7 +114,7 @@ def sweeps(acting: Acting, h: float) -> Sweeps:
 class _Movers:
     """Data of every solid that the bounds need."""
 
-    def __init__(self, acting: Acting, h: float):
+    def __init__(self, acting: Acting, h: np.ndarray):
         scene = acting.scene
         solids = scene.solids
         self.h = h
@@ -130,7 +131,7 @@ class _Movers:
         self.half = np.einsum("mij,mj->mi", np.abs(rotation), half)
         self.density = np.array([s.density if s.density is not None else s.mass / shapes.volume(s.shape) for s in solids])
         self.mass = self.density * np.array([shapes.volume(s.shape) for s in solids])
-        young = np.array([equivalent_modulus(np.full(3, self.h), s.elasticity) for s in solids])
+        young = np.array([equivalent_modulus(np.full(3, own), s.elasticity) for s, own in zip(solids, self.h)])
         self.wave = np.sqrt(1.2 * young / self.density)
         self.tip = np.linalg.norm([s.spin for s in solids], axis=1) * self.radius
         """Speed of the outermost point around the centre of mass [m/s]."""

@@ -94,17 +94,17 @@ def prepare(scene: SceneRecord, *, allow_unstable: bool = False) -> Prepared:
 
 
 def _prepare(scene: SceneRecord, spacing: Spacing, allow_unstable: bool) -> Prepared:
-    resolved = resolve(features.effects(), scene, spacing.h)
+    resolved = resolve(features.effects(), scene, spacing.of)
     grid = next((cells for e in resolved.effects if (cells := e.grid(scene, spacing.h))), None)
     drives = {m for e in resolved.effects for m in e.drives(scene)}
-    models = build_models(scene, spacing.h, driven=drives)
+    models = build_models(scene, spacing.of, driven=drives)
     planes = [p for e in features.effects() for p in e.of(scene).planes(scene)]  # also of those that are off
     problems = check_geometry(scene, models, planes) + [p for e in resolved.effects for p in e.problems(resolved, models, grid)]
     problems += _unmeasurable(resolved) + _undriven(resolved, models)
     if problems:
         raise SceneError(problems)
     system = assemble(models, scene)
-    reach = Reach(scene, resolved.effects, spacing.h, system)
+    reach = Reach(scene, resolved.effects, spacing.of, system)
     context = Context(resolved, system, as_parts(models, system), spacing, reach, grid)
     certificate = certify(context, allow_unstable=allow_unstable)
     plan = make_plan(context, certificate)

@@ -98,6 +98,12 @@ class Solid:
         "Particles that never move: both faces across an axis of the object, one face, all of them (a wedge, an obstacle), or "
         "those inside a box of the world at the start.", "faces x", default=(), many=True,
         codec=OneOf(HoldFaces, HoldAll, HoldWithin))  # fmt: skip
+    resolution: float | None = setting(
+        "<h:m>",
+        "Its own particle spacing, which the rest of the scene does not get. Not with `contact-model paper`. Absent: that of the "
+        "scene.",
+        "1 cm", Rule.POSITIVE, default=None)  # fmt: skip
+    """[m]"""
     color: str | None = setting("<color>", f"Colour in pictures: {COLOR}", "steelblue", default=None)
     """``#rrggbb``; None lets the renderer choose."""
     spans: Mapping[str, Span] = field(default_factory=dict, compare=False, repr=False)

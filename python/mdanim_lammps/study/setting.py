@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from .. import __version__
 from ..certificate import fit_steps, may_end_early, whole_frames
 from ..effects.varied import Varied, varied
-from ..model.spacing import choose_spacing
+from ..model.spacing import choose_spacing, scaled
 from ..run.prepare import Prepared, prepare
 from ..scene.lock import lock_text
 from ..scene.meshes import mesh_files
@@ -99,8 +99,9 @@ def with_setting(scene: SceneRecord, setting: Setting, *, repeat: int = 0) -> Sc
 
     Raises SceneError where an object is thinner than the spacing.
     """
-    control = replace(scene.control, resolution=thinnest(scene) / setting.cells, timestep=None, seed=scene.control.seed + repeat)
-    scene = replace(scene, control=control)
+    h = thinnest(scene) / setting.cells
+    control = replace(scene.control, resolution=h, timestep=None, seed=scene.control.seed + repeat)
+    scene = replace(scaled(scene, h / choose_spacing(scene)[0]), control=control)
     for v, value in values(setting):
         scene = scene if value is None else v.put(scene, value)
     if setting.fraction:

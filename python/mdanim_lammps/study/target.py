@@ -110,6 +110,8 @@ def find_choice(
     """
     if not 0.0 < error < 1.0:
         raise UsageError(f"a target error is between 0 and 100 %, found {100 * error:g} %")
+    if own := next((s.name for s in scene.solids if s.resolution is not None), None):
+        raise UsageError(f"object {own} says a resolution of its own, and a target chooses one for all; leave it out")
     if None not in (scene.control.resolution, scene.control.timestep):
         raise UsageError("the scene says both resolution and timestep, so a target has nothing to choose; leave one of them out")
     scene = same_frames(scene)

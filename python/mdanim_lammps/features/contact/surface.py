@@ -145,7 +145,7 @@ class SurfaceContact(ObjectContact):
         system, found = context.system, fast(context)
         if found.any():
             low, high = system.bounds(system.position)
-            gap = 0.5 * BORN_AT_REST * system.spacing.max()
+            gap = 0.5 * BORN_AT_REST * system.spacing[:, None]
             for i, j in box_pairs(low - gap, high + gap):
                 found[i] = found[j] = False
         return found

@@ -117,10 +117,17 @@ BLOCKS = (
 
 
 def check(v: Any, top: Mapping, held: Mapping) -> None:
-    """The contact of the paper has neither friction nor damping; that of surfaces has damping where it has friction."""
+    """The contact of the paper has neither friction nor damping, and one spacing for all objects; that of surfaces has damping
+    where it has friction."""
     control = held["control"]
     if control is None:
         return
+    own = next((s for s in held["solids"] if s.resolution is not None), None)
+    if control.contact_model.value == "paper" and own:
+        cause = f"{own.name} has a resolution of its own; the contact of the paper, between particles, needs one spacing for all"
+        v.problem(
+            own.spans["resolution"], cause, "write resolution in control, or take contact-model paper out", key="own-spacing"
+        )
     blocks, words = v.blocks("contact"), {"friction": control.friction, "contact-damping": control.contact_damping}
     asked = [("a contact block", b.head) for b in blocks]
     asked += [("friction", s.spans["friction"]) for s in held["solids"] if s.friction]
