@@ -42,11 +42,11 @@ def place(tmp_path):
 
 
 def begun(place: Path, text: str, *arguments: object, frames: int = 3) -> subprocess.Popen:
-    """A run from the command line that has got so far."""
+    """A run from the command line that has got so far; its processes begin with the folder's sitecustomize.py, if any."""
     (place / "film.txt").write_text(text)
     process = subprocess.Popen(
         command(place / "film.txt", "--no-movie", *arguments),
-        env=environment(),
+        env=environment(place),
         text=True,
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
@@ -278,7 +278,12 @@ def test_a_fault_of_mpi_is_told(place, monkeypatch, rank, module, kind, method):
 
 @pytest.mark.parametrize("control", ["central", "peers"])
 def test_a_folder_that_is_deleted_ends_the_run(place, control):
-    """One message, as soon as something is to be written under its name: the next checkpoint, ten seconds later at most."""
+    """One message, as soon as something is to be written under its name: the next checkpoint, of which one is due each second
+    here."""
+    (place / "sitecustomize.py").write_text(
+        'import os\nif os.environ.get("PMI_RANK") == "0":\n'
+        "    from mdanim_lammps.run import loop\n    loop.CHECKPOINT_SECONDS = 1.0\n"
+    )
     process = begun(place, LONG, "-n", 2, "--control", control)
     shutil.rmtree(place / "film.out", ignore_errors=True)
     shutil.rmtree(place / "film.out", ignore_errors=True)  # a rank may just have written
