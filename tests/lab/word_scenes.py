@@ -47,8 +47,18 @@ RIGHT = {
     "contact.friction": ("0.3",),
     "render.camera": ("from (4, -4, 2) m look (0, 0, 0.5) m", "from (4, -4, 2) m look ball"),
     "render.movie": ('"a.mp4"',),
+    "place.position": ("(0, 1, 0) m",),
+    "place.orientation": ("axis (0, 0, 1) angle 20 deg",),
+    "place.velocity": ("(0, 1, 0) m/s",),
+    "place.spin": ("(0, 0, 1) rad/s",),
 }
 """By word: values with which a scene can be right."""
+GROUP = """let wood = { density 500 kg/m^3 elasticity 1 MPa }
+group few { let r = 5 cm
+  repeat i in 1 .. 2 { object egg[i] { use wood shape sphere r position (0.3*i, 1, 0.5) m } }
+  contact egg egg { friction 0.2 }
+}"""
+MORE_LINES = ("let stone = { density 2000 color gray }", "gravity at 0.1 s (0, 0, -5) m/s^2", "lammps {\nfix a all nve\n}")
 PLACES = {"ball": "(0, 0, 50) cm", "slab": "(0.6, 0, 0.5) m", "cup": "(-0.6, 0, 0.5) m"}
 BASE = {
     "object": ("shape", "position", "density", "elasticity"),
@@ -66,7 +76,7 @@ def scene(chance: random.Random, used: set[str]) -> str:
     lines = [make.setting(k) for k in KEYWORDS[""].values() if chance.random() < (0.8 if k.name == "gravity" else 0.3)]
     names = NAMES[: chance.randrange(1, 4)]
     blocks = [f"object {name}" for name in names]
-    blocks += [b for b in ("liquid w", "contact ball slab", "effects", "render") if chance.random() < 0.3]
+    blocks += [b for b in ("liquid w", "contact ball slab", "effects", "render", "place few") if chance.random() < 0.3]
     if odd == 0.0 and len(names) < 2:
         blocks = [b for b in blocks if not b.startswith("contact")]
     for head in (*blocks, "control"):
@@ -75,10 +85,15 @@ def scene(chance: random.Random, used: set[str]) -> str:
         chance.shuffle(words)
         if odd == 0.0:
             words = [k for n, k in enumerate(words) if not any(other.name in k.one_of for other in words[:n])]
-        settings = ["position " + PLACES[name] if odd == 0.0 and k.name == "position" else make.setting(k) for k in words]
+        settings = [
+            "position " + PLACES[name] if odd == 0.0 and f"{kind}.{k.name}" == "object.position" else make.setting(k)
+            for k in words
+        ]
+        if kind == "place":
+            lines.append(GROUP)
         lines.append(f"{head} {{\n" + "".join(f"  {s}\n" for s in settings) + "}")
     if chance.random() < 0.2:
-        more = ("let a = 3 cm", "repeat i in 1 .. 3 { let b = i }", *(['include "x"'] if odd else []))
+        more = ("let a = 3 cm", "repeat i in 1 .. 3 { let b = i }", *MORE_LINES, *(['include "x"'] if odd else []))
         lines.insert(chance.randrange(len(lines)), chance.choice(more))
     text = "\n".join(lines) + "\n"
     return mutilated(text, chance) if chance.random() < (0.3 if odd else 0.1) else text
