@@ -146,7 +146,7 @@ def run(plan, middle, style: str, steps: int, comm) -> dict[str, str]:
     from mdanim_lammps.engine.instance import Instance
 
     with Instance(plan, comm) as instance:
-        instance._lmp.command(f"run_style {style}")
+        instance.lammps.lmp.command(f"run_style {style}")
         instance.setup()
         instance.run(steps)
         found = {f"{name}, beginning": value for name, value in hashes(instance).items()}

@@ -31,7 +31,7 @@ def dive(edge: int, period: float, stride: float) -> str:
             steps = max(1, int(0.02 * (2 * edge / 9.81) ** 0.5 / ready.certificate.timestep))
             for _ in range(200):
                 instance.run(steps)
-                places.append((instance.here("x")[:, 2].mean() - side / 2) / edge)
+                places.append((instance.particles.here("x")[:, 2].mean() - side / 2) / edge)
             updates = instance.fix_value("liquid", UPDATES)
     finally:
         liquid.WAVE_PERIOD, liquid.WAVE_STRIDE = usual

@@ -49,7 +49,7 @@ def ours(plan, style: str) -> Iterator[Callable[[int], None]]:
     from mdanim_lammps.engine.instance import Instance
 
     with Instance(plan) as instance:
-        instance._lmp.command(f"run_style {style}")
+        instance.lammps.lmp.command(f"run_style {style}")
         instance.setup()
         yield instance.run
 

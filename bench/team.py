@@ -30,9 +30,9 @@ def frames_of(scene: Path, frames: int) -> None:
         for _ in range(frames):
             world.Barrier()
             begin, begun = time.process_time(), time.perf_counter()
-            instance.start_trace()
+            instance.trace.start()
             instance.run(plan.certificate.steps_per_frame)
-            instance.trace()
+            instance.trace.boxes()
             cpu.append(world.allreduce(time.process_time() - begin, MPI.MAX))
             wall.append(time.perf_counter() - begun)
     if world.rank == 0:

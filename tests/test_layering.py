@@ -191,8 +191,6 @@ CPP_CLASS = (
 
 
 MOST_MEMBERS, MOST_LINES = 30, 400
-TOO_LARGE = {"Instance", "Executor"}
-"""May only shrink."""
 
 
 def test_no_class_is_too_large():
@@ -203,7 +201,7 @@ def test_no_class_is_too_large():
             if isinstance(node, ast.ClassDef):
                 members = sum(isinstance(n, ast.FunctionDef | ast.Assign | ast.AnnAssign) for n in node.body)
                 found[node.name] = members > MOST_MEMBERS or node.end_lineno - node.lineno > MOST_LINES - 1
-    assert {name for name, large in found.items() if large} == TOO_LARGE
+    assert found and not [name for name, large in found.items() if large]
 
 
 @pytest.mark.parametrize(

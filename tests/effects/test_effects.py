@@ -339,7 +339,7 @@ def written(ready) -> str:
 def live_fixes(ready) -> set[str]:
     """LAMMPS's own list of the fixes of a live instance, but for the particles' columns and the integrator."""
     with Instance(ready.plan) as instance:
-        return set(instance._lmp.available_ids("fix")) - {"model", "leapfrog"}
+        return set(instance.lammps.lmp.available_ids("fix")) - {"model", "leapfrog"}
 
 
 def traces(model: str) -> dict[str, list[str]]:

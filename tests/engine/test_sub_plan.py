@@ -74,9 +74,9 @@ def follow(plan, starts=(1, 500), steps=400):
         whole.setup()
         for start in starts:
             before = evolve(whole, start - whole.step)
-            whole.start_trace()
+            whole.trace.start()
             after = evolve(whole, steps)
-            found = islands(*whole.trace(), parts.gap.max() * np.ones(len(parts.gap)))
+            found = islands(*whole.trace.boxes(), parts.gap.max() * np.ones(len(parts.gap)))
             stretches.append(found)
             for island in found:
                 rows = particles(plan.system, island)

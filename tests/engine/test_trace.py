@@ -33,7 +33,7 @@ def test_a_trace_is_the_box_of_all_steps(prepared):
         watched.run(3)
         instance.run(3)
         for steps in (200, 1, 150):
-            instance.start_trace()
+            instance.trace.start()
             film = [watched.array("x").copy()]
             for _ in range(steps):
                 watched.run(1)
@@ -42,8 +42,8 @@ def test_a_trace_is_the_box_of_all_steps(prepared):
                 if piece > 0 and instance.step < watched.step:
                     instance.run(piece)
             assert instance.step == watched.step
-            assert np.array_equal(instance.trace(), extremes(film, system))
-            np.testing.assert_allclose(instance.top_speeds(), system.top_speed(watched.array("v")), rtol=1e-15)
+            assert np.array_equal(instance.trace.boxes(), extremes(film, system))
+            np.testing.assert_allclose(instance.trace.top_speeds(), system.top_speed(watched.array("v")), rtol=1e-15)
         ends = np.array(extremes([film[0], film[-1]], system))
         assert (ends != extremes(film, system)).any(), "ball and beam must turn back, otherwise their ends alone would do"
 
@@ -59,21 +59,21 @@ def test_a_trace_that_looks_less_often_leaves_nothing_out(prepared, every):
         for steps in (200, 1, 150, 63):
             fastest = np.zeros(3)
             for one in (instance, seldom):
-                one.start_trace()
-            seldom.look_every(every)
+                one.trace.start()
+            seldom.trace.look_every(every)
             for _ in range(steps):  # speeds of whole steps; those between them are larger by gravity in half of one at most
                 instance.run(1)
-                fastest = np.maximum(fastest, instance.top_speeds())
+                fastest = np.maximum(fastest, instance.trace.top_speeds())
             seldom.run(steps)
-            boxes, wider = instance.trace(), seldom.trace()
+            boxes, wider = instance.trace.boxes(), seldom.trace.boxes()
             more = (every - 1) * 1.2 * plan.certificate.timestep * fastest[:, None]
             assert (wider[0] <= boxes[0]).all() and (wider[1] >= boxes[1]).all()
             assert (wider[0] >= boxes[0] - more).all() and (wider[1] <= boxes[1] + more).all()
             assert steps == 1 or (wider[0] < boxes[0])[1:].all(), "what moves must make a difference"
             assert np.array_equal(seldom.array("x"), instance.array("x"))
-            seldom.start_trace()
+            seldom.trace.start()
             seldom.run(0)
-            assert np.array_equal(seldom.trace(), extremes([instance.array("x")], plan.system))
+            assert np.array_equal(seldom.trace.boxes(), extremes([instance.array("x")], plan.system))
 
 
 def test_a_trace_looks_at_least_at_times(prepared):
@@ -82,14 +82,14 @@ def test_a_trace_looks_at_least_at_times(prepared):
         Instance(prepared(SCENE).plan) as instance,
         pytest.raises(SetupError, match="after every 1 or more steps, 0 are asked for"),
     ):
-        instance.look_every(0)
+        instance.trace.look_every(0)
 
 
 def test_a_trace_changes_no_bit(prepared):
     """Move particles to the same places with and without."""
     plan = prepared(SCENE).plan
     with Instance(plan) as plain, Instance(plan) as traced:
-        traced.start_trace()
+        traced.trace.start()
         for instance in (plain, traced):
             instance.setup()
             instance.run(300)
@@ -99,15 +99,15 @@ def test_a_trace_changes_no_bit(prepared):
 def test_a_trace_that_was_not_started_is_refused(prepared):
     """Say so instead of giving an empty box."""
     with Instance(prepared(SCENE).plan) as instance, pytest.raises(SetupError, match="0 objects are traced, 3 are asked for"):
-        instance.trace()
+        instance.trace.boxes()
 
 
 def test_objects_must_be_numbered_from_one(prepared):
     """Refuse a molecule for which there is no box."""
     with Instance(prepared(SCENE).plan) as instance:
-        instance._lmp.command("set atom 1 mol 4")
+        instance.lammps.lmp.command("set atom 1 mol 4")
         with pytest.raises(SetupError, match="molecule IDs go from 1 to 4, they must be within 1 and the 3 objects"):
-            instance.start_trace()
+            instance.trace.start()
 
 
 RENUMBERED = """
@@ -118,8 +118,8 @@ from mdanim_lammps.engine.instance import Instance
 from mdanim_lammps.scene.parse import load_scene
 with Instance(prepare(load_scene(Path(sys.argv[1]))).plan) as instance:
     instance.setup()
-    instance.start_trace()
-    instance._lmp.command(f"set atom 1 mol {sys.argv[2]}")
+    instance.trace.start()
+    instance.lammps.lmp.command(f"set atom 1 mol {sys.argv[2]}")
     try:
         instance.run(10)
     except Exception as error:

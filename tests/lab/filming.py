@@ -107,13 +107,13 @@ BETWEEN = (
 
 def passes(instance: Instance) -> int:
     """How many steps were taken by passes over blocks."""
-    instance._library.mdanim_passes.restype = ctypes.c_longlong
-    return instance._library.mdanim_passes(instance._handle)
+    instance.lammps.library.mdanim_passes.restype = ctypes.c_longlong
+    return instance.lammps.library.mdanim_passes(instance.lammps.handle)
 
 
 def ranges(instance: Instance) -> int:
     """Into how many ranges threads share a pass."""
-    return instance._library.mdanim_ranges(instance._handle)
+    return instance.lammps.library.mdanim_ranges(instance.lammps.handle)
 
 
 def supported(width: str) -> bool:
@@ -137,12 +137,12 @@ def film(
     ready = prepare(parse_scene(FALL + text + "\n" + end))
     with Instance(ready.plan, comm) as instance:
         for command in (*more, f"run_style {style}"):
-            instance._lmp.command(command)
+            instance.lammps.lmp.command(command)
         instance.setup()
-        instance.start_trace()
+        instance.trace.start()
         frames = []
         for steps in pieces:
             instance.run(steps)
             frames.append([instance.array(a).copy() for a in "xvf"])
         energies = [instance.kinetic_energy(), *(e.energy(instance) for e in ready.plan.effects)]
-        return np.array(frames), energies, np.array(instance.trace()), passes(instance)
+        return np.array(frames), energies, np.array(instance.trace.boxes()), passes(instance)

@@ -110,12 +110,12 @@ def used(threads: int, style: str = "") -> tuple[str, int]:
     """Width and number of ranges of the passes over a block of 4096 particles."""
     with with_threads(threads), Instance(prepare(parse_scene(BLOCK.format(15, ""))).plan) as instance:
         if style:
-            instance._lmp.command(f"run_style verlet/mdanim {style}")
+            instance.lammps.lmp.command(f"run_style verlet/mdanim {style}")
         instance.setup()
         instance.run(3)
-        width = instance._library.mdanim_width
+        width = instance.lammps.library.mdanim_width
         width.restype, width.argtypes = ctypes.c_char_p, [ctypes.c_void_p]
-        return width(instance._handle).decode(), ranges(instance)
+        return width(instance.lammps.handle).decode(), ranges(instance)
 
 
 @pytest.mark.parametrize(("least", "expected"), [(30e3, 4), (60e3, 2), (64e3, 1)])

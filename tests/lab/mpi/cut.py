@@ -15,7 +15,7 @@ plan = prepare(load_scene(Path(sys.argv[1]))).plan
 with Instance(plan, comm) as instance:
     instance.setup()
     instance.run(10)
-    rows, whole = instance.rows(), instance.array("x")
+    rows, whole = instance.particles.rows(), instance.array("x")
     found = comm.gather((len(set((rows // int(sys.argv[2])).tolist())), len(rows)))
     start = plan.system.position
     assert np.abs(whole - start).max() < 0.01 * np.ptp(start), "particles are not where they belong"

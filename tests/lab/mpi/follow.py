@@ -30,9 +30,9 @@ def seen(instance: Instance) -> dict[str, np.ndarray]:
     if "lambda" in plan.columns:
         found["lambda"] = instance.array("d_lambda").copy()
     for name in "xvf":  # ranks have different particles, and all of them together all
-        assert np.array_equal(instance.here(name), found[name][instance.rows()])
-    assert instance.total(len(instance.here("x"))) == plan.system.particles
-    found["speed"] = instance.top_speeds()
+        assert np.array_equal(instance.particles.here(name), found[name][instance.particles.rows()])
+    assert instance.lammps.total(len(instance.particles.here("x"))) == plan.system.particles
+    found["speed"] = instance.trace.top_speeds()
     energies = [effect.energy(instance) for effect in plan.effects if effect.ledger]
     losses = [loss for effect in plan.effects for loss in effect.lost(instance).items()]
     energies += [loss for term, loss in losses if term != "let_go"]  # nothing is let go where no cell is turned over
@@ -57,17 +57,17 @@ def follow(path: Path, comm=None) -> dict[str, np.ndarray]:
         look("start")
         instance.run(FIRST)
         kept = instance.state()
-        instance.start_trace()
+        instance.trace.start()
         instance.run(THEN)
-        low, high = instance.trace()
+        low, high = instance.trace.boxes()
         film |= {"low": low, "high": high}
         look("end")
         instance.put(FIRST, kept)
-        instance.start_trace()
-        instance.look_every(LOOK_STEPS)
+        instance.trace.start()
+        instance.trace.look_every(LOOK_STEPS)
         instance.run(THEN)
         look("again")
-        wider_low, wider_high = instance.trace()
+        wider_low, wider_high = instance.trace.boxes()
         assert (wider_low <= low).all() and (wider_high >= high).all(), "a trace that looks less often leaves nothing out"
         clocks = [seconds for effect in plan.effects for seconds in effect.clocks(instance).values()]
         assert np.isfinite(clocks).all() and instance.bond_seconds() > 0.0

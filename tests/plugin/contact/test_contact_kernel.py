@@ -38,7 +38,7 @@ def film(text: str, style: str):
     """x, v and the books of contact after every piece of a run, the most points in touch, all records at the end, passes."""
     ready = prepare(parse_scene(f"{text}\n{END}"))
     with Instance(ready.plan) as instance:
-        instance._lmp.command(f"run_style {style}")
+        instance.lammps.lmp.command(f"run_style {style}")
         instance.setup()
         frames, books = [], []
         for _ in range(60):

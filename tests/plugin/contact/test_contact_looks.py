@@ -53,7 +53,7 @@ def film_of_crowd(resolution: float, frames: int, skins: float = 1.0, anew: int 
     ready = prepare(replace(scene, expects=(), control=replace(scene.control, resolution=resolution)))
     steps, film = round(0.04 / ready.certificate.timestep), []
     with Instance(ready.plan) as instance:
-        instance._lmp.command(f"neighbor {skins * SKIN * ready.plan.spacing!r} bin")
+        instance.lammps.lmp.command(f"neighbor {skins * SKIN * ready.plan.spacing!r} bin")
         instance.setup()
         for _ in range(frames):
             for begin in range(0, steps, anew or steps):

@@ -37,12 +37,12 @@ def test_names_are_those_of_the_pages(model):
     with Instance(prepare(parse_scene(SCENE.format(model))).plan) as instance:
         instance.setup()
         seen = set()
-        for command in instance._lmp.available_ids("fix"):
-            names = output_names(instance._library, instance._handle, command)
+        for command in instance.lammps.lmp.available_ids("fix"):
+            names = output_names(instance.lammps.library, instance.lammps.handle, command)
             if not names:
                 continue
-            place = output_place(instance._library, instance._handle, command, names[-1])
-            assert place == len(names) - 1 == int(instance._lmp.extract_fix(command, 0, 3)) - 1
+            place = output_place(instance.lammps.library, instance.lammps.handle, command, names[-1])
+            assert place == len(names) - 1 == int(instance.lammps.lmp.extract_fix(command, 0, 3)) - 1
             assert instance.fix_value(command, "seconds") == instance.fix_value(command, names.index("seconds")) >= 0.0
             page = next(s for s in STYLES if names == on_page(s))
             seen.add(page)

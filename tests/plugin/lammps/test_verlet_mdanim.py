@@ -17,8 +17,8 @@ from mdanim_lammps.scene.parse import parse_scene
 
 def held_back(instance: Instance) -> int:
     """How many particles were moved one by one, all passes together."""
-    instance._library.mdanim_held_back.restype = ctypes.c_longlong
-    return instance._library.mdanim_held_back(instance._handle)
+    instance.lammps.library.mdanim_held_back.restype = ctypes.c_longlong
+    return instance.lammps.library.mdanim_held_back(instance.lammps.handle)
 
 
 @pytest.mark.parametrize("name", [*SHAPES, *EFFECTS])
@@ -82,9 +82,9 @@ def test_no_particle_is_held_back_for_forces_of_places_alone(name, more, some):
     ready = prepare(parse_scene(FALL + EFFECTS[name] + "\n" + END))
     with Instance(ready.plan) as instance:
         for command in more:
-            instance._lmp.command(command)
+            instance.lammps.lmp.command(command)
         instance.setup()
-        effects = {"contact", "walls", "ground"} & set(instance._lmp.available_ids("fix"))
+        effects = {"contact", "walls", "ground"} & set(instance.lammps.lmp.available_ids("fix"))
         pushed = []
         for _ in range(15):
             instance.run(20)
@@ -107,7 +107,7 @@ def test_what_waves_act_on_moves_in_passes(more, some):
     ready = prepare(parse_scene(FALL + EFFECTS["damped in waves"] + "\n" + END))
     with Instance(ready.plan) as instance:
         for command in more:
-            instance._lmp.command(command)
+            instance.lammps.lmp.command(command)
         instance.setup()
         instance.run(300)
         taken, updates = passes(instance), instance.fix_value("liquid", 4)
@@ -124,7 +124,7 @@ def test_friction_of_waves_is_told(exponential):
     told = []
     for style in ("verlet", "verlet/mdanim"):
         with Instance(plan) as instance:
-            instance._lmp.command(f"run_style {style}")
+            instance.lammps.lmp.command(f"run_style {style}")
             instance.setup()
             instance.run(200)
             bits = instance.fix_value("leapfrog", 0), instance.array("x").tobytes()
@@ -147,7 +147,7 @@ def test_what_all_share_makes_no_lists(ground, least, most):
         instance.run(150)
         assert passes(instance) > 130
         assert instance.fix_value("contact", 1) > 0
-        assert least <= instance._lmp.get_thermo("nbuild") <= most
+        assert least <= instance.lammps.lmp.get_thermo("nbuild") <= most
 
 
 def test_pieces_of_a_run_change_no_bit():

@@ -39,7 +39,7 @@ def heap(style: str) -> tuple[list[bytes], float, float]:
     """As film() of the heap, with what contacts remember; the most points in touch; bytes of what is known of points."""
     ready = prepare(parse_scene(FALL + HEAP + "\n" + FINE.format(10, "surface")))
     with Instance(ready.plan) as instance:
-        instance._lmp.command(f"run_style {style}")
+        instance.lammps.lmp.command(f"run_style {style}")
         instance.setup()
         told, most = [], 0.0
         for many in (1, 150, 149):
@@ -57,14 +57,14 @@ def film(text: str, style: str, end: str, steps=(1, 40, 39)) -> tuple[list[bytes
     """All that a run tells, byte for byte, and how many ranges there were."""
     ready = prepare(parse_scene(FALL + text + "\n" + end))
     with Instance(ready.plan) as instance:
-        instance._lmp.command(f"run_style verlet/mdanim {style}")
+        instance.lammps.lmp.command(f"run_style verlet/mdanim {style}")
         instance.setup()
-        instance.start_trace()
+        instance.trace.start()
         told = []
         for many in steps:
             instance.run(many)
             told += [instance.array(a).tobytes() for a in "xvf"]
-            told += [np.asarray(a).tobytes() for a in instance.trace()]
+            told += [np.asarray(a).tobytes() for a in instance.trace.boxes()]
             sums = [
                 instance.kinetic_energy(),
                 instance.elastic_energy(),
@@ -129,7 +129,7 @@ def test_instances_share_threads():
     alone, _ = film(text, "threads 1", end)
     ready = prepare(parse_scene(FALL + text + "\n" + end))
     with Instance(ready.plan) as other:
-        other._lmp.command("run_style verlet/mdanim threads 4")
+        other.lammps.lmp.command("run_style verlet/mdanim threads 4")
         other.setup()
         other.run(10)
         assert film(text, "threads 2", end)[0] == alone

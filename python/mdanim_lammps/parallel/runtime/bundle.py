@@ -121,12 +121,12 @@ class Bundle:
     def write_state(self, **arrays: np.ndarray) -> None:
         """Write what this executor has of ``x``, ``v``, ``f`` now into such arrays of all particles."""
         if self.comm is not None:
-            rows = self.instance.rows()
+            rows = self.instance.particles.rows()
             if rows is not self._rows:
                 self._rows, self.stretches = rows, self._stretches_of(rows)
             self.scattered = True
         for name, everything in arrays.items():
-            now = self.instance.here(name)
+            now = self.instance.particles.here(name)
             for here, there in self.stretches:  # five times as fast as row by row
                 everything[there] = now[here]
 
@@ -224,16 +224,16 @@ class Bundle:
                 state.x[rows], state.v[rows], state.f[rows] = (self.instance.array(name)[rows] for name in "xvf")
             self.instance.put(step, state)
             self.lost = losses(self.instance)
-        self.instance.start_trace()
+        self.instance.trace.start()
 
     def run(self, steps: int) -> None:
         """Run a window. Raises LammpsFailure."""
         begin, before_grid = time.process_time(), self._of_grid()
-        self.instance.look_every(min(max(1, steps // LOOKS_PER_WINDOW), MOST_STEPS_BETWEEN_LOOKS))
+        self.instance.trace.look_every(min(max(1, steps // LOOKS_PER_WINDOW), MOST_STEPS_BETWEEN_LOOKS))
         run_window(self.instance, steps)
-        self.trace = self.instance.trace()
-        self.instance.start_trace()  # of the next window
-        self.here = self.instance.trace()  # of this moment alone
+        self.trace = self.instance.trace.boxes()
+        self.instance.trace.start()  # of the next window
+        self.here = self.instance.trace.boxes()  # of this moment alone
         self.ran = True
         self.run_seconds, self.grid_seconds = time.process_time() - begin, self._of_grid() - before_grid
 
@@ -259,7 +259,7 @@ class Bundle:
         if not len(self.objects):
             return np.zeros((0, 3)), np.zeros((0, 3)), np.zeros(0)
         low, high = (side[self.moves] for side in self.here)
-        return low, high, self.instance.top_speeds()[self.moves]
+        return low, high, self.instance.trace.top_speeds()[self.moves]
 
     def costs(self, scale: float) -> np.ndarray:
         """Processor time of each member in the last window, without the grid's, times ``scale``; int64, shape (m,).

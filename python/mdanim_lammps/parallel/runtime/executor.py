@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import time
 import traceback
+from collections import Counter
 from contextlib import contextmanager, nullcontext
 
 import numpy as np
@@ -95,7 +96,7 @@ class Executor:
         self.moves = self.retries = 0
         self.led: set[tuple[int, ...]] = set()
         """Teams that it has led since the frame before."""
-        self.energies: dict[str, float] = {}
+        self.energies: Counter = Counter()
         """Energies of its objects at the last frame; losses [J] are those since the frame before."""
         self.deepest = 0.0
         self.spans: list[tuple[str, int, float, float]] = []
@@ -301,7 +302,7 @@ class Executor:
             self.deepest = max(self.deepest, depth)
             if len(bundle.key.team) > 1:
                 self.led.add(bundle.key.team)
-            self._count(lost)
+            self.energies.update(lost)
             self.records = bundle.records_elsewhere(self.records)
             records.append(bundle.records_to(kept))
         self.records = join_all([self.records, *records])
@@ -314,7 +315,7 @@ class Executor:
         for bundle in self.bundles:
             energies, fields = stored(bundle.instance), tell(bundle.instance)  # together with the team
             if self._leads(bundle):
-                self._count(energies)
+                self.energies.update(energies)
                 # Another bundle has the values of guests and of objects that this one has laid aside.
                 own = part_of_fields(declared, fields, bundle.plan.rows, bundle.objects, bundle.moves)
                 told.append((bundle.members, own))
@@ -324,10 +325,6 @@ class Executor:
         """Values of its own objects."""
         plan, objects = self.job.plan, np.arange(self.objects)
         return part_of_fields(frame_fields(plan), self.fields, plan.rows, objects, np.isin(objects, self.own))
-
-    def _count(self, energies: dict[str, float]) -> None:
-        for term, e in energies.items():
-            self.energies[term] = self.energies.get(term, 0.0) + e
 
     def _share_of_still(self) -> np.ndarray:
         """Some of the objects that never move: all executors have about as many particles of such, and each object is one's."""
@@ -356,7 +353,7 @@ class Executor:
                 self.own,
                 seen,
                 checksums,
-                self.energies,
+                dict(self.energies),
                 self.deepest,
                 self._own_fields(),
                 self.moves,
@@ -365,7 +362,7 @@ class Executor:
                 self._account_so_far(),
             ),
         )
-        self.moves, self.energies = 0, {}
+        self.moves, self.energies = 0, Counter()
         self.led.clear()
         if keep:
             self._keep()
