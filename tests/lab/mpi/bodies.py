@@ -41,10 +41,11 @@ class Surfaces(Effect):
 def with_surfaces(plan: Plan) -> Plan:
     """A plan with the springs alone, and that effect."""
     effect = Surfaces()
-    columns = {field.name: values for field, values in effect.columns(plan.context).items()}
+    declared = effect.columns(plan.context)
+    columns, fields = {f.name: values for f, values in declared.items()}, {f.name: f for f in declared}
     effects = (*(e for e in plan.effects if e.name == "springs"), effect)
     asked = {e.name: plan.asked.get(e.name, tuple(columns)) for e in effects}
-    return replace(plan, effects=effects, columns=columns, tables={}, asked=asked)
+    return replace(plan, effects=effects, columns=columns, fields=fields, asked=asked)
 
 
 def scene(shape: str = "box (12, 12, 12) cm") -> str:
