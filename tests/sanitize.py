@@ -78,7 +78,7 @@ THREADS = {
     "threads_of_passes": ("passes/*.cpp", "barrier/*.cpp"),
     "threads_of_contact": ("contact/*.cpp", "barrier/contact_search.cpp"),
     "threads_of_cells": ("liquid/automaton/automaton.cpp", "liquid/occupancy.cpp"),
-    "threads_of_waves": ("liquid/waves/waves*.cpp", "liquid/waves/span.cpp"),
+    "threads_of_waves": ("liquid/waves/*.cpp", "liquid/occupancy.cpp"),
 }
 """Programs of tests/lab, and what of plugin/ they need besides `FLOORS`."""
 FLOORS = ("simd/*.cpp", "threads/*.cpp", "geometry/*.cpp", "**/*_of_set.cpp")

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // An acceleration that changes with time.
 
-#ifndef MDANIM_GRAVITY_LAW_H
-#define MDANIM_GRAVITY_LAW_H
+#pragma once
 
 #include "numbers/vec3.h"
 
@@ -55,5 +54,3 @@ class AccelerationWork {
 };
 
 }    // namespace mdanim
-
-#endif

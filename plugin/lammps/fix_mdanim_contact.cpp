@@ -7,7 +7,7 @@
 
 #include "contact/bodies_file.h"
 #include "lammps/keywords.h"
-#include "lammps/object_masses.h"
+#include "lammps/object_survey.h"
 #include "lammps/rank_gather.h"
 #include "lammps/shared_file.h"
 #include "numbers/stopwatch.h"
@@ -24,7 +24,6 @@
 #include <cstddef>
 #include <cstring>
 #include <numeric>
-#include <set>
 #include <stdexcept>
 
 using namespace LAMMPS_NS;
@@ -156,61 +155,18 @@ void FixMdanimContact::init()
 // A rule for a molecule that does not exist is a mistake.
 void FixMdanimContact::need_molecules_of_pairs() const
 {
-  std::set<int> named;
-  for (const auto &[ids, law] : world_of_contact.settings.pairs) named.insert({ids.first, ids.second});
-  if (named.empty()) return;
-  const std::vector<int> ids_named(named.begin(), named.end());
-  std::vector<int> here(ids_named.size(), 0), found(ids_named.size(), 0);
-  for (int i = 0; i < atom->nlocal; ++i) {
-    const auto at = std::lower_bound(ids_named.begin(), ids_named.end(), atom->molecule[i]);
-    if (at != ids_named.end() && *at == atom->molecule[i]) here[at - ids_named.begin()] = 1;
-  }
-  MPI_Allreduce(here.data(), found.data(), static_cast<int>(here.size()), MPI_INT, MPI_MAX, world);
-  const auto missing = std::find(found.begin(), found.end(), 0);
-  if (missing != found.end())
-    error->all(FLERR, "{}: pair names molecule {}, and no particle has this ID", name(), ids_named[missing - found.begin()]);
+  if (world_of_contact.settings.pairs.empty()) return;
+  ObjectTable present;
+  present.make(world, {atom->molecule, atom->molecule + atom->nlocal});
+  for (const auto &[ids, law] : world_of_contact.settings.pairs)
+    for (const int one : {ids.first, ids.second})
+      if (present.number_of(one) == ObjectTable::NONE)
+        error->all(FLERR, "{}: pair names molecule {}, and no particle has this ID", name(), one);
 }
 
 // --- objects ---
 
 bool FixMdanimContact::is_among(int i) const { return !among.given() || atom->mask[i] & among.bit(); }
-
-// Surveys the objects of all ranks, by ascending IDs; the same on all ranks.
-std::vector<FixMdanimContact::SurveyedObject> FixMdanimContact::survey() const
-{
-  const double *kinds = kind.values(lmp), *youngs = young.values(lmp), *frictions = friction.values(lmp);
-  std::map<int, SurveyedObject> here;
-  for (int i = 0; i < atom->nlocal; ++i) {
-    if (!is_among(i)) continue;
-    need_object(this, lmp, i, LEFT_OUT);
-    const int object_id = static_cast<int>(atom->molecule[i]);
-    SurveyedObject &one = here.emplace(object_id, SurveyedObject{object_id, 0, MAXTAGINT, 0, 0, 0, 0, 0}).first->second;
-    ++one.particles;
-    if (atom->mask[i] & groupbit) one.moves = 1;
-    if (atom->tag[i] >= one.lowest) continue;
-    one.lowest = atom->tag[i];
-    one.kind = kinds ? kinds[i] : kind.number;
-    one.young = youngs ? youngs[i] : young.number;
-    one.friction = frictions ? frictions[i] : friction.number;
-  }
-  std::vector<SurveyedObject> mine_only;
-  for (const auto &[object_id, one] : here) mine_only.push_back(one);
-  std::map<int, SurveyedObject> joined;
-  for (const SurveyedObject &one : gather(world, mine_only)) {
-    SurveyedObject &total = joined.emplace(one.id, SurveyedObject{one.id, 0, MAXTAGINT, 0, 0, 0, 0, 0}).first->second;
-    const long long particles = total.particles + one.particles;
-    const int moves = total.moves | one.moves;
-    if (one.lowest < total.lowest) total = one;
-    total.particles = particles, total.moves = moves;
-  }
-  const std::map<int, double> masses = object_masses(atom, world, [this](int i) { return is_among(i); });
-  std::vector<SurveyedObject> all;
-  for (auto &[object_id, one] : joined) {
-    one.mass = masses.at(object_id);
-    all.push_back(one);
-  }
-  return all;
-}
 
 void FixMdanimContact::take_objects(Contacts contacts)
 {
@@ -221,7 +177,11 @@ void FixMdanimContact::take_objects(Contacts contacts)
   std::vector<char> moves;
   std::vector<tagint> ids;
   lowest.clear();
-  for (const SurveyedObject &one : survey()) {
+  const auto among_them = [this](int i) {
+    if (is_among(i)) need_object(this, lmp, i, LEFT_OUT);
+    return is_among(i);
+  };
+  for (const SurveyedObject &one : survey_objects(lmp, groupbit, {kind, young, friction}, among_them)) {
     const auto found = bodies.find(static_cast<int>(one.kind));
     if (found == bodies.end())
       error->all(FLERR, "{}: object {} (molecule ID) has body {}, and no such body was given", name(), one.id, one.kind);

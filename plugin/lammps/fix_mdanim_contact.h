@@ -50,19 +50,11 @@ class FixMdanimContact : public mdanim::FixBase, public mdanim::PassParticipant,
   void take_body(int kind, const mdanim::ContactBodyArrays &arrays);
 
  private:
-  // An object's data from its particle with the lowest tag, known to all ranks; `mass` is that of all its particles.
-  struct SurveyedObject {
-    int id, moves;
-    tagint lowest;
-    long long particles;
-    double kind, young, friction, mass;
-  };
   // Whether contacts may belong to other bodies or particles than objects have now: they are then replaced.
   enum class Contacts { STAY, ARE_REPLACED };
   int read_word(int iarg, int narg, char **arg);
   void read_bodies_of(const char *file);
   void need_molecules_of_pairs() const;
-  std::vector<SurveyedObject> survey() const;
   void take_objects(Contacts contacts);
   [[noreturn]] void refuse_new_object(int i) const;
   void need_lists() const;

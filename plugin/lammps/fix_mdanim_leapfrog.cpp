@@ -116,7 +116,7 @@ template <class Visit> FixMdanimLeapfrog::Sums FixMdanimLeapfrog::each(Visit vis
 }
 
 // Without drag both halves are v <- v + dt/2m F.
-template <class Half> void FixMdanimLeapfrog::half_step(Half half, bool first)
+template <bool FIRST> void FixMdanimLeapfrog::half_step()
 {
   const Lap lap(seconds);
   if (!has_drag) {
@@ -125,13 +125,13 @@ template <class Half> void FixMdanimLeapfrog::half_step(Half half, bool first)
     const int *type = atom->type;
     each([&](int i, Sums &) { add_to(v[i], half_dt / mass_of(rmass, mass, type, i) * vec3(f[i])); });
   } else if (exponential) {
-    half_step_with_drag<Exponential<double>>(half, first);
+    half_step_with_drag<FIRST, Exponential<double>>();
   } else {
-    half_step_with_drag<Implicit<double>>(half, first);
+    half_step_with_drag<FIRST, Implicit<double>>();
   }
 }
 
-template <class Drag, class Half> void FixMdanimLeapfrog::half_step_with_drag(Half half, bool first)
+template <bool FIRST, class Drag> void FixMdanimLeapfrog::half_step_with_drag()
 {
   double *const *v = atom->v, *const *f = atom->f;
   const double *rmass = atom->rmass, *mass = atom->mass, *own = lambda.values(lmp);
@@ -145,11 +145,11 @@ template <class Drag, class Half> void FixMdanimLeapfrog::half_step_with_drag(Ha
     }
     const Vec3 before = vec3(v[i]), push = vec3(f[i]);
     const Drag drag = Drag::of(phi, kick);
-    const Vec3 after = half(drag, before, push);
+    const Vec3 after = FIRST ? drag.first_half(before, push) : drag.final_half(before, push);
     v[i][0] = after.x;
     v[i][1] = after.y;
     v[i][2] = after.z;
-    sums.loss += drag.loss(before, after, push, m, first);
+    sums.loss += drag.loss(before, after, push, m, FIRST);
     sums.largest_phi = std::max(sums.largest_phi, phi);
   });
   lost += force->mvv2e * all.loss;
@@ -159,15 +159,10 @@ template <class Drag, class Half> void FixMdanimLeapfrog::half_step_with_drag(Ha
 // v^n -> v^{n+1/2}, then r^{n+1} = r^n + dt v^{n+1/2}: the end of eq. (3.12).
 void FixMdanimLeapfrog::initial_integrate(int)
 {
-  first_half();
+  half_step<true>();
   told = tells_of(update->ntimestep);
   if (told) bent = -bend();
   drift();
-}
-
-void FixMdanimLeapfrog::first_half()
-{
-  half_step([](const auto &drag, const Vec3 &v, const Vec3 &f) { return drag.first_half(v, f); }, true);
 }
 
 void FixMdanimLeapfrog::drift()
@@ -256,12 +251,7 @@ std::vector<Box> FixMdanimLeapfrog::traced_boxes() const
 void FixMdanimLeapfrog::final_integrate()
 {
   if (told) bent += bend();
-  final_half();
-}
-
-void FixMdanimLeapfrog::final_half()
-{
-  half_step([](const auto &drag, const Vec3 &v, const Vec3 &f) { return drag.final_half(v, f); }, false);
+  half_step<false>();
 }
 
 // --- together with run_style verlet/mdanim ---
@@ -314,14 +304,14 @@ void FixMdanimLeapfrog::unpack_forward_comm(int n, int first, double *buf)
 void FixMdanimLeapfrog::finish_step(const std::vector<int> &particles)
 {
   only = &particles;
-  final_half();
+  half_step<false>();
   only = nullptr;
 }
 
 void FixMdanimLeapfrog::begin_step(const std::vector<int> &particles)
 {
   only = &particles;
-  first_half();
+  half_step<true>();
   if (told) bent -= bend();
   drift();
   only = nullptr;

@@ -70,10 +70,8 @@ class FixMdanimLeapfrog : public mdanim::FixBase, public mdanim::PassIntegrator 
     }
   };
   template <class Visit> Sums each(Visit visit) const;
-  void first_half();
-  void final_half();
-  template <class Half> void half_step(Half half, bool first);
-  template <class Drag, class Half> void half_step_with_drag(Half half, bool first);
+  template <bool FIRST> void half_step();
+  template <bool FIRST, class Drag> void half_step_with_drag();
   void drift();
   void drift_and_trace();
   double largest_phi_here() const;

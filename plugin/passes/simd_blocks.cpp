@@ -67,7 +67,7 @@ void SimdBlocks::lay_out_at(const std::vector<int> &places, int own)
 
 // --- motion ---
 
-void SimdBlocks::set_row(const Mover &mover, Friction friction, int lane, double *row) const
+void set_motion(const Mover &mover, Friction friction, int lanes, int lane, double *row)
 {
   const auto at = [&](Motion what) -> double & { return row[what * lanes + lane]; };
   at(MASS) = mover.pulled;

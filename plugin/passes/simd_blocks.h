@@ -16,6 +16,9 @@
 
 namespace mdanim {
 
+// Sets a lane of a row of Pass::motion.
+void set_motion(const Mover &mover, Friction friction, int lanes, int lane, double *row);
+
 // Particles in blocks, laid out: their positions, velocities and forces in arrays of their own, one for each component, and the
 // work for them in a pass. There is no such object before particles are cut and their order is known.
 class SimdBlocks {
@@ -103,7 +106,6 @@ class SimdBlocks {
       return is_ghost(found) ? -1 : found;
     };
   }
-  void set_row(const Mover &mover, Friction friction, int lane, double *row) const;
   void set_apart(const std::vector<bool> &moves);    // by the first particle of a block: whether any of it moves
 
   const Cutter &cutter;
@@ -150,7 +152,7 @@ template <class Tell> void SimdBlocks::set_motion(Friction friction, Tell mover)
       if (of_lane.in_liquid) of_lane.phi = 0.0;
       if (of_lane.phi != 0.0) slow[block.start] = true;
       if (of_lane.dt != 0.0 || of_lane.in_liquid) moves[block.start] = true;
-      set_row(of_lane, friction, lane, row.data());
+      mdanim::set_motion(of_lane, friction, lanes, lane, row.data());
       row[FOREIGN_LANE * lanes + lane] = lane < block.lanes ? 0.0 : 1.0;
       row[OWNED_LANE * lanes + lane] = i < 0 || is_ghost(i) ? 0.0 : 1.0;
     }

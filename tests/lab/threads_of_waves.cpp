@@ -39,7 +39,7 @@ std::vector<std::uint8_t> splash(int threads)
     waves.set_solids(part.data(), mass.data());
     waves.update(0.15);
   }
-  std::printf("%d threads, %ld iterations, %ld times limited\n", threads, waves.counts.iterations, waves.counts.limited);
+  std::printf("%d threads, %ld iterations, %ld times limited\n", threads, waves.run.counts.iterations, waves.run.counts.limited);
   return waves.state();
 }
 

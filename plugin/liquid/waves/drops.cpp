@@ -65,13 +65,13 @@ Vec3 Drops::momentum() const
 // Sheds drops from columns whose surface rises much faster than those around.
 void Drops::leave(Waves &waves, double dt, std::uint64_t when)
 {
-  std::vector<Waves::Top> top(static_cast<std::size_t>(nx) * ny);
-  for (int column = 0; column < nx * ny; ++column) top[column] = waves.top_of(column);
+  std::vector<WaveExchange::Top> top(static_cast<std::size_t>(nx) * ny);
+  for (int column = 0; column < nx * ny; ++column) top[column] = waves.exchange.top_of(column);
   const std::uint64_t key = draw_key(seed, when, Phase::DROPS);
   for (int y = 0; y < ny; ++y)
     for (int x = 0; x < nx; ++x) {
       const int column = y * nx + x;
-      const Waves::Top &own = top[column];
+      const WaveExchange::Top &own = top[column];
       double around = 0.0;
       int neighbours = 0;
       for (int side = 0; side < 4; ++side) {
@@ -89,7 +89,7 @@ void Drops::leave(Waves &waves, double dt, std::uint64_t when)
         const std::uint64_t number = (static_cast<std::uint64_t>(column) * AT_ONCE + n) * 8;
         const auto random = [&](int k) { return scatter(key, number + k); };
         const double size = volume / parts * (1.0 + UNEVEN * random(5));
-        const Units units = waves.take(column, own.head, static_cast<Units>(size * UNITS_PER_CELL));
+        const Units units = waves.exchange.take(column, own.head, static_cast<Units>(size * UNITS_PER_CELL));
         if (units == 0) continue;
         const double spread = SCATTER * up;
         drops.push_back({{x + 0.5 + 0.5 * random(0), y + 0.5 + 0.5 * random(1), own.head},
@@ -145,9 +145,9 @@ void Drops::land(Waves &waves, const std::vector<double> &from)
   for (std::size_t n = 0; n < drops.size(); ++n) {
     Drop &drop = drops[n];
     const int column = static_cast<int>(drop.x.y) * nx + static_cast<int>(drop.x.x);
-    const double height = std::max(drop.x.z, from[n]), head = waves.head_below(column, height);
+    const double height = std::max(drop.x.z, from[n]), head = waves.exchange.head_below(column, height);
     if (drop.x.z <= head) {
-      drop.units -= waves.give(column, height, drop.units, drop.v.x, drop.v.y);
+      drop.units -= waves.exchange.give(column, height, drop.units, drop.v.x, drop.v.y);
       drop.x.z = head;
       drop.v.z = 0.0;
     }

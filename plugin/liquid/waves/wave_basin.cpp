@@ -61,7 +61,7 @@ WaveBasin::WaveBasin(const Shape &shape, double g, double calm, double spray, st
       part(still.count.size(), 0), mass(columns(), 0.0), afloat(columns()), rising(columns()), from_solids(2 * columns() + 2, 0),
       heads(columns(), 0.0), tops(columns(), 0.0), hollow(columns(), 0)
 {
-  waves.law.calm = calm * unit_of_time;
+  waves.run.law.calm = calm * unit_of_time;
   drops.share = spray;
 }
 
@@ -295,7 +295,7 @@ void WaveBasin::give_impulses(double since, double asleep)
   account.solids += since * push - Vec3{sum(all.begin(), middle), sum(middle, end), 0.0};
   std::vector<double> given(2 * columns());
   for (std::size_t n = 0; n < given.size(); ++n) given[n] = static_cast<double>(all[n]) * IMPULSE_UNIT;
-  waves.add_impulse(given.data(), given.data() + columns());
+  waves.exchange.add_impulse(given.data(), given.data() + columns());
   std::fill(from_solids.begin(), from_solids.end(), 0);
 }
 

@@ -32,7 +32,7 @@ class WaveBasin : public Basin {
   void add_current(int side, double speed);
   // Liquid comes in with a velocity, or goes out where `rate` [volume/time] is negative: in columns whose middle lies between the
   // corners, at least one, at the height of the middle. Velocities are limited to fastest() along x or y [distance/time].
-  double fastest(int axis) const { return waves.law.fastest * (axis == 0 ? shape.cell.x : shape.cell.y) / unit_of_time; }
+  double fastest(int axis) const { return waves.run.law.fastest * (axis == 0 ? shape.cell.x : shape.cell.y) / unit_of_time; }
   void add_flow(const Vec3 &low, const Vec3 &high, double rate, double ux, double uy);
 
   long mark_still(const AddBodies &bodies) override;

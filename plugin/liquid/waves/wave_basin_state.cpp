@@ -92,11 +92,11 @@ void WaveBasin::look()
 // Finds the head of the topmost liquid, NaN where there is none below a solid. Its top is given where there is no solid above it.
 void WaveBasin::look_at_column(int column)
 {
-  const int spans = waves.spans_of(column);
+  const int spans = waves.exchange.spans_of(column);
   hollow[column] = 0;
   heads[column] = tops[column] = std::numeric_limits<double>::quiet_NaN();
   for (int n = spans - 1; n >= 0; --n) {
-    const Waves::SpanView span = waves.span_view(column, n);
+    const WaveExchange::SpanView span = waves.exchange.span_view(column, n);
     const bool last = n == spans - 1 && span.high == shape.nz;
     // A thin layer on a body is not a surface; dry ground on the open floor is one.
     const bool on_floor = n == 0 && last && span.floor < PUDDLE;
@@ -104,7 +104,7 @@ void WaveBasin::look_at_column(int column)
     heads[column] = std::min(span.phi, shape.nz + 1.0);
     if (last) tops[column] = std::min(span.surface, shape.nz + 1.0);
     if (last) return;
-    const Waves::SpanView above = waves.span_view(column, spans - 1);
+    const WaveExchange::SpanView above = waves.exchange.span_view(column, spans - 1);
     hollow[column] = above.high == shape.nz && heads[column] > above.floor + 1.0;
     return;
   }
@@ -141,8 +141,8 @@ void WaveBasin::contents(std::uint8_t *out) const
   for (int c = 0; c < columns(); ++c) {
     for (int z = 0; z < shape.nz; ++z)
       out[static_cast<std::size_t>(z) * columns() + c] = 2 * part[part_number(c, z)] >= SolidParts::FULL ? SOLID_CODE : 0;
-    for (int n = 0; n < waves.spans_of(c); ++n) {
-      const Waves::SpanView span = waves.span_view(c, n);
+    for (int n = 0; n < waves.exchange.spans_of(c); ++n) {
+      const WaveExchange::SpanView span = waves.exchange.span_view(c, n);
       if (!span.wet) continue;
       for (int z = span.low; z < span.high && z + 0.5 < span.phi; ++z) {
         std::uint8_t &cell = out[static_cast<std::size_t>(z) * columns() + c];

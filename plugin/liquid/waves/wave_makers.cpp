@@ -99,7 +99,7 @@ void WaveMakers::apply(Waves &waves, double dt)
     }
     if (m.kind == CURRENT) {
       volume = 0.0;
-      each_column(m.drain, nx, [&](int column) { volume += m.rate * dt * waves.top_of(column).volume; });
+      each_column(m.drain, nx, [&](int column) { volume += m.rate * dt * waves.exchange.top_of(column).volume; });
     }
     due[n] = std::clamp(due[n] + volume * UNITS_PER_CELL, -MOST_DUE, MOST_DUE);
     const Units units = static_cast<Units>(due[n]);    // rounds towards 0
@@ -122,7 +122,7 @@ Units WaveMakers::come(Waves &waves, const Mouth &mouth, Units units, double ux,
   Units given = 0, n = 0;
   each_column(mouth, nx, [&](int column) {
     const Units part = units / columns + (n++ < units % columns);
-    given += waves.give(column, mouth.height, part, ux, uy);
+    given += waves.exchange.give(column, mouth.height, part, ux, uy);
   });
   account.in += given;
   return given;
@@ -132,15 +132,15 @@ Units WaveMakers::come(Waves &waves, const Mouth &mouth, Units units, double ux,
 Units WaveMakers::go(Waves &waves, const Mouth &mouth, Units units)
 {
   double all = 0.0;
-  each_column(mouth, nx, [&](int column) { all += waves.held_below(column, mouth.height); });
+  each_column(mouth, nx, [&](int column) { all += waves.exchange.held_below(column, mouth.height); });
   if (!(all > 0.0)) return 0;
   Units taken = 0;
   double sum = 0.0;
   Units wanted = 0;
   each_column(mouth, nx, [&](int column) {
-    sum += waves.held_below(column, mouth.height);
+    sum += waves.exchange.held_below(column, mouth.height);
     const Units until = static_cast<Units>(static_cast<double>(units) * (sum / all));
-    taken += waves.take(column, mouth.height, until - wanted);
+    taken += waves.exchange.take(column, mouth.height, until - wanted);
     wanted = until;
   });
   account.out += taken;

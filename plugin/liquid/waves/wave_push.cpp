@@ -16,9 +16,9 @@ constexpr int LEAST_PART = SolidParts::FULL / 8;    // a cell with a smaller sol
 constexpr double NARROW = 1.0;                      // gaps below bodies that cells do not resolve: liquid seeps in
 constexpr double HIGHEST = 8.0;    // cells of liquid: greatest pressure on a body beyond that of the liquid around it
 constexpr int SMOOTHINGS = 4;
-bool is_narrow(const Waves::SpanView &span) { return span.capacity <= NARROW; }
+bool is_narrow(const WaveExchange::SpanView &span) { return span.capacity <= NARROW; }
 // A gap beside the face of a wall, where cells are nearly full, is a part of the wall.
-bool is_crack(const Waves::SpanView &span) { return is_narrow(span) && span.roof - span.floor > NARROW; }
+bool is_crack(const WaveExchange::SpanView &span) { return is_narrow(span) && span.roof - span.floor > NARROW; }
 
 constexpr double HIDDEN = std::numeric_limits<double>::quiet_NaN();
 
@@ -48,7 +48,7 @@ void WavePush::find(const Waves &waves, const AddedMass::Solids *solids, double 
 
 void WavePush::cut(const Waves &waves, int column)
 {
-  const int spans = waves.spans_of(column);
+  const int spans = waves.exchange.spans_of(column);
   first_run[column] = static_cast<int>(runs.size());
   double bottom = 0.0;
   for (int n = 0; n <= spans; ++n) {
@@ -59,13 +59,13 @@ void WavePush::cut(const Waves &waves, int column)
     run.bottom = bottom;
     run.top = nz;
     if (n < spans) {
-      const Waves::SpanView above = waves.span_view(column, n);
+      const WaveExchange::SpanView above = waves.exchange.span_view(column, n);
       run.top = above.floor;
       bottom = above.roof;
     }
     run.floor = run.bottom;
     if (run.below >= 0) {
-      const Waves::SpanView below = waves.span_view(column, run.below);
+      const WaveExchange::SpanView below = waves.exchange.span_view(column, run.below);
       run.told = !is_narrow(below);
       run.wet = run.told && below.wet;
       run.phi = below.phi;
@@ -75,7 +75,7 @@ void WavePush::cut(const Waves &waves, int column)
   }
   // Runs parted by a crack are one run.
   for (int first = 0, last = 0; first <= spans; first = ++last) {
-    while (last < spans && is_crack(waves.span_view(column, last))) ++last;
+    while (last < spans && is_crack(waves.exchange.span_view(column, last))) ++last;
     SolidRun *const of_column = &runs[first_run[column]];
     of_column[first].top = of_column[last].top;
     of_column[first].above = of_column[last].above;
@@ -89,8 +89,8 @@ void WavePush::cut(const Waves &waves, int column)
 bool WavePush::beside(const Waves &waves, int column, double bottom, double top, double &phi) const
 {
   bool any = false;
-  for (int n = 0; n < waves.spans_of(column); ++n) {
-    const Waves::SpanView span = waves.span_view(column, n);
+  for (int n = 0; n < waves.exchange.spans_of(column); ++n) {
+    const WaveExchange::SpanView span = waves.exchange.span_view(column, n);
     if (span.floor >= top || span.roof <= bottom || is_narrow(span)) continue;
     if (span.floor >= bottom + NARROW && (span.volume < ON_BODY || span.phi < top)) continue;
     if (!any || span.wet) phi = span.wet ? span.phi : span.floor;
@@ -98,7 +98,7 @@ bool WavePush::beside(const Waves &waves, int column, double bottom, double top,
     if (span.wet) return true;
   }
   if (any || first_run[column] < 0) return any;
-  for (int n = 0; n <= waves.spans_of(column); ++n) {
+  for (int n = 0; n <= waves.exchange.spans_of(column); ++n) {
     const SolidRun &run = runs[first_run[column] + n];
     if (run.bottom >= top || run.top <= bottom || !run.told) continue;
     phi = run.wet ? run.phi : run.floor;
@@ -136,15 +136,14 @@ void WavePush::seep(const Waves &waves)
 // Head of the surface as visible from above; NaN where a body hides it or breaks it.
 double WavePush::seen_at(const Waves &waves, int column) const
 {
-  const int spans = waves.spans_of(column);
+  const int spans = waves.exchange.spans_of(column);
   if (spans == 0) return HIDDEN;
-  const bool has_body = first_run[column] >= 0;
-  if (!has_body) {
+  if (first_run[column] < 0) {
     for (int n = spans - 1; n >= 0; --n)
-      if (const Waves::SpanView span = waves.span_view(column, n); span.wet) return span.phi;
-    return waves.span_view(column, 0).floor;
+      if (const WaveExchange::SpanView span = waves.exchange.span_view(column, n); span.wet) return span.phi;
+    return waves.exchange.span_view(column, 0).floor;
   }
-  const Waves::SpanView top = waves.span_view(column, spans - 1);
+  const WaveExchange::SpanView top = waves.exchange.span_view(column, spans - 1);
   if (top.high < nz || !top.wet || top.volume < ON_BODY) return HIDDEN;
   for (int z = top.low + 1; z < nz && z < top.phi; ++z)
     if (waves.solids().at(column, z) > 0) return HIDDEN;
@@ -182,7 +181,7 @@ void WavePush::find_close(const Waves &waves)
   std::fill(close.begin(), close.end(), 0);
   for (const int column : columns) {
     int solid_runs = 0, seeping = 0;
-    for (int n = 0; n <= waves.spans_of(column); ++n) {
+    for (int n = 0; n <= waves.exchange.spans_of(column); ++n) {
       const SolidRun &run = runs[first_run[column] + n];
       solid_runs += run.top > run.bottom;
       seeping += run.seeps;
@@ -196,13 +195,13 @@ void WavePush::take_along(const Waves &waves, const AddedMass::Solids *solids, d
 {
   std::fill(depths.begin(), depths.end(), AddedMass::Depths{});
   for (const int column : columns)
-    for (int n = waves.spans_of(column); n >= 0; --n) {
+    for (int n = waves.exchange.spans_of(column); n >= 0; --n) {
       SolidRun &run = runs[first_run[column] + n];
-      if (run.below < 0 || !run.wet || run.top <= run.bottom || !waves.span_view(column, run.below).full) continue;
+      if (run.below < 0 || !run.wet || run.top <= run.bottom || !waves.exchange.span_view(column, run.below).full) continue;
       run.moves = true;
       depths[column].below = run.bottom - run.floor;
       if (run.above < 0) break;
-      const Waves::SpanView above = waves.span_view(column, run.above);
+      const WaveExchange::SpanView above = waves.exchange.span_view(column, run.above);
       if (above.wet) depths[column].above = std::max(0.0, above.phi - run.top);
       break;
     }
@@ -216,16 +215,16 @@ void WavePush::press(const Waves &waves, SolidRun &run)
 {
   const double thickness = run.top - run.bottom;
   if (!(thickness > 0.0)) return;
-  if (run.below >= 0 && waves.span_view(run.column, run.below).wet)
-    std::copy_n(waves.around(run.column, run.below).u, 4, run.u);
+  if (run.below >= 0 && waves.exchange.span_view(run.column, run.below).wet)
+    std::copy_n(waves.exchange.around(run.column, run.below).u, 4, run.u);
   else if (run.above >= 0)
-    std::copy_n(waves.around(run.column, run.above).u, 4, run.u);
+    std::copy_n(waves.exchange.around(run.column, run.above).u, 4, run.u);
   if (run.above < 0) return;
   const double around = std::max(0.0, ambient[run.column] - run.top);    // 0 where it is unknown
   const auto pressing = [&](double head) { return std::clamp(head - run.top, 0.0, around + HIGHEST) / thickness; };
   if (run.wet) run.beside = around / thickness;
   if (run.wet) run.over = pressing(run.phi);
-  const Waves::SpanView above = waves.span_view(run.column, run.above);
+  const WaveExchange::SpanView above = waves.exchange.span_view(run.column, run.above);
   const SolidRun &upper = runs[first_run[run.column] + run.above + 1];
   if (upper.seeps)
     run.on_top = pressing(upper.phi);
@@ -268,12 +267,12 @@ void WavePush::fill(const Waves &waves, int column)
   };
   const SolidRun *run = &runs[first_run[column]];
   int z = 0;
-  for (int n = 0; n < waves.spans_of(column); ++n, ++run) {
-    const Waves::SpanView span = waves.span_view(column, n);
+  for (int n = 0; n < waves.exchange.spans_of(column); ++n, ++run) {
+    const WaveExchange::SpanView span = waves.exchange.span_view(column, n);
     for (const int end = is_crack(span) ? span.high : span.low; z < end; ++z)
       if (solid.at(column, z) >= LEAST_PART) of_run(z, *run);
     bool looked = false;
-    Waves::Sides sides{};
+    WaveExchange::Sides sides{};
     for (; z < span.high; ++z) {
       if (solid.at(column, z) < LEAST_PART) continue;
       if (z == span.low && span.floor > z) {
@@ -284,7 +283,7 @@ void WavePush::fill(const Waves &waves, int column)
         of_run(z, run[1]);
         continue;
       }
-      if (!looked) sides = waves.around(column, n);
+      if (!looked) sides = waves.exchange.around(column, n);
       looked = true;
       OnCell on;
       on.head = span.phi;

@@ -38,21 +38,23 @@ struct LinkRecord {
 std::vector<std::uint8_t> Waves::state() const
 {
   std::vector<SpanRecord> spans;
-  each_span([&](long i) {
-    spans.push_back(
-        {content[i], arrays.full[i], arrays.rest[i], arrays.phi[i], arrays.delta[i], arrays.last_delta[i], arrays.yields[i]});
+  columns.each_span([&](long i) {
+    spans.push_back({columns.content[i], columns.arrays.full[i], columns.arrays.rest[i], columns.arrays.phi[i],
+                     columns.arrays.delta[i], columns.arrays.last_delta[i], columns.arrays.yields[i]});
   });
   std::vector<LinkRecord> links;
-  each_link([&](const LinkPlace &link) { links.push_back({arrays_of(link).u[link.at], arrays_of(link).q[link.at]}); });
-  const bool walled = std::any_of(wall.part.begin(), wall.part.end(), [](std::uint16_t part) { return part != 0; });
-  const WavesStateHead head{{nx, ny, nz},
+  columns.each_link(
+      [&](const LinkPlace &link) { links.push_back({columns.arrays_of(link).u[link.at], columns.arrays_of(link).q[link.at]}); });
+  const bool walled =
+      std::any_of(columns.wall.part.begin(), columns.wall.part.end(), [](std::uint16_t part) { return part != 0; });
+  const WavesStateHead head{{columns.nx, columns.ny, columns.nz},
                             static_cast<std::int64_t>(spans.size()),
                             static_cast<std::int64_t>(links.size()),
                             total(),
-                            (resting ? RESTING : 0) | (walled ? WALLED : 0)};
+                            (run.resting ? RESTING : 0) | (walled ? WALLED : 0)};
   ByteWriter writer;
-  writer.put(WAVES_VERSION).put(head).put_all(solid.part);
-  if (walled) writer.put_all(wall.part);
+  writer.put(WAVES_VERSION).put(head).put_all(columns.solid.part);
+  if (walled) writer.put_all(columns.wall.part);
   return writer.put_all(spans).put_all(links).take();
 }
 
@@ -61,16 +63,16 @@ void Waves::set_state(const std::uint8_t *bytes, std::size_t size)
   ByteReader reader(bytes, size, "the state of the waves");
   reader.expect_version(WAVES_VERSION);
   const auto head = reader.get<WavesStateHead>();
-  StateGrid{nx, ny, nz}.expect(head.grid, reader);
-  const auto part = reader.get_all<std::uint16_t>(solid.part.size());
+  StateGrid{columns.nx, columns.ny, columns.nz}.expect(head.grid, reader);
+  const auto part = reader.get_all<std::uint16_t>(columns.solid.part.size());
   const std::vector<std::uint16_t> walls =
       head.flags & WALLED ? reader.get_all<std::uint16_t>(part.size()) : std::vector<std::uint16_t>(part.size(), 0);
-  Waves cut(nx, ny, nz);    // so that a damaged state changes nothing
-  cut.set_walls(walls.data());
-  cut.set_solids(part.data(), nullptr);
+  Waves empty(columns.nx, columns.ny, columns.nz);    // so that a damaged state changes nothing
+  empty.set_walls(walls.data());
+  empty.set_solids(part.data(), nullptr);
   std::int64_t span_count = 0, link_count = 0;
-  cut.each_span([&](long) { ++span_count; });
-  cut.each_link([&](const LinkPlace &) { ++link_count; });
+  empty.columns.each_span([&](long) { ++span_count; });
+  empty.columns.each_link([&](const LinkPlace &) { ++link_count; });
   const std::size_t expected = span_count * sizeof(SpanRecord) + link_count * sizeof(LinkRecord);
   if (head.spans != span_count || head.links != link_count || reader.left() != expected)
     reader.is_damaged("its solids have " + std::to_string(span_count) + " spans and " + std::to_string(link_count) +
@@ -85,34 +87,35 @@ void Waves::set_state(const std::uint8_t *bytes, std::size_t size)
     damaged =
         damaged || !std::isfinite(record.full + record.rest + record.phi + record.delta + record.last_delta + record.yields);
   }
-  for (const LinkRecord &record : links) damaged = damaged || limited(record.u) != record.u || !std::isfinite(record.q);
-  if (damaged) reader.is_damaged("it holds a value that is not a number, or liquid faster than " + std::to_string(law.fastest));
+  for (const LinkRecord &record : links) damaged = damaged || run.limited(record.u) != record.u || !std::isfinite(record.q);
+  if (damaged)
+    reader.is_damaged("it holds a value that is not a number, or liquid faster than " + std::to_string(run.law.fastest));
   if (held != head.units)
     reader.is_damaged("it holds " + std::to_string(held) + " units of liquid, not " + std::to_string(head.units));
 
-  std::fill(content.begin(), content.end(), 0);    // empty spans lose nothing to solids
+  std::fill(columns.content.begin(), columns.content.end(), 0);    // empty spans lose nothing to solids
   set_walls(walls.data());
   set_solids(part.data(), nullptr);
   const SpanRecord *span_record = spans.data();
-  each_span([&](long i) {
+  columns.each_span([&](long i) {
     const SpanRecord &record = *span_record++;
-    content[i] = record.content;
-    arrays.full[i] = record.full;
-    arrays.rest[i] = record.rest;
-    arrays.phi[i] = record.phi;
-    arrays.delta[i] = record.delta;
-    arrays.last_delta[i] = record.last_delta;
-    arrays.yields[i] = record.yields;
-    arrays.coming[i] = 0.0;
+    columns.content[i] = record.content;
+    columns.arrays.full[i] = record.full;
+    columns.arrays.rest[i] = record.rest;
+    columns.arrays.phi[i] = record.phi;
+    columns.arrays.delta[i] = record.delta;
+    columns.arrays.last_delta[i] = record.last_delta;
+    columns.arrays.yields[i] = record.yields;
+    columns.arrays.coming[i] = 0.0;
   });
   const LinkRecord *link_record = links.data();
-  each_link([&](const LinkPlace &link) {
-    arrays_of(link).u[link.at] = link_record->u;
-    arrays_of(link).q[link.at] = link_record->q;
+  columns.each_link([&](const LinkPlace &link) {
+    columns.arrays_of(link).u[link.at] = link_record->u;
+    columns.arrays_of(link).q[link.at] = link_record->q;
     ++link_record;
   });
-  some_full = true;    // until the next update has checked
-  resting = (head.flags & RESTING) != 0;
+  run.some_full = true;    // until the next update has checked
+  run.resting = (head.flags & RESTING) != 0;
 }
 
 }    // namespace mdanim

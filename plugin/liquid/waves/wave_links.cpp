@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // Links between spans of neighbouring columns, and the list of those that are not regular.
 
-#include "liquid/waves/waves.h"
+#include "liquid/waves/wave_columns.h"
 
 #include <algorithm>
 
@@ -34,8 +34,7 @@ Gap gap_between(const SolidParts &solid, const Span &a, const Span &b)
 
 }    // namespace
 
-// Links of the grid keep their places; further ones hold their velocities while places change.
-void Waves::save_further_links()
+void WaveColumns::save_further_links()
 {
   for (int d = 0; d < 2; ++d)
     for (std::size_t n = 0; n < further_links[d].size(); ++n) {
@@ -44,8 +43,7 @@ void Waves::save_further_links()
     }
 }
 
-// Joins all links at these columns and at those with several spans.
-void Waves::join(const std::vector<int> &columns)
+void WaveColumns::join(const std::vector<int> &columns)
 {
   std::vector<std::uint8_t> wanted[2];    // faces, by the column in front of them
   for (auto &of_direction : wanted) of_direction.assign(nx * ny, 0);
@@ -81,7 +79,7 @@ void Waves::join(const std::vector<int> &columns)
 }
 
 // Makes links anew where two columns meet: velocities of former links are carried over by their overlap.
-void Waves::join_face(int d, int column, int other, const std::vector<LinkState> &was)
+void WaveColumns::join_face(int d, int column, int other, const std::vector<LinkState> &was)
 {
   LinkState lowest{column, 0, 0, false, WaveArrays::NOWHERE, WaveArrays::NOWHERE, 0.0, 0.0};
   for (int m = 0; m < spans_in[column]; ++m)
@@ -111,7 +109,7 @@ void Waves::join_face(int d, int column, int other, const std::vector<LinkState>
   put_link({d, place(column)}, lowest);
 }
 
-void Waves::put_link(const LinkPlace &link, const LinkState &state)
+void WaveColumns::put_link(const LinkPlace &link, const LinkState &state)
 {
   const WaveLinks &l = arrays_of(link);
   l.edge[link.at] = state.edge;
@@ -122,7 +120,7 @@ void Waves::put_link(const LinkPlace &link, const LinkState &state)
 }
 
 // A column is regular without spans, or with one that is plain and linked to all columns around that have spans.
-bool Waves::is_regular(int column) const
+bool WaveColumns::is_regular(int column) const
 {
   if (spans_in[column] == 0) return true;
   if (spans_in[column] > 1 || !span[place(column)].plain) return false;
@@ -136,8 +134,7 @@ bool Waves::is_regular(int column) const
   return linked;
 }
 
-// Lists spans and links for the general form: those of irregular columns, and links that have such a column beside them.
-void Waves::list_irregular()
+void WaveColumns::list_irregular()
 {
   std::fill(chain.begin(), chain.end(), -1);
   link_of_span.clear();

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// Each rank surveys its own particles; data of the lowest tag win.
+
+#include "lammps/object_survey.h"
+
+#include "lammps/object_masses.h"
+#include "lammps/rank_gather.h"
+
+#include "atom.h"
+#include "lammps.h"
+
+#include <map>
+
+using namespace LAMMPS_NS;
+
+namespace mdanim {
+
+std::vector<SurveyedObject> survey_objects(LAMMPS *lmp, int groupbit, const MaterialValues &values,
+                                           const std::function<bool(int)> &is_among)
+{
+  const Atom *const atom = lmp->atom;
+  const auto &[kind, young, friction] = values;
+  constexpr auto none = [](int id) { return SurveyedObject{id, 0, MAXTAGINT, 0, 0, 0, 0, 0}; };
+  const double *kinds = kind.values(lmp), *youngs = young.values(lmp), *frictions = friction.values(lmp);
+  std::map<int, SurveyedObject> here;
+  for (int i = 0; i < atom->nlocal; ++i) {
+    if (!is_among(i)) continue;
+    const int object_id = static_cast<int>(atom->molecule[i]);
+    SurveyedObject &one = here.emplace(object_id, none(object_id)).first->second;
+    ++one.particles;
+    if (atom->mask[i] & groupbit) one.moves = 1;
+    if (atom->tag[i] >= one.lowest) continue;
+    one.lowest = atom->tag[i];
+    one.kind = kinds ? kinds[i] : kind.number;
+    one.young = youngs ? youngs[i] : young.number;
+    one.friction = frictions ? frictions[i] : friction.number;
+  }
+  std::vector<SurveyedObject> mine_only;
+  for (const auto &[object_id, one] : here) mine_only.push_back(one);
+  std::map<int, SurveyedObject> joined;
+  for (const SurveyedObject &one : gather(lmp->world, mine_only)) {
+    SurveyedObject &total = joined.emplace(one.id, none(one.id)).first->second;
+    const long long particles = total.particles + one.particles;
+    const int moves = total.moves | one.moves;
+    if (one.lowest < total.lowest) total = one;
+    total.particles = particles, total.moves = moves;
+  }
+  const std::map<int, double> masses = object_masses(atom, lmp->world, is_among);
+  std::vector<SurveyedObject> all;
+  for (auto &[object_id, one] : joined) {
+    one.mass = masses.at(object_id);
+    all.push_back(one);
+  }
+  return all;
+}
+
+}    // namespace mdanim

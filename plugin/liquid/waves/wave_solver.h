@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// (W5) to (W7): the change of heads in an update, one system of equations for all spans.
+
+#pragma once
+
+#include "liquid/waves/wave_loops.h"
+
+namespace mdanim {
+
+class WaveSolver {
+ public:
+  // Both must outlive this.
+  WaveSolver(WaveColumns &columns, WaveRun &run)
+      : columns(columns), run(run), law(run.law), arrays(columns.arrays), loops(columns, run.threads)
+  {
+  }
+
+  // Heads that push at the end of a sub-update, from surfaces and links after advection; spans whose roof would pull become free.
+  // `were_full`: whether some span was full in the last one.
+  void find_heads(bool were_full);
+
+ private:
+  using LinkPlace = WaveColumns::LinkPlace;
+  using Ends = WaveColumns::Ends;
+
+  void assemble(bool some_full);
+  void solve(bool again);
+  bool let_go();
+  bool let_go(long first, long end);
+  double sum_of_rows() const;
+  void general_assembly(long i);
+  void general_coupling(const LinkPlace &link);
+  double general_product(long i, const double *x) const;
+
+  WaveColumns &columns;
+  WaveRun &run;
+  const WaveLaw &law;
+  WaveArrays &arrays;
+  WaveLoops loops;
+};
+
+}    // namespace mdanim

@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Classes of the plugin are small: a class is read from its first line to the end of its last function."""
+
+import re
+from collections import Counter
+from pathlib import Path
+
+import pytest
+
+PLUGIN = Path(__file__).parents[1] / "plugin"
+MOST_LINES, MOST_MEMBERS = 400, 30
+LARGER = {
+    "FixMdanimLiquid": (726, 29),
+    "WaveBasin": (600, 34),
+    "BondMdanimHarmonic": (532, 18),
+    "FixMdanimRigid": (469, 9),
+    "VerletMdanim": (441, 16),
+}
+"""Lines and members of classes that are to be divided. No name may be added, and the numbers may only shrink."""
+
+
+def without_text(source: str) -> str:
+    """The same lines with blanks for comments, strings, characters and directives."""
+    blank = r"""//[^\n]*|"(?:\\.|[^"\\\n])*"|'(?:\\.|[^'\\\n])+'|^[ \t]*#(?:[^\n]*\\\n)*[^\n]*"""
+    return re.sub(blank, lambda found: re.sub(r"[^\n]", " ", found[0]), source, flags=re.MULTILINE)
+
+
+def end_of(source: str, brace: int) -> int:
+    """The place of the brace that closes the one at `brace`."""
+    depth = 0
+    for place in range(brace, len(source)):
+        depth += (source[place] == "{") - (source[place] == "}")
+        if depth == 0:
+            return place
+    return len(source)
+
+
+def data_members(body: str) -> int:
+    """How many values a class holds, by the declarations of its body that are neither functions nor types nor constants."""
+    flat, place = "", 0
+    while place < len(body):
+        if body[place] != "{":
+            flat, place = flat + body[place], place + 1
+            continue
+        head = flat[max(map(flat.rfind, ";}\0")) + 1 :]
+        initial = not re.search(r"\)[^=]*$|\b(class|struct|enum|union)\b", head)
+        flat, place = flat + ("" if initial else "}"), end_of(body, place) + 1
+    count = 0
+    for one in re.split(r"[;}]", re.sub(r"\b(public|private|protected):", ";", flat)):
+        for _ in range(4):
+            one = re.sub(r"<[^<>]*>", "", one)
+        one = re.sub(r"=[^,]*", "", one).strip()
+        if one and "(" not in one and not re.match(r"(static|using|friend|typedef|enum|struct|class|template|operator)\b", one):
+            count += 1 + one.count(",")
+    return count
+
+
+def sizes() -> dict[str, tuple[int, int]]:
+    """Lines and members of each class, those of its functions elsewhere among the lines."""
+    lines, members = Counter(), Counter()
+    for path in sorted(p for p in PLUGIN.rglob("*.[hc]*") if p.suffix in (".h", ".cpp")):
+        text = path.read_text(encoding="utf-8")
+        source, rows = without_text(text), text.split("\n")
+        for found in re.finditer(r"\b(?:class|struct)\s+(?:alignas\([^)]*\)\s*)?(\w+)\s*(?::[^;{()]*)?\{", source):
+            end = end_of(source, found.end() - 1)
+            lines[found[1]] += source.count("\n", found.start(), end) + 1
+            members[found[1]] = max(members[found[1]], data_members(source[found.end() : end]))
+        functions = (
+            re.finditer(r"^(?![ \t{}#])[^\n;{}=]*?\b(\w+)::~?\w+\s*\(", source, re.MULTILINE) if path.suffix == ".cpp" else ()
+        )
+        for found in functions:
+            first = source.count("\n", 0, found.start())
+            while first and rows[first - 1].startswith("//"):  # what is said of the function
+                first -= 1
+            lines[found[1]] += source.count("\n", 0, end_of(source, source.index("{", found.end()))) + 1 - first
+    return {name: (lines[name], members[name]) for name in members}
+
+
+SIZES = sizes()
+
+
+@pytest.mark.parametrize("name", sorted(SIZES))
+def test_classes_are_small(name):
+    """At most so many lines over all files, and so many values that it holds."""
+    most_lines, most_members = LARGER.get(name, (MOST_LINES, MOST_MEMBERS))
+    assert SIZES[name][0] <= most_lines and SIZES[name][1] <= max(most_members, MOST_MEMBERS)
+
+
+def test_the_sizes_are_found():
+    """A class over several files, one with values of many kinds, and none of the larger ones is gone or small by now."""
+    assert 250 < SIZES["WaveColumns"][0] <= MOST_LINES and SIZES["PairLaw"] == (3, 2) and SIZES["ContactAccount"][1] == 8
+    assert all(SIZES[name][0] > MOST_LINES or SIZES[name][1] > MOST_MEMBERS for name in LARGER)
