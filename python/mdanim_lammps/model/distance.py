@@ -79,20 +79,20 @@ def _(shape: Ellipsoid, points, spacing):
 
     The sum of the squares of y/r is convex in t, so no step goes too far.
     """
-    r = np.array(shape.radii)
+    r = np.array(shape.radii)[:, None]
     more = r**2 - r.min() ** 2
     # By symmetry in one octant. On a plane of symmetry the sum has a pole in the way, beside it has not.
-    x = np.maximum(abs(points), 1e-12 * r.max())
-    t = np.maximum((r * x - more).max(axis=1), np.linalg.norm(r * x, axis=1) - more.max())
+    x = np.maximum(abs(points.T), 1e-12 * r.max())
+    t = np.maximum((r * x - more).max(axis=0), np.sqrt(((r * x) ** 2).sum(axis=0)) - more.max())
     for _ in range(NEWTON_STEPS):
-        below = t[:, None] + more
+        below = t + more
         part = (r * x / below) ** 2
-        step = (part.sum(axis=1) - 1) / (2 * (part / below).sum(axis=1))
+        step = (part.sum(axis=0) - 1) / (2 * (part / below).sum(axis=0))
         t += step
         if (abs(step) <= 1e-14 * t).all():
             break
-    closest = r**2 * x / (t[:, None] + more)
-    return np.copysign(np.linalg.norm(closest - x, axis=1), shapes.depth(shape, points))
+    closest = r**2 * x / (t + more)
+    return np.copysign(np.sqrt(((closest - x) ** 2).sum(axis=0)), shapes.depth(shape, points))
 
 
 @distance.register
