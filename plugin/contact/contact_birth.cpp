@@ -101,7 +101,7 @@ Verdict judge(const ContactBody &host, const SurfacePoint &point, const Vec3 &X,
     verdict.is_crushed = true;
     verdict.open = EVERY_SIDE, verdict.slack = 0.0;    // X may be different in the next step
   }
-  if (side >= 0 && host.is_cuboid()) {
+  if (side >= 0 && is_smooth(host, point.kind)) {
     verdict.depth *= Flattened<double>(std::sqrt(dot(inward_of_side, inward_of_side))).value;
     if (verdict.is_crushed) side = -1;
   }

@@ -24,6 +24,8 @@ struct Verdict {
 
 // Ramps: half of a flat point counts one and a half cells inside of an edge, half of other points at the edge.
 Ramps ramps_of(const ContactBody &host, PointKind kind);
+// Whether the smooth map of a host is that of its contacts with points of a kind.
+inline bool is_smooth(const ContactBody &host, PointKind kind) { return kind != PointKind::FLAT && host.is_cuboid(); }
 
 // The slack that judge() would give for a point so far from each side of the host that its own normal does not matter; 0 for a
 // point that is nearer. Beside a cuboid some of its sides are far above the point: their edges separate it from these. `off` is

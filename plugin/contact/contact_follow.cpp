@@ -40,8 +40,6 @@ bool follow(FieldContact &contact, const PushTask &task, const ContactBody &host
 {
   constexpr int MOST = 12;
   const Placed at = {host, task.slot, task.place};
-  const bool is_smooth = host.is_cuboid();
-  const double same = same_place(is_smooth);
   const MaterialSearch search(at);
   std::array<int, 3> cell = {contact.cell[0], contact.cell[1], contact.cell[2]};
   Vec3 X = contact.state.X + contact.state.change, left_at;
@@ -50,10 +48,10 @@ bool follow(FieldContact &contact, const PushTask &task, const ContactBody &host
   for (int step = 0; again; ++step) {
     if (step == MOST) return false;
     again = false;
-    weights = is_smooth ? smooth(X, at.body) : trilinear(X, cell, at.body);
+    weights = task.is_smooth ? smooth(X, at.body) : trilinear(X, cell, at.body);
     if (!evaluate(at, weights, spot)) return false;
     if (search.is_collapsed(spot)) {    // the search starts at the last place, then from the cells around
-      if (is_smooth) return false;
+      if (task.is_smooth) return false;
       Vec3 from = contact.state.X;
       cell = {contact.cell[0], contact.cell[1], contact.cell[2]};
       if (step > 0 || !(search.solve(x, cell, from) || search.solve_around(x, cell, from))) return false;
@@ -62,13 +60,13 @@ bool follow(FieldContact &contact, const PushTask &task, const ContactBody &host
     }
     off = spot.to_material(x - spot.x);
     const double square = dot(off, off);
-    if (square > same * same) {
+    if (square > SAME_PLACE * SAME_PLACE) {
       X += (square > 1.0 ? 1.0 / std::sqrt(square) : 1.0) * off;
       again = true;
       continue;
     }
     if (has_left) hop.jump += (X + off) - left_at;
-    has_left = !is_smooth && search.step_to_neighbour(cell, X + off, LEFT);
+    has_left = !task.is_smooth && search.step_to_neighbour(cell, X + off, LEFT);
     if (has_left) {
       X += off;
       if (!hop.happened) hop = {true, spot.to_space(X - contact.state.X), {}};

@@ -28,6 +28,7 @@ struct PushTask {
   const PaddedVec3 *place;    // as that of Placed
   double longest;             // depth beyond which a contact is over [m]
   Ramps ramps;
+  bool is_smooth;    // the map
 };
 
 // Results for a contact in a step, besides the values that it keeps.

@@ -136,7 +136,7 @@ template <bool SMOOTH> MDANIM_ALWAYS_INLINE void follow(const PushTask &task, co
     for (int lane = 0; lane < LANES; ++lane) found.lost |= (missing[lane] < 0) << lane;
 
     const Four square = dot(found.off, found.off);
-    const auto is_far = square > same_place(SMOOTH) * same_place(SMOOTH);
+    const auto is_far = square > SAME_PLACE * SAME_PLACE;
     const int far = bits(is_far);
     again = far;
     if (!SMOOTH) {
@@ -149,7 +149,7 @@ template <bool SMOOTH> MDANIM_ALWAYS_INLINE void follow(const PushTask &task, co
       for (int lane = 0; outside >> lane; ++lane)
         if (outside >> lane & 1 && step_to_neighbour(host, found.cell[lane], {X.x[lane], X.y[lane], X.z[lane]}, LEFT))
           leaves |= 1 << lane;
-      found.lost |= leaves;    // in a round host X may jump; go_on() deals with it
+      (host.depth ? found.lost : again) |= leaves;    // in a round host X may jump; go_on() in contact_follow.cpp deals with it
     }
     again &= ~found.lost;
     if (round == MOST) found.lost |= again, again = 0;
@@ -162,8 +162,7 @@ template <bool SMOOTH> MDANIM_ALWAYS_INLINE void follow(const PushTask &task, co
   }
 }
 
-// A cuboid is seen through smooth maps, a round host through those of its cells.
-template <bool CUBOID>
+template <bool SMOOTH, bool CUBOID>
 MDANIM_ALWAYS_INLINE void push_block(const PushTask &task, FieldContact *first, const PointNow *now, int n, PushedBlock &pushed)
 {
   const Lattice &host = task.host;
@@ -179,7 +178,7 @@ MDANIM_ALWAYS_INLINE void push_block(const PushTask &task, FieldContact *first, 
   for (int lane = 0; lane < LANES; ++lane)
 #pragma GCC unroll 3
     for (int d = 0; d < 3; ++d) found.cell[lane][d] = contact(lane).cell[d];
-  follow<CUBOID>(task, gather_rows([&](int lane) { return &now[number[lane]].x.x; }), found);
+  follow<SMOOTH>(task, gather_rows([&](int lane) { return &now[number[lane]].x.x; }), found);
   PointOf<Four> point;
   gather_record([&](int lane) { return &now[number[lane]]; }, point);
   ContactState<Four> state;
@@ -201,11 +200,11 @@ MDANIM_ALWAYS_INLINE void push_block(const PushTask &task, FieldContact *first, 
     below = depth_by_splines(host, X);
   }
   Vec<Four> turn;
-  if (CUBOID && any(is_on_ramp(part_slope)))
+  if (SMOOTH && any(is_on_ramp(part_slope)))
     turn = part_turn(found.weights, places_around(task, found), found.spot, part_slope, shift);
   FlattenedDepth<Four> flat;
   int crushed = 0;
-  if (CUBOID) {
+  if (SMOOTH) {
     crushed = bits(found.spot.det < crushed_volume(host.spacing));
     const Vec<Four> normal = found.spot.gradient(below.slope);
     if (any(is_flattened(normal))) {
@@ -218,7 +217,7 @@ MDANIM_ALWAYS_INLINE void push_block(const PushTask &task, FieldContact *first, 
   const ContactPush<Four> push =
       contact_push(task.law, task.dt, point.area, part, part_slope, turn, below, flat, found.spot, found.off, shift, state);
   pushed.nodes = 0;
-  spread_to_nodes<CUBOID>(found.weights, -1.0 * push.both, {-1.0 * push.moment[0], -1.0 * push.moment[1], -1.0 * push.moment[2]},
+  spread_to_nodes<SMOOTH>(found.weights, -1.0 * push.both, {-1.0 * push.moment[0], -1.0 * push.moment[1], -1.0 * push.moment[2]},
                           [&](int i, int j, int k, const Vec<Four> &force) {
                             pushed.step[pushed.nodes] = i + host.row * j + host.layer * k;
                             PaddedVec3(&row)[LANES] = pushed.on_node[pushed.nodes++];
@@ -255,9 +254,11 @@ void add_to_nodes(const PushedBlock &pushed, int first, int end, PaddedVec3 *on)
 void push(const PushTask &task, FieldContact *first, const PointNow *now, int n, PushedBlock &pushed)
 {
   if (task.host.depth)
-    push_block<false>(task, first, now, n, pushed);
+    push_block<false, false>(task, first, now, n, pushed);
+  else if (task.is_smooth)
+    push_block<true, true>(task, first, now, n, pushed);
   else
-    push_block<true>(task, first, now, n, pushed);
+    push_block<false, true>(task, first, now, n, pushed);
 }
 
 }    // namespace

@@ -9,16 +9,15 @@
 
 namespace mdanim {
 
-// Cells that X may be away from its guess without a second evaluation; less where maps are smooth, which bend more.
-constexpr double same_place(bool is_smooth) { return is_smooth ? 5e-4 : 1e-3; }
-
-constexpr double LEFT = 1e-9;         // cells that X may be outside of its own
-constexpr double RAMPS_END = 2.05;    // cells from an edge beyond which the whole area of any point counts
+constexpr double SAME_PLACE = 1e-3;    // cells that X may be away from its guess without a second evaluation
+constexpr double LEFT = 1e-9;          // cells that X may be outside of its own
+constexpr double RAMPS_END = 2.05;     // cells from an edge beyond which the whole area of any point counts
 
 // Volume below which a cell counts as turned over.
 MDANIM_ALWAYS_INLINE double smallest_volume(double spacing) { return 0.02 * spacing * spacing * spacing; }
 
-// Volume below which a cell of a cuboid is crushed. There X of a point soon jumps to another one, and contacts are let go.
+// Volume below which a cell is crushed. There X of a point soon jumps to another one, and contacts of points that use smooth maps
+// are let go.
 MDANIM_ALWAYS_INLINE double crushed_volume(double spacing) { return 0.25 * spacing * spacing * spacing; }
 
 // Depth below one side [m], and its gradient by X.

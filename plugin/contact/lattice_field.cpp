@@ -50,7 +50,14 @@ PushTask LatticeField::task(PointKind kind, const ContactArrays &arrays, double 
 {
   const ContactBody &body = *host->body;
   const double longest = std::max({body.count(0) * body.edge(0), body.count(1) * body.edge(1), body.count(2) * body.edge(2)});
-  return {law, dt, body.lattice(), host->slot.data(), arrays.place(), 2.0 * body.spacing() + longest, ramps_of(body, kind)};
+  return {law,
+          dt,
+          body.lattice(),
+          host->slot.data(),
+          arrays.place(),
+          2.0 * body.spacing() + longest,
+          ramps_of(body, kind),
+          is_smooth(body, kind)};
 }
 
 PointNow LatticeField::point_now(std::size_t q, const ContactArrays &arrays) const
@@ -71,14 +78,14 @@ LatticeField::Fate LatticeField::push(FieldContact &contact, std::size_t q, cons
   };
   const Vec3 normal = spot.gradient(below.slope);
   FlattenedDepth<double> flat;
-  const bool is_cuboid = host->body->is_cuboid();
-  if (is_cuboid && is_flattened(normal)) {
+  if (task.is_smooth && is_flattened(normal)) {
     flat = flattened_depth(weights.axis, place, spot, normal, below.value);
     below.value = flat.part * below.value;
   }
   double part = 1.0;
-  if (is_cuboid) part = part_that_counts<double>(task.ramps, task.host, contact.state.X + shift, contact.side / 2, part_slope);
-  if (is_cuboid && is_crushed(spot, at.body)) {
+  if (host->body->is_cuboid())
+    part = part_that_counts<double>(task.ramps, task.host, contact.state.X + shift, contact.side / 2, part_slope);
+  if (task.is_smooth && is_crushed(spot, at.body)) {
     if (task.dt > 0.0) {
       account.let_go += let_go_energy(task.law, now.area, contact.state.memory, contact.last.energy,
                                       below.value - contact.state.memory.depth, part);
@@ -92,7 +99,7 @@ LatticeField::Fate LatticeField::push(FieldContact &contact, std::size_t q, cons
   }
 
   Vec3 turn;
-  if (is_on_ramp(part_slope)) turn = part_turn(weights.axis, place, spot, part_slope, shift);
+  if (task.is_smooth && is_on_ramp(part_slope)) turn = part_turn(weights.axis, place, spot, part_slope, shift);
   const ContactPush<double> push =
       contact_push(task.law, task.dt, now.area, part, part_slope, turn, below, flat, spot, off, shift, contact.state);
   contact.last = push.outcome;

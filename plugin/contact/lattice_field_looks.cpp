@@ -38,7 +38,7 @@ bool LatticeField::look_at(std::size_t q, const ContactArrays &arrays, bool may_
   const double h = body.spacing();
   const Placed at = {body, host->slot.data(), arrays.place()};
   const PointSearch search(*host, arrays);
-  const bool by_splines = body.is_cuboid();
+  const bool by_splines = is_smooth(body, point.kind);
   const auto lost = [&] {
     track.cell = {-1, -1, -1};
     track.open = EVERY_SIDE;
@@ -66,8 +66,7 @@ bool LatticeField::look_at(std::size_t q, const ContactArrays &arrays, bool may_
   verdict.is_sure = false;
   bool has_normal = false;
   double off = 1.0;
-  const double same = same_place(by_splines);
-  for (int step = 0; step < MOST_GUESSES && !verdict.is_sure && off > same && off < NEVER; ++step) {
+  for (int step = 0; step < MOST_GUESSES && !verdict.is_sure && off > SAME_PLACE && off < NEVER; ++step) {
     search.guess(track, x, by_splines, spot, X, off);
     if (!(off < NEAR_PLACE)) continue;
     const Vec3 X_centre = X + spot.to_material(shift);

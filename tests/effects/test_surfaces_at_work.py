@@ -187,23 +187,3 @@ def test_a_blow_adds_no_energy(prepared, tmp_path, text, most):
     cell 3.7e-2, and 1.4e-3 with one that grows along the normal of the cell that is left alone.
     """
     assert simulate(prepared(text), tmp_path).ledger.residual < most
-
-
-ON_EACH_OTHER = """gravity (0, 0, -9.81) m/s^2
-ground z 0
-object light {{ shape box (20, 20, 20) cm  position (0, 0, 10) cm  density {density}  elasticity 2 MPa  damping 0.2 }}
-object heavy {{ shape box (20, 20, 20) cm  position (0, 0, 30) cm  density 10000  elasticity 2 MPa  damping 0.2 }}
-control {{ time 0.12 s  resolution {h} cm  {words} }}
-"""
-
-
-@pytest.mark.parametrize("words", ["", "friction 0.5"], ids=["smooth", "rough"])
-@pytest.mark.parametrize(("density", "h"), [(10, 5), (1000, 5), (1000, 10)])
-def test_particles_that_lie_on_each_other_keep_the_energy(prepared, tmp_path, density, h, words):
-    """Boxes of equal cells, one just on the other: each point of a face is at a corner of cells of the host.
-
-    Measured: at most 2e-6. With maps that are linear in each cell the points in the middle swung over the kinks there in every
-    few steps: 8e-4 and 7e-3 of the energy came with it in this time at cells of 5 cm, 4.2e-2 in 2 s at 1000:1.
-    """
-    ready = prepared(ON_EACH_OTHER.format(density=density, h=h, words=words))
-    assert simulate(ready, tmp_path).ledger.residual < 1e-5

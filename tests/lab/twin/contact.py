@@ -24,7 +24,7 @@ STICK = 0.8
 STEEP, MORE = 1.1, 1.0
 """Gradient of the depth beyond which less than all of the depth counts, and how much it grows at most from there on."""
 CRUSHED = 0.25
-"""Volume over that of an undeformed cell below which points are let go."""
+"""Volume over that of an undeformed cell below which points on edges are let go."""
 FAR = 2.2
 """Spacings from the middle of the nearest cell beyond which nothing is known of a point."""
 
@@ -260,7 +260,7 @@ class Twin:
         place, centre = owner.points(x)
         shift, normal = centre - place, owner.normals(x)
         there = x[host.rows]
-        is_flat = owner.body["kind"] == 0
+        is_sharp, is_flat = owner.body["kind"] == 1, owner.body["kind"] == 0
         area = owner.body["area"]
 
         # Where every point is in the host; nothing is known of those far away.
@@ -271,7 +271,7 @@ class Twin:
         touches = memory.side >= 0
         near = np.flatnonzero((away.min(1) <= FAR * h) | touches)
         memory.X[~np.isfinite(memory.X)] = (cell + 0.5)[~np.isfinite(memory.X)]
-        X, cell, spot = inverse(there, count, place[near], memory.X[near])
+        X, cell, spot = inverse(there, count, place[near], memory.X[near], is_sharp[near])
         is_found = np.isfinite(X).all(1)
         assert is_found[touches[near]].all(), "a cell in contact is turned inside out"
         known, X, cell, spot = near[is_found], X[is_found], cell[is_found], spot.take(is_found)
@@ -284,13 +284,14 @@ class Twin:
         facing = np.empty((len(known), 6))
         counted = depth.copy()
         is_crushed = np.linalg.det(spot.J) < CRUSHED * h**3
+        sees_smooth = is_sharp[known]
         apart = np.empty((len(known), 6))
         _, _, missing = ramps(count, is_flat[known], X_centre)
         for s in range(6):
             inward = spot.gradient(np.tile(slopes[s], (len(known), 1)))
             steep = np.linalg.norm(inward, axis=1)
             facing[:, s] = (normal[known] * inward).sum(1) / steep
-            counted[:, s] *= flattened(steep)[0]
+            counted[sees_smooth, s] *= flattened(steep)[0][sees_smooth]
             others = [d for d in range(3) if d != s // 2]
             apart[:, s] = np.maximum(-depth[:, s] / h, missing[:, others].max(1))
         is_open = (apart <= 0.0) | (0.5 * (FACING - facing) > apart) | is_crushed[:, None]
@@ -304,7 +305,7 @@ class Twin:
             side = rank.argmin(1)
             row = np.arange(len(known))
             born = ~touches[known] & ~is_shut & np.isfinite(rank.min(1))
-            born &= (depth[row, side] <= DEEPEST * h) & (product(t, side) > 0.0) & ~is_crushed
+            born &= (depth[row, side] <= DEEPEST * h) & (product(t, side) > 0.0) & ~(is_crushed & sees_smooth)
             n = known[born]
             memory.side[n] = side[born]
             memory.anchor[n] = X[born]
@@ -326,7 +327,7 @@ class Twin:
             return
         side = memory.side[known[c]]
         d, t_c = counted[c, side], product(t[c], side)
-        crushed = is_crushed[c]
+        crushed = is_crushed[c] & sees_smooth[c]
         over = (d <= 0.0) | (t_c <= 0.0) | crushed
         self._let_go(law, area, memory, known[c[crushed]], d[crushed], t_c[crushed])
         ended = known[c[over]]
@@ -345,7 +346,7 @@ class Twin:
         grad = spot.gradient(slopes[side])
         steep, along = np.linalg.norm(grad, axis=1), spot.to_material(grad)
         part, more = flattened(steep)
-        more = more * d
+        part, more = np.where(is_sharp[n], part, 1.0), np.where(is_sharp[n], more, 0.0) * d
         along_f, surface = pressure(law, area[n], t_c, n, memory, d, dt, account)
         press = part * along_f
         memory.energy[n] = t_c * surface

@@ -103,12 +103,16 @@ def newton(place, X, spot_of):
     return np.where(length < 1e-7, X, np.nan)
 
 
-def inverse(x, count, place, X):
+def inverse(x, count, place, X, is_smooth):
     """X and cell of these places; ``X`` is where to begin. X is NaN where it is not found."""
     for _ in range(20):
         cell = np.clip(np.floor(np.nan_to_num(X)), 0, count - 1)
         X = newton(place, X, lambda at, cell=cell: trilinear_spot(x, count, at, cell))
         if (np.clip(np.floor(np.nan_to_num(X) + 1e-9), 0, count - 1) == cell).all():
             break
-    X = newton(place, X, lambda at: smooth_spot(x, count, at))
-    return X, cell.astype(int), smooth_spot(x, count, np.nan_to_num(X))
+    X[is_smooth] = newton(place[is_smooth], X[is_smooth], lambda at: smooth_spot(x, count, at))
+    at = np.nan_to_num(X)
+    spot, sharp = trilinear_spot(x, count, at, cell, 3), smooth_spot(x, count, at[is_smooth])
+    for part in fields(Spot):
+        getattr(spot, part.name)[is_smooth] = getattr(sharp, part.name)
+    return X, cell.astype(int), spot
