@@ -8,6 +8,7 @@ import numpy as np
 
 def spin(mass: np.ndarray, first: np.ndarray, position: np.ndarray, velocity: np.ndarray) -> np.ndarray:
     """Angular velocity of each object [rad/s], shape (O, 3): its angular momentum about its centre of mass over its inertia.
+    NaN where a damaged file has places or masses that are not finite, or too large for their squares.
 
     Args:
         mass: of N particles [kg], shape (N,).
@@ -22,5 +23,8 @@ def spin(mass: np.ndarray, first: np.ndarray, position: np.ndarray, velocity: np
     inertia = np.add.reduceat(
         mass[:, None, None] * (square[:, None, None] * np.eye(3) - arm[:, :, None] * arm[:, None, :]), first
     )
-    # A line of particles has no inertia about itself: there the spin is zero.
-    return np.einsum("oij,oj->oi", np.linalg.pinv(inertia, hermitian=True), momentum)
+    # A line of particles has no inertia about itself: there the spin is zero. Of numbers that are not finite there is none.
+    finite = np.isfinite(inertia).all((1, 2))
+    found = np.full(momentum.shape, np.nan)
+    found[finite] = np.einsum("oij,oj->oi", np.linalg.pinv(inertia[finite], hermitian=True), momentum[finite])
+    return found
