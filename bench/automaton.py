@@ -6,7 +6,6 @@ as multiples of a copy of the same bytes:
 
 sweep, lively   half of the cells hold a unit, drawn at random: every layer changes at every step
 same, plain     the loops as the rules read
-same, NAME      with the kernels of one instruction set
 sweep, ball     lively around a solid ball of a quarter of the width in radius
 sweep, pool     half full to a part-filled layer, at rest: that layer alone is touched
 displace 0      solids given, none changed: the comparison alone
@@ -55,15 +54,11 @@ def measure(rounds: int = 15, quick: bool = False, cells: int = 128) -> list[dic
         a.sweep(1, plain)
         return seconds(lambda: a.sweep(count, plain)) / count
 
-    names = [name for number in range(3) if (name := open_box.use(number))]
-    best = names[-1]
     spent: dict[str, list[float]] = {}
     changed = 0
     for n in range(rounds):
         row = {"copy": seconds(lambda: np.copyto(copy, scattered))}
-        for number, name in enumerate(names):
-            open_box.use(number)
-            row["sweep, lively" if name == best else f"same, {name}"] = lively(open_box, scattered)
+        row["sweep, lively"] = lively(open_box, scattered)
         if n < 3:
             row["same, plain"] = lively(open_box, scattered, 1, plain=True)
         row["sweep, ball"] = lively(around, scattered * (balls[0] == 0))
@@ -81,7 +76,6 @@ def measure(rounds: int = 15, quick: bool = False, cells: int = 128) -> list[dic
             "work": name,
             "cells": cells,
             "changed": changed,
-            "best": best,
             "median": s.median,
             "least": s.least,
             "copies": s.median / found["copy"].median,
@@ -93,7 +87,7 @@ def measure(rounds: int = 15, quick: bool = False, cells: int = 128) -> list[dic
 def table(rows: list[dict]) -> str:
     """In Markdown."""
     n = rows[0]["cells"] ** 3
-    return f"{rows[0]['cells']}³ cells, best instruction set {rows[0]['best']}, N = {rows[0]['changed']}\n\n" + markdown(
+    return f"{rows[0]['cells']}³ cells, N = {rows[0]['changed']}\n\n" + markdown(
         ["work", "ns per cell, median", "minimum", "ms", "copies of the grid", "goal"],
         [
             (

@@ -55,11 +55,6 @@ class Automaton:
         if self.handle:
             function("free")(self.handle)
 
-    def use(self, instruction_set: int) -> str | None:
-        """Choose kernels by number; their name, or None where this processor lacks them."""
-        name = function("use")(self.handle, instruction_set)
-        return name and name.decode()
-
     def share(self, threads: int):
         """Let so many threads share whatever they can."""
         function("threads")(self.handle, threads)

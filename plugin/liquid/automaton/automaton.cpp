@@ -3,8 +3,8 @@
 
 #include "liquid/automaton/automaton.h"
 
-#include "liquid/automaton/automaton_kernels.h"
 #include "liquid/automaton/automaton_rules.h"
+#include "liquid/automaton/whole_layers.h"
 
 #include <algorithm>
 #include <cstdlib>
@@ -48,18 +48,8 @@ struct Automaton::Spill {
 };
 
 Automaton::Automaton(int nx, int ny, int nz, std::uint64_t seed, Vertical vertical)
-    : cells(nx, ny, nz), seed(seed), vertical(vertical), kernels(nullptr), even(make_blocks(0)), odd(make_blocks(-1)), layers(nz)
-{
-  for (int number = 0; number < INSTRUCTION_SETS; ++number) use_instruction_set(number);
-  touched();
-}
-
-const char *Automaton::use_instruction_set(int number)
-{
-  if (number < 0 || number >= INSTRUCTION_SETS || !KERNELS[number].runs_here()) return nullptr;
-  kernels = &KERNELS[number];
-  return kernels->name;
-}
+    : cells(nx, ny, nz), seed(seed), vertical(vertical), even(make_blocks(0)), odd(make_blocks(-1)), layers(nz)
+{ touched(); }
 
 // ---- which blocks and layers ----
 
@@ -114,7 +104,7 @@ void Automaton::poured() { std::fill(layers.begin(), layers.end(), Layer{ANYTHIN
 void Automaton::look(int z)
 {
   const std::size_t first = (z + 1) * cells.layer;
-  layers[z] = {kernels->look(&cells.content[first], &cells.open[first], cells.layer), true, false};
+  layers[z] = {whole_layers::look(&cells.content[first], &cells.open[first], cells.layer), true, false};
 }
 
 // A layer of one number throughout is the same after any permutation.
@@ -137,12 +127,13 @@ void Automaton::horizontal(Band &band, int z)
   std::uint16_t *const low = blocks.draws.data(), *const high = low + in_layer;
   if (band.group != z / LAYERS_PER_WORD) {
     band.group = z / LAYERS_PER_WORD;
-    kernels->draw_words(blocks.key, blocks.word(own, z), end - own, low + own, high + own);
+    whole_layers::draw_words(blocks.key, blocks.word(own, z), end - own, low + own, high + own);
   }
   const int bits = 2 * (z % LAYERS_PER_WORD), shift = bits % 16;
   const std::uint16_t *const draws = bits < 16 ? low : high;
   const std::size_t first = cells.at(blocks.first, blocks.first + 2 * band.first, z);
-  kernels->permute(&cells.content[first], &cells.open[first], cells.row, blocks.nx, band.last - band.first, draws + own, shift);
+  whole_layers::permute(&cells.content[first], &cells.open[first], cells.row, blocks.nx, band.last - band.first, draws + own,
+                        shift);
   std::uint8_t *layer = &cells.content[z * cells.layer];
   for (const Broken &b : blocks.broken[z]) {
     const int block = static_cast<int>(b.block);
@@ -156,8 +147,10 @@ void Automaton::vertical_pair(Band &band, int z)
   const auto row_of = [&](int block) { return std::clamp(band.blocks.first + 2 * block, 0, cells.ny); };
   const int low = row_of(band.first), rows = row_of(band.last) - low;
   const std::size_t lower = cells.at(-1, low, z), upper = lower + cells.layer;
-  if (kernels->exchange(&cells.content[lower], &cells.content[upper], &cells.open[lower], &cells.open[upper],
-                        static_cast<std::size_t>(rows) * cells.row, vertical))
+  const auto exchange =
+      vertical == Vertical::LOWER ? whole_layers::exchange<Vertical::LOWER> : whole_layers::exchange<Vertical::ANY>;
+  if (exchange(&cells.content[lower], &cells.content[upper], &cells.open[lower], &cells.open[upper],
+               static_cast<std::size_t>(rows) * cells.row))
     band.layers[z] = band.layers[z + 1] = {ANYTHING, false, true};
 }
 
@@ -291,7 +284,7 @@ long Automaton::displace(const std::uint8_t *solid, std::uint64_t when)
       for (int y = 0; y < cells.ny; ++y) {
         const std::size_t first = cells.at(0, y, z);
         const std::uint8_t *const now = solid + cells.number(0, y, z);
-        if (!kernels->differ(now, &cells.open[first], &cells.still[first], cells.nx)) continue;
+        if (!whole_layers::differ(now, &cells.open[first], &cells.still[first], cells.nx)) continue;
         for (int x = 0; x < cells.nx; ++x) {
           const std::size_t place = first + x;
           if ((now[x] == 2) != (cells.still[place] != 0)) {

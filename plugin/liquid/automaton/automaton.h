@@ -12,8 +12,6 @@
 
 namespace mdanim {
 
-struct AutomatonKernels;
-
 // The excess that moves up in (4.16), line 2, besides L > 1: only into a cell that holds less, or into any (below
 // Cells::FULLEST).
 enum class Vertical { LOWER, ANY };
@@ -48,10 +46,6 @@ class Automaton {
   void touched();
 
   void use(const Threads &now) { threads = now; }    // the cells are the same for any number of them
-
-  // Kernels for instruction set 0, 1, … (default: the best of this processor), all with the same results. Returns their name, or
-  // nullptr, and then changes nothing, where this processor lacks them.
-  const char *use_instruction_set(int number);
 
  private:
   friend struct AutomatonProbe;    // for tests
@@ -104,7 +98,6 @@ class Automaton {
 
   std::uint64_t seed;
   Vertical vertical;
-  const AutomatonKernels *kernels;
   Blocks even, odd;
   std::vector<Layer> layers;
   Threads threads;

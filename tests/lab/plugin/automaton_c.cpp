@@ -92,10 +92,6 @@ MDANIM_EXPORT void *mdanim_automaton_new(int nx, int ny, int nz, std::uint64_t s
 
 MDANIM_EXPORT void mdanim_automaton_free(void *a) { delete &automaton(a); }
 
-// Name of the instruction set, or a null pointer where this processor lacks it.
-MDANIM_EXPORT const char *mdanim_automaton_use(void *a, int instruction_set)
-{ return automaton(a).use_instruction_set(instruction_set); }
-
 // Automata that share whatever they can.
 MDANIM_EXPORT void mdanim_automaton_threads(void *a, int threads) { automaton(a).use(mdanim::Threads(threads)); }
 
