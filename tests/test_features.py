@@ -74,6 +74,6 @@ def test_every_feature_says_what_it_is():
         assert import_module(f"mdanim_lammps.features.{name}").__doc__
     for effect in (form for e in features.effects() for form in e.forms):
         assert "docs/physics-" in type(effect).__doc__ or "eq. (" in type(effect).__doc__, (
-            "its law, unit, and where it is derived"
+            f"the docstring of {type(effect).__name__} gives its law, unit, and eq. (N) or docs/physics-..."
         )
     assert len({e.name for e in features.effects()}) == len(features.effects()) >= 11

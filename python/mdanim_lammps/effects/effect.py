@@ -20,7 +20,8 @@ class Effect(Motion, Bounds, Accounts, Frames, Advice):
     """One physical effect. A subclass is one file in a folder of features/ and holds everything that belongs to the effect.
 
     An effect that is off leaves no trace: no column, no command, no term. Each facet has defaults that say nothing, so a subclass
-    has what its law needs; a facet is what one reader asks: reach/, the certificate, the ledger, frames, messages.
+    has what its law needs; a facet is what one reader asks: reach/, the certificate, the ledger, frames, messages. The docstring
+    of a subclass names its equation, "eq. (N)", or its page, "docs/physics-...".
     """
 
     name = ""

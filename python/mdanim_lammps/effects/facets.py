@@ -35,7 +35,7 @@ class Bounds:
         return None
 
     def drag_rate(self, context: Context) -> np.ndarray | None:
-        """The same as `rate` of its dashpots, 2 lambda_max(C_i)/m_i [1/s], shape (N,)."""
+        """The same as `rate` of its forces that depend on velocity, such as dashpots: 2 lambda_max(C_i)/m_i [1/s], shape (N,)."""
         return None
 
     def max_timestep(self, context: Context) -> float:
@@ -43,7 +43,10 @@ class Bounds:
         return math.inf
 
     def friction(self, context: Context) -> np.ndarray | None:
-        """Upper bound of its addition to each particle's lambda, eq. (3.9) [N*s/m], shape (N,)."""
+        """Upper bound of its addition to each particle's lambda of the leap-frog, eq. (3.9) [N*s/m], shape (N,).
+
+        A drag that a fix adds as a force has a `drag_rate` instead.
+        """
         return None
 
     def margins(self, envelope: Envelope) -> list[Margin]:
@@ -96,7 +99,8 @@ class Accounts:
         return ()
 
     def lost(self, readings: Readings) -> dict[str, float]:
-        """Present values of the columns of `losses` and `sources` [J]."""
+        """Present values of the columns of `losses` and `sources` [J], counted since the instance was made: resumed runs and
+        executors add what was before."""
         return {}
 
     def gained(self, first: Mapping[str, float], now: Mapping[str, float]) -> float | None:

@@ -17,8 +17,9 @@ A folder has facets, each a module that is looked for by its name:
 ``vary``     VARIED, settings that a study varies (effects/varied.py)
 ``advice``   notes(envelope), the remarks of `check` on a scene besides those of effects, whether or not any of them is on
 
-Folders are found, so adding a feature touches no other file. Those in ``MDANIM_FEATURES``, folders of such folders, are features
-too: to try one that is not part of the package. Its code is run, so it may not come from a stranger.
+Folders are found, so adding a feature touches no other module of the package; CONTRIBUTING.md lists its tests and docs. Those in
+``MDANIM_FEATURES``, folders of such folders, are features too: to try one that is not part of the package. Its code is run, so it
+may not come from a stranger.
 """
 
 from __future__ import annotations

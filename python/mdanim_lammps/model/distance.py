@@ -36,7 +36,7 @@ def distance(shape: Shape, points: np.ndarray, spacing: float) -> np.ndarray:
     Exact but for a mesh: there samples of the surface, ``spacing`` [m] apart, tell the distance, and near by which triangles to
     look at.
     """
-    raise TypeError(f"no distance to {shape!r}")
+    raise TypeError(f"no distance to {shape!r}: register a function for its kind in model/distance.py")
 
 
 @distance.register

@@ -2,7 +2,8 @@
 """The shapes of the scene language as geometry: volume, thickness, extent, inside or not, surface.
 
 Body frame: origin in the centre of mass, axes of revolution along z. One class of formulas per shape; the
-public functions look it up, so a new shape is one more class here and one row in ``LAWS``.
+public functions look it up in ``LAWS``. Points on a surface are in spread.py, distances in distance.py; CONTRIBUTING.md lists all
+places that a new shape has.
 """
 
 from __future__ import annotations

@@ -38,7 +38,7 @@ class Spread(NamedTuple):
 @singledispatch
 def spread(shape: Shape, spacing: float) -> Spread:
     """Points about ``spacing`` [m] apart; their areas sum to the area of the shape, and are equal but for a mesh."""
-    raise TypeError(f"no points on {shape!r}")
+    raise TypeError(f"no points on {shape!r}: register a function for its kind in model/spread.py")
 
 
 # --- shapes of revolution: a golden spiral ----------------------------------------------------------------------------
