@@ -287,6 +287,24 @@ def test_plane_stiffness_bounds_every_depth():
     assert plane_stiffness(1.9) > plane_stiffness(1.6)
 
 
+@pytest.mark.parametrize("reach", [1.6, 4.0, 8.0, 13.0])
+def test_plane_stiffness_has_all_layers_within_reach(reach):
+    """Curvature along the normal over a half-space of particles, by differences of energy: no more than the bound, which is not
+    far above it. 13 is beyond the reach up to which the bound is a sum."""
+    wide = np.arange(-15, 16)
+    below = np.stack(np.meshgrid(wide, wide, -np.arange(15), indexing="ij"), -1).reshape(-1, 3)
+
+    def energy(x, y, z):
+        distance = np.linalg.norm(below - [x, y, z], axis=1)
+        return (reach**2 / 3.0 * np.maximum(0.0, 1.0 - distance / reach) ** 3).sum()
+
+    def curvature(x, y, z, h=1e-3):
+        return (energy(x, y, z + h) - 2.0 * energy(x, y, z) + energy(x, y, z - h)) / h**2
+
+    most = max(curvature(x, y, z) for x in (0.0, 0.3, 0.5) for y in (0.0, 0.5) for z in (0.3, 0.9, 0.35 * reach))
+    assert 0.9 * plane_stiffness(reach) < most < plane_stiffness(reach) * (1.0 + 1e-5)
+
+
 # --- off leaves nothing -------------------------------------------------------------------------------------
 
 ALL = """gravity (0, 0, -9.81)

@@ -43,3 +43,13 @@ def test_a_marble_smaller_than_a_cell_of_what_never_moves_bounces_back(tmp_path)
     speed, _, residual = blow(tmp_path / "run", "sphere 6 mm", 2.3, "resolution 15 mm hold all", "resolution 3 mm")
     assert 0.95 < speed <= 1.0
     assert residual < 1e-4
+
+
+def test_a_fine_body_beside_a_far_coarser_one_has_a_time_step():
+    """The barrier of the coarse one reaches over five spacings of the fine one: its share in the bound is that of all of them."""
+    text = PLATE.format(plate="resolution 2 mm hold all") + BALL.format(
+        shape="box (20, 20, 20) cm", z=12, ball="resolution 10 cm"
+    )
+    bound = Scene.from_text(text).certificate.bound
+    coarse = Scene.from_text(text.replace("resolution 2 mm", "resolution 15 mm")).certificate.bound
+    assert 0.0 < bound < coarse

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from functools import lru_cache
+from math import ceil
 
 import numpy as np
 
@@ -26,6 +27,8 @@ TUNNEL = (0.5, 0.65, 0.8)
 cells (docs/stability.md)."""
 GAP = column("reach", "m")
 """How far each particle is felt as a barrier."""
+FARTHEST = 8.0
+"""Reach over the spacing up to which the curvature of a plane is summed; longer ones occur beside far finer objects alone."""
 NEAREST = "nearest"
 """In the vector of fix mdanim/barrier: the smallest distance of a pair over its reach in this run [-]."""
 SOFTER = 2.0 / 3.0
@@ -37,14 +40,23 @@ def plane_stiffness(reach: float) -> float:
     """Largest curvature that a particle meets over a square plane of barrier particles, in units of the pair's k.
 
     ``reach`` is the reach over the spacing of that plane. The Hessian of U = k rc^2/3 (1 - r/rc)^3, summed over the plane and
-    the layer below it, is scanned over all lateral offsets and over heights from 0.3 spacings up (surfaces 0.7 deep in each
-    other); deeper than that the object is crushed anyway. Gives 1.61 at a reach of 1.6.
+    all layers below it within reach, is scanned over all lateral offsets and over heights from 0.3 spacings up (surfaces 0.7 deep
+    in each other) to where it falls; deeper than that the object is crushed anyway. Gives 1.61 at a reach of 1.6, and 0.223
+    times the cube of long ones.
     """
-    around = np.arange(-3, 4)
-    plane = np.stack(np.meshgrid(around, around, [0, -1], indexing="ij"), -1).reshape(-1, 3)
-    offsets = np.linspace(0.0, 0.5, 6)
-    heights = np.linspace(0.3, 1.2, 19)
-    probe = np.stack(np.meshgrid(offsets, offsets, heights, indexing="ij"), -1).reshape(-1, 1, 3)
+    if reach > FARTHEST:
+        return plane_stiffness(FARTHEST) * (reach / FARTHEST) ** 3
+    lowest, step = 0.3, np.linspace(0.0, 0.5, 6)
+    side, layers = max(3, ceil(reach + step[-1]) - 1), max(2, ceil(reach - lowest))
+    around = np.arange(-side, side + 1)
+    plane = np.stack(np.meshgrid(around, around, -np.arange(layers), indexing="ij"), -1).reshape(-1, 3)
+    heights = [*np.linspace(lowest, 1.2, 19), *(np.linspace(1.2, 0.45 * reach, 30) if reach > 3.0 else [])]
+    return max(_curvature(plane, step, height, reach) for height in heights)
+
+
+def _curvature(plane: np.ndarray, step: np.ndarray, height: float, reach: float) -> float:
+    """The same at one height, over offsets along both edges of the square."""
+    probe = np.stack(np.meshgrid(step, step, [height], indexing="ij"), -1).reshape(-1, 1, 3)
     d = probe - plane
     r = np.linalg.norm(d, axis=-1)
     depth = np.maximum(0.0, 1.0 - r / reach)
