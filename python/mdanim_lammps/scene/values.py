@@ -193,9 +193,10 @@ class Evaluator:
 
 def label(s: SettingNode, v: Value) -> str:
     """How a value is called in messages: ``mass``, ``r of sphere``."""
-    if len(s.values) == 1 and not s.words:
+    alone = sum(given is not None for given in s.values) == 1
+    if alone and not s.words:
         return s.keyword.name
-    if len(s.values) == 1 and v.slot.kind != "number":
+    if alone and v.slot.kind != "number":
         return " ".join((s.keyword.name, *s.words))
     before = s.words[0] if s.words and s.keyword.name == "shape" else s.keyword.name
     return f"{v.slot.text} of {before}" if v.slot.kind == "number" else f"{v.slot.text} in {before}"
