@@ -14,15 +14,15 @@ MADE = "Made by mdanim-lammps"
 """Stands in every picture, movie and page."""
 
 
-def check_overwriting(path: Path, *, force: bool) -> None:
-    """Refuse to overwrite a file that this program has not made. Raises OutputError."""
+def check_overwriting(path: Path, *, force: bool, other: str = "FILE") -> None:
+    """Refuse to overwrite a file that this program has not made; ``other`` is the value of -o in the way out. Raises OutputError."""
     if not os.path.lexists(path) or is_made_here(path):
         return
     if path.is_dir():
-        raise OutputError(f"{path} is a folder; write elsewhere with -o FILE")
+        raise OutputError(f"{path} is a folder; write elsewhere with -o {other}")
     if not force:
         raise OutputError(
-            f"{path} exists, and is not of this program; overwrite it with --force, or write elsewhere with -o FILE"
+            f"{path} exists, and is not of this program; overwrite it with --force, or write elsewhere with -o {other}"
         )
 
 
