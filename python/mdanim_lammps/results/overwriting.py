@@ -15,7 +15,7 @@ MADE = "Made by mdanim-lammps"
 
 
 def check_overwriting(path: Path, *, force: bool, other: str = "FILE") -> None:
-    """Refuse to overwrite a file that this program has not made; ``other`` is the value of -o in the way out. Raises OutputError."""
+    """Refuse to overwrite a file that this program has not made. Raises OutputError, which offers ``-o other``."""
     if not os.path.lexists(path) or is_made_here(path):
         return
     if path.is_dir():
