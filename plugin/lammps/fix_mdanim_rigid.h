@@ -73,7 +73,6 @@ class FixMdanimRigid : public mdanim::FixBase, public mdanim::Stateful {
   void make();
   void set_velocities(const std::vector<MassProperties> &found);
   void follow_changes();
-  bool is_anywhere(bool here) const;
   void collect();
   void put(bool places);
 

@@ -189,14 +189,7 @@ void FixMdanimRigid::set_velocities(const std::vector<MassProperties> &found)
   }
 }
 
-bool FixMdanimRigid::is_anywhere(bool here) const
-{
-  int one = here, any = 0;
-  MPI_Allreduce(&one, &any, 1, MPI_INT, MPI_MAX, world);
-  return any;
-}
-
-// Particles may have been moved, or been given other velocities or masses, since the last run.
+// Particles may have been moved, or been given other velocities, since the last run.
 void FixMdanimRigid::follow_changes()
 {
   const auto is_same = [](const double *a, const Vec3 &b) { return a[0] == b.x && a[1] == b.y && a[2] == b.z; };
@@ -208,14 +201,14 @@ void FixMdanimRigid::follow_changes()
     moved = moved || !is_same(atom->x[i], body.centre + from_centre);
     pushed = pushed || !is_same(atom->v[i], body.velocity_at(from_centre));
   }
-  if (is_anywhere(moved)) {
+  if (largest(moved) > 0.0) {
     if (!given.empty())
       error->all(FLERR,
                  "{}: particles were moved since the last run, so the moments in its file are those of other places; write the "
                  "fix again, with a file for the new places",
                  name());
     make();
-  } else if (is_anywhere(pushed)) {
+  } else if (largest(pushed) > 0.0) {
     set_velocities(weigh());
     put(false);
   }

@@ -82,7 +82,8 @@ void FixMdanimRigid::unpack(const StateRecords &records)
   MPI_Allreduce(MPI_IN_PLACE, lowest.data(), objects.size(), MPI_LMP_TAGINT, MPI_MIN, world);
 
   std::vector<std::pair<int, KeptBody>> kept_bodies;
-  std::vector<std::pair<int, Vec3>> kept_places;    // of local particles
+  std::vector<std::pair<int, Vec3>> kept_places;      // of local particles
+  std::vector<bigint> found_of(objects.size(), 0);    // particles of each object that have a place
   for (const auto &[key, bytes] : records) {
     const int n = key.b ? ObjectTable::NONE : objects.number_of(key.a);
     ByteReader reader(bytes.data(), bytes.size(), fmt::format("the record of object {}", key.a));
@@ -95,20 +96,23 @@ void FixMdanimRigid::unpack(const StateRecords &records)
     if (!is_finite(body) || !(body.mass > 0.0) || !(body.moments.x > 0.0)) reader.is_damaged("its motion or its mass");
     if (static_cast<bigint>(places.size()) != particles[n])
       reader.fail(fmt::format("is of {} particles, the object has {}", places.size(), particles[n]));
-    bigint here = 0;
     for (const KeptPlace &place : places) {
       if (!is_finite(place.own)) reader.is_damaged("a place in the body");
       const auto found = local.find(static_cast<tagint>(lowest[n] + place.tag));
       if (found == local.end() || body_of[found->second] != n) continue;
       kept_places.emplace_back(found->second, place.own);
-      ++here;
+      ++found_of[n];
     }
-    MPI_Allreduce(MPI_IN_PLACE, &here, 1, MPI_LMP_BIGINT, MPI_SUM, world);
-    if (here != particles[n]) reader.fail(fmt::format("is of other particles: {} of {} are there", here, particles[n]));
   }
+  MPI_Allreduce(MPI_IN_PLACE, found_of.data(), objects.size(), MPI_LMP_BIGINT, MPI_SUM, world);
+  for (const auto &[n, kept] : kept_bodies)
+    if (found_of[n] != particles[n])
+      throw std::runtime_error(fmt::format("the record of object {} is of other particles: {} of {} are there", objects.id(n),
+                                           found_of[n], particles[n]));
 
   restarted.reset();
-  if (kept_bodies.size() != bodies.size() || bodies.size() != static_cast<std::size_t>(objects.size())) make();
+  if (static_cast<int>(kept_bodies.size()) < objects.size()) make();    // those without a record are as at the beginning
+  bodies.resize(objects.size());
   for (const auto &[n, kept] : kept_bodies) {
     RigidBody &body = bodies[n];
     body.mass = kept.mass, body.moments = kept.moments, body.centre = kept.centre, body.velocity = kept.velocity;

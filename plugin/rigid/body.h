@@ -45,8 +45,7 @@ struct RigidBody {
     find_spin();
   }
 
-  // Place and velocity of a point of the body, given along its axes, or by its place in space from the centre.
-  Vec3 place(const Vec3 &own) const { return centre + turn * own; }
+  // Velocity of a point of the body, given by its place in space from the centre.
   Vec3 velocity_at(const Vec3 &from_centre) const { return velocity + cross(spin, from_centre); }
 
   double translation() const { return 0.5 * mass * dot(velocity, velocity); }
