@@ -25,10 +25,11 @@ class LateOuterCells;
 struct ContactObject {
   int id;    // ascending in the order of the scene
   std::shared_ptr<const ContactBody> body;
-  double young;              // [force/distance^2]
-  double friction;           // mu
-  double density;            // of the lattice [force time^2/distance^4]: the ratio of force to acceleration, per volume
-  std::int64_t first_tag;    // tag of the first of its particles
+  double young;                // [force/distance^2]
+  double friction;             // mu
+  double density;              // of the lattice [force time^2/distance^4]: the ratio of force to acceleration, per volume
+  std::int64_t first_tag;      // tag of the first of its particles
+  bool is_excepted = false;    // contacts with others of this kind, and with planes, are left to another fix
 
   std::vector<int>
       slot;    // numbers of its particles by their places in the grid, in the arrays of ContactWorld; -1 for one that is not here

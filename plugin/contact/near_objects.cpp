@@ -19,7 +19,7 @@ std::vector<std::pair<int, int>> NearObjects::pairs_within(const std::vector<Box
   std::vector<std::pair<int, int>> found;
   if (settings.objects)
     for (const auto &[a, b] : meeting_pairs(boxes, gap))
-      if (movable[a] || movable[b]) found.emplace_back(a, b);
+      if ((movable[a] || movable[b]) && !(all[a].is_excepted && all[b].is_excepted)) found.emplace_back(a, b);
   return found;
 }
 
@@ -31,7 +31,7 @@ std::vector<std::pair<int, int>> NearObjects::planes_within(const std::vector<Bo
   std::vector<std::pair<int, int>> found;
   for (int n = 0; n < static_cast<int>(all.size()); ++n)
     for (int p = 0; p < static_cast<int>(settings.planes.size()); ++p)
-      if (movable[n] && !boxes[n].empty() &&
+      if (movable[n] && !all[n].is_excepted && !boxes[n].empty() &&
           distance(boxes[n], settings.planes[p]) <= gap + LatticeField::STRETCHED * all[n].body->overhang())
         found.emplace_back(n, p);
   return found;

@@ -37,12 +37,12 @@ static const char *const LEFT_OUT = ", or leave it out by 'among GROUP'";
 // --- the command ---
 
 // fix ID group mdanim/contact BODY YOUNG FRICTION [objects] [plane x|y|z lo|hi at]… [stiffness f] [damping beta]
-//     [pair MOL MOL mu beta]… [among GROUP] [bodies FILE]
+//     [pair MOL MOL mu beta]… [among GROUP] [except GROUP] [bodies FILE]
 FixMdanimContact::FixMdanimContact(LAMMPS *lmp, int narg, char **arg) : FixBase(lmp, narg, arg)
 {
   restart_global = 1;
   need(THREE_DIMENSIONS | ORTHOGONAL_BOX | OPEN_BOX | OBJECTS | PROMPT_LISTS, "surfaces may meet");
-  look_up({&among}, {&kind, &young, &friction});
+  look_up({&among, &except}, {&kind, &young, &friction});
   const ContactAccount &account = world_of_contact.account;
   tell({{"stick_energy", true, [&] { return account.stick_energy; }},
         {"friction_heat", true, [&] { return account.heat; }},
@@ -76,9 +76,9 @@ int FixMdanimContact::read_word(int iarg, int narg, char **arg)
 {
   ContactSettings &settings = world_of_contact.settings;
   const auto is = [&](const char *word) { return strcmp(arg[iarg], word) == 0; };
-  static const std::vector<Keyword> known = {{"objects", ""},     {"plane", "x|y|z lo|hi at"},   {"stiffness", "f"},
-                                             {"damping", "beta"}, {"pair", "MOL1 MOL2 mu beta"}, {"among", "GROUP"},
-                                             {"bodies", "FILE"}};
+  static const std::vector<Keyword> known = {
+      {"objects", ""},    {"plane", "x|y|z lo|hi at"}, {"stiffness", "f"}, {"damping", "beta"}, {"pair", "MOL1 MOL2 mu beta"},
+      {"among", "GROUP"}, {"except", "GROUP"},         {"bodies", "FILE"}};
   const int words = words_of_keyword(lmp, "fix mdanim/contact", known, iarg, narg, arg);
   const auto number = [&](int at, const char *what, double least) {
     const double value = utils::numeric(FLERR, arg[at], false, lmp);
@@ -123,6 +123,10 @@ int FixMdanimContact::read_word(int iarg, int narg, char **arg)
   }
   if (is("among")) {
     among = NamedGroup(lmp, "fix mdanim/contact", iarg + 1, arg[iarg + 1]);
+    return words;
+  }
+  if (is("except")) {
+    except = NamedGroup(lmp, "fix mdanim/contact", iarg + 1, arg[iarg + 1]);
     return words;
   }
   read_bodies_of(arg[iarg + 1]);
@@ -181,7 +185,7 @@ void FixMdanimContact::take_objects(Contacts contacts)
     if (is_among(i)) need_object(this, lmp, i, LEFT_OUT);
     return is_among(i);
   };
-  for (const SurveyedObject &one : survey_objects(lmp, groupbit, {kind, young, friction}, among_them)) {
+  for (const SurveyedObject &one : survey_objects(lmp, groupbit, except.bit(), {kind, young, friction}, among_them)) {
     const auto found = bodies.find(static_cast<int>(one.kind));
     if (found == bodies.end())
       error->all(FLERR, "{}: object {} (molecule ID) has body {}, and no such body was given", name(), one.id, one.kind);
@@ -192,10 +196,17 @@ void FixMdanimContact::take_objects(Contacts contacts)
     if (!(one.young > 0.0) || !(one.friction >= 0.0))
       error->all(FLERR, "{}: object {} (molecule ID) needs YOUNG > 0 and FRICTION >= 0, got {} and {}", name(), one.id, one.young,
                  one.friction);
+    if (one.excepted != 0 && one.excepted != one.particles)
+      error->all(
+          FLERR,
+          "{}: {} of the {} particles of object {} (molecule ID) are in the group that is excepted; it needs all of them or "
+          "none",
+          name(), one.excepted, one.particles, one.id);
     const double volume = body.edge(0) * body.edge(1) * body.edge(2);
     const double inertia = one.mass / force->ftm2v;    // the ratio of force to acceleration
     const double density = inertia / (volume * static_cast<double>(body.filled_cells()));
-    made.push_back({one.id, found->second, one.young, one.friction, density, one.lowest, {}, 0, 0, {}, {}, 0.0, false});
+    made.push_back(
+        {one.id, found->second, one.young, one.friction, density, one.lowest, one.excepted != 0, {}, 0, 0, {}, {}, 0.0, false});
     moves.push_back(static_cast<char>(one.moves));
     ids.push_back(one.id);
     lowest.push_back(one.lowest);

@@ -67,7 +67,8 @@ class FixMdanimContact : public mdanim::FixBase, public mdanim::PassParticipant,
   std::size_t bytes_of_particles() const;
 
   mdanim::ParticleValue kind, young, friction;
-  mdanim::NamedGroup among;    // none: all
+  mdanim::NamedGroup among;     // none: all
+  mdanim::NamedGroup except;    // none: no object
   bool is_among(int i) const;
   std::map<int, std::shared_ptr<const mdanim::ContactBody>> bodies;
   std::optional<mdanim::StateRecords> restarted;    // state of a restart file, until there are bodies

@@ -15,12 +15,12 @@ using namespace LAMMPS_NS;
 
 namespace mdanim {
 
-std::vector<SurveyedObject> survey_objects(LAMMPS *lmp, int groupbit, const MaterialValues &values,
+std::vector<SurveyedObject> survey_objects(LAMMPS *lmp, int groupbit, int excepted_bit, const MaterialValues &values,
                                            const std::function<bool(int)> &is_among)
 {
   const Atom *const atom = lmp->atom;
   const auto &[kind, young, friction] = values;
-  constexpr auto none = [](int id) { return SurveyedObject{id, 0, MAXTAGINT, 0, 0, 0, 0, 0}; };
+  constexpr auto none = [](int id) { return SurveyedObject{id, 0, MAXTAGINT, 0, 0, 0, 0, 0, 0}; };
   const double *kinds = kind.values(lmp), *youngs = young.values(lmp), *frictions = friction.values(lmp);
   std::map<int, SurveyedObject> here;
   for (int i = 0; i < atom->nlocal; ++i) {
@@ -29,6 +29,7 @@ std::vector<SurveyedObject> survey_objects(LAMMPS *lmp, int groupbit, const Mate
     SurveyedObject &one = here.emplace(object_id, none(object_id)).first->second;
     ++one.particles;
     if (atom->mask[i] & groupbit) one.moves = 1;
+    if (atom->mask[i] & excepted_bit) ++one.excepted;
     if (atom->tag[i] >= one.lowest) continue;
     one.lowest = atom->tag[i];
     one.kind = kinds ? kinds[i] : kind.number;
@@ -40,10 +41,10 @@ std::vector<SurveyedObject> survey_objects(LAMMPS *lmp, int groupbit, const Mate
   std::map<int, SurveyedObject> joined;
   for (const SurveyedObject &one : gather(lmp->world, mine_only)) {
     SurveyedObject &total = joined.emplace(one.id, none(one.id)).first->second;
-    const long long particles = total.particles + one.particles;
+    const long long particles = total.particles + one.particles, excepted = total.excepted + one.excepted;
     const int moves = total.moves | one.moves;
     if (one.lowest < total.lowest) total = one;
-    total.particles = particles, total.moves = moves;
+    total.particles = particles, total.excepted = excepted, total.moves = moves;
   }
   const std::map<int, double> masses = object_masses(atom, lmp->world, is_among);
   std::vector<SurveyedObject> all;

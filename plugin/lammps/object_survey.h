@@ -16,7 +16,7 @@ namespace mdanim {
 struct SurveyedObject {
   int id, moves;    // whether some particle is in the group that moves
   LAMMPS_NS::tagint lowest;
-  long long particles;
+  long long particles, excepted;    // number of all, and of those in the group that is excepted
   double kind, young, friction, mass;
 };
 
@@ -25,7 +25,7 @@ struct MaterialValues {
 };
 
 // Called by all ranks together: the objects of the particles for which is_among(i), by ascending IDs; the same on all ranks.
-std::vector<SurveyedObject> survey_objects(LAMMPS_NS::LAMMPS *lmp, int groupbit, const MaterialValues &values,
+std::vector<SurveyedObject> survey_objects(LAMMPS_NS::LAMMPS *lmp, int groupbit, int excepted_bit, const MaterialValues &values,
                                            const std::function<bool(int)> &is_among);
 
 }    // namespace mdanim

@@ -131,11 +131,12 @@ def scene(cuboids) -> tuple[lab.Body, dict]:
     return lab.join(*parts), dict(zip(COLUMNS, np.repeat(np.array(table).T, sizes, axis=1)))
 
 
-def commands(cuboids, words: str, dt: float, more=()) -> list[str]:
-    """Commands after the particles: the group of those that move, contact, leap-frog."""
+def commands(cuboids, words: str, dt: float, more=(), before=()) -> list[str]:
+    """Commands after the particles: some ``before``, the group of those that move, contact, leap-frog."""
     first = np.cumsum([0] + [len(one.particles.x) for one in cuboids])
     moving = " ".join(f"{a + 1}:{b}" for one, a, b in zip(cuboids, first, first[1:]) if not one.held)
     return [
+        *before,
         f"group mobile id {moving}",
         f"fix contact mobile mdanim/contact d_body d_young d_friction {words}",
         *more,
@@ -151,6 +152,7 @@ def load(
     words: str = "objects",
     dt: float = 0.2,
     more=(),
+    before=(),
     *,
     setup: bool = True,
     give: bool = True,
@@ -161,7 +163,7 @@ def load(
     processes share it."""
     body, columns = scene(cuboids)
     if comm is None or comm.rank == 0:
-        script = lab.script(body, folder, commands(cuboids, words, dt, more), columns=columns, **options)
+        script = lab.script(body, folder, commands(cuboids, words, dt, more, before), columns=columns, **options)
     if comm is not None:
         script = comm.bcast(script if comm.rank == 0 else None)
     lmp = plugin_path.lammps(comm=comm)

@@ -81,7 +81,10 @@ def test_what_is_missing_is_named(tmp_path, command, form, missing):
     ("command", "words"),
     [
         (f"{BARRIER} thik", "unknown keyword thik; it knows thin"),
-        (f"{CONTACT} plain", "unknown keyword plain; it knows objects, plane, stiffness, damping, pair, among and bodies"),
+        (
+            f"{CONTACT} plain",
+            "unknown keyword plain; it knows objects, plane, stiffness, damping, pair, among, except and bodies",
+        ),
         ("fix a all mdanim/leapfrog lamda", "unknown keyword lamda; it knows lambda and drag"),
         (f"{LIQUID} wawe", "unknown keyword wawe; it knows volume, level, fill"),
         (f"{LIQUID}\nfix_modify a level 3", "unknown keyword level; it knows buoyancy, drag, quadratic, lambda, base, cells"),
