@@ -35,9 +35,9 @@ def told(instance, fixes: tuple[str, ...]) -> list[float]:
 def measure(rounds: int = 1, quick: bool = False) -> list[dict]:
     """One row for each shape and scene; memory does not vary, so there is one round."""
     from mdanim_lammps.engine.instance import Instance
+    from mdanim_lammps.features.contact.words import ContactModel
     from mdanim_lammps.run.prepare import prepare
     from mdanim_lammps.scene.parse import load_scene, parse_scene
-    from mdanim_lammps.scene.scene import ContactModel
 
     rows = []
 

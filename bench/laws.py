@@ -18,9 +18,9 @@ SCENES = Path(__file__).resolve().parent.parent / "scenes"
 def measure(name: str = "crowd.txt", pieces: int = 40) -> list[dict]:
     """One row for each law."""
     from mdanim_lammps.engine.instance import Instance
+    from mdanim_lammps.features.contact.words import ContactModel
     from mdanim_lammps.run.prepare import prepare
     from mdanim_lammps.scene.parse import load_scene
-    from mdanim_lammps.scene.scene import ContactModel
 
     scene = load_scene(SCENES / name)
     rows, instances = [], []

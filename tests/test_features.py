@@ -15,6 +15,16 @@ DRAWN = ("picture", "view", "export")
 """Rooms that may draw what there is."""
 FIELDS = {name for words in features.facets("words") if hasattr(words, "SCENE") for name in words.SCENE.__annotations__}
 """Fields of a scene that are of one feature."""
+SETTINGS = {
+    name
+    for words in features.facets("words")
+    for kind in ("SCENE", "OBJECT", "CONTROL", "RENDER")
+    if hasattr(words, kind)
+    for name in getattr(words, kind).__annotations__
+}
+"""Settings that features own."""
+RECORDS = {"scene", "solid", "s", "control", "render"}
+"""Names of what has settings."""
 LIQUID = re.compile(r"liquid|pool")
 ELEMENTS = {"springs"}
 """Names of effects that are also what bodies are made of (model/): as the key of a count they name no effect."""
@@ -52,16 +62,24 @@ def names_a_feature(tree: ast.AST) -> bool:
     return bool(named or fields or (of_features and imports & folders))
 
 
+def reads_a_setting(tree: ast.AST) -> bool:
+    """Of a scene, an object, of control or of pictures, that a feature has added: ``solid.drag``."""
+    found = ((n.attr, n.value) for n in ast.walk(tree) if isinstance(n, ast.Attribute))
+    return any(name in SETTINGS and getattr(of, "attr", getattr(of, "id", "")) in RECORDS for name, of in found)
+
+
 def knows_the_liquid(tree: ast.AST) -> bool:
     """By anything that is called after it."""
     names = (getattr(n, kind, None) for n in ast.walk(tree) for kind in ("id", "attr", "arg", "name"))
     return "liquid" in strings(tree) or any(LIQUID.search(name.lower()) for name in names if isinstance(name, str))
 
 
-@pytest.mark.parametrize("sees", [names_a_feature, knows_the_liquid])
+@pytest.mark.parametrize("sees", [names_a_feature, reads_a_setting, knows_the_liquid])
 def test_modules_outside_know_no_feature(sees):
     """A new feature touches no file outside of its folder, but pictures of it."""
     assert {"gravity", "ground", "walls", "liquid", "contacts"} <= FIELDS
+    assert {"damping", "drag", "contact_model", "contact_stiffness", "friction"} <= SETTINGS
+    assert reads_a_setting(ast.parse("d = solid.drag")) and reads_a_setting(ast.parse("self.scene.control.contact_model"))
     assert not [path for path, tree in outside().items() if sees(tree)], (
         "a feature owns what it is about: see features/__init__.py"
     )

@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 from mdanim_lammps.cost.speedup_forecast import SpeedupForecast, _Moments, forecast_speedup
 from mdanim_lammps.engine.sub_plan import SubPlans
+from mdanim_lammps.features.contact.words import ContactModel
 from mdanim_lammps.parallel.plan.frame_plan import PlannerOptions
 from mdanim_lammps.parallel.plan.planner import Planner
 from mdanim_lammps.report import speedup_lines
 from mdanim_lammps.run.prepare import prepare
 from mdanim_lammps.scene.parse import load_scene
-from mdanim_lammps.scene.scene import ContactModel
 from mpi.scenes import HEAVY, POOL
 from planner_lab import ROW, report
 

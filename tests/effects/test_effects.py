@@ -11,6 +11,7 @@ from mdanim_lammps.effects import resolve
 from mdanim_lammps.engine.commands import input_script
 from mdanim_lammps.engine.data_file import data_text
 from mdanim_lammps.engine.instance import Instance
+from mdanim_lammps.engine.sub_plan import SubPlans
 from mdanim_lammps.features.contact.barrier import plane_stiffness
 from mdanim_lammps.features.liquid.tables import MOST_LAYERS, lattice_cells, layers_of_cells
 from mdanim_lammps.scene.parse import parse_scene
@@ -168,8 +169,37 @@ def test_a_damped_object_that_boxes_hold_as_a_whole_has_no_dashpots(prepared):
         "object b { shape box (2, 2, 2) position (5, 0, 0) density 1000 elasticity 1 MPa }\n"
         "control { time 1 s }"
     )
-    assert ready.verdicts["damping"].on and ready.system.damping is None
+    assert ready.verdicts["damping"].on and not ready.plan.damped
     assert 0.0 < ready.certificate.bound < 1.0
+
+
+DAMPED = """
+object a { shape box (2, 2, 2) m position (0, 0, 0) m mass 6 kg elasticity 1 MPa damping 0.1 drag 3 N*s/m }
+object b { shape box (2, 2, 3) m position (5, 0, 0) m mass 8 kg elasticity 1 MPa }
+object c { shape box (2, 2, 3) m position (9, 0, 0) m mass 8 kg elasticity 1 MPa damping 0.4 }
+object d { shape box (2, 2, 2) m position (13, 0, 0) m mass 6 kg elasticity 1 MPa damping 0.1 drag 6 N*s/m }
+control { time 1 s resolution 1 m }
+"""
+
+
+def test_each_object_has_its_dashpots_and_its_drag(prepared):
+    """2 zeta sqrt(k m_ij) with masses by cells, drag by masses; bond types by first appearance, equal ones once; so in a part."""
+    ready = prepared(DAMPED)
+    system, plan = ready.system, ready.plan
+    mass = system.share * (np.array([6.0, 8.0, 8.0, 6.0]) / np.add.reduceat(system.share, system.first[:-1]))[system.object]
+    i, j = system.spring.T
+    zeta = np.array([0.1, 0.0, 0.4, 0.1])[system.object[i]]
+    own = np.stack([system.stiffness, system.rest, 2 * zeta * np.sqrt(system.stiffness / (1 / mass[i] + 1 / mass[j]))], axis=1)
+    np.testing.assert_allclose(plan.coefficients[plan.bond_kind - 1], own, rtol=1e-14)
+    assert len(np.unique(plan.coefficients, axis=0)) == len(plan.coefficients)
+    assert (np.diff([np.flatnonzero(plan.bond_kind == kind)[0] for kind in range(1, len(plan.coefficients) + 1)]) > 0).all()
+    np.testing.assert_allclose(np.add.reduceat(ready.context.drag, system.first[:-1]), [3.0, 0.0, 0.0, 6.0])
+    assert np.ptp((ready.context.drag / system.mass)[: system.first[1]]) < 1e-15
+    part = SubPlans(plan).part((2,), False)
+    np.testing.assert_array_equal(part.coefficients[part.bond_kind - 1], plan.coefficients[plan.bond_kind[(zeta == 0.4)] - 1])
+    without = prepared(DAMPED + "effects { damping off  air-drag off }").plan
+    assert not without.coefficients[:, 2].any() and "lambda" not in without.columns
+    assert len(without.coefficients) == len(np.unique(own[:, :2], axis=0))
 
 
 def test_drag_zero_is_off():
@@ -212,7 +242,7 @@ def test_drag_of_a_liquid_is_a_rate(prepared, model, part):
     """Take gamma as it is written; by default sqrt(g/L) with the edge of the cube of equal volume, a part of it beside waves."""
     plan = prepared(pool(f"level 0.25 m\n model {model}")).plan
     np.testing.assert_allclose(plan.columns["gamma"], part * np.sqrt(9.81 / 0.2), rtol=1e-12)
-    assert not plan.columns["lambda"].any() and "air" not in plan.columns
+    assert not plan.columns["lambda"].any() and "base" not in plan.columns
     plan = prepared(pool("level 0.25 m\n drag 4")).plan
     assert (plan.columns["gamma"] == 4.0).all() and "quadratic" not in plan.columns
 
@@ -237,11 +267,11 @@ def test_drags_of_air_and_liquid_add_up(prepared):
     """Hand lambda to the liquid, with that of the air as its base; switched off, air leaves nothing."""
     ready = prepared(pool(block="drag 3"))
     columns = ready.plan.columns
-    np.testing.assert_allclose(columns["air"].sum(), 3.0, rtol=1e-12)
-    assert np.array_equal(columns["lambda"], columns["air"])
-    assert commands(ready, "liquid-drag") == ["fix_modify liquid drag d_gamma quadratic d_quadratic lambda d_lambda base d_air"]
+    np.testing.assert_allclose(columns["base"].sum(), 3.0, rtol=1e-12)
+    assert np.array_equal(columns["lambda"], columns["base"])
+    assert commands(ready, "liquid-drag") == ["fix_modify liquid drag d_gamma quadratic d_quadratic lambda d_lambda base d_base"]
     ready = prepared(pool(block="drag 3", top="effects { air-drag off }"))
-    assert "air" not in ready.plan.columns and not ready.plan.columns["lambda"].any()
+    assert "base" not in ready.plan.columns and not ready.plan.columns["lambda"].any()
     assert commands(ready, "liquid-drag") == ["fix_modify liquid drag d_gamma quadratic d_quadratic lambda d_lambda"]
 
 
@@ -324,7 +354,7 @@ TRACES = {
     "ground": ["region ground", "fix ground"],
     "walls": ["region walls", "fix walls"],
     "basin": ["region basin", "fix basin"],
-    "air-drag": ["d_air", "base"],
+    "air-drag": ["d_base"],
     "liquid": ["mdanim/liquid", "region liquid", "i2_cell", "group held"],
     "buoyancy": ["modify liquid buoyancy", "d_volume"],
     "liquid-drag": ["modify liquid drag", "d_gamma"],
@@ -390,7 +420,7 @@ def test_what_is_off_leaves_nothing(prepared, effect, model):
     assert {v.name for v in ready.verdicts.values() if not v.on} == gone
     text, words_of = written(ready), traces(model)
     assert not [word for name in gone for word in words_of[name] if word in text]
-    shared = set() if "liquid-drag" not in gone else {"d_air", "base"}  # what air hands to the liquid
+    shared = set() if "liquid-drag" not in gone else {"d_base"}  # what air hands to the liquid
     assert not [word for name in words_of.keys() - gone for word in words_of[name] if word not in text and word not in shared]
     assert live_fixes(ready) == fixes(FIXES - gone, model)
     names = next(line for line in input_script(ready.plan).splitlines() if line.startswith("# Effects:"))

@@ -116,7 +116,7 @@ def test_a_scene_agrees_with_its_naive_twin(prepared, factor):
     s, reach = factor * bulk * np.minimum(1.0, 2.0 * system.share), 1.6 * system.spacing[system.object]
     thin = system.layer == 4
     g = np.array(ready.scene.gravity)
-    drag = system.drag if system.drag is not None else np.zeros(system.particles)
+    drag = np.zeros(system.particles) if ready.context.drag is None else ready.context.drag
 
     def force(x):
         return (

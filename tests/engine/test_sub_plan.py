@@ -11,11 +11,11 @@ from mdanim_lammps.engine.plan import both_ends, make_plan
 from mdanim_lammps.engine.state import State
 from mdanim_lammps.engine.sub_plan import SubPlans
 from mdanim_lammps.errors import SetupError
+from mdanim_lammps.features.contact.words import ContactModel
 from mdanim_lammps.model.system import System
 from mdanim_lammps.run.energy import stored
 from mdanim_lammps.run.prepare import prepare
 from mdanim_lammps.scene.parse import load_scene
-from mdanim_lammps.scene.scene import ContactModel
 from scene_texts import POND, SHELF
 
 ACCOUNTS = np.s_[16:48]
@@ -170,7 +170,7 @@ def test_a_part_says_what_a_plan_of_its_own_would_say(prepared):
     own_plan = make_plan(own.context, whole.certificate)
     # Types may be numbered otherwise, and kinds of bodies are numbered as in the whole.
     numbered = {"spring_type", "constants", "contact_kind", "frames"}
-    for field in {field.name for field in fields(System)} - numbered | {"stiffness", "rest", "damping"}:
+    for field in {field.name for field in fields(System)} - numbered | {"stiffness", "rest"}:
         a, b = getattr(part.system, field), getattr(own_plan.system, field)
         assert np.array_equal(a, b) if isinstance(b, np.ndarray) else a == b, field
     a, b = ([system.frames[k].shape for k in system.contact_kind] for system in (part.system, own_plan.system))
@@ -198,7 +198,7 @@ def test_effects_with_nothing_to_act_on_are_left_out(prepared):
     assert [e.name for e in dry.effects] == ["springs", "damping", "gravity", "contact", "basin", "air-drag"]
     bodies = {"body", "young", "friction"}
     assert set(dry.columns) == {*bodies, "stiffness", "reach", "lambda"} and dry.grid is None
-    assert set(pond.part((0,), True).columns) == {*bodies, "lambda", "volume", "gamma", "air", "cell"}
+    assert set(pond.part((0,), True).columns) == {*bodies, "lambda", "volume", "gamma", "base", "cell"}
 
 
 @pytest.mark.parametrize(

@@ -64,7 +64,6 @@ def model(name, points, hexahedron, position, surface, held=None, mass=1.0):
         cell=(0.1, 0.1, 0.1),
         young=1e5,
         inertia_error=0.0,
-        drag=None,
         surface=surface,
         frame=None,
     )

@@ -135,17 +135,12 @@ def test_elasticity_is_young_or_one_k():
     assert literal.young == pytest.approx(50.0)
 
 
-def test_damping_and_drag_are_absent_unless_asked_for():
-    """Leave no array for an effect that is off; share drag among particles by mass, and take dashpots from masses by cells."""
-    plain = model(Box((2.0, 2.0, 2.0)), 1.0)
-    assert plain.damping is None and plain.drag is None
-    both = model(Box((2.0, 2.0, 2.0)), 1.0, damping=0.1, drag=3.0, mass=6.0)
-    assert both.drag.sum() == pytest.approx(3.0)
-    np.testing.assert_allclose(both.drag, both.mass / 2)
-    i, j = both.spring.T
-    mass = 6.0 * both.share / 8.0
-    reduced = 1 / (1 / mass[i] + 1 / mass[j])
-    np.testing.assert_allclose(both.damping, 0.2 * np.sqrt(both.stiffness * reduced))
+def test_springs_know_the_reduced_mass_of_their_ends():
+    """By masses by filled cells, not by those that fit the moments of the shape."""
+    body = model(Box((2.0, 2.0, 2.0)), 1.0, mass=6.0)
+    i, j = body.spring.T
+    mass = 6.0 * body.share / 8.0
+    np.testing.assert_allclose(body.constants[body.spring_type - 1, 2], 1 / (1 / mass[i] + 1 / mass[j]), rtol=1e-14)
 
 
 # --- hold ---------------------------------------------------------------------------------------------------
@@ -192,7 +187,7 @@ def test_a_body_that_is_all_held_has_no_springs():
     """Leave springs out where nothing can move, and keep mass and surface."""
     body = model(Box((4.0, 4.0, 4.0)), 1.0, hold=(HoldAll(),), damping=0.1)
     assert body.spring.shape == (0, 2)
-    assert len(body.stiffness) == len(body.rest) == 0 and body.damping is None
+    assert len(body.stiffness) == len(body.rest) == 0
     assert body.mass.sum() == pytest.approx(1.0) and len(body.surface.triangle) == 192
 
 

@@ -9,10 +9,11 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from mdanim_lammps import features
+from mdanim_lammps.features.contact.words import ContactModel
 from mdanim_lammps.features.liquid.record import Liquid
 from mdanim_lammps.features.walls.words import Walls
 from mdanim_lammps.model import build_models, check_geometry, overlap, shapes
-from mdanim_lammps.scene.scene import Box, ContactModel, Cylinder, HoldAll, Mesh, Sphere, Torus
+from mdanim_lammps.scene.scene import Box, Cylinder, HoldAll, Mesh, Sphere, Torus
 from model_samples import MESHES, SHAPES, rotation, scene, shape_id, solid
 
 CUBE = Box((1.0, 1.0, 1.0))
@@ -28,7 +29,8 @@ PAPER = {"contact_model": ContactModel.PAPER}
 def problems(*solids, h=0.25, **rest):
     """Problems of these solids, at spacing h."""
     made = scene(*solids, resolution=h, **rest)
-    return check_geometry(made, build_models(made), [p for e in features.effects() for p in e.planes(made)])
+    (contact,) = (e.of(made) for e in features.effects() if e.keeps_apart)
+    return check_geometry(made, build_models(made), [p for e in features.effects() for p in e.planes(made)], contact)
 
 
 def moved(body, hint):

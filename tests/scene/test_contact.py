@@ -4,11 +4,10 @@
 import pytest
 from mdanim_lammps.errors import SceneError
 from mdanim_lammps.features.contact.pairs import any_friction, frictions, pair_rules
-from mdanim_lammps.features.contact.words import ContactPair
+from mdanim_lammps.features.contact.words import ContactModel, ContactPair
 from mdanim_lammps.scene.lock import lock_text
 from mdanim_lammps.scene.naming import objects_by_name, pairs_of
 from mdanim_lammps.scene.parse import parse_scene
-from mdanim_lammps.scene.scene import ContactModel
 from scene_parts import ball, text
 
 SURFACE = "contact-model surface"

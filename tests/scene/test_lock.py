@@ -7,7 +7,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from mdanim_lammps.errors import SceneError
-from mdanim_lammps.features.contact.words import ContactPair
+from mdanim_lammps.features.contact.words import ContactModel, ContactPair
 from mdanim_lammps.features.liquid import record as liquids
 from mdanim_lammps.features.walls.words import Walls
 from mdanim_lammps.scene import scene as records
@@ -118,7 +118,7 @@ def scenes(draw):
         resolution=draw(st.none() | positive),
         accuracy=draw(st.sampled_from(records.Accuracy)),
         contact_stiffness=draw(st.floats(0.1, 100.0)),
-        contact_model=records.ContactModel.SURFACE,
+        contact_model=ContactModel.SURFACE,
         friction=draw(st.floats(0, 10)),
         contact_damping=draw(dampings),
         seed=draw(st.integers(0, 2**53 - 1)),

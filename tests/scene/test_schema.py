@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 
 import pytest
 from mdanim_lammps.errors import SceneError, UsageError
+from mdanim_lammps.features.contact.words import ContactModel
 from mdanim_lammps.scene import keywords as language
 from mdanim_lammps.scene import scene as records
 from mdanim_lammps.scene import schema
@@ -150,7 +151,7 @@ def test_words_of_an_enumeration_are_taken_in_python():
     assert Render(quality="final", floor="none") == Render(quality=Quality.FINAL, floor=Floor.NONE)
     control = records.Control(1.0, accuracy="preview", contact_model="paper", save="boundary")
     assert (control.accuracy, control.save) == (records.Accuracy.PREVIEW, records.Save.BOUNDARY)
-    assert control.contact_model is records.ContactModel.PAPER
+    assert control.contact_model is ContactModel.PAPER
     for wrong in ("finest", 3, None):
         with pytest.raises(UsageError, match=re.escape(f"Render(quality={wrong!r}): it is one of draft, final")):
             Render(quality=wrong)

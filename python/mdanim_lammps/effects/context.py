@@ -4,7 +4,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING
+
+import numpy as np
 
 from ..errors import Problem, Span
 from ..model.grid import Grid
@@ -12,7 +15,7 @@ from ..model.model import Model
 from ..model.spacing import Spacing
 from ..model.system import System
 from ..reach import Reach
-from ..scene.scene import SceneRecord
+from ..scene.scene import SceneRecord, Solid
 
 if TYPE_CHECKING:
     from .effect import Effect
@@ -65,6 +68,24 @@ class Context:
     @property
     def scene(self) -> SceneRecord:
         return self.resolved.scene
+
+    @cached_property
+    def solids(self) -> tuple[Solid, ...]:
+        """The solids of the system in the scene, in its order."""
+        by_name = {solid.name: solid for solid in self.scene.solids}
+        return tuple(by_name[name] for name in self.system.names)
+
+    @cached_property
+    def damping_ratio(self) -> np.ndarray:
+        """`Effect.damping_ratio` of all effects that are on together [-], shape (M,)."""
+        told = (ratio for e in self.resolved.effects if (ratio := e.damping_ratio(self)) is not None)
+        return sum(told, np.zeros(len(self.system.names)))
+
+    @cached_property
+    def drag(self) -> np.ndarray | None:
+        """`Effect.drag` of all effects that are on together [N*s/m], shape (N,); None where none brings any."""
+        told = [drag for e in self.resolved.effects if (drag := e.drag(self)) is not None]
+        return sum(told[1:], told[0]) if told else None
 
     @property
     def pushed(self) -> str:

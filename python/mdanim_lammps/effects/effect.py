@@ -9,6 +9,7 @@ import math
 import numpy as np
 
 from ..model.grid import Grid
+from ..model.model import Model
 from ..reach import Motion, Reach
 from ..scene.scene import SceneRecord
 from .context import Context, Verdict
@@ -40,8 +41,9 @@ class Effect(Motion, Bounds, Accounts, Frames, Advice):
     """Whether it is on only where objects are likely to be pressed against something."""
     at_surfaces = False
     """Whether it costs next to nothing until surfaces meet."""
-    brakes = False
-    """Whether it makes dashpots along springs."""
+    rests_inside = 0.0
+    """Part of a spacing by which surfaces that rest on each other by it may be in each other; 0 where it acts before they
+    meet."""
     sees_driven = True
     """Whether held particles act on it as they move where they are driven; else a scene with both is refused."""
     keeps_apart = False
@@ -79,6 +81,19 @@ class Effect(Motion, Bounds, Accounts, Frames, Advice):
         With ``body``, the kind of each particle's body (System.contact_kind), its fix is given the contact bodies of all kinds.
         """
         return {}
+
+    def damping_ratio(self, context: Context) -> np.ndarray | None:
+        """Fraction of critical damping of the dashpots beside the springs of each solid [-], shape (M,); None for none."""
+        return None
+
+    def drag(self, context: Context) -> np.ndarray | None:
+        """Its drag of each particle that the leap-frog takes and that never changes, eq. (3.9) [N*s/m], shape (N,); None where it
+        brings none. Its column is `leapfrog.LAMBDA`, with `Context.drag`."""
+        return None
+
+    def clearance(self, first: Model, second: Model) -> float:
+        """Gap between the boxes of two solids from which it has no energy [m]; asked of what keeps solids apart."""
+        return 0.0
 
     def commands(self, context: Context) -> list[str]:
         """LAMMPS commands; group ``mobile`` exists by then."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..effects.leapfrog import LAMBDA
 from ..scene.lammps_lines import check_trust
 from .columns import property_of, wide_columns
 from .plan import DRIVEN, HELD, Plan
@@ -71,7 +72,7 @@ def prelude(plan: Plan) -> list[str]:
 def physics(plan: Plan, threads: int = 1) -> list[str]:
     """Commands after the particles exist: groups, effects, integrator, time step."""
     effects = [c for e in plan.effects for c in e.commands(plan.context)]
-    drag = " lambda d_lambda" if "lambda" in plan.columns else ""
+    drag = f" lambda d_{LAMBDA.name}" if LAMBDA.name in plan.columns else ""
     if drag and plan.exponential:
         drag += " drag exp"
     return [

@@ -141,10 +141,7 @@ def make_plan(context: Context, certificate: Certificate) -> Plan:
     """Gather what the effects that are on ask for."""
     system, effects = context.system, context.resolved.effects
     if any(e.binds for e in effects):
-        bonds, kind = system.spring, system.spring_type
-        merged, coefficients = types(system.constants * (1.0, 1.0, float(any(e.brakes for e in effects))))
-        if len(coefficients) < len(system.constants):
-            kind = merged[kind - 1]
+        bonds, (kind, coefficients) = system.spring, _bond_types(context)
     else:
         bonds, kind, coefficients = system.spring[:0], np.zeros(0, np.uint8), np.zeros((0, 3))
     columns, fields, asked = _columns(context, {"particle": system.particles, "bond": len(bonds), "object": len(system.names)})
@@ -162,6 +159,26 @@ def make_plan(context: Context, certificate: Certificate) -> Plan:
         spacing=float(system.spacing.max()),
         exponential=bool(strong_drag(context, certificate.timestep)),
     )
+
+
+def _bond_types(context: Context) -> tuple[np.ndarray, np.ndarray]:
+    """Type of each spring (from 1, shape (S,)) and k [N/m], r0 [m], dashpot [N*s/m] of each type, shape (T, 3), in the order in
+    which they appear."""
+    system, found = context.system, context.system.constants
+    ratio, which = np.unique(context.damping_ratio, return_inverse=True)
+    # Springs of one type of the system and one ratio are of one type.
+    key = system.spring_type - 1
+    if len(ratio) > 1:
+        key = key + len(found) * which.reshape(-1)[system.object[system.spring[:, 0]]]
+        first = np.full(len(found) * len(ratio), len(key))
+        first[key[::-1]] = np.arange(len(key))[::-1]
+        used = np.argsort(first)[: np.count_nonzero(first < len(key))]
+        number = np.empty(len(first), np.intp)
+        number[used] = np.arange(len(used))
+        key, found, ratio = number[key], found[used % len(found)], ratio[used // len(found)]
+    k, r0, reduced = found.T
+    merged, coefficients = types(np.stack([k, r0, 2.0 * ratio * np.sqrt(k * reduced)], axis=1))
+    return merged[key], coefficients
 
 
 def _columns(context: Context, counts: Mapping[str, int]) -> tuple[dict[str, np.ndarray], dict[str, Field], dict]:

@@ -133,7 +133,6 @@ class SubPlans:
             spring=lambda: particle.renumber(s.spring, spring),
             spring_type=lambda: spring(s.spring_type),
             constants=lambda: s.constants,
-            drag=lambda: None if s.drag is None else particle(s.drag),
             young=lambda: s.young[index],
             spacing=lambda: s.spacing[index],
             cell_volume=lambda: s.cell_volume[index],

@@ -8,7 +8,8 @@ A folder has facets, each a module that is looked for by its name:
              OBJECT, CONTROL and RENDER in these; BLOCKS of its own; TOUCHED, words for what objects touch, with the kind of block
              that brings it; MISPLACED, words that people write behind a setting, and what to write instead;
              CHECKS by the word of a block, and check(validator, top, held) of a whole scene (scene/validate.py);
-             touched(scene), whether it brings something that objects may touch; width(scene), the width that sets the spacing of
+             touched(scene), whether it brings something that objects may touch; points(scene), whether objects touch it or each
+             other with points of their surfaces; width(scene), the width that sets the spacing of
              scenes without objects
 ``measure``  how its quantities are measured (effects/measured.py): MEASURES in a run that has ended, RECORDED in one object
 ``effect``   EFFECTS, the effects that it brings (effects/effect.py): causes, columns, commands, planes, bound, ledger

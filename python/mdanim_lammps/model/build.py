@@ -23,7 +23,7 @@ from .masses import Fit, fit_masses
 from .mesh import MeshError
 from .model import Model, Surface
 from .spacing import plan_spacing
-from .springs import dashpots, equivalent_modulus, rest_lengths, stiffness, types
+from .springs import equivalent_modulus, reduced_mass, rest_lengths, stiffness, types
 
 
 def build_models(scene: SceneRecord, h: float | Sequence[float] | None = None, driven: Container[int] = ()) -> tuple[Model, ...]:
@@ -99,7 +99,7 @@ def _make_body(shape: Shape, h: float) -> _Body:
     return _Body(lattice, surface, BodyFrame(shape, lattice.cells))
 
 
-def _make_material(body: _Body, mass: float, elasticity: Young | SpringConstant, damping: float, rigid: bool) -> _Material:
+def _make_material(body: _Body, mass: float, elasticity: Young | SpringConstant, rigid: bool) -> _Material:
     """Masses fitted to the moments of the shape; a body that is all held never turns, and has no springs."""
     lattice = body.lattice
     even = lattice.share * (mass / lattice.share.sum())
@@ -111,11 +111,8 @@ def _make_material(body: _Body, mass: float, elasticity: Young | SpringConstant,
     if rigid or not k.all():  # the paper's literal springs have no braces
         keep = (k > 0) & (not rigid)
         spring, kind, k = spring[keep], kind[keep], k[keep]
-    constants = np.zeros((len(k), 3))
-    constants[:, 0], constants[:, 1] = k, rest_lengths(edge)[kind]
-    if damping > 0:
-        constants[:, 2] = dashpots(damping, k, even, spring)  # those by shares are of few kinds
-    spring_type, constants = types(constants)
+    # Masses by shares are of few kinds.
+    spring_type, constants = types(np.stack([k, rest_lengths(edge)[kind], reduced_mass(even, spring)], axis=1))
     _freeze(m, spring_type, constants)
     return _Material(m, spring, spring_type, constants, equivalent_modulus(edge, elasticity))
 
@@ -132,8 +129,8 @@ def _make_model(solid: Solid, h: float, shared: _Shared) -> Model:
     body = shared.body(solid.shape, h)
     lattice = body.lattice
     held = _held(solid, lattice)
-    mass = solid.mass if solid.mass is not None else solid.density * shapes.volume(solid.shape)
-    material = shared.material(body, mass, solid.elasticity, solid.damping, bool(held.all()))
+    mass = shapes.mass(solid)
+    material = shared.material(body, mass, solid.elasticity, bool(held.all()))
     arm = _rotated(solid, lattice.position)
     velocity = solid.velocity + np.cross(solid.spin, arm)
     velocity[held] = 0.0
@@ -148,7 +145,6 @@ def _make_model(solid: Solid, h: float, shared: _Shared) -> Model:
         spring=material.spring,
         spring_type=material.spring_type,
         constants=material.constants,
-        drag=material.mass * (solid.drag / mass) if solid.drag > 0 else None,
         young=material.young,
         inertia_error=0.0 if held.all() else body.fit.error,
         hexahedron=lattice.hexahedron,

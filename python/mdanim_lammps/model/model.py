@@ -70,9 +70,8 @@ class Particles:
     spring_type: np.ndarray
     """Type of each spring, from 1, the smallest unsigned integers that do, shape (S,)."""
     constants: np.ndarray
-    """k [N/m], r0 [m] and dashpot [N*s/m] of each type, in the order in which they appear, shape (T, 3)."""
-    drag: np.ndarray | None
-    """lambda of each particle, in a solid in proportion to its mass [N*s/m], shape (N,); None where nothing has air drag."""
+    """k [N/m], r0 [m] and the reduced mass of both ends, with masses by filled cells [kg], of each type, in the order in which
+    they appear, shape (T, 3)."""
     hexahedron: np.ndarray
     """Corners of every filled lattice cell, particle indices in VTK order, int32, shape (C, 8)."""
 
@@ -85,11 +84,6 @@ class Particles:
     def rest(self) -> np.ndarray:
         """Rest length r0 of each spring [m], shape (S,)."""
         return self._constant(1)
-
-    @property
-    def damping(self) -> np.ndarray | None:
-        """Dashpot of each spring [N*s/m], shape (S,); None where no spring has one."""
-        return self._constant(2) if self.constants[:, 2].any() else None
 
     def _constant(self, column: int) -> np.ndarray:
         return self.constants[self.spring_type - 1, column]

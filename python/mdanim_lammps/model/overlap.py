@@ -4,17 +4,17 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from typing import Protocol
 
 import numpy as np
 
 from ..errors import Problem
 from ..scene.formatting import say, whole
-from ..scene.scene import ContactModel, SceneRecord, Solid
+from ..scene.scene import SceneRecord, Solid
 from . import shapes
 from .boxes import box_pairs
-from .model import Layer, Model
+from .model import Model
 from .planes import Plane
-from .touching import REACH, THIN
 
 HAIR = 1e-6
 """Part of a spacing that two touching objects may seem to overlap by round-off."""
@@ -25,20 +25,30 @@ BORN_AT_REST = 0.25
 so deep is where contact begins. The law takes twice as much."""
 
 
-def check_geometry(scene: SceneRecord, models: tuple[Model, ...], planes: Iterable[Plane] = ()) -> list[Problem]:
+class Contact(Protocol):
+    """Contact of solids at the start, effects.Effect."""
+
+    rests_inside: float
+
+    def clearance(self, first: Model, second: Model) -> float:
+        """Gap between the boxes of two solids from which it has no energy [m]."""
+
+
+def check_geometry(
+    scene: SceneRecord, models: tuple[Model, ...], planes: Iterable[Plane] = (), contact: Contact | None = None
+) -> list[Problem]:
     """Find every object that starts in another one, below the ground, or outside walls or basin.
 
-    ``planes`` push objects back. Each problem stands at the position of the (second) object and
+    ``planes`` push objects back, ``contact`` keeps them apart. Each problem stands at the position of the (second) object and
     tells how deep it is in and which move frees it, so far that contact holds no energy afterwards. Objects that are held
-    entirely may overlap each other and extend beyond the walls: such objects are the scene's architecture. Under ``contact-model
-    surface`` they may overlap a little, by BORN_AT_REST. Pairs after the first MOST_PAIRS in each other are not looked at.
+    entirely may overlap each other and extend beyond the walls: such objects are the scene's architecture. Others may overlap by
+    ``contact.rests_inside``. Pairs after the first MOST_PAIRS in each other are not looked at.
     """
     problems = []
     if not models:
         return problems
     planes = tuple(planes)
-    surface = scene.control.contact_model is ContactModel.SURFACE
-    bodies = _BoundingBoxes(models, [m.surface.vertices(m.position) for m in models], surface)
+    bodies = _BoundingBoxes(models, [m.surface.vertices(m.position) for m in models], contact)
     problems += _outside(scene, bodies, planes)
     first, second = _candidates(scene, bodies)
     inside = 0
@@ -56,19 +66,21 @@ def check_geometry(scene: SceneRecord, models: tuple[Model, ...], planes: Iterab
 class _BoundingBoxes:
     """Bounding boxes of all objects: low, high [m], shape (n, 3), from the true surfaces."""
 
-    def __init__(self, models, vertices, on_surfaces: bool):
-        """``on_surfaces``: whether contact acts at the surfaces, not before them."""
-        self.models, self.on_surfaces = models, on_surfaces
+    def __init__(self, models, vertices, contact: Contact | None):
+        self.models, self.contact = models, contact
         self.vertices = vertices
         self.low = np.array([v.min(axis=0) for v in vertices])
         self.high = np.array([v.max(axis=0) for v in vertices])
         self.fixed = np.array([m.still for m in models])
         spacing = max(m.spacing for m in models)
         self.hair = HAIR * spacing
-        self.allowed = (BORN_AT_REST if on_surfaces else HAIR) * np.array([m.spacing for m in models])
+        inside = contact.rests_inside if contact else 0.0
+        self.on_surfaces = contact is None or inside > 0.0
+        """Whether contact acts at the surfaces, not before them."""
+        self.allowed = max(inside, HAIR) * np.array([m.spacing for m in models])
         """Depth of a start in a plane that is no problem [m], shape (n,); in another one, the larger of both."""
         self.outer_low, self.outer_high = self.low, self.high
-        if on_surfaces:
+        if self.on_surfaces:
             return
         # Cells of a lattice may extend beyond the true surface.
         self.outer_low = np.minimum(self.low, [m.position.min(axis=0) for m in models])
@@ -76,11 +88,7 @@ class _BoundingBoxes:
 
     def clearance(self, i: int, j: int) -> float:
         """Gap between the boxes of two bodies at which contact has no energy [m]."""
-        if self.on_surfaces:
-            return 0.0
-        first, second = self.models[i], self.models[j]
-        thin = (first.layer == Layer.THIN).any() or (second.layer == Layer.THIN).any()
-        return (THIN * REACH if thin else REACH - 1.0) * max(first.spacing, second.spacing)
+        return self.contact.clearance(self.models[i], self.models[j]) if self.contact else 0.0
 
     def cells(self, i: int) -> np.ndarray:
         """Centres of the cells of one body [m], shape (C, 3)."""

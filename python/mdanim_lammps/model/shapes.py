@@ -245,6 +245,11 @@ def volume(shape: kinds.Shape) -> float:
     return LAWS[type(shape)].volume(shape)
 
 
+def mass(solid: kinds.Solid) -> float:
+    """Mass of a solid [kg], by its density where it has one. Raises mesh.MeshError as `volume` does."""
+    return solid.mass if solid.mass is not None else solid.density * volume(solid.shape)
+
+
 def area(shape: kinds.Shape) -> float:
     """Surface area [m^2] in closed form; of a mesh, the sum of its triangles. Raises mesh.MeshError as `volume` does."""
     return LAWS[type(shape)].area(shape)

@@ -6,10 +6,15 @@ Wcislo 1999, eq. (3.6) gives the law of one spring; the constants are derived in
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from ..scene.scene import SpringConstant, Young
 from .lattice import AXES, OFFSETS, Lattice
+
+if TYPE_CHECKING:
+    from .system import System
 
 MAX_ASPECT = 1.2
 """Longest over shortest cell edge; an edge spring would have a negative constant beyond sqrt(3/2) = 1.22."""
@@ -96,7 +101,13 @@ def distinct_rows(rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return first[order], rank[inverse]
 
 
-def dashpots(zeta: float, k: np.ndarray, mass: np.ndarray, spring: np.ndarray) -> np.ndarray:
-    """Dashpot of each spring [N*s/m], shape (S,): c = 2 zeta sqrt(k m_ij), m_ij = m_i m_j / (m_i + m_j)."""
+def dashpots(system: System, ratio: np.ndarray) -> np.ndarray:
+    """Dashpot of each spring [N*s/m], shape (S,): c = 2 zeta sqrt(k m_ij); zeta of each solid, shape (M,)."""
+    k, _, reduced = system.constants.T
+    return (2.0 * ratio)[system.object[system.spring[:, 0]]] * np.sqrt(k * reduced)[system.spring_type - 1]
+
+
+def reduced_mass(mass: np.ndarray, spring: np.ndarray) -> np.ndarray:
+    """m_i m_j / (m_i + m_j) of the ends of each spring [kg], shape (S,), for masses [kg], shape (N,)."""
     mi, mj = mass[spring[:, 0]], mass[spring[:, 1]]
-    return 2.0 * zeta * np.sqrt(k * (mi * mj / (mi + mj)))
+    return mi * mj / (mi + mj)

@@ -39,8 +39,6 @@ class System(Particles):
     """The frames from which the contact body of each kind of the scene is made."""
     driven: np.ndarray
     """Solids whose held particles some effect moves, bool, shape (M,)."""
-    contact_factor: float = 1.0
-    """``control contact-stiffness`` [-]."""
 
     @property
     def particles(self) -> int:
@@ -60,16 +58,6 @@ class System(Particles):
     def volume(self) -> np.ndarray:
         """Share of each particle in the true volume of its solid, V_i [m^3], shape (N,): by filled cells, not by mass."""
         return self.share * self.per_share[self.object]
-
-    @cached_property
-    def contact_stiffness(self) -> np.ndarray:
-        """Stiffness of a particle in contact with barriers and walls [N/m], shape (N,).
-
-        E h of its solid times the scene's factor, less where few cells stand behind it: min(1, 2 n/8), one half on an edge, a
-        quarter in a corner (docs/physics-contact.md). Two of them in series make a pair's k: 2 s_i s_j / (s_i + s_j).
-        """
-        full = self.contact_factor * self.young * np.cbrt(self.cell_volume)
-        return full[self.object] * np.minimum(1.0, 2.0 * self.share)
 
     @cached_property
     def contact_bodies(self) -> dict[int, ContactBody]:
@@ -155,9 +143,6 @@ def assemble(models: Sequence[Model], scene: SceneRecord) -> System:
         spring=join([m.spring + o if o else m.spring for m, o in zip(models, offsets)]),
         spring_type=join([m.spring_type if len(models) == 1 else merged[s:][m.spring_type - 1] for m, s in zip(models, start)]),
         constants=constants,
-        drag=None
-        if all(m.drag is None for m in models)
-        else join([np.zeros(len(m.position)) if m.drag is None else m.drag for m in models]),
         young=np.array([m.young for m in models]),
         spacing=np.array([m.spacing for m in models]),
         cell_volume=np.array([np.prod(m.cell) for m in models]),
@@ -167,7 +152,6 @@ def assemble(models: Sequence[Model], scene: SceneRecord) -> System:
         contact_kind=np.array([kind[id(m.frame)] for m in models], np.int32),
         frames=frames,
         driven=np.array([m.driven for m in models], bool),
-        contact_factor=scene.control.contact_stiffness,
     )
 
 

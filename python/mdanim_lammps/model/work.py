@@ -10,7 +10,7 @@ from math import ceil, hypot, pi
 import numpy as np
 
 from ..features import facets
-from ..scene.scene import Box, Cone, ContactModel, Cylinder, Ellipsoid, Mesh, SceneRecord, Shape, Sphere, Torus
+from ..scene.scene import Box, Cone, Cylinder, Ellipsoid, Mesh, SceneRecord, Shape, Sphere, Torus
 from . import shapes
 from .contact_body import DENSITY
 from .distance import MOST_SAMPLES
@@ -43,9 +43,10 @@ def _bodies(scene: SceneRecord, h: float | Sequence[float]) -> set[tuple[Shape, 
 
 
 def _touches(scene: SceneRecord) -> bool:
-    """Whether there is something that an object can touch at its surface."""
-    others = len(scene.solids) > 1 or any(words.touched(scene) for words in facets("words") if hasattr(words, "touched"))
-    return others and scene.control.contact_model is ContactModel.SURFACE
+    """Whether there is something that an object can touch with points of its surface."""
+    words = list(facets("words"))
+    others = len(scene.solids) > 1 or any(w.touched(scene) for w in words if hasattr(w, "touched"))
+    return others and any(w.points(scene) for w in words if hasattr(w, "points"))
 
 
 def _bytes(shape: Shape, h: float, touches: bool) -> float:

@@ -16,7 +16,7 @@ from ..model.system import System
 from ..reach import wave_speed
 from ..results.ledger import Ledger
 from ..scene.formatting import number, say
-from ..scene.scene import Accuracy, ContactModel, SceneRecord
+from ..scene.scene import Accuracy, SceneRecord
 from .observe import Observation
 from .prepare import Prepared
 
@@ -253,9 +253,8 @@ class Guard:
             cause = f"the energy residual {number(ledger.residual)} holds the work of the scene's commands for LAMMPS"
             return Problem(scene.lammps[0].span, cause, "the ledger knows nothing of it", severity="warning")
         cause, cure = "", ", a smaller timestep, or some damping: impacts add energy to undamped objects"
-        touched = {e.ledger for e in self.ready.plan.effects if e.touches}
-        met = any(rows[k].get(term) for k in (worst, worst + 1) for term in touched)
-        if met and scene.control.contact_model is ContactModel.SURFACE:
+        touched = {e.ledger for e in self.ready.plan.effects if e.touches and e.rests_inside}
+        if any(rows[k].get(term) for k in (worst, worst + 1) for term in touched):
             cause, cure = ", where surfaces met: a step is long for the onset of their contact", " or a smaller timestep"
         return Problem(
             scene.control.spans.get("accuracy"),

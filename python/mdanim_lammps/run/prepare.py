@@ -99,7 +99,10 @@ def _prepare(scene: SceneRecord, spacing: Spacing, allow_unstable: bool) -> Prep
     drives = {m for e in resolved.effects for m in e.drives(scene)}
     models = build_models(scene, spacing.of, driven=drives)
     planes = [p for e in features.effects() for p in e.of(scene).planes(scene)]  # also of those that are off
-    problems = check_geometry(scene, models, planes) + [p for e in resolved.effects for p in e.problems(resolved, models, grid)]
+    contact = next((e.of(scene) for e in features.effects() if e.keeps_apart), None)
+    problems = check_geometry(scene, models, planes, contact) + [
+        p for e in resolved.effects for p in e.problems(resolved, models, grid)
+    ]
     problems += _unmeasurable(resolved) + _undriven(resolved, models)
     if problems:
         raise SceneError(problems)

@@ -142,13 +142,6 @@ class Accuracy(Enum):
         return {Accuracy.PREVIEW: 0.7, Accuracy.BALANCED: 0.5, Accuracy.REFERENCE: 0.25}[self]
 
 
-class ContactModel(Enum):
-    SURFACE = "surface"
-    """The drawn surface is where objects touch; friction."""
-    PAPER = "paper"
-    """A barrier between boundary and inner particles, without friction."""
-
-
 class Save(Enum):
     ALL = "all"
     BOUNDARY = "boundary"
@@ -191,11 +184,6 @@ class Control(Worded):
         default=Accuracy.BALANCED, codec=Words(Accuracy), gone={
             "error": 'mdanim-lammps study SCENE --target "2 %" finds the setting for an error and prints what to write',
         })  # fmt: skip
-    contact_model: ContactModel = setting(
-        None,
-        "`surface`: objects touch where their drawn surfaces are, and may have friction. `paper`: the barrier of Wcislo 1999 "
-        "between particles, which keeps objects about half a spacing apart, without friction.",
-        "paper", default=ContactModel.SURFACE, codec=Words(ContactModel))  # fmt: skip
     seed: int = setting("<n>", "Seed of `rand` and of the liquid.", "7", Rule.WHOLE, default=1)
     save: Save = setting(
         "<all|boundary> [<single|double>]",

@@ -7,23 +7,9 @@ import numpy as np
 
 from ...effects.context import Verdict
 from ...effects.effect import Effect
-from ...effects.fields import column
-from ...effects.readings import LEAPFROG, Readings
+from ...effects.leapfrog import DRAG_LOSS, LAMBDA, drag_loss, drag_seconds
+from ...model.shapes import mass
 from ..springs.effect import all_held
-
-LAMBDA = column("lambda", "N s/m")
-"""The coefficient that the leap-frog takes as drag, of air and liquid together."""
-DRAG_LOSS = "drag_loss"
-"""Column of the ledger; the leap-frog counts what air and liquid take together."""
-SLOWING = 0.3
-"""Part of the leap-frog's time for a particle that goes to its drag, of air or liquid (bench/effects.py shares)."""
-
-
-def slowed_share(readings: Readings) -> float:
-    """Part of the leap-frog's time that goes to drag: of the particles that feel any now, after a run mostly at rest."""
-    free = ~readings.system.held
-    more = SLOWING / (1.0 - SLOWING) * np.count_nonzero(readings.array("d_lambda")[free]) / max(1, np.count_nonzero(free))
-    return more / (1.0 + more)
 
 
 class AirDrag(Effect):
@@ -48,20 +34,24 @@ class AirDrag(Effect):
     def slows(self, scene):
         return np.array([solid.drag > 0.0 for solid in scene.solids], bool)
 
-    def columns(self, context):
-        return {LAMBDA: context.system.drag}
+    def drag(self, context):
+        rate = np.array([solid.drag / mass(solid) if solid.drag else 0.0 for solid in context.solids])
+        return context.system.mass * rate[context.system.object]
 
     def friction(self, context):
-        return context.system.drag
+        return self.drag(context)
+
+    def columns(self, context):
+        return {LAMBDA: context.drag}
 
     def clocks(self, readings):
-        return {LEAPFROG: slowed_share(readings) * readings.fix_seconds("leapfrog")}
+        return drag_seconds(self, readings)
 
     def losses(self, scene):
         return (DRAG_LOSS,)
 
     def lost(self, readings):
-        return {DRAG_LOSS: readings.fix_scalar("leapfrog")}
+        return drag_loss(self, readings)
 
 
 EFFECTS = (AirDrag(),)

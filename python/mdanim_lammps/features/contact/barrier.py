@@ -15,12 +15,12 @@ from ...effects.margin import Margin
 from ...errors import Problem
 from ...model.model import Layer
 from ...model.system import System
-from ...model.touching import REACH, THIN, WAY_NAMES, touching
 from ...reach import largest_of_others
 from ...scene.formatting import at_least, say
 from ..springs.effect import all_held
-from .forms import Form, stiffness_told
+from .forms import Form, particle_stiffness, stiffness_told
 from .planes import OR_ON_SURFACES, STIFFNESS, others
+from .touching import REACH, THIN, WAY_NAMES, touching
 
 TUNNEL = (0.5, 0.65, 0.8)
 """Closing speed over the wave speed from which a block goes through a clamped plate of 1, 2, 3 and more
@@ -129,8 +129,9 @@ class ObjectContact(Form):
         closing = envelope.reach.closing(envelope.reach.fall)
         # A held partner may be met at full speed, the softer of two is the one that is passed through.
         limit = self.tunnelling(envelope) * envelope.reach.wave
-        soft = system.contact_factor < 1.0
-        limit *= system.contact_factor**SOFTER if soft else 1.0
+        factor = envelope.scene.control.contact_stiffness
+        soft = factor < 1.0
+        limit *= factor**SOFTER if soft else 1.0
         weakest = int(limit.argmin())
         fastest = int((closing / np.minimum(limit, limit[weakest])).argmax())
         value, most = float(closing[fastest]), float(min(limit[fastest], limit[weakest]))
@@ -164,20 +165,24 @@ class BarrierContact(ObjectContact):
 
     styles = (("fix", "mdanim/barrier"),)
 
+    def clearance(self, first, second):
+        thin = (first.layer == Layer.THIN).any() or (second.layer == Layer.THIN).any()
+        return (THIN * REACH if thin else REACH - 1.0) * max(first.spacing, second.spacing)
+
     def columns(self, context):
         system = context.system
-        return {STIFFNESS: system.contact_stiffness, GAP: self.gap(context)[system.object]}
+        return {STIFFNESS: particle_stiffness(context.scene, system), GAP: self.gap(context)[system.object]}
 
     def commands(self, context):
         return barrier(self.fix, context)
 
     def rate(self, context):
         system = context.system
-        return barrier_rate(system, system.contact_stiffness, REACH * system.spacing.max())
+        return barrier_rate(system, particle_stiffness(context.scene, system), REACH * system.spacing.max())
 
     def warnings(self, context):
         scene = context.scene
-        found = touching(context.system)
+        found = touching(context.system, particle_stiffness(scene, context.system))
         if not found:
             return []
         t = found[0]

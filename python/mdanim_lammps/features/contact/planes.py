@@ -11,10 +11,10 @@ from ...effects.context import Verdict
 from ...effects.fields import column
 from ...errors import Problem
 from ...model.planes import Plane, innermost
-from ...model.touching import WAY_NAMES, Touch, behind_planes
 from ...scene.formatting import at_least, say, whole
 from ...scene.scene import SceneRecord
-from .forms import Form
+from .forms import Form, particle_stiffness
+from .touching import WAY_NAMES, Touch, behind_planes
 
 OR_ON_SURFACES = "or write contact-model surface in control, where what touches holds no energy"
 """The other way out of a start within the reach of the paper's contact."""
@@ -90,7 +90,7 @@ class BarrierPlanes(Planes):
     styles = (("fix", "mdanim/wall"),)
 
     def columns(self, context):
-        return {STIFFNESS: context.system.contact_stiffness}
+        return {STIFFNESS: particle_stiffness(context.scene, context.system)}
 
     def commands(self, context):
         region = f"region {self.fix} {self.sides.region(context.scene)}"
@@ -99,7 +99,7 @@ class BarrierPlanes(Planes):
     def warnings(self, context):
         scene = context.scene
         planes = self.planes(scene)
-        found = behind_planes(context.system, *innermost(planes))
+        found = behind_planes(context.system, particle_stiffness(scene, context.system), *innermost(planes))
         if not found:
             return []
         t = found[0]
@@ -120,4 +120,4 @@ class BarrierPlanes(Planes):
     def rate(self, context):
         # A wall does not move, so D_i alone bounds it, without the factor 2 of a pair.
         system = context.system
-        return np.where(system.held, 0.0, system.contact_stiffness / system.mass)
+        return np.where(system.held, 0.0, particle_stiffness(context.scene, system) / system.mass)

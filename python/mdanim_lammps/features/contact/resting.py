@@ -14,8 +14,9 @@ from ...errors import Problem
 from ...model.planes import Plane
 from ...model.system import System
 from ...scene.formatting import number
-from ...scene.scene import Box, ContactModel, Ellipsoid, SceneRecord, Sphere, Torus
+from ...scene.scene import Box, Ellipsoid, SceneRecord, Sphere, Torus
 from .pairs import any_friction, frictions, pair_rules
+from .words import ContactModel
 
 LEVEL = 1e-6
 """Tangent of a slope that is nothing but rounding."""
@@ -49,7 +50,7 @@ def frictionless(envelope: Envelope) -> list[Problem]:
             return []
     paper = scene.control.contact_model is ContactModel.PAPER
     hint = f"write friction 0.5 in control{' in place of contact-model paper' if paper else ''}"
-    hops = [m for m in np.flatnonzero(envelope.reach.moving).tolist() if scene.solids[m].damping == 0.0]
+    hops = np.flatnonzero(envelope.reach.moving & (envelope.context.damping_ratio == 0.0)).tolist()
     if len(hops) == envelope.reach.moving.sum():
         hint += f", and damping 0.2 in object {system.names[hops[0]]}: without damping an object that lands keeps hopping"
     return [

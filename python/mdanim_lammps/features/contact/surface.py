@@ -21,6 +21,7 @@ from ...model.system import System
 from ...reach import largest_of_others
 from ...scene.scene import Box, SceneRecord
 from .barrier import GAP, ObjectContact, barrier, barrier_rate
+from .forms import particle_stiffness
 from .pairs import USUAL_DAMPING, any_friction, damping, frictions, pair_rules
 from .planes import STIFFNESS, BarrierPlanes, Planes, Sides
 from .resting import one_sided
@@ -125,6 +126,7 @@ class SurfaceContact(ObjectContact):
     """
 
     styles = (("fix", "mdanim/contact"), ("fix", "mdanim/barrier"))
+    rests_inside = BORN_AT_REST
     behind = "barrier"
     """ID of the barrier's fix."""
     law = SurfaceLaw(ObjectContact.fix)
@@ -157,7 +159,7 @@ class SurfaceContact(ObjectContact):
         would not roll. The surface alone stops it up to SLOW.
         """
         system = context.system
-        return np.where((~are_dense(system) | fast(context))[system.object], system.contact_stiffness, 0.0)
+        return np.where((~are_dense(system) | fast(context))[system.object], particle_stiffness(context.scene, system), 0.0)
 
     def barrier_reach(self, context: Context) -> np.ndarray:
         """Reach of the barrier of each particle [m], shape (N,); of a pair the larger one counts.
@@ -281,6 +283,7 @@ class SurfacePlanes(Planes):
     """
 
     styles = (("fix", "mdanim/contact"),)
+    rests_inside = BORN_AT_REST
 
     def __init__(self, sides: Sides):
         super().__init__(sides)

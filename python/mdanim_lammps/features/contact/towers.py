@@ -15,8 +15,9 @@ from ...model.boxes import box_pairs
 from ...model.overlap import BORN_AT_REST
 from ...model.shapes import extent
 from ...scene.formatting import at_least, say
-from ...scene.scene import Box, ContactModel, Cylinder, Solid
+from ...scene.scene import Box, Cylinder, Solid
 from .resting import LEVEL, floors
+from .words import ContactModel
 
 GREENHILL = 7.837
 """m g H^2 over E I of the tallest uniform column that stands."""

@@ -5,13 +5,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from enum import Enum
 from typing import Any
 
 from ...errors import Span
 from ...scene.formatting import whole
 from ...scene.limits import Limit
 from ...scene.naming import pairs_of
-from ...scene.schema import Block, Observable, Rule, setting
+from ...scene.schema import Block, Observable, Rule, Words, setting
 
 CONTACT_STIFFNESS = Limit(
     "contact-stiffness",
@@ -37,6 +38,13 @@ MARGINS = {
     "wall": "the time step that ground, walls and basin alone would bear",
     "closing speed": "how fast objects may meet so that nothing passes through; softer or thinner objects bear less",
 }
+
+
+class ContactModel(Enum):
+    SURFACE = "surface"
+    """The drawn surface is where objects touch; friction."""
+    PAPER = "paper"
+    """A barrier between boundary and inner particles, without friction."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,6 +89,11 @@ class ContactControl:
         "100. The stiffer it is, the less objects sink into each other, and the shorter time steps get.",
         "4", Rule.POSITIVE, default=1.0, limit=CONTACT_STIFFNESS, after="accuracy")  # fmt: skip
     """Stiffness with which objects and walls push back, over E h [-]."""
+    contact_model: ContactModel = setting(
+        None,
+        "`surface`: objects touch where their drawn surfaces are, and may have friction. `paper`: the barrier of Wcislo 1999 "
+        "between particles, which keeps objects about half a spacing apart, without friction.",
+        "paper", default=ContactModel.SURFACE, codec=Words(ContactModel), after="contact_stiffness")  # fmt: skip
     friction: float = setting(
         "<mu>", "Coefficient of friction of objects that have none of their own. Not with `contact-model paper`.",
         "0.5", Rule.NOT_NEGATIVE, default=0.0, limit=FRICTION, after="contact_model")  # fmt: skip
@@ -113,6 +126,11 @@ BLOCKS = (
 )  # fmt: skip
 
 
+def points(scene: Any) -> bool:
+    """Whether objects touch with points of their surfaces."""
+    return scene.control.contact_model is ContactModel.SURFACE
+
+
 # --- checks: v is the scene/validate.Validator ----------------------------------------------------------------------
 
 
@@ -123,7 +141,7 @@ def check(v: Any, top: Mapping, held: Mapping) -> None:
     if control is None:
         return
     own = next((s for s in held["solids"] if s.resolution is not None), None)
-    if control.contact_model.value == "paper" and own:
+    if control.contact_model is ContactModel.PAPER and own:
         cause = f"{own.name} has a resolution of its own; the contact of the paper, between particles, needs one spacing for all"
         v.problem(
             own.spans["resolution"], cause, "write resolution in control, or take contact-model paper out", key="own-spacing"
@@ -132,7 +150,7 @@ def check(v: Any, top: Mapping, held: Mapping) -> None:
     asked = [("a contact block", b.head) for b in blocks]
     asked += [("friction", s.spans["friction"]) for s in held["solids"] if s.friction]
     asked += [(word, control.spans[word]) for word, value in words.items() if value]
-    if control.contact_model.value == "paper" and asked:
+    if control.contact_model is ContactModel.PAPER and asked:
         what, span = asked[0]
         cause = f"{what} needs contact-model surface; the contact of the paper has no friction"
         v.problem(span, cause, "take contact-model paper out of control", key="contact-model")

@@ -3,8 +3,11 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from ...effects.context import Verdict
 from ...effects.effect import Effect
+from ...model.springs import dashpots
 from ..springs.effect import all_held, spring_norm, time_of_dashpots
 
 
@@ -17,7 +20,6 @@ class Damping(Effect):
 
     name = "damping"
     order = 20
-    brakes = True
     needs = ("springs",)
     if_off = "damped objects ring for ever"
 
@@ -27,6 +29,9 @@ class Damping(Effect):
                 return Verdict(self.name, True, f"damping of {solid.name}", solid.spans.get("damping"))
         return Verdict(self.name, False, "no object has damping")
 
+    def damping_ratio(self, context):
+        return np.array([solid.damping for solid in context.solids])
+
     def losses(self, scene):
         return ("damping_loss",)
 
@@ -34,14 +39,12 @@ class Damping(Effect):
         return {"damping_loss": readings.damping_loss()}
 
     def clocks(self, readings):
-        more = time_of_dashpots(readings.system)
+        more = time_of_dashpots(readings.context)
         return {"springs": readings.bond_seconds() * more / (1.0 + more)}
 
     def drag_rate(self, context):
-        system = context.system
-        if system.damping is None:  # all damped solids are held as a whole by boxes, and have no springs
-            return None
-        return 2.0 * spring_norm(system, system.damping) / system.mass
+        c = dashpots(context.system, self.damping_ratio(context))
+        return 2.0 * spring_norm(context.system, c) / context.system.mass if c.any() else None
 
 
 EFFECTS = (Damping(),)

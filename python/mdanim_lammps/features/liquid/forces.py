@@ -10,10 +10,9 @@ import numpy as np
 from ...effects.context import Verdict
 from ...effects.effect import Effect
 from ...effects.fields import column
-from ...effects.readings import LEAPFROG
+from ...effects.leapfrog import DRAG_LOSS, LAMBDA, drag_loss, drag_seconds
 from ...model.system import System
 from ...model.tensors import largest_eigenvalue
-from ..air_drag import effect as air_drag
 from ..springs.effect import all_held
 from .basin import liquid_level
 from .frames import COUPLING, FIX, WAVES, is_wavy
@@ -110,8 +109,8 @@ class WavePush(Buoyancy):
 
 
 class LiquidDrag(Effect):
-    """F = -(gamma + k |v|) rho_l V_i s_i v on the part of a particle below the surface [N]; the leap-frog takes gamma's with the
-    drag of air.
+    """F = -(gamma + k |v|) rho_l V_i s_i v on the part of a particle below the surface [N]; the leap-frog takes gamma's with all
+    other drag.
 
     gamma = sqrt(g/L) [1/s] and k = C/2L [1/m] of a body of size L [m], unless ``drag`` says otherwise (docs/physics-
     liquid.md, "Forces on solids").
@@ -129,11 +128,10 @@ class LiquidDrag(Effect):
 
     def columns(self, context):
         scene, system = context.scene, context.system
-        air = system.drag if context.on(air_drag.AirDrag.name) else None
-        dry = np.zeros(system.particles) if air is None else air
+        dry = np.zeros(system.particles) if context.drag is None else context.drag
         quadratic = {column("quadratic", "1/m"): per_length(system)} if _has_quadratic_drag(scene) else {}
-        still_air = {} if air is None else {column("air", "N s/m"): air}
-        return {column("gamma", "1/s"): gamma(scene, system), **quadratic, air_drag.LAMBDA: dry, **still_air}
+        base = {} if context.drag is None else {column("base", "N s/m"): dry}
+        return {column("gamma", "1/s"): gamma(scene, system), **quadratic, LAMBDA: dry, **base}
 
     def friction(self, context):
         # Quadratic drag is not part of it: a step takes a particle less than a tenth of a spacing, so k v dt is small.
@@ -141,24 +139,20 @@ class LiquidDrag(Effect):
         return gamma(scene, system) * scene.liquid.density * system.volume
 
     def commands(self, context):
-        base = " base d_air" if context.on(air_drag.AirDrag.name) else ""
+        base = "" if context.drag is None else " base d_base"
         quadratic = " quadratic d_quadratic" if _has_quadratic_drag(context.scene) else ""
         return [f"fix_modify liquid drag d_gamma{quadratic} lambda d_lambda{base}"]
 
     def losses(self, scene):
-        return (air_drag.DRAG_LOSS,)
+        return (DRAG_LOSS,)
 
     def lost(self, readings):
-        # Where air drag is on, that effect tells it.
-        return {air_drag.DRAG_LOSS: 0.0 if readings.context.on(air_drag.AirDrag.name) else readings.fix_scalar("leapfrog")}
+        return drag_loss(self, readings)
 
     def clocks(self, readings):
         # Where particles are immersed is looked up for buoyancy in any case; drag adds this to it,
         # and makes the leap-frog slower.
-        coupling = {"coupling": DRAGGING * readings.fix_value(FIX, COUPLING)}
-        if readings.context.on(air_drag.AirDrag.name):
-            return coupling
-        return coupling | {LEAPFROG: air_drag.slowed_share(readings) * readings.fix_seconds("leapfrog")}
+        return {"coupling": DRAGGING * readings.fix_value(FIX, COUPLING), **drag_seconds(self, readings)}
 
 
 def gamma(scene, system: System) -> np.ndarray:

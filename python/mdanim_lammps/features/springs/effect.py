@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...effects.context import Verdict
+from ...effects.context import Context, Verdict
 from ...effects.effect import Effect
 from ...scene.scene import HoldAll
 from .strength import amplitude, load, thinnest, turning
@@ -14,11 +14,10 @@ DASHPOTS = 0.44
 """Part of the time of damped springs that goes to their dashpots (bench/effects.py shares)."""
 
 
-def time_of_dashpots(system) -> float:
+def time_of_dashpots(context: Context) -> float:
     """Time of dashpots, over the time of all springs without them."""
-    if system.damping is None or not len(system.spring):
-        return 0.0
-    return DASHPOTS / (1.0 - DASHPOTS) * np.count_nonzero(system.damping) / len(system.spring)
+    own = np.diff(np.searchsorted(context.system.spring[:, 0], context.system.first))
+    return DASHPOTS / (1.0 - DASHPOTS) * own[context.damping_ratio > 0.0].sum() / max(1, own.sum())
 
 
 def all_held(solid) -> bool:
@@ -80,9 +79,7 @@ class Springs(Effect):
         return readings.elastic_energy()
 
     def clocks(self, readings):
-        # A system has dashpots even where damping is switched off.
-        more = time_of_dashpots(readings.system) if readings.context.on("damping") else 0.0
-        return {"springs": readings.bond_seconds() / (1.0 + more)}
+        return {"springs": readings.bond_seconds() / (1.0 + time_of_dashpots(readings.context))}
 
 
 def spring_norm(system, weight: np.ndarray) -> np.ndarray:

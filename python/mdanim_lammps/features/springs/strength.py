@@ -14,15 +14,16 @@ from ...model.cells import TooThin, end_share, fill_cells
 from ...model.shapes import thickness
 from ...model.system import System
 from ...scene.formatting import at_least, number, say
-from ...scene.scene import Box, Cone, ContactModel, Ellipsoid, Solid, Sphere
+from ...scene.scene import Box, Cone, Ellipsoid, Solid, Sphere
 
 FOLDS = 0.2
 """Speed of an impact over the wave speed above which a lattice folds up and stays crumpled (docs/physics-solids.md)."""
 FOLDS_ON_END, FOLDS_POWER = 0.5, 0.45
 """The same of a ball or a cone that lands on a plane, over a power of the part of its cells that its smallest end has: these
 few bear the blow of all (docs/physics-solids.md)."""
-POINTED = {ContactModel.SURFACE: (Ellipsoid, Cone), ContactModel.PAPER: (Sphere, Ellipsoid, Cone)}
-"""Shapes that may land on an end of few cells. At its drawn surface a ball is borne by more than its lowest cells."""
+POINTED = (Ellipsoid, Cone)
+"""Shapes that may land on an end of few cells; also a ball where it is not borne at its drawn surface, by more than its lowest
+cells."""
 FOLDS_AT_CORNER = 0.75
 """The same of a cuboid that lands on a corner or an edge, over that power of the part of it that is within a spacing of its
 lowest point."""
@@ -88,7 +89,7 @@ def _spots(env: Envelope) -> np.ndarray:
     Infinite for shapes that are neither cuboids nor pointed."""
     system, known = env.system, {}
     spots = np.full(len(system.names), np.inf)
-    pointed = POINTED[env.scene.control.contact_model]
+    pointed = (*POINTED, *[Sphere] * any(e.touches and not e.rests_inside for e in env.on))
     for m in np.flatnonzero(env.reach.moving).tolist():
         solid = env.scene.solids[m]
         if isinstance(solid.shape, Box):

@@ -7,7 +7,7 @@ import re
 import numpy as np
 import pytest
 from mdanim_lammps.engine.instance import Instance
-from mdanim_lammps.model.touching import REACH, THIN, touching, touching_pairs
+from mdanim_lammps.features.contact.touching import REACH, THIN, touching, touching_pairs
 
 STUFF = "density 1000 kg/m^3 elasticity 1 MPa"
 WORLD = "gravity (0, 0, -9.81) m/s^2\nground z 0 m\n"
@@ -36,10 +36,16 @@ def start_warnings(ready):
     return [w for w in ready.warnings if "at the start and pushes" in w.message]
 
 
+def stiffness(system):
+    """E h, less where few cells stand behind a particle [N/m]."""
+    return (system.young * np.cbrt(system.cell_volume))[system.object] * np.minimum(1.0, 2.0 * system.share)
+
+
 def naive(system):
     """Energy of each pair of objects [J] by a loop over all pairs of particles."""
     energy = {}
-    k, layer, owner, x = (a.tolist() for a in (system.contact_stiffness, system.layer, system.object, system.position))
+    layer, owner, x = (a.tolist() for a in (system.layer, system.object, system.position))
+    k = stiffness(system).tolist()
     for i in range(system.particles):
         for j in range(i + 1, system.particles):
             if owner[i] == owner[j] or (system.held[i] and system.held[j]):
@@ -59,7 +65,7 @@ def test_energies_are_those_of_a_loop_over_all_pairs_and_of_lammps(prepared):
     ready = prepared(SHEETS)
     system = ready.system
     assert (system.layer == 4).any() and system.still.sum() == 1
-    found = {tuple(sorted((t.first, t.second))): t.energy for t in touching(system)}
+    found = {tuple(sorted((t.first, t.second))): t.energy for t in touching(system, stiffness(system))}
     expected = naive(system)
     assert found.keys() == expected.keys() and len(found) >= 3
     for pair, energy in expected.items():
@@ -71,7 +77,8 @@ def test_energies_are_those_of_a_loop_over_all_pairs_and_of_lammps(prepared):
 
 def test_each_pair_of_particles_counts_once(prepared):
     """Two thin particles are boundary and barrier of each other."""
-    one, other, _, _ = touching_pairs(prepared(SHEETS).system)
+    system = prepared(SHEETS).system
+    one, other, _, _ = touching_pairs(system, stiffness(system))
     pairs = np.sort(np.stack([one, other], axis=1), axis=1)
     assert len(np.unique(pairs, axis=0)) == len(pairs)
 
@@ -81,12 +88,12 @@ def test_the_move_is_the_least_that_leaves_no_energy(prepared):
     ready = prepared(SHEETS)
     system = ready.system
     ways = np.concatenate([np.eye(3), -np.eye(3)])
-    for t in touching(system):
+    for t in touching(system, stiffness(system)):
         moved = slice(system.first[t.second], system.first[t.second + 1])
         for part, parted in ((1.0, True), (0.98, False)):
             position = system.position.copy()
             position[moved] += part * t.move * ways[t.way]
-            left = touching(type(system)(**{**vars_of(system), "position": position}))
+            left = touching(type(system)(**{**vars_of(system), "position": position}), stiffness(system))
             assert ({t.first, t.second} not in [{u.first, u.second} for u in left]) == parted
         assert not system.still[t.second]
 
@@ -153,6 +160,7 @@ def test_a_crowd_is_culled_by_boxes(prepared):
     )
     more = "object last {{ shape box (2, 2, 2) m position (0, 0, {z}) m {stuff} }}\ncontrol {{ time 1 s resolution 1 m }}"
     apart = prepared(crowd + more.format(z=-3.5, stuff=STUFF)).system
-    assert touching(apart) == []
-    (found,) = touching(prepared(crowd + more.format(z=-2, stuff=STUFF)).system)
+    assert touching(apart, stiffness(apart)) == []
+    close = prepared(crowd + more.format(z=-2, stuff=STUFF)).system
+    (found,) = touching(close, stiffness(close))
     assert {found.first, found.second} == {0, 511}

@@ -11,9 +11,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .boxes import box_pairs
-from .model import Layer
-from .system import System
+from ...model.boxes import box_pairs
+from ...model.model import Layer
+from ...model.system import System
 
 REACH = 1.6
 """Reach of the barrier over the spacing: the smoothest of the forms measured (docs/physics-contact.md)."""
@@ -44,9 +44,10 @@ class Touch:
     """Gap between the two boxes along this row after the move [m]; 0 for a plane."""
 
 
-def touching(system: System) -> list[Touch]:
-    """Pairs of objects whose contact has energy at the start, the largest energy first."""
-    one, other, reach, energy = touching_pairs(system)
+def touching(system: System, k: np.ndarray) -> list[Touch]:
+    """Pairs of objects whose contact has energy at the start, the largest energy first; ``k`` is the stiffness of each particle
+    [N/m], shape (N,)."""
+    one, other, reach, energy = touching_pairs(system, k)
     if not len(one):
         return []
     swap = system.object[one] > system.object[other]
@@ -79,7 +80,7 @@ def ways_out(apart: np.ndarray, reach: np.ndarray) -> np.ndarray:
     return np.sqrt(np.maximum(0.0, reach[:, None] ** 2 - aside)) - along
 
 
-def touching_pairs(system: System) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+def touching_pairs(system: System, k: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Pairs of particles of two objects within reach at the start, of which one can move: their numbers, reach [m] and
     energy [J], each of shape (P,)."""
     near = _near_others(system)
@@ -87,7 +88,6 @@ def touching_pairs(system: System) -> tuple[np.ndarray, np.ndarray, np.ndarray, 
     thin = near & (system.layer == Layer.THIN)
     found = [_within_reach(system, boundary, inner, 1.0), _within_reach(system, thin, boundary, THIN)]
     one, other, reach = (np.concatenate(parts) for parts in zip(*found))
-    k = system.contact_stiffness
     q = 1.0 - np.linalg.norm(system.position[one] - system.position[other], axis=1) / reach
     return one, other, reach, 2.0 * k[one] * k[other] / (k[one] + k[other]) * reach**2 / 3.0 * q**3
 
@@ -123,11 +123,12 @@ def _within_reach(system: System, seek: np.ndarray, guard: np.ndarray, factor: f
     return one[keep], other[keep], reach[keep]
 
 
-def behind_planes(system: System, low: np.ndarray, high: np.ndarray) -> list[Touch]:
-    """Objects with particles beyond the planes at ``low`` and ``high`` [m], each of shape (3,), infinite where there is none."""
+def behind_planes(system: System, k: np.ndarray, low: np.ndarray, high: np.ndarray) -> list[Touch]:
+    """The same of objects with particles beyond the planes at ``low`` and ``high`` [m], each of shape (3,), infinite where none
+    is."""
     beyond = np.concatenate([low - system.position, system.position - high], axis=1)
     beyond = np.where(system.held[:, None], 0.0, np.maximum(beyond, 0.0))
-    energy = 0.5 * system.contact_stiffness * (beyond**2).sum(axis=1)
+    energy = 0.5 * k * (beyond**2).sum(axis=1)
     total = np.add.reduceat(energy, system.first[:-1])
     deepest = np.maximum.reduceat(beyond, system.first[:-1])
     return [
