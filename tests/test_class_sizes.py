@@ -10,8 +10,6 @@ import pytest
 PLUGIN = Path(__file__).parents[1] / "plugin"
 MOST_LINES, MOST_MEMBERS = 400, 30
 LARGER = {
-    "FixMdanimLiquid": (726, 29),
-    "WaveBasin": (600, 34),
     "BondMdanimHarmonic": (532, 18),
     "FixMdanimRigid": (469, 9),
     "VerletMdanim": (441, 16),

@@ -13,7 +13,6 @@
 #include "update.h"
 
 #include <algorithm>
-#include <cstring>
 
 using namespace LAMMPS_NS;
 
@@ -24,24 +23,22 @@ static constexpr double PARTICLE = 25.0;    // or lattice cell [ns], approximate
 
 // --- the command ---
 
-bool Buoyancy::keyword(int iarg, const char *word, const char *value)
+std::vector<Keyword> Buoyancy::keywords()
 {
-  if (strcmp(word, "buoyancy") == 0) {
-    volume = ParticleValue(lmp, "fix mdanim/liquid: buoyancy", iarg + 1, value);
-    lifts = true;
-  } else if (strcmp(word, "drag") == 0) {
-    gamma = ParticleValue(lmp, "fix mdanim/liquid: drag", iarg + 1, value);
-    slows = true;
-  } else if (strcmp(word, "quadratic") == 0) {
-    per_length = ParticleValue(lmp, "fix mdanim/liquid: quadratic", iarg + 1, value);
-    is_quadratic = true;
-  } else if (strcmp(word, "lambda") == 0) {
-    lambda_column = ParticleColumn(lmp, STYLE, word, iarg + 1, value);
-  } else if (strcmp(word, "base") == 0) {
-    base_column = ParticleColumn(lmp, STYLE, word, iarg + 1, value);
-  } else
-    return false;
-  return true;
+  const auto value = [this](ParticleValue &into, bool &given) {
+    return [this, &into, &given](int at, char **arg) {
+      into = ParticleValue(lmp, fmt::format("{}: {}", STYLE, arg[at]).c_str(), at + 1, arg[at + 1]);
+      given = true;
+    };
+  };
+  const auto column = [this](ParticleColumn &into) {
+    return [this, &into](int at, char **arg) { into = ParticleColumn(lmp, STYLE, arg[at], at + 1, arg[at + 1]); };
+  };
+  return {{"buoyancy", "V|d_NAME", "", value(volume, lifts)},
+          {"drag", "gamma|d_NAME", "", value(gamma, slows)},
+          {"quadratic", "k|d_NAME", "", value(per_length, is_quadratic)},
+          {"lambda", "d_NAME", "", column(lambda_column)},
+          {"base", "d_NAME", "", column(base_column)}};
 }
 
 void Buoyancy::init(const std::string &fix)

@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include "lammps/keywords.h"
 #include "lammps/near_cells.h"
 #include "lammps/particle_value.h"
 #include "liquid/basin.h"
@@ -23,8 +24,7 @@ class Buoyancy : protected LAMMPS_NS::Pointers {
   // `rho` is the liquid's density.
   Buoyancy(LAMMPS_NS::LAMMPS *lmp, double rho) : Pointers(lmp), rho(rho), cells(lmp) {}
 
-  // Takes a keyword of the command; false unless it is buoyancy, drag, quadratic, lambda or base.
-  bool keyword(int iarg, const char *word, const char *value);
+  std::vector<Keyword> keywords();    // of the command and of fix_modify
   // Refuses keywords that do not fit together. `fix` begins messages.
   void init(const std::string &fix);
 

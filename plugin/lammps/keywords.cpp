@@ -4,6 +4,7 @@
 #include "error.h"
 #include "fmt/format.h"
 #include "lammps.h"
+#include "utils.h"
 
 #include <algorithm>
 #include <sstream>
@@ -11,10 +12,10 @@
 using namespace LAMMPS_NS;
 
 // "a", "a and b", "a, b and c".
-static std::string listed(const std::vector<std::string> &words)
+static std::string listed(const std::vector<std::string> &words, const std::string &last = " and ")
 {
   std::string text;
-  for (std::size_t n = 0; n < words.size(); ++n) text += (n == 0 ? "" : n + 1 < words.size() ? ", " : " and ") + words[n];
+  for (std::size_t n = 0; n < words.size(); ++n) text += (n == 0 ? "" : n + 1 < words.size() ? ", " : last) + words[n];
   return text;
 }
 
@@ -55,4 +56,28 @@ int mdanim::words_of_keyword(LAMMPS *lmp, const std::string &style, const std::v
   const int count = static_cast<int>(needed(found->values).size()), got = narg - iarg - 1;
   if (got < count) refuse_missing(lmp, style, found->word, found->values, got, iarg);
   return 1 + count;
+}
+
+int mdanim::take_keyword(LAMMPS *lmp, const std::string &style, const std::vector<Keyword> &known, int iarg, int narg, char **arg)
+{
+  const int words = words_of_keyword(lmp, style, known, iarg, narg, arg);
+  for (const Keyword &one : known)
+    if (one.word == arg[iarg]) one.take(iarg, arg);
+  return words;
+}
+
+int mdanim::choice(LAMMPS *lmp, const std::string &style, const char *what, std::initializer_list<const char *> words, int at,
+                   char **arg)
+{
+  const std::vector<std::string> all(words.begin(), words.end());
+  const auto found = std::find(all.begin(), all.end(), arg[at]);
+  if (found == all.end()) lmp->error->all(FLERR, at, "{}: {} {}, got {}", style, what, listed(all, " or "), arg[at]);
+  return static_cast<int>(found - all.begin());
+}
+
+double mdanim::positive(LAMMPS *lmp, const std::string &style, const std::string &what, int at, char **arg)
+{
+  const double value = utils::numeric(FLERR, arg[at], false, lmp);
+  if (!(value > 0.0)) lmp->error->all(FLERR, at, "{}: {} must be > 0, got {}", style, what, arg[at]);
+  return value;
 }

@@ -5,6 +5,8 @@
 
 #include "lmptype.h"
 
+#include <functional>
+#include <initializer_list>
 #include <string>
 #include <vector>
 
@@ -18,6 +20,8 @@ struct Keyword {
   std::string word;
   std::string values;       // as on the page of the style, with a space between two
   std::string instead{};    // for a keyword of former versions: the way out
+  // Takes the values; `at` is the place of the word among `arg`.
+  std::function<void(int at, char **arg)> take{};
 };
 
 // Refuses a command with only `got` words after `head`; words of `values` in brackets are optional.
@@ -27,5 +31,14 @@ void need_words(LAMMPS_NS::LAMMPS *lmp, const std::string &style, const std::str
 // values.
 int words_of_keyword(LAMMPS_NS::LAMMPS *lmp, const std::string &style, const std::vector<Keyword> &known, int iarg, int narg,
                      char **arg);
+// Takes the keyword at `iarg` with its values, and returns the number of words.
+int take_keyword(LAMMPS_NS::LAMMPS *lmp, const std::string &style, const std::vector<Keyword> &known, int iarg, int narg,
+                 char **arg);
+
+// Place in `words` of the word at `at`; refuses any other. `what` names it in the message.
+int choice(LAMMPS_NS::LAMMPS *lmp, const std::string &style, const char *what, std::initializer_list<const char *> words, int at,
+           char **arg);
+// The number at `at`; refuses one that is not > 0.
+double positive(LAMMPS_NS::LAMMPS *lmp, const std::string &style, const std::string &what, int at, char **arg);
 
 }    // namespace mdanim

@@ -5,12 +5,14 @@
 
 #include "buoyancy/immersed.h"
 #include "liquid/occupancy.h"
+#include "liquid/rank_sums.h"
 #include "threads/team.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <functional>
+#include <numeric>
 #include <vector>
 
 namespace mdanim {
@@ -108,9 +110,10 @@ class Basin {
 
   static constexpr double NEAR = 8.0;    // cells above the liquid up to which the motion of solids counts
 
-  Basin(const Shape &shape, double g)
+  // `ranks` must outlive the basin.
+  Basin(const Shape &shape, double g, const RankSums &ranks)
       : shape(shape), g(g), shortest(std::min({shape.cell.x, shape.cell.y, shape.cell.z})),
-        per_cell{1.0 / shape.cell.x, 1.0 / shape.cell.y, 1.0 / shape.cell.z}
+        per_cell{1.0 / shape.cell.x, 1.0 / shape.cell.y, 1.0 / shape.cell.z}, ranks(ranks)
   {
   }
   virtual ~Basin() = default;
@@ -131,7 +134,7 @@ class Basin {
   // a run change it.
   virtual bool is_due(double fastest, double dt, std::int64_t step) = 0;
   virtual void update(const AddBodies &bodies, std::uint64_t when) = 0;
-  virtual void use(const Threads &) {}    // for updates
+  virtual void use(const Threads &now) { threads = now; }    // for updates
 
   // --- what acts on solids, and they on the liquid ---
 
@@ -154,6 +157,7 @@ class Basin {
 
   Vec3 in_cells(const double *x) const
   { return {(x[0] - shape.low.x) * per_cell.x, (x[1] - shape.low.y) * per_cell.y, (x[2] - shape.low.z) * per_cell.z}; }
+  double height(double cells) const { return shape.low.z + cells * shape.cell.z; }    // [distance]
   // Whether x [distance] is over the basin's floor.
   bool over_floor(const double *x) const
   {
@@ -170,7 +174,7 @@ class Basin {
   double cell_volume() const { return shape.cell.x * shape.cell.y * shape.cell.z; }
   virtual bool is_smooth() const = 0;    // whether samples of bodies are spread, and columns know the mass in them
   virtual int top() const = 0;           // no liquid in layers from this one up
-  virtual bool is_poured() const = 0;
+  bool is_poured() const { return poured; }
   virtual bool is_calm() const = 0;    // level, and no solid has moved since
   virtual long moving_solid() const = 0;
   virtual long solid_cells() const = 0;
@@ -207,6 +211,18 @@ class Basin {
   const Vec3 per_cell;      // cells per distance
   Pace pace;
   double liquid_seconds = 0.0, occupancy_seconds = 0.0;
+
+ protected:
+  // Mean [distance] of heights of all columns [cells].
+  double mean_of(const std::vector<double> &heights) const
+  { return shape.low.z + shape.cell.z * std::accumulate(heights.begin(), heights.end(), 0.0) / columns(); }
+
+  const RankSums &ranks;
+  Threads threads;
+  // state
+  bool poured = false;
+  double travel = 0.0;    // distance of the fastest particle near the liquid since the last update, in cells
+  Wait wait;
 };
 
 }    // namespace mdanim

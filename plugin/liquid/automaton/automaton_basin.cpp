@@ -38,7 +38,7 @@ std::string AutomatonBasin::too_large(int nx, int ny, int nz)
 
 AutomatonBasin::AutomatonBasin(const Shape &shape, double g, std::uint64_t seed, Vertical vertical, Immersion immersion,
                                const RankSums &ranks)
-    : Basin(shape, g), immersion(immersion), ranks(ranks), seed(seed), automaton(shape.nx, shape.ny, shape.nz, seed, vertical),
+    : Basin(shape, g, ranks), immersion(immersion), seed(seed), automaton(shape.nx, shape.ny, shape.nz, seed, vertical),
       solid(shape.nx, shape.ny, shape.nz), height(columns(), 0.0), eta(columns(), 0.0), blocked(columns(), 0)
 {
 }

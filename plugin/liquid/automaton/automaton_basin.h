@@ -52,7 +52,6 @@ class AutomatonBasin : public Basin {
 
   bool is_smooth() const override { return false; }
   int top() const override { return top_layer; }
-  bool is_poured() const override { return poured; }
   bool is_calm() const override { return calm; }
   long moving_solid() const override { return solid.moving(); }
   long solid_cells() const override { return automaton.count_solid(); }
@@ -60,7 +59,7 @@ class AutomatonBasin : public Basin {
   double cells_at_start() const override { return static_cast<double>(units); }
   std::int64_t updates_so_far() const override { return swept; }
   double bytes() const override;
-  double mean_level() const override;
+  double mean_level() const override { return mean_of(eta); }
   void surface(double *smooth, double *raw) const override;
   double smooth_height(int column) const override { return shape.low.z + eta[column] * shape.cell.z; }
   double raw_height(int column) const override { return shape.low.z + height[column] * shape.cell.z; }
@@ -71,7 +70,7 @@ class AutomatonBasin : public Basin {
   const Cells &cells() const { return automaton.cells; }
   void use(const Threads &now) override
   {
-    threads = now;
+    Basin::use(now);
     automaton.use(threads);
   }
 
@@ -94,19 +93,14 @@ class AutomatonBasin : public Basin {
   { return at_point(eta.data(), blocked.data(), shape.nx, shape.ny, place.x, place.y); }
 
   const Immersion immersion;
-  const RankSums &ranks;
-  Threads threads;
   const std::uint64_t seed;
   Automaton automaton;
   Leveller leveller;
   SolidCells solid;
 
   // state
-  bool poured = false;
   bool calm = false;
-  double crossed = 0.0;    // distance of a shallow-water wave since liquid was last levelled
-  double travel = 0.0;     // distance of the fastest particle near the liquid since the last update
-  Wait wait;
+  double crossed = 0.0;               // distance of a shallow-water wave since liquid was last levelled
   std::int64_t swept = 0;             // sweeps so far
   std::int64_t units = 0;             // of liquid at the start
   std::vector<double> height, eta;    // of the columns; see level.h, surface.h

@@ -18,13 +18,6 @@ static constexpr std::uint8_t SOLID_CODE = 255, STILL_CODE = 254;
 double AutomatonBasin::bytes() const
 { return 3.0 * static_cast<double>(cells().content.size()) + solid.bytes() + columns() * (2.0 * sizeof(double) + 1.0); }
 
-double AutomatonBasin::mean_level() const
-{
-  double all = 0.0;
-  for (const double h : eta) all += h;
-  return shape.low.z + shape.cell.z * all / columns();
-}
-
 // Open cells without liquid right below a height; none where there is liquid above.
 static int air_below(const Cells &cells, int x, int y, double height)
 {

@@ -5,6 +5,9 @@
 
 #include "liquid/basin.h"
 #include "liquid/waves/drops.h"
+#include "liquid/waves/solid_columns.h"
+#include "liquid/waves/solid_impulses.h"
+#include "liquid/waves/wave_heights.h"
 #include "liquid/waves/wave_makers.h"
 #include "liquid/waves/wave_push.h"
 #include "liquid/waves/waves.h"
@@ -43,7 +46,7 @@ class WaveBasin : public Basin {
   void update(const AddBodies &bodies, std::uint64_t when) override;
   void use(const Threads &now) override
   {
-    threads = now;
+    Basin::use(now);
     waves.use(threads);
   }
 
@@ -52,15 +55,14 @@ class WaveBasin : public Basin {
   double rising_at(const Vec3 &place) const override;
   double all_below() const override { return -std::numeric_limits<double>::infinity(); }
   double calms_solids() const override;
-  void take_impulse(const Vec3 &place, const Vec3 &impulse) override;
-  void take_push(const Vec3 &volume_along) override;
+  void take_impulse(const Vec3 &place, const Vec3 &impulse) override { from_solids.take(place, impulse); }
+  void take_push(const Vec3 &volume_along) override { from_solids.take_push(volume_along); }
 
   bool is_smooth() const override { return true; }
-  int top() const override { return top_layer; }
-  bool is_poured() const override { return poured; }
+  int top() const override { return heights.top_layer(); }
   bool is_calm() const override { return sleeps() && !stale; }
-  long moving_solid() const override { return moving; }
-  long solid_cells() const override;
+  long moving_solid() const override { return solids.now().moving; }
+  long solid_cells() const override { return solids.solid_cells(); }
   double cells_now() const override { return static_cast<double>(waves.total() + drops.total()) / UNITS_PER_CELL; }
   double cells_at_start() const override { return static_cast<double>(units + makers.in() - makers.out()) / UNITS_PER_CELL; }
   std::int64_t updates_so_far() const override { return updates; }
@@ -69,12 +71,12 @@ class WaveBasin : public Basin {
   double energy() const override { return energy_now() - energy_at_start; }
   Vec3 momentum() const override { return in_world(waves.momentum() + drops.momentum()); }
   Impulses impulses() const override { return {in_world(account.basin), in_world(account.solids), in_world(account.came)}; }
-  double highest() const override { return crest; }
+  double highest() const override { return heights.crest(); }
   double bytes() const override;
-  double mean_level() const override;
+  double mean_level() const override { return mean_of(heights.all_heads()); }
   void surface(double *smooth, double *raw) const override;
   double smooth_height(int column) const override;
-  double raw_height(int column) const override { return shape.low.z + tops[column] * shape.cell.z; }
+  double raw_height(int column) const override { return shape.low.z + heights.top(column) * shape.cell.z; }
   std::vector<Droplet> droplets() const override;
   void contents(std::uint8_t *out) const override;
   std::vector<std::uint8_t> state(const Ledger &ledger) const override;
@@ -86,51 +88,29 @@ class WaveBasin : public Basin {
   bool sleeps() const { return waves.at_rest() && makers.none() && drops.all().empty(); }
   void give_impulses(double since, double asleep);
   void go_on(double time, int parts, int n);
-  void set_walls();
-  void count_parts();
-  std::size_t part_number(int column, int z) const { return static_cast<std::size_t>(column) * shape.nz + z; }
-  void look();
+  void find_heights();
   void find_push(double part, double since);
-  void look_at_column(int column);
 
-  const RankSums &ranks;
-  Threads threads;
   const double unit_of_time;
   Waves waves;
+  SolidColumns solids;
+  SolidImpulses from_solids;    // none between updates
   WavePush push;
   WaveMakers makers;
   Drops drops;
-  Occupancy still, mobile;
-  CellBox marked, changed;            // cells outside are open; the cells that the waves know
-  std::vector<std::uint16_t> part;    // solid part of each cell, see SolidParts
-  std::vector<double> mass;           // of floating bodies in each column, in cells of liquid, as given to the liquid
-  std::vector<AddedMass::Solids> afloat;
+  WaveHeights heights;
   struct Rising {
     double there = 0.0, velocity = 0.0;    // 1 where there are solids; upward velocity, over speed_of_waves()
   };
   std::vector<Rising> rising;
 
   // state
-  bool poured = false, stale = false;    // stale: solids have changed that the liquid does not know of
-  double travel = 0.0;                   // distance of the fastest particle near the liquid since the last update, in cells
-  Wait wait;
+  bool stale = false;                // solids have changed that the liquid does not know of
   double gone = 0.0, slept = 0.0;    // [time] that the liquid has advanced in updates, and that it has left out at rest
   std::int64_t updates = 0;
   Units units = 0;    // of liquid at the start
   double energy_at_start = 0.0;
-  Impulses account;                 // in units of the waves
-  long moving = 0;                  // cells with moving solids
-  std::uint64_t still_known = 0;    // a checksum of the solids that never move
-
-  // derived from the state
-  static constexpr std::uint64_t NOTHING_STILL = 1469598103934665603ULL;    // the checksum without such solids
-  std::uint64_t walled_for = NOTHING_STILL;    // the checksum for which the waves have set their walls
-  // From solids, none between updates: for each column along x, then along y; then the push on solids along x and y.
-  std::vector<std::int64_t> from_solids;
-  std::vector<double> heads, tops;     // for each column: the surface that acts on solids, and the topmost liquid, see surface()
-  std::vector<std::uint8_t> hollow;    // columns that a hull keeps dry below the surface
-  int top_layer = 0;
-  double crest = 0.0;    // the highest head under open sky
+  Impulses account;    // in units of the waves
 };
 
 }    // namespace mdanim

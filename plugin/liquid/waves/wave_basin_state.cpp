@@ -4,7 +4,6 @@
 #include "liquid/waves/wave_basin.h"
 
 #include "liquid/state_kind.h"
-#include "liquid/waves/columns.h"
 #include "records/byte_reader.h"
 #include "records/byte_writer.h"
 
@@ -18,7 +17,6 @@ namespace {
 
 constexpr StateKind KIND{"waves", 10.0};
 constexpr std::uint8_t SOLID_CODE = 255;
-constexpr double PUDDLE = 1.0 / 64.0;    // in cells: lower floors belong to the floor of the basin
 constexpr double PI = 3.14159265358979323846;
 
 struct WaveBasinHead {
@@ -46,13 +44,7 @@ struct WaveBasinHead {
 
 }    // namespace
 
-double WaveBasin::bytes() const
-{ return static_cast<double>(part.size()) * (2.0 * sizeof(int) + sizeof(std::uint16_t)) + push.bytes() + columns() * 600.0; }
-
-long WaveBasin::solid_cells() const
-{
-  return std::count_if(part.begin(), part.end(), [](std::uint16_t p) { return 2 * p >= SolidParts::FULL; });
-}
+double WaveBasin::bytes() const { return solids.bytes() + push.bytes() + columns() * 600.0; }
 
 double WaveBasin::energy_now() const
 {
@@ -66,62 +58,20 @@ Vec3 WaveBasin::in_world(const Vec3 &momentum) const
   return {momentum.x * unit * shape.cell.x, momentum.y * unit * shape.cell.y, 0.0};
 }
 
-double WaveBasin::mean_level() const
-{
-  double all = 0.0;
-  for (const double head : heads) all += head;
-  return shape.low.z + shape.cell.z * all / columns();
-}
-
-// Finds heads of all columns; columns without liquid that solids hide get the mean of those around.
-void WaveBasin::look()
-{
-  std::vector<int> unknown;
-  for (int c = 0; c < columns(); ++c) {
-    look_at_column(c);
-    if (std::isnan(heads[c])) unknown.push_back(c);
-  }
-  for (const int c : fill_inward(heads, unknown, shape.nx, shape.ny)) heads[c] = 0.0;    // solid from wall to wall
-  const double highest = heads.empty() ? 0.0 : *std::max_element(heads.begin(), heads.end());
-  crest = 0.0;
-  for (const double head : tops)
-    if (head > crest) crest = head;
-  top_layer = std::clamp(static_cast<int>(std::ceil(highest)), 0, shape.nz);
-}
-
-// Finds the head of the topmost liquid, NaN where there is none below a solid. Its top is given where there is no solid above it.
-void WaveBasin::look_at_column(int column)
-{
-  const int spans = waves.exchange.spans_of(column);
-  hollow[column] = 0;
-  heads[column] = tops[column] = std::numeric_limits<double>::quiet_NaN();
-  for (int n = spans - 1; n >= 0; --n) {
-    const WaveExchange::SpanView span = waves.exchange.span_view(column, n);
-    const bool last = n == spans - 1 && span.high == shape.nz;
-    // A thin layer on a body is not a surface; dry ground on the open floor is one.
-    const bool on_floor = n == 0 && last && span.floor < PUDDLE;
-    if (!on_floor && span.volume < ON_BODY) continue;
-    heads[column] = std::min(span.phi, shape.nz + 1.0);
-    if (last) tops[column] = std::min(span.surface, shape.nz + 1.0);
-    if (last) return;
-    const WaveExchange::SpanView above = waves.exchange.span_view(column, spans - 1);
-    hollow[column] = above.high == shape.nz && heads[column] > above.floor + 1.0;
-    return;
-  }
-}
+void WaveBasin::find_heights() { heights.find(waves.exchange, shape.nz); }
 
 // At bodies, the surface around them: the head of the liquid below them is that of the pressure there.
 double WaveBasin::smooth_height(int column) const
 {
   const double around = push.state()[column];
-  return shape.low.z + shape.cell.z * (mass[column] > 0.0 && !std::isnan(around) ? around : heads[column]);
+  return shape.low.z + shape.cell.z * (solids.now().mass[column] > 0.0 && !std::isnan(around) ? around : heights.head(column));
 }
 
 void WaveBasin::surface(double *smooth, double *raw) const
 {
   for (int c = 0; c < columns(); ++c) {
     smooth[c] = smooth_height(c);
-    raw[c] = hollow[c] ? -std::numeric_limits<double>::infinity() : raw_height(c);
+    raw[c] = heights.is_hollow(c) ? -std::numeric_limits<double>::infinity() : raw_height(c);
   }
 }
 
@@ -139,8 +89,7 @@ std::vector<Basin::Droplet> WaveBasin::droplets() const
 void WaveBasin::contents(std::uint8_t *out) const
 {
   for (int c = 0; c < columns(); ++c) {
-    for (int z = 0; z < shape.nz; ++z)
-      out[static_cast<std::size_t>(z) * columns() + c] = 2 * part[part_number(c, z)] >= SolidParts::FULL ? SOLID_CODE : 0;
+    for (int z = 0; z < shape.nz; ++z) out[static_cast<std::size_t>(z) * columns() + c] = solids.is_solid(c, z) ? SOLID_CODE : 0;
     for (int n = 0; n < waves.exchange.spans_of(c); ++n) {
       const WaveExchange::SpanView span = waves.exchange.span_view(c, n);
       if (!span.wet) continue;
@@ -164,8 +113,8 @@ std::vector<std::uint8_t> WaveBasin::state(const Ledger &ledger) const
                            units,
                            updates,
                            stale,
-                           moving,
-                           still_known,
+                           solids.now().moving,
+                           solids.now().still_known,
                            wait,
                            gone,
                            slept,
@@ -174,7 +123,7 @@ std::vector<std::uint8_t> WaveBasin::state(const Ledger &ledger) const
                            account,
                            of_drops.size()};
   ByteWriter writer;
-  writer.put(head).put_all(mass).put_all(afloat).put_all(push.state()).put_all(push.added_state());
+  writer.put(head).put_all(solids.now().mass).put_all(solids.now().afloat).put_all(push.state()).put_all(push.added_state());
   return writer.put_all(makers.state()).put_all(of_drops).put_all(waves.state()).take();
 }
 
@@ -204,11 +153,10 @@ Basin::Ledger WaveBasin::set_state(const std::uint8_t *bytes, std::size_t size)
   waves.set_state(reader.skip(of_waves), of_waves);    // its size also reveals other makers
   drops = taken;
   makers.set_state(made, of_makers);
-  mass = masses;
-  afloat = floating;
+  solids.set({masses, floating, static_cast<long>(head.moving), head.still_known}, waves.solids());
   push.state() = ambient;
   push.added_state() = added;
-  std::fill(from_solids.begin(), from_solids.end(), 0);
+  from_solids.clear();
   poured = true;
   stale = head.stale != 0;
   travel = head.travel;
@@ -219,15 +167,7 @@ Basin::Ledger WaveBasin::set_state(const std::uint8_t *bytes, std::size_t size)
   units = head.units;
   energy_at_start = head.energy_at_start;
   account = head.account;
-  moving = static_cast<long>(head.moving);
-  still_known = walled_for = head.still_known;
-  part = waves.solids().part;
-  marked = changed = CellBox();
-  for (int y = 0; y < shape.ny; ++y)
-    for (int x = 0; x < shape.nx; ++x)
-      for (int z = 0; z < shape.nz; ++z)
-        if (part[part_number(y * shape.nx + x, z)]) marked.take_in(x, y, z);
-  look();
+  find_heights();
   return head.ledger;
 }
 
