@@ -10,7 +10,6 @@ import pytest
 PLUGIN = Path(__file__).parents[1] / "plugin"
 MOST_LINES, MOST_MEMBERS = 400, 30
 LARGER = {
-    "BondMdanimHarmonic": (532, 18),
     "FixMdanimRigid": (469, 9),
     "VerletMdanim": (441, 16),
 }

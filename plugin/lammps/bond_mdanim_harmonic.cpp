@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // bond_style mdanim/harmonic. Every particle sums its own bonds in an order given by its partners' tags, lower tags from the
 // lowest up, higher ones from the highest down, and adds the two sums to its force once. So the bits of a force depend on neither
-// the order of particles nor the ranks that hold them. This file has coefficients and rows; forces are in
-// bond_mdanim_harmonic_forces.cpp.
+// the order of particles nor the ranks that hold them.
 
 #include "lammps/bond_mdanim_harmonic.h"
 #include "lammps/keywords.h"
+
+#include "numbers/stopwatch.h"
+#include "simd/kernels.h"
+#include "springs/row_forces.h"
 
 #include "atom.h"
 #include "comm.h"
@@ -15,6 +18,7 @@
 #include "force.h"
 #include "memory.h"
 #include "modify.h"
+#include "neighbor.h"
 #include "update.h"
 #include "utils.h"
 
@@ -30,7 +34,7 @@ static constexpr int RESTART_VERSION = 1;
 
 static bigint versions = 0;    // shared by the springs of all instances
 
-BondMdanimHarmonic::BondMdanimHarmonic(LAMMPS *lmp) : Bond(lmp), kernels(widest_kernels()) {}
+BondMdanimHarmonic::BondMdanimHarmonic(LAMMPS *lmp) : Bond(lmp), rows(lmp) {}
 
 BondMdanimHarmonic::~BondMdanimHarmonic()
 {
@@ -90,117 +94,12 @@ void BondMdanimHarmonic::init_style()
   coefficients_may_differ = true;
 }
 
-// --- rows ---
-
-// Whether tags or bonds differ from those that the rows were made from, which are then stored. During a run only fixes change
-// bonds; except for fixes of the bond/ family every change shows in the number of a particle's bonds.
-bool BondMdanimHarmonic::source_changed()
-{
-  const int nlocal = atom->nlocal;
-  if (given) {
-    if (nlocal != rows.size() || atom->nghost || !std::is_sorted(atom->tag, atom->tag + nlocal))
-      error->all(FLERR,
-                 "bond_style mdanim/harmonic: springs were given for {} particles, in the order of their tags and without "
-                 "ghosts; at step {} there are {}, with {} ghosts, or in another order; if the bodies fly apart, lower the "
-                 "time step",
-                 rows.size(), update->ntimestep, nlocal, atom->nghost);
-    return false;
-  }
-  const bool partners_may_differ = update->setupflag || bonds_are_swapped;
-  bool same = atom->nghost == 0 && static_cast<int>(source.tag.size()) == nlocal &&
-              std::equal(source.tag.begin(), source.tag.end(), atom->tag) &&
-              std::equal(source.count.begin(), source.count.end(), atom->num_bond);
-  Row row;
-  for (int i = 0; same && partners_may_differ && i < nlocal; ++i) same = !has_changed(i, row);
-  if (same) return false;
-
-  source = Source();
-  if (atom->nghost) return true;    // indices of ghosts change with every rebuild
-  source.tag.assign(atom->tag, atom->tag + nlocal);
-  source.count.assign(atom->num_bond, atom->num_bond + nlocal);
-  return true;
-}
-
-bool BondMdanimHarmonic::has_changed(int i, Row &row) const
-{
-  look_up(i, upper_only, row);
-  return !rows.is(i, row);
-}
-
-void BondMdanimHarmonic::make_rows()
-{
-  const bool halves = halves_suffice();
-  SpringRows now(atom->nlocal);
-  Row row;
-  for (int i = 0; i < atom->nlocal; ++i) {
-    look_up(i, halves, row);
-    now.add(row);
-  }
-  adopt(std::move(now), halves);
-}
+// --- springs ---
 
 void BondMdanimHarmonic::take(SpringRows &&upper_rows)
 {
-  given = true;
-  adopt(std::move(upper_rows), true);
-}
-
-void BondMdanimHarmonic::adopt(SpringRows &&now, bool halves)
-{
-  now.close();
-  rows = std::move(now);
-  upper_only = halves;
+  rows.take(std::move(upper_rows));
   made = ++versions;
-  farthest = 0;
-  for (int i = 0; halves && i < rows.size(); ++i)
-    if (rows[i].size()) farthest = std::max(farthest, rows[i].first->offset);
-}
-
-void BondMdanimHarmonic::lost_partner(int i, int partner) const
-{
-  if (i < 0)
-    error->one(FLERR,
-               "bond_style mdanim/harmonic: bonds to particle {} were changed without a setup; leave out 'pre no' of this run, "
-               "which is at step {}",
-               partner, update->ntimestep);
-  error->one(FLERR,
-             "bond_style mdanim/harmonic: particle {} has lost its bond partner {} at step {}; if the "
-             "bodies move as they should, raise the ghost cutoff ('comm_modify cutoff'); if they fly apart, "
-             "lower the time step",
-             atom->tag[i], partner, update->ntimestep);
-}
-
-// The bonds of particle i in the order in which their forces are summed: lower partners from the lowest tag up, which may be left
-// out, then upper ones from the highest down.
-void BondMdanimHarmonic::look_up(int i, bool halves, Row &row) const
-{
-  const bool periodic = domain->xperiodic || domain->yperiodic || domain->zperiodic;
-  const tagint *const tag = atom->tag, own = tag[i];
-  std::vector<SpringRows::Link> &link = row.link;
-  link.clear();
-  tagint before = 0;
-  bool ascending = true;
-  for (int b = 0; b < atom->num_bond[i]; ++b) {
-    const tagint other = atom->bond_atom[i][b];
-    const int type = atom->bond_type[i][b];
-    if (type <= 0 || (halves && other < own)) continue;    // 0 and less: switched off by delete_bonds
-    int partner = atom->map(other);
-    if (partner < 0) lost_partner(i, other);
-    if (periodic) partner = domain->closest_image(i, partner);
-    link.push_back({partner - i, type});
-    ascending = ascending && other > before;
-    before = other;
-  }
-  const auto tag_of = [tag, i](const SpringRows::Link &l) { return tag[i + l.offset]; };
-  if (!ascending) std::stable_sort(link.begin(), link.end(), [&](const auto &a, const auto &b) { return tag_of(a) < tag_of(b); });
-  const auto upper = std::find_if(link.begin(), link.end(), [&](const auto &l) { return tag_of(l) > own; });
-  row.lower = static_cast<int>(upper - link.begin());
-  std::reverse(upper, link.end());
-  for (auto several = link.begin(); several != upper;) {    // several bonds between the same two: in the same order at both ends
-    const auto end = std::find_if(several, upper, [&](const auto &l) { return l.offset != several->offset; });
-    std::reverse(several, end);
-    several = end;
-  }
 }
 
 bool BondMdanimHarmonic::has_dashpots() const
@@ -225,24 +124,74 @@ bool BondMdanimHarmonic::refresh_coefficients()
   return true;
 }
 
-// With particles in tag order and all partners here, the lower partners of a row come before it.
-bool BondMdanimHarmonic::halves_suffice() const
+bool BondMdanimHarmonic::halves(HalfBonds &half) const
 {
-  const int nlocal = atom->nlocal;
-  if (!std::is_sorted(atom->tag, atom->tag + nlocal)) return false;
-  Row row;
-  for (int i = 0; atom->nghost && i < nlocal; ++i) {
-    look_up(i, false, row);
-    if (std::any_of(row.link.begin(), row.link.end(), [=](const auto &l) { return i + l.offset >= nlocal; })) return false;
-  }
+  if (!rows.are_halves() || rows.all().size() != atom->nlocal) return false;
+  half = {&rows.all(), law.data()};
   return true;
 }
 
-bool BondMdanimHarmonic::halves(HalfBonds &half) const
+// --- forces ---
+
+void BondMdanimHarmonic::compute(int eflag, int vflag)
 {
-  if (!upper_only || rows.size() != atom->nlocal) return false;
-  half = {&rows, law.data()};
-  return true;
+  const Lap lap(seconds);
+  ev_init(eflag, vflag);
+  const bool other_lists = neighbor->ago == 0 || made_after != neighbor->ncalls;    // made in this step, or between two passes
+  made_after = neighbor->ncalls;
+  if (other_lists && rows.update_rows(update->setupflag || bonds_are_swapped)) made = ++versions;
+  refresh_coefficients();
+
+  std::vector<Vec3> *dashpots = nullptr;
+  if (damped) {
+    if (other_lists) loss.look(atom->tag, atom->nlocal);
+    dashpots = &loss.forces(atom->nlocal);
+  }
+  if (rows.all().size() > 0)
+    energy += add_row_forces({rows.all(), rows.are_halves(), rows.farthest(), spring, law}, {atom->x[0], atom->v[0], atom->f[0]},
+                             eflag_global, dashpots, threads, widest_kernels().springs);
+  if (dashpots) loss.step(atom->v, update->dt, update->setupflag);
+  if (eflag_atom || vflag_either) tally();
+}
+
+template <class Visit> void BondMdanimHarmonic::each_spring(Visit visit) const
+{
+  const double *x = atom->x[0];
+  for (int i = 0; i < atom->nlocal; ++i) {
+    const Vec3 here = vec3(x + 3 * i);
+    for (const SpringRows::Link &link : rows.all()[i])
+      visit(i, i + link.offset, link.type, here - vec3(x + 3 * (i + link.offset)));
+  }
+}
+
+// Virial and energy of each particle in steps that need them. Half of a bond's share goes to either end, which tallies it in its
+// own row where rows are whole.
+void BondMdanimHarmonic::tally()
+{
+  const double share = rows.are_halves() ? 1.0 : 0.5;
+  double sums[6] = {};
+  each_spring([&](int i, int j, int type, const Vec3 &d) {
+    const double r2 = dot(d, d);
+    if (eflag_atom) {
+      const double e = mdanim::energy(spring[type], std::sqrt(r2));
+      eatom[i] += 0.5 * e;
+      if (rows.are_halves()) eatom[j] += 0.5 * e;
+    }
+    if (!vflag_either) return;
+    const SpringCoeffs &own = law[type];
+    const double square = floored_square(d);
+    double factor = spring_factor(own.push, own.pull, square);
+    if (own.c > 0.0) factor += dashpot_factor(own.c, d, vec3(atom->v[i]) - vec3(atom->v[j]), square);
+    const double w[6] = {d.x * d.x * factor, d.y * d.y * factor, d.z * d.z * factor,
+                         d.x * d.y * factor, d.x * d.z * factor, d.y * d.z * factor};
+    for (int k = 0; k < 6; ++k) sums[k] += share * w[k];
+    if (!vflag_atom) return;
+    for (int k = 0; k < 6; ++k) {
+      vatom[i][k] += 0.5 * w[k];
+      if (rows.are_halves()) vatom[j][k] += 0.5 * w[k];
+    }
+  });
+  if (vflag_global) std::copy(sums, sums + 6, virial);
 }
 
 // --- other functions that LAMMPS calls ---
@@ -260,7 +209,7 @@ double BondMdanimHarmonic::single(int type, double rsq, int, int, double &fforce
 // Restart and data files hold only the bonds of particles.
 void BondMdanimHarmonic::refuse_if_given()
 {
-  if (given)
+  if (rows.are_given())
     error->one(FLERR, "bond_style mdanim/harmonic: springs were given to it by mdanim_give_springs, and a file would be "
                       "without them; let the particles have their bonds themselves");
 }
@@ -298,10 +247,7 @@ void BondMdanimHarmonic::write_data(FILE *fp)
 }
 
 double BondMdanimHarmonic::memory_usage()
-{
-  const auto ints = source.tag.capacity() + source.count.capacity();
-  return Bond::memory_usage() + rows.bytes() + loss.bytes() + ints * sizeof(int) + law.capacity() * sizeof(SpringCoeffs);
-}
+{ return Bond::memory_usage() + static_cast<double>(rows.bytes() + loss.bytes() + law.capacity() * sizeof(SpringCoeffs)); }
 
 // For atoms_c.cpp: "seconds" and "lost" of this rank.
 void *BondMdanimHarmonic::extract(const char *what, int &dim)

@@ -5,12 +5,10 @@
 #pragma once
 
 #include "bond.h"
-#include "numbers/vec3.h"
+#include "lammps/bond_rows.h"
 #include "passes/loss.h"
 #include "passes/pass_participant.h"
-#include "simd/kernels.h"
 #include "springs/law.h"
-#include "springs/spring_kernels.h"
 #include "threads/team.h"
 
 #include <vector>
@@ -35,83 +33,35 @@ class BondMdanimHarmonic : public Bond, public mdanim::PassSprings {
   double memory_usage() override;
   void *extract(const char *, int &) override;
 
-  // Uses only these springs from now on, whatever bonds particles have: the springs of all particles, in the order of their tags,
-  // on a rank that is alone.
-  void take(mdanim::SpringRows &&upper_rows);
+  void take(mdanim::SpringRows &&upper_rows);    // see BondRows
 
   const std::vector<mdanim::Spring> &springs() const { return spring; }    // by bond type
-  bool are_given() const { return given; }
+  bool are_given() const { return rows.are_given(); }
 
   bool halves(mdanim::HalfBonds &half) const override;
   const std::vector<mdanim::SpringCoeffs> &coeffs() const override { return law; }
   mdanim::Loss *account() override { return damped ? &loss : nullptr; }
   long long version() const override { return made; }
   bool refresh_coefficients() override;
-  [[noreturn]] void lost_partner(int i, int partner) const override;
+  [[noreturn]] void lost_partner(int i, int partner) const override { rows.lost_partner(i, partner); }
   void took(double more) override { seconds += more; }
   void equip(const mdanim::Kernels &, const mdanim::Threads &now) override { threads = now; }
 
  private:
-  // Data that the rows were made from, besides the bonds themselves, which they hold. Rows are kept while all of it is unchanged.
-  struct Source {
-    std::vector<tagint> tag;
-    std::vector<int> count;    // of bonds
-  };
-  using Row = mdanim::SpringRows::Row;
-  // The bonds of a few rows, one array per quantity, for the vector units.
-  struct Stretch {
-    std::vector<double> x, y, z;       // r_ij, then F_i
-    std::vector<double> push, pull;    // see SpringCoeffs
-    std::vector<double> K, r0;         // of energies, see Spring
-  };
-  // Forces that particles have received from lower partners so far, for sum_halves(): those from the present row to its farthest
-  // partner, in a ring of 2^n places.
-  struct Ring {
-    std::vector<mdanim::Vec3> force;
-    int mask;    // 2^n - 1
-
-    explicit Ring(int farthest);
-    mdanim::Vec3 &of(int i) { return force[i & mask]; }
-  };
-  // Memory that a thread needs besides the rows.
-  struct Workspace {
-    Stretch stretch;
-    Ring received;
-    explicit Workspace(int farthest) : received(farthest) {}
-  };
-
   void allocate();
   void refuse_if_given();
-  bool source_changed();
-  void make_rows();
-  void adopt(mdanim::SpringRows &&made_rows, bool halves);
-  void look_up(int i, bool halves, Row &row) const;
-  bool has_changed(int i, Row &scratch) const;
   bool has_dashpots() const;
-  bool halves_suffice() const;
-  void take_apart(int begin, int end, int n, Stretch &stretch) const;
-  void energies(int begin, int end, int n, Stretch &stretch, double &sum) const;
-  void sum_rows(int begin, int end, const Stretch &stretch) const;
-  void sum_halves(int begin, int end, int first, const Stretch &stretch, Ring &received) const;
-  void dashpots(int begin, int end, Stretch &stretch, std::vector<mdanim::Vec3> &on) const;
-  double compute_rows(int begin, int end, int first, std::vector<mdanim::Vec3> *on, Workspace &with) const;
   template <class Visit> void each_spring(Visit visit) const;    // visit(i, j, type, r_ij)
   void tally();
 
-  const mdanim::Kernels &kernels;
   std::vector<mdanim::Spring> spring;       // by bond type
   std::vector<mdanim::SpringCoeffs> law;    // by bond type
   bool damped = false;                      // some spring has a dashpot
   bool coefficients_may_differ = false;     // since their laws were made
   bool bonds_are_swapped = false;           // some fix changes partners during a run
-  mdanim::SpringRows rows;                  // of local particles, to local ones and ghosts
-  bool upper_only = false;                  // only partners of a higher tag, see sum_halves()
-  bool given = false;                       // by take(), not by the particles
-  bigint made = 0;                          // version of the rows
-  bigint made_after = -1;                   // number of the lists that they were made after
-  Source source;
-  int farthest = 0;    // partner of a row, where rows are halves
-  std::vector<double> energy_of_chunk;
+  mdanim::BondRows rows;
+  bigint made = 0;           // version of rows and coefficients
+  bigint made_after = -1;    // number of the lists that they were made after
   mdanim::Threads threads;
 
   mdanim::Loss loss;    // to dashpots, on this rank

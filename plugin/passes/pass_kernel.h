@@ -3,7 +3,7 @@
 //
 // Springs are evaluated once. Blocks come in ascending order and in each of them offsets in descending order, so that a particle
 // receives from its lower partners in ascending order, and a block's own sum takes its upper ones in descending order: the order
-// of bond_mdanim_harmonic.cpp, hence its bits, as the laws are the same text. Lanes without a spring have push = pull = 0 and add
+// of springs/row_forces.cpp, hence its bits, as the laws are the same text. Lanes without a spring have push = pull = 0 and add
 // nothing as long as positions are finite: F = 0, and a sum that starts at +0 is never -0. Positions of a block can move on at
 // once, for all that is still to come reads its own and upper ones.
 
