@@ -25,7 +25,7 @@ class SolidImpulses {
   void take(const Vec3 &place, const Vec3 &impulse);
   // Takes the push on a solid in a step, over the weight of liquid of volume 1.
   void take_push(const Vec3 &volume_along);
-  // Of all ranks, in units of the waves.
+  // Sums of all ranks, in units of the waves.
   struct Totals {
     std::vector<double> given;    // to the liquid of each column: along x, then along y
     Vec3 all_given, push;         // sum of these; push on solids along x and y, in all steps together
