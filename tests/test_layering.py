@@ -33,6 +33,7 @@ ROOMS = [
     "engine",
     "results",
     "picture",
+    "drawings",
     "export",
     "run",
     "parallel",
@@ -55,7 +56,8 @@ def room_of(*parts: str) -> str:
     if parts[0] == "scene" and len(parts) > 1 and parts[1] in LANGUAGE:
         return "language"
     if parts[0] == "features":  # what finds them, their words, and all the rest
-        return "registry" if len(parts) < 3 else "words" if parts[2] in ("words", "record") else "features"
+        facet = parts[2] if len(parts) > 2 else ""
+        return {"": "registry", "words": "words", "record": "words", "picture": "drawings"}.get(facet, "features")
     return parts[0]
 
 

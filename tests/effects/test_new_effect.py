@@ -12,6 +12,7 @@ from mdanim_lammps.errors import SceneError
 from mdanim_lammps.results.compare import compare
 from mdanim_lammps.scene.parse import parse_scene
 from paths import LAB
+from picture_samples import read_png
 
 WIND, TAU, TIME = 3.0, 1.0, 0.2
 """[m/s], [s], [s]: as in tests/lab/windy.py and tests/lab/features/windy/wind/effect.py."""
@@ -71,6 +72,24 @@ def test_a_run_keeps_its_account(windy):
     assert run["joule"] == pytest.approx(1.0 / (run["kinetic"] + 1.0 + work), rel=0.2)
     assert "wind" in run["summary"] and "wind" in run["cost"]
     assert run["expect"] == [[pytest.approx(work, rel=1e-3), True]]
+
+
+def test_pictures_have_what_it_draws(windy):
+    """An arrow as it is lit, and a line, where they are in the first and the last frame; exports have the arrow as a body."""
+    drawn = windy["drawn"]
+    for path, *places in drawn["seen"]:
+        image = read_png(path) / 255.0
+        arrow, pole = ((1 + np.array(place) * (1, -1)) / 2 * drawn["size"] for place in places)
+        red = (image[:, :, 0] > 0.3) & (image[:, :, 1:].max(axis=2) < 0.4 * image[:, :, 0])
+        rows, columns = np.nonzero(red)
+        for found, place in ((columns, arrow[:, 0]), (rows, arrow[:, 1])):
+            # The last pixels of its tip are covered in part.
+            assert (found.min(), found.max()) == (pytest.approx(place.min(), abs=4), pytest.approx(place.max(), abs=4))
+        blue = (image[:, :, 2] > 0.4) & (image[:, :, :2].max(axis=2) < 0.5 * image[:, :, 2])
+        # The arrow hides the upper half of its pole.
+        assert np.ptp(np.nonzero(blue)[0]) > 0.35 * np.ptp(pole[:, 1])
+    assert drawn["bodies"] == ["a", "b", "arrow"] and drawn["some"] == ["b"]
+    np.testing.assert_allclose(drawn["arrow"], [[0.5, 0.15, 0.65]] * 2, atol=1e-12)
 
 
 def test_frames_have_its_field(windy):

@@ -100,6 +100,29 @@ def run(folder: Path) -> dict:
     }
 
 
+def drawn(folder: Path) -> dict:
+    """Its pictures of the first and the last frame, and where its arrow is in exports."""
+    from mdanim_lammps.export import export
+    from mdanim_lammps.export.cut import Cut
+    from mdanim_lammps.picture.render import Painter
+    from picture_measures import SIZE, project
+    from PIL import Image
+
+    found = {"seen": [], "size": SIZE}
+    with Trajectory(folder) as trajectory, Painter(trajectory, size=SIZE) as painter:
+        middle, cut = trajectory.centers[:, 0], Cut(trajectory, (), 1, slice(None))
+        for frame in (0, len(trajectory) - 1):
+            Image.fromarray(painter.frame(frame)).save(folder / f"wind-{frame}.png")
+            pole = middle[frame] + np.array([(0.0, 0.0, 0.15), (0.0, 0.0, 0.5)])
+            places = [project(painter.view(0.0), of, SIZE[0] / SIZE[1])[0].tolist() for of in (cut.surfaces(frame)[-1][0], pole)]
+            found["seen"].append([str(folder / f"wind-{frame}.png"), *places])
+        found["bodies"] = [body.name for body in cut.bodies]
+        found["arrow"] = [(cut.surfaces(frame)[-1][0] - middle[frame]).max(axis=0).tolist() for frame in (0, len(trajectory) - 1)]
+        found["some"] = [body.name for body in Cut(trajectory, ("b",), 1, slice(None)).bodies]
+    found["files"] = [export(folder, to).files[0].name for to in ("usd", "gltf", "vtk")]
+    return found
+
+
 def varied() -> dict:
     """By a study."""
     here = ready(WIND + "\nlulls 2")
@@ -129,4 +152,5 @@ def left(folder: Path) -> str:
 
 if __name__ == "__main__":
     home = Path(sys.argv[1])
-    print(json.dumps({"words": words(), "told": told(), "run": run(home / "windy.out"), "left": left(home), "varied": varied()}))
+    made = {"words": words(), "told": told(), "run": run(home / "windy.out"), "left": left(home), "varied": varied()}
+    print(json.dumps(made | {"drawn": drawn(home / "windy.out")}))

@@ -11,8 +11,8 @@ import numpy as np
 
 from ..effects.fields import PARTS
 from ..errors import OutputError, UsageError
-from ..picture.liquid import Sheet
-from ..picture.palette import LIQUID, object_colors, rgb, vertex_colors
+from ..picture.drawn import Drawn, drawn, shape_of
+from ..picture.palette import object_colors, vertex_colors
 from ..picture.scenery import scenery
 from ..picture.surfaces import ShadedMesh, shaded_mesh
 from ..results.trajectory import Trajectory
@@ -20,10 +20,13 @@ from ..results.trajectory_metadata import TrajectoryMetadata
 from ..results.untrusted import check_places
 from ..scene.keywords import did_you_mean
 
+GREY = (0.5, 0.5, 0.5)
+"""Colour of what a feature adds without one."""
+
 
 @dataclass(frozen=True)
 class Body:
-    """The surface of one object, or of the liquid, with V vertices."""
+    """The surface of one object, or of what a feature adds, with V vertices."""
 
     name: str
     color: tuple[float, float, float]
@@ -32,7 +35,10 @@ class Body:
     """Vertex indices, counter-clockwise seen from outside, int32, shape (T, 3)."""
     paint: np.ndarray | None = None
     """Colour of each vertex as a mesh file has it, uint8, shape (V, 3)."""
-    liquid: bool = False
+    clear: bool = False
+    """Whether one sees through it."""
+    own: bool = True
+    """Whether it is an object."""
 
 
 class Cut:
@@ -40,7 +46,7 @@ class Cut:
 
     Args:
         trajectory: of the run.
-        objects: names; none for all, and then with the liquid.
+        objects: names; none for all, and then with what features add.
         every, frames: as `export` takes them.
 
     Raises UsageError for names and ranges that are not there, OutputError where there is no frame.
@@ -64,6 +70,7 @@ class Cut:
         m = trajectory.metadata
         self._kept = np.isin(m.object_of, self.objects)
         self.liquid = None if objects else scenery(m).liquid
+        self._added = () if objects else drawn(trajectory)
         self._kept_bonds = np.isin(m.bond, m.id[self._kept]).all(axis=1)
         sizes = np.diff(m.first)[self.objects]
         self.metadata: TrajectoryMetadata = replace(
@@ -174,7 +181,8 @@ class Cut:
 
     @cached_property
     def bodies(self) -> list[Body]:
-        """Surfaces of the objects, then that of the liquid; vertices are doubled along creases, as pictures have them."""
+        """Surfaces of the objects, then of what features add, last what one sees through; vertices are doubled along creases, as
+        pictures have them."""
         mesh, m = self._mesh, self.trajectory.metadata
         colors = object_colors(m.colors, m.still)[self.objects] / 255.0
         skin = m.skin
@@ -201,10 +209,7 @@ class Cut:
                     paint[own] if painted[own].any() else None,
                 )
             )
-        if self.liquid:
-            color = tuple(map(float, rgb(self.liquid.color or LIQUID)))
-            bodies.append(Body(self.liquid.name, color, self._sheet.triangle, liquid=True))
-        return bodies
+        return bodies + [Body(d.name, d.color or GREY, d.triangle, clear=d.clear, own=False) for d in self._drawn]
 
     def surfaces(self, frame: int) -> list[tuple[np.ndarray, np.ndarray]]:
         """Vertices [m] and outward unit normals of each of `bodies` in a frame of the trajectory, shape (V, 3) each."""
@@ -213,9 +218,7 @@ class Cut:
         normals = self._mesh.normals(vertices, position)[self._order]
         vertices = vertices[self._order]
         made = [(vertices[a:b], normals[a:b]) for a, b in zip(self._first, self._first[1:])]
-        if self.liquid:
-            made.append(self._sheet.mesh(self.trajectory.liquid_height(frame).astype(float)))
-        return made
+        return made + [shape_of(one, self.trajectory, frame) for one in self._drawn]
 
     @property
     def sheds_drops(self) -> bool:
@@ -241,5 +244,6 @@ class Cut:
         return np.searchsorted(self._mesh.object_of_vertex[self._order], np.arange(len(self.objects) + 1))
 
     @cached_property
-    def _sheet(self) -> Sheet:
-        return Sheet(self.liquid.grid)
+    def _drawn(self) -> list[Drawn]:
+        """Additions of features; those of lines alone have no surface."""
+        return sorted((one for one in self._added if len(one.triangle)), key=lambda one: one.clear)

@@ -64,12 +64,12 @@ def write(cut: Cut, folder: Path, stem: str, on_frame: Callable[[int], None]) ->
             ]
     materials, known = [], {}
     for mesh, body in zip(meshes, cut.bodies):
-        key = (body.color if body.paint is None else (1.0, 1.0, 1.0), body.liquid)
+        key = (body.color if body.paint is None else (1.0, 1.0, 1.0), body.clear)
         if key not in known:
             known[key] = len(materials)
-            color = [*linear(np.array(key[0])).tolist(), OPACITY if body.liquid else 1.0]
+            color = [*linear(np.array(key[0])).tolist(), OPACITY if body.clear else 1.0]
             look = {"pbrMetallicRoughness": {"baseColorFactor": color, "metallicFactor": 0.0, "roughnessFactor": 0.5}}
-            materials.append(look | ({"alphaMode": "BLEND"} if body.liquid else {}))
+            materials.append(look | ({"alphaMode": "BLEND"} if body.clear else {}))
         mesh["material"] = known[key]
     # glTF has y up: the root turns the scene's z there.
     turned = {"name": stem, "rotation": [-(0.5**0.5), 0.0, 0.0, 0.5**0.5], "children": list(range(1, len(meshes) + 1))}

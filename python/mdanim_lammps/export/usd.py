@@ -50,7 +50,7 @@ def write(cut: Cut, folder: Path, stem: str, on_frame: Callable[[int], None]) ->
         colors = np.array([body.color]) if body.paint is None else body.paint / 255.0
         kind = UsdGeom.Tokens.constant if body.paint is None else UsdGeom.Tokens.vertex
         mesh.CreateDisplayColorPrimvar(kind).Set(array(linear(colors)))
-        key = (body.color if body.paint is None else None, body.liquid)
+        key = (body.color if body.paint is None else None, body.clear)
         if key not in materials:
             materials[key] = _material(stage, f"/scene/materials/material_{len(materials)}", body, Sdf, UsdShade)
         UsdShade.MaterialBindingAPI.Apply(mesh.GetPrim()).Bind(materials[key])
@@ -107,8 +107,8 @@ def _save(stage, stem: str) -> None:
 def _material(stage, path: str, body: Body, Sdf, UsdShade):
     material, shader = UsdShade.Material.Define(stage, path), UsdShade.Shader.Define(stage, f"{path}/surface")
     shader.CreateIdAttr("UsdPreviewSurface")
-    shader.CreateInput("roughness", Sdf.ValueTypeNames.Float).Set(0.1 if body.liquid else 0.5)
-    if body.liquid:
+    shader.CreateInput("roughness", Sdf.ValueTypeNames.Float).Set(0.1 if body.clear else 0.5)
+    if body.clear:
         shader.CreateInput("opacity", Sdf.ValueTypeNames.Float).Set(OPACITY)
     color = shader.CreateInput("diffuseColor", Sdf.ValueTypeNames.Color3f)
     if body.paint is None:

@@ -17,9 +17,10 @@ from .cut import Cut
 def write(cut: Cut, folder: Path, stem: str, on_frame: Callable[[int], None]) -> list[str]:
     pieces = folder / f"{stem}.vtk"
     pieces.mkdir()
-    solids = [body for body in cut.bodies if not body.liquid]
+    solids = [body for body in cut.bodies if not body.clear]
     sizes = [len(vertices) for vertices, _ in cut.surfaces(cut.frames[0])][: len(solids)]
-    owner, first = np.repeat(cut.objects, sizes).astype(np.int32), np.cumsum([0, *sizes])
+    of = [*cut.objects, *[-1] * (len(solids) - len(cut.objects))]
+    owner, first = np.repeat(of, sizes).astype(np.int32), np.cumsum([0, *sizes])
     triangle = np.concatenate([body.triangle + np.int32(start) for body, start in zip(solids, first)])
     m, lines = cut.metadata, []
     for done, (frame, time) in enumerate(zip(cut.frames, cut.times), 1):

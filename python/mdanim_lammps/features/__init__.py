@@ -16,6 +16,8 @@ A folder has facets, each a module that is looked for by its name:
 ``kept``     KEPT, the records that a trajectory keeps of it (effects/kept.py): attributes, tables of frames; Track, what it adds
              to a results.trajectory.Trajectory
 ``vary``     VARIED, settings that a study varies (effects/varied.py)
+``picture``  how it is drawn (picture/drawn.py), looked for when a picture or an export is made: drawn(trajectory), what it adds;
+             medium(trajectory, render), what all else is seen through
 ``advice``   notes(envelope), the remarks of `check` on a scene besides those of effects, whether or not any of them is on
 
 Folders are found, so adding a feature touches no other module of the package; CONTRIBUTING.md lists its tests and docs. Those in

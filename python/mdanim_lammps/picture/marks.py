@@ -52,13 +52,13 @@ class MarkActors:
             if len(metadata.bond) == 0:
                 raise UsageError("--springs: this scene stores no inner particles; write 'save all' in its control block")
             ends = np.searchsorted(metadata.id, metadata.bond)
-            self._springs = MovingLines(len(metadata.id), ends, grey, 1.0)
+            self._springs = MovingLines(len(metadata.id), ends, (grey,) * 3, 1.0)
             self._springs.actor.GetProperty().SetOpacity(min(1.0, (CLEAR_SPRINGS / len(ends)) ** 0.5))
             self.actors.append(self._springs.actor)
         if marks.boxes:
             objects = len(metadata.names)
             edges = (BOX_EDGES + 8 * np.arange(objects)[:, None, None]).reshape(-1, 2)
-            self._boxes = MovingLines(8 * objects, edges, grey, 1.5)
+            self._boxes = MovingLines(8 * objects, edges, (grey,) * 3, 1.5)
             self.actors.append(self._boxes.actor)
         self._names = self._name_actors(metadata, grey, height) if marks.names else []
         self.actors += self._names

@@ -202,11 +202,11 @@ class MovingLines:
     Args:
         points: how many.
         ends: numbers of the two points of each line, shape (L, 2).
-        grey: 0 to 1.
+        color: red, green, blue from 0 to 1.
         width: in pixels.
     """
 
-    def __init__(self, points: int, ends: np.ndarray, grey: float, width: float):
+    def __init__(self, points: int, ends: np.ndarray, color: tuple[float, float, float], width: float):
         from vtkmodules.vtkCommonCore import vtkPoints
         from vtkmodules.vtkCommonDataModel import vtkPolyData
         from vtkmodules.vtkRenderingCore import vtkActor, vtkPolyDataMapper
@@ -220,7 +220,7 @@ class MovingLines:
         self.actor.SetMapper(mapper)
         look = self.actor.GetProperty()
         look.LightingOff()
-        look.SetColor(grey, grey, grey)
+        look.SetColor(color)
         look.SetLineWidth(width)
 
     def move(self, position: np.ndarray) -> None:

@@ -11,13 +11,13 @@ from ..scene.render import Floor, Quality, Render
 from . import shading
 from .behind import Behind
 from .camera import FIELD_OF_VIEW, Action, CameraPath, View, action_of, automatic_view
+from .drawn import Additions, medium
 from .light import Light
 from .marks import MarkActors, Marks
 from .palette import background_colors, is_dark, vertex_colors
 from .pieces import MovingMesh, box_edges, lit_actor, plane
 from .scenery import scenery
 from .surfaces import shaded_mesh
-from .tank import Tank
 from .window import fewer_pixels, off_screen_window, pixels, silent
 
 FLOOR = 5.0
@@ -91,7 +91,8 @@ class Painter:
         position = self.trajectory.position(index)
         vertices = self._mesh.vertices(position)
         time = float(self.trajectory.times[index])
-        self._surface.move(vertices, self._mesh.normals(vertices, position))
+        points, normals = self._more.show(index)
+        self._surface.move(np.concatenate([vertices, points]), np.concatenate([self._mesh.normals(vertices, position), normals]))
         if self._tank:
             self._tank.show(index, position, vertices, self._mesh.triangle)
         self._marks.show(position)
@@ -141,14 +142,18 @@ class Painter:
         metadata, dark, sky = self.trajectory.metadata, is_dark(low), render.quality is Quality.FINAL
         there = scenery(metadata)
         width, height = (n * self._finer for n in self.size)
-        # In final quality the liquid's surface looks up what is behind it, so that has to be drawn before.
-        self._behind = Behind((width, height)) if sky and there.liquid and render.liquid == "smooth" else None
+        # In final quality the surface of a medium looks up what is behind it, so that has to be drawn before.
+        through = medium(self.trajectory, render)
+        self._behind = Behind((width, height)) if sky and through and through.bends else None
         self._front = self._in_front() if self._behind else self._renderer
-        self._tank = Tank(self.trajectory, render.liquid, dark, sky, self._behind) if there.liquid else None
+        self._tank = through.make(dark, sky, self._behind) if through else None
         floor = None if render.floor is Floor.NONE else self._floor_height()
         (x, y, _), reach = self.action.centre, FLOOR * self.action.size
-        self._surface = MovingMesh(len(self._mesh.carry), self._mesh.triangle)
-        self._surface.paint(vertex_colors(metadata)[self._mesh.of_skin])
+        self._more, own = Additions(self.trajectory, dark), len(self._mesh.carry)
+        self._surface = MovingMesh(
+            own + int(self._more.first[-1]), np.concatenate([self._mesh.triangle, own + self._more.triangle])
+        )
+        self._surface.paint(np.concatenate([vertex_colors(metadata)[self._mesh.of_skin], self._more.color]))
         self._actors = [lit_actor(self._surface.data, shading.FRAGMENT_SOLID, liquid=bool(self._tank), sky=sky)]
         self._actors[0].SetVisibility(not marks.springs)
         # Objects are closed, so their inner faces are never visible, and drawing these takes time.
@@ -158,7 +163,7 @@ class Painter:
             self._actors.append(self._tank.plate)
         if floor is not None:
             self._actors.append(self._make_floor(floor, low, high, render))
-        for actor in self._actors:
+        for actor in (*self._actors, *self._more.actors):
             self._renderer.AddActor(actor)
         if there.walls is not None:
             self._renderer.AddActor(box_edges(*there.walls, 0.8 if dark else 0.35))

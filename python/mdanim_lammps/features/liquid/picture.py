@@ -1,0 +1,41 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""The liquid in pictures, where it is a medium, and in exports, where it is a sheet over its columns."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+from ...picture.drawn import Drawn, Medium
+from ...picture.liquid import Sheet
+from ...picture.palette import LIQUID, rgb
+
+
+def drawn(trajectory):
+    """The sheet."""
+    if (pool := trajectory.liquid) is None:
+        return ()
+    sheet = Sheet(pool.grid)
+
+    @lru_cache(maxsize=1)
+    def mesh(frame):
+        return sheet.mesh(trajectory.liquid_height(frame).astype(float))
+
+    color = tuple(map(float, rgb(pool.color or LIQUID)))
+    return (
+        Drawn(
+            pool.name, lambda frame: mesh(frame)[0], sheet.triangle, color=color, normals=lambda frame: mesh(frame)[1], clear=True
+        ),
+    )
+
+
+def medium(trajectory, render):
+    """The tank with its liquid."""
+    if trajectory.liquid is None:
+        return None
+
+    def make(dark, sky, behind):
+        from ...picture.tank import Tank
+
+        return Tank(trajectory, render.liquid, dark, sky, behind)
+
+    return Medium(render.liquid == "smooth", make)
