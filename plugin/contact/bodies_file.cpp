@@ -33,6 +33,13 @@ class Words {
     const std::string_view word = next();
     if (word != wanted) fail(std::string("'") + wanted + "' is needed here" + got(word));
   }
+  // Whether the first of two words follows; else it is the second.
+  bool is_first(const char *one, const char *other)
+  {
+    const std::string_view word = next();
+    if (word != one && word != other) fail(std::string("'") + one + "' or '" + other + "' is needed here" + got(word));
+    return word == one;
+  }
   template <class Number> Number number(const char *what)
   {
     const std::string_view word = next();
@@ -78,9 +85,19 @@ ContactBody read_body(Words &words)
   // Doubles: their product may not fit an integer.
   const double volume = 1.0 * count[0] * count[1] * count[2];
 
-  words.expect("particles");
-  std::vector<std::int32_t> node(words.many("particles"));
-  for (std::int32_t &n : node) n = words.number<std::int32_t>("the place of a particle");
+  std::vector<std::int32_t> node, frame;
+  std::vector<double> frame_at;
+  int particles = 0;
+  if (words.is_first("particles", "rigid")) {
+    node.resize(particles = words.many("particles"));
+    for (std::int32_t &n : node) n = words.number<std::int32_t>("the place of a particle");
+  } else {
+    particles = words.number<int>("the number of particles");
+    for (int k = 0; k < RigidFrame::PARTICLES; ++k) {
+      frame.push_back(words.number<std::int32_t>("a particle of the frame"));
+      for (int d = 0; d < 3; ++d) frame_at.push_back(words.number<double>("a coordinate of a particle"));
+    }
+  }
 
   words.expect("filled");
   std::vector<std::uint8_t> filled(words.many("cells"));
@@ -118,9 +135,9 @@ ContactBody read_body(Words &words)
   std::vector<double> open(OPEN_NUMBERS * static_cast<std::size_t>(parts));
   for (double &value : open) value = words.number<double>("a number of an open part");
   try {
-    return ContactBody({count, edge, static_cast<int>(node.size()), node.data(), filled.data(), points, cell.data(), at.data(),
-                        centre.data(), normal.data(), area.data(), kind.data(), depth.empty() ? nullptr : depth.data(), parts,
-                        open.data()});
+    return ContactBody({count, edge, particles, node.data(), filled.data(), points, cell.data(), at.data(), centre.data(),
+                        normal.data(), area.data(), kind.data(), depth.empty() ? nullptr : depth.data(), parts, open.data(),
+                        frame.empty() ? nullptr : frame.data(), frame_at.data()});
   } catch (const std::runtime_error &problem) {
     words.fail(problem.what(), line);
   }

@@ -40,17 +40,22 @@ ContactBody::ContactBody(const ContactBodyArrays &given)
   need(nodes < (std::size_t{1} << 31), "it has too many places");
   mean_edge = std::cbrt(product);
   filled.assign(given.filled, given.filled + volume);
-  place_of_node.assign(given.node, given.node + given.particles);
-  for (int n = 0; n < given.particles; ++n)
-    need(given.node[n] >= 0 && given.node[n] < static_cast<int>(nodes) && (n == 0 || given.node[n - 1] < given.node[n]),
-         "places of particles do not ascend");
-  need_particles_of_cells();
+  number = given.particles;
+  if (given.frame) {
+    take_frame(given);
+  } else {
+    place_of_node.assign(given.node, given.node + number);
+    for (int n = 0; n < number; ++n)
+      need(given.node[n] >= 0 && given.node[n] < static_cast<int>(nodes) && (n == 0 || given.node[n - 1] < given.node[n]),
+           "places of particles do not ascend");
+    need_particles_of_cells();
+  }
   if (given.depth) {
     need(are_finite(given.depth, coefficients), "a depth is not a number");
     depth_grid.assign(given.depth, given.depth + coefficients);
     depth_grid.push_back(0.0);    // kernels read three numbers and one more
   } else {
-    need(given.particles == static_cast<int>(nodes), "a cuboid has a particle in each place");
+    need(rigid || number == static_cast<int>(nodes), "a cuboid has a particle in each place");
     need(std::find(filled.begin(), filled.end(), 0) == filled.end(), "a cuboid has no empty cells");
   }
   surface.reserve(given.points);
@@ -70,6 +75,40 @@ ContactBody::ContactBody(const ContactBodyArrays &given)
   }
   take_open_parts(given);
   sort_points();
+}
+
+void ContactBody::take_frame(const ContactBodyArrays &given)
+{
+  constexpr int N = RigidFrame::PARTICLES;
+  constexpr double FLAT = 1e-6;    // volume of a frame over that of a cube of its longest side
+  RigidFrame &frame = rigid.emplace();
+  need(are_finite(given.frame_at, 3 * N), "a particle of its frame is nowhere");
+  double longest = 0.0;
+  Vec3 side[N];
+  for (int k = 0; k < N; ++k) {
+    frame.particle[k] = given.frame[k];
+    need(given.frame[k] >= 0 && given.frame[k] < number && (k == 0 || given.frame[k - 1] < given.frame[k]),
+         "particles of its frame do not ascend");
+    side[k] = vec3(given.frame_at + 3 * k) - vec3(given.frame_at);
+    longest = std::max(longest, std::sqrt(dot(side[k], side[k])));
+  }
+  const Vec3 across[N] = {{}, cross(side[2], side[3]), cross(side[3], side[1]), cross(side[1], side[2])};
+  const double volume = dot(side[1], across[1]);
+  need(std::fabs(volume) > FLAT * longest * longest * longest, "its frame is flat");
+  frame.slope[0] = {}, frame.at_zero[0] = 1.0;
+  for (int k = 1; k < N; ++k) {
+    frame.slope[k] = (1.0 / volume) * across[k];
+    frame.at_zero[k] = -dot(frame.slope[k], vec3(given.frame_at));
+    frame.slope[0] -= frame.slope[k];
+    frame.at_zero[0] -= frame.at_zero[k];
+  }
+}
+
+int ContactBody::slot_of(int node) const
+{
+  if (!rigid) return place_of_node[node];
+  const int *const end = rigid->particle + RigidFrame::PARTICLES, *const found = std::find(rigid->particle, end, node);
+  return found == end ? -1 : static_cast<int>(found - rigid->particle);
 }
 
 void ContactBody::take_open_parts(const ContactBodyArrays &given)
@@ -93,8 +132,16 @@ bool ContactBody::operator==(const ContactBody &other) const
   const auto same_parts = [](const OpenPart &a, const OpenPart &b) {
     return a.side == b.side && std::equal(a.low, a.low + 2, b.low) && std::equal(a.high, a.high + 2, b.high);
   };
-  return std::equal(cells, cells + 3, other.cells) && std::equal(edges, edges + 3, other.edges) &&
-         place_of_node == other.place_of_node && filled == other.filled && depth_grid == other.depth_grid &&
+  const auto same_frame = [&] {
+    if (!rigid || !other.rigid) return !rigid && !other.rigid;
+    const auto same_weights = [&](int k) {
+      return rigid->particle[k] == other.rigid->particle[k] && rigid->at_zero[k] == other.rigid->at_zero[k] &&
+             same(rigid->slope[k], other.rigid->slope[k]);
+    };
+    return same_weights(0) && same_weights(1) && same_weights(2) && same_weights(3);
+  };
+  return std::equal(cells, cells + 3, other.cells) && std::equal(edges, edges + 3, other.edges) && number == other.number &&
+         same_frame() && place_of_node == other.place_of_node && filled == other.filled && depth_grid == other.depth_grid &&
          std::equal(open_parts.begin(), open_parts.end(), other.open_parts.begin(), other.open_parts.end(), same_parts) &&
          std::equal(surface.begin(), surface.end(), other.surface.begin(), other.surface.end(), same_points);
 }
@@ -109,12 +156,16 @@ void ContactBody::sort_points()
     return low_corner(p) != low_corner(q) ? low_corner(p) < low_corner(q) : is_fine(p) < is_fine(q);
   });
   std::vector<char> is_corner(places(), 0);
+  low = {}, high = {1.0 * cells[0], 1.0 * cells[1], 1.0 * cells[2]};
   for (int n = 0; n < static_cast<int>(by_cell.size()); ++n) {
-    const int p = by_cell[n], low = low_corner(p);
-    if (carriers.empty() || carriers.back().place != low) {
-      carriers.push_back({low, n, n, n, {}, {}});
+    const int p = by_cell[n], first = low_corner(p);
+    const Vec3 &at = surface[p].at;
+    low = {std::min(low.x, at.x), std::min(low.y, at.y), std::min(low.z, at.z)};
+    high = {std::max(high.x, at.x), std::max(high.y, at.y), std::max(high.z, at.z)};
+    if (carriers.empty() || carriers.back().place != first) {
+      carriers.push_back({first, n, n, n, {}, {}});
       for (int corner = 0; corner < 8; ++corner)
-        is_corner[low + (corner & 1) + row() * (corner >> 1 & 1) + layer() * (corner >> 2)] = 1;
+        is_corner[first + (corner & 1) + row() * (corner >> 1 & 1) + layer() * (corner >> 2)] = 1;
     }
     PointCell &cell = carriers.back();
     const Vec3 from_corner = surface[p].at - Vec3{1.0 * surface[p].cell[0], 1.0 * surface[p].cell[1], 1.0 * surface[p].cell[2]};
@@ -132,6 +183,7 @@ void ContactBody::sort_points()
     unite(from_corner.z, cell.low.z, cell.high.z, edges[2]);
   }
   for (const int at : place_of_node) is_carrier.push_back(is_corner[at]);
+  if (rigid) stands_out = 0.0;    // boxes of rigid objects are around their surfaces
 }
 
 // Throws unless particles are exactly at the corners of filled cells.

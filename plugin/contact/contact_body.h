@@ -5,8 +5,12 @@
 #pragma once
 
 #include "contact/contact_push.h"
+#include "contact/rigid_map.h"
+
+#include "geometry/boxes.h"
 
 #include <cstdint>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -57,6 +61,9 @@ struct ContactBodyArrays {
   const double *depth;    // null for a cuboid
   int open = 0;
   const double *open_part = nullptr;    // OPEN_NUMBERS for each part
+  // Of a body that does not deform, else null: numbers of its frame's four particles, and X of each. `node` is then not read.
+  const std::int32_t *frame = nullptr;
+  const double *frame_at = nullptr;
 };
 
 class ContactBody {
@@ -66,11 +73,12 @@ class ContactBody {
 
   bool operator==(const ContactBody &other) const;    // the same arrays
   bool is_cuboid() const { return depth_grid.empty(); }
+  const std::optional<RigidFrame> &frame() const { return rigid; }    // none of a body that deforms
   int sides() const { return is_cuboid() ? 6 : 1; }
   int count(int axis) const { return cells[axis]; }
   double edge(int axis) const { return edges[axis]; }
   double spacing() const { return mean_edge; }    // cube root of a cell's volume [m]
-  int particles() const { return static_cast<int>(place_of_node.size()); }
+  int particles() const { return number; }
   // Inline, so that code that asks for one of its fields does not fill the others.
   Lattice lattice() const
   {
@@ -87,8 +95,11 @@ class ContactBody {
     if (on_flat) return {has_fine ? cell.fine : cell.first, cell.last};
     return {cell.first, is_cuboid() ? cell.first : cell.fine};
   }
-  bool carries(int node) const { return is_carrier[node]; }    // points, or centres of their areas
-  // How far the drawn surface extends beyond the cells [m].
+  bool carries(int node) const { return rigid ? slot_of(node) >= 0 : is_carrier[node]; }    // points, or centres of their areas
+  // Corners of a box around the grid and all points, X.
+  const Vec3 &least() const { return low; }
+  const Vec3 &most() const { return high; }
+  // How far the drawn surface extends beyond the cells [m], of a body that deforms.
   double overhang() const { return stands_out; }
   // How far a point may move while its particles move by 1 at most: the sum of the absolute values of their weights, 1 within
   // cells.
@@ -99,7 +110,9 @@ class ContactBody {
   int layer() const { return (cells[0] + 1) * (cells[1] + 1); }
   int places() const { return layer() * (cells[2] + 1); }
   int place(int i, int j, int k) const { return i + row() * j + layer() * k; }
-  int place_of(int node) const { return place_of_node[node]; }
+  // Places of particles that contact knows: those of the grid, or those of the frame; and that of a particle, -1 for none.
+  int slots() const { return rigid ? RigidFrame::PARTICLES : places(); }
+  int slot_of(int node) const;
 
   bool is_filled(int i, int j, int k) const { return mdanim::is_filled(lattice(), i, j, k); }
   bool is_outer(int i, int j, int k) const;    // filled, with a neighbour across a face that is not
@@ -113,12 +126,16 @@ class ContactBody {
 
  private:
   void need_particles_of_cells() const;
+  void take_frame(const ContactBodyArrays &given);
   void take_open_parts(const ContactBodyArrays &given);
   void sort_points();
 
   int cells[3];
   double edges[3], mean_edge;
-  std::vector<int> place_of_node;
+  int number;                        // of particles
+  std::vector<int> place_of_node;    // empty for a rigid body
+  std::optional<RigidFrame> rigid;
+  Vec3 low, high;
   std::vector<std::uint8_t> filled;
   std::vector<SurfacePoint> surface;
   std::vector<PointCell> carriers;

@@ -7,6 +7,7 @@
 #include "contact/contact_push.h"
 #include "contact/field_contact.h"
 #include "contact/padded_vec3.h"
+#include "contact/rigid_map.h"
 
 namespace mdanim {
 
@@ -28,7 +29,10 @@ struct PushTask {
   const PaddedVec3 *place;    // as that of Placed
   double longest;             // depth beyond which a contact is over [m]
   Ramps ramps;
-  bool is_smooth;    // the map
+  bool is_smooth;               // the map
+  const RigidFrame *frame;      // of a host that does not deform, else null: its particles have the numbers `slot`,
+  const Spot<double> *rigid;    // and X = 0 is here
+  bool takes_force;             // a rigid host
 };
 
 // Results for a contact in a step, besides the values that it keeps.

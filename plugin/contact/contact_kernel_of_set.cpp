@@ -162,9 +162,25 @@ template <bool SMOOTH> MDANIM_ALWAYS_INLINE void follow(const PushTask &task, co
   }
 }
 
-template <bool SMOOTH, bool CUBOID>
+// The same for a host that does not deform.
+MDANIM_ALWAYS_INLINE void follow_frame(const PushTask &task, const Vec<Four> &x, Followed &found)
+{
+  const auto all = [](const Vec3 &v) { return Vec<Four>{constant<Four>(v.x), constant<Four>(v.y), constant<Four>(v.z)}; };
+  const Spot<double> &rigid = *task.rigid;
+  found.lost = 0;
+#pragma GCC unroll 3
+  for (int d = 0; d < 3; ++d) found.spot.J[d] = all(rigid.J[d]), found.spot.K[d] = all(rigid.K[d]);
+  found.off = Vec<Four>{};
+  found.guess = found.spot.to_material(x - all(rigid.x));
+  for (const int *&slots : found.slots) slots = task.slot;
+}
+
+enum class Map { LINEAR, SMOOTH, RIGID };
+
+template <Map MAP, bool CUBOID>
 MDANIM_ALWAYS_INLINE void push_block(const PushTask &task, FieldContact *first, const PointNow *now, int n, PushedBlock &pushed)
 {
+  constexpr bool SMOOTH = MAP == Map::SMOOTH;
   const Lattice &host = task.host;
   int number[LANES];    // lanes without a contact repeat the last one
 #pragma GCC unroll 8
@@ -178,7 +194,11 @@ MDANIM_ALWAYS_INLINE void push_block(const PushTask &task, FieldContact *first, 
   for (int lane = 0; lane < LANES; ++lane)
 #pragma GCC unroll 3
     for (int d = 0; d < 3; ++d) found.cell[lane][d] = contact(lane).cell[d];
-  follow<SMOOTH>(task, gather_rows([&](int lane) { return &now[number[lane]].x.x; }), found);
+  const Vec<Four> x = gather_rows([&](int lane) { return &now[number[lane]].x.x; });
+  if constexpr (MAP == Map::RIGID)
+    follow_frame(task, x, found);
+  else
+    follow<SMOOTH>(task, x, found);
   PointOf<Four> point;
   gather_record([&](int lane) { return &now[number[lane]]; }, point);
   ContactState<Four> state;
@@ -217,13 +237,18 @@ MDANIM_ALWAYS_INLINE void push_block(const PushTask &task, FieldContact *first, 
   const ContactPush<Four> push =
       contact_push(task.law, task.dt, point.area, part, part_slope, turn, below, flat, found.spot, found.off, shift, state);
   pushed.nodes = 0;
-  spread_to_nodes<SMOOTH>(found.weights, -1.0 * push.both, {-1.0 * push.moment[0], -1.0 * push.moment[1], -1.0 * push.moment[2]},
-                          [&](int i, int j, int k, const Vec<Four> &force) {
-                            pushed.step[pushed.nodes] = i + host.row * j + host.layer * k;
-                            PaddedVec3(&row)[LANES] = pushed.on_node[pushed.nodes++];
-                            const Four column[4] = {force.x, force.y, force.z, Four{}};
-                            store_columns(column, [&](int lane) { return &row[lane].value.x; });
-                          });
+  const auto put = [&](long step, const Vec<Four> &force) {
+    pushed.step[pushed.nodes] = step;
+    PaddedVec3(&row)[LANES] = pushed.on_node[pushed.nodes++];
+    const Four column[4] = {force.x, force.y, force.z, Four{}};
+    store_columns(column, [&](int lane) { return &row[lane].value.x; });
+  };
+  const Vec<Four> back = -1.0 * push.both, moment[3] = {-1.0 * push.moment[0], -1.0 * push.moment[1], -1.0 * push.moment[2]};
+  if constexpr (MAP != Map::RIGID)
+    spread_to_nodes<SMOOTH>(found.weights, back, moment,
+                            [&](int i, int j, int k, const Vec<Four> &force) { put(i + host.row * j + host.layer * k, force); });
+  else if (task.takes_force)
+    spread_to_frame(*task.frame, X, back, moment, put);
   pushed.hard = (found.lost | crushed | ~bits(stays)) & ((1 << n) - 1);
   pushed.on_ramp = bits(is_on_ramp(part_slope));
   FieldContact *to[LANES];
@@ -253,12 +278,15 @@ void add_to_nodes(const PushedBlock &pushed, int first, int end, PaddedVec3 *on)
 
 void push(const PushTask &task, FieldContact *first, const PointNow *now, int n, PushedBlock &pushed)
 {
-  if (task.host.depth)
-    push_block<false, false>(task, first, now, n, pushed);
+  if (task.frame)
+    task.host.depth ? push_block<Map::RIGID, false>(task, first, now, n, pushed)
+                    : push_block<Map::RIGID, true>(task, first, now, n, pushed);
+  else if (task.host.depth)
+    push_block<Map::LINEAR, false>(task, first, now, n, pushed);
   else if (task.is_smooth)
-    push_block<true, true>(task, first, now, n, pushed);
+    push_block<Map::SMOOTH, true>(task, first, now, n, pushed);
   else
-    push_block<false, true>(task, first, now, n, pushed);
+    push_block<Map::LINEAR, true>(task, first, now, n, pushed);
 }
 
 }    // namespace

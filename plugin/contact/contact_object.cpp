@@ -11,6 +11,10 @@ namespace mdanim {
 bool CarriedPoint::add(const ContactObject &owner, const SurfacePoint &point, const Vec3 &X)
 {
   const ContactBody &body = *owner.body;
+  if (body.frame()) {
+    for (int k = 0; k < RigidFrame::PARTICLES; ++k) carrier[last++] = {owner.slot[k], body.frame()->weight(k, X)};
+    return owner.slot[0] >= 0;
+  }
   const MapWeights weights = trilinear(X, {point.cell[0], point.cell[1], point.cell[2]}, body);
   const int *const slots = owner.slot.data() + weights.base;
   int missing = 0;
@@ -44,11 +48,16 @@ void NearPoints::add(const CarriedPoint &point)
 // A map that is linear along each axis maps a box into the box around the images of its corners.
 static Box box_of(const PointCell &cell, const ContactObject &owner, const PaddedVec3 *place, bool &is_there)
 {
-  const int row = owner.body->row(), layer = owner.body->layer(), *const slots = owner.slot.data() + cell.place;
+  const int row = owner.body->row(), layer = owner.body->layer();
   Vec3 corner[8];
   int missing = 0;
   for (int c = 0; c < 8; ++c) {
-    const int slot = slots[(c & 1) + row * (c >> 1 & 1) + layer * (c >> 2)];
+    if (owner.is_rigid()) {
+      const int i = cell.place % row, j = cell.place % layer / row, k = cell.place / layer;
+      corner[c] = owner.rigid.x + owner.rigid.to_space({i + 1.0 * (c & 1), j + 1.0 * (c >> 1 & 1), k + 1.0 * (c >> 2)});
+      continue;
+    }
+    const int slot = owner.slot[cell.place + (c & 1) + row * (c >> 1 & 1) + layer * (c >> 2)];
     missing |= slot;
     corner[c] = place[slot].value;
   }

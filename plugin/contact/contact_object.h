@@ -32,13 +32,25 @@ struct ContactObject {
   bool is_excepted = false;    // contacts with others of this kind, and with planes, are left to another fix
 
   std::vector<int>
-      slot;    // numbers of its particles by their places in the grid, in the arrays of ContactWorld; -1 for one that is not here
+      slot;    // numbers of its particles by ContactBody::slot_of(), in the arrays of ContactWorld; -1 for one that is not here
   int first_slot = 0, last_slot = 0;
   std::shared_ptr<LateOuterCells> outer;    // empty until first asked for after lists were made
-  Vec3 way;                                 // displacement of its first particle in this step
+  Spot<double> rigid;                       // of a rigid body: x(X) at X = 0, and its gradient
+  bool takes_force = true;                  // whether forces on its particles matter
+  Vec3 way;                                 // displacement of its first particle, or of the middle of a rigid body, in this step
   double stir = 0.0;                        // the largest displacement of a point relative to that in this step
   bool is_pushed = false;                   // by contacts, in the last step
 
+  bool is_rigid() const { return body->frame().has_value(); }
+  // Corners of the box around a rigid body.
+  std::array<Vec3, 8> corners() const
+  {
+    std::array<Vec3, 8> found;
+    const Vec3 &low = body->least(), &high = body->most();
+    for (int c = 0; c < 8; ++c)
+      found[c] = rigid.x + rigid.to_space({c & 1 ? high.x : low.x, c & 2 ? high.y : low.y, c & 4 ? high.z : low.z});
+    return found;
+  }
   // Whether contacts of `other`, an object of the same id, have the same points.
   bool has_points_of(const ContactObject &other) const
   { return first_tag == other.first_tag && (body == other.body || *body == *other.body); }

@@ -2,7 +2,7 @@
 // The memory of contacts as bytes.
 
 #include "contact/contact_world.h"
-#include "contact/lattice_field.h"
+#include "contact/object_field.h"
 #include "contact/plane_field.h"
 #include "records/byte_reader.h"
 
@@ -57,7 +57,7 @@ std::vector<FieldContact> read_pair(ByteReader &reader, const ContactBody &owner
   int before = -1;
   for (const FieldContact &row : rows) {
     if (!has_point(owner, row.point) || row.side < 0 || row.side >= host.sides() ||
-        !host.is_filled(row.cell[0], row.cell[1], row.cell[2]))
+        !(host.frame() || host.is_filled(row.cell[0], row.cell[1], row.cell[2])))
       reader.fail("has points that there are not");
     if (row.point <= before) reader.fail("has points that do not ascend");
     if (!has_numbers(row, offsetof(FieldContact, state))) reader.fail("has a value that is not a number");
@@ -103,8 +103,8 @@ ContactWorld::Fields ContactWorld::read(const StateRecords &records)
     if (!one || !other) reader.fail("is of an object that is not there");
     reader.expect_version(STATE_VERSION);
     if (key.b) {
-      put<LatticeField>(found, {false, key.a, key.b, false}, read_pair(reader, *one->body, *other->body));
-      put<LatticeField>(found, {false, key.a, key.b, true}, read_pair(reader, *other->body, *one->body));
+      put<ObjectField>(found, {false, key.a, key.b, false}, read_pair(reader, *one->body, *other->body));
+      put<ObjectField>(found, {false, key.a, key.b, true}, read_pair(reader, *other->body, *one->body));
     } else {
       int plane = 0;
       for (auto &rows : read_planes(reader, *one->body, settings.planes.size()))

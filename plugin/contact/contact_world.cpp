@@ -5,6 +5,7 @@
 
 #include "contact/lattice_field.h"
 #include "contact/plane_field.h"
+#include "contact/rigid_field.h"
 
 #include <algorithm>
 #include <cmath>
@@ -39,7 +40,7 @@ void ContactWorld::take(std::vector<ContactObject> now, std::vector<char> moves)
   all = std::move(now);
   movable = std::move(moves);
   number_of.clear();
-  for (int n = 0; n < objects(); ++n) number_of[all[n].id] = n;
+  for (int n = 0; n < objects(); ++n) number_of[all[n].id] = n, all[n].takes_force = movable[n];
   for (auto &[key, field] : fields) field->use(law_of(key));    // materials may have changed since contacts began
 }
 
@@ -78,7 +79,9 @@ std::unique_ptr<ContactField> ContactWorld::make(const FieldKey &key)
 {
   ContactObject &owner = all[owner_of(key)];
   if (key.at_plane) return std::make_unique<PlaneField>(owner, key.second, settings.planes[key.second], law_of(key));
-  return std::make_unique<LatticeField>(owner, all[host_of(key)], law_of(key));
+  ContactObject &host = all[host_of(key)];
+  if (host.is_rigid()) return std::make_unique<RigidField>(owner, host, law_of(key));
+  return std::make_unique<LatticeField>(owner, host, law_of(key));
 }
 
 void ContactWorld::list_fields()
@@ -142,7 +145,44 @@ struct Deviation {
   void tell(ContactObject &one) const { one.way = way, one.stir = one.body->leverage() * std::sqrt(square); }
 };
 
+// Moves a rigid object: no point of the box around it goes farther, beside its middle, than a corner of the box.
+void move_rigid(ContactObject &one, const Spot<double> &to)
+{
+  const std::array<Vec3, 8> before = one.corners();
+  one.rigid = to;
+  const std::array<Vec3, 8> now = one.corners();
+  Deviation motion{0.5 * ((now[0] - before[0]) + (now[7] - before[7]))};
+  for (int c = 0; c < 8; ++c) motion.include(now[c] - before[c]);
+  one.way = motion.way, one.stir = std::sqrt(motion.square);
+}
+
+// The place of a rigid object whose particles are here.
+Spot<double> place_of(const ContactObject &one, const PaddedVec3 *place)
+{
+  Vec3 frame[RigidFrame::PARTICLES];
+  for (int k = 0; k < RigidFrame::PARTICLES; ++k) frame[k] = place[one.slot[k]].value;
+  Spot<double> spot;
+  evaluate_frame(*one.body->frame(), frame, spot);
+  return spot;
+}
+
 }    // namespace
+
+void ContactWorld::place_rigid(const std::vector<Vec3> &frames, std::vector<Box> &boxes)
+{
+  std::size_t from = 0;
+  for (int n = 0; n < objects(); ++n) {
+    if (!all[n].is_rigid()) continue;
+    Vec3 frame[RigidFrame::PARTICLES];
+    for (Vec3 &one : frame) one = frames[from++];
+    if (boxes[n].empty()) continue;    // an object without particles
+    Spot<double> spot;
+    evaluate_frame(*all[n].body->frame(), frame, spot);
+    all[n].rigid.det > 0.0 ? move_rigid(all[n], spot) : void(all[n].rigid = spot);
+    boxes[n] = Box();
+    for (const Vec3 &corner : all[n].corners()) boxes[n].include(&corner.x);
+  }
+}
 
 void ContactWorld::clear_forces(ContactObject &one)
 {
@@ -161,16 +201,17 @@ void ContactWorld::list(const std::vector<ContactParticle> &particles, const Coo
     ContactObject &one = all[n];
     const std::vector<int> slot_before = std::move(one.slot);
     one.outer = std::make_shared<LateOuterCells>();
-    one.slot.assign(near.has_zones(n) ? one.body->places() : 0, -1);
+    one.slot.assign(near.has_zones(n) ? one.body->slots() : 0, -1);
     one.first_slot = static_cast<int>(from);
     changes.clear();    // since the last step, of objects that already existed
     for (; from < particles.size() && particles[from].object == n; ++from) {
-      const int at = one.body->place_of(particles[from].node);
+      const int at = one.body->slot_of(particles[from].node);
       one.slot[at] = static_cast<int>(from);
       if (!slot_before.empty() && slot_before[at] >= 0)
         changes.push_back(arrays.place()[from].value - arrays.place_before()[slot_before[at]].value);
     }
     one.last_slot = static_cast<int>(from);
+    if (one.is_rigid()) continue;    // it has been placed
     Deviation motion{changes.empty() ? Vec3{} : changes.front()};
     for (const Vec3 &change : changes) motion.include(change);
     motion.tell(one);
@@ -187,6 +228,12 @@ void ContactWorld::move_to(const Coordinates &places)
   threads.parts(static_cast<long>(arrays.size()), NS_OF_PARTICLE, [&](long from, long to) {
     for (ContactObject &one : all) {
       if (one.first_slot == one.last_slot || one.first_slot < from || one.first_slot >= to) continue;
+      if (one.is_rigid()) {
+        for (int s = one.first_slot; s < one.last_slot; ++s) arrays.place()[s].value = place(places, s);
+        move_rigid(one, place_of(one, arrays.place()));
+        clear_forces(one);
+        continue;
+      }
       Deviation motion{place(places, one.first_slot) - arrays.place()[one.first_slot].value};
       for (int s = one.first_slot; s < one.last_slot; ++s) {
         const Vec3 x = place(places, s);

@@ -43,6 +43,9 @@ class ContactWorld {
   int objects() const { return static_cast<int>(all.size()); }
   const ContactObject &object(int n) const { return all[n]; }
 
+  // Places rigid objects: the particles of their frames, of all these objects one after the other; and sets their boxes.
+  void place_rigid(const std::vector<Vec3> &frames, std::vector<Box> &boxes);
+
   // Sets the particles that may take part in contacts, ascending, and their places; `near` must have looked ahead before.
   void list(const std::vector<ContactParticle> &particles, const Coordinates &places);
   // Forgets all points except those in contact: to be called before list() at the setup of a run.

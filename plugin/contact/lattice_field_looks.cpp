@@ -14,20 +14,6 @@ static constexpr double JUMP = 0.25;      // cells that X may jump between cells
 static constexpr int MOST_GUESSES = 3;
 static constexpr double NEAR_PLACE = 0.1;    // cells that a guess may be away from the last one
 
-bool LatticeField::world_normal(const SurfacePoint &point, const ContactArrays &arrays, Vec3 &normal) const
-{
-  const Placed own = {*owner->body, owner->slot.data(), arrays.place()};
-  const std::array<int, 3> cell = {point.cell[0], point.cell[1], point.cell[2]};
-  Spot<double> spot;
-  if (!evaluate(own, trilinear({cell[0] + 0.5, cell[1] + 0.5, cell[2] + 0.5}, cell, *owner->body), spot)) return false;
-  const ContactBody &body = *owner->body;
-  normal = spot.gradient({point.normal.x * body.edge(0), point.normal.y * body.edge(1), point.normal.z * body.edge(2)});
-  const double length = std::sqrt(dot(normal, normal));
-  if (!(length > 0.0)) return false;
-  normal = (1.0 / length) * normal;
-  return true;
-}
-
 bool LatticeField::look_at(std::size_t q, const ContactArrays &arrays, bool may_begin)
 {
   ++looks;
@@ -91,14 +77,7 @@ bool LatticeField::look_at(std::size_t q, const ContactArrays &arrays, bool may_
     return false;
   }
 
-  FieldContact contact{};
-  contact.point = near.point(q);
-  contact.side = verdict.side;
-  for (int d = 0; d < 3; ++d) contact.cell[d] = track.cell[d];
-  contact.state.X = contact.state.anchor = X;
-  contact.state.memory.depth = verdict.depth;
-  contact.state.memory.offset = verdict.is_crushed || was_open >> verdict.side & 1 ? verdict.depth : 0.0;
-  begin(q, contact);
+  begin_contact(q, verdict, X, was_open);
   return true;
 }
 

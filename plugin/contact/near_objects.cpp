@@ -80,8 +80,23 @@ void NearObjects::find_zones()
   }
 }
 
+// Of a rigid object those of the box around it.
+std::vector<double> NearObjects::initial_extents() const
+{
+  std::vector<double> extents;
+  for (const NearPair &pair : near_pairs)
+    for (const auto &[n, zone] : {std::pair{pair.a, pair.of_a}, std::pair{pair.b, pair.of_b}}) {
+      double least = Box::FAR;
+      if (all[n].is_rigid())
+        for (const Vec3 &corner : all[n].corners()) least = std::min(least, dot(zone.across, corner));
+      extents.push_back(least);
+    }
+  return extents;
+}
+
 void NearObjects::lower_extents(int object, const Vec3 &x, std::vector<double> &extents) const
 {
+  if (all[object].is_rigid()) return;
   for (const SearchZone &one : zones[object])
     if (one.extent >= 0 && one.zone.contains(x)) {
       double &own = extents[one.extent ^ 1];
@@ -106,6 +121,8 @@ void NearObjects::drop_separated_pairs(const std::vector<double> &extents)
 bool NearObjects::needs(const ContactParticle &particle, const Vec3 &x) const
 {
   const ContactBody &body = *all[particle.object].body;
+  if (body.frame() && particle.node >= 0 && particle.node < body.particles())
+    return has_zones(particle.object) && body.carries(particle.node);
   const bool is_carrier = particle.node < 0 || particle.node >= body.particles() || body.carries(particle.node);
   return std::any_of(zones[particle.object].begin(), zones[particle.object].end(),
                      [&](const SearchZone &one) { return (is_carrier || one.extent >= 0) && one.zone.contains(x); });

@@ -38,7 +38,7 @@ class NearObjects {
   void look_ahead(const std::vector<Box> &boxes, double skin);
   // Two extents for each near pair, along the line between the middles of its boxes, each to be replaced by its minimum over all
   // ranks after lower_extents() has been called with all particles.
-  std::vector<double> initial_extents() const { return std::vector<double>(2 * near_pairs.size(), Box::FAR); }
+  std::vector<double> initial_extents() const;
   void lower_extents(int object, const Vec3 &x, std::vector<double> &extents) const;
   void drop_separated_pairs(const std::vector<double> &extents);
 

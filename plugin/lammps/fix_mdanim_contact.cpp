@@ -205,8 +205,22 @@ void FixMdanimContact::take_objects(Contacts contacts)
     const double volume = body.edge(0) * body.edge(1) * body.edge(2);
     const double inertia = one.mass / force->ftm2v;    // the ratio of force to acceleration
     const double density = inertia / (volume * static_cast<double>(body.filled_cells()));
-    made.push_back(
-        {one.id, found->second, one.young, one.friction, density, one.lowest, one.excepted != 0, {}, 0, 0, {}, {}, 0.0, false});
+    made.push_back({one.id,
+                    found->second,
+                    one.young,
+                    one.friction,
+                    density,
+                    one.lowest,
+                    one.excepted != 0,
+                    {},
+                    0,
+                    0,
+                    {},
+                    {},
+                    true,
+                    {},
+                    0.0,
+                    false});
     moves.push_back(static_cast<char>(one.moves));
     ids.push_back(one.id);
     lowest.push_back(one.lowest);
@@ -249,12 +263,33 @@ void FixMdanimContact::setup_post_neighbor()
 
 void FixMdanimContact::post_neighbor() { list(); }
 
+// Tells all ranks where rigid objects are, and sets the boxes of these.
+void FixMdanimContact::place_rigid(std::vector<Box> &boxes)
+{
+  constexpr int N = RigidFrame::PARTICLES;
+  std::vector<int> row(boxes.size(), -1);    // of an object's frame
+  int rows = 0;
+  for (int n = 0; n < objects.size(); ++n)
+    if (world_of_contact.object(n).is_rigid()) row[n] = rows++;
+  if (rows == 0) return;
+  std::vector<Vec3> frames(N * rows, Vec3{Box::FAR, Box::FAR, Box::FAR});
+  for (int i = 0; i < atom->nlocal; ++i) {
+    const int n = objects[i];
+    if (n < 0 || row[n] < 0) continue;
+    const int k = world_of_contact.object(n).body->slot_of(static_cast<int>(atom->tag[i] - lowest[n]));
+    if (k >= 0) frames[N * row[n] + k] = vec3(atom->x[i]);
+  }
+  MPI_Allreduce(MPI_IN_PLACE, &frames.data()->x, 3 * N * rows, MPI_DOUBLE, MPI_MIN, world);
+  world_of_contact.place_rigid(frames, boxes);
+}
+
 void FixMdanimContact::list()
 {
   const Lap lap(seconds);
   const int nlocal = atom->nlocal;
-  const std::vector<Box> boxes =
+  std::vector<Box> boxes =
       objects.place(*atom, world, [this](int i) { return is_among(i); }, [this](int i) { refuse_new_object(i); });
+  place_rigid(boxes);
   world_of_contact.near.look_ahead(boxes, neighbor->skin);
   std::vector<double> extents = world_of_contact.near.initial_extents();
   if (!extents.empty()) {

@@ -58,6 +58,7 @@ class FixMdanimContact : public mdanim::FixBase, public mdanim::PassParticipant,
   void take_objects(Contacts contacts);
   [[noreturn]] void refuse_new_object(int i) const;
   void need_lists() const;
+  void place_rigid(std::vector<mdanim::Box> &boxes);
   void list();
   mdanim::Coordinates places_now();
   mdanim::Coordinates places_of_all(const mdanim::Coordinates &of_mine);

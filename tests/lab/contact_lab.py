@@ -14,11 +14,26 @@ import plugin_lab as lab
 import plugin_path
 import state_lab
 from mdanim_lammps.engine.plugin import folder
-from mdanim_lammps.model.contact_body import make_contact_body
+from mdanim_lammps.model.contact_body import frame_of, make_contact_body
 from mdanim_lammps.model.lattice import Cells
 from mdanim_lammps.scene.shapes import Box
 
-ARRAYS = ("count", "edge", "node", "filled", "cell", "at", "centre", "normal", "area", "kind", "depth", "open")
+ARRAYS = (
+    "count",
+    "edge",
+    "node",
+    "filled",
+    "cell",
+    "at",
+    "centre",
+    "normal",
+    "area",
+    "kind",
+    "depth",
+    "open",
+    "frame",
+    "frame_at",
+)
 COLUMNS = ("body", "young", "friction", "moves")
 MEMORY = [
     ("offset", "f8"),
@@ -65,6 +80,7 @@ class Cuboid:
     angle: float = 0.0
     """[deg]"""
     held: bool = False
+    rigid: bool = False
 
     @property
     def particles(self) -> lab.Body:
@@ -77,7 +93,7 @@ class Cuboid:
     @property
     def arrays(self) -> dict:
         """The arrays of its contact body."""
-        return cuboid_arrays(self.cells, (self.spacing,) * 3)
+        return cuboid_arrays(self.cells, (self.spacing,) * 3, self.rigid)
 
 
 def rotation(axis, angle: float) -> np.ndarray:
@@ -87,18 +103,18 @@ def rotation(axis, angle: float) -> np.ndarray:
     return c * np.eye(3) + s * cross + (1.0 - c) * np.outer(a, a)
 
 
-def cuboid_arrays(cells, edge) -> dict:
+def cuboid_arrays(cells, edge, rigid: bool = False) -> dict:
     """The arrays of a cuboid's contact body."""
     size = np.array(cells) * edge
     body = make_contact_body(Box(tuple(size.tolist())), Cells(np.ones(cells[::-1], bool), -size / 2, size / 2))
-    return {name: getattr(body, name) for name in ARRAYS}
+    return {name: getattr(frame_of(body) if rigid else body, name) for name in ARRAYS}
 
 
 def give_body(lmp, fix: str, kind: int, arrays: dict) -> None:
     """Hand a contact body over; RuntimeError with the plugin's message."""
     library = ctypes.CDLL(f"{folder()}/mdanimplugin.so")
     kept = {name: None if arrays[name] is None else np.ascontiguousarray(arrays[name]) for name in ARRAYS}
-    count, edge, node, filled, *of_points, open_parts = (
+    count, edge, node, filled, *of_points, open_parts, frame, frame_at = (
         a if a is None else a.ctypes.data_as(ctypes.c_void_p) for a in kept.values()
     )
     sizes = ctypes.c_int(len(kept["node"])), ctypes.c_int(len(kept["cell"]))
@@ -117,6 +133,8 @@ def give_body(lmp, fix: str, kind: int, arrays: dict) -> None:
         *of_points,
         ctypes.c_int(len(kept["open"])),
         open_parts,
+        frame,
+        frame_at,
         error,
         ctypes.c_int(1024),
     ):
@@ -134,13 +152,16 @@ def scene(cuboids) -> tuple[lab.Body, dict]:
 def commands(cuboids, words: str, dt: float, more=(), before=()) -> list[str]:
     """Commands after the particles: some ``before``, the group of those that move, contact, leap-frog."""
     first = np.cumsum([0] + [len(one.particles.x) for one in cuboids])
-    moving = " ".join(f"{a + 1}:{b}" for one, a, b in zip(cuboids, first, first[1:]) if not one.held)
+    of = lambda some: " ".join(f"{a + 1}:{b}" for one, a, b in zip(cuboids, first, first[1:]) if some(one))
+    stiff = of(lambda one: one.rigid and not one.held)
+    groups = [f"group stiff id {stiff}", "group bent subtract mobile stiff", "fix stiff stiff mdanim/rigid"] if stiff else []
     return [
         *before,
-        f"group mobile id {moving}",
+        f"group mobile id {of(lambda one: not one.held)}",
         f"fix contact mobile mdanim/contact d_body d_young d_friction {words}",
         *more,
-        "fix run mobile mdanim/leapfrog",
+        *groups,
+        f"fix run {'bent' if stiff else 'mobile'} mdanim/leapfrog",
         f"timestep {dt!r}",
         "thermo_style custom step ebond",
     ]

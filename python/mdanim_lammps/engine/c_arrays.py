@@ -27,4 +27,5 @@ def body_arguments(kind: int, body: ContactBody) -> list:
         None if body.depth is None else pointer(body.depth),
         ctypes.c_int(len(body.open)),
         pointer(body.open),
+        *(None if array is None else pointer(array) for array in (body.frame, body.frame_at)),
     ]

@@ -72,8 +72,12 @@ def bodies_text(bodies: Mapping[int, ContactBody]) -> Iterator[str]:
         yield f"\nbody {kind}\n"
         yield from rows("cells %d %d %d\n", *body.count[:, None])
         yield from rows("edge %r %r %r\n", *body.edge[:, None])
-        yield f"particles {len(body.node)}\n"
-        yield from rows("%d\n", body.node)
+        if body.frame is None or body.frame_at is None:
+            yield f"particles {len(body.node)}\n"
+            yield from rows("%d\n", body.node)
+        else:
+            yield f"rigid {len(body.node)}  # four particles, at\n"
+            yield from rows("%d %r %r %r\n", body.frame, *body.frame_at.T)
         yield f"filled {len(body.filled)}\n"
         yield from rows("%d\n", body.filled)
         yield f"points {len(body.cell)}  # cell, kind, area, at, centre, normal\n"

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from itertools import product
 
@@ -75,6 +75,11 @@ class ContactBody:
     """Open parts of sides of a cuboid that others cover (model/cover.py): rows of a side, 0 to 5 for -x, +x, -y, +y, -z, +z, and
     a rectangle, low and high along the first and the second axis across, X, shape (R, 5). A side acts only in its rectangles; a
     side without any acts everywhere."""
+    frame: np.ndarray | None = None
+    """Of a body that does not deform, else None: four particles that are not in one plane, ascending, int32, shape (4,). Contact
+    finds places in it by these alone."""
+    frame_at: np.ndarray | None = None
+    """X of each [-], shape (4, 3)."""
 
     @cached_property
     def carried(self) -> np.ndarray:
@@ -167,6 +172,24 @@ def _carried(body: ContactBody, some: np.ndarray) -> np.ndarray:
             corner = low + way @ np.array([1, nodes[0], nodes[0] * nodes[1]])
             np.add.at(carried, particle[corner], weight(part, way) * area[rows])
     return carried
+
+
+def frame_of(body: ContactBody) -> ContactBody:
+    """The same body as one that does not deform: its frame is of four particles far from each other."""
+    nodes = body.count.astype(np.int64) + 1
+    z, rest = np.divmod(body.node, nodes[0] * nodes[1])
+    X = np.stack([rest % nodes[0], rest // nodes[0], z], axis=1).astype(float)
+    x = X * body.edge
+    chosen = [int(x.sum(axis=1).argmin())]
+    chosen.append(int(((x - x[chosen[0]]) ** 2).sum(axis=1).argmax()))
+    across = np.cross(x - x[chosen[0]], x[chosen[1]] - x[chosen[0]])
+    chosen.append(int((across**2).sum(axis=1).argmax()))
+    chosen.append(int(abs((x - x[chosen[0]]) @ across[chosen[2]]).argmax()))
+    frame = np.sort(np.array(chosen, np.int32))
+    frame_at = X[frame]
+    for array in (frame, frame_at):
+        array.setflags(write=False)
+    return replace(body, frame=frame, frame_at=frame_at)
 
 
 # --- cuboids ----------------------------------------------------------------------------------------------------------

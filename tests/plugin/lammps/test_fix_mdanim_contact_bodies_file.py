@@ -2,6 +2,7 @@
 """fix mdanim/contact: bodies from a table of text, and what is refused in it, with file and line."""
 
 import re
+from dataclasses import replace
 from types import SimpleNamespace
 
 import contact_lab
@@ -33,6 +34,19 @@ def test_bodies_of_a_file_give_the_bits_of_those_handed_over(tmp_path):
         lmp.command("run 20 pre no post no")
         assert State.of(lmp).same(expected)
         lmp.close()
+
+
+def test_a_rigid_body_of_a_file_has_the_bits_of_one_handed_over(tmp_path):
+    """Its frame in place of places of particles."""
+    pair = replace(PAIR[0], velocity=(0, 0, 0), held=True, rigid=True), replace(PAIR[1], velocity=(0, 0, -0.05))
+    states = []
+    (tmp_path / "bodies").write_text("".join(bodies_text({n: SimpleNamespace(**one.arrays) for n, one in enumerate(pair)})))
+    for give in (True, False):
+        lmp = load(pair, tmp_path, f"objects bodies {tmp_path}/bodies" if not give else "objects", 0.15, give=give)
+        lmp.command("run 20 pre no post no")
+        states.append(State.of(lmp))
+        lmp.close()
+    assert contact_lab.contacts(states[0].contacts) and states[1].same(states[0])
 
 
 def at(pattern: str, nth: int = 0) -> int:

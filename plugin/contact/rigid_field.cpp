@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// Lists of points that may touch a host that does not deform, looks at them, and the work of a contact with it in a step.
+
+#include "contact/rigid_field.h"
+
+#include "contact/lattice_field.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace mdanim {
+
+static constexpr double LOOKED_AT = 0.75;    // cells from where a point may act within which its normal matters
+static constexpr double TRUSTED = 1.0;       // as in lattice_field.cpp
+
+// How far X is from where a point may act on the host [m]: beside a cuboid a point acts while the centre of its area is there.
+double RigidField::outside(const Vec3 &X) const
+{
+  const ContactBody &body = *host->body;
+  double square = 0.0;
+  for (int d = 0; d < 3; ++d) {
+    const double at = component(X, d), low = component(body.least(), d), high = component(body.most(), d);
+    const double out = body.edge(d) * std::max({low - at, at - high, 0.0});
+    square += out * out;
+  }
+  return std::max(0.0, std::sqrt(square) - LatticeField::stands_out(*owner->body, body));
+}
+
+void RigidField::list(const FieldLists &with)
+{
+  owner = &with.owner, host = &with.host;
+  const ContactBody &body = *host->body;
+  const double reach = LOOKED_AT * body.spacing() + with.skin;
+  const auto distance = [&](const Vec3 &x) {
+    const Vec3 X = to_material(x);
+    const double out = outside(X);
+    return out > 0.0 || body.is_cuboid() ? out : -body.depth(0, X).value;
+  };
+  list_points(with, with.host_zone->grown(reach), body.is_cuboid(), reach, TRUSTED * body.spacing(), distance);
+}
+
+bool RigidField::look_at(std::size_t q, const ContactArrays &arrays, bool may_begin)
+{
+  ++looks;
+  PointTrack &track = known[q];
+  const SurfacePoint &point = surface_point(q);
+  const ContactBody &body = *host->body;
+  const std::uint8_t was_open = track.open;
+  track.cell = {0, 0, 0};
+  track.X = to_material(near.place(q, arrays.place()));
+  if (const double out = outside(track.X) - LOOKED_AT * body.spacing(); out > 0.0) {
+    track.open = 0;
+    wake.set(q, budget + out);
+    return false;
+  }
+  const Vec3 X_centre = track.X + host->rigid.to_material(near.shift(q, arrays.place()));
+  Verdict verdict;
+  verdict.slack = slack_of_far(body, point, track.X, X_centre, 0.0);
+  if (verdict.slack <= 0.0) {
+    Vec3 normal;
+    if (!world_normal(point, arrays, normal)) {    // not all of its particles are here
+      track.open = EVERY_SIDE;
+      wake.set(q, budget);
+      return false;
+    }
+    verdict = judge(body, point, track.X, X_centre, host->rigid, normal, 0.0);
+  }
+  track.open = verdict.open;
+  if (!may_begin || verdict.side < 0) {
+    wake.set(q, budget + std::max(0.0, verdict.slack));
+    return false;
+  }
+  begin_contact(q, verdict, track.X, was_open);
+  return true;
+}
+
+ObjectField::Fate RigidField::push(FieldContact &contact, std::size_t q, const PushTask &task, const PointNow &now,
+                                   ContactArrays &arrays, ContactAccount &account) const
+{
+  const ContactBody &body = *host->body;
+  const Spot<double> &spot = host->rigid;
+  const Vec3 X = to_material(now.x), shift = spot.to_material(now.shift);
+  contact.state.change = X - contact.state.X;
+  contact.state.X = X;
+  const Depth<double> below = body.depth(contact.side, X);
+  double part = 1.0;
+  Vec3 part_slope;
+  if (body.is_cuboid()) part = part_that_counts<double>(task.ramps, task.host, X + shift, contact.side / 2, part_slope);
+  if (!(below.value > std::min(contact.state.memory.offset, 0.0) && part > 0.0 && below.value <= task.longest)) {
+    if (task.dt > 0.0) account.damped += last_damping_work(contact.state.memory, below.value);
+    return Fate::OUT;
+  }
+  const ContactPush<double> push =
+      contact_push(task.law, task.dt, now.area, part, part_slope, Vec3{}, below, {}, spot, Vec3{}, shift, contact.state);
+  contact.last = push.outcome;
+  const Vec3 moment[3] = {-1.0 * push.moment[0], -1.0 * push.moment[1], -1.0 * push.moment[2]};
+  if (task.takes_force)
+    spread_to_frame(*task.frame, X, -1.0 * push.both, moment,
+                    [&](int k, const Vec3 &force) { arrays.force()[task.slot[k]].value += force; });
+  count(contact, q, {push.at_centre, push.heat, push.damped}, is_on_ramp(part_slope), arrays, account);
+  return Fate::STAYS;
+}
+
+}    // namespace mdanim
