@@ -118,7 +118,7 @@ def told(name: str, size: float) -> None:
     plan, start = plan_spacing(case), time.process_time()
     particles = prepare(case).system.particles
     took, peak = time.process_time() - start, resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e6
-    seconds = work.seconds(case, plan.h, plan.total)
+    seconds = work.seconds(case, plan.h, plan.particles)
     print(
         f"| {name} | {particles:,} | {seconds:.2f} | {took:.2f} | {seconds / took:.2f} | {plan.memory * 1e-9:.2f} | {peak:.2f} |",
         flush=True,

@@ -25,6 +25,7 @@ ROOMS = [
     "language",
     "words",
     "scene",
+    "bodies",
     "model",
     "reach",
     "effects",

@@ -80,12 +80,12 @@ def size_line(scene: SceneRecord) -> str | None:
     if not scene.solids:
         return None
     plan = plan_spacing(scene)
-    if plan.total < LARGE and work.seconds(scene, plan.of, plan.total) < LONG_MODELLING:
+    if plan.total < LARGE and work.seconds(scene, plan.of, plan.particles) < LONG_MODELLING:
         return None
     return (
         f"size     about {number(plan.total / 1e6, 2)} million particles, spacing {say(plan.h, 'm')} set by {plan.set_by}: "
         f"{number(plan.memory * 1e-9, 2)} GB of {number(plan.available * 1e-9, 2)} GB free, "
-        f"about {_about(work.seconds(scene, plan.of, plan.total))} of modelling"
+        f"about {_about(work.seconds(scene, plan.of, plan.particles))} of modelling"
     )
 
 

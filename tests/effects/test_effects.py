@@ -31,7 +31,7 @@ object b {
   shape sphere 0.1
   position (0, 0, 0.5)
   mass 1
-  elasticity 1e5
+  elasticity rigid
 }
 liquid w {
   basin from (-1, -1, 0) to (1, 1, 2)
@@ -53,6 +53,7 @@ LINES = {
     "liquid": 18,
     "buoyancy": 4,
     "liquid-drag": 4,
+    "rigid": 16,
 }
 
 

@@ -5,6 +5,7 @@ bound."""
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 
 import numpy as np
 
@@ -96,8 +97,17 @@ class Effect(Motion, Bounds, Accounts, Frames, Advice):
         return 0.0
 
     def commands(self, context: Context) -> list[str]:
-        """LAMMPS commands; group ``mobile`` exists by then."""
+        """LAMMPS commands; group ``mobile`` exists by then. A word ``table:NAME`` is the path of one of its `tables`."""
         return []
+
+    def tables(self, context: Context) -> Mapping[str, str]:
+        """Texts of files that its commands read, by name."""
+        return {}
+
+    def integrates(self, context: Context) -> tuple[np.ndarray, str] | None:
+        """Solids that its fix moves in place of the leap-frog, bool, shape (M,), and the group of their particles, which its
+        commands make; None for no solid. The ledger has their energy by `kinetic`."""
+        return None
 
     def acts_on(self, context: Context) -> bool:
         """Whether it acts on anything in a part of a scene: some of its solids, with or without the cells of a grid."""

@@ -73,6 +73,10 @@ class Accounts:
         """Present value of its column ``ledger`` [J]."""
         return self.potential(readings.context.scene, readings.system.mass, readings.array("x")) if self.has_potential else 0.0
 
+    def kinetic(self, readings: Readings) -> float:
+        """Kinetic energy of the solids that its fix moves in place of the leap-frog [J]."""
+        return 0.0
+
     def further_energies(self, readings: Readings) -> dict[str, float]:
         """Present values of its columns ``further_ledger`` [J]."""
         return {}

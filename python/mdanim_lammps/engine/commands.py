@@ -16,6 +16,8 @@ BALANCE = ("balance 1.0 rcb", "fix balance all balance 1000 1.1 rcb")
 """Cut space so that every rank has the same share of particles, now and in the course of a run; changes no bit of the result."""
 MOVING = (f"variable {DRIVEN} atom d_{DRIVEN}", f"group {DRIVEN} variable {DRIVEN}", f"group moving union mobile {DRIVEN}")
 """Make the groups of what is driven, and of all that moves (effects.Context.pushed)."""
+TABLE = "table:"
+"""Begins the word of a command of an effect that stands for the path of one of its tables."""
 GHOST = 3.0
 """Least communication cutoff over the spacing; where there are springs it is longer, see `prelude`."""
 
@@ -69,18 +71,29 @@ def prelude(plan: Plan) -> list[str]:
     ]
 
 
-def physics(plan: Plan, threads: int = 1) -> list[str]:
-    """Commands after the particles exist: groups, effects, integrator, time step."""
+def table_file(plan: Plan, name: str) -> str:
+    """Name of the file of a table."""
+    return f"table.{name}.{plan.name}"
+
+
+def physics(plan: Plan, threads: int = 1, folder: str = "") -> list[str]:
+    """Commands after the particles exist: groups, effects, integrator, time step. Tables are in this folder, whose name ends with
+    a slash."""
     effects = [c for e in plan.effects for c in e.commands(plan.context)]
+    for name in plan.tables:
+        effects = [c.replace(TABLE + name, folder + table_file(plan, name)) for c in effects]
     drag = f" lambda d_{LAMBDA.name}" if LAMBDA.name in plan.columns else ""
     if drag and plan.exponential:
         drag += " drag exp"
+    groups = [found[1] for e in plan.effects if (found := e.integrates(plan.context)) is not None]
+    others = [f"group others subtract mobile {' '.join(groups)}"] if groups else []
     return [
         "mass * 1.0",  # wanted by atom_style bond; the particles' own masses (rmass) are what counts
         f"group mobile type 1:{HELD}",
         *(MOVING if DRIVEN in plan.columns else ()),
         *effects,
-        f"fix leapfrog mobile mdanim/leapfrog{drag}",
+        *others,
+        f"fix leapfrog {'others' if others else 'mobile'} mdanim/leapfrog{drag}",
         f"timestep {plan.certificate.timestep!r}",
         "run_style verlet/mdanim" + (f" threads {threads}" if threads > 1 else ""),
     ]

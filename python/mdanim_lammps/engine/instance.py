@@ -4,7 +4,9 @@
 from __future__ import annotations
 
 import ctypes
+import tempfile
 from collections.abc import Sequence
+from pathlib import Path
 
 import numpy as np
 
@@ -12,7 +14,7 @@ from ..effects.fields import Field
 from ..errors import SetupError
 from .c_arrays import body_arguments
 from .columns import from_records, spread, to_records, values_of_pairs
-from .commands import BALANCE, SKIN, bond_coeffs, box, physics, prelude
+from .commands import BALANCE, SKIN, bond_coeffs, box, physics, prelude, table_file
 from .cut import box_to_cut, shorter_along_rows
 from .lines_of_scene import run_lines_of_scene
 from .opened_lammps import OpenedLammps
@@ -92,7 +94,11 @@ class Instance:
                 what, count = f"take {len(plan.bonds)} springs", ctypes.c_int(len(plan.bonds))
                 self.lammps.call(what, "mdanim_give_springs", count, *springs)
             lmp.commands_list([f"bond_coeff {row}" for row in bond_coeffs(plan)])
-        lmp.commands_list(physics(plan, choose_threads(plan, share_of_cores(self._comm)).threads))
+        threads = choose_threads(plan, share_of_cores(self._comm)).threads
+        with tempfile.TemporaryDirectory(prefix="mdanim-") as folder:
+            for name, text in plan.tables.items():  # the first rank reads them for all
+                Path(folder, table_file(plan, name)).write_text(text, encoding="ascii")
+            lmp.commands_list(physics(plan, threads, f"{folder}/"))
         for fix in plan.body_fixes:
             for kind, body in plan.contact_bodies.items():
                 self.lammps.call(f"give body {kind} to fix {fix}", "mdanim_contact_body", fix, *body_arguments(kind, body))

@@ -131,6 +131,11 @@ class Plan:
         """The bodies that `body_fixes` are given, by kind, ascending; without such fixes none, and none is made."""
         return self.system.contact_bodies if self.body_fixes else {}
 
+    @cached_property
+    def tables(self) -> dict[str, str]:
+        """Texts of files that commands read, by name."""
+        return {name: text for e in self.effects for name, text in e.tables(self.context).items()}
+
     @property
     def damped(self) -> bool:
         """Whether any bond type has a dashpot."""

@@ -142,6 +142,8 @@ class SubPlans:
             contact_kind=lambda: s.contact_kind[index],
             frames=lambda: s.frames,
             driven=lambda: s.driven[index],
+            inertia=lambda: s.inertia[index],
+            rigid=lambda: s.rigid[index],
         )
 
     # --- springs at both ends: kept by object, for it takes a sort to make them ---------------------------------------

@@ -6,7 +6,8 @@ A folder has facets, each a module that is looked for by its name:
 ``words``    its part of the language (scene/): SWITCHES, the causes that call for each of its effects; QUANTITIES, which
              ``expect`` can check; MARGINS, the meaning of each of its limits; classes with settings, SCENE outside of all blocks,
              OBJECT, CONTROL and RENDER in these; BLOCKS of its own; TOUCHED, words for what objects touch, with the kind of block
-             that brings it; MISPLACED, words that people write behind a setting, and what to write instead;
+             that brings it; MISPLACED, words that people write behind a setting, and what to write instead; ELASTICITIES, classes
+             of further forms of ``elasticity``;
              CHECKS by the word of a block, and check(validator, top, held) of a whole scene (scene/validate.py);
              touched(scene), whether it brings something that objects may touch; points(scene), whether objects touch it or each
              other with points of their surfaces; width(scene), the width that sets the spacing of
@@ -18,6 +19,7 @@ A folder has facets, each a module that is looked for by its name:
 ``vary``     VARIED, settings that a study varies (effects/varied.py)
 ``picture``  how it is drawn (picture/drawn.py), looked for when a picture or an export is made: drawn(trajectory), what it adds;
              medium(trajectory, render), what all else is seen through
+``body``     KINDS, the kinds of bodies that it brings (bodies/kind.py): what objects are made of, and how finely
 ``advice``   notes(envelope), the remarks of `check` on a scene besides those of effects, whether or not any of them is on
 
 Folders are found, so adding a feature touches no other module of the package; CONTRIBUTING.md lists its tests and docs. Those in

@@ -9,9 +9,10 @@ from functools import cached_property, lru_cache, singledispatch
 
 import numpy as np
 
+from ..bodies import kind_of
 from ..errors import Problem, SceneError
 from ..scene.formatting import number, say
-from ..scene.scene import HoldAll, HoldFaces, HoldWithin, SceneRecord, Shape, Solid, SpringConstant, Young
+from ..scene.scene import Elasticity, HoldAll, HoldFaces, HoldWithin, SceneRecord, Shape, Solid
 from . import shapes
 from .cells import TooThin, fill_cells
 from .contact_body import BodyFrame
@@ -38,17 +39,17 @@ def build_models(scene: SceneRecord, h: float | Sequence[float] | None = None, d
     apart at this spacing, a ``hold`` without particles.
     """
     spacing = np.broadcast_to(plan_spacing(scene).of if h is None else h, len(scene.solids)).tolist()
-    shared = _Shared()
+    shared = SharedParts()
     models, problems = [], []
     for m, solid in enumerate(scene.solids):
         try:
-            model = _make_model(solid, spacing[m], shared)
+            model = kind_of(solid).make(solid, spacing[m], shared)
             models.append(replace(model, driven=True) if m in driven else model)
         except TooThin as error:
             problems.append(_too_thin(solid, spacing[m], error))
         except MeshError as error:
             problems.append(Problem(solid.spans.get("shape"), f"{solid.name}: {error}", error.hint))
-        except _NothingHeld as error:
+        except NothingHeld as error:
             problems.append(Problem(solid.spans.get("hold"), f"{solid.name}: {error}", error.hint))
     if problems:
         raise SceneError(problems)
@@ -83,8 +84,8 @@ class _Material:
     young: float
 
 
-class _Shared:
-    """Makes every body and material of one scene once; lives as long as one call of build_models."""
+class SharedParts:
+    """Makes every body and material of one scene once; lives as long as one call of build_models (bodies.Shared)."""
 
     def __init__(self):
         self.body = lru_cache(maxsize=None)(_make_body)
@@ -99,17 +100,17 @@ def _make_body(shape: Shape, h: float) -> _Body:
     return _Body(lattice, surface, BodyFrame(shape, lattice.cells))
 
 
-def _make_material(body: _Body, mass: float, elasticity: Young | SpringConstant, rigid: bool) -> _Material:
-    """Masses fitted to the moments of the shape; a body that is all held never turns, and has no springs."""
+def _make_material(body: _Body, mass: float, elasticity: Elasticity, loose: bool) -> _Material:
+    """Masses fitted to the moments of the shape, and springs; ``loose``: masses by shares, and no springs."""
     lattice = body.lattice
     even = lattice.share * (mass / lattice.share.sum())
-    m = even if rigid else even * body.fit.weight
+    m = even if loose else even * body.fit.weight
     m *= mass / m.sum()
     edge = lattice.cells.edge
-    k = stiffness(lattice, elasticity)
+    k = np.zeros(len(lattice.spring)) if loose else stiffness(lattice, elasticity)
     spring, kind = lattice.spring, lattice.kind
-    if rigid or not k.all():  # the paper's literal springs have no braces
-        keep = (k > 0) & (not rigid)
+    if not k.all():  # the paper's literal springs have no braces
+        keep = k > 0
         spring, kind, k = spring[keep], kind[keep], k[keep]
     # Masses by shares are of few kinds.
     spring_type, constants = types(np.stack([k, rest_lengths(edge)[kind], reduced_mass(even, spring)], axis=1))
@@ -125,12 +126,18 @@ def _freeze(*arrays: np.ndarray) -> None:
 # --- one object ---------------------------------------------------------------------------------------------
 
 
-def _make_model(solid: Solid, h: float, shared: _Shared) -> Model:
+def lattice_model(solid: Solid, h: float, shared: SharedParts, *, loose: bool = False) -> Model:
+    """The model of a lattice of hexahedra with a particle spacing h [m]. A body that is all held never turns, and has no springs;
+    nor has a ``loose`` one, whose particles something else keeps together.
+
+    Raises cells.TooThin, mesh.MeshError, NothingHeld.
+    """
     body = shared.body(solid.shape, h)
     lattice = body.lattice
     held = _held(solid, lattice)
     mass = shapes.mass(solid)
-    material = shared.material(body, mass, solid.elasticity, bool(held.all()))
+    loose = loose or bool(held.all())
+    material = shared.material(body, mass, solid.elasticity, loose)
     arm = _rotated(solid, lattice.position)
     velocity = solid.velocity + np.cross(solid.spin, arm)
     velocity[held] = 0.0
@@ -146,7 +153,7 @@ def _make_model(solid: Solid, h: float, shared: _Shared) -> Model:
         spring_type=material.spring_type,
         constants=material.constants,
         young=material.young,
-        inertia_error=0.0 if held.all() else body.fit.error,
+        inertia_error=0.0 if loose else body.fit.error,
         hexahedron=lattice.hexahedron,
         cell=tuple(lattice.cells.edge.tolist()),
         surface=body.surface,
@@ -159,7 +166,9 @@ def _rotated(solid: Solid, points: np.ndarray) -> np.ndarray:
     return points @ np.array(solid.rotation).T
 
 
-class _NothingHeld(Exception):
+class NothingHeld(Exception):
+    """A ``hold`` without particles."""
+
     def __init__(self, message: str, hint: str):
         super().__init__(message)
         self.hint = hint
@@ -171,7 +180,7 @@ def _held(solid: Solid, lattice: Lattice) -> np.ndarray:
     for hold in solid.hold:
         caught = _caught(hold, solid, lattice)
         if not caught.any():
-            raise _NothingHeld(*_missed(hold, solid, lattice))
+            raise NothingHeld(*_missed(hold, solid, lattice))
         held |= caught
     return held
 

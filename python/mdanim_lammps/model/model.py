@@ -105,6 +105,9 @@ class Model(Particles):
     """Its shape and cells; objects of equal shape share one, and with it the contact body."""
     driven: bool = False
     """Whether some effect moves its held particles."""
+    inertia: np.ndarray | None = None
+    """Tensor of inertia about the centre of mass, world frame, at the start [kg m^2], shape (3, 3), of a body that moves as a
+    whole; None of a body that deforms, or is held."""
 
     @property
     def still(self) -> bool:

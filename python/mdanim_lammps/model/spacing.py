@@ -9,11 +9,12 @@ from functools import lru_cache
 
 import numpy as np
 
+from ..bodies import kind_of, kinds
 from ..errors import Problem, SceneError
 from ..features import facets
 from ..processes import available_memory
 from ..scene.formatting import number, say, whole
-from ..scene.scene import Accuracy, Box, HoldAll, Mesh, SceneRecord, Shape, Solid
+from ..scene.scene import Box, Mesh, SceneRecord, Shape, Solid
 from . import shapes, work
 from .limits import check_places, check_sparse
 from .mesh import MeshError
@@ -70,7 +71,7 @@ def plan_spacing(scene: SceneRecord) -> Spacing:
     particles = tuple(estimate_particles(solid.shape, own) for solid, own in zip(scene.solids, of))
     if sparse := [p for s, own, n in zip(scene.solids, of, particles) if (p := check_sparse(s, own, n))]:
         raise SceneError(sparse)
-    plan = Spacing(h, of, set_by, particles, work.memory(scene, of, sum(particles)), available_memory())
+    plan = Spacing(h, of, set_by, particles, work.memory(scene, of, particles), available_memory())
     if plan.memory > plan.available:
         raise SceneError([too_large(scene, plan)])
     return plan
@@ -95,8 +96,9 @@ def choose_spacing(scene: SceneRecord) -> tuple[float, str, list[float]]:
 
 
 def spacings(scene: SceneRecord, h: float) -> tuple[float, ...]:
-    """Spacing of each solid [m], its own or else that of the scene, h [m]."""
-    return tuple(h if s.resolution is None else s.resolution for s in scene.solids)
+    """Spacing of each solid [m], its own or else what its kind of body takes where that of the scene is h [m]."""
+    of = {kind: kind.spacing(scene, h) for kind in kinds()}
+    return tuple(of[kind_of(s)](s) if s.resolution is None else s.resolution for s in scene.solids)
 
 
 def scaled(scene: SceneRecord, factor: float | None) -> SceneRecord:
@@ -105,21 +107,18 @@ def scaled(scene: SceneRecord, factor: float | None) -> SceneRecord:
     return replace(scene, solids=tuple(s if s.resolution is None else replace(s, resolution=own(s)) for s in scene.solids))
 
 
-def _cells_needed(solid: Solid, accuracy: Accuracy) -> int:
-    """A body that never moves need not bend, so two cells, the least that have an inside, are enough."""
-    return min(accuracy.cells, 2) if any(isinstance(h, HoldAll) for h in solid.hold) else accuracy.cells
-
-
 def _choose(scene: SceneRecord, thin: list[float]) -> tuple[float, str]:
     control = scene.control
     if control.resolution is not None:
         return control.resolution, "resolution"
     if thin:
-        wanted = [t / _cells_needed(s, control.accuracy) if s.resolution is None else np.inf for s, t in zip(scene.solids, thin)]
-        if np.isinf(wanted).all():
-            wanted = [s.resolution for s in scene.solids]
+        needed = [t / kind_of(s).cells(scene, s) for s, t in zip(scene.solids, thin)]
+        sets = [s.resolution is None and kind_of(s).sets_spacing for s in scene.solids]
+        wanted = np.where(sets, needed, np.inf)
+        if not any(sets):
+            wanted = [own if s.resolution is None else s.resolution for s, own in zip(scene.solids, needed)]
         k = int(np.argmin(wanted))
-        return wanted[k], scene.solids[k].name
+        return float(wanted[k]), scene.solids[k].name
     for words in facets("words"):
         if hasattr(words, "width") and (found := words.width(scene)):
             return found[0] / control.accuracy.cells, found[1]

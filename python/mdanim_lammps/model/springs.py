@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..scene.scene import SpringConstant, Young
+from ..scene.scene import Elasticity, SpringConstant, Young
 from .lattice import AXES, OFFSETS, Lattice
 
 if TYPE_CHECKING:
@@ -65,7 +65,7 @@ def stiffness(lattice: Lattice, elasticity: Young | SpringConstant) -> np.ndarra
     return plain[lattice.kind] * (lattice.holders - lattice.braced) + braced[lattice.kind] * lattice.braced
 
 
-def equivalent_modulus(cell: np.ndarray, elasticity: Young | SpringConstant) -> float:
+def equivalent_modulus(cell: np.ndarray, elasticity: Elasticity) -> float:
     """Young's modulus [Pa]; for one k it is that of an endless cubic lattice, k / (0.4 h)."""
     if isinstance(elasticity, SpringConstant):
         return elasticity.k / (0.4 * float(np.prod(cell)) ** (1.0 / 3.0))

@@ -39,6 +39,8 @@ class System(Particles):
     """The frames from which the contact body of each kind of the scene is made."""
     driven: np.ndarray
     """Solids whose held particles some effect moves, bool, shape (M,)."""
+    inertia: np.ndarray
+    """Tensor of inertia of each solid that moves as a whole, see `Model` [kg m^2], shape (M, 3, 3); zeros of all others."""
 
     @property
     def particles(self) -> int:
@@ -69,6 +71,11 @@ class System(Particles):
     def still(self) -> np.ndarray:
         """Solids that are held as a whole and never move, bool, shape (M,)."""
         return np.logical_and.reduceat(self.held, self.first[:-1]) & ~self.driven
+
+    @cached_property
+    def rigid(self) -> np.ndarray:
+        """Solids that move as a whole, with six degrees of freedom, bool, shape (M,)."""
+        return self.inertia.any(axis=(1, 2))
 
     @property
     def moved(self) -> np.ndarray | None:
@@ -152,6 +159,7 @@ def assemble(models: Sequence[Model], scene: SceneRecord) -> System:
         contact_kind=np.array([kind[id(m.frame)] for m in models], np.int32),
         frames=frames,
         driven=np.array([m.driven for m in models], bool),
+        inertia=np.array([np.zeros((3, 3)) if m.inertia is None else m.inertia for m in models]),
     )
 
 

@@ -9,6 +9,7 @@ from math import ceil, hypot, pi
 
 import numpy as np
 
+from ..bodies import kind_of
 from ..features import facets
 from ..scene.scene import Box, Cone, Cylinder, Ellipsoid, Mesh, SceneRecord, Shape, Sphere, Torus
 from . import shapes
@@ -16,26 +17,28 @@ from .contact_body import DENSITY
 from .distance import MOST_SAMPLES
 from .limits import bounding_cells
 
-PARTICLE_BYTES, VERTEX_BYTES, POINT_BYTES, SAMPLE_BYTES = 1500.0, 200.0, 300.0, 250.0
-"""Memory [bytes]: of a particle in models and LAMMPS together, which has up to 18 springs; of a vertex of the drawn surface; of a
-point of contact; of a sample of a mesh, from which distances are taken."""
+VERTEX_BYTES, POINT_BYTES, SAMPLE_BYTES = 200.0, 300.0, 250.0
+"""Memory [bytes]: of a vertex of the drawn surface; of a point of contact; of a sample of a mesh, from which distances are taken.
+That of a particle is the kind of body's."""
 SAMPLES = 64
 """Samples of a mesh for each cell of its surface."""
-PARTICLE_TIME, VERTEX_TIME, POINT_TIME, CELL_TIME = 4.5e-6, 2.4e-6, 1.1e-6, 0.5e-6
+VERTEX_TIME, POINT_TIME, CELL_TIME = 2.4e-6, 1.1e-6, 0.5e-6
 """Processor time [s] of each of them, and of a cell of the bounding box, as `bench/modelling.py forecast` has it."""
 MESH_POINT_TIME, MESH_CELL_TIME, MESH_TIME = 17e-6, 37e-6, 0.18
 """The same of meshes, whose points are found among samples, and distances among triangles; and what any mesh takes."""
 
 
-def memory(scene: SceneRecord, h: float | Sequence[float], particles: int) -> float:
-    """Memory [bytes] of this number of particles in all, at a spacing of h [m], one for all or one for each solid; equal
+def memory(scene: SceneRecord, h: float | Sequence[float], particles: Sequence[int]) -> float:
+    """Memory [bytes] of so many particles of each solid, at a spacing of h [m], one for all or one for each solid; equal
     objects share surfaces and points of contact."""
-    return PARTICLE_BYTES * particles + sum(_bytes(shape, own, _touches(scene)) for shape, own in _bodies(scene, h))
+    own = sum(kind_of(s).particle_bytes * n for s, n in zip(scene.solids, particles))
+    return own + sum(_bytes(shape, own, _touches(scene)) for shape, own in _bodies(scene, h))
 
 
-def seconds(scene: SceneRecord, h: float | Sequence[float], particles: int) -> float:
+def seconds(scene: SceneRecord, h: float | Sequence[float], particles: Sequence[int]) -> float:
     """Processor time [s] of models and time step, with the same arguments."""
-    return PARTICLE_TIME * particles + sum(_seconds(shape, own, _touches(scene)) for shape, own in _bodies(scene, h))
+    own = sum(kind_of(s).particle_seconds * n for s, n in zip(scene.solids, particles))
+    return own + sum(_seconds(shape, own, _touches(scene)) for shape, own in _bodies(scene, h))
 
 
 def _bodies(scene: SceneRecord, h: float | Sequence[float]) -> set[tuple[Shape, float]]:

@@ -13,11 +13,12 @@ from functools import lru_cache
 
 import numpy as np
 
+from ..bodies import all_held, kind_of
 from ..model import mesh, shapes
 from ..model.boxes import box_pairs
 from ..model.springs import equivalent_modulus
 from ..scene import scene as kinds
-from ..scene.scene import Box, HoldAll, HoldFaces, SceneRecord, Shape, Solid
+from ..scene.scene import Box, HoldFaces, SceneRecord, Shape, Solid
 from .acting import Acting
 
 STRETCH = 1.5
@@ -122,7 +123,7 @@ class _Movers:
         self.velocity = np.array([s.velocity for s in solids], float)
         self.slowed = acting.slowed
         self.radius = np.array([bounding_radius(s.shape) for s in solids])
-        self.fixed = np.array([any(isinstance(h, HoldAll) for h in s.hold) for s in solids])
+        self.fixed = np.array([all_held(s) for s in solids])
         self.clamped = np.array([bool(s.hold) for s in solids]) & ~self.fixed & acting.bound
         extents = [shapes.extent(s.shape) for s in solids]
         rotation = np.array([s.rotation for s in solids], float)
@@ -135,11 +136,13 @@ class _Movers:
         self.wave = np.sqrt(1.2 * young / self.density)
         self.tip = np.linalg.norm([s.spin for s in solids], axis=1) * self.radius
         """Speed of the outermost point around the centre of mass [m/s]."""
-        self.loose = np.zeros(len(solids)) if acting.bound else self.tip * scene.control.time
+        bound = acting.bound | ~np.array([kind_of(s).deforms for s in solids], bool)
+        self.loose = np.where(bound, 0.0, self.tip * scene.control.time)
         self.pull = acting.most_pull(self)
         self.speed = _speed(acting, self)
         if acting.joined.any():  # nothing is known of what pulls: what is faster than waves is refused
-            self.speed = np.where(acting.joined, np.maximum(self.speed, self.wave), self.speed)
+            waves = np.where(np.isfinite(self.wave), self.wave, 0.0)
+            self.speed = np.where(acting.joined, np.maximum(self.speed, waves), self.speed)
         self.driven_at = acting.driven_at
 
     def size(self, speed: np.ndarray) -> np.ndarray:

@@ -29,7 +29,7 @@ def standing(acting: Acting, system: System) -> np.ndarray:
     low, high = system.bounds(system.position)
     slowest, fastest = system.bounds(system.velocity)
     calm = ~system.still & ~slowest.any(axis=1) & ~fastest.any(axis=1)
-    near = BORN_AT_REST * float(system.spacing.max())
+    near = BORN_AT_REST * system.spacing
     for plane in acting.planes:
         if plane.axis == 2 and plane.sign > 0:
             found |= calm & (np.abs(low[:, 2] - plane.at) <= near)
@@ -37,10 +37,11 @@ def standing(acting: Acting, system: System) -> np.ndarray:
         [isinstance(s.shape, Box) and np.abs(np.array(s.rotation))[2].max() > 1.0 - LEVEL for s in acting.scene.solids]
     )
     middle = centers(system.mass, system.first[:-1], system.position)[:, :2]
-    pairs = list(box_pairs(low - 0.5 * near, high + 0.5 * near))
+    pairs = list(box_pairs(low - near[:, None], high + near[:, None]))
     i, j = (np.concatenate([np.zeros(0, int), *(both[k] for both in pairs)]) for k in (0, 1))
     below, above = np.concatenate([i, j]), np.concatenate([j, i])
-    bears = flat[below] & calm[above] & (np.abs(high[below, 2] - low[above, 2]) <= near)
+    close = np.maximum(near[below], near[above])
+    bears = flat[below] & calm[above] & (np.abs(high[below, 2] - low[above, 2]) <= close)
     bears &= ((low[below, :2] <= middle[above]) & (middle[above] <= high[below, :2])).all(axis=1)
     below, above = below[bears], above[bears]
     for n in np.argsort(low[above, 2], kind="stable").tolist():

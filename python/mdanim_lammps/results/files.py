@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import errno
 import fcntl
+import glob
 import json
 import os
 import re
@@ -96,7 +97,7 @@ def _is_of_a_run(name: str) -> bool:
     """Whether a run writes a file of this name, not what is made of a run: an export, a page, a picture."""
     return (
         name in (*RESULTS, MARK)
-        or name.startswith(("in.", "data.", "contact.", "columns."))
+        or name.startswith(("in.", "data.", "contact.", "columns.", "table."))
         or bool(re.fullmatch(MESHES[1], name))
     )
 
@@ -164,6 +165,7 @@ def _results(folder: Path) -> Iterator[Path]:
             yield from (
                 folder / own for own in (script.name, f"data.{name}", f"contact.{name}", f"columns.{name}", f"{name}.lammpstrj")
             )
+            yield from (table for table in folder.glob(f"table.*.{glob.escape(name)}") if table.is_file())
 
 
 def _inside(folder: Path, name: str, own: str) -> list[Path]:

@@ -30,7 +30,8 @@ def least_energy(scene: SceneRecord, system: System) -> float:
     effects = [e.of(scene) for e in features.effects()]
     farthest = np.abs(system.position).max(initial=0.0)
     strain = max(LEAST_STRAIN, np.sqrt(ROUNDED_STEPS) * np.spacing(farthest) / system.spacing.min(initial=np.inf))
-    elastic = strain**2 * float((system.young[system.object] * system.volume).sum())
+    young = np.where(np.isfinite(system.young), system.young, 0.0)  # what is rigid has no energy of its own
+    elastic = strain**2 * float((young[system.object] * system.volume).sum())
     rounded = float(np.sqrt(ROUNDED_STEPS) * np.spacing(sum(e.weighed(scene, system) for e in effects)))
     return max(elastic, rounded, *(e.unsettled(scene, system) for e in effects))
 
@@ -91,7 +92,7 @@ def stored(instance: Instance) -> dict[str, float]:
     plan = instance.plan
     effects = [e for e in plan.effects if e.ledger]
     found = dict.fromkeys(("kinetic", *(e.ledger for e in effects)), 0.0)
-    found["kinetic"] = instance.kinetic_energy()
+    found["kinetic"] = instance.kinetic_energy() + sum(effect.kinetic(instance) for effect in plan.effects)
     for effect in effects:
         if not effect.has_potential:
             found[effect.ledger] += effect.energy(instance)

@@ -17,7 +17,7 @@ from .. import __version__
 from ..effects.measured import Measured
 from ..effects.readings import LEAPFROG
 from ..engine.columns import wide_columns
-from ..engine.commands import input_script
+from ..engine.commands import input_script, table_file
 from ..engine.data_file import write_bodies, write_data, write_wide_columns
 from ..errors import ExitCode, MdanimError, OutputError
 from ..interrupts import Interrupts
@@ -85,7 +85,7 @@ class Interrupted(MdanimError):
 
 def write_inputs(ready: Prepared, folder: Path) -> None:
     """Write scene.lock.txt, copies of its meshes, certificate.json, ``data.NAME``, ``in.NAME`` and, where surfaces touch,
-    ``contact.NAME``. Raises OutputError."""
+    ``contact.NAME``; tables of effects are ``table.TABLE.NAME``. Raises OutputError."""
     plan = ready.plan
     for path, name in mesh_files(ready.scene).items():
         with disk_errors(folder / name):
@@ -98,6 +98,8 @@ def write_inputs(ready: Prepared, folder: Path) -> None:
         write_whole(folder / f"contact.{plan.name}", lambda part: write_bodies(plan, part))
     if wide_columns(plan):
         write_whole(folder / f"columns.{plan.name}", lambda part: write_wide_columns(plan, part))
+    for name, text in plan.tables.items():
+        write_whole(folder / table_file(plan, name), text)
     write_whole(folder / f"in.{plan.name}", input_script(plan))
 
 

@@ -92,7 +92,6 @@ NOT_SUPPORTED = {
     "fracture": "solids do not break",
     "temperature": "there is no heat in the model",
     "viscosity": "set drag in the liquid block",
-    "rigid": "give the object a high elasticity, or write hold all",
     "static": "write hold all: no particle of the object moves",
     "fixed": "write hold all: no particle of the object moves",
 }

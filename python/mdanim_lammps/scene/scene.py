@@ -20,6 +20,7 @@ from .shapes import (
     Box,
     Cone,
     Cylinder,
+    Elasticity,
     Ellipsoid,
     Hold,
     HoldAll,
@@ -58,6 +59,9 @@ class Orientation(Codec):
         return (0, ((0, 0, 1), 0)) if value == IDENTITY else (2, value)
 
 
+_ELASTICITIES = tuple(kind for words in facets("words") for kind in getattr(words, "ELASTICITIES", ()))
+
+
 @dataclass(frozen=True, slots=True)
 class Solid:
     """One elastic object."""
@@ -78,9 +82,13 @@ class Solid:
         "the rotation matrix (world = matrix * body); `scene.lock.txt` uses it.",
         "axis (1, 1, 0) angle 20 deg", name="orientation", absent=IDENTITY, codec=Orientation())  # fmt: skip
     """Rotation matrix, rows; world = rotation @ body."""
-    elasticity: Young | SpringConstant = setting(
-        None, "Young's modulus; or the paper's one k for every spring, Wcislo 1999, eq. (3.6).",
-        "200 kPa", Rule.POSITIVE, codec=OneOf(Young, SpringConstant))  # fmt: skip
+    elasticity: Elasticity = setting(
+        None,
+        " ".join((
+            "Young's modulus; or the paper's one k for every spring, Wcislo 1999, eq. (3.6).",
+            *(kind.ABOUT for kind in _ELASTICITIES),
+        )),
+        "200 kPa", Rule.POSITIVE, codec=OneOf(Young, SpringConstant, *_ELASTICITIES))  # fmt: skip
     mass: float | None = setting(
         "<m:kg>", "Mass of the whole object.", "2 kg", Rule.POSITIVE, default=None, one_of=("mass", "density"))  # fmt: skip
     """[kg]; exactly one of mass and density is given."""

@@ -160,3 +160,7 @@ class SpringConstant:
 
     k: float
     """[N/m]"""
+
+
+Elasticity = Young | SpringConstant
+"""Features may add forms of their own: ELASTICITIES of their words, with a ``modulus`` [Pa]."""

@@ -5,11 +5,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from ...bodies import all_held
 from ...effects.context import Verdict
 from ...effects.effect import Effect
 from ...effects.leapfrog import DRAG_LOSS, LAMBDA, drag_loss, drag_seconds
 from ...model.shapes import mass
-from ..springs.effect import all_held
 
 
 class AirDrag(Effect):

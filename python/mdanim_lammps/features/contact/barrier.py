@@ -8,6 +8,7 @@ from math import ceil
 
 import numpy as np
 
+from ...bodies import all_held
 from ...effects.context import Context, Verdict
 from ...effects.envelope import Envelope
 from ...effects.fields import column
@@ -17,7 +18,6 @@ from ...model.model import Layer
 from ...model.system import System
 from ...reach import largest_of_others
 from ...scene.formatting import at_least, say
-from ..springs.effect import all_held
 from .forms import Form, particle_stiffness, stiffness_told
 from .planes import OR_ON_SURFACES, STIFFNESS, others
 from .touching import REACH, THIN, WAY_NAMES, touching
@@ -117,14 +117,14 @@ class ObjectContact(Form):
         return REACH * context.system.spacing
 
     def margins(self, envelope):
-        return [*envelope.own_step("contact", envelope.rates[self.name]), self._closing_speed(envelope)]
+        return [*envelope.own_step("contact", envelope.rates[self.name]), *self._closing_speed(envelope)]
 
     def tunnelling(self, envelope: Envelope) -> np.ndarray:
         """Closing speed over the wave speed from which each solid is passed through, shape (M,)."""
         return np.array(TUNNEL)[np.clip(np.rint(envelope.cells).astype(int), 1, len(TUNNEL)) - 1]
 
-    def _closing_speed(self, envelope: Envelope) -> Margin:
-        """Speed at which each solid may meet another."""
+    def _closing_speed(self, envelope: Envelope) -> list[Margin]:
+        """Speed at which each solid may meet another; none where nothing is passed through at any speed, as all is rigid."""
         system = envelope.system
         closing = envelope.reach.closing(envelope.reach.fall)
         # A held partner may be met at full speed, the softer of two is the one that is passed through.
@@ -132,11 +132,13 @@ class ObjectContact(Form):
         factor = envelope.scene.control.contact_stiffness
         soft = factor < 1.0
         limit *= factor**SOFTER if soft else 1.0
+        if not np.isfinite(limit).any():
+            return []
         weakest = int(limit.argmin())
         fastest = int((closing / np.minimum(limit, limit[weakest])).argmax())
         value, most = float(closing[fastest]), float(min(limit[fastest], limit[weakest]))
         partner = "" if limit[fastest] <= limit[weakest] else f", in {system.names[weakest]}"
-        return Margin(
+        told = Margin(
             "closing speed",
             system.names[fastest],
             value,
@@ -150,6 +152,7 @@ class ObjectContact(Form):
             if soft
             else "write a lower speed, a higher elasticity, or a resolution of three cells across the thinnest part",
         )
+        return [told]
 
     def acts_on(self, context):
         return len(context.system.names) > 1 and not context.system.held.all()

@@ -112,7 +112,7 @@ def one_sided(scene: SceneRecord, system: System) -> list[Problem]:
             solids[pair[0]].spans.get("friction"),
             f"friction {mu} of {one} works as 0 against {other}, which has none: two objects have the root of the product",
             f"write friction {mu} in control, or contact {one} {other} {{ friction {mu} }}; or friction 0 in {other}",
-            severity="warning" if nearest <= float(system.spacing.max()) ** 2 else "note",
+            severity="warning" if nearest <= float(system.spacing[list(pair)].max()) ** 2 else "note",
         )
     ]
 

@@ -25,6 +25,7 @@ from .forms import particle_stiffness
 from .pairs import USUAL_DAMPING, any_friction, damping, frictions, pair_rules
 from .planes import STIFFNESS, BarrierPlanes, Planes, Sides
 from .resting import one_sided
+from .rigid_surfaces import moduli, spread_mobility
 
 SHORT, FULL = 0.8, 1.6
 """Reach of the barrier behind the surface, over the shortest edge of its own cells: a particle inside is at least one edge below
@@ -65,7 +66,7 @@ class SurfaceLaw:
         scene, system = context.scene, context.system
         return {
             column("body", "1"): system.contact_kind[system.object].astype(float),
-            column("young", "Pa"): system.young[system.object],
+            column("young", "Pa"): moduli(context)[system.object],
             column(self.friction_column(scene), "1"): np.array(frictions(scene, self.plane))[system.object],
         }
 
@@ -112,7 +113,7 @@ class SurfaceLaw:
             return None
         h = float(np.cbrt(system.cell_volume).max())
         eta = 2.0 * beta * np.sqrt(kappa * (system.density * h) / 2.0)
-        return eta[system.object] * borne_area(system) / system.mass
+        return eta[system.object] * _of_bodies(context, borne_area(system) / system.mass)
 
     def penetration(self, readings: Readings) -> float:
         """As `Effect.penetration`."""
@@ -144,7 +145,7 @@ class SurfaceContact(ObjectContact):
     def guards(self, context: Context) -> np.ndarray:
         """Solids whose surface is a barrier where nothing is inside, bool, shape (M,): those that may be met fast. The faces of
         what touches at the start coincide."""
-        system, found = context.system, fast(context)
+        system, found = context.system, fast(context) & np.isfinite(context.system.young)
         if found.any():
             low, high = system.bounds(system.position)
             gap = 0.5 * BORN_AT_REST * system.spacing[:, None]
@@ -159,7 +160,8 @@ class SurfaceContact(ObjectContact):
         would not roll. The surface alone stops it up to SLOW.
         """
         system = context.system
-        return np.where((~are_dense(system) | fast(context))[system.object], particle_stiffness(context.scene, system), 0.0)
+        with_barrier = (~are_dense(system) | fast(context)) & np.isfinite(system.young)
+        return np.where(with_barrier[system.object], particle_stiffness(context.scene, system), 0.0)
 
     def barrier_reach(self, context: Context) -> np.ndarray:
         """Reach of the barrier of each particle [m], shape (N,); of a pair the larger one counts.
@@ -170,7 +172,8 @@ class SurfaceContact(ObjectContact):
         system = context.system
         quick = fast(context)[system.object]
         behind = np.where(system.boundary, 0.0, SHORT * shortest_edge(system)[system.object])
-        return np.where(quick, FULL * system.spacing[system.object], behind)
+        reach = np.where(quick, FULL * system.spacing[system.object], behind)
+        return np.where(np.isfinite(system.young)[system.object], reach, 0.0)
 
     def longest_reach(self, context: Context) -> float:
         """No barrier of the scene reaches farther [m]."""
@@ -209,13 +212,13 @@ class SurfaceContact(ObjectContact):
         area = own + borne
         if dense.any() and not dense.all():
             area = np.maximum(area, ALONE * np.where(dense[system.object], own, borne))
-        surface = 2.0 * kappa * area / system.mass
+        surface = 2.0 * kappa * _of_bodies(context, area / system.mass, 2.0)
         return surface + barrier_rate(system, self.barrier_stiffness(context), self.longest_reach(context))
 
     def own_rate(self, context):
         system = context.system
         kappa = self.stiffness(context)[system.object]
-        return 2.0 * kappa * own_area(system) / system.mass
+        return 2.0 * kappa * _of_bodies(context, own_area(system) / system.mass)
 
     def drag_rate(self, context):
         """Points of the own body and of another, and the factor 2 as in `rate`."""
@@ -224,9 +227,9 @@ class SurfaceContact(ObjectContact):
 
     def stiffness(self, context: Context) -> np.ndarray:
         """kappa of the surface of each solid with the stiffest partner [N/m^3], shape (M,)."""
-        system = context.system
-        partner = largest_of_others(system.young)
-        return surface_stiffness(context.scene, system, 2.0 * partner / (system.young + partner))
+        young = moduli(context)
+        partner = largest_of_others(young)
+        return surface_stiffness(context, young, 2.0 * partner / (young + partner))
 
     def notes(self, envelope):
         return [p for p in self.about_friction(envelope.context) if p.severity == "note"]
@@ -241,7 +244,7 @@ class SurfaceContact(ObjectContact):
     def full_reaches(self, context: Context) -> list[Problem]:
         """Warning that the barrier keeps fast objects apart: without friction, whatever was written."""
         scene, system = context.scene, context.system
-        found = np.flatnonzero(fast(context))
+        found = np.flatnonzero(fast(context) & np.isfinite(system.young))
         if not len(found):
             return []
         spans = scene.solids[found[0]].spans
@@ -302,7 +305,7 @@ class SurfacePlanes(Planes):
     def rate(self, context):
         """a_i = kappa w_i / m_i with w_i as in `SurfaceContact.rate`: the plane does not move, so there is no factor 2."""
         system = context.system
-        rate = self.stiffness(context)[system.object] * own_area(system) / system.mass
+        rate = self.stiffness(context)[system.object] * _of_bodies(context, own_area(system) / system.mass)
         return np.where(system.held, 0.0, rate)
 
     def own_rate(self, context):
@@ -323,7 +326,7 @@ class SurfacePlanes(Planes):
     def stiffness(self, context: Context) -> np.ndarray:
         """kappa of the surface of each solid against a plane, which has no points of its own [N/m^3], shape (M,)."""
         system = context.system
-        return surface_stiffness(context.scene, system, np.where(are_dense(system), ALONE, 1.0))
+        return surface_stiffness(context, moduli(context), np.where(are_dense(system), ALONE, 1.0))
 
 
 def touching_planes(sides: Sides) -> Planes:
@@ -331,12 +334,22 @@ def touching_planes(sides: Sides) -> Planes:
     return BarrierPlanes(sides, SurfacePlanes(sides))
 
 
-def surface_stiffness(scene: SceneRecord, system: System, share: np.ndarray | float = 1.0) -> np.ndarray:
-    """kappa = f E/h of the surface of each solid, times a share that a partner leaves of it [N/m^3], shape (M,).
+def _of_bodies(context: Context, of_particles: np.ndarray, sides: float = 1.0) -> np.ndarray:
+    """Areas of surface over masses [m^2/kg], shape (N,): at each particle of what deforms, of a rigid body as a whole, from this
+    number of sides."""
+    system = context.system
+    if not system.rigid.any():
+        return of_particles
+    return np.where(system.rigid[system.object], sides * spread_mobility(context)[system.object], of_particles)
+
+
+def surface_stiffness(context: Context, young: np.ndarray, share: np.ndarray | float = 1.0) -> np.ndarray:
+    """kappa = f E/h of the surface of each solid with these moduli [Pa], times a share that a partner leaves of it [N/m^3], shape
+    (M,).
 
     Between two solids kappa = f 2 E_A E_B/(E_A + E_B)/max(h_A, h_B): the share is 2 E_B/(E_A + E_B).
     """
-    return scene.control.contact_stiffness * system.young * share / np.cbrt(system.cell_volume)
+    return context.scene.control.contact_stiffness * young * share / np.cbrt(context.system.cell_volume)
 
 
 def are_dense(system: System) -> np.ndarray:

@@ -73,11 +73,13 @@ def _columns(envelope: Envelope) -> Iterator[_Column]:
     """Cuboids and cylinders with an axis upright, on a plane, on a solid that never moves, or held only at the foot."""
     system, moving = envelope.system, envelope.reach.moving
     low, high = _drawn(envelope.scene.solids)
-    near = BORN_AT_REST * float(system.spacing.max())
-    pairs = list(box_pairs(low - 0.5 * near, high + 0.5 * near))
+    near = BORN_AT_REST * system.spacing
+    pairs = list(box_pairs(low - near[:, None], high + near[:, None]))
     i, j = (np.concatenate([np.zeros(0, int), *(both[k] for both in pairs)]) for k in (0, 1))
     below, above = np.where(low[i, 2] < low[j, 2], i, j), np.where(low[i, 2] < low[j, 2], j, i)
-    stands = np.abs(high[below, 2] - low[above, 2]) <= near
+    close = np.maximum(near[below], near[above])
+    beside = np.maximum(low[below] - high[above], low[above] - high[below])[:, :2].max(axis=1)
+    stands = (np.abs(high[below, 2] - low[above, 2]) <= close) & (beside <= close)
     below, above = below[stands], above[stands]
     bears, borne = (np.bincount(these, minlength=len(moving)) for these in (below, above))
     on = dict(zip(below.tolist(), above.tolist()))
@@ -115,7 +117,8 @@ def _column(envelope: Envelope, members: list[int], height: float) -> _Column | 
         return None
     stiffness = min(b * float(system.young[m]) for b, m in zip(bending, members))
     weight = float(system.mass_of[members].sum()) * envelope.reach.g
-    joints = (1.0 + 0.5 * len(members[1:])) * float(system.spacing.max())
+    h = system.spacing[members]
+    joints = float(h[0]) + 0.5 * float(np.maximum(h[:-1], h[1:]).sum())
     most = height * (GREENHILL * stiffness / (weight * height * (height + joints))) ** (1 / 3)
     return _Column(members, height, most)
 

@@ -5,10 +5,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from ...bodies import all_held
 from ...effects.context import Verdict
 from ...effects.effect import Effect
 from ...model.springs import dashpots
-from ..springs.effect import all_held, spring_norm, time_of_dashpots
+from ..springs.effect import spring_norm, time_of_dashpots
 
 
 class Damping(Effect):

@@ -7,6 +7,7 @@ import math
 
 import numpy as np
 
+from ...bodies import all_held
 from ...effects.context import Verdict
 from ...effects.effect import Effect
 from ...effects.fields import column
@@ -16,7 +17,6 @@ from ...model.planes import Plane, box_sides
 from ...scene.formatting import number, say, whole
 from ..contact.planes import Sides
 from ..contact.surface import touching_planes
-from ..springs.effect import all_held
 from . import frames
 from .balance import UNEVEN, full_basin, load_energy
 from .basin import check_basin, leaky_walls, liquid_level, open_hulls, plan_grid, too_large

@@ -7,13 +7,13 @@ import math
 
 import numpy as np
 
+from ...bodies import all_held
 from ...effects.context import Verdict
 from ...effects.effect import Effect
 from ...effects.fields import column
 from ...effects.leapfrog import DRAG_LOSS, LAMBDA, drag_loss, drag_seconds
 from ...model.system import System
 from ...model.tensors import largest_eigenvalue
-from ..springs.effect import all_held
 from .basin import liquid_level
 from .frames import COUPLING, FIX, WAVES, is_wavy
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from ...bodies import all_held, kind_of
 from ...effects.context import Context, Verdict
 from ...effects.effect import Effect
-from ...scene.scene import HoldAll
 from .strength import amplitude, load, thinnest, turning
 
 DASHPOTS = 0.44
@@ -18,11 +18,6 @@ def time_of_dashpots(context: Context) -> float:
     """Time of dashpots, over the time of all springs without them."""
     own = np.diff(np.searchsorted(context.system.spring[:, 0], context.system.first))
     return DASHPOTS / (1.0 - DASHPOTS) * own[context.damping_ratio > 0.0].sum() / max(1, own.sum())
-
-
-def all_held(solid) -> bool:
-    """Whether no particle of the solid ever moves."""
-    return any(isinstance(h, HoldAll) for h in solid.hold)
 
 
 def block_norm(pair: np.ndarray, weight: np.ndarray, direction: np.ndarray, particles: int) -> np.ndarray:
@@ -61,9 +56,11 @@ class Springs(Effect):
 
     def called_for(self, scene, reach):
         for solid in scene.solids:
-            if not all_held(solid):
+            if kind_of(solid).deforms and not all_held(solid):
                 return Verdict(self.name, True, f"{solid.name} can move and deform", solid.spans.get("elasticity"))
-        return Verdict(self.name, False, "every object is held" if scene.solids else "no objects")
+        free = [solid for solid in scene.solids if not all_held(solid)]
+        none = "no object that is free deforms" if free else "every object is held"
+        return Verdict(self.name, False, none if scene.solids else "no objects")
 
     def rate(self, context):
         system = context.system

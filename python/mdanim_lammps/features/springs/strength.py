@@ -46,11 +46,11 @@ THINNEST = 2
 def amplitude(env: Envelope) -> Margin:
     scene, system = env.scene, env.system
     meets = len(system.names) > 1 or len(env.planes) > 0
-    ratio = np.where(meets, env.reach.speed / env.reach.wave, 0.0)
+    ratio = np.where(meets, env.reach.speed / env.reach.wave, 0.0)  # 0 of what is rigid
     hard = (len(env.planes) > 0 or not env.reach.moving.all()) and env.context.grid is None  # a liquid breaks the fall
     spot = _spots(env) if hard else np.full(len(ratio), np.inf)
     limit = np.minimum(FOLDS, spot)
-    m = int((ratio / limit).argmax())
+    m = int(np.where(_soft(env), ratio / limit, -1.0).argmax())
     folds = ratio > limit
     others = int(folds.sum()) - 1
     weak = np.flatnonzero(folds).tolist() or [m]
@@ -74,6 +74,11 @@ def amplitude(env: Envelope) -> Margin:
         "warning" if folds[m] else "ok",
         hint=f"write elasticity {_stiffer(enough)} or more{coarser}, or a lower density, height or speed",
     )
+
+
+def _soft(env: Envelope) -> np.ndarray:
+    """Solids that can move and deform, bool, shape (M,)."""
+    return env.reach.moving & np.isfinite(env.system.young)
 
 
 def _stiffer(enough: dict[str, float]) -> str:
@@ -139,7 +144,7 @@ def load(env: Envelope) -> list[Margin]:
     system = env.system
     stress = _stress(env, g)
     ratio = np.where(env.reach.moving, stress / (CRUSH * system.young), 0.0)
-    m = int(ratio.argmax())
+    m = int(np.where(_soft(env), ratio, -1.0).argmax())
     strength = CRUSH * system.young[m]
     return [
         Margin(
@@ -179,7 +184,7 @@ def _stress(env: Envelope, g: float) -> np.ndarray:
 
 
 def thinnest(env: Envelope) -> Margin:
-    cells = np.where(env.reach.moving, env.cells, np.inf)
+    cells = np.where(_soft(env), env.cells, np.inf)
     m = int(cells.argmin())
     few = round(float(cells[m])) < THINNEST
     h = float(np.cbrt(env.system.cell_volume[m]))

@@ -1,0 +1,68 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""The interface of a kind of body, and which kind an object is of."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import lru_cache
+from typing import Any
+
+from ..features import facets
+from ..scene.scene import HoldAll, SceneRecord, Solid
+
+
+class BodyKind:
+    """A kind of body: how finely its objects are resolved, what that takes, and how their models are made.
+
+    A subclass is in the module ``body`` of a feature's folder, which has KINDS, an instance of each. Of those that `takes` an
+    object, the one of the lowest ``order`` makes it.
+    """
+
+    name = ""
+    order = 1000
+    deforms = True
+    """Whether its particles move against each other, so that it can ring, break or fold inside out."""
+    sets_spacing = True
+    """Whether the thinnest part of such an object may set the spacing of the scene."""
+    particle_bytes = 1500.0
+    """Memory of a particle in models and LAMMPS together [bytes]."""
+    particle_seconds = 4.5e-6
+    """Processor time that it takes to make one [s] (`bench/modelling.py forecast`)."""
+
+    def takes(self, solid: Solid) -> bool:
+        """Whether an object is of this kind."""
+        raise NotImplementedError
+
+    def cells(self, scene: SceneRecord, solid: Solid) -> int:
+        """Cells across its thinnest part that it should have. One that never moves need not bend, so two, the least that have an
+        inside, are enough."""
+        wanted = scene.control.accuracy.cells
+        return min(wanted, 2) if all_held(solid) else wanted
+
+    def spacing(self, scene: SceneRecord, h: float) -> Callable[[Solid], float]:
+        """Particle spacing [m] of its objects that have no ``resolution`` of their own, where that of the scene is h [m]."""
+        return lambda solid: h
+
+    def make(self, solid: Solid, h: float, shared: Any) -> Any:
+        """The model (model/model.py) of an object at a particle spacing h [m]; ``shared`` makes what equal objects share
+        (model/build.py).
+
+        Raises cells.TooThin, mesh.MeshError, build.NothingHeld.
+        """
+        raise NotImplementedError
+
+
+def all_held(solid: Solid) -> bool:
+    """Whether no particle of an object ever moves by forces."""
+    return any(isinstance(h, HoldAll) for h in solid.hold)
+
+
+@lru_cache(maxsize=1)
+def kinds() -> tuple[BodyKind, ...]:
+    """All kinds of bodies, in the order in which they are asked."""
+    return tuple(sorted((kind for facet in facets("body") for kind in facet.KINDS), key=lambda kind: (kind.order, kind.name)))
+
+
+def kind_of(solid: Solid) -> BodyKind:
+    """The kind of body that an object is."""
+    return next(kind for kind in kinds() if kind.takes(solid))

@@ -1,0 +1,135 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""The surfaces of rigid bodies: how hard they are where they touch, and their bound (docs/physics-rigid.md, "Contact").
+
+A rigid body has no modulus from which the stiffness of a contact could follow. Its surface is as hard as one frequency of the
+scene says: a contact of a body of the mobility lambda is a spring of Omega^2 / lambda, whatever the masses, and a blow at v goes
+v/Omega deep.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...effects.context import Context
+from ...model import shapes
+from ...model.contact_body import FINE, ContactBody
+from ...model.inertia import mobility
+from ...model.system import System
+
+DEPTH = 0.02
+"""How deep the fastest blow goes, over the thinnest part of all rigid bodies."""
+HARD = 1e20
+"""Modulus of what is rigid and held [Pa]: the surface of its partner alone yields."""
+STICK = 0.8
+"""Stiffness of the stick spring of friction over that of the contact."""
+
+
+@dataclass(frozen=True, slots=True)
+class Frequency:
+    """The frequency of the contacts of rigid bodies, and where it comes from."""
+
+    omega: float
+    """[1/s]"""
+    thin: float
+    """Thinnest part of all rigid bodies that move [m]."""
+    speed: float
+    """Closing speed of the fastest blow [m/s]."""
+    load: float
+    """Largest weight that a body bears, over its own, and one more for its own [-]."""
+
+
+def frequency(context: Context) -> Frequency:
+    """Omega = max(v, 2 sqrt(N g s)) / (DEPTH s): the fastest blow at v, and the load N at rest, sink in by DEPTH s at most.
+
+    Of the context of a whole scene in which rigid bodies move.
+    """
+    system, reach = context.system, context.reach
+    free = np.flatnonzero(system.rigid)
+    thin = min(shapes.thickness(shape) for shape in {context.scene.solids[m].shape for m in free.tolist()})
+    speed = float(np.maximum(reach.speed, reach.closing(reach.fall))[free].max())
+    load = float(_loads(system)[free].max())
+    slowest = 2.0 * math.pi * context.scene.control.frames * DEPTH * thin  # of what hardly moves
+    return Frequency(max(speed, 2.0 * math.sqrt(load * reach.g * thin), slowest) / (DEPTH * thin), thin, speed, load)
+
+
+def _loads(system: System) -> np.ndarray:
+    """Mass of each solid and of all free ones above it at the start, over its own [-], shape (M,)."""
+    low, high = system.bounds(system.position)
+    weight = np.where(system.still, 0.0, system.mass_of)
+    found = np.ones(len(weight))
+    for m in np.flatnonzero(system.rigid).tolist():
+        over = ((low[:, :2] < high[m, :2]) & (high[:, :2] > low[m, :2])).all(axis=1)
+        over &= low[:, 2] + high[:, 2] > low[m, 2] + high[m, 2]
+        found[m] += weight[over].sum() / weight[m]
+    return found
+
+
+def moduli(context: Context) -> np.ndarray:
+    """Young's modulus of each solid [Pa], shape (M,), with which it enters contact; of a rigid one it gives the hardness. Of the
+    context of a whole scene.
+
+    kappa = E/h = Omega^2 / (lambda s^2/4) [N/m^3] with its largest mobility lambda and thickness s, so that a corner or a patch
+    of s^2/4 is a spring of Omega^2 / lambda.
+    """
+    system = context.system
+    found = np.where(np.isfinite(system.young), system.young, HARD)
+    if not system.rigid.any():
+        return found
+    omega = frequency(context).omega
+    known: dict[tuple, float] = {}
+    for m in np.flatnonzero(system.rigid).tolist():
+        key = (int(system.contact_kind[m]), float(system.mass_of[m]))
+        if key not in known:
+            side = shapes.thickness(system.frames[key[0]].shape) / 2.0
+            known[key] = omega**2 / (_largest_mobility(context, m) * side**2)
+        found[m] = known[key] * float(np.cbrt(system.cell_volume[m]))
+    return found
+
+
+def spread_mobility(context: Context) -> np.ndarray:
+    """Lambda of each rigid body that moves [m^2/kg], shape (M,), 0 of all others: largest eigenvalue of M^-1 sum_q w_q G_q G_q'
+    over all points q of its surface, with areas w_q.
+
+    Springs of kappa w at some points or at all have the squared frequency kappa Lambda at most. G has the normal, and with
+    friction sqrt(STICK) along the surface.
+    """
+    system = context.system
+    found, known = np.zeros(len(system.names)), {}
+    for m in np.flatnonzero(system.rigid).tolist():
+        key = (int(system.contact_kind[m]), float(system.mass_of[m]))
+        if key not in known:
+            known[key] = _spread_mobility(context, m)
+        found[m] = known[key]
+    return found
+
+
+def _body(context: Context, m: int) -> tuple[ContactBody, np.ndarray, np.ndarray]:
+    """Contact body of a solid, its points from the centre [m], shape (P, 3), and its tensor of inertia, both along its axes."""
+    system = context.system
+    kind, turn = int(system.contact_kind[m]), np.array(context.scene.solids[m].rotation)
+    body = system.contact_bodies[kind]
+    return body, system.frames[kind].cells.low + body.at * body.edge, turn.T @ system.inertia[m] @ turn
+
+
+def _largest_mobility(context: Context, m: int) -> float:
+    body, point, tensor = _body(context, m)
+    return float(mobility(tensor, float(context.system.mass_of[m]), point, body.normal).max())
+
+
+def _spread_mobility(context: Context, m: int) -> float:
+    body, point, tensor = _body(context, m)
+    n, area = body.normal, np.where(body.kind == FINE, 0.0, body.area)  # fine points act in place of others, with equal areas
+    push = STICK * np.eye(3) + (1.0 - STICK) * n[:, :, None] * n[:, None, :]
+    arm = np.zeros((len(point), 3, 3))  # cross product with the arm, as a matrix
+    arm[:, 0, 1], arm[:, 0, 2], arm[:, 1, 2] = -point[:, 2], point[:, 1], -point[:, 0]
+    arm -= np.swapaxes(arm, 1, 2)
+    lever = np.concatenate([np.broadcast_to(np.eye(3), arm.shape), arm], axis=1)  # motion of the body, transposed
+    stiff = np.einsum("p,pik,pkl,pjl->ij", area, lever, push, lever)
+    values, axes = np.linalg.eigh(tensor)
+    root = np.zeros((6, 6))
+    root[:3, :3] = np.eye(3) / math.sqrt(context.system.mass_of[m])
+    root[3:, 3:] = axes / np.sqrt(values) @ axes.T
+    return float(np.linalg.eigvalsh(root @ stiff @ root)[-1])

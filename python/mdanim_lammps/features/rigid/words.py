@@ -1,0 +1,62 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Words of a scene that belong to this feature."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+from ...scene.shapes import HoldAll
+
+SWITCHES = {"rigid": "an object's `elasticity rigid`"}
+
+
+@dataclass(frozen=True, slots=True)
+class Rigid:
+    """No elasticity: the object moves as a whole."""
+
+    FORMS: ClassVar = ("rigid",)
+    ABOUT: ClassVar = (
+        "`rigid`: the object does not deform, has exactly the mass and the moments of inertia of its shape, and takes few "
+        "particles; not with `damping`, nor where a part of it is held."
+    )
+    modulus: ClassVar = math.inf
+    """[Pa]"""
+
+
+ELASTICITIES = (Rigid,)
+
+SENSELESS = {
+    "damping": ("damping is that of springs, and a rigid object has none", "leave it out; contact-damping damps its blows"),
+    "drag": ("drag of the air is not computed for rigid objects", "leave it out, or give the object an elasticity"),
+}
+"""Settings that a rigid object cannot have, with cause and way out."""
+
+
+def check_object(v: Any, block: Any, solid: Any) -> Any:
+    """Settings that make no sense in a rigid object."""
+    if not isinstance(solid.elasticity, Rigid):
+        return solid
+    for word, (cause, way_out) in SENSELESS.items():
+        if getattr(solid, word):
+            v.problem(solid.spans[word], f"{solid.name} is rigid: {cause}", way_out)
+    if solid.hold and not any(isinstance(hold, HoldAll) for hold in solid.hold):
+        cause = f"{solid.name} is rigid, so it cannot be held in a part of it while the rest moves"
+        v.problem(solid.spans["hold"], cause, "write hold all, or give the object an elasticity")
+    return solid
+
+
+def check(v: Any, top: Mapping, held: Mapping) -> None:
+    """The contact of the paper is a barrier between particles of lattices with springs."""
+    control = held["control"]
+    if control is None or control.contact_model.value != "paper":
+        return
+    for solid in (s for s in held["solids"] if isinstance(s.elasticity, Rigid)):
+        cause = f"{solid.name} is rigid; the contact of the paper follows from the elasticity of both objects"
+        way_out = "take contact-model paper out of control, or give the object an elasticity"
+        v.problem(solid.spans["elasticity"], cause, way_out, key="rigid-paper")
+
+
+CHECKS = {"object": check_object}

@@ -1,0 +1,23 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""The lattice of hexahedra: particles at the corners of cells, tied to their neighbours by springs (Wcislo 1999, sec. 5.2)."""
+
+from __future__ import annotations
+
+from ...bodies import BodyKind
+from ...model.build import lattice_model
+
+
+class LatticeBody(BodyKind):
+    """An elastic object; every object that no other kind takes."""
+
+    name = "lattice"
+    order = 10_000
+
+    def takes(self, solid):
+        return True
+
+    def make(self, solid, h, shared):
+        return lattice_model(solid, h, shared)
+
+
+KINDS = (LatticeBody(),)
