@@ -56,10 +56,11 @@ def test_effects_are_told_in_short_lines(scene, scenes):
     every effect stands in one of them."""
     from mdanim_lammps import features
 
-    assert run("check", scene()).stdout.splitlines()[:4] == [
+    assert run("check", scene()).stdout.splitlines()[:5] == [
         "scene    cube.txt  1 object (27 particles)",
         "         effects: springs, gravity, ground",
-        "         off: damping (no object has damping), contact (one object), walls (no walls in the scene),",
+        "         off: rigid (no object that can move is rigid), damping (no object has damping),",
+        "              contact (one object), walls (no walls in the scene),",
         "              basin, liquid, buoyancy, liquid-drag (no liquid in the scene), air-drag (no object has drag)",
     ]
     for name in ("crowd", "float"):

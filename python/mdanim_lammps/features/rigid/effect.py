@@ -34,7 +34,7 @@ class RigidMotion(Effect):
         for solid in scene.solids:
             if isinstance(solid.elasticity, Rigid) and not all_held(solid):
                 return Verdict(self.name, True, f"{solid.name} is rigid and can move", solid.spans.get("elasticity"))
-        return Verdict(self.name, False, "no object that can move is rigid" if scene.solids else "no objects")
+        return Verdict(self.name, False, "no object that can move is rigid")
 
     def acts_on(self, context):
         return bool(context.system.rigid.any())

@@ -1,0 +1,119 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Objects with ``elasticity rigid``: how they are made, how they move, and what is refused."""
+
+import re
+
+import numpy as np
+import pytest
+from mdanim_lammps.engine.instance import Instance
+from mdanim_lammps.errors import SceneError
+from mdanim_lammps.model.spin import spin
+from mdanim_lammps.run.energy import energies
+from mdanim_lammps.scene.parse import parse_scene
+
+BAR = """object bar {{
+  shape box (10, 20, 30) cm
+  position (0, 0, 1) m
+  density 1000
+  elasticity rigid
+  {more}
+}}
+"""
+BLOCK = "object block { shape box (20, 20, 20) cm position (1, 0, 0.5) m density 500 elasticity 1 MPa }\n"
+CONTROL = "control { time 0.5 s }\n"
+M, MOMENTS = 6.0, 6.0 / 12 * np.array([0.2**2 + 0.3**2, 0.1**2 + 0.3**2, 0.1**2 + 0.2**2])
+"""Mass and principal moments of the bar [kg], [kg m^2]."""
+
+
+def bar(more="") -> str:
+    return BAR.format(more=more)
+
+
+def run(ready, steps, start=None):
+    """Positions, velocities, kinetic energy at the start and at the end."""
+    with Instance(ready.plan) as instance:
+        instance.setup()
+        begin = energies(instance, ready.system.center_of_mass(instance.array("x")))
+        instance.run(steps)
+        end = energies(instance, ready.system.center_of_mass(instance.array("x")))
+        return instance.array("x").copy(), instance.array("v").copy(), begin, end
+
+
+def test_it_has_few_particles_without_springs_and_sets_no_spacing(prepared):
+    """Two cells across; a soft object has the spacing that it has alone, and the rigid one none that is coarser."""
+    alone = prepared(bar() + CONTROL)
+    assert alone.system.particles == 3 * 5 * 7 and not len(alone.system.spring) and alone.system.rigid.all()
+    card = "object card { shape box (20, 20, 0.4) cm position (0, 0, 3) m density 500 elasticity rigid }\n"
+    ready = prepared(BLOCK + card + CONTROL)
+    assert ready.context.spacing.h == prepared(BLOCK + CONTROL).context.spacing.h == pytest.approx(0.05)
+    assert ready.context.spacing.of == pytest.approx((0.05, 0.002))
+
+
+def test_its_moments_are_those_of_its_shape(prepared):
+    """Turned as the object is; the energy of a spin is w I w/2."""
+    ready = prepared(bar("orientation axis (0, 0, 1) angle 90 deg  spin (3, 0, 0)") + CONTROL)
+    np.testing.assert_allclose(ready.system.inertia[0], np.diag(MOMENTS[[1, 0, 2]]), rtol=1e-12, atol=1e-15)
+    _, _, begin, _ = run(ready, 1)
+    assert begin["kinetic"] == pytest.approx(0.5 * MOMENTS[1] * 9.0, rel=1e-12)
+
+
+def test_it_falls_and_turns_freely(prepared):
+    """The fall of a point, the shape unchanged, energy and angular momentum kept to rounding about a principal axis."""
+    ready = prepared("gravity (0, 0, -9.81) m/s^2\n" + bar("spin (0, 0, 3)  velocity (1, 0, 2) m/s") + CONTROL)
+    steps, dt = 200, ready.certificate.timestep
+    x, v, begin, end = run(ready, steps)
+    system, time = ready.system, steps * dt
+    centre = system.center_of_mass(x)[0]
+    np.testing.assert_allclose(centre, [time, 0, 1 + 2 * time - 0.5 * 9.81 * time**2], atol=1e-11)
+    np.testing.assert_allclose(spin(system.mass, system.first[:-1], x, v)[0], [0, 0, 3], atol=1e-12)
+    turn = 3.0 * time
+    expected = system.position - [0, 0, 1]
+    rotation = np.array([[np.cos(turn), -np.sin(turn), 0], [np.sin(turn), np.cos(turn), 0], [0, 0, 1]])
+    np.testing.assert_allclose(x - centre, expected @ rotation.T, atol=1e-9)
+    assert end["kinetic"] + end["gravity"] == pytest.approx(begin["kinetic"] + begin["gravity"], rel=1e-12)
+
+
+def test_a_soft_and_a_rigid_one_in_one_scene(prepared):
+    """The leap-frog moves what is soft alone, fix mdanim/rigid the other; the ledger has the energy of both."""
+    ready = prepared(BLOCK.replace("density", "velocity (0, 0, 2) m/s density") + bar("velocity (0, 1, 0) m/s") + CONTROL)
+    _, _, begin, end = run(ready, 50)
+    assert begin["kinetic"] == pytest.approx(0.5 * 4.0 * 4.0 + 0.5 * M, rel=1e-12)
+    assert end["kinetic"] == pytest.approx(begin["kinetic"], rel=1e-12)
+
+
+@pytest.mark.parametrize("other", [bar().replace("bar", "under").replace("0, 0, 1", "0, 0, 0.15"), "ground z 0 m\n"])
+def test_it_comes_to_rest_on_what_it_falls_on(prepared, other):
+    """On a rigid object that stands on the ground, and on the ground: it sinks in by no more than the rule says, and rests."""
+    drop = 0.15 if "ground" in other else 0.45
+    text = "gravity (0, 0, -9.81) m/s^2\n" + ("" if "ground" in other else "ground z 0 m\n") + other
+    text += bar().replace("(0, 0, 1)", f"(0, 0, {drop + 0.005})") + "control { time 0.5 s  friction 0.5 }\n"
+    ready = prepared(text)
+    x, v, begin, end = run(ready, ready.certificate.steps)
+    z = ready.system.center_of_mass(x)[-1, 2]
+    contacts = 1 if "ground" in other else 2
+    assert drop - contacts * 2e-3 * 0.1 < z <= drop and abs(v).max() < 1e-3
+    gone = {term: end[term] for term in ("friction_heat", "contact_damping_loss", "contact", "wall") if term in end}
+    assert sum(gone.values()) == pytest.approx(begin["gravity"] - end["gravity"], rel=5e-3)
+
+
+def test_what_makes_no_sense_on_it_is_refused():
+    """All of it in one pass, each with its place and a way out."""
+    text = bar("damping 0.1\n  drag 0.2\n  hold face -z") + CONTROL
+    with pytest.raises(SceneError) as caught:
+        parse_scene(text)
+    told = {
+        (p.span.line, re.match(r"bar is rigid: (\w+)|bar is rigid, so it cannot be (held)", p.message).group(0)[-6:])
+        for p in caught.value.problems
+    }
+    assert {line for line, _ in told} == {6, 7, 8} and all(p.hint for p in caught.value.problems)
+    with pytest.raises(SceneError, match="the contact of the paper follows from the elasticity"):
+        parse_scene(bar() + "control { time 1 s  contact-model paper }\n")
+
+
+def test_held_it_is_a_wall(prepared):
+    """With hold all nothing moves it, and a soft object on it yields alone: kappa is 2 E/h."""
+    text = bar("hold all") + BLOCK.replace("1, 0, 0.5", "0, 0, 1.26")
+    ready = prepared("gravity (0, 0, -9.81) m/s^2\n" + text + CONTROL)
+    assert not ready.system.rigid.any() and not ready.resolved.on("rigid") and ready.system.still[0]
+    young = ready.plan.columns["young"]
+    assert 2.0 * young[-1] * young[0] / (young[-1] + young[0]) == pytest.approx(2.0 * young[-1], rel=1e-9)
