@@ -4,17 +4,17 @@
 #include "lammps/fix_mdanim_rigid.h"
 
 #include "lammps/keywords.h"
-#include "lammps/particle_value.h"
 #include "numbers/stopwatch.h"
 
 #include "atom.h"
 #include "error.h"
 #include "force.h"
-#include "group.h"
-#include "memory.h"
 #include "update.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstring>
 #include <stdexcept>
 
 using namespace LAMMPS_NS;
@@ -23,8 +23,9 @@ using namespace mdanim;
 
 static constexpr int COLUMNS = 13;    // of compute_array()
 
-// fix ID group mdanim/rigid [inertia FILE]
-FixMdanimRigid::FixMdanimRigid(LAMMPS *lmp, int narg, char **arg) : FixBase(lmp, narg, arg)
+// fix ID group mdanim/rigid [inertia FILE] [lambda L] [shapes FILE contact OMEGA EPS] [objects] [plane x|y|z lo|hi at]…
+//     [pair A B mu beta]…
+FixMdanimRigid::FixMdanimRigid(LAMMPS *lmp, int narg, char **arg) : FixBase(lmp, narg, arg), particles(lmp, *this), touching(lmp)
 {
   time_integrate = 1;
   rigid_flag = 1;
@@ -35,41 +36,66 @@ FixMdanimRigid::FixMdanimRigid(LAMMPS *lmp, int narg, char **arg) : FixBase(lmp,
   size_array_rows_variable = 1;
   extarray = 0;
   need(THREE_DIMENSIONS | ORTHOGONAL_BOX | OPEN_BOX | OBJECTS);
+  look_up({}, {&lambda});
+  tell_numbers();
+
+  std::vector<Keyword> known = {{"inertia", "FILE"}, {"lambda", "L|d_NAME"}};
+  for (Keyword &word : RigidTouching::words()) known.push_back(std::move(word));
+  for (int iarg = 3, words = 0; iarg < narg; iarg += words) {
+    words = words_of_keyword(lmp, "fix mdanim/rigid", known, iarg, narg, arg);
+    if (strcmp(arg[iarg], "inertia") == 0) {
+      read_moments_of(arg[iarg + 1]);
+    } else if (strcmp(arg[iarg], "lambda") == 0) {
+      lambda = ParticleValue(lmp, "fix mdanim/rigid: lambda", iarg + 1, arg[iarg + 1]);
+      has_drag = true;
+    } else {
+      touching.read_word(iarg, arg);
+    }
+  }
+  touching.check();
+  grow_arrays(atom->nmax);
+  atom->add_callback(Atom::GROW);
+}
+
+FixMdanimRigid::~FixMdanimRigid() { atom->delete_callback(id, Atom::GROW); }
+
+void FixMdanimRigid::tell_numbers()
+{
   const auto total = [this](double (RigidBody::*energy)() const) {
     double all = 0.0;
     for (const RigidBody &body : bodies) all += (body.*energy)();
     return force->mvv2e * all;
   };
+  const TouchAccount &account = touching.contact.account;
   tell({{"bodies", true, [this] { return static_cast<double>(bodies.size()); }},
         {"translation", true, [total] { return total(&RigidBody::translation); }},
         {"rotation", true, [total] { return total(&RigidBody::rotation); }},
-        clock()});
-
-  for (int iarg = 3; iarg < narg; iarg += 2) {
-    static const std::vector<Keyword> known = {{"inertia", "FILE"}};
-    words_of_keyword(lmp, "fix mdanim/rigid", known, iarg, narg, arg);
-    read_inertia_of(arg[iarg + 1]);
-  }
-  grow_arrays(atom->nmax);
-  atom->add_callback(Atom::GROW);
-}
-
-FixMdanimRigid::~FixMdanimRigid()
-{
-  atom->delete_callback(id, Atom::GROW);
-  memory->destroy(own);
+        clock(),
+        {"contact", true, [&, this] { return force->mvv2e * account.energy; }},
+        {"friction_heat", true, [&, this] { return force->mvv2e * account.heat; }},
+        {"damping_loss", true, [&, this] { return force->mvv2e * account.damped; }},
+        {"let_go", true, [&, this] { return force->mvv2e * account.let_go; }},
+        {"drag_loss", true, [this] { return force->mvv2e * drag_loss; }},
+        {"deepest", false, [&] { return account.deepest; }},
+        {"touching", true, [&] { return static_cast<double>(account.touching); }},
+        {"near", true, [this] { return static_cast<double>(touching.contact.near_pairs()); }},
+        {"worst_bound", false, [&] { return account.worst_bound; }},
+        {"most_touching", false, [&] { return static_cast<double>(account.most_touching); }}});
 }
 
 int FixMdanimRigid::setmask() { return INITIAL_INTEGRATE | FINAL_INTEGRATE | PRE_NEIGHBOR; }
-
-double FixMdanimRigid::mass_at(int i) const { return mass_of(atom->rmass, atom->mass, atom->type, i); }
 
 void FixMdanimRigid::init()
 {
   FixBase::init();
   reset_dt();
-  find_objects();
-  locate();
+  if (particles.find_objects()) bodies.clear();
+  for (const auto &[molecule, inertia] : given)
+    if (particles.objects().number_of(molecule) == ObjectTable::NONE)
+      error->all(FLERR, "{}: there are moments of inertia for object {} (molecule ID), which has no particle in its group",
+                 name(), molecule);
+  size_array_rows = particles.objects().size();
+  particles.locate();
   try {
     if (restarted) unpack(StateRecords(*restarted));
   } catch (const std::exception &problem) {
@@ -83,71 +109,96 @@ void FixMdanimRigid::init()
 
 void FixMdanimRigid::reset_dt() { half_dt = 0.5 * update->dt * force->ftm2v; }
 
-// Forces of fixes that are set up after this one are not there yet.
-void FixMdanimRigid::setup(int) { collected = false; }
+// Forces of fixes that are set up after this one are not there yet. Those of contact have been found already in a run that goes
+// on from another.
+void FixMdanimRigid::setup(int)
+{
+  collected = false;
+  TouchAccount &account = touching.contact.account;
+  account.deepest = account.worst_bound = 0.0;
+  account.most_touching = 0;
+  if (touching.is_current)
+    touching.find_energy(bodies);
+  else
+    touching.step(bodies, 0.0);
+}
 
 void FixMdanimRigid::setup_pre_neighbor() { locate(); }
 
 void FixMdanimRigid::pre_neighbor() { locate(); }
 
+// Objects without particles in the group have been laid aside.
+void FixMdanimRigid::locate()
+{
+  particles.locate();
+  if (!touching.is_on()) return;
+  const std::vector<bigint> present = particles.present();
+  for (std::size_t n = 0; n < present.size(); ++n) touching.lay_aside(static_cast<int>(n), present[n] == 0);
+}
+
 // --- a step ---
 
 void FixMdanimRigid::collect()
 {
-  const auto all = sums<6>([this](int i) {
-    const Vec3 f = vec3(atom->f[i]), t = cross(vec3(atom->x[i]) - bodies[body_of[i]].centre, f);
+  const auto all = particles.sums<6>([this](int i) {
+    const Vec3 f = vec3(atom->f[i]), t = cross(vec3(atom->x[i]) - bodies[particles.body_of(i)].centre, f);
     return std::array<double, 6>{f.x, f.y, f.z, t.x, t.y, t.z};
   });
+  const double units = 1.0 / force->ftm2v;    // contact has forces in units of mass times acceleration
   for (std::size_t n = 0; n < bodies.size(); ++n) {
     bodies[n].force = {all[n][0], all[n][1], all[n][2]};
     bodies[n].torque = {all[n][3], all[n][4], all[n][5]};
+    if (!touching.is_on()) continue;
+    const RigidTouching::Push &push = touching.push(static_cast<int>(n));
+    bodies[n].force += units * push.force;
+    bodies[n].torque += units * push.torque;
+  }
+  drag.assign(bodies.size(), 0.0);
+  if (has_drag) {
+    const double *const own = lambda.values(lmp);
+    drag = particles.sum_of([&](int i) { return own ? own[i] : lambda.number; });
   }
   collected = true;
 }
 
-// Sets velocities of particles, and places as well if they have changed.
-void FixMdanimRigid::put(bool places)
+void FixMdanimRigid::kick(bool first)
 {
-  for (int i = 0; i < atom->nlocal; ++i) {
-    if (body_of[i] == ObjectTable::NONE) continue;
-    const RigidBody &body = bodies[body_of[i]];
-    const Vec3 from_centre = body.turn * vec3(own[i]), place = body.centre + from_centre, v = body.velocity_at(from_centre);
-    if (places) atom->x[i][0] = place.x, atom->x[i][1] = place.y, atom->x[i][2] = place.z;
-    atom->v[i][0] = v.x, atom->v[i][1] = v.y, atom->v[i][2] = v.z;
-  }
+  for (std::size_t n = 0; n < bodies.size(); ++n)
+    if (drag[n] == 0.0)
+      bodies[n].kick(half_dt);
+    else
+      drag_loss += bodies[n].kick_with_drag(half_dt, drag[n], first);
 }
 
 void FixMdanimRigid::initial_integrate(int)
 {
   const Lap lap(seconds);
   if (!collected) collect();
-  for (RigidBody &body : bodies) {
-    body.kick(half_dt);
-    body.drift(update->dt);
-  }
-  put(true);
+  kick(true);
+  for (RigidBody &body : bodies) body.drift(update->dt);
+  particles.put(bodies, true);
 }
 
 void FixMdanimRigid::final_integrate()
 {
   const Lap lap(seconds);
+  touching.step(bodies, update->dt);
   collect();
-  for (RigidBody &body : bodies) body.kick(half_dt);
-  put(false);
+  kick(false);
+  particles.put(bodies, false);
 }
 
 // --- output ---
 
-// Kinetic energy of bodies less that of their particles, which LAMMPS's own sums hold: 0 unless a file gives other moments.
+// Kinetic energy of bodies less that of their particles, which LAMMPS's own sums hold: 0 unless a file gives other moments. With
+// it the energy of contacts, and what contacts and drag have taken.
 double FixMdanimRigid::compute_scalar()
 {
-  const auto of_particles = sums<1>([this](int i) {
-    const Vec3 v = vec3(atom->v[i]);
-    return std::array<double, 1>{0.5 * mass_at(i) * dot(v, v)};
-  });
+  const std::vector<double> of_particles = particles.kinetic();
   double more = 0.0;
-  for (std::size_t n = 0; n < bodies.size(); ++n) more += bodies[n].translation() + bodies[n].rotation() - of_particles[n][0];
-  return force->mvv2e * more;
+  for (std::size_t n = 0; n < bodies.size(); ++n) more += bodies[n].translation() + bodies[n].rotation() - of_particles[n];
+  const TouchAccount &account = touching.contact.account;
+  return force->mvv2e * (more + account.energy + account.heat + account.damped + account.let_go + drag_loss);
 }
 
 double FixMdanimRigid::compute_array(int row, int column)
@@ -159,44 +210,5 @@ double FixMdanimRigid::compute_array(int row, int column)
   return numbers[column];
 }
 
-// Degrees of freedom that bodies take from the temperature of a group, if all their particles belong to it.
-bigint FixMdanimRigid::dof(int number)
-{
-  std::vector<bigint> of_group(objects.size(), 0);
-  for (int i = 0; i < atom->nlocal; ++i)
-    if (body_of[i] != ObjectTable::NONE && (atom->mask[i] & group->bitmask[number])) ++of_group[body_of[i]];
-  MPI_Allreduce(MPI_IN_PLACE, of_group.data(), objects.size(), MPI_LMP_BIGINT, MPI_SUM, world);
-  bigint taken = 0;
-  for (int n = 0; n < objects.size(); ++n)
-    if (of_group[n] == particles[n]) taken += 3 * particles[n] - 6;
-  return taken;
-}
-
 double FixMdanimRigid::memory_usage()
-{
-  return 3.0 * sizeof(double) * atom->nmax + bodies.size() * sizeof(RigidBody) + sizeof(int) * body_of.capacity() +
-         objects.bytes();
-}
-
-// --- places in the body, which go with particles from rank to rank ---
-
-void FixMdanimRigid::grow_arrays(int n) { memory->grow(own, n, 3, "fix mdanim/rigid"); }
-
-void FixMdanimRigid::set_arrays(int i) { own[i][0] = own[i][1] = own[i][2] = 0.0; }
-
-void FixMdanimRigid::copy_arrays(int from, int to, int)
-{
-  for (int k = 0; k < 3; ++k) own[to][k] = own[from][k];
-}
-
-int FixMdanimRigid::pack_exchange(int i, double *buffer)
-{
-  for (int k = 0; k < 3; ++k) buffer[k] = own[i][k];
-  return 3;
-}
-
-int FixMdanimRigid::unpack_exchange(int i, double *buffer)
-{
-  for (int k = 0; k < 3; ++k) own[i][k] = buffer[k];
-  return 3;
-}
+{ return particles.bytes() + static_cast<double>(bodies.size() * sizeof(RigidBody) + touching.contact.bytes()); }

@@ -1,23 +1,24 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// The state of bodies, as records of objects, (a, 0).
+// The state of bodies and of their contacts as records.
 
 #include "lammps/fix_mdanim_rigid.h"
 
-#include "lammps/rank_gather.h"
 #include "records/byte_reader.h"
 #include "records/byte_writer.h"
 
 #include "fmt/format.h"
 
 #include <algorithm>
+#include <cmath>
+#include <optional>
 #include <stdexcept>
-#include <tuple>
-#include <unordered_map>
+#include <string>
+#include <utility>
 
 using namespace LAMMPS_NS;
 using namespace mdanim;
 
-static constexpr std::int64_t STATE_VERSION = 1;
+static constexpr std::int64_t STATE_VERSION = 2;
 
 namespace {
 
@@ -26,17 +27,8 @@ struct KeptBody {
   Vec3 moments, centre, velocity;
   Quaternion q;
   Vec3 L;
-};
-
-struct KeptPlace {
-  std::int64_t tag;    // counted from the lowest of the object
-  Vec3 own;
-};
-
-struct PlaceRow {
-  std::int64_t object, tag;
-  Vec3 own;
-  bool operator<(const PlaceRow &other) const { return std::tie(object, tag) < std::tie(other.object, other.tag); }
+  Vec3 push, turning_push;    // of contact
+  Pose pose;                  // of its shape
 };
 
 template <class Kept> bool is_finite(const Kept &kept)    // of doubles alone
@@ -47,80 +39,99 @@ template <class Kept> bool is_finite(const Kept &kept)    // of doubles alone
 
 }    // namespace
 
+// (a, 0): the body and its contacts with planes, then the places of particles in it. (a, b): contacts of two bodies.
 StateRecords FixMdanimRigid::pack() const
 {
   if (restarted) return *restarted;
-  std::vector<PlaceRow> here;
-  for (int i = 0; i < atom->nlocal && !bodies.empty(); ++i)
-    if (moves(i)) here.push_back({atom->molecule[i], atom->tag[i], vec3(own[i])});
-  std::vector<PlaceRow> rows = gather(world, here);
-  std::sort(rows.begin(), rows.end());
   StateRecords records;
-  for (auto first = rows.begin(); first != rows.end();) {
-    const auto last = std::find_if(first, rows.end(), [&](const PlaceRow &row) { return row.object != first->object; });
-    std::vector<KeptPlace> places;
-    for (auto row = first; row != last; ++row) places.push_back({row->tag - first->tag, row->own});
-    const RigidBody &body = bodies[objects.number_of(static_cast<tagint>(first->object))];
-    const KeptBody kept{body.mass, body.moments, body.centre, body.velocity, body.q, body.L};
-    records[{static_cast<int>(first->object), 0}] = ByteWriter().put(STATE_VERSION).put(kept).put_counted(places).take();
-    first = last;
+  if (bodies.empty()) return records;
+  ParticleRows rows(lmp, STATE_VERSION, sizeof(Vec3));
+  for (std::size_t n = 0; n < bodies.size(); ++n) {
+    const RigidBody &body = bodies[n];
+    const int number = static_cast<int>(n);
+    KeptBody kept{body.mass, body.moments, body.centre, body.velocity, body.q, body.L, {}, {}, {}};
+    ByteWriter head;
+    if (touching.is_on()) {
+      kept.push = touching.push(number).force;
+      kept.turning_push = touching.push(number).torque;
+      kept.pose = touching.pose(number);
+      head.put(kept);
+      touching.contact.put_at_planes(touching.solid(number), head);
+    } else {
+      head.put(kept);
+    }
+    rows.begin(static_cast<int>(particles.objects().id(number)), head.take());
   }
+  for (int i = 0; i < atom->nlocal; ++i) {
+    const Vec3 own = particles.own(i);
+    if (particles.moves(i)) rows.add(i, &own);
+  }
+  rows.pack(records);
+  touching.contact.each_pair_record([&](int a, int b, const Bytes &bytes) {
+    records[{touching.contact.solid(a).id, touching.contact.solid(b).id}] =
+        ByteWriter().put(STATE_VERSION).put(bytes.data(), bytes.size()).take();
+  });
   return records;
 }
 
 void FixMdanimRigid::unpack(const StateRecords &records)
 {
-  find_objects();
-  locate();
-  std::vector<tagint> lowest(objects.size(), MAXTAGINT);
-  std::unordered_map<tagint, int> local;
-  for (int i = 0; i < atom->nlocal; ++i) {
-    if (!moves(i)) continue;
-    lowest[body_of[i]] = std::min(lowest[body_of[i]], atom->tag[i]);
-    local.emplace(atom->tag[i], i);
-  }
-  MPI_Allreduce(MPI_IN_PLACE, lowest.data(), objects.size(), MPI_LMP_TAGINT, MPI_MIN, world);
+  if (particles.find_objects()) bodies.clear();
+  particles.locate();
+  const ObjectTable &objects = particles.objects();
+  ParticleRows::Heads heads;
+  std::vector<std::pair<int, Vec3>> places;    // of local particles
+  const ParticleRows rows(lmp, STATE_VERSION, sizeof(Vec3));
+  for (const auto &[key, bytes] : records)
+    if (key.b == 0 && objects.number_of(key.a) == ObjectTable::NONE)
+      ByteReader(bytes.data(), bytes.size(), name_of_record(key)).fail("is of an object that is not there");
+  rows.unpack(
+      records,
+      [&](int i, const std::uint8_t *from) {
+        places.emplace_back(i, ByteReader(from, sizeof(Vec3), "the place of a particle").get<Vec3>());
+        if (!is_finite(places.back().second)) throw std::runtime_error("a place in a body is damaged");
+      },
+      &heads);
 
-  std::vector<std::pair<int, KeptBody>> kept_bodies;
-  std::vector<std::pair<int, Vec3>> kept_places;      // of local particles
-  std::vector<bigint> found_of(objects.size(), 0);    // particles of each object that have a place
-  for (const auto &[key, bytes] : records) {
-    const int n = key.b ? ObjectTable::NONE : objects.number_of(key.a);
-    ByteReader reader(bytes.data(), bytes.size(), fmt::format("the record of object {}", key.a));
-    if (n == ObjectTable::NONE) reader.fail("is of an object that is not there");
-    reader.expect_version(STATE_VERSION);
-    kept_bodies.emplace_back(n, reader.get<KeptBody>());
-    const auto places = reader.get_counted<KeptPlace>();
-    reader.expect_end();
-    const KeptBody &body = kept_bodies.back().second;
-    if (!is_finite(body) || !(body.mass > 0.0) || !(body.moments.x > 0.0)) reader.is_damaged("its motion or its mass");
-    if (static_cast<bigint>(places.size()) != particles[n])
-      reader.fail(fmt::format("is of {} particles, the object has {}", places.size(), particles[n]));
-    for (const KeptPlace &place : places) {
-      if (!is_finite(place.own)) reader.is_damaged("a place in the body");
-      const auto found = local.find(static_cast<tagint>(lowest[n] + place.tag));
-      if (found == local.end() || body_of[found->second] != n) continue;
-      kept_places.emplace_back(found->second, place.own);
-      ++found_of[n];
+  std::vector<KeptBody> kept(objects.size());
+  std::vector<std::optional<ByteReader>> rest(objects.size());    // of each head, contacts with planes
+  for (const auto &[object, head] : heads) {
+    const int n = objects.number_of(object);
+    ByteReader reader(head.bytes.data(), head.bytes.size(), name_of_record({object, 0}));
+    kept[n] = reader.get<KeptBody>();
+    if (!is_finite(kept[n]) || !(kept[n].mass > 0.0) || !(kept[n].moments.x > 0.0)) reader.is_damaged("its motion or its mass");
+    if (static_cast<bigint>(head.rows) != particles.particles_of(n))
+      reader.fail(fmt::format("is of {} particles, the object has {}", head.rows, particles.particles_of(n)));
+    rest[n] = reader;
+  }
+
+  const std::vector<RigidBody> bodies_before = bodies;
+  const RigidTouching touching_before = touching;
+  try {
+    if (bodies.empty() || static_cast<int>(heads.size()) < objects.size())
+      make();    // those without a record as at the beginning
+    std::vector<Pose> poses;
+    for (int n = 0; n < objects.size(); ++n) {
+      poses.push_back(rest[n] ? kept[n].pose : touching.pose(n));
+      if (!rest[n]) continue;
+      RigidBody &body = bodies[n];
+      body.mass = kept[n].mass, body.moments = kept[n].moments, body.centre = kept[n].centre;
+      body.velocity = kept[n].velocity, body.q = kept[n].q, body.L = kept[n].L;
+      body.refresh();
     }
+    touching.take(name(), objects, bodies, std::move(poses));
+    touching.read_contacts(records, STATE_VERSION, rest);
+    for (int n = 0; n < objects.size(); ++n)
+      if (rest[n]) touching.set_push(n, {kept[n].push, kept[n].turning_push});
+  } catch (const std::runtime_error &) {
+    bodies = bodies_before;
+    touching = touching_before;
+    throw;
   }
-  MPI_Allreduce(MPI_IN_PLACE, found_of.data(), objects.size(), MPI_LMP_BIGINT, MPI_SUM, world);
-  for (const auto &[n, kept] : kept_bodies)
-    if (found_of[n] != particles[n])
-      throw std::runtime_error(fmt::format("the record of object {} is of other particles: {} of {} are there", objects.id(n),
-                                           found_of[n], particles[n]));
-
+  touching.is_current = !heads.empty() && static_cast<int>(heads.size()) == objects.size();
+  for (const auto &[i, place] : places) particles.set_own(i, place);
   restarted.reset();
-  if (static_cast<int>(kept_bodies.size()) < objects.size()) make();    // those without a record are as at the beginning
-  bodies.resize(objects.size());
-  for (const auto &[n, kept] : kept_bodies) {
-    RigidBody &body = bodies[n];
-    body.mass = kept.mass, body.moments = kept.moments, body.centre = kept.centre, body.velocity = kept.velocity;
-    body.q = kept.q, body.L = kept.L;
-    body.refresh();
-  }
-  for (const auto &[i, place] : kept_places) own[i][0] = place.x, own[i][1] = place.y, own[i][2] = place.z;
-  put(true);
+  particles.put(bodies, true);
 }
 
 void FixMdanimRigid::write_restart(FILE *file) { mdanim::write_restart(*this, lmp, name(), file); }

@@ -130,22 +130,30 @@ void ParticleRows::pack(StateRecords &into) const
     if (n && !(all[order[n - 1]] < row)) fail("particle {} of object {} has its state twice", row.tag, row.object);
     Bytes &record = into[{row.object, 0}];
     ByteWriter writer(std::move(record));
-    if (writer.is_empty()) writer.put(version);
+    if (writer.is_empty()) {
+      writer.put(version);
+      if (const auto head = heads.find(row.object); head != heads.end()) writer.put_counted(head->second);
+    }
     writer.put(row.tag).put(all_values.data() + order[n] * width, width);
     record = writer.take();
   }
 }
 
-void ParticleRows::unpack(const StateRecords &records, const Visit &visit) const
+void ParticleRows::unpack(const StateRecords &records, const Visit &visit, Heads *found) const
 {
   const auto every_row = [&](auto &&take) {
     for (const auto &[key, record] : records) {
       if (key.a == 0 || key.b != 0) continue;
       ByteReader reader(record.data(), record.size(), fmt::format("the record of object {}", key.a));
       const std::size_t size = sizeof(std::int32_t) + width;
-      if (record.size() < sizeof version || (record.size() - sizeof version) % size)
+      if (!found && (record.size() < sizeof version || (record.size() - sizeof version) % size))
         reader.fail(fmt::format("has {} bytes, not {} and a multiple of {}", record.size(), sizeof version, size));
       reader.expect_version(version);
+      if (found) {
+        Bytes head = reader.get_counted<std::uint8_t>();
+        if (reader.left() % size) reader.fail(fmt::format("has {} bytes of rows, not a multiple of {}", reader.left(), size));
+        (*found)[key.a] = {std::move(head), reader.left() / size};
+      }
       const tagint lowest = lowest_tag(key.a);
       while (reader.left() > 0) {
         const auto here = local.find(lowest + reader.get<std::int32_t>());

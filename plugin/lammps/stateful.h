@@ -10,10 +10,12 @@
 #include <cstdint>
 #include <cstdio>
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <tuple>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 namespace LAMMPS_NS {
@@ -50,6 +52,8 @@ class ParticleRows {
   // Made by all ranks together. All rows have `width` bytes of values.
   ParticleRows(LAMMPS_NS::LAMMPS *lmp, std::int64_t version, int width);
 
+  // Gives the record of an object a head of any size, before its rows; all ranks give the same. Without it there are none.
+  void begin(int object, Bytes head) { heads[object] = std::move(head); }
   // Adds a row of the local particle i, whose object is 1 or more; `from` has `width` bytes.
   void add(int i, const void *from);
   // Adds records of all rows of all ranks: rows sorted by tags. Throws std::runtime_error on all ranks when a tag occurs twice.
@@ -58,7 +62,14 @@ class ParticleRows {
   // Calls visit(i, values) for every row of a local particle i. Skips records of other keys. Throws std::runtime_error on all
   // ranks, before any visit, when a record has another version or width, or is of particles that do not exist.
   using Visit = std::function<void(int, const std::uint8_t *)>;
-  void unpack(const StateRecords &records, const Visit &visit) const;
+  // Heads of records by objects, and how many rows each has.
+  struct RowsHead {
+    Bytes bytes;
+    std::size_t rows;
+  };
+  using Heads = std::map<int, RowsHead>;
+  // `found`: where records have heads.
+  void unpack(const StateRecords &records, const Visit &visit, Heads *found = nullptr) const;
 
  private:
   struct StateRow {
@@ -79,6 +90,7 @@ class ParticleRows {
   std::unordered_map<LAMMPS_NS::tagint, int> local;    // index of particles by tags; LAMMPS's own map may be out of date here
   std::vector<StateRow> rows;
   Bytes values;
+  std::map<int, Bytes> heads;
 };
 
 }    // namespace mdanim

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// A rigid body under forces, by the leap-frog of the particles: Wcislo 1999, eq. (3.10), without friction.
+// A rigid body under forces, by the leap-frog of the particles: Wcislo 1999, eq. (3.12), with v and L in place of v.
 
 #pragma once
 
+#include "leapfrog/law.h"
 #include "numbers/matrix3.h"
 #include "rigid/rotation.h"
 
@@ -36,6 +37,19 @@ struct RigidBody {
     L += half * torque;
     find_spin();
   }
+  // The same with drag: a force -lambda v and a torque -lambda/m L. Returns the energy that it takes (see Implicit::loss).
+  double kick_with_drag(double half, double lambda, bool first)
+  {
+    const Implicit<double> drag = Implicit<double>::of(lambda * half / mass, half / mass),
+                           turning{drag.phi, half, drag.stay, drag.share};
+    const Vec3 v = velocity, before = L, spin_before = spin;
+    velocity = first ? drag.first_half(v, force) : drag.final_half(v, force);
+    L = first ? turning.first_half(before, torque) : turning.final_half(before, torque);
+    find_spin();
+    const Vec3 push = half * torque, lag = first ? (2.0 / 3.0) * L - 0.5 * before : 0.5 * L - (2.0 / 3.0) * before;
+    return drag.loss(v, velocity, force, mass, first) + 0.5 * dot(spin_before + spin, push - (L - before)) +
+           drag.phi * dot(push, over_moments(lag));
+  }
   // Position and rotation after dt, with v and L as they are.
   void drift(double dt)
   {
@@ -48,16 +62,19 @@ struct RigidBody {
   // Velocity of a point of the body, given by its place in space from the centre.
   Vec3 velocity_at(const Vec3 &from_centre) const { return velocity + cross(spin, from_centre); }
 
+  // I^-1 a.
+  Vec3 over_moments(const Vec3 &a) const
+  {
+    const Vec3 body = transposed_times(turn, a);
+    return turn * Vec3{over.x * body.x, over.y * body.y, over.z * body.z};
+  }
+
   double translation() const { return 0.5 * mass * dot(velocity, velocity); }
   double rotation() const { return 0.5 * dot(L, spin); }
 
  private:
   static double inverse(double moment) { return moment > 0.0 ? 1.0 / moment : 0.0; }
-  void find_spin()
-  {
-    const Vec3 body = transposed_times(turn, L);
-    spin = turn * Vec3{over.x * body.x, over.y * body.y, over.z * body.z};
-  }
+  void find_spin() { spin = over_moments(L); }
 };
 
 }    // namespace mdanim

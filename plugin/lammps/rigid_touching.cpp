@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: GPL-2.0-only
+
+#include "lammps/rigid_touching.h"
+
+#include "lammps/shared_file.h"
+
+#include "error.h"
+#include "fmt/format.h"
+#include "lammps.h"
+#include "utils.h"
+
+#include <algorithm>
+#include <cstring>
+#include <stdexcept>
+#include <utility>
+
+using namespace LAMMPS_NS;
+
+namespace mdanim {
+
+static const char *const STYLE = "fix mdanim/rigid";
+
+// --- the command ---
+
+std::vector<Keyword> RigidTouching::words()
+{ return {{"shapes", "FILE"}, {"contact", "OMEGA EPS"}, {"objects", ""}, {"plane", "x|y|z lo|hi at"}, {"pair", "A B mu beta"}}; }
+
+static double number(LAMMPS *lmp, int iarg, char **arg, const char *what, double least, bool or_equal)
+{
+  const double value = utils::numeric(FLERR, arg[iarg], false, lmp);
+  if (!(or_equal ? value >= least : value > least))
+    lmp->error->all(FLERR, iarg, "{}: {} must be {} {}, got {}", STYLE, what, or_equal ? "at least" : "above", least, arg[iarg]);
+  return value;
+}
+
+void RigidTouching::read_word(int iarg, char **arg)
+{
+  const auto is = [&](const char *word) { return strcmp(arg[iarg], word) == 0; };
+  if (is("shapes")) {
+    has_file = true;
+    const std::string text = read_shared_file(lmp, STYLE, "shapes", arg[iarg + 1]);
+    try {
+      for (auto &[molecule, shape] : read_shapes(arg[iarg + 1], text)) shapes[molecule] = std::move(shape);
+    } catch (const std::exception &problem) {
+      lmp->error->all(FLERR, "{}: {}", STYLE, problem.what());
+    }
+  }
+  if (is("contact")) {
+    contact.settings.frequency = number(lmp, iarg + 1, arg, "OMEGA", 0.0, false);
+    contact.settings.onset = number(lmp, iarg + 2, arg, "EPS", 0.0, false);
+  }
+  if (is("objects")) contact.settings.objects = true;
+  if (is("plane")) read_plane(iarg, arg);
+  if (is("pair")) read_pair(iarg, arg);
+}
+
+void RigidTouching::read_plane(int iarg, char **arg)
+{
+  const int axis = arg[iarg + 1][0] - 'x';
+  if (axis < 0 || axis > 2 || arg[iarg + 1][1])
+    lmp->error->all(FLERR, iarg + 1, "{}: the axis of a plane is x, y or z, got {}", STYLE, arg[iarg + 1]);
+  const bool low = strcmp(arg[iarg + 2], "lo") == 0;
+  if (!low && strcmp(arg[iarg + 2], "hi") != 0)
+    lmp->error->all(FLERR, iarg + 2, "{}: a plane is the lower end of what is allowed, lo, or the upper, hi; got {}", STYLE,
+                    arg[iarg + 2]);
+  const double sign = low ? 1.0 : -1.0, at = utils::numeric(FLERR, arg[iarg + 3], false, lmp);
+  contact.settings.planes.push_back({{axis == 0 ? sign : 0.0, axis == 1 ? sign : 0.0, axis == 2 ? sign : 0.0}, sign * at});
+}
+
+// The second of a pair may be a plane: plane1 is the first one of the command.
+void RigidTouching::read_pair(int iarg, char **arg)
+{
+  int a = utils::inumeric(FLERR, arg[iarg + 1], false, lmp), b = 0;
+  if (strncmp(arg[iarg + 2], "plane", 5) == 0) {
+    const int plane = utils::inumeric(FLERR, arg[iarg + 2] + 5, false, lmp);
+    if (plane < 1 || plane > static_cast<int>(contact.settings.planes.size()))
+      lmp->error->all(FLERR, iarg + 2, "{}: a pair has {}, and {} planes are given before it", STYLE, arg[iarg + 2],
+                      contact.settings.planes.size());
+    b = -plane;
+  } else {
+    b = utils::inumeric(FLERR, arg[iarg + 2], false, lmp);
+  }
+  if (a < 1 || b == 0 || a == b)
+    lmp->error->all(FLERR, iarg + 1,
+                    "{}: a pair is two different molecule IDs > 0, or one and plane1, plane2, ...; got {} and {}", STYLE,
+                    arg[iarg + 1], arg[iarg + 2]);
+  if (b > 0 && b < a) std::swap(a, b);
+  contact.settings.pairs[{a, b}] = {number(lmp, iarg + 3, arg, "mu of a pair", 0.0, true),
+                                    number(lmp, iarg + 4, arg, "beta of a pair", 0.0, true)};
+}
+
+void RigidTouching::check() const
+{
+  const RigidContactSettings &settings = contact.settings;
+  if (!is_on()) {
+    if (has_file || settings.frequency > 0.0)
+      lmp->error->all(FLERR, "{}: nothing can touch; write objects, or plane x|y|z lo|hi and its place", STYLE);
+    return;
+  }
+  if (!has_file || !(settings.frequency > 0.0))
+    lmp->error->all(FLERR, "{}: contact needs 'shapes FILE' and 'contact OMEGA EPS'", STYLE);
+  if (!settings.objects) return;
+  for (const auto &[id, one] : shapes)
+    for (const auto &[other_id, other] : shapes)
+      if (id < other_id && !(one.held && other.held) && !know_each_other(one.shape.kind(), other.shape.kind()))
+        lmp->error->all(FLERR,
+                        "{}: objects {} and {} (molecule IDs) are a {} and a {}, and contact by features does not know these two "
+                        "on each other; leave them to fix mdanim/contact, in a fix mdanim/rigid of their own without 'objects'",
+                        STYLE, id, other_id, one.shape.name(), other.shape.name());
+}
+
+// --- bodies ---
+
+void RigidTouching::make(const std::string &fix, const ObjectTable &objects, const std::vector<RigidBody> &bodies)
+{
+  std::vector<Pose> in_bodies(bodies.size());
+  for (std::size_t n = 0; n < bodies.size() && is_on(); ++n) {
+    const auto found = shapes.find(static_cast<int>(objects.id(static_cast<int>(n))));
+    if (found == shapes.end()) continue;
+    const Pose &pose = found->second.pose;
+    const Quaternion &q = bodies[n].q;
+    in_bodies[n] = {transposed_times(bodies[n].turn, pose.place - bodies[n].centre),
+                    unit(Quaternion{q.w, -q.x, -q.y, -q.z} * pose.q)};
+  }
+  take(fix, objects, bodies, std::move(in_bodies));
+}
+
+void RigidTouching::take(const std::string &fix, const ObjectTable &objects, const std::vector<RigidBody> &bodies,
+                         std::vector<Pose> in_bodies)
+{
+  poses = std::move(in_bodies);
+  pushes.assign(bodies.size(), {});
+  solid_of.assign(bodies.size(), 0);
+  is_current = false;
+  if (!is_on()) return;
+  std::vector<Solid> solids;
+  for (const auto &[id, given] : shapes) {
+    const int n = objects.number_of(id);
+    if (given.held != (n == ObjectTable::NONE))
+      lmp->error->all(FLERR, "{}: the file of shapes has object {} (molecule ID) as {}, and it has {} particle in the group", fix,
+                      id, given.held ? "held" : "free", given.held ? "a" : "no");
+    Solid one;
+    one.id = id;
+    one.held = given.held;
+    one.material = given.material;
+    if (given.held) {
+      one.shape = given.shape.placed({});
+      one.move_to(given.pose.place, matrix(given.pose.q));
+    } else {
+      one.shape = given.shape.placed(poses[n]);
+      one.over_mass = 1.0 / bodies[n].mass;
+      one.over = bodies[n].over;
+      solid_of[n] = static_cast<int>(solids.size());
+    }
+    solids.push_back(std::move(one));
+  }
+  for (int n = 0; n < objects.size(); ++n)
+    if (!shapes.count(static_cast<int>(objects.id(n))))
+      lmp->error->all(FLERR, "{}: object {} (molecule ID) has no line in the file of shapes", fix, objects.id(n));
+  for (const auto &[ids, law] : contact.settings.pairs)
+    for (const int id : {ids.first, ids.second})
+      if (id > 0 && !shapes.count(id)) lmp->error->all(FLERR, "{}: pair names molecule {}, which has no shape", fix, id);
+  contact.take(std::move(solids));
+  place_all(bodies);
+}
+
+void RigidTouching::place_all(const std::vector<RigidBody> &bodies)
+{
+  for (std::size_t n = 0; n < bodies.size(); ++n) contact.place(solid_of[n], bodies[n]);
+}
+
+void RigidTouching::step(const std::vector<RigidBody> &bodies, double dt)
+{
+  if (!is_on()) return;
+  place_all(bodies);
+  contact.step(dt);
+  for (std::size_t n = 0; n < bodies.size(); ++n)
+    pushes[n] = {contact.solid(solid_of[n]).force, contact.solid(solid_of[n]).torque};
+  is_current = true;
+}
+
+void RigidTouching::find_energy(const std::vector<RigidBody> &bodies)
+{
+  if (!is_on()) return;
+  place_all(bodies);
+  contact.find_energy();
+}
+
+// --- records ---
+
+std::string name_of_record(const StateKey &key)
+{ return key.b ? fmt::format("the record of objects {} and {}", key.a, key.b) : fmt::format("the record of object {}", key.a); }
+
+void RigidTouching::read_contacts(const StateRecords &records, std::int64_t version,
+                                  std::vector<std::optional<ByteReader>> &at_planes)
+{
+  for (std::size_t n = 0; n < at_planes.size(); ++n) {
+    if (!at_planes[n]) continue;
+    if (is_on()) contact.read_at_planes(solid_of[n], *at_planes[n]);
+    at_planes[n]->expect_end();
+  }
+  for (const auto &[key, bytes] : records) {
+    if (key.b == 0) continue;
+    ByteReader reader(bytes.data(), bytes.size(), name_of_record(key));
+    const int a = contact.number_of(key.a), b = contact.number_of(key.b);
+    if (a < 0 || b < 0) reader.fail("is of an object that is not there");
+    reader.expect_version(version);
+    contact.read_pair(a, b, reader);
+    reader.expect_end();
+  }
+}
+
+}    // namespace mdanim

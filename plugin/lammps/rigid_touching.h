@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// Contact of rigid bodies by features for fix mdanim/rigid: words of the command, shapes of bodies, forces of contact.
+
+#pragma once
+
+#include "lammps/keywords.h"
+#include "lammps/object_table.h"
+#include "records/byte_reader.h"
+#include "records/state_records.h"
+#include "rigid/body.h"
+#include "rigid/rigid_contact.h"
+#include "rigid/shapes_file.h"
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace mdanim {
+
+std::string name_of_record(const StateKey &key);    // begins messages
+
+class RigidTouching {
+ public:
+  static std::vector<Keyword> words();    // of the command
+  explicit RigidTouching(LAMMPS_NS::LAMMPS *lmp) : lmp(lmp) {}
+
+  // Reads a word with its values, where it is one of words().
+  void read_word(int iarg, char **arg);
+  // Refuses words that do not belong together, and shapes that contact does not know on each other.
+  void check() const;
+  bool is_on() const { return contact.settings.objects || !contact.settings.planes.empty(); }
+
+  // Takes bodies that have just been made, or have come with these poses of their shapes. `fix` begins messages.
+  void make(const std::string &fix, const ObjectTable &objects, const std::vector<RigidBody> &bodies);
+  void take(const std::string &fix, const ObjectTable &objects, const std::vector<RigidBody> &bodies,
+            std::vector<Pose> in_bodies);
+  const Pose &pose(int body) const { return poses[body]; }
+
+  // Finds forces dt after the last step; dt = 0 at the setup of a run.
+  void step(const std::vector<RigidBody> &bodies, double dt);
+  // Finds the energy of contacts where their forces are known already.
+  void find_energy(const std::vector<RigidBody> &bodies);
+  struct Push {
+    Vec3 force, torque;
+  };
+  const Push &push(int body) const { return pushes[body]; }
+  void set_push(int body, const Push &push) { pushes[body] = push; }
+  // A body that is laid aside neither moves nor touches.
+  void lay_aside(int body, bool aside) { contact.lay_aside(solid_of[body], aside); }
+  int solid(int body) const { return solid_of[body]; }
+
+  // Contacts from the records of pairs, and at planes from what is left of those of bodies. Throws std::runtime_error.
+  void read_contacts(const StateRecords &records, std::int64_t version, std::vector<std::optional<ByteReader>> &at_planes);
+
+  RigidContact contact;
+  bool is_current = false;    // whether pushes are those of the present places and velocities
+
+ private:
+  void place_all(const std::vector<RigidBody> &bodies);
+  void read_plane(int iarg, char **arg);
+  void read_pair(int iarg, char **arg);
+
+  LAMMPS_NS::LAMMPS *lmp;
+  std::map<int, GivenShape> shapes;    // by molecule IDs
+  std::vector<Pose> poses;             // of bodies
+  std::vector<Push> pushes;
+  std::vector<int> solid_of;    // number among the bodies of contact
+  bool has_file = false;
+};
+
+}    // namespace mdanim

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-2.0-only
+
+#include "rigid/moments_file.h"
+
+#include "rigid/line_words.h"
+
+#include <cstdio>
+
+namespace mdanim {
+
+static std::string text_of(double value)
+{
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g", value);
+  return text;
+}
+
+std::map<int, Inertia> read_moments(const std::string &name, const std::string &text)
+{
+  std::map<int, Inertia> found;
+  each_line(name, text, [&](LineWords &words) {
+    const int molecule = words.molecule();
+    Inertia inertia;
+    for (double *one : {&inertia.xx, &inertia.yy, &inertia.zz, &inertia.xy, &inertia.xz, &inertia.yz})
+      *one = words.number<double>("a moment of Ixx Iyy Izz Ixy Ixz Iyz");
+    words.expect_end();
+    const Vec3 moments = principal_axes(inertia).moments;
+    if (!(moments.x > 0.0 && moments.x + moments.y >= (1.0 - 1e-9) * moments.z))
+      words.fail("no body has the principal moments " + text_of(moments.x) + ", " + text_of(moments.y) + " and " +
+                 text_of(moments.z) + ", which must be positive, none above the sum of the other two");
+    if (!found.emplace(molecule, inertia).second) words.fail("object " + std::to_string(molecule) + " has a line already");
+  });
+  return found;
+}
+
+}    // namespace mdanim

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// Two bodies that may touch: their contacts, and what is known of the features that are near. Of the latter no force depends.
+
+#pragma once
+
+#include "rigid/touch.h"
+
+#include <utility>
+#include <vector>
+
+namespace mdanim {
+
+struct SolidPair {
+  int a = 0, b = 0;    // numbers of bodies, a < b
+  std::vector<Touch> touches;
+
+  double asleep = 0.0;            // both may go so far together before the bodies can touch
+  double known_for = -1.0;        // and so far until features must be looked up again
+  int axis = 0;                   // number of the direction that separated the bodies last
+  std::vector<int> corners[2];    // of a near b, of b near a
+  std::vector<std::pair<int, int>> edges;
+
+  void forget()
+  {
+    asleep = 0.0;
+    known_for = -1.0;
+  }
+};
+
+// Contacts of a pair of polyhedra. `lists`: whether features that are near are remembered.
+void touch_polyhedra(const TouchStep &step, SolidPair &pair, Solid &a, Solid &b, const TouchLaw &law, bool lists);
+// Contacts of other shapes; `ball` is of either.
+void touch_balls(const TouchStep &step, SolidPair &pair, Solid &a, Solid &b, const TouchLaw &law);
+void touch_ball_and_polyhedron(const TouchStep &step, SolidPair &pair, Solid &ball, Solid &host, const TouchLaw &law);
+
+// A plane: what is allowed lies where n . x >= at.
+struct SolidPlane {
+  Vec3 n;
+  double at = 0.0;
+};
+void touch_plane(const TouchStep &step, std::vector<Touch> &touches, Solid &one, const SolidPlane &plane, const TouchLaw &law);
+
+// Width of the ramps about edges over the thinnest part.
+inline double ramp_of(const Solid &solid) { return 0.0625 * solid.shape.thin(); }
+// Step from 0 at x = -w to 1 at x = w, and its slope.
+inline double smooth_step(double x, double w, double &slope)
+{
+  const double r = (x + w) / (2.0 * w);
+  slope = 0.0;
+  if (r <= 0.0) return 0.0;
+  if (r >= 1.0) return 1.0;
+  slope = 6.0 * r * (1.0 - r) / (2.0 * w);
+  return r * r * (3.0 - 2.0 * r);
+}
+
+}    // namespace mdanim

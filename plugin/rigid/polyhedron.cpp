@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: GPL-2.0-only
+
+#include "rigid/polyhedron.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+namespace mdanim {
+
+static constexpr double BLUNT = 0.7;        // cosine between the normals of two faces above which their edge has no ramp
+static constexpr double ROUNDING = 1e-9;    // over the size
+
+static double length(const Vec3 &a) { return std::sqrt(dot(a, a)); }
+static Vec3 unit(const Vec3 &a) { return (1.0 / length(a)) * a; }
+
+Polyhedron Polyhedron::box(const Vec3 &half)
+{
+  std::vector<Vec3> corners;
+  for (int q = 0; q < 8; ++q) corners.push_back({q & 1 ? half.x : -half.x, q & 2 ? half.y : -half.y, q & 4 ? half.z : -half.z});
+  return Polyhedron(corners, {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}});
+}
+
+Polyhedron::Polyhedron(const std::vector<Vec3> &corners, const std::vector<std::vector<int>> &loops)
+{
+  for (const Vec3 &at : corners) all_corners.push_back({at, {}, {}});
+  find_faces(loops);
+  find_edges();
+}
+
+void Polyhedron::find_faces(const std::vector<std::vector<int>> &loops)
+{
+  double size = 0.0;
+  for (const Corner &corner : all_corners) size = std::max(size, length(corner.at - all_corners[0].at));
+  for (const std::vector<int> &loop : loops) {
+    const std::string which = "face " + std::to_string(all_faces.size() + 1);
+    Vec3 area;
+    for (std::size_t k = 0; k < loop.size(); ++k) {
+      const int a = loop[k], b = loop[(k + 1) % loop.size()];
+      if (a < 0 || a >= static_cast<int>(all_corners.size()) || a == b || b < 0 || b >= static_cast<int>(all_corners.size()))
+        throw std::runtime_error(which + " has a corner that there is not, or one twice");
+      area += cross(all_corners[a].at - all_corners[loop[0]].at, all_corners[b].at - all_corners[loop[0]].at);
+    }
+    if (!(length(area) > ROUNDING * size * size)) throw std::runtime_error(which + " has no area");
+    Face face{unit(area), 0.0, loop, {}, {}};
+    for (const int corner : loop) face.at += dot(face.normal, all_corners[corner].at) / static_cast<double>(loop.size());
+    for (const int corner : loop)
+      if (std::fabs(dot(face.normal, all_corners[corner].at) - face.at) > 1e3 * ROUNDING * size)
+        throw std::runtime_error(which + " is not flat");
+    for (const Corner &corner : all_corners)
+      if (dot(face.normal, corner.at) - face.at > 1e3 * ROUNDING * size)
+        throw std::runtime_error(which +
+                                 " has a corner of the body before it: the body is not convex, or the corners of the face "
+                                 "are not counter-clockwise from outside");
+    for (const int corner : loop) all_corners[corner].faces.push_back(static_cast<int>(all_faces.size()));
+    all_faces.push_back(std::move(face));
+  }
+}
+
+void Polyhedron::find_edges()
+{
+  std::map<std::pair<int, int>, int> left_of;    // face to the left of an edge from one corner to the other
+  for (std::size_t f = 0; f < all_faces.size(); ++f) {
+    const std::vector<int> &loop = all_faces[f].corners;
+    for (std::size_t k = 0; k < loop.size(); ++k)
+      if (!left_of.emplace(std::pair{loop[k], loop[(k + 1) % loop.size()]}, static_cast<int>(f)).second)
+        throw std::runtime_error("two faces have the same edge in the same sense");
+  }
+  if (left_of.empty()) throw std::runtime_error("there is no face");
+  for (const auto &[ends, left] : left_of) {
+    const auto [a, b] = ends;
+    const auto other = left_of.find({b, a});
+    if (other == left_of.end())
+      throw std::runtime_error("the edge between corners " + std::to_string(a) + " and " + std::to_string(b) + " has one face");
+    if (a > b) continue;
+    const Vec3 way = all_corners[b].at - all_corners[a].at, along = unit(way);
+    Face &one = all_faces[left], &two = all_faces[other->second];
+    // Counter-clockwise from outside: a face is to the left of its edges.
+    const Vec3 into_one = cross(one.normal, along), into_two = cross(along, two.normal);
+    if (dot(one.normal, two.normal) > 1.0 - ROUNDING) throw std::runtime_error("two faces are in one plane; make them one");
+    all_edges.push_back({0.5 * (all_corners[a].at + all_corners[b].at), along, 0.5 * length(way), {into_one, into_two}});
+    all_corners[a].ways.push_back(along);
+    all_corners[b].ways.push_back(-1.0 * along);
+    if (dot(one.normal, two.normal) > BLUNT) {
+      one.next.push_back(other->second);
+      two.next.push_back(left);
+    } else {
+      one.bounds.push_back({-1.0 * into_one, -dot(into_one, all_corners[a].at)});
+      two.bounds.push_back({-1.0 * into_two, -dot(into_two, all_corners[a].at)});
+    }
+    const bool is_new = std::none_of(all_directions.begin(), all_directions.end(),
+                                     [&](const Vec3 &known) { return std::fabs(dot(known, along)) > 1.0 - ROUNDING; });
+    if (is_new) all_directions.push_back(along);
+  }
+  for (const Corner &corner : all_corners)
+    if (corner.ways.size() < 3) throw std::runtime_error("a corner has fewer than three edges");
+}
+
+double Polyhedron::outside(const Vec3 &x) const
+{
+  double most = -HUGE_VAL;
+  for (const Face &face : all_faces) most = std::max(most, dot(face.normal, x) - face.at);
+  return most;
+}
+
+double Polyhedron::reach(const Vec3 &n) const
+{
+  double most = -HUGE_VAL;
+  for (const Corner &corner : all_corners) most = std::max(most, dot(n, corner.at));
+  return most;
+}
+
+double Polyhedron::thickness() const
+{
+  double least = HUGE_VAL;
+  for (const Face &face : all_faces) least = std::min(least, face.at + reach(-1.0 * face.normal));
+  return least;
+}
+
+Polyhedron::Foot Polyhedron::nearest(const Vec3 &x) const
+{
+  Foot inside{{}, -HUGE_VAL};
+  double square = HUGE_VAL;
+  Vec3 from;
+  for (const Face &face : all_faces) {
+    const double above = dot(face.normal, x) - face.at;
+    if (above > inside.distance) inside = {face.normal, above};
+    if (above <= 0.0 || above * above >= square) continue;
+    // The closest point of the face: below x, or on the edges that x is beyond.
+    bool is_beyond = false;
+    for (std::size_t k = 0; k < face.corners.size(); ++k) {
+      const Vec3 &a = all_corners[face.corners[k]].at, &b = all_corners[face.corners[(k + 1) % face.corners.size()]].at;
+      const Vec3 way = b - a, r = x - a;
+      if (dot(cross(way, face.normal), r) <= 0.0) continue;
+      is_beyond = true;
+      const double s = std::min(std::max(dot(way, r) / dot(way, way), 0.0), 1.0);
+      const Vec3 away = r - s * way;
+      if (dot(away, away) < square) square = dot(away, away), from = away;
+    }
+    if (!is_beyond) square = above * above, from = above * face.normal;
+  }
+  if (inside.distance <= 0.0) return inside;
+  const double distance = std::sqrt(square);
+  return {(1.0 / distance) * from, distance};
+}
+
+}    // namespace mdanim

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: GPL-2.0-only
+
+#include "rigid/rigid_contact.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstring>
+
+namespace mdanim {
+
+static constexpr std::size_t MOST_MOVING = 8;    // points that move over one body
+
+void RigidContact::take(std::vector<Solid> now)
+{
+  solids = std::move(now);
+  for (Solid &one : solids) one.find_yields();
+  forget();
+}
+
+int RigidContact::number_of(int id) const
+{
+  const auto found =
+      std::lower_bound(solids.begin(), solids.end(), id, [](const Solid &one, int wanted) { return one.id < wanted; });
+  return found != solids.end() && found->id == id ? static_cast<int>(found - solids.begin()) : -1;
+}
+
+void RigidContact::forget()
+{
+  near.pairs.clear();
+  near.forget();
+  at_plane.assign(settings.planes.size(), std::vector<std::vector<Touch>>(solids.size()));
+}
+
+void RigidContact::place(int n, const RigidBody &body)
+{
+  Solid &one = solids[n];
+  one.move_to(body.centre, body.turn);
+  one.velocity = body.velocity;
+  one.spin = body.spin;
+  one.fastest_turn = std::sqrt(dot(body.L, body.L)) * std::max({body.over.x, body.over.y, body.over.z});
+}
+
+TouchLaw RigidContact::law_of(const Solid &a, const Solid &b) const
+{
+  TouchLaw law{settings.frequency * settings.frequency / (a.yields + b.yields),
+               std::sqrt(a.material.friction * b.material.friction), std::max(a.material.damping, b.material.damping)};
+  if (const auto own = settings.pairs.find({a.id, b.id}); own != settings.pairs.end())
+    law.friction = own->second.friction, law.damping = own->second.damping;
+  return law;
+}
+
+TouchLaw RigidContact::law_at(const Solid &one, int plane) const
+{
+  TouchLaw law{settings.frequency * settings.frequency / one.yields, one.material.friction, one.material.damping};
+  if (const auto own = settings.pairs.find({one.id, -1 - plane}); own != settings.pairs.end())
+    law.friction = own->second.friction, law.damping = own->second.damping;
+  return law;
+}
+
+void RigidContact::touch_pair(const TouchStep &step, SolidPair &pair)
+{
+  Solid &a = solids[pair.a], &b = solids[pair.b];
+  if (a.aside || b.aside) return;
+  const double way = a.stir + b.stir;
+  pair.asleep -= way;
+  pair.known_for -= way;
+  const Vec3 between = a.centre - b.centre;
+  const double reach = a.shape.bound() + b.shape.bound();
+  if (pair.touches.empty() && (pair.asleep > 0.0 || dot(between, between) > reach * reach)) return;
+  const TouchLaw law = law_of(a, b);
+  const bool is_ball = a.shape.kind() == SolidShape::BALL, is_other_ball = b.shape.kind() == SolidShape::BALL;
+  if (is_ball && is_other_ball)
+    touch_balls(step, pair, a, b, law);
+  else if (is_ball)
+    touch_ball_and_polyhedron(step, pair, a, b, law);
+  else if (is_other_ball)
+    touch_ball_and_polyhedron(step, pair, b, a, law);
+  else
+    touch_polyhedra(step, pair, a, b, law, settings.lists);
+}
+
+void RigidContact::step(double dt)
+{
+  account.energy = 0.0;
+  account.touching = 0;
+  for (Solid &one : solids) {
+    one.begin_step();
+    one.stir = one.held ? 0.0 : dt * (std::sqrt(dot(one.velocity, one.velocity)) + one.fastest_turn * one.shape.bound());
+  }
+  const TouchStep step(dt, settings.onset, account);
+  for (std::size_t k = 0; k < settings.planes.size(); ++k)
+    for (std::size_t n = 0; n < solids.size(); ++n)
+      if (!solids[n].held && !solids[n].aside)
+        touch_plane(step, at_plane[k][n], solids[n], settings.planes[k], law_at(solids[n], static_cast<int>(k)));
+  if (settings.objects) {
+    near.update(solids);
+    for (SolidPair &pair : near.pairs) touch_pair(step, pair);
+  }
+  for (const Solid &one : solids) {
+    account.worst_bound = std::max(account.worst_bound, 0.25 * dt * dt * one.stiffness_sum + 0.5 * dt * one.damping_sum);
+    account.most_touching = std::max(account.most_touching, one.touching);
+  }
+}
+
+void RigidContact::find_energy()
+{
+  const std::vector<SolidPair> pairs = near.pairs;
+  const auto planes = at_plane;
+  TouchAccount kept = account;
+  step(0.0);
+  kept.energy = account.energy;
+  kept.touching = account.touching;
+  account = kept;
+  at_plane = planes;
+  near.pairs = pairs;
+  near.forget();
+}
+
+std::size_t RigidContact::bytes() const
+{
+  std::size_t all = solids.capacity() * sizeof(Solid) + near.pairs.capacity() * sizeof(SolidPair);
+  for (const SolidPair &pair : near.pairs)
+    all += pair.touches.capacity() * sizeof(Touch) + (pair.corners[0].capacity() + pair.corners[1].capacity()) * sizeof(int) +
+           pair.edges.capacity() * sizeof(pair.edges[0]);
+  return all;
+}
+
+// --- records ---
+
+bool RigidContact::touches_planes(int n) const
+{
+  return std::any_of(at_plane.begin(), at_plane.end(), [n](const auto &of_plane) { return !of_plane[n].empty(); });
+}
+
+void RigidContact::put_at_planes(int n, ByteWriter &writer) const
+{
+  for (const auto &of_plane : at_plane) writer.put_counted(of_plane[n]);
+}
+
+// Features that the shapes have, and finite numbers.
+static void check(const std::vector<Touch> &touches, const Solid &a, const Solid *b, const ByteReader &reader)
+{
+  const auto corners = [](const Solid &one) { return std::max<std::size_t>(one.shape.polyhedron().corners().size(), 1); };
+  const auto edges = [](const Solid &one) { return one.shape.polyhedron().edges().size(); };
+  const auto sides = [](const Solid *one) { return one ? std::max<std::size_t>(one->shape.polyhedron().faces().size(), 1) : 1; };
+  for (const Touch &touch : touches) {
+    std::size_t first = 0, second = 1, side = 1;
+    if (touch.kind == Touch::CORNER) first = corners(a), side = sides(b);
+    if (touch.kind == Touch::CORNER_OF_OTHER && b) first = corners(*b), side = sides(&a);
+    if (touch.kind == Touch::EDGES && b) first = edges(a), second = edges(*b);
+    if (touch.kind == Touch::MOVING || touch.kind == Touch::MOVING_OF_OTHER) first = MOST_MOVING;
+    const auto is_below = [](std::int32_t number, std::size_t count) {
+      return number >= 0 && static_cast<std::size_t>(number) < count;
+    };
+    if (!is_below(touch.first, first) || !is_below(touch.second, second) || !is_below(touch.side, side))
+      reader.fail("has contacts of features that there are not");
+    double values[(sizeof(Touch) - offsetof(Touch, stiffness)) / sizeof(double)];
+    std::memcpy(values, reinterpret_cast<const char *>(&touch) + offsetof(Touch, stiffness), sizeof values);
+    reader.expect_numbers(values, "a number of a contact");
+  }
+}
+
+void RigidContact::read_at_planes(int n, ByteReader &reader)
+{
+  for (auto &of_plane : at_plane) {
+    of_plane[n] = reader.get_counted<Touch>();
+    check(of_plane[n], solids[n], nullptr, reader);
+  }
+}
+
+void RigidContact::read_pair(int a, int b, ByteReader &reader)
+{
+  SolidPair pair;
+  pair.a = a;
+  pair.b = b;
+  pair.touches = reader.get_counted<Touch>();
+  check(pair.touches, solids[a], &solids[b], reader);
+  near.pairs.push_back(std::move(pair));
+}
+
+}    // namespace mdanim

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// All rigid bodies in contact with each other and with planes, by features: corners, edges, moving points of round shapes. Knows
+// neither LAMMPS nor ranks: its input is the same on all of them, and so is its output.
+
+#pragma once
+
+#include "records/byte_reader.h"
+#include "records/byte_writer.h"
+#include "rigid/body.h"
+#include "rigid/near_solids.h"
+#include "rigid/touch.h"
+
+#include <map>
+#include <utility>
+#include <vector>
+
+namespace mdanim {
+
+struct RigidContactSettings {
+  bool objects = false;      // whether bodies touch each other
+  double frequency = 0.0;    // Omega of the rule of stiffness, k = Omega^2 / (lambda_a + lambda_b) [1/s]
+  double onset = 0.0;        // eps [m]
+  std::vector<SolidPlane> planes;
+  // Friction and damping of pairs, by ids, the lower one first; of a body and plane k the second is -1 - k.
+  std::map<std::pair<int, int>, Material> pairs;
+  bool lists = true;    // whether it is remembered which features are near; no bit depends on it
+};
+
+class RigidContact {
+ public:
+  RigidContactSettings settings;
+  TouchAccount account;
+
+  // Bodies by ascending ids. Their contacts, if any, end.
+  void take(std::vector<Solid> now);
+  int bodies() const { return static_cast<int>(solids.size()); }
+  const Solid &solid(int n) const { return solids[n]; }
+  int number_of(int id) const;    // -1 for none
+  std::size_t near_pairs() const { return near.pairs.size(); }
+  std::size_t bytes() const;
+
+  // Places a body that can move, before a step.
+  void place(int n, const RigidBody &body);
+  // A body that is laid aside touches nothing.
+  void lay_aside(int n, bool aside) { solids[n].aside = aside; }
+  // Finds the energy of contacts, and how many there are, and changes nothing else.
+  void find_energy();
+  // Finds the forces on bodies, dt after the last step; dt = 0 at the setup of a run.
+  void step(double dt);
+
+  // Contacts with planes of one body, and of a pair of bodies: what they remember.
+  bool touches_planes(int n) const;
+  void put_at_planes(int n, ByteWriter &writer) const;
+  void read_at_planes(int n, ByteReader &reader);
+  // Calls visit(a, b, bytes) for each pair in contact.
+  template <class Visit> void each_pair_record(const Visit &visit) const
+  {
+    for (const SolidPair &pair : near.pairs)
+      if (!pair.touches.empty()) visit(pair.a, pair.b, ByteWriter().put_counted(pair.touches).take());
+  }
+  void read_pair(int a, int b, ByteReader &reader);
+  void forget();    // all contacts
+
+ private:
+  TouchLaw law_of(const Solid &a, const Solid &b) const;
+  TouchLaw law_at(const Solid &one, int plane) const;
+  void touch_pair(const TouchStep &step, SolidPair &pair);
+
+  std::vector<Solid> solids;
+  NearSolids near;
+  std::vector<std::vector<std::vector<Touch>>> at_plane;    // by planes and bodies
+};
+
+}    // namespace mdanim

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// Shapes of rigid bodies, as contact sees them.
+
+#pragma once
+
+#include "numbers/vec3.h"
+#include "rigid/body.h"
+#include "rigid/polyhedron.h"
+
+#include <functional>
+#include <string>
+
+namespace mdanim {
+
+// Where a shape is: p -> place + turn p.
+struct Pose {
+  Vec3 place;
+  Quaternion q;
+};
+
+class SolidShape {
+ public:
+  enum ShapeKind { POLYHEDRON, BALL, CYLINDER, CONE, ELLIPSOID };
+
+  static SolidShape of(Polyhedron polyhedron);
+  static SolidShape ball(double radius);
+  // About the third axis, from -height/2 to height/2; a cone has its tip at height/2.
+  static SolidShape cylinder(double radius, double height);
+  static SolidShape cone(double radius, double height);
+  static SolidShape ellipsoid(const Vec3 &half_axes);
+
+  // The same shape in the frame of its body.
+  SolidShape placed(const Pose &pose) const;
+
+  ShapeKind kind() const { return its_kind; }
+  const char *name() const;
+  const Polyhedron &polyhedron() const { return its_polyhedron; }
+  const Vec3 &middle() const { return its_middle; }
+  const Vec3 &axis(int k) const { return axes[k]; }
+  double radius() const { return size.x; }
+  double half_height() const { return size.z; }
+  const Vec3 &half_axes() const { return size; }
+  double bound() const { return its_bound; }    // largest distance from the origin
+  double thin() const { return its_thin; }      // thinnest part
+
+  // Calls visit(place, normal) for features of the surface that other bodies touch first: corners with their faces, ends of axes.
+  void each_feature(const std::function<void(const Vec3 &, const Vec3 &)> &visit) const;
+
+ private:
+  ShapeKind its_kind = BALL;
+  Polyhedron its_polyhedron;
+  Vec3 its_middle, axes[3] = {{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}};
+  Vec3 size;    // radius and half of the height, or half axes
+  double its_bound = 0.0, its_thin = 0.0;
+};
+
+// Whether contact by features knows two shapes on each other.
+bool know_each_other(SolidShape::ShapeKind a, SolidShape::ShapeKind b);
+
+}    // namespace mdanim

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: GPL-2.0-only
+
+#include "rigid/shapes_file.h"
+
+#include "rigid/line_words.h"
+
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+namespace mdanim {
+
+namespace {
+
+Polyhedron read_polyhedron(LineWords &words)
+{
+  std::vector<Vec3> corners(words.many("the number of corners", 3));
+  for (Vec3 &corner : corners) corner = words.vector("a corner");
+  std::vector<std::vector<int>> faces(words.many("the number of faces", 4));
+  for (std::vector<int> &face : faces) {
+    face.resize(words.many("the number of corners of a face", 1));
+    for (int &corner : face) corner = words.number<int>("a corner of a face");
+    if (face.size() < 3) words.fail("a face has fewer than three corners");
+  }
+  try {
+    return Polyhedron(corners, faces);
+  } catch (const std::runtime_error &problem) {
+    words.fail(problem.what());
+  }
+}
+
+SolidShape read_shape(LineWords &words)
+{
+  const std::string kind = words.word("the shape");
+  if (kind == "box") {
+    const double x = words.positive("a side"), y = words.positive("a side"), z = words.positive("a side");
+    return SolidShape::of(Polyhedron::box({0.5 * x, 0.5 * y, 0.5 * z}));
+  }
+  if (kind == "ball") return SolidShape::ball(words.positive("the radius"));
+  if (kind == "cylinder" || kind == "cone") {
+    const double radius = words.positive("the radius"), height = words.positive("the height");
+    return kind == "cone" ? SolidShape::cone(radius, height) : SolidShape::cylinder(radius, height);
+  }
+  if (kind == "ellipsoid") {
+    const double x = words.positive("a half axis"), y = words.positive("a half axis"), z = words.positive("a half axis");
+    return SolidShape::ellipsoid({x, y, z});
+  }
+  if (kind == "polyhedron") return SolidShape::of(read_polyhedron(words));
+  words.fail("a shape is box, ball, cylinder, cone, ellipsoid or polyhedron, got " + kind);
+}
+
+}    // namespace
+
+std::map<int, GivenShape> read_shapes(const std::string &name, const std::string &text)
+{
+  std::map<int, GivenShape> found;
+  each_line(name, text, [&](LineWords &words) {
+    const int molecule = words.molecule();
+    GivenShape one;
+    one.material.friction = words.at_least_zero("friction");
+    one.material.damping = words.at_least_zero("damping");
+    const std::string held = words.word("free or held");
+    if (held != "free" && held != "held") words.fail("a body is free or held, got " + held);
+    one.held = held == "held";
+    one.pose.place = words.vector("the place");
+    Quaternion &q = one.pose.q;
+    q.w = words.number<double>("the rotation");
+    const Vec3 axis = words.vector("the rotation");
+    q.x = axis.x, q.y = axis.y, q.z = axis.z;
+    if (std::fabs((q.w * q.w + q.x * q.x) + (q.y * q.y + q.z * q.z) - 1.0) > 1e-6)
+      words.fail("the rotation is no unit quaternion");
+    q = unit(q);
+    one.shape = read_shape(words);
+    words.expect_end();
+    if (!found.emplace(molecule, std::move(one)).second) words.fail("object " + std::to_string(molecule) + " has a line already");
+  });
+  return found;
+}
+
+}    // namespace mdanim

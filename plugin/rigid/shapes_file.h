@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// The file of shapes of rigid bodies: a line for each object.
+
+#pragma once
+
+#include "rigid/shape.h"
+#include "rigid/solid.h"
+
+#include <map>
+#include <string>
+
+namespace mdanim {
+
+struct GivenShape {
+  Material material;
+  bool held;
+  Pose pose;           // in space, when bodies are made
+  SolidShape shape;    // in its own frame
+};
+
+// By molecule IDs. Throws std::runtime_error with the line: `name` names the file.
+std::map<int, GivenShape> read_shapes(const std::string &name, const std::string &text);
+
+}    // namespace mdanim

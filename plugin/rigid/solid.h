@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// A rigid body as contact by features sees it: its shape, where it is, how it yields, and the forces on it.
+
+#pragma once
+
+#include "numbers/matrix3.h"
+#include "rigid/shape.h"
+
+#include <cmath>
+#include <vector>
+
+namespace mdanim {
+
+struct Material {
+  double friction = 0.0, damping = 0.0;    // mu, and beta, the part of critical damping
+};
+
+struct Solid {
+  int id = 0;
+  bool held = false;
+  bool aside = false;    // touches nothing
+  Material material;
+  SolidShape shape;          // in the frame of the body
+  double over_mass = 0.0;    // 1/m, and 1/I about its axes; 0 of one that is held
+  Vec3 over;
+  double yields = 0.0;        // largest lambda along normals at its features (see find_yields)
+  double yields_any = 0.0;    // along any direction
+
+  Vec3 centre, velocity, spin;
+  Matrix3 turn;
+  Vec3 axis[3];                 // columns of `turn`
+  double fastest_turn = 0.0;    // no less than its angular velocity at any time of the step
+  double stir = 0.0;            // farthest way of a point of it in this step
+
+  Vec3 force, torque;
+  double stiffness_sum = 0.0, damping_sum = 0.0;    // S and D of the bound on the step
+  int touching = 0;
+
+  Vec3 in_space(const Vec3 &own) const { return turn * own; }
+  Vec3 place(const Vec3 &own) const { return centre + turn * own; }
+  Vec3 in_body(const Vec3 &a) const { return transposed_times(turn, a); }
+  Vec3 velocity_at(const Vec3 &x) const { return velocity + cross(spin, x - centre); }
+  // lambda = 1/m + (r x n) I^-1 (r x n): acceleration along n of the point x over a force along n that acts there.
+  double yields_at(const Vec3 &x, const Vec3 &n) const
+  {
+    if (held) return 0.0;
+    const Vec3 t = in_body(cross(x - centre, n));
+    return over_mass + (t.x * t.x * over.x + t.y * t.y * over.y + t.z * t.z * over.z);
+  }
+
+  void move_to(const Vec3 &to, const Matrix3 &now)
+  {
+    centre = to;
+    turn = now;
+    for (int k = 0; k < 3; ++k) {
+      const auto pick = [k](const Vec3 &row) { return k == 0 ? row.x : k == 1 ? row.y : row.z; };
+      axis[k] = {pick(now.row[0]), pick(now.row[1]), pick(now.row[2])};
+    }
+  }
+  void begin_step()
+  {
+    force = torque = Vec3();
+    stiffness_sum = damping_sum = 0.0;
+    touching = 0;
+  }
+  // To be called after the shape, the mass and the moments were set.
+  void find_yields();
+};
+
+// Largest eigenvalue of 1/m + [r]^T I^-1 [r]: how a point r yields along the direction in which it yields most.
+inline double largest_yield(double over_mass, const Vec3 &over, const Vec3 &r)
+{
+  Vec3 v{0.6, 0.7, 0.3};
+  double value = 0.0;
+  constexpr int POWERS = 200;
+  for (int n = 0; n < POWERS; ++n) {
+    const Vec3 t = cross(r, v), w = over_mass * v - cross(r, Vec3{over.x * t.x, over.y * t.y, over.z * t.z});
+    value = std::sqrt(dot(w, w));
+    v = (1.0 / value) * w;
+  }
+  return value;
+}
+
+inline void Solid::find_yields()
+{
+  yields = yields_any = 0.0;
+  if (held) return;
+  shape.each_feature([this](const Vec3 &at, const Vec3 &n) {
+    const Vec3 t = cross(at, n);
+    yields = std::max(yields, over_mass + (t.x * t.x * over.x + t.y * t.y * over.y + t.z * t.z * over.z));
+    yields_any = std::max(yields_any, largest_yield(over_mass, over, at));
+  });
+}
+
+}    // namespace mdanim

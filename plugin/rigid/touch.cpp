@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: GPL-2.0-only
+
+#include "rigid/touch.h"
+
+#include <cmath>
+
+namespace mdanim {
+
+// The dashpot has beta times critical damping, 2 beta sqrt(k/lambda), with lambda of both along n.
+Touch TouchStep::born(Touch::TouchKind kind, const TouchLaw &law, const Solid &a, const Solid *b, const Vec3 &x,
+                      const Vec3 &n) const
+{
+  Touch touch;
+  touch.kind = kind;
+  touch.stiffness = law.stiffness;
+  const double yields = a.yields_at(x, n) + (b ? b->yields_at(x, n) : 0.0);
+  touch.damping = law.damping > 0.0 ? 2.0 * law.damping * std::sqrt(law.stiffness / yields) / law.stiffness : 0.0;
+  return touch;
+}
+
+Vec3 TouchStep::relative_velocity(const Solid &a, const Solid *b, const Vec3 &x)
+{
+  const Vec3 v = a.velocity_at(x);
+  return b ? v - b->velocity_at(x) : v;
+}
+
+void TouchStep::end(Touch &touch, double depth) const
+{
+  account.heat += touch.memory.stick_energy;
+  account.damped += last_damping_work(touch.memory, std::min(depth, touch.memory.depth));
+}
+
+void TouchStep::let_go(Touch &touch, double depth, double part) const
+{
+  account.let_go += touch.stiffness * part * Onset<double>(depth - touch.memory.offset, onset).value;
+  end(touch, depth);
+}
+
+void TouchStep::apply(Solid &a, Solid *b, const Vec3 &x, const Vec3 &f) const
+{
+  a.force += f;
+  a.torque += cross(x - a.centre, f);
+  if (!b) return;
+  b->force -= f;
+  b->torque -= cross(x - b->centre, f);
+}
+
+// S = sum of 2 k lambda* over the contacts of a body (k lambda* at planes), D the same with the dashpots. The springs of a
+// contact are k (n n + 0.8 t t), so lambda* is at most 0.2 lambda + 0.8 lambda along any direction; n of two edges may be any
+// direction.
+void TouchStep::book(Solid &a, Solid *b, const Touch &touch, double part, const ContactForce<double> &force) const
+{
+  account.energy += part * force.surface_energy + touch.memory.stick_energy;
+  account.heat += force.heat;
+  account.damped += force.damped;
+  ++account.touching;
+  account.deepest = std::max(account.deepest, touch.memory.depth - touch.memory.offset);
+  const auto add_to_sums = [&](Solid &one) {
+    const double share = touch.kind == Touch::EDGES ? 1.0 : ContactLaw::STICK;
+    const double s = (b ? 2.0 : 1.0) * touch.stiffness * ((1.0 - share) * one.yields + share * one.yields_any);
+    one.stiffness_sum += s;
+    one.damping_sum += s * touch.damping;
+    ++one.touching;
+  };
+  add_to_sums(a);
+  if (b) add_to_sums(*b);
+}
+
+void TouchStep::press(Touch &touch, const TouchLaw &its_law, Solid &a, Solid *b, const Vec3 &own, double depth, double part,
+                      const Vec3 &slope, const Vec3 &n) const
+{
+  const ContactLaw law = law_of(touch, its_law);
+  ContactForce<double> push = contact_pressure<double>(law, 1.0, part, depth, dt, touch.memory);
+  Vec3 force = push.press * n;
+  if (b && (slope.x != 0.0 || slope.y != 0.0 || slope.z != 0.0)) force -= push.surface_energy * b->in_space(slope);
+  if (law.friction > 0.0) {
+    const Vec3 from_anchor = own - touch.anchor;
+    Vec3 away = b ? b->in_space(from_anchor) : from_anchor;
+    away -= dot(away, n) * n;    // the anchor follows along the normal
+    contact_friction<double>(law, 1.0, part, away, n, dt, touch.memory, push);
+    const Vec3 left = push.kept * away;
+    touch.anchor = own - (b ? b->in_body(left) : left);
+    force += push.pull + push.drag;
+  }
+  apply(a, b, b ? b->place(own) : own, force);
+  book(a, b, touch, part, push);
+}
+
+void TouchStep::press_moving(std::vector<Touch> &list, Touch::TouchKind kind, int number, const TouchLaw &its_law, Solid &a,
+                             Solid *b, const Vec3 &x, const Vec3 &n, double depth) const
+{
+  auto found = std::find_if(list.begin(), list.end(), [&](const Touch &one) { return one.kind == kind && one.first == number; });
+  if (depth <= 0.0) {
+    if (found == list.end()) return;
+    end(*found, depth);
+    list.erase(found);
+    return;
+  }
+  if (found == list.end()) {
+    Touch touch = born(kind, its_law, a, b, x, n);
+    touch.first = number;
+    if (is_first())
+      overlaps(touch, depth);
+    else
+      came_from(touch, depth + dt * dot(relative_velocity(a, b, x), n));
+    list.push_back(touch);
+    found = list.end() - 1;
+  }
+  Touch &touch = *found;
+  const ContactLaw law = law_of(touch, its_law);
+  ContactForce<double> push = contact_pressure<double>(law, 1.0, 1.0, depth, dt, touch.memory);
+  Vec3 force = push.press * n;
+  if (law.friction > 0.0) {
+    // The way that the material of one went over that of the other, step by step.
+    Vec3 away = b ? b->in_space(touch.anchor) : touch.anchor;
+    away += dt * relative_velocity(a, b, x);
+    away -= dot(away, n) * n;
+    contact_friction<double>(law, 1.0, 1.0, away, n, dt, touch.memory, push);
+    const Vec3 left = push.kept * away;
+    touch.anchor = b ? b->in_body(left) : left;
+    force += push.pull + push.drag;
+  }
+  apply(a, b, x, force);
+  book(a, b, touch, 1.0, push);
+}
+
+}    // namespace mdanim

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// One contact of two rigid bodies, or of one and a plane; and what all of them tell.
+
+#pragma once
+
+#include "contact/law.h"
+#include "rigid/solid.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+namespace mdanim {
+
+// Plain values: records hold them as they are.
+struct Touch {
+  enum TouchKind : std::int32_t { CORNER, CORNER_OF_OTHER, EDGES, MOVING, MOVING_OF_OTHER };
+  TouchKind kind = CORNER;
+  std::int32_t first = 0, second = 0;    // features: a corner, two edges, a moving point
+  std::int32_t side = 0;                 // of the host of a corner
+  double stiffness = 0.0;                // k [N/m]
+  double damping = 0.0;                  // dashpot over k [s]
+  Vec3 anchor;    // corners: in the host; edges: places along both; moving points: way from the anchor, in the host's frame
+  ContactMemory<double> memory;
+};
+
+// Stiffness, friction and damping of all contacts of a pair.
+struct TouchLaw {
+  double stiffness = 0.0, friction = 0.0, damping = 0.0;
+};
+
+struct TouchAccount {
+  double energy = 0.0;                              // of contacts and of sticking, now [J]
+  int touching = 0;                                 // now
+  double heat = 0.0, damped = 0.0, let_go = 0.0;    // since the beginning [J]
+  double deepest = 0.0;                             // in this run [m]
+  double worst_bound = 0.0;                         // largest dt^2 S / 4 + dt D / 2 of a body in this run
+  int most_touching = 0;                            // contacts of one body, in this run
+};
+
+// One evaluation of contacts: forces on bodies, and the account.
+class TouchStep {
+ public:
+  // dt = 0 at the setup of a run: there are no dashpots, and what overlaps by then does so without a force.
+  TouchStep(double dt, double onset, TouchAccount &account) : dt(dt), onset(onset), account(account) {}
+
+  bool is_first() const { return dt == 0.0; }
+  double time_step() const { return dt; }
+  TouchAccount &its_account() const { return account; }
+
+  // A contact that is born at x. `depth_before`: that of the step before, where it came through the surface; else it overlaps
+  // from the beginning, without a force.
+  Touch born(Touch::TouchKind kind, const TouchLaw &law, const Solid &a, const Solid *b, const Vec3 &x, const Vec3 &n) const;
+  static void came_from(Touch &touch, double depth_before) { touch.memory.depth = std::min(0.0, depth_before); }
+  static void overlaps(Touch &touch, double depth) { touch.memory.offset = touch.memory.depth = depth; }
+  // Velocity of the point x of `a` over that of `b`, or of a plane.
+  static Vec3 relative_velocity(const Solid &a, const Solid *b, const Vec3 &x);
+  void end(Touch &touch, double depth) const;
+  // Ends a contact that is still pressed.
+  void let_go(Touch &touch, double depth, double part) const;
+
+  ContactLaw law_of(const Touch &touch, const TouchLaw &law) const
+  { return {touch.stiffness, onset, law.friction, touch.damping}; }
+  void apply(Solid &a, Solid *b, const Vec3 &x, const Vec3 &f) const;
+  void book(Solid &a, Solid *b, const Touch &touch, double part, const ContactForce<double> &force) const;
+
+  // A point X of `a`, in the frame of its host `b` or of space, at the depth d below a side with the outward normal n in space.
+  // `slope`: gradient of `part` in the host's frame.
+  void press(Touch &touch, const TouchLaw &law, Solid &a, Solid *b, const Vec3 &own, double depth, double part, const Vec3 &slope,
+             const Vec3 &n) const;
+  // A point of `a` that moves over its surface, as the lowest of a ball: at x in space, at the depth d below a surface with the
+  // outward normal n. Finds its contact in the list, or makes or ends it.
+  void press_moving(std::vector<Touch> &list, Touch::TouchKind kind, int number, const TouchLaw &law, Solid &a, Solid *b,
+                    const Vec3 &x, const Vec3 &n, double depth) const;
+
+ private:
+  double dt, onset;
+  TouchAccount &account;
+};
+
+}    // namespace mdanim

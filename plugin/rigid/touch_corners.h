@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// Corners of a polyhedron in a host. A host has sides; below each there is a depth, and a part that counts near its edges.
+
+#pragma once
+
+#include "rigid/pair.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace mdanim {
+
+// A polyhedron as host, in its own frame.
+class PolyhedronHost {
+ public:
+  PolyhedronHost(const Polyhedron &shape, double ramp) : shape(shape), ramp(ramp) {}
+
+  int sides() const { return static_cast<int>(shape.faces().size()); }
+  Vec3 normal(int side, const Vec3 &) const { return shape.faces()[side].normal; }
+  double depth(int side, const Vec3 &x) const { return shape.faces()[side].at - dot(shape.faces()[side].normal, x); }
+  double outside(const Vec3 &x) const { return shape.outside(x); }
+  // Part of a contact at x below a side: it fades over the ramp at sharp edges.
+  double part(int side, const Vec3 &x, Vec3 &slope) const
+  {
+    double part = 1.0;
+    slope = Vec3();
+    for (const Polyhedron::Bound &bound : shape.faces()[side].bounds) {
+      double steep;
+      const double one = smooth_step(bound.at - dot(bound.outward, x), ramp, steep);
+      slope = one * slope - (part * steep) * bound.outward;
+      part *= one;
+    }
+    return part;
+  }
+  // The side below which x is least deep, among this one and those beyond its blunt edges.
+  int shallowest(int side, const Vec3 &x) const
+  {
+    for (int moves = 0; moves < sides(); ++moves) {
+      int least = side;
+      for (const int other : shape.faces()[side].next)
+        if (depth(other, x) < depth(least, x)) least = other;
+      if (least == side) break;
+      side = least;
+    }
+    return side;
+  }
+
+ private:
+  const Polyhedron &shape;
+  double ramp;
+};
+
+// Cosine between an edge of a corner and the normal of a side below which the corner cannot be: the edge leads into the host.
+constexpr double LEADS_IN = -0.45;
+constexpr double DEEPEST_BIRTH = 0.5, SHALLOW = 0.03;    // over the thinnest part of the host
+constexpr double A_STEP = 1.01;                          // the last step, and a little for rounding
+
+// The side of a host below which a corner is, with the depth; -1 where it is below none: it has to be below each side that
+// faces it, and belongs to the one below which it is least deep.
+template <class Host, class Turn>
+int side_of_birth(const Host &host, const Polyhedron::Corner &corner, const Turn &in_owner, const Vec3 &x, double deepest,
+                  double &depth)
+{
+  int found = -1;
+  depth = HUGE_VAL;
+  for (int side = 0; side < host.sides(); ++side) {
+    const Vec3 n = in_owner(host.normal(side, x));
+    const bool leads_in =
+        std::any_of(corner.ways.begin(), corner.ways.end(), [&](const Vec3 &way) { return dot(way, n) < LEADS_IN; });
+    if (leads_in) continue;
+    const double d = host.depth(side, x);
+    if (d <= 0.0) return -1;
+    if (d < depth) depth = d, found = side;
+  }
+  return depth > deepest ? -1 : found;
+}
+
+// Corners of `a` in `host`, the shape of `b`. `near`: those that may touch, looked up anew where `stale`.
+template <class Host>
+void touch_corners(const TouchStep &step, std::vector<Touch> &touches, Touch::TouchKind kind, std::vector<int> &near, Solid &a,
+                   Solid &b, const Host &host, const TouchLaw &law, double ramp, double margin, bool stale)
+{
+  const auto find = [&](int corner) {
+    return std::find_if(touches.begin(), touches.end(),
+                        [&](const Touch &one) { return one.kind == kind && one.first == corner; });
+  };
+  if (!stale && near.empty()) return;
+  const std::vector<Polyhedron::Corner> &corners = a.shape.polyhedron().corners();
+  const Vec3 between = b.in_body(a.centre - b.centre);
+  const auto in_host = [&](const Vec3 &own) { return between + b.in_body(a.in_space(own)); };
+  if (stale) {
+    near.clear();
+    for (int q = 0; q < static_cast<int>(corners.size()); ++q)
+      if (host.outside(in_host(corners[q].at)) < ramp + margin || find(q) != touches.end()) near.push_back(q);
+  }
+  for (const int q : near) {
+    const Vec3 x = in_host(corners[q].at);
+    auto found = find(q);
+    double depth, part;
+    Vec3 slope;
+    if (found == touches.end()) {
+      if (host.outside(x) >= ramp) continue;
+      const auto in_owner = [&](const Vec3 &n) { return a.in_body(b.in_space(n)); };
+      const int side = side_of_birth(host, corners[q], in_owner, x, DEEPEST_BIRTH * b.shape.thin(), depth);
+      if (side < 0) continue;
+      part = host.part(side, x, slope);
+      if (part <= 0.0) continue;
+      const Vec3 place = b.place(x), n = b.in_space(host.normal(side, x));
+      Touch touch = step.born(kind, law, a, &b, place, n);
+      touch.first = q;
+      touch.side = side;
+      touch.anchor = x;
+      const Vec3 relative = TouchStep::relative_velocity(a, &b, place);
+      const Vec3 before = x - (A_STEP * step.time_step()) * b.in_body(relative);
+      Vec3 unused;
+      const bool came = !step.is_first() && (host.depth(side, before) <= 0.0 ||
+                                             (depth < SHALLOW * b.shape.thin() && host.part(side, before, unused) <= 0.0));
+      if (came)
+        TouchStep::came_from(touch, depth + step.time_step() * dot(relative, n));
+      else
+        TouchStep::overlaps(touch, depth);
+      touches.push_back(touch);
+      found = touches.end() - 1;
+    } else {
+      found->side = host.shallowest(found->side, x);
+      depth = host.depth(found->side, x);
+      part = host.part(found->side, x, slope);
+      if (depth <= 0.0 || part <= 0.0) {
+        step.end(*found, depth);
+        touches.erase(found);
+        continue;
+      }
+    }
+    step.press(*found, law, a, &b, x, depth, part, slope, b.in_space(host.normal(found->side, x)));
+  }
+}
+
+}    // namespace mdanim

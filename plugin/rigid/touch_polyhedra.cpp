@@ -1,0 +1,273 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// Two polyhedra: corners of each in the other, edges across edges. The overlap of two faces is a polygon whose corners are these.
+
+#include "rigid/pair.h"
+#include "rigid/touch_corners.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace mdanim {
+
+static constexpr double MARGIN = 0.02;       // over the thinnest part: how near features are that are remembered
+static constexpr int MOST_CROSSINGS = 64;    // pairs of directions of edges that are tried to separate two bodies
+
+static double length(const Vec3 &a) { return std::sqrt(dot(a, a)); }
+static double thinner(const Solid &a, const Solid &b) { return std::min(a.shape.thin(), b.shape.thin()); }
+
+namespace {
+
+// Directions that may separate two polyhedra: normals of faces of a, of b, and across an edge of each.
+class Directions {
+ public:
+  Directions(const Solid &a, const Solid &b) : a(a), b(b), p(a.shape.polyhedron()), q(b.shape.polyhedron())
+  {
+    faces_of_a = static_cast<int>(p.faces().size());
+    faces = faces_of_a + static_cast<int>(q.faces().size());
+    const int across = static_cast<int>(q.directions().size());
+    crossings = static_cast<int>(p.directions().size()) * across;
+    if (crossings > MOST_CROSSINGS) crossings = 0;
+  }
+
+  int size() const { return faces + 2 * crossings; }
+  // Distance of the bodies along a direction: of its smallest between support planes; below 0 where it does not separate them.
+  double gap(int number) const
+  {
+    if (number < faces_of_a) {
+      const Polyhedron::Face &face = p.faces()[number];
+      const Vec3 n = a.in_space(face.normal);
+      return dot(n, b.centre - a.centre) - q.reach(-1.0 * b.in_body(n)) - face.at;
+    }
+    if (number < faces) {
+      const Polyhedron::Face &face = q.faces()[number - faces_of_a];
+      const Vec3 n = b.in_space(face.normal);
+      return dot(n, a.centre - b.centre) - p.reach(-1.0 * a.in_body(n)) - face.at;
+    }
+    const int crossing = (number - faces) / 2, across = static_cast<int>(q.directions().size());
+    const Vec3 one = a.in_space(p.directions()[crossing / across]), other = b.in_space(q.directions()[crossing % across]);
+    const Vec3 n = (number - faces) % 2 ? cross(one, other) : cross(other, one);
+    const double size = length(n);
+    if (size < NEARLY_PARALLEL) return -1.0;
+    return (dot(n, b.centre - a.centre) - q.reach(-1.0 * b.in_body(n)) - p.reach(a.in_body(n))) / size;
+  }
+
+ private:
+  static constexpr double NEARLY_PARALLEL = 1e-3;
+  const Solid &a, &b;
+  const Polyhedron &p, &q;
+  int faces_of_a, faces, crossings;
+};
+
+// Whether some direction separates the bodies. They then sleep until they may have closed the gap.
+bool are_separated(SolidPair &pair, const Solid &a, const Solid &b, bool lists)
+{
+  constexpr double SURELY = 0.99;
+  const Directions directions(a, b);
+  const auto separates = [&](int number) {
+    const double gap = directions.gap(number);
+    if (gap <= 0.0) return false;
+    pair.axis = number;
+    pair.asleep = lists ? SURELY * gap : 0.0;
+    return true;
+  };
+  if (pair.axis < directions.size() && separates(pair.axis)) return true;
+  for (int number = 0; number < directions.size(); ++number)
+    if (separates(number)) return true;
+  return false;
+}
+
+// An edge in space.
+struct PlacedEdge {
+  Vec3 middle, along, across[2];
+  double half;
+  PlacedEdge(const Solid &solid, int number)
+  {
+    const Polyhedron::Edge &edge = solid.shape.polyhedron().edges()[number];
+    middle = solid.place(edge.middle);
+    along = solid.in_space(edge.along);
+    across[0] = solid.in_space(edge.across[0]);
+    across[1] = solid.in_space(edge.across[1]);
+    half = edge.half;
+  }
+};
+
+// The lines of two edges: where they are closest, along each from its middle, and n across both, out of the first.
+struct EdgeCrossing {
+  double cosine, square;    // of the angle between them, and of its sine
+  double s, r;
+  Vec3 n;
+  double cone = 0.0;    // least of what n leads out of the four faces; below 0 where it is no normal of the edges
+  double outward = 0.0;
+  double depth = 0.0;
+
+  EdgeCrossing(const PlacedEdge &a, const PlacedEdge &b)
+  {
+    const Vec3 between = a.middle - b.middle;
+    cosine = dot(a.along, b.along);
+    square = 1.0 - cosine * cosine;
+    const double along_a = dot(a.along, between), along_b = dot(b.along, between);
+    s = (cosine * along_b - along_a) / square;
+    r = (along_b - cosine * along_a) / square;
+  }
+  void find_normal(const PlacedEdge &a, const PlacedEdge &b)
+  {
+    n = (1.0 / std::sqrt(square)) * cross(a.along, b.along);
+    outward = -dot(n, a.across[0] + a.across[1]);
+    if (outward < 0.0) n = -1.0 * n, outward = -outward;
+    cone = std::min(std::min(-dot(n, a.across[0]), -dot(n, a.across[1])), std::min(dot(n, b.across[0]), dot(n, b.across[1])));
+    depth = dot((a.middle + s * a.along) - (b.middle + r * b.along), n);
+  }
+};
+
+// Whether an edge, longer by `more` at both ends, goes through a host that is thicker by `by`.
+bool passes(const Solid &host, const PlacedEdge &edge, double more, double by)
+{
+  const Vec3 x = host.in_body(edge.middle - host.centre), way = host.in_body(edge.along);
+  double low = -edge.half - more, high = edge.half + more;
+  for (const Polyhedron::Face &face : host.shape.polyhedron().faces()) {
+    const double room = face.at + by - dot(face.normal, x), speed = dot(face.normal, way);
+    if (std::fabs(speed) < 1e-12) {
+      if (room < 0.0) return false;
+    } else if (speed > 0.0) {
+      high = std::min(high, room / speed);
+    } else {
+      low = std::max(low, room / speed);
+    }
+    if (low > high) return false;
+  }
+  return true;
+}
+
+constexpr double PARALLEL = 1e-4;                   // square of the sine below which two edges have no crossing
+constexpr double FADED = 0.02, FADES = 0.015;       // the same: the ramp of nearly parallel edges
+constexpr double AT_BIRTH = -0.1, AT_END = -0.4;    // how far n may be out of the cones
+constexpr double SHALLOW_BIRTH = 0.06;              // over the thinnest part
+
+std::vector<int> edges_near(const Solid &one, const Solid &host, const std::vector<Touch> &touches, bool of_first, double margin)
+{
+  std::vector<int> near;
+  const int count = static_cast<int>(one.shape.polyhedron().edges().size());
+  for (int e = 0; e < count; ++e) {
+    const bool is_known = std::any_of(touches.begin(), touches.end(), [&](const Touch &touch) {
+      return touch.kind == Touch::EDGES && (of_first ? touch.first : touch.second) == e;
+    });
+    if (is_known || passes(host, PlacedEdge(one, e), ramp_of(one) + margin, margin)) near.push_back(e);
+  }
+  return near;
+}
+
+// Pairs of edges that may touch before both bodies have moved by the margin.
+void look_up_edges(SolidPair &pair, const Solid &a, const Solid &b, double margin)
+{
+  pair.edges.clear();
+  const std::vector<int> of_a = edges_near(a, b, pair.touches, true, margin);
+  if (of_a.empty()) return;
+  const std::vector<int> of_b = edges_near(b, a, pair.touches, false, margin);
+  const double turn = 2.0 * margin / std::min(a.shape.bound(), b.shape.bound());
+  for (const int i : of_a) {
+    const PlacedEdge one(a, i);
+    for (const int j : of_b) {
+      const bool is_known = std::any_of(pair.touches.begin(), pair.touches.end(), [&](const Touch &touch) {
+        return touch.kind == Touch::EDGES && touch.first == i && touch.second == j;
+      });
+      if (!is_known) {
+        const PlacedEdge other(b, j);
+        EdgeCrossing at(one, other);
+        if (at.square < FADED - FADES - 2.0 * turn) continue;
+        if (at.square > PARALLEL) {
+          const double sine = std::sqrt(at.square), slack = 4.0 * margin / sine, tilt = 2.0 * turn / sine;
+          if (std::fabs(at.s) > one.half + ramp_of(a) + slack || std::fabs(at.r) > other.half + ramp_of(b) + slack) continue;
+          at.find_normal(one, other);
+          if (at.outward > 2.0 * tilt && (at.cone < AT_BIRTH - tilt || at.depth < -margin - slack * tilt)) continue;
+        }
+      }
+      pair.edges.emplace_back(i, j);
+    }
+  }
+}
+
+void touch_edges(const TouchStep &step, SolidPair &pair, Solid &a, Solid &b, const TouchLaw &law)
+{
+  for (const auto &[i, j] : pair.edges) {
+    const PlacedEdge one(a, i), other(b, j);
+    EdgeCrossing at(one, other);
+    if (at.square < PARALLEL) continue;
+    auto found = pair.touches.begin();
+    while (found != pair.touches.end() && !(found->kind == Touch::EDGES && found->first == i && found->second == j)) ++found;
+    const bool is_known = found != pair.touches.end();
+    if (!is_known && (std::fabs(at.s) >= one.half || std::fabs(at.r) >= other.half)) continue;
+    at.find_normal(one, other);
+    // Ramps from the ends inward, and for edges that are nearly parallel.
+    const double wa = 0.5 * ramp_of(a), wb = 0.5 * ramp_of(b);
+    double slope_a, slope_b, slope_angle;
+    const double part_a = smooth_step(one.half - std::fabs(at.s) - wa, wa, slope_a),
+                 part_b = smooth_step(other.half - std::fabs(at.r) - wb, wb, slope_b),
+                 part_angle = smooth_step(at.square - FADED, FADES, slope_angle), part = part_a * part_b * part_angle;
+    const Vec3 on_a = one.middle + at.s * one.along, on_b = other.middle + at.r * other.along, x = 0.5 * (on_a + on_b);
+    if (!is_known) {
+      if (at.cone < AT_BIRTH || at.depth <= 0.0 || part <= 0.0 || (at.depth > SHALLOW_BIRTH * thinner(a, b) && !step.is_first()))
+        continue;
+      Touch touch = step.born(Touch::EDGES, law, a, &b, x, at.n);
+      touch.first = i;
+      touch.second = j;
+      touch.anchor = {at.s, at.r, 0.0};
+      const double deeper = step.time_step() * dot(TouchStep::relative_velocity(a, &b, x), at.n);
+      if (!step.is_first() && at.depth - A_STEP * deeper <= 0.0)
+        TouchStep::came_from(touch, at.depth - deeper);
+      else
+        TouchStep::overlaps(touch, at.depth);
+      pair.touches.push_back(touch);
+      found = pair.touches.end() - 1;
+    } else if (at.cone < AT_END || at.depth <= 0.0 || part <= 0.0) {
+      if (at.depth > 0.0 && part > 0.0)
+        step.let_go(*found, at.depth, part);
+      else
+        step.end(*found, at.depth);
+      pair.touches.erase(found);
+      continue;
+    }
+    Touch &touch = *found;
+    const ContactLaw its_law = step.law_of(touch, law);
+    ContactForce<double> push = contact_pressure<double>(its_law, 1.0, part, at.depth, step.time_step(), touch.memory);
+    Vec3 force = (-push.press) * at.n;
+    // The gradient of `part`: s and r move by (u - cosine w)/sine^2 and -(w - cosine u)/sine^2 with the first body.
+    const double by_s = push.surface_energy * (at.s > 0.0 ? -slope_a : slope_a) * part_b * part_angle,
+                 by_r = push.surface_energy * part_a * (at.r > 0.0 ? -slope_b : slope_b) * part_angle,
+                 by_angle = push.surface_energy * part_a * part_b * slope_angle;
+    if (by_s != 0.0 || by_r != 0.0)
+      force +=
+          (by_s / at.square) * (one.along - at.cosine * other.along) - (by_r / at.square) * (other.along - at.cosine * one.along);
+    if (by_angle != 0.0) {
+      const Vec3 torque = (2.0 * at.cosine * by_angle) * cross(one.along, other.along);
+      a.torque += torque;
+      b.torque -= torque;
+    }
+    if (law.friction > 0.0) {
+      const Vec3 away = (touch.anchor.x - at.s) * one.along - (touch.anchor.y - at.r) * other.along;
+      contact_friction<double>(its_law, 1.0, part, away, at.n, step.time_step(), touch.memory, push);
+      touch.anchor = {at.s + push.kept * (touch.anchor.x - at.s), at.r + push.kept * (touch.anchor.y - at.r), 0.0};
+      const Vec3 between = 0.5 * ((one.middle + touch.anchor.x * one.along) + (other.middle + touch.anchor.y * other.along));
+      step.apply(a, &b, between, push.pull);
+      force += push.drag;
+    }
+    step.apply(a, &b, x, force);
+    step.book(a, &b, touch, part, push);
+  }
+}
+
+}    // namespace
+
+void touch_polyhedra(const TouchStep &step, SolidPair &pair, Solid &a, Solid &b, const TouchLaw &law, bool lists)
+{
+  if (pair.touches.empty() && (pair.asleep > 0.0 || are_separated(pair, a, b, lists))) return;
+  const double margin = MARGIN * thinner(a, b);
+  const bool stale = !lists || pair.known_for < 0.0;
+  if (stale) pair.known_for = margin;
+  const PolyhedronHost of_a(a.shape.polyhedron(), ramp_of(a)), of_b(b.shape.polyhedron(), ramp_of(b));
+  touch_corners(step, pair.touches, Touch::CORNER, pair.corners[0], a, b, of_b, law, ramp_of(b), margin, stale);
+  touch_corners(step, pair.touches, Touch::CORNER_OF_OTHER, pair.corners[1], b, a, of_a, law, ramp_of(a), margin, stale);
+  if (stale) look_up_edges(pair, a, b, margin);
+  touch_edges(step, pair, a, b, law);
+}
+
+}    // namespace mdanim

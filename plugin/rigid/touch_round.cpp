@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// Contacts of round shapes, whose points of contact move over them; and of all shapes with planes.
+
+#include "rigid/pair.h"
+
+#include <cmath>
+
+namespace mdanim {
+
+static double length(const Vec3 &a) { return std::sqrt(dot(a, a)); }
+static Vec3 middle_of(const Solid &solid) { return solid.place(solid.shape.middle()); }
+
+void touch_balls(const TouchStep &step, SolidPair &pair, Solid &a, Solid &b, const TouchLaw &law)
+{
+  const Vec3 place = middle_of(a), between = place - middle_of(b);
+  const double distance = length(between), both = a.shape.radius() + b.shape.radius();
+  const Vec3 n = distance > 0.0 ? (1.0 / distance) * between : Vec3{0.0, 0.0, 1.0};
+  // Between both surfaces, nearer to that of the smaller one.
+  const Vec3 x = place - (a.shape.radius() * distance / both) * n;
+  step.press_moving(pair.touches, Touch::MOVING, 0, law, a, &b, x, n, both - distance);
+}
+
+void touch_ball_and_polyhedron(const TouchStep &step, SolidPair &pair, Solid &ball, Solid &host, const TouchLaw &law)
+{
+  const Vec3 place = middle_of(ball), in_host = host.in_body(place - host.centre);
+  const double radius = ball.shape.radius();
+  if (pair.touches.empty() && host.shape.polyhedron().outside(in_host) >= radius) return;
+  const Polyhedron::Foot nearest = host.shape.polyhedron().nearest(in_host);
+  const Vec3 n = host.in_space(nearest.normal);
+  step.press_moving(pair.touches, Touch::MOVING, 0, law, ball, &host, place - radius * n, n, radius - nearest.distance);
+}
+
+// --- planes ---
+
+namespace {
+
+// Four points of a circle about `axis`: the lowest, those a quarter from it, the highest.
+struct Rim {
+  Vec3 out[4];
+  Rim(const Vec3 &axis, const Vec3 &any, const Vec3 &n)
+  {
+    constexpr double LEVEL = 1e-9;    // the sine of the lean below which no point is the lowest
+    const Vec3 down = dot(n, axis) * axis - n;
+    const double size = length(down);
+    out[0] = size > LEVEL ? (1.0 / size) * down : any;
+    out[1] = cross(axis, out[0]);
+    out[2] = -1.0 * out[1];
+    out[3] = -1.0 * out[0];
+  }
+};
+
+class OnPlane {
+ public:
+  OnPlane(const TouchStep &step, std::vector<Touch> &touches, Solid &one, const SolidPlane &plane, const TouchLaw &law)
+      : step(step), touches(touches), one(one), plane(plane), law(law)
+  {
+  }
+
+  void moving(int number, const Vec3 &x) const
+  { step.press_moving(touches, Touch::MOVING, number, law, one, nullptr, x, plane.n, depth(x)); }
+  void corner(int number, const Vec3 &x) const
+  {
+    const double d = depth(x);
+    auto found = touches.begin();
+    while (found != touches.end() && !(found->kind == Touch::CORNER && found->first == number)) ++found;
+    if (d <= 0.0) {
+      if (found == touches.end()) return;
+      step.end(*found, d);
+      touches.erase(found);
+      return;
+    }
+    if (found == touches.end()) {
+      Touch touch = step.born(Touch::CORNER, law, one, nullptr, x, plane.n);
+      touch.first = number;
+      touch.anchor = x;
+      if (step.is_first())
+        TouchStep::overlaps(touch, d);
+      else
+        TouchStep::came_from(touch, d + step.time_step() * dot(one.velocity_at(x), plane.n));
+      touches.push_back(touch);
+      found = touches.end() - 1;
+    }
+    step.press(*found, law, one, nullptr, x, d, 1.0, {}, plane.n);
+  }
+  void rim(int first, const Vec3 &middle, double radius) const
+  {
+    const Vec3 axis = one.in_space(one.shape.axis(2));
+    const Rim points(axis, one.in_space(one.shape.axis(0)), plane.n);
+    for (int k = 0; k < 4; ++k) moving(first + k, middle + radius * points.out[k]);
+  }
+
+ private:
+  double depth(const Vec3 &x) const { return plane.at - dot(plane.n, x); }
+  const TouchStep &step;
+  std::vector<Touch> &touches;
+  Solid &one;
+  const SolidPlane &plane;
+  const TouchLaw &law;
+};
+
+Vec3 lowest_of_ellipsoid(const Solid &one, const Vec3 &n)
+{
+  const Vec3 own = one.in_body(n), &half = one.shape.half_axes();
+  const Vec3 an{half.x * dot(own, one.shape.axis(0)), half.y * dot(own, one.shape.axis(1)), half.z * dot(own, one.shape.axis(2))};
+  const double over = 1.0 / length(an);
+  return (half.x * an.x * over) * one.shape.axis(0) + (half.y * an.y * over) * one.shape.axis(1) +
+         (half.z * an.z * over) * one.shape.axis(2);
+}
+
+}    // namespace
+
+void touch_plane(const TouchStep &step, std::vector<Touch> &touches, Solid &one, const SolidPlane &plane, const TouchLaw &law)
+{
+  if (touches.empty() && dot(plane.n, one.centre) - plane.at > one.shape.bound()) return;
+  const OnPlane on(step, touches, one, plane, law);
+  const SolidShape &shape = one.shape;
+  const Vec3 middle = middle_of(one), along = shape.half_height() * one.in_space(shape.axis(2));
+  switch (shape.kind()) {
+    case SolidShape::POLYHEDRON:
+      for (std::size_t q = 0; q < shape.polyhedron().corners().size(); ++q)
+        on.corner(static_cast<int>(q), one.place(shape.polyhedron().corners()[q].at));
+      break;
+    case SolidShape::BALL:
+      on.moving(0, middle - shape.radius() * plane.n);
+      break;
+    case SolidShape::CYLINDER:
+      on.rim(0, middle + along, shape.radius());
+      on.rim(4, middle - along, shape.radius());
+      break;
+    case SolidShape::CONE:
+      on.corner(0, middle + along);
+      on.rim(0, middle - along, shape.radius());
+      break;
+    case SolidShape::ELLIPSOID:
+      on.moving(0, middle - one.in_space(lowest_of_ellipsoid(one, plane.n)));
+      break;
+  }
+}
+
+}    // namespace mdanim

@@ -1,0 +1,187 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Rigid bodies with shapes, and LAMMPS instances of them, for tests and benchmarks of fix mdanim/rigid.
+
+A body has eight particles at the corners of a cuboid. Mass and moments are those of the shape, in closed form.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+import numpy as np
+import plugin_lab as lab
+
+SIGNS = np.array([[i, j, k] for k in (-1, 1) for j in (-1, 1) for i in (-1, 1)], float)
+
+
+def about(axis, angle: float) -> np.ndarray:
+    """Unit quaternion (w, x, y, z) of a rotation by an angle [rad]."""
+    axis = np.asarray(axis, float)
+    return np.r_[np.cos(angle / 2), np.sin(angle / 2) * axis / np.linalg.norm(axis)]
+
+
+def times(p, q) -> np.ndarray:
+    """The product of two quaternions: rotates by q, then by p."""
+    return np.r_[p[0] * q[0] - np.dot(p[1:], q[1:]), p[0] * q[1:] + q[0] * p[1:] + np.cross(p[1:], q[1:])]
+
+
+def matrix(q) -> np.ndarray:
+    """Rotation matrix of a unit quaternion, shape (3, 3)."""
+    w, x, y, z = q
+    return np.array(
+        [
+            [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+            [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+            [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
+        ]
+    )
+
+
+@dataclass(frozen=True)
+class Rigid:
+    """A body at its start."""
+
+    shape: str
+    """Words of its shape in the file of shapes."""
+    mass: float
+    moments: np.ndarray
+    """About its own axes, shape (3,)."""
+    spread: np.ndarray
+    """Half sizes of the cuboid of its particles, shape (3,)."""
+    thin: float
+    at: np.ndarray = field(default_factory=lambda: np.zeros(3))
+    q: np.ndarray = field(default_factory=lambda: np.array([1.0, 0, 0, 0]))
+    v: np.ndarray = field(default_factory=lambda: np.zeros(3))
+    spin: np.ndarray = field(default_factory=lambda: np.zeros(3))
+    mu: float = 0.5
+    beta: float = 0.3
+    held: bool = False
+
+    def put(self, at=None, q=None, **more) -> Rigid:
+        """The same body elsewhere, or with other values."""
+        more |= {name: float(more[name]) for name in ("mu", "beta") if name in more}
+        arrays = {name: np.asarray(more.pop(name), float) for name in ("v", "spin") if name in more}
+        place = {} if at is None else {"at": np.asarray(at, float)}
+        return replace(self, **place, **({} if q is None else {"q": np.asarray(q, float)}), **arrays, **more)
+
+
+def box(size, density=600.0, **more) -> Rigid:
+    """A box by its full sizes."""
+    size = np.asarray(size, float)
+    mass = density * size.prod()
+    return Rigid(
+        f"box {' '.join(map(repr, size.tolist()))}", mass, mass / 12 * ((size**2).sum() - size**2), size / 2, size.min()
+    ).put(**more)
+
+
+def ball(radius, density=600.0, **more) -> Rigid:
+    """A full ball."""
+    mass = density * 4 / 3 * np.pi * radius**3
+    return Rigid(f"ball {radius!r}", mass, np.full(3, 0.4 * mass * radius**2), np.full(3, radius / 2), 2 * radius).put(**more)
+
+
+def cylinder(radius, height, density=600.0, **more) -> Rigid:
+    """A full cylinder about its third axis."""
+    mass = density * np.pi * radius**2 * height
+    across = mass * (3 * radius**2 + height**2) / 12
+    spread = np.array([radius / 2, radius / 2, height / 2])
+    moments = np.array([across, across, 0.5 * mass * radius**2])
+    return Rigid(f"cylinder {radius!r} {height!r}", mass, moments, spread, min(2 * radius, height)).put(**more)
+
+
+class World:
+    """An instance with rigid bodies. The time step is 0.35 of 1/frequency, if nothing else is told."""
+
+    def __init__(
+        self,
+        folder: Path,
+        bodies: Sequence[Rigid],
+        *,
+        frequency: float,
+        planes: Sequence[str] = ("plane z lo 0.0",),
+        gravity=(0.0, 0.0, -9.81),
+        objects: bool = True,
+        thin: float | None = None,
+        step: float = 0.35,
+        words: str = "",
+        commands: Sequence[str] = (),
+        molecules: Sequence[int] | None = None,
+    ):
+        self.bodies, self.dt = list(bodies), step / float(frequency)
+        self.molecules = list(molecules or range(1, len(bodies) + 1))
+        self.free = sorted((m, n) for n, (m, b) in enumerate(zip(self.molecules, bodies)) if not b.held)
+        self.setup = setup(folder, self.bodies, self.molecules)
+        onset = 0.005 * float(thin or min(b.thin for b in bodies))
+        contact = f"shapes {folder}/shapes contact {float(frequency)!r} {onset!r}"
+        self.commands = [
+            f"fix r all mdanim/rigid inertia {folder}/inertia {contact}{' objects' * objects} {' '.join(planes)} {words}",
+            *([f"fix g all mdanim/gravity {' '.join(repr(float(g)) for g in gravity)}"] if np.any(gravity) else []),
+            f"timestep {self.dt!r}",
+            *commands,
+        ]
+        self.lmp = None
+        self.folder = folder
+        self.started = False
+
+    def __enter__(self) -> World:
+        self.lmp = lab.load(self.setup, self.folder, [*self.commands, "thermo_modify lost ignore"], cutoff=0.2, skin=0.1)
+        self.lmp.command("run 0")
+        return self
+
+    def __exit__(self, *_) -> None:
+        self.lmp.close()
+
+    def run(self, steps: int) -> None:
+        """Go on."""
+        self.lmp.command(f"run {steps} pre no post no")
+
+    def rows(self) -> np.ndarray:
+        """Centre, velocity, quaternion of the principal axes, angular velocity of each free body in the order given, shape
+        (M, 13)."""
+        rows = np.array([[self.lmp.extract_fix("r", 0, 2, k, c) for c in range(13)] for k in range(len(self.free))])
+        order = np.argsort([n for _, n in self.free])
+        return rows[order]
+
+    def number(self, name: str) -> float:
+        """An output of the fix by its name."""
+        return self.lmp.extract_fix("r", 0, 1, NAMES.index(name))
+
+    def energy(self, gravity=9.81) -> float:
+        """All energy, with what was lost."""
+        rows, mass = self.rows(), np.array([b.mass for b in self.bodies if not b.held])
+        names = ("translation", "rotation", "contact", "friction_heat", "damping_loss", "let_go", "drag_loss")
+        return sum(map(self.number, names)) + gravity * (mass * rows[:, 2]).sum()
+
+
+NAMES = (
+    *("bodies", "translation", "rotation", "seconds", "contact", "friction_heat", "damping_loss", "let_go", "drag_loss"),
+    *("deepest", "touching", "near", "worst_bound", "most_touching"),
+)
+
+
+def setup(folder: Path, bodies: Sequence[Rigid], molecules: Sequence[int]) -> lab.Body:
+    """Writes the files of moments and shapes; gives the particles of the bodies."""
+    inertia, shapes, x, v, mass, molecule = [], [], [], [], [], []
+    for number, body in zip(molecules, bodies):
+        turn = matrix(body.q)
+        full = turn @ np.diag(body.moments) @ turn.T
+        numbers = " ".join(repr(float(a)) for a in (*body.at, *body.q))
+        shapes.append(f"{number} {body.mu!r} {body.beta!r} {'held' if body.held else 'free'} {numbers} {body.shape}")
+        if body.held:
+            continue
+        inertia.append(f"{number} " + " ".join(repr(float(a)) for a in (*np.diag(full), full[0, 1], full[0, 2], full[1, 2])))
+        arms = (SIGNS * body.spread) @ turn.T
+        x.append(body.at + arms)
+        v.append(body.v + np.cross(body.spin, arms))
+        mass.append(np.full(8, body.mass / 8))
+        molecule.append(np.full(8, number))
+    (folder / "inertia").write_text("\n".join(inertia) + "\n")
+    (folder / "shapes").write_text("\n".join(shapes) + "\n")
+    return lab.particles(np.concatenate(x), np.concatenate(molecule), v=np.concatenate(v), mass=np.concatenate(mass))
+
+
+def frequency_of(speed: float, thin: float, depth: float = 0.02) -> float:
+    """Frequency of contacts at which a blow goes this deep, over the thinnest part."""
+    return speed / (depth * thin)
