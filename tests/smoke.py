@@ -10,7 +10,7 @@ from pathlib import Path
 
 import mdanim_lammps
 from mdanim_lammps import Scene, Trajectory
-from mdanim_lammps.export import export
+from mdanim_lammps.export.write import export
 
 BIN = Path(sys.executable).parent
 TEXT = """

@@ -63,7 +63,7 @@ def names_a_feature(tree: ast.AST) -> bool:
 
 
 def reads_a_setting(tree: ast.AST) -> bool:
-    """Of a scene, an object, of control or of pictures, that a feature has added: ``solid.drag``."""
+    """Whether a module reads a setting that a feature has added to scenes, objects, control or pictures: ``solid.drag``."""
     found = ((n.attr, n.value) for n in ast.walk(tree) if isinstance(n, ast.Attribute))
     return any(name in SETTINGS and getattr(of, "attr", getattr(of, "id", "")) in RECORDS for name, of in found)
 

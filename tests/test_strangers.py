@@ -15,6 +15,7 @@ import pytest
 import strangers
 from mdanim_lammps import Scene, cli
 from mdanim_lammps.errors import MdanimError, OutputError
+from mdanim_lammps.export import FORMATS
 from mdanim_lammps.results.ledger import Ledger
 from mdanim_lammps.results.progress import PROGRESS
 from mdanim_lammps.results.timeline import Timeline
@@ -23,7 +24,6 @@ from scene_texts import POOL
 
 pytestmark = [pytest.mark.timeout(120), pytest.mark.filterwarnings("ignore::RuntimeWarning")]
 FILES = ("manifest.json", "cost.json", "summary.json", "certificate.json", "timeline.json", "progress.jsonl")
-FORMATS = ("csv", "gltf", "lammpstrj", "usd", "vtk", "xtc", "xyz")
 CODES = (0, 2, 3, 6, 7)
 """Done; a range or size that does not fit; the stored scene is wrong; runs differ, as a NaN does from itself; a file is wrong."""
 

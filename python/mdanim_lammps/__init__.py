@@ -23,7 +23,7 @@ _PLACES = {
     "results.cost": ("Cost",),
     "results.timeline": ("Timeline",),
     "results.universe": ("open_universe",),
-    "export": ("Exported",),
+    "export.write": ("Exported",),
     "study.study": ("Study",),
     "study.target": ("Choice",),
     "errors": (

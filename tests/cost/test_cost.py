@@ -10,6 +10,7 @@ from dataclasses import replace
 from types import SimpleNamespace
 
 import pytest
+from every_effect import ELSEWHERE, with_every_effect
 from mdanim_lammps import features
 from mdanim_lammps.cost import later as later_steps
 from mdanim_lammps.cost import movie_forecast
@@ -61,7 +62,7 @@ def pond(tmp_path_factory):
     from mdanim_lammps.scene.parse import load_scene
 
     folder = tmp_path_factory.mktemp("pond")
-    (folder / "pond.txt").write_text(POND)
+    (folder / "pond.txt").write_text(with_every_effect(POND))
     started = time.perf_counter()
     ready = prepare(load_scene(folder / "pond.txt"))
     return ready, simulate(ready, folder, started=started)
@@ -81,7 +82,7 @@ def test_parts_add_up_to_the_wall_time(pond):
 def test_every_effect_has_its_seconds_and_its_line(pond):
     """Tell the seconds of each effect that is on, tied to the scene line that called for it."""
     ready, result = pond
-    assert list(result.cost.effects) == [e.name for e in features.effects()]  # all of them are on
+    assert list(result.cost.effects) == [e.name for e in features.effects() if e.name not in ELSEWHERE]
     for name, part in result.cost.effects.items():
         assert part.seconds > 0.0 or name in ("walls", "contact"), name
         assert part.place == str(ready.verdicts[name].span)

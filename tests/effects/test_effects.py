@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from every_effect import ELSEWHERE, with_every_effect
 from mdanim_lammps import features
 from mdanim_lammps.effects import resolve
 from mdanim_lammps.engine.commands import input_script
@@ -13,6 +14,7 @@ from mdanim_lammps.engine.data_file import data_text
 from mdanim_lammps.engine.instance import Instance
 from mdanim_lammps.engine.sub_plan import SubPlans
 from mdanim_lammps.features.contact.barrier import plane_stiffness
+from mdanim_lammps.features.contact.words import ContactModel
 from mdanim_lammps.features.liquid.tables import MOST_LAYERS, lattice_cells, layers_of_cells
 from mdanim_lammps.scene.parse import parse_scene
 
@@ -40,6 +42,8 @@ liquid w {
 }
 control { time 1 }
 """
+EVERY = with_every_effect(FULL)
+"""The same with the words of all further effects, whose lines are those where they stand."""
 BARE = "object a {\n shape sphere 0.1\n position (0, 0, 0)\n mass 1\n elasticity 1e5\n}\ncontrol { time 1 }\n"
 LINES = {
     "springs": 8,
@@ -66,8 +70,8 @@ def verdicts(text):
 @pytest.mark.parametrize("effect", [e.name for e in features.effects()])
 def test_each_effect_is_called_for_by_its_line(effect):
     """Switch on with the line that calls for it."""
-    verdict = verdicts(FULL)[0][effect]
-    assert verdict.on and verdict.span.line == LINES[effect]
+    verdict = verdicts(EVERY)[0][effect]
+    assert verdict.on and verdict.span.line == LINES.get(effect, verdict.span.line)
 
 
 @pytest.mark.parametrize("effect", ["contact", "ground", "walls"])
@@ -89,7 +93,7 @@ def test_each_effect_is_off_without_cause(effect):
 @pytest.mark.parametrize("effect", [e.name for e in features.effects()])
 def test_a_needed_effect_switched_off_is_a_warning(effect):
     """Say what will look wrong."""
-    found, warnings = verdicts(FULL + f"effects {{ {effect} off }}\n")
+    found, warnings = verdicts(EVERY + f"effects {{ {effect} off }}\n")
     assert not found[effect].on
     assert [w.severity for w in warnings] == ["warning"]
     assert next(e for e in features.effects() if e.name == effect).if_off in warnings[0].hint
@@ -368,10 +372,6 @@ ON_SURFACES = {
     "basin": ["fix basin mobile mdanim/contact"],
 }
 """The same where contact is at the surfaces, as far as it is another."""
-FIXES = {"gravity", "contact", "ground", "walls", "basin", "liquid"}
-"""Effects that are a fix of this name."""
-ELSEWHERE = {"rigid"}
-"""Effects of neither of these scenes, because the contact of the paper refuses them: tests/effects/test_rigid_at_work.py."""
 TAKES_ALONG = {
     "springs": {"damping"},
     "gravity": {"liquid", "buoyancy", "liquid-drag"},
@@ -393,39 +393,43 @@ def live_fixes(ready) -> set[str]:
         return set(instance.lammps.lmp.available_ids("fix")) - {"model", "leapfrog"}
 
 
-def traces(model: str) -> dict[str, list[str]]:
-    """TRACES under a model of contact."""
-    return TRACES if model == "paper" else TRACES | ON_SURFACES
+def traces(ready) -> dict[str, list[str]]:
+    """TRACES under the scene's model of contact; of an effect that is not listed, its fixes and the columns that it alone has."""
+    told = TRACES if ready.scene.control.contact_model is ContactModel.PAPER else TRACES | ON_SURFACES
+    further = [e for e in ready.plan.effects if e.name not in told]
+    own = {e.name: [f"fix {fix} " for fix in e.fixes] + [f"d_{name}" for name in ready.plan.asked[e.name]] for e in further}
+    return told | own
 
 
-def fixes(effects: set[str], model: str) -> set[str]:
-    """IDs of the fixes of these effects."""
-    found = effects & FIXES
-    return found | {"barrier"} if "contact" in found and model == "surface" else found
+def fixes(ready, gone=()) -> set[str]:
+    """IDs of the fixes of all effects but some."""
+    return {fix for e in ready.plan.effects if e.name not in gone for fix in e.fixes}
 
 
 @pytest.mark.parametrize("model", MODELS)
 def test_what_is_on_is_there(prepared, model):
     """Find every trace where all effects are on."""
-    ready = prepared(ALL.replace("MODEL", model))
+    ready = prepared(with_every_effect(ALL.replace("MODEL", model)))
     text = written(ready)
     assert {v.name for v in ready.verdicts.values() if not v.on} == ELSEWHERE
-    assert not [word for words in traces(model).values() for word in words if word not in text]
-    assert live_fixes(ready) == fixes(FIXES, model)
+    assert not [word for words in traces(ready).values() for word in words if word not in text]
+    assert live_fixes(ready) == fixes(ready) >= {"gravity", "contact", "ground", "walls", "basin", "liquid"}
+    assert ("barrier" in fixes(ready)) == (model == "surface")
 
 
 @pytest.mark.parametrize("model", MODELS)
 @pytest.mark.parametrize("effect", [e.name for e in features.effects() if e.name not in ELSEWHERE])
 def test_what_is_off_leaves_nothing(prepared, effect, model):
     """Find no trace of an effect that is off, nor of those that need it, and all traces of the others."""
-    ready = prepared(ALL.replace("MODEL", model) + f"effects {{ {effect} off }}\n")
+    every = with_every_effect(ALL.replace("MODEL", model))
+    whole, ready = prepared(every), prepared(every + f"effects {{ {effect} off }}\n")
     gone = {effect} | TAKES_ALONG.get(effect, set())
     assert {v.name for v in ready.verdicts.values() if not v.on} == gone | ELSEWHERE
-    text, words_of = written(ready), traces(model)
+    text, words_of = written(ready), traces(whole)
     assert not [word for name in gone for word in words_of[name] if word in text]
     shared = set() if "liquid-drag" not in gone else {"d_base"}  # what air hands to the liquid
     assert not [word for name in words_of.keys() - gone for word in words_of[name] if word not in text and word not in shared]
-    assert live_fixes(ready) == fixes(FIXES - gone, model)
+    assert live_fixes(ready) == fixes(whole, gone)
     names = next(line for line in input_script(ready.plan).splitlines() if line.startswith("# Effects:"))
     assert not gone & set(names.removeprefix("# Effects: ").rstrip(".").split(", "))
 

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """Every format is read back by its own library, with the numbers of the run."""
 
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -11,7 +12,8 @@ import pytest
 from command_line import call
 from mdanim_lammps import Scene, Trajectory, open_universe
 from mdanim_lammps.errors import OutputError, UsageError
-from mdanim_lammps.export import FORMATS, export
+from mdanim_lammps.export import FORMATS
+from mdanim_lammps.export.write import export
 from mdanim_lammps.results.ledger import Ledger
 
 pytestmark = pytest.mark.filterwarnings("error")
@@ -476,3 +478,10 @@ def test_types_of_particles_are_those_of_the_data_file(tmp_path):
     first = export(tmp_path / "r", "lammpstrj", frames=slice(0, 1)).files[0].read_text().split("ITEM: ATOMS")[1]
     kinds = [int(line.split()[2]) for line in first.splitlines()[1:]]
     assert kinds == scene.prepared.plan.kind.tolist() and max(kinds) > 4
+
+
+@pytest.mark.parametrize("page", ["README.md", "docs/export.md", "docs/command-line.md"])
+def test_pages_name_every_format(page):
+    """As a word of its own."""
+    text = (Path(__file__).parents[2] / page).read_text(encoding="utf-8")
+    assert not [name for name in FORMATS if not re.search(rf"\b{name}\b", text)]

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from mdanim_lammps import Scene
 from mdanim_lammps.errors import OutputError
-from mdanim_lammps.export import export
+from mdanim_lammps.export.write import export
 from picture_samples import falling, slab_scene, write
 from scene_texts import FALL
 

@@ -102,8 +102,8 @@ def run(folder: Path) -> dict:
 
 def drawn(folder: Path) -> dict:
     """Its pictures of the first and the last frame, and where its arrow is in exports."""
-    from mdanim_lammps.export import export
     from mdanim_lammps.export.cut import Cut
+    from mdanim_lammps.export.write import export
     from mdanim_lammps.picture.render import Painter
     from picture_measures import SIZE, project
     from PIL import Image

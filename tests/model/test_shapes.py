@@ -2,21 +2,17 @@
 """Shapes as geometry: volumes, thickness, inside or not, surfaces."""
 
 from math import acos, pi, sqrt
+from typing import get_args
 
 import numpy as np
 import pytest
 from mdanim_lammps.model import shapes
+from mdanim_lammps.model.distance import distance
+from mdanim_lammps.model.spread import spread
 from mdanim_lammps.scene.scene import Box, Cone, Cylinder, Ellipsoid, Mesh, Shape, Sphere, Torus
 from model_samples import MESHES, SHAPES, assert_closed, enclosed_volume, shape_id
 
 every_shape = pytest.mark.parametrize("shape", SHAPES, ids=shape_id)
-
-
-def test_every_shape_of_the_language_has_its_laws():
-    """Miss no kind of shape in the table, nor in the samples of these tests."""
-    from typing import get_args
-
-    assert set(shapes.LAWS) == set(get_args(Shape)) == {type(s) for s in SHAPES}
 
 
 @pytest.mark.parametrize(
@@ -151,3 +147,29 @@ def test_cone_slant():
     points = np.array([(0, 0, -0.2), (0, 0, -0.3), (0.9, 0, -0.2), (0.9, 0, -0.1), (0.2, 0, 0.5)])
     assert shapes.contains(cone, points).tolist() == [True, False, True, False, True]
     assert shapes.thickness(cone) == pytest.approx(2 / (1 + sqrt(2)))
+
+
+def test_radius():
+    """Reach the corner of a cuboid, the rim of a cylinder, the outside of a ring."""
+    assert shapes.radius(Box((2.0, 4.0, 4.0))) == pytest.approx(3.0)
+    assert shapes.radius(Cylinder(3.0, 8.0)) == pytest.approx(5.0)
+    assert shapes.radius(Torus(2.0, 0.5)) == 2.5
+
+
+@every_shape
+def test_no_point_is_farther_than_the_radius(shape):
+    """None of the surface; one is nearly as far, or as far as the corner of the box around."""
+    points, _ = shapes.surface(shape, shapes.thickness(shape) / 4)
+    farthest = np.linalg.norm(points, axis=1).max()
+    assert farthest <= shapes.radius(shape) * (1 + 1e-12) and shapes.radius(shape) < 1.3 * farthest
+
+
+def test_every_kind_of_shape_has_all_that_is_asked_of_it(monkeypatch):
+    """A kind without a formula is found when the package is imported, one without points or distances here."""
+    kinds = get_args(Shape)
+    assert spread.registry.keys() - {object} == distance.registry.keys() - {object} == set(kinds) - {Box}  # that is its lattice
+    assert set(shapes.LAWS) == {type(shape) for shape in SHAPES} == set(kinds)
+    lacking = type("lacking", (), {name: None for name in shapes.FORMULAS if name not in ("vertices", "rolls")})
+    monkeypatch.setitem(shapes.LAWS, Torus, lacking)
+    with pytest.raises(TypeError, match="Torus lacks vertices, rolls in LAWS"):
+        shapes.check_laws()

@@ -7,7 +7,7 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from mdanim_lammps.errors import SceneError
 from mdanim_lammps.features.liquid.record import Liquid
-from mdanim_lammps.model import build, build_models, plan_spacing, shapes, spacing, work
+from mdanim_lammps.model import build, build_models, plan_spacing, shapes, spacing
 from mdanim_lammps.model.cells import TooThin, _without_nubs, box_counts, fill_cells
 from mdanim_lammps.model.limits import bounding_cells
 from mdanim_lammps.model.springs import MAX_ASPECT
@@ -27,7 +27,7 @@ def test_accuracy_is_the_number_of_cells_across_the_thinnest_part(accuracy, h):
     assert plan.total == sum(plan.particles)
     # Particles, vertices of the drawn ball, nine points of contact for each cell of its surface; a box has neither.
     ball = Sphere(0.3)
-    more = 200 * work.vertices(ball, plan.h) + 300 * 9 * shapes.area(ball) / plan.h**2
+    more = 200 * shapes.vertices(ball, plan.h) + 300 * 9 * shapes.area(ball) / plan.h**2
     assert plan.memory == pytest.approx(1500 * plan.total + more)
 
 

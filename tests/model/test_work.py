@@ -3,7 +3,7 @@
 
 import pytest
 from mdanim_lammps.bodies import kind_of
-from mdanim_lammps.model import build_models, work
+from mdanim_lammps.model import build_models, shapes, work
 from mdanim_lammps.scene.scene import Box, Cone, Cylinder, Ellipsoid, Mesh, Sphere, Torus
 from model_samples import MESHES, scene, solid
 
@@ -24,7 +24,7 @@ def test_counts_are_near(shape, h):
     """Vertices of the drawn surface and points of contact, which cost a needle more than its particles do."""
     (model,) = build_models(scene(solid(shape), resolution=h))
     if not isinstance(shape, Mesh):  # which is drawn by its own triangles, where these are fine enough
-        assert work.vertices(shape, h) == pytest.approx(len(model.surface.index), rel=0.35)
+        assert shapes.vertices(shape, h) == pytest.approx(len(model.surface.index), rel=0.35)
     assert work._points(shape, h) == pytest.approx(len(model.frame.contact.at), rel=0.35)
 
 

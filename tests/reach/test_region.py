@@ -8,10 +8,9 @@ import pytest
 from mdanim_lammps import features
 from mdanim_lammps.effects import acting, resolve
 from mdanim_lammps.engine.instance import Instance
-from mdanim_lammps.reach import Reach, bounding_radius
+from mdanim_lammps.reach import Reach
 from mdanim_lammps.reach.region import Sweeps, _overlaps
 from mdanim_lammps.scene.parse import parse_scene
-from mdanim_lammps.scene.scene import Box, Cylinder, Torus
 
 PAIR = """{top}
 object a {{
@@ -114,13 +113,6 @@ def test_what_bounces_may_fall_into_a_liquid():
     dry, wet = (reach(pair(walls + pool, a="velocity (-5, 0, 0)")).region for pool in ("", POOL.format(z=-2, top=-1, level=-1.5)))
     assert dry.high[0, 1] < 0.6 and wet.high[0, 1] > 1.0  # the basin's wall is at 1 m
     assert (wet.high[1] == dry.high[1]).all()
-
-
-def test_bounding_radius():
-    """Reach the corner of a cuboid, the rim of a cylinder, the outside of a ring."""
-    assert bounding_radius(Box((2.0, 4.0, 4.0))) == pytest.approx(3.0)
-    assert bounding_radius(Cylinder(3.0, 8.0)) == pytest.approx(5.0)
-    assert bounding_radius(Torus(2.0, 0.5)) == 2.5
 
 
 def test_held_beams_side_by_side_do_not_meet():

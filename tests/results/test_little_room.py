@@ -14,7 +14,8 @@ from pathlib import Path
 
 import pytest
 from campaign import rounds
-from mdanim_lammps.export import FORMATS, export
+from mdanim_lammps.export import FORMATS
+from mdanim_lammps.export.write import export
 from mdanim_lammps.results.compare import compare
 from mdanim_lammps.view.export import write_report
 

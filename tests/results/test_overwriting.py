@@ -10,7 +10,7 @@ import pytest
 from command_line import GOOD, call
 from mdanim_lammps import Scene
 from mdanim_lammps.errors import OutputError, UsageError
-from mdanim_lammps.export import export
+from mdanim_lammps.export.write import export
 from mdanim_lammps.results.files import claimed, delete_results, scratch
 from mdanim_lammps.results.overwriting import check_overwriting, place_of
 

@@ -41,7 +41,7 @@ from ..scene.scene import SceneRecord
 from ..terminal import in_notebook, progress_bar
 
 if TYPE_CHECKING:
-    from ..export import Exported
+    from ..export.write import Exported
     from .scene import Scene
 
 STAY_OPEN = 32
@@ -245,8 +245,8 @@ class Run:
             )
 
     def export(self, to: str, path: str | Path | None = None, **options) -> Exported:
-        """Write the run as a file of another program; arguments and errors are those of `mdanim_lammps.export.export`."""
-        from ..export import export
+        """Write the run as a file of another program; arguments and errors are those of `mdanim_lammps.export.write.export`."""
+        from ..export.write import export
 
         self.adopt()
         return export(self.folder, to, path, **options)

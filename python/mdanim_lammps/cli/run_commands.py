@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Annotated
 from cyclopts import Parameter
 
 from ..errors import ExitCode, Problem, RefusedError, UsageError
+from ..export import FORMATS
 from ..terminal import progress_bar
 from ..view.beside import Viewer, show_address
 from .options import AllowUnstable, Executing, Look, OutFile, Quiet, RunFolder, View, whole_number
@@ -159,7 +160,7 @@ def export(
     folder: Path,
     /,
     *,
-    to: Annotated[str, Parameter(help="usd, gltf, vtk, xyz, xtc, lammpstrj or csv.")],
+    to: Annotated[str, Parameter(help=" | ".join(FORMATS))],
     output: OutFile = OutFile(),
     objects: str = "",
     every: Annotated[int, Parameter(converter=whole_number)] = 1,
@@ -179,7 +180,7 @@ def export(
     frames
         Only these, e.g. 30:90; what is left out is the start or the end.
     """
-    from ..export import export as export_run
+    from ..export.write import export as export_run
 
     chosen = frame_range(frames)
     adopt(folder, quiet=quiet)

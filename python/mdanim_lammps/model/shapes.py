@@ -9,7 +9,9 @@ places that a new shape has.
 from __future__ import annotations
 
 import itertools
+from functools import lru_cache
 from math import ceil, hypot, pi
+from typing import Any, get_args
 
 import numpy as np
 
@@ -22,6 +24,8 @@ ROUND = 48
 
 
 class _Box:
+    rolls, end = False, "flat"
+
     @staticmethod
     def volume(s):
         return float(np.prod(s.size))
@@ -53,8 +57,18 @@ class _Box:
     def surface(s, size):
         return grid_box(s.size, size)
 
+    @staticmethod
+    def radius(s):
+        return float(np.linalg.norm(np.array(s.size) / 2))
+
+    @staticmethod
+    def vertices(s, h):
+        return _Box.area(s) / h**2
+
 
 class _Ellipsoid:
+    rolls, end = True, "pointed"
+
     @staticmethod
     def volume(s):
         return 4 / 3 * pi * float(np.prod(_radii(s)))
@@ -89,12 +103,26 @@ class _Ellipsoid:
     def surface(s, size):
         return ellipsoid(_radii(s), _facets(2 * pi * max(_radii(s)), size))
 
+    @staticmethod
+    def radius(s):
+        return float(max(_radii(s)))
+
+    @staticmethod
+    def vertices(s, h):
+        return _around(max(_radii(s)), h) ** 2 / 2
+
+
+class _Sphere(_Ellipsoid):
+    end = "round"
+
 
 def _radii(s) -> np.ndarray:
     return np.array(s.radii) if isinstance(s, kinds.Ellipsoid) else np.full(3, s.radius)
 
 
 class _Cylinder:
+    rolls, end = False, "flat"
+
     @staticmethod
     def volume(s):
         return pi * s.radius**2 * s.height
@@ -126,8 +154,18 @@ class _Cylinder:
         profile = _polyline([(0, -h / 2), (r, -h / 2), (r, h / 2), (0, h / 2)], size)
         return revolve(profile, _facets(2 * pi * r, size))
 
+    @staticmethod
+    def radius(s):
+        return float(np.hypot(s.radius, s.height / 2))
+
+    @staticmethod
+    def vertices(s, h):
+        return _around(s.radius, h) * ceil((2 * s.radius + s.height) / h)
+
 
 class _Cone:
+    rolls, end = False, "pointed"
+
     @staticmethod
     def volume(s):
         return pi * s.radius**2 * s.height / 3
@@ -161,8 +199,18 @@ class _Cone:
         r, h = s.radius, s.height
         return revolve(_polyline([(0, -h / 4), (r, -h / 4), (0, 3 * h / 4)], size), _facets(2 * pi * r, size))
 
+    @staticmethod
+    def radius(s):
+        return float(np.linalg.norm([s.radius, s.radius, 3 * s.height / 4]))  # a little more than it is
+
+    @staticmethod
+    def vertices(s, h):
+        return _around(s.radius, h) * ceil((s.radius + hypot(s.radius, s.height)) / h)
+
 
 class _Torus:
+    rolls, end = True, "flat"
+
     @staticmethod
     def volume(s):
         return 2 * pi**2 * s.major * s.minor**2
@@ -196,8 +244,18 @@ class _Torus:
         profile = np.stack([s.major + s.minor * np.cos(angle), s.minor * np.sin(angle)], axis=1)
         return revolve(profile, _facets(2 * pi * (s.major + s.minor), size), closed=True)
 
+    @staticmethod
+    def radius(s):
+        return s.major + s.minor
+
+    @staticmethod
+    def vertices(s, h):
+        return _around(s.major + s.minor, h) * _around(s.minor, h, 24)
+
 
 class _Mesh:
+    rolls, end = False, "flat"
+
     @staticmethod
     def volume(s):
         return mesh.load(s).volume
@@ -228,16 +286,37 @@ class _Mesh:
     def surface(s, size):
         return mesh.refined_surface(mesh.load(s), size)
 
+    @staticmethod
+    def radius(s):
+        return float(np.linalg.norm(mesh.load(s).points, axis=1).max())
 
-LAWS = {
+    @staticmethod
+    def vertices(s, h):
+        return mesh.load(s).area / h**2
+
+
+LAWS: dict[type, Any] = {
     kinds.Box: _Box,
-    kinds.Sphere: _Ellipsoid,
+    kinds.Sphere: _Sphere,
     kinds.Ellipsoid: _Ellipsoid,
     kinds.Cylinder: _Cylinder,
     kinds.Cone: _Cone,
     kinds.Torus: _Torus,
     kinds.Mesh: _Mesh,
 }
+FORMULAS = ("volume", "area", "thickness", "moments", "extent", "depth", "surface", "radius", "vertices", "rolls", "end")
+"""What each has. ``rolls``: whether it rolls down a slope before it slides; ``end``: the part with which it may land first,
+``flat``, ``round``, or ``pointed``, of few cells; the functions below say what the others are."""
+
+
+def check_laws() -> None:
+    """Raises TypeError where a kind of shape lacks a formula."""
+    for kind in get_args(kinds.Shape):
+        if lacks := [name for name in FORMULAS if not hasattr(LAWS.get(kind), name)]:
+            raise TypeError(f"{kind.__name__} lacks {', '.join(lacks)} in LAWS of model/shapes.py")
+
+
+check_laws()
 
 
 def volume(shape: kinds.Shape) -> float:
@@ -258,6 +337,18 @@ def area(shape: kinds.Shape) -> float:
 def thickness(shape: kinds.Shape) -> float:
     """Thickness of the thinnest part [m]; for a mesh an estimate, for a cone the largest ball inside."""
     return LAWS[type(shape)].thickness(shape)
+
+
+@lru_cache(maxsize=4096)
+def radius(shape: kinds.Shape) -> float:
+    """Distance of the outermost point from the centre of mass [m]; of a cone slightly more."""
+    return LAWS[type(shape)].radius(shape)
+
+
+@lru_cache(maxsize=4096)
+def vertices(shape: kinds.Shape, h: float) -> float:
+    """About how many vertices the drawn surface has at a spacing of h [m]."""
+    return LAWS[type(shape)].vertices(shape, h)
 
 
 def second_moments(shape: kinds.Shape) -> np.ndarray:
@@ -303,6 +394,11 @@ def surface(shape: kinds.Shape, size: float) -> tuple[np.ndarray, np.ndarray]:
     Facets are about ``size`` [m] long, and fine enough to look round.
     """
     return LAWS[type(shape)].surface(shape, size)
+
+
+def _around(radius: float, h: float, least: int = ROUND) -> int:
+    """Vertices around a circle at a spacing of h [m]."""
+    return max(least, ceil(2 * pi * radius / h))
 
 
 def _facets(length: float, size: float, least: int = ROUND) -> int:

@@ -4,14 +4,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import lru_cache
-from math import ceil, hypot, pi
 
 import numpy as np
 
 from ..bodies import kind_of
 from ..features import facets
-from ..scene.scene import Box, Cone, Cylinder, Ellipsoid, Mesh, SceneRecord, Shape, Sphere, Torus
+from ..scene.scene import Box, Mesh, SceneRecord, Shape
 from . import shapes
 from .contact_body import DENSITY
 from .distance import MOST_SAMPLES
@@ -56,7 +54,7 @@ def _bytes(shape: Shape, h: float, touches: bool) -> float:
     if isinstance(shape, Box):
         return 0.0
     samples = min(SAMPLES * shapes.area(shape) / h**2, MOST_SAMPLES) if isinstance(shape, Mesh) else 0.0
-    return VERTEX_BYTES * vertices(shape, h) + touches * (POINT_BYTES * _points(shape, h) + SAMPLE_BYTES * samples)
+    return VERTEX_BYTES * shapes.vertices(shape, h) + touches * (POINT_BYTES * _points(shape, h) + SAMPLE_BYTES * samples)
 
 
 def _seconds(shape: Shape, h: float, touches: bool) -> float:
@@ -65,29 +63,8 @@ def _seconds(shape: Shape, h: float, touches: bool) -> float:
     cells, points, mesh = bounding_cells(shape, h), _points(shape, h), isinstance(shape, Mesh)
     if mesh:
         return MESH_TIME + CELL_TIME * cells + touches * (MESH_POINT_TIME * points + MESH_CELL_TIME * cells)
-    return VERTEX_TIME * vertices(shape, h) + CELL_TIME * cells + touches * POINT_TIME * points
+    return VERTEX_TIME * shapes.vertices(shape, h) + CELL_TIME * cells + touches * POINT_TIME * points
 
 
 def _points(shape: Shape, h: float) -> float:
     return DENSITY**2 * shapes.area(shape) / h**2
-
-
-@lru_cache(maxsize=4096)
-def vertices(shape: Shape, h: float) -> float:
-    """About how many vertices the drawn surface of a shape has at a spacing of h [m]."""
-
-    def around(radius: float, least: int = shapes.ROUND) -> int:
-        return max(least, ceil(2 * pi * radius / h))
-
-    match shape:
-        case Cylinder():
-            return around(shape.radius) * ceil((2 * shape.radius + shape.height) / h)
-        case Cone():
-            return around(shape.radius) * ceil((shape.radius + hypot(shape.radius, shape.height)) / h)
-        case Torus():
-            return around(shape.major + shape.minor) * around(shape.minor, 24)
-        case Sphere():
-            return around(shape.radius) ** 2 / 2
-        case Ellipsoid():
-            return around(max(shape.radii)) ** 2 / 2
-    return shapes.area(shape) / h**2

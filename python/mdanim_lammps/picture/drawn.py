@@ -103,7 +103,7 @@ class Additions:
             (n, MovingLines(count[n], one.line, one.color or grey, 2.0)) for n, one in enumerate(self._all) if len(one.line)
         ]
         self.actors = [lines.actor for _, lines in self._lines]
-        """Those of lines."""
+        """Actors of the lines."""
 
     def show(self, frame: int) -> tuple[np.ndarray, np.ndarray]:
         """Move lines to a frame, and give the points [m] and normals of everything, each of shape (V, 3)."""

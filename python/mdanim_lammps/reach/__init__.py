@@ -3,6 +3,5 @@
 
 from .acting import Acting, Bodies, Drive, Motion
 from .reach import Reach, largest_of_others, wave_speed
-from .region import bounding_radius
 
-__all__ = ["Acting", "Bodies", "Drive", "Motion", "Reach", "bounding_radius", "largest_of_others", "wave_speed"]
+__all__ = ["Acting", "Bodies", "Drive", "Motion", "Reach", "largest_of_others", "wave_speed"]

@@ -9,16 +9,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import lru_cache
 
 import numpy as np
 
 from ..bodies import all_held, kind_of
-from ..model import mesh, shapes
+from ..model import shapes
 from ..model.boxes import box_pairs
 from ..model.springs import equivalent_modulus
-from ..scene import scene as kinds
-from ..scene.scene import Box, HoldFaces, SceneRecord, Shape, Solid
+from ..scene.scene import Box, HoldFaces, SceneRecord, Solid
 from .acting import Acting
 
 STRETCH = 1.5
@@ -122,7 +120,7 @@ class _Movers:
         self.position = np.array([s.position for s in solids], float)
         self.velocity = np.array([s.velocity for s in solids], float)
         self.slowed = acting.slowed
-        self.radius = np.array([bounding_radius(s.shape) for s in solids])
+        self.radius = np.array([shapes.radius(s.shape) for s in solids])
         self.fixed = np.array([all_held(s) for s in solids])
         self.clamped = np.array([bool(s.hold) for s in solids]) & ~self.fixed & acting.bound
         extents = [shapes.extent(s.shape) for s in solids]
@@ -148,24 +146,6 @@ class _Movers:
     def size(self, speed: np.ndarray) -> np.ndarray:
         """Radius of a body when this speed [m/s] is converted into deformation [m], shape (M,)."""
         return self.radius * (SLACK + STRETCH * speed / self.wave) + REACH * self.h + self.loose
-
-
-@lru_cache(maxsize=4096)
-def bounding_radius(shape: Shape) -> float:
-    """Distance of the outermost point from the centre of mass [m]; of a cone slightly more."""
-    match shape:
-        case kinds.Sphere():
-            return shape.radius
-        case kinds.Ellipsoid():
-            return max(shape.radii)
-        case kinds.Cylinder():
-            return float(np.hypot(shape.radius, shape.height / 2))
-        case kinds.Torus():
-            return shape.major + shape.minor
-        case kinds.Mesh():
-            return float(np.linalg.norm(mesh.load(shape).points, axis=1).max())
-        case _:
-            return float(np.linalg.norm(np.abs(shapes.extent(shape)).max(axis=0)))
 
 
 def _speed(acting: Acting, bodies: _Movers) -> np.ndarray:

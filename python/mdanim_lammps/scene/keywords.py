@@ -9,11 +9,13 @@ from __future__ import annotations
 import re
 from dataclasses import replace
 from difflib import get_close_matches
+from typing import get_args
 
 from ..features import facets
 from .placement import Placement
 from .scene import Command, Control, Render, SceneRecord, Solid, Switch
 from .schema import Block, Keyword, Words, keywords
+from .shapes import Shape
 
 BLOCKS = {b.name: b for b in (
     Block("object", Solid, "solids", "An elastic solid. Names are free; in a `repeat` an index keeps them apart.",
@@ -100,18 +102,7 @@ NOT_SUPPORTED = {
 MISPLACED = {at: way_out for words in facets("words") for at, way_out in getattr(words, "MISPLACED", {}).items()}
 """A setting with a word that people write behind it, and what to write instead."""
 
-SYNONYMS = {
-    word: shape
-    for shape, words in (
-        ("sphere", "ball globe"),
-        ("box", "cube cuboid brick block plate"),
-        ("cylinder", "rod disk disc tube"),
-        ("torus", "ring donut"),
-        ("cone", "pyramid"),
-        ("mesh", "stl obj ply file"),
-    )
-    for word in words.split()
-}
+SYNONYMS = {word: kind.FORMS[0].split()[0] for kind in get_args(Shape) for word in kind.ALSO}
 """Other words for shapes."""
 
 

@@ -8,7 +8,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from enum import Enum
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, get_args
 
 from ..errors import Span
 from ..features import facets
@@ -16,7 +16,7 @@ from .formatting import number, vector
 from .render import Camera, Render  # noqa: F401
 from .rotation import IDENTITY, departure, rotation_about, rotation_euler
 from .schema import COLOR, Codec, Keyword, Observable, OneOf, Rule, Vector, Worded, Words, of_features, setting, with_words
-from .shapes import (
+from .shapes import (  # noqa: F401
     Box,
     Cone,
     Cylinder,
@@ -28,7 +28,7 @@ from .shapes import (
     HoldWithin,
     Mesh,
     Shape,
-    Side,  # noqa: F401
+    Side,
     Sphere,
     SpringConstant,
     Torus,
@@ -73,7 +73,7 @@ class Solid:
         "Form of the object in its own frame: edge lengths, radii, heights along z. A mesh is a closed STL, OBJ or PLY file, "
         "beside the scene file; `scale` is metres per unit of the file, default 1. Colours of the points of a PLY file are drawn "
         "where the object has no `color`.",
-        "sphere 10 cm", Rule.POSITIVE, codec=OneOf(Box, Sphere, Ellipsoid, Cylinder, Cone, Torus, Mesh))  # fmt: skip
+        "sphere 10 cm", Rule.POSITIVE, codec=OneOf(*get_args(Shape)))  # fmt: skip
     position: Vector = setting("<(x, y, z):m>", "Centre of mass.", "(0, 0, 1) m")
     """[m]"""
     rotation: tuple[Vector, Vector, Vector] = setting(

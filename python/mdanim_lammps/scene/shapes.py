@@ -18,6 +18,7 @@ class Box:
     """A cuboid."""
 
     FORMS: ClassVar = ("box <(lx, ly, lz):m>",)
+    ALSO: ClassVar = ("cube", "cuboid", "brick", "block", "plate")
 
     size: Vector
     """Edge lengths [m]."""
@@ -28,6 +29,7 @@ class Sphere:
     """A ball."""
 
     FORMS: ClassVar = ("sphere <r:m>",)
+    ALSO: ClassVar = ("ball", "globe")
 
     radius: float
     """[m]"""
@@ -38,6 +40,7 @@ class Ellipsoid:
     """An ellipsoid."""
 
     FORMS: ClassVar = ("ellipsoid <(rx, ry, rz):m>",)
+    ALSO: ClassVar = ()
 
     radii: Vector
     """Half axes [m]."""
@@ -48,6 +51,7 @@ class Cylinder:
     """A circular cylinder, axis along z."""
 
     FORMS: ClassVar = ("cylinder <r:m> <h:m>",)
+    ALSO: ClassVar = ("rod", "disk", "disc", "tube")
 
     radius: float
     """[m]"""
@@ -60,6 +64,7 @@ class Cone:
     """A circular cone, apex up (+z); its centre of mass is height/4 above the base."""
 
     FORMS: ClassVar = ("cone <r:m> <h:m>",)
+    ALSO: ClassVar = ("pyramid",)
 
     radius: float
     """Radius of the base [m]."""
@@ -72,6 +77,7 @@ class Torus:
     """A ring around z."""
 
     FORMS: ClassVar = ("torus <R:m> <r:m>",)
+    ALSO: ClassVar = ("ring", "donut")
 
     major: float
     """Radius of the centre line [m]."""
@@ -84,6 +90,7 @@ class Mesh:
     """A closed triangle mesh from an STL, OBJ or PLY file; axes as in the file."""
 
     FORMS: ClassVar = ('mesh <"file"> [scale <s>]',)
+    ALSO: ClassVar = ("stl", "obj", "ply", "file")
 
     path: Path
     """Absolute path."""

@@ -11,8 +11,8 @@ import plugin_path
 import pytest
 import whole
 from distribution_lab import SEQUENTIAL, WINDOWS, matrix, of_features, ways
-from mdanim_lammps.export import export
 from mdanim_lammps.export.cut import Cut
+from mdanim_lammps.export.write import export
 from mdanim_lammps.results.checkpoint import Checkpoint
 from mdanim_lammps.results.compare import compare
 from mdanim_lammps.results.dump import read_dump

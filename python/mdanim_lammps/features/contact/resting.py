@@ -11,17 +11,16 @@ import numpy as np
 
 from ...effects.envelope import Envelope
 from ...errors import Problem
+from ...model import shapes
 from ...model.planes import Plane
 from ...model.system import System
 from ...scene.formatting import number
-from ...scene.scene import Box, Ellipsoid, SceneRecord, Sphere, Torus
+from ...scene.scene import Box, SceneRecord
 from .pairs import any_friction, frictions, pair_rules
 from .words import ContactModel
 
 LEVEL = 1e-6
 """Tangent of a slope that is nothing but rounding."""
-ROLLING = (Sphere, Ellipsoid, Torus)
-"""Shapes that roll down a slope before they slide."""
 
 
 class Slope(NamedTuple):
@@ -128,7 +127,7 @@ class _Slopes:
     def __init__(self, envelope: Envelope):
         self.envelope, self.scene = envelope, envelope.scene
         self.gravity = np.array(self.scene.gravity)
-        rolling = np.array([isinstance(s.shape, ROLLING) for s in self.scene.solids])
+        rolling = np.array([shapes.LAWS[type(s.shape)].rolls for s in self.scene.solids])
         self.sliding = envelope.reach.moving & ~rolling
 
     def on_floors(self) -> Iterator[Slope]:

@@ -11,19 +11,16 @@ from ...effects.envelope import Envelope
 from ...effects.margin import Margin
 from ...errors import Problem
 from ...model.cells import TooThin, end_share, fill_cells
-from ...model.shapes import thickness
+from ...model.shapes import LAWS, thickness
 from ...model.system import System
 from ...scene.formatting import at_least, number, say
-from ...scene.scene import Box, Cone, Ellipsoid, Solid, Sphere
+from ...scene.scene import Box, Solid
 
 FOLDS = 0.2
 """Speed of an impact over the wave speed above which a lattice folds up and stays crumpled (docs/physics-solids.md)."""
 FOLDS_ON_END, FOLDS_POWER = 0.5, 0.45
 """The same of a ball or a cone that lands on a plane, over a power of the part of its cells that its smallest end has: these
 few bear the blow of all (docs/physics-solids.md)."""
-POINTED = (Ellipsoid, Cone)
-"""Shapes that may land on an end of few cells; also a ball where it is not borne at its drawn surface, by more than its lowest
-cells."""
 FOLDS_AT_CORNER = 0.75
 """The same of a cuboid that lands on a corner or an edge, over that power of the part of it that is within a spacing of its
 lowest point."""
@@ -94,12 +91,13 @@ def _spots(env: Envelope) -> np.ndarray:
     Infinite for shapes that are neither cuboids nor pointed."""
     system, known = env.system, {}
     spots = np.full(len(system.names), np.inf)
-    pointed = (*POINTED, *[Sphere] * any(e.touches and not e.rests_inside for e in env.on))
+    # At its drawn surface a ball is borne by more than its lowest cells.
+    few = {"pointed", *["round"] * any(e.touches and not e.rests_inside for e in env.on)}
     for m in np.flatnonzero(env.reach.moving).tolist():
         solid = env.scene.solids[m]
         if isinstance(solid.shape, Box):
             spots[m] = _folds_on_corner(env, solid, float(np.cbrt(system.cell_volume[m])))
-        elif isinstance(solid.shape, pointed):
+        elif LAWS[type(solid.shape)].end in few:
             key = solid.shape, float(system.cell_volume[m])
             if key not in known:
                 known[key] = folds_on_end(_filled(system, m, solid.rotation))
