@@ -61,7 +61,7 @@ struct ContactBodyArrays {
   const double *depth;    // null for a cuboid
   int open = 0;
   const double *open_part = nullptr;    // OPEN_NUMBERS for each part
-  // Of a body that does not deform, else null: numbers of its frame's four particles, and X of each. `node` is then not read.
+  // A body that does not deform has a frame, others null: numbers of four particles, and X of each. `node` is then not read.
   const std::int32_t *frame = nullptr;
   const double *frame_at = nullptr;
 };

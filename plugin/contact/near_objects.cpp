@@ -80,7 +80,7 @@ void NearObjects::find_zones()
   }
 }
 
-// Of a rigid object those of the box around it.
+// Those of a rigid object are of the box around it.
 std::vector<double> NearObjects::initial_extents() const
 {
   std::vector<double> extents;

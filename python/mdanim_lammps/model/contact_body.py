@@ -76,8 +76,8 @@ class ContactBody:
     a rectangle, low and high along the first and the second axis across, X, shape (R, 5). A side acts only in its rectangles; a
     side without any acts everywhere."""
     frame: np.ndarray | None = None
-    """Of a body that does not deform, else None: four particles that are not in one plane, ascending, int32, shape (4,). Contact
-    finds places in it by these alone."""
+    """Four particles that are not in one plane, ascending, int32, shape (4,): contact finds places in a body that does not deform
+    by these alone. None for one that deforms."""
     frame_at: np.ndarray | None = None
     """X of each [-], shape (4, 3)."""
 
@@ -98,11 +98,14 @@ class BodyFrame:
     cells: Cells
     open: np.ndarray | None = None
     """As that of ContactBody; None where nothing is covered."""
+    rigid: bool = False
+    """Whether it does not deform."""
 
     @cached_property
     def contact(self) -> ContactBody:
         """The same object at every call."""
-        return make_contact_body(self.shape, self.cells, self.open)
+        body = make_contact_body(self.shape, self.cells, self.open)
+        return frame_of(body) if self.rigid else body
 
     @cached_property
     def drawn(self) -> np.ndarray:

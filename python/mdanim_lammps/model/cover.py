@@ -27,10 +27,15 @@ DIGITS = 6
 
 
 def with_covers(models: Sequence[Model], solids: Sequence[Solid]) -> tuple[Model, ...]:
-    """The models of a scene; held cuboids that are covered in part have contact bodies that know of it.
+    """The models of a scene; contact bodies of what never moves know that they do not deform, and those of held cuboids which of
+    their sides are covered in part.
 
     Decided from the poses of the whole scene, so it is the same for every part of it.
     """
+    stiff: dict[int, BodyFrame] = {}
+    for frame in (model.frame for model in models if model.still):
+        stiff.setdefault(id(frame), replace(frame, rigid=True))
+    models = [replace(model, frame=stiff[id(model.frame)]) if model.still else model for model in models]
     held = [n for n, model in enumerate(models) if isinstance(model.frame.shape, Box) and model.still]
     if len(held) < 2:
         return tuple(models)
