@@ -109,6 +109,11 @@ class Effect(Motion, Bounds, Accounts, Frames, Advice):
         commands make; None for no solid. The ledger has their energy by `kinetic`."""
         return None
 
+    def settles(self, context: Context) -> tuple[np.ndarray, str] | None:
+        """Solids whose contact with each other and with planes is in its own fix, bool, shape (M,), and the group of their
+        particles, which its commands make; None for no solid."""
+        return None
+
     def acts_on(self, context: Context) -> bool:
         """Whether it acts on anything in a part of a scene: some of its solids, with or without the cells of a grid."""
         return True

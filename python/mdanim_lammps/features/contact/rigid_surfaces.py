@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -18,11 +19,14 @@ from ...model import shapes
 from ...model.contact_body import FINE, ContactBody
 from ...model.inertia import mobility
 from ...model.system import System
+from ...reach import Reach
 
 DEPTH = 0.02
 """How deep the fastest blow goes, over the thinnest part of all rigid bodies."""
 HARD = 1e20
 """Modulus of what is rigid and held [Pa]: the surface of its partner alone yields."""
+_FOUND: WeakKeyDictionary[Reach, Frequency] = WeakKeyDictionary()
+"""Frequencies of scenes, each found once."""
 STICK = 0.8
 """Stiffness of the stick spring of friction over that of the contact."""
 
@@ -44,9 +48,16 @@ class Frequency:
 def frequency(context: Context) -> Frequency:
     """Omega = max(v, 2 sqrt(N g s)) / (DEPTH s): the fastest blow at v, and the load N at rest, sink in by DEPTH s at most.
 
-    Of the context of a whole scene in which rigid bodies move.
+    Of a scene in which rigid bodies move; also asked of the context of a part of it.
     """
-    system, reach = context.system, context.reach
+    reach = context.reach
+    if reach not in _FOUND:
+        _FOUND[reach] = _frequency(context, reach.system)
+    return _FOUND[reach]
+
+
+def _frequency(context: Context, system: System) -> Frequency:
+    reach = context.reach
     free = np.flatnonzero(system.rigid)
     thin = min(shapes.thickness(shape) for shape in {context.scene.solids[m].shape for m in free.tolist()})
     speed = float(np.maximum(reach.speed, reach.closing(reach.fall))[free].max())

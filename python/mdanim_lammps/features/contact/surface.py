@@ -82,6 +82,7 @@ class SurfaceLaw:
         words.append(f"stiffness {scene.control.contact_stiffness!r}")
         if damping(scene) != USUAL_DAMPING:
             words.append(f"damping {damping(scene)!r}")
+        words += [f"except {group}" for _, group in settled(context)]
         return ["group solid type 1:8", " ".join([*words, "among solid", touched])]
 
     def rubs(self, scene: SceneRecord) -> bool:
@@ -229,6 +230,8 @@ class SurfaceContact(ObjectContact):
         """kappa of the surface of each solid with the stiffest partner [N/m^3], shape (M,)."""
         young = moduli(context)
         partner = largest_of_others(young)
+        for own, _ in settled(context):  # these have the others as partners alone
+            partner = np.where(own, young[~own].max(initial=0.0), partner)
         return surface_stiffness(context, young, 2.0 * partner / (young + partner))
 
     def notes(self, envelope):
@@ -326,7 +329,10 @@ class SurfacePlanes(Planes):
     def stiffness(self, context: Context) -> np.ndarray:
         """kappa of the surface of each solid against a plane, which has no points of its own [N/m^3], shape (M,)."""
         system = context.system
-        return surface_stiffness(context, moduli(context), np.where(are_dense(system), ALONE, 1.0))
+        share = np.where(are_dense(system), ALONE, 1.0)
+        for own, _ in settled(context):
+            share = np.where(own, 0.0, share)
+        return surface_stiffness(context, moduli(context), share)
 
 
 def touching_planes(sides: Sides) -> Planes:
@@ -341,6 +347,12 @@ def _of_bodies(context: Context, of_particles: np.ndarray, sides: float = 1.0) -
     if not system.rigid.any():
         return of_particles
     return np.where(system.rigid[system.object], sides * spread_mobility(context)[system.object], of_particles)
+
+
+def settled(context: Context) -> list[tuple[np.ndarray, str]]:
+    """Solids whose contact with each other and with planes another fix has (Effect.settles), and their groups."""
+    on = (e for e in context.resolved.effects if e.acts_on(context))
+    return [found for e in on if (found := e.settles(context)) is not None]
 
 
 def surface_stiffness(context: Context, young: np.ndarray, share: np.ndarray | float = 1.0) -> np.ndarray:

@@ -5,17 +5,24 @@ from __future__ import annotations
 
 import numpy as np
 
+from ... import features
 from ...bodies import all_held
 from ...effects.context import Verdict
 from ...effects.effect import Effect
 from ...errors import Problem
 from ...model.inertia import components
+from ..contact.surface import DAMPED, HEAT, LET_GO
+from . import touching
 from .words import Rigid
 
 GROUP = "rigid"
 """Group of the particles of all rigid bodies that move."""
-INERTIA = "inertia"
-"""Table of their moments."""
+TOUCHING = "touching"
+"""Group of the particles of all that touches by its features."""
+INERTIA, SHAPES = "inertia", "shapes"
+"""Tables of moments, and of shapes."""
+TAKEN = {HEAT: "friction_heat", DAMPED: "damping_loss", LET_GO: "let_go"}
+"""Columns of the ledger, and their entries of the fix's vector."""
 
 
 class RigidMotion(Effect):
@@ -27,6 +34,8 @@ class RigidMotion(Effect):
 
     styles = (("fix", "mdanim/rigid"),)
     name = fix = "rigid"
+    ledger = "contact"
+    at_surfaces = True
     order = 5
     if_off = "rigid objects fall apart into loose particles"
 
@@ -42,12 +51,40 @@ class RigidMotion(Effect):
     def integrates(self, context):
         return context.system.rigid, GROUP
 
+    def settles(self, context):
+        return (touching.by_features(context), TOUCHING) if self.acts_on(context) and touching.is_on(context) else None
+
     def commands(self, context):
-        molecules = " ".join(molecule_ranges(context.system.rigid))
-        return [f"group {GROUP} molecule {molecules}", f"fix {self.fix} {GROUP} mdanim/rigid inertia table:{INERTIA}"]
+        groups = [f"group {GROUP} molecule {' '.join(molecule_ranges(context.system.rigid))}"]
+        command = f"fix {self.fix} {GROUP} mdanim/rigid inertia table:{INERTIA}"
+        if settled := self.settles(context):
+            groups.append(f"group {TOUCHING} molecule {' '.join(molecule_ranges(settled[0]))}")
+            command += f" {touching.words(context, f'table:{SHAPES}')}"
+        return [*groups, command]
 
     def tables(self, context):
-        return {INERTIA: inertia_text(context.system.inertia, context.system.rigid)}
+        found = {INERTIA: inertia_text(context.system.inertia, context.system.rigid)}
+        return found | {SHAPES: touching.shapes_text(context)} if self.settles(context) else found
+
+    def rate(self, context):
+        """Of bodies that touch by their features (Omega/STEP)^2, an estimate: the bound for given contacts is dt^2 S/4 + dt D/2
+        <= 1 with the sums S and D over the contacts of a body, whose number nothing knows before (docs/physics-rigid.md)."""
+        if not (settled := self.settles(context)):
+            return None
+        own = (settled[0] & context.system.rigid)[context.system.object]
+        return np.where(own, (touching.omega(context) / touching.STEP) ** 2, 0.0)
+
+    def energy(self, readings):
+        return readings.fix_value(self.fix, "contact")
+
+    def losses(self, scene):
+        return tuple(TAKEN) if _may_touch(scene) else ()
+
+    def lost(self, readings):
+        return {term: readings.fix_value(self.fix, TAKEN[term]) for term in self.losses(readings.context.scene)}
+
+    def penetration(self, readings):
+        return readings.fix_value(self.fix, "deepest")
 
     def problems(self, resolved, models, grid):
         """The drag of a liquid acts through the leap-frog, which does not move rigid bodies."""
@@ -59,6 +96,11 @@ class RigidMotion(Effect):
 
     def kinetic(self, readings):
         return readings.fix_value(self.fix, "translation") + readings.fix_value(self.fix, "rotation")
+
+
+def _may_touch(scene) -> bool:
+    """Whether there is anything that a solid may touch."""
+    return len(scene.solids) > 1 or any(e.of(scene).planes(scene) for e in features.effects())
 
 
 def molecule_ranges(solids: np.ndarray) -> list[str]:
