@@ -62,8 +62,10 @@ FixMdanimRigid::~FixMdanimRigid() { atom->delete_callback(id, Atom::GROW); }
 void FixMdanimRigid::tell_numbers()
 {
   const auto total = [this](double (RigidBody::*energy)() const) {
+    const std::vector<bigint> present = particles.present();    // what was laid aside has no part
     double all = 0.0;
-    for (const RigidBody &body : bodies) all += (body.*energy)();
+    for (std::size_t n = 0; n < bodies.size(); ++n)
+      if (present[n] > 0) all += (bodies[n].*energy)();
     return force->mvv2e * all;
   };
   const TouchAccount &account = touching.contact.account;

@@ -29,7 +29,7 @@ def test_closed_forms(shape):
 
 
 def test_a_mesh_is_the_sum_over_its_tetrahedra():
-    """Of points at random inside it, to their noise: 1/sqrt(N) of a moment."""
+    """Points at random inside it have the same, to their noise: 1/sqrt(N) of a moment."""
     from mdanim_lammps.model import mesh, shapes
 
     knot = Mesh(MESHES / "knot.ply", 0.01)

@@ -126,7 +126,9 @@ def _wide_columns(plan: Plan) -> list[str]:
 def input_script(plan: Plan) -> str:
     """The text of ``in.NAME``: runs alone with ``lmp -in in.NAME``, on any number of ranks, to the same bits."""
     c = plan.certificate
-    energy = "".join(f" f_{fix}" for e in plan.effects for fix in e.fixes)
+    commands = physics(plan)
+    ids = {c.split()[1] for c in commands if c.startswith("fix ")}
+    energy = "".join(f" f_{fix}" for e in plan.effects for fix in e.fixes if fix in ids)
     when = f"{c.steps_per_frame}"
     variable, modify = [], []
     if c.last_steps:
@@ -147,7 +149,7 @@ def input_script(plan: Plan) -> str:
             f"read_data data.{plan.name} fix model NULL Model",
             *_wide_columns(plan),
             "",
-            *_with_bodies(plan, physics(plan)),
+            *_with_bodies(plan, commands),
             "",
             *(["# Commands of the scene, as they stand.", *lines, ""] if (lines := lines_of_scene(plan)) else []),
             "# Several ranks: cut space so that every rank has the same share; changes no bit of the result.",

@@ -7,7 +7,7 @@ import numpy as np
 
 from ... import features
 from ...bodies import all_held
-from ...effects.context import Verdict
+from ...effects.context import Context, Verdict
 from ...effects.effect import Effect
 from ...errors import Problem
 from ...model.inertia import components
@@ -15,11 +15,13 @@ from ..contact.surface import DAMPED, HEAT, LET_GO
 from . import touching
 from .words import Rigid
 
-GROUP = "rigid"
+GROUP = "bodies"
 """Group of the particles of all rigid bodies that move."""
+REST = "rigid_rest"
+"""Fix of those whose features the style does not know."""
 TOUCHING = "touching"
 """Group of the particles of all that touches by its features."""
-INERTIA, SHAPES = "inertia", "shapes"
+INERTIA, INERTIA_OF_REST, SHAPES = "inertia", "rest", "shapes"
 """Tables of moments, and of shapes."""
 TAKEN = {HEAT: "friction_heat", DAMPED: "damping_loss", LET_GO: "let_go"}
 """Columns of the ledger, and their entries of the fix's vector."""
@@ -51,40 +53,51 @@ class RigidMotion(Effect):
     def integrates(self, context):
         return context.system.rigid, GROUP
 
+    @property
+    def fixes(self):
+        return (self.fix, REST)
+
     def settles(self, context):
-        return (touching.by_features(context), TOUCHING) if self.acts_on(context) and touching.is_on(context) else None
+        if not touching.is_on(context):
+            return None
+        chosen = touching.by_features(context.system)
+        return (chosen, TOUCHING) if chosen.any() else None
 
     def commands(self, context):
-        groups = [f"group {GROUP} molecule {' '.join(molecule_ranges(context.system.rigid))}"]
-        command = f"fix {self.fix} {GROUP} mdanim/rigid inertia table:{INERTIA}"
-        if settled := self.settles(context):
-            groups.append(f"group {TOUCHING} molecule {' '.join(molecule_ranges(settled[0]))}")
-            command += f" {touching.words(context, f'table:{SHAPES}')}"
-        return [*groups, command]
+        groups, fixes = [f"group {GROUP} molecule {molecule_ranges(context.system.rigid)}"], []
+        settled = self.settles(context)
+        if settled:
+            groups.append(f"group {TOUCHING} molecule {molecule_ranges(settled[0])}")
+        for fix, table, solids in _parts(context):
+            groups.append(f"group {fix} molecule {molecule_ranges(solids)}")
+            fixes.append(f"fix {fix} {fix} mdanim/rigid inertia table:{table}")
+            if settled and fix == self.fix:
+                fixes[-1] += f" {touching.words(context, f'table:{SHAPES}')}"
+        return [*groups, *fixes]
 
     def tables(self, context):
-        found = {INERTIA: inertia_text(context.system.inertia, context.system.rigid)}
+        found = {table: inertia_text(context.system.inertia, solids) for _, table, solids in _parts(context)}
         return found | {SHAPES: touching.shapes_text(context)} if self.settles(context) else found
 
     def rate(self, context):
         """Of bodies that touch by their features (Omega/STEP)^2, an estimate: the bound for given contacts is dt^2 S/4 + dt D/2
         <= 1 with the sums S and D over the contacts of a body, whose number nothing knows before (docs/physics-rigid.md)."""
-        if not (settled := self.settles(context)):
+        if (settled := self.settles(context)) is None:
             return None
         own = (settled[0] & context.system.rigid)[context.system.object]
         return np.where(own, (touching.omega(context) / touching.STEP) ** 2, 0.0)
 
     def energy(self, readings):
-        return readings.fix_value(self.fix, "contact")
+        return self._sum(readings, "contact")
 
     def losses(self, scene):
         return tuple(TAKEN) if _may_touch(scene) else ()
 
     def lost(self, readings):
-        return {term: readings.fix_value(self.fix, TAKEN[term]) for term in self.losses(readings.context.scene)}
+        return {term: self._sum(readings, TAKEN[term]) for term in self.losses(readings.context.scene)}
 
     def penetration(self, readings):
-        return readings.fix_value(self.fix, "deepest")
+        return max(readings.fix_value(fix, "deepest") for fix, _, _ in _parts(readings.context))
 
     def problems(self, resolved, models, grid):
         """The drag of a liquid acts through the leap-frog, which does not move rigid bodies."""
@@ -95,7 +108,14 @@ class RigidMotion(Effect):
         return [Problem(solid.spans.get("elasticity"), cause, "write drag 0 in the liquid, or give the object an elasticity")]
 
     def kinetic(self, readings):
-        return readings.fix_value(self.fix, "translation") + readings.fix_value(self.fix, "rotation")
+        return self._sum(readings, "translation") + self._sum(readings, "rotation")
+
+    def clocks(self, readings):
+        return {self.name: sum(readings.fix_seconds(fix) for fix, _, _ in _parts(readings.context))}
+
+    def _sum(self, readings, entry: str) -> float:
+        """Sum of an entry of the vectors of its fixes."""
+        return sum(readings.fix_value(fix, entry) for fix, _, _ in _parts(readings.context))
 
 
 def _may_touch(scene) -> bool:
@@ -103,11 +123,19 @@ def _may_touch(scene) -> bool:
     return len(scene.solids) > 1 or any(e.of(scene).planes(scene) for e in features.effects())
 
 
-def molecule_ranges(solids: np.ndarray) -> list[str]:
+def _parts(context: Context) -> list[tuple[str, str, np.ndarray]]:
+    """Its fixes that there are: ID, table of moments, solids, bool, shape (M,). What touches by its features has one, and all
+    else another: a fix knows the shapes of all of its bodies or of none."""
+    rigid, known = context.system.rigid, touching.by_features(context.system)
+    parts = ((RigidMotion.fix, INERTIA, rigid & known), (REST, INERTIA_OF_REST, rigid & ~known))
+    return [part for part in parts if part[2].any()]
+
+
+def molecule_ranges(solids: np.ndarray) -> str:
     """Molecule IDs of the chosen solids, bool, shape (M,), as LAMMPS's ranges ``a:b``."""
     chosen = np.flatnonzero(solids) + 1
     pieces = np.split(chosen, np.flatnonzero(np.diff(chosen) > 1) + 1)
-    return [f"{p[0]}:{p[-1]}" if len(p) > 1 else f"{p[0]}" for p in pieces]
+    return " ".join(f"{p[0]}:{p[-1]}" if len(p) > 1 else f"{p[0]}" for p in pieces)
 
 
 def inertia_text(tensors: np.ndarray, solids: np.ndarray) -> str:

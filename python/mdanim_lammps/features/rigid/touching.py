@@ -14,6 +14,7 @@ import numpy as np
 
 from ...effects.context import Context
 from ...model.planes import Plane
+from ...model.system import System
 from ...scene.scene import Box, Shape, Solid, Sphere
 from ..contact.pairs import damping, frictions, pair_rules
 from ..contact.rigid_surfaces import frequency
@@ -24,10 +25,9 @@ STEP = 0.35
 """Time step of `balanced`, half of the bound, times the frequency: what stacks and heaps were at rest with (an estimate)."""
 
 
-def by_features(context: Context) -> np.ndarray:
+def by_features(system: System) -> np.ndarray:
     """Solids that touch each other and planes by their features, bool, shape (M,): those that are rigid, or never move, of a
     shape that the fix knows. Where others cover a side of a held cuboid, its edges there are none."""
-    system = context.system
     uncovered = np.array([frame.open is None or not len(frame.open) for frame in system.frames])[system.contact_kind]
     known = np.array([isinstance(frame.shape, Box | Sphere) for frame in system.frames])[system.contact_kind]
     return known & (system.rigid | (system.still & uncovered))
@@ -44,10 +44,10 @@ def objects_touch(context: Context) -> bool:
 
 
 def is_on(context: Context) -> bool:
-    """Whether a body that moves touches something by its features."""
-    chosen = by_features(context)
-    some = chosen & context.system.rigid
-    return bool(some.any()) and (bool(planes_of(context)) or (objects_touch(context) and chosen.sum() > 1))
+    """Whether a body that moves may touch something by its features; the same in all parts of a scene."""
+    whole = context.reach.system
+    chosen = by_features(whole)
+    return bool((chosen & whole.rigid).any()) and (bool(planes_of(context)) or (objects_touch(context) and chosen.sum() > 1))
 
 
 def omega(context: Context) -> float:
@@ -61,7 +61,7 @@ def words(context: Context, shapes: str) -> str:
     found = [f"shapes {shapes} contact {omega(context)!r} {ONSET * frequency(context).thin!r}"]
     found += ["objects"] if objects_touch(context) else []
     found += [f"plane {'xyz'[p.axis]} {'lo' if p.sign > 0 else 'hi'} {p.at!r}" for p in planes]
-    chosen, scene = by_features(context), context.scene
+    chosen, scene = by_features(context.system), context.scene
     for i, j, mu, beta in pair_rules(scene, context.system.names):
         if chosen[i] and chosen[j]:
             found.append(f"pair {i + 1} {j + 1} {mu!r} {beta!r}")
@@ -77,7 +77,7 @@ def shapes_text(context: Context) -> str:
     system, own = context.system, _of(context, frictions(context.scene))
     solids = _solids(context)
     lines = ["# Shapes, written by mdanim-lammps: molecule mu beta free|held  place  quaternion  shape\n"]
-    for m in np.flatnonzero(by_features(context)).tolist():
+    for m in np.flatnonzero(by_features(context.system)).tolist():
         solid = solids[m]
         numbers = [own[m], _damping(context, own[m])]
         pose = [*map(float, solid.position), *quaternion(np.array(solid.rotation))]

@@ -1,0 +1,80 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Rigid objects in all forms of the distribution: blows on each other, on the ground and on soft ones, with friction, have the
+same bits on executors, in teams, after a resume, and in plain `lmp`."""
+
+import subprocess
+
+import numpy as np
+import plugin_path
+import pytest
+from distribution_lab import SEQUENTIAL, WINDOWS, matrix, readied, scene, ways  # noqa: F401
+from mdanim_lammps.engine.instance import Instance
+from mdanim_lammps.results.checkpoint import Checkpoint
+from mdanim_lammps.results.compare import compare
+from mdanim_lammps.results.dump import read_dump
+from mdanim_lammps.results.ledger import Ledger
+
+pytestmark = pytest.mark.mpi
+
+PAIRS = "".join(
+    f"""object box[{i}] {{ shape box (10, 10, 10) cm  position ({50 * i}, 0, 9) cm  density 1000  elasticity rigid
+  velocity ({1 if i == 1 else 0}, 0, -1) m/s  spin (0, 2, 0)  orientation axis (1, 1, 0) angle 20 deg }}
+object ball[{i}] {{ shape sphere 5 cm  position ({50 * i}, 2, 24) cm  density 1000  elasticity rigid  velocity (0, 0, -3) m/s }}
+"""
+    for i in (1, 2)
+)
+SCENE = f"""gravity (0, 0, -9.81) m/s^2
+ground z 0 m
+{PAIRS}
+object soft {{ shape box (10, 10, 10) cm  position (150, 0, 6) cm  density 1000  elasticity 200 kPa }}
+object slab {{ shape cylinder 4 cm 8 cm  position (150, 0, 16) cm  density 1000  elasticity rigid  velocity (0, 0, -1) m/s }}
+control {{ time 0.1 s  frames 100 fps  friction 0.5  resolution 2.5 cm }}
+"""
+"""Two pairs by features, a cylinder on something soft by surfaces; the first box flies to the second pair."""
+
+
+def records(folder) -> dict:
+    """Records of both fixes at the last checkpoint, by objects."""
+    both = Checkpoint.read(folder / "checkpoint").records
+    return {
+        (fix, *key): found.data[a:b].tobytes()
+        for fix, found in ((fix, both[fix]) for fix in ("rigid", "rigid_rest"))
+        for key, a, b in zip(found.keys.tolist(), found.first[:-1].tolist(), found.first[1:].tolist())
+    }
+
+
+def test_rigid_objects_are_the_same_in_all_forms(scene):  # noqa: F811
+    """Executors under both controls, windows begun again, migration of all, teams; stopped amid blows and taken up by others."""
+    cases = (
+        matrix((3,), ["central"], "again ", settings=WINDOWS | {"safety": 0.3})
+        | matrix((3,), ["peers"], "all move ", rotate=True)
+        | matrix((2,), ["peers"], "teams ", settings={"least": 50})
+        | {
+            "a": {"executors": 3, "control": "central", "stop": 4},
+            "a alone": SEQUENTIAL | {"resume": True, "in": "a"},
+            "b": SEQUENTIAL | {"stop": 5},
+            "b spread": {"executors": 2, "control": "peers", "resume": True, "in": "b"},
+        }
+    )
+    found = ways(scene(SCENE), cases, timeout=200.0)
+    alone = records(found["sequential"])
+    assert {(fix, a) for fix, a, b in alone if not b} == {*(("rigid", a) for a in (1, 2, 3, 4)), ("rigid_rest", 6)}
+    taken = Ledger.read(found["sequential"] / "ledger.csv")
+    assert all(taken.array(term)[-1] > 0.0 for term in ("friction_heat", "contact_damping_loss"))
+    for way in cases:
+        assert compare(found["sequential"], found[way]).equal, way
+        assert records(found[way]) == alone, way
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_lammps_alone_makes_the_same_frames(tmp_path, ranks):
+    """The script that `build` writes, with its tables."""
+    ready, folder = readied(tmp_path, SCENE)
+    with Instance(ready.plan) as instance:
+        instance.setup()
+        instance.run(ready.certificate.steps)
+        last = instance.array("x").copy()
+    command = [plugin_path.BIN / "mpiexec", "-n", str(ranks), plugin_path.BIN / "lmp", "-in", "in.film", "-screen", "none"]
+    done = subprocess.run(command, cwd=folder, env=plugin_path.environment(), capture_output=True, text=True, timeout=100)
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert np.array_equal([x for _, x, _ in read_dump(folder / "film.lammpstrj", len(last))][-1], last)
