@@ -120,7 +120,7 @@ void FixMdanimRigid::setup(int)
   account.deepest = account.worst_bound = 0.0;
   account.most_touching = 0;
   if (touching.is_current)
-    touching.find_energy(bodies);
+    touching.contact.find_energy();
   else
     touching.step(bodies, 0.0);
 }

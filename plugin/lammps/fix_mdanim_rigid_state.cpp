@@ -56,7 +56,7 @@ StateRecords FixMdanimRigid::pack() const
       kept.turning_push = touching.push(number).torque;
       kept.pose = touching.pose(number);
       head.put(kept);
-      touching.contact.put_at_planes(touching.solid(number), head);
+      if (touching.solid(number) != RigidTouching::NO_SHAPE) touching.contact.put_at_planes(touching.solid(number), head);
     } else {
       head.put(kept);
     }

@@ -105,7 +105,7 @@ void RigidTouching::check() const
       if (id < other_id && !(one.held && other.held) && !know_each_other(one.shape.kind(), other.shape.kind()))
         lmp->error->all(FLERR,
                         "{}: objects {} and {} (molecule IDs) are a {} and a {}, and contact by features does not know these two "
-                        "on each other; leave them to fix mdanim/contact, in a fix mdanim/rigid of their own without 'objects'",
+                        "on each other; leave one out of the file, and let it touch by fix mdanim/contact",
                         STYLE, id, other_id, one.shape.name(), other.shape.name());
 }
 
@@ -130,7 +130,7 @@ void RigidTouching::take(const std::string &fix, const ObjectTable &objects, con
 {
   poses = std::move(in_bodies);
   pushes.assign(bodies.size(), {});
-  solid_of.assign(bodies.size(), 0);
+  solid_of.assign(bodies.size(), NO_SHAPE);
   is_current = false;
   if (!is_on()) return;
   std::vector<Solid> solids;
@@ -154,9 +154,6 @@ void RigidTouching::take(const std::string &fix, const ObjectTable &objects, con
     }
     solids.push_back(std::move(one));
   }
-  for (int n = 0; n < objects.size(); ++n)
-    if (!shapes.count(static_cast<int>(objects.id(n))))
-      lmp->error->all(FLERR, "{}: object {} (molecule ID) has no line in the file of shapes", fix, objects.id(n));
   for (const auto &[ids, law] : contact.settings.pairs)
     for (const int id : {ids.first, ids.second})
       if (id > 0 && !shapes.count(id)) lmp->error->all(FLERR, "{}: pair names molecule {}, which has no shape", fix, id);
@@ -166,7 +163,8 @@ void RigidTouching::take(const std::string &fix, const ObjectTable &objects, con
 
 void RigidTouching::place_all(const std::vector<RigidBody> &bodies)
 {
-  for (std::size_t n = 0; n < bodies.size(); ++n) contact.place(solid_of[n], bodies[n]);
+  for (std::size_t n = 0; n < bodies.size(); ++n)
+    if (solid_of[n] != NO_SHAPE) contact.place(solid_of[n], bodies[n]);
 }
 
 void RigidTouching::step(const std::vector<RigidBody> &bodies, double dt)
@@ -175,15 +173,8 @@ void RigidTouching::step(const std::vector<RigidBody> &bodies, double dt)
   place_all(bodies);
   contact.step(dt);
   for (std::size_t n = 0; n < bodies.size(); ++n)
-    pushes[n] = {contact.solid(solid_of[n]).force, contact.solid(solid_of[n]).torque};
+    if (solid_of[n] != NO_SHAPE) pushes[n] = {contact.solid(solid_of[n]).force, contact.solid(solid_of[n]).torque};
   is_current = true;
-}
-
-void RigidTouching::find_energy(const std::vector<RigidBody> &bodies)
-{
-  if (!is_on()) return;
-  place_all(bodies);
-  contact.find_energy();
 }
 
 // --- records ---
@@ -196,7 +187,7 @@ void RigidTouching::read_contacts(const StateRecords &records, std::int64_t vers
 {
   for (std::size_t n = 0; n < at_planes.size(); ++n) {
     if (!at_planes[n]) continue;
-    if (is_on()) contact.read_at_planes(solid_of[n], *at_planes[n]);
+    if (is_on() && solid_of[n] != NO_SHAPE) contact.read_at_planes(solid_of[n], *at_planes[n]);
     at_planes[n]->expect_end();
   }
   for (const auto &[key, bytes] : records) {

@@ -23,6 +23,7 @@ std::string name_of_record(const StateKey &key);    // begins messages
 
 class RigidTouching {
  public:
+  static constexpr int NO_SHAPE = -1;     // of a body that does not touch by features
   static std::vector<Keyword> words();    // of the command
   explicit RigidTouching(LAMMPS_NS::LAMMPS *lmp) : lmp(lmp) {}
 
@@ -40,15 +41,16 @@ class RigidTouching {
 
   // Finds forces dt after the last step; dt = 0 at the setup of a run.
   void step(const std::vector<RigidBody> &bodies, double dt);
-  // Finds the energy of contacts where their forces are known already.
-  void find_energy(const std::vector<RigidBody> &bodies);
   struct Push {
     Vec3 force, torque;
   };
   const Push &push(int body) const { return pushes[body]; }
   void set_push(int body, const Push &push) { pushes[body] = push; }
   // A body that is laid aside neither moves nor touches.
-  void lay_aside(int body, bool aside) { contact.lay_aside(solid_of[body], aside); }
+  void lay_aside(int body, bool aside)
+  {
+    if (solid_of[body] != NO_SHAPE) contact.lay_aside(solid_of[body], aside);
+  }
   int solid(int body) const { return solid_of[body]; }
 
   // Contacts from the records of pairs, and at planes from what is left of those of bodies. Throws std::runtime_error.

@@ -105,16 +105,14 @@ void RigidContact::step(double dt)
 
 void RigidContact::find_energy()
 {
-  const std::vector<SolidPair> pairs = near.pairs;
-  const auto planes = at_plane;
-  TouchAccount kept = account;
-  step(0.0);
-  kept.energy = account.energy;
-  kept.touching = account.touching;
-  account = kept;
-  at_plane = planes;
-  near.pairs = pairs;
-  near.forget();
+  account.energy = 0.0;
+  account.touching = 0;
+  const auto add = [this](const std::vector<Touch> &touches) {
+    for (const Touch &touch : touches) account.energy += touch.energy, ++account.touching;
+  };
+  for (const auto &of_plane : at_plane)
+    for (const std::vector<Touch> &touches : of_plane) add(touches);
+  for (const SolidPair &pair : near.pairs) add(pair.touches);
 }
 
 std::size_t RigidContact::bytes() const

@@ -43,7 +43,7 @@ class RigidContact {
   void place(int n, const RigidBody &body);
   // A body that is laid aside touches nothing.
   void lay_aside(int n, bool aside) { solids[n].aside = aside; }
-  // Finds the energy of contacts, and how many there are, and changes nothing else.
+  // Finds the energy of contacts, and how many there are, from what they remember.
   void find_energy();
   // Finds the forces on bodies, dt after the last step; dt = 0 at the setup of a run.
   void step(double dt);

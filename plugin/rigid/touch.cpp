@@ -48,9 +48,10 @@ void TouchStep::apply(Solid &a, Solid *b, const Vec3 &x, const Vec3 &f) const
 // S = sum of 2 k lambda* over the contacts of a body (k lambda* at planes), D the same with the dashpots. The springs of a
 // contact are k (n n + 0.8 t t), so lambda* is at most 0.2 lambda + 0.8 lambda along any direction; n of two edges may be any
 // direction.
-void TouchStep::book(Solid &a, Solid *b, const Touch &touch, double part, const ContactForce<double> &force) const
+void TouchStep::book(Solid &a, Solid *b, Touch &touch, double part, const ContactForce<double> &force) const
 {
-  account.energy += part * force.surface_energy + touch.memory.stick_energy;
+  touch.energy = part * force.surface_energy + touch.memory.stick_energy;
+  account.energy += touch.energy;
   account.heat += force.heat;
   account.damped += force.damped;
   ++account.touching;

@@ -22,6 +22,7 @@ struct Touch {
   double damping = 0.0;                  // dashpot over k [s]
   Vec3 anchor;    // corners: in the host; edges: places along both; moving points: way from the anchor, in the host's frame
   ContactMemory<double> memory;
+  double energy = 0.0;    // now, with that of sticking [J]
 };
 
 // Stiffness, friction and damping of all contacts of a pair.
@@ -62,7 +63,7 @@ class TouchStep {
   ContactLaw law_of(const Touch &touch, const TouchLaw &law) const
   { return {touch.stiffness, onset, law.friction, touch.damping}; }
   void apply(Solid &a, Solid *b, const Vec3 &x, const Vec3 &f) const;
-  void book(Solid &a, Solid *b, const Touch &touch, double part, const ContactForce<double> &force) const;
+  void book(Solid &a, Solid *b, Touch &touch, double part, const ContactForce<double> &force) const;
 
   // A point X of `a`, in the frame of its host `b` or of space, at the depth d below a side with the outward normal n in space.
   // `slope`: gradient of `part` in the host's frame.

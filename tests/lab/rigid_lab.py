@@ -76,6 +76,17 @@ def box(size, density=600.0, **more) -> Rigid:
     ).put(**more)
 
 
+def prism(sides: int, radius: float, height: float) -> str:
+    """Words of a prism over a regular polygon with this radius, along its third axis."""
+    angle = 2 * np.pi * np.arange(sides) / sides
+    corners = [(radius * np.cos(a), radius * np.sin(a), z) for z in (-height / 2, height / 2) for a in angle]
+    low = [sides - 1 - k for k in range(sides)]
+    faces = [low, [k + sides for k in range(sides)]]
+    faces += [[k, (k + 1) % sides, (k + 1) % sides + sides, k + sides] for k in range(sides)]
+    numbers = " ".join(repr(float(c)) for corner in corners for c in corner)
+    return f"polyhedron {2 * sides} {numbers} {sides + 2} " + " ".join(" ".join(map(str, [len(f), *f])) for f in faces)
+
+
 def ball(radius, density=600.0, **more) -> Rigid:
     """A full ball."""
     mass = density * 4 / 3 * np.pi * radius**3

@@ -1,0 +1,177 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Contact by features of fix mdanim/rigid: the same bits on ranks, in any order of particles, from restart files and states."""
+
+import re
+
+import numpy as np
+import plugin_lab
+import pytest
+import rigid_lab as lab
+import state_lab
+
+OPTIONS = {"cutoff": 0.2, "skin": 0.1}
+WEDGE = "polyhedron 6 -0.05 -0.05 -0.05 0.05 -0.05 -0.05 0 0.05 -0.05 -0.05 -0.05 0.05 0.05 -0.05 0.05 0 0.05 0.05"
+FACES = "5 3 0 2 1 3 3 4 5 4 0 1 4 3 4 1 2 5 4 4 2 0 3 5"
+
+
+def heap(folder, commands=()) -> lab.World:
+    """Boxes, balls and a wedge that fall on each other, between a wall, a held box and the floor."""
+    random = np.random.default_rng(2)
+
+    def turned():
+        return lab.about(random.uniform(-1, 1, 3), random.uniform(0, 3))
+
+    bodies = [lab.box((0.1, 0.1, 0.1), at=(0.02 * n, 0.01 * n, 0.09 + 0.15 * n), q=turned(), v=(0, 0, -2)) for n in range(3)]
+    bodies += [lab.ball(0.05, at=(0.1 * n - 0.05, 0.09, 0.07), v=(0.5, -0.5, -1), mu=0.3) for n in range(2)]
+    bodies += [lab.box((0.06, 0.2, 0.4), at=(-0.12, 0, 0.22), q=lab.about((0, 1, 0), 0.2), mu=0.2)]
+    wedge = lab.box((0.1, 0.1, 0.1), at=(0.02, 0.01, 0.5), v=(0, 0, -1))
+    bodies += [wedge.put(shape=f"{WEDGE} {FACES}"), lab.box((0.5, 0.1, 0.1), at=(0, -0.15, 0.05), held=True)]
+    planes = ("plane z lo 0.0", "plane x lo -0.25")
+    return lab.World(
+        folder,
+        bodies,
+        frequency=lab.frequency_of(2.0, 0.06),
+        planes=planes,
+        words="lambda 0.01 pair 1 plane1 0.1 0.2",
+        commands=commands,
+    )
+
+
+def test_bits_do_not_depend_on_ranks_or_order(tmp_path):
+    """All ranks compute all contacts."""
+    world = heap(tmp_path, ["run 500"])
+    mixed = np.random.default_rng(3).permutation(len(world.setup.x))
+    forms = ({}, {"order": mixed, "ranks": 2}, {"ranks": 3})
+    ends = [plugin_lab.in_child(world.setup, tmp_path, world.commands, **OPTIONS, **form) for form in forms]
+    assert len(set(ends)) == 1
+
+
+def ends(world):
+    """Places, velocities and the state of all bodies and contacts."""
+    return plugin_lab.by_tag(world.lmp, "x"), plugin_lab.by_tag(world.lmp, "v"), state_lab.pack(world.lmp, "r")
+
+
+def are_same(one, other):
+    """Whether both have the same bits."""
+    return np.array_equal(one[0], other[0]) and np.array_equal(one[1], other[1]) and one[2].same(other[2])
+
+
+def test_what_is_remembered_changes_no_bit(tmp_path):
+    """A state that is put drops all that is known of features and bodies near each other: 300 steps with one each time, and 300
+    steps on end."""
+    with heap(tmp_path) as world:
+        world.run(1500)
+        before = state_lab.pack(world.lmp, "r")
+        world.run(300)
+        assert world.number("touching") > 8
+        end = ends(world)
+        state_lab.put(world.lmp, "r", before)
+        for _ in range(300):
+            world.lmp.command("run 1")
+            state_lab.put(world.lmp, "r", state_lab.pack(world.lmp, "r"))
+        assert are_same(ends(world), end)
+
+
+def test_runs_go_on_to_the_bit(tmp_path):
+    """Several runs with setups are one run: forces of contact are not found anew where nothing has changed."""
+    with heap(tmp_path) as world:
+        world.run(300)
+        end = ends(world)
+    with heap(tmp_path) as world:
+        for _ in range(3):
+            world.lmp.command("run 100")
+        assert are_same(ends(world), end)
+        kept = [world.number(name) for name in ("contact", "touching", "friction_heat")]
+        world.lmp.command("run 0")
+        assert [world.number(name) for name in ("contact", "touching", "friction_heat")] == kept
+
+
+def test_a_state_goes_on_in_another_instance(tmp_path):
+    """With records of bodies and of pairs; those that are broken are refused, and change nothing."""
+    with heap(tmp_path) as world:
+        world.run(1200)
+        records = state_lab.pack(world.lmp, "r")
+        keys = records.key.tolist()
+        assert keys == sorted(keys) and any(b for _, b in keys) and [k for k in keys if not k[1]] == [[n, 0] for n in range(1, 8)]
+        world.run(100)
+        end = ends(world)
+    with heap(tmp_path) as other:
+        other.run(50)
+        before = ends(other)
+        data = records.data.copy()
+        pair = next(k for k, (_, b) in enumerate(keys) if b)
+        data[records.first[pair] + 16 : records.first[pair] + 32] = 77  # the kind of its first contact
+        with pytest.raises(RuntimeError, match="of features that there are not"):
+            state_lab.put(other.lmp, "r", state_lab.Records(records.key, records.first, data))
+        assert are_same(ends(other), before)
+        state_lab.put(other.lmp, "r", records)
+        other.lmp.command("run 100")
+        assert are_same(ends(other), end)
+
+
+def test_a_restart_file_goes_on_to_the_bit(tmp_path):
+    """Contacts are in it."""
+    with heap(tmp_path) as world:
+        world.run(200)
+        world.lmp.command(f"write_restart {tmp_path / 'half'}")
+        world.run(100)
+        end = ends(world)
+    again = plugin_lab.plugin_path.lammps()
+    for command in plugin_lab.prelude(**OPTIONS):
+        if not command.startswith(("fix", "atom_style", "units", "boundary", "newton")):
+            again.command(command)
+    again.command(f"read_restart {tmp_path / 'half'}")
+    springs = plugin_lab.springs(world.setup)
+    for command in ["fix model all property/atom rmass ghost yes", *springs, *world.commands, "run 100"]:
+        again.command(command)
+    assert np.array_equal(plugin_lab.by_tag(again, "x"), end[0]) and np.array_equal(plugin_lab.by_tag(again, "v"), end[1])
+    again.close()
+
+
+BOX = "free 0 0 0.05 1 0 0 0 box 0.1 0.1 0.1"
+
+
+@pytest.mark.parametrize(
+    ("words", "text", "why"),
+    [
+        ("objects", f"1 0 0 {BOX}", "contact needs 'shapes"),
+        ("shapes FILE", f"1 0 0 {BOX}", "nothing can touch; write objects, or plane"),
+        ("shapes FILE contact 0 1 objects", f"1 0 0 {BOX}", "OMEGA must be above 0, got 0"),
+        ("shapes FILE contact 1 1 plane w lo 0", f"1 0 0 {BOX}", "the axis of a plane is x, y or z, got w"),
+        ("shapes FILE contact 1 1 plane z at 0", f"1 0 0 {BOX}", "the upper, hi; got at"),
+        ("shapes FILE contact 1 1 objects pair 1 plane1 0 0", f"1 0 0 {BOX}", "a pair has plane1, and 0 planes are given before"),
+        ("shapes FILE contact 1 1 objects pair 1 1 0 0", f"1 0 0 {BOX}", "a pair is two different molecule IDs"),
+        ("shapes FILE contact 1 1 objects pair 1 5 0 0", f"1 0 0 {BOX}", "pair names molecule 5, which has no shape"),
+        ("shapes FILE contact 1 1 objects", f"1 -1 0 {BOX}", "line 1 of FILE: friction must be at least 0"),
+        ("shapes FILE contact 1 1 objects", "\n1 0 0 loose", "line 2 of FILE: a body is free or held, got loose"),
+        ("shapes FILE contact 1 1 objects", "1 0 0 free 0 0 0 1 1 0 0 box 1 1 1", "the rotation is no unit quaternion"),
+        ("shapes FILE contact 1 1 objects", "1 0 0 free 0 0 0 1 0 0 0 box 1 1", "line 1 of FILE: a side is missing"),
+        ("shapes FILE contact 1 1 objects", "1 0 0 free 0 0 0 1 0 0 0 torus 1 1", "cone, ellipsoid or polyhedron, got torus"),
+        ("shapes FILE contact 1 1 objects", f"1 0 0 {BOX} 3", "there is more than belongs to it, from 3 on"),
+        ("shapes FILE contact 1 1 objects", f"7 0 0 {BOX}", "has object 7 (molecule ID) as free, and it has no particle"),
+        (
+            "shapes FILE contact 1 1 objects",
+            f"1 0 0 {BOX.replace('free', 'held')}",
+            "object 1 (molecule ID) as held, and it has a",
+        ),
+        ("shapes FILE contact 1 1 objects", f"1 0 0 {BOX}\n1 0 0 {BOX}", "line 2 of FILE: object 1 has a line already"),
+        (
+            "shapes FILE contact 1 1 objects",
+            f"1 0 0 {BOX[:-15].rstrip()} {WEDGE} 5 3 0 1 2 {FACES[10:]}",
+            "has a corner of the body before it",
+        ),
+        ("shapes FILE contact 1 1 objects", f"1 0 0 {BOX[:-15].rstrip()} {WEDGE} 4 {FACES[2:-10]}", "has one face"),
+        (
+            "shapes FILE contact 1 1 objects",
+            f"1 0 0 {BOX[:-15].rstrip()} {WEDGE} 5 3 0 9 1 {FACES[10:]}",
+            "has a corner that there is not",
+        ),
+    ],
+)
+def test_what_cannot_be_is_refused(tmp_path, words, text, why):
+    """With the line or the word, and what is wrong in it."""
+    path = tmp_path / "forms"
+    path.write_text(text)
+    commands = [f"fix r all mdanim/rigid {words.replace('FILE', str(path))}", "run 0"]
+    with pytest.raises(Exception, match=re.escape(why.replace("FILE", str(path)))):
+        plugin_lab.load(plugin_lab.block((2, 2, 2)), tmp_path, commands).close()
