@@ -14,7 +14,6 @@
 #include "comm.h"
 #include "error.h"
 #include "neighbor.h"
-#include "utils.h"
 
 #include <algorithm>
 #include <cmath>
@@ -42,23 +41,21 @@ FixMdanimBarrier::FixMdanimBarrier(LAMMPS *lmp, int narg, char **arg) : FixBase(
   comm_forward = 3;
   filter = &widest_kernels().pair_filter;
 
-  need_words(lmp, "fix mdanim/barrier", "fix ID group mdanim/barrier", "BOUNDARY BARRIER k rc", narg - 3);
+  need_words(lmp, STYLE, "fix ID group mdanim/barrier", "BOUNDARY BARRIER k rc", narg - 3);
   boundary = NamedGroup(lmp, STYLE, 3, arg[3]);
   barrier = NamedGroup(lmp, STYLE, 4, arg[4]);
   stiffness = ParticleValue(lmp, "fix mdanim/barrier: k", 5, arg[5]);
   reach = ParticleValue(lmp, "fix mdanim/barrier: rc", 6, arg[6]);
 
-  for (int iarg = 7; iarg < narg;) {
-    static const std::vector<Keyword> known = {
-        {"thin", "GROUP ratio"},
-        {"damp", "", "leave it out; objects with friction lose energy at the surfaces of fix mdanim/contact"},
-        {"power", "", "leave it out for the law of power 3, and take fix mdanim/contact for a surface that is linear"}};
-    const int words = words_of_keyword(lmp, "fix mdanim/barrier", known, iarg, narg, arg);
-    thin = NamedGroup(lmp, STYLE, iarg + 1, arg[iarg + 1]);
-    thin_ratio = utils::numeric(FLERR, arg[iarg + 2], false, lmp);
-    if (!(thin_ratio > 0.0)) error->all(FLERR, iarg + 2, "fix mdanim/barrier: thin ratio must be > 0, got {}", arg[iarg + 2]);
-    iarg += words;
-  }
+  const std::vector<Keyword> known = {
+      {"thin", "GROUP ratio", "",
+       [&, this](int at, char **arg) {
+         thin = NamedGroup(lmp, STYLE, at + 1, arg[at + 1]);
+         thin_ratio = positive(lmp, STYLE, "thin ratio", at + 2, arg);
+       }},
+      {"damp", "", "leave it out; objects with friction lose energy at the surfaces of fix mdanim/contact"},
+      {"power", "", "leave it out for the law of power 3, and take fix mdanim/contact for a surface that is linear"}};
+  for (int iarg = 7; iarg < narg;) iarg += take_keyword(lmp, STYLE, known, iarg, narg, arg);
 }
 
 int FixMdanimBarrier::setmask() { return POST_NEIGHBOR | POST_FORCE; }

@@ -22,7 +22,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <cstring>
 #include <numeric>
 #include <stdexcept>
 
@@ -32,6 +31,7 @@ using namespace mdanim;
 
 static constexpr double NS_OF_PARTICLE = 4.0;    // approximately
 static constexpr double USUAL_DAMPING = 0.3;     // beta
+static const char *const STYLE = "fix mdanim/contact";
 static const char *const LEFT_OUT = ", or leave it out by 'among GROUP'";
 
 // --- the command ---
@@ -66,71 +66,49 @@ FixMdanimContact::FixMdanimContact(LAMMPS *lmp, int narg, char **arg) : FixBase(
   friction = ParticleValue(lmp, "fix mdanim/contact: FRICTION", 5, arg[5]);
   ContactSettings &settings = world_of_contact.settings;
   settings.damping = USUAL_DAMPING;
-  for (int iarg = 6; iarg < narg;) iarg += read_word(iarg, narg, arg);
+  const std::vector<Keyword> known = keywords();
+  for (int iarg = 6; iarg < narg;) iarg += take_keyword(lmp, STYLE, known, iarg, narg, arg);
   if (!settings.objects && settings.planes.empty())
     error->all(FLERR, "fix mdanim/contact: nothing can touch; write objects, or plane x|y|z lo|hi and its place");
 }
 
-// Reads a word with its values; returns the number of words.
-int FixMdanimContact::read_word(int iarg, int narg, char **arg)
+std::vector<Keyword> FixMdanimContact::keywords()
 {
   ContactSettings &settings = world_of_contact.settings;
-  const auto is = [&](const char *word) { return strcmp(arg[iarg], word) == 0; };
-  static const std::vector<Keyword> known = {
-      {"objects", ""},    {"plane", "x|y|z lo|hi at"}, {"stiffness", "f"}, {"damping", "beta"}, {"pair", "MOL1 MOL2 mu beta"},
-      {"among", "GROUP"}, {"except", "GROUP"},         {"bodies", "FILE"}};
-  const int words = words_of_keyword(lmp, "fix mdanim/contact", known, iarg, narg, arg);
-  const auto number = [&](int at, const char *what, double least) {
+  const auto number = [this](int at, const char *what, char **arg) {
     const double value = utils::numeric(FLERR, arg[at], false, lmp);
-    if (!(value >= least)) error->all(FLERR, at, "fix mdanim/contact: {} must be at least {}, got {}", what, least, arg[at]);
+    if (!(value >= 0.0)) error->all(FLERR, at, "{}: {} must be at least 0, got {}", STYLE, what, arg[at]);
     return value;
   };
-  if (is("objects")) {
-    settings.objects = true;
-    return words;
-  }
-  if (is("plane")) {
-    const int axis = arg[iarg + 1][0] - 'x';
-    if (axis < 0 || axis > 2 || arg[iarg + 1][1])
-      error->all(FLERR, iarg + 1, "fix mdanim/contact: the axis of a plane is x, y or z, got {}", arg[iarg + 1]);
-    const bool low = strcmp(arg[iarg + 2], "lo") == 0;
-    if (!low && strcmp(arg[iarg + 2], "hi") != 0)
-      error->all(FLERR, iarg + 2, "fix mdanim/contact: a plane is the lower end of what is allowed, lo, or the upper, hi; got {}",
-                 arg[iarg + 2]);
-    settings.planes.push_back({axis, low ? 1.0 : -1.0, utils::numeric(FLERR, arg[iarg + 3], false, lmp)});
-    return words;
-  }
-  if (is("stiffness")) {
-    settings.stiffness = number(iarg + 1, "stiffness", 0.0);
-    if (settings.stiffness == 0.0)
-      error->all(FLERR, iarg + 1,
-                 "fix mdanim/contact: stiffness must be above 0, got {}; leave the fix out where nothing is to touch",
-                 arg[iarg + 1]);
-    return words;
-  }
-  if (is("damping")) {
-    settings.damping = number(iarg + 1, "damping", 0.0);
-    return words;
-  }
-  if (is("pair")) {
-    int a = utils::inumeric(FLERR, arg[iarg + 1], false, lmp), b = utils::inumeric(FLERR, arg[iarg + 2], false, lmp);
-    if (a < 1 || b < 1 || a == b)
-      error->all(FLERR, iarg + 1, "fix mdanim/contact: a pair is two different molecule IDs > 0, got {} and {}", arg[iarg + 1],
-                 arg[iarg + 2]);
-    settings.pairs[{std::min(a, b), std::max(a, b)}] = {number(iarg + 3, "mu of a pair", 0.0),
-                                                        number(iarg + 4, "beta of a pair", 0.0)};
-    return words;
-  }
-  if (is("among")) {
-    among = NamedGroup(lmp, "fix mdanim/contact", iarg + 1, arg[iarg + 1]);
-    return words;
-  }
-  if (is("except")) {
-    except = NamedGroup(lmp, "fix mdanim/contact", iarg + 1, arg[iarg + 1]);
-    return words;
-  }
-  read_bodies_of(arg[iarg + 1]);
-  return words;
+  const auto group = [this](NamedGroup &into) {
+    return [this, &into](int at, char **arg) { into = NamedGroup(lmp, STYLE, at + 1, arg[at + 1]); };
+  };
+  return {{"objects", "", "", [&settings](int, char **) { settings.objects = true; }},
+          {"plane", "x|y|z lo|hi at", "",
+           [&settings, this](int at, char **arg) {
+             const int axis = choice(lmp, STYLE, "the axis of a plane is", {"x", "y", "z"}, at + 1, arg);
+             const int upper = choice(lmp, STYLE, "the end of what is allowed at a plane is", {"lo", "hi"}, at + 2, arg);
+             settings.planes.push_back({axis, upper ? -1.0 : 1.0, utils::numeric(FLERR, arg[at + 3], false, lmp)});
+           }},
+          {"stiffness", "f", "",
+           [=, &settings, this](int at, char **arg) {
+             settings.stiffness = number(at + 1, "stiffness", arg);
+             if (settings.stiffness == 0.0)
+               error->all(FLERR, at + 1, "{}: stiffness must be above 0, got {}; leave the fix out where nothing is to touch",
+                          STYLE, arg[at + 1]);
+           }},
+          {"damping", "beta", "", [=, &settings](int at, char **arg) { settings.damping = number(at + 1, "damping", arg); }},
+          {"pair", "MOL1 MOL2 mu beta", "",
+           [=, &settings, this](int at, char **arg) {
+             const int a = utils::inumeric(FLERR, arg[at + 1], false, lmp), b = utils::inumeric(FLERR, arg[at + 2], false, lmp);
+             if (a < 1 || b < 1 || a == b)
+               error->all(FLERR, at + 1, "{}: a pair is two different molecule IDs > 0, got {} and {}", STYLE, arg[at + 1],
+                          arg[at + 2]);
+             settings.pairs[std::minmax(a, b)] = {number(at + 3, "mu of a pair", arg), number(at + 4, "beta of a pair", arg)};
+           }},
+          {"among", "GROUP", "", group(among)},
+          {"except", "GROUP", "", group(except)},
+          {"bodies", "FILE", "", [this](int at, char **arg) { read_bodies_of(arg[at + 1]); }}};
 }
 
 void FixMdanimContact::read_bodies_of(const char *file)

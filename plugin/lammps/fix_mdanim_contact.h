@@ -5,6 +5,7 @@
 
 #include "contact/contact_world.h"
 #include "lammps/fix_base.h"
+#include "lammps/keywords.h"
 #include "lammps/object_table.h"
 #include "lammps/stateful.h"
 #include "passes/pass_participant.h"
@@ -52,7 +53,7 @@ class FixMdanimContact : public mdanim::FixBase, public mdanim::PassParticipant,
  private:
   // Whether contacts may belong to other bodies or particles than objects have now: they are then replaced.
   enum class Contacts { STAY, ARE_REPLACED };
-  int read_word(int iarg, int narg, char **arg);
+  std::vector<mdanim::Keyword> keywords();
   void read_bodies_of(const char *file);
   void need_molecules_of_pairs() const;
   void take_objects(Contacts contacts);

@@ -17,13 +17,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <utility>
 
 using namespace LAMMPS_NS;
 using namespace FixConst;
 using namespace mdanim;
 
+static const char *const STYLE = "fix mdanim/leapfrog";
 static constexpr int RESTART_VERSION = 1;
 static constexpr int CHUNK = 1024;    // particles whose sums are one chain
 static constexpr double NS_OF_CHUNK = 2.0 * CHUNK;
@@ -39,22 +39,16 @@ FixMdanimLeapfrog::FixMdanimLeapfrog(LAMMPS *lmp, int narg, char **arg) : FixBas
   tell({{"phi", false, [this] { return largest(largest_phi); }}, {"kinetic", true, [this] { return sum(kinetic()); }}, clock()});
 
   int drag_word = 0;
-  for (int iarg = 3; iarg < narg; iarg += 2) {
-    static const std::vector<Keyword> known = {{"lambda", "L|d_NAME"}, {"drag", "implicit|exp"}};
-    words_of_keyword(lmp, "fix mdanim/leapfrog", known, iarg, narg, arg);
-    if (strcmp(arg[iarg], "lambda") == 0) {
-      lambda = ParticleValue(lmp, "fix mdanim/leapfrog: lambda", iarg + 1, arg[iarg + 1]);
-      has_drag = true;
-    } else {
-      drag_word = iarg;
-      if (strcmp(arg[iarg + 1], "exp") == 0)
-        exponential = true;
-      else if (strcmp(arg[iarg + 1], "implicit") == 0)
-        exponential = false;
-      else
-        error->all(FLERR, iarg + 1, "fix mdanim/leapfrog: drag must be implicit or exp, got {}", arg[iarg + 1]);
-    }
-  }
+  const std::vector<Keyword> known = {{"lambda", "L|d_NAME", "",
+                                       [&, this](int at, char **arg) {
+                                         lambda = ParticleValue(lmp, "fix mdanim/leapfrog: lambda", at + 1, arg[at + 1]);
+                                         has_drag = true;
+                                       }},
+                                      {"drag", "implicit|exp", "", [&, this](int at, char **arg) {
+                                         drag_word = at;
+                                         exponential = choice(lmp, STYLE, "drag must be", {"implicit", "exp"}, at + 1, arg) == 1;
+                                       }}};
+  for (int iarg = 3; iarg < narg;) iarg += take_keyword(lmp, STYLE, known, iarg, narg, arg);
   if (drag_word && !has_drag)
     error->all(FLERR, drag_word, "fix mdanim/leapfrog: drag says how lambda is used, but there is no lambda; add one");
 }
