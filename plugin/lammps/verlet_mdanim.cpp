@@ -40,12 +40,8 @@
 using namespace LAMMPS_NS;
 using namespace mdanim;
 
-// Actions of a fix in a step that passes must know of.
-static constexpr int ACTS = FixConst::INITIAL_INTEGRATE | FixConst::POST_INTEGRATE | FixConst::PRE_FORCE | FixConst::PRE_REVERSE |
-                            FixConst::POST_FORCE | FixConst::FINAL_INTEGRATE | FixConst::END_OF_STEP;
-
 // run_style verlet/mdanim [width common|avx2|avx512] [threads N]
-VerletMdanim::VerletMdanim(LAMMPS *lmp, int narg, char **arg) : SplitVerlet(lmp, 0, arg)
+VerletMdanim::VerletMdanim(LAMMPS *lmp, int narg, char **arg) : SplitVerlet(lmp, 0, arg), search(lmp)
 {
   if (const char *width = std::getenv("MDANIM_WIDTH"); width && *width) set_width(width);
   for (int n = 0; n < narg; n += 2) {
@@ -103,7 +99,7 @@ void VerletMdanim::setup_minimal(int flag)
 void VerletMdanim::begin_setup()
 {
   decided_for = local_then = -1;
-  told_why.clear();
+  search.forget_told();
   engine.drop();    // a run that an error has broken off, which a program has caught
   engine.forget_springs();
   budget.forget();
@@ -130,86 +126,12 @@ void VerletMdanim::spare_bond_list()
 
 // --- whether passes can be taken ---
 
-// Keeps the reason for plain steps and the text to write, "" where the user can do nothing about it.
-bool VerletMdanim::plain(const std::string &reason)
-{
-  why = reason;
-  return false;
-}
-
-// Called once after each setup, on one rank; a run of one step takes no pass anyway.
-void VerletMdanim::tell_why(int steps)
-{
-  if (steps < 2 || why.empty() || why == told_why) return;
-  told_why = why;
-  if (comm->me == 0)
-    utils::logmesg(lmp, "run_style verlet/mdanim: no passes, every step is that of run_style verlet, as {}\n", why);
-}
-
-// Few particles gain nothing. Springs that a program has given are numbered by that program.
-void VerletMdanim::find_why_not_cut()
-{
-  constexpr bigint FEW = 1000;
-  HalfBonds half;
-  why.clear();
-  if (comm->nprocs == 1 && !engine.crew.springs->halves(half))
-    why = "particles do not stand in the order of their IDs; use 'atom_modify sort 0 0' before the box is made, and write them "
-          "in that order";
-  else if (atom->natoms >= FEW && atom->nbonds > 0)
-    why = "springs of particles with neighbouring IDs lead unequally far; number the particles of a lattice row by row";
-}
-
-// Collects all members that act in a step, if each is known to take part in passes.
 bool VerletMdanim::find_crew()
 {
   PassCrew &crew = engine.crew;
-  crew = {};
-  late.clear();
-  strangers_have_lists = neighbor->nlist > 0;
-  why.clear();
-  auto *springs = dynamic_cast<PassSprings *>(force->bond);
-  if (!springs || !springs->join(crew)) {
-    const std::string style = force->bond ? force->bond_style : "none";
-    return plain(style == "none" || style == "zero" ? "" : "bond_style is " + style + "; use mdanim/harmonic");
-  }
-  if (domain->triclinic || domain->dimension != 3)
-    return plain("the box is triclinic or has 2 dimensions; use an orthogonal one of 3");
-  if (force->pair && force->pair->compute_flag)
-    return plain(fmt::format("pair_style {} computes forces; use 'pair_style none' or zero", force->pair_style));
-  if (force->angle || force->dihedral || force->improper || force->kspace)
-    return plain("an angle, dihedral, improper or kspace style computes forces; use 'none'");
-  for (int n = 0; n < modify->nfix; ++n) {
-    Fix *fix = modify->fix[n];
-    const int mask = modify->fmask[n];
-    if (auto *gravity = dynamic_cast<PassGravity *>(fix); gravity && !gravity->steady())
-      return plain(fmt::format("the acceleration of fix {} {} changes with time", fix->id, fix->style));
-    if (auto *member = dynamic_cast<PassMember *>(fix)) {
-      if (!member->join(crew))
-        return plain(fmt::format("fix {} {} is the second of its kind, or comes after fixes that it must precede; use one fix "
-                                 "mdanim/leapfrog, and one fix mdanim/gravity before all others",
-                                 fix->id, fix->style));
-      if (crew.late.size() > late.size()) late.push_back({fix, (mask & FixConst::END_OF_STEP) != 0});
-    } else if (mask & ACTS) {
-      const char *const ours = utils::strmatch(fix->style, "^nve")  ? "; use mdanim/leapfrog"
-                               : strcmp(fix->style, "gravity") == 0 ? "; use mdanim/gravity"
-                               : strcmp(fix->style, "OMP") == 0     ? "; leave out '-sf omp' and 'package omp'"
-                                                                    : "; leave it out if it can be done without";
-      return plain(fmt::format("fix {} {} acts in every step{}", fix->id, fix->style, ours));
-    } else if (mask & FixConst::POST_NEIGHBOR) {
-      strangers_have_lists = true;
-    }
-  }
-  const bool periodic = domain->xperiodic || domain->yperiodic || domain->zperiodic;
-  // Blocks do not have images, and with several ranks no particle may go beyond the neighbours of its own unseen.
-  if (periodic) return plain("the box is periodic; use 'boundary s s s' (or f)");
-  if (comm->nprocs > 1 && neighbor->build_once) return plain("lists are never rebuilt; use 'neigh_modify once no'");
-  lists_matter = !neighbor->build_once && (modify->n_post_neighbor || modify->n_pre_neighbor || comm->nprocs > 1);
-  if (!crew.integrator) return plain("there is no fix mdanim/leapfrog; it moves particles in passes");
-  // Without that check LAMMPS does not keep former places of particles, or not all of them.
-  if (lists_matter && !neighbor->dist_check) return plain("nothing checks how far particles move; use 'neigh_modify check yes'");
-  if (lists_matter && neighbor->includegroup) return plain("lists are of one group alone; use 'neigh_modify include all'");
+  if (!search.find(crew)) return false;
   if (crew.liquid && !crew.liquid->joins(crew.integrator->friction_of_particles())) crew.liquid = nullptr;
-  if (springs->refresh_coefficients()) decided_for = -1;
+  if (crew.springs->refresh_coefficients()) decided_for = -1;
   if (engine.begin_run(told ? *told : widest_kernels())) decided_for = -1;
   return true;
 }
@@ -250,7 +172,7 @@ void VerletMdanim::run(int n)
   if (find_crew()) {
     run_passes(n);
   } else {
-    tell_why(n);
+    search.tell_why(n);
     Verlet::run(n);
   }
   local_then = atom->nlocal;
@@ -278,8 +200,8 @@ void VerletMdanim::run_passes(int n)
     if (!overflowed && cut())
       i += take_steps(i, n - 1 - i);
     else if (i == 0) {
-      if (!overflowed) find_why_not_cut();
-      tell_why(n);
+      if (!overflowed) search.find_why_not_cut(*engine.crew.springs);
+      search.tell_why(n);
     }
     finish_step();
   }
@@ -314,7 +236,7 @@ int VerletMdanim::take_steps(int step, int most)
   const bigint stop = std::min(next_stop(), update->ntimestep + most);
   if (update->ntimestep >= stop) return 0;
   const bool in_range = PassRun::in_range(arrays(), atom->nlocal);
-  if (lists_matter) {
+  if (search.lists_matter()) {
     tell_limits();
     measure();
     if (!spend(in_range ? 0.0 : DisplacementBudget::OVERFLOW)) return 0;
@@ -339,7 +261,8 @@ int VerletMdanim::take_steps(int step, int most)
     ++neighbor->ago;
     if (timer->check_timeout(step + taken)) break;
     const bool finite = passes.in_range();
-    if (lists_matter ? spend(finite ? update->dt * passes.largest_speed() : DisplacementBudget::OVERFLOW) : finite) continue;
+    if (search.lists_matter() ? spend(finite ? update->dt * passes.largest_speed() : DisplacementBudget::OVERFLOW) : finite)
+      continue;
     overflowed = overflowed || !finite;
     if (overflowed || update->ntimestep >= stop || !look_again()) break;
   }
@@ -352,7 +275,7 @@ int VerletMdanim::take_steps(int step, int most)
 // Forces of fixes that come after the pass, or their work at the end of the step.
 void VerletMdanim::act_late(bool at_end)
 {
-  for (const Late &one : late) {
+  for (const CrewSearch::Late &one : search.late()) {
     if (!at_end) one.fix->post_force(vflag);
     if (at_end && one.acts_at_end) one.fix->end_of_step();
   }
@@ -381,7 +304,8 @@ void VerletMdanim::tell_limits()
                    domain->boundary[d][1] == SHRINK};
     budget.set_shares(shares);
   }
-  budget.set_limits(0.5 * neighbor->skin, strangers_have_lists ? SafeDisplacement{0.0, 0.0} : engine.crew.safe_displacement(ANY));
+  budget.set_limits(0.5 * neighbor->skin,
+                    search.strangers_have_lists() ? SafeDisplacement{0.0, 0.0} : engine.crew.safe_displacement(ANY));
 }
 
 // Measures the budget that is left, with particles as they stand in the blocks or else in LAMMPS.
@@ -413,7 +337,7 @@ bool VerletMdanim::look_again()
   if (!between_passes) return false;
   const bool same_places = rebuild_lists();
   if (alone ? !same_places : !cut()) return false;
-  if (alone && late.empty()) engine.keep_motion(neighbor->ncalls);    // no fix has changed how particles move
+  if (alone && search.late().empty()) engine.keep_motion(neighbor->ncalls);    // no fix has changed how particles move
   tell_limits();
   if (alone)
     budget.measure_unmoved();

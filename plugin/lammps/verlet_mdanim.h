@@ -4,12 +4,12 @@
 
 #pragma once
 
+#include "lammps/crew_search.h"
 #include "lammps/ghosts.h"
 #include "lammps/split_verlet.h"
 #include "passes/displacement_budget.h"
 #include "passes/pass_engine.h"
 
-#include <string>
 #include <vector>
 
 namespace LAMMPS_NS {
@@ -37,9 +37,6 @@ class VerletMdanim : public SplitVerlet {
   void begin_setup();
   void spare_bond_list();
   bool find_crew();
-  bool plain(const std::string &reason);
-  void tell_why(int steps);
-  void find_why_not_cut();
   bool cut();
   bool cut_for_ranks();
   void refuse_if_moved();
@@ -57,6 +54,7 @@ class VerletMdanim : public SplitVerlet {
   bool lists_are_due() override;
 
   const mdanim::Kernels *told = nullptr;    // by the input script
+  mdanim::CrewSearch search;
   mdanim::PassEngine engine;
   mdanim::DisplacementBudget budget;
   mdanim::Ghosts ghosts;
@@ -68,15 +66,6 @@ class VerletMdanim : public SplitVerlet {
   bool overflowed = false;        // in this run, on some rank
   long long passed = 0;
   int local_then = -1, ghosts_then = 0;    // particles at the end of the last run, negative after a setup
-
-  // found before every run
-  struct Late {
-    class Fix *fix;
-    bool acts_at_end;
-  };
-  std::vector<Late> late;       // the fixes of the crew's late participants
-  std::string why, told_why;    // why there are no passes in this run; the reason written since the last setup
-  bool lists_matter = false, strangers_have_lists = false;
 };
 
 }    // namespace LAMMPS_NS
