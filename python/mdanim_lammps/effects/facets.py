@@ -77,6 +77,10 @@ class Accounts:
         """Kinetic energy of the solids that its fix moves in place of the leap-frog [J]."""
         return 0.0
 
+    def drag_taken(self, readings: Readings) -> float:
+        """Energy that drag has taken of these solids since the instance was made [J]."""
+        return 0.0
+
     def further_energies(self, readings: Readings) -> dict[str, float]:
         """Present values of its columns ``further_ledger`` [J]."""
         return {}

@@ -23,7 +23,11 @@ SLOWING = 0.3
 
 def drag_loss(effect: Effect, readings: Readings) -> dict[str, float]:
     """The column of the ledger [J]: the first effect with drag tells what all have taken, others 0."""
-    return {DRAG_LOSS: readings.fix_scalar("leapfrog") if _first(readings) is effect else 0.0}
+    if _first(readings) is not effect:
+        return {DRAG_LOSS: 0.0}
+    context = readings.context
+    others = sum(e.drag_taken(readings) for e in context.resolved.effects if e.acts_on(context))
+    return {DRAG_LOSS: readings.fix_scalar("leapfrog") + others}
 
 
 def drag_seconds(effect: Effect, readings: Readings) -> dict[str, float]:

@@ -83,9 +83,12 @@ def physics(plan: Plan, threads: int = 1, folder: str = "") -> list[str]:
     for name in plan.tables:
         effects = [c.replace(TABLE + name, folder + table_file(plan, name)) for c in effects]
     drag = f" lambda d_{LAMBDA.name}" if LAMBDA.name in plan.columns else ""
+    movers = {e: found[1] for e in plan.effects if (found := e.integrates(plan.context)) is not None}
+    own = tuple(f"fix {fix} " for e in movers for fix in e.fixes)
+    effects = [c + drag if own and c.startswith(own) else c for c in effects]
     if drag and plan.exponential:
         drag += " drag exp"
-    groups = [found[1] for e in plan.effects if (found := e.integrates(plan.context)) is not None]
+    groups = movers.values()
     others = [f"group others subtract mobile {' '.join(groups)}"] if groups else []
     return [
         "mass * 1.0",  # wanted by atom_style bond; the particles' own masses (rmass) are what counts

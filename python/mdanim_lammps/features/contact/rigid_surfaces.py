@@ -63,7 +63,8 @@ def _frequency(context: Context, system: System) -> Frequency:
     speed = float(np.maximum(reach.speed, reach.closing(reach.fall))[free].max())
     load = float(_loads(system)[free].max())
     slowest = 2.0 * math.pi * context.scene.control.frames * DEPTH * thin  # of what hardly moves
-    return Frequency(max(speed, 2.0 * math.sqrt(load * reach.g * thin), slowest) / (DEPTH * thin), thin, speed, load)
+    omega = float(max(speed, 2.0 * math.sqrt(load * reach.g * thin), slowest)) / (DEPTH * thin)
+    return Frequency(float(omega), float(thin), speed, load)
 
 
 def _loads(system: System) -> np.ndarray:

@@ -9,7 +9,6 @@ from ... import features
 from ...bodies import all_held
 from ...effects.context import Context, Verdict
 from ...effects.effect import Effect
-from ...errors import Problem
 from ...model.inertia import components
 from ..contact.surface import DAMPED, HEAT, LET_GO
 from . import touching
@@ -99,16 +98,11 @@ class RigidMotion(Effect):
     def penetration(self, readings):
         return max(readings.fix_value(fix, "deepest") for fix, _, _ in _parts(readings.context))
 
-    def problems(self, resolved, models, grid):
-        """The drag of a liquid acts through the leap-frog, which does not move rigid bodies."""
-        if not resolved.on("liquid-drag"):
-            return []
-        solid = next(s for s, m in zip(resolved.scene.solids, models) if m.inertia is not None)
-        cause = f"{solid.name} is rigid: the drag of a liquid is not computed for rigid objects"
-        return [Problem(solid.spans.get("elasticity"), cause, "write drag 0 in the liquid, or give the object an elasticity")]
-
     def kinetic(self, readings):
         return self._sum(readings, "translation") + self._sum(readings, "rotation")
+
+    def drag_taken(self, readings):
+        return self._sum(readings, "drag_loss")
 
     def clocks(self, readings):
         return {self.name: sum(readings.fix_seconds(fix) for fix, _, _ in _parts(readings.context))}

@@ -30,7 +30,6 @@ ELASTICITIES = (Rigid,)
 
 SENSELESS = {
     "damping": ("damping is that of springs, and a rigid object has none", "leave it out; contact-damping damps its blows"),
-    "drag": ("drag of the air is not computed for rigid objects", "leave it out, or give the object an elasticity"),
 }
 """Settings that a rigid object cannot have, with cause and way out."""
 
