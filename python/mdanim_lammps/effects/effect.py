@@ -106,12 +106,12 @@ class Effect(Motion, Bounds, Accounts, Frames, Advice):
 
     def integrates(self, context: Context) -> tuple[np.ndarray, str] | None:
         """Solids that its fix moves in place of the leap-frog, bool, shape (M,), and the group of their particles, which its
-        commands make; None for no solid. It takes drag by the same words as the leap-frog. The ledger has their energy by `kinetic`,
-        what drag takes by `drag_taken`."""
+        commands make; None for no solid. It takes drag by the same words as the leap-frog. The ledger has their energy by
+        `kinetic`, what drag takes by `drag_taken`."""
         return None
 
-    def settles(self, context: Context) -> tuple[np.ndarray, str] | None:
-        """Solids whose contact with each other and with planes is in its own fix, bool, shape (M,), and the group of their
+    def settles(self, context: Context, *, planes: bool = False) -> tuple[np.ndarray, str] | None:
+        """Solids whose contact with each other, or else with planes, is in its own fix, bool, shape (M,), and the group of their
         particles, which its commands make; None for no solid."""
         return None
 

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 
 from ..effects.leapfrog import LAMBDA
@@ -80,8 +82,7 @@ def physics(plan: Plan, threads: int = 1, folder: str = "") -> list[str]:
     """Commands after the particles exist: groups, effects, integrator, time step. Tables are in this folder, whose name ends with
     a slash."""
     effects = [c for e in plan.effects for c in e.commands(plan.context)]
-    for name in plan.tables:
-        effects = [c.replace(TABLE + name, folder + table_file(plan, name)) for c in effects]
+    effects = [re.sub(rf"{TABLE}([\w-]+)", lambda table: folder + table_file(plan, table[1]), c) for c in effects]
     drag = f" lambda d_{LAMBDA.name}" if LAMBDA.name in plan.columns else ""
     movers = {e: found[1] for e in plan.effects if (found := e.integrates(plan.context)) is not None}
     own = tuple(f"fix {fix} " for e in movers for fix in e.fixes)

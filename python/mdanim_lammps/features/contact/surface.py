@@ -82,7 +82,7 @@ class SurfaceLaw:
         words.append(f"stiffness {scene.control.contact_stiffness!r}")
         if damping(scene) != USUAL_DAMPING:
             words.append(f"damping {damping(scene)!r}")
-        words += [f"except {group}" for _, group in settled(context)]
+        words += [f"except {group}" for _, group in settled(context, planes=bool(self.plane))]
         return ["group solid type 1:8", " ".join([*words, "among solid", touched])]
 
     def rubs(self, scene: SceneRecord) -> bool:
@@ -330,7 +330,7 @@ class SurfacePlanes(Planes):
         """kappa of the surface of each solid against a plane, which has no points of its own [N/m^3], shape (M,)."""
         system = context.system
         share = np.where(are_dense(system), ALONE, 1.0)
-        for own, _ in settled(context):
+        for own, _ in settled(context, planes=True):
             share = np.where(own, 0.0, share)
         return surface_stiffness(context, moduli(context), share)
 
@@ -349,10 +349,10 @@ def _of_bodies(context: Context, of_particles: np.ndarray, sides: float = 1.0) -
     return np.where(system.rigid[system.object], sides * spread_mobility(context)[system.object], of_particles)
 
 
-def settled(context: Context) -> list[tuple[np.ndarray, str]]:
-    """Solids whose contact with each other and with planes another fix has (Effect.settles), and their groups."""
+def settled(context: Context, planes: bool = False) -> list[tuple[np.ndarray, str]]:
+    """Solids whose contact with each other, or with planes, another fix has (Effect.settles), and their groups."""
     on = (e for e in context.resolved.effects if e.acts_on(context))
-    return [found for e in on if (found := e.settles(context)) is not None]
+    return [found for e in on if (found := e.settles(context, planes=planes)) is not None]
 
 
 def surface_stiffness(context: Context, young: np.ndarray, share: np.ndarray | float = 1.0) -> np.ndarray:

@@ -7,7 +7,7 @@ import numpy as np
 
 from ... import features
 from ...bodies import all_held
-from ...effects.context import Context, Verdict
+from ...effects.context import Verdict
 from ...effects.effect import Effect
 from ...model.inertia import components
 from ..contact.surface import DAMPED, HEAT, LET_GO
@@ -16,12 +16,10 @@ from .words import Rigid
 
 GROUP = "bodies"
 """Group of the particles of all rigid bodies that move."""
-REST = "rigid_rest"
-"""Fix of those whose features the style does not know."""
-TOUCHING = "touching"
-"""Group of the particles of all that touches by its features."""
-INERTIA, INERTIA_OF_REST, SHAPES = "inertia", "rest", "shapes"
-"""Tables of moments, and of shapes."""
+TOUCHING, ON_PLANES = "touching", "on_planes"
+"""Groups of the particles of all that touches objects by its features, and planes."""
+INERTIA, SHAPES = "inertia", "shapes"
+"""Tables of moments, and of shapes, with the fix."""
 TAKEN = {HEAT: "friction_heat", DAMPED: "damping_loss", LET_GO: "let_go"}
 """Columns of the ledger, and their entries of the fix's vector."""
 
@@ -54,37 +52,40 @@ class RigidMotion(Effect):
 
     @property
     def fixes(self):
-        return (self.fix, REST)
+        return touching.FIXES
 
-    def settles(self, context):
-        if not touching.is_on(context):
-            return None
-        chosen = touching.by_features(context.system)
-        return (chosen, TOUCHING) if chosen.any() else None
+    def settles(self, context, *, planes=False):
+        if planes:
+            chosen, group = touching.meets_planes(context), ON_PLANES
+        else:
+            chosen, group = touching.meets_objects(context), TOUCHING
+        return (chosen, group) if chosen.any() else None
 
     def commands(self, context):
-        groups, fixes = [f"group {GROUP} molecule {molecule_ranges(context.system.rigid)}"], []
-        settled = self.settles(context)
-        if settled:
-            groups.append(f"group {TOUCHING} molecule {molecule_ranges(settled[0])}")
-        for fix, table, solids in _parts(context):
-            groups.append(f"group {fix} molecule {molecule_ranges(solids)}")
-            fixes.append(f"fix {fix} {fix} mdanim/rigid inertia table:{table}")
-            if settled and fix == self.fix:
-                fixes[-1] += f" {touching.words(context, f'table:{SHAPES}')}"
-        return [*groups, *fixes]
+        groups = {GROUP: context.system.rigid}
+        groups |= {found[1]: found[0] for planes in (False, True) if (found := self.settles(context, planes=planes))}
+        fixes = []
+        for part in touching.parts(context):
+            groups[part.fix] = part.bodies
+            words = f" {touching.words(context, part, f'table:{SHAPES}-{part.fix}')}" if part.shapes.any() else ""
+            fixes.append(f"fix {part.fix} {part.fix} mdanim/rigid inertia table:{INERTIA}-{part.fix}{words}")
+        return [*(f"group {name} molecule {molecule_ranges(solids)}" for name, solids in groups.items()), *fixes]
 
     def tables(self, context):
-        found = {table: inertia_text(context.system.inertia, solids) for _, table, solids in _parts(context)}
-        return found | {SHAPES: touching.shapes_text(context)} if self.settles(context) else found
+        found = {}
+        for part in touching.parts(context):
+            found[f"{INERTIA}-{part.fix}"] = inertia_text(context.system.inertia, part.bodies)
+            if part.shapes.any():
+                found[f"{SHAPES}-{part.fix}"] = touching.shapes_text(context, part)
+        return found
 
     def rate(self, context):
         """Of bodies that touch by their features (Omega/STEP)^2, an estimate: the bound for given contacts is dt^2 S/4 + dt D/2
         <= 1 with the sums S and D over the contacts of a body, whose number nothing knows before (docs/physics-rigid.md)."""
-        if (settled := self.settles(context)) is None:
+        own = context.system.rigid & (touching.meets_objects(context) | touching.meets_planes(context))
+        if not own.any():
             return None
-        own = (settled[0] & context.system.rigid)[context.system.object]
-        return np.where(own, (touching.omega(context) / touching.STEP) ** 2, 0.0)
+        return np.where(own[context.system.object], (touching.omega(context) / touching.STEP) ** 2, 0.0)
 
     def energy(self, readings):
         return self._sum(readings, "contact")
@@ -96,7 +97,7 @@ class RigidMotion(Effect):
         return {term: self._sum(readings, TAKEN[term]) for term in self.losses(readings.context.scene)}
 
     def penetration(self, readings):
-        return max(readings.fix_value(fix, "deepest") for fix, _, _ in _parts(readings.context))
+        return max(readings.fix_value(part.fix, "deepest") for part in touching.parts(readings.context))
 
     def kinetic(self, readings):
         return self._sum(readings, "translation") + self._sum(readings, "rotation")
@@ -105,24 +106,16 @@ class RigidMotion(Effect):
         return self._sum(readings, "drag_loss")
 
     def clocks(self, readings):
-        return {self.name: sum(readings.fix_seconds(fix) for fix, _, _ in _parts(readings.context))}
+        return {self.name: sum(readings.fix_seconds(part.fix) for part in touching.parts(readings.context))}
 
     def _sum(self, readings, entry: str) -> float:
         """Sum of an entry of the vectors of its fixes."""
-        return sum(readings.fix_value(fix, entry) for fix, _, _ in _parts(readings.context))
+        return sum(readings.fix_value(part.fix, entry) for part in touching.parts(readings.context))
 
 
 def _may_touch(scene) -> bool:
     """Whether there is anything that a solid may touch."""
     return len(scene.solids) > 1 or any(e.of(scene).planes(scene) for e in features.effects())
-
-
-def _parts(context: Context) -> list[tuple[str, str, np.ndarray]]:
-    """Its fixes that there are: ID, table of moments, solids, bool, shape (M,). What touches by its features has one, and all
-    else another: a fix knows the shapes of all of its bodies or of none."""
-    rigid, known = context.system.rigid, touching.by_features(context.system)
-    parts = ((RigidMotion.fix, INERTIA, rigid & known), (REST, INERTIA_OF_REST, rigid & ~known))
-    return [part for part in parts if part[2].any()]
 
 
 def molecule_ranges(solids: np.ndarray) -> str:

@@ -9,13 +9,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
 from ...effects.context import Context
 from ...model.planes import Plane
 from ...model.system import System
-from ...scene.scene import Box, Shape, Solid, Sphere
+from ...scene.scene import Box, Cone, Cylinder, Ellipsoid, Solid, Sphere
 from ..contact.pairs import damping, frictions, pair_rules
 from ..contact.rigid_surfaces import frequency
 
@@ -25,12 +26,57 @@ STEP = 0.35
 """Time step of `balanced`, half of the bound, times the frequency: what stacks and heaps were at rest with (an estimate)."""
 
 
-def by_features(system: System) -> np.ndarray:
-    """Solids that touch each other and planes by their features, bool, shape (M,): those that are rigid, or never move, of a
-    shape that the fix knows. Where others cover a side of a held cuboid, its edges there are none."""
+FIXES = ("rigid", "rigid_rest")
+"""Fixes of what touches objects by its features, and of all else."""
+ON_OBJECTS = (Box, Sphere)
+"""Shapes whose features the fix knows on each other."""
+ON_PLANES = (*ON_OBJECTS, Cylinder, Cone, Ellipsoid)
+"""Shapes whose features it knows on planes."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Part:
+    """The bodies of one fix."""
+
+    fix: str
+    bodies: np.ndarray
+    """Solids that it moves, bool, shape (M,)."""
+    shapes: np.ndarray
+    """Solids that it knows by their features, bool, shape (M,): some of these, and some that never move."""
+    objects: bool
+    """Whether they touch each other."""
+
+
+def parts(context: Context) -> list[Part]:
+    """The fixes of a context that move some bodies."""
+    system = context.system
+    known = _are(system, ON_OBJECTS)
+    first = Part(FIXES[0], system.rigid & known, meets_objects(context) | (meets_planes(context) & known), objects_touch(context))
+    rest = Part(FIXES[1], system.rigid & ~known, meets_planes(context) & ~known, False)
+    return [part for part in (first, rest) if part.bodies.any()]
+
+
+def meets_objects(context: Context) -> np.ndarray:
+    """Solids that touch each other by their features, bool, shape (M,): those that are rigid, or never move, of a shape that the
+    fix knows. Where others cover a side of a held cuboid, its edges there are none."""
+    if not objects_touch(context) or not (_pairs(context.reach.system) & context.reach.system.rigid).any():
+        return np.zeros(len(context.system.names), bool)  # the same in all parts of a scene
+    return _pairs(context.system)
+
+
+def _pairs(system: System) -> np.ndarray:
     uncovered = np.array([frame.open is None or not len(frame.open) for frame in system.frames])[system.contact_kind]
-    known = np.array([isinstance(frame.shape, Box | Sphere) for frame in system.frames])[system.contact_kind]
-    return known & (system.rigid | (system.still & uncovered))
+    return _are(system, ON_OBJECTS) & (system.rigid | (system.still & uncovered))
+
+
+def meets_planes(context: Context) -> np.ndarray:
+    """Solids that move and touch planes by their features, bool, shape (M,)."""
+    system = context.system
+    return system.rigid & _are(system, ON_PLANES) & bool(planes_of(context))
+
+
+def _are(system: System, kinds: tuple[type, ...]) -> np.ndarray:
+    return np.array([isinstance(frame.shape, kinds) for frame in system.frames])[system.contact_kind]
 
 
 def planes_of(context: Context) -> list[Plane]:
@@ -43,46 +89,36 @@ def objects_touch(context: Context) -> bool:
     return any(effect.keeps_apart for effect in context.resolved.effects)
 
 
-def is_on(context: Context) -> bool:
-    """Whether a body that moves may touch something by its features; the same in all parts of a scene."""
-    whole = context.reach.system
-    chosen = by_features(whole)
-    return bool((chosen & whole.rigid).any()) and (bool(planes_of(context)) or (objects_touch(context) and chosen.sum() > 1))
-
-
 def omega(context: Context) -> float:
     """Frequency of a contact, with the stiffness that the scene asks for [1/s]."""
     return frequency(context).omega * math.sqrt(context.scene.control.contact_stiffness)
 
 
-def words(context: Context, shapes: str) -> str:
-    """Words of the command, with the file of shapes."""
-    planes = planes_of(context)
+def words(context: Context, part: Part, shapes: str) -> str:
+    """Words of the command of a fix, with its file of shapes."""
+    planes, scene = planes_of(context), context.scene
     found = [f"shapes {shapes} contact {omega(context)!r} {ONSET * frequency(context).thin!r}"]
-    found += ["objects"] if objects_touch(context) else []
-    found += [f"plane {'xyz'[p.axis]} {'lo' if p.sign > 0 else 'hi'} {p.at!r}" for p in planes]
-    chosen, scene = by_features(context.system), context.scene
+    found += ["objects"] if part.objects else []
+    found += [f"plane {'xyz'[p.axis]} {'lo' if p.sign > 0 else 'hi'} {float(p.at)!r}" for p in planes]
     for i, j, mu, beta in pair_rules(scene, context.system.names):
-        if chosen[i] and chosen[j]:
-            found.append(f"pair {i + 1} {j + 1} {mu!r} {beta!r}")
-    own, free = _of(context, frictions(scene)), np.flatnonzero(chosen & context.system.rigid).tolist()
+        if part.objects and part.shapes[i] and part.shapes[j]:
+            found.append(f"pair {i + 1} {j + 1} {float(mu)!r} {float(beta)!r}")
+    own, free = _of(context, frictions(scene)), np.flatnonzero(part.shapes & part.bodies).tolist()
     for k, plane in enumerate(planes, 1):
         there = _of(context, frictions(scene, plane.effect))
         found += [f"pair {m + 1} plane{k} {there[m]!r} {_damping(context, there[m])!r}" for m in free if there[m] != own[m]]
     return " ".join(found)
 
 
-def shapes_text(context: Context) -> str:
-    """The file of shapes: a line for each solid of `by_features`."""
-    system, own = context.system, _of(context, frictions(context.scene))
-    solids = _solids(context)
+def shapes_text(context: Context, part: Part) -> str:
+    """The file of shapes: a line for each solid that a fix knows by its features."""
+    own, solids = _of(context, frictions(context.scene)), _solids(context)
     lines = ["# Shapes, written by mdanim-lammps: molecule mu beta free|held  place  quaternion  shape\n"]
-    for m in np.flatnonzero(by_features(context.system)).tolist():
-        solid = solids[m]
-        numbers = [own[m], _damping(context, own[m])]
-        pose = [*map(float, solid.position), *quaternion(np.array(solid.rotation))]
-        kind = "free" if system.rigid[m] else "held"
-        lines.append(f"{m + 1} {_digits(numbers)} {kind} {_digits(pose)} {_shape(solid.shape)}\n")
+    for m in np.flatnonzero(part.shapes).tolist():
+        place, shape = _shape(solids[m])
+        pose = [*place, *quaternion(np.array(solids[m].rotation))]
+        kind = "free" if part.bodies[m] else "held"
+        lines.append(f"{m + 1} {_digits([own[m], _damping(context, own[m])])} {kind} {_digits(pose)} {shape}\n")
     return "".join(lines)
 
 
@@ -107,9 +143,24 @@ def _digits(numbers: Sequence[float]) -> str:
     return " ".join(map(repr, numbers))
 
 
-def _shape(shape: Shape) -> str:
-    """A shape as the file has it."""
-    return f"box {_digits(tuple(map(float, shape.size)))}" if isinstance(shape, Box) else f"ball {float(shape.radius)!r}"
+def _shape(solid: Solid) -> tuple[list[float], str]:
+    """Where the origin of a shape is as the file has it [m], and its kind and sizes [m]."""
+    shape, place = solid.shape, np.array(solid.position, float)
+    match shape:
+        case Box():
+            kind, sizes = "box", shape.size
+        case Sphere():
+            kind, sizes = "ball", (shape.radius,)
+        case Ellipsoid():
+            kind, sizes = "ellipsoid", shape.radii
+        case Cylinder():
+            kind, sizes = "cylinder", (shape.radius, shape.height)
+        case Cone():  # the centre of mass is a quarter of the height above the base, the origin in the middle
+            kind, sizes = "cone", (shape.radius, shape.height)
+            place = place + np.array(solid.rotation) @ (0.0, 0.0, 0.25 * shape.height)
+        case _:
+            raise TypeError(f"no features of {shape!r}")
+    return place.tolist(), f"{kind} {_digits(tuple(map(float, sizes)))}"
 
 
 def quaternion(turn: np.ndarray) -> list[float]:

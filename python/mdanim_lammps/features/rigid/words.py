@@ -29,7 +29,7 @@ class Rigid:
 ELASTICITIES = (Rigid,)
 
 SENSELESS = {
-    "damping": ("damping is that of springs, and a rigid object has none", "leave it out; contact-damping damps its blows"),
+    "damping": ("damping is that of springs, and a rigid object has none", "leave it out; contact-damping damps its blows")
 }
 """Settings that a rigid object cannot have, with cause and way out."""
 
