@@ -171,7 +171,7 @@ def test_drag_slows_motion_and_spin(prepared):
     """The fall and the spin of a ball with m dv/dt = m g - lambda v, dL/dt = -lambda L/m, and what drag takes."""
     text = "object ball { shape sphere 10 cm position (0, 0, 5) m mass 2 elasticity rigid drag 3 spin (0, 0, 5) }\n"
     ready = prepared("gravity (0, 0, -9.81) m/s^2\n" + text + "control { time 1 s  timestep 1 ms }\n")
-    x, v, begin, end = run(ready, ready.certificate.steps)
+    _, _, begin, end = run(ready, ready.certificate.steps)
     rate, time = 3.0 / 2.0, ready.certificate.steps * ready.certificate.timestep
     speed, turning = 9.81 / rate * (1 - np.exp(-rate * time)), 5 * np.exp(-rate * time)
     assert end["kinetic"] == pytest.approx(0.5 * 2 * speed**2 + 0.5 * 0.4 * 2 * 0.01 * turning**2, rel=1e-5)

@@ -11,7 +11,7 @@ SWITCHES: dict[str, str] = {}
 class CrateWords:
     """Settings of an object."""
 
-    crate: int = setting("<n>", "Cells across its thinnest part. Absent: it is no crate.", "1", Rule.COUNT, default=0)
+    crate: int = setting("<n>", "Cells across its thinnest part. Absent: it is not a crate.", "1", Rule.COUNT, default=0)
 
 
 OBJECT = CrateWords
