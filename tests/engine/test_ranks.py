@@ -199,7 +199,7 @@ def left_behind(folder: Path, count: int) -> tuple[float, int]:
     """Memory that an instance leaves [bytes], and files that all of them do."""
     path = folder / "small.txt"
     path.write_text(MEETING)
-    memory, files = on_ranks(CYCLES, 1, path, count).split()
+    memory, files = on_ranks(CYCLES, 1, path, count, own=True).split()
     return float(memory), int(files)
 
 

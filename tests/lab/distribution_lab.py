@@ -5,8 +5,6 @@ from __future__ import annotations
 
 import json
 import os
-import subprocess
-import sys
 from pathlib import Path
 
 import plugin_library
@@ -17,6 +15,7 @@ from mdanim_lammps.run.loop import write_inputs
 from mdanim_lammps.run.prepare import Prepared, prepare
 from mdanim_lammps.scene.parse import load_scene
 from paths import LAB, MPI
+from ranks_lab import on_ranks
 
 MATRIX = MPI / "matrix.py"
 
@@ -38,28 +37,8 @@ def ways(scene: Path, cases: dict[str, dict], ranks: int = 5, timeout: float = 6
     cases = {"sequential": SEQUENTIAL} | cases
     work = [{"folder": str(folder / case.get("in", name)), **case} for name, case in cases.items()]
     (folder / "cases.json").write_text(json.dumps({"scene": str(scene), "cases": work}))
-    done = subprocess.run(
-        [
-            plugin_path.BIN / "mpiexec",
-            "-n",
-            str(ranks),
-            sys.executable,
-            "-m",
-            "mpi4py",
-            MATRIX,
-            folder / "cases.json",
-            str(timeout),
-        ],
-        capture_output=True,
-        text=True,
-        timeout=timeout + 10.0,
-        env={
-            **plugin_path.environment(),
-            **(of_features(features) if features else {}),
-            "PYTHONPATH": os.pathsep.join(filter(None, sys.path)),
-        },
-    )
-    assert done.returncode == 0, done.stdout + done.stderr
+    more = of_features(features) if features else {}
+    on_ranks(MATRIX, ranks, folder / "cases.json", timeout, timeout=timeout, more=more)
     return {name: folder / case.get("in", name) for name, case in cases.items()}
 
 

@@ -26,11 +26,25 @@ from ranks_lab import command, environment, ranks_in
 pytestmark = pytest.mark.mpi
 WHOLE = "time 1000 s"  # longer than any test waits
 LONG = films.FLYING.split("expect")[0].replace("time 0.2 s", WHOLE)
+EAGER = """
+import os, time
+from mdanim_lammps.run import loop
+loop.CHECKPOINT_SECONDS, check = 0.0, loop.Guard.check
+def late(guard, *seen):
+    time.sleep(0.03)
+    return check(guard, *seen)
+loop.Guard.check = late
+if os.environ.get("PMI_RANK") == "0":
+    from mdanim_lammps.parallel.runtime import supervisor
+    supervisor.KEEP_SECONDS = 0.0
+"""
+"""The sitecustomize.py of runs: frames that take a while, as those of a larger scene, and a checkpoint after each."""
 
 
 @pytest.fixture
 def place(tmp_path):
     """A folder of a test; at its end no rank may run in it, and nothing but results lie there."""
+    (tmp_path / "sitecustomize.py").write_text(EAGER)
     yield tmp_path
     deadline = time.monotonic() + 5.0
     while (left := ranks_in(tmp_path)) and time.monotonic() < deadline:
@@ -42,7 +56,7 @@ def place(tmp_path):
 
 
 def begun(place: Path, text: str, *arguments: object, frames: int = 3) -> subprocess.Popen:
-    """A run from the command line that has got so far; its processes begin with the folder's sitecustomize.py, if any."""
+    """A run from the command line that has got so far; its processes begin with the folder's sitecustomize.py."""
     (place / "film.txt").write_text(text)
     process = subprocess.Popen(
         command(place / "film.txt", "--no-movie", *arguments),
@@ -84,14 +98,14 @@ def goes_on(place: Path, frame: int, *arguments: object) -> None:
     frame = max(frame, 1, written(folder))  # a film of one frame has no time
     process = subprocess.Popen(
         command("resume", folder, "--no-movie", *arguments),
-        env=environment(),
+        env=environment(place),
         text=True,
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
     )
     deadline = time.monotonic() + 30.0
     while (frames := written(folder)) <= frame and process.poll() is None and time.monotonic() < deadline:
-        time.sleep(0.05)
+        time.sleep(0.1)
     process.send_signal(signal.SIGINT)
     code, said = ended(process, 20.0)
     assert code == 130, said

@@ -11,7 +11,7 @@ from ranks_lab import on_ranks
 @pytest.mark.mpi
 def test_more_teams_than_mpi_has_communicators_for():
     """Each executor is in ten of the twelve teams of three executors, whose orders differ, and MPI has six communicators left."""
-    teams, different, of_mpi = map(int, on_ranks(PROGRAMS / "teams.py", 3, 60, 6, 4, timeout=60.0).split())
+    teams, different, of_mpi = map(int, on_ranks(PROGRAMS / "teams.py", 3, 60, 6, 4, timeout=60.0, own=True).split())
     assert (teams, different) == (720, 12)
     assert of_mpi > 1000, "that many were taken away before"
 
