@@ -11,7 +11,7 @@ from itertools import product
 import numpy as np
 
 from ..scene.scene import Box, Ellipsoid, Shape, Sphere
-from .distance import distance
+from .distance import grid_distance
 from .embed import nearest_cell
 from .lattice import Cells, any_corner, cells_around
 from .nearest import blocks
@@ -32,8 +32,6 @@ and their pressures turn the ball: at 100 MPa by up to 12 % of what friction doe
 3 % for a ninth."""
 WORTHWHILE = 0.9
 """Distance of fine points over that of dense ones from which on there are none."""
-SAMPLES = 8
-"""Samples of a mesh along a cell edge, from which distances are taken."""
 MARGIN = 2
 """Nodes around the grid whose depth is kept."""
 OUTSIDE = 2
@@ -268,8 +266,7 @@ def _depth(shape: Shape, cells: Cells) -> np.ndarray:
     """Coefficients of the depth, see ContactBody."""
     out = MARGIN + OUTSIDE
     x, y, z = (low + edge * np.arange(-out, n + out + 1) for low, edge, n in zip(cells.low, cells.edge, cells.count))
-    nodes = np.stack(np.meshgrid(z, y, x, indexing="ij")[::-1], axis=-1)
-    depth = distance(shape, nodes.reshape(-1, 3), float(cells.edge.min()) / SAMPLES).reshape(nodes.shape[:-1])
+    depth = grid_distance(shape, x, y, z)
     inner = slice(OUTSIDE, -OUTSIDE)
     return _spline(depth)[inner, inner, inner].ravel()
 

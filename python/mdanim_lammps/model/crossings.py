@@ -50,16 +50,18 @@ def _ranges(start: np.ndarray, stop: np.ndarray) -> tuple[np.ndarray, np.ndarray
 
 def _hits(points: np.ndarray, triangles: np.ndarray, lines: np.ndarray, line: np.ndarray, triangle: np.ndarray):
     """Pairs (line, triangle) that intersect: line numbers, heights [m] and sides."""
-    corner = triangles[triangle]
     px, py = lines[line].T
-    sides = []
-    for i, j in ((0, 1), (1, 2), (2, 0)):
-        a, b = corner[:, i], corner[:, j]
-        u, v = points[np.minimum(a, b)], points[np.maximum(a, b)]
-        left = (v[:, 0] - u[:, 0]) * (py - u[:, 1]) >= (v[:, 1] - u[:, 1]) * (px - u[:, 0])
-        sides.append(left == (a < b))
-    meets = (sides[0] == sides[1]) & (sides[1] == sides[2])
-    line, corner, px, py, leaves = line[meets], corner[meets], px[meets], py[meets], sides[0][meets]
+    leaves, meets = None, np.arange(len(line))
+    for i, j in ((0, 1), (1, 2), (2, 0)):  # most pairs miss the first side or the second
+        a, b = triangles[:, i], triangles[:, j]
+        u, v = points[np.minimum(a, b), :2].T, points[np.maximum(a, b), :2].T
+        # Once for each triangle: its number, not those of its corners, is looked up for a pair.
+        ux, uy, dx, dy = (row[triangle[meets]] for row in (*u, *(v - u)))
+        left = dx * (py[meets] - uy) >= dy * (px[meets] - ux)
+        side = left == (a < b)[triangle[meets]]
+        keep = slice(None) if leaves is None else side == leaves
+        leaves, meets = side[keep], meets[keep]
+    line, corner, px, py = line[meets], triangles[triangle[meets]], px[meets], py[meets]
     a, b, c = np.moveaxis(points[corner], 1, 0)
     n = np.cross(b - a, c - a)
     with np.errstate(divide="ignore", invalid="ignore"):

@@ -23,6 +23,9 @@ ROUNDS = 3
 """How often points of a mesh move to the middle of their samples; areas then differ by a quarter of their mean, more rounds
 change little."""
 
+HAIR = 1e-9
+"""Part of a distance that rounding may change."""
+
 
 class Spread(NamedTuple):
     """P points on a surface."""
@@ -168,15 +171,45 @@ def _(shape: Mesh, spacing):
     before = np.cumsum(area)
     n = _count(shape, spacing)
     point = place[np.unique(np.searchsorted(before, (np.arange(n) + 0.5) / n * before[-1]).clip(max=len(place) - 1))]
-    for _ in range(ROUNDS):
-        _, owner = Nearest(point)(place)
-        owner = np.unique(owner, return_inverse=True)[1]
+    owner = Nearest(point)(place)[1]
+    for last in range(ROUNDS - 1, -1, -1):
+        owner = _without_gaps(owner, len(point))
         point, total = _means(place, area, owner)
-    far = ((place - point[owner]) ** 2).sum(axis=1)
-    order = np.lexsort((far, owner))
-    chosen = order[np.searchsorted(owner[order], np.arange(len(point)))]
+        if last:
+            owner = _nearest_again(point, place, owner)
+    away = ((place - point[owner]) ** 2).sum(axis=1)
     out = point[:, 3:] / np.linalg.norm(point[:, 3:], axis=1)[:, None]
-    return Spread(sample[chosen], out, total)
+    return Spread(sample[_nearest_of(owner, away, len(point))], out, total)
+
+
+def _without_gaps(owner: np.ndarray, count: int) -> np.ndarray:
+    """Owners, numbers below ``count``, numbered anew without those that own nothing, in their order."""
+    some = np.zeros(count, bool)
+    some[owner] = True
+    return (np.cumsum(some) - 1)[owner]
+
+
+def _nearest_again(point: np.ndarray, place: np.ndarray, owner: np.ndarray) -> np.ndarray:
+    """The point nearest to each place, shape (K,), where ``owner``, shape (K,), was so before points moved.
+
+    What is nearer to its point than half way to any other point stays with it: half of all places.
+    """
+    nearest = Nearest(point)
+    half = 0.5 * (1.0 - HAIR) * nearest(point, 2)[0][:, 1]
+    away = np.sqrt(((place - point[owner]) ** 2).sum(axis=1))
+    open_ = np.flatnonzero(away >= half[owner])
+    found = owner.copy()
+    found[open_] = nearest(place[open_])[1]
+    return found
+
+
+def _nearest_of(owner: np.ndarray, away: np.ndarray, count: int) -> np.ndarray:
+    """The place of each owner that is least far away, the first of equal ones; shape (count,)."""
+    order = np.argsort(owner, kind="stable")
+    first = np.searchsorted(owner[order], np.arange(count))
+    least = np.minimum.reduceat(away[order], first)
+    hit = np.flatnonzero(away[order] == least[owner[order]])
+    return order[hit[np.searchsorted(owner[order][hit], np.arange(count))]]
 
 
 def _means(place: np.ndarray, area: np.ndarray, owner: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

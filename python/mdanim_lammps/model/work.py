@@ -12,14 +12,12 @@ from ..features import facets
 from ..scene.scene import Box, Mesh, SceneRecord, Shape
 from . import shapes
 from .contact_body import DENSITY
-from .distance import MOST_SAMPLES
 from .limits import bounding_cells
+from .spread import SAMPLES
 
 VERTEX_BYTES, POINT_BYTES, SAMPLE_BYTES = 200.0, 300.0, 250.0
-"""Memory [bytes]: of a vertex of the drawn surface; of a point of contact; of a sample of a mesh, from which distances are taken.
+"""Memory [bytes]: of a vertex of the drawn surface; of a point of contact; of a sample of a mesh, of which points are chosen.
 That of a particle is the kind of body's."""
-SAMPLES = 64
-"""Samples of a mesh for each cell of its surface."""
 VERTEX_TIME, POINT_TIME, CELL_TIME = 2.4e-6, 1.1e-6, 0.5e-6
 """Processor time [s] of each of them, and of a cell of the bounding box, as `bench/modelling.py forecast` has it."""
 MESH_POINT_TIME, MESH_CELL_TIME, MESH_TIME = 17e-6, 37e-6, 0.18
@@ -53,7 +51,7 @@ def _touches(scene: SceneRecord) -> bool:
 def _bytes(shape: Shape, h: float, touches: bool) -> float:
     if isinstance(shape, Box):
         return 0.0
-    samples = min(SAMPLES * shapes.area(shape) / h**2, MOST_SAMPLES) if isinstance(shape, Mesh) else 0.0
+    samples = SAMPLES * _points(shape, h) if isinstance(shape, Mesh) else 0.0
     return VERTEX_BYTES * shapes.vertices(shape, h) + touches * (POINT_BYTES * _points(shape, h) + SAMPLE_BYTES * samples)
 
 
