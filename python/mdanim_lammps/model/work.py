@@ -20,7 +20,7 @@ VERTEX_BYTES, POINT_BYTES, SAMPLE_BYTES = 200.0, 300.0, 250.0
 That of a particle is the kind of body's."""
 VERTEX_TIME, POINT_TIME, CELL_TIME = 2.4e-6, 1.1e-6, 0.5e-6
 """Processor time [s] of each of them, and of a cell of the bounding box, as `bench/modelling.py forecast` has it."""
-MESH_POINT_TIME, MESH_CELL_TIME, MESH_TIME = 17e-6, 37e-6, 0.18
+MESH_POINT_TIME, MESH_CELL_TIME, MESH_TIME = 18e-6, 5e-6, 0.18
 """The same of meshes, whose points are found among samples, and distances among triangles; and what any mesh takes."""
 
 
