@@ -8,7 +8,6 @@
 #include "contact/bodies_file.h"
 #include "lammps/keywords.h"
 #include "lammps/object_survey.h"
-#include "lammps/rank_gather.h"
 #include "lammps/shared_file.h"
 #include "numbers/stopwatch.h"
 
@@ -22,7 +21,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <numeric>
 #include <stdexcept>
 
 using namespace LAMMPS_NS;
@@ -38,7 +36,7 @@ static const char *const LEFT_OUT = ", or leave it out by 'among GROUP'";
 
 // fix ID group mdanim/contact BODY YOUNG FRICTION [objects] [plane x|y|z lo|hi at]… [stiffness f] [damping beta]
 //     [pair MOL MOL mu beta]… [among GROUP] [except GROUP] [bodies FILE]
-FixMdanimContact::FixMdanimContact(LAMMPS *lmp, int narg, char **arg) : FixBase(lmp, narg, arg)
+FixMdanimContact::FixMdanimContact(LAMMPS *lmp, int narg, char **arg) : FixBase(lmp, narg, arg), shared(lmp)
 {
   restart_global = 1;
   need(THREE_DIMENSIONS | ORTHOGONAL_BOX | OPEN_BOX | OBJECTS | PROMPT_LISTS, "surfaces may meet");
@@ -292,25 +290,7 @@ void FixMdanimContact::list()
     mine.push_back(i);
   }
 
-  // Counts of the numbers that ranks send in every step, three for each particle.
-  counts.assign(comm->nprocs, 0);
-  starts.assign(comm->nprocs, 0);
-  const int numbers = 3 * static_cast<int>(mine.size());
-  MPI_Allgather(&numbers, 1, MPI_INT, counts.data(), 1, MPI_INT, world);
-  std::exclusive_scan(counts.begin(), counts.end(), starts.begin(), 0);
-  first_entry = starts[comm->me] / 3;
-  particles = gather(world, particles);
-  std::vector<int> order(particles.size());
-  std::iota(order.begin(), order.end(), 0);
-  if (!std::is_sorted(particles.begin(), particles.end()))    // as it is where one rank has all particles
-    std::sort(order.begin(), order.end(), [&](int p, int q) { return particles[p] < particles[q]; });
-  slot.resize(order.size());
-  std::vector<ContactParticle> ascending;
-  ascending.reserve(order.size());
-  for (const int n : order) {
-    slot[n] = static_cast<int>(ascending.size());
-    ascending.push_back(particles[n]);
-  }
+  const std::vector<ContactParticle> ascending = shared.share(particles);
   for (const ContactParticle &one : ascending)
     if (one.node < 0 || one.node >= world_of_contact.object(one.object).body->particles())
       error->all(FLERR, "{}: tags of object {} (molecule ID) do not follow each other", name(),
@@ -331,22 +311,7 @@ Coordinates FixMdanimContact::places_now()
 {
   my_places.make_room(mine.size());
   for (std::size_t n = 0; n < mine.size(); ++n) my_places.put(n, atom->x[mine[n]]);
-  return places_of_all(my_places.all());
-}
-
-// Places on all ranks, from those of this rank's particles.
-Coordinates FixMdanimContact::places_of_all(const Coordinates &of_mine)
-{
-  if (comm->nprocs == 1) return of_mine;
-  sent.resize(3 * mine.size());
-  received.resize(3 * slot.size());
-  for (std::size_t n = 0; n < mine.size(); ++n)
-    for (int d = 0; d < 3; ++d) sent[3 * n + d] = of_mine[d][n];
-  MPI_Allgatherv(sent.data(), static_cast<int>(sent.size()), MPI_DOUBLE, received.data(), counts.data(), starts.data(),
-                 MPI_DOUBLE, world);
-  all_places.make_room(slot.size());
-  for (std::size_t n = 0; n < slot.size(); ++n) all_places.put(slot[n], &received[3 * n]);
-  return all_places.all();
+  return shared.places(my_places.all());
 }
 
 // Calls add(n, force) for those of `mine` that may move.
@@ -356,7 +321,7 @@ template <class Add> void FixMdanimContact::give_forces(const Add &add) const
   threads_now.parts(static_cast<long>(mine.size()), NS_OF_PARTICLE, [&](long first, long end) {
     for (long n = first; n < end; ++n) {
       if (!world_of_contact.is_pushed(objects[mine[n]])) continue;
-      const Vec3 &force = forces[slot[first_entry + n]].value;
+      const Vec3 &force = forces[shared.number_of(n)].value;
       if ((force.x != 0.0 || force.y != 0.0 || force.z != 0.0) && atom->mask[mine[n]] & groupbit) add(n, force);
     }
   });
@@ -386,7 +351,7 @@ void FixMdanimContact::add_forces(const Positions &place, const ForceSums &force
 {
   const Lap lap(seconds);
   need_lists();
-  world_of_contact.step(places_of_all(place.all()), update->dt);
+  world_of_contact.step(shared.places(place.all()), update->dt);
   give_forces([&force](std::size_t n, const Vec3 &one) { force.add(n, one); });
 }
 
@@ -403,8 +368,8 @@ std::size_t FixMdanimContact::bytes_of_bodies() const
 
 std::size_t FixMdanimContact::bytes_of_particles() const
 {
-  return world_of_contact.bytes_of_particles() + my_places.bytes() + all_places.bytes() + objects.bytes() +
-         (mine.capacity() + slot.capacity()) * sizeof(int);
+  return world_of_contact.bytes_of_particles() + my_places.bytes() + shared.bytes() + objects.bytes() +
+         mine.capacity() * sizeof(int);
 }
 
 double FixMdanimContact::memory_usage()

@@ -7,6 +7,7 @@
 #include "lammps/fix_base.h"
 #include "lammps/keywords.h"
 #include "lammps/object_table.h"
+#include "lammps/shared_places.h"
 #include "lammps/stateful.h"
 #include "passes/pass_participant.h"
 #include "simd/kernels.h"
@@ -62,7 +63,6 @@ class FixMdanimContact : public mdanim::FixBase, public mdanim::PassParticipant,
   void place_rigid(std::vector<mdanim::Box> &boxes);
   void list();
   mdanim::Coordinates places_now();
-  mdanim::Coordinates places_of_all(const mdanim::Coordinates &of_mine);
   template <class Add> void give_forces(const Add &add) const;
   void push(double dt);
   std::size_t bytes_of_bodies() const;
@@ -76,14 +76,11 @@ class FixMdanimContact : public mdanim::FixBase, public mdanim::PassParticipant,
   std::optional<mdanim::StateRecords> restarted;    // state of a restart file, until there are bodies
   mdanim::ContactWorld world_of_contact;
 
-  mdanim::ObjectTable objects;        // at the setup; their particles when lists were made
-  std::vector<tagint> lowest;         // tags of objects
-  std::vector<int> mine;              // local particles that take part in contacts, in the order of the world of contact
-  std::vector<int> slot;              // in that world, for the particles of all ranks, rank by rank
-  int first_entry = 0;                // first entry of this rank
-  std::vector<int> counts, starts;    // of the numbers that ranks send, three for each particle
-  std::vector<double> sent, received;
-  mdanim::Positions my_places, all_places;
+  mdanim::ObjectTable objects;    // at the setup; their particles when lists were made
+  std::vector<tagint> lowest;     // tags of objects
+  std::vector<int> mine;          // local particles that take part in contacts, in the order of the world of contact
+  mdanim::SharedPlaces shared;    // places of these particles, on all ranks
+  mdanim::Positions my_places;
   mdanim::Threads threads_now;
 };
 
