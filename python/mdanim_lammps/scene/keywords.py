@@ -73,8 +73,7 @@ STATEMENTS = {
 """Statements that are not settings: how they are written, what they do."""
 
 NOT_SUPPORTED = {
-    "restitution": "how high objects bounce follows from elasticity and damping: set damping",
-    "bounce": "how high objects bounce follows from elasticity and damping: set damping, 0.05 for a lively ball and 0.5 for clay",
+    "bounce": "set damping, 0.05 for a lively ball and 0.5 for clay; of rigid objects restitution",
     "motion": "give the object a velocity or a spin at the start; what is held never moves",
     "move": "give the object a velocity or a spin at the start; what is held never moves",
     "weld": "objects that touch are not tied to each other; a mesh of both is one object",

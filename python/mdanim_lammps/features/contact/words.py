@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import Enum
@@ -11,8 +12,9 @@ from typing import Any
 from ...errors import Span
 from ...scene.formatting import whole
 from ...scene.limits import Limit
-from ...scene.naming import pairs_of
+from ...scene.naming import objects_by_name, pairs_of
 from ...scene.schema import Block, Observable, Rule, Words, setting
+from ...scene.shapes import HoldAll
 
 CONTACT_STIFFNESS = Limit(
     "contact-stiffness",
@@ -26,6 +28,7 @@ FRICTION = Limit(
 )
 """At 10 an object stays on a slope of 84 degrees."""
 CONTACT_DAMPING = Limit("contact-damping", 1.0, way_out="1 is critical damping: nothing chatters any more")
+RESTITUTION = Limit("restitution", 1.0, way_out="1 is a blow that loses nothing")
 MOST_PAIRS = 10**5
 """Pairs of objects that all contact blocks of a scene name together."""
 
@@ -62,6 +65,10 @@ class ContactPair:
         "<beta>", "Damping of their contact. Absent: that of `control`.",
         "0.1", Rule.NOT_NEGATIVE, default=None, limit=CONTACT_DAMPING)  # fmt: skip
     """Share of critical damping [-]; None is that of the scene."""
+    restitution: float | None = setting(
+        "<e>", "Restitution of their blows, in place of damping, where both are rigid or held. Absent: the lower one of the two.",
+        "0.5", Rule.NOT_NEGATIVE, default=None, limit=RESTITUTION)  # fmt: skip
+    """e [-]; None is that of the two objects."""
     spans: Mapping[str, Span] = field(default_factory=dict, compare=False, repr=False)
     """Where each keyword's value stands; ``spans["contact"]`` is that of the names."""
 
@@ -75,6 +82,12 @@ class FrictionWords:
         "basin. Not with `contact-model paper`. Absent: that of `control`.",
         "0.4", Rule.NOT_NEGATIVE, default=None, limit=FRICTION, after="drag")  # fmt: skip
     """mu [-]; None is that of the scene."""
+    restitution: float | None = setting(
+        "<e>",
+        "Coefficient of restitution, speed after a blow over the speed before it, of a rigid or held object on rigid and held "
+        "ones, ground and walls; the lower one of two counts. Absent: that of `control`.",
+        "0.8", Rule.NOT_NEGATIVE, default=None, limit=RESTITUTION, after="friction")  # fmt: skip
+    """e [-]; None is that of the scene."""
 
 
 OBJECT = FrictionWords
@@ -104,6 +117,10 @@ class ContactControl:
         "paper`. Absent: 0.3.",
         "0.3", Rule.NOT_NEGATIVE, default=None, limit=CONTACT_DAMPING, after="friction")  # fmt: skip
     """Share of critical damping where there is friction [-]; None is 0.3."""
+    restitution: float | None = setting(
+        "<e>", "Restitution of rigid objects that have none of their own. Absent: what `contact-damping` leaves.",
+        "0.5", Rule.NOT_NEGATIVE, default=None, limit=RESTITUTION, after="contact_damping")  # fmt: skip
+    """e [-]; None is what damping leaves."""
 
 
 CONTROL = ContactControl
@@ -146,6 +163,7 @@ def check(v: Any, top: Mapping, held: Mapping) -> None:
         v.problem(
             own.spans["resolution"], cause, "write resolution in control, or take contact-model paper out", key="own-spacing"
         )
+    _check_restitution(v, held)
     blocks, words = v.blocks("contact"), {"friction": control.friction, "contact-damping": control.contact_damping}
     asked = [("a contact block", b.head) for b in blocks]
     asked += [("friction", s.spans["friction"]) for s in held["solids"] if s.friction]
@@ -160,10 +178,43 @@ def check(v: Any, top: Mapping, held: Mapping) -> None:
         v.problem(control.spans["contact-damping"], cause, way_out, severity="warning")
 
 
+def _check_restitution(v: Any, held: Mapping) -> None:
+    """Blows of what is rigid or held alone have a restitution that can be promised."""
+    hard = {s.name for s in held["solids"] if _is_rigid(s) or any(isinstance(h, HoldAll) for h in s.hold)}
+    way_out = "set damping in it, or write elasticity rigid"
+    for solid in held["solids"]:
+        if solid.restitution is not None and solid.name not in hard:
+            cause = (
+                f"{solid.name} is elastic: waves in it take part of a blow, so what is left follows from its shape and damping"
+            )
+            v.problem(solid.spans["restitution"], cause, way_out)
+    by_name = objects_by_name(s.name for s in held["solids"])
+    for contact in held["contacts"]:
+        if contact.restitution is None:
+            continue
+        span = contact.spans["restitution"]
+        named = [held["solids"][i].name for name in (contact.first, contact.second) for i in by_name.get(name, ())]
+        if soft := next((name for name in named if name not in hard), None):
+            v.problem(span, f"{soft} is elastic: what is left of a blow follows from its shape and damping", way_out)
+        elif contact.contact_damping is not None:
+            v.problem(span, "restitution and contact-damping of one contact say the same in two ways", "leave one of them out")
+    control = held["control"]
+    if control.restitution is None:
+        return
+    if not any(map(_is_rigid, held["solids"])):
+        cause = "restitution of control acts on rigid objects, and the scene has none"
+        v.problem(control.spans["restitution"], cause, "set damping in the objects, or write elasticity rigid in them")
+
+
+def _is_rigid(solid: Any) -> bool:
+    return getattr(solid.elasticity, "modulus", 0.0) == math.inf
+
+
 def check_contact(v: Any, block: Any, contact: ContactPair) -> ContactPair | None:
     """Two things that can touch, no pair of them twice, and something to say about them."""
     place, paired = block.head, v.memory.setdefault("contact", {})
-    if contact.friction is None and contact.contact_damping is None and not block.excused("friction", "contact-damping"):
+    own = {"friction": contact.friction, "contact-damping": contact.contact_damping, "restitution": contact.restitution}
+    if all(value is None for value in own.values()) and not block.excused(*own):
         cause = f"contact {block.name} says nothing{block.where}"
         v.problem(place, cause, "write friction 0.1 or contact-damping 0 in it, or leave it out")
         return None

@@ -9,6 +9,7 @@ from ... import features
 from ...bodies import all_held
 from ...effects.context import Verdict
 from ...effects.effect import Effect
+from ...errors import Problem
 from ...model.inertia import components
 from ..contact.surface import DAMPED, HEAT, LET_GO
 from . import touching
@@ -86,6 +87,23 @@ class RigidMotion(Effect):
         if not own.any():
             return None
         return np.where(own[context.system.object], (touching.omega(context) / touching.STEP) ** 2, 0.0)
+
+    def warnings(self, context):
+        """Restitutions that do not act, because the shape of an object touches at its surface."""
+        found = {}
+        for where, chosen in (("other objects", touching.meets_objects(context)), ("planes", touching.meets_planes(context))):
+            for solid, acts, rigid in zip(context.scene.solids, chosen.tolist(), context.system.rigid.tolist()):
+                if solid.restitution is not None and rigid and not acts and touching.may_meet(context, where):
+                    found.setdefault(id(solid), (solid, []))[1].append(where)
+        return [
+            Problem(
+                solid.spans["restitution"],
+                f"restitution of {solid.name} does not act on {' and '.join(where)}: such shapes touch there at their surfaces",
+                "write contact-damping in control, or make it a box or a sphere",
+                severity="warning",
+            )
+            for solid, where in found.values()
+        ]
 
     def energy(self, readings):
         return self._sum(readings, "contact")

@@ -16,8 +16,10 @@ import numpy as np
 from ...effects.context import Context
 from ...model.planes import Plane
 from ...model.system import System
+from ...scene.naming import objects_by_name, pairs_of
 from ...scene.scene import Box, Cone, Cylinder, Ellipsoid, Solid, Sphere
-from ..contact.pairs import damping, frictions, pair_rules
+from ..contact.pairs import damping, frictions
+from ..contact.restitution import damping_for
 from ..contact.rigid_surfaces import frequency
 
 ONSET = 0.005
@@ -89,6 +91,11 @@ def objects_touch(context: Context) -> bool:
     return any(effect.keeps_apart for effect in context.resolved.effects)
 
 
+def may_meet(context: Context, what: str) -> bool:
+    """Whether objects touch ``planes``, or else each other."""
+    return bool(planes_of(context)) if what == "planes" else objects_touch(context)
+
+
 def omega(context: Context) -> float:
     """Frequency of a contact, with the stiffness that the scene asks for [1/s]."""
     return frequency(context).omega * math.sqrt(context.scene.control.contact_stiffness)
@@ -100,25 +107,29 @@ def words(context: Context, part: Part, shapes: str) -> str:
     found = [f"shapes {shapes} contact {omega(context)!r} {ONSET * frequency(context).thin!r}"]
     found += ["objects"] if part.objects else []
     found += [f"plane {'xyz'[p.axis]} {'lo' if p.sign > 0 else 'hi'} {float(p.at)!r}" for p in planes]
-    for i, j, mu, beta in pair_rules(scene, context.system.names):
-        if part.objects and part.shapes[i] and part.shapes[j]:
-            found.append(f"pair {i + 1} {j + 1} {float(mu)!r} {float(beta)!r}")
-    own, free = _of(context, frictions(scene)), np.flatnonzero(part.shapes & part.bodies).tolist()
+    if part.objects:
+        found += [f"pair {i + 1} {j + 1} {mu!r} {beta!r}" for (i, j), (mu, beta) in _pair_laws(context, part).items()]
+    own, usual = _of(context, frictions(scene)), _dampings(context)
+    free = np.flatnonzero(part.shapes & part.bodies).tolist()
     for k, plane in enumerate(planes, 1):
         there = _of(context, frictions(scene, plane.effect))
-        found += [f"pair {m + 1} plane{k} {there[m]!r} {_damping(context, there[m])!r}" for m in free if there[m] != own[m]]
+        blows = _restitution_at(context, plane.effect)
+        for m in free:
+            law = there[m], _damping(context, there[m], blows[m])
+            if law != (own[m], usual[m]):
+                found.append(f"pair {m + 1} plane{k} {law[0]!r} {law[1]!r}")
     return " ".join(found)
 
 
 def shapes_text(context: Context, part: Part) -> str:
     """The file of shapes: a line for each solid that a fix knows by its features."""
-    own, solids = _of(context, frictions(context.scene)), _solids(context)
+    own, dampings, solids = _of(context, frictions(context.scene)), _dampings(context), _solids(context)
     lines = ["# Shapes, written by mdanim-lammps: molecule mu beta free|held  place  quaternion  shape\n"]
     for m in np.flatnonzero(part.shapes).tolist():
         place, shape = _shape(solids[m])
         pose = [*place, *quaternion(np.array(solids[m].rotation))]
         kind = "free" if part.bodies[m] else "held"
-        lines.append(f"{m + 1} {_digits([own[m], _damping(context, own[m])])} {kind} {_digits(pose)} {shape}\n")
+        lines.append(f"{m + 1} {_digits([own[m], dampings[m]])} {kind} {_digits(pose)} {shape}\n")
     return "".join(lines)
 
 
@@ -134,9 +145,54 @@ def _of(context: Context, values: Sequence[float]) -> list[float]:
     return [of[name] for name in context.system.names]
 
 
-def _damping(context: Context, friction: float) -> float:
-    """Share of critical damping: contacts without friction have none."""
+def _restitutions(context: Context) -> list[float | None]:
+    """Coefficient of restitution of each solid of a context, its own or that of the scene [-]; None where neither is given."""
+    usual = context.scene.control.restitution
+    return [usual if solid.restitution is None else solid.restitution for solid in _solids(context)]
+
+
+def _restitution_at(context: Context, plane: str) -> list[float | None]:
+    """The same at a plane."""
+    found = _restitutions(context)
+    by_name = objects_by_name(context.system.names)
+    for contact in context.scene.contacts:
+        if contact.restitution is not None and plane in (contact.first, contact.second):
+            for m in (*by_name.get(contact.first, ()), *by_name.get(contact.second, ())):
+                found[m] = contact.restitution
+    return found
+
+
+def _damping(context: Context, friction: float, restitution: float | None) -> float:
+    """Share of critical damping [-]: from the restitution, or else the usual one where there is friction."""
+    if restitution is not None:
+        return damping_for(restitution)
     return float(damping(context.scene)) if friction > 0.0 else 0.0
+
+
+def _dampings(context: Context) -> list[float]:
+    """The same of each solid; of two the larger one counts."""
+    return [_damping(context, mu, e) for mu, e in zip(_of(context, frictions(context.scene)), _restitutions(context))]
+
+
+def _pair_laws(context: Context, part: Part) -> dict[tuple[int, int], tuple[float, float]]:
+    """Friction and damping of pairs for which the root of the product and the larger one are not right."""
+    scene, names = context.scene, context.system.names
+    own, blows, dampings = _of(context, frictions(scene)), _restitutions(context), _dampings(context)
+    known = np.flatnonzero(part.shapes).tolist()
+    found = {}
+    for i in (m for m in known if blows[m] is not None):  # where one of two has a restitution, it counts alone
+        for j in (m for m in known if blows[m] is None and dampings[m] > dampings[i]):
+            found[min(i, j), max(i, j)] = math.sqrt(own[i] * own[j]), dampings[i]
+    by_name = objects_by_name(names) if scene.contacts else {}
+    for contact in scene.contacts:
+        for i, j in pairs_of(by_name.get(contact.first, ()), by_name.get(contact.second, ())):
+            if part.shapes[i] and part.shapes[j]:
+                mu = math.sqrt(own[i] * own[j]) if contact.friction is None else float(contact.friction)
+                given = [e for e in (blows[i], blows[j]) if e is not None]
+                e = min(given, default=None) if contact.restitution is None else contact.restitution
+                beta = contact.contact_damping
+                found[i, j] = mu, _damping(context, mu, e) if beta is None else float(beta)
+    return found
 
 
 def _digits(numbers: Sequence[float]) -> str:
