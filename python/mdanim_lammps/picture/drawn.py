@@ -98,7 +98,7 @@ class Additions:
         self.triangle = np.concatenate([np.zeros((0, 3), np.int64), *shifted])
         colors = [np.tile(np.rint(255.0 * np.array(one.color or grey)), (n, 1)) for one, n in zip(self._all, count)]
         self.color = np.concatenate([np.zeros((0, 3)), *colors]).astype(np.uint8)
-        """Of each point, shape (V, 3)."""
+        """Colours of the points, shape (V, 3)."""
         self._lines = [
             (n, MovingLines(count[n], one.line, one.color or grey, 2.0)) for n, one in enumerate(self._all) if len(one.line)
         ]
