@@ -5,10 +5,11 @@ import re
 
 import numpy as np
 import pytest
+from mdanim_lammps.effects.fields import Field, join_fields
 from mdanim_lammps.engine.instance import Instance
 from mdanim_lammps.errors import SceneError
 from mdanim_lammps.model.spin import spin
-from mdanim_lammps.run.energy import energies
+from mdanim_lammps.run.energy import energies, tell
 from mdanim_lammps.scene.parse import parse_scene
 
 BAR = """object bar {{
@@ -189,3 +190,29 @@ control { time 2 s  frames 5 fps }
     assert ready.system.particles == 125
     x, *_ = run(ready, ready.certificate.steps)
     assert ready.system.center_of_mass(x)[0, 2] == pytest.approx(0.4, abs=1e-3)
+
+
+def test_check_tells_how_deep_things_sink(prepared):
+    """A blow by v/Omega, 2 % of the thinnest part, and rest by less than 1/1000; softer contact is a warning; found again in a run."""
+    text = "gravity (0, 0, -9.81) m/s^2\nground z 0 m\n" + bar() + "control { time 0.6 s  friction 0.5  frames 50 fps MORE }\n"
+    ready = prepared(text.replace("MORE", ""))
+    told = {m.name: m for m in ready.certificate.margins}
+    speed = ready.context.reach.speed[0]
+    assert told["blow depth"].value == pytest.approx(0.02 * 0.1, rel=1e-9) and f"{speed:.3g}" in told["blow depth"].text
+    assert 0.0 < told["rest depth"].value < 1e-3 * 0.1 and not ready.warnings
+    softer = prepared(text.replace("MORE", "contact-stiffness 0.1"))
+    assert [w.message for w in softer.warnings if "deep" in w.message]
+    with Instance(ready.plan) as instance:
+        instance.setup()
+        instance.run(ready.certificate.steps)
+        deepest, bound = (instance.fix_value("rigid", entry) for entry in ("deepest", "worst_bound"))
+        assert 0.0 < bound < 2.0 and tell(instance)["contact_bound"] == bound
+    assert 0.3 * told["blow depth"].value < deepest < told["blow depth"].value
+
+
+def test_parts_of_a_scene_have_the_largest_of_a_bound():
+    """A field per run is the sum of its parts, or the largest of them."""
+    sums, bounds = Field("count", "1"), Field("bound", "1", largest=True)
+    parts = [(np.array([m]), {"count": value, "bound": value}) for m, value in enumerate((1.0, 3.0, 2.0))]
+    found = join_fields((sums, bounds), lambda per: np.arange(4), np.zeros(3, bool), parts, {})
+    assert found == {"count": 6.0, "bound": 3.0}

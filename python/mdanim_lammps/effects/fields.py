@@ -38,6 +38,8 @@ class Field:
     counts: tuple[int, ...] = ()
     """How many things there are, along each axis of the table: objects; rows and columns of cells; the most rows that fit, of a
     field per row or pair."""
+    largest: bool = False
+    """Whether the largest value of all parts of a scene is that of the whole, for a field per run; else it is their sum."""
     state: bool = False
     """Whether it changes during a run and later steps depend on it; a frame has it too."""
     tags: int = 0
@@ -133,8 +135,8 @@ def join_fields(
     """The fields of a whole scene, from those of its parts.
 
     Fields of things that objects have are put together; where an object never moves, which any part may have, they are as at the
-    start, or have their default. Those per pair come together in order, those per run are added up, all others come whole from
-    one part.
+    start, or have their default. Those per pair come together in order, those per run are added up, or are the largest of all;
+    all others come whole from one part.
 
     Args:
         declared: all fields of the scene.
@@ -162,5 +164,7 @@ def join_fields(
         elif field.per == "pair":
             found[field.name] = np.sort(np.concatenate([np.empty(0, pair_rows(field)), *(v for _, v in told)]), order=["a", "b"])
         elif told:
-            found[field.name] = sum(value for _, value in told) if field.per == "run" and len(told) > 1 else told[0][1]
+            values = [value for _, value in told]
+            together = max if field.largest else sum
+            found[field.name] = together(values) if field.per == "run" and len(values) > 1 else values[0]
     return found

@@ -3,14 +3,18 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from ... import features
 from ...bodies import all_held
 from ...effects.context import Verdict
 from ...effects.effect import Effect
+from ...effects.fields import Field
 from ...errors import Problem
 from ...model.inertia import components
+from ...scene.formatting import number
 from ..contact.surface import DAMPED, HEAT, LET_GO
 from . import touching
 from .words import Rigid
@@ -21,6 +25,8 @@ TOUCHING, ON_PLANES = "touching", "on_planes"
 """Groups of the particles of all that touches objects by its features, and planes."""
 INERTIA, SHAPES = "inertia", "shapes"
 """Tables of moments, and of shapes, with the fix."""
+PROOF = "contact_bound"
+"""Column of the ledger: largest dt^2 S/4 + dt D/2 of a body since the start (docs/physics-rigid.md)."""
 TAKEN = {HEAT: "friction_heat", DAMPED: "damping_loss", LET_GO: "let_go"}
 """Columns of the ledger, and their entries of the fix's vector."""
 
@@ -116,6 +122,33 @@ class RigidMotion(Effect):
 
     def penetration(self, readings):
         return max(readings.fix_value(part.fix, "deepest") for part in touching.parts(readings.context))
+
+    def fields(self, scene):
+        return (Field(PROOF, "1", ledger=True, largest=True),) if _may_touch(scene) else ()
+
+    def tell(self, readings):
+        return {PROOF: max(readings.fix_value(part.fix, "worst_bound") for part in touching.parts(readings.context))}
+
+    def doubts(self, context, time, ledger):
+        """The largest sum that proves a step; above 1 nothing is proved."""
+        most = float(ledger(PROOF).max()) if _may_touch(context.scene) else 0.0
+        if most <= 1.0:
+            return []
+        factor = number(1.0 / math.sqrt(most), 2)
+        return [
+            Problem(
+                context.scene.control.spans.get("accuracy"),
+                f"contacts of rigid objects: steps are proved to be stable up to a {PROOF} of 1, and it has been "
+                f"{number(most, 2)}, where many touched one object at once",
+                f"if something trembles where it should lie still, write a timestep of {factor} of this one",
+                severity="note",
+            )
+        ]
+
+    def margins(self, envelope):
+        if not (touching.meets_objects(envelope.context).any() or touching.meets_planes(envelope.context).any()):
+            return []
+        return touching.depths(envelope)
 
     def kinetic(self, readings):
         return self._sum(readings, "translation") + self._sum(readings, "rotation")

@@ -14,8 +14,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...effects.context import Context
+from ...effects.envelope import Envelope
+from ...effects.margin import Margin
 from ...model.planes import Plane
+from ...model.shapes import thickness
 from ...model.system import System
+from ...scene.formatting import number, say
 from ...scene.naming import objects_by_name, pairs_of
 from ...scene.scene import Box, Cone, Cylinder, Ellipsoid, Solid, Sphere
 from ..contact.pairs import damping, frictions
@@ -24,6 +28,8 @@ from ..contact.rigid_surfaces import frequency
 
 ONSET = 0.005
 """Depth up to which a contact begins gently, over the thinnest part."""
+DEEP, SUNK = 0.05, 0.005
+"""Depths of a blow and of a load at rest, over the thinnest part, above which they show."""
 STEP = 0.35
 """Time step of `balanced`, half of the bound, times the frequency: what stacks and heaps were at rest with (an estimate)."""
 
@@ -99,6 +105,35 @@ def may_meet(context: Context, what: str) -> bool:
 def omega(context: Context) -> float:
     """Frequency of a contact, with the stiffness that the scene asks for [1/s]."""
     return frequency(context).omega * math.sqrt(context.scene.control.contact_stiffness)
+
+
+def depths(envelope: Envelope) -> list[Margin]:
+    """How deep the fastest blow goes, and how deep things sink in at rest, beside the thinnest part."""
+    context, found, frequency_of = envelope.context, frequency(envelope.context), omega(envelope.context)
+    solids = context.scene.solids
+    free = np.flatnonzero(context.system.rigid).tolist()
+    thinnest = min(free, key=lambda m: thickness(solids[m].shape))
+    place = context.scene.control.spans.get("contact-stiffness") or envelope.place(thinnest, "shape")
+    blow = found.speed / frequency_of
+    rest = math.sqrt(2.0 * ONSET * found.thin * found.load * context.reach.g) / frequency_of
+    return [
+        Margin(
+            name,
+            solids[thinnest].name,
+            value,
+            part * found.thin,
+            "m",
+            f"{what} {say(value, 'm')} deep, {number(100.0 * value / found.thin, 2)} % of the thinnest part of a rigid object, "
+            f"{say(found.thin, 'm')} of {solids[thinnest].name}",
+            place,
+            "warning" if value > part * found.thin * (1.0 + 1e-9) else "ok",
+            hint="write contact-stiffness 1 in control",
+        )
+        for name, value, part, what in (
+            ("blow depth", blow, DEEP, f"the fastest blow, {say(found.speed, 'm/s')}, goes"),
+            ("rest depth", rest, SUNK, "what bears most sinks in at rest by"),
+        )
+    ]
 
 
 def words(context: Context, part: Part, shapes: str) -> str:

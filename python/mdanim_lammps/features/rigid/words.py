@@ -28,6 +28,11 @@ class Rigid:
 
 ELASTICITIES = (Rigid,)
 
+MARGINS = {
+    "blow depth": "how deep rigid objects go into each other in the fastest blow; above a twentieth of their thickness it shows",
+    "rest depth": "how deep a rigid object sinks in at rest by what it bears; above 1/200 of its thickness it shows",
+}
+
 SENSELESS = {
     "damping": ("damping is that of springs, and a rigid object has none", "leave it out; contact-damping damps its blows")
 }
