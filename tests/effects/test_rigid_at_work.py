@@ -193,7 +193,7 @@ control { time 2 s  frames 5 fps }
 
 
 def test_check_tells_how_deep_things_sink(prepared):
-    """A blow by v/Omega, 2 % of the thinnest part, and rest by less than 1/1000; softer contact is a warning. A run finds them."""
+    """A blow by v/Omega, 2 % of the thinnest part, and rest by less than 1/1000; softer contact warns. A run finds them."""
     text = "gravity (0, 0, -9.81) m/s^2\nground z 0 m\n" + bar() + "control { time 0.6 s  friction 0.5  frames 50 fps MORE }\n"
     ready = prepared(text.replace("MORE", ""))
     told = {m.name: m for m in ready.certificate.margins}
