@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""Rigid bodies of fix mdanim/rigid beside those of LAMMPS: ``python bench/rigid.py [TABLE ...]``, all of TABLES without a word.
+"""Rigid bodies of fix mdanim/rigid, beside those of LAMMPS: ``python bench/rigid.py [TABLE ...]``, all of TABLES without a word.
 
 The tables are those of docs/fix_mdanim_rigid.md.
 """
@@ -14,6 +14,7 @@ from timing import print_tables
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "lab"))
 import plugin_lab as lab
+import rigid_lab
 
 STYLES = ("mdanim/rigid", "rigid molecule", "rigid/nve molecule")
 TURN = 600
@@ -70,7 +71,47 @@ def cost() -> tuple[list[str], list[list]]:
     return ["", "ns a particle-step"], [[f"fix {s}", f"{1e9 * t:.1f}"] for s, t in zip(STYLES, least)]
 
 
-TABLES = {"free": free, "cost": cost}
+def followed(bodies: list, seconds: float, **setting) -> list:
+    """A row: bodies, steps, processor time [s] and per step of a body [us], drift of energy, deepest contact over the thinnest
+    part, the worst bound."""
+    with tempfile.TemporaryDirectory() as folder, rigid_lab.World(Path(folder), bodies, **setting) as world:
+        steps, first, start = round(seconds / world.dt), world.energy(), time.process_time()
+        world.run(steps)
+        took = time.process_time() - start
+        deepest = world.number("deepest") / min(b.thin for b in bodies)
+        off = world.energy() / first - 1.0
+        numbers = (f"{took:.2f}", f"{1e6 * took / steps / len(bodies):.2f}", f"{off:.1e}", f"{deepest:.3f}")
+        return [len(bodies), steps, *numbers, f"{world.number('worst_bound'):.1f}"]
+
+
+HEAD = ["", "bodies", "steps", "processor s", "us a body-step", "energy off", "deepest", "worst bound"]
+
+
+def dominoes() -> tuple[list[str], list[list]]:
+    """Nine dominoes of 6 x 20 x 40 cm and a ball at 3 m/s, 4 s."""
+    bodies = [rigid_lab.box((0.06, 0.2, 0.4), at=(0.2 * n, 0.0, 0.2)) for n in range(9)]
+    bodies.append(rigid_lab.ball(0.08, 800.0, at=(-0.35, 0.0, 0.36), v=(3.0, 0.0, 0.0)))
+    return HEAD, [["dominoes, 4 s", *followed(bodies, 4.0, frequency=rigid_lab.frequency_of(3.0, 0.06), thin=0.06)]]
+
+
+def heap(count: int = 200) -> tuple[list[str], list[list]]:
+    """Cubes of 10 cm that fall into a shaft, the first second."""
+    random, side = np.random.default_rng(1), max(2, round((count / 2.5) ** (1 / 3)))
+    bodies = []
+    for n in range(count):
+        i, j, k = n % side, n // side % side, n // side // side
+        shift = 0.02 * random.random(2)
+        at = (0.16 * (i - (side - 1) / 2) + shift[0], 0.16 * (j - (side - 1) / 2) + shift[1], 0.12 + 0.17 * k)
+        bodies.append(rigid_lab.box((0.1, 0.1, 0.1), at=at, q=rigid_lab.about(random.random(3) - 0.5, 3.0 * random.random())))
+    wide = 0.08 * side + 0.1
+    walls = [f"plane {axis} {end} {sign * wide!r}" for axis in "xy" for end, sign in (("lo", -1), ("hi", 1))]
+    speed = np.sqrt(2 * 9.81 * 0.17 * (count // side // side))
+    return HEAD, [
+        ["heap, 1 s", *followed(bodies, 1.0, frequency=rigid_lab.frequency_of(speed, 0.1), planes=["plane z lo 0.0", *walls])]
+    ]
+
+
+TABLES = {"free": free, "cost": cost, "dominoes": dominoes, "heap": heap}
 
 if __name__ == "__main__":
     print_tables(TABLES, sys.argv[1:])

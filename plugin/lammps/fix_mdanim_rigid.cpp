@@ -133,9 +133,11 @@ void FixMdanimRigid::pre_neighbor() { locate(); }
 void FixMdanimRigid::locate()
 {
   particles.locate();
-  if (!touching.is_on()) return;
   const std::vector<bigint> present = particles.present();
-  for (std::size_t n = 0; n < present.size(); ++n) touching.lay_aside(static_cast<int>(n), present[n] == 0);
+  for (std::size_t n = 0; n < bodies.size(); ++n) {
+    bodies[n].aside = present[n] == 0;
+    touching.lay_aside(static_cast<int>(n), bodies[n].aside);
+  }
 }
 
 // --- a step ---
@@ -166,7 +168,9 @@ void FixMdanimRigid::collect()
 void FixMdanimRigid::kick(bool first)
 {
   for (std::size_t n = 0; n < bodies.size(); ++n)
-    if (drag[n] == 0.0)
+    if (bodies[n].aside)
+      continue;
+    else if (drag[n] == 0.0)
       bodies[n].kick(half_dt);
     else
       drag_loss += bodies[n].kick_with_drag(half_dt, drag[n], first);
@@ -177,7 +181,8 @@ void FixMdanimRigid::initial_integrate(int)
   const Lap lap(seconds);
   if (!collected) collect();
   kick(true);
-  for (RigidBody &body : bodies) body.drift(update->dt);
+  for (RigidBody &body : bodies)
+    if (!body.aside) body.drift(update->dt);
   particles.put(bodies, true);
 }
 

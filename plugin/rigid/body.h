@@ -17,6 +17,8 @@ struct RigidBody {
   Quaternion q;    // takes its principal axes into space
   Vec3 L;          // angular momentum about the centre, in space
 
+  bool aside = false;    // has left the simulation: does not move, and has no energy
+
   Vec3 force, torque;
   Matrix3 turn;    // matrix(q)
   Vec3 over;       // 1 / moments
@@ -69,8 +71,8 @@ struct RigidBody {
     return turn * Vec3{over.x * body.x, over.y * body.y, over.z * body.z};
   }
 
-  double translation() const { return 0.5 * mass * dot(velocity, velocity); }
-  double rotation() const { return 0.5 * dot(L, spin); }
+  double translation() const { return aside ? 0.0 : 0.5 * mass * dot(velocity, velocity); }
+  double rotation() const { return aside ? 0.0 : 0.5 * dot(L, spin); }
 
  private:
   static double inverse(double moment) { return moment > 0.0 ? 1.0 / moment : 0.0; }

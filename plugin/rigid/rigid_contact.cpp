@@ -73,9 +73,9 @@ void RigidContact::touch_pair(const TouchStep &step, SolidPair &pair)
   if (is_ball && is_other_ball)
     touch_balls(step, pair, a, b, law);
   else if (is_ball)
-    touch_ball_and_polyhedron(step, pair, a, b, law);
+    touch_ball_and_other(step, pair, a, b, law);
   else if (is_other_ball)
-    touch_ball_and_polyhedron(step, pair, b, a, law);
+    touch_ball_and_other(step, pair, b, a, law);
   else
     touch_polyhedra(step, pair, a, b, law, settings.lists);
 }
@@ -103,6 +103,15 @@ void RigidContact::step(double dt)
   }
 }
 
+void RigidContact::lay_aside(int n, bool aside)
+{
+  solids[n].aside = aside;
+  if (!aside) return;
+  for (auto &of_plane : at_plane) of_plane[n].clear();
+  for (SolidPair &pair : near.pairs)
+    if (pair.a == n || pair.b == n) pair.touches.clear();
+}
+
 void RigidContact::find_energy()
 {
   account.energy = 0.0;
@@ -125,11 +134,6 @@ std::size_t RigidContact::bytes() const
 }
 
 // --- records ---
-
-bool RigidContact::touches_planes(int n) const
-{
-  return std::any_of(at_plane.begin(), at_plane.end(), [n](const auto &of_plane) { return !of_plane[n].empty(); });
-}
 
 void RigidContact::put_at_planes(int n, ByteWriter &writer) const
 {

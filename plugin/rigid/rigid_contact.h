@@ -42,14 +42,13 @@ class RigidContact {
   // Places a body that can move, before a step.
   void place(int n, const RigidBody &body);
   // A body that is laid aside touches nothing.
-  void lay_aside(int n, bool aside) { solids[n].aside = aside; }
+  void lay_aside(int n, bool aside);
   // Finds the energy of contacts, and how many there are, from what they remember.
   void find_energy();
   // Finds the forces on bodies, dt after the last step; dt = 0 at the setup of a run.
   void step(double dt);
 
   // Contacts with planes of one body, and of a pair of bodies: what they remember.
-  bool touches_planes(int n) const;
   void put_at_planes(int n, ByteWriter &writer) const;
   void read_at_planes(int n, ByteReader &reader);
   // Calls visit(a, b, bytes) for each pair in contact.

@@ -106,10 +106,99 @@ void SolidShape::each_feature(const std::function<void(const Vec3 &, const Vec3 
     }
 }
 
+// --- closest points ---
+
+namespace {
+
+// In a half plane through the axis: distance from the axis, place along it.
+struct InHalfPlane {
+  double out, along;
+};
+
+// The signed distance from a straight part of an outline with the body to its left, and the direction to the point: straight
+// across, or from one of the ends. `is_across` tells which.
+struct FromPart {
+  double above, distance;
+  InHalfPlane n;
+  FromPart(const InHalfPlane &a, const InHalfPlane &b, const InHalfPlane &p)
+  {
+    const double x = b.out - a.out, y = b.along - a.along, size = std::sqrt(x * x + y * y);
+    const InHalfPlane across{y / size, -x / size};
+    above = (p.out - a.out) * across.out + (p.along - a.along) * across.along;
+    const double s = std::min(std::max(((p.out - a.out) * x + (p.along - a.along) * y) / (size * size), 0.0), 1.0);
+    const double out = p.out - a.out - s * x, along = p.along - a.along - s * y;
+    distance = std::sqrt(out * out + along * along);
+    n = distance > 0.0 && s * (1.0 - s) == 0.0 ? InHalfPlane{out / distance, along / distance} : across;
+  }
+};
+
+}    // namespace
+
+// Outlines of cylinders and cones, from the middle of the base counter-clockwise.
+Polyhedron::Foot SolidShape::nearest_of_revolution(const Vec3 &from_middle) const
+{
+  const double along = dot(from_middle, axes[2]);
+  const Vec3 across = from_middle - along * axes[2];
+  const double out = length(across);
+  const Vec3 radial = out > 0.0 ? (1.0 / out) * across : axes[0];
+  const InHalfPlane foot{0.0, -size.z}, rim{size.x, -size.z}, top_rim{size.x, size.z}, top{0.0, size.z}, p{out, along};
+  const FromPart parts[3] = {
+      {foot, rim, p}, {rim, its_kind == CONE ? top : top_rim, p}, {its_kind == CONE ? rim : top_rim, top, p}};
+  const FromPart *inside = parts, *outside = nullptr;
+  for (const FromPart &part : parts) {
+    if (part.above > inside->above) inside = &part;
+    if (part.above > 0.0 && (!outside || part.distance < outside->distance)) outside = &part;
+  }
+  const FromPart &found = outside ? *outside : *inside;
+  return {found.n.out * radial + found.n.along * axes[2], outside ? found.distance : found.above};
+}
+
+// The foot is p_k = a_k^2 x_k / (a_k^2 + t) with sum (p_k/a_k)^2 = 1: Newton from below, where the sum is convex and falls.
+Polyhedron::Foot SolidShape::nearest_of_ellipsoid(const Vec3 &from_middle) const
+{
+  const double x[3] = {dot(from_middle, axes[0]), dot(from_middle, axes[1]), dot(from_middle, axes[2])};
+  const double a[3] = {size.x, size.y, size.z};
+  constexpr double OFF_POLE = 1e-12;
+  constexpr int MOST_STEPS = 50;
+  double t = -HUGE_VAL;
+  for (int k = 0; k < 3; ++k) t = std::max(t, a[k] * ((OFF_POLE - 1.0) * a[k] + std::fabs(x[k])));
+  for (int n = 0; n < MOST_STEPS; ++n) {
+    double value = -1.0, slope = 0.0;
+    for (int k = 0; k < 3; ++k) {
+      const double share = a[k] * x[k] / (a[k] * a[k] + t);
+      value += share * share;
+      slope -= 2.0 * share * share / (a[k] * a[k] + t);
+    }
+    if (!(value > 0.0) || !(slope < 0.0)) break;
+    const double next = t - value / slope;
+    if (next == t) break;
+    t = next;
+  }
+  Vec3 foot, n;
+  for (int k = 0; k < 3; ++k) {
+    const double over = x[k] / (a[k] * a[k] + t);
+    foot += (a[k] * a[k] * over) * axes[k];
+    n += over * axes[k];
+  }
+  const double steepness = length(n);
+  n = steepness > 0.0 ? (1.0 / steepness) * n : axes[0];
+  return {n, dot(from_middle - foot, n)};
+}
+
+Polyhedron::Foot SolidShape::nearest(const Vec3 &x) const
+{
+  const Vec3 from_middle = x - its_middle;
+  if (its_kind == POLYHEDRON) return its_polyhedron.nearest(x);
+  if (its_kind == CYLINDER || its_kind == CONE) return nearest_of_revolution(from_middle);
+  if (its_kind == ELLIPSOID) return nearest_of_ellipsoid(from_middle);
+  const double distance = length(from_middle);
+  return {distance > 0.0 ? (1.0 / distance) * from_middle : axes[0], distance - size.x};
+}
+
 bool know_each_other(SolidShape::ShapeKind a, SolidShape::ShapeKind b)
 {
-  const auto is_known = [](SolidShape::ShapeKind kind) { return kind == SolidShape::BALL || kind == SolidShape::POLYHEDRON; };
-  return is_known(a) && is_known(b);
+  const auto is_polyhedron = [](SolidShape::ShapeKind kind) { return kind == SolidShape::POLYHEDRON; };
+  return a == SolidShape::BALL || b == SolidShape::BALL || (is_polyhedron(a) && is_polyhedron(b));
 }
 
 }    // namespace mdanim

@@ -8,7 +8,6 @@
 #include "rigid/polyhedron.h"
 
 #include <functional>
-#include <string>
 
 namespace mdanim {
 
@@ -43,10 +42,15 @@ class SolidShape {
   double bound() const { return its_bound; }    // largest distance from the origin
   double thin() const { return its_thin; }      // thinnest part
 
+  // The closest point of the surface to x in the frame of the body: its normal, and the distance, negative inside.
+  Polyhedron::Foot nearest(const Vec3 &x) const;
   // Calls visit(place, normal) for features of the surface that other bodies touch first: corners with their faces, ends of axes.
   void each_feature(const std::function<void(const Vec3 &, const Vec3 &)> &visit) const;
 
  private:
+  Polyhedron::Foot nearest_of_revolution(const Vec3 &from_middle) const;
+  Polyhedron::Foot nearest_of_ellipsoid(const Vec3 &from_middle) const;
+
   ShapeKind its_kind = BALL;
   Polyhedron its_polyhedron;
   Vec3 its_middle, axes[3] = {{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}};

@@ -13,8 +13,8 @@ Touch TouchStep::born(Touch::TouchKind kind, const TouchLaw &law, const Solid &a
   Touch touch;
   touch.kind = kind;
   touch.stiffness = law.stiffness;
-  const double yields = a.yields_at(x, n) + (b ? b->yields_at(x, n) : 0.0);
-  touch.damping = law.damping > 0.0 ? 2.0 * law.damping * std::sqrt(law.stiffness / yields) / law.stiffness : 0.0;
+  touch.yields = a.yields_at(x, n) + (b ? b->yields_at(x, n) : 0.0);
+  touch.damping = law.damping > 0.0 ? 2.0 * law.damping * std::sqrt(law.stiffness / touch.yields) / law.stiffness : 0.0;
   return touch;
 }
 
@@ -34,6 +34,29 @@ void TouchStep::let_go(Touch &touch, double depth, double part) const
 {
   account.let_go += touch.stiffness * part * Onset<double>(depth - touch.memory.offset, onset).value;
   end(touch, depth);
+}
+
+// The force F of a step does the work F (d' - d_)/2, d_ and d' being the depths of the step before and of the next one; so halves
+// of it belong to the ways to d and from it. On a way over the surface the spring acts for a part of it only, with the energy U
+// at its end: half of F is replaced by U/(d - d_), and by U/(d - d') where the contact will have ended by the next step, as far
+// as its speed now tells.
+ContactForce<double> TouchStep::pressure(Touch &touch, const ContactLaw &law, double part, double depth) const
+{
+  const double before = touch.memory.depth;
+  ContactForce<double> force = contact_pressure<double>(law, 1.0, part, depth, dt, touch.memory);
+  if (is_first()) return force;
+  const double now = depth - touch.memory.offset, last = before - touch.memory.offset,
+               next = 2.0 * now - last - dt * dt * touch.yields * force.press;
+  if (last >= 0.0 && next >= 0.0) return force;
+  const double half = 0.5 * touch.stiffness * part * Onset<double>(now, onset).slope, energy = part * force.surface_energy;
+  if (last < 0.0) force.press += energy / (now - last) - half;
+  if (next < 0.0) force.press += energy / (now - next) - half;
+  if (force.press < 0.0) {    // a dashpot never pulls
+    touch.memory.damping -= force.press;
+    force.damped -= 0.5 * force.press * (depth - before);
+    force.press = 0.0;
+  }
+  return force;
 }
 
 void TouchStep::apply(Solid &a, Solid *b, const Vec3 &x, const Vec3 &f) const
@@ -71,7 +94,7 @@ void TouchStep::press(Touch &touch, const TouchLaw &its_law, Solid &a, Solid *b,
                       const Vec3 &slope, const Vec3 &n) const
 {
   const ContactLaw law = law_of(touch, its_law);
-  ContactForce<double> push = contact_pressure<double>(law, 1.0, part, depth, dt, touch.memory);
+  ContactForce<double> push = pressure(touch, law, part, depth);
   Vec3 force = push.press * n;
   if (b && (slope.x != 0.0 || slope.y != 0.0 || slope.z != 0.0)) force -= push.surface_energy * b->in_space(slope);
   if (law.friction > 0.0) {
@@ -109,7 +132,7 @@ void TouchStep::press_moving(std::vector<Touch> &list, Touch::TouchKind kind, in
   }
   Touch &touch = *found;
   const ContactLaw law = law_of(touch, its_law);
-  ContactForce<double> push = contact_pressure<double>(law, 1.0, 1.0, depth, dt, touch.memory);
+  ContactForce<double> push = pressure(touch, law, 1.0, depth);
   Vec3 force = push.press * n;
   if (law.friction > 0.0) {
     // The way that the material of one went over that of the other, step by step.

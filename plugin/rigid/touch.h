@@ -20,6 +20,7 @@ struct Touch {
   std::int32_t side = 0;                 // of the host of a corner
   double stiffness = 0.0;                // k [N/m]
   double damping = 0.0;                  // dashpot over k [s]
+  double yields = 0.0;                   // acceleration of the depth over the force [1/kg]
   Vec3 anchor;    // corners: in the host; edges: places along both; moving points: way from the anchor, in the host's frame
   ContactMemory<double> memory;
   double energy = 0.0;    // now, with that of sticking [J]
@@ -62,6 +63,9 @@ class TouchStep {
 
   ContactLaw law_of(const Touch &touch, const TouchLaw &law) const
   { return {touch.stiffness, onset, law.friction, touch.damping}; }
+  // The part of a contact that depends on its depth. In the step in which it begins or ends, its force counts for as long as it
+  // acts (see touch.cpp).
+  ContactForce<double> pressure(Touch &touch, const ContactLaw &law, double part, double depth) const;
   void apply(Solid &a, Solid *b, const Vec3 &x, const Vec3 &f) const;
   void book(Solid &a, Solid *b, Touch &touch, double part, const ContactForce<double> &force) const;
 

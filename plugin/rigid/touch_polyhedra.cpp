@@ -228,7 +228,7 @@ void touch_edges(const TouchStep &step, SolidPair &pair, Solid &a, Solid &b, con
     }
     Touch &touch = *found;
     const ContactLaw its_law = step.law_of(touch, law);
-    ContactForce<double> push = contact_pressure<double>(its_law, 1.0, part, at.depth, step.time_step(), touch.memory);
+    ContactForce<double> push = step.pressure(touch, its_law, part, at.depth);
     Vec3 force = (-push.press) * at.n;
     // The gradient of `part`: s and r move by (u - cosine w)/sine^2 and -(w - cosine u)/sine^2 with the first body.
     const double by_s = push.surface_energy * (at.s > 0.0 ? -slope_a : slope_a) * part_b * part_angle,

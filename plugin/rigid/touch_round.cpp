@@ -20,12 +20,13 @@ void touch_balls(const TouchStep &step, SolidPair &pair, Solid &a, Solid &b, con
   step.press_moving(pair.touches, Touch::MOVING, 0, law, a, &b, x, n, both - distance);
 }
 
-void touch_ball_and_polyhedron(const TouchStep &step, SolidPair &pair, Solid &ball, Solid &host, const TouchLaw &law)
+void touch_ball_and_other(const TouchStep &step, SolidPair &pair, Solid &ball, Solid &host, const TouchLaw &law)
 {
   const Vec3 place = middle_of(ball), in_host = host.in_body(place - host.centre);
   const double radius = ball.shape.radius();
-  if (pair.touches.empty() && host.shape.polyhedron().outside(in_host) >= radius) return;
-  const Polyhedron::Foot nearest = host.shape.polyhedron().nearest(in_host);
+  const bool is_polyhedron = host.shape.kind() == SolidShape::POLYHEDRON;
+  if (pair.touches.empty() && is_polyhedron && host.shape.polyhedron().outside(in_host) >= radius) return;
+  const Polyhedron::Foot nearest = host.shape.nearest(in_host);
   const Vec3 n = host.in_space(nearest.normal);
   step.press_moving(pair.touches, Touch::MOVING, 0, law, ball, &host, place - radius * n, n, radius - nearest.distance);
 }

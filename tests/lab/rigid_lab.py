@@ -58,6 +58,8 @@ class Rigid:
     mu: float = 0.5
     beta: float = 0.3
     held: bool = False
+    offset: float = 0.0
+    """Of the origin of the shape from the centre of mass, along the third axis."""
 
     def put(self, at=None, q=None, **more) -> Rigid:
         """The same body elsewhere, or with other values."""
@@ -100,6 +102,23 @@ def cylinder(radius, height, density=600.0, **more) -> Rigid:
     spread = np.array([radius / 2, radius / 2, height / 2])
     moments = np.array([across, across, 0.5 * mass * radius**2])
     return Rigid(f"cylinder {radius!r} {height!r}", mass, moments, spread, min(2 * radius, height)).put(**more)
+
+
+def cone(radius, height, density=600.0, **more) -> Rigid:
+    """A full cone about its third axis; its place is the centre of mass, a quarter of the height above the base."""
+    mass = density * np.pi / 3 * radius**2 * height
+    across = 3 * mass * (radius**2 / 20 + height**2 / 80)
+    moments = np.array([across, across, 0.3 * mass * radius**2])
+    spread = np.array([radius / 3, radius / 3, height / 5])
+    return Rigid(f"cone {radius!r} {height!r}", mass, moments, spread, min(radius, height), offset=height / 4).put(**more)
+
+
+def ellipsoid(half_axes, density=600.0, **more) -> Rigid:
+    """A full ellipsoid."""
+    a = np.asarray(half_axes, float)
+    mass = density * 4 / 3 * np.pi * a.prod()
+    moments = mass / 5 * ((a**2).sum() - a**2)
+    return Rigid(f"ellipsoid {' '.join(map(repr, a.tolist()))}", mass, moments, a / 2, 2 * a.min()).put(**more)
 
 
 class World:
@@ -178,7 +197,7 @@ def setup(folder: Path, bodies: Sequence[Rigid], molecules: Sequence[int]) -> la
     for number, body in zip(molecules, bodies):
         turn = matrix(body.q)
         full = turn @ np.diag(body.moments) @ turn.T
-        numbers = " ".join(repr(float(a)) for a in (*body.at, *body.q))
+        numbers = " ".join(repr(float(a)) for a in (*(body.at + body.offset * turn[:, 2]), *body.q))
         shapes.append(f"{number} {body.mu!r} {body.beta!r} {'held' if body.held else 'free'} {numbers} {body.shape}")
         if body.held:
             continue

@@ -109,6 +109,24 @@ def test_a_state_goes_on_in_another_instance(tmp_path):
         assert are_same(ends(other), end)
 
 
+def test_a_body_that_is_laid_aside_touches_nothing(tmp_path):
+    """Its particles leave the group without a setup: the others go on as without it, and it has no energy."""
+    two = [lab.box((0.1, 0.1, 0.1), at=(0, 0, z), mu=0.0) for z in (0.05, 0.15)]
+    with lab.World(tmp_path, two, frequency=lab.frequency_of(1.0, 0.1)) as world:
+        world.run(200)
+        height = world.rows()[1, 2]
+        assert world.number("touching") == 12  # corners at the floor, of each box in the other
+        tag, mask = (world.lmp.numpy.extract_atom(name)[:16] for name in ("id", "mask"))
+        mask[tag <= 8] = 1
+        world.lmp.numpy.extract_atom("x")[:16][tag <= 8] += (0, 2.0, 0)  # more than the skin: lists are made anew
+        world.run(200)
+        time = 200 * world.dt
+        assert world.number("touching") == 0 and world.number("contact") == 0.0
+        assert world.rows()[1, 2] == pytest.approx(height - 0.5 * 9.81 * time**2, abs=1e-3)
+        fallen = 0.5 * two[1].mass * (world.rows()[1, 3:6] ** 2).sum()
+        assert world.number("translation") + world.number("rotation") == pytest.approx(fallen, rel=1e-9)
+
+
 def test_a_restart_file_goes_on_to_the_bit(tmp_path):
     """Contacts are in it."""
     with heap(tmp_path) as world:
