@@ -19,6 +19,7 @@ sys.dont_write_bytecode = False
 # Ranks poll while they wait for each other. With more of them than cores that takes three times the work itself: let them sleep.
 os.environ.setdefault("MPIR_CVAR_CH4_PROGRESS_THROTTLE", "1")
 os.environ.setdefault("MPIR_CVAR_CH4_PROGRESS_THROTTLE_NO_PROGRESS_COUNT", "50")
+os.environ.setdefault("MPIR_CVAR_ENABLE_HEAVY_YIELD", "1")  # also in collectives
 
 SCENES = Path(__file__).parent.parent / "scenes"
 
