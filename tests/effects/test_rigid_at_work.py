@@ -5,10 +5,12 @@ import re
 
 import numpy as np
 import pytest
+from mdanim_lammps import Scene
 from mdanim_lammps.effects.fields import Field, join_fields
 from mdanim_lammps.engine.instance import Instance
 from mdanim_lammps.errors import SceneError
 from mdanim_lammps.model.spin import spin
+from mdanim_lammps.results.motion import MotionTable
 from mdanim_lammps.run.energy import energies, tell
 from mdanim_lammps.scene.parse import parse_scene
 
@@ -216,3 +218,16 @@ def test_parts_of_a_scene_have_the_largest_of_a_bound():
     parts = [(np.array([m]), {"count": value, "bound": value}) for m, value in enumerate((1.0, 3.0, 2.0))]
     found = join_fields((sums, bounds), lambda per: np.arange(4), np.zeros(3, bool), parts, {})
     assert found == {"count": 6.0, "bound": 3.0}
+
+
+def test_tables_have_the_energy_of_the_shape(tmp_path):
+    """Kinetic energies of objects add up to that of the ledger, whichever way a rigid one is turned."""
+    more = "orientation axis (1, 2, 3) angle 50 deg  spin (3, 1, -2)  velocity (1, 0, 0) m/s"
+    run = Scene.from_text(bar(more) + BLOCK.replace("density", "velocity (0, 0, 2) m/s density") + CONTROL, "two").run(
+        tmp_path / "o"
+    )
+    with run.trajectory as trajectory:
+        table = MotionTable(trajectory, np.arange(2))
+        column = table.columns.index("kinetic") - 3
+        found = [table.numbers(frame)[:, column].sum() for frame in range(len(trajectory))]
+    np.testing.assert_allclose(found, run.ledger.array("kinetic"), rtol=1e-9)

@@ -9,7 +9,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from .. import features
+from ..bodies import all_held, kind_of
 from ..effects import acting
+from ..model.inertia import tensor
 from ..model.spin import spin
 from ..reach import Acting
 from ..scene.scene import Save
@@ -66,6 +68,33 @@ class ContactForces:
         return force
 
 
+class _RigidOnes:
+    """The rigid objects of a run that move: these have the moments of inertia of their shape, not those of their particles."""
+
+    def __init__(self, trajectory: Trajectory):
+        m, self._inertia, self._places = trajectory.metadata, {}, {}
+        self._mass = m.mass
+        solids = () if trajectory.scene is None else trajectory.scene.solids
+        for n, solid in enumerate(solids):
+            if not kind_of(solid).deforms and not all_held(solid):
+                own = slice(m.first[n], m.first[n + 1])
+                start = trajectory.position(0)[own]
+                self._inertia[n] = tensor(solid.shape, float(m.object_mass[n]), solid.rotation)
+                self._places[n] = own, start - np.average(start, axis=0, weights=m.mass[own])
+
+    def kinetic(self, of_particles: np.ndarray, x: np.ndarray, velocity: np.ndarray, spins: np.ndarray) -> np.ndarray:
+        """Kinetic energy of each object [J], shape (O,): that of its particles, of rigid ones m v^2/2 + w R I R' w/2 with the
+        rotation R since the start."""
+        found = np.array(of_particles)
+        for n, inertia in self._inertia.items():
+            own, start = self._places[n]
+            now = x[own] - np.average(x[own], axis=0, weights=self._mass[own])
+            turn = np.linalg.lstsq(start, now, rcond=None)[0].T
+            along, mass = turn.T @ spins[n], self._mass[own].sum()
+            found[n] = 0.5 * mass * velocity[n] @ velocity[n] + 0.5 * along @ inertia @ along
+        return found
+
+
 class MotionTable:
     """A table with a row for each object and frame: frame, time [s], object, centre of mass [m], its velocity [m/s]; where all
     particles are stored also spin [rad/s] and kinetic energy [J]; where `ContactForces` has them the force of contact [N].
@@ -82,6 +111,7 @@ class MotionTable:
         """Whether all particles are stored."""
         if self.whole:
             self.columns += ["wx", "wy", "wz", "kinetic"]
+            self._rigid = _RigidOnes(trajectory)
         self.forces = ContactForces(trajectory)
         if not self.forces.why:
             self.columns += ["contact_fx", "contact_fy", "contact_fz"]
@@ -92,7 +122,9 @@ class MotionTable:
         found = [t.centers[frame], t.center_velocities[frame]]
         if self.whole:
             x, v = t.position(frame), t.velocity(frame)
-            found += [spin(m.mass, m.first[:-1], x, v), kinetic(m.mass, m.first[:-1], v)[:, None]]
+            turning = spin(m.mass, m.first[:-1], x, v)
+            energy = self._rigid.kinetic(kinetic(m.mass, m.first[:-1], v), x, t.center_velocities[frame], turning)
+            found += [turning, energy[:, None]]
         if not self.forces.why:
             found.append(self.forces.since(frame))
         return np.hstack(found)[self.objects]
