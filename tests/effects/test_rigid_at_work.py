@@ -223,9 +223,8 @@ def test_parts_of_a_scene_have_the_largest_of_a_bound():
 def test_tables_have_the_energy_of_the_shape(tmp_path):
     """Kinetic energies of objects add up to that of the ledger, whichever way a rigid one is turned."""
     more = "orientation axis (1, 2, 3) angle 50 deg  spin (3, 1, -2)  velocity (1, 0, 0) m/s"
-    run = Scene.from_text(bar(more) + BLOCK.replace("density", "velocity (0, 0, 2) m/s density") + CONTROL, "two").run(
-        tmp_path / "o"
-    )
+    text = bar(more) + BLOCK.replace("density", "velocity (0, 0, 2) m/s density") + CONTROL
+    run = Scene.from_text(text, "two").run(tmp_path / "o")
     with run.trajectory as trajectory:
         table = MotionTable(trajectory, np.arange(2))
         column = table.columns.index("kinetic") - 3
