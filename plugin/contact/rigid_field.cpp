@@ -30,13 +30,15 @@ void RigidField::list(const FieldLists &with)
 {
   owner = &with.owner, host = &with.host;
   const ContactBody &body = *host->body;
-  const double reach = LOOKED_AT * body.spacing() + with.skin;
+  const double looked_at = LOOKED_AT * body.spacing();
+  // A point must be looked at before its normal matters.
   const auto distance = [&](const Vec3 &x) {
     const Vec3 X = to_material(x);
     const double out = outside(X);
-    return out > 0.0 || body.is_cuboid() ? out : -body.depth(0, X).value;
+    return (out > 0.0 || body.is_cuboid() ? out : -body.depth(0, X).value) - looked_at;
   };
-  list_points(with, with.host_zone->grown(reach), body.is_cuboid(), reach, TRUSTED * body.spacing(), distance);
+  const double reach = LatticeField::stands_out(*owner->body, body) + looked_at + with.skin;
+  list_points(with, with.host_zone->grown(reach), body.is_cuboid(), with.skin, TRUSTED * body.spacing(), distance);
 }
 
 bool RigidField::look_at(std::size_t q, const ContactArrays &arrays, bool may_begin)

@@ -77,3 +77,21 @@ def test_what_is_lost_is_found_where_cells_are_now():
 def test_contacts_begin_in_the_same_cells_whatever_is_known_of_points():
     """Coarse cells are bent so much that a point may be in one of them and beyond another one, at another depth."""
     assert film_of_crowd(0.06, 16) == film_of_crowd(0.06, 16, anew=7)
+
+
+def film_of_stairs(skins: float) -> list[bytes]:
+    """Frames of the cube that tumbles down held stairs, with so many times the usual skin."""
+    ready = prepare(replace(load_scene(SCENES / "stairs.txt"), expects=()))
+    film = []
+    with Instance(ready.plan) as instance:
+        instance.lammps.lmp.command(f"neighbor {skins * SKIN * ready.plan.spacing!r} bin")
+        instance.setup()
+        for _ in range(45):
+            instance.run(ready.certificate.steps_per_frame)
+            film.append(instance.array("x").tobytes())
+    return film
+
+
+def test_contacts_with_what_is_held_begin_in_the_same_steps_however_often_lists_are_made():
+    """The normal of a point is known before it comes to a side of the host."""
+    assert film_of_stairs(1.0) == film_of_stairs(0.4)
