@@ -130,14 +130,9 @@ void give_springs(LAMMPS *lmp, int springs, const int *pair, const int *type)
   bond->take(std::move(rows));
 }
 
-// This rank's value of bond_style mdanim/harmonic; 0 with another bond style.
-double of_bonds(void *handle, const char *what)
-{
-  Bond *bond = static_cast<LAMMPS *>(handle)->force->bond_match("mdanim/harmonic");
-  int dim = 0;
-  const void *value = bond ? bond->extract(what, dim) : nullptr;
-  return value ? *static_cast<const double *>(value) : 0.0;
-}
+// Null with another bond style.
+BondMdanimHarmonic *bond_of(void *handle)
+{ return dynamic_cast<BondMdanimHarmonic *>(static_cast<LAMMPS *>(handle)->force->bond_match("mdanim/harmonic")); }
 
 }    // namespace
 
@@ -166,14 +161,16 @@ MDANIM_EXPORT int mdanim_give_springs(void *handle, int springs, const int *pair
   return guarded(error, error_size, [&] { give_springs(static_cast<LAMMPS *>(handle), springs, pair, type); });
 }
 
-// Wall seconds that bond_style mdanim/harmonic has spent on this rank.
-MDANIM_EXPORT double mdanim_bond_seconds(void *handle)
+// Wall seconds that bond_style mdanim/harmonic has spent on this rank; 0 with another bond style.
+MDANIM_EXPORT double mdanim_bond_seconds(void *handle) noexcept
 {
-  return guarded(0.0, [=] { return of_bonds(handle, "seconds"); });
+  const BondMdanimHarmonic *bond = bond_of(handle);
+  return bond ? bond->wall_seconds() : 0.0;
 }
 
-// Energy that its dashpots have taken on this rank.
-MDANIM_EXPORT double mdanim_bond_lost(void *handle)
+// Energy that its dashpots have taken on this rank; 0 with another bond style.
+MDANIM_EXPORT double mdanim_bond_lost(void *handle) noexcept
 {
-  return guarded(0.0, [=] { return of_bonds(handle, "lost"); });
+  const BondMdanimHarmonic *bond = bond_of(handle);
+  return bond ? bond->lost() : 0.0;
 }

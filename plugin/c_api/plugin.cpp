@@ -27,6 +27,7 @@
 #include <cstdio>
 #include <iterator>
 #include <string>
+#include <type_traits>
 #include <utility>
 
 using namespace LAMMPS_NS;
@@ -34,43 +35,15 @@ using mdanim::PluginRecord;
 
 namespace {
 
-template <class Style> void *make_bond(void *lmp) { return new Style(static_cast<LAMMPS *>(lmp)); }
-
-void *make_run(void *lmp, int narg, char **arg) { return new VerletMdanim(static_cast<LAMMPS *>(lmp), narg, arg); }
-
-template <class Style> void *make_fix(void *lmp, int narg, char **arg)
-{ return new Style(static_cast<LAMMPS *>(lmp), narg, arg); }
-
-PluginRecord record(const char *kind, const char *name, const char *info)
-{ return {MDANIM_LAMMPS_DATE, kind, name, info, "mdanim-lammps", {}, nullptr}; }
-
-PluginRecord bond(const char *name, const char *info, void *(*creator)(void *) )
+template <class Style> PluginRecord style(const char *kind, const char *name, const char *info)
 {
-  PluginRecord row = record("bond", name, info);
-  row.creator.without_arguments = creator;
-  return row;
-}
-
-void *make_compute(void *lmp, int narg, char **arg) { return new ComputeMdanimTimestep(static_cast<LAMMPS *>(lmp), narg, arg); }
-
-PluginRecord compute(const char *name, const char *info, void *(*creator)(void *, int, char **) )
-{
-  PluginRecord row = record("compute", name, info);
-  row.creator.with_arguments = creator;
-  return row;
-}
-
-PluginRecord fix(const char *name, const char *info, void *(*creator)(void *, int, char **) )
-{
-  PluginRecord row = record("fix", name, info);
-  row.creator.with_arguments = creator;
-  return row;
-}
-
-PluginRecord run(const char *name, const char *info, void *(*creator)(void *, int, char **) )
-{
-  PluginRecord row = record("run", name, info);
-  row.creator.with_arguments = creator;
+  PluginRecord row{MDANIM_LAMMPS_DATE, kind, name, info, "mdanim-lammps", {}, nullptr};
+  if constexpr (std::is_constructible_v<Style, LAMMPS *>)
+    row.creator.without_arguments = [](void *lmp) -> void * { return new Style(static_cast<LAMMPS *>(lmp)); };
+  else
+    row.creator.with_arguments = [](void *lmp, int narg, char **arg) -> void * {
+      return new Style(static_cast<LAMMPS *>(lmp), narg, arg);
+    };
   return row;
 }
 
@@ -145,19 +118,19 @@ MDANIM_EXPORT void lammpsplugin_init(void *handle_of_lammps, void *handle, void 
   }
 
   PluginRecord styles[] = {
-      bond("mdanim/harmonic", "springs in gather form", &make_bond<BondMdanimHarmonic>),
-      compute("mdanim/timestep", "the largest stable time step", &make_compute),
-      fix("mdanim/leapfrog", "leap-frog with friction", &make_fix<FixMdanimLeapfrog>),
-      fix("mdanim/gravity", "m g on every particle", &make_fix<FixMdanimGravity>),
-      fix("mdanim/barrier", "a barrier between objects", &make_fix<FixMdanimBarrier>),
-      fix("mdanim/contact", "objects and planes touch, with friction", &make_fix<FixMdanimContact>),
-      fix("mdanim/liquid", "liquid that solids float and sink in", &make_fix<FixMdanimLiquid>),
-      fix("mdanim/rigid", "objects that do not deform", &make_fix<FixMdanimRigid>),
-      fix("mdanim/wall", "walls that withstand any impact", &make_fix<FixMdanimWall>),
-      run("verlet/mdanim", "verlet with springs, gravity and leap-frog in one pass", &make_run),
+      style<BondMdanimHarmonic>("bond", "mdanim/harmonic", "springs in gather form"),
+      style<ComputeMdanimTimestep>("compute", "mdanim/timestep", "the largest stable time step"),
+      style<FixMdanimLeapfrog>("fix", "mdanim/leapfrog", "leap-frog with friction"),
+      style<FixMdanimGravity>("fix", "mdanim/gravity", "m g on every particle"),
+      style<FixMdanimBarrier>("fix", "mdanim/barrier", "a barrier between objects"),
+      style<FixMdanimContact>("fix", "mdanim/contact", "objects and planes touch, with friction"),
+      style<FixMdanimLiquid>("fix", "mdanim/liquid", "liquid that solids float and sink in"),
+      style<FixMdanimRigid>("fix", "mdanim/rigid", "objects that do not deform"),
+      style<FixMdanimWall>("fix", "mdanim/wall", "walls that withstand any impact"),
+      style<VerletMdanim>("run", "verlet/mdanim", "verlet with springs, gravity and leap-frog in one pass"),
   };
-  for (PluginRecord &style : styles) {
-    style.handle = handle;
-    reinterpret_cast<mdanim::Register>(register_style)(&style, lmp);
+  for (PluginRecord &row : styles) {
+    row.handle = handle;
+    reinterpret_cast<mdanim::Register>(register_style)(&row, lmp);
   }
 }

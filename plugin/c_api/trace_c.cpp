@@ -30,19 +30,6 @@ FixMdanimLeapfrog *leapfrog(void *handle)
   return dynamic_cast<FixMdanimLeapfrog *>(found.front());
 }
 
-void start_trace(void *handle, int objects)
-{
-  const std::string why = leapfrog(handle)->start_trace(objects);
-  if (!why.empty()) throw std::runtime_error(why);
-}
-
-void look_every(void *handle, int steps)
-{
-  if (steps < 1)
-    throw std::runtime_error("a trace looks after every 1 or more steps, " + std::to_string(steps) + " are asked for");
-  leapfrog(handle)->look_every(steps);
-}
-
 void trace(void *handle, int objects, double *low, double *high)
 {
   const FixMdanimLeapfrog *fix = leapfrog(handle);
@@ -79,14 +66,20 @@ void top_speeds(void *handle, int objects, double *speed)
 // Returns 0, or 1 with a message in `error`.
 MDANIM_EXPORT int mdanim_trace_start(void *handle, int objects, char *error, int error_size)
 {
-  return guarded(error, error_size, [=] { start_trace(handle, objects); });
+  return guarded(error, error_size, [=] {
+    if (const std::string why = leapfrog(handle)->start_trace(objects); !why.empty()) throw std::runtime_error(why);
+  });
 }
 
 // Looks at particles only after every `steps` steps, until the next mdanim_trace_start. Boxes are then wider by the way of each
 // object's fastest particle in one step less. Returns 0, or 1 with a message in `error`.
 MDANIM_EXPORT int mdanim_trace_every(void *handle, int steps, char *error, int error_size)
 {
-  return guarded(error, error_size, [=] { look_every(handle, steps); });
+  return guarded(error, error_size, [=] {
+    if (steps < 1)
+      throw std::runtime_error("a trace looks after every 1 or more steps, " + std::to_string(steps) + " are asked for");
+    leapfrog(handle)->look_every(steps);
+  });
 }
 
 // Lowest and highest coordinates of the particles of each object since mdanim_trace_start; low, high (objects, 3). Coordinates

@@ -24,7 +24,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <utility>
 
 using namespace LAMMPS_NS;
@@ -248,15 +247,3 @@ void BondMdanimHarmonic::write_data(FILE *fp)
 
 double BondMdanimHarmonic::memory_usage()
 { return Bond::memory_usage() + static_cast<double>(rows.bytes() + loss.bytes() + law.capacity() * sizeof(SpringCoeffs)); }
-
-// For atoms_c.cpp: "seconds" and "lost" of this rank.
-void *BondMdanimHarmonic::extract(const char *what, int &dim)
-{
-  dim = 0;
-  if (strcmp(what, "seconds") == 0) return &seconds;
-  if (strcmp(what, "lost") == 0) {
-    lost = loss.total();
-    return &lost;
-  }
-  return nullptr;
-}

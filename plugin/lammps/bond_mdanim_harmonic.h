@@ -31,12 +31,13 @@ class BondMdanimHarmonic : public Bond, public mdanim::PassSprings {
   void write_data(FILE *) override;
   double single(int, double, int, int, double &) override;
   double memory_usage() override;
-  void *extract(const char *, int &) override;
 
   void take(mdanim::SpringRows &&upper_rows);    // see BondRows
 
   const std::vector<mdanim::Spring> &springs() const { return spring; }    // by bond type
   bool are_given() const { return rows.are_given(); }
+  double wall_seconds() const { return seconds; }    // of this rank, as the next
+  double lost() const { return loss.total(); }       // to dashpots
 
   bool halves(mdanim::HalfBonds &half) const override;
   const std::vector<mdanim::SpringCoeffs> &coeffs() const override { return law; }
@@ -65,7 +66,6 @@ class BondMdanimHarmonic : public Bond, public mdanim::PassSprings {
   mdanim::Threads threads;
 
   mdanim::Loss loss;    // to dashpots, on this rank
-  double lost = 0.0;    // when it was last asked for
   double seconds = 0.0;
 };
 

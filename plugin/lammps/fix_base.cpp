@@ -92,25 +92,10 @@ void FixBase::init()
   for (ParticleValue *value : values) value->init(lmp);
 }
 
-double FixBase::sum(double here) const
+double FixBase::reduced(double here, MPI_Op operation) const
 {
-  double all = 0.0;
-  MPI_Allreduce(&here, &all, 1, MPI_DOUBLE, MPI_SUM, world);
-  return all;
-}
-
-double FixBase::largest(double here) const
-{
-  double all = 0.0;
-  MPI_Allreduce(&here, &all, 1, MPI_DOUBLE, MPI_MAX, world);
-  return all;
-}
-
-double FixBase::least(double here) const
-{
-  double all = 0.0;
-  MPI_Allreduce(&here, &all, 1, MPI_DOUBLE, MPI_MIN, world);
-  return all;
+  MPI_Allreduce(MPI_IN_PLACE, &here, 1, MPI_DOUBLE, operation, world);
+  return here;
 }
 
 Output FixBase::clock()

@@ -8,6 +8,7 @@
 #include "lammps/particle_value.h"
 
 #include <functional>
+#include <mpi.h>
 #include <string>
 #include <vector>
 
@@ -51,15 +52,17 @@ class FixBase : public LAMMPS_NS::Fix {
   void look_up(std::vector<NamedGroup *> groups, std::vector<ParticleValue *> values);
   void tell(std::vector<Output> outputs);
 
-  // Sum over ranks.
-  double sum(double here) const;
-  double largest(double here) const;
-  double least(double here) const;
+  // Values of all ranks together.
+  double sum(double here) const { return reduced(here, MPI_SUM); }
+  double largest(double here) const { return reduced(here, MPI_MAX); }
+  double least(double here) const { return reduced(here, MPI_MIN); }
   // The clock of the fix, wall seconds of this rank, as the last output.
   Output clock();
   double seconds = 0.0;
 
  private:
+  double reduced(double here, MPI_Op operation) const;
+
   unsigned needs = 0;
   std::string missed;
   std::vector<NamedGroup *> groups;

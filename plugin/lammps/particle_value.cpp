@@ -12,11 +12,19 @@ using namespace LAMMPS_NS;
 
 namespace mdanim {
 
+// Index of a property of one floating-point number; -1 where there is none.
+static int find(const LAMMPS *lmp, const std::string &name)
+{
+  int is_double = 0, columns = 0;
+  const int found = lmp->atom->find_custom(name.c_str(), is_double, columns);
+  return is_double && columns == 0 ? found : -1;
+}
+
 ParticleValue::ParticleValue(LAMMPS *lmp, const char *what, int iarg, const char *word) : what(what)
 {
   if (utils::strmatch(word, "^d_")) {
     name = word + 2;
-    index = find(lmp);
+    index = find(lmp, name);
     if (index < 0)
       lmp->error->all(FLERR, iarg,
                       "{}: no per-particle property {} of floating-point numbers; make it with "
@@ -28,17 +36,10 @@ ParticleValue::ParticleValue(LAMMPS *lmp, const char *what, int iarg, const char
   if (!(number >= 0.0)) lmp->error->all(FLERR, iarg, "{} must be >= 0, got {}", what, word);
 }
 
-int ParticleValue::find(LAMMPS *lmp) const
-{
-  int is_double = 0, columns = 0;
-  const int found = lmp->atom->find_custom(name.c_str(), is_double, columns);
-  return is_double && columns == 0 ? found : -1;
-}
-
 void ParticleValue::init(LAMMPS *lmp)
 {
   if (constant()) return;
-  index = find(lmp);
+  index = find(lmp, name);
   if (index < 0) lmp->error->all(FLERR, "{}: the per-particle property d_{} has been removed", what, name);
   const double *value = values(lmp);
   for (int i = 0; i < lmp->atom->nlocal; ++i)
@@ -87,9 +88,8 @@ ParticleColumn::ParticleColumn(LAMMPS *lmp, const char *style, const char *keywo
 
 double *ParticleColumn::values(LAMMPS *lmp) const
 {
-  int is_double = 0, columns = 0;
-  const int index = lmp->atom->find_custom(name.c_str(), is_double, columns);
-  if (index < 0 || !is_double || columns)
+  const int index = find(lmp, name);
+  if (index < 0)
     lmp->error->all(FLERR,
                     "{}: {} names d_{}, which is not a per-particle property; make it with 'fix ID all property/atom d_{}'",
                     style, keyword, name, name);

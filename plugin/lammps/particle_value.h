@@ -23,7 +23,6 @@ class ParticleValue {
   double number = 0.0;
 
  private:
-  int find(LAMMPS_NS::LAMMPS *lmp) const;
   std::string what, name;
   int index = -1;
 };

@@ -228,6 +228,16 @@ void Occupancy::add_mass(const Vec3 &place, double mass, double softness, double
   give(x1, y1, u * v);
 }
 
+CellBox Occupancy::count_anew(const std::function<void(Occupancy &)> &add_bodies, const RankSums &ranks, const Threads &threads)
+{
+  CellBox before_or_now = touched;
+  clear(threads);
+  add_bodies(*this);
+  sum_over(ranks, threads);
+  before_or_now.take_in(touched);
+  return before_or_now;
+}
+
 void Occupancy::clear(const Threads &threads)
 {
   constexpr double CELL = 0.2;    // [ns], approximately

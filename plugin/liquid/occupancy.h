@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 namespace mdanim {
@@ -40,10 +41,10 @@ class Occupancy {
   // The paper's literal rule: the cell that holds a particle is full.
   void add_particle(const Vec3 &place);
 
-  // Clears all counts.
+  // Counts the bodies of all ranks anew, which `add` adds on each of them. Returns a box that has all cells with a count before
+  // or now. The result is the same on any number of ranks.
+  CellBox count_anew(const std::function<void(Occupancy &)> &add, const RankSums &ranks, const Threads &threads);
   void clear(const Threads &threads);
-  // Sums the counts of all ranks, on each of them. The result is the same on any number of ranks.
-  void sum_over(const RankSums &ranks, const Threads &threads);
 
   std::size_t number(int x, int y, int z) const { return (static_cast<std::size_t>(z) * ny + y) * nx + x; }
 
@@ -55,6 +56,7 @@ class Occupancy {
   double momentum_of(long column) const { return sum_of(column, 2); }    // upward
 
  private:
+  void sum_over(const RankSums &ranks, const Threads &threads);
   void add_all(const RankSums &ranks);
   void add(const Vec3 &place, int weight, CellBox &reached);
   void add_points(const Vec3 corner[8], CellBox &reached);

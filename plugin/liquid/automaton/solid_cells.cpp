@@ -12,11 +12,7 @@ SolidCells::SolidCells(int nx, int ny, int nz) : still(nx, ny, nz), mobile(nx, n
 
 long SolidCells::mark_still(const Add &add, const RankSums &ranks, const Threads &threads)
 {
-  CellBox box = still.touched;
-  still.clear(threads);
-  add(still);
-  still.sum_over(ranks, threads);
-  box.take_in(still.touched);
+  const CellBox box = still.count_anew(add, ranks, threads);
   long changed = 0;
   box.each([&](int x, int y, int z) {
     const std::size_t c = still.number(x, y, z);
@@ -30,11 +26,7 @@ long SolidCells::mark_still(const Add &add, const RankSums &ranks, const Threads
 
 void SolidCells::mark_moving(const Add &add, const RankSums &ranks, const Threads &threads)
 {
-  CellBox box = mobile.touched;
-  mobile.clear(threads);
-  add(mobile);
-  mobile.sum_over(ranks, threads);
-  box.take_in(mobile.touched);
+  const CellBox box = mobile.count_anew(add, ranks, threads);
   constexpr double CELL = 1.0;    // [ns], approximately
   std::atomic<long> moving{0};
   box.each_row(threads, CELL, [&](int y, int z) {

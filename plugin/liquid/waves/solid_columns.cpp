@@ -29,10 +29,8 @@ static std::uint16_t in_parts(std::int64_t count)
 
 bool SolidColumns::mark_still(const Basin::AddBodies &bodies, const RankSums &ranks, const Threads &threads, Waves &waves)
 {
-  marked.take_in(still.touched);
-  still.clear(threads);
-  bodies(still, std::numeric_limits<double>::infinity());
-  still.sum_over(ranks, threads);
+  constexpr double ANYWHERE = std::numeric_limits<double>::infinity();
+  marked.take_in(still.count_anew([&](Occupancy &into) { bodies(into, ANYWHERE); }, ranks, threads));
   std::uint64_t sum = NOTHING_STILL;
   still.touched.each([&](int x, int y, int z) {
     const std::size_t cell = still.number(x, y, z);
@@ -54,10 +52,7 @@ void SolidColumns::set_walls(Waves &waves) const
 void SolidColumns::mark_moving(const Basin::AddBodies &bodies, double below, double period, const RankSums &ranks,
                                const Threads &threads)
 {
-  marked.take_in(mobile.touched);
-  mobile.clear(threads);
-  bodies(mobile, below);
-  mobile.sum_over(ranks, threads);
+  marked.take_in(mobile.count_anew([&](Occupancy &into) { bodies(into, below); }, ranks, threads));
   find_parts(threads);
   find_masses(period, threads);
 }
@@ -68,8 +63,6 @@ void SolidColumns::find_parts(const Threads &threads)
 {
   constexpr double CELL = 1.5;    // [ns], approximately
   constexpr int BLOCK = 64;       // columns
-  marked.take_in(still.touched);
-  marked.take_in(mobile.touched);
   changed.take_in(marked);
   std::atomic<long> with_something{0};
   marked.each_y(threads, CELL, [&](int y) {
