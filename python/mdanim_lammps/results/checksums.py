@@ -21,7 +21,8 @@ def shifts(after: np.ndarray) -> np.ndarray:
     32)."""
     factor = np.full(len(after), 1 << 31, np.uint32)
     for bit in range(int(after.max(initial=0)).bit_length()):
-        factor = np.where(after >> bit & 1, _product(factor, _byte_shifts()[bit]), factor)
+        some = (after >> bit & 1).astype(bool)
+        factor[some] = _product(factor[some], _byte_shifts()[bit])
     return _multiples(factor)
 
 

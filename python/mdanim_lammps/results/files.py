@@ -53,18 +53,11 @@ claims: set[int] = set()
 
 SCRIPT = "# Written by mdanim-lammps"
 """Beginning of a line near the top of in.NAME."""
+INPUTS = ("in.", "data.", "contact.", "columns.")
+"""Beginnings of the names of files for ``lmp``; the scene's name follows."""
 RESULTS = (
-    *(
-        "scene.lock.txt",
-        "certificate.json",
-        "trajectory.h5",
-        "trajectory.h5.part",
-        "ledger.csv",
-        CHECKPOINT,
-        "cost.json",
-        SUMMARY,
-    ),
-    *("progress.jsonl", "timeline.json", "edited.txt", STOP, PAUSE, "log.lammps"),
+    *("scene.lock.txt", "certificate.json", "trajectory.h5", "trajectory.h5.part", "ledger.csv", CHECKPOINT, "cost.json"),
+    *(SUMMARY, "progress.jsonl", "timeline.json", "edited.txt", STOP, PAUSE, "log.lammps"),
 )
 """Files of every run."""
 PICTURES = ("trace.json", "movie.mp4", "report.html")
@@ -95,11 +88,7 @@ def _way_out(path: Path, error: OSError) -> str:
 
 def _is_of_a_run(name: str) -> bool:
     """Whether a run writes a file of this name, not what is made of a run: an export, a page, a picture."""
-    return (
-        name in (*RESULTS, MARK)
-        or name.startswith(("in.", "data.", "contact.", "columns.", "table."))
-        or bool(re.fullmatch(MESHES[1], name))
-    )
+    return name in (*RESULTS, MARK) or name.startswith((*INPUTS, "table.")) or bool(re.fullmatch(MESHES[1], name))
 
 
 @contextmanager
@@ -161,10 +150,8 @@ def _results(folder: Path) -> Iterator[Path]:
     for script in folder.glob("in.*"):
         if script.is_file() and _is_script(script):
             name = script.name.removeprefix("in.")
-            # Also the dump that `lmp` leaves of it: it would be taken for the dump of the new run.
-            yield from (
-                folder / own for own in (script.name, f"data.{name}", f"contact.{name}", f"columns.{name}", f"{name}.lammpstrj")
-            )
+            yield from (folder / f"{kind}{name}" for kind in INPUTS)
+            yield folder / f"{name}.lammpstrj"  # which `lmp` leaves: it would be taken for the dump of the new run
             yield from (table for table in folder.glob(f"table.*.{glob.escape(name)}") if table.is_file())
 
 

@@ -32,8 +32,8 @@ MOST_TEXT, MOST_TEXT_OF_OBJECT = 1 << 18, 1 << 12
 _QUOTED = re.compile(r'"[^"\n]*"|#[^\n]*')
 _UNFOLDS = re.compile(r"\b(repeat|include)\b")
 """Statements that a scene which is written out does not have."""
-
-
+DAMAGE = (LookupError, OSError, RuntimeError, ValueError, TypeError, AttributeError, MemoryError, ArithmeticError)
+"""Errors of HDF5 and of what reads its tables, where a file is damaged."""
 TRACKS = tuple(facet.Track for facet in facets("kept") if hasattr(facet, "Track"))
 """Classes of features with what they add to a `Trajectory`."""
 
@@ -256,17 +256,7 @@ class Trajectory(*TRACKS):  # type: ignore[misc]  # features are found when the 
         """Turn all that HDF5 says of a damaged file into OutputError."""
         try:
             yield
-        except (
-            KeyError,
-            OSError,
-            RuntimeError,
-            ValueError,
-            TypeError,
-            IndexError,
-            AttributeError,
-            MemoryError,
-            ArithmeticError,
-        ) as error:
+        except DAMAGE as error:
             raise OutputError(f"{self.path}: not a trajectory of mdanim-lammps, or damaged ({error})") from None
 
 

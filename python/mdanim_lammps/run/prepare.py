@@ -65,9 +65,6 @@ class Prepared:
         return lock_text(self.scene, mesh_files(self.scene))
 
 
-_WITHOUT = "leave one of both out, or write  effects { %s off }"
-
-
 def prepare(scene: SceneRecord, *, allow_unstable: bool = False) -> Prepared:
     """Build, check and certify a scene.
 
@@ -137,18 +134,15 @@ def _undriven(resolved: Resolved, models: Sequence[Model]) -> list[Problem]:
     for effect in resolved.effects:
         for m in effect.drives(resolved.scene):
             solid, name = resolved.scene.solids[m], resolved.scene.solids[m].name
-            place = solid.spans.get("hold", solid.spans.get("object"))
+            cause = ""
             if not models[m].held.any():
-                found.append(
-                    Problem(place, f"{effect.name} drives {name}, and nothing of it is held", "write what of it is held")
-                )
+                cause, way_out = f"{effect.name} drives {name}, and nothing of it is held", "write what of it is held"
             elif m in by:
-                found.append(Problem(place, f"{name} is driven by {by[m]} and by {effect.name}", "leave one of them out"))
+                cause, way_out = f"{name} is driven by {by[m]} and by {effect.name}", "leave one of them out"
             elif blind:
-                found.append(
-                    Problem(
-                        place, f"{name} is driven, and {blind} takes what is held for something that stands", _WITHOUT % blind
-                    )
-                )
+                cause = f"{name} is driven, and {blind} takes what is held for something that stands"
+                way_out = f"leave one of both out, or write  effects {{ {blind} off }}"
+            if cause:
+                found.append(Problem(solid.spans.get("hold", solid.spans.get("object")), cause, way_out))
             by[m] = effect.name
     return found

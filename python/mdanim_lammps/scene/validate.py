@@ -335,16 +335,13 @@ class Validator:
             else:
                 last = time
 
-    def known_object(self, name: str, span: Span) -> bool:
-        """Whether an object has this name; an unknown one is a problem."""
+    def known_object(self, name: str, span: Span, more: Iterable[str] = ()) -> bool:
+        """Whether an object has this name; an unknown one is a problem, whose way out may be one of ``more`` too."""
         if name in self.names or self.out.excused("object"):
             return name in self.names
-        self.unknown_object(name, self.names, span)
+        known = [*islice(self.names, 2000), *more]
+        self.problem(span, f"no object is called {name}", did_you_mean(name, known) if known else "the scene has no object")
         return False
-
-    def unknown_object(self, name: str, known: Iterable[str], span: Span) -> None:
-        hint = did_you_mean(name, [*islice(known, 2000)])
-        self.problem(span, f"no object is called {name}", hint if self.names else "the scene has no object")
 
     def known_body(self, name: str, span: Span) -> bool:
         """Whether a name of a contact block stands for something; an unknown one is a problem."""
@@ -362,7 +359,7 @@ class Validator:
             word, kind = found[0]
             self.problem(span, f"{name} is the {kind}; what objects touch is its {word}", f"write {word}")
         else:
-            self.unknown_object(name, self.named, span)
+            self.known_object(name, span, (repeat for repeat in islice(self.named, 2000) if repeat not in self.names))
         return False
 
     def expects(self, control: records.Control | None) -> tuple[records.Expect, ...]:
@@ -375,7 +372,7 @@ class Validator:
             subject = self.own_names.get(subject, subject)
         kind = subject if subject in GLOBALS else "NAME"
         known = [q for k, q in QUANTITIES if k == kind]
-        if kind == "NAME" and not self.known_subject(subject, s.span(0)):
+        if kind == "NAME" and not self.known_object(subject, s.span(0), (*self.own_names, *GLOBALS)):
             return None
         if (kind, quantity) not in QUANTITIES:
             self.problem(
@@ -417,21 +414,9 @@ class Validator:
 
     def known_other(self, subject: str, quantity: str, other: str, span: Span) -> bool:
         """Another object."""
-        if other in self.names and other != subject:
-            return True
-        if other == subject:
-            self.problem(span, f"the {quantity} of {subject} and itself is 0", "name another object")
-        elif not self.out.excused("object"):
-            self.problem(span, f"no object is called {other}", did_you_mean(other, list(self.names)[:2000]))
-        return False
-
-    def known_subject(self, subject: str, span: Span) -> bool:
-        """An object; or a word for the whole scene, mistyped."""
-        if subject in self.names:
-            return True
-        if not self.out.excused("object"):
-            hint = did_you_mean(subject, [*list(self.names)[:2000], *self.own_names, *GLOBALS])
-            self.problem(span, f"no object is called {subject}", hint)
+        if other != subject:
+            return self.known_object(other, span)
+        self.problem(span, f"the {quantity} of {subject} and itself is 0", "name another object")
         return False
 
 

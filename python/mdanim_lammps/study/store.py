@@ -17,6 +17,8 @@ from .measure import Sample
 from .setting import Setting
 
 FILE = "study.json"
+RUNS = ("seconds", "wall", "drift", "penetration", "found")
+"""Quantities of a point that each run has."""
 
 
 @dataclass
@@ -51,11 +53,8 @@ class Point:
     def add(self, sample: Sample) -> None:
         """Add one more run."""
         self.timestep, self.steps, self.particles = sample.timestep, sample.steps, sample.particles
-        self.seconds.append(sample.seconds)
-        self.wall.append(sample.wall)
-        self.drift.append(sample.drift)
-        self.penetration.append(sample.penetration)
-        self.found.append(sample.found)
+        for name in RUNS:
+            getattr(self, name).append(getattr(sample, name))
         self.tracks.append(sample.center)
 
 
@@ -101,12 +100,8 @@ class Store:
                 entry["timestep"] or math.nan,
                 entry["steps"],
                 entry["particles"],
-                values["seconds"],
-                values["wall"],
-                values["drift"],
-                values["penetration"],
-                [tuple(math.nan if x is None else x for x in f) for f in values["found"]],
                 problem=entry["problem"],
+                **values | {"found": [tuple(math.nan if x is None else x for x in f) for f in values["found"]]},
             )
             point.tracks = [self._load(f"{point.setting.key}-{k}") for k in range(len(point.seconds))]
             self.points[point.setting.key] = point
@@ -173,5 +168,5 @@ class Store:
             "steps": p.steps,
             "particles": p.particles,
             "problem": p.problem,
-            "runs": {"seconds": p.seconds, "wall": p.wall, "drift": p.drift, "penetration": p.penetration, "found": found},
+            "runs": {name: getattr(p, name) for name in RUNS} | {"found": found},
         }
