@@ -64,6 +64,16 @@ CASES = {
         POOL | {"h": 0.0288},
         {"ours": 1.0, "lammps_sph": 300.0},
     ),
+    "dominoes": (
+        "Nine rigid dominoes of 6 × 20 × 40 cm and a ball that pushes the first, four seconds",
+        {"time": 4.0},
+        {"ours": 1.0, "mujoco_rigid": None, "pybullet_rigid": None},
+    ),
+    "heap": (
+        "A thousand rigid boxes of 10 cm fall into a heap, the first second",
+        {"time": 1.0, "bodies": 1000},
+        {"ours": 1.0, "mujoco_rigid": 1.0, "mujoco_rigid, CG": 1.0, "pybullet_rigid": None},
+    ),
 }
 """Title, numbers of the scene, and contenders with the goal: how many times as much as ours they take. A contender is a file
 here, and which of its ways to do it if there are several."""

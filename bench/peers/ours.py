@@ -2,6 +2,7 @@
 """mdanim-lammps: ``ours.py SCENE JSON``; with a ``lattice`` it also leaves its particles and springs there for others to take."""
 
 import numpy as np
+import rigid_bodies
 from clock import run, tell, words
 
 SCENES = {
@@ -24,8 +25,43 @@ object box {{ shape box ({side}, {side}, {side}) m  position ({middle}, {middle}
 control {{ time {time} s  resolution {h} m }}
 """,
 }
+RIGID = """
+gravity (0, 0, -9.81)
+ground z 0
+{walls}
+{objects}
+control {{ time {time} s  friction {friction} }}
+"""
 AUTO = 0.5
 """Time step over the certified bound of ``timestep auto``."""
+
+
+def rigid_text(scene: str, case: dict) -> str:
+    """Text of a scene of rigid bodies."""
+    bodies, wall = rigid_bodies.SCENES[scene](case)
+    triple = lambda numbers: "(" + ", ".join(f"{float(x)!r}" for x in numbers) + ")"
+    objects = "".join(
+        f"object {b.name} {{ shape {'box ' + triple(b.size) if len(b.size) == 3 else f'sphere {b.size[0]}'} m  elasticity rigid\n"
+        f"  position {triple(b.position)} m  orientation axis {triple(b.axis)} angle {float(b.angle)!r} rad\n"
+        f"  density {b.density}  velocity ({b.speed}, 0, 0) m/s }}\n"
+        for b in bodies
+    )
+    walls = "" if wall is None else f"walls from ({-wall}, {-wall}, -1) m to ({wall}, {wall}, 100) m"
+    return RIGID.format(walls=walls, objects=objects, time=case["time"], friction=rigid_bodies.FRICTION)
+
+
+def overlap(scene: str, case: dict, system, position: np.ndarray) -> float:
+    """Largest overlap of rigid bodies over their smallest size, see rigid_bodies.deepest; positions of particles [m]."""
+    bodies, wall = rigid_bodies.SCENES[scene](case)
+    centre = system.center_of_mass(position)
+    turned = []
+    for m, (a, b) in enumerate(zip(system.first, system.first[1:])):
+        arm, was = position[a:b] - centre[m], system.position[a:b] - system.position[a:b].mean(axis=0)
+        u, _, v = np.linalg.svd(arm.T @ was)
+        turned.append(u @ np.diag((1.0, 1.0, np.linalg.det(u @ v))) @ v)
+    axis = np.array([b.axis for b in bodies])
+    start = rigid_bodies.rotations(axis, np.array([b.angle for b in bodies]))
+    return rigid_bodies.deepest(bodies, wall, centre, np.array(turned) @ start)
 
 
 def main() -> None:
@@ -36,7 +72,7 @@ def main() -> None:
     from mdanim_lammps.scene.parse import parse_scene
 
     scene, case = words()
-    text = SCENES[scene]
+    text = SCENES[scene] if scene in SCENES else rigid_text(scene, case).replace("{", "{{").replace("}", "}}")
     ready = prepare(parse_scene(text.format(**case, step="auto")))
     if case.get("fraction", AUTO) != AUTO:
         # As long as whole steps fit a frame: the next shorter step that does.
@@ -59,10 +95,15 @@ def main() -> None:
         chunk = ready.certificate.steps_per_frame
         start = instance.array("x").copy()
         found = run(instance.run, dt, case["time"], case["limit"], chunk)
-        moved = instance.array("x") - start
+        end = instance.array("x").copy()
+        moved = end - start
     figures = {"cells": plan.grid.cells} if plan.grid else {}
     if scene == "cantilever":
         figures["error"] = None if found["extrapolated"] else -np.average(moved[:, 2], weights=system.mass) / case["exact"] - 1.0
+    if scene in rigid_bodies.SCENES:
+        figures["note"] = f"overlap at the end {overlap(scene, case, system, end):.2g}"
+        tell(version=__version__, nodes=len(system.names), **found, **figures)
+        return
     tell(version=__version__, nodes=system.particles, **found, **figures)
 
 
