@@ -60,6 +60,7 @@ MISTAKES = [
     ("bracket too many", text(position="(0, 0, 1)) m"), 3, 21, "')' cannot follow here", "closes nothing"),
     ("missing operand", text(mass="2 + 3*"), 4, 14,
      "a number is missing after '*', found the end of the line", ""),
+    ("mod as a function", text(mass="mod(3, 2) kg"), 4, 8, "a number is expected here, found 'mod'", "k mod 2"),
     ("nothing", text(mass=""), 4, 3, "nothing follows mass", "e.g. mass 2 kg"),
     ("equals sign", text(mass="= 2 kg"), 4, 8, "no '=' is needed after mass", "e.g. mass 2 kg"),
     ("semicolon", text(mass="2 kg;"), 4, 12, "';' cannot follow here", "without ;"),

@@ -33,8 +33,9 @@ ODD = {
     ":": "leave it out",
     ";": "one setting per line, without ;",
     "%": "write a fraction",
+    "mod": "mod stands between two numbers: k mod 2",
 }
-"""Signs that the language does not have, and what to write instead."""
+"""Signs that the language does not have or that cannot begin a value, and what to write instead."""
 VALUE = ("NUMBER", "STRING")
 """Tokens that are values by themselves."""
 
