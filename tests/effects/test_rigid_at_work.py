@@ -12,6 +12,7 @@ from mdanim_lammps.errors import SceneError
 from mdanim_lammps.model.spin import spin
 from mdanim_lammps.results.motion import MotionTable
 from mdanim_lammps.run.energy import energies, tell
+from mdanim_lammps.run.prepare import prepare
 from mdanim_lammps.scene.parse import parse_scene
 
 BAR = """object bar {{
@@ -43,9 +44,12 @@ def run(ready, steps, start=None):
 
 
 def test_it_has_few_particles_without_springs_and_sets_no_spacing(prepared):
-    """Two cells across; a soft object has the spacing that it has alone, and the rigid one none that is coarser."""
+    """Eight where features are all that acts, else two cells across; a soft object has the spacing that it has alone, and the
+    rigid one none that is coarser."""
     alone = prepared(bar() + CONTROL)
-    assert alone.system.particles == 3 * 5 * 7 and not len(alone.system.spring) and alone.system.rigid.all()
+    assert alone.system.particles == 8 and not len(alone.system.spring) and alone.system.rigid.all()
+    ring = "object ring { shape torus 10 cm 3 cm position (3, 0, 3) m density 500 elasticity rigid }\n"
+    assert np.diff(prepared(bar() + ring + CONTROL).system.first)[0] == 3 * 5 * 7
     card = "object card { shape box (20, 20, 0.4) cm position (0, 0, 3) m density 500 elasticity rigid }\n"
     ready = prepared(BLOCK + card + CONTROL)
     assert ready.context.spacing.h == prepared(BLOCK + CONTROL).context.spacing.h == pytest.approx(0.05)
@@ -230,3 +234,28 @@ def test_tables_have_the_energy_of_the_shape(tmp_path):
         column = table.columns.index("kinetic") - 3
         found = [table.numbers(frame)[:, column].sum() for frame in range(len(trajectory))]
     np.testing.assert_allclose(found, run.ledger.array("kinetic"), rtol=1e-9)
+
+
+def test_eight_particles_move_as_many_do(prepared):
+    """A box that falls, turned, on another one: the same forces, whether particles are two cells apart or at corners alone."""
+    text = "gravity (0, 0, -9.81) m/s^2\nground z 0 m\n" + bar("orientation axis (1, 1, 0) angle 20 deg").replace(
+        "0, 0, 1", "0, 0, 0.6"
+    )
+    text += bar().replace("bar", "under").replace("0, 0, 1", "0, 0, 0.15")
+    ring = "object ring { shape torus 20 cm 6 cm position (9, 0, 0.06) m density 500 elasticity rigid }\n"
+    control = "control { time 0.25 s  friction 0.5  timestep 0.05 ms }\n"
+    few, many = prepared(text + control), prepared(text + ring + control)
+    assert np.diff(few.system.first).tolist() == [8, 8] and np.diff(many.system.first)[:2].tolist() == [105, 105]
+    ends = []
+    for ready in (few, many):
+        x, v, *_ = run(ready, ready.certificate.steps)
+        ends.append([ready.system.center_of_mass(x)[:2], ready.system.center_of_mass(v)[:2]])
+    np.testing.assert_allclose(ends[0], ends[1], atol=1e-3)
+
+
+def test_planks_that_cross_are_seen():
+    """Of two that are in each other no corner and no middle is in the other."""
+    plank = "object {name} {{ shape box ({size}) cm position ({x}, 0, 0) m density 500 elasticity rigid }}\n"
+    text = plank.format(name="a", size="100, 4, 4", x=0.2) + plank.format(name="b", size="4, 100, 4", x=0) + CONTROL
+    with pytest.raises(SceneError, match="b starts inside a"):
+        prepare(parse_scene(text))

@@ -3,9 +3,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Container, Sequence
+import math
+from collections.abc import Callable, Container, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache, singledispatch
+from typing import Any
 
 import numpy as np
 
@@ -39,7 +41,7 @@ def build_models(scene: SceneRecord, h: float | Sequence[float] | None = None, d
     apart at this spacing, a ``hold`` without particles.
     """
     spacing = np.broadcast_to(plan_spacing(scene).of if h is None else h, len(scene.solids)).tolist()
-    shared = SharedParts()
+    shared = SharedParts(scene)
     models, problems = [], []
     for m, solid in enumerate(scene.solids):
         try:
@@ -87,9 +89,18 @@ class _Material:
 class SharedParts:
     """Makes every body and material of one scene once; lives as long as one call of build_models (bodies.Shared)."""
 
-    def __init__(self):
+    def __init__(self, scene: SceneRecord):
+        self.scene = scene
+        self._made: dict[tuple, Any] = {}
         self.body = lru_cache(maxsize=None)(_make_body)
         self.material = lru_cache(maxsize=None)(_make_material)
+
+    def once(self, make: Callable, *of):
+        """make(self, *of), made when it is first asked for."""
+        key = (make, *of)
+        if key not in self._made:
+            self._made[key] = make(self, *of)
+        return self._made[key]
 
 
 def _make_body(shape: Shape, h: float) -> _Body:
@@ -124,6 +135,33 @@ def _freeze(*arrays: np.ndarray) -> None:
 
 
 # --- one object ---------------------------------------------------------------------------------------------
+
+
+def single_cell_model(solid: Solid, h: float, shared: SharedParts) -> Model:
+    """The model of a cuboid or a ball that does not deform and whose contact is found elsewhere: eight particles at the corners
+    of the box around it, which say where it is. It counts as resolved with h [m]."""
+    body = shared.body(solid.shape, math.inf)
+    mass, edge = shapes.mass(solid), body.lattice.cells.edge
+    cell = edge / np.maximum(1.0, np.rint(edge / h))
+    arm = _rotated(solid, body.lattice.position)
+    return Model(
+        name=solid.name,
+        position=arm + solid.position,
+        velocity=solid.velocity + np.cross(solid.spin, arm),
+        mass=np.full(8, mass / 8.0),
+        share=np.full(8, shapes.volume(solid.shape) / (8.0 * cell.prod())),
+        layer=body.lattice.layer,
+        held=np.zeros(8, bool),
+        spring=body.lattice.spring[:0],
+        spring_type=np.zeros(0, np.uint8),
+        constants=np.zeros((0, 3)),
+        young=equivalent_modulus(cell, solid.elasticity),
+        inertia_error=0.0,
+        hexahedron=body.lattice.hexahedron,
+        cell=tuple(cell.tolist()),
+        surface=body.surface,
+        frame=body.frame,
+    )
 
 
 def lattice_model(solid: Solid, h: float, shared: SharedParts, *, loose: bool = False) -> Model:

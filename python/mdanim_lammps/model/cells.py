@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from itertools import product
-from math import ceil
+from math import ceil, inf
 
 import numpy as np
 
@@ -19,7 +19,12 @@ class TooThin(Exception):
 
 
 def fill_cells(shape: Shape, spacing: float) -> Cells:
-    """Cells of about this spacing [m] that a shape fills, body frame. Raises TooThin, mesh.MeshError."""
+    """Cells of about this spacing [m] that a shape fills, body frame; an infinite one asks for one cell, the box around it.
+
+    Raises TooThin, mesh.MeshError.
+    """
+    if spacing == inf:
+        return Cells(np.ones((1, 1, 1), bool), *shapes.extent(shape))
     if isinstance(shape, Box):
         return _box_cells(shape, box_counts(shape.size, spacing))
     return _voxels(shape, spacing)

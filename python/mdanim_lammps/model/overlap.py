@@ -90,9 +90,21 @@ class _BoundingBoxes:
         """Gap between the boxes of two bodies at which contact has no energy [m]."""
         return self.contact.clearance(self.models[i], self.models[j]) if self.contact else 0.0
 
-    def cells(self, i: int) -> np.ndarray:
-        """Centres of the cells of one body [m], shape (C, 3)."""
+    def resolved(self, i: int) -> int:
+        """Cells of one body, as it is resolved."""
         model = self.models[i]
+        one = len(model.hexahedron) == 1
+        return int(np.rint(model.frame.cells.edge / model.cell).prod()) if one else len(model.hexahedron)
+
+    def cells(self, i: int) -> np.ndarray:
+        """Centres of the cells of one body [m], shape (C, 3), as it is resolved."""
+        model = self.models[i]
+        if len(model.hexahedron) == 1:
+            cells, corner = model.frame.cells, model.position[model.hexahedron[0, [0, 1, 3, 4]]]
+            parts = [(np.arange(n) + 0.5) / n for n in np.rint(cells.edge / model.cell).astype(int)]
+            t = np.stack(np.meshgrid(*parts, indexing="ij"), axis=-1).reshape(-1, 3)
+            t = t[shapes.contains(model.frame.shape, cells.low + t * cells.edge)]
+            return corner[0] + t @ (corner[1:] - corner[0])
         return (model.position[model.hexahedron[:, 0]] + model.position[model.hexahedron[:, 6]]) / 2
 
 
@@ -162,7 +174,7 @@ def _pair(scene: SceneRecord, bodies: _BoundingBoxes, planes: tuple[Plane, ...],
     # Vertices of the true surfaces find most overlaps; two bars that cross share no vertex but the centres of
     # cells. The cells of the smaller body are enough, so the cells of a large floor are not searched for
     # every pebble.
-    small, large = (i, j) if len(bodies.models[i].hexahedron) <= len(bodies.models[j].hexahedron) else (j, i)
+    small, large = (i, j) if bodies.resolved(i) <= bodies.resolved(j) else (j, i)
     cells = bodies.cells(small)
 
     def deepest(moved: np.ndarray) -> float:

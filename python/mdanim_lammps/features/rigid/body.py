@@ -6,10 +6,14 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
+import numpy as np
+
 from ...bodies import BodyKind, all_held, kind_of
 from ...model import shapes
-from ...model.build import lattice_model
+from ...model.boxes import box_pairs
+from ...model.build import lattice_model, single_cell_model
 from ...model.inertia import tensor
+from .shapes import ON_OBJECTS
 from .words import Rigid
 
 ACROSS = 2
@@ -37,8 +41,24 @@ class RigidBody(BodyKind):
         return lambda solid: min(finest, shapes.thickness(solid.shape) / ACROSS)
 
     def make(self, solid, h, shared):
-        model = lattice_model(solid, h, shared, loose=True)
+        if not all_held(solid) and shared.once(only_features):
+            model = single_cell_model(solid, h, shared)
+        else:
+            model = lattice_model(solid, h, shared, loose=True)
         return model if all_held(solid) else replace(model, inertia=tensor(solid.shape, shapes.mass(solid), solid.rotation))
+
+
+def only_features(shared) -> bool:
+    """Whether all contacts of rigid objects in a scene are of shapes that know each other by their features, so that nothing
+    reads points of their surfaces, nor particles inside. Held cuboids in touch have sides that are covered, and none."""
+    scene, solids = shared.scene, shared.scene.solids
+    if scene.liquid is not None or not all(isinstance(s.shape, ON_OBJECTS) for s in solids) or any(map(is_soft, solids)):
+        return False
+    held = [s for s in solids if all_held(s)]
+    half = [np.abs(np.array(s.rotation)) @ shapes.extent(s.shape)[1] for s in held]
+    apart = 1e-3 * min((float(h.min()) for h in half), default=0.0)
+    low, high = (np.array([np.array(s.position) + sign * (h + apart) for s, h in zip(held, half)]) for sign in (-1, 1))
+    return len(held) < 2 or next(iter(box_pairs(low, high)), None) is None
 
 
 def is_soft(solid) -> bool:

@@ -25,6 +25,7 @@ from ...scene.scene import Box, Cone, Cylinder, Ellipsoid, Solid, Sphere
 from ..contact.pairs import damping, frictions
 from ..contact.restitution import damping_for
 from ..contact.rigid_surfaces import frequency
+from .shapes import ON_OBJECTS, ON_PLANES
 
 ONSET = 0.005
 """Depth up to which a contact begins gently, over the thinnest part."""
@@ -36,10 +37,6 @@ STEP = 0.35
 
 FIXES = ("rigid", "rigid_rest")
 """Fixes of what touches objects by its features, and of all else."""
-ON_OBJECTS = (Box, Sphere)
-"""Shapes whose features the fix knows on each other."""
-ON_PLANES = (*ON_OBJECTS, Cylinder, Cone, Ellipsoid)
-"""Shapes whose features it knows on planes."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
