@@ -136,7 +136,7 @@ void RigidParticles::fix_places(const std::vector<RigidBody> &bodies)
 void RigidParticles::put(const std::vector<RigidBody> &bodies, bool places) const
 {
   for (int i = 0; i < atom->nlocal; ++i) {
-    if (of_particle[i] == ObjectTable::NONE) continue;
+    if (of_particle[i] == ObjectTable::NONE || !moves(i)) continue;    // it may have left the group since the last lists
     const RigidBody &body = bodies[of_particle[i]];
     const Vec3 from_centre = body.turn * own(i), place = body.centre + from_centre, v = body.velocity_at(from_centre);
     if (places) atom->x[i][0] = place.x, atom->x[i][1] = place.y, atom->x[i][2] = place.z;

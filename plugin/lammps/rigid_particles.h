@@ -25,7 +25,7 @@ namespace mdanim {
 
 class RigidParticles : protected LAMMPS_NS::Pointers {
  public:
-  // Of the objects of the group of a fix.
+  // Takes the objects of the group of a fix.
   RigidParticles(LAMMPS_NS::LAMMPS *lmp, const LAMMPS_NS::Fix &fix);
   ~RigidParticles() override;
   RigidParticles(const RigidParticles &) = delete;

@@ -69,7 +69,7 @@ std::map<int, GivenShape> read_shapes(const std::string &name, const std::string
     const Vec3 axis = words.vector("the rotation");
     q.x = axis.x, q.y = axis.y, q.z = axis.z;
     if (std::fabs((q.w * q.w + q.x * q.x) + (q.y * q.y + q.z * q.z) - 1.0) > 1e-6)
-      words.fail("the rotation is no unit quaternion");
+      words.fail("the rotation is not a unit quaternion");
     q = unit(q);
     one.shape = read_shape(words);
     words.expect_end();

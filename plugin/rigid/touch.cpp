@@ -36,10 +36,22 @@ void TouchStep::let_go(Touch &touch, double depth, double part) const
   end(touch, depth);
 }
 
-// The force F of a step does the work F (d' - d_)/2, d_ and d' being the depths of the step before and of the next one; so halves
-// of it belong to the ways to d and from it. On a way over the surface the spring acts for a part of it only, with the energy U
-// at its end: half of F is replaced by U/(d - d_), and by U/(d - d') where the contact will have ended by the next step, as far
-// as its speed now tells.
+// Energy over the way from depth a to b, less the mean of the forces at both ends: 0 where the spring is linear.
+static double more_force(double a, double b, double onset)
+{
+  constexpr double SMALL = 1e-4;    // way over the onset on which both are the same
+  if (std::fabs(b - a) < SMALL * onset || std::min(a, b) >= onset) return 0.0;
+  const Onset<double> at_a(a, onset), at_b(b, onset);
+  return (at_b.value - at_a.value) / (b - a) - 0.5 * (at_a.slope + at_b.slope);
+}
+
+// A force acts over the mean of the ways before and after it: the way over that mean, where the other one goes on in the same
+// sense.
+static double share_of(double way, double other) { return 2.0 * way / (way + std::max(other, 0.0)); }
+
+// The force F of a step does the work F (d' - d_)/2, d_ and d' being the depths of the step before and of the next one. Summed
+// over steps this is the mean of the forces at both ends of each way, times the way: too much where a contact begins or ends, and
+// in its onset. The deeper end of a way has the force that is missing or too much. d' is where speed and force lead to.
 ContactForce<double> TouchStep::pressure(Touch &touch, const ContactLaw &law, double part, double depth) const
 {
   const double before = touch.memory.depth;
@@ -47,10 +59,9 @@ ContactForce<double> TouchStep::pressure(Touch &touch, const ContactLaw &law, do
   if (is_first()) return force;
   const double now = depth - touch.memory.offset, last = before - touch.memory.offset,
                next = 2.0 * now - last - dt * dt * touch.yields * force.press;
-  if (last >= 0.0 && next >= 0.0) return force;
-  const double half = 0.5 * touch.stiffness * part * Onset<double>(now, onset).slope, energy = part * force.surface_energy;
-  if (last < 0.0) force.press += energy / (now - last) - half;
-  if (next < 0.0) force.press += energy / (now - next) - half;
+  const double k = touch.stiffness * part, came = now - last, goes = now - next;
+  if (came > 0.0) force.press += k * share_of(came, -goes) * more_force(last, now, onset);
+  if (goes > 0.0) force.press += k * share_of(goes, -came) * more_force(now, next, onset);
   if (force.press < 0.0) {    // a dashpot never pulls
     touch.memory.damping -= force.press;
     force.damped -= 0.5 * force.press * (depth - before);

@@ -96,7 +96,7 @@ struct EdgeCrossing {
   double cosine, square;    // of the angle between them, and of its sine
   double s, r;
   Vec3 n;
-  double cone = 0.0;    // least of what n leads out of the four faces; below 0 where it is no normal of the edges
+  double cone = 0.0;    // least of what n leads out of the four faces; below 0 where it is not a normal of the edges
   double outward = 0.0;
   double depth = 0.0;
 

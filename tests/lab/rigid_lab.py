@@ -59,7 +59,7 @@ class Rigid:
     beta: float = 0.3
     held: bool = False
     offset: float = 0.0
-    """Of the origin of the shape from the centre of mass, along the third axis."""
+    """How far the origin of the shape is from the centre of mass, along the third axis."""
 
     def put(self, at=None, q=None, **more) -> Rigid:
         """The same body elsewhere, or with other values."""

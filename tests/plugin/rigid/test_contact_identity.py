@@ -117,7 +117,7 @@ def test_a_body_that_is_laid_aside_touches_nothing(tmp_path):
         height = world.rows()[1, 2]
         assert world.number("touching") == 12  # corners at the floor, of each box in the other
         tag, mask = (world.lmp.numpy.extract_atom(name)[:16] for name in ("id", "mask"))
-        mask[tag <= 8] = 1
+        mask[tag <= 8] = 0  # in no group, not even in all
         world.lmp.numpy.extract_atom("x")[:16][tag <= 8] += (0, 2.0, 0)  # more than the skin: lists are made anew
         world.run(200)
         time = 200 * world.dt
@@ -162,7 +162,7 @@ BOX = "free 0 0 0.05 1 0 0 0 box 0.1 0.1 0.1"
         ("shapes FILE contact 1 1 objects pair 1 5 0 0", f"1 0 0 {BOX}", "pair names molecule 5, which has no shape"),
         ("shapes FILE contact 1 1 objects", f"1 -1 0 {BOX}", "line 1 of FILE: friction must be at least 0"),
         ("shapes FILE contact 1 1 objects", "\n1 0 0 loose", "line 2 of FILE: a body is free or held, got loose"),
-        ("shapes FILE contact 1 1 objects", "1 0 0 free 0 0 0 1 1 0 0 box 1 1 1", "the rotation is no unit quaternion"),
+        ("shapes FILE contact 1 1 objects", "1 0 0 free 0 0 0 1 1 0 0 box 1 1 1", "the rotation is not a unit quaternion"),
         ("shapes FILE contact 1 1 objects", "1 0 0 free 0 0 0 1 0 0 0 box 1 1", "line 1 of FILE: a side is missing"),
         ("shapes FILE contact 1 1 objects", "1 0 0 free 0 0 0 1 0 0 0 torus 1 1", "cone, ellipsoid or polyhedron, got torus"),
         ("shapes FILE contact 1 1 objects", f"1 0 0 {BOX} 3", "there is more than belongs to it, from 3 on"),

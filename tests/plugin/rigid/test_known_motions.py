@@ -81,9 +81,11 @@ def test_what_falls_on_a_plane_keeps_its_energy(tmp_path, body, mu):
         for _ in range(20):
             world.run(round(0.05 / world.dt))
             lowest = min(lowest, world.rows()[:, 2].min())
-            # The energy of whole steps swings by up to (dt frequency)^2/8 of what is in contacts; a blow of nine steps errs by
-            # up to 2e-2 of its energy, either way, from the steps in which it begins and ends.
-            assert world.energy() == pytest.approx(start, abs=0.02 * world.number("contact") + 8e-3 * start)
+            # The energy of whole steps swings by up to (dt frequency)^2/8 of what is in contacts. Without friction a blow errs by
+            # 7e-4 at most; with it, and no dashpot, springs that stick go on to swing at steps of a ninth of a blow. The four
+            # points of a cone's rim trade places where its base is nearly level.
+            most = 1e-3 if mu == 0.0 and body is not CONE else 6e-3
+            assert world.energy() == pytest.approx(start, abs=0.02 * world.number("contact") + most * start)
         assert 0.0 < lowest < 0.1 and (mu == 0.0) == (world.number("friction_heat") == 0.0)
 
 
@@ -168,8 +170,8 @@ RESTING = {
 @pytest.mark.parametrize("case", RESTING)
 @pytest.mark.parametrize("e", [1.0, 0.8, 0.5])
 def test_restitution(tmp_path, case, e):
-    """Of the speed at which the point closes that meets the floor: on faces, edges, in corners; of balls. The mean of five bodies
-    that meet it at other times within a step: a blow takes nine steps, and the dashpot lags by half of one."""
+    """Over the speed at which the point closes that meets the floor: on faces, edges, in corners; of balls. The mean of five
+    bodies that meet it at other times within a step: a blow takes nine steps, and the dashpot lags by half of one."""
     body, low = RESTING[case]
     corners = lab.SIGNS * body.spread @ lab.matrix(body.q).T
     arm = corners[np.argmin(corners[:, 2])] if isinstance(low, str) else np.array(low or (0, 0, -0.05))
@@ -185,6 +187,24 @@ def test_restitution(tmp_path, case, e):
         assert world.number("touching") == 0 and world.number("deepest") > 0.0
         after = [(row[3:6] + np.cross(row[10:], arm))[2] for row in world.rows()]
     assert np.mean(after) == pytest.approx(e, abs=0.06)
+
+
+@pytest.mark.parametrize("beta", [0.0, 0.1, 0.3])
+def test_the_books_of_a_blow_close(tmp_path, beta):
+    """Whenever within a step it begins: 7e-4 of its energy at 0.35/frequency, a tenth of it at half of that."""
+    for step, most in ((0.35, 7e-4), (0.175, 7e-5)):
+        frequency = lab.frequency_of(1.0, 0.1)
+        balls = [
+            lab.ball(0.05, at=(n, 0, 0.05 + (5 + n / 8) * step / frequency), v=(0, 0, -1), mu=0.0, beta=beta) for n in range(8)
+        ]
+        kinetic = 0.5 * balls[0].mass
+        with lab.World(tmp_path, balls, frequency=frequency, gravity=(0, 0, 0), step=step) as world:
+            world.run(60)
+            assert world.number("touching") == 0 and world.number("deepest") > 0.0
+            assert abs(world.energy(0.0) - 8 * kinetic) < most * 8 * kinetic
+            after = 0.5 * balls[0].mass * world.rows()[:, 5] ** 2
+            if beta == 0.0:
+                assert np.abs(after / kinetic - 1.0).max() < most
 
 
 @pytest.mark.parametrize("many", [1, 2])
