@@ -1,0 +1,180 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Rigid bodies in touch, naively: boxes and balls on the floor z = 0, balls on balls; docs/fix_mdanim_rigid.md.
+
+Rotations are matrices, and a free rotation takes many small steps of Euler's equations by Runge and Kutta, so nothing of it is
+that of the plugin.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+STICK = 0.8
+
+
+def rotated_freely(turn: np.ndarray, angular: np.ndarray, moments: np.ndarray, dt: float, parts: int = 4) -> np.ndarray:
+    """Axes of a body, the columns, after dt with its angular momentum in space, shape (3, 3)."""
+
+    def rate(axes):
+        return np.cross(axes @ (axes.T @ angular / moments), axes.T).T
+
+    h = dt / parts
+    for _ in range(parts):
+        a = rate(turn)
+        b = rate(turn + 0.5 * h * a)
+        c = rate(turn + 0.5 * h * b)
+        d = rate(turn + h * c)
+        turn = turn + h / 6.0 * (a + 2.0 * b + 2.0 * c + d)
+        u, _, v = np.linalg.svd(turn)
+        turn = u @ v
+    return turn
+
+
+@dataclass
+class TwinBody:
+    """One body; points of a box are its corners."""
+
+    mass: float
+    moments: np.ndarray
+    x: np.ndarray
+    v: np.ndarray
+    turn: np.ndarray
+    angular: np.ndarray
+    points: np.ndarray
+    """Corners in the body, shape (P, 3); one at the centre of a ball."""
+    radius: float
+    mu: float
+    beta: float
+    yields: float = 0.0
+    force: np.ndarray = field(default_factory=lambda: np.zeros(3))
+    torque: np.ndarray = field(default_factory=lambda: np.zeros(3))
+
+    def spin(self) -> np.ndarray:
+        """Angular velocity in space."""
+        return self.turn @ (self.turn.T @ self.angular / self.moments)
+
+    def velocity(self, at: np.ndarray) -> np.ndarray:
+        """Velocity of the point at this place."""
+        return self.v + np.cross(self.spin(), at - self.x)
+
+    def mobility(self, at: np.ndarray, n: np.ndarray) -> float:
+        """1/m + (r x n) I^-1 (r x n)."""
+        t = self.turn.T @ np.cross(at - self.x, n)
+        return 1.0 / self.mass + (t**2 / self.moments).sum()
+
+    def push(self, at: np.ndarray, force: np.ndarray) -> None:
+        """Adds a force that acts at a place."""
+        self.force = self.force + force
+        self.torque = self.torque + np.cross(at - self.x, force)
+
+
+@dataclass
+class TwinTouch:
+    """What a contact remembers."""
+
+    k: float
+    eta: float
+    mobility: float
+    depth: float
+    away: np.ndarray
+    """From the anchor to the point."""
+    pull: np.ndarray
+    at: np.ndarray
+
+
+class TwinWorld:
+    """Bodies that step by step follow the law."""
+
+    def __init__(self, bodies: list[TwinBody], frequency: float, onset: float, gravity, dt: float):
+        self.bodies, self.frequency, self.onset, self.dt = bodies, frequency, onset, dt
+        self.gravity = np.asarray(gravity, float)
+        self.touches: dict[tuple, TwinTouch] = {}
+        self._forces(0.0)
+
+    def energy_and_force(self, depth: float) -> tuple[float, float]:
+        """g and its slope."""
+        if depth <= 0.0:
+            return 0.0, 0.0
+        if depth < self.onset:
+            return depth**3 / (6.0 * self.onset), depth**2 / (2.0 * self.onset)
+        return (depth - self.onset / 2.0) ** 2 / 2.0 + self.onset**2 / 24.0, depth - self.onset / 2.0
+
+    def _more(self, a: float, b: float) -> float:
+        if abs(b - a) < 1e-4 * self.onset or min(a, b) >= self.onset:
+            return 0.0
+        (ga, sa), (gb, sb) = self.energy_and_force(a), self.energy_and_force(b)
+        return (gb - ga) / (b - a) - 0.5 * (sa + sb)
+
+    def _touch(self, key, a: TwinBody, b: TwinBody | None, at, n, depth: float, dt: float) -> None:
+        touch = self.touches.get(key)
+        if depth <= 0.0:
+            self.touches.pop(key, None)
+            return
+        way = a.velocity(at) - (b.velocity(at) if b else 0.0)
+        mu = np.sqrt(a.mu * b.mu) if b else a.mu
+        if touch is None:
+            mobility = a.mobility(at, n) + (b.mobility(at, n) if b else 0.0)
+            k = self.frequency**2 / (a.yields + (b.yields if b else 0.0))
+            beta = max(a.beta, b.beta) if b else a.beta
+            eta = 2.0 * beta * np.sqrt(k / mobility)
+            touch = TwinTouch(k, eta, mobility, min(0.0, depth + dt * way @ n), np.zeros(3), np.zeros(3), at)
+            self.touches[key] = touch
+        last, now, k = touch.depth, depth, touch.k
+        press = k * self.energy_and_force(now)[1]
+        dash = max(touch.eta * (now - last) / dt, -press)
+        following = 2.0 * now - last - dt * dt * touch.mobility * (press + dash)
+        came, goes = now - last, now - following
+        press += dash
+        if came > 0.0:
+            press += k * 2.0 * came / (came + max(-goes, 0.0)) * self._more(last, now)
+        if goes > 0.0:
+            press += k * 2.0 * goes / (goes + max(-came, 0.0)) * self._more(now, following)
+        press = max(press, 0.0)
+        touch.depth = now
+        force = press * n
+        if mu > 0.0:
+            stick, before = STICK * k, touch.away
+            # A corner stays the same point; the point of a ball moves over it, so the ways of both materials are added up.
+            away = before + (at - touch.at if a.radius == 0.0 else dt * way)
+            away = away - (away @ n) * n
+            pull, more = stick * np.linalg.norm(away), away + touch.pull / stick
+            slips = pull > mu * press
+            left = away * (mu * press / pull) if slips else away
+            drag = np.zeros(3) if slips else -touch.eta * np.sqrt(STICK) / dt * (more - (more @ n) * n)
+            force = force - stick * left + drag
+            touch.away, touch.pull, touch.at = left, -stick * left, at
+        a.push(at, force)
+        if b:
+            b.push(at, -force)
+
+    def _forces(self, dt: float) -> None:
+        up = np.array([0.0, 0.0, 1.0])
+        for body in self.bodies:
+            body.force, body.torque = body.mass * self.gravity, np.zeros(3)
+        if dt == 0.0:
+            return  # nothing touches at the start
+        for n, body in enumerate(self.bodies):
+            for p, own in enumerate(body.points):
+                at = body.x + body.turn @ own - body.radius * up
+                self._touch((n, -1, p), body, None, at, up, -at[2], dt)
+        for i, a in enumerate(self.bodies):
+            for j in range(i + 1, len(self.bodies)):
+                b = self.bodies[j]
+                if a.radius and b.radius:
+                    between = a.x - b.x
+                    far = np.linalg.norm(between)
+                    n = between / far
+                    both = a.radius + b.radius
+                    self._touch((i, j, 0), a, b, a.x - a.radius * far / both * n, n, both - far, dt)
+
+    def step(self) -> None:
+        """One step of the leap-frog."""
+        h = 0.5 * self.dt
+        for b in self.bodies:
+            b.v, b.angular = b.v + h / b.mass * b.force, b.angular + h * b.torque
+            b.x, b.turn = b.x + self.dt * b.v, rotated_freely(b.turn, b.angular, b.moments, self.dt)
+        self._forces(self.dt)
+        for b in self.bodies:
+            b.v, b.angular = b.v + h / b.mass * b.force, b.angular + h * b.torque
