@@ -9,11 +9,15 @@ from mdanim_lammps import Scene
 from mdanim_lammps.effects.fields import Field, join_fields
 from mdanim_lammps.engine.instance import Instance
 from mdanim_lammps.errors import SceneError
+from mdanim_lammps.features.rigid.shapes import polyhedron
+from mdanim_lammps.model import shapes
 from mdanim_lammps.model.spin import spin
 from mdanim_lammps.results.motion import MotionTable
 from mdanim_lammps.run.energy import energies, tell
 from mdanim_lammps.run.prepare import prepare
 from mdanim_lammps.scene.parse import parse_scene
+from mdanim_lammps.scene.scene import Mesh
+from model_samples import MESHES
 
 BAR = """object bar {{
   shape box (10, 20, 30) cm
@@ -259,3 +263,30 @@ def test_planks_that_cross_are_seen():
     text = plank.format(name="a", size="100, 4, 4", x=0.2) + plank.format(name="b", size="4, 100, 4", x=0) + CONTROL
     with pytest.raises(SceneError, match="b starts inside a"):
         prepare(parse_scene(text))
+
+
+def test_a_convex_mesh_is_a_polyhedron():
+    """Corners and faces without the diagonals of its triangles; what is not convex, or has too many corners, is not one."""
+    cuboid = polyhedron(Mesh(MESHES / "cuboid.obj"))
+    assert len(cuboid.corner) == 8 and sorted(map(len, cuboid.faces)) == [4] * 6
+    for face in cuboid.faces:
+        a, b, c = (cuboid.corner[k] for k in face[:3])
+        assert np.cross(b - a, c - b) @ a > 0.0  # seen from outside, with the centre of mass inside
+    assert polyhedron(Mesh(MESHES / "dumbbell.obj")) is None and polyhedron(Mesh(MESHES / "knot.ply")) is None
+
+
+def test_a_mesh_of_a_cuboid_moves_as_the_cuboid(prepared):
+    """It falls on the ground, turned, by the same contact."""
+    low, high = shapes.extent(Mesh(MESHES / "cuboid.obj"))
+    size = ", ".join(repr(float(x)) for x in high - low)
+    ends = []
+    for shape in (f"box ({size}) m", f'mesh "{MESHES / "cuboid.obj"}"'):
+        top = float(np.linalg.norm(high)) + 0.05
+        text = f"object it {{ shape {shape} position (0, 0, {top}) m density 1000 elasticity rigid "
+        text += "orientation axis (1, 2, 0) angle 30 deg spin (0, 0, 1) }\n"
+        control = "control { time 0.4 s  friction 0.5  timestep 0.1 ms }\n"
+        ready = prepared("gravity (0, 0, -9.81) m/s^2\nground z 0 m\n" + text + control)
+        assert ready.resolved.on("rigid") and "shapes-rigid" in ready.plan.tables
+        x, v, *_ = run(ready, ready.certificate.steps)
+        ends.append([ready.system.center_of_mass(x)[0], ready.system.center_of_mass(v)[0]])
+    np.testing.assert_allclose(ends[0], ends[1], atol=1e-6)

@@ -13,7 +13,8 @@ from ...model import shapes
 from ...model.boxes import box_pairs
 from ...model.build import lattice_model, single_cell_model
 from ...model.inertia import tensor
-from .shapes import ON_OBJECTS
+from ...scene.scene import Box, Sphere
+from .shapes import on_objects
 from .words import Rigid
 
 ACROSS = 2
@@ -41,7 +42,8 @@ class RigidBody(BodyKind):
         return lambda solid: min(finest, shapes.thickness(solid.shape) / ACROSS)
 
     def make(self, solid, h, shared):
-        if not all_held(solid) and shared.once(only_features):
+        boxed = isinstance(solid.shape, Box | Sphere)  # the box around them has their middle
+        if boxed and not all_held(solid) and shared.once(only_features):
             model = single_cell_model(solid, h, shared)
         else:
             model = lattice_model(solid, h, shared, loose=True)
@@ -52,10 +54,10 @@ def only_features(shared) -> bool:
     """Whether all contacts of rigid objects in a scene are of shapes that know each other by their features, so that nothing
     reads points of their surfaces, nor particles inside. Held cuboids in touch have sides that are covered, and none."""
     scene, solids = shared.scene, shared.scene.solids
-    if scene.liquid is not None or not all(isinstance(s.shape, ON_OBJECTS) for s in solids) or any(map(is_soft, solids)):
+    if scene.liquid is not None or not all(on_objects(s.shape) for s in solids) or any(map(is_soft, solids)):
         return False
     held = [s for s in solids if all_held(s)]
-    half = [np.abs(np.array(s.rotation)) @ shapes.extent(s.shape)[1] for s in held]
+    half = [np.abs(np.array(s.rotation)) @ np.abs(shapes.extent(s.shape)).max(axis=0) for s in held]
     apart = 1e-3 * min((float(h.min()) for h in half), default=0.0)
     low, high = (np.array([np.array(s.position) + sign * (h + apart) for s, h in zip(held, half)]) for sign in (-1, 1))
     return len(held) < 2 or next(iter(box_pairs(low, high)), None) is None

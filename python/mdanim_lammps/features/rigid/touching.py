@@ -8,7 +8,7 @@ not know touch by fix mdanim/contact.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -21,11 +21,11 @@ from ...model.shapes import thickness
 from ...model.system import System
 from ...scene.formatting import number, say
 from ...scene.naming import objects_by_name, pairs_of
-from ...scene.scene import Box, Cone, Cylinder, Ellipsoid, Solid, Sphere
+from ...scene.scene import Shape, Solid
 from ..contact.pairs import damping, frictions
 from ..contact.restitution import damping_for
 from ..contact.rigid_surfaces import frequency
-from .shapes import ON_OBJECTS, ON_PLANES
+from .shapes import digits, in_file, on_objects, on_planes
 
 ONSET = 0.005
 """Depth up to which a contact begins gently, over the thinnest part."""
@@ -55,7 +55,7 @@ class Part:
 def parts(context: Context) -> list[Part]:
     """The fixes of a context that move some bodies."""
     system = context.system
-    known = _are(system, ON_OBJECTS)
+    known = _are(system, on_objects)
     first = Part(FIXES[0], system.rigid & known, meets_objects(context) | (meets_planes(context) & known), objects_touch(context))
     rest = Part(FIXES[1], system.rigid & ~known, meets_planes(context) & ~known, False)
     return [part for part in (first, rest) if part.bodies.any()]
@@ -71,17 +71,17 @@ def meets_objects(context: Context) -> np.ndarray:
 
 def _pairs(system: System) -> np.ndarray:
     uncovered = np.array([frame.open is None or not len(frame.open) for frame in system.frames])[system.contact_kind]
-    return _are(system, ON_OBJECTS) & (system.rigid | (system.still & uncovered))
+    return _are(system, on_objects) & (system.rigid | (system.still & uncovered))
 
 
 def meets_planes(context: Context) -> np.ndarray:
     """Solids that move and touch planes by their features, bool, shape (M,)."""
     system = context.system
-    return system.rigid & _are(system, ON_PLANES) & bool(planes_of(context))
+    return system.rigid & _are(system, on_planes) & bool(planes_of(context))
 
 
-def _are(system: System, kinds: tuple[type, ...]) -> np.ndarray:
-    return np.array([isinstance(frame.shape, kinds) for frame in system.frames])[system.contact_kind]
+def _are(system: System, known: Callable[[Shape], bool]) -> np.ndarray:
+    return np.array([known(frame.shape) for frame in system.frames])[system.contact_kind]
 
 
 def planes_of(context: Context) -> list[Plane]:
@@ -158,10 +158,10 @@ def shapes_text(context: Context, part: Part) -> str:
     own, dampings, solids = _of(context, frictions(context.scene)), _dampings(context), _solids(context)
     lines = ["# Shapes, written by mdanim-lammps: molecule mu beta free|held  place  quaternion  shape\n"]
     for m in np.flatnonzero(part.shapes).tolist():
-        place, shape = _shape(solids[m])
+        place, shape = in_file(solids[m])
         pose = [*place, *quaternion(np.array(solids[m].rotation))]
         kind = "free" if part.bodies[m] else "held"
-        lines.append(f"{m + 1} {_digits([own[m], dampings[m]])} {kind} {_digits(pose)} {shape}\n")
+        lines.append(f"{m + 1} {digits([own[m], dampings[m]])} {kind} {digits(pose)} {shape}\n")
     return "".join(lines)
 
 
@@ -225,30 +225,6 @@ def _pair_laws(context: Context, part: Part) -> dict[tuple[int, int], tuple[floa
                 beta = contact.contact_damping
                 found[i, j] = mu, _damping(context, mu, e) if beta is None else float(beta)
     return found
-
-
-def _digits(numbers: Sequence[float]) -> str:
-    return " ".join(map(repr, numbers))
-
-
-def _shape(solid: Solid) -> tuple[list[float], str]:
-    """Where the origin of a shape is as the file has it [m], and its kind and sizes [m]."""
-    shape, place = solid.shape, np.array(solid.position, float)
-    match shape:
-        case Box():
-            kind, sizes = "box", shape.size
-        case Sphere():
-            kind, sizes = "ball", (shape.radius,)
-        case Ellipsoid():
-            kind, sizes = "ellipsoid", shape.radii
-        case Cylinder():
-            kind, sizes = "cylinder", (shape.radius, shape.height)
-        case Cone():  # the centre of mass is a quarter of the height above the base, the origin in the middle
-            kind, sizes = "cone", (shape.radius, shape.height)
-            place = place + np.array(solid.rotation) @ (0.0, 0.0, 0.25 * shape.height)
-        case _:
-            raise TypeError(f"no features of {shape!r}")
-    return place.tolist(), f"{kind} {_digits(tuple(map(float, sizes)))}"
 
 
 def quaternion(turn: np.ndarray) -> list[float]:
