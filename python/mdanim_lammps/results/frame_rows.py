@@ -102,10 +102,10 @@ class RowWriter:
 
     def _pwrite(self, values: np.ndarray, offset: int) -> None:
         """Write values at a place of the file. Raises OSError."""
-        data = memoryview(values.reshape(-1).view(np.uint8))
-        while len(data):
-            written = os.pwrite(self._descriptor, data, offset)
-            data, offset = data[written:], offset + written
+        values = np.ascontiguousarray(values)
+        written = os.pwrite(self._descriptor, values, offset)
+        while written < values.nbytes:  # a signal has cut it short
+            written += os.pwrite(self._descriptor, memoryview(values.reshape(-1).view(np.uint8))[written:], offset + written)
 
     def sync(self) -> None:
         """Return when all that was written is on the disk."""
