@@ -9,6 +9,7 @@ from mdanim_lammps import Scene
 from mdanim_lammps.effects.fields import Field, join_fields
 from mdanim_lammps.engine.instance import Instance
 from mdanim_lammps.errors import SceneError
+from mdanim_lammps.features.contact.rigid_surfaces import frequency
 from mdanim_lammps.features.rigid.shapes import polyhedron
 from mdanim_lammps.model import shapes
 from mdanim_lammps.model.spin import spin
@@ -258,7 +259,7 @@ def test_eight_particles_move_as_many_do(prepared):
 
 
 def test_planks_that_cross_are_seen():
-    """Of two that are in each other no corner and no middle is in the other."""
+    """Two that are in each other have no corner and no middle in the other."""
     plank = "object {name} {{ shape box ({size}) cm position ({x}, 0, 0) m density 500 elasticity rigid }}\n"
     text = plank.format(name="a", size="100, 4, 4", x=0.2) + plank.format(name="b", size="4, 100, 4", x=0) + CONTROL
     with pytest.raises(SceneError, match="b starts inside a"):
@@ -290,3 +291,13 @@ def test_a_mesh_of_a_cuboid_moves_as_the_cuboid(prepared):
         x, v, *_ = run(ready, ready.certificate.steps)
         ends.append([ready.system.center_of_mass(x)[0], ready.system.center_of_mass(v)[0]])
     np.testing.assert_allclose(ends[0], ends[1], atol=1e-6)
+
+
+def test_what_may_fall_over_makes_contact_harder(prepared):
+    """Where a ball comes, the top of a domino that stands may come down at sqrt(3 g H); where all stand, none does."""
+    text = "gravity (0, 0, -9.81) m/s^2\nground z 0 m\n"
+    text += "object domino { shape box (6, 20, 40) cm  position (0, 0, 0.2) m  density 600  elasticity rigid }\n"
+    ball = "object ball { shape sphere 5 cm  position (-1, 0, 0.05) m  density 1000  elasticity rigid  velocity (1, 0, 0) m/s }\n"
+    alone, hit = (frequency(prepared(t + "control { time 1 s  friction 0.5 }\n").context) for t in (text, text + ball))
+    assert alone.speed == 0.0 and alone.omega == pytest.approx(2.0 * np.sqrt(9.81 * 0.06) / (0.02 * 0.06))
+    assert hit.speed == pytest.approx(np.sqrt(3.0 * 9.81 * 0.4)) and hit.omega == pytest.approx(hit.speed / (0.02 * 0.06))

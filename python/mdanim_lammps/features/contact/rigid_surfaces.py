@@ -60,11 +60,21 @@ def _frequency(context: Context, system: System) -> Frequency:
     reach = context.reach
     free = np.flatnonzero(system.rigid)
     thin = min(shapes.thickness(shape) for shape in {context.scene.solids[m].shape for m in free.tolist()})
-    speed = float(np.maximum(reach.speed, reach.closing(reach.fall))[free].max())
+    speed = float(np.maximum(np.maximum(reach.speed, reach.closing(reach.fall)), _toppled(context, system))[free].max())
     load = float(_loads(system)[free].max())
     slowest = 2.0 * math.pi * context.scene.control.frames * DEPTH * thin  # of what hardly moves
     omega = float(max(speed, 2.0 * math.sqrt(load * reach.g * thin), slowest)) / (DEPTH * thin)
     return Frequency(float(omega), float(thin), speed, load)
+
+
+def _toppled(context: Context, system: System) -> np.ndarray:
+    """Speed at which the top of each solid that stands at the start may come down, as that of a thin rod that falls over on the
+    floor, sqrt(3 g H) [m/s], shape (M,); none where all stand and nothing comes that might throw one over."""
+    reach = context.reach
+    if (reach.stands | ~reach.free).all():
+        return np.zeros(len(system.names))
+    height = system.bounds(system.position)[1][:, 2] - reach.heights[1]
+    return np.where(reach.stands, np.sqrt(3.0 * reach.g * np.maximum(height, 0.0)), 0.0)
 
 
 def _loads(system: System) -> np.ndarray:
