@@ -25,7 +25,7 @@ class SolidSamples : protected LAMMPS_NS::Pointers {
   // `group` is the bit of the group.
   SolidSamples(LAMMPS_NS::LAMMPS *lmp, int group, const Buoyancy &buoyancy) : Pointers(lmp), group(group), buoyancy(buoyancy) {}
 
-  // Of the command and of fix_modify. `changed` becomes true when one is read.
+  // Keywords of the command and of fix_modify. `changed` becomes true when one is read.
   std::vector<Keyword> keywords(bool &changed);
   // Checks the properties again; `fix` begins messages. `literal`: the paper's rule.
   void init(bool literal, const std::string &fix);

@@ -10,16 +10,19 @@ namespace mdanim {
 
 inline constexpr double ON_BODY = 0.5;    // cells of liquid on a body that do not make a surface yet
 
-// The column at a side, 0 to 3: -x, +x, -y, +y; -1 beyond the basin.
+// The sides of a column, a span or the basin: -x, +x, -y, +y.
+enum SideOf { WEST, EAST, SOUTH, NORTH };
+
+// The column at a side; -1 beyond the basin.
 inline int neighbour(int column, int side, int nx, int ny)
 {
   const int x = column % nx, y = column / nx;
   switch (side) {
-    case 0:
+    case WEST:
       return x > 0 ? column - 1 : -1;
-    case 1:
+    case EAST:
       return x < nx - 1 ? column + 1 : -1;
-    case 2:
+    case SOUTH:
       return y > 0 ? column - nx : -1;
     default:
       return y < ny - 1 ? column + nx : -1;

@@ -60,12 +60,12 @@ WaveBasin::WaveBasin(const Shape &shape, double g, double calm, double spray, st
 // --- makers of waves ---
 
 void WaveBasin::add_wave(int side, double amplitude, double period, double depth)
-{ makers.add_paddle(static_cast<WaveMakers::Side>(side), amplitude / shape.cell.z, period / unit_of_time, depth / shape.cell.z); }
+{ makers.add_paddle(static_cast<SideOf>(side), amplitude / shape.cell.z, period / unit_of_time, depth / shape.cell.z); }
 
 void WaveBasin::add_current(int side, double speed)
 {
-  const double cell = side == WaveMakers::WEST || side == WaveMakers::EAST ? shape.cell.x : shape.cell.y;
-  makers.add_current(static_cast<WaveMakers::Side>(side), speed * unit_of_time / cell);
+  const double cell = side == WEST || side == EAST ? shape.cell.x : shape.cell.y;
+  makers.add_current(static_cast<SideOf>(side), speed * unit_of_time / cell);
 }
 
 void WaveBasin::add_flow(const Vec3 &low, const Vec3 &high, double rate, double ux, double uy)

@@ -29,8 +29,7 @@ class WaveBasin : public Basin {
   // `ranks` must outlive the basin.
   WaveBasin(const Shape &shape, double g, double calm, double spray, std::uint64_t seed, const RankSums &ranks);
 
-  // Makers of waves, to be added before the first update; lengths, times and volumes in units of the world. Sides are those of
-  // WaveMakers.
+  // Makers of waves, to be added before the first update; lengths, times and volumes in units of the world. Sides as SideOf.
   void add_wave(int side, double amplitude, double period, double depth);
   void add_current(int side, double speed);
   // Liquid comes in with a velocity, or goes out where `rate` [volume/time] is negative: in columns whose middle lies between the

@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include "liquid/waves/columns.h"
 #include "liquid/waves/span.h"
 #include "liquid/waves/waves_kernels.h"
 
@@ -11,8 +12,6 @@
 #include <vector>
 
 namespace mdanim {
-
-enum SideOf { WEST, EAST, SOUTH, NORTH };    // of a span
 
 // Spans have places in arrays: the lowest span of a column has a place in the grid, further ones come in rows behind it. A link
 // of lowest spans has the place of its first span; further links come behind. What is regular, one plain span in each column

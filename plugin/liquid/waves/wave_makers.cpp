@@ -41,7 +41,7 @@ template <class F> void each_column(const WaveMakers::Mouth &mouth, int nx, cons
 
 }    // namespace
 
-WaveMakers::Mouth WaveMakers::along(Side side) const
+WaveMakers::Mouth WaveMakers::along(SideOf side) const
 {
   Mouth mouth{{0, 0}, {nx, ny}, ANY_HEIGHT};
   const int d = side == WEST || side == EAST ? 0 : 1, cells = d == 0 ? nx : ny;
@@ -62,7 +62,7 @@ void WaveMakers::add_drain(const Mouth &mouth, double rate)
   due.push_back(0.0);
 }
 
-void WaveMakers::add_paddle(Side side, double amplitude, double period, double depth)
+void WaveMakers::add_paddle(SideOf side, double amplitude, double period, double depth)
 {
   // Liquid that comes in at a wall runs away with the group velocity.
   const double w = TWO_PI / period, k = wave_number(w, depth), twice = 2.0 * k * depth;
@@ -72,9 +72,9 @@ void WaveMakers::add_paddle(Side side, double amplitude, double period, double d
   due.push_back(0.0);
 }
 
-void WaveMakers::add_current(Side from, double speed)
+void WaveMakers::add_current(SideOf from, double speed)
 {
-  const Side to = from == WEST ? EAST : from == EAST ? WEST : from == SOUTH ? NORTH : SOUTH;
+  const SideOf to = from == WEST ? EAST : from == EAST ? WEST : from == SOUTH ? NORTH : SOUTH;
   const bool along_x = from == WEST || from == EAST;
   const double u = from == WEST || from == SOUTH ? speed : -speed;
   makers.push_back({CURRENT, along(from), along(to), speed, 0.0, {along_x ? u : 0.0, along_x ? 0.0 : u}});

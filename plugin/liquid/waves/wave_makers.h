@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include "liquid/waves/columns.h"
 #include "liquid/waves/span.h"
 
 #include <cstddef>
@@ -17,8 +18,6 @@ class Waves;
 // cells, times in sqrt(cell/g).
 class WaveMakers {
  public:
-  enum Side { WEST, EAST, SOUTH, NORTH };
-
   // Columns [low, high) along x and y, and the height at which liquid comes and goes: that of the span that holds it, or else of
   // the next one below.
   struct Mouth {
@@ -33,9 +32,9 @@ class WaveMakers {
   void add_drain(const Mouth &mouth, double rate);
   // A paddle along a side: waves of an amplitude and a period run from there into liquid of a depth. The paddle draws back the
   // liquid that it pushes in.
-  void add_paddle(Side side, double amplitude, double period, double depth);
+  void add_paddle(SideOf side, double amplitude, double period, double depth);
   // Liquid goes out at the opposite side and comes in at `from`, at a speed, as deep as it is where it goes out.
-  void add_current(Side from, double speed);
+  void add_current(SideOf from, double speed);
 
   // To be called before an update of the waves.
   void apply(Waves &waves, double dt);
@@ -55,7 +54,7 @@ class WaveMakers {
     double rate, period, u[2];    // rate: cells per time in the whole mouth, of a paddle the largest
   };
 
-  Mouth along(Side side) const;
+  Mouth along(SideOf side) const;
   Units come(Waves &waves, const Mouth &mouth, Units units, double ux, double uy);
   Units go(Waves &waves, const Mouth &mouth, Units units);
 

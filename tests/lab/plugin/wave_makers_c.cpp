@@ -67,10 +67,10 @@ MDANIM_EXPORT void mdanim_makers_flow(void *m, const int *columns, double height
 }
 
 MDANIM_EXPORT void mdanim_makers_paddle(void *m, int side, double amplitude, double period, double depth)
-{ makers(m).add_paddle(static_cast<WaveMakers::Side>(side), amplitude, period, depth); }
+{ makers(m).add_paddle(static_cast<mdanim::SideOf>(side), amplitude, period, depth); }
 
 MDANIM_EXPORT void mdanim_makers_current(void *m, int side, double speed)
-{ makers(m).add_current(static_cast<WaveMakers::Side>(side), speed); }
+{ makers(m).add_current(static_cast<mdanim::SideOf>(side), speed); }
 
 MDANIM_EXPORT void mdanim_makers_apply(void *m, void *w, double dt) { makers(m).apply(waves(w), dt); }
 
