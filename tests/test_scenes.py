@@ -16,7 +16,14 @@ FRAGMENTS = {"rubber"}
 
 
 NAMES = sorted({p.stem for p in SCENES.glob("*.txt")} - FRAGMENTS)
-LONG = {"billiard": (0.5, False), "boat": (1.8, True), "bottle": (1.0, False), "pile": (0.5, False), "wake": (1.2, True)}
+LONG = {
+    "billiard": (0.5, False),
+    "boat": (1.8, True),
+    "bottle": (1.0, False),
+    "pile": (0.5, False),
+    "spiral": (0.8, False),
+    "wake": (1.2, True),
+}
 """Scenes of ten seconds and more, up to when they are always run [s], and whether what is expected of the end holds then already;
 to their end they are run with `make soak`."""
 
