@@ -79,9 +79,9 @@ void TouchStep::apply(Solid &a, Solid *b, const Vec3 &x, const Vec3 &f) const
   b->torque -= cross(x - b->centre, f);
 }
 
-// S = sum of 2 k lambda* over the contacts of a body (k lambda* at planes), D the same with the dashpots. The springs of a
-// contact are k (n n + 0.8 t t), so lambda* is at most 0.2 lambda + 0.8 lambda along any direction; n of two edges may be any
-// direction.
+// S = sum of 2 k lambda* over the contacts of a body (k lambda* at planes). The springs of a contact are k (n n + 0.8 t t), so
+// lambda* is at most 0.2 lambda + 0.8 lambda along any direction; n of two edges may be any direction. D is the same with
+// dashpots, k eta (n n + 0.5 sqrt(0.8) t t).
 void TouchStep::book(Solid &a, Solid *b, Touch &touch, double part, const ContactForce<double> &force) const
 {
   touch.energy = part * force.surface_energy + touch.memory.stick_energy;
@@ -91,10 +91,12 @@ void TouchStep::book(Solid &a, Solid *b, Touch &touch, double part, const Contac
   ++account.touching;
   account.deepest = std::max(account.deepest, touch.memory.depth - touch.memory.offset);
   const auto add_to_sums = [&](Solid &one) {
-    const double share = touch.kind == Touch::EDGES ? 1.0 : ContactLaw::STICK;
-    const double s = (b ? 2.0 : 1.0) * touch.stiffness * ((1.0 - share) * one.yields + share * one.yields_any);
-    one.stiffness_sum += s;
-    one.damping_sum += s * touch.damping;
+    const auto along = [&](double stick) {    // sum of lambda n n and `stick` t t
+      return touch.kind == Touch::EDGES ? one.yields_any : (1.0 - stick) * one.yields + stick * one.yields_any;
+    };
+    const double s = (b ? 2.0 : 1.0) * touch.stiffness;
+    one.stiffness_sum += s * along(ContactLaw::STICK);
+    one.damping_sum += s * touch.damping * along(STICK_DAMPING * std::sqrt(ContactLaw::STICK));
     ++one.touching;
   };
   add_to_sums(a);
@@ -112,7 +114,7 @@ void TouchStep::press(Touch &touch, const TouchLaw &its_law, Solid &a, Solid *b,
     const Vec3 from_anchor = own - touch.anchor;
     Vec3 away = b ? b->in_space(from_anchor) : from_anchor;
     away -= dot(away, n) * n;    // the anchor follows along the normal
-    contact_friction<double>(law, 1.0, part, away, n, dt, touch.memory, push);
+    friction(touch, law, part, away, n, push);
     const Vec3 left = push.kept * away;
     touch.anchor = own - (b ? b->in_body(left) : left);
     force += push.pull + push.drag;
@@ -150,7 +152,7 @@ void TouchStep::press_moving(std::vector<Touch> &list, Touch::TouchKind kind, in
     Vec3 away = b ? b->in_space(touch.anchor) : touch.anchor;
     away += dt * relative_velocity(a, b, x);
     away -= dot(away, n) * n;
-    contact_friction<double>(law, 1.0, 1.0, away, n, dt, touch.memory, push);
+    friction(touch, law, 1.0, away, n, push);
     const Vec3 left = push.kept * away;
     touch.anchor = b ? b->in_body(left) : left;
     force += push.pull + push.drag;

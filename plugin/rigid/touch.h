@@ -66,6 +66,12 @@ class TouchStep {
   // The part of a contact that depends on its depth. In the step in which it begins or ends, its force counts for as long as it
   // acts (see touch.cpp).
   ContactForce<double> pressure(Touch &touch, const ContactLaw &law, double part, double depth) const;
+  // Friction, whose spring has half of the dashpot: with all of it a stack of ten boxes that are turned trembles at 0.35/Omega.
+  void friction(Touch &touch, ContactLaw law, double part, const Vec3 &away, const Vec3 &n, ContactForce<double> &force) const
+  {
+    law.damping *= STICK_DAMPING;
+    contact_friction<double>(law, 1.0, part, away, n, dt, touch.memory, force);
+  }
   void apply(Solid &a, Solid *b, const Vec3 &x, const Vec3 &f) const;
   void book(Solid &a, Solid *b, Touch &touch, double part, const ContactForce<double> &force) const;
 
@@ -79,6 +85,7 @@ class TouchStep {
                     const Vec3 &x, const Vec3 &n, double depth) const;
 
  private:
+  static constexpr double STICK_DAMPING = 0.5;
   double dt, onset;
   TouchAccount &account;
 };

@@ -244,7 +244,7 @@ void touch_edges(const TouchStep &step, SolidPair &pair, Solid &a, Solid &b, con
     }
     if (law.friction > 0.0) {
       const Vec3 away = (touch.anchor.x - at.s) * one.along - (touch.anchor.y - at.r) * other.along;
-      contact_friction<double>(its_law, 1.0, part, away, at.n, step.time_step(), touch.memory, push);
+      step.friction(touch, its_law, part, away, at.n, push);
       touch.anchor = {at.s + push.kept * (touch.anchor.x - at.s), at.r + push.kept * (touch.anchor.y - at.r), 0.0};
       const Vec3 between = 0.5 * ((one.middle + touch.anchor.x * one.along) + (other.middle + touch.anchor.y * other.along));
       step.apply(a, &b, between, push.pull);

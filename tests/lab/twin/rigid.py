@@ -142,7 +142,7 @@ class TwinWorld:
             pull, more = stick * np.linalg.norm(away), away + touch.pull / stick
             slips = pull > mu * press
             left = away * (mu * press / pull) if slips else away
-            drag = np.zeros(3) if slips else -touch.eta * np.sqrt(STICK) / dt * (more - (more @ n) * n)
+            drag = np.zeros(3) if slips else -0.5 * touch.eta * np.sqrt(STICK) / dt * (more - (more @ n) * n)
             force = force - stick * left + drag
             touch.away, touch.pull, touch.at = left, -stick * left, at
         a.push(at, force)
