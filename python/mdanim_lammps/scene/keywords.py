@@ -128,7 +128,7 @@ def example(keyword: Keyword) -> str:
 def did_you_mean(word: str, choices) -> str:
     """``did you mean 'mass'?``, or the choices where none is near: a third of the letters may be wrong, and one in any case."""
     choices = list(dict.fromkeys(choices))
-    close = [*get_close_matches(word, choices, 8, 0.5), *get_close_matches(word.lower(), choices, 8, 0.5)]
+    close = [c for spelling in dict.fromkeys((word, word.lower())) for c in get_close_matches(spelling, choices, 8, 0.5)]
     far = {choice: edits(word.lower(), choice.lower()) for choice in close}
     near = [c for c in close if far[c] <= max(1, len(word) // 3) or (len(word) >= 3 and c.startswith(word))]
     if near:
