@@ -15,7 +15,7 @@ BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip install --quiet --no-compile
 SOURCES := pyproject.toml CMakeLists.txt $(shell find plugin python -name '*.so' -prune -o -name __pycache__ -prune -o -type f -print)
 
-.PHONY: demo lint test docs smoke develop soak sanitize bench bench-peers setup tools clean
+.PHONY: demo lint test library docs smoke develop soak sanitize bench bench-peers setup tools clean
 .DEFAULT_GOAL := demo
 
 setup: $(VENV)/.installed
@@ -57,8 +57,12 @@ $(VENV)/.linters: pyproject.toml $(VENV)/.tools
 	$(PIP) --group lint
 	@touch $@
 
-test: tools
+# The test library compiles while pip fetches what tests need.
+library: setup
 	$(BIN)/python tests/lab/plugin_library.py
+
+test: setup
+	$(MAKE) --no-print-directory -j 2 tools library
 	$(BIN)/python -m pytest -n 2 --dist worksteal
 
 # The wheel is built from the sdist when .venv is set up; PYTHON=python3.13 makes the empty environment with another Python.
@@ -80,8 +84,8 @@ develop: tools
 	cp build/develop/mdanimplugin.so python/mdanim_lammps/plugin/mdanimplugin.so.tmp
 	mv python/mdanim_lammps/plugin/mdanimplugin.so.tmp python/mdanim_lammps/plugin/mdanimplugin.so
 
-soak: tools
-	$(BIN)/python tests/lab/plugin_library.py
+soak: setup
+	$(MAKE) --no-print-directory -j 2 tools library
 	$(BIN)/python -m pytest -n 2 --dist worksteal -m soak
 
 sanitize: tools
