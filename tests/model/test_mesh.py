@@ -2,10 +2,12 @@
 """Meshes from files: what is accepted, what is refused and why, and points inside."""
 
 import os
+import re
 
 import numpy as np
 import pytest
 from mdanim_lammps.model import mesh, shapes
+from mdanim_lammps.model.cells import fill_cells
 from mdanim_lammps.model.crossings import crossings
 from mdanim_lammps.scene.scene import Box, Mesh, Sphere, Torus
 from model_samples import MESHES, assert_closed, enclosed_volume
@@ -188,6 +190,19 @@ def test_a_changed_file_is_read_again(tmp_path):
     assert mesh.load(Mesh(path)).volume == pytest.approx(24)
     path.write_bytes((MESHES / "two-parts.obj").read_bytes())
     assert mesh.load(Mesh(path)).volume == pytest.approx(36)
+
+
+def test_a_changed_file_fills_other_cells(tmp_path):
+    """Cells of a shape are kept for the next scene with it, those of a mesh as long as its file is the same; the block becomes
+    half as wide here."""
+    path = tmp_path / "body.obj"
+    text = (MESHES / "cuboid.obj").read_text()
+    path.write_text(text)
+    block = fill_cells(Mesh(path), 0.5)
+    assert fill_cells(Mesh(path), 0.5) is block and not block.filled.flags.writeable
+    path.write_text(re.sub(r"^v (\S+)", lambda found: f"v {float(found[1]) / 2:.6f}", text, flags=re.M))
+    narrow = fill_cells(Mesh(path), 0.5)
+    assert (narrow.count == block.count // (2, 1, 1)).all()
 
 
 def test_the_origin_is_the_centre_of_mass_not_of_the_corners():

@@ -28,9 +28,9 @@ def crossings(
     order = np.argsort(row * bins + column, kind="stable")
     first = np.searchsorted((row * bins + column)[order], np.arange(bins * bins + 1))
 
-    corners = points[triangles][:, :, :2]
-    c0, r0 = ((corners.min(axis=1) - low) * to_bin).clip(0, bins - 1).astype(np.int64).T
-    c1, r1 = ((corners.max(axis=1) - low) * to_bin).clip(0, bins - 1).astype(np.int64).T
+    a, b, c = (points[corner, :2] for corner in triangles.T)
+    c0, r0 = ((np.minimum(np.minimum(a, b), c) - low) * to_bin).clip(0, bins - 1).astype(np.int64).T
+    c1, r1 = ((np.maximum(np.maximum(a, b), c) - low) * to_bin).clip(0, bins - 1).astype(np.int64).T
     # The bins of one row that a triangle may touch are one stretch of the sorted lines.
     triangle, row = _ranges(r0, r1 + 1)
     start, stop = first[row * bins + c0[triangle]], first[row * bins + c1[triangle] + 1]
@@ -66,6 +66,7 @@ def _hits(points: np.ndarray, triangles: np.ndarray, lines: np.ndarray, line: np
     n = np.cross(b - a, c - a)
     with np.errstate(divide="ignore", invalid="ignore"):
         z = a[:, 2] - (n[:, 0] * (px - a[:, 0]) + n[:, 1] * (py - a[:, 1])) / n[:, 2]
-    heights = np.stack([a[:, 2], b[:, 2], c[:, 2]])
+    lowest = np.minimum(np.minimum(a[:, 2], b[:, 2]), c[:, 2])
+    highest = np.maximum(np.maximum(a[:, 2], b[:, 2]), c[:, 2])
     # An almost vertical triangle has no exact height; any height between its corners is valid.
-    return line, np.where(np.isfinite(z), z, a[:, 2]).clip(heights.min(axis=0), heights.max(axis=0)), leaves
+    return line, np.where(np.isfinite(z), z, a[:, 2]).clip(lowest, highest), leaves
