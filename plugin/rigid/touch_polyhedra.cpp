@@ -248,6 +248,12 @@ void touch_edges(const TouchStep &step, SolidPair &pair, Solid &a, Solid &b, con
       touch.anchor = {at.s + push.kept * (touch.anchor.x - at.s), at.r + push.kept * (touch.anchor.y - at.r), 0.0};
       const Vec3 between = 0.5 * ((one.middle + touch.anchor.x * one.along) + (other.middle + touch.anchor.y * other.along));
       step.apply(a, &b, between, push.pull);
+      // The way from one anchor to the other has a part along n, which turns with both edges.
+      const Vec3 &u = one.along, &w = other.along;
+      const double lever = (dot(cross(u, w), at.n) > 0.0 ? 1.0 : -1.0) * at.depth / std::sqrt(at.square);
+      const Vec3 turning = lever * (at.cosine * push.pull - 0.5 * (dot(push.pull, u) * w + dot(push.pull, w) * u));
+      a.torque += turning;
+      b.torque -= turning;
       force += push.drag;
     }
     step.apply(a, &b, x, force);
