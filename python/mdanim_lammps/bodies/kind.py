@@ -43,6 +43,10 @@ class BodyKind:
         """Particle spacing [m] of its objects that have no ``resolution`` of their own, where that of the scene is h [m]."""
         return lambda solid: h
 
+    def particles(self, scene: SceneRecord, solid: Solid, lattice: float) -> float:
+        """Estimated number of particles of an object; ``lattice`` is that of a lattice that fills it."""
+        return lattice
+
     def make(self, solid: Solid, h: float, shared: Any) -> Any:
         """The model (model/model.py) of an object at a particle spacing h [m]; ``shared`` makes what equal objects share
         (model/build.py).

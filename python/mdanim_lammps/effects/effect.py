@@ -75,6 +75,10 @@ class Effect(Motion, Bounds, Accounts, Frames, Advice):
         memory."""
         return None
 
+    def needs_inside(self, context: Context) -> bool:
+        """Whether it acts on particles inside of what never moves, which otherwise has the corners of a box alone."""
+        return False
+
     def columns(self, context: Context) -> dict[Field, np.ndarray]:
         """Values at the start of all particles, springs or objects, each of shape (N, ...), (S, ...) or (M, ...), by their
         `fields.column`: its commands name them as ``d_NAME`` and the like.

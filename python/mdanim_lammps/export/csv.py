@@ -57,10 +57,10 @@ def system_of(trajectory: Trajectory) -> System | None:
     try:
         if scene is None or plan_spacing(scene).total > MORE * m.total:
             return None
-        system = assemble(build_models(scene), scene)
+        forms = (assemble(build_models(scene, inside=inside), scene) for inside in (False, True))
+        return next((one for one in forms if tuple(one.names) == m.names and one.particles == m.total), None)
     except MdanimError:  # its meshes are elsewhere
         return None
-    return system if tuple(system.names) == m.names and system.particles == m.total else None
 
 
 def elastic(system: System, position: np.ndarray) -> np.ndarray:

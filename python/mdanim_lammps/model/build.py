@@ -29,11 +29,14 @@ from .spacing import plan_spacing
 from .springs import equivalent_modulus, reduced_mass, rest_lengths, stiffness, types
 
 
-def build_models(scene: SceneRecord, h: float | Sequence[float] | None = None, driven: Container[int] = ()) -> tuple[Model, ...]:
+def build_models(
+    scene: SceneRecord, h: float | Sequence[float] | None = None, driven: Container[int] = (), inside: bool = False
+) -> tuple[Model, ...]:
     """Make the model of every solid, in the order of the scene, with a particle spacing h [m], one for all or one for each; None
     is that of the scene.
 
-    ``driven`` are the numbers of those whose held particles some effect moves. Objects of equal shape, elasticity and mass share
+    ``driven`` are the numbers of those whose held particles some effect moves; ``inside`` asks for particles inside of those that
+    never move. Objects of equal shape, elasticity and mass share
     their arrays of springs, masses, layers, surface and contact body, which are read-only; positions, velocities and held are
     their own.
 
@@ -41,7 +44,7 @@ def build_models(scene: SceneRecord, h: float | Sequence[float] | None = None, d
     apart at this spacing, a ``hold`` without particles.
     """
     spacing = np.broadcast_to(plan_spacing(scene).of if h is None else h, len(scene.solids)).tolist()
-    shared = SharedParts(scene)
+    shared = SharedParts(scene, driven, inside)
     models, problems = [], []
     for m, solid in enumerate(scene.solids):
         try:
@@ -89,9 +92,10 @@ class _Material:
 class SharedParts:
     """Makes every body and material of one scene once; lives as long as one call of build_models (bodies.Shared)."""
 
-    def __init__(self, scene: SceneRecord):
-        self.scene = scene
+    def __init__(self, scene: SceneRecord, driven: Container[int] = (), inside: bool = False):
+        self.scene, self.inside = scene, inside
         self._made: dict[tuple, Any] = {}
+        self._driven = {solid.name for m, solid in enumerate(scene.solids) if m in driven}
         self.body = lru_cache(maxsize=None)(_make_body)
         self.material = lru_cache(maxsize=None)(_make_material)
 
@@ -101,6 +105,10 @@ class SharedParts:
         if key not in self._made:
             self._made[key] = make(self, *of)
         return self._made[key]
+
+    def is_driven(self, solid: Solid) -> bool:
+        """Whether some effect moves its held particles."""
+        return solid.name in self._driven
 
 
 def _make_body(shape: Shape, h: float) -> _Body:

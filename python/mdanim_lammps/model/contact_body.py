@@ -51,7 +51,8 @@ class ContactBody:
     edge: np.ndarray
     """Cell edges along the body axes [m], shape (3,)."""
     node: np.ndarray
-    """Flat number of each particle among the (nx + 1)(ny + 1)(nz + 1) corners of cells, ascending, int32, shape (N,)."""
+    """Flat number of each particle among the (nx + 1)(ny + 1)(nz + 1) corners of cells, ascending, int32, shape (N,); -1
+    where particles are at no cells."""
     filled: np.ndarray
     """Which cells are filled, uint8, shape (nz ny nx,)."""
     cell: np.ndarray
@@ -82,7 +83,10 @@ class ContactBody:
     @cached_property
     def carried(self) -> np.ndarray:
         """w_i, the area of the surface that each particle carries [m^2], shape (N,): the larger one of that of its fine points
-        and that of all others, as either act. Points beyond the cell that carries them have weights below 0."""
+        and that of all others, as either act. Points beyond the cell that carries them have weights below 0. Particles at no
+        cells carry nothing."""
+        if (self.node < 0).any():
+            return np.zeros(len(self.node))
         fine = self.kind == FINE
         sets = [np.flatnonzero(some) for some in (fine, ~fine) if some.any()]
         return np.max([_carried(self, some) for some in sets], axis=0)
@@ -98,17 +102,23 @@ class BodyFrame:
     """As that of ContactBody; None where nothing is covered."""
     rigid: bool = False
     """Whether it does not deform."""
+    corners: np.ndarray | None = None
+    """X of its eight particles, the corners of a box [-], shape (8, 3); None where particles are at the corners of cells."""
 
     @cached_property
     def contact(self) -> ContactBody:
         """The same object at every call."""
         body = make_contact_body(self.shape, self.cells, self.open)
+        if self.corners is not None:
+            return _in_box(body, self.corners)
         return frame_of(body) if self.rigid else body
 
     @cached_property
     def drawn(self) -> np.ndarray:
         """Which particles lie inside the shape or on it, bool, shape (N,): corners of cells may be outside of a shape that is not
         a cuboid."""
+        if self.corners is not None:
+            return np.zeros(len(self.corners), bool)
         z, y, x = np.nonzero(self.cells.filled)
         cell = np.stack([x, y, z], axis=1)
         corner = cell[:, None] + np.array(list(product((0, 1), repeat=3)))
@@ -173,6 +183,15 @@ def _carried(body: ContactBody, some: np.ndarray) -> np.ndarray:
             corner = low + way @ np.array([1, nodes[0], nodes[0] * nodes[1]])
             np.add.at(carried, particle[corner], weight(part, way) * area[rows])
     return carried
+
+
+BOX = np.array([0, 1, 2, 4], np.int32)
+"""The lower corner of a box and the ends of its edges there, x fastest."""
+
+
+def _in_box(body: ContactBody, corners: np.ndarray) -> ContactBody:
+    """The same body as one that does not deform, whose particles are the corners of a box at these X, shape (8, 3)."""
+    return replace(body, node=np.full(len(corners), -1, np.int32), frame=BOX, frame_at=np.ascontiguousarray(corners[BOX]))
 
 
 def frame_of(body: ContactBody) -> ContactBody:

@@ -102,8 +102,9 @@ class Lattice:
     """The cells, moved with the particles."""
 
 
-def make_lattice(cells: Cells) -> Lattice:
-    """Put a particle on every corner of a filled cell and tie the 18 nearest neighbours that share a cell.
+def make_lattice(cells: Cells, tied: bool = True) -> Lattice:
+    """Put a particle on every corner of a filled cell and, where they are ``tied``, tie the 18 nearest neighbours that share a
+    cell.
 
     A cell with a corner that no other cell shares is braced by its body diagonals: with edges and face diagonals
     alone, a blow on such a corner pushes it through the cell, where it stays (docs/physics-solids.md). Particles are
@@ -119,7 +120,8 @@ def make_lattice(cells: Cells) -> Lattice:
     position = _corner_positions(cells, present)
     centre = share @ position / share.sum()
     moved = Cells(cells.filled, cells.low - centre, cells.high - centre)
-    spring, kind, holders, braces = _springs(cells.filled, braced, number, present)
+    some = (cells.filled, braced, number, present)
+    spring, kind, holders, braces = _springs(*some) if tied else (np.zeros((0, 2), np.int32), *np.zeros((3, 0)))
     return Lattice(
         position=position - centre,
         share=share,

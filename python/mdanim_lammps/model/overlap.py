@@ -48,7 +48,7 @@ def check_geometry(
     if not models:
         return problems
     planes = tuple(planes)
-    bodies = _BoundingBoxes(models, [m.surface.vertices(m.position) for m in models], contact)
+    bodies = _BoundingBoxes(models, scene.solids, [m.surface.vertices(m.position) for m in models], contact)
     problems += _outside(scene, bodies, planes)
     first, second = _candidates(scene, bodies)
     inside = 0
@@ -66,8 +66,8 @@ def check_geometry(
 class _BoundingBoxes:
     """Bounding boxes of all objects: low, high [m], shape (n, 3), from the true surfaces."""
 
-    def __init__(self, models, vertices, contact: Contact | None):
-        self.models, self.contact = models, contact
+    def __init__(self, models, solids, vertices, contact: Contact | None):
+        self.models, self.solids, self.contact = models, solids, contact
         self.vertices = vertices
         self.low = np.array([v.min(axis=0) for v in vertices])
         self.high = np.array([v.max(axis=0) for v in vertices])
@@ -93,6 +93,8 @@ class _BoundingBoxes:
     def resolved(self, i: int) -> int:
         """Cells of one body, as it is resolved."""
         model = self.models[i]
+        if not len(model.hexahedron):
+            return int(model.frame.cells.filled.sum())
         one = len(model.hexahedron) == 1
         return int(np.rint(model.frame.cells.edge / model.cell).prod()) if one else len(model.hexahedron)
 
@@ -105,6 +107,10 @@ class _BoundingBoxes:
             t = np.stack(np.meshgrid(*parts, indexing="ij"), axis=-1).reshape(-1, 3)
             t = t[shapes.contains(model.frame.shape, cells.low + t * cells.edge)]
             return corner[0] + t @ (corner[1:] - corner[0])
+        if not len(model.hexahedron):
+            cells, solid = model.frame.cells, self.solids[i]
+            place = np.stack(np.nonzero(cells.filled)[::-1], axis=1)
+            return (cells.low + (place + 0.5) * cells.edge) @ np.array(solid.rotation).T + solid.position
         return (model.position[model.hexahedron[:, 0]] + model.position[model.hexahedron[:, 6]]) / 2
 
 

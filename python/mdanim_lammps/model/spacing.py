@@ -71,6 +71,7 @@ def plan_spacing(scene: SceneRecord) -> Spacing:
     particles = tuple(estimate_particles(solid.shape, own) for solid, own in zip(scene.solids, of))
     if sparse := [p for s, own, n in zip(scene.solids, of, particles) if (p := check_sparse(s, own, n))]:
         raise SceneError(sparse)
+    particles = tuple(kind_of(s).particles(scene, s, n) for s, n in zip(scene.solids, particles))
     plan = Spacing(h, of, set_by, particles, work.memory(scene, of, particles), available_memory())
     if plan.memory > plan.available:
         raise SceneError([too_large(scene, plan)])

@@ -14,6 +14,7 @@ from ..effects import Context, Resolved, Verdict, resolve
 from ..engine.plan import Plan, make_plan
 from ..errors import Problem, SceneError
 from ..model.build import build_models
+from ..model.grid import Grid
 from ..model.model import Model
 from ..model.overlap import check_geometry
 from ..model.spacing import Spacing, plan_spacing, too_large
@@ -103,13 +104,21 @@ def _prepare(scene: SceneRecord, spacing: Spacing, allow_unstable: bool) -> Prep
     problems += _unmeasurable(resolved) + _undriven(resolved, models)
     if problems:
         raise SceneError(problems)
-    system = assemble(models, scene)
-    reach = Reach(scene, resolved.effects, spacing.of, system)
-    context = Context(resolved, system, as_parts(models, system), spacing, reach, grid)
+    context = _context(resolved, models, spacing, grid)
+    if any(model.still and not len(model.hexahedron) for model in models) and any(
+        e.needs_inside(context) for e in resolved.effects
+    ):
+        context = _context(resolved, build_models(scene, spacing.of, driven=drives, inside=True), spacing, grid)
     certificate = certify(context, allow_unstable=allow_unstable)
     plan = make_plan(context, certificate)
     warnings = [*scene.warnings, *note(scene), *resolved.warnings, *(w for e in resolved.effects for w in e.warnings(context))]
     return Prepared(context, (*warnings, *margin_warnings(certificate)), certificate, plan, allow_unstable)
+
+
+def _context(resolved: Resolved, models: Sequence[Model], spacing: Spacing, grid: Grid | None) -> Context:
+    system = assemble(models, resolved.scene)
+    reach = Reach(resolved.scene, resolved.effects, spacing.of, system)
+    return Context(resolved, system, as_parts(models, system), spacing, reach, grid)
 
 
 def _unmeasurable(resolved: Resolved) -> list[Problem]:

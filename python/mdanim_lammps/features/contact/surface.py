@@ -143,6 +143,10 @@ class SurfaceContact(ObjectContact):
         thin = system.layer == Layer.THIN
         return {**own, column("thin", "1"): (thin & self.guards(context)[system.object]).astype(float)} if thin.any() else own
 
+    def needs_inside(self, context):
+        """Barriers bear what meets others fast."""
+        return bool(fast(context).any())
+
     def guards(self, context: Context) -> np.ndarray:
         """Solids whose surface is a barrier where nothing is inside, bool, shape (M,): those that may be met fast. The faces of
         what touches at the start coincide."""
@@ -158,10 +162,10 @@ class SurfaceContact(ObjectContact):
         """Stiffness of the barrier at each particle [N/m], shape (N,); 0 without a barrier.
 
         Cells of a shape that is not a cuboid extend beyond its drawn surface: a barrier would bear it on their corners, so balls
-        would not roll. The surface alone stops it up to SLOW.
+        would not roll. The surface alone stops it up to SLOW. What never moves has particles at the corners of a box.
         """
         system = context.system
-        with_barrier = (~are_dense(system) | fast(context)) & np.isfinite(system.young)
+        with_barrier = (~are_dense(system) | fast(context)) & np.isfinite(system.young) & ~are_boxed(system)
         return np.where(with_barrier[system.object], particle_stiffness(context.scene, system), 0.0)
 
     def barrier_reach(self, context: Context) -> np.ndarray:
@@ -367,6 +371,11 @@ def surface_stiffness(context: Context, young: np.ndarray, share: np.ndarray | f
 def are_dense(system: System) -> np.ndarray:
     """Solids that are not cuboids, with dense points on their surfaces, bool, shape (M,)."""
     return np.array([not isinstance(frame.shape, Box) for frame in system.frames])[system.contact_kind]
+
+
+def are_boxed(system: System) -> np.ndarray:
+    """Solids whose particles are the corners of a box around them, bool, shape (M,)."""
+    return np.array([frame.corners is not None for frame in system.frames])[system.contact_kind]
 
 
 def shortest_edge(system: System) -> np.ndarray:

@@ -1,0 +1,36 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""A body that never moves is a surface with a depth: nothing of its inside is simulated."""
+
+from __future__ import annotations
+
+from ...bodies import BodyKind, all_held
+from ...model.build import lattice_model
+from ...model.held import held_model
+from .words import ContactModel
+
+
+class HeldBody(BodyKind):
+    """An object that is held as a whole. The points and the depth of its surface are as fine as the spacing says; its particles
+    are the corners of a box. A liquid, barriers between particles, and effects that move it ask for the lattice."""
+
+    name = "held"
+    order = 200
+
+    def takes(self, solid):
+        return all_held(solid)
+
+    def particles(self, scene, solid, lattice):
+        return 8.0 if only_surfaces_act(scene) else lattice
+
+    def make(self, solid, h, shared):
+        if shared.inside or shared.is_driven(solid) or not only_surfaces_act(shared.scene):
+            return lattice_model(solid, h, shared)
+        return held_model(solid, h, shared)
+
+
+def only_surfaces_act(scene) -> bool:
+    """Whether nothing in a scene reads particles inside of what never moves."""
+    return scene.liquid is None and scene.control.contact_model is ContactModel.SURFACE
+
+
+KINDS = (HeldBody(),)

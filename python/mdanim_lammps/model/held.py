@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""A body that never moves: its drawn surface, and eight particles at the corners of the box around it, which say where it is."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import product
+from typing import Any
+
+import numpy as np
+
+from ..scene.scene import Shape, Solid
+from . import shapes
+from .cells import fill_cells
+from .contact_body import BodyFrame
+from .embed import make_surface
+from .lattice import make_lattice
+from .model import Layer, Model, Surface
+from .springs import equivalent_modulus
+
+ENDS = np.array(list(product((0, 1), repeat=3)))[:, ::-1]
+"""Corners of a box, x fastest, shape (8, 3)."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Placed:
+    """A shape at a spacing, turned; about its centre of mass [m]."""
+
+    corner: np.ndarray
+    """Corners of the box around the drawn surface, axes of the world, shape (8, 3)."""
+    share: np.ndarray
+    """Parts of the mass at them, whose mean is the centre of mass, shape (8,)."""
+    surface: Surface
+    frame: BodyFrame
+
+
+def held_model(solid: Solid, h: float, shared: Any) -> Model:
+    """The model of an object that is held as a whole, with the cells of its contact h [m] wide.
+
+    The drawn surface is that of its lattice: each vertex is a weighted sum of the eight corners. ``shared`` makes what equal
+    objects share (build.SharedParts).
+
+    Raises cells.TooThin, mesh.MeshError.
+    """
+    placed, mass = shared.once(_placed, solid.shape, h, tuple(map(tuple, solid.rotation))), shapes.mass(solid)
+    cells = placed.frame.cells
+    none = np.zeros((0, 3))
+    return Model(
+        name=solid.name,
+        position=placed.corner + solid.position,
+        velocity=np.zeros((8, 3)),
+        mass=mass * placed.share,
+        share=np.full(8, shapes.volume(solid.shape) / (8.0 * cells.edge.prod())),
+        layer=np.full(8, Layer.BOUNDARY, np.uint8),
+        held=np.ones(8, bool),
+        spring=np.zeros((0, 2), np.int32),
+        spring_type=np.zeros(0, np.uint8),
+        constants=none,
+        young=equivalent_modulus(cells.edge, solid.elasticity),
+        inertia_error=0.0,
+        hexahedron=np.zeros((0, 8), np.int32),
+        cell=tuple(cells.edge.tolist()),
+        surface=placed.surface,
+        frame=placed.frame,
+    )
+
+
+def _shaped(shared: Any, shape: Shape, h: float) -> tuple[BodyFrame, Surface, np.ndarray]:
+    """Cells, and the drawn surface with its vertices [m], shape (V, 3); body frame."""
+    lattice = make_lattice(fill_cells(shape, h), tied=False)
+    surface = make_surface(shape, lattice)
+    return BodyFrame(shape, lattice.cells), surface, surface.vertices(lattice.position)
+
+
+def _placed(shared: Any, shape: Shape, h: float, rotation: tuple[tuple[float, ...], ...]) -> _Placed:
+    frame, surface, body = shared.once(_shaped, shape, h)
+    turn = np.array(rotation)
+    vertex = body @ turn.T
+    low, high = vertex.min(axis=0), vertex.max(axis=0)
+    corner = np.where(ENDS, high, low)
+    weight = _weights((vertex - low) / (high - low))
+    X = (corner @ turn - frame.cells.low) / frame.cells.edge
+    drawn = Surface(surface.triangle, np.broadcast_to(np.arange(8, dtype=np.int32), weight.shape), weight, surface.color)
+    for array in (corner, weight, X):
+        array.setflags(write=False)
+    share = _weights(-low[None] / (high - low))[0]
+    return _Placed(corner, share, drawn, BodyFrame(shape, frame.cells, rigid=True, corners=X))
+
+
+def _weights(t: np.ndarray) -> np.ndarray:
+    """Trilinear weights of the corners at places in a box, 0 to 1 along each axis, shape (V, 3); shape (V, 8)."""
+    return np.stack([np.where(end, t, 1.0 - t).prod(axis=1) for end in ENDS], axis=1)

@@ -1,0 +1,70 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""A body that never moves: its surface is that of its lattice, its particles are the corners of a box around it."""
+
+import numpy as np
+import pytest
+from mdanim_lammps.model import build_models
+from mdanim_lammps.model.system import assemble
+from mdanim_lammps.scene.scene import Box, HoldAll, Sphere
+from model_samples import SHAPES, rotation, scene, shape_id, solid
+
+PLACE = (3.0, -2.0, 1.5)
+
+
+def both(shape, h=0.09, **rest):
+    """The same object that is held as a whole, with its corners and with its lattice."""
+    made = scene(
+        solid(shape, hold=(HoldAll(),), position=PLACE, rotation=rotation(0.3, -0.7, 0.4), mass=2.0, **rest), resolution=h
+    )
+    return build_models(made)[0], build_models(made, inside=True)[0]
+
+
+@pytest.mark.parametrize("shape", SHAPES, ids=shape_id)
+def test_its_surface_and_its_contact_are_those_of_its_lattice(shape):
+    """Vertices, box, mass, centre; points, areas and depth of contact, which its four particles put in the same places."""
+    few, lattice = both(shape)
+    assert len(few.position) == 8 and len(lattice.position) > 100 and few.still and few.young == lattice.young
+    vertex = few.surface.vertices(few.position)
+    np.testing.assert_allclose(vertex, lattice.surface.vertices(lattice.position), rtol=0, atol=1e-13)
+    assert (few.surface.triangle == lattice.surface.triangle).all()
+    np.testing.assert_allclose(few.position.min(axis=0), vertex.min(axis=0), rtol=0, atol=1e-14)
+    np.testing.assert_allclose(few.position.max(axis=0), vertex.max(axis=0), rtol=0, atol=1e-14)
+    assert few.mass.sum() == pytest.approx(2.0, rel=1e-14) and (few.mass > 0.0).all()
+    np.testing.assert_allclose(few.mass @ few.position / 2.0, PLACE, rtol=0, atol=1e-13)
+    one, other = few.frame.contact, lattice.frame.contact
+    for name in ("count", "edge", "filled", "cell", "at", "normal", "area", "kind", "depth"):
+        assert np.array_equal(getattr(one, name), getattr(other, name)), name
+    place = lambda body, model: weights(body) @ model.position[body.frame]
+    np.testing.assert_allclose(place(one, few), place(other, lattice), rtol=0, atol=1e-12)
+
+
+def weights(body) -> np.ndarray:
+    """Weights of the particles of its frame in its points, shape (P, 4)."""
+    frame = np.hstack([np.ones((4, 1)), body.frame_at])
+    return np.hstack([np.ones((len(body.at), 1)), body.at]) @ np.linalg.inv(frame)
+
+
+def test_equal_ones_share_their_surface():
+    """Where they are turned alike; contact sees all of them as one kind of body."""
+    held = dict(hold=(HoldAll(),))
+    made = scene(
+        solid(Sphere(0.5), "a", **held),
+        solid(Sphere(0.5), "b", position=(2.0, 0, 0), **held),
+        solid(Sphere(0.5), "c", position=(4.0, 0, 0), rotation=rotation(0.1, 0, 0), **held),
+        solid(Sphere(0.5), "d", position=(6.0, 0, 0)),
+        resolution=0.1,
+    )
+    a, b, c, d = models = build_models(made)
+    assert a.surface is b.surface and a.frame is b.frame and a.surface is not c.surface and len(d.position) > 100
+    system = assemble(models, made)
+    assert system.density[:3] == pytest.approx(1.0 / (4.0 / 3.0 * np.pi * 0.5**3))
+    assert np.diff(system.first)[:3].tolist() == [8, 8, 8] and system.still.tolist() == [True, True, True, False]
+    assert system.contact_bodies[0].carried.tolist() == [0.0] * 8
+
+
+def test_what_is_moved_or_lies_in_a_liquid_has_its_lattice():
+    """Driven ones, and those of a scene in which particles inside act."""
+    made = scene(solid(Box((1.0, 1.0, 1.0)), hold=(HoldAll(),)), resolution=0.1)
+    assert len(build_models(made)[0].position) == 8
+    assert len(build_models(made, driven={0})[0].position) == 11**3
+    assert len(build_models(made, inside=True)[0].position) == 11**3
