@@ -47,7 +47,7 @@ def test_a_marble_smaller_than_a_cell_of_what_never_moves_bounces_back(tmp_path)
 
 def test_a_fine_body_beside_a_far_coarser_one_has_a_time_step():
     """The barrier of the coarse one reaches over five spacings of the fine one: its share in the bound is that of all of them."""
-    text = PLATE.format(plate="resolution 2 mm hold all") + BALL.format(
+    text = PLATE.format(plate="resolution 2 mm hold face -z") + BALL.format(
         shape="box (20, 20, 20) cm", z=12, ball="resolution 10 cm"
     )
     bound = Scene.from_text(text).certificate.bound
