@@ -171,6 +171,14 @@ def test_it_rolls_down_a_slope(prepared, name):
     assert w[1] * 0.1 == pytest.approx(v[0], rel=3e-3)
 
 
+def test_a_torus_rolls_on_points_of_its_surface(prepared):
+    """Its features are not known; with four cells across the thin part its points are close enough for 1 % of the acceleration."""
+    a, x, *_ = on_slope(prepared, "torus 10 cm 3 cm", "orientation axis (1, 0, 0) angle 90 deg", 0.5, z=13)
+    inertia = 0.1**2 + 0.75 * 0.03**2  # over the mass
+    assert a == pytest.approx(G * np.sin(SLOPE) / (1 + inertia / 0.13**2), rel=1e-2)
+    assert abs(x[1]) < 0.02 * x[0]
+
+
 def test_it_slides_and_stays(prepared):
     """g (sin - mu cos) of a box; and below the angle of friction it stays, to the last digit."""
     a, *_ = on_slope(prepared, "box (10, 10, 4) cm", "", 0.1, z=2)
