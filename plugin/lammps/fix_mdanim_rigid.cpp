@@ -31,6 +31,7 @@ FixMdanimRigid::FixMdanimRigid(LAMMPS *lmp, int narg, char **arg) : FixBase(lmp,
   rigid_flag = 1;
   dof_flag = 1;
   restart_global = 1;
+  create_attribute = 1;
   array_flag = 1;
   size_array_cols = COLUMNS;
   size_array_rows_variable = 1;
@@ -91,7 +92,8 @@ void FixMdanimRigid::init()
 {
   FixBase::init();
   reset_dt();
-  if (particles.find_objects()) bodies.clear();
+  if (particles.find_objects() || largest(has_new_particles) > 0.0) bodies.clear();
+  has_new_particles = false;
   for (const auto &[molecule, inertia] : given)
     if (particles.objects().number_of(molecule) == ObjectTable::NONE)
       error->all(FLERR, "{}: there are moments of inertia for object {} (molecule ID), which has no particle in its group",

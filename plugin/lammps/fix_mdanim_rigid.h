@@ -39,7 +39,11 @@ class FixMdanimRigid : public mdanim::FixBase, public mdanim::Stateful {
 
   void grow_arrays(int n) override { particles.grow(n); }
   void copy_arrays(int from, int to, int) override { particles.copy(from, to); }
-  void set_arrays(int i) override { particles.clear(i); }
+  void set_arrays(int i) override
+  {
+    particles.clear(i);
+    has_new_particles = true;
+  }
   int pack_exchange(int i, double *buffer) override { return particles.pack(i, buffer); }
   int unpack_exchange(int i, double *buffer) override { return particles.unpack(i, buffer); }
 
@@ -67,6 +71,7 @@ class FixMdanimRigid : public mdanim::FixBase, public mdanim::Stateful {
   std::vector<double> drag;                         // of bodies
   std::optional<mdanim::StateRecords> restarted;    // state of a restart file, until there are particles
   double half_dt = 0.0;                             // dt/2 in units that turn force/mass into velocity
+  bool has_new_particles = false;                   // since bodies were made
   bool collected = false;                           // whether bodies have the forces of this step
   double drag_loss = 0.0;
 };

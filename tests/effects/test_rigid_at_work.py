@@ -172,7 +172,7 @@ def test_it_rolls_down_a_slope(prepared, name):
 
 
 def test_a_torus_rolls_on_points_of_its_surface(prepared):
-    """Its features are not known; with four cells across the thin part its points are close enough for 1 % of the acceleration."""
+    """Its features are not known; four cells across the thin part have points close enough for 1 %."""
     a, x, *_ = on_slope(prepared, "torus 10 cm 3 cm", "orientation axis (1, 0, 0) angle 90 deg", 0.5, z=13)
     inertia = 0.1**2 + 0.75 * 0.03**2  # over the mass
     assert a == pytest.approx(G * np.sin(SLOPE) / (1 + inertia / 0.13**2), rel=1e-2)
@@ -250,7 +250,8 @@ def test_tables_have_the_energy_of_the_shape(tmp_path):
 
 
 def test_eight_particles_move_as_many_do(prepared):
-    """A box that falls, turned, on another one: the same forces, whether particles are two cells apart or at corners alone."""
+    """A box that falls, turned, on another one, whether particles are two cells apart or at corners alone: a ring far away makes
+    the difference, and contact 0.2 % harder, as by 0.2 % of 3 m/s."""
     text = "gravity (0, 0, -9.81) m/s^2\nground z 0 m\n" + bar("orientation axis (1, 1, 0) angle 20 deg").replace(
         "0, 0, 1", "0, 0, 0.6"
     )
@@ -263,7 +264,7 @@ def test_eight_particles_move_as_many_do(prepared):
     for ready in (few, many):
         x, v, *_ = run(ready, ready.certificate.steps)
         ends.append([ready.system.center_of_mass(x)[:2], ready.system.center_of_mass(v)[:2]])
-    np.testing.assert_allclose(ends[0], ends[1], atol=1e-3)
+    np.testing.assert_allclose(ends[0], ends[1], atol=6e-3)
 
 
 def test_planks_that_cross_are_seen():
