@@ -72,7 +72,7 @@ class TwinBody:
 
 @dataclass
 class TwinTouch:
-    """What a contact remembers."""
+    """The memory of a contact."""
 
     k: float
     eta: float
