@@ -234,9 +234,16 @@ void touch_edges(const TouchStep &step, SolidPair &pair, Solid &a, Solid &b, con
     const double by_s = push.surface_energy * (at.s > 0.0 ? -slope_a : slope_a) * part_b * part_angle,
                  by_r = push.surface_energy * part_a * (at.r > 0.0 ? -slope_b : slope_b) * part_angle,
                  by_angle = push.surface_energy * part_a * part_b * slope_angle;
-    if (by_s != 0.0 || by_r != 0.0)
-      force +=
+    if (by_s != 0.0 || by_r != 0.0) {
+      const Vec3 aside =
           (by_s / at.square) * (one.along - at.cosine * other.along) - (by_r / at.square) * (other.along - at.cosine * one.along);
+      force += aside;
+      // They also move as the edges turn towards n.
+      const Vec3 torque =
+          (0.5 * at.depth) * cross(at.n, aside) + (at.depth * (by_s + at.cosine * by_r) / at.square) * cross(one.along, at.n);
+      a.torque += torque;
+      b.torque -= torque;
+    }
     if (by_angle != 0.0) {
       const Vec3 torque = (2.0 * at.cosine * by_angle) * cross(one.along, other.along);
       a.torque += torque;

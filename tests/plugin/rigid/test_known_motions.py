@@ -207,6 +207,26 @@ def test_the_books_of_a_blow_close(tmp_path, beta):
                 assert np.abs(after / kinetic - 1.0).max() < most
 
 
+@pytest.mark.parametrize("mu", [0.0, 0.5])
+def test_the_books_close_where_a_ball_breaks_a_wall(tmp_path, mu):
+    """Corners and edges of many bricks at once. What is off is of second order in the time step: forces are gradients of the
+    energy of edges too, with their ramps and their friction."""
+    length, height = 0.2, 0.2 / 3.0
+    bricks = [
+        lab.box(
+            (length / 2, length, height), 1800, at=(0, (i - 1) * length * 1.001 + j % 2 * length / 2, (j + 0.5) * height), mu=mu
+        )
+        for j in range(3)
+        for i in range(3)
+    ]
+    bodies = [*bricks, lab.ball(0.12, 7000, at=(-0.18, 0.03, 0.12), v=(5, 0, 0), mu=mu)]
+    with lab.World(tmp_path, bodies, frequency=lab.frequency_of(5.6, height), thin=height) as world:
+        start = world.energy()
+        world.run(round(0.15 / world.dt))
+        assert world.energy() == pytest.approx(start, rel=2e-4)
+        assert world.number("damping_loss") > 0.05 * start and (world.number("friction_heat") > 0.1 * start) == (mu > 0.0)
+
+
 @pytest.mark.parametrize("many", [1, 2])
 def test_a_cradle(tmp_path, many):
     """As many balls fly off as came in, where dents are below the gaps."""
