@@ -31,7 +31,7 @@ class RigidBody(BodyKind):
     particle_bytes = 500.0
 
     def takes(self, solid):
-        return isinstance(solid.elasticity, Rigid)
+        return isinstance(solid.elasticity, Rigid) and not all_held(solid)
 
     def cells(self, scene, solid):
         if scene.liquid is not None:
@@ -47,11 +47,11 @@ class RigidBody(BodyKind):
 
     def make(self, solid, h, shared):
         boxed = isinstance(solid.shape, Box | Sphere)  # the box around them has their middle
-        if boxed and not all_held(solid) and shared.once(only_features):
+        if boxed and shared.once(only_features):
             model = single_cell_model(solid, h, shared)
         else:
             model = lattice_model(solid, h, shared, loose=True)
-        return model if all_held(solid) else replace(model, inertia=tensor(solid.shape, shapes.mass(solid), solid.rotation))
+        return replace(model, inertia=tensor(solid.shape, shapes.mass(solid), solid.rotation))
 
 
 def only_features(shared) -> bool:
