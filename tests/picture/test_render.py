@@ -9,9 +9,10 @@ import numpy as np
 import pytest
 from mdanim_lammps.features.walls.words import Walls
 from mdanim_lammps.picture import light as lighting
+from mdanim_lammps.picture.floor import grid_spacing
 from mdanim_lammps.picture.light import nearest_around
 from mdanim_lammps.picture.palette import LOW, OBJECTS, STILL, object_colors
-from mdanim_lammps.picture.render import Painter, grid_spacing
+from mdanim_lammps.picture.render import Painter
 from mdanim_lammps.results.trajectory import Trajectory
 from mdanim_lammps.scene.render import Camera, Floor, Render
 from mdanim_lammps.scene.scene import Control, SceneRecord

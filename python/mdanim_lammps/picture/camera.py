@@ -306,6 +306,11 @@ class CameraPath:
                     f"a camera looks at '{look}', which {trajectory.path} does not hold; {hint or 'name an object of the run'}"
                 )
 
+    @property
+    def still(self) -> bool:
+        """Whether the camera never moves."""
+        return len(self._look) == 1 and not isinstance(self._look[0], str)
+
     def at(self, time: float) -> View:
         """The view at a simulated time [s]."""
         weight = hermite_weights(self._times, time)

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
 from ..scene.render import Quality, Render
+from .floor import Floor, FloorShade
 from .pieces import Lookup, gl_matrix
 from .rays import FAR, NEAR, ROOM, SKY_PIXELS, axes, direction, sky_axes
 from .window import off_screen_window
@@ -81,9 +82,10 @@ class Light:
         size: of the action [m].
         typical: size of an object [m].
         render: says where the lamp is, how dark shadows are, and whether the sky is looked at.
+        floor: where shadows fall; None without one.
     """
 
-    def __init__(self, data, centre: np.ndarray, size: float, typical: float, render: Render):
+    def __init__(self, data, centre: np.ndarray, size: float, typical: float, render: Render, floor: Floor | None):
         self._centre, self._radius, self._darkness = centre, 0.5 * size, render.shadows
         self._toward = direction(render.light)
         self._reach = min(REACH * typical, self._radius)
@@ -92,21 +94,28 @@ class Light:
         self._lamp = DepthPictures(data, centre, self._radius, axes(self._toward)[None], self._pixels)
         self._nearest = Lookup(self._pixels // BLOCK, self._pixels // BLOCK, packed=True)
         self._sky = DepthPictures(data, centre, self._radius, sky_axes(), SKY_PIXELS) if final else None
+        self.shade = FloorShade(floor.height, self._matrix(), self._pixels) if floor else None
+        self._floor = floor
 
     def cast(self) -> None:
         """Take the depth pictures of a frame, apart from the main window."""
         self._lamp.take()
         self._nearest.fill(nearest_around(self._lamp.depth.numbers, BLOCK))
+        if self.shade:
+            self.shade.cast(self._lamp.depth.numbers, self._nearest.numbers)
         if self._sky:
             self._sky.take()
 
     def fall_on(self, actors: Sequence) -> None:
         """Hand shaders what they look up; once, after the actors are made."""
-        matrix = self._matrix()
+        matrix = gl_matrix(self._matrix())
         for actor in actors:
             look = actor.GetProperty()
-            look.SetTexture("lampDepth", self._lamp.depth.texture)
-            look.SetTexture("lampNearest", self._nearest.texture)
+            if self._floor and self.shade and actor is self._floor.actor:
+                look.SetTexture("floorShade", self.shade.texture)
+            else:
+                look.SetTexture("lampDepth", self._lamp.depth.texture)
+                look.SetTexture("lampNearest", self._nearest.texture)
             uniforms = actor.GetShaderProperty().GetFragmentCustomUniforms()
             uniforms.SetUniformMatrix("lampMatrix", matrix)
             uniforms.SetUniformf("lampPixels", float(self._pixels))
@@ -129,13 +138,13 @@ class Light:
         if self._sky:
             self._sky.close()
 
-    def _matrix(self):
+    def _matrix(self) -> np.ndarray:
         """From the world to the lamp's picture: x, y and depth from 0 to 1."""
         matrix = np.eye(4)
         scale = np.array([0.5 / ROOM, 0.5 / ROOM, -1.0 / (FAR - NEAR)]) / self._radius
         matrix[:3, :3] = scale[:, None] * axes(self._toward)
         matrix[:3, 3] = [0.5, 0.5, (2.0 - NEAR) / (FAR - NEAR)] - matrix[:3, :3] @ self._centre
-        return gl_matrix(matrix)
+        return matrix
 
 
 def nearest_around(depth: np.ndarray, block: int) -> np.ndarray:

@@ -62,6 +62,8 @@ class MarkActors:
             self.actors.append(self._boxes.actor)
         self._names = self._name_actors(metadata, grey, height) if marks.names else []
         self.actors += self._names
+        self.words = bool(self._names)
+        """Whether some of them are words, which may reach anywhere."""
 
     def show(self, position: np.ndarray) -> None:
         """Go to a frame: positions of the particles [m], shape (N, 3)."""

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from . import shading
@@ -102,6 +104,23 @@ def texture(texels, width: int, height: int, smooth: bool):
     return image, shown
 
 
+def have_own_textures(actor, names: Sequence[str]) -> None:
+    """Give an actor of another window textures of its own in place of those with these names; they show the same images."""
+    from vtkmodules.vtkRenderingCore import vtkTexture
+
+    look = actor.GetProperty()
+    for name in names:
+        if shared := look.GetTexture(name):
+            own = vtkTexture()
+            own.SetInputData(shared.GetInput())
+            own.SetColorModeToDirectScalars()
+            own.SetInterpolate(shared.GetInterpolate())
+            own.RepeatOff()
+            own.EdgeClampOn()
+            look.RemoveTexture(name)
+            look.SetTexture(name, own)
+
+
 class Lookup:
     """Numbers on a grid for a shader to look up, overwritten for every frame: one for each place, or three.
 
@@ -135,7 +154,7 @@ class Lookup:
         self._image.Modified()
 
 
-def lit_actor(data, light: str, *, liquid: bool, sky: bool, functions: str = ""):
+def lit_actor(data, light: str, *, liquid: bool, sky: bool, lamp: str = shading.LAMP, functions: str = ""):
     """An actor for a mesh, lit by one of the shaders of ``shading``.
 
     Args:
@@ -143,6 +162,7 @@ def lit_actor(data, light: str, *, liquid: bool, sky: bool, functions: str = "")
         light: the shader.
         liquid: whether it may be seen through liquid.
         sky: whether it is darker where objects hide the sky.
+        lamp: how it sees the lamp, of ``shading``.
         functions: of ``shading``, that only this shader uses.
     """
     from vtkmodules.vtkRenderingCore import vtkActor
@@ -157,7 +177,7 @@ def lit_actor(data, light: str, *, liquid: bool, sky: bool, functions: str = "")
     shader = actor.GetShaderProperty()
     for mark, code in shading.VERTEX.items():
         shader.AddVertexShaderReplacement(mark, True, code, False)
-    for mark, code in shading.fragment_head(liquid, sky, functions).items():
+    for mark, code in shading.fragment_head(liquid, sky, lamp, functions).items():
         shader.AddFragmentShaderReplacement(mark, True, code, False)
     shader.AddFragmentShaderReplacement("//VTK::Light::Impl", True, light, False)
     return actor

@@ -7,21 +7,24 @@ import numpy as np
 
 from ..errors import UsageError
 from ..results.trajectory import Trajectory
-from ..scene.render import Floor, Quality, Render
+from ..scene.render import Floor as FloorPattern
+from ..scene.render import Quality, Render
 from . import shading
+from .backdrop import Backdrop
 from .behind import Behind
 from .camera import FIELD_OF_VIEW, Action, CameraPath, View, action_of, automatic_view
 from .drawn import Additions, medium
+from .floor import REACH, Floor
+from .framing import Part, aim, part_around, whole
+from .label import Label
 from .light import Light
 from .marks import MarkActors, Marks
 from .palette import background_colors, is_dark, vertex_colors
-from .pieces import MovingMesh, box_edges, lit_actor, plane
+from .pieces import MovingMesh, box_edges, have_own_textures, lit_actor
 from .scenery import scenery
 from .surfaces import shaded_mesh
-from .window import fewer_pixels, off_screen_window, pixels, silent
+from .window import fewer_pixels, lay_over, off_screen_window, rgba, silent, upright
 
-FLOOR = 5.0
-"""How far the floor reaches from the middle of the action to each side, in sizes of the action."""
 FINER = {Quality.DRAFT: 1, Quality.FINAL: 2}
 """Pixels that are drawn along each side of one that is shown."""
 SAMPLES = 4
@@ -96,23 +99,63 @@ class Painter:
         if self._tank:
             self._tank.show(index, position, vertices, self._mesh.triangle)
         self._marks.show(position)
-        self._stamp.SetInput(f"t = {time:.2f} s")
-        self._aim(self.view(time))
         # Before the picture: only one window can be drawn into at a time.
         self._light.cast()
-        if self._behind:
-            self._renderer.DrawOn()
-            self._front.DrawOff()
+        view = self.view(time)
+        for actor in self._actors:
+            actor.GetShaderProperty().GetFragmentCustomUniforms().SetUniform3f("eye", list(view.eye))
+        picture = self._all_in_one(view) if self._behind else self._over_backdrop(view, np.concatenate([vertices, points]))
+        self._title.lay_on(picture, self.trajectory.metadata.title)
+        self._stamp.lay_on(picture, f"t = {time:.2f} s")
+        return fewer_pixels(upright(picture), self._finer)
+
+    def _over_backdrop(self, view: View, points: np.ndarray) -> np.ndarray:
+        """Floor and background by themselves, and before them, where there is something, all else; ``points`` [m], shape (P, 3),
+        are those of surfaces."""
+        boxes = self._boxes()
+        corners = boxes.reshape(-1, 3)
+        picture = self._backdrop.picture(view, self._light.shade, corners if self._tank else corners[:0])
+        seen = np.concatenate([points, corners])
+        if self._floor:
+            self._floor.hide(view, points, self._triangle, boxes)
+        # In final quality a shader tells pixels apart by their place in the window.
+        everywhere = self._marks.words or self._finer > 1
+        part = whole(self._pixels) if everywhere else part_around(view, self._pixels, seen)
+        if all(part.size):
+            self._window.SetSize(*part.size)
+            self._aim(view, part)
             self._window.Render()
-            self._behind.take(self._window, self._renderer.GetActiveCamera(), self._tank.outer)
-            self._renderer.DrawOff()
-            self._front.DrawOn()
+            lay_over(part.of(picture), rgba(self._window))
+        return picture
+
+    def _all_in_one(self, view: View) -> np.ndarray:
+        """All in one window, where shaders look up what is behind."""
+        self._aim(view, whole(self._pixels))
+        self._renderer.DrawOn()
+        self._front.DrawOff()
         self._window.Render()
-        return fewer_pixels(pixels(self._window), self._finer)
+        self._behind.take(self._window, self._renderer.GetActiveCamera(), self._tank.outer)
+        self._renderer.DrawOff()
+        self._front.DrawOn()
+        self._window.Render()
+        return rgba(self._window)
+
+    def _boxes(self) -> np.ndarray:
+        """Corners of the boxes around each actor besides surfaces and floor [m], shape (B, 8, 3)."""
+        boxes = [
+            actor.GetBounds()
+            for renderer in self._renderers
+            for actor in renderer.GetActors()
+            if actor.GetVisibility() and actor is not self._actors[0] and not (self._floor and actor is self._floor.cover)
+        ]
+        found = [np.stack(np.meshgrid(*np.reshape(box, (3, 2))), axis=-1).reshape(-1, 3) for box in boxes if box[0] <= box[1]]
+        return np.array(found).reshape(-1, 8, 3)
 
     def close(self) -> None:
         """Release the windows."""
         self._window.Finalize()
+        if self._backdrop:
+            self._backdrop.close()
         self._light.close()
 
     def __enter__(self) -> Painter:
@@ -130,41 +173,39 @@ class Painter:
 
         low, high = background_colors(render.background)
         self._renderer = vtkRenderer()
-        self._renderer.SetBackground(low)
-        self._renderer.SetBackground2(high)
-        self._renderer.GradientBackgroundOn()
         self._renderer.SetUseHiddenLineRemoval(False)
         # Translucent surfaces are laid over the rest in the order of adding.
         self._renderer.SetUseOIT(False)
-        camera = self._renderer.GetActiveCamera()
-        camera.SetViewAngle(FIELD_OF_VIEW)
-
         metadata, dark, sky = self.trajectory.metadata, is_dark(low), render.quality is Quality.FINAL
         there = scenery(metadata)
-        width, height = (n * self._finer for n in self.size)
+        self._pixels = width, height = tuple(n * self._finer for n in self.size)
         # In final quality the surface of a medium looks up what is behind it, so that has to be drawn before.
         through = medium(self.trajectory, render)
-        self._behind = Behind((width, height)) if sky and through and through.bends else None
+        self._behind = Behind(self._pixels) if sky and through and through.bends else None
         self._front = self._in_front() if self._behind else self._renderer
         self._tank = through.make(dark, sky, self._behind) if through else None
-        floor = None if render.floor is Floor.NONE else self._floor_height()
-        (x, y, _), reach = self.action.centre, FLOOR * self.action.size
+        at = None if render.floor is FloorPattern.NONE else self._floor_height()
+        liquid = bool(self._tank)
+        self._floor = None if at is None else Floor(at, self.action, render, (low, high), height, self._finer, liquid)
+        (x, y, _), reach = self.action.centre, REACH * self.action.size
         self._more, own = Additions(self.trajectory, dark), len(self._mesh.carry)
-        self._surface = MovingMesh(
-            own + int(self._more.first[-1]), np.concatenate([self._mesh.triangle, own + self._more.triangle])
-        )
+        self._triangle = np.concatenate([self._mesh.triangle, own + self._more.triangle])
+        self._surface = MovingMesh(own + int(self._more.first[-1]), self._triangle)
         self._surface.paint(np.concatenate([vertex_colors(metadata)[self._mesh.of_skin], self._more.color]))
-        self._actors = [lit_actor(self._surface.data, shading.FRAGMENT_SOLID, liquid=bool(self._tank), sky=sky)]
+        self._actors = [lit_actor(self._surface.data, shading.FRAGMENT_SOLID, liquid=liquid, sky=sky)]
         self._actors[0].SetVisibility(not marks.springs)
         # Objects are closed, so their inner faces are never visible, and drawing these takes time.
         self._actors[0].GetProperty().BackfaceCullingOn()
         if self._tank:
             # Before the floor: pixels that are hidden are not shaded.
             self._actors.append(self._tank.plate)
-        if floor is not None:
-            self._actors.append(self._make_floor(floor, low, high, render))
+        if self._floor:
+            # First, as it hides only what is drawn later.
+            self._renderer.AddActor(self._floor.cover)
         for actor in (*self._actors, *self._more.actors):
             self._renderer.AddActor(actor)
+        if self._floor:
+            self._actors.append(self._floor.actor)
         if there.walls is not None:
             self._renderer.AddActor(box_edges(*there.walls, 0.8 if dark else 0.35))
         if self._tank:
@@ -174,11 +215,21 @@ class Painter:
                 self._front.AddActor(actor)
             self._actors += self._tank.skin
             self._tank.colour_through(self._actors)
-            self._tank.stand_on(0.0 if floor is None else floor, (x, y, 0.0 if floor is None else reach))
+            self._tank.stand_on(0.0 if at is None else at, (x, y, 0.0 if at is None else reach))
         self._marks = MarkActors(marks, metadata, dark, self.size[1] * self._finer)
         for actor in self._marks.actors:
             self._front.AddViewProp(actor)
         self._write(low)
+        if self._behind:
+            self._renderer.SetBackground(low)
+            self._renderer.SetBackground2(high)
+            self._renderer.GradientBackgroundOn()
+            if self._floor:
+                self._renderer.AddActor(self._floor.actor)
+                self._floor.cover.VisibilityOff()
+        else:
+            self._renderer.SetBackground(0.0, 0.0, 0.0)
+            self._renderer.SetBackgroundAlpha(0.0)
         self._renderers = [self._renderer, self._front] if self._behind else [self._renderer]
         for actor in (actor for renderer in self._renderers for actor in renderer.GetActors()):
             look = actor.GetProperty()
@@ -186,9 +237,13 @@ class Painter:
 
         typical = float(np.median(np.linalg.norm(self.action.high[0] - self.action.low[0], axis=1)))
         with silent():
-            self._window = off_screen_window(self._renderers, (width, height), SAMPLES)
-            self._light = Light(self._surface.data, self.action.centre, self.action.size, typical, render)
+            self._window = off_screen_window(self._renderers, (width, height), SAMPLES, clear=not self._behind)
+            self._light = Light(self._surface.data, self.action.centre, self.action.size, typical, render, self._floor)
+            still = not self._path or self._path.still
+            self._backdrop = None if self._behind else Backdrop(self._pixels, (low, high), self._floor, still, sky)
         self._light.fall_on(self._actors)
+        if self._backdrop and self._floor:
+            have_own_textures(self._floor.actor, ("skyDepth", "liquidHeights"))
 
     def _in_front(self):
         """A renderer that draws over what the other one has drawn, and behind what that holds nearer to the camera."""
@@ -211,62 +266,16 @@ class Painter:
             return min(there.ground, there.liquid.low[2] if there.liquid else there.ground)
         return None if self.action.escaped else float(self.action.bounds[0][2])
 
-    def _make_floor(self, height: float, low: np.ndarray, high: np.ndarray, render: Render):
-        centre, size = self.action.centre, self.action.size
-        reach = FLOOR * size
-        ground = plane(centre - reach, centre + reach, height - 1e-4 * size)
-        shader, sky = shading.fragment_floor(render.floor.value), render.quality is Quality.FINAL
-        actor = lit_actor(ground, shader, liquid=bool(self._tank), sky=sky)
-        dark = is_dark(low)
-        uniforms = actor.GetShaderProperty().GetFragmentCustomUniforms()
-        uniforms.SetUniformf("gridSpacing", grid_spacing(size))
-        uniforms.SetUniformf("linePixels", float(self._finer))
-        uniforms.SetUniformf("pictureHeight", float(self.size[1] * self._finer))
-        uniforms.SetUniform3f("floorCentre", [centre[0], centre[1], reach])
-        uniforms.SetUniform3f("floorColor", list(np.minimum(1.0, low * 1.02) if not dark else low * 1.25 + 0.03))
-        uniforms.SetUniform3f("gridColor", list(low * 0.72 if not dark else low + 0.22))
-        uniforms.SetUniform3f("lowColor", list(low))
-        uniforms.SetUniform3f("highColor", list(high))
-        return actor
-
     def _write(self, background: np.ndarray) -> None:
-        from vtkmodules.vtkRenderingCore import vtkTextActor
-
-        width, height = (n * self._finer for n in self.size)
+        width, height = self._pixels
         color = (0.93, 0.94, 0.95) if is_dark(background) else (0.20, 0.23, 0.27)
         margin = round(0.035 * height)
-
-        def text(words: str, at: tuple[int, int], share: float, right: bool = False):
-            actor = vtkTextActor()
-            actor.SetInput(words)
-            actor.SetPosition(*at)
-            look = actor.GetTextProperty()
-            look.SetFontFamilyToArial()
-            look.SetFontSize(max(9, round(share * height)))
-            look.SetColor(color)
-            look.SetOpacity(0.85)
-            look.SetJustificationToRight() if right else look.SetJustificationToLeft()
-            self._front.AddViewProp(actor)
-            return actor
-
-        text(self.trajectory.metadata.title, (margin, margin), 0.032)
-        self._stamp = text("", (width - margin, margin), 0.028, right=True)
+        self._title = Label((margin, margin), round(0.032 * height), color)
+        self._stamp = Label((width - margin, margin), round(0.028 * height), color, right=True)
 
     # --- one picture ---------------------------------------------------------------------------------------
 
-    def _aim(self, view: View) -> None:
-        camera = self._renderer.GetActiveCamera()
-        camera.SetPosition(view.eye)
-        camera.SetFocalPoint(view.look)
-        camera.SetViewUp(view.upright)
+    def _aim(self, view: View, part: Part) -> None:
+        aim(self._renderer.GetActiveCamera(), view, self._pixels, part)
         bounds = np.array([renderer.ComputeVisiblePropBounds() for renderer in self._renderers])
         self._renderer.ResetCameraClippingRange(np.where(np.arange(6) % 2, bounds.max(axis=0), bounds.min(axis=0)))
-        for actor in self._actors:
-            actor.GetShaderProperty().GetFragmentCustomUniforms().SetUniform3f("eye", list(view.eye))
-
-
-def grid_spacing(size: float) -> float:
-    """Distance of the floor's lines: 1, 2 or 5 times a power of ten, about a twelfth of the action [m]."""
-    exponent = np.floor(np.log10(size / 12.0))
-    fraction = size / 12.0 / 10.0**exponent
-    return float((1.0 if fraction < 1.5 else 2.0 if fraction < 3.5 else 5.0 if fraction < 7.5 else 10.0) * 10.0**exponent)

@@ -26,8 +26,9 @@ worldNormal = normalMC;
 }
 
 
-def fragment_head(liquid: bool, sky: bool, functions: str) -> dict[str, str]:
-    """Declarations and functions that every fragment shader below uses, and those that one uses, by VTK's mark."""
+def fragment_head(liquid: bool, sky: bool, lamp: str, functions: str) -> dict[str, str]:
+    """Declarations and functions that every lit fragment shader below uses, how it sees the lamp (LAMP or LAMP_ON_FLOOR), and
+    those that one uses, by VTK's mark."""
     return {
         "//VTK::PositionVC::Dec": """//VTK::PositionVC::Dec
 in vec3 worldPosition;
@@ -35,14 +36,15 @@ in vec3 worldNormal;
 """,
         # The first mark after VTK's own declaration of the texture.
         "//VTK::Picking::Dec": "//VTK::Picking::Dec\n"
-        + SHADOW
+        + COMMON
+        + lamp
         + (sky_looked_at() if sky else SKY_NOT_LOOKED_AT)
         + (THROUGH_LIQUID if liquid else THROUGH_AIR)
         + functions,
     }
 
 
-SHADOW = """
+COMMON = """
 // A number of a field whose texels hold four. To choose among them is quicker than to index them.
 float numberAt(sampler2D field, ivec2 place)
 {
@@ -51,6 +53,18 @@ float numberAt(sampler2D field, ivec2 place)
   return which < 2 ? (which == 0 ? four.r : four.g) : (which == 2 ? four.b : four.a);
 }
 
+// Normal of the triangle that is drawn, on the side of the shading's normal.
+vec3 facet(vec3 where, vec3 normal)
+{
+  vec3 flat_ = cross(dFdx(where), dFdy(where));
+  float size = length(flat_);
+  return size > 0.0 ? flat_ * (sign(dot(flat_, normal)) / size) : normal;
+}
+
+vec3 linear(vec3 c) { return c * c; }
+"""
+
+LAMP = """
 // Share of the lamp that is seen from a point of a surface: the mean over a square four depth pixels wide that slides
 // smoothly over them, so that the edge of a shadow is soft and has no steps however near the camera comes. What a depth pixel
 // holds is compared with the plane of the surface there. What is nearer by less than `slack` depth pixels does not shade.
@@ -66,35 +80,47 @@ float lampSeen(vec3 where, vec3 normal, float slack)
   // Most lit points have no object between them and the lamp, nor near that line.
   ivec2 block = clamp(corner, ivec2(0), ivec2(lampPixels) - 1) / lampBlock;
   float nearest = numberAt(lampNearest, block);
-  if (nearest > least + 3.0 * (abs(slope.x) + abs(slope.y))) return 1.0;
-  float lit = 0.0;
-  for (int j = -1; j <= 3; j++) {
-    float row = j == -1 ? 1.0 - part.y : j == 3 ? part.y : 1.0;
-    for (int i = -1; i <= 3; i++) {
-      float column = i == -1 ? 1.0 - part.x : i == 3 ? part.x : 1.0;
-      ivec2 pixel = clamp(corner + ivec2(i - 1, j - 1), ivec2(0), ivec2(lampPixels) - 1);
-      float depth = numberAt(lampDepth, pixel);
-      float surface = least + dot(slope, vec2(i - 1, j - 1) - part);
-      lit += row * column * ((depth >= 1.0 || depth > surface) ? 1.0 : 0.0);
-    }
+  int rows = nearest > least + 3.0 * (abs(slope.x) + abs(slope.y)) ? 0 : 5;
+  // Five pixels of a row lie in two texels. Of their eight pixels those count that are less than 2.5 from the middle.
+  ivec2 last = ivec2(lampPixels) - 1;
+  int first = (corner.x - 2) >> 2;
+  float begin = float(4 * first - corner.x) - part.x;
+  vec4 one = begin + vec4(0.0, 1.0, 2.0, 3.0), other = one + 4.0;
+  vec4 oneCounts = clamp(2.5 - abs(one + 0.5), 0.0, 1.0), otherCounts = clamp(2.5 - abs(other + 0.5), 0.0, 1.0);
+  vec4 oneAbove = least + slope.x * one, otherAbove = least + slope.x * other;
+  float lit = rows == 0 ? 16.0 : 0.0;
+  // Software OpenGL computes both ways of a branch, but a loop ends where no pixel near by needs it.
+  for (int j = 0; j < rows; j++) {
+    float row = j == 0 ? 1.0 - part.y : j == 4 ? part.y : 1.0, rise = slope.y * (float(j - 2) - part.y);
+    int y = clamp(corner.y + j - 2, 0, last.y);
+    vec4 there = texelFetch(lampDepth, ivec2(clamp(first, 0, last.x >> 2), y), 0);
+    vec4 beside = texelFetch(lampDepth, ivec2(clamp(first + 1, 0, last.x >> 2), y), 0);
+    vec4 free = vec4(greaterThan(there, min(oneAbove + rise, vec4(0.9999999))));
+    vec4 alsoFree = vec4(greaterThan(beside, min(otherAbove + rise, vec4(0.9999999))));
+    lit += row * (dot(oneCounts, free) + dot(otherCounts, alsoFree));
   }
-  return lit / 16.0;
+  return lit > 15.9999 ? 1.0 : lit / 16.0;
 }
 
 float shadow(vec3 where, vec3 normal, float slack)
 {
   return mix(1.0, lampSeen(where, normal, slack), shadowDarkness);
 }
+"""
 
-// Normal of the triangle that is drawn, on the side of the shading's normal.
-vec3 facet(vec3 where, vec3 normal)
+# The same on a level floor, where it is worked out beforehand (floor.py).
+LAMP_ON_FLOOR = """
+float shadow(vec3 where)
 {
-  vec3 flat_ = cross(dFdx(where), dFdy(where));
-  float size = length(flat_);
-  return size > 0.0 ? flat_ * (sign(dot(flat_, normal)) / size) : normal;
+  vec3 p = (lampMatrix * vec4(where, 1.0)).xyz;
+  if (any(lessThan(p.xy, vec2(0.0))) || any(greaterThan(p.xy, vec2(1.0)))) return 1.0;
+  return mix(1.0, texture(floorShade, p.xy).r, shadowDarkness);
 }
+"""
 
-vec3 linear(vec3 c) { return c * c; }
+# Hides what is behind it. It covers next to nothing: where nothing is covered VTK writes no depth.
+FRAGMENT_NOTHING = """//VTK::Light::Impl
+fragOutput0 = vec4(0.0, 0.0, 0.0, 1e-6);
 """
 
 SKY_NOT_LOOKED_AT = """
@@ -250,13 +276,13 @@ def fragment_floor(pattern: str) -> str:
 FLOOR = """//VTK::Light::Impl
 {
   vec3 up = vec3(0.0, 0.0, 1.0);
-  float lit = shadow(worldPosition, up, 0.0);
+  float lit = shadow(worldPosition);
 PATTERN
   // A surface that hides the sky throws back some of the lamp's warmer light: in all, grey is missing.
   vec3 light = mix(vec3(0.58, 0.62, 0.68), vec3(1.0), lit) - 0.62 * (1.0 - skySeen(worldPosition, up, up, 0.0));
   vec3 color = mix(floorColor, gridColor, marked) * light;
   float away = length(worldPosition.xy - floorCentre.xy) / floorCentre.z;
-  vec3 behind = mix(lowColor, highColor, clamp(gl_FragCoord.y / pictureHeight, 0.0, 1.0));
+  vec3 behind = mix(lowColor, highColor, clamp((gl_FragCoord.y + pictureBottom) / pictureHeight, 0.0, 1.0));
   fragOutput0 = vec4(seen(mix(color, behind, smoothstep(0.25, 1.0, away)), worldPosition), 1.0);
 }
 """
@@ -302,16 +328,19 @@ float specks(vec2 p)
 float foam(vec3 where, float top, vec3 normal, out float bright)
 {
   bright = 1.0;
-  if (foamMost <= 0.0) return 0.0;
-  float there = texture(liquidFoam, (where.xy - basinLow.xy) / (basinHigh.xy - basinLow.xy)).r;
+  float there = foamMost > 0.0 ? texture(liquidFoam, (where.xy - basinLow.xy) / (basinHigh.xy - basinLow.xy)).r : 0.0;
   bool wall = abs(normal.z) < 1e-3;
   if (wall) there *= 1.0 - smoothstep(0.0, 1.5 * cell.z, top - where.z);
-  if (there <= 0.0) return 0.0;
-  vec2 upright = vec2(dot(where.xy, vec2(1.0, 1.0)), wall ? where.z : 0.25 * where.z) / (0.7 * cell.z);
-  float some = specks(upright);
-  if (!wall) some = mix(some, specks(where.xy / (0.7 * cell.xy)), smoothstep(0.35, 0.75, normal.z));
-  bright = smoothstep(0.2, 0.7, some);
-  return smoothstep(0.85, 1.22, some + 0.8 * there) * smoothstep(0.0, 0.15, there);
+  float white = 0.0;
+  // A loop, as a branch would be computed where there is no foam too.
+  for (int once = there > 0.0 ? 1 : 0; once > 0; once--) {
+    vec2 upright = vec2(dot(where.xy, vec2(1.0, 1.0)), wall ? where.z : 0.25 * where.z) / (0.7 * cell.z);
+    float some = specks(upright);
+    if (!wall) some = mix(some, specks(where.xy / (0.7 * cell.xy)), smoothstep(0.35, 0.75, normal.z));
+    bright = smoothstep(0.2, 0.7, some);
+    white = smoothstep(0.85, 1.22, some + 0.8 * there) * smoothstep(0.0, 0.15, there);
+  }
+  return white;
 }
 """
 

@@ -52,7 +52,10 @@ class ShadedMesh:
         The mean over a vertex's triangles, weighted by area; where triangles were made fewer, those of the fine surface, so that
         shading does not tell.
         """
-        normal = self.gather @ _area_vectors(vertices, self.triangle)
+        if len(self.coarse) < len(vertices):
+            normal = self.gather @ _area_vectors(vertices, self.triangle)
+        else:
+            normal = np.empty_like(vertices)
         if len(self.coarse):
             fine = self.fine @ np.asarray(position, dtype=np.float64)
             normal[self.coarse] = np.cross(*(t @ fine for t in self.tangent))

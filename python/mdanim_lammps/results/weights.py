@@ -32,8 +32,11 @@ class Weights:
         """Sums of ``value``, shape (V, ...) for shape (N, ...)."""
         if not len(self):
             return np.zeros((0, *value.shape[1:]))
-        weight = self.weight.reshape(-1, *[1] * (value.ndim - 1))
-        return np.add.reduceat(weight * value[self.index], self.first)
+        if value.ndim == 1:
+            return np.add.reduceat(self.weight * value[self.index], self.first)
+        # Column by column: a third of the time of rows of three.
+        columns = np.moveaxis(value, -1, 0)
+        return np.stack([self @ np.ascontiguousarray(column) for column in columns], axis=-1)
 
     def __getitem__(self, row: np.ndarray) -> Weights:
         """Some of the rows, in any order."""

@@ -26,12 +26,12 @@ import numpy as np
 from ..errors import OutputError
 from ..features.liquid.kept import DROPS, HEIGHT, RAW
 from ..picture.camera import FIELD_OF_VIEW, Action, CameraPath, action_of, automatic_view
+from ..picture.floor import grid_spacing
 from ..picture.foam import Foam
 from ..picture.liquid import Sheet, without_puddles
 from ..picture.palette import LIQUID, background_colors, is_dark, object_colors, rgb, vertex_colors
 from ..picture.ponds import one_sheet
 from ..picture.rays import direction
-from ..picture.render import grid_spacing
 from ..picture.scenery import scenery
 from ..picture.surfaces import shaded_mesh
 from ..results.trajectory import Trajectory

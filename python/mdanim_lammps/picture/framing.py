@@ -1,0 +1,82 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Parts of a picture: where places are seen in it, and a camera that sees one part."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .camera import FIELD_OF_VIEW, View
+
+AROUND = 4
+"""Pixels around what is seen that a part holds too, for widths of lines and soft edges."""
+
+
+@dataclass(frozen=True)
+class Part:
+    """A rectangle of pixels of a picture; rows are counted from below."""
+
+    left: int
+    bottom: int
+    right: int
+    top: int
+
+    @property
+    def size(self) -> tuple[int, int]:
+        """Width and height in pixels; 0 for none."""
+        return max(0, self.right - self.left), max(0, self.top - self.bottom)
+
+    def of(self, picture: np.ndarray) -> np.ndarray:
+        """Its pixels, a view of a picture (height, width, ...) whose first row is the lowest one."""
+        return picture[self.bottom : self.top, self.left : self.right]
+
+
+def whole(size: tuple[int, int]) -> Part:
+    """All of a picture of this width and height."""
+    return Part(0, 0, *size)
+
+
+def part_around(view: View, size: tuple[int, int], points: np.ndarray, around: int = AROUND) -> Part:
+    """The part of a picture of this size in which places [m], shape (P, 3), are seen; all of it where one is beside or behind the
+    eye, none without places."""
+    if not len(points):
+        return Part(0, 0, 0, 0)
+    ahead, right, up = _axes(view)
+    out = points - view.eye
+    depth = out @ ahead
+    if depth.min() <= 1e-3 * np.linalg.norm(view.look - view.eye):
+        return whole(size)
+    half = 0.5 * size[1] / np.tan(np.radians(FIELD_OF_VIEW) / 2.0)
+    across = np.stack([out @ right, out @ up]) * half / depth + 0.5 * np.array(size)[:, None]
+    low = np.clip(np.floor(across.min(axis=1)).astype(int) - around, 0, size)
+    high = np.clip(np.ceil(across.max(axis=1)).astype(int) + around, 0, size)
+    return Part(int(low[0]), int(low[1]), int(high[0]), int(high[1]))
+
+
+def corner_rays(view: View, size: tuple[int, int]) -> np.ndarray:
+    """Directions in which the corners of a picture of this size are seen, shape (4, 3)."""
+    ahead, right, up = _axes(view)
+    high = np.tan(np.radians(FIELD_OF_VIEW) / 2.0)
+    wide = high * size[0] / size[1]
+    return np.array([ahead + x * wide * right + y * high * up for x in (-1, 1) for y in (-1, 1)])
+
+
+def _axes(view: View) -> np.ndarray:
+    """Unit vectors ahead, right and up, shape (3, 3)."""
+    ahead = view.look - view.eye
+    ahead = ahead / np.linalg.norm(ahead)
+    right = np.cross(ahead, view.upright)
+    right /= np.linalg.norm(right)
+    return np.array([ahead, right, np.cross(right, ahead)])
+
+
+def aim(camera, view: View, size: tuple[int, int], part: Part) -> None:
+    """Have a VTK camera see what a part of a picture of this size shows."""
+    camera.SetPosition(view.eye)
+    camera.SetFocalPoint(view.look)
+    camera.SetViewUp(view.upright)
+    width, height = part.size
+    tangent = np.tan(np.radians(FIELD_OF_VIEW) / 2.0) * height / size[1]
+    camera.SetViewAngle(2.0 * np.degrees(np.arctan(tangent)))
+    camera.SetWindowCenter((part.left + part.right - size[0]) / width, (part.bottom + part.top - size[1]) / height)
