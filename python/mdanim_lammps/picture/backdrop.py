@@ -8,7 +8,7 @@ from contextlib import nullcontext
 import numpy as np
 
 from .camera import View
-from .floor import Floor
+from .floor import FloorPlane
 from .framing import Part, aim, part_around, whole
 from .window import off_screen_window, rgba
 
@@ -25,7 +25,12 @@ class Backdrop:
     """
 
     def __init__(
-        self, size: tuple[int, int], background: tuple[np.ndarray, np.ndarray], floor: Floor | None, still: bool, everywhere: bool
+        self,
+        size: tuple[int, int],
+        background: tuple[np.ndarray, np.ndarray],
+        floor: FloorPlane | None,
+        still: bool,
+        everywhere: bool,
     ):
         from vtkmodules.vtkRenderingCore import vtkRenderer
 

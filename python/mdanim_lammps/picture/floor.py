@@ -25,7 +25,7 @@ SHADES = np.rint(255.0 * (1.0 - np.arange(SOFT**2 + 1) / SOFT**2)).astype(np.uin
 """Light on a floor of which this number of SOFT x SOFT pixels are hidden from the lamp."""
 
 
-class Floor:
+class FloorPlane:
     """A level square.
 
     Args:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
 from ..scene.render import Quality, Render
-from .floor import Floor, FloorShade
+from .floor import FloorPlane, FloorShade
 from .pieces import Lookup, gl_matrix
 from .rays import FAR, NEAR, ROOM, SKY_PIXELS, axes, direction, sky_axes
 from .window import off_screen_window
@@ -85,7 +85,7 @@ class Light:
         floor: where shadows fall; None without one.
     """
 
-    def __init__(self, data, centre: np.ndarray, size: float, typical: float, render: Render, floor: Floor | None):
+    def __init__(self, data, centre: np.ndarray, size: float, typical: float, render: Render, floor: FloorPlane | None):
         self._centre, self._radius, self._darkness = centre, 0.5 * size, render.shadows
         self._toward = direction(render.light)
         self._reach = min(REACH * typical, self._radius)

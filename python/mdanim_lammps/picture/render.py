@@ -7,14 +7,13 @@ import numpy as np
 
 from ..errors import UsageError
 from ..results.trajectory import Trajectory
-from ..scene.render import Floor as FloorPattern
-from ..scene.render import Quality, Render
+from ..scene.render import Floor, Quality, Render
 from . import shading
 from .backdrop import Backdrop
 from .behind import Behind
 from .camera import FIELD_OF_VIEW, Action, CameraPath, View, action_of, automatic_view
 from .drawn import Additions, medium
-from .floor import REACH, Floor
+from .floor import REACH, FloorPlane
 from .framing import Part, aim, part_around, whole
 from .label import Label
 from .light import Light
@@ -184,9 +183,9 @@ class Painter:
         self._behind = Behind(self._pixels) if sky and through and through.bends else None
         self._front = self._in_front() if self._behind else self._renderer
         self._tank = through.make(dark, sky, self._behind) if through else None
-        at = None if render.floor is FloorPattern.NONE else self._floor_height()
+        at = None if render.floor is Floor.NONE else self._floor_height()
         liquid = bool(self._tank)
-        self._floor = None if at is None else Floor(at, self.action, render, (low, high), height, self._finer, liquid)
+        self._floor = None if at is None else FloorPlane(at, self.action, render, (low, high), height, self._finer, liquid)
         (x, y, _), reach = self.action.centre, REACH * self.action.size
         self._more, own = Additions(self.trajectory, dark), len(self._mesh.carry)
         self._triangle = np.concatenate([self._mesh.triangle, own + self._more.triangle])
