@@ -9,7 +9,7 @@ import numpy as np
 
 from .camera import View
 from .floor import FloorPlane
-from .framing import Part, aim, part_around, whole
+from .framing import PicturePart, aim, part_around, whole
 from .window import off_screen_window, rgba
 
 
@@ -63,7 +63,7 @@ class Backdrop:
                 part.of(found)[:] = self._draw(view, part)
         return found
 
-    def _draw(self, view: View, part: Part) -> np.ndarray:
+    def _draw(self, view: View, part: PicturePart) -> np.ndarray:
         low, high = self._background
         bottom, top = (low + (high - low) * row / self._size[1] for row in (part.bottom, part.top))
         self._renderer.SetBackground(bottom)

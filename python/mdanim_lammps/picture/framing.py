@@ -14,7 +14,7 @@ AROUND = 4
 
 
 @dataclass(frozen=True)
-class Part:
+class PicturePart:
     """A rectangle of pixels of a picture; rows are counted from below."""
 
     left: int
@@ -32,16 +32,16 @@ class Part:
         return picture[self.bottom : self.top, self.left : self.right]
 
 
-def whole(size: tuple[int, int]) -> Part:
+def whole(size: tuple[int, int]) -> PicturePart:
     """All of a picture of this width and height."""
-    return Part(0, 0, *size)
+    return PicturePart(0, 0, *size)
 
 
-def part_around(view: View, size: tuple[int, int], points: np.ndarray, around: int = AROUND) -> Part:
+def part_around(view: View, size: tuple[int, int], points: np.ndarray, around: int = AROUND) -> PicturePart:
     """The part of a picture of this size in which places [m], shape (P, 3), are seen; all of it where one is beside or behind the
     eye, none without places."""
     if not len(points):
-        return Part(0, 0, 0, 0)
+        return PicturePart(0, 0, 0, 0)
     ahead, right, up = _axes(view)
     out = points - view.eye
     depth = out @ ahead
@@ -51,7 +51,7 @@ def part_around(view: View, size: tuple[int, int], points: np.ndarray, around: i
     across = np.stack([out @ right, out @ up]) * half / depth + 0.5 * np.array(size)[:, None]
     low = np.clip(np.floor(across.min(axis=1)).astype(int) - around, 0, size)
     high = np.clip(np.ceil(across.max(axis=1)).astype(int) + around, 0, size)
-    return Part(int(low[0]), int(low[1]), int(high[0]), int(high[1]))
+    return PicturePart(int(low[0]), int(low[1]), int(high[0]), int(high[1]))
 
 
 def corner_rays(view: View, size: tuple[int, int]) -> np.ndarray:
@@ -71,7 +71,7 @@ def _axes(view: View) -> np.ndarray:
     return np.array([ahead, right, np.cross(right, ahead)])
 
 
-def aim(camera, view: View, size: tuple[int, int], part: Part) -> None:
+def aim(camera, view: View, size: tuple[int, int], part: PicturePart) -> None:
     """Have a VTK camera see what a part of a picture of this size shows."""
     camera.SetPosition(view.eye)
     camera.SetFocalPoint(view.look)

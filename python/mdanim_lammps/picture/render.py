@@ -14,7 +14,7 @@ from .behind import Behind
 from .camera import FIELD_OF_VIEW, Action, CameraPath, View, action_of, automatic_view
 from .drawn import Additions, medium
 from .floor import REACH, FloorPlane
-from .framing import Part, aim, part_around, whole
+from .framing import PicturePart, aim, part_around, whole
 from .label import Label
 from .light import Light
 from .marks import MarkActors, Marks
@@ -274,7 +274,7 @@ class Painter:
 
     # --- one picture ---------------------------------------------------------------------------------------
 
-    def _aim(self, view: View, part: Part) -> None:
+    def _aim(self, view: View, part: PicturePart) -> None:
         aim(self._renderer.GetActiveCamera(), view, self._pixels, part)
         bounds = np.array([renderer.ComputeVisiblePropBounds() for renderer in self._renderers])
         self._renderer.ResetCameraClippingRange(np.where(np.arange(6) % 2, bounds.max(axis=0), bounds.min(axis=0)))
