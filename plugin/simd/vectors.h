@@ -28,7 +28,17 @@ template <class Vector, class Number> MDANIM_ALWAYS_INLINE Vector load(const Num
 { return reinterpret_cast<const Unaligned<Vector> *>(from)->value; }
 
 template <class Number, class Vector> MDANIM_ALWAYS_INLINE void store(Number *to, const Vector &value)
-{ reinterpret_cast<Unaligned<Vector> *>(to)->value = value; }
+{
+#if !defined(__AVX__) && (defined(__clang__) || __GNUC__ >= 12)
+  if constexpr (sizeof(Vector) == 32 && sizeof(Number) == 8) {    // GCC puts a vector that has no register into memory twice
+    typedef double Two __attribute__((vector_size(16)));
+    reinterpret_cast<Unaligned<Two> *>(to)->value = __builtin_shufflevector(value, value, 0, 1);
+    reinterpret_cast<Unaligned<Two> *>(to + 2)->value = __builtin_shufflevector(value, value, 2, 3);
+    return;
+  }
+#endif
+  reinterpret_cast<Unaligned<Vector> *>(to)->value = value;
+}
 
 // Elements of two vectors; elements of the second are numbered after those of the first.
 #if defined(__clang__) || __GNUC__ >= 12
