@@ -15,7 +15,7 @@ class Body:
     name: str
     size: tuple[float, ...]
     position: np.ndarray
-    """Of its centre [m], shape (3,)."""
+    """Place of its centre [m], shape (3,)."""
     density: float
     """[kg/m^3]"""
     axis: tuple[float, float, float] = (0.0, 0.0, 1.0)

@@ -80,7 +80,7 @@ void NearObjects::find_zones()
   }
 }
 
-// Those of a rigid object are of the box around it.
+// A rigid object has those of the box around it.
 std::vector<double> NearObjects::initial_extents() const
 {
   std::vector<double> extents;

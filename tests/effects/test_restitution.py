@@ -33,7 +33,7 @@ def tolerance(e: float) -> float:
 @pytest.mark.parametrize("e", [1.0, 0.9, 0.7, 0.5, 0.3, 0.1, 0.0])
 @pytest.mark.parametrize("what", [BALL, CUBE], ids=["ball", "face"])
 def test_a_blow_on_the_ground_leaves_what_is_asked(prepared, what, e):
-    """Of a ball and of the face of a cube."""
+    """The shapes are a ball and the face of a cube."""
     found = left(prepared, "ground z 0 m\n" + what.format(z=10.2, more=f"restitution {e}") + CONTROL.format(mu=0.5, more=""))
     assert found == pytest.approx(e, abs=tolerance(e) if e < 1 else 2e-3)
 
@@ -71,7 +71,7 @@ control {{ time 0.04 s  frames 50 fps }}
     ],
 )
 def test_which_word_counts(prepared, of_ball, of_slab, of_pair, of_all, e):
-    """That of the pair, or the lower one of both, or that of the scene."""
+    """The word of the pair counts, or the lower one of both, or that of the scene."""
     pair = f"contact ball slab {{ {of_pair} }}\n" if of_pair else ""
     text = BALL.format(z=10.2, more=of_ball) + SLAB.format(more=of_slab) + pair + CONTROL.format(mu=0.5, more=of_all)
     assert left(prepared, text) == pytest.approx(e, abs=0.06)

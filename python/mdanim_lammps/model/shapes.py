@@ -305,8 +305,8 @@ LAWS: dict[type, Any] = {
     kinds.Mesh: _Mesh,
 }
 FORMULAS = ("volume", "area", "thickness", "moments", "extent", "depth", "surface", "radius", "vertices", "rolls", "end")
-"""What each has. ``rolls``: whether it rolls down a slope before it slides; ``end``: the part with which it may land first,
-``flat``, ``round``, or ``pointed``, of few cells; the functions below say what the others are."""
+"""Formulas that each has. ``rolls``: whether it rolls down a slope before it slides; ``end``: the part with which it may land
+first, ``flat``, ``round``, or ``pointed``, of few cells; the functions below say what the others are."""
 
 
 def check_laws() -> None:

@@ -79,7 +79,7 @@ def _normals(points: np.ndarray, triangle: np.ndarray) -> np.ndarray:
 
 
 class Additions:
-    """What features add to the pictures of a trajectory, in the arrays of one mesh and of lines.
+    """Additions of features to the pictures of a trajectory, in the arrays of one mesh and of lines.
 
     Args:
         trajectory: what is drawn.

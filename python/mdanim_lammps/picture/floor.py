@@ -91,7 +91,7 @@ class FloorPlane:
             part = (eye[2] - self.height) / (eye[2] - place[beyond, 2])
             found.append(eye[:2] + part[:, None] * (place[beyond, :2] - eye[:2]))
             if beyond.any():
-                # What goes through the floor is hidden from where it does so on.
+                # A cell that goes through the floor is hidden from there on.
                 through = beyond[cell].any(axis=1) & ~beyond[cell].all(axis=1)
                 found.append(place[cell[through].ravel(), :2])
         at = np.concatenate(found)

@@ -87,7 +87,7 @@ class RigidMotion(Effect):
         return found
 
     def rate(self, context):
-        """Of bodies that touch by their features (Omega/STEP)^2, an estimate: the bound for given contacts is dt^2 S/4 + dt D/2
+        """(Omega/STEP)^2 for bodies that touch by their features, an estimate: the bound for given contacts is dt^2 S/4 + dt D/2
         <= 1 with the sums S and D over the contacts of a body, whose number nothing knows before (docs/physics-rigid.md)."""
         own = context.system.rigid & (touching.meets_objects(context) | touching.meets_planes(context))
         if not own.any():
