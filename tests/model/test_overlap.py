@@ -11,9 +11,10 @@ from hypothesis import strategies as st
 from mdanim_lammps import features
 from mdanim_lammps.features.contact.words import ContactModel
 from mdanim_lammps.features.liquid.record import Liquid
+from mdanim_lammps.features.rigid.words import Rigid
 from mdanim_lammps.features.walls.words import Walls
 from mdanim_lammps.model import build_models, check_geometry, overlap, shapes
-from mdanim_lammps.scene.scene import Box, Cylinder, HoldAll, Mesh, Sphere, Torus
+from mdanim_lammps.scene.scene import Box, Cylinder, Ellipsoid, HoldAll, Mesh, Sphere, Torus
 from model_samples import MESHES, SHAPES, rotation, scene, shape_id, solid
 
 CUBE = Box((1.0, 1.0, 1.0))
@@ -256,3 +257,30 @@ def test_a_heap_of_objects_in_each_other_is_not_looked_at_in_full(monkeypatch):
     problems = overlap.check_geometry(balls, build_models(balls))
     assert len(asked) == 50 and len(problems) == 51
     assert "b1 starts inside b0" in problems[0].message and "730 more pairs" in problems[-1].message
+
+
+@pytest.mark.parametrize(
+    ("shape", "place", "told", "hint"),
+    [
+        pytest.param(CUBE, (0.02, 0, 0.97), "b starts inside a, about 3 cm deep", "move it up by 3 cm", id="cubes"),
+        pytest.param(CUBE, (0.1, 0, 0.93), "b starts inside a, about 7 cm deep", "move it up by 7 cm", id="cubes, deep"),
+        pytest.param(Sphere(0.5), (0.1, 0, 0.99), "b starts inside a, about 1 cm deep", "move it up by 1 cm", id="a ball"),
+        pytest.param(CUBE, (0.0, 0, 0.9995), None, None, id="half a millimetre"),
+    ],
+)
+def test_rigid_objects_are_asked_by_their_shapes(shape, place, told, hint):
+    """Rigid ones have few particles: their shapes tell whether they start in each other, and how deep."""
+    found = problems(solid(CUBE, "a", elasticity=Rigid()), solid(shape, "b", position=place, elasticity=Rigid()))
+    assert [(p.message, p.hint) for p in found] == ([] if told is None else [(told, hint)])
+
+
+THICK = [Sphere(0.1), Cylinder(0.1, 0.2), Ellipsoid((0.1, 0.1, 0.1)), Box((0.2, 0.2, 0.2))]
+"""Shapes with a thickness of 20 cm."""
+
+
+@pytest.mark.parametrize("shape", THICK, ids=shape_id)
+@pytest.mark.parametrize(("height", "told"), [(0.09, "body is 1 cm below the ground"), (0.0999, None)])
+def test_a_rigid_object_in_the_ground(shape, height, told):
+    """A ball of 10 cm that starts 1 cm in the ground is refused, by a tenth of a millimetre it is not."""
+    found = problems(solid(shape, position=(0, 0, height), elasticity=Rigid()), ground=0.0)
+    assert [p.message for p in found] == ([] if told is None else [told])

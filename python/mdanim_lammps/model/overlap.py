@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from typing import Protocol
 
 import numpy as np
@@ -13,6 +13,7 @@ from ..scene.formatting import say, whole
 from ..scene.scene import SceneRecord, Solid
 from . import shapes
 from .boxes import box_pairs
+from .convex import bounds, overlap, placed
 from .model import Model
 from .planes import Plane
 
@@ -23,6 +24,10 @@ MOST_PAIRS = 1000
 BORN_AT_REST = 0.25
 """Part of a spacing by which surfaces may start below each other without stress, where contact is at the surfaces: what starts
 so deep is where contact begins. The law takes twice as much."""
+
+RIGID_AT_REST = 1e-3
+"""Part of the thinnest part of a rigid object by which it may start in something: coordinates of a few digits. A start so deep
+holds less than what bears a load at rest, and does not show."""
 
 
 class Contact(Protocol):
@@ -79,12 +84,35 @@ class _BoundingBoxes:
         """Whether contact acts at the surfaces, not before them."""
         self.allowed = max(inside, HAIR) * np.array([m.spacing for m in models])
         """Depth of a start in a plane that is no problem [m], shape (n,); in another one, the larger of both."""
+        self._exact_shapes()
         self.outer_low, self.outer_high = self.low, self.high
         if self.on_surfaces:
             return
         # Cells of a lattice may extend beyond the true surface.
         self.outer_low = np.minimum(self.low, [m.position.min(axis=0) for m in models])
         self.outer_high = np.maximum(self.high, [m.position.max(axis=0) for m in models])
+
+    def _exact_shapes(self) -> None:
+        """Take rigid objects as their shapes: the spacing of their few particles says nothing of what shows."""
+        self.rigid = np.array([m.inertia is not None for m in self.models])
+        exact = self.rigid | (self.fixed & self.rigid.any())
+        self.placed = [placed(solid) if e else None for solid, e in zip(self.solids, exact.tolist())]
+        """Bodies of what is rigid or never moves; None of all else, and of shapes that are not known so."""
+        thin = [shapes.thickness(solid.shape) if r else np.inf for solid, r in zip(self.solids, self.rigid.tolist())]
+        self.rounded = RIGID_AT_REST * np.array(thin)
+        """Depth of the start of a rigid object that is no problem [m], shape (n,)."""
+        for m in np.flatnonzero(self.rigid).tolist():
+            body = self.placed[m]
+            if (box := body.box() if body else bounds(self.solids[m])) is not None:
+                self.low[m], self.high[m] = box
+                self.allowed[m] = self.rounded[m]
+
+    def exact(self, i: int, j: int) -> Callable[[np.ndarray], float] | None:
+        """The exact depth of two objects in each other, as `convex.overlap`; None where contact acts at points of surfaces."""
+        first, second = self.placed[i], self.placed[j]
+        if first is None or second is None or not (self.rigid[i] or self.rigid[j]):
+            return None
+        return overlap(first, second)
 
     def clearance(self, i: int, j: int) -> float:
         """Gap between the boxes of two bodies at which contact has no energy [m]."""
@@ -177,22 +205,10 @@ def _candidates(scene: SceneRecord, bodies: _BoundingBoxes) -> tuple[np.ndarray,
 
 def _pair(scene: SceneRecord, bodies: _BoundingBoxes, planes: tuple[Plane, ...], i: int, j: int) -> Problem | None:
     first, second = scene.solids[i], scene.solids[j]
-    # Vertices of the true surfaces find most overlaps; two bars that cross share no vertex but the centres of
-    # cells. The cells of the smaller body are enough, so the cells of a large floor are not searched for
-    # every pebble.
-    small, large = (i, j) if bodies.resolved(i) <= bodies.resolved(j) else (j, i)
-    cells = bodies.cells(small)
-
-    def deepest(moved: np.ndarray) -> float:
-        """Largest depth of one in the other when j is moved [m]."""
-        return max(
-            _deepest(bodies.vertices[j] + moved, bodies, i, first),
-            _deepest(bodies.vertices[i] - moved, bodies, j, second),
-            _deepest(cells + moved if small == j else cells - moved, bodies, large, scene.solids[large]),
-        )
-
+    exact = bodies.exact(i, j)
+    deepest = exact or _at_points(scene, bodies, i, j)
     depth = deepest(np.zeros(3))
-    if depth <= max(bodies.allowed[i], bodies.allowed[j]):
+    if depth <= (min(bodies.rounded[i], bodies.rounded[j]) if exact else max(bodies.allowed[i], bodies.allowed[j])):
         return None
     axis, sign, step = _way_out(planes, bodies, i, j)
     if bodies.on_surfaces:  # surfaces may touch where boxes overlap
@@ -205,6 +221,25 @@ def _pair(scene: SceneRecord, bodies: _BoundingBoxes, planes: tuple[Plane, ...],
         f"{second.name} starts inside {first.name}, about {say(depth, 'm')} deep",
         f"move it {_MOVES[axis, sign]} by {say(_enough(step), 'm')}",
     )
+
+
+def _at_points(scene: SceneRecord, bodies: _BoundingBoxes, i: int, j: int) -> Callable[[np.ndarray], float]:
+    """Largest depth [m] of points of one of two objects in the other one when j is moved by a vector [m]."""
+    first, second = scene.solids[i], scene.solids[j]
+    # Vertices of the true surfaces find most overlaps; two bars that cross share no vertex but the centres of
+    # cells. The cells of the smaller body are enough, so the cells of a large floor are not searched for
+    # every pebble.
+    small, large = (i, j) if bodies.resolved(i) <= bodies.resolved(j) else (j, i)
+    cells = bodies.cells(small)
+
+    def deepest(moved: np.ndarray) -> float:
+        return max(
+            _deepest(bodies.vertices[j] + moved, bodies, i, first),
+            _deepest(bodies.vertices[i] - moved, bodies, j, second),
+            _deepest(cells + moved if small == j else cells - moved, bodies, large, scene.solids[large]),
+        )
+
+    return deepest
 
 
 def _deepest(points: np.ndarray, bodies: _BoundingBoxes, host: int, solid: Solid) -> float:

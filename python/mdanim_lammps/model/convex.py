@@ -1,0 +1,179 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Convex shapes: their corners and faces, the exact boxes around them, and how deep two of them are in each other."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+
+from ..scene.scene import Box, Cone, Cylinder, Ellipsoid, Mesh, Solid, Sphere
+from . import mesh
+
+MOST_CORNERS = 60
+"""Corners of a mesh up to which its features are found quickly."""
+FLAT = 1e-9
+"""Part of the size of a mesh, or of its volume, that is rounding."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Polyhedron:
+    """A convex body with flat faces."""
+
+    corner: np.ndarray
+    """About the centre of mass [m], shape (N, 3)."""
+    faces: tuple[tuple[int, ...], ...]
+    """Corners of each face, counter-clockwise seen from outside; no two faces are in one plane."""
+
+
+@lru_cache(maxsize=256)
+def polyhedron(shape: Mesh) -> Polyhedron | None:
+    """The corners and faces of a mesh; None where it is not convex, or has more than MOST_CORNERS. Raises mesh.MeshError."""
+    from scipy.spatial import ConvexHull
+
+    body = mesh.load(shape)
+    hull = ConvexHull(body.points)
+    if len(hull.vertices) > 4 * MOST_CORNERS or hull.volume > (1.0 + FLAT) * body.volume:
+        return None
+    near = FLAT * float(np.ptp(body.points, axis=0).max())
+    left, faces = list(range(len(hull.equations))), []
+    while left:
+        plane = hull.equations[left[0]]
+        same = [k for k in left if np.abs(hull.points[hull.simplices[k]] @ plane[:3] + plane[3]).max() <= near]
+        left = [k for k in left if k not in same]
+        faces.append(_around(hull.points, np.unique(hull.simplices[same]), plane[:3]))
+    used = np.unique(np.concatenate(faces))
+    if len(used) > MOST_CORNERS:
+        return None
+    number = {int(old): new for new, old in enumerate(used)}
+    return Polyhedron(hull.points[used], tuple(tuple(number[int(k)] for k in face) for face in faces))
+
+
+def _around(points: np.ndarray, corners: np.ndarray, normal: np.ndarray) -> np.ndarray:
+    """The corners of a face in order, without those on its straight edges."""
+    from scipy.spatial import ConvexHull
+
+    first = np.cross(normal, np.eye(3)[np.abs(normal).argmin()])
+    first /= np.linalg.norm(first)
+    flat = points[corners] @ np.stack([first, np.cross(normal, first)], axis=1)
+    return corners[ConvexHull(flat).vertices]  # counter-clockwise in the plane
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Placed:
+    """A convex body in space: all points within ``radius`` of a polyhedron, which has one corner alone in a ball."""
+
+    corner: np.ndarray
+    """[m], shape (N, 3)."""
+    normal: np.ndarray
+    """Of the faces, outward, shape (F, 3)."""
+    edge: np.ndarray
+    """Directions of the edges, shape (E, 3)."""
+    triangle: np.ndarray
+    """Corners of the triangles of the faces, shape (T, 3)."""
+    radius: float
+    """[m]"""
+
+    def box(self) -> tuple[np.ndarray, np.ndarray]:
+        """Low and high corner of the box around it [m]."""
+        return self.corner.min(axis=0) - self.radius, self.corner.max(axis=0) + self.radius
+
+
+def placed(solid: Solid) -> Placed | None:
+    """The body of a solid; None where its shape is neither a cuboid, a ball nor a `polyhedron`."""
+    shape, turn, place = solid.shape, np.array(solid.rotation), np.array(solid.position, float)
+    if isinstance(shape, Sphere):
+        none = np.zeros((0, 3))
+        return Placed(place[None], none, none, none.astype(int), shape.radius)
+    if isinstance(shape, Box):
+        body, size = _CUBE, np.array(shape.size)
+    elif isinstance(shape, Mesh) and (found := polyhedron(shape)) is not None:
+        body, size = found, np.ones(3)
+    else:
+        return None
+    corner = (body.corner * size) @ turn.T + place
+    a, b, c = (corner[[face[k] for face in body.faces]] for k in range(3))
+    sides = {(min(pair), max(pair)) for face in body.faces for pair in zip(face, (*face[1:], face[0]))}
+    first, second = np.array(sorted(sides)).T
+    fans = [(face[0], face[k], face[k + 1]) for face in body.faces for k in range(1, len(face) - 1)]
+    return Placed(corner, _units(np.cross(b - a, c - b)), _units(corner[second] - corner[first]), np.array(fans), 0.0)
+
+
+_CUBE = Polyhedron(
+    np.array([(x, y, z) for z in (-0.5, 0.5) for y in (-0.5, 0.5) for x in (-0.5, 0.5)]),
+    ((0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)),
+)
+"""Of the edge 1."""
+
+
+def _units(vectors: np.ndarray) -> np.ndarray:
+    return vectors / np.linalg.norm(vectors, axis=-1, keepdims=True)
+
+
+def bounds(solid: Solid) -> tuple[np.ndarray, np.ndarray] | None:
+    """Exact low and high corner of the box around an ellipsoid, a cylinder or a cone [m]; None of other shapes."""
+    shape, turn, place = solid.shape, np.array(solid.rotation), np.array(solid.position, float)
+    along = turn[:, 2]
+    if isinstance(shape, Ellipsoid):
+        half = np.linalg.norm(turn * np.array(shape.radii), axis=1)
+        return place - half, place + half
+    if isinstance(shape, Cylinder | Cone):
+        disc = shape.radius * np.sqrt(np.maximum(0.0, 1.0 - along**2))
+        base, top = (place + (sign * shape.height / 2.0 + _CENTRES[type(shape)] * shape.height) * along for sign in (-1, 1))
+        tip = disc if isinstance(shape, Cylinder) else 0.0
+        return np.minimum(base - disc, top - tip), np.maximum(base + disc, top + tip)
+    return None
+
+
+_CENTRES: dict[type, float] = {Cylinder: 0.0, Cone: 0.25}
+"""Where the middle of the height is above the centre of mass, over the height."""
+
+
+def overlap(first: Placed, second: Placed) -> Callable[[np.ndarray], float]:
+    """Depth of the second body in the first one when it is moved by a vector [m]: the length of the shortest move that frees it,
+    0 where they are apart. By separating axes, or by the nearest point of a polyhedron to the centre of a ball."""
+    if len(first.corner) == 1 or len(second.corner) == 1:
+        ball, other, sign = (first, second, -1.0) if len(first.corner) == 1 else (second, first, 1.0)
+        around = ball.radius + other.radius
+        return lambda moved: max(0.0, around + _inside(other, ball.corner[0] + sign * moved))
+    crossed = np.cross(first.edge[:, None], second.edge[None]).reshape(-1, 3)
+    length = np.linalg.norm(crossed, axis=1)
+    crossed = crossed[length > _PARALLEL] / length[length > _PARALLEL, None]
+    axes = np.concatenate([first.normal, second.normal, crossed, -crossed])  # separating axes: no others are needed
+    axes = np.concatenate([axes, -axes[: len(first.normal) + len(second.normal)]])
+    apart = (first.corner @ axes.T).max(axis=0) - (second.corner @ axes.T).min(axis=0)
+    return lambda moved: max(0.0, float((apart - axes @ moved).min()))
+
+
+_PARALLEL = 1e-6
+"""Sine of the angle between two edges below which their cross product is rounding."""
+
+
+def _inside(body: Placed, point: np.ndarray) -> float:
+    """Depth of a point in the polyhedron of a body, or less its distance outside [m]."""
+    if not len(body.normal):
+        return -float(np.linalg.norm(point - body.corner[0]))
+    first = body.corner[body.triangle]
+    normal = _units(np.cross(first[:, 1] - first[:, 0], first[:, 2] - first[:, 1]))
+    depth = ((first[:, 0] - point) * normal).sum(axis=1)
+    if depth.min() >= 0.0:
+        return float(depth.min())
+    return -math.sqrt(min(_to_triangles(first, normal, depth, point), _to_edges(first, point)))
+
+
+def _to_triangles(triangle: np.ndarray, normal: np.ndarray, depth: np.ndarray, point: np.ndarray) -> float:
+    """Smallest squared distance to the triangles over or under which a point is [m^2]; infinite where there are none."""
+    side = np.roll(triangle, -1, axis=1) - triangle
+    over = (np.cross(side, point - triangle) * normal[:, None]).sum(axis=-1) >= 0.0
+    return float(np.min(depth[over.all(axis=1)] ** 2, initial=math.inf))
+
+
+def _to_edges(triangle: np.ndarray, point: np.ndarray) -> float:
+    """Smallest squared distance of a point to the sides of triangles [m^2]."""
+    start = triangle.reshape(-1, 3)
+    side = np.roll(triangle, -1, axis=1).reshape(-1, 3) - start
+    part = np.clip(((point - start) * side).sum(axis=1) / (side**2).sum(axis=1), 0.0, 1.0)
+    return float(np.square(point - start - part[:, None] * side).sum(axis=1).min())
