@@ -3,6 +3,7 @@
 
 import numpy as np
 import pytest
+from mdanim_lammps.errors import SceneError
 from mdanim_lammps.model import build_models
 from mdanim_lammps.model.system import assemble
 from mdanim_lammps.scene.scene import Box, HoldAll, Sphere
@@ -68,3 +69,34 @@ def test_what_is_moved_or_lies_in_a_liquid_has_its_lattice():
     assert len(build_models(made)[0].position) == 8
     assert len(build_models(made, driven={0})[0].position) == 11**3
     assert len(build_models(made, inside=True)[0].position) == 11**3
+
+
+PLATE = """gravity (0, 0, -9.81) m/s^2
+object floor { shape box (100, 100, 1) cm  position (0, 0, -0.005) m  density 1000  HOW  hold all }
+object ball { shape sphere 5 cm  position (0, 0, 0.06) m  mass 1 kg  elasticity rigid  velocity (0, 0, -10) m/s }
+control { time 0.1 s }
+"""
+RING = "object ring { shape torus 10 cm 3 cm  position (3, 0, 3) m  density 500  elasticity rigid }\n"
+
+
+@pytest.mark.parametrize("how", ["elasticity rigid", "elasticity 10 kPa"])
+def test_features_alone_need_neither_inside_nor_surface(prepared, how):
+    """A rigid ball comes faster than waves of what the plate is made of would, and nothing of that acts: the plate has no inside,
+    its surface is 12 triangles, and no speed is doubted. A resolution sets nothing, so it is not held against the thinness."""
+    ready = prepared(PLATE.replace("HOW", how))
+    assert np.diff(ready.system.first).tolist() == [8, 8] and not ready.warnings
+    floor = ready.context.models[0]
+    assert len(floor.surface.triangle) == 12 and len(ready.system.contact_bodies[ready.system.contact_kind[0]].at) < 50
+    low, high = (floor.surface.vertices(floor.position).min(axis=0), floor.surface.vertices(floor.position).max(axis=0))
+    np.testing.assert_allclose([low, high], [(-0.5, -0.5, -0.01), (0.5, 0.5, 0.0)], rtol=0, atol=1e-15)
+    coarse = prepared(PLATE.replace("HOW", f"{how}  resolution 1 m"))
+    assert (coarse.system.position == ready.system.position).all() and coarse.certificate.timestep == ready.certificate.timestep
+    assert coarse.system.spacing.tolist() == ready.system.spacing.tolist()
+
+
+def test_points_of_a_surface_are_as_far_apart_as_the_spacing(prepared):
+    """A torus has no features: it meets the plate at points of both surfaces, and a resolution sets them."""
+    with pytest.raises(SceneError, match="floor: thinner than the spacing allows"):
+        prepared(PLATE.replace("HOW", "elasticity rigid  resolution 1 m") + RING)
+    ready = prepared(PLATE.replace("HOW", "elasticity rigid  resolution 1 cm") + RING)
+    assert np.diff(ready.system.first)[0] == 8 and len(ready.context.models[0].surface.triangle) == 2 * (2 * 100**2 + 4 * 100)

@@ -43,6 +43,10 @@ class BodyKind:
         """Particle spacing [m] of its objects that have no ``resolution`` of their own, where that of the scene is h [m]."""
         return lambda solid: h
 
+    def has_spacing(self, scene: SceneRecord) -> bool:
+        """Whether something reads particles or points of them as far apart as their spacing, so that ``resolution`` sets it."""
+        return True
+
     def particles(self, scene: SceneRecord, solid: Solid, lattice: float) -> float:
         """Estimated number of particles of an object; ``lattice`` is that of a lattice that fills it."""
         return lattice
@@ -54,6 +58,12 @@ class BodyKind:
         Raises cells.TooThin, mesh.MeshError, build.NothingHeld.
         """
         raise NotImplementedError
+
+
+def only_features(scene: SceneRecord) -> bool:
+    """Whether all contacts of a scene are found from features of shapes alone: a module ``body`` may have a function
+    `by_features` that says so. Then nothing reads points of surfaces, nor particles inside."""
+    return any(facet.by_features(scene) for facet in facets("body") if hasattr(facet, "by_features"))
 
 
 def all_held(solid: Solid) -> bool:

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from ..bodies import kind_of
+from ..bodies import kind_of, only_features
 from ..errors import Problem, SceneError
 from ..scene.formatting import number, say
 from ..scene.scene import Elasticity, HoldAll, HoldFaces, HoldWithin, SceneRecord, Shape, Solid
@@ -105,6 +105,11 @@ class SharedParts:
         if key not in self._made:
             self._made[key] = make(self, *of)
         return self._made[key]
+
+    @cached_property
+    def by_features(self) -> bool:
+        """Whether nothing reads points of surfaces, nor particles inside (bodies.only_features)."""
+        return only_features(self.scene)
 
     def is_driven(self, solid: Solid) -> bool:
         """Whether some effect moves its held particles."""

@@ -3,13 +3,14 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from itertools import product
 from typing import Any
 
 import numpy as np
 
-from ..scene.scene import Shape, Solid
+from ..scene.scene import Box, Shape, Solid, Sphere
 from . import shapes
 from .cells import fill_cells
 from .contact_body import BodyFrame
@@ -38,28 +39,31 @@ def held_model(solid: Solid, h: float, shared: Any) -> Model:
     """The model of an object that is held as a whole, with the cells of its contact h [m] wide.
 
     The drawn surface is that of its lattice: each vertex is a weighted sum of the eight corners. ``shared`` makes what equal
-    objects share (build.SharedParts).
+    objects share (build.SharedParts). A cuboid or a ball whose contact is found elsewhere has a surface of one cell, and counts
+    as resolved with h.
 
     Raises cells.TooThin, mesh.MeshError.
     """
-    placed, mass = shared.once(_placed, solid.shape, h, tuple(map(tuple, solid.rotation))), shapes.mass(solid)
-    cells = placed.frame.cells
+    bare = shared.by_features and isinstance(solid.shape, Box | Sphere)
+    placed = shared.once(_placed, solid.shape, math.inf if bare else h, tuple(map(tuple, solid.rotation)))
+    mass, edge = shapes.mass(solid), placed.frame.cells.edge
+    edge = edge / np.maximum(1.0, np.rint(edge / h)) if bare else edge
     none = np.zeros((0, 3))
     return Model(
         name=solid.name,
         position=placed.corner + solid.position,
         velocity=np.zeros((8, 3)),
         mass=mass * placed.share,
-        share=np.full(8, shapes.volume(solid.shape) / (8.0 * cells.edge.prod())),
+        share=np.full(8, shapes.volume(solid.shape) / (8.0 * edge.prod())),
         layer=np.full(8, Layer.BOUNDARY, np.uint8),
         held=np.ones(8, bool),
         spring=np.zeros((0, 2), np.int32),
         spring_type=np.zeros(0, np.uint8),
         constants=none,
-        young=equivalent_modulus(cells.edge, solid.elasticity),
+        young=equivalent_modulus(edge, solid.elasticity),
         inertia_error=0.0,
         hexahedron=np.zeros((0, 8), np.int32),
-        cell=tuple(cells.edge.tolist()),
+        cell=tuple(edge.tolist()),
         surface=placed.surface,
         frame=placed.frame,
     )

@@ -97,9 +97,14 @@ def choose_spacing(scene: SceneRecord) -> tuple[float, str, list[float]]:
 
 
 def spacings(scene: SceneRecord, h: float) -> tuple[float, ...]:
-    """Spacing of each solid [m], its own or else what its kind of body takes where that of the scene is h [m]."""
-    of = {kind: kind.spacing(scene, h) for kind in kinds()}
-    return tuple(of[kind_of(s)](s) if s.resolution is None else s.resolution for s in scene.solids)
+    """Spacing of each solid [m]: its own, where its kind of body has one, or else what that takes where that of the scene is h
+    [m]."""
+    of = {kind: (kind.spacing(scene, h), kind.has_spacing(scene)) for kind in kinds()}
+    found = []
+    for solid in scene.solids:
+        usual, has_own = of[kind_of(solid)]
+        found.append(solid.resolution if has_own and solid.resolution is not None else usual(solid))
+    return tuple(found)
 
 
 def scaled(scene: SceneRecord, factor: float | None) -> SceneRecord:

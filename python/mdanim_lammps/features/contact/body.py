@@ -3,7 +3,8 @@
 
 from __future__ import annotations
 
-from ...bodies import BodyKind, all_held
+from ...bodies import BodyKind, all_held, only_features
+from ...model import shapes
 from ...model.build import lattice_model
 from ...model.held import held_model
 from .words import ContactModel
@@ -18,6 +19,15 @@ class HeldBody(BodyKind):
 
     def takes(self, solid):
         return all_held(solid)
+
+    def has_spacing(self, scene):
+        return not only_features(scene)
+
+    def spacing(self, scene, h):
+        """As the scene, where something reads its surface."""
+        if not only_features(scene):
+            return lambda solid: h
+        return lambda solid: min(h, shapes.thickness(solid.shape) / 2)
 
     def particles(self, scene, solid, lattice):
         return 8.0 if only_surfaces_act(scene) else lattice

@@ -144,8 +144,8 @@ class SurfaceContact(ObjectContact):
         return {**own, column("thin", "1"): (thin & self.guards(context)[system.object]).astype(float)} if thin.any() else own
 
     def needs_inside(self, context):
-        """Barriers bear what meets others fast."""
-        return bool(fast(context).any())
+        """Barriers bear what meets others fast; what is rigid has none."""
+        return bool((fast(context) & np.isfinite(context.system.young)).any())
 
     def guards(self, context: Context) -> np.ndarray:
         """Solids whose surface is a barrier where nothing is inside, bool, shape (M,): those that may be met fast. The faces of
@@ -193,7 +193,8 @@ class SurfaceContact(ObjectContact):
     def tunnelling(self, envelope):
         found, system = super().tunnelling(envelope), envelope.system
         bare = (envelope.cells < 1.5) & ~self.guards(envelope.context)
-        return np.minimum(found, np.where(needles(system), NEEDLE, np.where(bare, UNGUARDED, np.inf)))
+        found = np.minimum(found, np.where(needles(system), NEEDLE, np.where(bare, UNGUARDED, np.inf)))
+        return np.where(meet_here(envelope.context), found, np.inf)
 
     def thin(self, system: System) -> tuple[str, ...]:
         """Commands that make the group of `guards`."""
@@ -357,6 +358,15 @@ def settled(context: Context, planes: bool = False) -> list[tuple[np.ndarray, st
     """Solids whose contact with each other, or with planes, another fix has (Effect.settles), and their groups."""
     on = (e for e in context.resolved.effects if e.acts_on(context))
     return [found for e in on if (found := e.settles(context, planes=planes)) is not None]
+
+
+def meet_here(context: Context) -> np.ndarray:
+    """Solids that may meet another one whose contact with them is in no other fix, bool, shape (M,)."""
+    moving = ~context.system.still
+    found = np.ones(len(moving), bool)
+    for own, _ in settled(context):
+        found &= ~own | np.where(moving, (~own).any(), (moving & ~own).any())
+    return found
 
 
 def surface_stiffness(context: Context, young: np.ndarray, share: np.ndarray | float = 1.0) -> np.ndarray:

@@ -45,20 +45,25 @@ class RigidBody(BodyKind):
         across = lambda solid: ACROSS if on_objects(solid.shape) else AT_SURFACE
         return lambda solid: min(finest, shapes.thickness(solid.shape) / across(solid))
 
+    def has_spacing(self, scene):
+        return not by_features(scene)
+
     def make(self, solid, h, shared):
         boxed = isinstance(solid.shape, Box | Sphere)  # the box around them has their middle
-        if boxed and shared.once(only_features):
+        if boxed and shared.by_features:
             model = single_cell_model(solid, h, shared)
         else:
             model = lattice_model(solid, h, shared, loose=True)
         return replace(model, inertia=tensor(solid.shape, shapes.mass(solid), solid.rotation))
 
 
-def only_features(shared) -> bool:
-    """Whether all contacts of rigid objects in a scene are of shapes that know each other by their features, so that nothing
-    reads points of their surfaces, nor particles inside. Held cuboids in touch have sides that are covered, and none."""
-    scene, solids = shared.scene, shared.scene.solids
-    if scene.liquid is not None or not all(on_objects(s.shape) for s in solids) or any(map(is_soft, solids)):
+def by_features(scene) -> bool:
+    """Whether rigid objects move, and all contacts are of shapes that know each other by their features, so that nothing reads
+    points of their surfaces, nor particles inside. Held cuboids in touch have sides that are covered, and none."""
+    solids = scene.solids
+    if scene.liquid is not None or all(map(all_held, solids)) or any(map(is_soft, solids)):
+        return False
+    if not all(on_objects(s.shape) for s in solids):
         return False
     held = [s for s in solids if all_held(s)]
     half = [np.abs(np.array(s.rotation)) @ np.abs(shapes.extent(s.shape)).max(axis=0) for s in held]
