@@ -31,6 +31,9 @@ def scene(block: str, **settings: str):
         blocks |= {"place": {}}
     if block == "contact" or any(settings.get(word, "0") != "0" for word in OF_SURFACES):
         blocks["control"]["contact-model"] = "surface"
+    if "restitution" in settings:  # of rigid objects
+        for name in {"object", "floor"} & set(blocks):
+            blocks[name]["elasticity"] = "rigid"
     if "(floor)" in settings.get("expect", ""):
         blocks["floor"] = dict(BALL)
     if settings.get("sweeps", "auto") != "auto":

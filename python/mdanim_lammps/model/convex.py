@@ -69,7 +69,7 @@ class Placed:
     corner: np.ndarray
     """[m], shape (N, 3)."""
     normal: np.ndarray
-    """Of the faces, outward, shape (F, 3)."""
+    """Outward normals of the faces, shape (F, 3)."""
     edge: np.ndarray
     """Directions of the edges, shape (E, 3)."""
     triangle: np.ndarray
@@ -106,7 +106,7 @@ _CUBE = Polyhedron(
     np.array([(x, y, z) for z in (-0.5, 0.5) for y in (-0.5, 0.5) for x in (-0.5, 0.5)]),
     ((0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)),
 )
-"""Of the edge 1."""
+"""A cube with the edge 1."""
 
 
 def _units(vectors: np.ndarray) -> np.ndarray:

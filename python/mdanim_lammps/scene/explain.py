@@ -20,16 +20,23 @@ MARGINS = {
 }
 """Limits that `check` prints with their margins, and certificate.json holds."""
 
+LEDGER = {name: about for words in facets("words") for name, about in getattr(words, "LEDGER", {}).items()}
+"""Columns of the ledger with a meaning of their own."""
+
 
 def explain(word: str) -> str:
     """All meanings of a word, one after the other. Raises KeyError that suggests a near word."""
     wanted = word.strip().lower().replace("_", " ")
-    found = [text for name, text in _entries() if wanted == name.lower() or wanted == name.lower().replace("-", " ")]
+    found = [text for name, text in _entries() if wanted in (name.lower(), _spaced(name)) or text.startswith(f"{wanted}   ")]
     if not found:
         raise KeyError(
             f"'{word}' is not a word of a scene; {did_you_mean(wanted, words()) or 'explain without a word lists all of them'}"
         )
     return "\n\n".join(found)
+
+
+def _spaced(name: str) -> str:
+    return name.lower().replace("-", " ").replace("_", " ")
 
 
 def words() -> list[str]:
@@ -49,6 +56,10 @@ def _entries() -> Iterator[tuple[str, str]]:
     for kind in vars(shapes).values():
         if isinstance(kind, type) and (forms := getattr(kind, "FORMS", ())) and forms[0].split()[0].isalpha():
             yield forms[0].split()[0], f"{_slots(' | '.join(forms))}\n  {_plain((kind.__doc__ or '').splitlines()[0])}"
+    for kind in (k for words in facets("words") for k in getattr(words, "ELASTICITIES", ())):
+        for form in kind.FORMS:
+            about = kind.ABOUT.replace(f"`{form}`: ", "", 1)
+            yield form.split()[0], f"elasticity {_slots(form)}   a form of elasticity in object {{ }}\n  {_plain(about)}"
     for (subject, quantity), kind in QUANTITIES.items():
         unit = kind.unit if kind.unit != "1" else "plain numbers"
         what = f"expect {subject}.{quantity} = ...   a quantity, in {unit}\n  {_plain(meaning(subject, kind))}"
@@ -59,6 +70,8 @@ def _entries() -> Iterator[tuple[str, str]]:
             yield name, f"{name}   a unit of {about.split(' ', 1)[1]} (also {others}){limit}"
     for name, about in MARGINS.items():
         yield name, f"{name}   a limit that check prints with its margin\n  {about}"
+    for name, about in LEDGER.items():
+        yield name, f"{name}   a column of ledger.csv\n  {about}"
     for name, instead in NOT_SUPPORTED.items():
         yield name, f"{name}   is not in the language\n  instead: {_plain(instead)}"
     for name, shape in SYNONYMS.items():

@@ -12,7 +12,7 @@ from . import functions, units
 from .functions import FUNCTIONS
 from .keywords import did_you_mean
 from .limits import DEEPEST_EXPRESSION
-from .source import Fault, Silent
+from .source import Fault, NoValue, Silent
 from .tokens import Token
 from .units import DimensionError, Quantity
 
@@ -319,4 +319,4 @@ def _unknown(token: Token, env: Env) -> Fault:
         return Fault(token, f"'{name}' is a unit, and a number is needed here", f"write a number before it: 1 {name}")
     names = [n for n in env.values if n.isidentifier()]
     hint = did_you_mean(name, names) if names else ""
-    return Fault(token, f"'{name}' has no value", hint if "did you" in hint else f"give it one before: let {name} = ...")
+    return NoValue(token, f"'{name}' has no value", hint if "did you" in hint else f"give it one before: let {name} = ...")

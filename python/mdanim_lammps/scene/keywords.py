@@ -7,11 +7,13 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from dataclasses import replace
 from difflib import get_close_matches
 from typing import get_args
 
 from ..features import facets
+from .forms import Word, alternatives
 from .placement import Placement
 from .scene import Command, Control, Render, SceneRecord, Solid, Switch
 from .schema import Block, Keyword, Words, keywords
@@ -112,6 +114,23 @@ def misplaced(keyword: Keyword, word: str, starts) -> str:
     return MISPLACED.get(f"{keyword.name} {word}", "")
 
 
+def owner(settings: Mapping[str, Keyword], word: str) -> Keyword | None:
+    """The one of some settings of which a form begins with a word; None where there are several, or it is one itself."""
+    found = [k for k in settings.values() if word in beginnings(k)]
+    return found[0] if len(found) == 1 and word not in settings else None
+
+
+def beginnings(keyword: Keyword) -> list[str]:
+    """Words with which forms of a setting begin."""
+    return [parts[0].text for parts in alternatives(keyword.form) if parts and isinstance(parts[0], Word)]
+
+
+def belongs(keyword: Keyword, word: str) -> str:
+    """``it belongs to elasticity: write elasticity rigid``"""
+    more = "" if (Word(word),) in alternatives(keyword.form) else " ..."
+    return f"it belongs to {keyword.name}: write {keyword.name} {word}{more}"
+
+
 def all_keywords() -> list[Keyword]:
     """The keywords of all blocks, in the order of the docs."""
     return [k for block in KEYWORDS.values() for k in block.values()]
@@ -120,6 +139,12 @@ def all_keywords() -> list[Keyword]:
 def example(keyword: Keyword) -> str:
     """``e.g. mass 2 kg``"""
     return f"e.g. {keyword.name} {keyword.example}"
+
+
+def examples(keyword: Keyword) -> str:
+    """``e.g. elasticity 200 kPa, or elasticity rigid``: with the forms that are words alone."""
+    alone = (parts[0].text for parts in alternatives(keyword.form) if len(parts) == 1 and isinstance(parts[0], Word))
+    return ", or ".join([example(keyword), *(f"{keyword.name} {word}" for word in alone)])
 
 
 # --- help -------------------------------------------------------------------------------------------------

@@ -3,13 +3,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cache
 from itertools import count
 
 from .forms import OptionalPart, Slot, Word, alternatives, literals, pieces
-from .keywords import KEYWORDS, NOT_SUPPORTED, STATEMENTS, did_you_mean, example, misplaced, nearest
+from .keywords import KEYWORDS, NOT_SUPPORTED, STATEMENTS, belongs, did_you_mean, example, misplaced, nearest, owner
 from .limits import DEEPEST_GROUP
 from .reader import ODD, Reader
 from .scene import GLOBALS, QUANTITIES, RELATIONS
@@ -277,7 +277,8 @@ class SettingReader(Reader):
         elif t.type == "RPAR":
             hint = "this ) closes nothing"
         elif t.type == "NAME":
-            hint = did_you_mean(str(t), settings) or "one setting per line"
+            home = owner(settings, str(t)) if isinstance(settings, Mapping) else None
+            hint = belongs(home, str(t)) if home else did_you_mean(str(t), settings) or "one setting per line"
         elif t.type == "LBRACE":
             hint = f"{what} is a setting, not a block"
         raise Fault(t, f"{t.found()} cannot follow here; {what} is complete", hint)

@@ -20,6 +20,10 @@ class Fault(Exception):
         self.token, self.message, self.hint, self.last = token, message, hint, last or token
 
 
+class NoValue(Fault):
+    """A name for which there is no value."""
+
+
 class Silent(Fault):
     """Follows from a problem that was reported already."""
 

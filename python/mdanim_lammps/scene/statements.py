@@ -9,7 +9,7 @@ from pathlib import Path
 
 from .expressions import RESERVED, Node
 from .forms import Slot, literals
-from .keywords import BLOCKS, KEYWORDS, NOT_SUPPORTED, STATEMENTS, did_you_mean, foreign_line, nearest
+from .keywords import BLOCKS, KEYWORDS, NOT_SUPPORTED, STATEMENTS, belongs, did_you_mean, foreign_line, nearest, owner
 from .limits import DEEPEST_INCLUDE, DEEPEST_REPEAT, MOST_BYTES, MOST_FILES
 from .reader import ODD
 from .setting_reader import SettingReader, Shared
@@ -88,6 +88,8 @@ class Parser(SettingReader):
                 self.skip_statement(start, block, fault.token)
                 known = [*KEYWORDS[block], *BLOCKS, *STATEMENTS]
                 result.append(UnreadableStatement(nearest(str(word), known) or str(word), str(name) if word == "let" else ""))
+                if (home := owner(KEYWORDS[block], str(fault.token))) is not None:
+                    result.append(UnreadableStatement(home.name))
             except Unclosed as trouble:
                 self.at = start
                 if opened is None:
@@ -136,27 +138,27 @@ class Parser(SettingReader):
         homes = [b for b in KEYWORDS if word in KEYWORDS[b]]
         if "" in homes and opened is not None and self._first_on_line(word) and word.column <= opened.column:
             raise Unclosed(word)
-        guess = nearest(str(word), here)
-        if homes and not guess:
+        guess, home = nearest(str(word), here), owner(KEYWORDS[block], str(word))
+        if homes and not guess and home is None:
             place = " or ".join(f"{b} {{ }}" if b else "the outermost level" for b in homes)
             inside = f"inside {block} {{ }}" if block else "outside of all blocks"
             raise Fault(word, f"'{word}' cannot stand {inside}", f"it belongs {'in' if homes[0] else 'on'} {place}")
         if str(word) in NOT_SUPPORTED:
             raise Fault(word, f"{word} is not supported yet", NOT_SUPPORTED[str(word)])
         kind = f"a setting of {block}" if block else "a word of the scene language"
-        owner = next((k for k in KEYWORDS[block].values() if word in literals(k.form)), None)
+        home = home or next((k for k in KEYWORDS[block].values() if word in literals(k.form)), None)
         hint = did_you_mean(str(word), here)
         if self.peek.type == "EQUAL":
             hint = f"write let {word} = ..."
-        elif owner is not None and not guess:
-            hint = f"it belongs to {owner.name}: write {owner.name} {word} ..."
+        elif home is not None and not guess:
+            hint = belongs(home, str(word))
         self.problem(Fault(word, f"'{word}' is not {kind}", hint))
         if guess in BLOCKS and self.opens_block() and (not block or guess in BLOCKS[block].holds):
             return [self.group(word, guess, repeats)]
         if guess in KEYWORDS[block] and not self.opens_block():
             return [self.entry(word, KEYWORDS[block][guess], repeats)]
         self.skip_statement(self.start, block, word)
-        return [UnreadableStatement(guess or str(word))]
+        return [UnreadableStatement(guess or (home.name if home else str(word)))]
 
     def _first_on_line(self, t: Token) -> bool:
         return not self.source.lines[t.line - 1][: t.column - 1].strip()

@@ -18,7 +18,7 @@ from . import keywords, units
 from . import scene as records
 from .evaluated import EvaluatedBlock, EvaluatedSetting, around
 from .formatting import number, say, whole
-from .keywords import BLOCKS, KEYWORDS, Block, did_you_mean, example
+from .keywords import BLOCKS, KEYWORDS, Block, did_you_mean, example, examples
 from .lammps_lines import commands
 from .limits import MOST_FRAMES
 from .meshes import refusal_of_mesh
@@ -248,7 +248,7 @@ class Validator:
         for word, keyword in KEYWORDS[block.block].items():
             key = ("missing", id(block.group), keyword.one_of or word)
             if keyword.needed and word not in block.settings and not block.excused(word):
-                self.problem(block.head, f"{title} has no {word}{block.where}", example(keyword), key=key)
+                self.problem(block.head, f"{title} has no {word}{block.where}", examples(keyword), key=key)
                 good = False
             if keyword.one_of and keyword.one_of[0] == word:
                 given = [w for w in keyword.one_of if w in block.settings]

@@ -12,9 +12,9 @@ from .colors import color
 from .evaluated import EvaluatedBlock, EvaluatedSetting
 from .expressions import Env
 from .formatting import number
-from .keywords import example
-from .schema import Rule, limit_of
-from .source import Fault, Problems, SceneFile
+from .keywords import beginnings, example
+from .schema import Rule, limit_of, syntax
+from .source import Fault, NoValue, Problems, SceneFile
 from .tokens import Token
 from .tree import Name, SettingNode, Value
 
@@ -71,6 +71,8 @@ class Evaluator:
         try:
             values = s.known if s.known is not None else self.values(s, env)
         except Fault as fault:
+            if isinstance(fault, NoValue) and beginnings(s.keyword):  # a word may be meant
+                fault.hint += f"; {word} is written as {word} {syntax(s.keyword)}"
             self.fault(s.source, fault, env)
             out.broken.add(word)
             return

@@ -49,9 +49,7 @@ def frictionless(envelope: Envelope) -> list[Problem]:
             return []
     paper = scene.control.contact_model is ContactModel.PAPER
     hint = f"write friction 0.5 in control{' in place of contact-model paper' if paper else ''}"
-    hops = np.flatnonzero(envelope.reach.moving & (envelope.context.damping_ratio == 0.0)).tolist()
-    if len(hops) == envelope.reach.moving.sum():
-        hint += f", and damping 0.2 in object {system.names[hops[0]]}: without damping an object that lands keeps hopping"
+    hint += _against_hops(envelope)
     return [
         Problem(
             scene.control.spans.get("contact-model") or scene.control.spans.get("control"),
@@ -60,6 +58,21 @@ def frictionless(envelope: Envelope) -> list[Problem]:
             severity="note",
         )
     ]
+
+
+def _against_hops(envelope: Envelope) -> str:
+    """Addition to a hint, where nothing that moves loses energy in blows: damping of an object that deforms, or restitution."""
+    system, scene = envelope.system, envelope.scene
+    if not ((envelope.context.damping_ratio == 0.0) | ~envelope.reach.moving).all():
+        return ""
+    if (soft := np.flatnonzero(envelope.reach.moving & ~system.rigid)).size:
+        return f", and damping 0.2 in object {system.names[soft[0]]}: without damping an object that lands keeps hopping"
+    given = (scene.control.restitution, *(part.restitution for part in (*scene.solids, *scene.contacts)))
+    return (
+        ""
+        if any(e is not None for e in given)
+        else ", or restitution 0.3: without either a rigid object that lands keeps hopping"
+    )
 
 
 def slopes(envelope: Envelope) -> list[Problem]:

@@ -33,6 +33,12 @@ MARGINS = {
     "rest depth": "how deep a rigid object sinks in at rest by what it bears; above 1/200 of its thickness it shows",
 }
 
+LEDGER = {
+    "contact_bound": "the largest dt^2 S/4 + dt D/2 of a rigid object since the start, with the sums S and D of stiffness and "
+    "damping over its contacts [-]; up to 1 a step is proved to be stable, and with up to 10 things have come to rest"
+}
+"""Columns of the ledger that are not energies."""
+
 SENSELESS = {
     "damping": ("damping is that of springs, and a rigid object has none", "leave it out; contact-damping damps its blows")
 }

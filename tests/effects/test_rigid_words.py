@@ -1,0 +1,86 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Messages on rigid objects: notes and their hints, words in the wrong place, what `explain` tells."""
+
+import numpy as np
+import pytest
+from mdanim_lammps.errors import SceneError
+from mdanim_lammps.features.rigid.effect import AT_REST, PROOF, RigidMotion
+from mdanim_lammps.scene.explain import explain
+from mdanim_lammps.scene.parse import parse_scene
+
+BALL = "object {name} {{ shape sphere 10 cm  position ({x}, 0, 0.5) m  mass 1 kg  {more} }}\n"
+SCENE = "gravity (0, 0, -9.81) m/s^2\nground z 0 m\n{objects}control {{ time 1 s {more} }}\n"
+
+
+def scene(*objects, more=""):
+    """Balls with these settings, far from each other."""
+    balls = "".join(BALL.format(name="abc"[n], x=2 * n, more=words) for n, words in enumerate(objects))
+    return SCENE.format(objects=balls, more=more)
+
+
+@pytest.mark.parametrize(
+    ("objects", "control", "hint"),
+    [
+        (
+            ["elasticity rigid"],
+            "",
+            "write friction 0.5 in control, or restitution 0.3: without either a rigid object that lands keeps hopping",
+        ),
+        (["elasticity rigid restitution 0.5"], "", "write friction 0.5 in control"),
+        (["elasticity rigid"], "restitution 0", "write friction 0.5 in control"),
+        (
+            ["elasticity rigid", "elasticity 200 kPa"],
+            "",
+            "write friction 0.5 in control, and damping 0.2 in object b: without damping an object that lands keeps hopping",
+        ),
+    ],
+)
+def test_no_damping_is_advised_for_rigid_objects(prepared, objects, control, hint):
+    """Against hopping a rigid object has restitution; it refuses damping."""
+    (note,) = [n for n in prepared(scene(*objects, more=control)).certificate.notes if "frictionless" in n.message]
+    assert note.hint == hint
+
+
+@pytest.mark.parametrize(("most", "told"), [(0.9, ""), (9.8, ""), (4.0 * AT_REST, "write a timestep of 0.5 of this one")])
+def test_a_bound_with_which_things_come_to_rest_is_not_told(prepared, most, told):
+    """The note comes above the largest sum that scenes came to rest with, at no place of a scene: nobody wrote the step."""
+    context = prepared(scene("elasticity rigid", more="accuracy balanced")).context
+    found = RigidMotion().doubts(context, 1.0, {PROOF: np.array([0.0, most])}.__getitem__)
+    assert [told in p.hint and p.span is None and p.severity == "note" for p in found] == [True] * bool(told)
+
+
+@pytest.mark.parametrize("before", ["mass 1 kg ", "mass 1 kg\n"], ids=["on the line", "on a line of its own"])
+def test_rigid_alone_is_one_error(before):
+    """The word without its keyword: one error, which says where it belongs; no second one that elasticity is missing."""
+    with pytest.raises(SceneError) as caught:
+        parse_scene(scene("rigid").replace("mass 1 kg  ", before))
+    (problem,) = caught.value.problems
+    assert problem.hint == "it belongs to elasticity: write elasticity rigid"
+
+
+@pytest.mark.parametrize(
+    ("words", "hint"),
+    [
+        ("", "e.g. elasticity 200 kPa, or elasticity rigid"),
+        ("elasticity stiff", "give it one before: let stiff = ...; elasticity is written as elasticity E | spring k | rigid"),
+    ],
+)
+def test_the_forms_of_elasticity_are_told(words, hint):
+    """Where it is missing, or has a word that it does not know."""
+    with pytest.raises(SceneError) as caught:
+        parse_scene(scene(words))
+    assert [p.hint for p in caught.value.problems] == [hint]
+
+
+@pytest.mark.parametrize(
+    ("word", "told"),
+    [
+        ("rigid", "elasticity rigid   a form of elasticity in object"),
+        ("elasticity rigid", "does not deform"),
+        ("contact_bound", "a column of ledger.csv"),
+        ("contact bound", "up to 1 a step is proved to be stable"),
+    ],
+)
+def test_rigid_words_are_explained(word, told):
+    """The form of elasticity, also as one writes it, and the column of the ledger."""
+    assert told in explain(word)
