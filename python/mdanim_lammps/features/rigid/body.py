@@ -14,8 +14,7 @@ from ...model.boxes import box_pairs
 from ...model.build import lattice_model, single_cell_model
 from ...model.inertia import tensor
 from ...scene.scene import Box, Sphere
-from .shapes import on_objects
-from .words import Rigid
+from .shapes import is_rigid, on_objects, only_balls_move
 
 ACROSS, AT_SURFACE = 2, 4
 """Cells across its thinnest part: the least that have an inside; and where it touches others at points of its surface, a third of
@@ -31,7 +30,7 @@ class RigidBody(BodyKind):
     particle_bytes = 500.0
 
     def takes(self, solid):
-        return isinstance(solid.elasticity, Rigid) and not all_held(solid)
+        return is_rigid(solid) and not all_held(solid)
 
     def cells(self, scene, solid):
         if scene.liquid is not None:
@@ -59,12 +58,15 @@ class RigidBody(BodyKind):
 
 def by_features(scene) -> bool:
     """Whether rigid objects move, and all contacts are of shapes that know each other by their features, so that nothing reads
-    points of their surfaces, nor particles inside. Held cuboids in touch have sides that are covered, and none."""
+    points of their surfaces, nor particles inside. Held cuboids in touch have sides that are covered, which balls alone find by
+    features."""
     solids = scene.solids
     if scene.liquid is not None or all(map(all_held, solids)) or any(map(is_soft, solids)):
         return False
     if not all(on_objects(s.shape) for s in solids):
         return False
+    if only_balls_move(solids):
+        return True
     held = [s for s in solids if all_held(s)]
     half = [np.abs(np.array(s.rotation)) @ np.abs(shapes.extent(s.shape)).max(axis=0) for s in held]
     apart = 1e-3 * min((float(h.min()) for h in half), default=0.0)

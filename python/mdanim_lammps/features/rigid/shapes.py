@@ -3,10 +3,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
+from ...bodies import all_held
 from ...model.convex import polyhedron
 from ...scene.scene import Box, Cone, Cylinder, Ellipsoid, Mesh, Shape, Solid, Sphere
+from .words import Rigid
 
 ROUND = (Cylinder, Cone, Ellipsoid)
 """Known on planes alone."""
@@ -20,6 +24,17 @@ def on_objects(shape: Shape) -> bool:
 def on_planes(shape: Shape) -> bool:
     """The same on planes."""
     return isinstance(shape, ROUND) or on_objects(shape)
+
+
+def only_balls_move(solids: Sequence[Solid]) -> bool:
+    """Whether balls are all that moves and touches objects by features. They meet each surface at one point, whose force turns
+    steadily from a side to an edge, so edges in a seam of held cuboids hardly stop them."""
+    return all(isinstance(s.shape, Sphere) or all_held(s) or not is_rigid(s) or not on_objects(s.shape) for s in solids)
+
+
+def is_rigid(solid: Solid) -> bool:
+    """Whether an object has ``elasticity rigid``."""
+    return isinstance(solid.elasticity, Rigid)
 
 
 def in_file(solid: Solid) -> tuple[list[float], str]:

@@ -25,7 +25,7 @@ from ...scene.scene import Shape, Solid
 from ..contact.pairs import damping, frictions
 from ..contact.restitution import damping_for
 from ..contact.rigid_surfaces import frequency
-from .shapes import digits, in_file, on_objects, on_planes
+from .shapes import digits, in_file, on_objects, on_planes, only_balls_move
 
 ONSET = 0.005
 """Depth up to which a contact begins gently, over the thinnest part."""
@@ -63,15 +63,16 @@ def parts(context: Context) -> list[Part]:
 
 def meets_objects(context: Context) -> np.ndarray:
     """Solids that touch each other by their features, bool, shape (M,): those that are rigid, or never move, of a shape that the
-    fix knows. Where others cover a side of a held cuboid, its edges there are none."""
-    if not objects_touch(context) or not (_pairs(context.reach.system) & context.reach.system.rigid).any():
+    fix knows. Where others cover a side of a held cuboid, its edges there are none: balls roll over them, others catch."""
+    whole = context.reach.system
+    if not objects_touch(context) or not (_are(whole, on_objects) & whole.rigid).any():
         return np.zeros(len(context.system.names), bool)  # the same in all parts of a scene
-    return _pairs(context.system)
+    return _pairs(context.system, only_balls_move(context.scene.solids))
 
 
-def _pairs(system: System) -> np.ndarray:
+def _pairs(system: System, balls: bool) -> np.ndarray:
     uncovered = np.array([frame.open is None or not len(frame.open) for frame in system.frames])[system.contact_kind]
-    return _are(system, on_objects) & (system.rigid | (system.still & uncovered))
+    return _are(system, on_objects) & (system.rigid | (system.still & (uncovered | balls)))
 
 
 def meets_planes(context: Context) -> np.ndarray:
