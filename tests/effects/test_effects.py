@@ -456,7 +456,7 @@ def test_contact_that_cannot_be_leaves_nothing(prepared):
         + "control { time 0.1 }\n"
     )
     assert live_fixes(apart) == {"gravity"}
-    assert not [word for model in MODELS for word in traces(model)["contact"] if word in written(apart)]
+    assert not [word for of_model in (TRACES, ON_SURFACES) for word in of_model["contact"] if word in written(apart)]
 
 
 def test_declarations_of_motion_may_be_asked_of_any_scene(prepared):

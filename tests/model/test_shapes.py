@@ -7,7 +7,7 @@ from typing import get_args
 import numpy as np
 import pytest
 from mdanim_lammps.model import shapes
-from mdanim_lammps.model.distance import distance
+from mdanim_lammps.model.distance import distance, grid_distance
 from mdanim_lammps.model.spread import spread
 from mdanim_lammps.scene.scene import Box, Cone, Cylinder, Ellipsoid, Mesh, Shape, Sphere, Torus
 from model_samples import MESHES, SHAPES, assert_closed, enclosed_volume, shape_id
@@ -167,7 +167,8 @@ def test_no_point_is_farther_than_the_radius(shape):
 def test_every_kind_of_shape_has_all_that_is_asked_of_it(monkeypatch):
     """A kind without a formula is found when the package is imported, one without points or distances here."""
     kinds = get_args(Shape)
-    assert spread.registry.keys() - {object} == distance.registry.keys() - {object} == set(kinds) - {Box}  # that is its lattice
+    distances = distance.registry.keys() | grid_distance.registry.keys()
+    assert spread.registry.keys() - {object} == distances - {object} == set(kinds) - {Box}  # that is its lattice
     assert set(shapes.LAWS) == {type(shape) for shape in SHAPES} == set(kinds)
     lacking = type("lacking", (), {name: None for name in shapes.FORMULAS if name not in ("vertices", "rolls")})
     monkeypatch.setitem(shapes.LAWS, Torus, lacking)

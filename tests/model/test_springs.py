@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from mdanim_lammps.model import lattice as lattice_module
 from mdanim_lammps.model.lattice import AXES, OFFSETS, Cells, make_lattice
-from mdanim_lammps.model.springs import dashpots, distinct_rows, spring_constants, stiffness, types
+from mdanim_lammps.model.springs import dashpots, distinct_rows, reduced_mass, spring_constants, stiffness, types
 from mdanim_lammps.scene.scene import Box, SpringConstant, Young
 from model_samples import model
 from spring_lab import NU, cantilever, stretched
@@ -95,7 +95,10 @@ def test_a_corner_pushed_through_its_cell_comes_back():
 
 def test_dashpots_damp_two_particles_by_the_fraction_asked_for():
     """Take half of critical: 1 and 3 kg on a spring of 12 N/m have m = 3/4 kg, c = 3 N*s/m."""
-    c = dashpots(0.5, np.array([12.0]), np.array([1.0, 3.0]), np.array([[0, 1]]))
+    spring = np.array([[0, 1]])
+    constants = np.column_stack([[12.0], [1.0], reduced_mass(np.array([1.0, 3.0]), spring)])
+    pair = SimpleNamespace(constants=constants, spring=spring, spring_type=np.array([1]), object=np.array([0, 0]))
+    c = dashpots(pair, np.array([0.5]))
     assert c == pytest.approx([2 * 0.5 * np.sqrt(12.0 * 0.75)])
 
 
