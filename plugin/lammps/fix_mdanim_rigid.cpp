@@ -23,8 +23,7 @@ using namespace mdanim;
 
 static constexpr int COLUMNS = 13;    // of compute_array()
 
-// fix ID group mdanim/rigid [inertia FILE] [lambda L] [shapes FILE contact OMEGA EPS] [objects] [plane x|y|z lo|hi at]…
-//     [pair A B mu beta]…
+// fix ID group mdanim/rigid [inertia FILE] [lambda L] [shapes FILE contact OMEGA EPS], and words of RigidTouching
 FixMdanimRigid::FixMdanimRigid(LAMMPS *lmp, int narg, char **arg) : FixBase(lmp, narg, arg), particles(lmp, *this), touching(lmp)
 {
   time_integrate = 1;

@@ -37,20 +37,21 @@ std::vector<std::uint8_t> film(int threads)
   RowSlabs slabs;
   std::vector<std::uint8_t> solid(occupancy.count.size());
   for (int n = 0; n < STEPS; ++n) {
-    occupancy.clear(some);
     std::vector<CellBox> reached(RowSlabs::slabs_of(NY));
     const auto row_of = [&](long cell) {
       Vec3 corner[8];
       corners_of(cell, 0.1 * n, corner);
       return static_cast<int>(0.5 * (corner[0].y + corner[6].y));
     };
-    slabs.each(some, NY, EDGE * EDGE * EDGE, 100.0, row_of, [&](long cell, const RowSlabs::Rows &rows, int slab) {
-      Vec3 corner[8];
-      corners_of(cell, 0.1 * n, corner);
-      return occupancy.add(corner, false, -1, rows, reached[slab]);
-    });
-    for (const CellBox &of_slab : reached) occupancy.touched.take_in(of_slab);
-    occupancy.sum_over(RankSums(), some);
+    const auto add = [&](Occupancy &all) {
+      slabs.each(some, NY, EDGE * EDGE * EDGE, 100.0, row_of, [&](long cell, const RowSlabs::Rows &rows, int slab) {
+        Vec3 corner[8];
+        corners_of(cell, 0.1 * n, corner);
+        return all.add(corner, false, -1, rows, reached[slab]);
+      });
+      for (const CellBox &of_slab : reached) all.touched.take_in(of_slab);
+    };
+    occupancy.count_anew(add, RankSums(), some);
     for (std::size_t c = 0; c < solid.size(); ++c) solid[c] = 2 * occupancy.count[c] >= Occupancy::FULL;
     const long changed = automaton.displace(solid.data(), n);
     for (int k = 0; k < 4; ++k) automaton.sweep(4 * n + k);

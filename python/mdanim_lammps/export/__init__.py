@@ -5,6 +5,7 @@ them."""
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,3 +40,12 @@ FORMATS = {
     "csv": Format("csv", (".csv",), "a row for each object and frame: centre, velocity, spin, energy; pandas, spreadsheets"),
 }
 """Formats by the name that ``--to`` takes."""
+
+
+def __getattr__(name: str) -> Any:
+    """The function `export`, loaded when it is first asked for: the table alone needs no other module."""
+    if name != "export":
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    from .write import export
+
+    return export
