@@ -84,3 +84,35 @@ def test_the_forms_of_elasticity_are_told(words, hint):
 def test_rigid_words_are_explained(word, told):
     """The form of elasticity, also as one writes it, and the column of the ledger."""
     assert told in explain(word)
+
+
+SEESAW = """gravity (0, 0, -9.81) m/s^2
+ground z 0 m
+object pivot {{ shape {pivot}  orientation axis (1, 0, 0) angle 90 deg  position (0, 0, 0.1) m
+  density 1000  elasticity rigid  hold all }}
+object plank {{ shape box (200, 25, 4) cm  position (0, 0, 0.2201) m  density 600  elasticity rigid }}
+object heavy {{ shape box (20, 20, 20) cm  position (0.8, 0, 1.2) m  mass 10 kg  elasticity {heavy} }}
+control {{ time 0.5 s  friction 0.6 {more} }}
+"""
+
+
+def test_check_names_the_shape_that_makes_steps_short(prepared):
+    """A plank on a cylinder takes 22 times the steps of one on a box: the pair, the way out, and the steps with it, which are
+    those of the scene with a box."""
+    certificate = prepared(SEESAW.format(pivot="cylinder 10 cm 30 cm", heavy="rigid", more="")).certificate
+    (note,) = [n for n in certificate.notes if "sets the time step" in n.message]
+    assert note.message.startswith("contact of pivot with plank") and "this cylinder" in note.message
+    told = float("".join(note.hint.rpartition(":")[2].removesuffix("steps").split()))
+    with_box = prepared(SEESAW.format(pivot="box (20, 20, 30) cm", heavy="rigid", more="")).certificate
+    assert not [n for n in with_box.notes if "sets the time step" in n.message]
+    # Steps fit a whole number of times into each frame: one of about 500 is more.
+    assert told == pytest.approx(with_box.steps, rel=5e-3) and told < 0.1 * certificate.steps
+
+
+@pytest.mark.parametrize(
+    ("heavy", "more"), [("5 GPa", ""), ("rigid", "timestep 1e-6 s")], ids=["something soft", "a step of its own"]
+)
+def test_it_is_not_named_where_another_shape_would_not_help(prepared, heavy, more):
+    """Where a soft object needs as short steps, or the step was written."""
+    certificate = prepared(SEESAW.format(pivot="cylinder 10 cm 30 cm", heavy=heavy, more=more)).certificate
+    assert not [n for n in certificate.notes if "sets the time step" in n.message]

@@ -16,7 +16,7 @@ from ...errors import Problem
 from ...model.inertia import components
 from ...scene.formatting import number
 from ..contact.surface import DAMPED, HEAT, LET_GO
-from . import touching
+from . import points, touching
 from .words import Rigid
 
 GROUP = "bodies"
@@ -152,6 +152,9 @@ class RigidMotion(Effect):
         if not (touching.meets_objects(envelope.context).any() or touching.meets_planes(envelope.context).any()):
             return []
         return touching.depths(envelope)
+
+    def notes(self, envelope):
+        return points.notes(envelope)
 
     def kinetic(self, readings):
         return self._sum(readings, "translation") + self._sum(readings, "rotation")
