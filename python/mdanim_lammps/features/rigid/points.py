@@ -49,7 +49,7 @@ def notes(envelope: Envelope) -> list[Problem]:
 
 def _unknown(envelope: Envelope, m: int) -> tuple[int, int] | None:
     """The solid without known features in the contact of a rigid one: that one or the nearest that meets it; and the other one
-    of the pair. None where what it meets deforms alone."""
+    of the pair. None where only what deforms meets it, or held cuboids in touch keep features off."""
     system, solids = envelope.system, envelope.scene.solids
     low, high = system.bounds(system.position)
     gap = np.linalg.norm(np.maximum(0.0, np.maximum(low - high[m], low[m] - high)), axis=1)
@@ -57,6 +57,7 @@ def _unknown(envelope: Envelope, m: int) -> tuple[int, int] | None:
     partner = np.where(np.arange(len(gap)) != m, gap, np.inf)
     partner = np.where((system.rigid | system.still) & (~known if known[m] else True), partner, np.inf)
     nearest = int(partner.argmin())
-    if not math.isfinite(partner[nearest]):
+    beside_seam = known[m] and not touching.meets_objects(envelope.context)[m]  # so another shape would not help
+    if beside_seam or not math.isfinite(partner[nearest]):
         return None
     return (nearest, m) if known[m] else (m, nearest)
