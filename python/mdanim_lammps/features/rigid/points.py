@@ -57,7 +57,6 @@ def _unknown(envelope: Envelope, m: int) -> tuple[int, int] | None:
     partner = np.where(np.arange(len(gap)) != m, gap, np.inf)
     partner = np.where((system.rigid | system.still) & (~known if known[m] else True), partner, np.inf)
     nearest = int(partner.argmin())
-    beside_seam = known[m] and not touching.meets_objects(envelope.context)[m]  # so another shape would not help
-    if beside_seam or not math.isfinite(partner[nearest]):
+    if not math.isfinite(partner[nearest]) or (known & system.still & ~touching.meets_objects(envelope.context)).any():
         return None
     return (nearest, m) if known[m] else (m, nearest)
