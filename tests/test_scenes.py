@@ -20,6 +20,7 @@ LONG = {
     "billiard": (0.5, False),
     "boat": (1.8, True),
     "bottle": (1.0, False),
+    "bowling": (0.25, False),
     "pile": (0.5, False),
     "spiral": (0.8, False),
     "wake": (1.2, True),

@@ -49,6 +49,7 @@ PICTURES = {
     "henge": 0.5,
     "quake": 1.2,
     "spiral": 4.0,
+    "bowling": 0.4,
 }
 """Scene and the moment to show [s]."""
 STEPS = {"falls": 0.0, "stands": 1.0, "pushed": 0.27, "rolls": 0.5, "splashes": 0.4, "show": 0.3}
