@@ -43,10 +43,10 @@ def heap(case: dict) -> tuple[list[Body], float]:
     for n in range(number):
         place = np.array((n % side, n // side % side, n // side // side), float)
         aside = np.append(0.02 * rng.random(2), 0.0)
-        position = np.array((0.16, 0.16, 0.17)) * (place - ((side - 1) / 2, (side - 1) / 2, 0)) + aside + (0.0, 0.0, 0.12)
+        position = np.array((0.2, 0.2, 0.18)) * (place - ((side - 1) / 2, (side - 1) / 2, 0)) + aside + (0.0, 0.0, 0.12)
         axis = tuple((rng.random(3) - 0.5).tolist())
         bodies.append(Body(f"b{n}", (0.1, 0.1, 0.1), position, 600.0, axis, 3.0 * rng.random()))
-    return bodies, 0.08 * side + 0.1
+    return bodies, 0.1 * side + 0.1
 
 
 SCENES = {"dominoes": dominoes, "heap": heap}
