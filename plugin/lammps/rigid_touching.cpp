@@ -85,8 +85,12 @@ void RigidTouching::read_pair(int iarg, char **arg)
                     "{}: a pair is two different molecule IDs > 0, or one and plane1, plane2, ...; got {} and {}", STYLE,
                     arg[iarg + 1], arg[iarg + 2]);
   if (b > 0 && b < a) std::swap(a, b);
-  contact.settings.pairs[{a, b}] = {number(lmp, iarg + 3, arg, "mu of a pair", 0.0, true),
-                                    number(lmp, iarg + 4, arg, "beta of a pair", 0.0, true)};
+  const Material material{number(lmp, iarg + 3, arg, "mu of a pair", 0.0, true),
+                          number(lmp, iarg + 4, arg, "beta of a pair", 0.0, true)};
+  if (material.damping > Material::MOST_DAMPING)
+    lmp->error->all(FLERR, iarg + 4, "{}: beta of a pair must be at most {}, got {}", STYLE, Material::MOST_DAMPING,
+                    arg[iarg + 4]);
+  contact.settings.pairs[{a, b}] = material;
 }
 
 void RigidTouching::check() const
@@ -103,10 +107,11 @@ void RigidTouching::check() const
   for (const auto &[id, one] : shapes)
     for (const auto &[other_id, other] : shapes)
       if (id < other_id && !(one.held && other.held) && !know_each_other(one.shape.kind(), other.shape.kind()))
-        lmp->error->all(FLERR,
-                        "{}: objects {} and {} (molecule IDs) are a {} and a {}, and contact by features does not know these two "
-                        "on each other; leave one out of the file, and let it touch by fix mdanim/contact",
-                        STYLE, id, other_id, one.shape.name(), other.shape.name());
+        lmp->error->all(
+            FLERR,
+            "{}: objects {} and {} (molecule IDs) have the shapes {} and {}, and contact by features does not know these "
+            "two on each other; leave one out of the file, and let it touch by fix mdanim/contact",
+            STYLE, id, other_id, one.shape.name(), other.shape.name());
 }
 
 // --- bodies ---

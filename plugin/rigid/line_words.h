@@ -56,6 +56,20 @@ class LineWords {
     if (!(value >= 0.0)) fail(std::string(what) + " must be at least 0");
     return value;
   }
+  double from_zero_to(const char *what, double most)
+  {
+    const double value = at_least_zero(what);
+    if (value > most) fail(std::string(what) + " must be at most " + short_form(most) + ", got " + short_form(value));
+    return value;
+  }
+  // A length of a shape: powers of it, as volumes and moments, stay numbers.
+  double extent(const char *what)
+  {
+    const double value = positive(what);
+    if (value < LEAST || value > MOST)
+      fail(std::string(what) + " must be from " + short_form(LEAST) + " to " + short_form(MOST) + ", got " + short_form(value));
+    return value;
+  }
   int molecule()
   {
     const double value = number<double>("the molecule ID");
@@ -71,6 +85,14 @@ class LineWords {
     const double x = number<double>(what), y = number<double>(what);
     return {x, y, number<double>(what)};
   }
+  // A point of a shape.
+  Vec3 place(const char *what)
+  {
+    const Vec3 at = vector(what);
+    if (std::max({std::fabs(at.x), std::fabs(at.y), std::fabs(at.z)}) > MOST)
+      fail(std::string(what) + " must be within " + short_form(MOST) + " of the origin");
+    return at;
+  }
   // The number of things of `size` words each that follow.
   int many(const char *what, std::size_t size)
   {
@@ -81,6 +103,13 @@ class LineWords {
   }
 
  private:
+  static constexpr double LEAST = 1e-50, MOST = 1e50;
+  static std::string short_form(double value)
+  {
+    std::ostringstream text;
+    text << value;
+    return text.str();
+  }
   std::string line, where;
   std::size_t at = 0;
 };

@@ -29,7 +29,8 @@ static bool are_near(const Solid &a, const Solid &b, double skin)
   return !(a.held && b.held) && dot(between, between) < reach * reach;
 }
 
-// Bodies sorted into cells that are wider than most of them; those that are larger meet all others.
+// Bodies sorted into cells that are wider than most of them; those that are larger meet all others. Pairs in contact stay: the
+// ramps about edges act beyond the spheres.
 void NearSolids::list(const std::vector<Solid> &solids)
 {
   const int count = static_cast<int>(solids.size());
@@ -71,6 +72,8 @@ void NearSolids::list(const std::vector<Solid> &solids)
             for (const int other : some->second) meet(other);
     cells[key(at[0], at[1], at[2])].push_back(n);
   }
+  for (const SolidPair &pair : pairs)
+    if (!pair.touches.empty()) found.emplace_back(pair.a, pair.b);
   std::sort(found.begin(), found.end());
   found.erase(std::unique(found.begin(), found.end()), found.end());
 

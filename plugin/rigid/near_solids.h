@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// Pairs of bodies whose spheres are near each other.
+// Pairs of bodies whose spheres are near each other, or that are in contact.
 
 #pragma once
 

@@ -11,8 +11,9 @@
 
 namespace mdanim {
 
-static constexpr double BLUNT = 0.7;        // cosine between the normals of two faces above which their edge has no ramp
-static constexpr double ROUNDING = 1e-9;    // over the size
+static constexpr double BLUNT = 0.7;         // cosine between the normals of two faces above which their edge has no ramp
+static constexpr double ROUNDING = 1e-9;     // over the size
+static constexpr double ONE_PLACE = 1e-6;    // the same: corners that are nearer to each other are one
 
 static double length(const Vec3 &a) { return std::sqrt(dot(a, a)); }
 static Vec3 unit(const Vec3 &a) { return (1.0 / length(a)) * a; }
@@ -27,14 +28,31 @@ Polyhedron Polyhedron::box(const Vec3 &half)
 Polyhedron::Polyhedron(const std::vector<Vec3> &corners, const std::vector<std::vector<int>> &loops)
 {
   for (const Vec3 &at : corners) all_corners.push_back({at, {}, {}});
+  check_corners();
   find_faces(loops);
   find_edges();
 }
 
-void Polyhedron::find_faces(const std::vector<std::vector<int>> &loops)
+double Polyhedron::size() const
 {
   double size = 0.0;
   for (const Corner &corner : all_corners) size = std::max(size, length(corner.at - all_corners[0].at));
+  return size;
+}
+
+void Polyhedron::check_corners() const
+{
+  const double least = ONE_PLACE * size();
+  for (std::size_t b = 0; b < all_corners.size(); ++b)
+    for (std::size_t a = 0; a < b; ++a)
+      if (!(length(all_corners[b].at - all_corners[a].at) > least))
+        throw std::runtime_error("corners " + std::to_string(a) + " and " + std::to_string(b) +
+                                 " are at one place; make them one, and leave out the edge between them");
+}
+
+void Polyhedron::find_faces(const std::vector<std::vector<int>> &loops)
+{
+  const double size = this->size();
   for (const std::vector<int> &loop : loops) {
     const std::string which = "face " + std::to_string(all_faces.size() + 1);
     Vec3 area;
@@ -97,6 +115,10 @@ void Polyhedron::find_edges()
   }
   for (const Corner &corner : all_corners)
     if (corner.ways.size() < 3) throw std::runtime_error("a corner has fewer than three edges");
+  // Euler: corners - edges + faces is 2 for each closed convex surface.
+  if (all_corners.size() + all_faces.size() != all_edges.size() + 2)
+    throw std::runtime_error("the " + std::to_string(all_faces.size()) +
+                             " faces are more than one closed surface; give each of them as an object of its own");
 }
 
 double Polyhedron::outside(const Vec3 &x) const

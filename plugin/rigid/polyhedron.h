@@ -67,6 +67,8 @@ class Polyhedron {
   }
 
  private:
+  double size() const;
+  void check_corners() const;
   void find_faces(const std::vector<std::vector<int>> &loops);
   void find_edges();
 

@@ -66,6 +66,7 @@ void RigidContact::touch_pair(const TouchStep &step, SolidPair &pair)
   pair.asleep -= way;
   pair.known_for -= way;
   const Vec3 between = a.centre - b.centre;
+  // Two bodies begin to touch within their spheres, and may go on touching beyond them, on ramps.
   const double reach = a.shape.bound() + b.shape.bound();
   if (pair.touches.empty() && (pair.asleep > 0.0 || dot(between, between) > reach * reach)) return;
   const TouchLaw law = law_of(a, b);

@@ -13,40 +13,46 @@ namespace mdanim {
 
 namespace {
 
-Polyhedron read_polyhedron(LineWords &words)
+// Makes a polyhedron; what is wrong with it is told with the line.
+template <class Make> SolidShape made(const LineWords &words, const Make &make)
+{
+  try {
+    return SolidShape::of(make());
+  } catch (const std::runtime_error &problem) {
+    words.fail(problem.what());
+  }
+}
+
+SolidShape read_polyhedron(LineWords &words)
 {
   std::vector<Vec3> corners(words.many("the number of corners", 3));
-  for (Vec3 &corner : corners) corner = words.vector("a corner");
+  for (Vec3 &corner : corners) corner = words.place("a corner");
   std::vector<std::vector<int>> faces(words.many("the number of faces", 4));
   for (std::vector<int> &face : faces) {
     face.resize(words.many("the number of corners of a face", 1));
     for (int &corner : face) corner = words.number<int>("a corner of a face");
     if (face.size() < 3) words.fail("a face has fewer than three corners");
   }
-  try {
-    return Polyhedron(corners, faces);
-  } catch (const std::runtime_error &problem) {
-    words.fail(problem.what());
-  }
+  return made(words, [&] { return Polyhedron(corners, faces); });
 }
 
 SolidShape read_shape(LineWords &words)
 {
   const std::string kind = words.word("the shape");
   if (kind == "box") {
-    const double x = words.positive("a side"), y = words.positive("a side"), z = words.positive("a side");
-    return SolidShape::of(Polyhedron::box({0.5 * x, 0.5 * y, 0.5 * z}));
+    const double x = words.extent("a side"), y = words.extent("a side"), z = words.extent("a side");
+    return made(words, [&] { return Polyhedron::box({0.5 * x, 0.5 * y, 0.5 * z}); });
   }
-  if (kind == "ball") return SolidShape::ball(words.positive("the radius"));
+  if (kind == "ball") return SolidShape::ball(words.extent("the radius"));
   if (kind == "cylinder" || kind == "cone") {
-    const double radius = words.positive("the radius"), height = words.positive("the height");
+    const double radius = words.extent("the radius"), height = words.extent("the height");
     return kind == "cone" ? SolidShape::cone(radius, height) : SolidShape::cylinder(radius, height);
   }
   if (kind == "ellipsoid") {
-    const double x = words.positive("a half axis"), y = words.positive("a half axis"), z = words.positive("a half axis");
+    const double x = words.extent("a half axis"), y = words.extent("a half axis"), z = words.extent("a half axis");
     return SolidShape::ellipsoid({x, y, z});
   }
-  if (kind == "polyhedron") return SolidShape::of(read_polyhedron(words));
+  if (kind == "polyhedron") return read_polyhedron(words);
   words.fail("a shape is box, ball, cylinder, cone, ellipsoid or polyhedron, got " + kind);
 }
 
@@ -59,7 +65,7 @@ std::map<int, GivenShape> read_shapes(const std::string &name, const std::string
     const int molecule = words.molecule();
     GivenShape one;
     one.material.friction = words.at_least_zero("friction");
-    one.material.damping = words.at_least_zero("damping");
+    one.material.damping = words.from_zero_to("damping", Material::MOST_DAMPING);
     const std::string held = words.word("free or held");
     if (held != "free" && held != "held") words.fail("a body is free or held, got " + held);
     one.held = held == "held";

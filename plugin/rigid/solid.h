@@ -12,7 +12,8 @@
 namespace mdanim {
 
 struct Material {
-  double friction = 0.0, damping = 0.0;    // mu, and beta, the part of critical damping
+  static constexpr double MOST_DAMPING = 1.0;    // at 2 and steps of 0.35/Omega a dashpot makes energy
+  double friction = 0.0, damping = 0.0;          // mu, and beta, the part of critical damping
 };
 
 struct Solid {

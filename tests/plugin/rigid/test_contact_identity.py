@@ -146,7 +146,44 @@ def test_a_restart_file_goes_on_to_the_bit(tmp_path):
     again.close()
 
 
-BOX = "free 0 0 0.05 1 0 0 0 box 0.1 0.1 0.1"
+def test_another_body_far_away_changes_no_bit(tmp_path):
+    """A small cube slides over the corner of a large one. Its last contacts act on ramps beyond the edges of the large one, where
+    the spheres about both no longer meet; lists of near bodies are made anew at other times with a thick body 3 m away."""
+    large = lab.box((1, 1, 1), at=(0, 0, -0.5), held=True)
+    small = lab.box((0.04, 0.04, 0.04), at=(0.48, 0.48, 0.0199), v=(0.5, 0.5, 0), beta=0.0, mu=0.0)
+    paths = []
+    for number, more in enumerate([[], [lab.box((0.04, 0.04, 0.04), at=(3, 3, 3))], [lab.box((0.5, 0.5, 0.5), at=(3, 3, 3))]]):
+        folder = tmp_path / str(number)
+        folder.mkdir()
+        with lab.World(folder, [small, *more, large], frequency=1000.0, planes=()) as world:
+            rows = []
+            for _ in range(60):
+                world.run(5)
+                rows.append([*world.rows()[0], world.number("touching"), world.number("let_go")])
+        paths.append(np.array(rows))
+    touching = paths[0][:, 13]
+    beyond = np.sqrt(((paths[0][:, :3] - large.at) ** 2).sum(1)) > np.sqrt(0.75) * 1.04
+    assert (touching[beyond] > 0).any()  # the case of interest
+    assert np.array_equal(paths[0], paths[1]) and np.array_equal(paths[0], paths[2])
+
+
+AT = "free 0 0 0.05 1 0 0 0"
+BOX = f"{AT} box 0.1 0.1 0.1"
+TOUCH = "shapes FILE contact 1 1 objects"
+TWICE = "polyhedron 7 0 0 1 1 0 0 0 1 0 -1 0 0 0 -1 0 0 0 -1 0 0 1 8 3 0 1 2 4 0 2 3 6 3 6 3 4 4 6 4 1 0 " + " ".join(
+    f"3 5 {b} {a}" for a, b in ((1, 2), (2, 3), (3, 4), (4, 1))
+)
+"""An octahedron whose upper corner is given twice."""
+
+
+def two_cubes(shift):
+    """Words of a polyhedron with the faces of two cubes of 0.1 m, the second one shifted by this along each axis."""
+    corners = [(0.1 * (q & 1) + d, 0.1 * (q >> 1 & 1) + d, 0.1 * (q >> 2) + d) for d in (0.0, shift) for q in range(8)]
+    loops = ((0, 4, 6, 2), (1, 3, 7, 5), (0, 1, 5, 4), (2, 6, 7, 3), (0, 2, 3, 1), (4, 5, 7, 6))
+    faces = [(4, *(k + more for k in loop)) for more in (0, 8) for loop in loops]
+    return (
+        f"polyhedron 16 {' '.join(repr(c) for at in corners for c in at)} 12 {' '.join(str(k) for face in faces for k in face)}"
+    )
 
 
 @pytest.mark.parametrize(
@@ -183,6 +220,19 @@ BOX = "free 0 0 0.05 1 0 0 0 box 0.1 0.1 0.1"
             "shapes FILE contact 1 1 objects",
             f"1 0 0 {BOX[:-15].rstrip()} {WEDGE} 5 3 0 9 1 {FACES[10:]}",
             "has a corner that there is not",
+        ),
+        (TOUCH, f"1 0 0 {AT} {TWICE}", "line 1 of FILE: corners 0 and 6 are at one place; make them one"),
+        (TOUCH, f"1 0 0 {AT} {two_cubes(1e-9)}", "line 1 of FILE: corners 0 and 8 are at one place"),
+        (TOUCH, f"1 0 0 {AT} {two_cubes(1.5e-7)}", "line 1 of FILE: the 12 faces are more than one closed surface"),
+        (TOUCH, f"1 0 1.5 {BOX}", "line 1 of FILE: damping must be at most 1, got 1.5"),
+        (f"{TOUCH} pair 1 2 0 1.5", f"1 0 0 {BOX}", "beta of a pair must be at most 1, got 1.5"),
+        (TOUCH, f"1 0 0 {AT} box 1e200 1 1", "line 1 of FILE: a side must be from 1e-50 to 1e+50, got 1e+200"),
+        (TOUCH, f"1 0 0 {AT} {two_cubes(1e308)}", "line 1 of FILE: a corner must be within 1e+50 of the origin"),
+        (TOUCH, f"1 0 0 {AT} ball 1e-310", "line 1 of FILE: the radius must be from 1e-50 to 1e+50, got 1e-310"),
+        (
+            TOUCH,
+            f"1 0 0 {AT} cone 1 1\n2 0 0 {AT} ellipsoid 1 1 1",
+            "objects 1 and 2 (molecule IDs) have the shapes cone and ellipsoid",
         ),
     ],
 )
