@@ -91,14 +91,14 @@ void FixMdanimRigid::init()
 {
   FixBase::init();
   reset_dt();
-  if (particles.find_objects() || largest(has_new_particles) > 0.0) bodies.clear();
+  if (particles.find_objects(largest(has_new_particles) > 0.0)) bodies.clear();
   has_new_particles = false;
   for (const auto &[molecule, inertia] : given)
     if (particles.objects().number_of(molecule) == ObjectTable::NONE)
       error->all(FLERR, "{}: there are moments of inertia for object {} (molecule ID), which has no particle in its group",
                  name(), molecule);
   size_array_rows = particles.objects().size();
-  particles.locate();
+  locate();
   try {
     if (restarted) unpack(StateRecords(*restarted));
   } catch (const std::exception &problem) {

@@ -28,8 +28,9 @@ void FixMdanimRigid::make()
 {
   const std::vector<RigidParticles::MassProperties> found = particles.weigh();
   const ObjectTable &objects = particles.objects();
-  bodies.assign(objects.size(), RigidBody());
+  bodies.resize(objects.size());
   for (int n = 0; n < objects.size(); ++n) {
+    if (bodies[n].aside) continue;    // it stays as it is
     const auto other = given.find(static_cast<int>(objects.id(n)));
     const PrincipalAxes axes = principal_axes(other == given.end() ? found[n].inertia : other->second);
     if (!(axes.moments.x > THIN * axes.moments.z))
@@ -37,7 +38,7 @@ void FixMdanimRigid::make()
                  "{}: the particles of object {} (molecule ID) stand on a line, so it has no moment of inertia about it; add "
                  "'inertia FILE' with the moments of the body",
                  name(), objects.id(n));
-    RigidBody &body = bodies[n];
+    RigidBody &body = bodies[n] = RigidBody();
     body.mass = found[n].mass;
     body.centre = found[n].centre;
     body.moments = axes.moments;
@@ -72,6 +73,7 @@ void FixMdanimRigid::set_velocities(const std::vector<RigidParticles::MassProper
   const std::vector<RigidParticles::BodyMotion> motion = particles.motion(found);
   for (int n = 0; n < objects.size(); ++n) {
     RigidBody &body = bodies[n];
+    if (body.aside) continue;
     body.velocity = (1.0 / found[n].mass) * motion[n].momentum;
     body.L = motion[n].angular;
     if (given.count(static_cast<int>(objects.id(n)))) {

@@ -31,10 +31,26 @@ struct KeptBody {
   Pose pose;                  // of its shape
 };
 
+// A rotation has length 1; rounding leaves about 1e-15.
+bool is_unit(const Quaternion &q) { return std::fabs(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z - 1.0) < 1e-9; }
+
 template <class Kept> bool is_finite(const Kept &kept)    // of doubles alone
 {
   const auto *numbers = reinterpret_cast<const double *>(&kept);
   return std::all_of(numbers, numbers + sizeof(Kept) / sizeof(double), [](double value) { return std::isfinite(value); });
+}
+
+// The body of an object, and the reader behind it.
+KeptBody read_body(int object, const ParticleRows::RowsHead &head, bigint particles, std::optional<ByteReader> &rest)
+{
+  ByteReader reader(head.bytes.data(), head.bytes.size(), name_of_record({object, 0}));
+  const auto kept = reader.get<KeptBody>();
+  if (!is_finite(kept) || !(kept.mass > 0.0) || !(kept.moments.x > 0.0) || !is_unit(kept.q) || !is_unit(kept.pose.q))
+    reader.is_damaged("its motion or its mass");
+  if (static_cast<bigint>(head.rows) != particles)
+    reader.fail(fmt::format("is of {} particles, the object has {}", head.rows, particles));
+  rest = reader;
+  return kept;
 }
 
 }    // namespace
@@ -77,7 +93,7 @@ StateRecords FixMdanimRigid::pack() const
 void FixMdanimRigid::unpack(const StateRecords &records)
 {
   if (particles.find_objects()) bodies.clear();
-  particles.locate();
+  locate();
   const ObjectTable &objects = particles.objects();
   ParticleRows::Heads heads;
   std::vector<std::pair<int, Vec3>> places;    // of local particles
@@ -88,6 +104,7 @@ void FixMdanimRigid::unpack(const StateRecords &records)
   rows.unpack(
       records,
       [&](int i, const std::uint8_t *from) {
+        if (particles.body_of(i) == ObjectTable::NONE) return;    // laid aside
         places.emplace_back(i, ByteReader(from, sizeof(Vec3), "the place of a particle").get<Vec3>());
         if (!is_finite(places.back().second)) throw std::runtime_error("a place in a body is damaged");
       },
@@ -97,19 +114,15 @@ void FixMdanimRigid::unpack(const StateRecords &records)
   std::vector<std::optional<ByteReader>> rest(objects.size());    // of each head, contacts with planes
   for (const auto &[object, head] : heads) {
     const int n = objects.number_of(object);
-    ByteReader reader(head.bytes.data(), head.bytes.size(), name_of_record({object, 0}));
-    kept[n] = reader.get<KeptBody>();
-    if (!is_finite(kept[n]) || !(kept[n].mass > 0.0) || !(kept[n].moments.x > 0.0)) reader.is_damaged("its motion or its mass");
-    if (static_cast<bigint>(head.rows) != particles.particles_of(n))
-      reader.fail(fmt::format("is of {} particles, the object has {}", head.rows, particles.particles_of(n)));
-    rest[n] = reader;
+    if (bodies.empty() || !bodies[n].aside) kept[n] = read_body(object, head, particles.particles_of(n), rest[n]);
   }
+  bool is_whole = !heads.empty();    // but for what is laid aside
+  for (int n = 0; n < objects.size(); ++n) is_whole = is_whole && (rest[n] || (!bodies.empty() && bodies[n].aside));
 
   const std::vector<RigidBody> bodies_before = bodies;
   const RigidTouching touching_before = touching;
   try {
-    if (bodies.empty() || static_cast<int>(heads.size()) < objects.size())
-      make();    // those without a record as at the beginning
+    if (bodies.empty() || !is_whole) make();    // those without a record as at the beginning
     std::vector<Pose> poses;
     for (int n = 0; n < objects.size(); ++n) {
       poses.push_back(rest[n] ? kept[n].pose : touching.pose(n));
@@ -128,7 +141,7 @@ void FixMdanimRigid::unpack(const StateRecords &records)
     touching = touching_before;
     throw;
   }
-  touching.is_current = !heads.empty() && static_cast<int>(heads.size()) == objects.size();
+  touching.is_current = is_whole;
   for (const auto &[i, place] : places) particles.set_own(i, place);
   restarted.reset();
   particles.put(bodies, true);

@@ -22,15 +22,24 @@ double RigidParticles::mass_at(int i) const { return mass_of(atom->rmass, atom->
 
 // --- objects ---
 
-bool RigidParticles::find_objects()
+bool RigidParticles::find_objects(bool are_new)
+{
+  const ObjectTable before = known;
+  if (!are_new && take_objects(true) == particles && known == before) return false;
+  particles = take_objects(false);
+  return true;
+}
+
+std::vector<bigint> RigidParticles::take_objects(bool with_aside)
 {
   std::vector<tagint> here;
   for (int i = 0; i < atom->nlocal; ++i) {
-    if (!moves(i)) continue;
-    need_object(&fix, lmp, i);
+    if (moves(i))
+      need_object(&fix, lmp, i);
+    else if (!with_aside || known.number_of(atom->molecule[i]) == ObjectTable::NONE)
+      continue;
     here.push_back(atom->molecule[i]);
   }
-  const ObjectTable before = known;
   known.make(world, std::move(here));
   std::vector<bigint> inside(known.size(), 0), all(known.size(), 0);
   for (int i = 0; i < atom->nlocal; ++i) {
@@ -42,16 +51,14 @@ bool RigidParticles::find_objects()
   MPI_Allreduce(MPI_IN_PLACE, inside.data(), known.size(), MPI_LMP_BIGINT, MPI_SUM, world);
   MPI_Allreduce(MPI_IN_PLACE, all.data(), known.size(), MPI_LMP_BIGINT, MPI_SUM, world);
   for (int n = 0; n < known.size(); ++n) {
-    if (inside[n] != all[n])
+    if (inside[n] > 0 && inside[n] != all[n])
       error->all(FLERR, "{}: {} of the {} particles of object {} (molecule ID) are in its group; a rigid body has all of them",
                  name(), inside[n], all[n], known.id(n));
     if (all[n] > UnorderedSum::MOST_TERMS)
       error->all(FLERR, "{}: object {} (molecule ID) has {} particles, a rigid body may have {}", name(), known.id(n), all[n],
                  UnorderedSum::MOST_TERMS);
   }
-  const bool are_others = !(known == before) || all != particles;
-  particles = std::move(all);
-  return are_others;
+  return all;
 }
 
 void RigidParticles::locate()
@@ -85,6 +92,7 @@ std::vector<RigidParticles::MassProperties> RigidParticles::weigh() const
     return std::array<double, 4>{mass_at(i), mx.x, mx.y, mx.z};
   });
   for (std::size_t n = 0; n < found.size(); ++n) {
+    if (first[n][0] == 0.0) continue;    // laid aside
     found[n].mass = first[n][0];
     found[n].centre = {first[n][1] / first[n][0], first[n][2] / first[n][0], first[n][3] / first[n][0]};
   }

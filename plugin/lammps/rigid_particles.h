@@ -37,8 +37,9 @@ class RigidParticles : protected LAMMPS_NS::Pointers {
   Vec3 own(int i) const { return vec3(own_place[i]); }
   void set_own(int i, const Vec3 &place);
 
-  // Called by all ranks together. find_objects() tells whether there are other objects or particles than before.
-  bool find_objects();
+  // Called by all ranks together. find_objects() tells whether there are other objects or particles than before, or they are all
+  // new. Objects whose particles have left the group together are laid aside: they stay known until there are others.
+  bool find_objects(bool are_new = false);
   void locate();
   const ObjectTable &objects() const { return known; }
   LAMMPS_NS::bigint particles_of(int body) const { return particles[body]; }
@@ -91,6 +92,7 @@ class RigidParticles : protected LAMMPS_NS::Pointers {
 
  private:
   std::string name() const;
+  std::vector<LAMMPS_NS::bigint> take_objects(bool with_aside);    // their numbers of particles
 
   const LAMMPS_NS::Fix &fix;
   ObjectTable known;

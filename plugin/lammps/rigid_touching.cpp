@@ -122,6 +122,10 @@ void RigidTouching::make(const std::string &fix, const ObjectTable &objects, con
   for (std::size_t n = 0; n < bodies.size() && is_on(); ++n) {
     const auto found = shapes.find(static_cast<int>(objects.id(static_cast<int>(n))));
     if (found == shapes.end()) continue;
+    if (bodies[n].aside) {
+      in_bodies[n] = poses[n];
+      continue;
+    }
     const Pose &pose = found->second.pose;
     const Quaternion &q = bodies[n].q;
     in_bodies[n] = {transposed_times(bodies[n].turn, pose.place - bodies[n].centre),
@@ -155,6 +159,7 @@ void RigidTouching::take(const std::string &fix, const ObjectTable &objects, con
       one.shape = given.shape.placed(poses[n]);
       one.over_mass = 1.0 / bodies[n].mass;
       one.over = bodies[n].over;
+      one.aside = bodies[n].aside;
       solid_of[n] = static_cast<int>(solids.size());
     }
     solids.push_back(std::move(one));

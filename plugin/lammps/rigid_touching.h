@@ -33,7 +33,8 @@ class RigidTouching {
   void check() const;
   bool is_on() const { return contact.settings.objects || !contact.settings.planes.empty(); }
 
-  // Takes bodies that have just been made, or have come with these poses of their shapes. `fix` begins messages.
+  // Takes bodies that have just been made, but for those that are laid aside, or have come with these poses of their shapes.
+  // `fix` begins messages.
   void make(const std::string &fix, const ObjectTable &objects, const std::vector<RigidBody> &bodies);
   void take(const std::string &fix, const ObjectTable &objects, const std::vector<RigidBody> &bodies,
             std::vector<Pose> in_bodies);
@@ -49,7 +50,7 @@ class RigidTouching {
   // A body that is laid aside neither moves nor touches.
   void lay_aside(int body, bool aside)
   {
-    if (solid_of[body] != NO_SHAPE) contact.lay_aside(solid_of[body], aside);
+    if (solid_of[body] != NO_SHAPE && contact.lay_aside(solid_of[body], aside)) is_current = false;
   }
   int solid(int body) const { return solid_of[body]; }
 

@@ -104,13 +104,17 @@ void RigidContact::step(double dt)
   }
 }
 
-void RigidContact::lay_aside(int n, bool aside)
+bool RigidContact::lay_aside(int n, bool aside)
 {
+  if (solids[n].aside == aside) return false;
   solids[n].aside = aside;
-  if (!aside) return;
   for (auto &of_plane : at_plane) of_plane[n].clear();
-  for (SolidPair &pair : near.pairs)
-    if (pair.a == n || pair.b == n) pair.touches.clear();
+  for (SolidPair &pair : near.pairs) {
+    if (pair.a != n && pair.b != n) continue;
+    pair.touches.clear();
+    pair.forget();    // its ways were not counted
+  }
+  return true;
 }
 
 void RigidContact::find_energy()
@@ -179,6 +183,7 @@ void RigidContact::read_pair(int a, int b, ByteReader &reader)
   pair.b = b;
   pair.touches = reader.get_counted<Touch>();
   check(pair.touches, solids[a], &solids[b], reader);
+  if (solids[a].aside || solids[b].aside) return;
   near.pairs.push_back(std::move(pair));
 }
 

@@ -41,8 +41,8 @@ class RigidContact {
 
   // Places a body that can move, before a step.
   void place(int n, const RigidBody &body);
-  // A body that is laid aside touches nothing.
-  void lay_aside(int n, bool aside);
+  // A body that is laid aside touches nothing, and its contacts end. Returns whether this is new.
+  bool lay_aside(int n, bool aside);
   // Finds the energy of contacts, and how many there are, from what they remember.
   void find_energy();
   // Finds the forces on bodies, dt after the last step; dt = 0 at the setup of a run.

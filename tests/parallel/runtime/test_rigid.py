@@ -3,6 +3,7 @@
 same bits on executors, in teams, after a resume, and in plain `lmp`."""
 
 import subprocess
+from dataclasses import replace
 
 import numpy as np
 import plugin_path
@@ -64,6 +65,60 @@ def test_rigid_objects_are_the_same_in_all_forms(scene):  # noqa: F811
     for way in cases:
         assert compare(found["sequential"], found[way]).equal, way
         assert records(found[way]) == alone, way
+
+
+def test_executors_take_up_states_without_what_they_have_laid_aside(scene):  # noqa: F811
+    """Boxes and balls that move among each other: windows begin again in instances that have given objects away."""
+    bodies = [
+        f"object body[{n + 1}] {{ shape {'sphere 5 cm' if n % 2 else 'box (10, 10, 10) cm'}  density 1000  elasticity rigid\n"
+        f"position ({35 * (n % 4)}, {35 * (n // 4)}, 6) cm  velocity ({vx:.2f}, {vy:.2f}, -0.5) m/s }}\n"
+        for n, (vx, vy) in enumerate(np.random.default_rng(1).uniform(-3, 3, (14, 2)))
+    ]
+    text = f"""gravity (0, 0, -9.81) m/s^2
+ground z 0 m
+{"".join(bodies)}
+control {{ time 0.1 s  frames 50 fps  friction 0.3 }}
+"""
+    found = ways(scene(text), {"spread": {"executors": 2, "control": "central", "settings": WINDOWS | {"safety": 0.3}}}, ranks=3)
+    assert compare(found["sequential"], found["spread"]).equal
+
+
+def test_a_state_is_taken_up_without_what_is_laid_aside(tmp_path):
+    """One of three boxes is laid aside. States with and without its record are taken up, and the others go on as before."""
+    boxes = "".join(
+        f"object {name} {{ shape box (10, 10, 10) cm  position {at} cm  density 1000  elasticity rigid }}\n"
+        for name, at in (("lower", "(0, 0, 5)"), ("upper", "(0, 0, 15)"), ("other", "(60, 0, 5)"))
+    )
+    ready, _ = readied(
+        tmp_path, f"gravity (0, 0, -9.81) m/s^2\nground z 0 m\n{boxes}control {{ time 0.1 s  frames 100 fps  friction 0.5 }}\n"
+    )
+    rows = slice(0, ready.plan.system.first[2])
+    with Instance(ready.plan) as instance:
+        instance.setup()
+        instance.run(400)
+        before = instance.state()
+        instance.lay_aside([2])
+        instance.run(10)
+        without, touching = instance.state(), instance.fix_value("rigid", "touching")
+        instance.run(10)
+        end = instance.state()
+        for step, state, steps in ((410, without, 10), (400, before, 20)):
+            instance.put(step, state)
+            assert instance.fix_value("rigid", "touching") == touching
+            instance.run(steps)
+            again = instance.state()
+            assert np.array_equal(again.x[rows], end.x[rows]) and np.array_equal(again.v[rows], end.v[rows])
+            assert [k for k in again.records["rigid"].keys.tolist() if 3 in k] == []
+        kept = before.records["rigid"]
+        some = replace(before, records=before.records | {"rigid": kept.where(kept.keys[:, 0] == 1)})
+        with Instance(ready.plan) as other:  # one that has all; a body without a record begins anew
+            ends = []
+            for one in (instance, other):
+                one.put(400, some)
+                one.run(20)
+                ends.append(one.state())
+        assert np.array_equal(ends[0].x[rows], ends[1].x[rows]) and np.array_equal(ends[0].v[rows], ends[1].v[rows])
+        assert np.array_equal(ends[0].x[rows.stop :], before.x[rows.stop :]) and instance.fix_value("rigid", "bodies") == 3.0
 
 
 @pytest.mark.parametrize("ranks", [1, 2])

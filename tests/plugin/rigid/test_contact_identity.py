@@ -127,6 +127,41 @@ def test_a_body_that_is_laid_aside_touches_nothing(tmp_path):
         assert world.number("translation") + world.number("rotation") == pytest.approx(fallen, rel=1e-9)
 
 
+def test_a_body_comes_back_and_is_met(tmp_path):
+    """A box stands still. It leaves the group while another one comes near, through two setups, and is back before they meet: all
+    has the same bits as if it had always been there."""
+    two = [lab.box((0.1, 0.1, 0.1), at=(x, 0, 0), v=(v, 0, 0)) for x, v in ((-0.105, 0.5), (0.0, 0.0))]
+    found = []
+    for leaves in (False, True):
+        with lab.World(tmp_path, two, frequency=lab.frequency_of(1.0, 0.1), planes=(), gravity=(0, 0, 0)) as world:
+            tag, mask = (world.lmp.numpy.extract_atom(name)[:16] for name in ("id", "mask"))
+            kept = mask.copy()
+            if leaves:
+                mask[tag > 8] = 0
+            for _ in range(2):
+                world.lmp.command(f"run {int(0.0024 / 0.5 / world.dt)}")
+            assert world.number("touching") == 0
+            mask = world.lmp.numpy.extract_atom("mask")[:16]
+            mask[:] = kept
+            world.lmp.command(f"run {int(0.01 / 0.5 / world.dt)}")
+            assert world.rows()[1, 3] > 0.1
+            found.append((world.rows().tobytes(), world.number("deepest")))
+    assert found[0] == found[1]
+
+
+def test_a_state_with_a_wrong_rotation_is_refused(tmp_path):
+    """A quaternion whose length is not 1, of a body or of its shape."""
+    one = [lab.box((0.1, 0.1, 0.1), at=(0, 0, 0.05))]
+    with lab.World(tmp_path, one, frequency=lab.frequency_of(1.0, 0.1)) as world:
+        records, before = state_lab.pack(world.lmp, "r"), ends(world)
+        for at in (10, 26):  # among the numbers behind the version and the size of the head
+            data = records.data.copy()
+            data[16:][: 30 * 8].view(np.float64)[at] = 2.0
+            with pytest.raises(RuntimeError, match="its motion or its mass"):
+                state_lab.put(world.lmp, "r", state_lab.Records(records.key, records.first, data))
+            assert are_same(ends(world), before)
+
+
 def test_a_restart_file_goes_on_to_the_bit(tmp_path):
     """Contacts are in it."""
     with heap(tmp_path) as world:
