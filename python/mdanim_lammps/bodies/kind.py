@@ -7,6 +7,7 @@ from collections.abc import Callable
 from functools import lru_cache
 from typing import Any
 
+from .. import features
 from ..features import facets
 from ..scene.scene import HoldAll, SceneRecord, Solid
 
@@ -64,6 +65,12 @@ def only_features(scene: SceneRecord) -> bool:
     """Whether all contacts of a scene are found from features of shapes alone: a module ``body`` may have a function
     `by_features` that says so. Then nothing reads points of surfaces, nor particles inside."""
     return any(facet.by_features(scene) for facet in facets("body") if hasattr(facet, "by_features"))
+
+
+def driven(scene: SceneRecord) -> set[int]:
+    """Numbers of the objects whose held particles some effect moves, if it is on. Known before effects are decided on, for which
+    the spacing is needed."""
+    return {m for effect in features.effects() for m in effect.of(scene).drives(scene)}
 
 
 def all_held(solid: Solid) -> bool:

@@ -109,7 +109,7 @@ class SharedParts:
     @cached_property
     def by_features(self) -> bool:
         """Whether nothing reads points of surfaces, nor particles inside (bodies.only_features)."""
-        return only_features(self.scene)
+        return not self._driven and only_features(self.scene)
 
     def is_driven(self, solid: Solid) -> bool:
         """Whether some effect moves its held particles."""

@@ -1,65 +1,16 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""Convex shapes: their corners and faces, the exact boxes around them, and how deep two of them are in each other."""
+"""Convex shapes: their places, the exact boxes around them, and how deep two of them are in each other."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import lru_cache
 
 import numpy as np
 
 from ..scene.scene import Box, Cone, Cylinder, Ellipsoid, Mesh, Solid, Sphere
-from . import mesh
-
-MOST_CORNERS = 60
-"""Corners of a mesh up to which its features are found quickly."""
-FLAT = 1e-9
-"""Part of the size of a mesh, or of its volume, that is rounding."""
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Polyhedron:
-    """A convex body with flat faces."""
-
-    corner: np.ndarray
-    """About the centre of mass [m], shape (N, 3)."""
-    faces: tuple[tuple[int, ...], ...]
-    """Corners of each face, counter-clockwise seen from outside; no two faces are in one plane."""
-
-
-@lru_cache(maxsize=256)
-def polyhedron(shape: Mesh) -> Polyhedron | None:
-    """The corners and faces of a mesh; None where it is not convex, or has more than MOST_CORNERS. Raises mesh.MeshError."""
-    from scipy.spatial import ConvexHull
-
-    body = mesh.load(shape)
-    hull = ConvexHull(body.points)
-    if len(hull.vertices) > 4 * MOST_CORNERS or hull.volume > (1.0 + FLAT) * body.volume:
-        return None
-    near = FLAT * float(np.ptp(body.points, axis=0).max())
-    left, faces = list(range(len(hull.equations))), []
-    while left:
-        plane = hull.equations[left[0]]
-        same = [k for k in left if np.abs(hull.points[hull.simplices[k]] @ plane[:3] + plane[3]).max() <= near]
-        left = [k for k in left if k not in same]
-        faces.append(_around(hull.points, np.unique(hull.simplices[same]), plane[:3]))
-    used = np.unique(np.concatenate(faces))
-    if len(used) > MOST_CORNERS:
-        return None
-    number = {int(old): new for new, old in enumerate(used)}
-    return Polyhedron(hull.points[used], tuple(tuple(number[int(k)] for k in face) for face in faces))
-
-
-def _around(points: np.ndarray, corners: np.ndarray, normal: np.ndarray) -> np.ndarray:
-    """The corners of a face in order, without those on its straight edges."""
-    from scipy.spatial import ConvexHull
-
-    first = np.cross(normal, np.eye(3)[np.abs(normal).argmin()])
-    first /= np.linalg.norm(first)
-    flat = points[corners] @ np.stack([first, np.cross(normal, first)], axis=1)
-    return corners[ConvexHull(flat).vertices]  # counter-clockwise in the plane
+from .polyhedron import Polyhedron, polyhedron
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -40,14 +40,10 @@ def with_covers(models: Sequence[Model], solids: Sequence[Solid]) -> tuple[Model
     held = [n for n, model in enumerate(models) if isinstance(model.frame.shape, Box) and model.still]
     if len(held) < 2:
         return tuple(models)
-    gap = FLUSH * max(models[n].spacing for n in held)
-    low = np.array([models[n].position.min(axis=0) for n in held])
-    high = np.array([models[n].position.max(axis=0) for n in held])
     beside: dict[int, list[int]] = {n: [] for n in held}
-    for one, other in box_pairs(low - gap, high + gap):
-        for i, j in zip(one.tolist(), other.tolist()):
-            beside[held[i]].append(held[j])
-            beside[held[j]].append(held[i])
+    for i, j in beside_each_other([solids[n] for n in held]):
+        beside[held[i]].append(held[j])
+        beside[held[j]].append(held[i])
     corners = {n: _corners(models[n].frame) @ np.array(solids[n].rotation).T + solids[n].position for n in held if beside[n]}
     frames: dict[tuple[int, bytes], BodyFrame] = {}
     found = list(models)
@@ -58,6 +54,23 @@ def with_covers(models: Sequence[Model], solids: Sequence[Solid]) -> tuple[Model
             key = (id(frame), left.tobytes())
             found[n] = replace(models[n], frame=frames.setdefault(key, replace(frame, open=left)))
     return tuple(found)
+
+
+def beside_each_other(held: Sequence[Solid]) -> list[tuple[int, int]]:
+    """Pairs of held cuboids, by number, whose sides may cover each other: no other ones do, at any spacing.
+
+    Cells are at most as wide as a cuboid is thin, so its box, FLUSH of that larger, reaches all that is flush with it. The
+    spacing is not read, as it depends on whether there are such pairs (bodies.only_features).
+    """
+    cuboids = [n for n, solid in enumerate(held) if isinstance(solid.shape, Box)]
+    if len(cuboids) < 2:
+        return []
+    size = np.array([held[n].shape.size for n in cuboids])
+    place = np.array([held[n].position for n in cuboids], float)
+    half = 0.5 * (np.abs(np.array([held[n].rotation for n in cuboids])) @ size[:, :, None])[:, :, 0]
+    half = half + FLUSH * size.min(axis=1, keepdims=True)
+    pairs = box_pairs(place - half, place + half)
+    return [(cuboids[i], cuboids[j]) for one, other in pairs for i, j in zip(one.tolist(), other.tolist())]
 
 
 def _corners(frame: BodyFrame) -> np.ndarray:

@@ -6,12 +6,10 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
-import numpy as np
-
-from ...bodies import BodyKind, all_held, kind_of
+from ...bodies import BodyKind, all_held, driven, kind_of
 from ...model import shapes
-from ...model.boxes import box_pairs
 from ...model.build import lattice_model, single_cell_model
+from ...model.cover import beside_each_other
 from ...model.inertia import tensor
 from ...scene.scene import Box, Sphere
 from .shapes import is_rigid, on_objects, only_balls_move
@@ -58,20 +56,14 @@ class RigidBody(BodyKind):
 
 def by_features(scene) -> bool:
     """Whether rigid objects move, and all contacts are of shapes that know each other by their features, so that nothing reads
-    points of their surfaces, nor particles inside. Held cuboids in touch have sides that are covered, which balls alone find by
-    features."""
+    points of their surfaces, nor particles inside. Held cuboids beside each other may have sides that are covered, which balls
+    alone find by features; what an effect moves is found at points."""
     solids = scene.solids
-    if scene.liquid is not None or all(map(all_held, solids)) or any(map(is_soft, solids)):
+    if scene.liquid is not None or all(map(all_held, solids)) or any(map(is_soft, solids)) or driven(scene):
         return False
     if not all(on_objects(s.shape) for s in solids):
         return False
-    if only_balls_move(solids):
-        return True
-    held = [s for s in solids if all_held(s)]
-    half = [np.abs(np.array(s.rotation)) @ np.abs(shapes.extent(s.shape)).max(axis=0) for s in held]
-    apart = 1e-3 * min((float(h.min()) for h in half), default=0.0)
-    low, high = (np.array([np.array(s.position) + sign * (h + apart) for s, h in zip(held, half)]) for sign in (-1, 1))
-    return len(held) < 2 or next(iter(box_pairs(low, high)), None) is None
+    return only_balls_move(solids) or not beside_each_other([s for s in solids if all_held(s)])
 
 
 def is_soft(solid) -> bool:

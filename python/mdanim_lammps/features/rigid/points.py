@@ -9,7 +9,7 @@ import numpy as np
 
 from ...effects.envelope import Envelope
 from ...errors import Problem
-from ...model.convex import MOST_CORNERS
+from ...model.polyhedron import MOST_CORNERS
 from ...scene.formatting import estimate
 from . import touching
 from .shapes import on_objects

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from ...bodies import all_held
-from ...model.convex import polyhedron
+from ...model.polyhedron import polyhedron
 from ...scene.scene import Box, Cone, Cylinder, Ellipsoid, Mesh, Shape, Solid, Sphere
 from .words import Rigid
 

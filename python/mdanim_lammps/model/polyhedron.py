@@ -1,0 +1,149 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Corners and faces of convex meshes, clean enough for ``fix mdanim/rigid`` (plugin/rigid/polyhedron.cpp)."""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+
+from ..scene.scene import Mesh
+from . import mesh
+
+MOST_CORNERS = 60
+"""Corners of a mesh up to which its features are found quickly."""
+NEAR = 1e-6
+"""Distance over the size of a mesh, the diagonal of its box, below which corners are one, or a corner lies in a plane: what the
+fix lets a face be uneven by, and about what six digits of coordinates are rounded by."""
+ONE_PLANE = 1e-4
+"""Angle below which two faces with a common edge are one [rad]; the fix refuses those below 4.5e-5."""
+LEAST_AREA = 1e-9
+"""Area of a face over the square of the size from which the fix knows its normal."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Polyhedron:
+    """A convex body with flat faces."""
+
+    corner: np.ndarray
+    """About the centre of mass [m], shape (N, 3)."""
+    faces: tuple[tuple[int, ...], ...]
+    """Corners of each face, counter-clockwise seen from outside; no two faces are in one plane."""
+
+
+@lru_cache(maxsize=256)
+def polyhedron(shape: Mesh) -> Polyhedron | None:
+    """The corners and faces of a mesh; None where it is not convex, has more than MOST_CORNERS, or has edges or faces too small
+    for `fix mdanim/rigid`. Raises mesh.MeshError."""
+    from scipy.spatial import ConvexHull
+
+    body = mesh.load(shape)
+    hull = ConvexHull(body.points)
+    near = NEAR * float(np.linalg.norm(np.ptp(body.points, axis=0)))
+    if len(hull.vertices) > 4 * MOST_CORNERS or hull.volume - body.volume > near * hull.area:
+        return None
+    kept = _apart(body.points[hull.vertices], near)
+    if len(kept) < len(hull.vertices):
+        if len(kept) < 4:
+            return None
+        hull = ConvexHull(body.points[hull.vertices[kept]])
+    found = _merged(hull, near)
+    return found if found is not None and len(found.corner) <= MOST_CORNERS and _is_clean(found, near) else None
+
+
+def _apart(points: np.ndarray, near: float) -> list[int]:
+    """Numbers of points, without those that are near one that stays."""
+    kept: list[int] = []
+    for k, point in enumerate(points):
+        if not kept or np.linalg.norm(points[kept] - point, axis=1).min() > near:
+            kept.append(k)
+    return kept
+
+
+def _merged(hull: Any, near: float) -> Polyhedron | None:
+    """The faces of a hull, each of all its triangles that are in one plane, and the corners at which three or more of them meet;
+    None where those of a face span no area."""
+    from scipy.spatial import QhullError
+
+    groups, seeds = _groups(hull, near)
+    at: list[set[int]] = [set() for _ in hull.points]
+    for group, triangle in zip(groups.tolist(), hull.simplices):
+        for k in triangle.tolist():
+            at[k].add(group)
+    is_corner = np.array([len(meet) >= 3 for meet in at])
+    faces = []
+    for group in dict.fromkeys(groups.tolist()):
+        own = np.unique(hull.simplices[groups == group])
+        own = own[is_corner[own]]
+        if len(own) < 3:
+            return None
+        normals = hull.equations[groups == group, :3]
+        first = int(np.argmax(normals @ hull.equations[seeds[group], :3] > 1.0 - 0.5 * ONE_PLANE**2))
+        try:
+            faces.append(_around(hull.points, own, normals[first]))
+        except QhullError:
+            return None
+    used = np.unique(np.concatenate(faces))
+    number = {int(old): new for new, old in enumerate(used)}
+    return Polyhedron(hull.points[used], tuple(tuple(number[int(k)] for k in face) for face in faces))
+
+
+def _groups(hull: Any, near: float) -> tuple[np.ndarray, dict[int, int]]:
+    """The face that each triangle of a hull belongs to, shape (T,), and the largest triangle of each face.
+
+    A face takes the triangles that are near the plane of its largest one, and then neighbours at an angle below ONE_PLANE. The
+    plane of a narrow triangle is rounding, so large ones begin.
+    """
+    corner = hull.points[hull.simplices]
+    area = np.linalg.norm(np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]), axis=1)
+    groups, seeds = np.full(len(area), -1), {}
+    for seed in np.argsort(-area, kind="stable").tolist():
+        if groups[seed] < 0:
+            plane = hull.equations[seed]
+            groups[(groups < 0) & (np.abs(corner @ plane[:3] + plane[3]).max(axis=1) <= near)] = seed
+            groups[seed] = seed
+            seeds[seed] = seed
+    for k, neighbours in enumerate(hull.neighbors.tolist()):
+        for n in neighbours:
+            one, two = sorted((int(groups[k]), int(groups[n])), key=lambda g: -area[g])
+            if one != two and np.linalg.norm(np.cross(hull.equations[one, :3], hull.equations[two, :3])) < ONE_PLANE:
+                groups[groups == two] = one
+    return groups, seeds
+
+
+def _around(points: np.ndarray, corners: np.ndarray, normal: np.ndarray) -> np.ndarray:
+    """The corners of a face in order, without those on its straight edges."""
+    from scipy.spatial import ConvexHull
+
+    first = np.cross(normal, np.eye(3)[np.abs(normal).argmin()])
+    first /= np.linalg.norm(first)
+    flat = points[corners] @ np.stack([first, np.cross(normal, first)], axis=1)
+    return corners[ConvexHull(flat).vertices]  # counter-clockwise in the plane
+
+
+def _is_clean(body: Polyhedron, near: float) -> bool:
+    """Whether the fix takes a body: each edge has two faces, at an angle; faces are flat and have an area; no corner is before
+    one; three edges meet in each corner, and no two corners are near."""
+    if len(_apart(body.corner, near)) < len(body.corner):
+        return False
+    normal: dict[tuple[int, int], np.ndarray] = {}
+    for face in body.faces:
+        corner = body.corner[list(face)]
+        spread = np.cross(corner - corner[0], np.roll(corner, -1, axis=0) - corner[0]).sum(axis=0)
+        length = float(np.linalg.norm(spread))
+        if length <= LEAST_AREA * (near / NEAR) ** 2:
+            return False
+        out = spread / length
+        level = float((corner @ out).mean())
+        if np.abs(corner @ out - level).max() > 0.5 * near or (body.corner @ out).max() - level > 0.5 * near:
+            return False  # half, as the fix's size is from one corner to the farthest, half of the diagonal or more
+        normal.update(((a, b), out) for a, b in zip(face, (*face[1:], face[0])))
+    if len(normal) != sum(map(len, body.faces)) or any((b, a) not in normal for a, b in normal):
+        return False
+    ways = Counter(a for a, _ in normal)
+    return min(ways[k] for k in range(len(body.corner))) >= 3 and all(
+        np.linalg.norm(np.cross(out, normal[b, a])) >= 0.5 * ONE_PLANE for (a, b), out in normal.items()
+    )
