@@ -93,6 +93,13 @@ class LineWords {
       fail(std::string(what) + " must be within " + short_form(MOST) + " of the origin");
     return at;
   }
+  // Six digits of a number.
+  static std::string short_form(double value)
+  {
+    std::ostringstream text;
+    text << value;
+    return text.str();
+  }
   // The number of things of `size` words each that follow.
   int many(const char *what, std::size_t size)
   {
@@ -104,12 +111,6 @@ class LineWords {
 
  private:
   static constexpr double LEAST = 1e-50, MOST = 1e50;
-  static std::string short_form(double value)
-  {
-    std::ostringstream text;
-    text << value;
-    return text.str();
-  }
   std::string line, where;
   std::size_t at = 0;
 };

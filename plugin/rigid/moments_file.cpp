@@ -4,16 +4,7 @@
 
 #include "rigid/line_words.h"
 
-#include <cstdio>
-
 namespace mdanim {
-
-static std::string text_of(double value)
-{
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", value);
-  return text;
-}
 
 std::map<int, Inertia> read_moments(const std::string &name, const std::string &text)
 {
@@ -26,8 +17,9 @@ std::map<int, Inertia> read_moments(const std::string &name, const std::string &
     words.expect_end();
     const Vec3 moments = principal_axes(inertia).moments;
     if (!(moments.x > 0.0 && moments.x + moments.y >= (1.0 - 1e-9) * moments.z))
-      words.fail("no body has the principal moments " + text_of(moments.x) + ", " + text_of(moments.y) + " and " +
-                 text_of(moments.z) + ", which must be positive, none above the sum of the other two");
+      words.fail("no body has the principal moments " + LineWords::short_form(moments.x) + ", " +
+                 LineWords::short_form(moments.y) + " and " + LineWords::short_form(moments.z) +
+                 ", which must be positive, none above the sum of the other two");
     if (!found.emplace(molecule, inertia).second) words.fail("object " + std::to_string(molecule) + " has a line already");
   });
   return found;

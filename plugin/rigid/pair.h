@@ -27,8 +27,8 @@ struct SolidPair {
   }
 };
 
-// Contacts of a pair of polyhedra. `lists`: whether features that are near are remembered.
-void touch_polyhedra(const TouchStep &step, SolidPair &pair, Solid &a, Solid &b, const TouchLaw &law, bool lists);
+// Contacts of a pair of polyhedra.
+void touch_polyhedra(const TouchStep &step, SolidPair &pair, Solid &a, Solid &b, const TouchLaw &law);
 // Contacts of two balls, and of a ball with any other shape.
 void touch_balls(const TouchStep &step, SolidPair &pair, Solid &a, Solid &b, const TouchLaw &law);
 void touch_ball_and_other(const TouchStep &step, SolidPair &pair, Solid &ball, Solid &host, const TouchLaw &law);

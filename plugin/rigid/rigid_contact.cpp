@@ -41,22 +41,21 @@ void RigidContact::place(int n, const RigidBody &body)
   one.fastest_turn = std::sqrt(dot(body.L, body.L)) * std::max({body.over.x, body.over.y, body.over.z});
 }
 
+// A pair may have friction and damping of its own.
+TouchLaw RigidContact::law_with(double yields, Material material, std::pair<int, int> ids) const
+{
+  if (const auto own = settings.pairs.find(ids); own != settings.pairs.end()) material = own->second;
+  return {settings.frequency * settings.frequency / yields, material.friction, material.damping};
+}
+
 TouchLaw RigidContact::law_of(const Solid &a, const Solid &b) const
 {
-  TouchLaw law{settings.frequency * settings.frequency / (a.yields + b.yields),
-               std::sqrt(a.material.friction * b.material.friction), std::max(a.material.damping, b.material.damping)};
-  if (const auto own = settings.pairs.find({a.id, b.id}); own != settings.pairs.end())
-    law.friction = own->second.friction, law.damping = own->second.damping;
-  return law;
+  const Material usual{std::sqrt(a.material.friction * b.material.friction), std::max(a.material.damping, b.material.damping)};
+  return law_with(a.yields + b.yields, usual, {a.id, b.id});
 }
 
 TouchLaw RigidContact::law_at(const Solid &one, int plane) const
-{
-  TouchLaw law{settings.frequency * settings.frequency / one.yields, one.material.friction, one.material.damping};
-  if (const auto own = settings.pairs.find({one.id, -1 - plane}); own != settings.pairs.end())
-    law.friction = own->second.friction, law.damping = own->second.damping;
-  return law;
-}
+{ return law_with(one.yields, one.material, {one.id, -1 - plane}); }
 
 void RigidContact::touch_pair(const TouchStep &step, SolidPair &pair)
 {
@@ -78,7 +77,7 @@ void RigidContact::touch_pair(const TouchStep &step, SolidPair &pair)
   else if (is_other_ball)
     touch_ball_and_other(step, pair, b, a, law);
   else
-    touch_polyhedra(step, pair, a, b, law, settings.lists);
+    touch_polyhedra(step, pair, a, b, law);
 }
 
 void RigidContact::step(double dt)

@@ -23,7 +23,6 @@ struct RigidContactSettings {
   std::vector<SolidPlane> planes;
   // Friction and damping of pairs, by ids, the lower one first; of a body and plane k the second is -1 - k.
   std::map<std::pair<int, int>, Material> pairs;
-  bool lists = true;    // whether it is remembered which features are near; no bit depends on it
 };
 
 class RigidContact {
@@ -63,6 +62,7 @@ class RigidContact {
  private:
   TouchLaw law_of(const Solid &a, const Solid &b) const;
   TouchLaw law_at(const Solid &one, int plane) const;
+  TouchLaw law_with(double yields, Material material, std::pair<int, int> ids) const;
   void touch_pair(const TouchStep &step, SolidPair &pair);
 
   std::vector<Solid> solids;

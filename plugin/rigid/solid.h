@@ -42,12 +42,9 @@ struct Solid {
   Vec3 in_body(const Vec3 &a) const { return transposed_times(turn, a); }
   Vec3 velocity_at(const Vec3 &x) const { return velocity + cross(spin, x - centre); }
   // lambda = 1/m + (r x n) I^-1 (r x n): acceleration along n of the point x over a force along n that acts there.
-  double yields_at(const Vec3 &x, const Vec3 &n) const
-  {
-    if (held) return 0.0;
-    const Vec3 t = in_body(cross(x - centre, n));
-    return over_mass + (t.x * t.x * over.x + t.y * t.y * over.y + t.z * t.z * over.z);
-  }
+  double yields_at(const Vec3 &x, const Vec3 &n) const { return held ? 0.0 : yields_by(in_body(cross(x - centre, n))); }
+  // The same of the lever t = r x n, in the frame of the body.
+  double yields_by(const Vec3 &t) const { return over_mass + (t.x * t.x * over.x + t.y * t.y * over.y + t.z * t.z * over.z); }
 
   void move_to(const Vec3 &to, const Matrix3 &now)
   {
@@ -86,10 +83,12 @@ inline void Solid::find_yields()
 {
   yields = yields_any = 0.0;
   if (held) return;
-  shape.each_feature([this](const Vec3 &at, const Vec3 &n) {
-    const Vec3 t = cross(at, n);
-    yields = std::max(yields, over_mass + (t.x * t.x * over.x + t.y * t.y * over.y + t.z * t.z * over.z));
+  Vec3 last{HUGE_VAL, 0.0, 0.0};    // a corner comes once with each of its faces
+  shape.each_feature([&](const Vec3 &at, const Vec3 &n) {
+    yields = std::max(yields, yields_by(cross(at, n)));
+    if (at.x == last.x && at.y == last.y && at.z == last.z) return;
     yields_any = std::max(yields_any, largest_yield(over_mass, over, at));
+    last = at;
   });
 }
 

@@ -123,27 +123,34 @@ void TouchStep::press(Touch &touch, const TouchLaw &its_law, Solid &a, Solid *b,
   book(a, b, touch, part, push);
 }
 
+Touch *TouchStep::meet(std::vector<Touch> &list, Touch::TouchKind kind, int number, const TouchLaw &law, const Solid &a,
+                       const Solid *b, const Vec3 &x, const Vec3 &n, double depth, const Vec3 &anchor) const
+{
+  const auto found = find_touch(list, kind, number);
+  if (depth <= 0.0) {
+    if (found == list.end()) return nullptr;
+    end(*found, depth);
+    list.erase(found);
+    return nullptr;
+  }
+  if (found != list.end()) return &*found;
+  Touch touch = born(kind, law, a, b, x, n);
+  touch.first = number;
+  touch.anchor = anchor;
+  if (is_first())
+    overlaps(touch, depth);
+  else
+    came_from(touch, depth + dt * dot(relative_velocity(a, b, x), n));
+  list.push_back(touch);
+  return &list.back();
+}
+
 void TouchStep::press_moving(std::vector<Touch> &list, Touch::TouchKind kind, int number, const TouchLaw &its_law, Solid &a,
                              Solid *b, const Vec3 &x, const Vec3 &n, double depth) const
 {
-  auto found = std::find_if(list.begin(), list.end(), [&](const Touch &one) { return one.kind == kind && one.first == number; });
-  if (depth <= 0.0) {
-    if (found == list.end()) return;
-    end(*found, depth);
-    list.erase(found);
-    return;
-  }
-  if (found == list.end()) {
-    Touch touch = born(kind, its_law, a, b, x, n);
-    touch.first = number;
-    if (is_first())
-      overlaps(touch, depth);
-    else
-      came_from(touch, depth + dt * dot(relative_velocity(a, b, x), n));
-    list.push_back(touch);
-    found = list.end() - 1;
-  }
-  Touch &touch = *found;
+  Touch *const met = meet(list, kind, number, its_law, a, b, x, n, depth, {});
+  if (!met) return;
+  Touch &touch = *met;
   const ContactLaw law = law_of(touch, its_law);
   ContactForce<double> push = pressure(touch, law, 1.0, depth);
   Vec3 force = push.press * n;

@@ -26,6 +26,13 @@ struct Touch {
   double energy = 0.0;    // now, with that of sticking [J]
 };
 
+// The contact of these features in a list; its end where there is none.
+inline std::vector<Touch>::iterator find_touch(std::vector<Touch> &list, Touch::TouchKind kind, int first, int second = 0)
+{
+  return std::find_if(list.begin(), list.end(),
+                      [&](const Touch &one) { return one.kind == kind && one.first == first && one.second == second; });
+}
+
 // Stiffness, friction and damping of all contacts of a pair.
 struct TouchLaw {
   double stiffness = 0.0, friction = 0.0, damping = 0.0;
@@ -48,7 +55,6 @@ class TouchStep {
 
   bool is_first() const { return dt == 0.0; }
   double time_step() const { return dt; }
-  TouchAccount &its_account() const { return account; }
 
   // A contact that is born at x. `depth_before`: that of the step before, where it came through the surface; else it overlaps
   // from the beginning, without a force.
@@ -79,6 +85,10 @@ class TouchStep {
   // `slope`: gradient of `part` in the host's frame.
   void press(Touch &touch, const TouchLaw &law, Solid &a, Solid *b, const Vec3 &own, double depth, double part, const Vec3 &slope,
              const Vec3 &n) const;
+  // The contact of a point of `a` at x, at the depth d below a surface with the outward normal n: found in the list, or begun
+  // with this anchor. Null where there is none, or has ended.
+  Touch *meet(std::vector<Touch> &list, Touch::TouchKind kind, int number, const TouchLaw &law, const Solid &a, const Solid *b,
+              const Vec3 &x, const Vec3 &n, double depth, const Vec3 &anchor) const;
   // A point of `a` that moves over its surface, as the lowest of a ball: at x in space, at the depth d below a surface with the
   // outward normal n. Finds its contact in the list, or makes or ends it.
   void press_moving(std::vector<Touch> &list, Touch::TouchKind kind, int number, const TouchLaw &law, Solid &a, Solid *b,

@@ -80,10 +80,6 @@ template <class Host>
 void touch_corners(const TouchStep &step, std::vector<Touch> &touches, Touch::TouchKind kind, std::vector<int> &near, Solid &a,
                    Solid &b, const Host &host, const TouchLaw &law, double ramp, double margin, bool stale)
 {
-  const auto find = [&](int corner) {
-    return std::find_if(touches.begin(), touches.end(),
-                        [&](const Touch &one) { return one.kind == kind && one.first == corner; });
-  };
   if (!stale && near.empty()) return;
   const std::vector<Polyhedron::Corner> &corners = a.shape.polyhedron().corners();
   const Vec3 between = b.in_body(a.centre - b.centre);
@@ -91,11 +87,12 @@ void touch_corners(const TouchStep &step, std::vector<Touch> &touches, Touch::To
   if (stale) {
     near.clear();
     for (int q = 0; q < static_cast<int>(corners.size()); ++q)
-      if (host.outside(in_host(corners[q].at)) < ramp + margin || find(q) != touches.end()) near.push_back(q);
+      if (host.outside(in_host(corners[q].at)) < ramp + margin || find_touch(touches, kind, q) != touches.end())
+        near.push_back(q);
   }
   for (const int q : near) {
     const Vec3 x = in_host(corners[q].at);
-    auto found = find(q);
+    auto found = find_touch(touches, kind, q);
     double depth, part;
     Vec3 slope;
     if (found == touches.end()) {

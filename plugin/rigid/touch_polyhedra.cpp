@@ -59,7 +59,7 @@ class Directions {
 };
 
 // Whether some direction separates the bodies. They then sleep until they may have closed the gap.
-bool are_separated(SolidPair &pair, const Solid &a, const Solid &b, bool lists)
+bool are_separated(SolidPair &pair, const Solid &a, const Solid &b)
 {
   constexpr double SURELY = 0.99;
   const Directions directions(a, b);
@@ -67,7 +67,7 @@ bool are_separated(SolidPair &pair, const Solid &a, const Solid &b, bool lists)
     const double gap = directions.gap(number);
     if (gap <= 0.0) return false;
     pair.axis = number;
-    pair.asleep = lists ? SURELY * gap : 0.0;
+    pair.asleep = SURELY * gap;
     return true;
   };
   if (pair.axis < directions.size() && separates(pair.axis)) return true;
@@ -167,10 +167,7 @@ void look_up_edges(SolidPair &pair, const Solid &a, const Solid &b, double margi
   for (const int i : of_a) {
     const PlacedEdge one(a, i);
     for (const int j : of_b) {
-      const bool is_known = std::any_of(pair.touches.begin(), pair.touches.end(), [&](const Touch &touch) {
-        return touch.kind == Touch::EDGES && touch.first == i && touch.second == j;
-      });
-      if (!is_known) {
+      if (find_touch(pair.touches, Touch::EDGES, i, j) == pair.touches.end()) {
         const PlacedEdge other(b, j);
         EdgeCrossing at(one, other);
         if (at.square < FADED - FADES - 2.0 * turn) continue;
@@ -192,8 +189,7 @@ void touch_edges(const TouchStep &step, SolidPair &pair, Solid &a, Solid &b, con
     const PlacedEdge one(a, i), other(b, j);
     EdgeCrossing at(one, other);
     if (at.square < PARALLEL) continue;
-    auto found = pair.touches.begin();
-    while (found != pair.touches.end() && !(found->kind == Touch::EDGES && found->first == i && found->second == j)) ++found;
+    auto found = find_touch(pair.touches, Touch::EDGES, i, j);
     const bool is_known = found != pair.touches.end();
     if (!is_known && (std::fabs(at.s) >= one.half || std::fabs(at.r) >= other.half)) continue;
     at.find_normal(one, other);
@@ -270,11 +266,11 @@ void touch_edges(const TouchStep &step, SolidPair &pair, Solid &a, Solid &b, con
 
 }    // namespace
 
-void touch_polyhedra(const TouchStep &step, SolidPair &pair, Solid &a, Solid &b, const TouchLaw &law, bool lists)
+void touch_polyhedra(const TouchStep &step, SolidPair &pair, Solid &a, Solid &b, const TouchLaw &law)
 {
-  if (pair.touches.empty() && (pair.asleep > 0.0 || are_separated(pair, a, b, lists))) return;
+  if (pair.touches.empty() && (pair.asleep > 0.0 || are_separated(pair, a, b))) return;
   const double margin = MARGIN * thinner(a, b);
-  const bool stale = !lists || pair.known_for < 0.0;
+  const bool stale = pair.known_for < 0.0;
   if (stale) pair.known_for = margin;
   const PolyhedronHost of_a(a.shape.polyhedron(), ramp_of(a)), of_b(b.shape.polyhedron(), ramp_of(b));
   touch_corners(step, pair.touches, Touch::CORNER, pair.corners[0], a, b, of_b, law, ramp_of(b), margin, stale);

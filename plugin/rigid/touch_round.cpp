@@ -62,26 +62,8 @@ class OnPlane {
   void corner(int number, const Vec3 &x) const
   {
     const double d = depth(x);
-    auto found = touches.begin();
-    while (found != touches.end() && !(found->kind == Touch::CORNER && found->first == number)) ++found;
-    if (d <= 0.0) {
-      if (found == touches.end()) return;
-      step.end(*found, d);
-      touches.erase(found);
-      return;
-    }
-    if (found == touches.end()) {
-      Touch touch = step.born(Touch::CORNER, law, one, nullptr, x, plane.n);
-      touch.first = number;
-      touch.anchor = x;
-      if (step.is_first())
-        TouchStep::overlaps(touch, d);
-      else
-        TouchStep::came_from(touch, d + step.time_step() * dot(one.velocity_at(x), plane.n));
-      touches.push_back(touch);
-      found = touches.end() - 1;
-    }
-    step.press(*found, law, one, nullptr, x, d, 1.0, {}, plane.n);
+    if (Touch *const touch = step.meet(touches, Touch::CORNER, number, law, one, nullptr, x, plane.n, d, x))
+      step.press(*touch, law, one, nullptr, x, d, 1.0, {}, plane.n);
   }
   void rim(int first, const Vec3 &middle, double radius) const
   {
