@@ -9,7 +9,8 @@ from typing import Any
 
 from .. import features
 from ..features import facets
-from ..scene.scene import HoldAll, SceneRecord, Solid
+from ..scene.scene import SceneRecord, Solid
+from ..scene.shapes import holds_all
 
 
 class BodyKind:
@@ -75,7 +76,7 @@ def driven(scene: SceneRecord) -> set[int]:
 
 def all_held(solid: Solid) -> bool:
     """Whether no particle of an object ever moves by forces."""
-    return any(isinstance(h, HoldAll) for h in solid.hold)
+    return holds_all(solid.hold)
 
 
 @lru_cache(maxsize=1)

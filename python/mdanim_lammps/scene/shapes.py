@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from enum import Enum
 from pathlib import Path
@@ -147,6 +148,11 @@ class HoldWithin:
 
 
 Hold = HoldFaces | HoldAll | HoldWithin
+
+
+def holds_all(holds: Iterable[Hold]) -> bool:
+    """Whether no particle of an object with these ever moves by forces."""
+    return any(isinstance(hold, HoldAll) for hold in holds)
 
 
 @dataclass(frozen=True, slots=True)

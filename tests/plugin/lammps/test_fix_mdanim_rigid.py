@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import plugin_lab as lab
 import pytest
+import rigid_lab
 import state_lab
 from mdanim_lammps.run.folder import open_run
 from mdanim_lammps.run.prepare import prepare
@@ -24,22 +25,10 @@ def with_moments(moments, spin, mass=6.0):
     return lab.particles(x, np.ones(6, int), v=np.cross(spin, x), mass=np.full(6, mass / 6.0))
 
 
-def rotation(q) -> np.ndarray:
-    """Matrix of a unit quaternion (w, x, y, z); its columns are the axes of the body."""
-    w, x, y, z = q
-    return np.array(
-        [
-            [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
-            [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
-            [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
-        ]
-    )
-
-
 def body(lmp, n=0):
     """Centre, velocity, rotation and angular velocity of a body."""
     row = np.array([lmp.extract_fix("r", 0, 2, n, column) for column in range(13)])
-    return row[:3], row[3:6], rotation(row[6:10]), row[10:]
+    return row[:3], row[3:6], rigid_lab.matrix(row[6:10]), row[10:]
 
 
 def momenta(particles, x, v):

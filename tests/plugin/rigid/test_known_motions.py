@@ -27,6 +27,16 @@ def tilted(tangent):
     return (G * tangent * cosine, 0.0, -G * cosine), tangent * cosine, cosine
 
 
+def rolled(world):
+    """Acceleration along x of the first body over the second half of one second, and its row then."""
+    half = round(0.5 / world.dt)
+    world.run(half)
+    first = world.rows()[0]
+    world.run(half)
+    last = world.rows()[0]
+    return (last[3] - first[3]) / (half * world.dt), last
+
+
 @pytest.mark.parametrize("host", ["plane", "box"])
 def test_a_ball_rolls_down_a_slope(tmp_path, host):
     """At 5/7 g sin, without a way aside, and turning as fast as it goes."""
@@ -35,12 +45,8 @@ def test_a_ball_rolls_down_a_slope(tmp_path, host):
     bodies = [ball] if host == "plane" else [lab.box((40, 2, 1), at=(0, 0, -0.5), held=True), ball]
     planes = ["plane z lo 0.0"] if host == "plane" else []
     with lab.World(tmp_path, bodies, frequency=lab.frequency_of(4.0, 0.2), thin=0.2, planes=planes, gravity=gravity) as world:
-        half = round(0.5 / world.dt)
-        world.run(half)
-        first = world.rows()[0]
-        world.run(half)
-        last = world.rows()[0]
-    assert (last[3] - first[3]) / (half * world.dt) == pytest.approx(5.0 / 7.0 * G * sine, rel=1e-4)
+        acceleration, last = rolled(world)
+    assert acceleration == pytest.approx(5.0 / 7.0 * G * sine, rel=1e-4)
     assert abs(last[1]) < 1e-9 * last[0]
     assert last[11] * 0.1 == pytest.approx(last[3], rel=1e-5)
 
@@ -59,12 +65,8 @@ def test_a_cylinder_rolls_down_a_slope(tmp_path):
     gravity, sine, _ = tilted(0.2)
     log = lab.cylinder(0.1, 0.3, at=(0, 0, 0.1), q=lab.about((1, 0, 0), np.pi / 2))
     with lab.World(tmp_path, [log], frequency=lab.frequency_of(4.0, 0.2), gravity=gravity) as world:
-        half = round(0.5 / world.dt)
-        world.run(half)
-        first = world.rows()[0]
-        world.run(half)
-        last = world.rows()[0]
-    assert (last[3] - first[3]) / (half * world.dt) == pytest.approx(2.0 / 3.0 * G * sine, rel=1e-3)
+        acceleration, last = rolled(world)
+    assert acceleration == pytest.approx(2.0 / 3.0 * G * sine, rel=1e-3)
     assert abs(last[1]) < 1e-9 * last[0]
 
 

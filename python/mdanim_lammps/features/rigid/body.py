@@ -33,14 +33,13 @@ class RigidBody(BodyKind):
     def cells(self, scene, solid):
         if scene.liquid is not None:
             return super().cells(scene, solid)
-        return ACROSS if on_objects(solid.shape) else AT_SURFACE
+        return _across(solid)
 
     def spacing(self, scene, h):
         """Two cells across, four of shapes without known features; no coarser than the scene where there is a liquid or something
         soft, whose forces find the body at its particles and at points as far apart as these."""
         finest = h if scene.liquid is not None or any(is_soft(s) for s in scene.solids) else math.inf
-        across = lambda solid: ACROSS if on_objects(solid.shape) else AT_SURFACE
-        return lambda solid: min(finest, shapes.thickness(solid.shape) / across(solid))
+        return lambda solid: min(finest, shapes.thickness(solid.shape) / _across(solid))
 
     def has_spacing(self, scene):
         return not by_features(scene)
@@ -52,6 +51,10 @@ class RigidBody(BodyKind):
         else:
             model = lattice_model(solid, h, shared, loose=True)
         return replace(model, inertia=tensor(solid.shape, shapes.mass(solid), solid.rotation))
+
+
+def _across(solid) -> int:
+    return ACROSS if on_objects(solid.shape) else AT_SURFACE
 
 
 def by_features(scene) -> bool:

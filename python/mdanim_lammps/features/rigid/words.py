@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
-from ...scene.shapes import HoldAll
+from ...scene.shapes import holds_all
 
 SWITCHES = {"rigid": "an object's `elasticity rigid`"}
 
@@ -52,7 +52,7 @@ def check_object(v: Any, block: Any, solid: Any) -> Any:
     for word, (cause, way_out) in SENSELESS.items():
         if getattr(solid, word):
             v.problem(solid.spans[word], f"{solid.name} is rigid: {cause}", way_out)
-    if solid.hold and not any(isinstance(hold, HoldAll) for hold in solid.hold):
+    if solid.hold and not holds_all(solid.hold):
         cause = f"{solid.name} is rigid, so it cannot be held in a part of it while the rest moves"
         v.problem(solid.spans["hold"], cause, "write hold all, or give the object an elasticity")
     return solid
