@@ -102,15 +102,23 @@ def part_of(path: str | Path) -> Path:
     return path.with_name(path.name + ".part")
 
 
+def trajectory_names(path: Path) -> tuple[Path, ...]:
+    """Names that a trajectory file, given by its folder or its own path, has in turn, in the order in which to ask for them. A
+    run that ends gives it its last name, one that is resumed takes that away: who asks for all of these misses neither."""
+    file = path / FILE_NAME if path.is_dir() else path
+    return file, part_of(file), file
+
+
 def find_trajectory(path: Path) -> Path:
     """The trajectory file of a folder, or of its own path, finished or not. Raises OutputError."""
-    file = path / FILE_NAME if path.is_dir() else path
-    for candidate in (file, part_of(file)):
+    for candidate in trajectory_names(path):
         if path.is_dir():
             check_plain(candidate)
         if candidate.is_file():
             return candidate
-    raise OutputError(f"{file}: no such trajectory; run the scene first, or name the folder that a run wrote")
+    raise OutputError(
+        f"{trajectory_names(path)[0]}: no such trajectory; run the scene first, or name the folder that a run wrote"
+    )
 
 
 class _Source(io.BufferedReader):

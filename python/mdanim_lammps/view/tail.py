@@ -17,7 +17,7 @@ from ..results.ledger import Ledger
 from ..results.progress import ENDED, ProgressTail
 from ..results.stored import read_facts
 from ..results.timeline import Timeline
-from ..results.trajectory_file import find_trajectory
+from ..results.trajectory_file import find_trajectory, trajectory_names
 from ..run.folder import stored_scene
 from ..scene.render import Render
 from .feed import Feed
@@ -200,10 +200,7 @@ class Tail:
                 self.changed.notify_all()
 
     def _is_there(self, feed: Feed) -> bool:
-        try:
-            return feed.frames.is_at(find_trajectory(self.folder))
-        except OutputError:
-            return False
+        return any(feed.frames.is_at(name) for name in trajectory_names(self.folder))
 
     def _forget_before(self) -> None:
         if self._before is not None:
