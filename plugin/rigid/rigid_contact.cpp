@@ -50,7 +50,10 @@ TouchLaw RigidContact::law_with(double yields, Material material, std::pair<int,
 
 TouchLaw RigidContact::law_of(const Solid &a, const Solid &b) const
 {
-  const Material usual{std::sqrt(a.material.friction * b.material.friction), std::max(a.material.damping, b.material.damping)};
+  const Material &one = a.material, &other = b.material;
+  double damping = std::max(one.damping, other.damping);
+  if (one.gives_way != other.gives_way) damping = one.gives_way ? other.damping : one.damping;
+  const Material usual{std::sqrt(one.friction * other.friction), damping};
   return law_with(a.yields + b.yields, usual, {a.id, b.id});
 }
 

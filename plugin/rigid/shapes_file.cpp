@@ -66,7 +66,9 @@ std::map<int, GivenShape> read_shapes(const std::string &name, const std::string
     GivenShape one;
     one.material.friction = words.at_least_zero("friction");
     one.material.damping = words.from_zero_to("damping", Material::MOST_DAMPING);
-    const std::string held = words.word("free or held");
+    std::string held = words.word("free or held");
+    one.material.gives_way = held == "usual";
+    if (one.material.gives_way) held = words.word("free or held");
     if (held != "free" && held != "held") words.fail("a body is free or held, got " + held);
     one.held = held == "held";
     one.pose.place = words.vector("the place");

@@ -14,6 +14,7 @@ namespace mdanim {
 struct Material {
   static constexpr double MOST_DAMPING = 1.0;    // at 2 and steps of 0.35/Omega a dashpot makes energy
   double friction = 0.0, damping = 0.0;          // mu, and beta, the part of critical damping
+  bool gives_way = false;                        // whether beta of another body that does not do so counts alone
 };
 
 struct Solid {

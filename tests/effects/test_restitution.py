@@ -3,6 +3,7 @@
 
 import numpy as np
 import pytest
+from mdanim_lammps.engine.commands import physics
 from mdanim_lammps.engine.instance import Instance
 from mdanim_lammps.errors import SceneError
 from mdanim_lammps.scene.parse import parse_scene
@@ -137,3 +138,17 @@ def test_shapes_that_touch_at_their_surfaces_are_told(prepared):
         "restitution of ring does not act on other objects and planes",
         "restitution of can does not act on other objects",
     ]
+
+
+def test_restitution_of_some_of_many_is_no_word_for_each_pair(prepared):
+    """Half of 40 balls have it: the file of shapes says so, and the command names no pair."""
+    balls = (
+        f"object {name}{n} {{ shape sphere 10 cm  position ({0.21 * n:.2f}, {y}, 1) m  density 1000  elasticity rigid {more} }}\n"
+        for n in range(20)
+        for name, y, more in (("a", 0, "restitution 0.9"), ("b", 1, ""))
+    )
+    ready = prepared("gravity (0, 0, -9.81)\n" + "".join(balls) + CONTROL.format(mu=0.5, more=""))
+    (command,) = [line for line in physics(ready.plan) if "mdanim/rigid" in line]
+    assert "pair" not in command
+    shapes = next(text for name, text in ready.plan.tables.items() if name.startswith("shapes"))
+    assert [" usual " in line for line in shapes.splitlines()[1:]] == [False, True] * 20

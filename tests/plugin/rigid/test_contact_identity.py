@@ -202,6 +202,25 @@ def test_another_body_far_away_changes_no_bit(tmp_path):
     assert np.array_equal(paths[0], paths[1]) and np.array_equal(paths[0], paths[2])
 
 
+@pytest.mark.parametrize("usual", [(), (0,), (1,), (0, 1)])
+def test_whose_damping_counts(tmp_path, usual):
+    """The larger one of two bodies with the word `usual`, and of two without it; else that of the body without it. The bits are
+    those of a pair with this damping."""
+    betas, found = (0.1, 0.4), []
+    counts = max(betas) if len(usual) != 1 else betas[1 - usual[0]]
+    two = [lab.ball(0.05, at=(x, 0.01, 0), v=(-9 * x, 0, 0), mu=0.3, beta=beta) for x, beta in zip((-0.053, 0.053), betas)]
+    for words in (f"pair 1 2 0.3 {counts}", ""):
+        world = lab.World(tmp_path, two, frequency=lab.frequency_of(1.0, 0.1), planes=(), gravity=(0, 0, 0), words=words)
+        lines = (tmp_path / "shapes").read_text().splitlines()
+        lines = [line.replace(" free ", " usual free ") if not words and n in usual else line for n, line in enumerate(lines)]
+        (tmp_path / "shapes").write_text("\n".join(lines) + "\n")
+        with world:
+            world.run(60)
+            found.append((world.rows().tobytes(), world.number("damping_loss")))
+            assert found[-1][1] > 0.0
+    assert found[0] == found[1]
+
+
 AT = "free 0 0 0.05 1 0 0 0"
 BOX = f"{AT} box 0.1 0.1 0.1"
 TOUCH = "shapes FILE contact 1 1 objects"

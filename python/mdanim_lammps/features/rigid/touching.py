@@ -157,11 +157,14 @@ def words(context: Context, part: Part, shapes: str) -> str:
 def shapes_text(context: Context, part: Part) -> str:
     """The file of shapes: a line for each solid that a fix knows by its features."""
     own, dampings, solids = _of(context, frictions(context.scene)), _dampings(context), _solids(context)
-    lines = ["# Shapes, written by mdanim-lammps: molecule mu beta free|held  place  quaternion  shape\n"]
+    blows = _restitutions(context)
+    given = any(e is not None for e in blows)
+    lines = ["# Shapes, written by mdanim-lammps: molecule mu beta [usual] free|held  place  quaternion  shape\n"]
     for m in np.flatnonzero(part.shapes).tolist():
         place, shape = in_file(solids[m])
         pose = [*place, *quaternion(np.array(solids[m].rotation))]
         kind = "free" if part.bodies[m] else "held"
+        kind = f"usual {kind}" if given and blows[m] is None else kind  # where one of two has a restitution, it counts alone
         lines.append(f"{m + 1} {digits([own[m], dampings[m]])} {kind} {digits(pose)} {shape}\n")
     return "".join(lines)
 
@@ -208,14 +211,10 @@ def _dampings(context: Context) -> list[float]:
 
 
 def _pair_laws(context: Context, part: Part) -> dict[tuple[int, int], tuple[float, float]]:
-    """Friction and damping of pairs for which the root of the product and the larger one are not right."""
+    """Friction and damping of pairs that contact blocks name."""
     scene, names = context.scene, context.system.names
-    own, blows, dampings = _of(context, frictions(scene)), _restitutions(context), _dampings(context)
-    known = np.flatnonzero(part.shapes).tolist()
+    own, blows = _of(context, frictions(scene)), _restitutions(context)
     found = {}
-    for i in (m for m in known if blows[m] is not None):  # where one of two has a restitution, it counts alone
-        for j in (m for m in known if blows[m] is None and dampings[m] > dampings[i]):
-            found[min(i, j), max(i, j)] = math.sqrt(own[i] * own[j]), dampings[i]
     by_name = objects_by_name(names) if scene.contacts else {}
     for contact in scene.contacts:
         for i, j in pairs_of(by_name.get(contact.first, ()), by_name.get(contact.second, ())):
