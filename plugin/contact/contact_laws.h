@@ -8,6 +8,7 @@
 #include "contact/plane_field.h"
 
 #include <map>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -24,6 +25,7 @@ struct ContactSettings {
   double damping = 0.0;      // beta of pairs with friction
   std::vector<ContactPlane> planes;
   std::map<std::pair<int, int>, PairLaw> pairs;    // by ids, the lower one first
+  std::set<std::pair<int, int>> excluded;          // the same, of pairs that never touch
 
   // Law for points of an object against another one; `density` is that of the lighter one that can move, because that one swings.
   ContactLaw law_of_pair(const ContactObject &owner, const ContactObject &host, double density) const;

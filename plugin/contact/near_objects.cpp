@@ -14,12 +14,16 @@ static constexpr double AROUND = 3.0;      // spacings around a contact within w
 static constexpr double CARRIED = 2.25;    // spacings that a particle may be from a point of its cells
 static constexpr double MOST_SKINS = 32.0;
 
+bool NearObjects::is_excluded(int a, int b) const
+{ return !settings.excluded.empty() && settings.excluded.count(std::minmax(all[a].id, all[b].id)); }
+
 std::vector<std::pair<int, int>> NearObjects::pairs_within(const std::vector<Box> &boxes, double gap) const
 {
   std::vector<std::pair<int, int>> found;
   if (settings.objects)
     for (const auto &[a, b] : meeting_pairs(boxes, gap))
-      if ((movable[a] || movable[b]) && !(all[a].is_excepted && all[b].is_excepted)) found.emplace_back(a, b);
+      if ((movable[a] || movable[b]) && !(all[a].is_excepted && all[b].is_excepted) && !is_excluded(a, b))
+        found.emplace_back(a, b);
   return found;
 }
 

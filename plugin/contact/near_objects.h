@@ -59,6 +59,7 @@ class NearObjects {
     Zone zone;
     int extent;    // of the other object of the pair; -1 for a plane
   };
+  bool is_excluded(int a, int b) const;
   std::vector<std::pair<int, int>> pairs_within(const std::vector<Box> &boxes, double gap) const;
   std::vector<std::pair<int, int>> planes_within(const std::vector<Box> &boxes, double gap) const;
   void find_zones();

@@ -28,7 +28,7 @@ static constexpr double MOST_SKINS = 64.0;    // to look ahead where objects are
 
 // --- the command ---
 
-// fix ID group mdanim/barrier BOUNDARY BARRIER k rc [thin GROUP ratio]
+// fix ID group mdanim/barrier BOUNDARY BARRIER k rc [thin GROUP ratio] [exclude MOL MOL]…
 FixMdanimBarrier::FixMdanimBarrier(LAMMPS *lmp, int narg, char **arg) : FixBase(lmp, narg, arg)
 {
   need(THREE_DIMENSIONS | ORTHOGONAL_BOX | OPEN_BOX | OBJECTS | ATOM_MAP | PROMPT_LISTS, "a pair may come into reach");
@@ -53,12 +53,21 @@ FixMdanimBarrier::FixMdanimBarrier(LAMMPS *lmp, int narg, char **arg) : FixBase(
          thin = NamedGroup(lmp, STYLE, at + 1, arg[at + 1]);
          thin_ratio = positive(lmp, STYLE, "thin ratio", at + 2, arg);
        }},
+      {"exclude", "MOL1 MOL2", "", [&, this](int at, char **arg) { excluded.insert(two_molecules(lmp, STYLE, at + 1, arg)); }},
       {"damp", "", "leave it out; objects with friction lose energy at the surfaces of fix mdanim/contact"},
       {"power", "", "leave it out for the law of power 3, and take fix mdanim/contact for a surface that is linear"}};
   for (int iarg = 7; iarg < narg;) iarg += take_keyword(lmp, STYLE, known, iarg, narg, arg);
 }
 
 int FixMdanimBarrier::setmask() { return POST_NEIGHBOR | POST_FORCE; }
+
+void FixMdanimBarrier::init()
+{
+  FixBase::init();
+  std::vector<int> apart;
+  for (const auto &[a, b] : excluded) apart.insert(apart.end(), {a, b});
+  need_molecules(this, lmp, "exclude", apart);
+}
 
 // --- candidates, when LAMMPS rebuilds ---
 
@@ -131,13 +140,24 @@ double FixMdanimBarrier::survey(std::vector<Box> &boxes)
 // Whether this rank adds forces to a particle.
 bool FixMdanimBarrier::moves(int i) const { return i < atom->nlocal && atom->mask[i] & groupbit; }
 
+// Pairs of objects that may touch, by their numbers, whose boxes meet.
+std::vector<std::pair<int, int>> FixMdanimBarrier::meeting_within(const std::vector<Box> &boxes, double range) const
+{
+  auto found = meeting_pairs(boxes, range);
+  const auto is_excluded = [this](const std::pair<int, int> &pair) {
+    return excluded.count({static_cast<int>(objects.id(pair.first)), static_cast<int>(objects.id(pair.second))}) > 0;
+  };
+  if (!excluded.empty()) found.erase(std::remove_if(found.begin(), found.end(), is_excluded), found.end());
+  return found;
+}
+
 // How far every particle may go before two objects meet, up to the look-ahead.
 double FixMdanimBarrier::distance_apart(const std::vector<Box> &boxes, double range) const
 {
   double apart = 0.0;
   for (double skins = 1.0; skins <= MOST_SKINS; skins *= 2.0) {
     const double more = skins * neighbor->skin;
-    if (!meeting_pairs(boxes, range + more).empty()) break;
+    if (!meeting_within(boxes, range + more).empty()) break;
     apart = 0.5 * (neighbor->skin + more);
   }
   return apart;
@@ -161,7 +181,7 @@ void FixMdanimBarrier::find_pairs()
                "'comm_modify cutoff {:.6g}'",
                name(), ghosts, range, 1.001 * range);
 
-  const auto meeting = meeting_pairs(boxes, range);
+  const auto meeting = meeting_within(boxes, range);
   meeting_objects = static_cast<bigint>(meeting.size());
   clear = meeting.empty() ? distance_apart(boxes, range) : 0.0;
   if (meeting.empty()) return;

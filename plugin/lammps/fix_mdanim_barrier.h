@@ -10,6 +10,8 @@
 #include "passes/pass_participant.h"
 #include "simd/kernels.h"
 
+#include <set>
+#include <utility>
 #include <vector>
 
 namespace LAMMPS_NS {
@@ -19,6 +21,7 @@ class FixMdanimBarrier : public mdanim::FixBase, public mdanim::PassParticipant 
   FixMdanimBarrier(class LAMMPS *, int, char **);
 
   int setmask() override;
+  void init() override;
   void setup_post_neighbor() override;
   void setup(int) override;
   void post_neighbor() override;
@@ -49,6 +52,7 @@ class FixMdanimBarrier : public mdanim::FixBase, public mdanim::PassParticipant 
   void find_objects();
   double survey(std::vector<mdanim::Box> &boxes);
   void collect_own();
+  std::vector<std::pair<int, int>> meeting_within(const std::vector<mdanim::Box> &boxes, double range) const;
   double distance_apart(const std::vector<mdanim::Box> &boxes, double range) const;
   void find_pairs();
   void add_pair(int low, int high, const ContactPair &pair);
@@ -59,6 +63,7 @@ class FixMdanimBarrier : public mdanim::FixBase, public mdanim::PassParticipant 
   mdanim::NamedGroup boundary, barrier, thin;
   double thin_ratio = 0.0;
   mdanim::ParticleValue stiffness, reach;
+  std::set<std::pair<int, int>> excluded;    // molecule IDs of pairs that never touch, the lower one first
 
   mdanim::ObjectTable objects;    // of particles of the two groups
   std::vector<Own> own;           // local and ghost particles

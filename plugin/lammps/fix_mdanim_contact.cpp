@@ -35,7 +35,7 @@ static const char *const LEFT_OUT = ", or leave it out by 'among GROUP'";
 // --- the command ---
 
 // fix ID group mdanim/contact BODY YOUNG FRICTION [objects] [plane x|y|z lo|hi at]… [stiffness f] [damping beta]
-//     [pair MOL MOL mu beta]… [among GROUP] [except GROUP] [bodies FILE]
+//     [pair MOL MOL mu beta]… [exclude MOL MOL]… [among GROUP] [except GROUP] [bodies FILE]
 FixMdanimContact::FixMdanimContact(LAMMPS *lmp, int narg, char **arg) : FixBase(lmp, narg, arg), shared(lmp)
 {
   restart_global = 1;
@@ -98,12 +98,11 @@ std::vector<Keyword> FixMdanimContact::keywords()
           {"damping", "beta", "", [=, &settings](int at, char **arg) { settings.damping = number(at + 1, "damping", arg); }},
           {"pair", "MOL1 MOL2 mu beta", "",
            [=, &settings, this](int at, char **arg) {
-             const int a = utils::inumeric(FLERR, arg[at + 1], false, lmp), b = utils::inumeric(FLERR, arg[at + 2], false, lmp);
-             if (a < 1 || b < 1 || a == b)
-               error->all(FLERR, at + 1, "{}: a pair is two different molecule IDs > 0, got {} and {}", STYLE, arg[at + 1],
-                          arg[at + 2]);
-             settings.pairs[std::minmax(a, b)] = {number(at + 3, "mu of a pair", arg), number(at + 4, "beta of a pair", arg)};
+             settings.pairs[two_molecules(lmp, STYLE, at + 1, arg)] = {number(at + 3, "mu of a pair", arg),
+                                                                       number(at + 4, "beta of a pair", arg)};
            }},
+          {"exclude", "MOL1 MOL2", "",
+           [&settings, this](int at, char **arg) { settings.excluded.insert(two_molecules(lmp, STYLE, at + 1, arg)); }},
           {"among", "GROUP", "", group(among)},
           {"except", "GROUP", "", group(except)},
           {"bodies", "FILE", "", [this](int at, char **arg) { read_bodies_of(arg[at + 1]); }}};
@@ -135,13 +134,12 @@ void FixMdanimContact::init()
 // A rule for a molecule that does not exist is a mistake.
 void FixMdanimContact::need_molecules_of_pairs() const
 {
-  if (world_of_contact.settings.pairs.empty()) return;
-  ObjectTable present;
-  present.make(world, {atom->molecule, atom->molecule + atom->nlocal});
-  for (const auto &[ids, law] : world_of_contact.settings.pairs)
-    for (const int one : {ids.first, ids.second})
-      if (present.number_of(one) == ObjectTable::NONE)
-        error->all(FLERR, "{}: pair names molecule {}, and no particle has this ID", name(), one);
+  const ContactSettings &settings = world_of_contact.settings;
+  std::vector<int> with_laws, apart;
+  for (const auto &[ids, law] : settings.pairs) with_laws.insert(with_laws.end(), {ids.first, ids.second});
+  for (const auto &[a, b] : settings.excluded) apart.insert(apart.end(), {a, b});
+  need_molecules(this, lmp, "pair", with_laws);
+  need_molecules(this, lmp, "exclude", apart);
 }
 
 // --- objects ---

@@ -81,3 +81,11 @@ double mdanim::positive(LAMMPS *lmp, const std::string &style, const std::string
   if (!(value > 0.0)) lmp->error->all(FLERR, at, "{}: {} must be > 0, got {}", style, what, arg[at]);
   return value;
 }
+
+std::pair<int, int> mdanim::two_molecules(LAMMPS *lmp, const std::string &style, int at, char **arg)
+{
+  const int a = utils::inumeric(FLERR, arg[at], false, lmp), b = utils::inumeric(FLERR, arg[at + 1], false, lmp);
+  if (a < 1 || b < 1 || a == b)
+    lmp->error->all(FLERR, at, "{}: a pair is two different molecule IDs > 0, got {} and {}", style, arg[at], arg[at + 1]);
+  return std::minmax(a, b);
+}

@@ -8,6 +8,7 @@
 #include <functional>
 #include <initializer_list>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace LAMMPS_NS {
@@ -40,5 +41,8 @@ int choice(LAMMPS_NS::LAMMPS *lmp, const std::string &style, const char *what, s
            char **arg);
 // The number at `at`; refuses one that is not > 0.
 double positive(LAMMPS_NS::LAMMPS *lmp, const std::string &style, const std::string &what, int at, char **arg);
+
+// Two different molecule IDs, those at `at` and behind it, the lower one first; refuses all else.
+std::pair<int, int> two_molecules(LAMMPS_NS::LAMMPS *lmp, const std::string &style, int at, char **arg);
 
 }    // namespace mdanim

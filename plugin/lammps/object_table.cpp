@@ -18,3 +18,14 @@ void mdanim::need_object(const Fix *fix, LAMMPS *lmp, int i, const char *or_else
                   "fix {} {}: particle {} belongs to no object, its molecule ID is {}; give it one > 0 ('set group … mol …'){}",
                   fix->id, fix->style, atom.tag[i], atom.molecule[i], or_else);
 }
+
+void mdanim::need_molecules(const Fix *fix, LAMMPS *lmp, const char *word, const std::vector<int> &ids)
+{
+  if (ids.empty()) return;
+  const Atom &atom = *lmp->atom;
+  ObjectTable present;
+  present.make(lmp->world, {atom.molecule, atom.molecule + atom.nlocal});
+  for (const int one : ids)
+    if (present.number_of(one) == ObjectTable::NONE)
+      lmp->error->all(FLERR, "fix {} {}: {} names molecule {}, and no particle has this ID", fix->id, fix->style, word, one);
+}

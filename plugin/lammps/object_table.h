@@ -89,6 +89,9 @@ class ObjectTable {
   std::vector<int> of_particle;
 };
 
+// Called by all ranks together: raises a LAMMPS error unless each of these molecule IDs, which a word of the fix names, occurs.
+void need_molecules(const LAMMPS_NS::Fix *fix, LAMMPS_NS::LAMMPS *lmp, const char *word, const std::vector<int> &ids);
+
 // Raises a LAMMPS error unless the local particle i, which the fix acts on, belongs to an object. `or_else`: another way out.
 void need_object(const LAMMPS_NS::Fix *fix, LAMMPS_NS::LAMMPS *lmp, int i, const char *or_else = "");
 

@@ -24,7 +24,10 @@ static const char *const STYLE = "fix mdanim/rigid";
 // --- the command ---
 
 std::vector<Keyword> RigidTouching::words()
-{ return {{"shapes", "FILE"}, {"contact", "OMEGA EPS"}, {"objects", ""}, {"plane", "x|y|z lo|hi at"}, {"pair", "A B mu beta"}}; }
+{
+  return {{"shapes", "FILE"},          {"contact", "OMEGA EPS"}, {"objects", ""},
+          {"plane", "x|y|z lo|hi at"}, {"pair", "A B mu beta"},  {"exclude", "A B"}};
+}
 
 static double number(LAMMPS *lmp, int iarg, char **arg, const char *what, double least, bool or_equal)
 {
@@ -53,6 +56,7 @@ void RigidTouching::read_word(int iarg, char **arg)
   if (is("objects")) contact.settings.objects = true;
   if (is("plane")) read_plane(iarg, arg);
   if (is("pair")) read_pair(iarg, arg);
+  if (is("exclude")) contact.settings.excluded.insert(two_molecules(lmp, STYLE, iarg + 1, arg));
 }
 
 void RigidTouching::read_plane(int iarg, char **arg)
@@ -171,6 +175,9 @@ void RigidTouching::take(const std::string &fix, const ObjectTable &objects, con
   for (const auto &[ids, law] : contact.settings.pairs)
     for (const int id : {ids.first, ids.second})
       if (id > 0 && !shapes.count(id)) lmp->error->all(FLERR, "{}: pair names molecule {}, which has no shape", fix, id);
+  for (const auto &[a, b] : contact.settings.excluded)
+    for (const int id : {a, b})
+      if (!shapes.count(id)) lmp->error->all(FLERR, "{}: exclude names molecule {}, which has no shape", fix, id);
   contact.take(std::move(solids));
   place_all(bodies);
 }

@@ -11,14 +11,14 @@ namespace mdanim {
 
 static constexpr double SKIN = 0.1;    // over the thickness of the largest body that moves
 
-void NearSolids::update(const std::vector<Solid> &solids)
+void NearSolids::update(const std::vector<Solid> &solids, const Pairs &excluded)
 {
   bool is_old = listed_at.size() != solids.size();
   for (std::size_t n = 0; n < solids.size() && !is_old; ++n) {
     const Vec3 way = solids[n].centre - listed_at[n];
     is_old = dot(way, way) > 0.25 * skin * skin;
   }
-  if (is_old) list(solids);
+  if (is_old) list(solids, excluded);
 }
 
 static bool are_near(const Solid &a, const Solid &b, double skin)
@@ -29,7 +29,7 @@ static bool are_near(const Solid &a, const Solid &b, double skin)
 }
 
 // Pairs in contact stay: the ramps about edges act beyond the spheres.
-void NearSolids::list(const std::vector<Solid> &solids)
+void NearSolids::list(const std::vector<Solid> &solids, const Pairs &excluded)
 {
   skin = 0.0;
   for (const Solid &one : solids)
@@ -45,7 +45,7 @@ void NearSolids::list(const std::vector<Solid> &solids)
   }
   std::vector<std::pair<int, int>> found;
   for (const auto &[a, b] : meeting_pairs(boxes, skin))
-    if (are_near(solids[a], solids[b], skin)) found.emplace_back(a, b);
+    if (are_near(solids[a], solids[b], skin) && !excluded.count({solids[a].id, solids[b].id})) found.emplace_back(a, b);
   for (const SolidPair &pair : pairs)
     if (!pair.touches.empty()) found.emplace_back(pair.a, pair.b);
   std::sort(found.begin(), found.end());

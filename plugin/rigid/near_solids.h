@@ -5,20 +5,24 @@
 
 #include "rigid/pair.h"
 
+#include <set>
+#include <utility>
 #include <vector>
 
 namespace mdanim {
 
 class NearSolids {
  public:
-  // Makes the list of pairs anew when bodies have moved far enough; contacts stay with their pairs.
-  void update(const std::vector<Solid> &solids);
+  using Pairs = std::set<std::pair<int, int>>;
+  // Makes the list of pairs anew when bodies have moved far enough; contacts stay with their pairs. `excluded`: ids of pairs that
+  // are none, the lower one first.
+  void update(const std::vector<Solid> &solids, const Pairs &excluded);
   void forget() { listed_at.clear(); }
 
   std::vector<SolidPair> pairs;    // ascending
 
  private:
-  void list(const std::vector<Solid> &solids);
+  void list(const std::vector<Solid> &solids, const Pairs &excluded);
 
   double skin = 0.0;
   std::vector<Vec3> listed_at;    // centres

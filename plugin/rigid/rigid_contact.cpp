@@ -97,7 +97,7 @@ void RigidContact::step(double dt)
       if (!solids[n].held && !solids[n].aside)
         touch_plane(step, at_plane[k][n], solids[n], settings.planes[k], law_at(solids[n], static_cast<int>(k)));
   if (settings.objects) {
-    near.update(solids);
+    near.update(solids, settings.excluded);
     for (SolidPair &pair : near.pairs) touch_pair(step, pair);
   }
   for (const Solid &one : solids) {

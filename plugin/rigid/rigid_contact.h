@@ -11,6 +11,7 @@
 #include "rigid/touch.h"
 
 #include <map>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -23,6 +24,7 @@ struct RigidContactSettings {
   std::vector<SolidPlane> planes;
   // Friction and damping of pairs, by ids, the lower one first; of a body and plane k the second is -1 - k.
   std::map<std::pair<int, int>, Material> pairs;
+  std::set<std::pair<int, int>> excluded;    // ids of pairs that never touch, the lower one first
 };
 
 class RigidContact {

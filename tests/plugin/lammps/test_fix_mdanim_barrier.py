@@ -60,6 +60,18 @@ def test_force_of_one_pair(tmp_path, gap, words, force, energy):
     lmp.close()
 
 
+@pytest.mark.parametrize("words", ["exclude 1 2", "exclude 2 1"])
+def test_pairs_that_are_excluded_never_touch(tmp_path, words):
+    """In either order; a molecule that is not there is a mistake."""
+    body, commands = two(0.8, f"1.5 {RC} {words}")
+    lmp = lab.load(body, tmp_path, commands)
+    assert lmp.extract_fix("contact", 0, 0) == 0.0 and not lab.by_tag(lmp, "f").any()
+    lmp.close()
+    body, commands = two(0.8, f"1.5 {RC} exclude 1 7")
+    with pytest.raises(Exception, match="exclude names molecule 7, and no particle has this ID"):
+        lab.load(body, tmp_path, commands)
+
+
 @pytest.mark.parametrize(
     ("boundary", "molecule", "acts"),
     [

@@ -43,6 +43,12 @@ def test_pairs_of_the_group_and_planes_against_it_are_left_out(tmp_path, molecul
     assert run(tmp_path, molecules, words) == left
 
 
+@pytest.mark.parametrize(("words", "left"), [("exclude 2 1", {(0, 2), (2, 0)}), ("exclude 1 2 exclude 1 3", set())])
+def test_pairs_that_are_excluded_never_touch(tmp_path, words, left):
+    """In either order; planes and other pairs are not concerned."""
+    assert run(tmp_path, None, f"{WORDS} {words}") == left | {(0, -1), (1, -1), (2, -1)}
+
+
 def test_the_rest_has_the_forces_of_a_fix_without_those_pairs(tmp_path):
     """Two fixes, of which each leaves to the other one, exert the forces of one that does all."""
     both = {}

@@ -234,6 +234,8 @@ def test_an_object_without_its_body_ends_the_run(fix):
         ("objects stiffness -1", "stiffness must be at least 0, got -1"),
         ("objects pair 1 3 0.5 0.3", "pair names molecule 3, and no particle has this ID"),
         ("objects pair 1 2 0.5 0.3 pair 7 2 0 0", "pair names molecule 7, and no particle has this ID"),
+        ("objects exclude 1 7", "exclude names molecule 7, and no particle has this ID"),
+        ("objects exclude 2 2", "a pair is two different molecule IDs > 0, got 2 and 2"),
     ],
 )
 def test_words_that_do_nothing_are_refused(tmp_path, words, why):

@@ -70,6 +70,15 @@ def test_a_cylinder_rolls_down_a_slope(tmp_path):
     assert abs(last[1]) < 1e-9 * last[0]
 
 
+@pytest.mark.parametrize(("words", "left"), [("", 0.0), ("exclude 2 1", 1.0)])
+def test_pairs_that_are_excluded_pass_through_each_other(tmp_path, words, left):
+    """A ball flies at another one: it gives its speed to that one, or passes through it."""
+    balls = [lab.ball(0.05, at=(0, 0, 1), v=(1, 0, 0), beta=0.0), lab.ball(0.05, at=(0.2, 0, 1), beta=0.0)]
+    with lab.World(tmp_path, balls, frequency=lab.frequency_of(1.0, 0.1), gravity=(0, 0, 0), words=words) as world:
+        world.run(round(0.3 / world.dt))
+        assert world.rows()[:, 3] == pytest.approx([left, 1.0 - left], abs=1e-3)
+
+
 @pytest.mark.parametrize("mu", [0.0, 0.5])
 @pytest.mark.parametrize("body", [DOMINO, WEDGE, CAN, CONE, EGG], ids=["box", "prism", "cylinder", "cone", "ellipsoid"])
 def test_what_falls_on_a_plane_keeps_its_energy(tmp_path, body, mu):
