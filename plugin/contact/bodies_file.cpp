@@ -33,12 +33,16 @@ class Words {
     const std::string_view word = next();
     if (word != wanted) fail(std::string("'") + wanted + "' is needed here" + got(word));
   }
-  // Whether the first of two words follows; else it is the second.
-  bool is_first(const char *one, const char *other)
+  // Which one of some words follows, from 0.
+  template <std::size_t N> std::size_t choice(const char *const (&words)[N])
   {
     const std::string_view word = next();
-    if (word != one && word != other) fail(std::string("'") + one + "' or '" + other + "' is needed here" + got(word));
-    return word == one;
+    std::string all;
+    for (std::size_t n = 0; n < N; ++n) {
+      if (word == words[n]) return n;
+      all += std::string(n == 0 ? "'" : n + 1 < N ? "', '" : "' or '") + words[n];
+    }
+    fail(all + "' is needed here" + got(word));
   }
   template <class Number> Number number(const char *what)
   {
@@ -88,7 +92,13 @@ ContactBody read_body(Words &words)
   std::vector<std::int32_t> node, frame;
   std::vector<double> frame_at;
   int particles = 0;
-  if (words.is_first("particles", "rigid")) {
+  double radius = 0.0;
+  const std::size_t is = words.choice({"particles", "rigid", "line"});
+  if (is == 2) {
+    particles = words.number<int>("the number of particles");
+    radius = words.number<double>("the radius of particles");
+    if (!(radius > 0.0)) words.fail("the radius of particles must be above 0");
+  } else if (is == 0) {
     node.resize(particles = words.many("particles"));
     for (std::int32_t &n : node) n = words.number<std::int32_t>("the place of a particle");
   } else {
@@ -137,7 +147,7 @@ ContactBody read_body(Words &words)
   try {
     return ContactBody({count, edge, particles, node.data(), filled.data(), points, cell.data(), at.data(), centre.data(),
                         normal.data(), area.data(), kind.data(), depth.empty() ? nullptr : depth.data(), parts, open.data(),
-                        frame.empty() ? nullptr : frame.data(), frame_at.data()});
+                        frame.empty() ? nullptr : frame.data(), frame_at.data(), radius});
   } catch (const std::runtime_error &problem) {
     words.fail(problem.what(), line);
   }

@@ -27,12 +27,13 @@ Ramps ramps_of(const ContactBody &host, PointKind kind)
   return ramps;
 }
 
-double slack_of_far(const ContactBody &host, const SurfacePoint &point, const Vec3 &X, const Vec3 &X_centre, double off)
+double slack_of_far(const ContactBody &host, const SurfacePoint &point, double radius, const Vec3 &X, const Vec3 &X_centre,
+                    double off)
 {
   const double least = PRESSED * (LEAST_COSINE + 1.0) + 1e-3 + off;    // cells; more than any normal can give
   const double h = host.spacing();
   if (!host.is_cuboid()) {
-    const double apart = -host.depth(0, X).value / h;
+    const double apart = -(host.depth(0, X).value + radius) / h;
     return apart > least ? PRESSED * h * apart : 0.0;
   }
   const Lattice grid = host.lattice();
@@ -41,7 +42,7 @@ double slack_of_far(const ContactBody &host, const SurfacePoint &point, const Ve
   for (int d = 0; d < 3; ++d)
     beyond[d] = near_edges.from[d] - std::min(component(X_centre, d), grid.cells[d] - component(X_centre, d));
   for (int s = 0; s < host.sides(); ++s) {
-    const double depth = host.depth(s, X).value / h;
+    const double depth = (host.depth(s, X).value + radius) / h;
     double of_side = -depth;    // distance from the side
     for (int d = 0; d < 3; ++d)
       if (d != s / 2) of_side = std::max(of_side, beyond[d]);
@@ -51,8 +52,8 @@ double slack_of_far(const ContactBody &host, const SurfacePoint &point, const Ve
   return slack;
 }
 
-Verdict judge(const ContactBody &host, const SurfacePoint &point, const Vec3 &X, const Vec3 &X_centre, const Spot<double> &spot,
-              const Vec3 &normal, double off)
+Verdict judge(const ContactBody &host, const SurfacePoint &point, double radius, const Vec3 &X, const Vec3 &X_centre,
+              const Spot<double> &spot, const Vec3 &normal, double off)
 {
   const double far = 1e-5 + off * off, turn = 1e-3 + 0.5 * off;    // errors of a depth and of a cosine of a guess, in cells
   const Lattice grid = host.lattice();
@@ -64,10 +65,11 @@ Verdict judge(const ContactBody &host, const SurfacePoint &point, const Vec3 &X,
   Vec3 inward_of_side;
   Verdict verdict;
   for (int s = 0; s < host.sides(); ++s) {
-    const Depth<double> below = host.depth(s, X);
+    Depth<double> below = host.depth(s, X);
+    below.value += radius;
     const double depth = below.value / h;    // in cells
     const Vec3 inward = spot.gradient(below.slope);
-    const double cosine = dot(normal, inward) / std::sqrt(dot(inward, inward));
+    const double cosine = radius > 0.0 ? 1.0 : dot(normal, inward) / std::sqrt(dot(inward, inward));
     // Smallest change before the side can begin a contact, in cells: the largest of these three.
     double apart = -depth;
     const double turned = PRESSED * (LEAST_COSINE - cosine);

@@ -30,9 +30,10 @@ inline bool is_smooth(const ContactBody &host, PointKind kind) { return kind != 
 // The slack that judge() would give for a point so far from each side of the host that its own normal does not matter; 0 for a
 // point that is nearer. Beside a cuboid some of its sides are far above the point: their edges separate it from these. `off` is
 // the error of X, in cells.
-double slack_of_far(const ContactBody &host, const SurfacePoint &point, const Vec3 &X, const Vec3 &X_centre, double off);
-// `normal` is the outward one of the point, in space.
-Verdict judge(const ContactBody &host, const SurfacePoint &point, const Vec3 &X, const Vec3 &X_centre, const Spot<double> &spot,
-              const Vec3 &normal, double off);
+double slack_of_far(const ContactBody &host, const SurfacePoint &point, double radius, const Vec3 &X, const Vec3 &X_centre,
+                    double off);
+// `normal` is the outward one of the point, in space. Around a point with a radius [m] the surface faces every side.
+Verdict judge(const ContactBody &host, const SurfacePoint &point, double radius, const Vec3 &X, const Vec3 &X_centre,
+              const Spot<double> &spot, const Vec3 &normal, double off);
 
 }    // namespace mdanim

@@ -43,6 +43,8 @@ ContactBody::ContactBody(const ContactBodyArrays &given)
   number = given.particles;
   if (given.frame) {
     take_frame(given);
+  } else if (given.radius != 0.0) {
+    take_line(given);
   } else {
     place_of_node.assign(given.node, given.node + number);
     for (int n = 0; n < number; ++n)
@@ -54,7 +56,7 @@ ContactBody::ContactBody(const ContactBodyArrays &given)
     need(are_finite(given.depth, coefficients), "a depth is not a number");
     depth_grid.assign(given.depth, given.depth + coefficients);
     depth_grid.push_back(0.0);    // kernels read three numbers and one more
-  } else {
+  } else if (is_cuboid()) {
     need(rigid || number == static_cast<int>(nodes), "a cuboid has a particle in each place");
     need(std::find(filled.begin(), filled.end(), 0) == filled.end(), "a cuboid has no empty cells");
   }
@@ -75,6 +77,18 @@ ContactBody::ContactBody(const ContactBodyArrays &given)
   }
   take_open_parts(given);
   sort_points();
+}
+
+void ContactBody::take_line(const ContactBodyArrays &given)
+{
+  need(given.radius > 0.0 && std::isfinite(given.radius), "the radius of its particles is not a length");
+  need(!given.depth && given.open == 0, "a line is no host");
+  need(cells[0] == number && cells[1] == 1 && cells[2] == 1 && given.points == number,
+       "a line has a cell and a point a particle");
+  for (int n = 0; n < number; ++n) need(given.cell[n] == n, "points of a line do not ascend");
+  radius_of_points = given.radius;
+  place_of_node.resize(number);
+  std::iota(place_of_node.begin(), place_of_node.end(), 0);
 }
 
 void ContactBody::take_frame(const ContactBodyArrays &given)
@@ -141,7 +155,8 @@ bool ContactBody::operator==(const ContactBody &other) const
     return same_weights(0) && same_weights(1) && same_weights(2) && same_weights(3);
   };
   return std::equal(cells, cells + 3, other.cells) && std::equal(edges, edges + 3, other.edges) && number == other.number &&
-         same_frame() && place_of_node == other.place_of_node && filled == other.filled && depth_grid == other.depth_grid &&
+         same_frame() && radius_of_points == other.radius_of_points && place_of_node == other.place_of_node &&
+         filled == other.filled && depth_grid == other.depth_grid &&
          std::equal(open_parts.begin(), open_parts.end(), other.open_parts.begin(), other.open_parts.end(), same_parts) &&
          std::equal(surface.begin(), surface.end(), other.surface.begin(), other.surface.end(), same_points);
 }

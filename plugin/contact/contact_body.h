@@ -64,6 +64,9 @@ struct ContactBodyArrays {
   // A body that does not deform has a frame, others null: numbers of four particles, and X of each. `node` is then not read.
   const std::int32_t *frame = nullptr;
   const double *frame_at = nullptr;
+  // Above 0: a line of round particles of this radius. Each is the point of its own number, in a cell of its own in one row;
+  // `node` is not read.
+  double radius = 0.0;
 };
 
 class ContactBody {
@@ -72,7 +75,10 @@ class ContactBody {
   explicit ContactBody(const ContactBodyArrays &arrays);
 
   bool operator==(const ContactBody &other) const;    // the same arrays
-  bool is_cuboid() const { return depth_grid.empty(); }
+  bool is_cuboid() const { return depth_grid.empty() && !is_line(); }
+  // A line of round particles touches others with its points, and is no host.
+  bool is_line() const { return radius_of_points > 0.0; }
+  double radius() const { return radius_of_points; }    // of the surface around each point [m]; 0 where points lie on the surface
   const std::optional<RigidFrame> &frame() const { return rigid; }    // none of a body that deforms
   int sides() const { return is_cuboid() ? 6 : 1; }
   int count(int axis) const { return cells[axis]; }
@@ -126,6 +132,7 @@ class ContactBody {
 
  private:
   void need_particles_of_cells() const;
+  void take_line(const ContactBodyArrays &given);
   void take_frame(const ContactBodyArrays &given);
   void take_open_parts(const ContactBodyArrays &given);
   void sort_points();
@@ -142,7 +149,7 @@ class ContactBody {
   std::vector<int> by_cell;    // numbers of points, cell by cell, ascending in each
   std::vector<char> is_carrier;
   bool has_fine = false;    // points
-  double stands_out = 0.0, lever = 1.0;
+  double stands_out = 0.0, lever = 1.0, radius_of_points = 0.0;
   std::vector<OpenPart> open_parts;    // sides without an open part act everywhere
   std::vector<double> depth_grid;      // coefficients of quadratic B-splines on nodes -2 to n + 2
 };

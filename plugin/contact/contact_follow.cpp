@@ -20,11 +20,12 @@ struct Hop {
 // Beyond the filled cells of a round host X is not continuous from cell to cell. The contact continues as if it were: a jump of
 // its depth would create energy. The mean force of leap-frog acts half along the normal of the old cell and half along that of
 // the new one, and the depth grows accordingly in this step.
-void go_on(FieldContact &contact, const Hop &hop, const ContactBody &host, const Spot<double> &spot)
+void go_on(FieldContact &contact, const Hop &hop, const ContactBody &host, double radius, const Spot<double> &spot)
 {
   ContactState<double> &state = contact.state;
-  const Depth<double> here = host.depth(contact.side, state.X);
-  const double grown = host.depth(contact.side, state.X - hop.jump).value - state.memory.depth;
+  Depth<double> here = host.depth(contact.side, state.X);
+  here.value += radius;
+  const double grown = host.depth(contact.side, state.X - hop.jump).value + radius - state.memory.depth;
   const double grown_here = dot(spot.to_material(hop.moved), here.slope);
   const double deeper = here.value - (state.memory.depth + 0.5 * (grown + grown_here));
   state.memory.offset += deeper;
@@ -78,7 +79,7 @@ bool follow(FieldContact &contact, const PushTask &task, const ContactBody &host
   X += off;
   contact.state.change = X - contact.state.X;
   contact.state.X = X;
-  if (!host.is_cuboid() && hop.happened) go_on(contact, hop, host, spot);
+  if (!host.is_cuboid() && hop.happened) go_on(contact, hop, host, task.radius, spot);
   return true;
 }
 

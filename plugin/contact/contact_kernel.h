@@ -33,6 +33,7 @@ struct PushTask {
   const RigidFrame *frame;      // of a host that does not deform, else null: its particles have the numbers `slot`,
   const Spot<double> *rigid;    // and X = 0 is here
   bool takes_force;             // a rigid host
+  double radius;                // of the surface around each point [m]
 };
 
 // Results for a contact in a step, besides the values that it keeps.

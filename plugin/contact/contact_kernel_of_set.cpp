@@ -219,6 +219,7 @@ MDANIM_ALWAYS_INLINE void push_block(const PushTask &task, FieldContact *first, 
   } else {
     below = depth_by_splines(host, X);
   }
+  below.value += constant<Four>(task.radius);
   Vec<Four> turn;
   if (SMOOTH && any(is_on_ramp(part_slope)))
     turn = part_turn(found.weights, places_around(task, found), found.spot, part_slope, shift);

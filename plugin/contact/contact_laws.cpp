@@ -21,7 +21,8 @@ ContactLaw ContactSettings::law_of_pair(const ContactObject &owner, const Contac
   const bool ascend = owner.id < host.id;
   const ContactObject &lower = ascend ? owner : host, &higher = ascend ? host : owner;    // so that both laws have the same bits
   const double h = std::max(lower.body->spacing(), higher.body->spacing());
-  const bool both = lower.body->is_cuboid() == higher.body->is_cuboid();
+  const bool line = lower.body->is_line() || higher.body->is_line();
+  const bool both = !line && lower.body->is_cuboid() == higher.body->is_cuboid();
   const double kappa = (both ? 1.0 : ALONE) * stiffness * 2.0 * lower.young * higher.young / (lower.young + higher.young) / h;
   double mu = std::sqrt(lower.friction * higher.friction), beta = mu > 0.0 ? damping : 0.0;
   if (const auto own = pairs.find({lower.id, higher.id}); own != pairs.end())

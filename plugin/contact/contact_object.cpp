@@ -11,6 +11,10 @@ namespace mdanim {
 bool CarriedPoint::add(const ContactObject &owner, const SurfacePoint &point, const Vec3 &X)
 {
   const ContactBody &body = *owner.body;
+  if (body.is_line()) {
+    carrier[last++] = {owner.slot[point.cell[0]], 1.0};
+    return owner.slot[point.cell[0]] >= 0;
+  }
   if (body.frame()) {
     for (int k = 0; k < RigidFrame::PARTICLES; ++k) carrier[last++] = {owner.slot[k], body.frame()->weight(k, X)};
     return owner.slot[0] >= 0;
@@ -49,6 +53,13 @@ void NearPoints::add(const CarriedPoint &point)
 static Box box_of(const PointCell &cell, const ContactObject &owner, const PaddedVec3 *place, bool &is_there)
 {
   const int row = owner.body->row(), layer = owner.body->layer();
+  if (owner.body->is_line()) {
+    Box box;
+    const int slot = owner.slot[cell.place];
+    is_there = slot >= 0;
+    if (is_there) box.include(&place[slot].value.x);
+    return box;
+  }
   Vec3 corner[8];
   int missing = 0;
   for (int c = 0; c < 8; ++c) {

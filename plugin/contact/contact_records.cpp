@@ -56,7 +56,7 @@ std::vector<FieldContact> read_pair(ByteReader &reader, const ContactBody &owner
   std::vector<FieldContact> rows = reader.get_counted<FieldContact>();
   int before = -1;
   for (const FieldContact &row : rows) {
-    if (!has_point(owner, row.point) || row.side < 0 || row.side >= host.sides() ||
+    if (!has_point(owner, row.point) || row.side < 0 || row.side >= host.sides() || host.is_line() ||
         !(host.frame() || host.is_filled(row.cell[0], row.cell[1], row.cell[2])))
       reader.fail("has points that there are not");
     if (row.point <= before) reader.fail("has points that do not ascend");

@@ -19,17 +19,19 @@ static constexpr double BETWEEN_POINTS = 0.6;    // spacings by which a round su
 // cuboid extends beyond its particles, and farther where cells are stretched.
 double LatticeField::stands_out(const ContactBody &owner, const ContactBody &host)
 {
-  if (!host.is_cuboid()) return STRETCHED * host.overhang();
-  return 0.6 * (host.spacing() + (owner.is_cuboid() ? owner.spacing() : 0.0));
+  if (!host.is_cuboid()) return STRETCHED * host.overhang() + owner.radius();
+  return 0.6 * (host.spacing() + (owner.is_cuboid() ? owner.spacing() : 0.0)) + owner.radius();
 }
 
 void LatticeField::list(const FieldLists &with)
 {
   owner = &with.owner, host = &with.host;
   const ContactBody &body = *host->body;
+  if (body.is_line()) return;    // no point is in it
   const double out = stands_out(*owner->body, body);
   Zone zone = with.host_zone->grown(out);
-  zone.from = with.of_host.least_along(zone.across) - (body.is_cuboid() ? out : BETWEEN_POINTS * body.spacing());
+  const double beyond = body.is_cuboid() ? out : BETWEEN_POINTS * body.spacing() + owner->body->radius();
+  zone.from = with.of_host.least_along(zone.across) - beyond;
   list_points(with, zone.grown(with.skin), body.is_cuboid(), with.skin, TRUSTED * body.spacing(),
               [&zone](const Vec3 &x) { return zone.outside(x); });
 }
@@ -44,6 +46,7 @@ LatticeField::Fate LatticeField::push(FieldContact &contact, std::size_t q, cons
   if (!follow(contact, task, *host->body, now.x, weights, spot, off)) return Fate::LOST;
   const Vec3 shift = spot.to_material(now.shift);
   Depth<double> below = host->body->depth(contact.side, contact.state.X);
+  below.value += task.radius;
   const auto place = [&](int i, int j, int k) {
     return at.place[at.slot[weights.base + i + at.body.row() * j + at.body.layer() * k]].value;
   };

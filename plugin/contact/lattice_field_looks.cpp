@@ -21,7 +21,7 @@ bool LatticeField::look_at(std::size_t q, const ContactArrays &arrays, bool may_
   const SurfacePoint &point = surface_point(q);
   const Vec3 x = near.place(q, arrays.place());
   const ContactBody &body = *host->body;
-  const double h = body.spacing();
+  const double h = body.spacing(), radius = owner->body->radius();
   const Placed at = {body, host->slot.data(), arrays.place()};
   const PointSearch search(*host, arrays);
   const bool by_splines = is_smooth(body, point.kind);
@@ -37,9 +37,10 @@ bool LatticeField::look_at(std::size_t q, const ContactArrays &arrays, bool may_
     const Vec3 middle = {cell[0] + 0.5, cell[1] + 0.5, cell[2] + 0.5};
     if (cell[0] >= 0 && !evaluate(at, trilinear(middle, cell, at.body), there)) return lost();
     const double away = cell[0] < 0 ? 0.5 * OuterCells::SEARCHED * h : std::sqrt(dot(x - there.x, x - there.x));
-    if (away > NEAREST * h) {
+    const double nearest = NEAREST * h + radius;
+    if (cell[0] < 0 || away > nearest) {
       track.open = 0;
-      wake.set(q, budget + away - NEAREST * h);
+      wake.set(q, budget + std::max(0.0, away - nearest));
       return false;
     }
     track.cell = cell, track.X = middle;
@@ -56,18 +57,18 @@ bool LatticeField::look_at(std::size_t q, const ContactArrays &arrays, bool may_
     search.guess(track, x, by_splines, spot, X, off);
     if (!(off < NEAR_PLACE)) continue;
     const Vec3 X_centre = X + spot.to_material(shift);
-    if (const double slack = slack_of_far(body, point, X, X_centre, off); slack > 0.0) {
+    if (const double slack = slack_of_far(body, point, radius, X, X_centre, off); slack > 0.0) {
       verdict = {};
       verdict.slack = slack;
       break;
     }
     if (!has_normal && !world_normal(point, arrays, normal)) return lost();
     has_normal = true;
-    verdict = judge(body, point, X, X_centre, spot, normal, off);
+    verdict = judge(body, point, radius, X, X_centre, spot, normal, off);
   }
   if (!verdict.is_sure) {
     if (!search.find(track, x, by_splines, spot, X) || !(has_normal || world_normal(point, arrays, normal))) return lost();
-    verdict = judge(body, point, X, X + spot.to_material(shift), spot, normal, 0.0);
+    verdict = judge(body, point, radius, X, X + spot.to_material(shift), spot, normal, 0.0);
   }
   track.open = verdict.open;
   if (!may_begin || verdict.side < 0) {

@@ -36,7 +36,8 @@ std::vector<std::pair<int, int>> NearObjects::planes_within(const std::vector<Bo
   for (int n = 0; n < static_cast<int>(all.size()); ++n)
     for (int p = 0; p < static_cast<int>(settings.planes.size()); ++p)
       if (movable[n] && !all[n].is_excepted && !boxes[n].empty() &&
-          distance(boxes[n], settings.planes[p]) <= gap + LatticeField::STRETCHED * all[n].body->overhang())
+          distance(boxes[n], settings.planes[p]) <=
+              gap + LatticeField::STRETCHED * all[n].body->overhang() + all[n].body->radius())
         found.emplace_back(n, p);
   return found;
 }
@@ -44,9 +45,12 @@ std::vector<std::pair<int, int>> NearObjects::planes_within(const std::vector<Bo
 void NearObjects::look_ahead(const std::vector<Box> &boxes, double now)
 {
   skin_now = now;
-  double widest = 0.0;
-  for (const ContactObject &one : all)
+  double widest = 0.0, thickest = 0.0;
+  for (const ContactObject &one : all) {
     widest = std::max({widest, LatticeField::stands_out(*one.body, *one.body), 1.2 * one.body->spacing()});
+    thickest = std::max(thickest, one.body->radius());
+  }
+  widest += thickest;
   near_pairs.clear();
   for (const auto &[a, b] : pairs_within(boxes, skin_now + widest)) {
     Vec3 way;    // between the middles of their boxes
@@ -73,13 +77,14 @@ void NearObjects::find_zones()
     const NearPair &pair = near_pairs[k];
     const ContactBody &one = *all[pair.a].body, &other = *all[pair.b].body;
     const double around = skin_now + AROUND * std::max(one.spacing(), other.spacing()) +
-                          LatticeField::STRETCHED * std::max(one.overhang(), other.overhang());
+                          LatticeField::STRETCHED * std::max(one.overhang(), other.overhang()) +
+                          std::max(one.radius(), other.radius());
     zones[pair.a].push_back({pair.of_b.grown(around), static_cast<int>(2 * k + 1)});
     zones[pair.b].push_back({pair.of_a.grown(around), static_cast<int>(2 * k)});
   }
   for (const auto &[n, p] : near_planes) {
     const ContactBody &body = *all[n].body;
-    const double gap = PlaneField::REACH * skin_now + CARRIED * body.spacing() + body.overhang();
+    const double gap = PlaneField::REACH * skin_now + CARRIED * body.spacing() + body.overhang() + body.radius();
     zones[n].push_back({settings.planes[p].within(gap), -1});
   }
 }

@@ -36,7 +36,8 @@ PushTask ObjectField::task(PointKind kind, const ContactArrays &arrays, double d
           is_smooth(body, kind),
           body.frame() ? &*body.frame() : nullptr,
           &host->rigid,
-          host->takes_force};
+          host->takes_force,
+          owner->body->radius()};
 }
 
 PointNow ObjectField::point_now(std::size_t q, const ContactArrays &arrays) const
@@ -45,6 +46,7 @@ PointNow ObjectField::point_now(std::size_t q, const ContactArrays &arrays) cons
 bool ObjectField::world_normal(const SurfacePoint &point, const ContactArrays &arrays, Vec3 &normal) const
 {
   const ContactBody &body = *owner->body;
+  if (body.is_line()) return true;    // no side of its points is the outer one
   Spot<double> spot;
   if (!body.frame()) {
     const std::array<int, 3> cell = {point.cell[0], point.cell[1], point.cell[2]};

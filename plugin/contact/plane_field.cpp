@@ -11,13 +11,14 @@ void PlaneField::list(const FieldLists &with)
 {
   owner = host = &with.owner;
   const double reach = REACH * with.skin;
-  list_points(with, plane.within(reach), true, reach, AT_ONCE, [this](const Vec3 &x) { return -plane.depth(x); });
+  list_points(with, plane.within(reach + owner->body->radius()), true, reach, AT_ONCE,
+              [this](const Vec3 &x) { return -depth_at(x); });
 }
 
 bool PlaneField::look_at(std::size_t q, const ContactArrays &arrays, bool may_begin)
 {
   const Vec3 x = near.place(q, arrays.place());
-  const double depth = plane.depth(x);
+  const double depth = depth_at(x);
   const bool was_below = known[q];
   known[q] = depth > 0.0;
   if (depth <= 0.0 || !may_begin) {
@@ -51,7 +52,7 @@ PlaneField::OnPoint PlaneField::push(PlaneContact &contact, std::size_t q, const
 {
   const Vec3 downward = -1.0 * plane.normal();    // gradient of the depth
   const Vec3 x = near.place(q, arrays.place());
-  const double depth = plane.depth(x);
+  const double depth = depth_at(x);
   if (depth <= 0.0) return {{}, depth, 0.0, 0.0, 0.0};
   const double area = owner->body->points()[near.point(q)].area;
   ContactForce<double> force = contact_pressure(law, area, 1.0, depth, dt, contact.memory);

@@ -57,6 +57,7 @@ class PlaneField : public FieldOf<PlaneContact, std::uint8_t> {
     Vec3 force;
     double depth, energy, heat, damped;
   };
+  double depth_at(const Vec3 &x) const { return plane.depth(x) + owner->body->radius(); }
   double approach() const override { return owner->stir - dot(plane.normal(), owner->way); }
   bool look_at(std::size_t q, const ContactArrays &arrays, bool may_begin) override;
   void begin_step(const ContactArrays &arrays) override;

@@ -30,12 +30,12 @@ void RigidField::list(const FieldLists &with)
 {
   owner = &with.owner, host = &with.host;
   const ContactBody &body = *host->body;
-  const double looked_at = LOOKED_AT * body.spacing();
+  const double looked_at = LOOKED_AT * body.spacing(), radius = owner->body->radius();
   // A point must be looked at before its normal matters.
   const auto distance = [&](const Vec3 &x) {
     const Vec3 X = to_material(x);
     const double out = outside(X);
-    return (out > 0.0 || body.is_cuboid() ? out : -body.depth(0, X).value) - looked_at;
+    return (out > 0.0 || body.is_cuboid() ? out : -(body.depth(0, X).value + radius)) - looked_at;
   };
   const double reach = LatticeField::stands_out(*owner->body, body) + looked_at + with.skin;
   list_points(with, with.host_zone->grown(reach), body.is_cuboid(), with.skin, TRUSTED * body.spacing(), distance);
@@ -57,7 +57,7 @@ bool RigidField::look_at(std::size_t q, const ContactArrays &arrays, bool may_be
   }
   const Vec3 X_centre = track.X + host->rigid.to_material(near.shift(q, arrays.place()));
   Verdict verdict;
-  verdict.slack = slack_of_far(body, point, track.X, X_centre, 0.0);
+  verdict.slack = slack_of_far(body, point, owner->body->radius(), track.X, X_centre, 0.0);
   if (verdict.slack <= 0.0) {
     Vec3 normal;
     if (!world_normal(point, arrays, normal)) {    // not all of its particles are here
@@ -65,7 +65,7 @@ bool RigidField::look_at(std::size_t q, const ContactArrays &arrays, bool may_be
       wake.set(q, budget);
       return false;
     }
-    verdict = judge(body, point, track.X, X_centre, host->rigid, normal, 0.0);
+    verdict = judge(body, point, owner->body->radius(), track.X, X_centre, host->rigid, normal, 0.0);
   }
   track.open = verdict.open;
   if (!may_begin || verdict.side < 0) {
@@ -84,7 +84,8 @@ ObjectField::Fate RigidField::push(FieldContact &contact, std::size_t q, const P
   const Vec3 X = to_material(now.x), shift = spot.to_material(now.shift);
   contact.state.change = X - contact.state.X;
   contact.state.X = X;
-  const Depth<double> below = body.depth(contact.side, X);
+  Depth<double> below = body.depth(contact.side, X);
+  below.value += task.radius;
   double part = 1.0;
   Vec3 part_slope;
   if (body.is_cuboid()) part = part_that_counts<double>(task.ramps, task.host, X + shift, contact.side / 2, part_slope);

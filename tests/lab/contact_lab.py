@@ -107,7 +107,30 @@ def cuboid_arrays(cells, edge, rigid: bool = False) -> dict:
     """The arrays of a cuboid's contact body."""
     size = np.array(cells) * edge
     body = make_contact_body(Box(tuple(size.tolist())), Cells(np.ones(cells[::-1], bool), -size / 2, size / 2))
-    return {name: getattr(frame_of(body) if rigid else body, name) for name in ARRAYS}
+    return {name: getattr(frame_of(body) if rigid else body, name) for name in (*ARRAYS, "radius")}
+
+
+def line_arrays(particles: int, edge: float, radius: float) -> dict:
+    """The arrays of the contact body of a line of round particles, in cells of these edges."""
+    at = np.stack([np.arange(particles) + 0.5, np.full(particles, 0.5), np.full(particles, 0.5)], axis=1)
+    number = np.arange(particles, dtype=np.int32)
+    return {
+        "count": np.array([particles, 1, 1], np.int32),
+        "edge": np.full(3, edge),
+        "node": number,
+        "filled": np.ones(particles, np.uint8),
+        "cell": number,
+        "at": at,
+        "centre": at,
+        "normal": np.tile([0.0, 0.0, 1.0], (particles, 1)),
+        "area": np.full(particles, 2.0 * radius * edge),
+        "kind": np.full(particles, 2, np.uint8),
+        "depth": None,
+        "open": np.zeros((0, 5)),
+        "frame": None,
+        "frame_at": None,
+        "radius": radius,
+    }
 
 
 def give_body(lmp, fix: str, kind: int, arrays: dict) -> None:
@@ -135,6 +158,7 @@ def give_body(lmp, fix: str, kind: int, arrays: dict) -> None:
         open_parts,
         frame,
         frame_at,
+        ctypes.c_double(arrays["radius"]),
         error,
         ctypes.c_int(1024),
     ):

@@ -28,4 +28,5 @@ def body_arguments(kind: int, body: ContactBody) -> list:
         ctypes.c_int(len(body.open)),
         pointer(body.open),
         *(None if array is None else pointer(array) for array in (body.frame, body.frame_at)),
+        ctypes.c_double(body.radius),
     ]

@@ -72,7 +72,9 @@ def bodies_text(bodies: Mapping[int, ContactBody]) -> Iterator[str]:
         yield f"\nbody {kind}\n"
         yield from rows("cells %d %d %d\n", *body.count[:, None])
         yield from rows("edge %r %r %r\n", *body.edge[:, None])
-        if body.frame is None or body.frame_at is None:
+        if body.radius:
+            yield f"line {len(body.node)} {body.radius!r}\n"
+        elif body.frame is None or body.frame_at is None:
             yield f"particles {len(body.node)}\n"
             yield from rows("%d\n", body.node)
         else:

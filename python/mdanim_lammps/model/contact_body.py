@@ -79,6 +79,9 @@ class ContactBody:
     by these alone. None for one that deforms."""
     frame_at: np.ndarray | None = None
     """X of each [-], shape (4, 3)."""
+    radius: float = 0.0
+    """Radius of the surface around each point [m]: above 0 particles are points themselves, each in a cell of its own, one behind
+    the other, and the body is no host."""
 
     @cached_property
     def carried(self) -> np.ndarray:
@@ -150,7 +153,7 @@ def make_contact_body(shape: Shape, cells: Cells, open_parts: np.ndarray | None 
         open=open_parts,
     )
     for field in fields(body):
-        if (array := getattr(body, field.name)) is not None:
+        if isinstance(array := getattr(body, field.name), np.ndarray):
             array.setflags(write=False)
     return body
 
