@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """Rigid bodies of fix mdanim/rigid, beside those of LAMMPS: ``python bench/rigid.py [TABLE ...]``, all of TABLES without a word.
 
-The tables are those of docs/fix_mdanim_rigid.md.
+The tables are those of docs/fix_mdanim_rigid.md, and `tops` that of docs/physics-rigid.md.
 """
 
 import sys
@@ -15,6 +15,7 @@ from timing import print_tables
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "lab"))
 import plugin_lab as lab
 import rigid_lab
+import rigid_tops
 
 STYLES = ("mdanim/rigid", "rigid molecule", "rigid/nve molecule")
 TURN = 600
@@ -111,7 +112,29 @@ def heap(count: int = 200) -> tuple[list[str], list[list]]:
     ]
 
 
-TABLES = {"free": free, "cost": cost, "dominoes": dominoes, "heap": heap}
+def tops() -> tuple[list[str], list[list]]:
+    """Two seconds of tops and coins against their steady motions, at two depths of contact; and a tippe top."""
+    rows = []
+    with tempfile.TemporaryDirectory() as place:
+        folder = Path(place)
+        for spin in (150.0, 300.0):
+            body, rate = rigid_tops.top(np.radians(20.0), spin)
+            found = [rigid_tops.turned(folder, body, (0.0, 0.0), 2.0, 0.02 / depth)[0] for depth in DEPTHS]
+            rows.append([f"cone on its tip, leans by 20°, spins at {spin:.0f} rad/s", rate, *found])
+        for lean, rate in ((30.0, 6.0), (30.0, 10.0), (60.0, 6.0), (60.0, 10.0)):
+            body, middle = rigid_tops.coin(np.radians(lean), rate)
+            found = [rigid_tops.turned(folder, body, (middle, 0.0), 2.0, 0.02 / depth)[0] for depth in DEPTHS]
+            rows.append([f"coin on its rim, leans by {lean:.0f}°, circle of {100 * abs(middle):.1f} cm", rate, *found])
+        leans, changed = rigid_tops.tippe_leans(folder, [0.0, 0.5, 1.0, 1.5, 2.0, 2.5])
+    head = ["goes around at [rad/s]", "closed form", *(f"blows {100 * depth:g} % deep" for depth in DEPTHS)]
+    told = [[name, *(f"{number:.4f}" for number in numbers)] for name, *numbers in rows]
+    lean = f"tippe top, 250 rad/s: leans by {', '.join(f'{a:.0f}' for a in leans)}° at 0, 0.5 … 2.5 s"
+    return head, [*told, [f"{lean}; Jellett's integral changes by {changed:.0e}", "", "", ""]]
+
+
+DEPTHS = (0.02, 0.002)
+"""Depths of a blow at 1 m/s, over the thinnest part: that of scenes, and a tenth."""
+TABLES = {"tops": tops, "free": free, "cost": cost, "dominoes": dominoes, "heap": heap}
 
 if __name__ == "__main__":
     print_tables(TABLES, sys.argv[1:])

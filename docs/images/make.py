@@ -50,6 +50,8 @@ PICTURES = {
     "quake": 1.2,
     "spiral": 4.0,
     "bowling": 0.4,
+    "jenga": 0.7,
+    "arch": 2.4,
 }
 """Scene and the moment to show [s]."""
 STEPS = {"falls": 0.0, "stands": 1.0, "pushed": 0.27, "rolls": 0.5, "splashes": 0.4, "show": 0.3}

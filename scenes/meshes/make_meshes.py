@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""Make the meshes of the scenes: duck.ply, a plump bath duck of smoothly joined ellipsoids, contoured and thinned out; boat.stl,
-an open hull, and bottle.stl, of rings of points.
+"""Make the meshes of the scenes: duck.ply, a plump bath duck of smoothly joined ellipsoids, contoured and thinned out;
+boat.stl, an open hull, and bottle.stl, of rings of points; stone.stl, a wedge of an arch; chute.stl, a spiral of half a pipe;
+barge.stl, a box without a lid.
 
 Run ``python make_meshes.py`` in this folder; needs only what mdanim-lammps needs. Units are centimetres.
 """
@@ -98,6 +99,65 @@ def bottle() -> pyvista.PolyData:
     return pyvista.PolyData.from_regular_faces(points, triangles)
 
 
+STONES, INNER, OUTER, DEEP = 11, 60.0, 80.0, 30.0
+"""Stones of half a circle, its radii and its depth [cm]."""
+
+
+def stone() -> pyvista.PolyData:
+    """A stone of the arch as a closed triangle mesh [cm]: its sides point to the origin, its top looks along z."""
+    lean = np.tan(np.pi / (2 * STONES))
+    low, high = (np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)]) * (lean * r, DEEP / 2) for r in (INNER, OUTER))
+    points = np.concatenate([np.insert(low, 2, INNER, axis=1), np.insert(high, 2, OUTER, axis=1)])
+    return _of_faces(points, [(3, 2, 1, 0), (4, 5, 6, 7), *((k, (k + 1) % 4, (k + 1) % 4 + 4, k + 4) for k in range(4))])
+
+
+WIDE, PIPE, WALL = 24.0, 2.4, 0.6
+"""Radius of the spiral, inner radius of its pipe, thickness of that [cm]."""
+TURNS, DROP, STATIONS, ARC = 2, 9.0, 60, 8
+"""Turns, the way down in one of them [cm], sections in a turn, points of half a circle less one."""
+
+
+def chute() -> pyvista.PolyData:
+    """The spiral as a closed triangle mesh [cm], around z: half a pipe, open above, which goes down and around."""
+    across = np.pi * np.arange(ARC + 1)[::-1] / ARC
+    arc = -np.stack([np.cos(across), np.sin(across)], axis=1)
+    section = np.concatenate([(PIPE + WALL) * arc, PIPE * arc[::-1]])  # outside from rim to rim, and back inside
+    turn = 2.0 * np.pi * np.arange(TURNS * STATIONS + 1) / STATIONS
+    out = np.stack([np.cos(turn), np.sin(turn), 0.0 * turn], axis=1)
+    middle = WIDE * out - np.outer(DROP * turn / (2.0 * np.pi), (0, 0, 1))
+    points = middle[:, None] + section[:, :1] * out[:, None] + section[:, 1:] * np.array((0, 0, 1))
+    many, last, around = len(section), len(turn) - 1, 2 * ARC + 1
+    sides = [
+        (k * many + i, k * many + (i + 1) % many, (k + 1) * many + (i + 1) % many, (k + 1) * many + i)
+        for k in range(last)
+        for i in range(many)
+    ]
+    ends = [(i, around - i, around - i - 1, i + 1) for i in range(ARC)]
+    far = [tuple(last * many + k for k in reversed(end)) for end in ends]
+    return _of_faces(points.reshape(-1, 3), [*sides, *ends, *far])
+
+
+BARGE = np.array([120.0, 60.0, 30.0])
+"""Length, width and height of the barge [cm]; its rim lies at z = 0."""
+PLANK = 6.0
+"""Thickness of its planks [cm]."""
+
+
+def barge() -> pyvista.PolyData:
+    """The barge as a closed triangle mesh [cm]: five planks as a box without a lid, whose ends lean outward."""
+    ring = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)])
+    half, floor = BARGE[:2] / 2, BARGE[:2] / 2 - (BARGE[2] / 2, 0)
+    rings = [(floor, -BARGE[2]), (half, 0.0), (half - PLANK, 0.0), (floor - PLANK / 2 * np.array((1, 2)), PLANK - BARGE[2])]
+    points = np.concatenate([np.insert(ring * size, 2, z, axis=1) for size, z in rings])
+    sides = [(4 * k + i, 4 * k + (i + 1) % 4, 4 * k + (i + 1) % 4 + 4, 4 * k + i + 4) for k in range(3) for i in range(4)]
+    return _of_faces(points, [(3, 2, 1, 0), *sides, (12, 13, 14, 15)])
+
+
+def _of_faces(points: np.ndarray, faces: list[tuple[int, ...]]) -> pyvista.PolyData:
+    """A triangle mesh of faces of four corners."""
+    return pyvista.PolyData.from_regular_faces(points, [(a, b, c) for a, b, c, _ in faces] + [(a, c, d) for a, _, c, d in faces])
+
+
 def _distance(points: np.ndarray, centre: np.ndarray, half: np.ndarray) -> np.ndarray:
     """Distance to an ellipsoid to first order: f (f - 1) / |grad|, with f = |(p - c) / half|."""
     q = (points - centre) / half
@@ -106,7 +166,7 @@ def _distance(points: np.ndarray, centre: np.ndarray, half: np.ndarray) -> np.nd
 
 
 if __name__ == "__main__":
-    for make in (duck, boat, bottle):
+    for make in (duck, boat, bottle, stone, chute, barge):
         mesh = make()
         colored = "RGB" in mesh.point_data
         path = Path(__file__).with_name(make.__name__ + (".ply" if colored else ".stl"))
