@@ -3,12 +3,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import asdict
 from pathlib import Path
 
 from . import features
 from .certificate import margin_lines, note_lines
+from .cost.saving import Saving
 from .cost.speedup_forecast import SpeedupForecast
 from .effects import Verdict
 from .effects.kept import records_of
@@ -209,12 +210,28 @@ def quicker_line(ready: Prepared, cost: Cost | DivergedError | None) -> str | No
     return f"quicker  {', '.join(ways)}; thin and stiff objects make small cells and short steps" if ways else None
 
 
+def saving_lines(savings: Iterable[Saving]) -> list[str]:
+    """Lines on words that would save time: the objects that they are for, a line for each group, and how much it is."""
+    lines = []
+    for s in savings:
+        lines.append(f"quicker  with {s.proposal.words} these would look the same ({s.proposal.how}):")
+        lines += [f"{MARGIN}{name}: {why}" for name, why in s.proposal.groups]
+        lines.append(
+            f"{MARGIN}the run then takes about 1/{_rough(s.now / s.then):g} of the time, {_about(s.then)} of {_about(s.now)}"
+        )
+    return lines
+
+
 def _about(seconds: float) -> str:
-    """A time in one digit, two where the first is a 1: no forecast is better than that."""
+    """A time in few digits."""
     units = (("h", 3600.0), ("min", 60.0), ("s", 1.0), ("ms", 1e-3))
     unit, size = next((u for u in units if seconds >= u[1]), units[-1])
-    digits = 2 if f"{seconds / size:e}".startswith("1") else 1
-    return f"{float(f'{seconds / size:.{digits}g}'):g} {unit}"
+    return f"{_rough(seconds / size):g} {unit}"
+
+
+def _rough(value: float) -> float:
+    """In one digit, two where the first is a 1: no forecast is better than that."""
+    return float(f"{value:.{2 if f'{value:e}'.startswith('1') else 1}g}")
 
 
 def threads_line(choice: ThreadChoice) -> str:
@@ -230,7 +247,11 @@ def threads_line(choice: ThreadChoice) -> str:
 
 
 def check_lines(
-    ready: Prepared, forecast: Cost | DivergedError | None, threads: ThreadChoice, speedup: SpeedupForecast | None = None
+    ready: Prepared,
+    forecast: Cost | DivergedError | None,
+    threads: ThreadChoice,
+    speedup: SpeedupForecast | None = None,
+    savings: Iterable[Saving] = (),
 ) -> list[str]:
     """The output of ``check``: scene, certificate, limits, output, cost, threads, gain by executors, and every effect."""
     return [
@@ -242,6 +263,7 @@ def check_lines(
         output_line(ready),
         forecast_line(forecast),
         *filter(None, [quicker_line(ready, forecast)]),
+        *saving_lines(savings),
         threads_line(threads),
         *([] if speedup is None else [executors_line(speedup.executors, None), *speedup_lines(speedup)]),
         "effects",
@@ -254,6 +276,7 @@ def check_json(
     forecast: Cost | DivergedError | None = None,
     threads: ThreadChoice | None = None,
     speedup: SpeedupForecast | None = None,
+    savings: Iterable[Saving] = (),
 ) -> dict:
     """The output of ``check --json``; with the expected cost (cost/forecast.py), the number of threads
     (engine/threads.py), and the gain by executors (cost/speedup_forecast.py)."""
@@ -271,6 +294,7 @@ def check_json(
         "stops": forecast.why if isinstance(forecast, DivergedError) else None,
         "threads": None if threads is None else asdict(threads),
         "spread": None if speedup is None else asdict(speedup),
+        "proposals": [saving.to_json() for saving in savings],
         "problems": [problem_json(w) for w in ready.warnings],
         "warnings": [{"message": w.message, "hint": w.hint, "place": str(w.span) if w.span else None} for w in ready.warnings],
     }

@@ -97,6 +97,7 @@ def check(
 
 def _check(scene: Path, reading: Reading, executors: int, strict: bool, allow_unstable: bool, as_json: bool) -> None:
     from ..cost.forecast import forecast
+    from ..cost.saving import before_run
     from ..cost.speedup_forecast import forecast_speedup
     from ..engine.threads import choose_threads
     from ..processes import cores
@@ -110,11 +111,12 @@ def _check(scene: Path, reading: Reading, executors: int, strict: bool, allow_un
     cost = forecast(ready, setup=setup)
     threads = choose_threads(ready.plan, max(1, cores() // executors))
     spread = forecast_speedup(ready, executors) if executors > 1 else None
+    savings = before_run(ready, cost)
     if as_json:
-        print(dumps(check_json(ready, cost, threads, spread), indent=1))
+        print(dumps(check_json(ready, cost, threads, spread, savings), indent=1))
         return
     print_warnings(ready)
-    print("\n".join(check_lines(ready, cost, threads, spread)))
+    print("\n".join(check_lines(ready, cost, threads, spread, savings)))
 
 
 def picture(

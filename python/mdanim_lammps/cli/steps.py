@@ -96,7 +96,8 @@ def announce(ready, quiet: bool, verbose: bool, executing: Executing = Executing
 
 def simulate_and_draw(ready, folder: Path, executing: Executing, *, quiet: bool, movie: bool, **options) -> None:
     from ..api.run import run_frames
-    from ..report import cost_line, progress_line, spread_line
+    from ..cost.saving import after_run
+    from ..report import cost_line, progress_line, saving_lines, spread_line
     from ..results.timeline import Timeline
     from ..run.folder import movie_file
     from ..scene.formatting import number
@@ -111,6 +112,7 @@ def simulate_and_draw(ready, folder: Path, executing: Executing, *, quiet: bool,
     # Before the movie: what was found must not depend on whether pictures can be made here.
     if not quiet:
         print(cost_line(result, ready.certificate.steps * ready.certificate.timestep))
+        print("".join(f"{line}\n" for line in saving_lines(after_run(ready, folder, result.cost))), end="")
         if executing.executors > 1 or executing.control:
             print(spread_line(Timeline.read(folder), folder))
         print(f"ledger   energy residual {number(result.ledger.residual)}   {folder / 'ledger.csv'}")

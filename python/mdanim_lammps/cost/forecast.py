@@ -32,8 +32,9 @@ PATIENCE = 30.0
 """Seconds after which a forecast is given up."""
 
 
-def forecast(ready: Prepared, *, setup: float = 0.0) -> Cost | DivergedError | None:
-    """The expected cost of a run; ``setup`` is what loading and modelling have taken already [s].
+def forecast(ready: Prepared, *, setup: float = 0.0, movie: bool = True) -> Cost | DivergedError | None:
+    """The expected cost of a run, with that of its movie or without; ``setup`` is what loading and modelling have taken already
+    [s].
 
     The steps are run in a process of their own, so that the caller's neither loads LAMMPS nor ends with it. The error where they
     are stopped, as the run will be; None where they take longer than PATIENCE. Raises SetupError when LAMMPS or the plugin
@@ -47,7 +48,7 @@ def forecast(ready: Prepared, *, setup: float = 0.0) -> Cost | DivergedError | N
         send.close()
         try:
             found = answer.recv() if answer.poll(PATIENCE) else None
-            if isinstance(found, Cost):
+            if isinstance(found, Cost) and movie:
                 found = _with_movie(found, answer)
         except EOFError:
             raise SetupError("the first steps cannot be run: LAMMPS ended the process") from None

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator, Sequence
 
 
@@ -41,3 +42,20 @@ def pairs_of(first: Sequence[int], second: Sequence[int]) -> Iterator[tuple[int,
         for j in second:
             if i < j or (j < i and not (i in both and j in both)):
                 yield min(i, j), max(i, j)
+
+
+def bare_name(name: str) -> str:
+    """A name without indices: ``cart.wheel`` of ``cart[2].wheel[1]``."""
+    return ".".join(part.partition("[")[0] for part in name.split("."))
+
+
+def told_together(names: Sequence[str]) -> str:
+    """Like objects in a message: ``ball``, ``domino[1...9]`` of a repeat without gaps, else ``gate.post (12 objects)``."""
+    if len(names) == 1:
+        return names[0]
+    bare = bare_name(names[0])
+    found = [re.fullmatch(r"(.*)\[(-?\d+)\]", name) for name in names]
+    numbers = [int(one[2]) for one in found if one and one[1] == bare]
+    if len(numbers) == len(names) and numbers == list(range(numbers[0], numbers[-1] + 1)):
+        return f"{bare}[{numbers[0]}...{numbers[-1]}]"
+    return f"{bare} ({len(names)} objects)"

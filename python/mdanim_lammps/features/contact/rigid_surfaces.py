@@ -16,6 +16,7 @@ import numpy as np
 
 from ...effects.context import Context
 from ...model import shapes
+from ...model.boxes import box_pairs
 from ...model.contact_body import FINE, ContactBody
 from ...model.inertia import mobility
 from ...model.system import System
@@ -60,11 +61,17 @@ def _frequency(context: Context, system: System) -> Frequency:
     reach = context.reach
     free = np.flatnonzero(system.rigid)
     thin = min(shapes.thickness(shape) for shape in {context.scene.solids[m].shape for m in free.tolist()})
-    speed = float(np.maximum(np.maximum(reach.speed, reach.closing(reach.fall)), _toppled(context, system))[free].max())
-    load = float(_loads(system)[free].max())
+    speed = float(struck_at(context, system)[free].max())
+    load = float(loads(system, free).max())
     slowest = 2.0 * math.pi * context.scene.control.frames * DEPTH * thin  # of what hardly moves
     omega = float(max(speed, 2.0 * math.sqrt(load * reach.g * thin), slowest)) / (DEPTH * thin)
     return Frequency(float(omega), float(thin), speed, load)
+
+
+def struck_at(context: Context, system: System) -> np.ndarray:
+    """Speed of the fastest blow that each solid may give or get [m/s], shape (M,)."""
+    reach = context.reach
+    return np.maximum(np.maximum(reach.speed, reach.closing(reach.fall)), _toppled(context, system))
 
 
 def _toppled(context: Context, system: System) -> np.ndarray:
@@ -77,16 +84,21 @@ def _toppled(context: Context, system: System) -> np.ndarray:
     return np.where(reach.stands, np.sqrt(3.0 * reach.g * np.maximum(height, 0.0)), 0.0)
 
 
-def _loads(system: System) -> np.ndarray:
-    """Mass of each solid and of all free ones above it at the start, over its own [-], shape (M,)."""
+def loads(system: System, asked: np.ndarray) -> np.ndarray:
+    """Mass of some solids, by number and ascending, shape (K,), and of all free ones above each at the start, over its own [-],
+    shape (K,)."""
     low, high = system.bounds(system.position)
     weight = np.where(system.still, 0.0, system.mass_of)
-    found = np.ones(len(weight))
-    for m in np.flatnonzero(system.rigid).tolist():
-        over = ((low[:, :2] < high[m, :2]) & (high[:, :2] > low[m, :2])).all(axis=1)
-        over &= low[:, 2] + high[:, 2] > low[m, 2] + high[m, 2]
-        found[m] += weight[over].sum() / weight[m]
-    return found
+    flat = [np.column_stack([at[:, :2], np.zeros(len(at))]) for at in (low, high)]
+    pairs = [np.zeros((0, 2), int), *(np.column_stack([i, j]) for i, j in box_pairs(*flat))]
+    below, over = np.concatenate([*pairs, *(both[:, ::-1] for both in pairs)]).T
+    above = ((low[over, :2] < high[below, :2]) & (high[over, :2] > low[below, :2])).all(axis=1)
+    above &= low[over, 2] + high[over, 2] > low[below, 2] + high[below, 2]
+    below, over = below[above], over[above]
+    order = np.lexsort((over, below))
+    below, over = below[order], over[order]
+    ends = np.searchsorted(below, asked), np.searchsorted(below, asked, side="right")
+    return np.array([1.0 + weight[over[a:b]].sum() / weight[m] for m, a, b in zip(asked.tolist(), *ends)])
 
 
 def moduli(context: Context) -> np.ndarray:

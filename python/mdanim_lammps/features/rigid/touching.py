@@ -142,7 +142,7 @@ def words(context: Context, part: Part, shapes: str) -> str:
     found += [f"plane {'xyz'[p.axis]} {'lo' if p.sign > 0 else 'hi'} {float(p.at)!r}" for p in planes]
     if part.objects:
         found += [f"pair {i + 1} {j + 1} {mu!r} {beta!r}" for (i, j), (mu, beta) in _pair_laws(context, part).items()]
-    own, usual = _of(context, frictions(scene)), _dampings(context)
+    own, usual = _of(context, frictions(scene)), dampings(context)
     free = np.flatnonzero(part.shapes & part.bodies).tolist()
     for k, plane in enumerate(planes, 1):
         there = _of(context, frictions(scene, plane.effect))
@@ -156,7 +156,7 @@ def words(context: Context, part: Part, shapes: str) -> str:
 
 def shapes_text(context: Context, part: Part) -> str:
     """The file of shapes: a line for each solid that a fix knows by its features."""
-    own, dampings, solids = _of(context, frictions(context.scene)), _dampings(context), _solids(context)
+    own, shares, solids = _of(context, frictions(context.scene)), dampings(context), _solids(context)
     blows = _restitutions(context)
     given = any(e is not None for e in blows)
     lines = ["# Shapes, written by mdanim-lammps: molecule mu beta [usual] free|held  place  quaternion  shape\n"]
@@ -165,7 +165,7 @@ def shapes_text(context: Context, part: Part) -> str:
         pose = [*place, *quaternion(np.array(solids[m].rotation))]
         kind = "free" if part.bodies[m] else "held"
         kind = f"usual {kind}" if given and blows[m] is None else kind  # where one of two has a restitution, it counts alone
-        lines.append(f"{m + 1} {digits([own[m], dampings[m]])} {kind} {digits(pose)} {shape}\n")
+        lines.append(f"{m + 1} {digits([own[m], shares[m]])} {kind} {digits(pose)} {shape}\n")
     return "".join(lines)
 
 
@@ -205,8 +205,8 @@ def _damping(context: Context, friction: float, restitution: float | None) -> fl
     return float(damping(context.scene)) if friction > 0.0 else 0.0
 
 
-def _dampings(context: Context) -> list[float]:
-    """The same of each solid; of two the larger one counts."""
+def dampings(context: Context) -> list[float]:
+    """Share of critical damping of the contacts of each solid [-]; of two the larger one counts."""
     return [_damping(context, mu, e) for mu, e in zip(_of(context, frictions(context.scene)), _restitutions(context))]
 
 

@@ -45,8 +45,8 @@ def amplitude(env: Envelope) -> Margin:
     meets = len(system.names) > 1 or len(env.planes) > 0
     ratio = np.where(meets, env.reach.speed / env.reach.wave, 0.0)  # 0 of what is rigid
     hard = (len(env.planes) > 0 or not env.reach.moving.all()) and env.context.grid is None  # a liquid breaks the fall
-    spot = _spots(env) if hard else np.full(len(ratio), np.inf)
-    limit = np.minimum(FOLDS, spot)
+    spot = spots(env) if hard else np.full(len(ratio), np.inf)
+    limit = folds_at(spot)
     m = int(np.where(_soft(env), ratio / limit, -1.0).argmax())
     folds = ratio > limit
     others = int(folds.sum()) - 1
@@ -73,6 +73,11 @@ def amplitude(env: Envelope) -> Margin:
     )
 
 
+def folds_at(spots: np.ndarray) -> np.ndarray:
+    """Speed of a blow over the wave speed above which something folds up, shape (M,): by those of the `spots` where it lands."""
+    return np.minimum(FOLDS, spots)
+
+
 def _soft(env: Envelope) -> np.ndarray:
     """Solids that can move and deform, bool, shape (M,)."""
     return env.reach.moving & np.isfinite(env.system.young)
@@ -85,24 +90,24 @@ def _stiffer(enough: dict[str, float]) -> str:
     return say(max(enough.values()), "Pa") + (" for all of them" if len(enough) > 1 else "")
 
 
-def _spots(env: Envelope) -> np.ndarray:
+def spots(env: Envelope) -> np.ndarray:
     """Speed of a landing on what does not give way, over the wave speed, that folds up the spot where a solid lands, shape (M,).
 
     Infinite for shapes that are neither cuboids nor pointed."""
     system, known = env.system, {}
-    spots = np.full(len(system.names), np.inf)
+    found = np.full(len(system.names), np.inf)
     # At its drawn surface a ball is borne by more than its lowest cells.
     few = {"pointed", *["round"] * any(e.touches and not e.rests_inside for e in env.on)}
     for m in np.flatnonzero(env.reach.moving).tolist():
         solid = env.scene.solids[m]
         if isinstance(solid.shape, Box):
-            spots[m] = _folds_on_corner(env, solid, float(np.cbrt(system.cell_volume[m])))
+            found[m] = _folds_on_corner(env, solid, float(np.cbrt(system.cell_volume[m])))
         elif LAWS[type(solid.shape)].end in few:
             key = solid.shape, float(system.cell_volume[m])
             if key not in known:
                 known[key] = folds_on_end(_filled(system, m, solid.rotation))
-            spots[m] = known[key]
-    return spots
+            found[m] = known[key]
+    return found
 
 
 def _filled(system: System, m: int, rotation: tuple) -> np.ndarray:

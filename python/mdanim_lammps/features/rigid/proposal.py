@@ -1,0 +1,128 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Elastic objects that no one would see bend: they may as well be rigid (docs/physics-rigid.md, "Which objects")."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from ...bodies import kind_of
+from ...effects.context import Context
+from ...effects.envelope import Envelope
+from ...effects.proposal import Proposal
+from ...model import shapes
+from ...scene.formatting import number
+from ...scene.naming import bare_name, told_together
+from ...scene.scene import SceneRecord, Solid
+from ..contact.rigid_surfaces import loads, struck_at
+from ..contact.words import ContactModel
+from ..springs.measure import RECORDED
+from ..springs.strength import folds_at, spots
+from .strains import Strains
+from .touching import dampings
+from .words import SENSELESS, Rigid
+
+STRAIN = 0.15
+"""Largest strain that is not seen: it is at the spot where an object is struck. Of bricks, dominoes, stones and billiard balls of
+scenes/ it is up to 0.13, of jelly, rubber balls and all that is thrown and visibly pressed flat 0.19 and more."""
+STRAY = 0.015
+"""Distance from a rigid motion over the size, root mean square over particles and frames, that is not seen: a bar that sags by a
+twentieth of its length is 0.015 off."""
+SAG = 0.05
+"""Sag of a bar that lies at its ends over its length, before the run."""
+BLOW = 0.7
+"""Fastest blow that will not be seen, over the one that folds up the spot where an object is struck: up to 0.69 of the objects of
+scenes/ that strained by less than STRAIN, and 0.9 or more of those that strained by more."""
+BAR = 5.0 * 12.0 / 384.0
+"""Sag of a bar with ends that are free to turn over its length, over (rho g L/E) (L/t)^2: 5 q L^4/(384 E I) with I = w t^3/12."""
+
+
+def before(envelope: Envelope) -> Proposal | None:
+    """Objects that will not be seen to bend, by what may strike them, and by their weights and those above them."""
+    context, system = envelope.context, envelope.system
+    found = groups(context)
+    if not found:
+        return None
+    solids, free = context.solids, np.flatnonzero(~system.still)
+    meets = len(system.names) > 1 or len(envelope.planes) > 0
+    blow = struck_at(context, system) / envelope.reach.wave if meets else np.zeros(len(solids))
+    size = np.array([_size(s) for s in solids])
+    thin = np.array([shapes.thickness(s.shape) for s in solids])
+    weight = system.density * envelope.reach.g * size / system.young
+    sag = BAR * weight * (size / thin) ** 2
+    sag[free] *= loads(system, free)
+    fine = (blow <= BLOW * folds_at(spots(envelope))) & (sag <= SAG)
+    return _proposal(
+        context.scene,
+        found,
+        fine,
+        lambda m: f"struck at {_percent(blow[m])} of its wave speed at most, sags by at most {_percent(sag[m])} of its length",
+        "estimated from blows and weights at the start",
+    )
+
+
+def after(context: Context, trajectory: Any) -> Proposal | None:
+    """Objects that were not seen to bend in a run, by a results.trajectory.Trajectory."""
+    found = groups(context)
+    if not found or len(trajectory) < 2:
+        return None
+    chosen = np.sort(np.concatenate(list(found.values())))
+    strains = Strains(trajectory, chosen)
+    largest, stray = np.zeros(len(context.solids)), np.zeros(len(context.solids))
+    largest[chosen] = strains.largest()
+    stray[chosen] = strains.strays() / [_size(context.solids[m]) for m in chosen.tolist()]
+    return _proposal(
+        context.scene,
+        found,
+        (largest <= STRAIN) & (stray <= STRAY),
+        lambda m: f"largest strain {_percent(largest[m])}, {_percent(stray[m])} of its size off a rigid motion",
+        "measured in the frames of the run",
+    )
+
+
+def groups(context: Context) -> dict[str, np.ndarray]:
+    """Groups of like objects, by their names without indices, each of which may be rigid as far as its words go."""
+    scene = context.scene
+    if scene.control.contact_model is not ContactModel.SURFACE:
+        return {}
+    found: dict[str, list[int]] = {}
+    for m, name in enumerate(context.system.names):
+        found.setdefault(bare_name(name), []).append(m)
+    looked_at = {e.subject for e in scene.expects if e.quantity in RECORDED}
+    taken = np.array(dampings(context))
+    free = [_may_be(solid, solid.name in looked_at, taken[m] > 0.0) for m, solid in enumerate(context.solids)]
+    return {name: np.array(of) for name, of in found.items() if all(free[m] for m in of)}
+
+
+def _may_be(solid: Solid, is_looked_at: bool, loses: bool) -> bool:
+    """Whether nothing that is said of an object needs its springs: no part is held, no `expect` asks for what springs tell, and
+    damping has a dashpot of the contact to take its place."""
+    if solid.hold or not kind_of(solid).deforms or is_looked_at:
+        return False
+    return not any(getattr(solid, word) and (word != "damping" or not loses) for word in SENSELESS)
+
+
+def _size(solid: Solid) -> float:
+    """Largest side of the box around a shape along its own axes [m]."""
+    low, high = shapes.extent(solid.shape)
+    return float(np.max(np.subtract(high, low)))
+
+
+def _percent(values: np.ndarray) -> str:
+    return f"{number(100.0 * float(np.max(values)), 2)} %"
+
+
+def _proposal(
+    scene: SceneRecord, found: dict[str, np.ndarray], fine: np.ndarray, tells: Callable[[np.ndarray], str], how: str
+) -> Proposal | None:
+    kept = [of for of in found.values() if fine[of].all()]
+    if not kept:
+        return None
+    names = [s.name for s in scene.solids]
+    rigid = set(np.concatenate(kept).tolist())
+    solids = tuple(replace(s, elasticity=Rigid(), damping=0.0) if m in rigid else s for m, s in enumerate(scene.solids))
+    told = tuple((told_together([names[m] for m in of.tolist()]), tells(of)) for of in kept)
+    return Proposal("elasticity rigid", told, how, replace(scene, solids=solids))
