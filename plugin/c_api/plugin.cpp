@@ -9,6 +9,7 @@
 #include "lammps/fix_mdanim_barrier.h"
 #include "lammps/fix_mdanim_contact.h"
 #include "lammps/fix_mdanim_gravity.h"
+#include "lammps/fix_mdanim_joint.h"
 #include "lammps/fix_mdanim_leapfrog.h"
 #include "lammps/fix_mdanim_liquid.h"
 #include "lammps/fix_mdanim_rigid.h"
@@ -122,6 +123,7 @@ MDANIM_EXPORT void lammpsplugin_init(void *handle_of_lammps, void *handle, void 
       style<ComputeMdanimTimestep>("compute", "mdanim/timestep", "the largest stable time step"),
       style<FixMdanimLeapfrog>("fix", "mdanim/leapfrog", "leap-frog with friction"),
       style<FixMdanimGravity>("fix", "mdanim/gravity", "m g on every particle"),
+      style<FixMdanimJoint>("fix", "mdanim/joint", "joints between objects"),
       style<FixMdanimBarrier>("fix", "mdanim/barrier", "a barrier between objects"),
       style<FixMdanimContact>("fix", "mdanim/contact", "objects and planes touch, with friction"),
       style<FixMdanimLiquid>("fix", "mdanim/liquid", "liquid that solids float and sink in"),

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// Functions made of sums, products and quotients only: their bits are those of IEEE 754 on every processor. C libraries have
-// other versions for processors with fused multiply-add, whose last bits differ.
+// Functions made of sums, products, quotients and square roots only: their bits are those of IEEE 754 on every processor. C
+// libraries have other versions for processors with fused multiply-add, whose last bits differ.
 
 #pragma once
 
@@ -47,6 +47,24 @@ inline double over_sine_hyperbolic(double x)
   if (x < SMALL) return 1.0 - x * x / 6.0;
   const double e = decay(x);
   return 2.0 * x * e / (1.0 - e * e);
+}
+
+// The angle of (x, y), from -pi to pi, to 4e-16; 0 for (0, 0). Tangents of half of it, of a quarter and so on: a series of the
+// last.
+inline double angle_of(double y, double x)
+{
+  constexpr double PI = 3.141592653589793;
+  const double length = std::sqrt(x * x + y * y), along = std::fabs(x);
+  if (!(length > 0.0)) return 0.0;
+  double t = y / (length + along);
+  t = t / (1.0 + std::sqrt(1.0 + t * t));
+  t = t / (1.0 + std::sqrt(1.0 + t * t));    // at most tan(pi/16)
+  const double square = t * t;
+  double sum = 0.0;
+  for (int n = 23; n >= 1; n -= 2) sum = 1.0 / n - square * sum;
+  const double angle = 8.0 * t * sum;
+  if (x >= 0.0) return angle;
+  return y < 0.0 ? -PI - angle : PI - angle;
 }
 
 }    // namespace mdanim

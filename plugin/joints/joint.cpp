@@ -1,0 +1,279 @@
+// SPDX-License-Identifier: GPL-2.0-only
+
+#include "joints/joint.h"
+
+#include "numbers/portable.h"
+
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+namespace mdanim {
+
+static constexpr double OFF = 1e-6;    // of its size, that a patch may lack of a place or direction
+
+static double norm(const Vec3 &v) { return std::sqrt(dot(v, v)); }
+static Vec3 unit(const Vec3 &v) { return (1.0 / norm(v)) * v; }
+
+// --- making ---
+
+Joint::Joint(JointWords words, JointEnd a, JointEnd b, double length, double ftm2v)
+    : given(std::move(words)), end_a(std::move(a)), end_b(std::move(b)), own_length(given.length.value_or(length))
+{
+  check();
+  choose_directions();
+  choose_laws(ftm2v);
+  forget();
+}
+
+void Joint::forget()
+{
+  before = Past();
+  before.q = given.kind == JointKind::SPRING ? own_length : 0.0;
+}
+
+static const char *shape_of(int dimensions) { return dimensions == 0 ? "one point" : dimensions == 1 ? "a line" : "a plane"; }
+
+void Joint::check() const
+{
+  for (const JointEnd *end : {&end_a, &end_b}) {
+    const Vec3 missing = end->d - end->patch.within(end->d);
+    if (const double off = norm(missing); off > OFF * (end->patch.radius() + norm(end->d)))
+      throw std::runtime_error("the particles that it holds on to stand in " + std::string(shape_of(end->patch.dimensions())) +
+                               ", and its place is off by " + LineWords::short_form(off) +
+                               "; take a place there, or a larger 'patch'");
+  }
+}
+
+// The directions that are held are those that both patches have.
+void Joint::choose_directions()
+{
+  const auto has = [](const Patch &patch, const Vec3 &e) { return norm(e - patch.within(e)) <= OFF; };
+  const auto both_have = [&](const Vec3 &e) { return has(end_a.patch, e) && has(end_b.patch, e); };
+  const Vec3 x{1.0, 0.0, 0.0}, y{0.0, 1.0, 0.0}, z{0.0, 0.0, 1.0};
+  const auto any_across = [&](const Vec3 &axis) {
+    const Vec3 other = std::fabs(axis.x) <= std::fabs(axis.y) && std::fabs(axis.x) <= std::fabs(axis.z) ? x
+                       : std::fabs(axis.y) <= std::fabs(axis.z)                                         ? y
+                                                                                                        : z;
+    return unit(cross(axis, other));
+  };
+  const auto need = [&](bool met, const char *lacks) {
+    if (!met)
+      throw std::runtime_error(std::string("the particles that it holds on to have no ") + lacks +
+                               ": they stand in a plane, on a line or in a point; take a larger 'patch', or a ball");
+  };
+  const Patch &flat = end_a.patch.dimensions() <= end_b.patch.dimensions() ? end_a.patch : end_b.patch;
+  switch (given.kind) {
+    case JointKind::SPRING:
+    case JointKind::BALL:
+      return;
+    case JointKind::HINGE:
+      direction[0] = given.axis;
+      held = 1;
+      across = any_across(given.axis);
+      if (flat.dimensions() == 2) {
+        const Vec3 along = cross(cross(flat.within_span(0), flat.within_span(1)), given.axis);
+        if (norm(along) > 0.5) across = unit(along);
+      }
+      need(both_have(given.axis) && both_have(across), "axis to turn about");
+      return;
+    case JointKind::WELD:
+    case JointKind::SLIDER:
+      held = flat.dimensions();
+      for (int k = 0; k < held; ++k) direction[k] = flat.within_span(k);
+      need(held > 0 && both_have(direction[0]) && both_have(direction[1]), "direction that both bodies have");
+      need(given.kind == JointKind::WELD || has(end_b.patch, given.axis), "axis to slide along");
+  }
+}
+
+// If nothing else is said, all springs have the rate K (mobility of A + mobility of B) of the one between the two places.
+void Joint::choose_laws(double ftm2v)
+{
+  const double mobility = ftm2v * (end_a.mobility() + end_b.mobility());
+  law = {given.stiffness ? *given.stiffness : *given.frequency * *given.frequency / mobility, given.damping};
+  double of_directions = 0.0;
+  for (const Vec3 *e = direction; e < direction + held; ++e)
+    of_directions = std::fmax(of_directions, ftm2v * (end_a.mobility_of_direction(*e) + end_b.mobility_of_direction(*e)));
+  const double square = given.arm ? *given.arm * *given.arm : held > 0 ? mobility / of_directions : 0.0;
+  turning = {law.k * square, law.c * square};
+  const bool turns = given.kind == JointKind::HINGE;
+  servo_mobility = turns ? ftm2v * (end_a.mobility_about(given.axis) + end_b.mobility_about(given.axis)) : mobility;
+  servo.k = given.servo ? given.servo->stiffness : law.k * mobility / servo_mobility;
+  servo.c = given.servo ? given.servo->damping : 2.0 * std::sqrt(servo.k / servo_mobility);
+}
+
+// --- a step ---
+
+Joint::Loads Joint::step(const PatchMotion &a, const PatchMotion &b, double dt, JointAccount &account)
+{
+  if (!is_broken()) {
+    Past past = before;
+    JointAccount spent;
+    const Loads loads = find(a, b, dt, past, spent);
+    account.work += spent.work;
+    account.heat += spent.heat;
+    before = past;
+    if (now.force <= given.breaks && now.torque <= given.breaks_torque) return loads;
+    account.heat += now.energy;
+    before = Past();
+    before.q = past.q;
+    before.broken = 1;
+  }
+  now = Reading();
+  now.at_a = a.point(end_a.d), now.at_b = b.point(end_b.d);
+  return {};
+}
+
+Joint::Loads Joint::begin(const PatchMotion &a, const PatchMotion &b, bool anew)
+{
+  if (is_broken()) {
+    JointAccount none;
+    return step(a, b, 0.0, none);
+  }
+  Past past = before;
+  JointAccount none;
+  const Loads loads = find(a, b, 0.0, past, none);
+  if (anew || !before.began) before = past;
+  return loads;
+}
+
+Joint::Loads Joint::find(const PatchMotion &a, const PatchMotion &b, double dt, Past &past, JointAccount &spent)
+{
+  Loads loads;
+  now = Reading();
+  const Side of_a{end_a, a, loads.a}, of_b{end_b, b, loads.b};
+  now.at_a = of_a.place(), now.at_b = of_b.place();
+  if (given.kind == JointKind::SPRING)
+    pull(of_a, of_b, dt, past, spent);
+  else
+    hold(of_b, of_a, dt, past, spent);
+  past.began = 1;
+  return loads;
+}
+
+void Joint::pull(const Side &a, const Side &b, double dt, Past &past, JointAccount &spent)
+{
+  const Vec3 way = now.at_b - now.at_a;
+  const double length = norm(way), more = length - own_length;
+  past.q = length;
+  now.gap = more;
+  if (!(length > 0.0)) return;
+  const Vec3 along = (1.0 / length) * way;
+  now.rate = dot(along, b.velocity() - a.velocity());
+  now.force = tension(law, more, now.rate, given.pulls_only);
+  const bool holds = more > 0.0 || !given.pulls_only;
+  now.energy = holds ? 0.5 * law.k * more * more : 0.0;
+  const double damped = holds ? now.force - law.k * more : 0.0;
+  spent.heat += 0.5 * dt * now.rate * (past.along + damped);
+  past.along = damped;
+  a.load.push(now.force * along, end_a.d);
+  b.load.push(-now.force * along, end_b.d);
+}
+
+void Joint::hold(const Side &base, const Side &moving, double dt, Past &past, JointAccount &spent)
+{
+  // The springs.
+  const bool slides = given.kind == JointKind::SLIDER, turns = given.kind == JointKind::HINGE;
+  const Vec3 gap = moving.place() - base.place(), drawn = slides ? base.motion.F * given.axis : Vec3{};
+  const double over_drawn = slides ? 1.0 / norm(drawn) : 0.0;
+  Vec3 axis = over_drawn * drawn;
+  const double way = dot(axis, gap);
+  const Vec3 off = gap - way * axis;
+  now.gap = norm(off);
+  now.energy = 0.5 * law.k * dot(off, off);
+  Vec3 force = -law.k * off, torque;    // on what moves
+  base.load.push(-1.0 * force, base.end.d);
+  moving.load.push(force, moving.end.d);
+  if (slides) base.load.moment += outer((law.k * way * over_drawn) * off, given.axis);
+  for (int j = 0; j < held; ++j) {
+    const Vec3 turned = moving.motion.F * direction[j], apart = turned - base.motion.F * direction[j], pull = -turning.k * apart;
+    base.load.moment += outer(-1.0 * pull, direction[j]);
+    moving.load.moment += outer(pull, direction[j]);
+    now.energy += 0.5 * turning.k * dot(apart, apart);
+    torque += cross(turned, pull);
+  }
+
+  // Dashpots beside them, and rotation seen from the base.
+  if (turns) axis = unit(base.motion.F * given.axis + moving.motion.F * given.axis);
+  if (law.c > 0.0) {
+    Vec3 velocity;
+    const Vec3 damped = damp(base, moving, slides ? axis : Vec3{}, velocity);
+    spent.heat -= 0.5 * dt * dot(past.dashpot + damped, velocity);
+    past.dashpot = damped;
+    force += damped;
+  }
+  if (turns || (held > 1 && turning.c > 0.0)) {
+    const PatchSpin of_base(base.end.patch, base.motion), of_moving(moving.end.patch, moving.motion);
+    const Vec3 omega = of_moving.omega - of_base.omega;
+    Vec3 couple = -turning.c * (turns ? omega - dot(axis, omega) * axis : omega);
+    spent.heat -= 0.5 * dt * dot(past.turning + couple, omega);
+    past.turning = couple;
+    torque += couple;
+    if (turns) {
+      const Vec3 from = base.motion.F * across, to = moving.motion.F * across;
+      const double angle = angle_of(dot(axis, cross(from, to)), dot(from, to) - dot(from, axis) * dot(to, axis));
+      constexpr double TURN = 6.283185307179586;
+      past.q = angle + TURN * std::floor((past.q - angle) / TURN + 0.5);
+      now.rate = dot(axis, omega);
+      couple += drive(now.rate, dt, past, spent) * axis;
+    }
+    of_base.couple(-1.0 * couple, base.load);
+    of_moving.couple(couple, moving.load);
+  }
+
+  if (slides) {
+    past.q = way;
+    now.rate = dot(axis, moving.velocity() - base.velocity()) + over_drawn * dot(off, base.motion.G * given.axis);
+    const double along = drive(now.rate, dt, past, spent);
+    base.load.push(-along * axis, base.end.d);
+    moving.load.push(along * axis, moving.end.d);
+    base.load.moment += outer((along * over_drawn) * off, given.axis);
+  }
+  now.force = norm(force);
+  now.torque = norm(torque);
+}
+
+// The force of the dashpot on what moves; there is none along `free`. It acts on those two material points that are at one place
+// now, so that there is no couple: at the joint's place in what moves, or in the base where the patch of the base is flat.
+Vec3 Joint::damp(const Side &base, const Side &moving, const Vec3 &free, Vec3 &velocity) const
+{
+  Vec3 in_base = base.end.d, in_moving = moving.end.d;
+  if (base.end.patch.dimensions() == 3)
+    in_base = inverse(base.motion.F) * (moving.place() - base.motion.c);
+  else if (moving.end.patch.dimensions() == 3)
+    in_moving = inverse(moving.motion.F) * (base.place() - moving.motion.c);
+  velocity = moving.motion.velocity(in_moving) - base.motion.velocity(in_base);
+  velocity -= dot(velocity, free) * free;
+  const Vec3 force = -law.c * velocity;
+  base.load.push(-1.0 * force, in_base);
+  moving.load.push(force, in_moving);
+  return force;
+}
+
+// Force on A along the free coordinate, of motor, friction and stops. Energy that they store is theirs until it comes back.
+double Joint::drive(double rate, double dt, Past &past, JointAccount &spent)
+{
+  if (!given.has_servo()) return 0.0;
+  const SpringLaw stable{servo.k, implicit(servo.c, servo_mobility, dt)};
+  const auto stored = [&](double stretch) { return 0.5 * servo.k * stretch * stretch; };
+  const auto move = [&](const Drive &how, DriveState &state) {
+    const DriveState next = driven(how, stable, state.anchor + how.speed * dt, past.q, rate);
+    const double brought = 0.5 * dt * rate * (state.force + next.force) + stored(next.stretch) - stored(state.stretch);
+    state = next;
+    now.energy += stored(state.stretch);
+    now.driving += state.force;
+    return brought;
+  };
+  if (given.motor) spent.work += move({given.motor->speed, given.motor->most}, past.motor);
+  if (given.friction > 0.0) spent.heat -= move({0.0, given.friction}, past.brake);
+  if (given.limits) {
+    const Stop stop = stopped(given.limits->low, given.limits->high, stable, past.q, rate);
+    spent.heat -= 0.5 * dt * rate * (past.along + stop.force) + stored(stop.depth) - stored(past.depth);
+    past.along = stop.force, past.depth = stop.depth;
+    now.energy += stored(stop.depth);
+    now.driving += stop.force;
+  }
+  return now.driving;
+}
+
+}    // namespace mdanim

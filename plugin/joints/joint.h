@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// A joint: springs between two patches, and what drives, brakes and stops the motion that they leave free.
+//
+// With p the place of the joint in either patch and F the maps of their directions,
+//   U = K/2 |g|^2 + K L^2/2 sum_j |F_A e_j - F_B e_j|^2,   g = p_A - p_B (of a slider its part across the axis F_B n).
+// A ball holds no direction e_j, a hinge its axis n (two springs of K/2 at +-L on it), a weld and a slider three. Forces are the
+// derivatives of U, which does not change when all is turned: the angular momentum of both bodies stays as their momentum does.
+// Angle and way are those of A seen from B, 0 at the start.
+
+#pragma once
+
+#include "joints/law.h"
+#include "joints/patch.h"
+#include "joints/words.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace mdanim {
+
+struct JointEnd {
+  std::vector<std::int64_t> tags;    // of the members of the patch, ascending; from the lowest of the object in records
+  Patch patch;
+  Vec3 d;                // the place of the joint, from the centre of the patch
+  bool moves = false;    // whether forces act on it
+
+  // Mobilities of the patch; 0 where no force acts.
+  double mobility() const { return moves ? patch.mobility(d) : 0.0; }
+  double mobility_of_direction(const Vec3 &e) const { return moves ? patch.mobility_of_direction(e) : 0.0; }
+  double mobility_about(const Vec3 &axis) const { return moves ? patch.mobility_about(axis) : 0.0; }
+};
+
+// Energy that joints hold, and that they have turned into heat or taken from motors.
+struct JointAccount {
+  double heat = 0.0, work = 0.0;
+};
+
+class Joint {
+ public:
+  // Part of the state that changes in each step.
+  struct Past {
+    double q = 0.0;           // angle over all turns, way, length
+    Vec3 dashpot, turning;    // on A, of the last step, for their work
+    DriveState motor, brake;
+    double along = 0.0, depth = 0.0;    // of stops; of a spring's dashpot
+    std::int64_t broken = 0, began = 0;
+  };
+  // What it does now.
+  struct Reading {
+    double force = 0.0, torque = 0.0, rate = 0.0, driving = 0.0, gap = 0.0, energy = 0.0;
+    Vec3 at_a, at_b;
+  };
+
+  // `length`: of a spring at the start. ftm2v: acceleration for a force of 1 on a mass of 1. Throws std::runtime_error when the
+  // patches do not have the place, the axis or the directions of the joint.
+  Joint(JointWords words, JointEnd a, JointEnd b, double length, double ftm2v);
+
+  const JointWords &words() const { return given; }
+  const JointEnd &a() const { return end_a; }
+  const JointEnd &b() const { return end_b; }
+  double length() const { return own_length; }
+  const Past &past() const { return before; }
+  void set_past(const Past &past) { before = past; }
+  void forget();    // all that was since the start
+  const Reading &reading() const { return now; }
+  bool is_broken() const { return before.broken != 0; }
+  double way() const { return before.q; }
+
+  // Loads on both patches after a step of dt, whose velocities are those of the middle of the step. With dt = 0 no time has
+  // passed; `anew`: forces of the last step are forgotten.
+  struct Loads {
+    PatchLoad a, b;
+  };
+  Loads step(const PatchMotion &a, const PatchMotion &b, double dt, JointAccount &account);
+  Loads begin(const PatchMotion &a, const PatchMotion &b, bool anew);
+
+ private:
+  // One of both ends in a step.
+  struct Side {
+    const JointEnd &end;
+    const PatchMotion &motion;
+    PatchLoad &load;
+    Vec3 place() const { return motion.point(end.d); }
+    Vec3 velocity() const { return motion.velocity(end.d); }
+  };
+  void check() const;
+  void choose_directions();
+  void choose_laws(double ftm2v);
+  Loads find(const PatchMotion &a, const PatchMotion &b, double dt, Past &past, JointAccount &spent);
+  void pull(const Side &a, const Side &b, double dt, Past &past, JointAccount &spent);
+  void hold(const Side &base, const Side &moving, double dt, Past &past, JointAccount &spent);
+  Vec3 damp(const Side &base, const Side &moving, const Vec3 &free, Vec3 &velocity) const;
+  double drive(double rate, double dt, Past &past, JointAccount &spent);
+
+  JointWords given;
+  JointEnd end_a, end_b;
+  double own_length = 0.0;
+  SpringLaw law, turning, servo;
+  double servo_mobility = 0.0;
+  Vec3 direction[3];    // unit vectors at the start, the axis first
+  int held = 0;         // directions
+  Vec3 across;          // of a hinge, for its angle
+  Past before;
+  Reading now;
+};
+
+}    // namespace mdanim
