@@ -18,6 +18,7 @@ FRAGMENTS = {"rubber"}
 NAMES = sorted({p.stem for p in SCENES.glob("*.txt")} - FRAGMENTS)
 LONG = {
     "billiard": (0.5, False),
+    "blocks": (0.2, False),
     "boat": (1.8, True),
     "bottle": (1.0, False),
     "bowling": (0.25, False),
