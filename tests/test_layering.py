@@ -138,7 +138,7 @@ PLUGIN = Path(__file__).parents[1] / "plugin"
 FOLDERS = [
     *("numbers", "simd", "threads", "geometry", "records"),  # plain floors
     # effects; passes know those before them
-    *("springs", "leapfrog", "gravity", "buoyancy", "barrier", "passes", "wall", "contact", "rigid", "joints"),
+    *("springs", "leapfrog", "gravity", "buoyancy", "barrier", "passes", "wall", "contact", "rigid", "joints", "drives"),
     *("liquid", "liquid/automaton", "liquid/waves"),
     *("lammps", "c_api"),
 ]

@@ -41,6 +41,14 @@ liquid w {
   level 0.3
 }
 control { time 1 }
+object c {
+  shape sphere 0.1
+  position (0.5, 0, 1.5)
+  mass 1
+  elasticity 1e5
+  hold all
+  drive velocity (0.1, 0, 0)
+}
 """
 EVERY = with_every_effect(FULL)
 """The same with the words of all further effects, whose lines are those where they stand."""
@@ -58,6 +66,7 @@ LINES = {
     "buoyancy": 4,
     "liquid-drag": 4,
     "rigid": 16,
+    "drives": 30,
 }
 
 

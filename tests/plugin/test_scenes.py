@@ -109,6 +109,16 @@ def test_a_rigid_slab_tumbles_alike_on_any_number_of_ranks(tmp_path):
     assert alone == run(tmp_path, 3, "tumble", "-var", "steps", "400")[0]
 
 
+@pytest.mark.mpi
+def test_a_tray_shakes_alike_on_any_number_of_ranks(tmp_path):
+    """Dumps are the same byte for byte; what the drive has brought in is what the block has."""
+    alone, output = run(tmp_path, 1, "shaker", "-var", "steps", "400")
+    t = table(output)
+    assert t["f_drive[1]"].max() > 0.5
+    assert t["v_off"] == pytest.approx(t["v_off"][0], rel=1.5e-3)
+    assert alone == run(tmp_path, 3, "shaker", "-var", "steps", "400")[0]
+
+
 def last_table(output):
     """Log of the last ``run``: these scripts have a ``run 0`` before it, which finds the time step."""
     return table(output[output.rindex("   Step ") :])

@@ -95,7 +95,7 @@ def test_what_is_driven_covers_nothing():
 @pytest.mark.parametrize(
     ("names", "words", "told"),
     [
-        (["motor"], {"table": ""}, "motor drives table, and nothing of it is held"),
+        (["motor"], {"table": ""}, "table is driven, and nothing of it is held"),
         (["crank", "motor"], {}, "table is driven by crank and by motor"),
         (
             ["motor"],

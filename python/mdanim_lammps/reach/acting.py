@@ -11,6 +11,7 @@ from typing import Protocol
 
 import numpy as np
 
+from ..errors import Span
 from ..model.planes import Plane, innermost
 from ..model.system import System
 from ..scene.scene import SceneRecord
@@ -37,6 +38,8 @@ class Drive:
     """The same at most [m]."""
     speed: float
     """Largest speed of any of them [m/s]."""
+    span: Span | None = None
+    """Where the scene says so; None where it stands nowhere."""
 
 
 class Motion:

@@ -105,7 +105,7 @@ def _prepare(scene: SceneRecord, spacing: Spacing, allow_unstable: bool) -> Prep
     if problems:
         raise SceneError(problems)
     context = _context(resolved, models, spacing, grid)
-    if any(model.still and not len(model.hexahedron) for model in models) and any(
+    if any(model.held.all() and not len(model.hexahedron) for model in models) and any(
         e.needs_inside(context) for e in resolved.effects
     ):
         context = _context(resolved, build_models(scene, spacing.of, driven=drives, inside=True), spacing, grid)
@@ -141,17 +141,19 @@ def _undriven(resolved: Resolved, models: Sequence[Model]) -> list[Problem]:
     by: dict[int, str] = {}
     blind = next((e.name for e in resolved.effects if not e.sees_driven), None)
     for effect in resolved.effects:
-        for m in effect.drives(resolved.scene):
+        for m, drive in effect.drives(resolved.scene).items():
             solid, name = resolved.scene.solids[m], resolved.scene.solids[m].name
             cause = ""
             if not models[m].held.any():
-                cause, way_out = f"{effect.name} drives {name}, and nothing of it is held", "write what of it is held"
+                cause = f"{name} is driven, and nothing of it is held"
+                way_out = "write hold all, or hold face -x for a part of it"
             elif m in by:
                 cause, way_out = f"{name} is driven by {by[m]} and by {effect.name}", "leave one of them out"
             elif blind:
                 cause = f"{name} is driven, and {blind} takes what is held for something that stands"
                 way_out = f"leave one of both out, or write  effects {{ {blind} off }}"
             if cause:
-                found.append(Problem(solid.spans.get("hold", solid.spans.get("object")), cause, way_out))
+                place = drive.span or solid.spans.get("hold", solid.spans.get("object"))
+                found.append(Problem(place, cause, way_out))
             by[m] = effect.name
     return found

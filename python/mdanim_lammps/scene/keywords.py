@@ -76,8 +76,8 @@ STATEMENTS = {
 
 NOT_SUPPORTED = {
     "bounce": "set damping, 0.05 for a lively ball and 0.5 for clay; of rigid objects restitution",
-    "motion": "give the object a velocity or a spin at the start; what is held never moves",
-    "move": "give the object a velocity or a spin at the start; what is held never moves",
+    "motion": "give the object a velocity or a spin at the start; what is held moves by drive and key",
+    "move": "give the object a velocity or a spin at the start; what is held moves by drive and key",
     "weld": "objects that touch are not tied to each other; a mesh of both is one object",
     "break": "solids do not break; build it of parts that lie on each other",
     "tear": "solids do not tear",
@@ -95,6 +95,8 @@ NOT_SUPPORTED = {
     "fracture": "solids do not break",
     "temperature": "there is no heat in the model",
     "viscosity": "set drag in the liquid block",
+    "wiggle": "drive oscillation moves what is held: hold all  drive oscillation (0, 0, 1) cm frequency 5 Hz",
+    "conveyor": "drive velocity moves a long plate that is held: hold all  drive velocity (0.5, 0, 0) m/s",
     "static": "write hold all: no particle of the object moves",
     "fixed": "write hold all: no particle of the object moves",
 }

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 
 from .formatting import say
 from .limits import LIMITS
@@ -49,6 +49,10 @@ class Placement:
         """
         arm = turned(self.rotation, what.position)
         held = {"hold": tuple(map(self.held, what.hold))} if isinstance(what, Solid) else {}
+        for name in (f.name for f in fields(what)):  # records of features that know how to be moved
+            value = getattr(what, name)
+            if isinstance(value, tuple) and any(hasattr(one, "moved") for one in value):
+                held[name] = tuple(one.moved(self) for one in value)
         return replace(
             what,
             position=_sum(self.position, arm),
@@ -57,6 +61,14 @@ class Placement:
             spin=_sum(self.spin, turned(self.rotation, what.spin)),
             **held,
         )
+
+    def turn(self, v: Vector) -> Vector:
+        """A direction of the group in the surroundings."""
+        return turned(self.rotation, v)
+
+    def point(self, at: Vector) -> Vector:
+        """A point of the group in the surroundings [m]."""
+        return _sum(self.position, turned(self.rotation, at))
 
     def held(self, hold):
         """Particles that are held, of an object in the group: a box is moved along, faces are those of the object."""

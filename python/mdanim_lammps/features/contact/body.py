@@ -12,7 +12,7 @@ from .words import ContactModel
 
 class HeldBody(BodyKind):
     """An object that is held as a whole. The points and the depth of its surface are as fine as the spacing says; its particles
-    are the corners of a box. A liquid, barriers between particles, and effects that move it ask for the lattice."""
+    are the corners of a box, also where it is driven, as a whole. A liquid and barriers between particles ask for the lattice."""
 
     name = "held"
     order = 200
@@ -33,7 +33,7 @@ class HeldBody(BodyKind):
         return 8.0 if only_surfaces_act(scene) else lattice
 
     def make(self, solid, h, shared):
-        if shared.inside or shared.is_driven(solid) or not only_surfaces_act(shared.scene):
+        if shared.inside or not only_surfaces_act(shared.scene):
             return lattice_model(solid, h, shared)
         return held_model(solid, h, shared)
 

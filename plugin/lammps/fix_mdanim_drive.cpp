@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// fix mdanim/drive: one loop over the particles at both ends of a step.
+
+#include "lammps/fix_mdanim_drive.h"
+
+#include "drives/motion_words.h"
+#include "lammps/object_table.h"
+#include "lammps/shared_file.h"
+#include "numbers/stopwatch.h"
+
+#include "atom.h"
+#include "comm.h"
+#include "error.h"
+#include "fmt/format.h"
+#include "modify.h"
+#include "update.h"
+#include "utils.h"
+
+#include <cstring>
+#include <stdexcept>
+
+using namespace LAMMPS_NS;
+using namespace FixConst;
+using namespace mdanim;
+
+static const char *const STYLE = "fix mdanim/drive";
+
+// --- the command ---
+
+// fix ID group mdanim/drive [home d2_NAME] [since STEP] motions FILE
+// fix ID group mdanim/drive [home d2_NAME] [since STEP] WORDS of drives/motion_words.h
+FixMdanimDrive::FixMdanimDrive(LAMMPS *lmp, int narg, char **arg) : FixBase(lmp, narg, arg), since(update->ntimestep)
+{
+  time_integrate = 1;
+  restart_global = 1;
+  nevery = 1;
+  need(THREE_DIMENSIONS | OPEN_BOX);
+  tell({{"work", true, [this] { return sum(work); }}, clock()});
+  try {
+    read_command(narg, arg);
+  } catch (const std::runtime_error &problem) {
+    error->all(FLERR, "{}", problem.what());
+  }
+  if (of_objects) need(OBJECTS);
+}
+
+FixMdanimDrive::~FixMdanimDrive()
+{
+  if (!own_home.empty() && modify->get_fix_by_id(own_home)) modify->delete_fix(own_home);
+}
+
+void FixMdanimDrive::read_command(int narg, char **arg)
+{
+  int iarg = 3;
+  const auto is = [&](const char *word) { return iarg + 1 < narg && strcmp(arg[iarg], word) == 0; };
+  for (bool more = true; more;) {
+    more = false;
+    if (is("home")) {
+      if (strncmp(arg[iarg + 1], "d2_", 3) != 0)
+        error->all(FLERR, iarg + 1, "{}: home is a property of three numbers, d2_NAME, got {}", STYLE, arg[iarg + 1]);
+      home_name = arg[iarg + 1] + 3;
+      more = true;
+    } else if (is("since")) {
+      since = utils::bnumeric(FLERR, arg[iarg + 1], false, lmp);
+      more = true;
+    }
+    if (more) iarg += 2;
+  }
+  if (is("motions")) {
+    if (narg > iarg + 2) error->all(FLERR, iarg + 2, "{}: motions FILE ends the command, got also {}", STYLE, arg[iarg + 2]);
+    of_objects = true;
+    motions = read_motions(arg[iarg + 1], read_shared_file(lmp, STYLE, "motions", arg[iarg + 1]));
+    return;
+  }
+  std::string words;
+  for (; iarg < narg; ++iarg) words += std::string(" ") + arg[iarg];
+  motions[0] = read_motion(words, STYLE);
+}
+
+// Places at the start as a property of particles, so that they migrate with them and are in restart files.
+void FixMdanimDrive::post_constructor()
+{
+  if (!home_name.empty()) return;
+  home_name = fmt::format("{}_home", id);
+  own_home = fmt::format("{}_HOME", id);
+  Fix *const keeper = modify->add_fix(fmt::format("{} all property/atom d2_{} 3", own_home, home_name));
+  if (keeper->restart_reset) return;
+  double **const at = home();
+  for (int i = 0; i < atom->nlocal; ++i)
+    for (int d = 0; d < 3; ++d) at[i][d] = atom->x[i][d];
+}
+
+double **FixMdanimDrive::home() const
+{
+  int is_double = 0, columns = 0;
+  const int index = atom->find_custom(home_name.c_str(), is_double, columns);
+  if (index < 0 || !is_double || columns != 3)
+    error->all(FLERR, "{}: there is no property d2_{} of three numbers; write 'fix ... property/atom d2_{} 3'", name(), home_name,
+               home_name);
+  return atom->darray[index];
+}
+
+int FixMdanimDrive::setmask() { return INITIAL_INTEGRATE | END_OF_STEP; }
+
+void FixMdanimDrive::init()
+{
+  FixBase::init();
+  home();
+  if (dt_before != 0.0 && dt_before != update->dt)
+    error->all(FLERR, "{}: the time step has changed from {} to {}, and places would jump; define the fix anew", name(),
+               dt_before, update->dt);
+  dt_before = update->dt;
+  found_at = -1;
+}
+
+// --- motion ---
+
+// Simulated time by the step alone.
+double FixMdanimDrive::time(bigint step) const { return static_cast<double>(step - since) * update->dt; }
+
+void FixMdanimDrive::find_ways()
+{
+  if (found_at == update->ntimestep) return;
+  const bool follows = found_at + 1 == update->ntimestep;
+  for (const auto &[molecule, motion] : motions) {
+    Ways &one = ways_now[molecule];
+    one.before = follows ? one.now : motion.at(time(update->ntimestep - 1));
+    one.now = motion.at(time(update->ntimestep));
+  }
+  found_at = update->ntimestep;
+  last_molecule = -1;
+}
+
+const FixMdanimDrive::Ways *FixMdanimDrive::ways_of(int molecule)
+{
+  find_ways();
+  const auto found = ways_now.find(of_objects ? molecule : 0);
+  return found == ways_now.end() ? nullptr : &found->second;
+}
+
+// The way of a local particle; those of an object follow each other in most cases.
+const FixMdanimDrive::Ways &FixMdanimDrive::ways(int i)
+{
+  const int molecule = of_objects ? static_cast<int>(atom->molecule[i]) : 0;
+  if (molecule != last_molecule) {
+    last_ways = ways_of(molecule);
+    if (!last_ways) error->one(FLERR, "{}: no motion is given for object {} (molecule ID)", name(), molecule);
+    last_molecule = molecule;
+  }
+  return *last_ways;
+}
+
+// Velocities are those of the step that has come to an end.
+void FixMdanimDrive::setup(int)
+{
+  double **const start = home();
+  find_ways();
+  for (int i = 0; i < atom->nlocal; ++i) {
+    if (!(atom->mask[i] & groupbit)) continue;
+    const Ways &way = ways(i);
+    const Vec3 velocity = (1.0 / update->dt) * (way.now.of(vec3(start[i])) - way.before.of(vec3(start[i])));
+    atom->v[i][0] = velocity.x, atom->v[i][1] = velocity.y, atom->v[i][2] = velocity.z;
+  }
+}
+
+void FixMdanimDrive::initial_integrate(int)
+{
+  const Lap lap(seconds);
+  double **const start = home();
+  const double per_dt = 1.0 / update->dt;
+  find_ways();
+  for (int i = 0; i < atom->nlocal; ++i) {
+    if (!(atom->mask[i] & groupbit)) continue;
+    const Vec3 there = ways(i).now.of(vec3(start[i])), way = there - vec3(atom->x[i]), velocity = per_dt * way;
+    work -= 0.5 * dot(vec3(atom->f[i]), way);
+    atom->v[i][0] = velocity.x, atom->v[i][1] = velocity.y, atom->v[i][2] = velocity.z;
+    atom->x[i][0] = there.x, atom->x[i][1] = there.y, atom->x[i][2] = there.z;
+  }
+}
+
+void FixMdanimDrive::end_of_step()
+{
+  const Lap lap(seconds);
+  for (int i = 0; i < atom->nlocal; ++i)
+    if (atom->mask[i] & groupbit) work -= 0.5 * update->dt * dot(vec3(atom->f[i]), vec3(atom->v[i]));
+}
+
+// --- restart ---
+
+void FixMdanimDrive::write_restart(FILE *file)
+{
+  const double all = sum(work), list[2] = {static_cast<double>(since), all};
+  if (comm->me != 0) return;
+  const int size = sizeof list;
+  fwrite(&size, sizeof(int), 1, file);
+  fwrite(list, sizeof list, 1, file);
+}
+
+void FixMdanimDrive::restart(char *buffer)
+{
+  double list[2];
+  std::memcpy(list, buffer, sizeof list);
+  since = static_cast<bigint>(list[0]);
+  work = comm->me == 0 ? list[1] : 0.0;
+}

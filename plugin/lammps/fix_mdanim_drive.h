@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// fix mdanim/drive: particles that are held go where functions of time say.
+
+#pragma once
+
+#include "drives/law.h"
+#include "lammps/fix_base.h"
+
+#include <map>
+#include <string>
+#include <vector>
+
+namespace LAMMPS_NS {
+
+// Sets places and velocities of all particles of its group at the beginning of each step, and counts the work that this takes:
+// -F dx with the mean of the forces before and after the step.
+class FixMdanimDrive : public mdanim::FixBase {
+ public:
+  FixMdanimDrive(class LAMMPS *, int, char **);
+  ~FixMdanimDrive() override;
+
+  void post_constructor() override;
+  int setmask() override;
+  void init() override;
+  void setup(int) override;
+  void initial_integrate(int) override;
+  void end_of_step() override;
+  double compute_scalar() override { return 0.0; }
+  void write_restart(FILE *) override;
+  void restart(char *) override;
+
+  // Where an object is at the present step and was at the one before; null for one that no motion is given for.
+  struct Ways {
+    mdanim::DrivenPlace before, now;
+  };
+  const Ways *ways_of(int molecule);
+
+ private:
+  void read_command(int narg, char **arg);
+  void read_motions_of(const char *file);
+  double **home() const;
+  void find_ways();
+  const Ways &ways(int i);
+  double time(bigint step) const;
+
+  bool of_objects = false;                        // whether motions are those of molecules; else there is one, of molecule 0
+  std::map<int, mdanim::DrivenMotion> motions;    // by molecule IDs
+  std::map<int, Ways> ways_now;
+  bigint found_at = -1;    // step of `ways_now`
+  int last_molecule = -1;
+  const Ways *last_ways = nullptr;
+  std::string home_name, own_home;    // the property with the places at the start; the fix that we made for it, or none
+  bigint since;                       // step at which time is 0
+  double dt_before = 0.0;
+  double work = 0.0;    // on this rank
+};
+
+}    // namespace LAMMPS_NS

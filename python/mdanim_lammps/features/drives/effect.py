@@ -1,0 +1,76 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Held parts go where functions of time say, by ``fix mdanim/drive`` (docs/physics-drives.md)."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from ...effects.context import Verdict
+from ...effects.effect import Effect
+from ...effects.fields import column
+from . import motion
+
+HOME = column("home", "m", shape=(3,))
+"""Places at the start."""
+WORK = "work"
+"""Column of the ledger: energy that drives have brought in."""
+MOTIONS = "motions"
+"""Table of motions."""
+IN_A_PERIOD = 40.0
+"""Steps in a period of an oscillation, and in a turn."""
+
+
+class Drives(Effect):
+    """x = to(t) + R(t) (x(0) - from) for what is held and driven [m]; its velocity is the mean of the step, and its work is
+    -F dx with the mean of the forces before and after a step (docs/physics-drives.md).
+    """
+
+    styles = (("fix", "mdanim/drive"),)
+    name = "drives"
+    fix = "drive"
+    order = 4
+    if_off = "what is driven stands still"
+
+    def called_for(self, scene, reach):
+        for solid in scene.solids:
+            if motion.is_driven(solid):
+                return Verdict(self.name, True, f"{solid.name} is driven", motion.place_of(solid))
+        return Verdict(self.name, False, "nothing is driven")
+
+    def acts_on(self, context):
+        return any(map(motion.is_driven, context.solids))
+
+    def drives(self, scene):
+        time = scene.control.time
+        return {m: motion.bounds(solid, time) for m, solid in enumerate(scene.solids) if motion.is_driven(solid)}
+
+    def columns(self, context):
+        return {HOME: context.system.position}
+
+    def commands(self, context):
+        group = "driven"
+        return [f"fix {self.fix} {group} mdanim/drive home d2_{HOME.name} since 0 motions table:{MOTIONS}"]
+
+    def tables(self, context):
+        lines = (f"{m + 1} {motion.words_of(s)}\n" for m, s in enumerate(context.solids) if motion.is_driven(s))
+        return {MOTIONS: "# Motions of what is held, written by mdanim-lammps: molecule words\n" + "".join(lines)}
+
+    def max_timestep(self, context):
+        """A part of the shortest period."""
+        found = math.inf
+        for solid in filter(motion.is_driven, context.scene.solids):
+            rate = float(np.linalg.norm(motion.turn_of(solid)[0])) / motion.TURN
+            quickest = max([rate, *(one.frequency for one in motion.oscillations_of(solid))])
+            found = min(found, 1.0 / (IN_A_PERIOD * quickest) if quickest else math.inf)
+        return found
+
+    def sources(self, scene):
+        return (WORK,)
+
+    def lost(self, readings):
+        return {WORK: readings.fix_value(self.fix, "work")}
+
+
+EFFECTS = (Drives(),)

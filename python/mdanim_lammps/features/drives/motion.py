@@ -1,0 +1,162 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""The motion of a driven object: the words of ``fix mdanim/drive``, and how far and how fast it may go."""
+
+from __future__ import annotations
+
+import math
+from itertools import product
+from typing import Any
+
+import numpy as np
+
+from ...errors import Span
+from ...model import shapes
+from ...reach import Drive
+from .words import DriveKey, DriveOscillation, DriveTurn, DriveVelocity
+
+TURN = 2.0 * math.pi
+
+
+def is_driven(solid: Any) -> bool:
+    """Whether something moves what is held of an object."""
+    return bool(solid.drive or solid.key_points)
+
+
+def place_of(solid: Any) -> Span | None:
+    """Where the scene says that it is driven."""
+    return solid.spans.get("drive", solid.spans.get("key"))
+
+
+def velocity_of(solid: Any) -> np.ndarray:
+    """Sum of all velocities of its drives [m/s], shape (3,)."""
+    return sum((np.array(one.velocity) for one in solid.drive if isinstance(one, DriveVelocity)), np.zeros(3))
+
+
+def turn_of(solid: Any) -> tuple[np.ndarray, np.ndarray]:
+    """Its angular velocity [rad/s], and the point about which it turns [m], each of shape (3,)."""
+    turns = [one for one in solid.drive if isinstance(one, DriveTurn)]
+    about = next((one.about for one in turns if one.about is not None), solid.position)
+    return sum((np.array(one.rate) for one in turns), np.zeros(3)), np.array(about, float)
+
+
+def oscillations_of(solid: Any) -> list[DriveOscillation]:
+    """Its oscillations."""
+    return [one for one in solid.drive if isinstance(one, DriveOscillation)]
+
+
+def keys_of(solid: Any) -> tuple[DriveKey, ...]:
+    """Its keys, from the start on; empty where there are none."""
+    begins = () if not solid.key_points or solid.key_points[0].time == 0.0 else (DriveKey(0.0, solid.position),)
+    return (*begins, *solid.key_points)
+
+
+def words_of(solid: Any) -> str:
+    """The motion in the words of the fix."""
+    found = []
+    if (velocity := velocity_of(solid)).any():
+        found.append(f"velocity {_digits(velocity)}")
+    rate, about = turn_of(solid)
+    if rate.any():
+        found.append(f"turn {_digits(rate)} {_digits(about)}")
+    found += [f"oscillation {_digits(one.way)} {one.frequency!r} {one.phase / TURN!r}" for one in oscillations_of(solid)]
+    if keys := keys_of(solid):
+        found.append(f"pivot {_digits(solid.position)}")
+        found += [f"key {k.time!r} {_digits(np.subtract(k.at, solid.position))} {_digits(k.rotation)}" for k in keys]
+    return " ".join(found) or "velocity 0.0 0.0 0.0"
+
+
+def _digits(numbers: Any) -> str:
+    return " ".join(repr(float(x)) for x in numbers)
+
+
+# --- how far and how fast ---------------------------------------------------------------------------------------------
+
+
+def bounds(solid: Any, time: float) -> Drive:
+    """How far any point of the object may be moved until a time [s], and how fast; never too small.
+
+    Along each axis the way of its displacements, and that of its rotations: of a turn no more than the box of the circle of each
+    corner, and than the chord of the angle; of keys no more than the chord.
+    """
+    low, high, speed = _displaced(solid, time)
+    corner = _corners(solid)
+    arm = np.linalg.norm(corner - solid.position, axis=1).max()
+    path = _path(keys_of(solid), solid.position, time)
+    low, high, speed = low + path.low, high + path.high, speed + path.speed + path.turning * arm
+    wide = _chord(arm, path.angle)
+    low, high = low - wide, high + wide
+    rate, about = turn_of(solid)
+    if size := float(np.linalg.norm(rate)):
+        more = wide + float(np.abs([path.low, path.high]).max())  # by which keys move points from where they are at the start
+        swept = _swept(corner, about, rate / size, size * time, more)
+        low, high = low + swept[0], high + swept[1]
+        speed += size * (_from_axis(corner - about, rate / size).max() + more)
+    return Drive(tuple(low.tolist()), tuple(high.tolist()), float(speed), place_of(solid))
+
+
+def _displaced(solid: Any, time: float) -> tuple[np.ndarray, np.ndarray, float]:
+    velocity = velocity_of(solid)
+    low, high = np.minimum(velocity, 0.0) * time, np.maximum(velocity, 0.0) * time
+    speed = float(np.linalg.norm(velocity))
+    for one in oscillations_of(solid):
+        quickest = TURN * one.frequency
+        far = np.abs(one.way) * min(1.0 + abs(math.sin(one.phase)), quickest * time)
+        low, high = low - far, high + far
+        speed += quickest * math.hypot(*one.way)
+    return low, high, speed
+
+
+def _corners(solid: Any) -> np.ndarray:
+    """Corners of the box around an object along its own axes [m], shape (8, 3)."""
+    ends = np.array(shapes.extent(solid.shape), float)
+    own = np.array([[ends[e, d] for d, e in enumerate(corner)] for corner in product((0, 1), repeat=3)])
+    return own @ np.array(solid.rotation, float).T + solid.position
+
+
+def _chord(arm: float, angle: float) -> float:
+    return 2.0 * arm * math.sin(0.5 * min(angle, math.pi))
+
+
+def _from_axis(arm: np.ndarray, axis: np.ndarray) -> np.ndarray:
+    return np.linalg.norm(np.cross(arm, axis), axis=1)
+
+
+def _swept(corner: np.ndarray, about: np.ndarray, axis: np.ndarray, angle: float, more: float):
+    """Ways along each axis of the world, at least and at most, of points that turn about an axis [m], each of shape (3,)."""
+    arm = corner - about
+    across = np.sqrt(np.maximum(0.0, 1.0 - axis**2))
+    far = _from_axis(arm, axis)[:, None] + more
+    middle = about + np.outer(arm @ axis, axis)
+    chord = _chord(float(far.max()), angle) * across
+    low = np.maximum((middle - far * across).min(0) - more - corner.min(0), -chord)
+    high = np.minimum((middle + far * across).max(0) + more - corner.max(0), chord)
+    return np.minimum(low, 0.0), np.maximum(high, 0.0)
+
+
+class _path:
+    """Bounds on a path through keys: displacements [m], the largest rotation [rad], speed [m/s], rate of rotation [rad/s]."""
+
+    def __init__(self, keys: tuple[DriveKey, ...], start: Any, time: float):
+        self.low = self.high = np.zeros(3)
+        self.angle = self.speed = self.turning = 0.0
+        if len(keys) < 2:
+            return
+        t = np.array([key.time for key in keys])
+        value = np.array([[*np.subtract(key.at, start), *key.rotation] for key in keys])
+        slope = np.zeros_like(value)
+        slope[1:-1] = (value[2:] - value[:-2]) / (t[2:] - t[:-2])[:, None]
+        h = np.diff(t)[:, None]
+        # Between two keys as a polynomial of s, 0 to 1: a + b s + c s^2 + d s^3.
+        a, b = value[:-1], h * slope[:-1]
+        c = 3.0 * (value[1:] - a) - h * (2.0 * slope[:-1] + slope[1:])
+        d = 2.0 * (a - value[1:]) + h * (slope[:-1] + slope[1:])
+        s = np.linspace(0.0, 1.0, 65)[:, None, None]
+        here = a + s * (b + s * (c + s * d))
+        rate = np.abs((b + s * (2.0 * c + 3.0 * s * d)) / h)
+        between = (np.abs(2.0 * c) + np.abs(6.0 * d)) / 64.0  # by which the derivative changes from one s to the next
+        rate = (rate + between / h).reshape(-1, 6)
+        here, off = here.reshape(-1, 6), (rate.max(0) * h.max() / 64.0)
+        self.low, self.high = np.minimum(here.min(0) - off, 0.0)[:3], np.maximum(here.max(0) + off, 0.0)[:3]
+        self.angle = float(np.linalg.norm(np.abs(here[:, 3:]) + off[3:], axis=1).max())
+        self.speed = float(np.linalg.norm(rate[:, :3], axis=1).max())
+        self.turning = float(np.linalg.norm(rate[:, 3:], axis=1).max())

@@ -1,0 +1,151 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Words of a scene that belong to this feature."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import Any, ClassVar
+
+from ...scene.formatting import number, vector
+from ...scene.schema import OneOf, Vector, setting
+
+SWITCHES = {"drives": "an object's `drive ...` or `key ...`"}
+
+NEAR = 1e-9
+"""Distance of two points that are one, over their distance from the origin."""
+
+
+@dataclass(frozen=True, slots=True)
+class DriveVelocity:
+    """Straight on."""
+
+    FORMS: ClassVar = ("velocity <(vx, vy, vz):m/s>",)
+    velocity: Vector
+    """[m/s]"""
+
+    def moved(self, place: Any) -> DriveVelocity:
+        """The same of an object in a group that is placed."""
+        return replace(self, velocity=place.turn(self.velocity))
+
+
+@dataclass(frozen=True, slots=True)
+class DriveTurn:
+    """A rotation about an axis through a point."""
+
+    FORMS: ClassVar = ("turn <(wx, wy, wz):rad/s> [about <(x, y, z):m>]",)
+    rate: Vector
+    """[rad/s]"""
+    about: Vector | None = None
+    """[m]; None is the position of the object."""
+
+    def moved(self, place: Any) -> DriveTurn:
+        """The same of an object in a group that is placed."""
+        return replace(self, rate=place.turn(self.rate), about=None if self.about is None else place.point(self.about))
+
+
+@dataclass(frozen=True, slots=True)
+class DriveOscillation:
+    """To and fro by d sin(2 pi f t)."""
+
+    FORMS: ClassVar = ("oscillation <(dx, dy, dz):m> frequency <f:Hz> [phase <a:rad>]",)
+    way: Vector
+    """[m]"""
+    frequency: float
+    """[1/s]"""
+    phase: float = 0.0
+    """[rad]"""
+
+    def moved(self, place: Any) -> DriveOscillation:
+        """The same of an object in a group that is placed."""
+        return replace(self, way=place.turn(self.way))
+
+
+@dataclass(frozen=True, slots=True)
+class DriveKey:
+    """A point of a path."""
+
+    FORMS: ClassVar = ("<T:s> at <(x, y, z):m> [axis <(x, y, z)> angle <a:rad>]",)
+    time: float
+    """[s]"""
+    at: Vector
+    """Place of the object's centre [m]."""
+    axis: Vector = (0.0, 0.0, 1.0)
+    angle: float = 0.0
+    """Turned by this about the axis from how it is at the start [rad]."""
+
+    def moved(self, place: Any) -> DriveKey:
+        """The same of an object in a group that is placed."""
+        return replace(self, at=place.point(self.at), axis=place.turn(self.axis))
+
+    @property
+    def rotation(self) -> Vector:
+        """Rotation vector [rad]."""
+        length = math.hypot(*self.axis)
+        return tuple(self.angle / length * a if self.angle else 0.0 for a in self.axis)
+
+
+class DriveWords:
+    """Settings of an object."""
+
+    drive: tuple[DriveVelocity | DriveTurn | DriveOscillation, ...] = setting(
+        None,
+        "How what is held of it moves: at a velocity, by turning about a point (absent: its `position`), which is moved along by "
+        "the others, or to and fro by d sin(2 π f t + phase) from where it is at the start. Several add up; turns are about one "
+        "point.",
+        "velocity (0.5, 0, 0) m/s", default=(), many=True, codec=OneOf(DriveVelocity, DriveTurn, DriveOscillation),
+        after="hold")  # fmt: skip
+    key_points: tuple[DriveKey, ...] = setting(
+        None,
+        "What is held of it follows a smooth path: its centre is there at time T, turned by the angle from how it is at the "
+        "start. Before the first key it goes there from its `position`, behind the last one it stays. `drive` adds to it.",
+        "1 s at (0, 0, 0.5) m", default=(), name="key", many=True, codec=OneOf(DriveKey), after="drive")  # fmt: skip
+
+
+OBJECT = DriveWords
+
+
+# --- checks: v is the scene/validate.Validator ----------------------------------------------------------------------
+
+
+def check_object(v: Any, block: Any, solid: Any) -> Any:
+    """Turns are about one point, oscillations have a frequency, keys ascend, from where the object is."""
+    drives, keys = block.settings.get("drive", ()), block.settings.get("key", ())
+    turns = [(s, one) for s, one in zip(drives, solid.drive) if isinstance(one, DriveTurn)]
+    points = [solid.position if one.about is None else one.about for _, one in turns]
+    for (s, _), point in zip(turns[1:], points[1:]):
+        if math.dist(point, points[0]) > NEAR * (1.0 + math.hypot(*point)):
+            both = f"{vector(points[0])} m and about {vector(point)} m"
+            cause = f"{solid.name} turns about {both}{block.where}; turns are about one point"
+            v.problem(s.span(), cause, "write the same point behind about, or add a drive velocity or oscillation")
+    for s, one in zip(drives, solid.drive):
+        if isinstance(one, DriveOscillation) and not one.frequency > 0.0:
+            v.problem(
+                s.span(1), f"the frequency of a drive must be > 0, found {number(one.frequency, 6)} Hz", "e.g. frequency 5 Hz"
+            )
+    _check_keys(v, keys, solid)
+    return solid
+
+
+def _check_keys(v: Any, settings: Any, solid: Any) -> None:
+    last = -math.inf
+    for s, key in zip(settings, solid.key_points):
+        if key.time < 0.0:
+            v.problem(s.span(0), f"the time of a key must be >= 0, found {number(key.time, 6)} s", "the run begins at 0 s")
+        elif key.time <= last:
+            cause = f"the times of keys must rise, found {number(key.time, 6)} s after {number(last, 6)} s"
+            v.problem(s.span(0), cause, "write the keys in the order of their times, one for each")
+        last = max(last, key.time)
+        if key.angle and not 1e-150 < math.hypot(*key.axis) < 1e150:
+            v.problem(s.span(2), f"the axis of a key needs a direction, found {vector(key.axis)}", "e.g. axis (0, 0, 1)")
+        away = math.dist(key.at, solid.position)
+        if key.time == 0.0 and (away > NEAR * (1.0 + math.hypot(*key.at)) or key.angle):
+            cause = (
+                f"at 0 s {solid.name} is at its position {vector(solid.position)} m, and this key has it at {vector(key.at)} m"
+            )
+            if key.angle:
+                cause = f"at 0 s {solid.name} is turned as its orientation says, and this key turns it"
+            v.problem(s.span(1), cause, "leave the key at 0 s out, or change position and orientation")
+
+
+CHECKS = {"object": check_object}

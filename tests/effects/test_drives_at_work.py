@@ -1,0 +1,210 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Driven objects: where each goes, what it does to others by contact and friction, what the ledger tells, and what is refused."""
+
+import math
+import re
+
+import numpy as np
+import pytest
+from mdanim_lammps.engine.instance import Instance
+from mdanim_lammps.errors import SceneError
+from mdanim_lammps.features.drives import motion
+from mdanim_lammps.run.energy import energies
+from mdanim_lammps.run.prepare import prepare
+from mdanim_lammps.scene.lock import lock_text
+from mdanim_lammps.scene.parse import parse_scene
+from twin.drives import Motion
+
+G = 9.81
+GRAVITY = "gravity (0, 0, -9.81) m/s^2\n"
+
+
+def plate(drive: str, size: str = "(40, 40, 4) cm", more: str = "") -> str:
+    return (
+        f"object plate {{ shape box {size} position (0, 0, -2) cm density 1000 elasticity 1 MPa hold all {more}\n  {drive}\n}}\n"
+    )
+
+
+def followed(ready, times, watch) -> list:
+    """Results of ``watch(instance)`` at some times [s]."""
+    found, dt = [], ready.certificate.timestep
+    with Instance(ready.plan) as instance:
+        instance.setup()
+        for before, time in zip([0.0, *times], times):
+            instance.run(round(time / dt) - round(before / dt))
+            found.append(watch(instance))
+    return found
+
+
+# --- where it goes ----------------------------------------------------------------------------------------------------
+
+ALL = """drive velocity (0.2, 0, 0.1) m/s  drive turn (0, 2, 1) rad/s about (10, 0, 0) cm
+  drive oscillation (1, 2, 0) cm frequency 3 Hz  drive oscillation (0, 0, 1) cm frequency 5 Hz phase 90 deg
+  key 0.1 s at (5, 0, 0) cm axis (0, 0, 2) angle 400 deg  key 0.3 s at (0, 8, -2) cm"""
+TWIN = Motion(
+    velocity=(0.2, 0.0, 0.1),
+    turn=(0.0, 2.0, 1.0),
+    about=(0.1, 0.0, 0.0),
+    oscillations=[((0.01, 0.02, 0.0), 3.0, 0.0), ((0.0, 0.0, 0.01), 5.0, 0.25)],
+    pivot=(0.0, 0.0, -0.02),
+    keys=[(0.0, (0, 0, 0), (0, 0, 0)), (0.1, (0.05, 0, 0.02), (0, 0, math.radians(400.0))), (0.3, (0, 0.08, 0), (0, 0, 0))],
+)
+
+
+def test_all_drives_add_up(prepared):
+    """Words of a scene to places, against numpy; before the first key it comes from where it is, behind the last it stays."""
+    ready = prepared(plate(ALL) + "control { time 0.4 s }\n")
+    start, times = ready.system.position, (0.05, 0.2, 0.4)
+    dt = ready.certificate.timestep
+    for time, x in zip(times, followed(ready, times, lambda instance: instance.array("x").copy())):
+        np.testing.assert_allclose(x, TWIN.places(start, round(time / dt) * dt), rtol=0, atol=1e-14)
+
+
+@pytest.mark.parametrize("drive", [
+    ALL, *ALL.replace("  drive", "\n  drive").replace("  key", "\n  key").splitlines()[:5],
+    "drive turn (0, 0, 0.3) rad/s about (2, 0, 0) m", "key 0.2 s at (0, 0, 0) cm axis (1, 1, 0) angle 90 deg",
+])  # fmt: skip
+def test_bounds_hold_and_are_near(drive):
+    """Ways of all corners, and their speeds, at many times: within the bounds, which are no more than four times as wide."""
+    if not drive.strip():
+        return
+    scene = parse_scene(plate(drive) + "control { time 0.4 s }\n")
+    solid = scene.solids[0]
+    found = motion.bounds(solid, 0.4)
+    start = motion._corners(solid)
+    rate, about = motion.turn_of(solid)
+    twin = Motion(
+        velocity=motion.velocity_of(solid),
+        turn=rate,
+        about=about,
+        oscillations=[(one.way, one.frequency, one.phase / (2 * math.pi)) for one in motion.oscillations_of(solid)],
+        pivot=solid.position,
+        keys=[(key.time, np.subtract(key.at, solid.position), key.rotation) for key in motion.keys_of(solid)],
+    )
+    x = np.array([twin.places(start, t) for t in np.linspace(0.0, 0.4, 2001)])
+    way, speed = x - start, np.linalg.norm(np.diff(x, axis=0), axis=2).max() / (0.4 / 2000)
+    box = (x - start).min((0, 1)), (x - start).max((0, 1))
+    corner = x.min((0, 1)) - start.min(0), x.max((0, 1)) - start.max(0)  # of the box around all places
+    assert (np.array(found.low) <= corner[0] + 1e-12).all() and (np.array(found.high) >= corner[1] - 1e-12).all()
+    assert speed <= found.speed * (1 + 1e-9) and found.speed <= 4.0 * speed
+    widest = np.maximum(np.abs(box), 0.02).max()
+    assert np.abs([found.low, found.high]).max() <= 4.0 * widest and way.any()
+
+
+def test_a_placed_group_takes_its_drives_along(prepared):
+    """Velocities, axes, points and keys are turned and moved with it."""
+    alone = prepared(plate(ALL) + "control { time 0.4 s }\n")
+    group = f"group g {{\n{plate(ALL)}}}\nplace g as p {{ position (1, 2, 3) m orientation axis (0, 0, 1) angle 90 deg }}\n"
+    placed = prepared(group + "control { time 0.4 s }\n", "placed")
+    one, other = (followed(r, (0.2,), lambda instance: instance.array("x").mean(axis=0))[0] for r in (alone, placed))
+    np.testing.assert_allclose(other, [1.0 - one[1], 2.0 + one[0], 3.0 + one[2]], rtol=0, atol=1e-12)
+
+
+def test_the_lock_says_the_same():
+    """All words come back from scene.lock.txt."""
+    scene = parse_scene(plate(ALL) + "control { time 0.4 s }\n")
+    again = parse_scene(lock_text(scene, {}))
+    assert again.solids[0].drive == scene.solids[0].drive and again.solids[0].key_points == scene.solids[0].key_points
+
+
+# --- what it does -----------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(("shape", "elasticity", "frequency"), [
+    ("sphere 4 cm", "1 MPa", 3.0), ("box (6, 6, 6) cm", "300 kPa", 5.0),
+])  # fmt: skip
+def test_what_lies_on_a_shaking_plate_leaves_it_at_g(prepared, shape, elasticity, frequency):
+    """Amplitude (2 pi f)^2 = g, within 2 per cent: just below it presses on the plate at all times, above it lifts off. Both are
+    stiff beside their weight, so they follow the plate."""
+    least = []
+    for factor in (0.98, 1.02):
+        amplitude = factor * G / (2 * math.pi * frequency) ** 2
+        top = 4 if shape.startswith("sphere") else 3
+        thing = f"object it {{ shape {shape} position (0, 0, {top}) cm density 700 elasticity {elasticity} damping 0.5 }}\n"
+        shaken = plate(f"drive oscillation (0, 0, {amplitude}) m frequency {frequency} Hz phase -90 deg")
+        ready = prepared(GRAVITY + shaken + thing + "control { time 1 s contact-damping 1 friction 0.3 }\n")
+        times = np.arange(1.2, 1.7, 0.01) / frequency  # around the second highest point
+        least.append(min(followed(ready, times, lambda instance: instance.fix_value("contact", "touching"))))
+    assert least[0] > 0 and least[1] == 0
+
+
+@pytest.mark.parametrize(("speed", "friction"), [(0.4, 0.3), (0.8, 0.5)])
+def test_a_block_on_a_belt_slips_and_then_rides(prepared, speed, friction):
+    """A plate that runs at v below a block: it slips for v/(mu g), within a per cent, then rides; the work of the drive is
+    m v^2, half of it heat, and the momentum that the block gets is the impulse."""
+    block = f"object block {{ shape box (8, 8, 4) cm position (0, 0, 2) cm density 500 elasticity 1 MPa friction {friction} }}\n"
+    belt = plate(f"drive velocity ({speed}, 0, 0) m/s", "(200, 20, 4) cm", f"friction {friction}")
+    ready = prepared(GRAVITY + belt + block + "control { time 1 s }\n")
+    slips = speed / (friction * G)
+    mass = ready.system.mass_of[1]
+
+    def watch(instance):
+        speed_of_block = instance.system.center_of_mass(instance.array("v"))[1, 0]
+        return speed_of_block, energies(instance, instance.system.center_of_mass(instance.array("x")))
+
+    begins, *others = followed(ready, [1e-9, 0.5 * slips, 2.0 * slips], watch)
+    (half, _), (end, ledger) = others
+    assert speed * 0.5 * slips / half == pytest.approx(slips, rel=0.01)
+    assert end == pytest.approx(speed, rel=0.01)
+    assert ledger["work"] == pytest.approx(mass * speed**2, rel=0.01)
+    assert ledger["friction_heat"] + ledger["contact_damping_loss"] == pytest.approx(0.5 * mass * speed**2, rel=0.02)
+    change = sum(ledger.values()) - sum(begins[1].values())
+    assert abs(change - 2.0 * ledger["work"]) < 1e-3 * mass * speed**2
+
+
+@pytest.mark.parametrize("drive", [
+    "drive turn (0, 0, 9) rad/s", "drive oscillation (3, 0, 1) cm frequency 2 Hz",
+    "key 0.2 s at (5, 0, 3) cm axis (0, 1, 0) angle 10 deg",
+])  # fmt: skip
+def test_the_ledger_closes_with_the_work(prepared, drive):
+    """Turntable, shaker, path: two boxes on a plate, with friction and dashpots, and on one of which the lower face is driven."""
+    boxes = "".join(
+        f"object box[{n}] {{ shape box (6, 6, 6) cm position ({x}, 5, 3.01) cm density 500 elasticity 300 kPa damping 0.1 }}\n"
+        for n, x in enumerate((-8, 6))
+    )
+    for hold in ("all", "face -z"):
+        text = (
+            GRAVITY
+            + plate(drive).replace("hold all", f"hold {hold}")
+            + boxes
+            + "control { time 0.2 s friction 0.4 resolution 2 cm }\n"
+        )
+        ready = prepared(text)
+
+        def watch(instance):
+            return energies(instance, instance.system.center_of_mass(instance.array("x")))
+
+        first, last = followed(ready, [1e-9, 0.2], watch)
+        change = sum(last[k] - first[k] for k in last if k != "work")
+        assert abs(last["work"]) > 0.005
+        in_play = sum(abs(last[k] - first[k]) for k in last)
+        assert abs(change - (last["work"] - first["work"])) < 1e-3 * in_play
+
+
+# --- words ------------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(("text", "told", "way_out"), [
+    (plate("drive velocity (1, 0, 0) m/s").replace("hold all", ""), "plate is driven, and nothing of it is held", "hold all"),
+    (plate("key 1 s at (0, 0, 0) m").replace("hold all", ""), "plate is driven, and nothing of it is held", "hold face"),
+    (plate("drive turn (0, 0, 1) rad/s  drive turn (0, 0, 1) rad/s about (1, 0, 0) m"),
+     "plate turns about (0, 0, -0.02) m and about (1, 0, 0) m; turns are about one point", "the same point"),
+    (plate("drive oscillation (0, 0, 1) cm frequency 0 Hz"), "the frequency of a drive must be > 0, found 0 Hz", "e.g."),
+    (plate("key 2 s at (0, 0, 0) m  key 1 s at (0, 0, 1) m"), "the times of keys must rise, found 1 s after 2 s", "order"),
+    (plate("key -2 s at (0, 0, 0) m"), "the time of a key must be >= 0, found -2 s", "begins at 0 s"),
+    (plate("key 0 s at (0, 0, 1) m"), "at its position (0, 0, -0.02) m, and this key has it at (0, 0, 1) m", "leave"),
+    (plate("key 1 s at (0, 0, 1) m axis (0, 0, 0) angle 1 rad"), "the axis of a key needs a direction, found (0, 0, 0)", "axis"),
+])  # fmt: skip
+def test_refusals(text, told, way_out):
+    """With its place, cause, value and way out."""
+    with pytest.raises(SceneError) as e:
+        prepare(parse_scene(text + "control { time 3 s }\n"))
+    (problem,) = e.value.problems
+    assert told in problem.message and way_out in problem.hint and problem.span.line == 2
+    assert re.match(r".*:2:\d+", str(problem.span))
+
+
+def test_steps_resolve_the_quickest(prepared):
+    """40 steps in a period at least."""
+    ready = prepared(plate("drive oscillation (0, 0, 1) mm frequency 1000 Hz") + "control { time 0.1 s }\n")
+    assert ready.certificate.timestep <= 1.0 / 40e3

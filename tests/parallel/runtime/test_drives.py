@@ -1,0 +1,79 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Scenes with driven objects give the same bits in all forms of the distribution, resumed, and by plain LAMMPS."""
+
+import subprocess
+
+import numpy as np
+import plugin_path
+import pytest
+from distribution_lab import SEQUENTIAL, matrix, readied, ways
+from mdanim_lammps.results.checkpoint import Checkpoint
+from mdanim_lammps.results.compare import compare
+from mdanim_lammps.results.dump import read_dump
+from mdanim_lammps.results.ledger import Ledger
+from mdanim_lammps.results.trajectory import Trajectory
+
+pytestmark = pytest.mark.mpi
+
+SCENE = """
+gravity (0, 0, -9.81) m/s^2
+object table { shape box (24, 24, 8) cm  position (0, 0, 0) cm    density 1000  elasticity 1 MPa  hold all
+  drive oscillation (0, 0, 1) cm frequency 12 Hz  drive turn (0, 0, 3) rad/s }
+object rider { shape box (8, 8, 8) cm    position (2, 1, 8.5) cm  density 700   elasticity 300 kPa }
+object arm   { shape box (8, 8, 24) cm   position (60, 0, 0) cm   density 800   elasticity 500 kPa  hold face -z
+  key 0.1 s at (62, 0, 0) cm axis (0, 0, 1) angle 20 deg }
+object flag  { shape box (8, 8, 8) cm    position (65, 20, 8) cm  density 300   elasticity 200 kPa  velocity (0, -2, 0) m/s }
+object club  { shape box (8, 30, 8) cm   position (0, -50, 0) cm  density 1000  elasticity 1 MPa  hold all
+  drive velocity (0, 0, 1) m/s  drive turn (20, 0, 0) rad/s }
+object ball  { shape sphere 6 cm         position (0, -50, 12) cm density 900   elasticity 300 kPa }
+control { time 0.08 s  frames 100 fps  resolution 4 cm  friction 0.4 }
+"""
+CASES = (
+    matrix((2,), ["central"], name="all move ", rotate=True)
+    | matrix((3,), ["peers"], name="all move ", rotate=True)
+    | matrix((2,), ["peers"], name="teams ", settings={"least": 30, "by_threads": False})
+    | matrix((2,), ["central"], name="threads ", settings={"least": 30, "by_threads": True})
+    | {
+        "stopped": {"executors": 3, "control": "central", "stop": 3},
+        "stopped and gone on with": {"executors": 2, "control": "peers", "resume": True, "in": "stopped"},
+        "alone": SEQUENTIAL | {"stop": 4},
+        "alone and gone on with": {"executors": 4, "control": "central", "resume": True, "in": "alone"},
+    }
+)
+
+
+@pytest.fixture(scope="module")
+def found(tmp_path_factory):
+    """The folder of each form, all made in one start of MPI."""
+    path = tmp_path_factory.mktemp("drives") / "scene.txt"
+    path.write_text(SCENE)
+    return ways(path, CASES, timeout=200.0)
+
+
+@pytest.mark.parametrize("way", CASES)
+def test_all_forms_give_the_same(found, way):
+    """Frames, the state, and the work but for rounding of its sums."""
+    assert compare(found["sequential"], found[way]).equal
+    alone, other = (Checkpoint.read(found[name] / "checkpoint") for name in ("sequential", way))
+    for name in "xvf":
+        assert np.array_equal(getattr(alone, name), getattr(other, name)), name
+    assert alone.records == other.records
+    assert other.carried["work"] == pytest.approx(alone.carried["work"], rel=1e-9)
+
+
+def test_the_ledger_closes(found):
+    """With the work that drives have brought in, in all forms."""
+    for way in ("sequential", *CASES):
+        ledger = Ledger.read(found[way] / "ledger.csv")
+        assert np.abs(ledger.array("residual")).max() < 1e-3 and np.abs(ledger.array("work")).max() > 0.5
+
+
+def test_plain_lammps_gives_the_same(found, tmp_path):
+    """The script and data of the scene, with two ranks."""
+    _, folder = readied(tmp_path, SCENE)
+    command = [plugin_path.BIN / "mpiexec", "-n", "2", plugin_path.BIN / "lmp", "-in", "in.film", "-log", "none", "-nocite"]
+    done = subprocess.run(command, cwd=folder, env=plugin_path.environment(), capture_output=True, text=True, timeout=120)
+    assert done.returncode == 0, done.stdout[-2000:] + done.stderr
+    with Trajectory(found["sequential"]) as trajectory:
+        film = np.array([trajectory.position(n) for n in range(len(trajectory))])
+    assert np.array_equal([x for _, x, _ in read_dump(folder / "film.lammpstrj", film.shape[1])], film)

