@@ -23,6 +23,7 @@ Joint::Joint(JointWords words, JointEnd a, JointEnd b, double length, double ftm
   check();
   choose_directions();
   choose_laws(ftm2v);
+  load_before();
   forget();
 }
 
@@ -102,6 +103,25 @@ void Joint::choose_laws(double ftm2v)
   servo.c = given.servo ? given.servo->damping : 2.0 * std::sqrt(servo.k / servo_mobility);
 }
 
+// Small motions of A that give the force -K g and the torque -K L^2 sum e x (phi x e) = -K L^2 n phi on it; n is 2 where three
+// directions are held, and 1 across the axis of a hinge.
+void Joint::load_before()
+{
+  place_in_a = end_a.d;
+  for (int j = 0; j < held; ++j) turned_in_a[j] = direction[j];
+  if (!given.preload) return;
+  const auto across_axis = [&](const Vec3 &v) { return v - dot(v, given.axis) * given.axis; };
+  const Vec3 force = given.kind == JointKind::SLIDER ? across_axis(given.preload->force) : given.preload->force;
+  place_in_a += (-1.0 / law.k) * force;
+  if (held == 0) return;
+  const bool turns = given.kind == JointKind::HINGE;
+  const Vec3 torque = turns ? across_axis(given.preload->torque) : given.preload->torque;
+  const Vec3 phi = (-1.0 / (turning.k * (turns ? 1.0 : 2.0))) * torque;
+  for (int j = 0; j < held; ++j) turned_in_a[j] += cross(phi, direction[j]);
+  if ((norm(force) > 0.0 || norm(phi) > 0.0) && end_a.patch.dimensions() < 3)
+    throw std::runtime_error("a preload needs a first patch that is neither flat nor a line");
+}
+
 // --- a step ---
 
 Joint::Loads Joint::step(const PatchMotion &a, const PatchMotion &b, double dt, JointAccount &account)
@@ -109,7 +129,7 @@ Joint::Loads Joint::step(const PatchMotion &a, const PatchMotion &b, double dt, 
   if (!is_broken()) {
     Past past = before;
     JointAccount spent;
-    const Loads loads = find(a, b, dt, past, spent);
+    const Loads loads = find(a, b, {dt, dt}, past, spent);
     account.work += spent.work;
     account.heat += spent.heat;
     before = past;
@@ -120,11 +140,11 @@ Joint::Loads Joint::step(const PatchMotion &a, const PatchMotion &b, double dt, 
     before.broken = 1;
   }
   now = Reading();
-  now.at_a = a.point(end_a.d), now.at_b = b.point(end_b.d);
+  now.at_a = a.point(place_in_a), now.at_b = b.point(end_b.d);
   return {};
 }
 
-Joint::Loads Joint::begin(const PatchMotion &a, const PatchMotion &b, bool anew)
+Joint::Loads Joint::begin(const PatchMotion &a, const PatchMotion &b, double dt, bool anew)
 {
   if (is_broken()) {
     JointAccount none;
@@ -132,26 +152,26 @@ Joint::Loads Joint::begin(const PatchMotion &a, const PatchMotion &b, bool anew)
   }
   Past past = before;
   JointAccount none;
-  const Loads loads = find(a, b, 0.0, past, none);
+  const Loads loads = find(a, b, {0.0, dt}, past, none);
   if (anew || !before.began) before = past;
   return loads;
 }
 
-Joint::Loads Joint::find(const PatchMotion &a, const PatchMotion &b, double dt, Past &past, JointAccount &spent)
+Joint::Loads Joint::find(const PatchMotion &a, const PatchMotion &b, const Time &time, Past &past, JointAccount &spent)
 {
   Loads loads;
   now = Reading();
-  const Side of_a{end_a, a, loads.a}, of_b{end_b, b, loads.b};
+  const Side of_a{end_a.patch, place_in_a, turned_in_a, a, loads.a}, of_b{end_b.patch, end_b.d, direction, b, loads.b};
   now.at_a = of_a.place(), now.at_b = of_b.place();
   if (given.kind == JointKind::SPRING)
-    pull(of_a, of_b, dt, past, spent);
+    pull(of_a, of_b, time, past, spent);
   else
-    hold(of_b, of_a, dt, past, spent);
+    hold(of_b, of_a, time, past, spent);
   past.began = 1;
   return loads;
 }
 
-void Joint::pull(const Side &a, const Side &b, double dt, Past &past, JointAccount &spent)
+void Joint::pull(const Side &a, const Side &b, const Time &time, Past &past, JointAccount &spent)
 {
   const Vec3 way = now.at_b - now.at_a;
   const double length = norm(way), more = length - own_length;
@@ -164,13 +184,13 @@ void Joint::pull(const Side &a, const Side &b, double dt, Past &past, JointAccou
   const bool holds = more > 0.0 || !given.pulls_only;
   now.energy = holds ? 0.5 * law.k * more * more : 0.0;
   const double damped = holds ? now.force - law.k * more : 0.0;
-  spent.heat += 0.5 * dt * now.rate * (past.along + damped);
+  spent.heat += 0.5 * time.passed * now.rate * (past.along + damped);
   past.along = damped;
-  a.load.push(now.force * along, end_a.d);
-  b.load.push(-now.force * along, end_b.d);
+  a.load.push(now.force * along, a.d);
+  b.load.push(-now.force * along, b.d);
 }
 
-void Joint::hold(const Side &base, const Side &moving, double dt, Past &past, JointAccount &spent)
+void Joint::hold(const Side &base, const Side &moving, const Time &time, Past &past, JointAccount &spent)
 {
   // The springs.
   const bool slides = given.kind == JointKind::SLIDER, turns = given.kind == JointKind::HINGE;
@@ -182,13 +202,14 @@ void Joint::hold(const Side &base, const Side &moving, double dt, Past &past, Jo
   now.gap = norm(off);
   now.energy = 0.5 * law.k * dot(off, off);
   Vec3 force = -law.k * off, torque;    // on what moves
-  base.load.push(-1.0 * force, base.end.d);
-  moving.load.push(force, moving.end.d);
+  base.load.push(-1.0 * force, base.d);
+  moving.load.push(force, moving.d);
   if (slides) base.load.moment += outer((law.k * way * over_drawn) * off, given.axis);
   for (int j = 0; j < held; ++j) {
-    const Vec3 turned = moving.motion.F * direction[j], apart = turned - base.motion.F * direction[j], pull = -turning.k * apart;
-    base.load.moment += outer(-1.0 * pull, direction[j]);
-    moving.load.moment += outer(pull, direction[j]);
+    const Vec3 &in_base = base.direction[j], &in_moving = moving.direction[j];
+    const Vec3 turned = moving.motion.F * in_moving, apart = turned - base.motion.F * in_base, pull = -turning.k * apart;
+    base.load.moment += outer(-1.0 * pull, in_base);
+    moving.load.moment += outer(pull, in_moving);
     now.energy += 0.5 * turning.k * dot(apart, apart);
     torque += cross(turned, pull);
   }
@@ -198,15 +219,15 @@ void Joint::hold(const Side &base, const Side &moving, double dt, Past &past, Jo
   if (law.c > 0.0) {
     Vec3 velocity;
     const Vec3 damped = damp(base, moving, slides ? axis : Vec3{}, velocity);
-    spent.heat -= 0.5 * dt * dot(past.dashpot + damped, velocity);
+    spent.heat -= 0.5 * time.passed * dot(past.dashpot + damped, velocity);
     past.dashpot = damped;
     force += damped;
   }
   if (turns || (held > 1 && turning.c > 0.0)) {
-    const PatchSpin of_base(base.end.patch, base.motion), of_moving(moving.end.patch, moving.motion);
+    const PatchSpin of_base(base.patch, base.motion), of_moving(moving.patch, moving.motion);
     const Vec3 omega = of_moving.omega - of_base.omega;
     Vec3 couple = -turning.c * (turns ? omega - dot(axis, omega) * axis : omega);
-    spent.heat -= 0.5 * dt * dot(past.turning + couple, omega);
+    spent.heat -= 0.5 * time.passed * dot(past.turning + couple, omega);
     past.turning = couple;
     torque += couple;
     if (turns) {
@@ -215,7 +236,7 @@ void Joint::hold(const Side &base, const Side &moving, double dt, Past &past, Jo
       constexpr double TURN = 6.283185307179586;
       past.q = angle + TURN * std::floor((past.q - angle) / TURN + 0.5);
       now.rate = dot(axis, omega);
-      couple += drive(now.rate, dt, past, spent) * axis;
+      couple += drive(now.rate, time, past, spent) * axis;
     }
     of_base.couple(-1.0 * couple, base.load);
     of_moving.couple(couple, moving.load);
@@ -224,9 +245,9 @@ void Joint::hold(const Side &base, const Side &moving, double dt, Past &past, Jo
   if (slides) {
     past.q = way;
     now.rate = dot(axis, moving.velocity() - base.velocity()) + over_drawn * dot(off, base.motion.G * given.axis);
-    const double along = drive(now.rate, dt, past, spent);
-    base.load.push(-along * axis, base.end.d);
-    moving.load.push(along * axis, moving.end.d);
+    const double along = drive(now.rate, time, past, spent);
+    base.load.push(-along * axis, base.d);
+    moving.load.push(along * axis, moving.d);
     base.load.moment += outer((along * over_drawn) * off, given.axis);
   }
   now.force = norm(force);
@@ -237,10 +258,10 @@ void Joint::hold(const Side &base, const Side &moving, double dt, Past &past, Jo
 // now, so that there is no couple: at the joint's place in what moves, or in the base where the patch of the base is flat.
 Vec3 Joint::damp(const Side &base, const Side &moving, const Vec3 &free, Vec3 &velocity) const
 {
-  Vec3 in_base = base.end.d, in_moving = moving.end.d;
-  if (base.end.patch.dimensions() == 3)
+  Vec3 in_base = base.d, in_moving = moving.d;
+  if (base.patch.dimensions() == 3)
     in_base = inverse(base.motion.F) * (moving.place() - base.motion.c);
-  else if (moving.end.patch.dimensions() == 3)
+  else if (moving.patch.dimensions() == 3)
     in_moving = inverse(moving.motion.F) * (base.place() - moving.motion.c);
   velocity = moving.motion.velocity(in_moving) - base.motion.velocity(in_base);
   velocity -= dot(velocity, free) * free;
@@ -251,14 +272,14 @@ Vec3 Joint::damp(const Side &base, const Side &moving, const Vec3 &free, Vec3 &v
 }
 
 // Force on A along the free coordinate, of motor, friction and stops. Energy that they store is theirs until it comes back.
-double Joint::drive(double rate, double dt, Past &past, JointAccount &spent)
+double Joint::drive(double rate, const Time &time, Past &past, JointAccount &spent)
 {
   if (!given.has_servo()) return 0.0;
-  const SpringLaw stable{servo.k, implicit(servo.c, servo_mobility, dt)};
+  const SpringLaw stable{servo.k, implicit(servo.c, servo_mobility, time.step)};
   const auto stored = [&](double stretch) { return 0.5 * servo.k * stretch * stretch; };
   const auto move = [&](const Drive &how, DriveState &state) {
-    const DriveState next = driven(how, stable, state.anchor + how.speed * dt, past.q, rate);
-    const double brought = 0.5 * dt * rate * (state.force + next.force) + stored(next.stretch) - stored(state.stretch);
+    const DriveState next = driven(how, stable, state.anchor + how.speed * time.passed, past.q, rate);
+    const double brought = 0.5 * time.passed * rate * (state.force + next.force) + stored(next.stretch) - stored(state.stretch);
     state = next;
     now.energy += stored(state.stretch);
     now.driving += state.force;
@@ -268,7 +289,7 @@ double Joint::drive(double rate, double dt, Past &past, JointAccount &spent)
   if (given.friction > 0.0) spent.heat -= move({0.0, given.friction}, past.brake);
   if (given.limits) {
     const Stop stop = stopped(given.limits->low, given.limits->high, stable, past.q, rate);
-    spent.heat -= 0.5 * dt * rate * (past.along + stop.force) + stored(stop.depth) - stored(past.depth);
+    spent.heat -= 0.5 * time.passed * rate * (past.along + stop.force) + stored(stop.depth) - stored(past.depth);
     past.along = stop.force, past.depth = stop.depth;
     now.energy += stored(stop.depth);
     now.driving += stop.force;

@@ -45,7 +45,7 @@ class Joint {
     double along = 0.0, depth = 0.0;    // of stops; of a spring's dashpot
     std::int64_t broken = 0, began = 0;
   };
-  // What it does now.
+  // Its forces and motion now.
   struct Reading {
     double force = 0.0, torque = 0.0, rate = 0.0, driving = 0.0, gap = 0.0, energy = 0.0;
     Vec3 at_a, at_b;
@@ -66,40 +66,48 @@ class Joint {
   bool is_broken() const { return before.broken != 0; }
   double way() const { return before.q; }
 
-  // Loads on both patches after a step of dt, whose velocities are those of the middle of the step. With dt = 0 no time has
-  // passed; `anew`: forces of the last step are forgotten.
+  // Loads on both patches after a step of dt, whose velocities are those of the middle of the step.
   struct Loads {
     PatchLoad a, b;
   };
   Loads step(const PatchMotion &a, const PatchMotion &b, double dt, JointAccount &account);
-  Loads begin(const PatchMotion &a, const PatchMotion &b, bool anew);
+  // The same before a step, when no time has passed; `anew`: forces of the last step are forgotten.
+  Loads begin(const PatchMotion &a, const PatchMotion &b, double dt, bool anew);
 
  private:
   // One of both ends in a step.
   struct Side {
-    const JointEnd &end;
+    const Patch &patch;
+    const Vec3 &d;            // the place of the joint in it
+    const Vec3 *direction;    // those that are held
     const PatchMotion &motion;
     PatchLoad &load;
-    Vec3 place() const { return motion.point(end.d); }
-    Vec3 velocity() const { return motion.velocity(end.d); }
+    Vec3 place() const { return motion.point(d); }
+    Vec3 velocity() const { return motion.velocity(d); }
+  };
+  // Time that has passed, and that of the step.
+  struct Time {
+    double passed, step;
   };
   void check() const;
   void choose_directions();
   void choose_laws(double ftm2v);
-  Loads find(const PatchMotion &a, const PatchMotion &b, double dt, Past &past, JointAccount &spent);
-  void pull(const Side &a, const Side &b, double dt, Past &past, JointAccount &spent);
-  void hold(const Side &base, const Side &moving, double dt, Past &past, JointAccount &spent);
+  void load_before();
+  Loads find(const PatchMotion &a, const PatchMotion &b, const Time &time, Past &past, JointAccount &spent);
+  void pull(const Side &a, const Side &b, const Time &time, Past &past, JointAccount &spent);
+  void hold(const Side &base, const Side &moving, const Time &time, Past &past, JointAccount &spent);
   Vec3 damp(const Side &base, const Side &moving, const Vec3 &free, Vec3 &velocity) const;
-  double drive(double rate, double dt, Past &past, JointAccount &spent);
+  double drive(double rate, const Time &time, Past &past, JointAccount &spent);
 
   JointWords given;
   JointEnd end_a, end_b;
   double own_length = 0.0;
   SpringLaw law, turning, servo;
   double servo_mobility = 0.0;
-  Vec3 direction[3];    // unit vectors at the start, the axis first
-  int held = 0;         // directions
-  Vec3 across;          // of a hinge, for its angle
+  Vec3 place_in_a;                      // the place of the joint, moved by what the joint bears at the start
+  Vec3 direction[3], turned_in_a[3];    // unit vectors at the start, in both bodies, and in A turned by what it bears then
+  int held = 0;                         // directions
+  Vec3 across;                          // of a hinge, for its angle
   Past before;
   Reading now;
 };

@@ -77,6 +77,11 @@ const JointWord WORDS[] = {
     {"motor", WITH_AXIS, [](JointWords &of, LineWords &line) { of.motor = motor(line); }},
     {"friction", WITH_AXIS, [](JointWords &of, LineWords &line) { of.friction = line.at_least_zero("the friction"); }},
     {"limits", WITH_AXIS, [](JointWords &of, LineWords &line) { of.limits = limits(line); }},
+    {"preload", WITH_PLACE,
+     [](JointWords &of, LineWords &line) {
+       const Vec3 force = line.place("the force at the start");
+       of.preload = JointWords::Preload{force, line.place("the torque at the start")};
+     }},
     {"breaks", ALL, [](JointWords &of, LineWords &line) { of.breaks = line.positive("the force that breaks it"); }},
     {"breaks-torque", WITH_DIRECTIONS,
      [](JointWords &of, LineWords &line) { of.breaks_torque = line.positive("the torque that breaks it"); }},

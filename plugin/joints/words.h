@@ -44,6 +44,10 @@ struct JointWords {
     double low, high;
   };
   std::optional<Limits> limits;
+  struct Preload {
+    Vec3 force, torque;    // on A
+  };
+  std::optional<Preload> preload;
   double breaks = HUGE_VAL, breaks_torque = HUGE_VAL;
   bool pulls_only = false;
 

@@ -170,7 +170,8 @@ template <class Step> void FixMdanimJoint::each_joint(const Step &step)
 
 void FixMdanimJoint::setup(int)
 {
-  each_joint([&](Joint &joint, const PatchMotion &a, const PatchMotion &b) { return joint.begin(a, b, !is_taken_up); });
+  each_joint(
+      [&](Joint &joint, const PatchMotion &a, const PatchMotion &b) { return joint.begin(a, b, update->dt, !is_taken_up); });
   is_taken_up = false;
 }
 

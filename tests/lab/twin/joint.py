@@ -22,7 +22,7 @@ class Patch:
         self.inverse_S = np.linalg.inv(np.einsum("n,ni,nj->ij", mass, r, r))
 
     def weights(self, place) -> np.ndarray:
-        """Of a material point."""
+        """Weights of a material point."""
         return np.r_[1.0, place] @ self.map
 
     def direction(self, e) -> np.ndarray:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What swings on joints, against closed forms. Joints have a frequency of 2000/s, the time step is 0.35 of 1/frequency."""
+"""Pendulums on joints against closed forms. Joints have a frequency of 2000/s, the time step is 0.35 of 1/frequency."""
 
 import joint_lab as lab
 import numpy as np
