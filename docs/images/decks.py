@@ -14,7 +14,17 @@ from mdanim_lammps.picture.palette import OBJECTS, STILL
 
 HERE = Path(__file__).parent
 DECKS = HERE.parent.parent / "scenes" / "lammps"
-PICTURES = {"two_blocks": 0.6, "two_cubes": 0.6, "pool": 1.0, "cantilever": 1.0, "bowl": 1.0, "tumble": 0.6, "shaker": 0.5}
+PICTURES = {
+    "two_blocks": 0.6,
+    "two_cubes": 0.6,
+    "pool": 1.0,
+    "cantilever": 1.0,
+    "bowl": 1.0,
+    "tumble": 0.6,
+    "shaker": 0.5,
+    "crank": 0.3,
+    "ropes": 0.6,
+}
 """Script, and which part of its run has passed in the picture."""
 SIZE = (480, 360)
 

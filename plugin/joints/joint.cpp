@@ -91,7 +91,8 @@ void Joint::choose_directions()
 void Joint::choose_laws(double ftm2v)
 {
   const double mobility = ftm2v * (end_a.mobility() + end_b.mobility());
-  law = {given.stiffness ? *given.stiffness : *given.frequency * *given.frequency / mobility, given.damping};
+  law.k = given.stiffness ? *given.stiffness : *given.frequency * *given.frequency / mobility;
+  law.c = given.damping_ratio ? *given.damping_ratio * 2.0 * std::sqrt(law.k / mobility) : given.damping;
   double of_directions = 0.0;
   for (const Vec3 *e = direction; e < direction + held; ++e)
     of_directions = std::fmax(of_directions, ftm2v * (end_a.mobility_of_direction(*e) + end_b.mobility_of_direction(*e)));
@@ -134,7 +135,8 @@ Joint::Loads Joint::step(const PatchMotion &a, const PatchMotion &b, double dt, 
     account.heat += spent.heat;
     before = past;
     if (now.force <= given.breaks && now.torque <= given.breaks_torque) return loads;
-    account.heat += now.energy;
+    // Forces that do not act now have no part in the work of this step.
+    account.heat += now.energy + 0.5 * dt * (loads.a.power(a) + loads.b.power(b));
     before = Past();
     before.q = past.q;
     before.broken = 1;

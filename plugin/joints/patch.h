@@ -30,6 +30,12 @@ struct PatchLoad {
     force += f;
     moment += outer(f, d);
   }
+  double power(const PatchMotion &of) const
+  {
+    double all = dot(force, of.v);
+    for (int k = 0; k < 3; ++k) all += dot(moment.row[k], of.G.row[k]);
+    return all;
+  }
 };
 
 // Weights are those that reproduce all maps c + F d by least squares with masses as weights, for places r from the centre:

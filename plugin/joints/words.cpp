@@ -69,6 +69,7 @@ const JointWord WORDS[] = {
     {"frequency", ALL, [](JointWords &of, LineWords &line) { of.frequency = line.positive("the frequency"); }},
     {"arm", WITH_DIRECTIONS, [](JointWords &of, LineWords &line) { of.arm = line.positive("the arm"); }},
     {"damping", ALL, [](JointWords &of, LineWords &line) { of.damping = line.at_least_zero("the damping"); }},
+    {"damping-ratio", ALL, [](JointWords &of, LineWords &line) { of.damping_ratio = line.at_least_zero("the damping ratio"); }},
     {"servo", WITH_AXIS,
      [](JointWords &of, LineWords &line) {
        const double stiffness = line.positive("the stiffness of the servo");
@@ -142,6 +143,7 @@ JointWords read_joint(LineWords &line)
         line.fail("a " + kind + " needs '" + needed + " x y z'");
   if (read.stiffness.has_value() == read.frequency.has_value())
     line.fail("give one of 'stiffness K' and 'frequency OMEGA', got " + std::string(read.stiffness ? "both" : "none"));
+  if (read.damping > 0.0 && read.damping_ratio) line.fail("give one of 'damping C' and 'damping-ratio BETA', got both");
   return read;
 }
 

@@ -31,6 +31,7 @@ struct JointWords {
   Vec3 axis;
   std::optional<double> stiffness, frequency, arm, length;
   double damping = 0.0;
+  std::optional<double> damping_ratio;
   struct Servo {
     double stiffness, damping;
   };

@@ -119,6 +119,28 @@ def test_a_tray_shakes_alike_on_any_number_of_ranks(tmp_path):
     assert alone == run(tmp_path, 3, "shaker", "-var", "steps", "400")[0]
 
 
+@pytest.mark.mpi
+def test_a_crank_turns_alike_on_any_number_of_ranks(tmp_path):
+    """Dumps are the same byte for byte; the piston is where the angle of the crank says, and energy less work stays."""
+    alone, output = run(tmp_path, 1, "crank", "-var", "steps", "1000")
+    t = table(output)
+    assert t["f_joints[4][3]"] == pytest.approx(t["v_exact"], abs=0.04)  # of a stroke of 8; the joints swing a little
+    assert t["f_joints[1][4]"][1:] == pytest.approx(1.0, abs=0.01)
+    assert t["TotEng"] == pytest.approx(0.0, abs=2e-4 * t["f_joints[3]"].max())
+    assert alone == run(tmp_path, 3, "crank", "-var", "steps", "1000")[0]
+
+
+@pytest.mark.mpi
+def test_a_rope_tears_alike_on_any_number_of_ranks(tmp_path):
+    """Dumps are the same byte for byte; the rope has torn at its strength, the others hold, and what it held is heat."""
+    alone, output = run(tmp_path, 1, "ropes", "-var", "steps", "400")
+    t = table(output)
+    assert t["f_ropes[4]"][-1] == 1.0 and t["f_ropes[1][1]"][-1] == 0.0 and t["f_ropes[2][1]"][-1] > 0.3
+    assert t["f_ropes[2]"][-1] == pytest.approx(0.3**2 / (2 * 0.1), rel=0.02)
+    assert t["TotEng"] == pytest.approx(t["TotEng"][0], rel=1e-3)
+    assert alone == run(tmp_path, 3, "ropes", "-var", "steps", "400")[0]
+
+
 def last_table(output):
     """Log of the last ``run``: these scripts have a ``run 0`` before it, which finds the time step."""
     return table(output[output.rindex("   Step ") :])
