@@ -12,10 +12,11 @@ import numpy as np
 from ...effects.envelope import Envelope
 from ...errors import Problem
 from ...model import shapes
+from ...model.boxes import nearest_boxes, overlaps_in_plan
 from ...model.planes import Plane
 from ...model.system import System
 from ...scene.formatting import number
-from ...scene.scene import Box, SceneRecord
+from ...scene.scene import Box, SceneRecord, Solid
 from .pairs import any_friction, frictions, pair_rules
 from .words import ContactModel
 
@@ -109,22 +110,24 @@ def one_sided(scene: SceneRecord, system: System) -> list[Problem]:
         return []
     told = {(i, j) for i, j, _, _ in pair_rules(scene, system.names)}
     low, high = system.bounds(system.position)
-    nearest, pair = math.inf, (0, 0)
-    for i in np.flatnonzero(rough).tolist():
-        apart = np.maximum(np.maximum(low - high[i], low[i] - high), 0.0)
-        apart = np.where(bare & ~(system.still & system.still[i]), (apart**2).sum(1), np.inf)
-        apart[[j for pair in told if i in pair for j in pair]] = np.inf
-        if apart.min() < nearest:
-            nearest, pair = float(apart.min()), (i, int(apart.argmin()))
-    if nearest == math.inf:
+
+    def counts(i: np.ndarray, j: np.ndarray) -> np.ndarray:
+        right = rough[i] & bare[j] & ~(system.still[i] & system.still[j])
+        for k in np.flatnonzero(right).tolist() if told else ():
+            right[k] = (min(i[k], j[k]), max(i[k], j[k])) not in told
+        return right
+
+    found = nearest_boxes(low, high, counts)
+    if found is None:
         return []
+    nearest, *pair = found
     one, other, mu = *(solids[m].name for m in pair), number(own[pair[0]])
     return [
         Problem(
             solids[pair[0]].spans.get("friction"),
             f"friction {mu} of {one} works as 0 against {other}, which has none: two objects have the root of the product",
             f"write friction {mu} in control, or contact {one} {other} {{ friction {mu} }}; or friction 0 in {other}",
-            severity="warning" if nearest <= float(system.spacing[list(pair)].max()) ** 2 else "note",
+            severity="warning" if nearest <= float(system.spacing[pair].max()) ** 2 else "note",
         )
     ]
 
@@ -146,7 +149,8 @@ class _Slopes:
     def on_floors(self) -> Iterator[Slope]:
         tangent = math.hypot(*self.gravity[:2]) / -self.gravity[2]
         for plane in floors(self.envelope) if tangent > LEVEL else ():
-            yield from self._worst(tangent, np.array(frictions(self.scene, plane.effect)), self.sliding, plane.effect, plane.name)
+            mu = np.array(frictions(self.scene, plane.effect))
+            yield from self._worst(tangent, mu[self.sliding], np.flatnonzero(self.sliding), plane.effect, plane.name)
 
     def on_solids(self, own: np.ndarray) -> Iterator[Slope]:
         """Cuboids that never move, and what is above each at the start; ``own`` friction of each object, shape (M,)."""
@@ -155,25 +159,26 @@ class _Slopes:
             return
         up = -self.gravity / np.linalg.norm(self.gravity)
         low, high = system.bounds(system.position)
-        told: dict[int, list[tuple[int, float]]] = {}
+        told: dict[int, dict[int, float]] = {}
         for i, j, mu, _ in pair_rules(self.scene, system.names):
-            told.setdefault(i, []).append((j, mu))
-            told.setdefault(j, []).append((i, mu))
-        for k in np.flatnonzero(system.still).tolist():
-            solid = self.scene.solids[k]
-            cosine = float(np.abs(up @ np.array(solid.rotation)).max())
-            tangent = math.sqrt(max(0.0, 1.0 - cosine**2)) / cosine
-            if tangent <= LEVEL or not isinstance(solid.shape, Box):
-                continue
-            above = self.sliding & (low[:, :2] < high[k, :2]).all(1) & (high[:, :2] > low[k, :2]).all(1)
-            above &= (low + high)[:, 2] > (low + high)[k, 2]
-            mu = np.sqrt(own * own[k])
-            for other, of_pair in told.get(k, ()):
-                mu[other] = of_pair
-            yield from self._worst(tangent, mu, above, solid.name, solid.name)
+            told.setdefault(i, {})[j] = told.setdefault(j, {})[i] = mu
+        tangents = {k: t for k in np.flatnonzero(system.still).tolist() if (t := self._tangent(self.scene.solids[k], up)) > LEVEL}
+        for k, near in sorted(overlaps_in_plan(low, high, np.array(list(tangents), int)), key=lambda found: found[0]):
+            above = near[self.sliding[near] & ((low + high)[near, 2] > low[k, 2] + high[k, 2])]
+            usual, of_pairs = np.sqrt(own[above] * own[k]), told.get(k, {})
+            mu = np.array([of_pairs.get(m, mu) for m, mu in zip(above.tolist(), usual.tolist())])
+            yield from self._worst(tangents[k], mu, above, *2 * (self.scene.solids[k].name,))
+
+    def _tangent(self, solid: Solid, up: np.ndarray) -> float:
+        """Slope of the side of a cuboid that is nearest to level, 0 of other shapes; ``up`` is against gravity."""
+        if not isinstance(solid.shape, Box):
+            return 0.0
+        cosine = float(np.abs(up @ np.array(solid.rotation)).max())
+        return math.sqrt(max(0.0, 1.0 - cosine**2)) / cosine
 
     def _worst(self, tangent: float, mu: np.ndarray, among: np.ndarray, *names: str) -> Iterator[Slope]:
-        mu = np.where(among & (mu > 0.0), mu, np.inf)
-        m = int(mu.argmin())
-        if mu[m] < np.inf:
-            yield Slope(tangent, float(mu[m]), m, *names)
+        """The slope for the object that slides most, of these numbers, with their friction, both of shape (K,)."""
+        rough = np.flatnonzero(mu > 0.0)
+        if len(rough):
+            n = rough[mu[rough].argmin()]
+            yield Slope(tangent, float(mu[n]), int(among[n]), *names)

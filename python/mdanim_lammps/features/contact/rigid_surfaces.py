@@ -16,7 +16,7 @@ import numpy as np
 
 from ...effects.context import Context
 from ...model import shapes
-from ...model.boxes import box_pairs
+from ...model.boxes import overlaps_in_plan
 from ...model.contact_body import FINE, ContactBody
 from ...model.inertia import mobility
 from ...model.system import System
@@ -89,16 +89,11 @@ def loads(system: System, asked: np.ndarray) -> np.ndarray:
     shape (K,)."""
     low, high = system.bounds(system.position)
     weight = np.where(system.still, 0.0, system.mass_of)
-    flat = [np.column_stack([at[:, :2], np.zeros(len(at))]) for at in (low, high)]
-    pairs = [np.zeros((0, 2), int), *(np.column_stack([i, j]) for i, j in box_pairs(*flat))]
-    below, over = np.concatenate([*pairs, *(both[:, ::-1] for both in pairs)]).T
-    above = ((low[over, :2] < high[below, :2]) & (high[over, :2] > low[below, :2])).all(axis=1)
-    above &= low[over, 2] + high[over, 2] > low[below, 2] + high[below, 2]
-    below, over = below[above], over[above]
-    order = np.lexsort((over, below))
-    below, over = below[order], over[order]
-    ends = np.searchsorted(below, asked), np.searchsorted(below, asked, side="right")
-    return np.array([1.0 + weight[over[a:b]].sum() / weight[m] for m, a, b in zip(asked.tolist(), *ends)])
+    found = np.ones(len(weight))
+    for m, near in overlaps_in_plan(low, high, asked):
+        above = near[low[near, 2] + high[near, 2] > low[m, 2] + high[m, 2]]
+        found[m] += weight[above].sum() / weight[m]
+    return found[asked]
 
 
 def moduli(context: Context) -> np.ndarray:

@@ -10,6 +10,7 @@ import numpy as np
 from ...effects.envelope import Envelope
 from ...effects.margin import Margin
 from ...errors import Problem
+from ...model.boxes import overlaps_in_plan
 from ...model.cells import TooThin, end_share, fill_cells
 from ...model.shapes import LAWS, thickness
 from ...model.system import System
@@ -174,14 +175,10 @@ def _stress(env: Envelope, g: float) -> np.ndarray:
     weight = system.mass_of * g * np.maximum(0.0, env.reach.weight_left)
     floor = size[:, 0] * size[:, 1]
     above = np.zeros(len(weight))
-    for start in range(0, len(weight), 256):  # the table of all pairs would be too large for a crowd
-        part = slice(start, start + 256)
-        wide = [
-            np.minimum(high[part, None, a], high[None, :, a]) - np.maximum(low[part, None, a], low[None, :, a]) for a in (0, 1)
-        ]
-        over = np.maximum(wide[0], 0.0) * np.maximum(wide[1], 0.0) / floor
-        over[low[None, :, 2] < high[part, None, 2] - 0.25 * size[part, None, 2]] = 0.0
-        above[part] = over @ weight
+    for m, near in overlaps_in_plan(low, high, np.flatnonzero(_soft(env))):
+        near = near[low[near, 2] >= high[m, 2] - 0.25 * size[m, 2]]
+        wide = np.minimum(high[m, :2], high[near, :2]) - np.maximum(low[m, :2], low[near, :2])
+        above[m] = (wide[:, 0] * wide[:, 1] / floor[near]) @ weight[near]
     volume = np.add.reduceat(system.volume, system.first[:-1])
     return (weight + above) * size[:, 2] / volume
 
