@@ -16,6 +16,7 @@
 #include "update.h"
 #include "utils.h"
 
+#include <algorithm>
 #include <cstring>
 #include <stdexcept>
 
@@ -148,6 +149,24 @@ const FixMdanimDrive::Ways &FixMdanimDrive::ways(int i)
     last_molecule = molecule;
   }
   return *last_ways;
+}
+
+std::set<int> FixMdanimDrive::present() const
+{
+  std::vector<int> ids, here;
+  for (const auto &[molecule, motion] : motions) ids.push_back(molecule);
+  here.assign(ids.size(), 0);
+  for (int i = 0; i < atom->nlocal; ++i) {
+    if (!(atom->mask[i] & groupbit)) continue;
+    const int molecule = of_objects ? static_cast<int>(atom->molecule[i]) : 0;
+    const auto found = std::lower_bound(ids.begin(), ids.end(), molecule);
+    if (found != ids.end() && *found == molecule) here[found - ids.begin()] = 1;
+  }
+  MPI_Allreduce(MPI_IN_PLACE, here.data(), static_cast<int>(here.size()), MPI_INT, MPI_MAX, world);
+  std::set<int> found;
+  for (std::size_t n = 0; n < ids.size(); ++n)
+    if (here[n]) found.insert(ids[n]);
+  return found;
 }
 
 // Velocities are those of the step that has come to an end.

@@ -7,6 +7,7 @@
 #include "lammps/fix_base.h"
 
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -34,6 +35,8 @@ class FixMdanimDrive : public mdanim::FixBase {
     mdanim::DrivenPlace before, now;
   };
   const Ways *ways_of(int molecule);
+  // Objects of which some particle is in the group, on any rank; all ranks ask together.
+  std::set<int> present() const;
 
  private:
   void read_command(int narg, char **arg);

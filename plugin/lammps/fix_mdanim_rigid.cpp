@@ -82,7 +82,8 @@ void FixMdanimRigid::tell_numbers()
         {"touching", true, [&] { return static_cast<double>(account.touching); }},
         {"near", true, [this] { return static_cast<double>(touching.contact.near_pairs()); }},
         {"worst_bound", false, [&] { return account.worst_bound; }},
-        {"most_touching", false, [&] { return static_cast<double>(account.most_touching); }}});
+        {"most_touching", false, [&] { return static_cast<double>(account.most_touching); }},
+        {"work", true, [this] { return force->mvv2e * touching.work; }}});
 }
 
 int FixMdanimRigid::setmask() { return INITIAL_INTEGRATE | FINAL_INTEGRATE | PRE_NEIGHBOR; }
@@ -91,6 +92,7 @@ void FixMdanimRigid::init()
 {
   FixBase::init();
   reset_dt();
+  touching.init(name());
   if (particles.find_objects(largest(has_new_particles) > 0.0)) bodies.clear();
   has_new_particles = false;
   for (const auto &[molecule, inertia] : given)
@@ -139,6 +141,7 @@ void FixMdanimRigid::locate()
     bodies[n].aside = present[n] == 0;
     touching.lay_aside(static_cast<int>(n), bodies[n].aside);
   }
+  touching.lay_driven_aside();
 }
 
 // --- a step ---
@@ -206,7 +209,7 @@ double FixMdanimRigid::compute_scalar()
   double more = 0.0;
   for (std::size_t n = 0; n < bodies.size(); ++n) more += bodies[n].translation() + bodies[n].rotation() - of_particles[n];
   const TouchAccount &account = touching.contact.account;
-  return force->mvv2e * (more + account.energy + account.heat + account.damped + account.let_go + drag_loss);
+  return force->mvv2e * (more + account.energy + account.heat + account.damped + account.let_go + drag_loss - touching.work);
 }
 
 double FixMdanimRigid::compute_array(int row, int column)

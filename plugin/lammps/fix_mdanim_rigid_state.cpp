@@ -83,6 +83,7 @@ StateRecords FixMdanimRigid::pack() const
     if (particles.moves(i)) rows.add(i, &own);
   }
   rows.pack(records);
+  touching.put_driven(STATE_VERSION, records);
   touching.contact.each_pair_record([&](int a, int b, const Bytes &bytes) {
     records[{touching.contact.solid(a).id, touching.contact.solid(b).id}] =
         ByteWriter().put(STATE_VERSION).put(bytes.data(), bytes.size()).take();
@@ -90,8 +91,11 @@ StateRecords FixMdanimRigid::pack() const
   return records;
 }
 
-void FixMdanimRigid::unpack(const StateRecords &records)
+void FixMdanimRigid::unpack(const StateRecords &all)
 {
+  StateRecords records;    // of bodies and pairs
+  for (const auto &[key, bytes] : all)
+    if (key.b != 0 || !touching.is_driven(key.a)) records[key] = bytes;
   if (particles.find_objects()) bodies.clear();
   locate();
   const ObjectTable &objects = particles.objects();
@@ -134,6 +138,7 @@ void FixMdanimRigid::unpack(const StateRecords &records)
     }
     touching.take(name(), objects, bodies, std::move(poses));
     touching.read_contacts(records, STATE_VERSION, rest);
+    touching.read_driven(STATE_VERSION, all);
     for (int n = 0; n < objects.size(); ++n)
       if (rest[n]) touching.set_push(n, {kept[n].push, kept[n].turning_push});
   } catch (const std::runtime_error &) {

@@ -2,16 +2,20 @@
 
 #include "lammps/rigid_touching.h"
 
+#include "lammps/fix_mdanim_drive.h"
 #include "lammps/shared_file.h"
 
 #include "error.h"
 #include "fmt/format.h"
 #include "lammps.h"
+#include "modify.h"
+#include "update.h"
 #include "utils.h"
 
 #include <algorithm>
 #include <cstring>
 #include <map>
+#include <set>
 #include <stdexcept>
 #include <utility>
 
@@ -25,7 +29,7 @@ static const char *const STYLE = "fix mdanim/rigid";
 
 std::vector<Keyword> RigidTouching::words()
 {
-  return {{"shapes", "FILE"},          {"contact", "OMEGA EPS"}, {"objects", ""},
+  return {{"shapes", "FILE"},          {"contact", "OMEGA EPS"}, {"objects", ""},   {"drive", "FIXID"},
           {"plane", "x|y|z lo|hi at"}, {"pair", "A B mu beta"},  {"exclude", "A B"}};
 }
 
@@ -53,6 +57,7 @@ void RigidTouching::read_word(int iarg, char **arg)
     contact.settings.frequency = number(lmp, iarg + 1, arg, "OMEGA", 0.0, false);
     contact.settings.onset = number(lmp, iarg + 2, arg, "EPS", 0.0, false);
   }
+  if (is("drive")) drive_id = arg[iarg + 1];
   if (is("objects")) contact.settings.objects = true;
   if (is("plane")) read_plane(iarg, arg);
   if (is("pair")) read_pair(iarg, arg);
@@ -148,6 +153,7 @@ void RigidTouching::take(const std::string &fix, const ObjectTable &objects, con
   poses = std::move(in_bodies);
   pushes.assign(bodies.size(), {});
   solid_of.assign(bodies.size(), NO_SHAPE);
+  driven.clear();
   is_current = false;
   if (!is_on()) return;
   std::vector<Solid> solids;
@@ -159,6 +165,8 @@ void RigidTouching::take(const std::string &fix, const ObjectTable &objects, con
     Solid one;
     one.id = id;
     one.held = given.held;
+    one.driven = given.driven;
+    if (given.driven) driven.push_back({id, static_cast<int>(solids.size()), given.pose, {}, {}, {}});
     one.material = given.material;
     if (given.held) {
       one.shape = given.shape.placed({});
@@ -188,14 +196,86 @@ void RigidTouching::place_all(const std::vector<RigidBody> &bodies)
     if (solid_of[n] != NO_SHAPE) contact.place(solid_of[n], bodies[n]);
 }
 
+// Where driven shapes are now; velocities are the means of the step that ends here.
+void RigidTouching::place_driven()
+{
+  const double per_dt = 1.0 / lmp->update->dt;
+  for (DrivenSolid &one : driven) {
+    const FixMdanimDrive::Ways *const ways = drive ? drive->ways_of(one.id) : nullptr;
+    if (!ways)
+      lmp->error->all(FLERR,
+                      "{}: object {} (molecule ID) is driven, and no motion is given for it; write drive and the ID of a fix "
+                      "mdanim/drive that has one",
+                      STYLE, one.id);
+    const Vec3 centre = ways->now.of(one.start.place);
+    const Quaternion &before = ways->before.q, turned = ways->now.q * Quaternion{before.w, -before.x, -before.y, -before.z};
+    const double twice = turned.w < 0.0 ? -2.0 : 2.0;    // of the half angle, which is small
+    one.way = centre - ways->before.of(one.start.place);
+    one.turned = {twice * turned.x, twice * turned.y, twice * turned.z};
+    contact.place_driven(one.solid, centre, matrix(ways->now.q * one.start.q), per_dt * one.way, per_dt * one.turned);
+  }
+}
+
+// -F dx with the mean of the forces before and after the step.
+void RigidTouching::count_work(bool moves)
+{
+  for (DrivenSolid &one : driven) {
+    const Push now{contact.solid(one.solid).force, contact.solid(one.solid).torque};
+    if (moves) work -= 0.5 * (dot(one.push.force + now.force, one.way) + dot(one.push.torque + now.torque, one.turned));
+    one.push = now;
+  }
+}
+
 void RigidTouching::step(const std::vector<RigidBody> &bodies, double dt)
 {
   if (!is_on()) return;
   place_all(bodies);
+  place_driven();
   contact.step(dt);
+  count_work(dt > 0.0);
   for (std::size_t n = 0; n < bodies.size(); ++n)
     if (solid_of[n] != NO_SHAPE) pushes[n] = {contact.solid(solid_of[n]).force, contact.solid(solid_of[n]).torque};
   is_current = true;
+}
+
+// --- driven shapes ---
+
+void RigidTouching::init(const std::string &fix)
+{
+  if (drive_id.empty()) return;
+  drive = dynamic_cast<FixMdanimDrive *>(lmp->modify->get_fix_by_id(drive_id));
+  if (!drive) lmp->error->all(FLERR, "{}: drive {} is not the ID of a fix mdanim/drive", fix, drive_id);
+}
+
+void RigidTouching::lay_driven_aside()
+{
+  if (driven.empty() || !drive) return;
+  const std::set<int> present = drive->present();
+  for (const DrivenSolid &one : driven)
+    if (contact.lay_aside(one.solid, !present.count(one.id))) is_current = false;
+}
+
+bool RigidTouching::is_driven(int id) const
+{
+  const auto found = shapes.find(id);
+  return found != shapes.end() && found->second.driven;
+}
+
+void RigidTouching::put_driven(std::int64_t version, StateRecords &records) const
+{
+  for (const DrivenSolid &one : driven) records[{one.id, 0}] = ByteWriter().put(version).put(one.push).take();
+}
+
+void RigidTouching::read_driven(std::int64_t version, const StateRecords &records)
+{
+  for (DrivenSolid &one : driven) {
+    const auto found = records.find({one.id, 0});
+    if (found == records.end()) continue;
+    ByteReader reader(found->second.data(), found->second.size(), name_of_record(found->first));
+    reader.expect_version(version);
+    one.push = reader.get<Push>();
+    reader.expect_end();
+  }
 }
 
 // --- records ---

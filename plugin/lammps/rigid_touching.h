@@ -17,6 +17,10 @@
 #include <string>
 #include <vector>
 
+namespace LAMMPS_NS {
+class FixMdanimDrive;
+}
+
 namespace mdanim {
 
 std::string name_of_record(const StateKey &key);    // begins messages
@@ -32,6 +36,9 @@ class RigidTouching {
   // Refuses words that do not belong together, and shapes that contact does not know on each other.
   void check() const;
   bool is_on() const { return contact.settings.objects || !contact.settings.planes.empty(); }
+
+  // Looks up the fix that drives some of the shapes, if there is one; to be called before each run. `fix` begins messages.
+  void init(const std::string &fix);
 
   // Takes bodies that have just been made, but for those that are laid aside, or have come with these poses of their shapes.
   // `fix` begins messages.
@@ -54,6 +61,14 @@ class RigidTouching {
   }
   int solid(int body) const { return solid_of[body]; }
 
+  // Driven shapes of which no particle is driven any more are laid aside, too.
+  void lay_driven_aside();
+  // Driven shapes: a record of the push on each, and the work of moving them against it since the fix was made.
+  bool is_driven(int id) const;
+  void put_driven(std::int64_t version, StateRecords &records) const;
+  void read_driven(std::int64_t version, const StateRecords &records);
+  double work = 0.0;
+
   // Contacts from the records of pairs, and at planes from what is left of those of bodies. Throws std::runtime_error.
   void read_contacts(const StateRecords &records, std::int64_t version, std::vector<std::optional<ByteReader>> &at_planes);
 
@@ -61,7 +76,15 @@ class RigidTouching {
   bool is_current = false;    // whether pushes are those of the present places and velocities
 
  private:
+  struct DrivenSolid {
+    int id, solid;
+    Pose start;          // at time 0 of its drive
+    Vec3 way, turned;    // of the last step
+    Push push;
+  };
   void place_all(const std::vector<RigidBody> &bodies);
+  void place_driven();
+  void count_work(bool moves);
   void read_plane(int iarg, char **arg);
   void read_pair(int iarg, char **arg);
 
@@ -70,6 +93,9 @@ class RigidTouching {
   std::vector<Pose> poses;             // of bodies
   std::vector<Push> pushes;
   std::vector<int> solid_of;    // number among the bodies of contact
+  std::vector<DrivenSolid> driven;
+  std::string drive_id;
+  LAMMPS_NS::FixMdanimDrive *drive = nullptr;
   bool has_file = false;
 };
 

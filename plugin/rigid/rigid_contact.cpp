@@ -41,6 +41,15 @@ void RigidContact::place(int n, const RigidBody &body)
   one.fastest_turn = std::sqrt(dot(body.L, body.L)) * std::max({body.over.x, body.over.y, body.over.z});
 }
 
+void RigidContact::place_driven(int n, const Vec3 &centre, const Matrix3 &turn, const Vec3 &velocity, const Vec3 &spin)
+{
+  Solid &one = solids[n];
+  one.move_to(centre, turn);
+  one.velocity = velocity;
+  one.spin = spin;
+  one.fastest_turn = std::sqrt(dot(spin, spin));
+}
+
 // A pair may have friction and damping of its own.
 TouchLaw RigidContact::law_with(double yields, Material material, std::pair<int, int> ids) const
 {
@@ -89,7 +98,8 @@ void RigidContact::step(double dt)
   account.touching = 0;
   for (Solid &one : solids) {
     one.begin_step();
-    one.stir = one.held ? 0.0 : dt * (std::sqrt(dot(one.velocity, one.velocity)) + one.fastest_turn * one.shape.bound());
+    one.stir =
+        one.held && !one.driven ? 0.0 : dt * (std::sqrt(dot(one.velocity, one.velocity)) + one.fastest_turn * one.shape.bound());
   }
   const TouchStep step(dt, settings.onset, account);
   for (std::size_t k = 0; k < settings.planes.size(); ++k)

@@ -42,6 +42,8 @@ class RigidContact {
 
   // Places a body that can move, before a step.
   void place(int n, const RigidBody &body);
+  // Places one that is driven, with its velocities in the step that ends here.
+  void place_driven(int n, const Vec3 &centre, const Matrix3 &turn, const Vec3 &velocity, const Vec3 &spin);
   // A body that is laid aside touches nothing, and its contacts end. Returns whether this is new.
   bool lay_aside(int n, bool aside);
   // Finds the energy of contacts, and how many there are, from what they remember.

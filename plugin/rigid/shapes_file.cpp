@@ -66,11 +66,12 @@ std::map<int, GivenShape> read_shapes(const std::string &name, const std::string
     GivenShape one;
     one.material.friction = words.at_least_zero("friction");
     one.material.damping = words.from_zero_to("damping", Material::MOST_DAMPING);
-    std::string held = words.word("free or held");
+    std::string held = words.word("free, held or driven");
     one.material.gives_way = held == "usual";
-    if (one.material.gives_way) held = words.word("free or held");
-    if (held != "free" && held != "held") words.fail("a body is free or held, got " + held);
-    one.held = held == "held";
+    if (one.material.gives_way) held = words.word("free, held or driven");
+    if (held != "free" && held != "held" && held != "driven") words.fail("a body is free, held or driven, got " + held);
+    one.held = held != "free";
+    one.driven = held == "driven";
     one.pose.place = words.vector("the place");
     Quaternion &q = one.pose.q;
     q.w = words.number<double>("the rotation");

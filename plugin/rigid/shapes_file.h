@@ -14,7 +14,8 @@ namespace mdanim {
 struct GivenShape {
   Material material;
   bool held;
-  Pose pose;           // in space, when bodies are made
+  bool driven;         // of one that is held: something moves it
+  Pose pose;           // in space, when bodies are made; of one that is driven, at time 0 of its drive
   SolidShape shape;    // in its own frame
 };
 

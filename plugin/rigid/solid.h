@@ -20,7 +20,8 @@ struct Material {
 struct Solid {
   int id = 0;
   bool held = false;
-  bool aside = false;    // touches nothing
+  bool driven = false;    // held, and moves
+  bool aside = false;     // touches nothing
   Material material;
   SolidShape shape;          // in the frame of the body
   double over_mass = 0.0;    // 1/m, and 1/I about its axes; 0 of one that is held

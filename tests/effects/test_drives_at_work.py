@@ -91,6 +91,28 @@ def test_bounds_hold_and_are_near(drive):
     assert np.abs([found.low, found.high]).max() <= 4.0 * widest and way.any()
 
 
+def test_rigid_objects_touch_it_by_features(prepared):
+    """A ball on a belt rolls: friction moves it and turns it until the point that touches has the speed of the belt, v_ball =
+    2/7 v; at points of a surface it would be dragged along. Both have few particles, and the fix asks the drive where it is."""
+    speed = 0.7
+    ball = "object ball { shape sphere 4 cm position (0, 0, 4) cm density 700 elasticity rigid }\n"
+    belt = plate(f"drive velocity ({speed}, 0, 0) m/s", "(200, 20, 4) cm")
+    ready = prepared(GRAVITY + belt + ball + "control { time 0.4 s friction 0.3 }\n")
+    assert "drive drive" in next(c for c in ready.resolved.effects if c.name == "rigid").commands(ready.context)[-1]
+    assert ready.system.particles == 16
+
+    def watch(instance):
+        system = instance.system
+        first, v, x = system.first[1], instance.array("v"), instance.array("x")
+        arm, own = x[first:] - x[first:].mean(0), v[first:] - v[first:].mean(0)
+        turning = np.cross(arm, own).sum(0) / (arm[:, [0, 2]] ** 2).sum()  # about y
+        return v[first:].mean(0)[0], turning[1]
+
+    ((moves, turns),) = followed(ready, [0.4], watch)
+    assert moves == pytest.approx(2.0 / 7.0 * speed, rel=2e-3)
+    assert turns == pytest.approx(-5.0 / 7.0 * speed / 0.04, rel=2e-3)
+
+
 def test_a_placed_group_takes_its_drives_along(prepared):
     """Velocities, axes, points and keys are turned and moved with it."""
     alone = prepared(plate(ALL) + "control { time 0.4 s }\n")
@@ -111,7 +133,8 @@ def test_the_lock_says_the_same():
 
 
 @pytest.mark.parametrize(("shape", "elasticity", "frequency"), [
-    ("sphere 4 cm", "1 MPa", 3.0), ("box (6, 6, 6) cm", "300 kPa", 5.0),
+    ("sphere 4 cm", "1 MPa", 3.0), ("box (6, 6, 6) cm", "300 kPa", 5.0), ("box (6, 6, 6) cm", "rigid", 5.0),
+    ("sphere 4 cm", "rigid", 3.0),
 ])  # fmt: skip
 def test_what_lies_on_a_shaking_plate_leaves_it_at_g(prepared, shape, elasticity, frequency):
     """Amplitude (2 pi f)^2 = g, within 2 per cent: just below it presses on the plate at all times, above it lifts off. Both are
@@ -119,20 +142,24 @@ def test_what_lies_on_a_shaking_plate_leaves_it_at_g(prepared, shape, elasticity
     least = []
     for factor in (0.98, 1.02):
         amplitude = factor * G / (2 * math.pi * frequency) ** 2
+        soft = "elasticity rigid" if elasticity == "rigid" else f"elasticity {elasticity} damping 0.5"
         top = 4 if shape.startswith("sphere") else 3
-        thing = f"object it {{ shape {shape} position (0, 0, {top}) cm density 700 elasticity {elasticity} damping 0.5 }}\n"
+        thing = f"object it {{ shape {shape} position (0, 0, {top}) cm density 700 {soft} }}\n"
         shaken = plate(f"drive oscillation (0, 0, {amplitude}) m frequency {frequency} Hz phase -90 deg")
         ready = prepared(GRAVITY + shaken + thing + "control { time 1 s contact-damping 1 friction 0.3 }\n")
         times = np.arange(1.2, 1.7, 0.01) / frequency  # around the second highest point
-        least.append(min(followed(ready, times, lambda instance: instance.fix_value("contact", "touching"))))
+        fix = "rigid" if elasticity == "rigid" else "contact"
+        least.append(min(followed(ready, times, lambda instance, fix=fix: instance.fix_value(fix, "touching"))))
     assert least[0] > 0 and least[1] == 0
 
 
+@pytest.mark.parametrize("elasticity", ["1 MPa", "rigid"])
 @pytest.mark.parametrize(("speed", "friction"), [(0.4, 0.3), (0.8, 0.5)])
-def test_a_block_on_a_belt_slips_and_then_rides(prepared, speed, friction):
+def test_a_block_on_a_belt_slips_and_then_rides(prepared, speed, friction, elasticity):
     """A plate that runs at v below a block: it slips for v/(mu g), within a per cent, then rides; the work of the drive is
     m v^2, half of it heat, and the momentum that the block gets is the impulse."""
-    block = f"object block {{ shape box (8, 8, 4) cm position (0, 0, 2) cm density 500 elasticity 1 MPa friction {friction} }}\n"
+    more = f"density 500 elasticity {elasticity} friction {friction}"
+    block = f"object block {{ shape box (8, 8, 4) cm position (0, 0, 2) cm {more} }}\n"
     belt = plate(f"drive velocity ({speed}, 0, 0) m/s", "(200, 20, 4) cm", f"friction {friction}")
     ready = prepared(GRAVITY + belt + block + "control { time 1 s }\n")
     slips = speed / (friction * G)
@@ -158,11 +185,11 @@ def test_a_block_on_a_belt_slips_and_then_rides(prepared, speed, friction):
 ])  # fmt: skip
 def test_the_ledger_closes_with_the_work(prepared, drive):
     """Turntable, shaker, path: two boxes on a plate, with friction and dashpots, and on one of which the lower face is driven."""
-    boxes = "".join(
-        f"object box[{n}] {{ shape box (6, 6, 6) cm position ({x}, 5, 3.01) cm density 500 elasticity 300 kPa damping 0.1 }}\n"
-        for n, x in enumerate((-8, 6))
-    )
-    for hold in ("all", "face -z"):
+    for hold, material in (("all", "300 kPa damping 0.1"), ("face -z", "300 kPa damping 0.1"), ("all", "rigid")):
+        boxes = "".join(
+            f"object box[{n}] {{ shape box (6, 6, 6) cm position ({x}, 5, 3.01) cm density 500 elasticity {material} }}\n"
+            for n, x in enumerate((-8, 6))
+        )
         text = (
             GRAVITY
             + plate(drive).replace("hold all", f"hold {hold}")

@@ -44,7 +44,7 @@ def build_models(
     apart at this spacing, a ``hold`` without particles.
     """
     spacing = np.broadcast_to(plan_spacing(scene).of if h is None else h, len(scene.solids)).tolist()
-    shared = SharedParts(scene, driven, inside)
+    shared = SharedParts(scene, inside)
     models, problems = [], []
     for m, solid in enumerate(scene.solids):
         try:
@@ -92,10 +92,9 @@ class _Material:
 class SharedParts:
     """Makes every body and material of one scene once; lives as long as one call of build_models (bodies.Shared)."""
 
-    def __init__(self, scene: SceneRecord, driven: Container[int] = (), inside: bool = False):
+    def __init__(self, scene: SceneRecord, inside: bool = False):
         self.scene, self.inside = scene, inside
         self._made: dict[tuple, Any] = {}
-        self._driven = {solid.name for m, solid in enumerate(scene.solids) if m in driven}
         self.body = lru_cache(maxsize=None)(_make_body)
         self.material = lru_cache(maxsize=None)(_make_material)
 
@@ -109,11 +108,7 @@ class SharedParts:
     @cached_property
     def by_features(self) -> bool:
         """Whether nothing reads points of surfaces, nor particles inside (bodies.only_features)."""
-        return not self._driven and only_features(self.scene)
-
-    def is_driven(self, solid: Solid) -> bool:
-        """Whether some effect moves its held particles."""
-        return solid.name in self._driven
+        return only_features(self.scene)
 
 
 def _make_body(shape: Shape, h: float) -> _Body:

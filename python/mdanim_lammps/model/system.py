@@ -68,9 +68,14 @@ class System(Particles):
         return {kind: self.frames[kind].contact for kind in np.unique(self.contact_kind).tolist()}
 
     @cached_property
+    def held_whole(self) -> np.ndarray:
+        """Solids that are held as a whole, driven or not, bool, shape (M,)."""
+        return np.logical_and.reduceat(self.held, self.first[:-1])
+
+    @cached_property
     def still(self) -> np.ndarray:
         """Solids that are held as a whole and never move, bool, shape (M,)."""
-        return np.logical_and.reduceat(self.held, self.first[:-1]) & ~self.driven
+        return self.held_whole & ~self.driven
 
     @cached_property
     def rigid(self) -> np.ndarray:

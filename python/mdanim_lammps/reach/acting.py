@@ -45,6 +45,9 @@ class Drive:
 class Motion:
     """How an effect moves solids; all of it may be asked of any scene."""
 
+    guides = ""
+    """ID of its fix mdanim/drive, which tells other fixes where held objects are that it drives; empty where it drives nothing,
+    or where particles alone show where these are."""
     binds = False
     """Whether it holds the particles of a solid together."""
 
@@ -172,6 +175,11 @@ class Acting:
     def drives(self) -> dict[int, Drive]:
         """Motions of held particles, by the numbers of their solids."""
         return {m: drive for e in self.effects for m, drive in e.drives(self.scene).items()}
+
+    @cached_property
+    def guided(self) -> dict[int, str]:
+        """IDs of the fixes that tell where solids are that are driven, by their numbers."""
+        return {m: e.guides for e in self.effects if e.guides for m in e.drives(self.scene)}
 
     @cached_property
     def driven_at(self) -> np.ndarray:

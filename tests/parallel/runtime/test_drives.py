@@ -28,6 +28,20 @@ object club  { shape box (8, 30, 8) cm   position (0, -50, 0) cm  density 1000  
 object ball  { shape sphere 6 cm         position (0, -50, 12) cm density 900   elasticity 300 kPa }
 control { time 0.08 s  frames 100 fps  resolution 4 cm  friction 0.4 }
 """
+RIGID = """
+gravity (0, 0, -9.81) m/s^2
+ground z -0.2 m
+object table { shape box (24, 24, 8) cm  position (0, 0, 0) cm    density 1000  elasticity rigid  hold all
+  drive oscillation (0, 0, 1) cm frequency 12 Hz  drive turn (0, 0, 3) rad/s }
+object rider { shape box (8, 8, 8) cm    position (2, 1, 8.005) cm  density 700   elasticity rigid }
+object flag  { shape sphere 4 cm         position (25, 2, 0) cm   density 300   elasticity rigid  velocity (-2, 0, 1) m/s }
+object club  { shape box (8, 30, 8) cm   position (0, -50, 0) cm  density 1000  elasticity rigid  hold all
+  drive velocity (0, 0, 1) m/s  drive turn (20, 0, 0) rad/s }
+object ball  { shape sphere 6 cm         position (0, -50, 12) cm density 900   elasticity rigid }
+object rest  { shape box (8, 8, 8) cm    position (40, -60, 20) cm density 900   elasticity rigid }
+control { time 0.08 s  frames 100 fps  friction 0.4 }
+"""
+SCENES = {"elastic": SCENE, "rigid": RIGID}
 CASES = (
     matrix((2,), ["central"], name="all move ", rotate=True)
     | matrix((3,), ["peers"], name="all move ", rotate=True)
@@ -42,11 +56,16 @@ CASES = (
 )
 
 
+@pytest.fixture(scope="module", params=SCENES)
+def scene(request):
+    return request.param
+
+
 @pytest.fixture(scope="module")
-def found(tmp_path_factory):
+def found(tmp_path_factory, scene):
     """The folder of each form, all made in one start of MPI."""
     path = tmp_path_factory.mktemp("drives") / "scene.txt"
-    path.write_text(SCENE)
+    path.write_text(SCENES[scene])
     return ways(path, CASES, timeout=200.0)
 
 
@@ -68,9 +87,9 @@ def test_the_ledger_closes(found):
         assert np.abs(ledger.array("residual")).max() < 1e-3 and np.abs(ledger.array("work")).max() > 0.5
 
 
-def test_plain_lammps_gives_the_same(found, tmp_path):
+def test_plain_lammps_gives_the_same(found, tmp_path, scene):
     """The script and data of the scene, with two ranks."""
-    _, folder = readied(tmp_path, SCENE)
+    _, folder = readied(tmp_path, SCENES[scene])
     command = [plugin_path.BIN / "mpiexec", "-n", "2", plugin_path.BIN / "lmp", "-in", "in.film", "-log", "none", "-nocite"]
     done = subprocess.run(command, cwd=folder, env=plugin_path.environment(), capture_output=True, text=True, timeout=120)
     assert done.returncode == 0, done.stdout[-2000:] + done.stderr

@@ -252,7 +252,7 @@ def two_cubes(shift):
         ("shapes FILE contact 1 1 objects pair 1 1 0 0", f"1 0 0 {BOX}", "a pair is two different molecule IDs"),
         ("shapes FILE contact 1 1 objects pair 1 5 0 0", f"1 0 0 {BOX}", "pair names molecule 5, which has no shape"),
         ("shapes FILE contact 1 1 objects", f"1 -1 0 {BOX}", "line 1 of FILE: friction must be at least 0"),
-        ("shapes FILE contact 1 1 objects", "\n1 0 0 loose", "line 2 of FILE: a body is free or held, got loose"),
+        ("shapes FILE contact 1 1 objects", "\n1 0 0 loose", "line 2 of FILE: a body is free, held or driven, got loose"),
         ("shapes FILE contact 1 1 objects", "1 0 0 free 0 0 0 1 1 0 0 box 1 1 1", "the rotation is not a unit quaternion"),
         ("shapes FILE contact 1 1 objects", "1 0 0 free 0 0 0 1 0 0 0 box 1 1", "line 1 of FILE: a side is missing"),
         ("shapes FILE contact 1 1 objects", "1 0 0 free 0 0 0 1 0 0 0 torus 1 1", "cone, ellipsoid or polyhedron, got torus"),
@@ -283,6 +283,7 @@ def two_cubes(shift):
         (TOUCH, f"1 0 0 {AT} box 1e200 1 1", "line 1 of FILE: a side must be from 1e-50 to 1e+50, got 1e+200"),
         (TOUCH, f"1 0 0 {AT} {two_cubes(1e308)}", "line 1 of FILE: a corner must be within 1e+50 of the origin"),
         (TOUCH, f"1 0 0 {AT} ball 1e-310", "line 1 of FILE: the radius must be from 1e-50 to 1e+50, got 1e-310"),
+        (f"{TOUCH} drive none", f"1 0 0 {AT} ball 1", "drive none is not the ID of a fix mdanim/drive"),
         (
             TOUCH,
             f"1 0 0 {AT} cone 1 1\n2 0 0 {AT} ellipsoid 1 1 1",

@@ -88,7 +88,7 @@ def loads(system: System, asked: np.ndarray) -> np.ndarray:
     """Mass of some solids, by number and ascending, shape (K,), and of all free ones above each at the start, over its own [-],
     shape (K,)."""
     low, high = system.bounds(system.position)
-    weight = np.where(system.still, 0.0, system.mass_of)
+    weight = np.where(system.held_whole, 0.0, system.mass_of)
     found = np.ones(len(weight))
     for m, near in overlaps_in_plan(low, high, asked):
         above = near[low[near, 2] + high[near, 2] > low[m, 2] + high[m, 2]]

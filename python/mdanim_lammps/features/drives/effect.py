@@ -29,7 +29,7 @@ class Drives(Effect):
 
     styles = (("fix", "mdanim/drive"),)
     name = "drives"
-    fix = "drive"
+    fix = guides = "drive"
     order = 4
     if_off = "what is driven stands still"
 

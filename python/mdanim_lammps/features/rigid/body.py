@@ -60,7 +60,7 @@ def _across(solid) -> int:
 def by_features(scene) -> bool:
     """Whether rigid objects move, and all contacts are of shapes that know each other by their features, so that nothing reads
     points of their surfaces, nor particles inside. Held cuboids beside each other may have sides that are covered, which balls
-    alone find by features; what an effect moves is found at points."""
+    alone find by features; what an effect moves without telling where it is (reach.Motion.guides) is found at points."""
     solids = scene.solids
     if scene.liquid is not None or all(map(all_held, solids)) or any(map(is_soft, solids)) or driven(scene):
         return False

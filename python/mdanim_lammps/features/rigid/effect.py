@@ -32,6 +32,8 @@ AT_REST = 12.0
 The sum takes all contacts of a body for one, but they act at places of their own."""
 TAKEN = {HEAT: "friction_heat", DAMPED: "damping_loss", LET_GO: "let_go"}
 """Columns of the ledger, and their entries of the fix's vector."""
+WORK = "work"
+"""The same of what driven objects that are held give to rigid ones."""
 
 
 class RigidMotion(Effect):
@@ -120,8 +122,16 @@ class RigidMotion(Effect):
     def losses(self, scene):
         return tuple(TAKEN) if _may_touch(scene) else ()
 
+    def sources(self, scene):
+        return (
+            (WORK,)
+            if _may_touch(scene) and any(e.of(scene).guides and e.of(scene).drives(scene) for e in features.effects())
+            else ()
+        )
+
     def lost(self, readings):
-        return {term: self._sum(readings, TAKEN[term]) for term in self.losses(readings.context.scene)}
+        scene = readings.context.scene
+        return {term: self._sum(readings, TAKEN.get(term, term)) for term in (*self.losses(scene), *self.sources(scene))}
 
     def penetration(self, readings):
         return max(readings.fix_value(part.fix, "deepest") for part in touching.parts(readings.context))

@@ -67,12 +67,15 @@ def meets_objects(context: Context) -> np.ndarray:
     whole = context.reach.system
     if not objects_touch(context) or not (_are(whole, on_objects) & whole.rigid).any():
         return np.zeros(len(context.system.names), bool)  # the same in all parts of a scene
-    return _pairs(context.system, only_balls_move(context.scene.solids))
-
-
-def _pairs(system: System, balls: bool) -> np.ndarray:
+    system, balls = context.system, only_balls_move(context.scene.solids)
     uncovered = np.array([frame.open is None or not len(frame.open) for frame in system.frames])[system.contact_kind]
-    return _are(system, on_objects) & (system.rigid | (system.still & (uncovered | balls)))
+    return _are(system, on_objects) & (system.rigid | ((system.still | guided(context)) & (uncovered | balls)))
+
+
+def guided(context: Context) -> np.ndarray:
+    """Solids that are held as a whole and driven by a fix that tells where they are, bool, shape (M,)."""
+    names = {context.scene.solids[m].name for m in context.reach.acting.guided}
+    return context.system.held_whole & np.array([name in names for name in context.system.names], bool)
 
 
 def meets_planes(context: Context) -> np.ndarray:
@@ -140,6 +143,9 @@ def words(context: Context, part: Part, shapes: str) -> str:
     found = [f"shapes {shapes} contact {omega(context)!r} {ONSET * frequency(context).thin!r}"]
     found += ["objects"] if part.objects else []
     found += [f"plane {'xyz'[p.axis]} {'lo' if p.sign > 0 else 'hi'} {float(p.at)!r}" for p in planes]
+    drives = {context.reach.acting.guided[m] for m in sorted(context.reach.acting.guided)}
+    if part.objects and (guided(context) & part.shapes).any():
+        found += [f"drive {fix}" for fix in sorted(drives)]
     if part.objects:
         found += [f"pair {i + 1} {j + 1} {mu!r} {beta!r}" for (i, j), (mu, beta) in _pair_laws(context, part).items()]
     own, usual = _of(context, frictions(scene)), dampings(context)
@@ -159,11 +165,12 @@ def shapes_text(context: Context, part: Part) -> str:
     own, shares, solids = _of(context, frictions(context.scene)), dampings(context), _solids(context)
     blows = _restitutions(context)
     given = any(e is not None for e in blows)
-    lines = ["# Shapes, written by mdanim-lammps: molecule mu beta [usual] free|held  place  quaternion  shape\n"]
+    lines = ["# Shapes, written by mdanim-lammps: molecule mu beta [usual] free|held|driven  place  quaternion  shape\n"]
+    driven = guided(context)
     for m in np.flatnonzero(part.shapes).tolist():
         place, shape = in_file(solids[m])
         pose = [*place, *quaternion(np.array(solids[m].rotation))]
-        kind = "free" if part.bodies[m] else "held"
+        kind = "free" if part.bodies[m] else "driven" if driven[m] else "held"
         kind = f"usual {kind}" if given and blows[m] is None else kind  # where one of two has a restitution, it counts alone
         lines.append(f"{m + 1} {digits([own[m], shares[m]])} {kind} {digits(pose)} {shape}\n")
     return "".join(lines)
