@@ -74,14 +74,38 @@ def places(words):
     return (numbers[:3], numbers[:3]), axis
 
 
+def springs(kind, words, patches, frequency):
+    """Stiffness across the gap and of directions, and these."""
+    (place_a, place_b), axis = places(words)
+    mobility = sum(patch.mobility(place) for patch, place in zip(patches, (place_a, place_b)))
+    directions = {"hinge": [axis], "weld": np.eye(3), "slider": np.eye(3)}.get(kind, [])
+    of_directions = max((sum(e @ p.inverse_S @ e for p in patches) for e in directions), default=1.0)
+    return frequency**2 / mobility, frequency**2 / of_directions, directions
+
+
+def rates(kind, words, patches, frequency):
+    """Rates that a joint adds to the particles of both patches by the sums of docs/fix_mdanim_joint.md, and its largest rate: the
+    largest eigenvalue of J M^-1 J^T, of the rows J of weights times the root of their stiffness."""
+    k, k_turning, directions = springs(kind, words, patches, frequency)
+    ends, _ = places(words)
+    rows = [(k, [patch.weights(place) for patch, place in zip(patches, ends)])]
+    rows += [(k_turning, [patch.direction(e) for patch in patches]) for e in directions]
+    added = [np.zeros(len(patch.mass)) for patch in patches]
+    for stiffness, weights in rows:
+        for rate, weight, patch in zip(added, weights, patches):
+            rate += stiffness * np.abs(weight) * sum(np.abs(w).sum() for w in weights) / patch.mass
+    joined = np.array([np.sqrt(stiffness) * np.r_[weights[0], -weights[1]] for stiffness, weights in rows])
+    mass = np.concatenate([patch.mass for patch in patches])
+    return added, np.linalg.eigvalsh(joined / mass @ joined.T).max()
+
+
 def forces(kind, words, patches, x, v, frequency, spring, damping):
     """Forces on the particles of both patches, and some of what the fix tells."""
     (place_a, place_b), axis = places(words)
-    mobility = sum(patch.mobility(place) for patch, place in zip(patches, (place_a, place_b)))
-    k = spring if kind == "spring" else frequency**2 / mobility
-    directions = {"hinge": [axis], "weld": np.eye(3), "slider": np.eye(3)}.get(kind, [])
-    square = mobility / max((sum(e @ p.inverse_S @ e for p in patches) for e in directions), default=1.0)
-    arguments = (kind, words, patches, x, k, k * square, directions, 0.3)
+    k, k_turning, directions = spring, 0.0, []
+    if kind != "spring":
+        k, k_turning, directions = springs(kind, words, patches, frequency)
+    arguments = (kind, words, patches, x, k, k_turning, directions, 0.3)
     found = [-slope(lambda: energy(*arguments), one) for one in x]
     told = {}
     at = [patch.weights(place) @ one for patch, place, one in zip(patches, (place_a, place_b), x)]
@@ -116,7 +140,7 @@ def forces(kind, words, patches, x, v, frequency, spring, damping):
             free /= np.linalg.norm(free)
             told["rate"] = spin @ free
             spin = spin - free * told["rate"]
-        torque = -damping * square * spin
+        torque = -damping * k_turning / k * spin
         found[0] += patches[0].couple(torque, x[0])
         found[1] += patches[1].couple(-torque, x[1])
     return found, told

@@ -104,6 +104,23 @@ def test_forces_are_those_of_the_twin(tmp_path, kind, soft):
         assert told[lab.COLUMNS.index(column)] == pytest.approx(value, rel=1e-6, abs=1e-9), column
 
 
+@pytest.mark.parametrize("kind", [kind for kind in KINDS if kind != "spring"])
+def test_rates_are_those_of_the_page(tmp_path, kind):
+    """Loose particles that a joint alone connects stay together at a step just below 2/sqrt(rate), and fly apart just above; the
+    rate is that of the twin, below the sums that the page gives for particles, and from frequency^2 to twice that."""
+    loose = [replace(body, v=1e-6 * np.random.default_rng(n).normal(size=body.v.shape)) for n, body in enumerate(bodies(()))]
+    patches = [twin.Patch(body.mass, body.x) for body in loose]
+    added, largest = twin.rates(kind, KINDS[kind], patches, FREQUENCY)
+    assert 0.999 * FREQUENCY**2 < largest < 2.001 * FREQUENCY**2
+    assert largest < 1.001 * max(rate.max() for rate in added)
+    for share in (0.98, 1.02):
+        words = f"{kind} 1 2 {KINDS[kind]} frequency {FREQUENCY}"
+        with lab.World(tmp_path, loose, [words], share * 2.0 / np.sqrt(largest), gravity=(0, 0, 0), elastic=(1, 2)) as joined:
+            joined.run(45)  # a swing grows by exp(0.4) a step
+            moved = np.abs(joined.array("x") - joined.body.x).max()
+        assert moved < 1e-6 if share < 1.0 else moved > 1e-4
+
+
 def place(kind, n):
     """Where a joint holds on to a body."""
     numbers = np.array(re.findall(r"-?[\d.]+", KINDS[kind])[:6] + ["0"] * 3, float)
