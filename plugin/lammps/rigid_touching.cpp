@@ -113,18 +113,6 @@ void RigidTouching::check() const
   }
   if (!has_file || !(settings.frequency > 0.0))
     lmp->error->all(FLERR, "{}: contact needs 'shapes FILE' and 'contact OMEGA EPS'", STYLE);
-  if (!settings.objects) return;
-  std::map<std::pair<SolidShape::ShapeKind, bool>, int> seen;    // the first object of each kind, held or free
-  for (const auto &[id, one] : shapes) {
-    seen.emplace(std::pair{one.shape.kind(), one.held}, id);
-    for (const auto &[of, first] : seen)
-      if (first != id && !(one.held && of.second) && !know_each_other(one.shape.kind(), of.first))
-        lmp->error->all(
-            FLERR,
-            "{}: objects {} and {} (molecule IDs) have the shapes {} and {}, and contact by features does not know these "
-            "two on each other; leave one out of the file, and let it touch by fix mdanim/contact",
-            STYLE, first, id, shapes.at(first).shape.name(), one.shape.name());
-  }
 }
 
 // --- bodies ---

@@ -29,6 +29,10 @@ struct SolidPair {
 
 // Contacts of a pair of polyhedra.
 void touch_polyhedra(const TouchStep &step, SolidPair &pair, Solid &a, Solid &b, const TouchLaw &law);
+// Contacts of two bodies of which one is a cylinder, a cone or a torus, and none a ball or an ellipsoid.
+void touch_with_curves(const TouchStep &step, SolidPair &pair, Solid &a, Solid &b, const TouchLaw &law);
+// The contact of an ellipsoid with any other shape.
+void touch_ellipsoid_and_other(const TouchStep &step, SolidPair &pair, Solid &egg, Solid &host, const TouchLaw &law);
 // Contacts of two balls, and of a ball with any other shape.
 void touch_balls(const TouchStep &step, SolidPair &pair, Solid &a, Solid &b, const TouchLaw &law);
 void touch_ball_and_other(const TouchStep &step, SolidPair &pair, Solid &ball, Solid &host, const TouchLaw &law);
@@ -39,6 +43,8 @@ struct SolidPlane {
   double at = 0.0;
 };
 void touch_plane(const TouchStep &step, std::vector<Touch> &touches, Solid &one, const SolidPlane &plane, const TouchLaw &law);
+
+constexpr double NEAR = 0.02;    // over the thinnest part: how near features are that are remembered
 
 // Width of the ramps about edges over the thinnest part.
 inline double ramp_of(const Solid &solid) { return 0.0625 * solid.shape.thin(); }

@@ -9,7 +9,7 @@
 
 namespace mdanim {
 
-static constexpr std::size_t MOST_MOVING = 8;    // points that move over one body
+static constexpr std::size_t MOST_MOVING = 26;    // points that move over one body
 
 void RigidContact::take(std::vector<Solid> now)
 {
@@ -81,15 +81,22 @@ void RigidContact::touch_pair(const TouchStep &step, SolidPair &pair)
   const double reach = a.shape.bound() + b.shape.bound();
   if (pair.touches.empty() && (pair.asleep > 0.0 || dot(between, between) > reach * reach)) return;
   const TouchLaw law = law_of(a, b);
-  const bool is_ball = a.shape.kind() == SolidShape::BALL, is_other_ball = b.shape.kind() == SolidShape::BALL;
+  const auto is = [](const Solid &one, SolidShape::ShapeKind kind) { return one.shape.kind() == kind; };
+  const bool is_ball = is(a, SolidShape::BALL), is_other_ball = is(b, SolidShape::BALL);
   if (is_ball && is_other_ball)
     touch_balls(step, pair, a, b, law);
   else if (is_ball)
     touch_ball_and_other(step, pair, a, b, law);
   else if (is_other_ball)
     touch_ball_and_other(step, pair, b, a, law);
-  else
+  else if (is(a, SolidShape::ELLIPSOID))
+    touch_ellipsoid_and_other(step, pair, a, b, law);
+  else if (is(b, SolidShape::ELLIPSOID))
+    touch_ellipsoid_and_other(step, pair, b, a, law);
+  else if (is(a, SolidShape::POLYHEDRON) && is(b, SolidShape::POLYHEDRON))
     touch_polyhedra(step, pair, a, b, law);
+  else
+    touch_with_curves(step, pair, a, b, law);
 }
 
 void RigidContact::step(double dt)
@@ -160,15 +167,20 @@ void RigidContact::put_at_planes(int n, ByteWriter &writer) const
 // Features that the shapes have, and finite numbers.
 static void check(const std::vector<Touch> &touches, const Solid &a, const Solid *b, const ByteReader &reader)
 {
-  const auto corners = [](const Solid &one) { return std::max<std::size_t>(one.shape.polyhedron().corners().size(), 1); };
-  const auto edges = [](const Solid &one) { return one.shape.polyhedron().edges().size(); };
-  const auto sides = [](const Solid *one) { return one ? std::max<std::size_t>(one->shape.polyhedron().faces().size(), 1) : 1; };
+  const auto corners = [](const Solid &one) { return std::max<std::size_t>(one.shape.corners().size(), 1); };
+  const auto curves = [](const Solid &one) { return one.shape.curves().size(); };
+  const auto sides = [&](const Solid *one) {
+    if (!one) return std::size_t(1);
+    return std::max<std::size_t>(
+        one->shape.kind() == SolidShape::POLYHEDRON ? one->shape.polyhedron().faces().size() : curves(*one), 1);
+  };
   for (const Touch &touch : touches) {
     std::size_t first = 0, second = 1, side = 1;
     if (touch.kind == Touch::CORNER) first = corners(a), side = sides(b);
     if (touch.kind == Touch::CORNER_OF_OTHER && b) first = corners(*b), side = sides(&a);
-    if (touch.kind == Touch::EDGES && b) first = edges(a), second = edges(*b);
-    if (touch.kind == Touch::MOVING || touch.kind == Touch::MOVING_OF_OTHER) first = MOST_MOVING;
+    if ((touch.kind == Touch::EDGES || touch.kind == Touch::CURVES) && b) first = curves(a), second = curves(*b);
+    if (touch.kind == Touch::MOVING) first = MOST_MOVING, side = sides(b);
+    if (touch.kind == Touch::MOVING_OF_OTHER) first = MOST_MOVING, side = sides(&a);
     const auto is_below = [](std::int32_t number, std::size_t count) {
       return number >= 0 && static_cast<std::size_t>(number) < count;
     };

@@ -53,6 +53,15 @@ SolidShape SolidShape::ellipsoid(const Vec3 &half_axes)
   return shape;
 }
 
+SolidShape SolidShape::torus(double radius, double tube)
+{
+  SolidShape shape;
+  shape.its_kind = TORUS;
+  shape.size = {radius, tube, 0.0};
+  shape.its_thin = 2.0 * tube;
+  return shape;
+}
+
 SolidShape SolidShape::placed(const Pose &pose) const
 {
   const Matrix3 turn = matrix(pose.q);
@@ -66,14 +75,68 @@ SolidShape SolidShape::placed(const Pose &pose) const
   if (its_kind == BALL) bound = middle + size.x;
   if (its_kind == CYLINDER || its_kind == CONE) bound = middle + std::sqrt(size.x * size.x + size.z * size.z);
   if (its_kind == ELLIPSOID) bound = middle + std::max({size.x, size.y, size.z});
+  if (its_kind == TORUS) bound = middle + size.x + size.y;
   shape.its_bound = bound;
+  shape.find_curves();
   return shape;
 }
 
 const char *SolidShape::name() const
 {
-  static const char *const NAMES[] = {"polyhedron", "ball", "cylinder", "cone", "ellipsoid"};
+  static const char *const NAMES[] = {"polyhedron", "ball", "cylinder", "cone", "ellipsoid", "torus"};
   return NAMES[its_kind];
+}
+
+// A sharp circle has its axis out of its flat face. The radius about the axis of a cone is that of a ball inside.
+void SolidShape::find_curves()
+{
+  its_curves.clear();
+  its_tip.clear();
+  for (const Polyhedron::Edge &edge : its_polyhedron.edges()) {
+    Curve line;
+    line.middle = edge.middle;
+    line.along = edge.along;
+    line.size = edge.half;
+    line.across[0] = edge.across[0];
+    line.across[1] = edge.across[1];
+    its_curves.push_back(line);
+  }
+  Curve circle;
+  circle.is_circle = true;
+  circle.any = axes[0];
+  circle.size = size.x;
+  if (its_kind == TORUS) {
+    circle.middle = its_middle;
+    circle.along = axes[2];
+    circle.thick = circle.reach = size.y;
+    its_curves.push_back(circle);
+  }
+  if (its_kind != CYLINDER && its_kind != CONE) return;
+  const double tangent = its_kind == CONE ? 0.5 * size.x / size.z : 0.0, cosine = 1.0 / std::sqrt(1.0 + tangent * tangent);
+  Curve axis;
+  axis.middle = its_middle;
+  axis.along = axes[2];
+  axis.size = size.z;
+  axis.thick = its_kind == CONE ? 0.5 * size.x * cosine : size.x;
+  axis.taper = tangent * cosine;
+  axis.reach = size.x;
+  its_curves.push_back(axis);
+  for (const double end : {-1.0, 1.0}) {
+    if (its_kind == CONE && end > 0.0) continue;
+    circle.along = end * axes[2];
+    circle.middle = its_middle + (end * size.z) * axes[2];
+    its_curves.push_back(circle);
+  }
+  if (its_kind == CYLINDER) return;
+  Polyhedron::Corner tip{its_middle + size.z * axes[2], {}, {}};
+  for (int x = -1; x <= 1; ++x)
+    for (int y = -1; y <= 1; ++y)
+      if (x != 0 || y != 0) {
+        const Vec3 out = (size.x / std::sqrt(x * x + y * y)) * ((1.0 * x) * axes[0] + (1.0 * y) * axes[1]);
+        const Vec3 way = out - (2.0 * size.z) * axes[2];
+        tip.ways.push_back((1.0 / length(way)) * way);
+      }
+  its_tip.push_back(tip);
 }
 
 void SolidShape::each_feature(const std::function<void(const Vec3 &, const Vec3 &)> &visit) const
@@ -91,6 +154,7 @@ void SolidShape::each_feature(const std::function<void(const Vec3 &, const Vec3 
           const auto turned = [this](const Vec3 &a) { return a.x * axes[0] + a.y * axes[1] + a.z * axes[2]; };
           visit(its_middle + turned(at), turned(n));
         }
+  if (its_kind == TORUS) each_feature_of_torus(visit);
   if (its_kind == CYLINDER || its_kind == CONE)
     for (const double end : {-1.0, 1.0}) {
       if (its_kind == CONE && end > 0.0) {
@@ -102,6 +166,20 @@ void SolidShape::each_feature(const std::function<void(const Vec3 &, const Vec3 
         const Vec3 at = its_middle + size.x * out + (end * size.z) * axes[2];
         visit(at, out);
         visit(at, end * axes[2]);
+      }
+    }
+}
+
+// Around the tube, at eight places of the ring.
+void SolidShape::each_feature_of_torus(const std::function<void(const Vec3 &, const Vec3 &)> &visit) const
+{
+  constexpr double DIAGONAL = 0.70710678118654752440;
+  for (const double x : {-1.0, -DIAGONAL, 0.0, DIAGONAL, 1.0})
+    for (const double sign : {-1.0, 1.0}) {
+      const Vec3 out = x * axes[0] + (sign * std::sqrt(1.0 - x * x)) * axes[1];
+      for (const double up : {-1.0, -DIAGONAL, 0.0, DIAGONAL, 1.0}) {
+        const Vec3 n = std::sqrt(1.0 - up * up) * out + up * axes[2];
+        visit(its_middle + size.x * out + size.y * n, n);
       }
     }
 }
@@ -191,14 +269,13 @@ Polyhedron::Foot SolidShape::nearest(const Vec3 &x) const
   if (its_kind == POLYHEDRON) return its_polyhedron.nearest(x);
   if (its_kind == CYLINDER || its_kind == CONE) return nearest_of_revolution(from_middle);
   if (its_kind == ELLIPSOID) return nearest_of_ellipsoid(from_middle);
+  if (its_kind == TORUS) {
+    const Vec3 from = x - closest(its_curves[0], x).at;
+    const double far = length(from);
+    return {far > 0.0 ? (1.0 / far) * from : axes[2], far - size.y};
+  }
   const double distance = length(from_middle);
   return {distance > 0.0 ? (1.0 / distance) * from_middle : axes[0], distance - size.x};
-}
-
-bool know_each_other(SolidShape::ShapeKind a, SolidShape::ShapeKind b)
-{
-  const auto is_polyhedron = [](SolidShape::ShapeKind kind) { return kind == SolidShape::POLYHEDRON; };
-  return a == SolidShape::BALL || b == SolidShape::BALL || (is_polyhedron(a) && is_polyhedron(b));
 }
 
 }    // namespace mdanim

@@ -5,9 +5,11 @@
 
 #include "numbers/vec3.h"
 #include "rigid/body.h"
+#include "rigid/curve.h"
 #include "rigid/polyhedron.h"
 
 #include <functional>
+#include <vector>
 
 namespace mdanim {
 
@@ -19,7 +21,7 @@ struct Pose {
 
 class SolidShape {
  public:
-  enum ShapeKind { POLYHEDRON, BALL, CYLINDER, CONE, ELLIPSOID };
+  enum ShapeKind { POLYHEDRON, BALL, CYLINDER, CONE, ELLIPSOID, TORUS };
 
   static SolidShape of(Polyhedron polyhedron);
   static SolidShape ball(double radius);
@@ -27,6 +29,8 @@ class SolidShape {
   static SolidShape cylinder(double radius, double height);
   static SolidShape cone(double radius, double height);
   static SolidShape ellipsoid(const Vec3 &half_axes);
+  // A ring about the third axis: radius of its middle line, and of its tube, the smaller one.
+  static SolidShape torus(double radius, double tube);
 
   // The same shape in the frame of its body.
   SolidShape placed(const Pose &pose) const;
@@ -38,9 +42,15 @@ class SolidShape {
   const Vec3 &axis(int k) const { return axes[k]; }
   double radius() const { return size.x; }
   double half_height() const { return size.z; }
+  double tube() const { return size.y; }    // of a torus
   const Vec3 &half_axes() const { return size; }
   double bound() const { return its_bound; }    // largest distance from the origin
   double thin() const { return its_thin; }      // thinnest part
+
+  // Corners, and the tip of a cone.
+  const std::vector<Polyhedron::Corner> &corners() const { return its_kind == CONE ? its_tip : its_polyhedron.corners(); }
+  // Edges, rims, and curves with a radius: the axes of cylinders and cones, the middle line of a torus.
+  const std::vector<Curve> &curves() const { return its_curves; }
 
   // The closest point of the surface to x in the frame of the body: its normal, and the distance, negative inside.
   Polyhedron::Foot nearest(const Vec3 &x) const;
@@ -50,15 +60,16 @@ class SolidShape {
  private:
   Polyhedron::Foot nearest_of_revolution(const Vec3 &from_middle) const;
   Polyhedron::Foot nearest_of_ellipsoid(const Vec3 &from_middle) const;
+  void each_feature_of_torus(const std::function<void(const Vec3 &, const Vec3 &)> &visit) const;
+  void find_curves();
 
   ShapeKind its_kind = BALL;
   Polyhedron its_polyhedron;
   Vec3 its_middle, axes[3] = {{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}};
-  Vec3 size;    // radius and half of the height, or half axes
+  Vec3 size;    // radius and half of the height, half axes, or the radii of a torus
+  std::vector<Polyhedron::Corner> its_tip;
+  std::vector<Curve> its_curves;
   double its_bound = 0.0, its_thin = 0.0;
 };
-
-// Whether contact by features knows two shapes on each other.
-bool know_each_other(SolidShape::ShapeKind a, SolidShape::ShapeKind b);
 
 }    // namespace mdanim

@@ -52,8 +52,13 @@ SolidShape read_shape(LineWords &words)
     const double x = words.extent("a half axis"), y = words.extent("a half axis"), z = words.extent("a half axis");
     return SolidShape::ellipsoid({x, y, z});
   }
+  if (kind == "torus") {
+    const double radius = words.extent("the radius"), tube = words.extent("the radius of the tube");
+    if (!(tube < radius)) words.fail("the tube of a torus must be thinner than its ring");
+    return SolidShape::torus(radius, tube);
+  }
   if (kind == "polyhedron") return read_polyhedron(words);
-  words.fail("a shape is box, ball, cylinder, cone, ellipsoid or polyhedron, got " + kind);
+  words.fail("a shape is box, ball, cylinder, cone, ellipsoid, torus or polyhedron, got " + kind);
 }
 
 }    // namespace

@@ -7,13 +7,12 @@
 namespace mdanim {
 
 // The dashpot has beta times critical damping, 2 beta sqrt(k/lambda), with lambda of both along n.
-Touch TouchStep::born(Touch::TouchKind kind, const TouchLaw &law, const Solid &a, const Solid *b, const Vec3 &x,
-                      const Vec3 &n) const
+Touch TouchStep::born(Touch::TouchKind kind, const TouchLaw &law, double yields)
 {
   Touch touch;
   touch.kind = kind;
   touch.stiffness = law.stiffness;
-  touch.yields = a.yields_at(x, n) + (b ? b->yields_at(x, n) : 0.0);
+  touch.yields = yields;
   touch.damping = law.damping > 0.0 ? 2.0 * law.damping * std::sqrt(law.stiffness / touch.yields) / law.stiffness : 0.0;
   return touch;
 }
@@ -92,7 +91,8 @@ void TouchStep::book(Solid &a, Solid *b, Touch &touch, double part, const Contac
   account.deepest = std::max(account.deepest, touch.memory.depth - touch.memory.offset);
   const auto add_to_sums = [&](Solid &one) {
     const auto along = [&](double stick) {    // sum of lambda n n and `stick` t t
-      return touch.kind == Touch::EDGES ? one.yields_any : (1.0 - stick) * one.yields + stick * one.yields_any;
+      return touch.kind == Touch::EDGES || touch.kind == Touch::CURVES ? one.yields_any
+                                                                       : (1.0 - stick) * one.yields + stick * one.yields_any;
     };
     const double s = (b ? 2.0 : 1.0) * touch.stiffness;
     one.stiffness_sum += s * along(ContactLaw::STICK);
@@ -145,27 +145,45 @@ Touch *TouchStep::meet(std::vector<Touch> &list, Touch::TouchKind kind, int numb
   return &list.back();
 }
 
-void TouchStep::press_moving(std::vector<Touch> &list, Touch::TouchKind kind, int number, const TouchLaw &its_law, Solid &a,
-                             Solid *b, const Vec3 &x, const Vec3 &n, double depth) const
+void TouchStep::begin(Touch &touch, const Solid &a, const Solid *b, const Meeting &at, bool came) const
 {
-  Touch *const met = meet(list, kind, number, its_law, a, b, x, n, depth, {});
-  if (!met) return;
-  Touch &touch = *met;
+  if (came && !is_first())
+    came_from(touch, at.depth + dt * dot(relative_velocity(a, b, at.x), at.n));
+  else
+    overlaps(touch, at.depth);
+}
+
+void TouchStep::press_moving(std::vector<Touch> &list, Touch::TouchKind kind, int number, const TouchLaw &law, Solid &a, Solid *b,
+                             const Vec3 &x, const Vec3 &n, double depth) const
+{
+  if (Touch *const touch = meet(list, kind, number, law, a, b, x, n, depth, {}))
+    press_between(*touch, law, a, b, {x, n, depth, 1.0}, nullptr);
+}
+
+void TouchStep::press_between(Touch &touch, const TouchLaw &its_law, Solid &a, Solid *b, const Meeting &at,
+                              const PartSlope *slope) const
+{
   const ContactLaw law = law_of(touch, its_law);
-  ContactForce<double> push = pressure(touch, law, 1.0, depth);
-  Vec3 force = push.press * n;
+  ContactForce<double> push = pressure(touch, law, at.part, at.depth);
+  Vec3 force = push.press * at.n;
+  if (slope) {
+    force -= push.surface_energy * slope->by_place;
+    const Vec3 torque = push.surface_energy * slope->by_turn;
+    a.torque -= torque;
+    if (b) b->torque += torque;
+  }
   if (law.friction > 0.0) {
     // The way that the material of one went over that of the other, step by step.
     Vec3 away = b ? b->in_space(touch.anchor) : touch.anchor;
-    away += dt * relative_velocity(a, b, x);
-    away -= dot(away, n) * n;
-    friction(touch, law, 1.0, away, n, push);
+    away += dt * relative_velocity(a, b, at.x);
+    away -= dot(away, at.n) * at.n;
+    friction(touch, law, at.part, away, at.n, push);
     const Vec3 left = push.kept * away;
     touch.anchor = b ? b->in_body(left) : left;
     force += push.pull + push.drag;
   }
-  apply(a, b, x, force);
-  book(a, b, touch, 1.0, push);
+  apply(a, b, at.x, force);
+  book(a, b, touch, at.part, push);
 }
 
 }    // namespace mdanim

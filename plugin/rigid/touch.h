@@ -14,14 +14,15 @@ namespace mdanim {
 
 // Plain values: records hold them as they are.
 struct Touch {
-  enum TouchKind : std::int32_t { CORNER, CORNER_OF_OTHER, EDGES, MOVING, MOVING_OF_OTHER };
+  enum TouchKind : std::int32_t { CORNER, CORNER_OF_OTHER, EDGES, MOVING, MOVING_OF_OTHER, CURVES };
   TouchKind kind = CORNER;
-  std::int32_t first = 0, second = 0;    // features: a corner, two edges, a moving point
-  std::int32_t side = 0;                 // of the host of a corner
+  std::int32_t first = 0, second = 0;    // features: a corner, two edges or curves, a moving point
+  std::int32_t side = 0;                 // of the host of a corner or a moving point
   double stiffness = 0.0;                // k [N/m]
   double damping = 0.0;                  // dashpot over k [s]
   double yields = 0.0;                   // acceleration of the depth over the force [1/kg]
   Vec3 anchor;    // corners: in the host; edges: places along both; moving points: way from the anchor, in the host's frame
+  Vec3 place;     // of curves, which may meet at several: in the host. Of an ellipsoid: the normal
   ContactMemory<double> memory;
   double energy = 0.0;    // now, with that of sticking [J]
 };
@@ -47,6 +48,17 @@ struct TouchAccount {
   int most_touching = 0;                            // contacts of one body, in this run
 };
 
+// A contact now: at x in space, at the depth d below a surface with the outward normal n in space.
+struct Meeting {
+  Vec3 x, n;
+  double depth = 0.0, part = 1.0;
+};
+
+// The gradient of the part of a contact that counts, by the places and the rotation of the first body about x.
+struct PartSlope {
+  Vec3 by_place, by_turn;
+};
+
 // One evaluation of contacts: forces on bodies, and the account.
 class TouchStep {
  public:
@@ -58,7 +70,10 @@ class TouchStep {
 
   // A contact that is born at x. `depth_before`: that of the step before, where it came through the surface; else it overlaps
   // from the beginning, without a force.
-  Touch born(Touch::TouchKind kind, const TouchLaw &law, const Solid &a, const Solid *b, const Vec3 &x, const Vec3 &n) const;
+  Touch born(Touch::TouchKind kind, const TouchLaw &law, const Solid &a, const Solid *b, const Vec3 &x, const Vec3 &n) const
+  { return born(kind, law, a.yields_at(x, n) + (b ? b->yields_at(x, n) : 0.0)); }
+  // The same where its depth yields so to its force.
+  static Touch born(Touch::TouchKind kind, const TouchLaw &law, double yields);
   static void came_from(Touch &touch, double depth_before) { touch.memory.depth = std::min(0.0, depth_before); }
   static void overlaps(Touch &touch, double depth) { touch.memory.offset = touch.memory.depth = depth; }
   // Velocity of the point x of `a` over that of `b`, or of a plane.
@@ -66,6 +81,12 @@ class TouchStep {
   void end(Touch &touch, double depth) const;
   // Ends a contact that is still pressed.
   void let_go(Touch &touch, double depth, double part) const;
+  // The same of one whose place is not known any more.
+  void let_go(Touch &touch) const
+  {
+    account.let_go += touch.energy - touch.memory.stick_energy;
+    end(touch, touch.memory.depth);
+  }
 
   ContactLaw law_of(const Touch &touch, const TouchLaw &law) const
   { return {touch.stiffness, onset, law.friction, touch.damping}; }
@@ -89,6 +110,10 @@ class TouchStep {
   // with this anchor. Null where there is none, or has ended.
   Touch *meet(std::vector<Touch> &list, Touch::TouchKind kind, int number, const TouchLaw &law, const Solid &a, const Solid *b,
               const Vec3 &x, const Vec3 &n, double depth, const Vec3 &anchor) const;
+  // Begins a contact: `came` where it came through the surface or over an edge, else it overlaps without a force.
+  void begin(Touch &touch, const Solid &a, const Solid *b, const Meeting &at, bool came) const;
+  // A contact whose points move over both bodies. `slope` may be null: that of a part that is 1.
+  void press_between(Touch &touch, const TouchLaw &law, Solid &a, Solid *b, const Meeting &at, const PartSlope *slope) const;
   // A point of `a` that moves over its surface, as the lowest of a ball: at x in space, at the depth d below a surface with the
   // outward normal n. Finds its contact in the list, or makes or ends it.
   void press_moving(std::vector<Touch> &list, Touch::TouchKind kind, int number, const TouchLaw &law, Solid &a, Solid *b,

@@ -16,6 +16,7 @@ class PolyhedronHost {
   PolyhedronHost(const Polyhedron &shape, double ramp) : shape(shape), ramp(ramp) {}
 
   int sides() const { return static_cast<int>(shape.faces().size()); }
+  bool is_flat(int) const { return true; }
   Vec3 normal(int side, const Vec3 &) const { return shape.faces()[side].normal; }
   double depth(int side, const Vec3 &x) const { return shape.faces()[side].at - dot(shape.faces()[side].normal, x); }
   double outside(const Vec3 &x) const { return shape.outside(x); }
@@ -81,7 +82,7 @@ void touch_corners(const TouchStep &step, std::vector<Touch> &touches, Touch::To
                    Solid &b, const Host &host, const TouchLaw &law, double ramp, double margin, bool stale)
 {
   if (!stale && near.empty()) return;
-  const std::vector<Polyhedron::Corner> &corners = a.shape.polyhedron().corners();
+  const std::vector<Polyhedron::Corner> &corners = a.shape.corners();
   const Vec3 between = b.in_body(a.centre - b.centre);
   const auto in_host = [&](const Vec3 &own) { return between + b.in_body(a.in_space(own)); };
   if (stale) {

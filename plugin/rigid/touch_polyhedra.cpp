@@ -9,7 +9,6 @@
 
 namespace mdanim {
 
-static constexpr double MARGIN = 0.02;       // over the thinnest part: how near features are that are remembered
 static constexpr int MOST_CROSSINGS = 64;    // pairs of directions of edges that are tried to separate two bodies
 
 static double length(const Vec3 &a) { return std::sqrt(dot(a, a)); }
@@ -269,7 +268,7 @@ void touch_edges(const TouchStep &step, SolidPair &pair, Solid &a, Solid &b, con
 void touch_polyhedra(const TouchStep &step, SolidPair &pair, Solid &a, Solid &b, const TouchLaw &law)
 {
   if (pair.touches.empty() && (pair.asleep > 0.0 || are_separated(pair, a, b))) return;
-  const double margin = MARGIN * thinner(a, b);
+  const double margin = NEAR * thinner(a, b);
   const bool stale = pair.known_for < 0.0;
   if (stale) pair.known_for = margin;
   const PolyhedronHost of_a(a.shape.polyhedron(), ramp_of(a)), of_b(b.shape.polyhedron(), ramp_of(b));

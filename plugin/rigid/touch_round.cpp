@@ -3,6 +3,7 @@
 
 #include "rigid/pair.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace mdanim {
@@ -29,6 +30,54 @@ void touch_ball_and_other(const TouchStep &step, SolidPair &pair, Solid &ball, S
   const Polyhedron::Foot nearest = host.shape.nearest(in_host);
   const Vec3 n = host.in_space(nearest.normal);
   step.press_moving(pair.touches, Touch::MOVING, 0, law, ball, &host, place - radius * n, n, radius - nearest.distance);
+}
+
+// --- ellipsoids ---
+
+// Where an ellipsoid is touched by a plane with the normal n, from its middle and in the frame of its body, and the mean of both
+// radii of its curvature there: its support function is h = |D n| with D the half axes, and the radii are the eigenvalues of the
+// second derivatives of h.
+struct EggPoint {
+  Vec3 at;
+  double radius;
+  EggPoint(const Solid &one, const Vec3 &n)
+  {
+    const Vec3 &half = one.shape.half_axes();
+    const double along[3] = {dot(n, one.shape.axis(0)), dot(n, one.shape.axis(1)), dot(n, one.shape.axis(2))},
+                 square[3] = {half.x * half.x, half.y * half.y, half.z * half.z};
+    double h = 0.0, fourth = 0.0;
+    for (int k = 0; k < 3; ++k) h += square[k] * along[k] * along[k], fourth += square[k] * square[k] * along[k] * along[k];
+    h = std::sqrt(h);
+    for (int k = 0; k < 3; ++k) at += (square[k] * along[k] / h) * one.shape.axis(k);
+    radius = 0.5 * ((square[0] + square[1] + square[2]) / h - fourth / (h * h * h));
+  }
+};
+
+// The ball that fits the ellipsoid where its normal is n touches the host with a normal nearer to the one sought: both are
+// opposite in the end. The contact remembers its normal as the first guess.
+void touch_ellipsoid_and_other(const TouchStep &step, SolidPair &pair, Solid &egg, Solid &host, const TouchLaw &law)
+{
+  constexpr int MOST_STEPS = 100;
+  constexpr double ENOUGH = 1e-26;    // square of the way of the normal
+  const Vec3 middle = host.in_body(middle_of(egg) - host.centre), &half = egg.shape.half_axes();
+  const Polyhedron::Foot from_middle = host.shape.nearest(middle);
+  if (pair.touches.empty() && from_middle.distance >= std::max({half.x, half.y, half.z})) return;
+  Vec3 n = pair.touches.empty() ? from_middle.normal : pair.touches[0].place;
+  const auto in_egg = [&](const Vec3 &a) { return egg.in_body(host.in_space(a)); };
+  const auto in_host = [&](const Vec3 &a) { return host.in_body(egg.in_space(a)); };
+  Vec3 x;
+  double depth = 0.0;
+  for (int k = 0; k < MOST_STEPS; ++k) {
+    const EggPoint point(egg, in_egg(-1.0 * n));
+    x = middle + in_host(point.at);
+    const Polyhedron::Foot foot = host.shape.nearest(x + point.radius * n);
+    depth = point.radius - foot.distance;
+    const Vec3 way = foot.normal - n;
+    n = foot.normal;
+    if (dot(way, way) < ENOUGH) break;
+  }
+  step.press_moving(pair.touches, Touch::MOVING, 0, law, egg, &host, host.place(x), host.in_space(n), depth);
+  if (!pair.touches.empty()) pair.touches[0].place = n;
 }
 
 // --- planes ---
@@ -65,11 +114,11 @@ class OnPlane {
     if (Touch *const touch = step.meet(touches, Touch::CORNER, number, law, one, nullptr, x, plane.n, d, x))
       step.press(*touch, law, one, nullptr, x, d, 1.0, {}, plane.n);
   }
-  void rim(int first, const Vec3 &middle, double radius) const
+  void rim(int first, const Vec3 &middle, double radius, double tube = 0.0) const
   {
     const Vec3 axis = one.in_space(one.shape.axis(2));
     const Rim points(axis, one.in_space(one.shape.axis(0)), plane.n);
-    for (int k = 0; k < 4; ++k) moving(first + k, middle + radius * points.out[k]);
+    for (int k = 0; k < 4; ++k) moving(first + k, middle + radius * points.out[k] - tube * plane.n);
   }
 
  private:
@@ -116,6 +165,9 @@ void touch_plane(const TouchStep &step, std::vector<Touch> &touches, Solid &one,
       break;
     case SolidShape::ELLIPSOID:
       on.moving(0, middle - one.in_space(lowest_of_ellipsoid(one, plane.n)));
+      break;
+    case SolidShape::TORUS:
+      on.rim(0, middle, shape.radius(), shape.tube());
       break;
   }
 }

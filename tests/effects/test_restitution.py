@@ -7,6 +7,7 @@ from mdanim_lammps.engine.commands import physics
 from mdanim_lammps.engine.instance import Instance
 from mdanim_lammps.errors import SceneError
 from mdanim_lammps.scene.parse import parse_scene
+from paths import MESHES
 
 BALL = (
     "object ball {{ shape sphere 10 cm  position (0, 0, {z}) cm  density 1000  elasticity rigid  "
@@ -128,15 +129,15 @@ def test_damping_from_restitution():
 
 
 def test_shapes_that_touch_at_their_surfaces_are_told(prepared):
-    """A torus on an object and on the ground, a cylinder on an object."""
+    """A mesh that is not convex, on an object and on the ground."""
     text = "ground z 0 m\n" + SLAB.format(more="").replace("-10) cm", "11) cm")
-    for name, shape in (("ring", "torus 10 cm 3 cm"), ("can", "cylinder 5 cm 10 cm"), ("cube", "box (10, 10, 10) cm")):
-        x = {"ring": -30, "can": 0, "cube": 30}[name]
+    concave = f'mesh "{MESHES}/dumbbell.obj" scale 0.03'
+    for name, shape in (("barbell", concave), ("can", "cylinder 5 cm 10 cm"), ("cube", "box (10, 10, 10) cm")):
+        x = {"barbell": -30, "can": 0, "cube": 30}[name]
         text += f"object {name} {{ shape {shape} position ({x}, 0, 30) cm density 1000 elasticity rigid restitution 0.5 }}\n"
     told = [w.message for w in prepared("gravity (0, 0, -9.81)\n" + text + CONTROL.format(mu=0, more="")).warnings]
     assert [m.partition(":")[0] for m in told if "restitution" in m] == [
-        "restitution of ring does not act on other objects and planes",
-        "restitution of can does not act on other objects",
+        "restitution of barbell does not act on other objects and planes"
     ]
 
 

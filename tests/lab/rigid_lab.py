@@ -121,6 +121,14 @@ def ellipsoid(half_axes, density=600.0, **more) -> Rigid:
     return Rigid(f"ellipsoid {' '.join(map(repr, a.tolist()))}", mass, moments, a / 2, 2 * a.min()).put(**more)
 
 
+def torus(radius, tube, density=600.0, **more) -> Rigid:
+    """A ring about its third axis, by the radii of its middle line and of its tube."""
+    mass = density * 2 * np.pi**2 * radius * tube**2
+    across = mass * (4 * radius**2 + 5 * tube**2) / 8
+    moments = np.array([across, across, mass * (radius**2 + 0.75 * tube**2)])
+    return Rigid(f"torus {radius!r} {tube!r}", mass, moments, np.array([radius / 2, radius / 2, tube / 2]), 2 * tube).put(**more)
+
+
 class World:
     """An instance with rigid bodies. The time step is 0.35 of 1/frequency, if nothing else is told."""
 

@@ -11,12 +11,12 @@ from ...model import shapes
 from ...model.build import lattice_model, single_cell_model
 from ...model.cover import beside_each_other
 from ...model.inertia import tensor
-from ...scene.scene import Box, Sphere
+from ...scene.scene import Box, Mesh, Sphere
 from .shapes import is_rigid, on_objects, only_balls_move
 
-ACROSS, AT_SURFACE = 2, 4
-"""Cells across its thinnest part: the least that have an inside; and where it touches others at points of its surface, a third of
-a cell apart: a torus of 2 rolls down a slope with 0.96 of its acceleration, one of 4 with 0.995."""
+ACROSS, ROUND = 2, 4
+"""Cells across its thinnest part: the least that have an inside; and of what is round, or touches others at points of its
+surface, a third of a cell apart: a torus of 2 rolls so down a slope with 0.96 of its acceleration, one of 4 with 0.995."""
 
 
 class RigidBody(BodyKind):
@@ -36,8 +36,8 @@ class RigidBody(BodyKind):
         return _across(solid)
 
     def spacing(self, scene, h):
-        """Two cells across, four of shapes without known features; no coarser than the scene where there is a liquid or something
-        soft, whose forces find the body at its particles and at points as far apart as these."""
+        """Two cells across, four of what is round or has no known features; no coarser than the scene where there is a liquid or
+        something soft, whose forces find the body at its particles and at points as far apart as these."""
         finest = h if scene.liquid is not None or any(is_soft(s) for s in scene.solids) else math.inf
         return lambda solid: min(finest, shapes.thickness(solid.shape) / _across(solid))
 
@@ -54,7 +54,7 @@ class RigidBody(BodyKind):
 
 
 def _across(solid) -> int:
-    return ACROSS if on_objects(solid.shape) else AT_SURFACE
+    return ACROSS if isinstance(solid.shape, Box | Sphere | Mesh) and on_objects(solid.shape) else ROUND
 
 
 def by_features(scene) -> bool:

@@ -110,7 +110,7 @@ class RigidMotion(Effect):
             Problem(
                 solid.spans["restitution"],
                 f"restitution of {solid.name} does not act on {' and '.join(where)}: such shapes touch there at their surfaces",
-                "write contact-damping in control, or make it a box or a sphere",
+                "write contact-damping in control, or make it of convex shapes",
                 severity="warning",
             )
             for solid, where in found.values()

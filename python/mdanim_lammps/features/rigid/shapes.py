@@ -9,21 +9,21 @@ import numpy as np
 
 from ...bodies import all_held
 from ...model.polyhedron import polyhedron
-from ...scene.scene import Box, Cone, Cylinder, Ellipsoid, Mesh, Shape, Solid, Sphere
+from ...scene.scene import Box, Cone, Cylinder, Ellipsoid, Mesh, Shape, Solid, Sphere, Torus
 from .words import Rigid
 
-ROUND = (Cylinder, Cone, Ellipsoid)
-"""Known on planes alone."""
+KNOWN = (Box, Sphere, Ellipsoid, Cylinder, Cone, Torus)
+"""Shapes with features; of meshes those that are convex."""
 
 
 def on_objects(shape: Shape) -> bool:
     """Whether the fix knows the features of a shape on others of that kind."""
-    return isinstance(shape, Box | Sphere) or (isinstance(shape, Mesh) and polyhedron(shape) is not None)
+    return isinstance(shape, KNOWN) or (isinstance(shape, Mesh) and polyhedron(shape) is not None)
 
 
 def on_planes(shape: Shape) -> bool:
     """The same on planes."""
-    return isinstance(shape, ROUND) or on_objects(shape)
+    return on_objects(shape)
 
 
 def only_balls_move(solids: Sequence[Solid]) -> bool:
@@ -52,6 +52,8 @@ def in_file(solid: Solid) -> tuple[list[float], str]:
         case Cone():  # the centre of mass is a quarter of the height above the base, the origin in the middle
             kind, sizes = "cone", (shape.radius, shape.height)
             place = place + np.array(solid.rotation) @ (0.0, 0.0, 0.25 * shape.height)
+        case Torus():
+            kind, sizes = "torus", (shape.major, shape.minor)
         case Mesh() if (body := polyhedron(shape)) is not None:
             faces = " ".join(f"{len(face)} {' '.join(map(str, face))}" for face in body.faces)
             return place.tolist(), f"polyhedron {len(body.corner)} {digits(body.corner.ravel())} {len(body.faces)} {faces}"
