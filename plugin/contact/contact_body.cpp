@@ -82,7 +82,7 @@ ContactBody::ContactBody(const ContactBodyArrays &given)
 void ContactBody::take_line(const ContactBodyArrays &given)
 {
   need(given.radius > 0.0 && std::isfinite(given.radius), "the radius of its particles is not a length");
-  need(!given.depth && given.open == 0, "a line is no host");
+  need(!given.depth && given.open == 0, "a line is not a host");
   need(cells[0] == number && cells[1] == 1 && cells[2] == 1 && given.points == number,
        "a line has a cell and a point a particle");
   for (int n = 0; n < number; ++n) need(given.cell[n] == n, "points of a line do not ascend");

@@ -76,7 +76,7 @@ class ContactBody {
 
   bool operator==(const ContactBody &other) const;    // the same arrays
   bool is_cuboid() const { return depth_grid.empty() && !is_line(); }
-  // A line of round particles touches others with its points, and is no host.
+  // A line of round particles touches others with its points, and is never a host.
   bool is_line() const { return radius_of_points > 0.0; }
   double radius() const { return radius_of_points; }    // of the surface around each point [m]; 0 where points lie on the surface
   const std::optional<RigidFrame> &frame() const { return rigid; }    // none of a body that deforms

@@ -8,6 +8,7 @@
 namespace mdanim {
 
 static constexpr double ALONE = 2.0;     // stiffness where only the dense points of one body act, over that of points of both
+static constexpr double LINE = 0.2;      // the same of a line of particles, of which each bears all that it meets
 static constexpr double ONSET = 0.05;    // eps over the spacing
 
 static ContactLaw law_of(const ContactObject &owner, double density, double kappa, double friction, double damping)
@@ -22,8 +23,8 @@ ContactLaw ContactSettings::law_of_pair(const ContactObject &owner, const Contac
   const ContactObject &lower = ascend ? owner : host, &higher = ascend ? host : owner;    // so that both laws have the same bits
   const double h = std::max(lower.body->spacing(), higher.body->spacing());
   const bool line = lower.body->is_line() || higher.body->is_line();
-  const bool both = !line && lower.body->is_cuboid() == higher.body->is_cuboid();
-  const double kappa = (both ? 1.0 : ALONE) * stiffness * 2.0 * lower.young * higher.young / (lower.young + higher.young) / h;
+  const double part = line ? LINE : lower.body->is_cuboid() == higher.body->is_cuboid() ? 1.0 : ALONE;
+  const double kappa = part * stiffness * 2.0 * lower.young * higher.young / (lower.young + higher.young) / h;
   double mu = std::sqrt(lower.friction * higher.friction), beta = mu > 0.0 ? damping : 0.0;
   if (const auto own = pairs.find({lower.id, higher.id}); own != pairs.end())
     mu = own->second.friction, beta = own->second.damping;
@@ -32,7 +33,8 @@ ContactLaw ContactSettings::law_of_pair(const ContactObject &owner, const Contac
 
 ContactLaw ContactSettings::law_at_plane(const ContactObject &one) const
 {
-  const double kappa = (one.body->is_cuboid() ? 1.0 : ALONE) * stiffness * one.young / one.body->spacing();
+  const double part = one.body->is_line() ? LINE : one.body->is_cuboid() ? 1.0 : ALONE;
+  const double kappa = part * stiffness * one.young / one.body->spacing();
   return law_of(one, one.density, kappa, one.friction, one.friction > 0.0 ? damping : 0.0);
 }
 

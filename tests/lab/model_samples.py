@@ -4,7 +4,20 @@
 import numpy as np
 from mdanim_lammps.errors import Span
 from mdanim_lammps.model import build_models
-from mdanim_lammps.scene.scene import Box, Cone, Control, Cylinder, Ellipsoid, Mesh, SceneRecord, Solid, Sphere, Torus, Young
+from mdanim_lammps.scene.scene import (
+    Box,
+    Cone,
+    Control,
+    Cylinder,
+    Ellipsoid,
+    Mesh,
+    Rope,
+    SceneRecord,
+    Solid,
+    Sphere,
+    Torus,
+    Young,
+)
 from paths import MESHES
 
 UPRIGHT = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
@@ -17,7 +30,9 @@ SHAPES = [
     Torus(1.0, 0.3),
     Mesh(MESHES / "knot.ply", 0.01),
 ]
-"""One of each."""
+"""One of each that a lattice fills."""
+ROPE = Rope((0.0, 0.0, 0.0), (1.0, 0.0, 0.0), 0.1, 1.0)
+"""A line."""
 
 
 def shape_id(shape) -> str:

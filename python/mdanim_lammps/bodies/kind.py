@@ -24,6 +24,8 @@ class BodyKind:
     order = 1000
     deforms = True
     """Whether its particles move against each other, so that it can ring, break or fold inside out."""
+    fills = True
+    """Whether its particles fill its volume, so that cells across its thinnest part count, and others may touch it anywhere."""
     sets_spacing = True
     """Whether the thinnest part of such an object may set the spacing of the scene."""
     particle_bytes = 1500.0
@@ -49,8 +51,9 @@ class BodyKind:
         """Whether something reads particles or points of them as far apart as their spacing, so that ``resolution`` sets it."""
         return True
 
-    def particles(self, scene: SceneRecord, solid: Solid, lattice: float) -> float:
-        """Estimated number of particles of an object; ``lattice`` is that of a lattice that fills it."""
+    def particles(self, scene: SceneRecord, solid: Solid, lattice: float, h: float) -> float:
+        """Estimated number of particles of an object at a spacing h [m]; ``lattice`` is that of a lattice that fills it, 0 of a
+        kind that does not."""
         return lattice
 
     def make(self, solid: Solid, h: float, shared: Any) -> Any:

@@ -181,7 +181,7 @@ def _bond_types(context: Context) -> tuple[np.ndarray, np.ndarray]:
         number = np.empty(len(first), np.intp)
         number[used] = np.arange(len(used))
         key, found, ratio = number[key], found[used % len(found)], ratio[used // len(found)]
-    k, r0, reduced = found.T
+    k, r0, reduced = found[:, :3].T
     merged, coefficients = types(np.stack([k, r0, 2.0 * ratio * np.sqrt(k * reduced)], axis=1))
     return merged[key], coefficients
 

@@ -67,4 +67,5 @@ def elastic(system: System, position: np.ndarray) -> np.ndarray:
     """Energy of the springs of each object [J], shape (O,), for positions of all particles [m], shape (N, 3)."""
     i, j = system.spring.T
     stretch = np.linalg.norm(position[i] - position[j], axis=1) - system.rest
-    return np.bincount(system.object[i], 0.5 * system.stiffness * stretch**2, len(system.names))
+    energy = 0.5 * system.stiffness * stretch**2 - system.preload_energy
+    return np.bincount(system.object[i], energy, len(system.names))

@@ -132,7 +132,8 @@ def _make_material(body: _Body, mass: float, elasticity: Elasticity, loose: bool
         keep = k > 0
         spring, kind, k = spring[keep], kind[keep], k[keep]
     # Masses by shares are of few kinds.
-    spring_type, constants = types(np.stack([k, rest_lengths(edge)[kind], reduced_mass(even, spring)], axis=1))
+    rest = rest_lengths(edge)[kind]
+    spring_type, constants = types(np.stack([k, rest, reduced_mass(even, spring), rest], axis=1))
     _freeze(m, spring_type, constants)
     return _Material(m, spring, spring_type, constants, equivalent_modulus(edge, elasticity))
 
@@ -162,7 +163,7 @@ def single_cell_model(solid: Solid, h: float, shared: SharedParts) -> Model:
         held=np.zeros(8, bool),
         spring=body.lattice.spring[:0],
         spring_type=np.zeros(0, np.uint8),
-        constants=np.zeros((0, 3)),
+        constants=np.zeros((0, 4)),
         young=equivalent_modulus(cell, solid.elasticity),
         inertia_error=0.0,
         hexahedron=body.lattice.hexahedron,
@@ -254,9 +255,13 @@ def _(hold: HoldFaces, solid: Solid, lattice: Lattice) -> np.ndarray:
 
 @_caught.register
 def _(hold: HoldWithin, solid: Solid, lattice: Lattice) -> np.ndarray:
-    position = _rotated(solid, lattice.position) + solid.position
+    return caught_in_box(hold, _rotated(solid, lattice.position) + solid.position, lattice.cells.edge.max(), solid.position)
+
+
+def caught_in_box(hold: HoldWithin, position: np.ndarray, h: float, middle: Sequence[float] = (0.0, 0.0, 0.0)) -> np.ndarray:
+    """Particles [m], shape (N, 3), so far apart [m] around a place [m], in a held box, bool, shape (N,)."""
     # Particles on the border, by the scene's round numbers, belong to the box.
-    hair = 1e-9 * (lattice.cells.edge.max() + np.abs(solid.position).max())
+    hair = 1e-9 * (h + np.abs(middle).max())
     return ((position >= np.array(hold.low) - hair) & (position <= np.array(hold.high) + hair)).all(axis=1)
 
 

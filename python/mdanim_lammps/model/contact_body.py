@@ -7,6 +7,7 @@ import math
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from itertools import product
+from typing import ClassVar
 
 import numpy as np
 
@@ -81,13 +82,15 @@ class ContactBody:
     """X of each [-], shape (4, 3)."""
     radius: float = 0.0
     """Radius of the surface around each point [m]: above 0 particles are points themselves, each in a cell of its own, one behind
-    the other, and the body is no host."""
+    the other, and the body is never a host."""
 
     @cached_property
     def carried(self) -> np.ndarray:
         """w_i, the area of the surface that each particle carries [m^2], shape (N,): the larger one of that of its fine points
         and that of all others, as either act. Points beyond the cell that carries them have weights below 0. Particles at no
         cells carry nothing."""
+        if self.radius:
+            return self.area
         if (self.node < 0).any():
             return np.zeros(len(self.node))
         fine = self.kind == FINE
@@ -105,6 +108,8 @@ class BodyFrame:
     """As that of ContactBody; None where nothing is covered."""
     rigid: bool = False
     """Whether it does not deform."""
+    line: ClassVar = False
+    """Whether it is a line of particles, whose points touch others, and which nothing is ever in."""
     corners: np.ndarray | None = None
     """X of its eight particles, the corners of a box [-], shape (8, 3); None where particles are at the corners of cells."""
 

@@ -48,7 +48,7 @@ def held_model(solid: Solid, h: float, shared: Any) -> Model:
     placed = shared.once(_placed, solid.shape, math.inf if bare else h, tuple(map(tuple, solid.rotation)))
     mass, edge = shapes.mass(solid), placed.frame.cells.edge
     edge = edge / np.maximum(1.0, np.rint(edge / h)) if bare else edge
-    none = np.zeros((0, 3))
+    none = np.zeros((0, 4))
     return Model(
         name=solid.name,
         position=placed.corner + solid.position,

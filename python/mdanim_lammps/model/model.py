@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from .nearest import blocks
+from .tube import Tubes
 
 if TYPE_CHECKING:
     from .contact_body import BodyFrame
@@ -40,13 +41,16 @@ class Surface:
     """Their weights, rows sum to 1, shape (V, K)."""
     color: np.ndarray | None = None
     """RGB of the vertices, uint8, shape (V, 3); None where a mesh file has none, and for all other shapes."""
+    tube: np.ndarray | None = None
+    """Ways from the sums of particle positions to the vertices of a tube around a chain of particles, as `tube.Tubes` takes them,
+    shape (V, 4); None of all else."""
 
     def vertices(self, position: np.ndarray) -> np.ndarray:
         """Vertex positions [m], shape (V, 3), for particle positions [m], shape (N, 3)."""
         found = np.empty((len(self.index), 3))
         for rows in blocks(len(self.index)):
             found[rows] = np.einsum("vk,vkd->vd", self.weight[rows], position[self.index[rows]])
-        return found
+        return found if self.tube is None else found + Tubes([(slice(0, len(position)), self.tube)]).around(position)
 
 
 @dataclass(frozen=True)
@@ -70,8 +74,8 @@ class Particles:
     spring_type: np.ndarray
     """Type of each spring, from 1, the smallest unsigned integers that do, shape (S,)."""
     constants: np.ndarray
-    """k [N/m], r0 [m] and the reduced mass of both ends, with masses by filled cells [kg], of each type, in the order in which
-    they appear, shape (T, 3)."""
+    """k [N/m], r0 [m], the reduced mass of both ends, with masses by filled cells [kg], and the length in the body without load
+    [m] of each type, in the order in which they appear, shape (T, 4). This length is r0 where the spring is then without load."""
     hexahedron: np.ndarray
     """Corners of every filled lattice cell, particle indices in VTK order, int32, shape (C, 8)."""
 
@@ -84,6 +88,21 @@ class Particles:
     def rest(self) -> np.ndarray:
         """Rest length r0 of each spring [m], shape (S,)."""
         return self._constant(1)
+
+    @property
+    def unloaded(self) -> np.ndarray:
+        """Length of each spring in the body without load [m], shape (S,); springs of a rope hold each other under load."""
+        return self._constant(3)
+
+    @property
+    def preload(self) -> np.ndarray:
+        """Pull of each spring in the body without load [N], shape (S,)."""
+        return self.stiffness * (self.unloaded - self.rest)
+
+    @property
+    def preload_energy(self) -> np.ndarray:
+        """Energy of each spring in the body without load [J], shape (S,)."""
+        return 0.5 * self.stiffness * (self.unloaded - self.rest) ** 2
 
     def _constant(self, column: int) -> np.ndarray:
         return self.constants[self.spring_type - 1, column]

@@ -17,6 +17,7 @@ import numpy as np
 
 from ..scene import scene as kinds
 from . import mesh
+from .rope import RopeLaw
 from .tessellate import ellipsoid, grid_box, revolve
 
 # Facets that keep a round silhouette smooth in a picture, however coarse the particles are.
@@ -303,6 +304,7 @@ LAWS: dict[type, Any] = {
     kinds.Cone: _Cone,
     kinds.Torus: _Torus,
     kinds.Mesh: _Mesh,
+    kinds.Rope: RopeLaw,
 }
 FORMULAS = ("volume", "area", "thickness", "moments", "extent", "depth", "surface", "radius", "vertices", "rolls", "end")
 """Formulas that each has. ``rolls``: whether it rolls down a slope before it slides; ``end``: the part with which it may land

@@ -55,7 +55,7 @@ def plan_spacing(scene: SceneRecord) -> Spacing:
     problems = check_places(scene, of)
     too_thin: dict[tuple, list[str]] = {}  # objects of a repeat are one problem
     for solid, own, t in zip(scene.solids, of, thin):
-        if own > t * (1 + 1e-9):
+        if own > t * (1 + 1e-9) and kind_of(solid).fills:
             too_thin.setdefault((_span(solid), t, own, solid.resolution is None), []).append(solid.name)
     for (span, t, own, shared), names in too_thin.items():
         more = f" and {whole(len(names) - 1)} more" if len(names) > 1 else ""
@@ -68,10 +68,11 @@ def plan_spacing(scene: SceneRecord) -> Spacing:
         )
     if problems:
         raise SceneError(problems)
-    particles = tuple(estimate_particles(solid.shape, own) for solid, own in zip(scene.solids, of))
-    if sparse := [p for s, own, n in zip(scene.solids, of, particles) if (p := check_sparse(s, own, n))]:
+    particles = tuple(estimate_particles(solid.shape, own) if kind_of(solid).fills else 0 for solid, own in zip(scene.solids, of))
+    filled = [(s, own, n) for s, own, n in zip(scene.solids, of, particles) if kind_of(s).fills]
+    if sparse := [p for s, own, n in filled if (p := check_sparse(s, own, n))]:
         raise SceneError(sparse)
-    particles = tuple(kind_of(s).particles(scene, s, n) for s, n in zip(scene.solids, particles))
+    particles = tuple(kind_of(s).particles(scene, s, n, own) for s, n, own in zip(scene.solids, particles, of))
     plan = Spacing(h, of, set_by, particles, work.memory(scene, of, particles), available_memory())
     if plan.memory > plan.available:
         raise SceneError([too_large(scene, plan)])
@@ -122,6 +123,8 @@ def _choose(scene: SceneRecord, thin: list[float]) -> tuple[float, str]:
         sets = [s.resolution is None and kind_of(s).sets_spacing for s in scene.solids]
         wanted = np.where(sets, needed, np.inf)
         if not any(sets):
+            counts = [kind_of(s).fills for s in scene.solids]
+            needed = np.where(counts, needed, np.inf) if any(counts) else needed
             wanted = [own if s.resolution is None else s.resolution for s, own in zip(scene.solids, needed)]
         k = int(np.argmin(wanted))
         return float(wanted[k]), scene.solids[k].name

@@ -74,9 +74,9 @@ def equivalent_modulus(cell: np.ndarray, elasticity: Elasticity) -> float:
 
 def types(constants: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Type of each spring (from 1, the smallest unsigned integers that do, shape (S,)) and the
-    constants of each type, shape (T, 3).
+    constants of each type, shape (T, K).
 
-    Springs with the constants (S, 3) are of one type when all bits of them agree; types are numbered by first appearance, so that
+    Springs with the constants (S, K) are of one type when all bits of them agree; types are numbered by first appearance, so that
     they do not depend on a sort of floating-point numbers.
     """
     first, inverse = distinct_rows(constants)
@@ -103,7 +103,7 @@ def distinct_rows(rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 def dashpots(system: System, ratio: np.ndarray) -> np.ndarray:
     """Dashpot of each spring [N*s/m], shape (S,): c = 2 zeta sqrt(k m_ij); zeta of each solid, shape (M,)."""
-    k, _, reduced = system.constants.T
+    k, _, reduced = system.constants[:, :3].T
     return (2.0 * ratio)[system.object[system.spring[:, 0]]] * np.sqrt(k * reduced)[system.spring_type - 1]
 
 

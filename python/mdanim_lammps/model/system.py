@@ -82,6 +82,11 @@ class System(Particles):
         """Solids that move as a whole, with six degrees of freedom, bool, shape (M,)."""
         return self.inertia.any(axis=(1, 2))
 
+    @cached_property
+    def lines(self) -> np.ndarray:
+        """Solids that are lines of particles, bool, shape (M,)."""
+        return np.array([frame.line for frame in self.frames], bool)[self.contact_kind]
+
     @property
     def moved(self) -> np.ndarray | None:
         """Held particles that some effect moves, bool, shape (N,); None where there are none."""

@@ -38,7 +38,8 @@ def seconds(scene: SceneRecord, h: float | Sequence[float], particles: Sequence[
 
 
 def _bodies(scene: SceneRecord, h: float | Sequence[float]) -> set[tuple[Shape, float]]:
-    return set(zip((s.shape for s in scene.solids), np.broadcast_to(h, len(scene.solids)).tolist()))
+    rows = zip(scene.solids, np.broadcast_to(h, len(scene.solids)).tolist())
+    return {(s.shape, own) for s, own in rows if kind_of(s).fills}
 
 
 def _touches(scene: SceneRecord) -> bool:

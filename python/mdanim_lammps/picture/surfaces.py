@@ -44,7 +44,7 @@ class ShadedMesh:
 
     def vertices(self, position: np.ndarray) -> np.ndarray:
         """Vertex positions [m], shape (V, 3), for stored particle positions [m], shape (N, 3)."""
-        return self.carry @ np.asarray(position, dtype=np.float64)
+        return self.carry.places(position)
 
     def normals(self, vertices: np.ndarray, position: np.ndarray) -> np.ndarray:
         """Outward unit normals, shape (V, 3), of ``vertices`` that were carried by ``position``.
@@ -57,7 +57,7 @@ class ShadedMesh:
         else:
             normal = np.empty_like(vertices)
         if len(self.coarse):
-            fine = self.fine @ np.asarray(position, dtype=np.float64)
+            fine = self.fine.places(position)
             normal[self.coarse] = np.cross(*(t @ fine for t in self.tangent))
         length = np.linalg.norm(normal, axis=1, keepdims=True)
         return np.divide(normal, length, out=np.zeros_like(normal), where=length > 0.0)

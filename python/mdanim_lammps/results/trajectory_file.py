@@ -350,6 +350,9 @@ def _write_metadata(group: h5py.Group, metadata: TrajectoryMetadata, dt: float, 
     if painted := [s.color.ravel() for s in metadata.surfaces if s.color is not None]:
         _table(surfaces, "painted", np.array([s.color is not None for s in metadata.surfaces], dtype=np.uint8))
         _table(surfaces, "color", np.concatenate(painted), packed=True)
+    if tubes := [s.tube.ravel() for s in metadata.surfaces if s.tube is not None]:
+        _table(surfaces, "tubed", np.array([s.tube is not None for s in metadata.surfaces], dtype=np.uint8))
+        _table(surfaces, "tube", np.concatenate(tubes), packed=True)
 
 
 def read_metadata(file: h5py.File) -> TrajectoryMetadata:
@@ -387,15 +390,20 @@ def _read_surfaces(group: Mapping[str, h5py.Dataset]) -> tuple[Surface, ...]:
     shapes = group["shape"][:]
     painted = group["painted"][:].astype(bool) if "painted" in group else np.zeros(len(shapes), dtype=bool)
     colors = group["color"][:].reshape(-1, 3) if "painted" in group else np.zeros((0, 3), dtype=np.uint8)
-    counts = np.stack([3 * shapes[:, 0], shapes[:, 1] * shapes[:, 2], shapes[:, 1] * painted], axis=1)
+    tubed = group["tubed"][:].astype(bool) if "tubed" in group else np.zeros(len(shapes), dtype=bool)
+    tubes = group["tube"][:].reshape(-1, 4) if "tubed" in group else np.zeros((0, 4))
+    counts = np.stack([3 * shapes[:, 0], shapes[:, 1] * shapes[:, 2], shapes[:, 1] * painted, shapes[:, 1] * tubed], axis=1)
     return tuple(
         Surface(
             triangle=flat["triangle"][t - 3 * triangles : t].reshape(-1, 3),
             index=flat["index"][v - vertices * corners : v].reshape(-1, corners),
             weight=flat["weight"][v - vertices * corners : v].reshape(-1, corners),
             color=colors[c - vertices : c] if has else None,
+            tube=tubes[r - vertices : r] if round_ else None,
         )
-        for (triangles, vertices, corners), (t, v, c), has in zip(shapes, np.cumsum(counts, axis=0), painted, strict=True)
+        for (triangles, vertices, corners), (t, v, c, r), has, round_ in zip(
+            shapes, np.cumsum(counts, axis=0), painted, tubed, strict=True
+        )
     )
 
 

@@ -13,8 +13,9 @@ from ..effects.fields import OF_OBJECTS, Field
 from ..effects.kept import KeptRecord, records_of
 from ..model.grid import Grid
 from ..model.model import Layer, Model, Surface
+from ..model.tube import Tubes
 from ..scene.scene import Save, SceneRecord
-from .weights import Weights
+from .weights import Carry, Weights
 
 FIELDS = "fields"
 """Tables of what effects tell of each object, by name."""
@@ -91,7 +92,7 @@ class Skin:
 
     def vertices(self, position: np.ndarray) -> np.ndarray:
         """Vertex positions [m], shape (V, 3), for stored particle positions [m], shape (N, 3)."""
-        return self.carry @ np.asarray(position, dtype=np.float64)
+        return self.carry.places(position)
 
 
 def stored_particles(model: Model, save: Save) -> np.ndarray:
@@ -199,13 +200,26 @@ def merge_surfaces(metadata: TrajectoryMetadata) -> Skin:
     objects = np.arange(len(used), dtype=np.int32)
     triangle = [surface.triangle + first for surface, first in zip(used, first_vertex)]
     return Skin(
-        carry=Weights.of(vertex[kept], particle[kept], weight[kept]),
+        carry=_with_tubes(Weights.of(vertex[kept], particle[kept], weight[kept]), used, metadata.first, first_vertex),
         triangle=np.concatenate([np.zeros((0, 3), np.int32), *triangle]).astype(np.int32),
         object_of_triangle=np.repeat(objects, triangles),
         object_of_vertex=np.repeat(objects, vertices),
         painted=np.repeat([surface.color is not None for surface in used], vertices),
         paint=np.concatenate([np.zeros((0, 3), np.uint8), *(s.color for s in used if s.color is not None)]),
     )
+
+
+def _with_tubes(carry: Weights, used: Sequence[Surface], first: np.ndarray, first_vertex: np.ndarray) -> Weights:
+    """The same weights with what stands around lines of particles, where there are any."""
+    lines = [n for n, surface in enumerate(used) if surface.tube is not None]
+    if not lines:
+        return carry
+    chains = [(slice(int(first[n]), int(first[n + 1])), np.asarray(used[n].tube)) for n in lines]
+    around, row = np.full(len(carry), -1, np.int64), 0
+    for n, (_, vertex) in zip(lines, chains):
+        around[first_vertex[n] : first_vertex[n] + len(vertex)] = np.arange(row, row + len(vertex))
+        row += len(vertex)
+    return Carry(carry.weight, carry.index, carry.first, Tubes(chains), around)
 
 
 def _within(surface: Surface, kept: np.ndarray) -> Surface:
@@ -217,6 +231,7 @@ def _within(surface: Surface, kept: np.ndarray) -> Surface:
         index=index.astype(np.int32),
         weight=np.ascontiguousarray(surface.weight, dtype=np.float64),
         color=surface.color,
+        tube=surface.tube,
     )
 
 
@@ -224,8 +239,8 @@ def _fingerprint(surface: Surface) -> bytes:
     import hashlib
 
     digest = hashlib.blake2b(digest_size=16)
-    color = [] if surface.color is None else [np.ascontiguousarray(surface.color)]
-    for array in (surface.triangle, surface.index, surface.weight, *color):
+    more = [np.ascontiguousarray(array) for array in (surface.color, surface.tube) if array is not None]
+    for array in (surface.triangle, surface.index, surface.weight, *more):
         digest.update(str(array.shape).encode())
         digest.update(array)
     return digest.digest()

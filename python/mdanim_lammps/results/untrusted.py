@@ -137,6 +137,9 @@ def check_metadata(path: Path, m: TrajectoryMetadata) -> None:
         must(np.isfinite(surface.weight).all(), "a weight of a surface is NaN or infinite")
         color = surface.color
         must(color is None or (color.shape == (vertices, 3) and color.dtype == np.uint8), "a vertex has no colour")
+        if (tube := surface.tube) is not None:
+            must(size > 1 and tube.shape == (vertices, 4) and tube.dtype.kind == "f", "a tube lacks vertices")
+            must(np.isfinite(tube).all() and ((tube[:, 0] >= 0) & (tube[:, 0] <= size - 1)).all(), "a tube is beyond its line")
     for mass in (m.object_mass, m.mass):
         must((np.isfinite(mass) & (mass > 0.0)).all(), "a mass is not above 0, NaN or infinite")
     for record in m.kept.values():

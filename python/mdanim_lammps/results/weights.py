@@ -7,6 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..model.tube import Tubes
+
 
 @dataclass(frozen=True)
 class Weights:
@@ -28,6 +30,10 @@ class Weights:
     def __len__(self) -> int:
         return len(self.first)
 
+    def places(self, position: np.ndarray) -> np.ndarray:
+        """Places [m], shape (V, 3), that hang on particles at these positions [m], shape (N, 3)."""
+        return self @ np.asarray(position, dtype=np.float64)
+
     def __matmul__(self, value: np.ndarray) -> np.ndarray:
         """Sums of ``value``, shape (V, ...) for shape (N, ...)."""
         if not len(self):
@@ -44,3 +50,24 @@ class Weights:
         first = np.cumsum(count) - count
         entry = np.arange(count.sum()) + np.repeat(self.first[row] - first, count)
         return Weights(self.weight[entry], self.index[entry], first)
+
+
+@dataclass(frozen=True)
+class Carry(Weights):
+    """Weights of particles in vertices, some of which stand around a line of particles."""
+
+    tubes: Tubes
+    """The tubes of these vertices."""
+    around: np.ndarray
+    """Row of each vertex among those of the tubes, -1 for none, int64, shape (V,)."""
+
+    def places(self, position: np.ndarray) -> np.ndarray:
+        position = np.asarray(position, dtype=np.float64)
+        found = self @ position
+        here = self.around >= 0
+        found[here] += self.tubes.around(position)[self.around[here]]
+        return found
+
+    def __getitem__(self, row: np.ndarray) -> Carry:
+        some = super().__getitem__(row)
+        return Carry(some.weight, some.index, some.first, self.tubes, self.around[row])

@@ -34,6 +34,8 @@ class Slot:
     choices: tuple[str, ...] = ()
     dim: Dim = NONE
     """The dimension that the value must have."""
+    anywhere: bool = False
+    """Whether the rule of the setting does not hold for it: a place."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,12 +50,13 @@ KINDS = {"color": "color", "NAME.QUANTITY": "check", "RELATION": "relation"}
 
 
 def _slot(text: str) -> Slot:
-    shown, _, u = text.partition(":")
+    anywhere = text.startswith("@")
+    shown, _, u = text.removeprefix("@").partition(":")
     u, _, other = u.partition(" or ")
     u = u or "1"
     dim = NONE if u == "?" else unit(u).dim
     if shown.startswith("("):
-        return Slot("place" if other else "vector", shown, u, shown.count(",") + 1, dim=dim)
+        return Slot("place" if other else "vector", shown, u, shown.count(",") + 1, dim=dim, anywhere=anywhere)
     if shown.startswith('"'):
         return Slot("text", shown)
     if "|" in shown:

@@ -44,22 +44,27 @@ class Placement:
     def moved(self, what: Solid | Placement) -> Solid | Placement:
         """An object, or a group within this one, in the surroundings.
 
-        r = p + R r', v = V + R v' + W x (R r'), w = W + R w'. Raises ValueError for a held box that is turned by other
-        than right angles.
+        r = p + R r', v = V + R v' + W x (R r'), w = W + R w'. Raises ValueError(cause, way out, word) for a held box that is
+        turned by other than right angles, and for a shape that cannot be turned so.
         """
         arm = turned(self.rotation, what.position)
-        held = {"hold": tuple(map(self.held, what.hold))} if isinstance(what, Solid) else {}
+        turn = product(self.rotation, what.rotation) if self.rotation != IDENTITY else what.rotation
+        more = {"position": _sum(self.position, arm), "rotation": turn}
+        if isinstance(what, Solid):
+            more["hold"] = tuple(map(self.held, what.hold))
+            if hasattr(what.shape, "moved"):  # it says itself where the object is
+                shape = what.shape.moved(self)
+                more |= {"shape": shape, "rotation": what.rotation, **shape.brings()}
+                arm = _sum(more["position"], tuple(-x for x in self.position))
         for name in (f.name for f in fields(what)):  # records of features that know how to be moved
             value = getattr(what, name)
             if isinstance(value, tuple) and any(hasattr(one, "moved") for one in value):
-                held[name] = tuple(one.moved(self) for one in value)
+                more[name] = tuple(one.moved(self) for one in value)
         return replace(
             what,
-            position=_sum(self.position, arm),
-            rotation=product(self.rotation, what.rotation) if self.rotation != IDENTITY else what.rotation,
+            **more,
             velocity=_sum(self.velocity, turned(self.rotation, what.velocity), _cross(self.spin, arm)),
             spin=_sum(self.spin, turned(self.rotation, what.spin)),
-            **held,
         )
 
     def turn(self, v: Vector) -> Vector:
@@ -75,7 +80,8 @@ class Placement:
         if not isinstance(hold, HoldWithin):
             return hold
         if any(RIGHT < abs(x) < 1.0 - RIGHT for row in self.rotation for x in row):
-            raise ValueError("a held box lies along the axes of the world, and its group is turned")
+            way_out = "write hold face or hold all, or turn the group by 90 deg or 180 deg"
+            raise ValueError("a held box lies along the axes of the world, and its group is turned", way_out, "hold")
         right = tuple(tuple(float(round(x)) for x in row) for row in self.rotation)
         a, b = (_sum(self.position, turned(right, corner)) for corner in (hold.low, hold.high))
         return HoldWithin(tuple(map(min, a, b)), tuple(map(max, a, b)))

@@ -24,9 +24,11 @@ from .shapes import (  # noqa: F401
     Ellipsoid,
     Hold,
     HoldAll,
+    HoldEnds,
     HoldFaces,
     HoldWithin,
     Mesh,
+    Rope,
     Shape,
     Side,
     Sphere,
@@ -72,9 +74,11 @@ class Solid:
         None,
         "Form of the object in its own frame: edge lengths, radii, heights along z. A mesh is a closed STL, OBJ or PLY file, "
         "beside the scene file; `scale` is metres per unit of the file, default 1. Colours of the points of a PLY file are drawn "
-        "where the object has no `color`.",
+        "where the object has no `color`. A rope lies between two points of the world, `thickness` is its diameter; with a "
+        "`length` above their distance it hangs through along -z, with one below it is stretched. A chain is a rope that does "
+        "not resist bending.",
         "sphere 10 cm", Rule.POSITIVE, codec=OneOf(*get_args(Shape)))  # fmt: skip
-    position: Vector = setting("<(x, y, z):m>", "Centre of mass.", "(0, 0, 1) m")
+    position: Vector = setting("<(x, y, z):m>", "Centre of mass. Not of a rope, which has its ends.", "(0, 0, 1) m")
     """[m]"""
     rotation: tuple[Vector, Vector, Vector] = setting(
         "axis <(x, y, z)> angle <a:rad> | euler <(rx, ry, rz):rad> | matrix <(xx, xy, xz)> <(yx, yy, yz)> <(zx, zy, zz)>",
@@ -103,9 +107,9 @@ class Solid:
     """Angular velocity, world frame [rad/s]."""
     hold: tuple[Hold, ...] = setting(
         None,
-        "Particles that never move: both faces across an axis of the object, one face, all of them (a wedge, an obstacle), or "
-        "those inside a box of the world at the start.", "faces x", default=(), many=True,
-        codec=OneOf(HoldFaces, HoldAll, HoldWithin))  # fmt: skip
+        "Particles that never move: both faces across an axis of the object, one face, all of them (a wedge, an obstacle), "
+        "those inside a box of the world at the start, or of a rope both ends, its first or its last.", "faces x", default=(),
+        many=True, codec=OneOf(HoldFaces, HoldAll, HoldWithin, HoldEnds))  # fmt: skip
     resolution: float | None = setting(
         "<h:m>",
         "Its own particle spacing, which the rest of the scene does not get. Not with `contact-model paper`. Absent: that of the "

@@ -152,6 +152,11 @@ class Worded:
                     raise UsageError(f"{type(self).__name__}({field.name}={value!r}): it is one of {words}") from None
 
 
+def brought(record: Any) -> tuple[str, ...]:
+    """Settings of a record that follow from its others: what the values of these say by ``BRINGS``."""
+    return tuple(name for f in dataclasses.fields(record) for name in getattr(getattr(record, f.name), "BRINGS", ()))
+
+
 def fields_in_order(kind: type) -> tuple[str, ...]:
     """Fields of a class as its form has them."""
     return getattr(kind, "ORDER", None) or tuple(f.name for f in dataclasses.fields(kind))
@@ -162,7 +167,8 @@ class Keyword:
     """One setting of the language."""
 
     form: str
-    """Text after the word: literal words, ``<slot:unit>``, ``[optional]``, `` | `` between alternatives."""
+    """Text after the word: literal words, ``<slot:unit>``, ``[optional]``, `` | `` between alternatives; ``<@slot:unit>`` is a
+    place, for which the rule does not hold."""
     about: str
     example: str
     """An example of the text after the word."""
@@ -204,6 +210,8 @@ class Keyword:
 
     def lines(self, record: Any, number: Callable[[float], str] = repr) -> list[str]:
         """Text after the keyword, once for every time it is given."""
+        if self.name in brought(record):
+            return []
         value = getattr(record, self.field)
         if self.also:
             value = (value, *(getattr(record, name) for name in self.also))
@@ -346,7 +354,7 @@ def syntax(keyword: Keyword) -> str:
     """A form for people: ``box (lx, ly, lz) | sphere r``, without units."""
 
     def shown(match: re.Match) -> str:
-        text, _, u = match[1].partition(":")
+        text, _, u = match[1].removeprefix("@").partition(":")
         u, _, other = u.partition(" or ")
         return text + (f"|{other}" if other else "")
 

@@ -3,12 +3,15 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
 from pathlib import Path
-from typing import ClassVar
+from typing import Any, ClassVar
 
+from .curve import Curve, hanging
+from .formatting import number
 from .schema import Vector
 
 # --- shapes: body frame, centre of mass at the origin, axes of revolution along z -------------------------
@@ -99,7 +102,88 @@ class Mesh:
     """Metres per unit of the file."""
 
 
-Shape = Box | Sphere | Ellipsoid | Cylinder | Cone | Torus | Mesh
+@dataclass(frozen=True, slots=True)
+class Rope:
+    """A line of round section between two points of the world, which hangs through where it is longer than their distance."""
+
+    FORMS: ClassVar = tuple(
+        f"{word} from <@(x0, y0, z0):m> to <@(x1, y1, z1):m> thickness <d:m> [length <L:m>]" for word in ("rope", "chain")
+    )
+    ALSO: ClassVar = ("cable", "cord", "string", "wire", "thread", "line")
+    BRINGS: ClassVar = ("position", "orientation")
+    """Settings of an object that follow from it."""
+
+    start: Vector
+    """[m]"""
+    end: Vector
+    """[m]"""
+    thickness: float
+    """Diameter of its section [m]."""
+    length: float
+    """Without load [m]; below the distance of its ends it is stretched to begin with."""
+    bends: bool = True
+    """Whether it resists bending as a rod of this section does; a chain does not."""
+
+    @classmethod
+    def read(cls, form: int, values: tuple) -> Rope:
+        """A rope or a chain. Raises ValueError(message, hint, number of the value)."""
+        start, end, thickness, given = values
+        apart = math.dist(start, end)
+        what = ("rope", "chain")[form]
+        if apart == 0.0:
+            raise ValueError(f"both ends of the {what} are at one point", "put them apart", 1)
+        length = apart if given is None else given
+        at = 1 if given is None else 3
+        if length < 2.0 * thickness:
+            cause = f"the {what} is shorter than twice its thickness: {number(length, 6)} m long, {number(thickness, 6)} m thick"
+            raise ValueError(cause, "write a smaller thickness, or shape cylinder r h for a body so short", at)
+        if apart > MOST_STRETCHED * length:
+            cause = (
+                f"the {what} is stretched too far to begin with: {number(length, 6)} m over a distance of {number(apart, 6)} m"
+            )
+            raise ValueError(cause, f"write a length of {number(apart / MOST_STRETCHED, 3)} m or more", at)
+        made = cls(start, end, thickness, length, form == 0)
+        if steep := made.too_steep():
+            raise ValueError(*steep, at)
+        return made
+
+    def write(self) -> tuple[int, tuple]:
+        """Form and values that are read as this."""
+        return 0 if self.bends else 1, (self.start, self.end, self.thickness, self.length)
+
+    @property
+    def curve(self) -> Curve:
+        """The line that it lies along to begin with."""
+        return hanging(self.start, self.end, self.length)
+
+    def brings(self) -> dict[str, Any]:
+        """Fields of its object that follow from it."""
+        return {"position": self.curve.middle()}
+
+    def moved(self, place: Any) -> Rope:
+        """The same with its group in a place (placement.Placement). Raises ValueError(message, hint, word)."""
+        made = replace(self, start=place.point(self.start), end=place.point(self.end))
+        if steep := made.too_steep():
+            raise ValueError(*steep, "shape")
+        return made
+
+    def too_steep(self) -> tuple[str, str] | None:
+        """Cause and way out where it hangs through with one end above the other."""
+        if self.length <= math.dist(self.start, self.end) or math.dist(self.start[:2], self.end[:2]) >= LEAST_SPAN * self.length:
+            return None
+        what = "rope" if self.bends else "chain"
+        return (
+            f"the {what} hangs through, and one end is above the other: both halves would lie in each other",
+            f"put the ends {number(LEAST_SPAN * self.length, 2)} m apart along x or y, or leave out length",
+        )
+
+
+MOST_STRETCHED = 1.5
+"""Distance of the ends of a rope over its length, at most."""
+LEAST_SPAN = 0.01
+"""Horizontal distance of the ends of a rope that hangs through, over its length, at least."""
+
+Shape = Box | Sphere | Ellipsoid | Cylinder | Cone | Torus | Mesh | Rope
 
 
 # --- what is held, elasticity ---------------------------------------------------------------------------------
@@ -147,7 +231,26 @@ class HoldWithin:
     """[m]"""
 
 
-Hold = HoldFaces | HoldAll | HoldWithin
+@dataclass(frozen=True, slots=True)
+class HoldEnds:
+    """The first or the last particle of a rope never moves, or both."""
+
+    FORMS: ClassVar = ("ends", "start", "end")
+
+    start: bool
+    end: bool
+
+    @classmethod
+    def read(cls, form: int, values: tuple) -> HoldEnds:
+        """The ends of one form."""
+        return cls(form != 2, form != 1)
+
+    def write(self) -> tuple[int, tuple]:
+        """Form and values that are read as these ends."""
+        return (0 if self.start and self.end else 1 if self.start else 2), ()
+
+
+Hold = HoldFaces | HoldAll | HoldWithin | HoldEnds
 
 
 def holds_all(holds: Iterable[Hold]) -> bool:

@@ -26,6 +26,7 @@ from .naming import objects_by_name
 from .placement import Placement, beyond_limits
 from .render import SMOOTH_RATE, few_pictures
 from .scene import GLOBALS, QUANTITIES, Vector
+from .schema import OneOf
 from .source import Problems, SceneFile
 
 
@@ -155,8 +156,8 @@ class Validator:
         try:
             record = place.moved(record)
         except ValueError as e:
-            way_out = "write hold face or hold all, or turn the group by 90 deg or 180 deg"
-            self.problem(block.first("hold").span(), f"{e}{block.where}", way_out)
+            cause, way_out, word = e.args
+            self.problem(block.first(word).span(), f"{cause}{block.where}", way_out)
             return None
         if beyond := beyond_limits(record):
             self.problem(block.head, *beyond)
@@ -187,7 +188,21 @@ class Validator:
                 message, hint, at = e.args
                 self.problem(found[at].span(), message, hint)
                 good = False
+        for value in [v for v in values.values() if hasattr(v, "brings")]:
+            values |= value.brings()
         return values if good else None
+
+    def brought(self, block: EvaluatedBlock) -> dict[str, str]:
+        """Settings of a block that follow from others, each with the other's word."""
+        rows = ((w, k.codec.rows[s.entry.choice]) for w, k in KEYWORDS[block.block].items()
+                if isinstance(k.codec, OneOf) and (s := block.first(w)) is not None)  # fmt: skip
+        return {word: w for w, kind in rows for word in getattr(kind, "BRINGS", ())}
+
+    def perhaps_brought(self, block: EvaluatedBlock) -> dict[str, str]:
+        """The same of settings that are broken, whatever they were to be."""
+        kinds = ((w, kind) for w in block.broken if w in KEYWORDS[block.block]
+                 for kind in getattr(KEYWORDS[block.block][w].codec, "kinds", ()))  # fmt: skip
+        return {word: w for w, kind in kinds for word in getattr(kind, "BRINGS", ())}
 
     # -- several blocks at once
 
@@ -245,9 +260,14 @@ class Validator:
         """Whether everything needed is there; what is missing, or given twice, is a problem."""
         good = not block.broken
         title = f"{block.block} {block.name}".rstrip()
+        brought, perhaps = self.brought(block), self.perhaps_brought(block)
+        for word in (w for w in brought if w in block.settings):
+            cause = f"{title} has its {word} by its {brought[word]}{block.where}"
+            self.problem(block.first(word).span(), cause, f"leave out {word}")
+            good = False
         for word, keyword in KEYWORDS[block.block].items():
             key = ("missing", id(block.group), keyword.one_of or word)
-            if keyword.needed and word not in block.settings and not block.excused(word):
+            if keyword.needed and word not in block.settings and word not in brought | perhaps and not block.excused(word):
                 self.problem(block.head, f"{title} has no {word}{block.where}", examples(keyword), key=key)
                 good = False
             if keyword.one_of and keyword.one_of[0] == word:

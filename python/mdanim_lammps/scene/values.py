@@ -129,7 +129,7 @@ class Evaluator:
     def number(self, s: SettingNode, v: Value, x, what: str, first, last) -> float:
         """One number in SI units that has the right dimension and obeys the rule."""
         dim = v.slot.dim
-        rule = s.keyword.rule
+        rule = Rule.ANY if v.slot.anywhere else s.keyword.rule
         if type(x) is not float:
             if x.dim != dim:
                 raise Fault(

@@ -101,7 +101,7 @@ class Feed:
 
     def vertices(self, position: np.ndarray) -> np.ndarray:
         """Vertices of all surfaces [m], shape (V, 3), for stored particles [m], shape (N, 3)."""
-        return self._carry @ np.asarray(position, np.float64)
+        return self._carry.places(position)
 
     # --- the scene ----------------------------------------------------------------------------------------------
 

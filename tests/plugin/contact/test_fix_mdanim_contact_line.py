@@ -12,8 +12,8 @@ from contact_lab import Cuboid, State, load
 from mdanim_lammps.engine.data_file import bodies_text
 
 RADIUS, YOUNG = 0.3, 2.0
-STIFF = 2.0
-"""kappa of what touches with its own points alone, over that of points of both (docs/physics-contact.md)."""
+STIFF = 0.2
+"""kappa of a line of particles, over that of points of both (docs/physics-contact.md)."""
 
 
 @dataclass(frozen=True)

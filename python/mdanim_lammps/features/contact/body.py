@@ -29,7 +29,7 @@ class HeldBody(BodyKind):
             return lambda solid: h
         return lambda solid: min(h, shapes.thickness(solid.shape) / 2)
 
-    def particles(self, scene, solid, lattice):
+    def particles(self, scene, solid, lattice, h):
         return 8.0 if only_surfaces_act(scene) else lattice
 
     def make(self, solid, h, shared):

@@ -5,7 +5,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 
@@ -14,11 +14,12 @@ from ...effects.fields import Field, column
 from ...effects.readings import Readings
 from ...errors import Problem
 from ...model.boxes import box_pairs
-from ...model.model import Layer
+from ...model.model import Layer, Model
 from ...model.overlap import BORN_AT_REST
 from ...model.planes import AXES
 from ...model.system import System
 from ...reach import largest_of_others
+from ...scene.formatting import at_least, say
 from ...scene.scene import Box, SceneRecord
 from .barrier import GAP, ObjectContact, barrier, barrier_rate
 from .forms import particle_stiffness
@@ -36,6 +37,11 @@ SPARE = 1.6
 one direction at once, and the excess that `rate` counts covers the usual damping."""
 ALONE = 2.0
 """kappa where only the dense points of one act, over that where both have points."""
+LINE = 0.2
+"""The same of a line of particles, of which each bears all that it meets."""
+RESOLVED = 60.0
+"""How many times its share counts in the bound: in a blow all of its energy goes through its contact, which is then resolved to
+1e-3 (a rope that falls flat on a floor, bench/ropes.py)."""
 SLOW = 0.3
 """Closing speed over the wave speed up to which a short barrier stops all that meets."""
 SLOW_NEEDLE = 0.1
@@ -114,7 +120,10 @@ class SurfaceLaw:
             return None
         h = float(np.cbrt(system.cell_volume).max())
         eta = 2.0 * beta * np.sqrt(kappa * (system.density * h) / 2.0)
-        return eta[system.object] * _of_bodies(context, borne_area(system) / system.mass)
+        area = borne_area(system)
+        if system.lines.any():
+            area = np.where(system.lines[system.object], own_area(system), area)
+        return eta[system.object] * _of_bodies(context, area / system.mass)
 
     def penetration(self, readings: Readings) -> float:
         """As `Effect.penetration`."""
@@ -165,7 +174,7 @@ class SurfaceContact(ObjectContact):
         would not roll. The surface alone stops it up to SLOW. What never moves has particles at the corners of a box.
         """
         system = context.system
-        with_barrier = (~are_dense(system) | fast(context)) & np.isfinite(system.young) & ~are_boxed(system)
+        with_barrier = (~are_dense(system) | fast(context)) & np.isfinite(system.young) & ~are_boxed(system) & ~system.lines
         return np.where(with_barrier[system.object], particle_stiffness(context.scene, system), 0.0)
 
     def barrier_reach(self, context: Context) -> np.ndarray:
@@ -178,7 +187,7 @@ class SurfaceContact(ObjectContact):
         quick = fast(context)[system.object]
         behind = np.where(system.boundary, 0.0, SHORT * shortest_edge(system)[system.object])
         reach = np.where(quick, FULL * system.spacing[system.object], behind)
-        return np.where(np.isfinite(system.young)[system.object], reach, 0.0)
+        return np.where((np.isfinite(system.young) & ~system.lines)[system.object], reach, 0.0)
 
     def longest_reach(self, context: Context) -> float:
         """No barrier of the scene reaches farther [m]."""
@@ -218,13 +227,16 @@ class SurfaceContact(ObjectContact):
         area = own + borne
         if dense.any() and not dense.all():
             area = np.maximum(area, ALONE * np.where(dense[system.object], own, borne))
+        if system.lines.any():
+            area = np.where(system.lines[system.object], RESOLVED * LINE * own, area)
         surface = 2.0 * kappa * _of_bodies(context, area / system.mass, 2.0)
         return surface + barrier_rate(system, self.barrier_stiffness(context), self.longest_reach(context))
 
     def own_rate(self, context):
         system = context.system
         kappa = self.stiffness(context)[system.object]
-        return 2.0 * kappa * _of_bodies(context, own_area(system) / system.mass)
+        share = np.where(system.lines, RESOLVED * LINE, 1.0)[system.object] if system.lines.any() else 1.0
+        return 2.0 * kappa * share * _of_bodies(context, own_area(system) / system.mass)
 
     def drag_rate(self, context):
         """Points of the own body and of another, and the factor 2 as in `rate`."""
@@ -238,6 +250,9 @@ class SurfaceContact(ObjectContact):
         for own, _ in settled(context):  # these have the others as partners alone
             partner = np.where(own, young[~own].max(initial=0.0), partner)
         return surface_stiffness(context, young, 2.0 * partner / (young + partner))
+
+    def problems(self, resolved, models, grid):
+        return [*super().problems(resolved, models, grid), *too_fine(resolved.scene, models)]
 
     def notes(self, envelope):
         return [p for p in self.about_friction(envelope.context) if p.severity == "note"]
@@ -334,7 +349,7 @@ class SurfacePlanes(Planes):
     def stiffness(self, context: Context) -> np.ndarray:
         """kappa of the surface of each solid against a plane, which has no points of its own [N/m^3], shape (M,)."""
         system = context.system
-        share = np.where(are_dense(system), ALONE, 1.0)
+        share = np.where(are_dense(system), np.where(system.lines, 2.0 * RESOLVED * LINE, ALONE), 1.0)
         for own, _ in settled(context, planes=True):
             share = np.where(own, 0.0, share)
         return surface_stiffness(context, moduli(context), share)
@@ -343,6 +358,26 @@ class SurfacePlanes(Planes):
 def touching_planes(sides: Sides) -> Planes:
     """The effect of these sides, in both forms."""
     return BarrierPlanes(sides, SurfacePlanes(sides))
+
+
+def too_fine(scene: SceneRecord, models: Sequence[Model]) -> list[Problem]:
+    """Objects that deform and whose cells are finer than a line of particles is thick around these: a cell beyond its surface the
+    map of such a host leads nowhere."""
+    lines = [m for m, model in enumerate(models) if model.frame.line]
+    if not lines:
+        return []
+    thickest = max(lines, key=lambda m: models[m].frame.contact.radius)
+    radius, name = models[thickest].frame.contact.radius, models[thickest].name
+    found = []
+    for solid, model in zip(scene.solids, models):
+        h = float(np.cbrt(np.prod(model.cell)))
+        if model.frame.line or model.frame.rigid or model.inertia is not None or model.still or h >= radius * (1.0 - 1e-9):
+            continue
+        cause = f"{name} is {say(2.0 * radius, 'm')} thick, more than two cells of {solid.name}, which are {say(h, 'm')} wide"
+        way_out = f"write resolution {say(at_least(radius), 'm')} in {solid.name}, elasticity rigid, or a thinner {name}"
+        place = solid.spans.get("resolution") or solid.spans.get("elasticity")
+        found.append(Problem(place, f"{cause}: their contact would be lost", way_out))
+    return found
 
 
 def _of_bodies(context: Context, of_particles: np.ndarray, sides: float = 1.0) -> np.ndarray:
@@ -401,14 +436,17 @@ def own_area(system: System) -> np.ndarray:
 def borne_area(system: System) -> np.ndarray:
     """s_i, the area of another surface that each particle may bear [m^2], shape (N,): h^2 within a face, less where fewer cells
     are behind it."""
-    return (np.cbrt(system.cell_volume) ** 2)[system.object] * np.minimum(1.0, 2.0 * system.share)
+    area = (
+        np.where(system.lines, 0.0, np.cbrt(system.cell_volume) ** 2) if system.lines.any() else np.cbrt(system.cell_volume) ** 2
+    )
+    return area[system.object] * np.minimum(1.0, 2.0 * system.share)
 
 
 def fast(context: Context) -> np.ndarray:
     """Solids that may meet others at more than SLOW of the wave speed of the softest, as if through air, bool, shape (M,)."""
     reach = context.reach
     slow = np.where(needles(reach.system), SLOW_NEEDLE, SLOW)
-    return reach.closing(reach.drop) > slow * float(reach.wave.min())
+    return (reach.closing(reach.drop) > slow * float(reach.wave.min())) & ~reach.system.lines
 
 
 def needles(system: System) -> np.ndarray:

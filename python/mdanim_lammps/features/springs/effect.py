@@ -8,7 +8,7 @@ import numpy as np
 from ...bodies import all_held, kind_of
 from ...effects.context import Context, Verdict
 from ...effects.effect import Effect
-from .strength import amplitude, load, thinnest, turning
+from .strength import strength, turning
 
 DASHPOTS = 0.44
 """Part of the time of damped springs that goes to their dashpots (bench/effects.py shares)."""
@@ -64,16 +64,18 @@ class Springs(Effect):
 
     def rate(self, context):
         system = context.system
-        return 2.0 * spring_norm(system, system.stiffness) / system.mass
+        if not (preload := np.abs(system.preload)).any():
+            return 2.0 * spring_norm(system, system.stiffness) / system.mass
+        return 2.0 * (spring_norm(system, system.stiffness) + turned_norm(system, preload / system.unloaded)) / system.mass
 
     def margins(self, envelope):
-        return [amplitude(envelope), *load(envelope), thinnest(envelope)]
+        return strength(envelope)
 
     def notes(self, envelope):
         return turning(envelope)
 
     def energy(self, readings):
-        return readings.elastic_energy()
+        return readings.elastic_energy() - float(readings.system.preload_energy.sum())
 
     def clocks(self, readings):
         return {"springs": readings.bond_seconds() / (1.0 + time_of_dashpots(readings.context))}
@@ -87,6 +89,13 @@ def spring_norm(system, weight: np.ndarray) -> np.ndarray:
     direction = system.position[i] - system.position[j]
     direction /= np.linalg.norm(direction, axis=1)[:, None]
     return block_norm(system.spring, weight, direction, system.particles)
+
+
+def turned_norm(system, pull: np.ndarray) -> np.ndarray:
+    """Bound on the largest eigenvalue of sum |F|/r (1 - n n^T) over the springs of each particle, which hold each other under
+    load where the body has none; shape (N,), from |F|/r of each [N/m], shape (S,)."""
+    i, j = system.spring.T
+    return np.bincount(i, pull, system.particles) + np.bincount(j, pull, system.particles)
 
 
 EFFECTS = (Springs(),)

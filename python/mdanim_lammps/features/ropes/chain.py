@@ -1,0 +1,139 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""The chain of particles that a rope becomes, its springs, and how contact sees it (docs/physics-ropes.md)."""
+
+from __future__ import annotations
+
+import math
+from functools import cached_property, lru_cache
+
+import numpy as np
+
+from ...model.contact_body import BodyFrame, ContactBody
+from ...model.lattice import Cells
+from ...model.rope import section
+from ...scene.curve import Curve
+from ...scene.scene import Rope
+
+SOFT = 1.0 / 16.0
+"""Constant of a spring over two links, over E A/h: so soft that its push hardly changes where the rope is bent."""
+NEWTON = 30
+"""Steps at most."""
+EXACT = 1e-13
+"""Distance of the last particle from its place, over the length, at which they end."""
+
+
+def links_of(rope: Rope, h: float) -> int:
+    """Number of links that are about h [m] long."""
+    return max(2, round(rope.length / h))
+
+
+def places(rope: Rope, links: int) -> np.ndarray:
+    """Particles at the start [m], shape (links + 1, 3): with links of equal lengths, in balance where they hang."""
+    curve = rope.curve
+    if not curve.a:
+        return np.array(curve.points(links))
+    return np.array([rope.start]) + _hang(curve, links)
+
+
+@lru_cache(maxsize=4096)
+def _hang(curve: Curve, links: int) -> np.ndarray:
+    """Particles of a hanging chain from its first one [m], shape (links + 1, 3).
+
+    Of links of the length h the slopes grow evenly, tan theta_k = p + k c, where all particles between the ends have one weight;
+    p and c follow from the span and the rise of its ends. Newton's method begins with those of the catenary.
+    """
+    start, end = np.array(curve.start), np.array(curve.end)
+    span, rise, h = float(np.linalg.norm((end - start)[:2])), float((end - start)[2]), curve.length / links
+    k = np.arange(links)
+    found = np.array([(curve.first + 0.5 * h) / curve.a, h / curve.a])
+    best, least = found, np.inf
+    for _ in range(NEWTON):
+        slope = found[0] + k * found[1]
+        cosine = 1.0 / np.sqrt(1.0 + slope**2)
+        off = np.array([h * cosine.sum() - span, h * (slope * cosine).sum() - rise])
+        size = float(np.abs(off).max())
+        if size < least:
+            best, least = found, size
+        if size <= EXACT * curve.length:
+            break
+        by = -slope * cosine**3, cosine**3
+        matrix = h * np.array([[b.sum(), (k * b).sum()] for b in by])
+        step = np.linalg.solve(matrix, off)
+        found = found - step * min(1.0, 0.5 * (1.0 + np.abs(found[0])) / max(np.abs(step).max(), 1e-300))
+    slope = best[0] + k * best[1]
+    cosine = 1.0 / np.sqrt(1.0 + slope**2)
+    along = (end - start)[:2] / span
+    step = h * np.stack([cosine * along[0], cosine * along[1], slope * cosine], axis=1)
+    x = np.concatenate([np.zeros((1, 3)), np.cumsum(step, axis=0)])
+    x += np.linspace(0.0, 1.0, links + 1)[:, None] * ((end - start) - x[-1])  # what is left of both errors
+    x.setflags(write=False)
+    return x
+
+
+def springs(rope: Rope, young: float, links: int) -> tuple[np.ndarray, np.ndarray]:
+    """Pairs i < j of particles, int32, shape (S, 2), and k [N/m], r0 [m] and length without load [m] of each, shape (S, 3).
+
+    A section crosses one link and two springs over two links, at its ends one, which together bear E A. Each of the latter pushes
+    with P = 2 E I/h^2, so that a bend by an angle theta has the energy (E I/h) theta^2/2, and the links hold them.
+    """
+    h, area = rope.length / links, section(rope)
+    i = np.arange(links)
+    link = np.stack([i, i + 1], axis=1)
+    stiff = np.full(links, young * area / h)
+    if not rope.bends:
+        return link.astype(np.int32), np.stack([stiff, np.full(links, h), np.full(links, h)], axis=1)
+    inertia = math.pi * rope.thickness**4 / 64.0
+    k2, push = SOFT * young * area / h, 2.0 * young * inertia / h**2
+    crossed = np.minimum(1, i) + np.minimum(1, links - 1 - i)  # springs over two links beside each link
+    k1 = stiff - 2.0 * k2 * crossed
+    two = np.stack([i[:-1], i[:-1] + 2], axis=1)
+    of_link = np.stack([k1, h - push * crossed / k1, np.full(links, h)], axis=1)
+    of_two = np.tile([k2, 2.0 * h + push / k2, 2.0 * h], (links - 1, 1))
+    pair, value = np.concatenate([link, two]), np.concatenate([of_link, of_two])
+    order = np.lexsort((pair[:, 1], pair[:, 0]))
+    return pair[order].astype(np.int32), value[order]
+
+
+class LineFrame(BodyFrame):
+    """A chain of particles as contact sees it: points of its own, in one row of cells."""
+
+    line = True
+
+    @cached_property
+    def contact(self) -> ContactBody:
+        """The same object at every call."""
+        rope, n = self.shape, int(self.cells.count[0])
+        number = np.arange(n, dtype=np.int32)
+        at = np.stack([number + 0.5, np.full(n, 0.5), np.full(n, 0.5)], axis=1)
+        length = np.full(n, rope.length / (n - 1))
+        length[[0, -1]] *= 0.5
+        body = ContactBody(
+            count=self.cells.count.astype(np.int32),
+            edge=self.cells.edge,
+            node=number,
+            filled=np.ones(n, np.uint8),
+            cell=number,
+            at=at,
+            centre=at,
+            normal=np.tile([0.0, 0.0, 1.0], (n, 1)),
+            area=rope.thickness * length,
+            kind=np.full(n, 2, np.uint8),
+            depth=None,
+            open=np.zeros((0, 5)),
+            radius=0.5 * rope.thickness,
+        )
+        for array in (number, at, body.edge, body.filled, body.normal, body.area, body.kind, body.open, body.count):
+            array.setflags(write=False)
+        return body
+
+    @cached_property
+    def drawn(self) -> np.ndarray:
+        """Which particles lie inside the shape, bool, shape (N,): all."""
+        return np.ones(int(self.cells.count[0]), bool)
+
+
+def line_frame(rope: Rope, links: int) -> LineFrame:
+    """The frame of a rope of so many links: cells of the volume of a link in one row."""
+    h, edge = rope.length / links, math.sqrt(section(rope))
+    low = -0.5 * np.array([(links + 1) * h, edge, edge])
+    return LineFrame(rope, Cells(np.ones((1, 1, links + 1), bool), low, -low))

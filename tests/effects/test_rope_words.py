@@ -1,0 +1,126 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Words of ropes: what is read, what is refused with its place, what `check` remarks, and the lock."""
+
+import re
+
+import pytest
+from mdanim_lammps.errors import SceneError
+from mdanim_lammps.run.prepare import prepare
+from mdanim_lammps.scene.lock import lock_text
+from mdanim_lammps.scene.parse import parse_scene
+from mdanim_lammps.scene.scene import HoldEnds, Rope
+
+LINE = """object line {{
+  {shape}
+  density 1000
+  elasticity 10 MPa
+  {more}
+}}
+control {{ time 1 s }}
+"""
+SLACK = "shape rope from (0, 0, 1) m to (1, 0, 1) m thickness 1 cm length 1.2 m"
+BOX = "object box { shape box (20, 20, 20) cm  position (0, 0, 0.1) m  density 500  elasticity 1 MPa }\n"
+
+
+def line(shape: str = SLACK, more: str = "") -> str:
+    return LINE.format(shape=shape, more=more)
+
+
+def problem(text: str):
+    with pytest.raises(SceneError) as error:
+        prepare(parse_scene(text))
+    return error.value.problems[0]
+
+
+def test_it_is_read_and_written_back():
+    """Without a position; a length that is absent is the distance; a chain is one that does not bend."""
+    scene = parse_scene(line(more="hold start  hold end"))
+    (solid,) = scene.solids
+    assert solid.shape == Rope((0.0, 0.0, 1.0), (1.0, 0.0, 1.0), 0.01, 1.2) and solid.hold == (
+        HoldEnds(True, False),
+        HoldEnds(False, True),
+    )
+    assert solid.position[0] == pytest.approx(0.5) and 0.7 < solid.position[2] < 0.9
+    again = parse_scene(lock_text(scene))
+    assert again == scene
+    chain = parse_scene(line("shape chain from (0, 0, 1) m to (1, 0, 1) m thickness 1 cm")).solids[0].shape
+    assert not chain.bends and chain.length == 1.0
+
+
+def test_a_group_moves_and_turns_it():
+    """It hangs along -z wherever its ends are."""
+    text = (
+        "group g {\n"
+        + line().partition("control")[0]
+        + "}\nplace g { position (0, 0, 2) m  orientation axis (0, 0, 1) angle 90 deg }\n"
+    )
+    solid = parse_scene(text + "control { time 1 s }\n").solids[0]
+    assert solid.shape.start == pytest.approx((0, 0, 3)) and solid.shape.end == pytest.approx((0, 1, 3))
+    assert solid.position[:2] == pytest.approx((0, 0.5)) and solid.position[2] < 3.0 and solid.rotation[0][0] == 1.0
+
+
+REFUSED = {
+    "a position": (line(more="position (0, 0, 1) m"), "line has its position by its shape", "leave out position"),
+    "an orientation": (line(more="orientation axis (1, 0, 0) angle 0"), "line has its orientation by its shape", "leave out"),
+    "one point": (line(SLACK.replace("(1, 0, 1)", "(0, 0, 1)")), "both ends of the rope are at one point", "put them apart"),
+    "too thick": (line(SLACK.replace("1 cm", "70 cm")), "shorter than twice its thickness", "smaller thickness"),
+    "stretched": (line(SLACK.replace("1.2 m", "0.5 m")), "stretched too far", "write a length of 0.667 m or more"),
+    "steep": (line(SLACK.replace("(1, 0, 1)", "(0, 0, 0)")), "one end is above the other", "put the ends 0.012 m apart"),
+    "negative": (line(SLACK.replace("1 cm", "-1 cm")), "must be > 0", ""),
+    "rigid": (line().replace("10 MPa", "rigid"), "its springs follow from Young's modulus", "write elasticity 100 MPa"),
+    "one k": (line().replace("10 MPa", "spring 10 N/m"), "its springs follow from Young's modulus", "write elasticity 100 MPa"),
+    "faces": (line(more="hold faces x"), "line is a rope and has no faces", "write hold ends"),
+    "no particle": (line(more="hold within box (5, 5, 5) m to (6, 6, 6) m"), "catches no particle", "hold ends holds both ends"),
+    "restitution": (line(more="restitution 0.5"), "restitution is of rigid and held objects", "leave it out"),
+    "too fine": (line(more="resolution 1 mm"), "at least as long as it is thick", "write resolution 1 cm or more"),
+    "too coarse": (line(more="resolution 1 m"), "there are two or more", "write resolution 1 cm or more"),
+    "paper": (
+        line().replace("time 1 s", "time 1 s contact-model paper") + BOX,
+        "touches others with its surface",
+        "take contact-model",
+    ),
+    "liquid": (
+        "gravity (0, 0, -9.81)\nliquid sea { basin from (-1, -1, 0) m to (2, 1, 2) m density 1000 level 0.5 m }\n" + line(),
+        "a liquid finds objects by their cells",
+        "take the liquid out",
+    ),
+    "ends of a box": (
+        BOX.replace("MPa }", "MPa  hold ends }") + "control { time 1 s }",
+        "box is not a rope",
+        "write hold faces x",
+    ),
+    "fine cells": (
+        BOX.replace("MPa }", "MPa  resolution 2 mm }") + line(SLACK.replace("1 cm", "2 cm")),
+        "line is 2 cm thick, more than two cells of box, which are 2 mm wide",
+        "write resolution 1 cm in box",
+    ),
+    "in a box": (BOX + line(SLACK.replace("(0, 0, 1)", "(0, 0, 0.1)")), "line starts inside box", "move it"),
+}
+
+
+@pytest.mark.parametrize("name", REFUSED)
+def test_what_does_not_fit_is_refused_with_its_place(name):
+    """Cause and way out."""
+    text, cause, way_out = REFUSED[name]
+    found = problem(text)
+    assert found.span is not None and re.search(cause, found.message) and way_out in found.hint, (found.message, found.hint)
+
+
+def test_a_group_that_turns_one_end_above_the_other_is_refused():
+    """At the shape, with the place of the group."""
+    text = (
+        "group g {\n"
+        + line().partition("control")[0]
+        + "}\nplace g { orientation axis (0, 1, 0) angle 90 deg }\ncontrol { time 1 s }\n"
+    )
+    assert "one end is above the other" in problem(text).message
+
+
+def test_check_tells_what_passes_through(prepared):
+    """Ropes do not touch each other; long links beside something thin."""
+    two = "gravity (0, 0, -9.81)\n" + line() + line().replace("object line", "object other").partition("control")[0] + BOX
+    told = [p.message for p in prepared(two).certificate.notes]
+    assert any("line, other do not touch each other" in m for m in told)
+    thin = BOX.replace("(20, 20, 20) cm", "(20, 20, 4) cm")
+    told = [p.message for p in prepared("gravity (0, 0, -9.81)\n" + line(more="resolution 6 cm") + thin).certificate.notes]
+    assert any("links of line are 6 cm long and box is 4 cm thin" in m for m in told)
