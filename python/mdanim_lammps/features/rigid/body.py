@@ -38,7 +38,8 @@ class RigidBody(BodyKind):
     def spacing(self, scene, h):
         """Two cells across, four of what is round or has no known features; no coarser than the scene where there is a liquid or
         something soft, whose forces find the body at its particles and at points as far apart as these."""
-        finest = h if scene.liquid is not None or any(is_soft(s) for s in scene.solids) else math.inf
+        soft = any(is_soft(s) and kind_of(s).fills for s in scene.solids)
+        finest = h if scene.liquid is not None or soft else math.inf
         return lambda solid: min(finest, shapes.thickness(solid.shape) / _across(solid))
 
     def has_spacing(self, scene):
