@@ -17,6 +17,7 @@ FRAGMENTS = {"rubber"}
 
 NAMES = sorted({p.stem for p in SCENES.glob("*.txt")} - FRAGMENTS)
 LONG = {
+    "barge": (0.3, True),
     "billiard": (0.5, False),
     "blocks": (0.2, False),
     "boat": (1.8, True),

@@ -53,6 +53,8 @@ PICTURES = {
     "jenga": 0.7,
     "arch": 2.4,
     "blocks": 1.0,
+    "barge": 4.5,
+    "tops": 0.5,
 }
 """Scene and the moment to show [s]."""
 STEPS = {"falls": 0.0, "stands": 1.0, "pushed": 0.27, "rolls": 0.5, "splashes": 0.4, "show": 0.3}

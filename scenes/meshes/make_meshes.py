@@ -113,7 +113,7 @@ def stone() -> pyvista.PolyData:
 
 WIDE, PIPE, WALL = 24.0, 2.4, 0.6
 """Radius of the spiral, inner radius of its pipe, thickness of that [cm]."""
-TURNS, DROP, STATIONS, ARC = 2, 9.0, 60, 8
+TURNS, DROP, STATIONS, ARC = 2, 14.0, 60, 8
 """Turns, the way down in one of them [cm], sections in a turn, points of half a circle less one."""
 
 
@@ -139,7 +139,7 @@ def chute() -> pyvista.PolyData:
 
 BARGE = np.array([120.0, 60.0, 30.0])
 """Length, width and height of the barge [cm]; its rim lies at z = 0."""
-PLANK = 6.0
+PLANK = 9.0
 """Thickness of its planks [cm]."""
 
 

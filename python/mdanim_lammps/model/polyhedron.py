@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from dataclasses import dataclass
 from functools import lru_cache
@@ -15,6 +16,8 @@ from . import mesh
 
 MOST_CORNERS = 60
 """Corners of a mesh up to which its features are found quickly."""
+MOST_ON_PLANES = 1000
+"""Corners of the hull of a mesh up to which those on a plane are found quickly."""
 NEAR = 1e-6
 """Distance over the size of a mesh, the diagonal of its box, below which corners are one, or a corner lies in a plane: what the
 fix lets a face be uneven by, and about what six digits of coordinates are rounded by."""
@@ -38,20 +41,46 @@ class Polyhedron:
 def polyhedron(shape: Mesh) -> Polyhedron | None:
     """The corners and faces of a mesh; None where it is not convex, has more than MOST_CORNERS, or has edges or faces too small
     for `fix mdanim/rigid`. Raises mesh.MeshError."""
+    whole, body = _around_all(shape), mesh.load(shape)
+    if len(whole.vertices) > 4 * MOST_CORNERS or whole.volume - body.volume > _near(body.points) * whole.area:
+        return None
+    found = hull(shape)
+    return found if found is not None and len(found.corner) <= MOST_CORNERS else None
+
+
+@lru_cache(maxsize=256)
+def hull(shape: Mesh) -> Polyhedron | None:
+    """The corners and faces of the hull of a mesh, all of it that a plane can touch; None where it has more than MOST_ON_PLANES
+    corners, more than MOST_CORNERS of them in one plane, or edges or faces too small for `fix mdanim/rigid`. Raises
+    mesh.MeshError."""
     from scipy.spatial import ConvexHull
 
-    body = mesh.load(shape)
-    hull = ConvexHull(body.points)
-    near = NEAR * float(np.linalg.norm(np.ptp(body.points, axis=0)))
-    if len(hull.vertices) > 4 * MOST_CORNERS or hull.volume - body.volume > near * hull.area:
+    found, points = _around_all(shape), mesh.load(shape).points
+    if len(found.vertices) > 4 * MOST_ON_PLANES:
         return None
-    kept = _apart(body.points[hull.vertices], near)
-    if len(kept) < len(hull.vertices):
+    near = _near(points)
+    kept = _apart(points[found.vertices], near)
+    if len(kept) < len(found.vertices):
         if len(kept) < 4:
             return None
-        hull = ConvexHull(body.points[hull.vertices[kept]])
-    found = _merged(hull, near)
-    return found if found is not None and len(found.corner) <= MOST_CORNERS and _is_clean(found, near) else None
+        found = ConvexHull(points[found.vertices[kept]])
+    body = _merged(found, near)
+    if body is None or len(body.corner) > MOST_ON_PLANES or max(map(len, body.faces)) > MOST_CORNERS:
+        return None
+    return body if _is_clean(body, near) else None
+
+
+@lru_cache(maxsize=8)
+def _around_all(shape: Mesh) -> Any:
+    """The hull of a mesh as SciPy finds it."""
+    from scipy.spatial import ConvexHull
+
+    return ConvexHull(mesh.load(shape).points)
+
+
+def _near(points: np.ndarray) -> float:
+    """The distance from which on points of a mesh are two [m]."""
+    return NEAR * float(np.linalg.norm(np.ptp(points, axis=0)))
 
 
 def _apart(points: np.ndarray, near: float) -> list[int]:
@@ -106,10 +135,11 @@ def _groups(hull: Any, near: float) -> tuple[np.ndarray, dict[int, int]]:
             groups[(groups < 0) & (np.abs(corner @ plane[:3] + plane[3]).max(axis=1) <= near)] = seed
             groups[seed] = seed
             seeds[seed] = seed
+    normal = hull.equations[:, :3].tolist()
     for k, neighbours in enumerate(hull.neighbors.tolist()):
         for n in neighbours:
             one, two = sorted((int(groups[k]), int(groups[n])), key=lambda g: -area[g])
-            if one != two and np.linalg.norm(np.cross(hull.equations[one, :3], hull.equations[two, :3])) < ONE_PLANE:
+            if one != two and _sine(normal[one], normal[two]) < ONE_PLANE:
                 groups[groups == two] = one
     return groups, seeds
 
@@ -129,10 +159,11 @@ def _is_clean(body: Polyhedron, near: float) -> bool:
     one; three edges meet in each corner, and no two corners are near."""
     if len(_apart(body.corner, near)) < len(body.corner):
         return False
-    normal: dict[tuple[int, int], np.ndarray] = {}
+    normal: dict[tuple[int, int], list[float]] = {}
     for face in body.faces:
         corner = body.corner[list(face)]
-        spread = np.cross(corner - corner[0], np.roll(corner, -1, axis=0) - corner[0]).sum(axis=0)
+        (x, y, z), (u, v, w) = (corner - corner[0]).T, (np.concatenate([corner[1:], corner[:1]]) - corner[0]).T
+        spread = np.array([y @ w - z @ v, z @ u - x @ w, x @ v - y @ u])
         length = float(np.linalg.norm(spread))
         if length <= LEAST_AREA * (near / NEAR) ** 2:
             return False
@@ -140,10 +171,15 @@ def _is_clean(body: Polyhedron, near: float) -> bool:
         level = float((corner @ out).mean())
         if np.abs(corner @ out - level).max() > 0.5 * near or (body.corner @ out).max() - level > 0.5 * near:
             return False  # half, as the fix's size is from one corner to the farthest, half of the diagonal or more
-        normal.update(((a, b), out) for a, b in zip(face, (*face[1:], face[0])))
+        normal.update(((a, b), out.tolist()) for a, b in zip(face, (*face[1:], face[0])))
     if len(normal) != sum(map(len, body.faces)) or any((b, a) not in normal for a, b in normal):
         return False
     ways = Counter(a for a, _ in normal)
     return min(ways[k] for k in range(len(body.corner))) >= 3 and all(
-        np.linalg.norm(np.cross(out, normal[b, a])) >= 0.5 * ONE_PLANE for (a, b), out in normal.items()
+        _sine(out, normal[b, a]) >= 0.5 * ONE_PLANE for (a, b), out in normal.items()
     )
+
+
+def _sine(a: list[float], b: list[float]) -> float:
+    """Sine of the angle between two unit vectors: NumPy's functions take longer for three numbers."""
+    return math.hypot(a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])

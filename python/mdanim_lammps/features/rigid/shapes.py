@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from ...bodies import all_held
-from ...model.polyhedron import polyhedron
+from ...model.polyhedron import hull, polyhedron
 from ...scene.scene import Box, Cone, Cylinder, Ellipsoid, Mesh, Shape, Solid, Sphere, Torus
 from .words import Rigid
 
@@ -22,8 +22,8 @@ def on_objects(shape: Shape) -> bool:
 
 
 def on_planes(shape: Shape) -> bool:
-    """The same on planes."""
-    return on_objects(shape)
+    """The same on planes, which touch of a mesh what its hull touches."""
+    return on_objects(shape) or (isinstance(shape, Mesh) and hull(shape) is not None)
 
 
 def only_balls_move(solids: Sequence[Solid]) -> bool:
@@ -54,7 +54,7 @@ def in_file(solid: Solid) -> tuple[list[float], str]:
             place = place + np.array(solid.rotation) @ (0.0, 0.0, 0.25 * shape.height)
         case Torus():
             kind, sizes = "torus", (shape.major, shape.minor)
-        case Mesh() if (body := polyhedron(shape)) is not None:
+        case Mesh() if (body := polyhedron(shape) or hull(shape)) is not None:
             faces = " ".join(f"{len(face)} {' '.join(map(str, face))}" for face in body.faces)
             return place.tolist(), f"polyhedron {len(body.corner)} {digits(body.corner.ravel())} {len(body.faces)} {faces}"
         case _:
