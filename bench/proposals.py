@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""Objects that may as well be rigid: ``python bench/proposals.py [SCENE ...]`` prints the tables of docs/physics-rigid.md.
+"""Objects that may as well be rigid: ``python bench/proposals.py [SCENE ...]`` prints the table of docs/physics-rigid.md, with
+``study`` in place of names that of docs/accuracy.md.
 
 Names of scenes without .txt; without one all scenes in which something elastic is free, ten minutes. Times are processor seconds.
+``study`` studies some of the scenes of bench/advice.py, half a minute each, with both forms.
 """
 
 from __future__ import annotations
@@ -11,6 +13,7 @@ import tempfile
 import time
 from pathlib import Path
 
+import advice
 import one_thread  # noqa: F401
 from mdanim_lammps.cost.forecast import forecast
 from mdanim_lammps.effects.envelope import Envelope
@@ -20,7 +23,9 @@ from mdanim_lammps.results.trajectory import Trajectory
 from mdanim_lammps.run.loop import simulate
 from mdanim_lammps.run.prepare import Prepared, prepare
 from mdanim_lammps.scene.formatting import number
-from mdanim_lammps.scene.parse import load_scene
+from mdanim_lammps.scene.parse import load_scene, parse_scene
+from mdanim_lammps.study.analysis import off
+from mdanim_lammps.study.study import run_study
 
 SCENES = Path(__file__).resolve().parent.parent / "scenes"
 FRAGMENTS = {"rubber"}
@@ -42,8 +47,28 @@ def expected(ready: Prepared) -> float | None:
 
 
 def told(found) -> str:
-    """Names of the objects of a proposal."""
-    return ", ".join(f"{name}: {why.split(',')[0]}" for name, why in found.groups) if found else ""
+    """Names of the objects of a proposal, and their largest strain where it was measured."""
+    strains = (why.split(",")[0].removeprefix("largest strain ") if "largest strain" in why else "" for _, why in found.groups)
+    return ", ".join(f"{name} {strain}".rstrip() for (name, _), strain in zip(found.groups, strains))
+
+
+STUDIED = ("a slide", "a bounce", "a ball that rolls", "two balls", "dominoes")
+"""Scenes of bench/advice.py."""
+BUDGET = 40.0
+"""Seconds of a study."""
+
+
+def studies() -> None:
+    """Print a row for each scene: error and seconds of both forms, by a study."""
+    print("| scene | elastic: error | seconds | rigid: error | seconds |")
+    print("|---|---|---|---|---|")
+    for name in STUDIED:
+        scene = parse_scene(advice.SCENES[name], name.replace(" ", "-"))
+        with tempfile.TemporaryDirectory() as folder:
+            a = run_study(scene, Path(folder) / "study", budget=BUDGET, only=("resolution", "contact", "rigid")).analysis
+        rigid, elastic = (a.rated[s.key] for s in a.measured["rigid"])
+        cells = [cell for r in (elastic, rigid) for cell in (off(r.error.middle, a.doubt), number(r.seconds.middle, 2))]
+        print(f"| {name} | {' | '.join(cells)} |", flush=True)
 
 
 def main(names: list[str]) -> None:
@@ -52,7 +77,7 @@ def main(names: list[str]) -> None:
     print("|---|---|---|---|---|---|---|")
     for name in names or sorted({p.stem for p in SCENES.glob("*.txt")} - FRAGMENTS):
         ready = prepare(load_scene(SCENES / f"{name}.txt"))
-        if not proposal.groups(ready.context):
+        if not proposal.groups(ready.scene):
             continue
         before = proposal.before(Envelope(ready.context, {}, ready.certificate.timestep))
         with tempfile.TemporaryDirectory() as temporary:
@@ -67,8 +92,8 @@ def main(names: list[str]) -> None:
                 except MdanimError:
                     pass
         cells = [number(s, 2) if s else "" for s in (*seconds, None, None)[:4]]
-        print(f"| {name} | {told(before)} | {told(after)} | {' | '.join(cells)} |", flush=True)
+        print(f"| {name} | {told(before) if before else ''} | {told(after) if after else ''} | {' | '.join(cells)} |", flush=True)
 
 
 if __name__ == "__main__":
-    main(sys.argv[1:])
+    studies() if sys.argv[1:] == ["study"] else main(sys.argv[1:])

@@ -217,7 +217,8 @@ def saving_lines(savings: Iterable[Saving]) -> list[str]:
         lines.append(f"quicker  with {s.proposal.words} these would look the same ({s.proposal.how}):")
         lines += [f"{MARGIN}{name}: {why}" for name, why in s.proposal.groups]
         lines.append(
-            f"{MARGIN}the run then takes about 1/{_rough(s.now / s.then):g} of the time, {_about(s.then)} of {_about(s.now)}"
+            f"{MARGIN}the run then takes about 1/{_rough(s.now / s.then):g} of the time, {_about(s.then)} of {_about(s.now)}; "
+            f'blows may bounce otherwise: study --ladders "resolution, {s.proposal.ladder}"'
         )
     return lines
 

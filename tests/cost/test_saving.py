@@ -74,5 +74,5 @@ def test_nothing_is_said_of_a_short_run_nor_where_the_other_form_takes_as_long(p
 )
 def test_the_part_of_the_time_has_few_digits(now, then, part):
     """One, or two where the first is a 1: no forecast is better than that."""
-    proposal = SimpleNamespace(words="elasticity rigid", how="measured", groups=(("ball", "largest strain 1 %"),))
+    proposal = SimpleNamespace(words="elasticity rigid", how="measured", ladder="rigid", groups=(("ball", "largest strain 1 %"),))
     assert f"about {part} of the time" in saving_lines([SimpleNamespace(proposal=proposal, now=now, then=then)])[-1]

@@ -12,7 +12,7 @@ from mdanim_lammps.features.rigid.strains import Strains
 from mdanim_lammps.features.rigid.words import Rigid
 from mdanim_lammps.run.prepare import prepare
 from mdanim_lammps.scene.naming import told_together
-from mdanim_lammps.scene.parse import load_scene
+from mdanim_lammps.scene.parse import load_scene, parse_scene
 
 
 def before(ready):
@@ -199,3 +199,45 @@ def test_the_scene_as_it_is_proposed(prepared):
 def test_names_of_like_objects(names, told):
     """As short as a message needs them."""
     assert told_together(names) == told
+
+
+# --- what the choice costs: study -------------------------------------------------------------------------------------
+
+SLIDE = """gravity (0, 0, -9.81)
+ground z 0
+object cube { shape box (12, 10, 8) cm  position (0, 0, 4) cm  density 1000  elasticity 1 MPa  damping 0.1
+  velocity (1.5, 0, 0) m/s }
+control { time 0.1 s  frames 50 fps  friction 0.4  accuracy preview }
+"""
+
+
+def test_a_study_rates_rigid_against_elastic(tmp_path, monkeypatch):
+    """Both have errors against the limit of elastic runs; the choice has no order, and adds nothing to the doubt of that limit.
+    A cube that slides by friction goes as far as the rigid one."""
+    from mdanim_lammps.study import bench
+    from mdanim_lammps.study.report import order_lines
+    from mdanim_lammps.study.setting import scene_hash
+    from mdanim_lammps.study.store import Store
+    from mdanim_lammps.study.study import run_study
+
+    monkeypatch.setattr(bench, "REPEATS", 1)
+    study = run_study(parse_scene(SLIDE), tmp_path / "study", budget=60.0, only=["time step", "rigid"])
+    a = study.analysis
+    rigid, elastic = a.measured["rigid"]
+    assert elastic == a.own and rigid.key == f"{elastic.key}-r1" and str(rigid) == f"{elastic}, elasticity rigid"
+    assert study.points[rigid.key].particles < study.points[elastic.key].particles
+    assert set(a.ladders) == {"time step"} and a.finest in a.measured["time step"]
+    assert a.rated[rigid.key].error.middle < 0.02
+    assert [line for line in order_lines(study) if line.startswith(f"rigid: {rigid}: ")]
+    assert Store(tmp_path / "study", scene_hash(parse_scene(SLIDE))).points.keys() == study.points.keys()
+
+
+@pytest.mark.parametrize(("words", "why"), [("hold all", "no elastic object may be rigid as its words are"), ("", "")])
+def test_when_a_study_has_the_choice(prepared, words, why):
+    """Where something elastic may be rigid."""
+    from mdanim_lammps.features.rigid.vary import AsRigid
+
+    free = "object ball { shape sphere 5 cm  position (0, 0, 1) m  density 1000  elasticity rigid }\n"
+    ready = prepared(SLIDE.replace("damping 0.1", f"damping 0.1 {words}") + free)
+    assert AsRigid().why_not(ready.context) == why
+    assert AsRigid().put(ready.scene, None) is ready.scene

@@ -31,7 +31,7 @@ def test_overlaps_seen_from_above(number):
 @pytest.mark.parametrize("spread", [1.0, 10.0, 1000.0])
 @pytest.mark.parametrize("allows", ["all", "some", "one", "none"])
 def test_the_nearest_two(spread, allows):
-    """Of the pairs that count, the lowest numbers of several that are as near."""
+    """The nearest of the pairs that count, by the lowest numbers of several that are as near."""
     low, high = boxes(int(spread), 30, spread)
     may = np.zeros((30, 30), bool)
     if allows == "some":

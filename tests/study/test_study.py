@@ -61,7 +61,7 @@ def test_study_leaves_its_files(bar_study, bar_file):
     assert (folder / "study.png").read_bytes().startswith(b"\x89PNG")
     rows = (folder / "study.csv").read_text().splitlines()
     assert len(rows) == 1 + len(data["points"])
-    assert set(data["left_out"]) == {"sweeps", "contact"}
+    assert set(data["left_out"]) == {"sweeps", "contact", "rigid"}
 
 
 def test_ladders_of_a_bar(bar_study):
@@ -247,12 +247,12 @@ def test_ladders_of_what_a_scene_has(scenes):
     """Vary sweeps only with an automaton, contact only where something may touch, and say why not elsewhere."""
     pool = load_scene(scenes / "float.txt")
     automaton = replace(pool, liquid=replace(pool.liquid, model=LiquidModel.SURFACE))
-    others = ((load_scene(scenes / f"{name}.txt"), own) for name, own in (("beam", {"contact"}), ("spin", set())))
-    for scene, own in ((automaton, {"sweeps"}), (pool, set()), *others):
+    others = ((load_scene(scenes / f"{name}.txt"), own) for name, own in (("beam", {"contact", "rigid"}), ("spin", {"rigid"})))
+    for scene, own in ((automaton, {"sweeps", "rigid"}), (pool, {"rigid"}), *others):
         ready = prepare(scene)
         found, left = ladders(scene, ready, own_setting(scene, ready))
         assert {ladder.name for ladder in found} == {"time step", "resolution", *own}
-        assert set(left) == {"sweeps", "contact"} - own
+        assert set(left) == {"sweeps", "contact", "rigid"} - own
     assert left["contact"] == "nothing touches: one object, and there is neither ground nor walls"
 
 

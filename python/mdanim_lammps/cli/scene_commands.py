@@ -210,7 +210,7 @@ def study(
     budget
         Wall time, e.g. "30 s"; if left out, 2 min.
     ladders
-        Only these, e.g. "time step, resolution"; known are time step, resolution, sweeps, contact.
+        Only these, e.g. "time step, resolution"; known are time step, resolution, sweeps, contact, rigid.
     target
         An error, e.g. "2 %".
     """

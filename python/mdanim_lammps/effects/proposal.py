@@ -20,3 +20,5 @@ class Proposal:
     """How it was decided, for all groups."""
     scene: SceneRecord
     """The scene with these words."""
+    ladder: str
+    """Ladder of a study that tells how far motions differ."""

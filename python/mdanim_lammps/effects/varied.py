@@ -29,6 +29,8 @@ class Varied:
     """Keyword in a scene."""
     finer_is: ClassVar = ""
     """Name of finer values where a finer setting has finer values of it too, and where it shortens the time step; or empty."""
+    converges: ClassVar = True
+    """Whether values of its ladder approach a limit; else each is a model of its own, and an error tells what the model costs."""
     by_depth: ClassVar = False
     """Whether it shows in how deep objects sink in."""
 
@@ -63,6 +65,10 @@ class Varied:
     def stiffness(self, value: Any) -> float:
         """About the square of how many steps there are [-], up to a factor."""
         return 1.0
+
+    def shown(self, value: Any) -> str:
+        """The value in a column of a table."""
+        return "auto" if value is None else f"{value:g}"
 
     def told(self, value: Any, number: Callable[[Any], str] = "{:g}".format) -> str:
         """The value behind others in a sentence: ``, contact-stiffness 4``; empty for the usual one."""

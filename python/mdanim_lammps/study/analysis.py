@@ -71,7 +71,7 @@ class Analysis:
     """By key of the setting, cheapest first."""
     ladders: dict[str, Convergence]
     measured: dict[str, tuple[Setting, ...]]
-    """Settings of each ladder that were measured, coarsest first."""
+    """Settings of each ladder that were measured, coarsest first; also of those that approach no limit."""
     until: dict[str, tuple[float, float]]
     """For ladders without an order that begin with one: up to when [s], and that order."""
     touching: bool
@@ -130,8 +130,10 @@ def analyse(
     for ladder in ladders:
         settings = tuple(s for s in ladder.settings if s.key in run)
         if len(settings) > 1:
-            sizes, tracks = [ladder.step(s) for s in settings], [run[s.key].tracks[0] for s in settings]
             measured[ladder.name] = settings
+            if not ladder.converges:
+                continue
+            sizes, tracks = [ladder.step(s) for s in settings], [run[s.key].tracks[0] for s in settings]
             short = ladder.settings[-1] not in settings
             found[ladder.name] = c = converge(sizes, tracks, scale, short=short)
             if c.order is None and (part := order_until(times, sizes, tracks, scale)):

@@ -121,7 +121,7 @@ def table(study: Study) -> Table:
             "": "*" if r.front else "",
             "cells": f"{s.cells:g}",
             "step/bound": f"{s.fraction:.2f}" if s.fraction else "auto",
-            **{v.name: _written(value) for v, value in values(s) if v in changed},
+            **{v.name: v.shown(value) for v, value in values(s) if v in changed},
             "particles": f"{r.point.particles}",
             "seconds": _spread(r.seconds.middle, r.seconds.spread, len(r.point.seconds)),
             "error": off(r.error.middle, a.doubt),
@@ -136,10 +136,6 @@ def table(study: Study) -> Table:
                 out.add_column(name, justify="left" if name in ("", "ladder") else "right")
         out.add_row(*shown.values())
     return out
-
-
-def _written(value: float | None) -> str:
-    return "auto" if value is None else f"{value:g}"
 
 
 def _off(x: float | None) -> str:
@@ -168,6 +164,13 @@ def order_lines(study: Study) -> list[str]:
         if c.doubt and c.order is None:
             told += f"; the limit is the finest run, which may be off by {number(100 * c.doubt, 2)} %"
         lines.append(f"{name}: {what}{told}")
+    for name in a.measured.keys() - a.ladders.keys():
+        told = (
+            f"{s}: {off(r.error.middle, a.doubt)} off, {say(r.seconds.middle, 's', 2)}"
+            for s in a.measured[name]
+            for r in [a.rated[s.key]]
+        )
+        lines.append(f"{name}: {'; '.join(told)}")
     g = study.analysis.growth
     if study.analysis.chaotic and math.isfinite(g.folding):
         lines.append(
@@ -197,14 +200,14 @@ def draw(study: Study, path: Path) -> None:
     least = 0.5 * min((error for error in errors.values() if error > 0.0), default=1e-12)
     place = {key: (r.seconds.middle, 100 * max(errors[key], least)) for key, r in a.rated.items()}
     for name, settings in a.measured.items():
-        order = a.ladders[name].order
+        order = a.ladders[name].order if name in a.ladders else None
         label = name + (f" (order {order:.1f})" if order is not None else "")
         axes.plot(*zip(*(place[s.key] for s in settings)), "o-", color=COLORS[name], label=label, markersize=5)
         for s in settings:
             text = {
                 "time step": f"{s.fraction:.2g}",
                 "resolution": f"{s.cells:g}",
-                **{v.name: _written(value) for v, value in values(s)},
+                **{v.name: v.shown(value) for v, value in values(s)},
                 ALL: f"{s.cells:g}",
             }[name]
             axes.annotate(

@@ -71,6 +71,11 @@ class Ladder:
     name: str
     settings: tuple[Setting, ...]
 
+    @property
+    def converges(self) -> bool:
+        """Whether its settings approach a limit."""
+        return all(v.converges for v in varied() if v.name == self.name)
+
     def step(self, setting: Setting) -> float:
         """The quantity that goes to zero along the ladder, up to a factor."""
         if self.name == "time step":

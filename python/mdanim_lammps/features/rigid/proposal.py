@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import replace
 from typing import Any
 
@@ -17,14 +17,16 @@ from ...model import shapes
 from ...scene.formatting import number
 from ...scene.naming import bare_name, told_together
 from ...scene.scene import SceneRecord, Solid
+from ..contact.pairs import damping, frictions
 from ..contact.rigid_surfaces import loads, struck_at
 from ..contact.words import ContactModel
 from ..springs.measure import RECORDED
 from ..springs.strength import folds_at, spots
 from .strains import Strains
-from .touching import dampings
 from .words import SENSELESS, Rigid
 
+LADDER = "rigid"
+"""Name of the ladder of studies (vary.py)."""
 STRAIN = 0.15
 """Largest strain that is not seen: it is at the spot where an object is struck. Of bricks, dominoes, stones and billiard balls of
 scenes/ it is up to 0.13, of jelly, rubber balls and all that is thrown and visibly pressed flat 0.19 and more."""
@@ -43,7 +45,7 @@ BAR = 5.0 * 12.0 / 384.0
 def before(envelope: Envelope) -> Proposal | None:
     """Objects that will not be seen to bend, by what may strike them, and by their weights and those above them."""
     context, system = envelope.context, envelope.system
-    found = groups(context)
+    found = groups(context.scene)
     if not found:
         return None
     solids, free = context.solids, np.flatnonzero(~system.still)
@@ -66,7 +68,7 @@ def before(envelope: Envelope) -> Proposal | None:
 
 def after(context: Context, trajectory: Any) -> Proposal | None:
     """Objects that were not seen to bend in a run, by a results.trajectory.Trajectory."""
-    found = groups(context)
+    found = groups(context.scene)
     if not found or len(trajectory) < 2:
         return None
     chosen = np.sort(np.concatenate(list(found.values())))
@@ -83,26 +85,40 @@ def after(context: Context, trajectory: Any) -> Proposal | None:
     )
 
 
-def groups(context: Context) -> dict[str, np.ndarray]:
-    """Groups of like objects, by their names without indices, each of which may be rigid as far as its words go."""
-    scene = context.scene
+def groups(scene: SceneRecord) -> dict[str, np.ndarray]:
+    """Groups of like objects, by their names without indices, that may be rigid as far as their words go: numbers of solids,
+    ascending."""
     if scene.control.contact_model is not ContactModel.SURFACE:
         return {}
     found: dict[str, list[int]] = {}
-    for m, name in enumerate(context.system.names):
-        found.setdefault(bare_name(name), []).append(m)
+    for m, solid in enumerate(scene.solids):
+        found.setdefault(bare_name(solid.name), []).append(m)
     looked_at = {e.subject for e in scene.expects if e.quantity in RECORDED}
-    taken = np.array(dampings(context))
-    free = [_may_be(solid, solid.name in looked_at, taken[m] > 0.0) for m, solid in enumerate(context.solids)]
+    free = [_may_be(s, s.name in looked_at, takes) for s, takes in zip(scene.solids, _take_energy(scene))]
     return {name: np.array(of) for name, of in found.items() if all(free[m] for m in of)}
 
 
-def _may_be(solid: Solid, is_looked_at: bool, loses: bool) -> bool:
+def as_rigid(scene: SceneRecord, chosen: Iterable[int]) -> SceneRecord:
+    """The scene with these solids rigid."""
+    rigid = set(chosen)
+    solids = (replace(s, elasticity=Rigid(), damping=0.0) if m in rigid else s for m, s in enumerate(scene.solids))
+    return replace(scene, solids=tuple(solids))
+
+
+def _take_energy(scene: SceneRecord) -> list[bool]:
+    """Whether contacts of each solid, were it rigid, take energy of blows: by the restitution of the scene, or where it has
+    friction."""
+    if scene.control.restitution is not None:
+        return [scene.control.restitution < 1.0] * len(scene.solids)
+    return [mu > 0.0 and damping(scene) > 0.0 for mu in frictions(scene)]
+
+
+def _may_be(solid: Solid, is_looked_at: bool, takes: bool) -> bool:
     """Whether nothing that is said of an object needs its springs: no part is held, no `expect` asks for what springs tell, and
     damping has a dashpot of the contact to take its place."""
     if solid.hold or not kind_of(solid).deforms or is_looked_at:
         return False
-    return not any(getattr(solid, word) and (word != "damping" or not loses) for word in SENSELESS)
+    return not any(getattr(solid, word) and (word != "damping" or not takes) for word in SENSELESS)
 
 
 def _size(solid: Solid) -> float:
@@ -122,7 +138,5 @@ def _proposal(
     if not kept:
         return None
     names = [s.name for s in scene.solids]
-    rigid = set(np.concatenate(kept).tolist())
-    solids = tuple(replace(s, elasticity=Rigid(), damping=0.0) if m in rigid else s for m, s in enumerate(scene.solids))
     told = tuple((told_together([names[m] for m in of.tolist()]), tells(of)) for of in kept)
-    return Proposal("elasticity rigid", told, how, replace(scene, solids=solids))
+    return Proposal("elasticity rigid", told, how, as_rigid(scene, np.concatenate(kept).tolist()), LADDER)
