@@ -29,7 +29,7 @@ Joint::Joint(JointWords words, JointEnd a, JointEnd b, double length, double ftm
 
 void Joint::forget()
 {
-  before = Past();
+  set_past({}, {});
   before.q = given.kind == JointKind::SPRING ? own_length : 0.0;
 }
 
@@ -98,6 +98,11 @@ void Joint::choose_laws(double ftm2v)
     of_directions = std::fmax(of_directions, ftm2v * (end_a.mobility_of_direction(*e) + end_b.mobility_of_direction(*e)));
   const double square = given.arm ? *given.arm * *given.arm : held > 0 ? mobility / of_directions : 0.0;
   turning = {law.k * square, law.c * square};
+  if (given.kind == JointKind::SLIDER && end_b.moves) {
+    const Vec3 to_n = end_b.patch.velocity_of_direction(given.axis);
+    lever[0] = 2.0 * ftm2v * dot(end_b.d, to_n) / mobility;
+    lever[1] = ftm2v * dot(given.axis, to_n) / mobility;
+  }
   const bool turns = given.kind == JointKind::HINGE;
   servo_mobility = turns ? ftm2v * (end_a.mobility_about(given.axis) + end_b.mobility_about(given.axis)) : mobility;
   servo.k = given.servo ? given.servo->stiffness : law.k * mobility / servo_mobility;
@@ -128,18 +133,13 @@ void Joint::load_before()
 Joint::Loads Joint::step(const PatchMotion &a, const PatchMotion &b, double dt, JointAccount &account)
 {
   if (!is_broken()) {
-    Past past = before;
-    JointAccount spent;
-    const Loads loads = find(a, b, {dt, dt}, past, spent);
-    account.work += spent.work;
-    account.heat += spent.heat;
-    before = past;
+    const Loads loads = find(a, b, {dt, dt}, before, spent_before, account);
     if (now.force <= given.breaks && now.torque <= given.breaks_torque) return loads;
     // Forces that do not act now have no part in the work of this step.
-    account.heat += now.energy + 0.5 * dt * (loads.a.power(a) + loads.b.power(b));
-    before = Past();
-    before.q = past.q;
-    before.broken = 1;
+    account.heat += now.energy + 0.5 * dt * (loads.a.work(a.v, a.G) + loads.b.work(b.v, b.G));
+    const double way = before.q;
+    set_past({}, {});
+    before.q = way, before.broken = 1;
   }
   now = Reading();
   now.at_a = a.point(place_in_a), now.at_b = b.point(end_b.d);
@@ -148,32 +148,50 @@ Joint::Loads Joint::step(const PatchMotion &a, const PatchMotion &b, double dt, 
 
 Joint::Loads Joint::begin(const PatchMotion &a, const PatchMotion &b, double dt, bool anew)
 {
-  if (is_broken()) {
-    JointAccount none;
-    return step(a, b, 0.0, none);
-  }
-  Past past = before;
   JointAccount none;
-  const Loads loads = find(a, b, {0.0, dt}, past, none);
-  if (anew || !before.began) before = past;
+  if (is_broken()) return step(a, b, 0.0, none);
+  Past past = before;
+  Spending spending = spent_before;
+  const Loads loads = find(a, b, {0.0, dt}, past, spending, none);
+  if (anew || !before.began) set_past(past, spending);
   return loads;
 }
 
-Joint::Loads Joint::find(const PatchMotion &a, const PatchMotion &b, const Time &time, Past &past, JointAccount &spent)
+// The work of a step is that of the mean of the forces before and after it on the way between: for particles what leap-frog gives
+// them, for rigid bodies to second order.
+Joint::Loads Joint::find(const PatchMotion &a, const PatchMotion &b, const Time &time, Past &past, Spending &spending,
+                         JointAccount &account)
 {
   Loads loads;
+  Spending next;
   now = Reading();
-  const Side of_a{end_a.patch, place_in_a, turned_in_a, a, loads.a}, of_b{end_b.patch, end_b.d, direction, b, loads.b};
+  const Side of_a{end_a.patch, place_in_a, turned_in_a, a, loads.a, next.losses.a, next.motor.a};
+  const Side of_b{end_b.patch, end_b.d, direction, b, loads.b, next.losses.b, next.motor.b};
   now.at_a = of_a.place(), now.at_b = of_b.place();
+  const double lent = stored(past.motor.stretch), kept = stored(past.brake.stretch) + stored(past.depth);
   if (given.kind == JointKind::SPRING)
-    pull(of_a, of_b, time, past, spent);
+    pull(of_a, of_b, past);
   else
-    hold(of_b, of_a, time, past, spent);
+    hold(of_b, of_a, time, past);
   past.began = 1;
+  if (!spends()) return loads;
+  next.c_a = a.c, next.F_a = a.F, next.c_b = b.c, next.F_b = b.F;
+  const Vec3 dc_a = a.c - spending.c_a, dc_b = b.c - spending.c_b;
+  const Matrix3 dF_a = a.F + -1.0 * spending.F_a, dF_b = b.F + -1.0 * spending.F_b;
+  const auto work = [&](const Loads &first, const Loads &last) {
+    return 0.5 * ((first.a.work(dc_a, dF_a) + first.b.work(dc_b, dF_b)) + (last.a.work(dc_a, dF_a) + last.b.work(dc_b, dF_b)));
+  };
+  account.heat -= work(spending.losses, next.losses) + stored(past.brake.stretch) + stored(past.depth) - kept;
+  account.work += work(spending.motor, next.motor) + stored(past.motor.stretch) - lent;
+  for (const Loads *more : {&next.losses, &next.motor}) {
+    loads.a += more->a;
+    loads.b += more->b;
+  }
+  spending = next;
   return loads;
 }
 
-void Joint::pull(const Side &a, const Side &b, const Time &time, Past &past, JointAccount &spent)
+void Joint::pull(const Side &a, const Side &b, Past &past)
 {
   const Vec3 way = now.at_b - now.at_a;
   const double length = norm(way), more = length - own_length;
@@ -183,16 +201,16 @@ void Joint::pull(const Side &a, const Side &b, const Time &time, Past &past, Joi
   const Vec3 along = (1.0 / length) * way;
   now.rate = dot(along, b.velocity() - a.velocity());
   now.force = tension(law, more, now.rate, given.pulls_only);
-  const bool holds = more > 0.0 || !given.pulls_only;
-  now.energy = holds ? 0.5 * law.k * more * more : 0.0;
-  const double damped = holds ? now.force - law.k * more : 0.0;
-  spent.heat += 0.5 * time.passed * now.rate * (past.along + damped);
-  past.along = damped;
-  a.load.push(now.force * along, a.d);
-  b.load.push(-now.force * along, b.d);
+  if (given.pulls_only && !(more > 0.0)) return;
+  const double elastic = law.k * more;
+  now.energy = 0.5 * elastic * more;
+  a.springs.push(elastic * along, a.d);
+  b.springs.push(-elastic * along, b.d);
+  a.losses.push((now.force - elastic) * along, a.d);
+  b.losses.push((elastic - now.force) * along, b.d);
 }
 
-void Joint::hold(const Side &base, const Side &moving, const Time &time, Past &past, JointAccount &spent)
+void Joint::hold(const Side &base, const Side &moving, const Time &time, Past &past)
 {
   // The springs.
   const bool slides = given.kind == JointKind::SLIDER, turns = given.kind == JointKind::HINGE;
@@ -201,102 +219,110 @@ void Joint::hold(const Side &base, const Side &moving, const Time &time, Past &p
   Vec3 axis = over_drawn * drawn;
   const double way = dot(axis, gap);
   const Vec3 off = gap - way * axis;
+  const double softer = 1.0 / (1.0 + way * (lever[0] + way * lever[1])), k = softer * law.k;
   now.gap = norm(off);
-  now.energy = 0.5 * law.k * dot(off, off);
-  Vec3 force = -law.k * off, torque;    // on what moves
-  base.load.push(-1.0 * force, base.d);
-  moving.load.push(force, moving.d);
-  if (slides) base.load.moment += outer((law.k * way * over_drawn) * off, given.axis);
+  now.energy = 0.5 * k * dot(off, off);
+  Vec3 force = -k * off, torque;    // on what moves
+  base.springs.push(-1.0 * force, base.d);
+  moving.springs.push(force, moving.d);
+  const auto push_along = [&](double along, PatchLoad &on_base, PatchLoad &on_moving) {
+    on_base.push(-along * axis, base.d);
+    on_moving.push(along * axis, moving.d);
+    on_base.moment += outer((along * over_drawn) * off, given.axis);
+  };
+  if (slides) {
+    base.springs.moment += outer((k * way * over_drawn) * off, given.axis);
+    push_along(now.energy * softer * (lever[0] + 2.0 * way * lever[1]), base.springs, moving.springs);
+  }
   for (int j = 0; j < held; ++j) {
     const Vec3 &in_base = base.direction[j], &in_moving = moving.direction[j];
     const Vec3 turned = moving.motion.F * in_moving, apart = turned - base.motion.F * in_base, pull = -turning.k * apart;
-    base.load.moment += outer(-1.0 * pull, in_base);
-    moving.load.moment += outer(pull, in_moving);
+    base.springs.moment += outer(-1.0 * pull, in_base);
+    moving.springs.moment += outer(pull, in_moving);
     now.energy += 0.5 * turning.k * dot(apart, apart);
     torque += cross(turned, pull);
   }
 
-  // Dashpots beside them, and rotation seen from the base.
-  if (turns) axis = unit(base.motion.F * given.axis + moving.motion.F * given.axis);
-  if (law.c > 0.0) {
-    Vec3 velocity;
-    const Vec3 damped = damp(base, moving, slides ? axis : Vec3{}, velocity);
-    spent.heat -= 0.5 * time.passed * dot(past.dashpot + damped, velocity);
-    past.dashpot = damped;
-    force += damped;
-  }
+  // Dashpots beside them, and the free coordinate.
+  if (law.c > 0.0) force += damp(base, moving, softer * law.c, slides ? axis : Vec3{});
   if (turns || (held > 1 && turning.c > 0.0)) {
     const PatchSpin of_base(base.patch, base.motion), of_moving(moving.patch, moving.motion);
     const Vec3 omega = of_moving.omega - of_base.omega;
-    Vec3 couple = -turning.c * (turns ? omega - dot(axis, omega) * axis : omega);
-    spent.heat -= 0.5 * time.passed * dot(past.turning + couple, omega);
-    past.turning = couple;
+    if (turns) axis = unit(base.motion.F * given.axis + moving.motion.F * given.axis);
+    const double about = turns ? dot(axis, omega) : 0.0;
+    Vec3 couple = turning.c * (about * axis - omega);
     torque += couple;
     if (turns) {
-      const Vec3 from = base.motion.F * across, to = moving.motion.F * across;
-      const double angle = angle_of(dot(axis, cross(from, to)), dot(from, to) - dot(from, axis) * dot(to, axis));
-      constexpr double TURN = 6.283185307179586;
-      past.q = angle + TURN * std::floor((past.q - angle) / TURN + 0.5);
-      now.rate = dot(axis, omega);
-      couple += drive(now.rate, time, past, spent) * axis;
+      past.q = angle(base, moving, axis, past.q);
+      now.rate = about;
+      const Driving driving = drive(about, time, past);
+      couple += driving.losses * axis;
+      if (given.motor) {
+        of_base.couple(-driving.motor * axis, base.motor);
+        of_moving.couple(driving.motor * axis, moving.motor);
+      }
     }
-    of_base.couple(-1.0 * couple, base.load);
-    of_moving.couple(couple, moving.load);
+    if (spends()) {
+      of_base.couple(-1.0 * couple, base.losses);
+      of_moving.couple(couple, moving.losses);
+    }
   }
-
   if (slides) {
     past.q = way;
     now.rate = dot(axis, moving.velocity() - base.velocity()) + over_drawn * dot(off, base.motion.G * given.axis);
-    const double along = drive(now.rate, time, past, spent);
-    base.load.push(-along * axis, base.d);
-    moving.load.push(along * axis, moving.d);
-    base.load.moment += outer((along * over_drawn) * off, given.axis);
+    const Driving driving = drive(now.rate, time, past);
+    push_along(driving.losses, base.losses, moving.losses);
+    push_along(driving.motor, base.motor, moving.motor);
   }
   now.force = norm(force);
   now.torque = norm(torque);
 }
 
+// The angle of a hinge that is nearest to the one before.
+double Joint::angle(const Side &base, const Side &moving, const Vec3 &axis, double previous) const
+{
+  constexpr double TURN = 6.283185307179586;
+  const Vec3 from = base.motion.F * across, to = moving.motion.F * across;
+  const double within_a_turn = angle_of(dot(axis, cross(from, to)), dot(from, to) - dot(from, axis) * dot(to, axis));
+  return within_a_turn + TURN * std::floor((previous - within_a_turn) / TURN + 0.5);
+}
+
 // The force of the dashpot on what moves; there is none along `free`. It acts on those two material points that are at one place
 // now, so that there is no couple: at the joint's place in what moves, or in the base where the patch of the base is flat.
-Vec3 Joint::damp(const Side &base, const Side &moving, const Vec3 &free, Vec3 &velocity) const
+Vec3 Joint::damp(const Side &base, const Side &moving, double c, const Vec3 &free) const
 {
   Vec3 in_base = base.d, in_moving = moving.d;
   if (base.patch.dimensions() == 3)
     in_base = inverse(base.motion.F) * (moving.place() - base.motion.c);
   else if (moving.patch.dimensions() == 3)
     in_moving = inverse(moving.motion.F) * (base.place() - moving.motion.c);
-  velocity = moving.motion.velocity(in_moving) - base.motion.velocity(in_base);
-  velocity -= dot(velocity, free) * free;
-  const Vec3 force = -law.c * velocity;
-  base.load.push(-1.0 * force, in_base);
-  moving.load.push(force, in_moving);
+  const Vec3 velocity = moving.motion.velocity(in_moving) - base.motion.velocity(in_base);
+  const Vec3 force = c * (dot(velocity, free) * free - velocity);
+  base.losses.push(-1.0 * force, in_base);
+  moving.losses.push(force, in_moving);
   return force;
 }
 
-// Force on A along the free coordinate, of motor, friction and stops. Energy that they store is theirs until it comes back.
-double Joint::drive(double rate, const Time &time, Past &past, JointAccount &spent)
+Joint::Driving Joint::drive(double rate, const Time &time, Past &past)
 {
-  if (!given.has_servo()) return 0.0;
+  Driving found;
+  if (!given.has_servo()) return found;
   const SpringLaw stable{servo.k, implicit(servo.c, servo_mobility, time.step)};
-  const auto stored = [&](double stretch) { return 0.5 * servo.k * stretch * stretch; };
   const auto move = [&](const Drive &how, DriveState &state) {
-    const DriveState next = driven(how, stable, state.anchor + how.speed * time.passed, past.q, rate);
-    const double brought = 0.5 * time.passed * rate * (state.force + next.force) + stored(next.stretch) - stored(state.stretch);
-    state = next;
+    state = driven(how, stable, state.anchor + how.speed * time.passed, past.q, rate);
     now.energy += stored(state.stretch);
-    now.driving += state.force;
-    return brought;
+    return state.force;
   };
-  if (given.motor) spent.work += move({given.motor->speed, given.motor->most}, past.motor);
-  if (given.friction > 0.0) spent.heat -= move({0.0, given.friction}, past.brake);
+  if (given.motor) found.motor = move({given.motor->speed, given.motor->most}, past.motor);
+  if (given.friction > 0.0) found.losses = move({0.0, given.friction}, past.brake);
   if (given.limits) {
     const Stop stop = stopped(given.limits->low, given.limits->high, stable, past.q, rate);
-    spent.heat -= 0.5 * time.passed * rate * (past.along + stop.force) + stored(stop.depth) - stored(past.depth);
-    past.along = stop.force, past.depth = stop.depth;
+    past.depth = stop.depth;
     now.energy += stored(stop.depth);
-    now.driving += stop.force;
+    found.losses += stop.force;
   }
-  return now.driving;
+  now.driving = found.motor + found.losses;
+  return found;
 }
 
 }    // namespace mdanim

@@ -3,6 +3,7 @@
 //
 // With p the place of the joint in either patch and F the maps of their directions,
 //   U = K/2 |g|^2 + K L^2/2 sum_j |F_A e_j - F_B e_j|^2,   g = p_A - p_B (of a slider its part across the axis F_B n).
+// Of a slider K is divided by 1 + l q + l' q^2, so that it has the same rate wherever it is: a body on a long lever gives more.
 // A ball holds no direction e_j, a hinge its axis n (two springs of K/2 at +-L on it), a weld and a slider three. Forces are the
 // derivatives of U, which does not change when all is turned: the angular momentum of both bodies stays as their momentum does.
 // Angle and way are those of A seen from B, 0 at the start.
@@ -37,13 +38,21 @@ struct JointAccount {
 
 class Joint {
  public:
+  struct Loads {
+    PatchLoad a, b;
+  };
   // Part of the state that changes in each step.
   struct Past {
-    double q = 0.0;           // angle over all turns, way, length
-    Vec3 dashpot, turning;    // on A, of the last step, for their work
+    double q = 0.0;    // angle over all turns, way, length
     DriveState motor, brake;
-    double along = 0.0, depth = 0.0;    // of stops; of a spring's dashpot
+    double depth = 0.0;    // in a stop
     std::int64_t broken = 0, began = 0;
+  };
+  // For the work of the next step: loads of dashpots, friction and stops, and of the motor, and where both patches are.
+  struct Spending {
+    Loads losses, motor;
+    Vec3 c_a, c_b;
+    Matrix3 F_a, F_b;
   };
   // Its forces and motion now.
   struct Reading {
@@ -60,16 +69,15 @@ class Joint {
   const JointEnd &b() const { return end_b; }
   double length() const { return own_length; }
   const Past &past() const { return before; }
-  void set_past(const Past &past) { before = past; }
+  const Spending &spending() const { return spent_before; }
+  bool spends() const { return law.c > 0.0 || given.has_servo(); }    // otherwise spending() stays zero
+  void set_past(const Past &past, const Spending &spending) { before = past, spent_before = spending; }
   void forget();    // all that was since the start
   const Reading &reading() const { return now; }
   bool is_broken() const { return before.broken != 0; }
   double way() const { return before.q; }
 
   // Loads on both patches after a step of dt, whose velocities are those of the middle of the step.
-  struct Loads {
-    PatchLoad a, b;
-  };
   Loads step(const PatchMotion &a, const PatchMotion &b, double dt, JointAccount &account);
   // The same before a step, when no time has passed; `anew`: forces of the last step are forgotten.
   Loads begin(const PatchMotion &a, const PatchMotion &b, double dt, bool anew);
@@ -81,7 +89,7 @@ class Joint {
     const Vec3 &d;            // the place of the joint in it
     const Vec3 *direction;    // those that are held
     const PatchMotion &motion;
-    PatchLoad &load;
+    PatchLoad &springs, &losses, &motor;
     Vec3 place() const { return motion.point(d); }
     Vec3 velocity() const { return motion.velocity(d); }
   };
@@ -89,26 +97,34 @@ class Joint {
   struct Time {
     double passed, step;
   };
+  // Forces along the free coordinate on A.
+  struct Driving {
+    double losses = 0.0, motor = 0.0;
+  };
   void check() const;
   void choose_directions();
   void choose_laws(double ftm2v);
   void load_before();
-  Loads find(const PatchMotion &a, const PatchMotion &b, const Time &time, Past &past, JointAccount &spent);
-  void pull(const Side &a, const Side &b, const Time &time, Past &past, JointAccount &spent);
-  void hold(const Side &base, const Side &moving, const Time &time, Past &past, JointAccount &spent);
-  Vec3 damp(const Side &base, const Side &moving, const Vec3 &free, Vec3 &velocity) const;
-  double drive(double rate, const Time &time, Past &past, JointAccount &spent);
+  Loads find(const PatchMotion &a, const PatchMotion &b, const Time &time, Past &past, Spending &spending, JointAccount &account);
+  void pull(const Side &a, const Side &b, Past &past);
+  void hold(const Side &base, const Side &moving, const Time &time, Past &past);
+  Vec3 damp(const Side &base, const Side &moving, double c, const Vec3 &free) const;
+  double angle(const Side &base, const Side &moving, const Vec3 &axis, double previous) const;
+  Driving drive(double rate, const Time &time, Past &past);
+  double stored(double stretch) const { return 0.5 * servo.k * stretch * stretch; }
 
   JointWords given;
   JointEnd end_a, end_b;
   double own_length = 0.0;
   SpringLaw law, turning, servo;
   double servo_mobility = 0.0;
+  double lever[2] = {0.0, 0.0};         // of a slider: its mobility at the way q is that at the start times 1 + lever q
   Vec3 place_in_a;                      // the place of the joint, moved by what the joint bears at the start
   Vec3 direction[3], turned_in_a[3];    // unit vectors at the start, in both bodies, and in A turned by what it bears then
   int held = 0;                         // directions
   Vec3 across;                          // of a hinge, for its angle
   Past before;
+  Spending spent_before;
   Reading now;
 };
 

@@ -30,10 +30,17 @@ struct PatchLoad {
     force += f;
     moment += outer(f, d);
   }
-  double power(const PatchMotion &of) const
+  PatchLoad &operator+=(const PatchLoad &other)
   {
-    double all = dot(force, of.v);
-    for (int k = 0; k < 3; ++k) all += dot(moment.row[k], of.G.row[k]);
+    force += other.force;
+    moment += other.moment;
+    return *this;
+  }
+  // Of a small motion.
+  double work(const Vec3 &dc, const Matrix3 &dF) const
+  {
+    double all = dot(force, dc);
+    for (int k = 0; k < 3; ++k) all += dot(moment.row[k], dF.row[k]);
     return all;
   }
 };
@@ -73,6 +80,7 @@ class Patch {
   // Velocity of a material point for an impulse of 1 on it; of a direction; of rotation about an axis, for a couple.
   double mobility(const Vec3 &d) const { return is_world() ? 0.0 : 1.0 / total + dot(d, inverse_S * d); }
   double mobility_of_direction(const Vec3 &e) const { return is_world() ? 0.0 : dot(e, inverse_S * e); }
+  Vec3 velocity_of_direction(const Vec3 &e) const { return inverse_S * e; }
   double mobility_about(const Vec3 &axis) const;
 
   // place(n) and speed(n) of the n-th member.

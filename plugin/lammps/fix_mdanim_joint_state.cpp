@@ -76,6 +76,7 @@ StateRecords FixMdanimJoint::pack() const
     ByteWriter writer(std::move(record));
     if (writer.is_empty()) writer.put(STATE_VERSION);
     writer.put(static_cast<std::int64_t>(own.kind)).put(joints[n].past()).put(joints[n].length());
+    writer.put_counted(joints[n].spends() ? std::vector<Joint::Spending>{joints[n].spending()} : std::vector<Joint::Spending>());
     put_end(writer, joints[n].a(), lowest_of(own.a.object));
     put_end(writer, joints[n].b(), lowest_of(own.b.object));
     record = writer.take();
@@ -104,11 +105,12 @@ void FixMdanimJoint::unpack(const StateRecords &records)
       reader.fail("is of joints of other kinds, or in another order");
     const auto past = reader.get<Joint::Past>();
     const auto length = reader.get<double>();
+    const auto spending = reader.get_counted<Joint::Spending>();
     JointEnd a = get_end(reader, lowest_of(words[n].a.object)), b = get_end(reader, lowest_of(words[n].b.object));
     a.moves = pushes[2 * n], b.moves = pushes[2 * n + 1];
     if (!std::isfinite(past.q) || !(length >= 0.0)) reader.is_damaged("its angle or its length");
     taken.emplace_back(words[n], std::move(a), std::move(b), length, force->ftm2v);
-    taken.back().set_past(past);
+    taken.back().set_past(past, spending.empty() ? Joint::Spending() : spending.front());
   }
   for (const auto &[key, reader] : readers) reader.expect_end();
   expect_particles(taken);

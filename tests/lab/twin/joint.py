@@ -60,6 +60,9 @@ def energy(kind, words, patches, x, k, k_turning, directions, length):
         return 0.5 * k * (np.linalg.norm(gap) - length) ** 2
     if kind == "slider":
         along = patches[1].direction(axis) @ x[1]
+        way = gap @ along / np.linalg.norm(along)
+        k = k * sum(p.mobility(at) for p, at in zip(patches, (place_a, place_b)))
+        k = k / (patches[0].mobility(place_a) + patches[1].mobility(place_b + way * axis))
         gap = gap - (gap @ along) / (along @ along) * along
     apart = [patches[0].direction(e) @ x[0] - patches[1].direction(e) @ x[1] for e in directions]
     return 0.5 * k * gap @ gap + 0.5 * k_turning * sum(a @ a for a in apart)
@@ -122,6 +125,8 @@ def forces(kind, words, patches, x, v, frequency, spring, damping):
         along = patches[1].direction(axis) @ x[1]
         along /= np.linalg.norm(along)
         told["way"] = gap @ along
+        at_way = patches[0].mobility(place_a) + patches[1].mobility(place_b + told["way"] * axis)
+        softer = sum(p.mobility(place) for p, place in zip(patches, (place_a, place_b))) / at_way
     # The material point of B that is where the joint's place in A is.
     ones = np.c_[np.ones(len(x[1])), patches[1].start]
     root = np.sqrt(patches[1].mass)[:, None]
@@ -130,7 +135,7 @@ def forces(kind, words, patches, x, v, frequency, spring, damping):
     weights = patches[0].weights(place_a), patches[1].weights(in_b)
     velocity = weights[0] @ v[0] - weights[1] @ v[1]
     if kind == "slider":
-        velocity -= along * (velocity @ along)
+        velocity = softer * (velocity - along * (velocity @ along))
     found[0] -= damping * np.outer(weights[0], velocity)
     found[1] += damping * np.outer(weights[1], velocity)
     if len(directions):
