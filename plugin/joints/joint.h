@@ -3,7 +3,7 @@
 //
 // With p the place of the joint in either patch and F the maps of their directions,
 //   U = K/2 |g|^2 + K L^2/2 sum_j |F_A e_j - F_B e_j|^2,   g = p_A - p_B (of a slider its part across the axis F_B n).
-// Of a slider K is divided by 1 + l q + l' q^2, so that it has the same rate wherever it is: a body on a long lever gives more.
+// K of a slider is divided by 1 + l q + l' q^2, so that it has the same rate wherever it is: a body on a long lever gives more.
 // A ball holds no direction e_j, a hinge its axis n (two springs of K/2 at +-L on it), a weld and a slider three. Forces are the
 // derivatives of U, which does not change when all is turned: the angular momentum of both bodies stays as their momentum does.
 // Angle and way are those of A seen from B, 0 at the start.

@@ -36,7 +36,7 @@ struct PatchLoad {
     moment += other.moment;
     return *this;
   }
-  // Of a small motion.
+  // For a small motion.
   double work(const Vec3 &dc, const Matrix3 &dF) const
   {
     double all = dot(force, dc);
