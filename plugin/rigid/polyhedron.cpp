@@ -99,7 +99,8 @@ void Polyhedron::find_edges()
     // Counter-clockwise from outside: a face is to the left of its edges.
     const Vec3 into_one = cross(one.normal, along), into_two = cross(along, two.normal);
     if (dot(one.normal, two.normal) > 1.0 - ROUNDING) throw std::runtime_error("two faces are in one plane; make them one");
-    all_edges.push_back({0.5 * (all_corners[a].at + all_corners[b].at), along, 0.5 * length(way), {into_one, into_two}});
+    all_edges.push_back(
+        {0.5 * (all_corners[a].at + all_corners[b].at), along, 0.5 * length(way), {into_one, into_two}, {left, other->second}});
     all_corners[a].ways.push_back(along);
     all_corners[b].ways.push_back(-1.0 * along);
     if (dot(one.normal, two.normal) > BLUNT) {
@@ -119,6 +120,13 @@ void Polyhedron::find_edges()
   if (all_corners.size() + all_faces.size() != all_edges.size() + 2)
     throw std::runtime_error("the " + std::to_string(all_faces.size()) +
                              " faces are more than one closed surface; give each of them as an object of its own");
+}
+
+void Polyhedron::cover(int face)
+{
+  all_faces[face].covered = true;
+  for (Edge &edge : all_edges) edge.covered = edge.covered || edge.faces[0] == face || edge.faces[1] == face;
+  for (const int corner : all_faces[face].corners) all_corners[corner].covered = true;
 }
 
 double Polyhedron::outside(const Vec3 &x) const

@@ -15,11 +15,14 @@ class Polyhedron {
     Vec3 at;
     std::vector<Vec3> ways;    // along its edges, away from it; of length 1
     std::vector<int> faces;    // those that meet there
+    bool covered = false;
   };
   struct Edge {
     Vec3 middle, along;    // `along` has length 1
     double half;           // of its length
     Vec3 across[2];        // within its faces, away from the edge; of length 1
+    int faces[2];
+    bool covered = false;
   };
   // A sharp edge of a face: the face ends where outward . X = at.
   struct Bound {
@@ -32,6 +35,7 @@ class Polyhedron {
     std::vector<int> corners;    // around it, counter-clockwise from outside
     std::vector<Bound> bounds;
     std::vector<int> next;    // faces beyond its blunt edges
+    bool covered = false;     // another body is flush there: neither the face nor its edges and corners touch anything
   };
   // The closest point of the surface: its normal, and the distance, negative inside.
   struct Foot {
@@ -43,6 +47,8 @@ class Polyhedron {
   // Each face is a list of corners, counter-clockwise from outside. Throws std::runtime_error unless they close a convex body.
   Polyhedron(const std::vector<Vec3> &corners, const std::vector<std::vector<int>> &faces);
   static Polyhedron box(const Vec3 &half);
+
+  void cover(int face);
 
   const std::vector<Corner> &corners() const { return all_corners; }
   const std::vector<Edge> &edges() const { return all_edges; }
@@ -63,7 +69,10 @@ class Polyhedron {
     std::vector<std::vector<int>> loops;
     for (const Corner &corner : all_corners) places.push_back(turn(corner.at));
     for (const Face &face : all_faces) loops.push_back(face.corners);
-    return Polyhedron(places, loops);
+    Polyhedron found(places, loops);
+    for (std::size_t f = 0; f < all_faces.size(); ++f)
+      if (all_faces[f].covered) found.cover(static_cast<int>(f));
+    return found;
   }
 
  private:

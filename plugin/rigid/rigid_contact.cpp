@@ -168,6 +168,7 @@ void RigidContact::put_at_planes(int n, ByteWriter &writer) const
 static void check(const std::vector<Touch> &touches, const Solid &a, const Solid *b, const ByteReader &reader)
 {
   const auto corners = [](const Solid &one) { return std::max<std::size_t>(one.shape.corners().size(), 1); };
+  const auto edges = [](const Solid &one) { return one.shape.polyhedron().edges().size(); };
   const auto curves = [](const Solid &one) { return one.shape.curves().size(); };
   const auto sides = [&](const Solid *one) {
     if (!one) return std::size_t(1);
@@ -178,7 +179,8 @@ static void check(const std::vector<Touch> &touches, const Solid &a, const Solid
     std::size_t first = 0, second = 1, side = 1;
     if (touch.kind == Touch::CORNER) first = corners(a), side = sides(b);
     if (touch.kind == Touch::CORNER_OF_OTHER && b) first = corners(*b), side = sides(&a);
-    if ((touch.kind == Touch::EDGES || touch.kind == Touch::CURVES) && b) first = curves(a), second = curves(*b);
+    if (touch.kind == Touch::EDGES && b) first = edges(a), second = edges(*b);
+    if (touch.kind == Touch::CURVES && b) first = curves(a), second = curves(*b);
     if (touch.kind == Touch::MOVING) first = MOST_MOVING, side = sides(b);
     if (touch.kind == Touch::MOVING_OF_OTHER) first = MOST_MOVING, side = sides(&a);
     const auto is_below = [](std::int32_t number, std::size_t count) {

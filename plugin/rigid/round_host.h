@@ -15,6 +15,7 @@ class RoundHost {
 
   int sides() const { return static_cast<int>(shape.curves().size()); }
   bool is_flat(int side) const { return side > 0; }
+  static bool is_open(int) { return true; }
   Vec3 normal(int side, const Vec3 &x) const
   {
     if (side > 0) return end(side).along;

@@ -93,6 +93,7 @@ void SolidShape::find_curves()
   its_curves.clear();
   its_tip.clear();
   for (const Polyhedron::Edge &edge : its_polyhedron.edges()) {
+    if (edge.covered) continue;
     Curve line;
     line.middle = edge.middle;
     line.along = edge.along;

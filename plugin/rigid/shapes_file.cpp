@@ -4,7 +4,9 @@
 
 #include "rigid/line_words.h"
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -36,12 +38,34 @@ SolidShape read_polyhedron(LineWords &words)
   return made(words, [&] { return Polyhedron(corners, faces); });
 }
 
+// The sides of a box that other bodies cover.
+std::vector<int> read_covered(LineWords &words)
+{
+  static const std::string SIDES[] = {"-x", "+x", "-y", "+y", "-z", "+z"};    // as Polyhedron::box has them
+  std::vector<int> sides;
+  if (words.is_at_end()) return sides;
+  if (const std::string word = words.word("covered"); word != "covered")
+    words.fail("there is more than belongs to it, from " + word + " on");
+  do {
+    const std::string side = words.word("a side that is covered");
+    const auto found = std::find(std::begin(SIDES), std::end(SIDES), side);
+    if (found == std::end(SIDES)) words.fail("a side is -x, +x, -y, +y, -z or +z, got " + side);
+    sides.push_back(static_cast<int>(found - std::begin(SIDES)));
+  } while (!words.is_at_end());
+  return sides;
+}
+
 SolidShape read_shape(LineWords &words)
 {
   const std::string kind = words.word("the shape");
   if (kind == "box") {
     const double x = words.extent("a side"), y = words.extent("a side"), z = words.extent("a side");
-    return made(words, [&] { return Polyhedron::box({0.5 * x, 0.5 * y, 0.5 * z}); });
+    const std::vector<int> covered = read_covered(words);
+    return made(words, [&] {
+      Polyhedron box = Polyhedron::box({0.5 * x, 0.5 * y, 0.5 * z});
+      for (const int side : covered) box.cover(side);
+      return box;
+    });
   }
   if (kind == "ball") return SolidShape::ball(words.extent("the radius"));
   if (kind == "cylinder" || kind == "cone") {

@@ -16,7 +16,8 @@ class PolyhedronHost {
   PolyhedronHost(const Polyhedron &shape, double ramp) : shape(shape), ramp(ramp) {}
 
   int sides() const { return static_cast<int>(shape.faces().size()); }
-  bool is_flat(int) const { return true; }
+  bool is_flat(int side) const { return is_open(side); }
+  bool is_open(int side) const { return !shape.faces()[side].covered; }
   Vec3 normal(int side, const Vec3 &) const { return shape.faces()[side].normal; }
   double depth(int side, const Vec3 &x) const { return shape.faces()[side].at - dot(shape.faces()[side].normal, x); }
   double outside(const Vec3 &x) const { return shape.outside(x); }
@@ -65,6 +66,7 @@ int side_of_birth(const Host &host, const Polyhedron::Corner &corner, const Turn
   int found = -1;
   depth = HUGE_VAL;
   for (int side = 0; side < host.sides(); ++side) {
+    if (!host.is_open(side)) continue;
     const Vec3 n = in_owner(host.normal(side, x));
     const bool leads_in =
         std::any_of(corner.ways.begin(), corner.ways.end(), [&](const Vec3 &way) { return dot(way, n) < LEADS_IN; });
@@ -88,7 +90,8 @@ void touch_corners(const TouchStep &step, std::vector<Touch> &touches, Touch::To
   if (stale) {
     near.clear();
     for (int q = 0; q < static_cast<int>(corners.size()); ++q)
-      if (host.outside(in_host(corners[q].at)) < ramp + margin || find_touch(touches, kind, q) != touches.end())
+      if (!corners[q].covered &&
+          (host.outside(in_host(corners[q].at)) < ramp + margin || find_touch(touches, kind, q) != touches.end()))
         near.push_back(q);
   }
   for (const int q : near) {

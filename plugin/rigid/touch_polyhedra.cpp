@@ -147,6 +147,7 @@ std::vector<int> edges_near(const Solid &one, const Solid &host, const std::vect
   std::vector<int> near;
   const int count = static_cast<int>(one.shape.polyhedron().edges().size());
   for (int e = 0; e < count; ++e) {
+    if (one.shape.polyhedron().edges()[e].covered) continue;
     const bool is_known = std::any_of(touches.begin(), touches.end(), [&](const Touch &touch) {
       return touch.kind == Touch::EDGES && (of_first ? touch.first : touch.second) == e;
     });

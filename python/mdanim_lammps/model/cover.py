@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 from itertools import product
+from types import SimpleNamespace
 
 import numpy as np
 
@@ -73,12 +74,44 @@ def beside_each_other(held: Sequence[Solid]) -> list[tuple[int, int]]:
     return [(cuboids[i], cuboids[j]) for one, other in pairs for i, j in zip(one.tolist(), other.tolist())]
 
 
+def hidden_sides(held: Sequence[Solid]) -> list[tuple[int, ...]] | None:
+    """Sides of held solids that other ones hide as a whole, flush, by their numbers 0 to 5 for -x, +x, -y, …
+
+    None where it is not that simple: a side is hidden in part, or cuboids are nearly flush, or in each other at an angle. Within
+    FLUSH of a quarter of the smaller thickness of both counts as flush: as `beside_each_other`, it does not read the spacing.
+    """
+    hidden: list[tuple[int, ...]] = [() for _ in held]
+    beside: dict[int, list[int]] = {}
+    for i, j in beside_each_other(held):
+        beside.setdefault(i, []).append(j)
+        beside.setdefault(j, []).append(i)
+    for n in beside:
+        size, turn = np.array(held[n].shape.size), np.array(held[n].rotation)
+        spacing = 0.25 * min(min(held[k].shape.size) for k in (n, *beside[n]))
+        count = np.maximum(1.0, np.rint(size / spacing))
+        frame = SimpleNamespace(cells=SimpleNamespace(low=-0.5 * size, count=count, edge=size / count))
+        others = []
+        for k in sorted(beside[n]):
+            corner = (np.array(list(product((-0.5, 0.5), repeat=3))) * held[k].shape.size) @ np.array(held[k].rotation).T
+            others.append((corner + held[k].position - held[n].position) @ turn)
+            low, high = others[-1].min(axis=0), others[-1].max(axis=0)
+            hair = FLUSH * spacing
+            is_along = (np.minimum(others[-1] - low, high - others[-1]) <= hair).all()
+            if not is_along or (np.maximum(low - 0.5 * size, -0.5 * size - high) > hair).any():
+                return None
+        rows = open_parts(frame, others)
+        if (rows[:, 1:] != NOTHING).any():
+            return None
+        hidden[n] = tuple(rows[:, 0].astype(int).tolist())
+    return hidden
+
+
 def _corners(frame: BodyFrame) -> np.ndarray:
     """Corners of a cuboid, body frame [m], shape (8, 3)."""
     return frame.cells.low + np.array(list(product((0, 1), repeat=3))) * frame.cells.count * frame.cells.edge
 
 
-def open_parts(frame: BodyFrame, others: Sequence[np.ndarray]) -> np.ndarray:
+def open_parts(frame: BodyFrame | SimpleNamespace, others: Sequence[np.ndarray]) -> np.ndarray:
     """The parts of the sides of a cuboid that others leave open, rows as `ContactBody.open`, shape (R, 5).
 
     ``others`` are the corners of cuboids in the body frame [m], each of shape (8, 3). Those whose axes are not along its own

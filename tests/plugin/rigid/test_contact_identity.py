@@ -312,6 +312,8 @@ def two_cubes(shift):
         (TOUCH, f"1 0 0 {AT} {two_cubes(1e308)}", "line 1 of FILE: a corner must be within 1e+50 of the origin"),
         (TOUCH, f"1 0 0 {AT} ball 1e-310", "line 1 of FILE: the radius must be from 1e-50 to 1e+50, got 1e-310"),
         (f"{TOUCH} drive none", f"1 0 0 {AT} ball 1", "drive none is not the ID of a fix mdanim/drive"),
+        (TOUCH, f"1 0 0 {BOX} covered +x +w", "line 1 of FILE: a side is -x, +x, -y, +y, -z or +z, got +w"),
+        (TOUCH, f"1 0 0 {BOX} covered", "line 1 of FILE: a side that is covered is missing"),
         (TOUCH, f"1 0 0 {AT} torus 1 2", "line 1 of FILE: the tube of a torus must be thinner than its ring"),
     ],
 )

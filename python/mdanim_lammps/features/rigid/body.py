@@ -9,10 +9,9 @@ from dataclasses import replace
 from ...bodies import BodyKind, all_held, driven, kind_of
 from ...model import shapes
 from ...model.build import lattice_model, single_cell_model
-from ...model.cover import beside_each_other
 from ...model.inertia import tensor
 from ...scene.scene import Box, Mesh, Sphere
-from .shapes import is_rigid, on_objects, only_balls_move
+from .shapes import hidden, is_rigid, on_objects, only_balls_move
 
 ACROSS, ROUND = 2, 4
 """Cells across its thinnest part: the least that have an inside; and of what is round, or touches others at points of its
@@ -60,14 +59,14 @@ def _across(solid) -> int:
 
 def by_features(scene) -> bool:
     """Whether rigid objects move, and all contacts are of shapes that know each other by their features, so that nothing reads
-    points of their surfaces, nor particles inside. Held cuboids beside each other may have sides that are covered, which balls
-    alone find by features; what an effect moves without telling where it is (reach.Motion.guides) is found at points."""
+    points of their surfaces, nor particles inside. Beside held cuboids that cover sides of each other in part, balls alone touch
+    by features; what an effect moves without telling where it is (reach.Motion.guides) is found at points."""
     solids = scene.solids
     if scene.liquid is not None or all(map(all_held, solids)) or any(map(is_soft, solids)) or driven(scene):
         return False
     if not all(on_objects(s.shape) for s in solids):
         return False
-    return only_balls_move(solids) or not beside_each_other([s for s in solids if all_held(s)])
+    return only_balls_move(solids) or hidden(scene) is not None
 
 
 def is_soft(solid) -> bool:

@@ -4,12 +4,16 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import lru_cache
+from types import SimpleNamespace
 
 import numpy as np
 
+from ... import features
 from ...bodies import all_held
+from ...model.cover import hidden_sides
 from ...model.polyhedron import hull, polyhedron
-from ...scene.scene import Box, Cone, Cylinder, Ellipsoid, Mesh, Shape, Solid, Sphere, Torus
+from ...scene.scene import Box, Cone, Cylinder, Ellipsoid, Mesh, SceneRecord, Shape, Solid, Sphere, Torus
 from .words import Rigid
 
 KNOWN = (Box, Sphere, Ellipsoid, Cylinder, Cone, Torus)
@@ -32,13 +36,35 @@ def only_balls_move(solids: Sequence[Solid]) -> bool:
     return all(isinstance(s.shape, Sphere) or all_held(s) or not is_rigid(s) or not on_objects(s.shape) for s in solids)
 
 
+def hidden(scene: SceneRecord) -> dict[str, tuple[int, ...]] | None:
+    """Sides of held cuboids that others hide, by the names of objects; None where features would catch at a seam: a side is
+    hidden in part, or what is beside another one may move."""
+    held = [solid for solid in scene.solids if all_held(solid) and isinstance(solid.shape, Box)]
+    moved = {scene.solids[m].name for effect in features.effects() for m in effect.of(scene).drives(scene)}
+    found = _hidden(tuple((solid.shape.size, tuple(solid.position), tuple(map(tuple, solid.rotation))) for solid in held))
+    if moved and any(solid.name in moved for solid in held) and (found is None or any(found)):
+        return None
+    return None if found is None else {solid.name: sides for solid, sides in zip(held, found) if sides}
+
+
+@lru_cache(maxsize=8)
+def _hidden(held: tuple) -> tuple[tuple[int, ...], ...] | None:
+    solids = [SimpleNamespace(shape=Box(size), position=np.array(place), rotation=turn) for size, place, turn in held]
+    found = hidden_sides(solids)
+    return None if found is None else tuple(found)
+
+
 def is_rigid(solid: Solid) -> bool:
     """Whether an object has ``elasticity rigid``."""
     return isinstance(solid.elasticity, Rigid)
 
 
-def in_file(solid: Solid) -> tuple[list[float], str]:
-    """Where the origin of a shape is as the file has it [m], and its kind and sizes [m]."""
+SIDES = ("-x", "+x", "-y", "+y", "-z", "+z")
+
+
+def in_file(solid: Solid, hides: Sequence[int] = ()) -> tuple[list[float], str]:
+    """Where the origin of a shape is as the file has it [m], and its kind and sizes [m]; ``hides``: sides of a cuboid that others
+    hide."""
     shape, place = solid.shape, np.array(solid.position, float)
     match shape:
         case Box():
@@ -59,7 +85,8 @@ def in_file(solid: Solid) -> tuple[list[float], str]:
             return place.tolist(), f"polyhedron {len(body.corner)} {digits(body.corner.ravel())} {len(body.faces)} {faces}"
         case _:
             raise TypeError(f"no features of {shape!r}")
-    return place.tolist(), f"{kind} {digits(sizes)}"
+    covered = f" covered {' '.join(SIDES[side] for side in hides)}" if hides else ""
+    return place.tolist(), f"{kind} {digits(sizes)}{covered}"
 
 
 def digits(numbers) -> str:

@@ -25,7 +25,7 @@ from ...scene.scene import Shape, Solid
 from ..contact.pairs import damping, frictions
 from ..contact.restitution import damping_for
 from ..contact.rigid_surfaces import frequency
-from .shapes import digits, in_file, on_objects, on_planes, only_balls_move
+from .shapes import digits, hidden, in_file, on_objects, on_planes, only_balls_move
 
 ONSET = 0.005
 """Depth up to which a contact begins gently, over the thinnest part."""
@@ -63,13 +63,15 @@ def parts(context: Context) -> list[Part]:
 
 def meets_objects(context: Context) -> np.ndarray:
     """Solids that touch each other by their features, bool, shape (M,): those that are rigid, or never move, of a shape that the
-    fix knows. Where others cover a side of a held cuboid, its edges there are none: balls roll over them, others catch."""
+    fix knows. Where others cover a side of a held cuboid, its edges there are none: the file says so. Those that are covered in
+    part are known to balls alone, others catch."""
     whole = context.reach.system
     if not objects_touch(context) or not (_are(whole, on_objects) & whole.rigid).any():
         return np.zeros(len(context.system.names), bool)  # the same in all parts of a scene
-    system, balls = context.system, only_balls_move(context.scene.solids)
+    system = context.system
     uncovered = np.array([frame.open is None or not len(frame.open) for frame in system.frames])[system.contact_kind]
-    return _are(system, on_objects) & (system.rigid | ((system.still | guided(context)) & (uncovered | balls)))
+    everywhere = only_balls_move(context.scene.solids) or hidden(context.scene) is not None
+    return _are(system, on_objects) & (system.rigid | ((system.still | guided(context)) & (uncovered | everywhere)))
 
 
 def guided(context: Context) -> np.ndarray:
@@ -166,9 +168,9 @@ def shapes_text(context: Context, part: Part) -> str:
     blows = _restitutions(context)
     given = any(e is not None for e in blows)
     lines = ["# Shapes, written by mdanim-lammps: molecule mu beta [usual] free|held|driven  place  quaternion  shape\n"]
-    driven = guided(context)
+    driven, covered = guided(context), hidden(context.scene) or {}
     for m in np.flatnonzero(part.shapes).tolist():
-        place, shape = in_file(solids[m])
+        place, shape = in_file(solids[m], covered.get(solids[m].name, ()))
         pose = [*place, *quaternion(np.array(solids[m].rotation))]
         kind = "free" if part.bodies[m] else "driven" if driven[m] else "held"
         kind = f"usual {kind}" if given and blows[m] is None else kind  # where one of two has a restitution, it counts alone
