@@ -5,35 +5,48 @@
 #include "geometry/boxes.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <utility>
 
 namespace mdanim {
 
-static constexpr double SKIN = 0.1;    // over the thickness of the largest body that moves
+static constexpr double WAY = 0.05;    // that a body may go while a list holds, over its thickness
 
 void NearSolids::update(const std::vector<Solid> &solids, const Pairs &excluded)
 {
   bool is_old = listed_at.size() != solids.size();
   for (std::size_t n = 0; n < solids.size() && !is_old; ++n) {
     const Vec3 way = solids[n].centre - listed_at[n];
-    is_old = dot(way, way) > 0.25 * skin * skin;
+    is_old = dot(way, way) > ways[n] * ways[n];
   }
   if (is_old) list(solids, excluded);
 }
 
-static bool are_near(const Solid &a, const Solid &b, double skin)
+// One large body does not make the lists of all others long, and a small one does not make lists short-lived: it may go as far as
+// the median of those that are free, and so may held ones, which may be driven.
+void NearSolids::find_ways(const std::vector<Solid> &solids)
+{
+  std::vector<double> thin;
+  for (const Solid &one : solids)
+    if (!one.held) thin.push_back(one.shape.thin());
+  const auto middle = thin.begin() + static_cast<std::ptrdiff_t>(thin.size() / 2);
+  std::nth_element(thin.begin(), middle, thin.end());
+  const double usual = thin.empty() ? 0.0 : *middle;
+  ways.clear();
+  for (const Solid &one : solids) ways.push_back(WAY * (one.held ? usual : std::max(usual, one.shape.thin())));
+}
+
+static bool are_near(const Solid &a, const Solid &b, double ways)
 {
   const Vec3 between = a.centre - b.centre;
-  const double reach = a.shape.bound() + b.shape.bound() + skin;
+  const double reach = a.shape.bound() + b.shape.bound() + ways;
   return !(a.held && b.held) && dot(between, between) < reach * reach;
 }
 
 // Pairs in contact stay: the ramps about edges act beyond the spheres.
 void NearSolids::list(const std::vector<Solid> &solids, const Pairs &excluded)
 {
-  skin = 0.0;
-  for (const Solid &one : solids)
-    if (!one.held) skin = std::max(skin, SKIN * one.shape.thin());
+  find_ways(solids);
   listed_at.clear();
   std::vector<Box> boxes(solids.size());    // around the spheres
   for (std::size_t n = 0; n < solids.size(); ++n) {
@@ -41,11 +54,12 @@ void NearSolids::list(const std::vector<Solid> &solids, const Pairs &excluded)
     listed_at.push_back(centre);
     const double middle[3] = {centre.x, centre.y, centre.z};
     boxes[n].include(middle);
-    boxes[n] = boxes[n].grown(solids[n].shape.bound());
+    boxes[n] = boxes[n].grown(solids[n].shape.bound() + ways[n]);
   }
   std::vector<std::pair<int, int>> found;
-  for (const auto &[a, b] : meeting_pairs(boxes, skin))
-    if (are_near(solids[a], solids[b], skin) && !excluded.count({solids[a].id, solids[b].id})) found.emplace_back(a, b);
+  for (const auto &[a, b] : meeting_pairs(boxes, 0.0))
+    if (are_near(solids[a], solids[b], ways[a] + ways[b]) && !excluded.count({solids[a].id, solids[b].id}))
+      found.emplace_back(a, b);
   for (const SolidPair &pair : pairs)
     if (!pair.touches.empty()) found.emplace_back(pair.a, pair.b);
   std::sort(found.begin(), found.end());

@@ -23,9 +23,10 @@ class NearSolids {
 
  private:
   void list(const std::vector<Solid> &solids, const Pairs &excluded);
+  void find_ways(const std::vector<Solid> &solids);
 
-  double skin = 0.0;
   std::vector<Vec3> listed_at;    // centres
+  std::vector<double> ways;       // that bodies may go from there before a list is too old
 };
 
 }    // namespace mdanim

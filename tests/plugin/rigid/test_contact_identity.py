@@ -249,6 +249,24 @@ def test_whose_damping_counts(tmp_path, usual):
     assert found[0] == found[1]
 
 
+def test_a_thick_body_far_away_makes_no_near_pairs(tmp_path):
+    """Small balls with gaps of a third of a radius, of which one moves: each has its own skin, and no bit depends on it."""
+    small = [lab.ball(0.03, at=(0.07 * (n % 5), 0.07 * (n // 5), 0.0), mu=0.0) for n in range(25)]
+    small[0] = lab.ball(0.03, at=(0.0, 0.0, 0.0), v=(0.5, 0.1, 0), mu=0.0)
+    found = []
+    for more in ([], [lab.ball(2.0, at=(30, 30, 30))]):
+        folder = tmp_path / str(len(more))
+        folder.mkdir()
+        with lab.World(folder, small + more, frequency=1000.0, planes=(), gravity=(0, 0, 0), thin=0.06) as world:
+            near = [world.number("near")]
+            for _ in range(6):
+                world.run(30)
+                near.append(world.number("near"))
+            found.append((near, world.rows()[:25].tobytes()))
+    assert found[0] == found[1]
+    assert found[0][0][0] == 0.0 and max(found[0][0]) > 0.0
+
+
 AT = "free 0 0 0.05 1 0 0 0"
 BOX = f"{AT} box 0.1 0.1 0.1"
 TOUCH = "shapes FILE contact 1 1 objects"
