@@ -30,6 +30,8 @@ struct SystemArrays {
   const double *spacing;         // (M)
   const double *mass;            // (N)
   const unsigned char *still;    // whether an object never moves, (M)
+  long long pairs;
+  const int *passing;    // pairs of objects that may be in each other, the lower one first, ascending, (pairs, 2)
 };
 
 // The same objects with their present positions.
@@ -126,6 +128,22 @@ bool centre_inside(const Objects &o, int a, int b, const Box &both)
   return both.contains(&centre.x) && holds(o, b, centre) && holds(o, a, centre);
 }
 
+// Whether two objects may be in each other.
+bool may_be_inside(const Objects &o, int a, int b)
+{
+  const auto pair = [&](long long n) { return std::pair{o.passing[2 * n], o.passing[2 * n + 1]}; };
+  const std::pair<int, int> wanted = std::minmax(a, b);
+  long long low = 0, high = o.pairs;
+  while (low < high) {
+    const long long middle = low + (high - low) / 2;
+    if (pair(middle) < wanted)
+      low = middle + 1;
+    else
+      high = middle;
+  }
+  return low < o.pairs && pair(low) == wanted;
+}
+
 // The pair, among n objects, with the most points of one in the other; returns the number of these points.
 long long deepest_pair(const Objects &o, int n, const int *objects, int *pair)
 {
@@ -134,7 +152,7 @@ long long deepest_pair(const Objects &o, int n, const int *objects, int *pair)
   long long most = 0;
   for (const auto &[first, second] : meeting_pairs(boxes, 0.0)) {
     const int a = objects[first], b = objects[second];
-    if (o.still[a] && o.still[b]) continue;
+    if ((o.still[a] && o.still[b]) || may_be_inside(o, a, b)) continue;
     const Box both = intersection(boxes[first], boxes[second]);
     for (const auto &[in, out] : {std::pair{a, b}, std::pair{b, a}}) {
       const long long found = sunk(o, in, out, both) + centre_inside(o, in, out, both);
@@ -222,7 +240,7 @@ MDANIM_EXPORT void mdanim_largest_components(const SystemArrays *model, int n, c
 // Finds two of n objects that are inside each other, deeper than contact ever allows: boundary particles of one below the
 // outermost layer of cells of the other, or the centre of one in the body of the other. Writes the object that is inside, and the
 // other, into `pair` and returns the number of its points that are inside; 0 where there is no such pair, -1 without memory.
-// Pairs of objects that never move are skipped.
+// Pairs of objects that never move are skipped, and those that may be in each other.
 MDANIM_EXPORT long long mdanim_sunk(const SystemArrays *model, int n, const int *objects, const double *x, int *pair)
 {
   return guarded(-1LL, [=] { return deepest_pair({*model, x}, n, objects, pair); });

@@ -93,6 +93,16 @@ class Context:
         driven, for the work that they do."""
         return "mobile" if self.system.moved is None else "moving"
 
+    @cached_property
+    def passing(self) -> list[tuple[int, int]]:
+        """Pairs i < j of solids of the system that may be in each other, ascending: no contact acts between them."""
+        told = self.reach.acting.passing
+        if not told:
+            return []
+        number = {name: m for m, name in enumerate(self.system.names)}
+        named = ((self.scene.solids[i].name, self.scene.solids[j].name) for i, j in told)
+        return sorted((number[a], number[b]) for a, b in named if a in number and b in number)
+
     def on(self, name: str) -> bool:
         """Whether an effect of this name is on."""
         return self.resolved.on(name)

@@ -85,7 +85,8 @@ def column(name: str, unit: str, per: str = "particle", **more: Any) -> Field:
 
 
 def pair_rows(field: Field) -> np.dtype:
-    """Type of a row of a field per pair: the two objects, from 0 and a < b, and the value."""
+    """Type of a row of a field per pair: the two objects, from 0 and a < b, and the value. Of one with something else a = b;
+    a pair may have several rows."""
     return np.dtype([("a", "i4"), ("b", "i4"), ("value", field.dtype, field.shape)])
 
 
@@ -162,7 +163,8 @@ def join_fields(
                     size = first[objects + 1] - first[objects]
                     whole[mine] = values[np.repeat(~still[objects], size)]
         elif field.per == "pair":
-            found[field.name] = np.sort(np.concatenate([np.empty(0, pair_rows(field)), *(v for _, v in told)]), order=["a", "b"])
+            rows_of_pairs = np.concatenate([np.empty(0, pair_rows(field)), *(v for _, v in told)])
+            found[field.name] = rows_of_pairs[np.lexsort((rows_of_pairs["b"], rows_of_pairs["a"]))]
         elif told:
             values = [value for _, value in told]
             together = max if field.largest else sum

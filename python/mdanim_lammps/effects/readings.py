@@ -49,6 +49,9 @@ class Readings(Protocol):
     def fix_value(self, fix: str, entry: str | int) -> float:
         """Entry of a fix's vector, by its name in the list of the fix's page, or by its place from 0."""
 
+    def fix_rows(self, fix: str, rows: int, columns: int) -> np.ndarray:
+        """The first rows of a fix's array, shape (rows, columns)."""
+
     def call(self, what: str, function: str, fix: str, *arguments: Any) -> None:
         """Call a C function of the plugin that asks a fix; arrays are given as pointers. Raises SetupError."""
 

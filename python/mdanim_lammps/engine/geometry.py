@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import ctypes
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 
@@ -25,6 +26,8 @@ class _Model(ctypes.Structure):
             (name, ctypes.c_void_p)
             for name in ("first_particle", "boundary", "first_cell", "corner", "deep", "spacing", "mass", "still")
         ),
+        ("pairs", ctypes.c_longlong),
+        ("passing", ctypes.c_void_p),
     ]
 
 
@@ -33,10 +36,11 @@ class Geometry:
     """Questions about the positions of a system's particles; x and v are (N, 3), in tag order [m, m/s].
 
     ``solids``, from 0 and ascending, int64, shape (m,), are those that a question is about; None is all. Rows of others are not
-    read.
+    read. Of the pairs i < j of solids in ``passing``, ascending, both may be in each other.
     """
 
     system: System
+    passing: Sequence[tuple[int, int]] = ()
 
     def glance(self, x: np.ndarray, v: np.ndarray, solids: np.ndarray | None = None) -> tuple[int, np.ndarray]:
         """NOT_FINITE where some number is not, INVERTED where some cell is, 0 where all is well; and how far each solid reaches.
@@ -113,9 +117,11 @@ class Geometry:
                 ("spacing", np.cbrt(system.cell_volume), np.float64),
                 ("mass", system.mass, np.float64),
                 ("still", system.still, np.uint8),
+                ("passing", np.array(self.passing).reshape(-1, 2), np.int32),
             )
         }
-        model = _Model(len(system.names), **{name: _address(array) for name, array in arrays.items()})
+        addresses = {name: _address(array) for name, array in arrays.items()}
+        model = _Model(len(system.names), **addresses, pairs=len(self.passing))
         return _library(), ctypes.pointer(model), arrays
 
 

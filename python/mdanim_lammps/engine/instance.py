@@ -28,7 +28,7 @@ from .trace import Trace
 
 MANY = 20_000
 """Particles from which on what making them has left free in the heap goes back to the system: 100 to 400 bytes each."""
-GLOBAL, SCALAR, VECTOR = 0, 0, 1  # LAMMPS's constants for extract_fix
+GLOBAL, SCALAR, VECTOR, ARRAY = 0, 0, 1, 2  # LAMMPS's constants for extract_fix
 
 
 class Instance:
@@ -238,6 +238,11 @@ class Instance:
         """Entry of a fix's vector, by its name on the page of the fix or its place from 0. Raises SetupError for another name."""
         place = entry if isinstance(entry, int) else output_place(self.lammps.library, self.lammps.handle, fix, entry)
         return float(self.lammps.lmp.extract_fix(fix, GLOBAL, VECTOR, place))
+
+    def fix_rows(self, fix: str, rows: int, columns: int) -> np.ndarray:
+        """The first rows of a fix's array, shape (rows, columns)."""
+        told = self.lammps.lmp.extract_fix
+        return np.array([told(fix, GLOBAL, ARRAY, i, j) for i in range(rows) for j in range(columns)]).reshape(rows, columns)
 
     def elastic_energy(self) -> float:
         """Energy of all springs [J], at the last step of a `run` or after `setup`."""

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Container, Iterable, Iterator
 from typing import Protocol
 
 import numpy as np
@@ -40,14 +40,19 @@ class Contact(Protocol):
 
 
 def check_geometry(
-    scene: SceneRecord, models: tuple[Model, ...], planes: Iterable[Plane] = (), contact: Contact | None = None
+    scene: SceneRecord,
+    models: tuple[Model, ...],
+    planes: Iterable[Plane] = (),
+    contact: Contact | None = None,
+    passing: Container[tuple[int, int]] = (),
 ) -> list[Problem]:
     """Find every object that starts in another one, below the ground, or outside walls or basin.
 
     ``planes`` push objects back, ``contact`` keeps them apart. Each problem stands at the position of the (second) object and
     tells how deep it is in and which move frees it, so far that contact holds no energy afterwards. Objects that are held
     entirely may overlap each other and extend beyond the walls: such objects are the scene's architecture. Others may overlap by
-    ``contact.rests_inside``. Pairs after the first MOST_PAIRS in each other are not looked at.
+    ``contact.rests_inside``, and those of the pairs i < j in ``passing`` as they like. Pairs after the first MOST_PAIRS in each
+    other are not looked at.
     """
     problems = []
     if not models:
@@ -58,7 +63,7 @@ def check_geometry(
     first, second = _candidates(scene, bodies)
     inside = 0
     for looked, (i, j) in enumerate(zip(first, second), 1):
-        found = _pair(scene, bodies, planes, int(i), int(j))
+        found = None if (int(i), int(j)) in passing else _pair(scene, bodies, planes, int(i), int(j))
         if found is not None:
             problems.append(found)
             inside += 1

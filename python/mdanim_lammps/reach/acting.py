@@ -42,6 +42,18 @@ class Drive:
     """Where the scene says so; None where it stands nowhere."""
 
 
+@dataclass(frozen=True, slots=True)
+class Leash:
+    """Bounds of the motion of a solid that something holds."""
+
+    point: tuple[float, float, float]
+    """A point that never moves [m]."""
+    length: float
+    """Its centre of mass is no farther from that point [m]; infinite where it may go anywhere."""
+    speed: float
+    """Speed that it may be given besides that of its start and its fall [m/s]."""
+
+
 class Motion:
     """How an effect moves solids; all of it may be asked of any scene."""
 
@@ -98,6 +110,15 @@ class Motion:
 
     def joins(self, scene: SceneRecord) -> Iterable[tuple[int, int]]:
         """Pairs of solids, by number, that it couples wherever they are: one process simulates both."""
+        return ()
+
+    def holds(self, scene: SceneRecord) -> Mapping[int, Leash | None]:
+        """Solids that it holds at each other or at something that never moves, by number, and how far they may go, where that is
+        known."""
+        return {}
+
+    def passes(self, scene: SceneRecord) -> Iterable[tuple[int, int]]:
+        """Pairs of solids i < j, by number, that may be in each other because of it: no contact acts between them."""
         return ()
 
     def drives(self, scene: SceneRecord) -> Mapping[int, Drive]:
@@ -166,10 +187,39 @@ class Acting:
 
     @cached_property
     def joined(self) -> np.ndarray:
-        """Solids that something pulls at which another solid moves, bool, shape (M,)."""
+        """Solids that something holds, or pulls at which another solid moves, bool, shape (M,)."""
         found = np.zeros(len(self.scene.solids), bool)
         found[[m for e in self.effects for pair in e.joins(self.scene) for m in pair]] = True
+        found[list(self.leashes)] = True
         return found
+
+    @cached_property
+    def leashes(self) -> dict[int, Leash | None]:
+        """As `Motion.holds`, of all effects."""
+        return {m: leash for e in self.effects for m, leash in e.holds(self.scene).items()}
+
+    @cached_property
+    def room(self) -> tuple[np.ndarray, np.ndarray]:
+        """Box in which the centre of each solid stays by its leash [m], each of shape (M, 3); infinite without one."""
+        low = np.full((len(self.scene.solids), 3), -np.inf)
+        high = -low
+        for m, leash in self.leashes.items():
+            if leash is not None:
+                low[m], high[m] = np.array(leash.point) - leash.length, np.array(leash.point) + leash.length
+        return low, high
+
+    @cached_property
+    def given(self) -> np.ndarray:
+        """Speed that what holds each solid may give to it [m/s], shape (M,)."""
+        found = np.zeros(len(self.scene.solids))
+        for m, leash in self.leashes.items():
+            found[m] = leash.speed if leash is not None else 0.0
+        return found
+
+    @cached_property
+    def passing(self) -> frozenset[tuple[int, int]]:
+        """Pairs of solids i < j that may be in each other: no contact acts between them."""
+        return frozenset(pair for e in self.effects for pair in e.passes(self.scene))
 
     @cached_property
     def drives(self) -> dict[int, Drive]:

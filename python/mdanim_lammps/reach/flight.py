@@ -13,10 +13,11 @@ FLIGHT = 0.005
 
 
 class Flight:
-    """Boxes of objects that fly by themselves and bounce back from planes; an object that comes to a liquid stays where it is."""
+    """Boxes of objects that fly by themselves and bounce back from planes; an object that comes to a liquid stays where it is,
+    and so does one that something holds in a place."""
 
     def __init__(self, acting: Acting, system: System):
-        held = np.logical_or.reduceat(system.held, system.first[:-1])
+        held = np.logical_or.reduceat(system.held, system.first[:-1]) | np.isfinite(acting.room[0]).all(axis=1)
         self.low, self.high = system.bounds(system.position)
         self.velocity = np.where(held[:, None], 0.0, [s.velocity for s in acting.scene.solids])
         apart = np.linalg.norm(system.velocity - self.velocity[system.object], axis=1)

@@ -95,11 +95,17 @@ class Reach:
         return bottom, min([bottom.min(), *(p.at for p in self.acting.planes if p.axis == 2 and p.sign > 0)])
 
     @cached_property
+    def farthest_down(self) -> np.ndarray:
+        """Height by which each solid may come down at most, by what holds it [m], shape (M,); infinite without that."""
+        return np.maximum(0.0, self.system.center_of_mass(self.system.position)[:, 2] - self.acting.room[0][:, 2])
+
+    @cached_property
     def drop(self) -> np.ndarray:
         """Height of each solid's fall through air [m], shape (M,), as if nothing stood; none where all solids stand or are held,
         as nothing comes that might throw one of them down."""
         bottom, floor = self.heights
-        return bottom - (bottom if (self.stands | ~self.free).all() else floor)
+        falls = bottom - (bottom if (self.stands | ~self.free).all() else floor)
+        return np.minimum(falls, self.farthest_down) if self.acting.leashes else falls
 
     @cached_property
     def fall(self) -> np.ndarray:
@@ -112,7 +118,7 @@ class Reach:
         (bottom, floor), surface = self.heights, self.acting.surface
         bottom = np.where(self.stands, np.minimum(bottom, floor), bottom)
         if surface is None:
-            return bottom - floor
+            return np.minimum(bottom - floor, self.farthest_down) if self.acting.leashes else bottom - floor
         in_air, below = np.maximum(0.0, bottom - surface), np.minimum(bottom, surface) - floor
         weight = self.weight_left
         return in_air + below * (weight if len(self.system.names) == 1 else np.maximum(0.0, weight))
@@ -132,14 +138,15 @@ class Reach:
         """The start's speed, with that of a fall [m], shape (M,), and at which it is driven."""
         start = np.maximum.reduceat((self.system.velocity**2).sum(1), self.system.first[:-1])
         fallen = np.sqrt(np.maximum(0.0, start + 2.0 * self.g * fall)) + self.acting.swing
-        return np.where(self.free, fallen, 0.0) + self.acting.driven_at
+        return np.where(self.free, fallen + self.acting.given, 0.0) + self.acting.driven_at
 
     def closing(self, fall: np.ndarray) -> np.ndarray:
         """Speed at which each solid may meet another [m/s], shape (M,): all fall alike, so only the start tells them apart until
         one has landed; ``fall`` [m], shape (M,), is how far."""
         low, high = self.system.bounds(self.system.velocity)
         apart = np.maximum(high + largest_of_others(-low), largest_of_others(high) - low)
-        driven = self.acting.driven_at + largest_of_others(self.acting.driven_at)
+        moved = self.acting.driven_at + self.acting.given
+        driven = moved + largest_of_others(moved)
         apart = np.sqrt((np.maximum(apart, 0.0) ** 2).sum(1)) + driven
         fall = np.where(self.free, np.maximum(0.0, fall), 0.0)
         return np.where(self.system.still, 0.0, np.sqrt(apart**2 + 2.0 * self.g * fall) + self.acting.swing)

@@ -8,9 +8,11 @@ other. The bounds are derived in docs/cost.md.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
 
 from ..bodies import all_held, kind_of
 from ..model import shapes
@@ -41,21 +43,30 @@ class Sweeps:
     """[m], shape (M, 3)."""
     fixed: np.ndarray
     """Solids that are held entirely, bool, shape (M,): two of them never are in contact."""
+    passing: frozenset[tuple[int, int]] = frozenset()
+    """Pairs i < j that never are in contact, whatever moves."""
+
+    @property
+    def any_pair(self) -> bool:
+        """Whether there are two solids that may be in contact wherever they are."""
+        count, fixed = len(self.fixed), int(self.fixed.sum())
+        apart = sum(not (self.fixed[i] and self.fixed[j]) for i, j in self.passing)
+        return count * (count - 1) // 2 - fixed * (fixed - 1) // 2 > apart
 
 
 def closest(scene: SceneRecord, swept: Sweeps) -> tuple[Solid, Solid, float]:
     """Two solids of which one can move, and the least distance that remains between their boxes, along one axis [m].
 
     The first two found whose boxes overlap, with 0.0; where there are none, those whose boxes come nearest. Raises ValueError
-    where no solid can meet another: one solid, or all held.
+    where no solid can meet another: one solid, all held, or all joined.
     """
-    if len(swept.fixed) < 2 or swept.fixed.all():
+    if not swept.any_pair:
         raise ValueError("two solids are needed, of which one can move")
     if (pairs := next(_overlaps(swept), None)) is not None:
         i, j = pairs[0]
         return scene.solids[i], scene.solids[j], 0.0
     grown = 0.1 * float((swept.high - swept.low).mean())
-    while not (pairs := list(_overlaps(Sweeps(swept.low - grown, swept.high, swept.fixed)))):
+    while not (pairs := list(_overlaps(replace(swept, low=swept.low - grown)))):
         grown *= 2.0
     i, j = np.concatenate(pairs).T
     apart = np.maximum(swept.low[i] - swept.high[j], swept.low[j] - swept.high[i]).max(axis=1)
@@ -98,6 +109,8 @@ def sweeps(acting: Acting, h: np.ndarray) -> Sweeps:
     by_axis |= bounced[:, None]
     low = np.where(by_axis, np.maximum(bodies.position - far[:, None], limit_low - radius[:, None]), low)
     high = np.where(by_axis, np.minimum(bodies.position + far[:, None], limit_high + radius[:, None]), high)
+    room_low, room_high = acting.room
+    low, high = np.maximum(low, room_low), np.minimum(high, room_high)
     low, high = np.minimum(low, bodies.position), np.maximum(high, bodies.position)
 
     half = np.repeat(radius[:, None], 3, axis=1)
@@ -107,7 +120,7 @@ def sweeps(acting: Acting, h: np.ndarray) -> Sweeps:
     half[bodies.clamped] = _clamped(scene, bodies)[bodies.clamped] + reach[bodies.clamped]
     for m, drive in acting.drives.items():
         low[m], high[m] = low[m] + drive.low, high[m] + drive.high
-    return Sweeps(low - half, high + half, bodies.fixed)
+    return Sweeps(low - half, high + half, bodies.fixed, acting.passing)
 
 
 class _Movers:
@@ -138,6 +151,7 @@ class _Movers:
         self.loose = np.where(bound, 0.0, self.tip * scene.control.time)
         self.pull = acting.most_pull(self)
         self.speed = _speed(acting, self)
+        self.speed = _shared(acting, self.mass, self.speed) + acting.given if acting.leashes else self.speed
         if acting.joined.any():  # nothing is known of what pulls: what is faster than waves is refused
             waves = np.where(np.isfinite(self.wave), self.wave, 0.0)
             self.speed = np.where(acting.joined, np.maximum(self.speed, waves), self.speed)
@@ -146,6 +160,15 @@ class _Movers:
     def size(self, speed: np.ndarray) -> np.ndarray:
         """Radius of a body when this speed [m/s] is converted into deformation [m], shape (M,)."""
         return self.radius * (SLACK + STRETCH * speed / self.wave) + REACH * self.h + self.loose
+
+
+def _shared(acting: Acting, mass: np.ndarray, speed: np.ndarray) -> np.ndarray:
+    """Largest speed of each solid [m/s], shape (M,), where all energy of those that it hangs together with may come to it."""
+    pairs = np.array([pair for e in acting.effects for pair in e.joins(acting.scene)], int).reshape(-1, 2)
+    joined = coo_array((np.ones(len(pairs), bool), tuple(pairs.T)), shape=(len(mass), len(mass)))
+    part = connected_components(joined, directed=False)[1]
+    energy = np.bincount(part, mass * speed**2)[part]
+    return np.where(np.bincount(part)[part] > 1, np.sqrt(energy / mass), speed)
 
 
 def _speed(acting: Acting, bodies: _Movers) -> np.ndarray:
@@ -213,5 +236,8 @@ def _overlaps(swept: Sweeps) -> Iterator[np.ndarray]:
     for i, j in box_pairs(swept.low, swept.high):
         moves = ~(swept.fixed[i] & swept.fixed[j])
         pairs = np.sort(np.column_stack([i[moves], j[moves]]), axis=1)
+        if swept.passing:
+            apart = [pair not in swept.passing for pair in map(tuple, pairs.tolist())]
+            pairs = pairs[np.array(apart, bool)]
         if len(pairs):
             yield pairs[np.lexsort((pairs[:, 1], pairs[:, 0]))]

@@ -19,7 +19,8 @@ LEVEL = 1e-6
 
 def standing(acting: Acting, system: System) -> np.ndarray:
     """Solids that are at rest at the start, on a floor, on an upright cuboid that never moves, or on one that stands itself, with
-    their centre of mass above it; bool, shape (M,). None where nothing pulls along -z, or something along x or y.
+    their centre of mass above it, and that nothing else holds; bool, shape (M,). None where nothing pulls along -z, or something
+    along x or y.
     """
     found = np.zeros(len(system.names), bool)
     least, most = acting.accelerations
@@ -28,7 +29,7 @@ def standing(acting: Acting, system: System) -> np.ndarray:
         return found
     low, high = system.bounds(system.position)
     slowest, fastest = system.bounds(system.velocity)
-    calm = ~system.still & ~slowest.any(axis=1) & ~fastest.any(axis=1)
+    calm = ~system.still & ~acting.joined & ~slowest.any(axis=1) & ~fastest.any(axis=1)
     near = BORN_AT_REST * system.spacing
     for plane in acting.planes:
         if plane.axis == 2 and plane.sign > 0:

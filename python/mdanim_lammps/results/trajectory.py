@@ -180,7 +180,7 @@ class Trajectory(*TRACKS):  # type: ignore[misc]  # features are found when the 
         if name not in known:
             raise KeyError(f"frames have no field {name!r}; {did_you_mean(name, known) or 'no effect of the scene has any'}")
         found = known[name].from_table(self._read(known[name].table, frame))
-        if known[name].per == "pair" and not ((found["a"] < found["b"]) & (found["b"] < len(self.names))).all():
+        if known[name].per == "pair" and not ((found["a"] <= found["b"]) & (found["b"] < len(self.names))).all():
             raise OutputError(f"{self.path}: damaged: a row of {name} in frame {frame} is of objects that are not there")
         return found
 

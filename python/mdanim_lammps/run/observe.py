@@ -63,7 +63,7 @@ class Observer:
 
     def __init__(self, plan: Plan, models: Sequence[Model]):
         self.context, self.system = plan.context, plan.system
-        self.geometry, self.folds = Geometry(plan.system), Folds(plan.system)
+        self.geometry, self.folds = Geometry(plan.system, plan.context.passing), Folds(plan.system)
         self.apart = any(effect.keeps_apart for effect in plan.effects)
         model_of, number = {model.name: model for model in models}, {name: m for m, name in enumerate(plan.system.names)}
         self.recorded = [

@@ -98,7 +98,8 @@ def _prepare(scene: SceneRecord, spacing: Spacing, allow_unstable: bool) -> Prep
     models = build_models(scene, spacing.of, driven=drives)
     planes = [p for e in features.effects() for p in e.of(scene).planes(scene)]  # also of those that are off
     contact = next((e.of(scene) for e in features.effects() if e.keeps_apart), None)
-    problems = check_geometry(scene, models, planes, contact) + [
+    passing = {pair for e in resolved.effects for pair in e.passes(scene)}
+    problems = check_geometry(scene, models, planes, contact, passing) + [
         p for e in resolved.effects for p in e.problems(resolved, models, grid)
     ]
     problems += _unmeasurable(resolved) + _undriven(resolved, models)

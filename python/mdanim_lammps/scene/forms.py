@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from functools import cache
 from typing import Any
 
-from .units import NONE, Dim, unit
+from .units import NONE, Dim, dimension, magnitude, symbol, unit
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,6 +36,8 @@ class Slot:
     """The dimension that the value must have."""
     anywhere: bool = False
     """Whether the rule of the setting does not hold for it: a place."""
+    other: str = ""
+    """A second SI unit that a number may have; such a number keeps its unit."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,7 +65,7 @@ def _slot(text: str) -> Slot:
         return Slot("choice", shown, choices=tuple(shown.split("|")))
     if shown in KINDS:
         return Slot(KINDS[shown], shown)
-    return Slot("number", shown, u, dim=dim)
+    return Slot("number", shown, u, dim=dim, other=other)
 
 
 @cache
@@ -131,5 +133,7 @@ def _value(slot: Slot, x: Any, number: Callable[[float], str]) -> str | None:
         return f'"{text}"'
     if isinstance(x, str):
         return x
+    if slot.other:
+        return f"{number(magnitude(x))} {symbol(dimension(x))}".rstrip()
     unit = "" if slot.unit in ("1", "?") else f" {slot.unit}"
     return (f"({', '.join(map(number, x))})" if isinstance(x, tuple) else number(x)) + unit

@@ -55,6 +55,6 @@ def _block(block: Block, record: Any) -> list[str]:
         )
     if not settings:
         return []
-    head = " ".join((block.name, *(getattr(record, name) for name in block.names)))
+    head = " ".join((block.name, *([record.kind] if block.kinds else []), *(getattr(record, name) for name in block.names)))
     width = max(len(word) for word, _ in settings)
     return ["", head + " {", *(f"  {word:<{width}} {text}" for word, text in settings), "}"]

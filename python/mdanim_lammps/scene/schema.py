@@ -58,7 +58,7 @@ class Observable(NamedTuple):
     needs: str = ""
     """The effect that must be on; it has the name of the block that brings it into a scene."""
     takes: str = ""
-    """Its argument: ``object``, another object; ``place``, a point (x, y) [m]; or nothing."""
+    """Its argument: ``object``, another object; ``joined``, that or ``world``; ``place``, a point (x, y) [m]; or nothing."""
     bound: bool = False
     """Whether an ``expect`` says how large it may be, and nothing of what is true."""
 
@@ -111,7 +111,7 @@ class Words(Codec):
         return self.kind(values[0])
 
     def write(self, k: Keyword, value: Any) -> tuple[int, tuple] | None:
-        return 0, (value.value,)
+        return None if value is None else (0, (value.value,))
 
 
 class OneOf(Codec):
@@ -231,10 +231,14 @@ class Block:
     about: str
     names: tuple[str, ...] = ()
     """Fields of the record that take the names after its word."""
+    kinds: tuple[str, ...] = ()
+    """Words of which one stands before the names, ``joint hinge``; the field ``kind`` of the record takes it."""
     indexed: bool = False
     """Whether a name may have an index, ``ball[3]``."""
     of_objects: bool = False
     """Whether the names are those of objects, repeats and planes of the scene, not a name of its own."""
+    instead: tuple[str, ...] = ()
+    """Words that may stand for an object in it, in place of those of planes."""
     many: bool = False
     holds: tuple[str, ...] = ()
     """Blocks that may stand in it."""
@@ -254,7 +258,8 @@ class Block:
         """The word and what follows it up to the brace: ``object NAME[index]``."""
         if self.form:
             return f"{self.name} {self.form}"
-        return " ".join((self.name, *(["NAME[index]" if self.indexed else "NAME"] * len(self.names))))
+        kinds = ["|".join(self.kinds)] if self.kinds else []
+        return " ".join((self.name, *kinds, *(["NAME[index]" if self.indexed else "NAME"] * len(self.names))))
 
 
 def setting(
@@ -363,5 +368,5 @@ def syntax(keyword: Keyword) -> str:
 
 def units_shown(keyword: Keyword) -> str:
     """The SI units of a keyword's values, e.g. ``Pa, N/m``."""
-    found = re.findall(r":([^>\s]+)", keyword.form)
-    return ", ".join(dict.fromkeys(u for u in found if u not in ("?", "1")))
+    found = re.findall(r":([^>]+)>", keyword.form)
+    return ", ".join(dict.fromkeys(u for text in found for u in text.split(" or ") if u not in ("?", "1", "NAME")))

@@ -19,7 +19,11 @@ from .tokens import Token
 from .tree import Name, SettingNode, Value
 from .units import UNITS, unit
 
-TAKEN = {"object": ("another object", "(cube)"), "place": ("a place (x, y)", "(0.2 m, 0 m)")}
+TAKEN = {
+    "object": ("another object", "(cube)"),
+    "joined": ("another object, or world,", "(world)"),
+    "place": ("a place (x, y)", "(0.2 m, 0 m)"),
+}
 """Arguments of quantities in words, and an example."""
 
 

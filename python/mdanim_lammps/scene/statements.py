@@ -9,7 +9,7 @@ from pathlib import Path
 
 from .expressions import RESERVED, Node
 from .forms import Slot, literals
-from .keywords import BLOCKS, KEYWORDS, NOT_SUPPORTED, STATEMENTS, belongs, did_you_mean, foreign_line, nearest, owner
+from .keywords import BLOCKS, KEYWORDS, NOT_SUPPORTED, STATEMENTS, Block, belongs, did_you_mean, foreign_line, nearest, owner
 from .limits import DEEPEST_INCLUDE, DEEPEST_REPEAT, MOST_BYTES, MOST_FILES
 from .reader import ODD
 from .setting_reader import SettingReader, Shared
@@ -104,7 +104,7 @@ class Parser(SettingReader):
         names = 0
         while self.ahead(names).type == "NAME":
             names += 1
-        return self.ahead(names).type == "LBRACE" or (names > 0 and self.ahead(names).type == "LSQB")
+        return self.ahead(names).type == "LBRACE" or (names > 0 and self.ahead(names).type in ("LSQB", "DOT"))
 
     def statement(self, block: str, opened: Token | None, repeats: int) -> list:
         t = self.peek
@@ -184,9 +184,11 @@ class Parser(SettingReader):
         if block == "place":
             return self.place(word)
         kind, names = BLOCKS[block], []
+        which = self.kind_of(kind)
+        head = f"{block} {which}".rstrip()
         for _ in kind.names:
             if self.peek.type != "NAME":
-                hint = f"e.g. {block} {' '.join(('ball', 'floor')[: len(kind.names)])} {{"
+                hint = f"e.g. {head} {' '.join(('ball', 'floor')[: len(kind.names)])} {{"
                 raise Fault(self.peek, f"a name is missing after {block}, found {self.peek.found()}", hint)
             names.append(name := self.name())
             if (name.index is not None or name.inner is not None) and not kind.indexed:
@@ -194,14 +196,23 @@ class Parser(SettingReader):
                 raise Fault(name.token, f"only objects {cause}, found {block} {name.token}...", last=name.last)
         if not names and self.peek.type == "NAME":
             raise Fault(self.peek, f"{block} has no name, found {self.peek.found()}", f"write {block} {{ ... }}")
-        title = " ".join((block, *(name.token for name in names)))
+        title = " ".join((head, *(name.token for name in names)))
         self.brace(title, KEYWORDS[block])
         if kind.raw:
             return Group(self.source, word, block, (), [], raw=tuple(self.raw_lines()))
         body = self.body(block, word, 0, title)
         if block == "group":
             return Template(self.source, names[0].token, body)
-        return Group(self.source, word, block, tuple(names), body)
+        return Group(self.source, word, block, tuple(names), body, kind=which)
+
+    def kind_of(self, block: Block) -> str:
+        """The word of its kind, behind that of a block; empty of one without."""
+        if not block.kinds:
+            return ""
+        if str(self.peek) not in block.kinds:
+            cause = f"the kind of {block.name} is missing: it is one of {', '.join(block.kinds)}, found {self.peek.found()}"
+            raise Fault(self.peek, cause, did_you_mean(str(self.peek), block.kinds) if self.peek.type == "NAME" else "")
+        return str(self.take())
 
     def place(self, word: Token) -> Group:
         """``place GROUP[index] { ... }`` or ``place GROUP as NAME[index] { ... }``."""

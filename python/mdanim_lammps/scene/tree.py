@@ -96,6 +96,8 @@ class Group:
     """The group that a ``place`` puts somewhere."""
     raw: tuple[Token, ...] = ()
     """Lines of a block that holds the text of another language."""
+    kind: str = ""
+    """The word before its names, of a block that has such words."""
 
 
 @dataclass(slots=True, eq=False)

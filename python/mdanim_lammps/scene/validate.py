@@ -125,14 +125,14 @@ class Validator:
         if kind.of_objects:
             block.names = tuple(self.meant(block, name) for name in block.names)
             places = (block.group.source.span(name.token, name.last, block.used_at) for name in block.group.names)
-            if sum(map(self.known_body, block.names, places)) < len(block.names):
+            if sum(self.known_body(name, place, kind) for name, place in zip(block.names, places)) < len(block.names):
                 return None
         if not self.complete(block):
             return None
         settings = self.settings(block)
         if settings is None:
             return None
-        values = {**dict(zip(kind.names, block.names)), **settings}
+        values = {**dict(zip(kind.names, block.names)), **({"kind": block.group.kind} if kind.kinds else {}), **settings}
         if "spans" in kind.record.__dataclass_fields__:
             values["spans"] = self.spans(block)
         record = kind.record(**values)
@@ -148,11 +148,15 @@ class Validator:
         return next((full for full in own if full in self.named), name)
 
     def in_world(self, block: EvaluatedBlock, record: Any) -> Any:
-        """An object, or the place of a group, moved along with the groups that it stands in; None after an error."""
-        if block.inside is None or not isinstance(record, records.Solid | Placement):
+        """An object, or the place of a group, moved along with the groups that it stands in, and a record of a feature that has
+        ``placed(place)``; None after an error."""
+        movable = isinstance(record, records.Solid | Placement)
+        if block.inside is None or not (movable or hasattr(record, "placed")):
             return record
         if (place := self.place_of(block.inside)) is None:
             return None
+        if not movable:
+            return record.placed(place)
         try:
             record = place.moved(record)
         except ValueError as e:
@@ -363,8 +367,10 @@ class Validator:
         self.problem(span, f"no object is called {name}", did_you_mean(name, known) if known else "the scene has no object")
         return False
 
-    def known_body(self, name: str, span: Span) -> bool:
-        """Whether a name of a contact block stands for something; an unknown one is a problem."""
+    def known_body(self, name: str, span: Span, block: Block) -> bool:
+        """Whether a name of a block of objects stands for something there; an unknown one is a problem."""
+        if block.instead:
+            return _known_in(self, name, span, block)
         kind = self.touched.get(name)
         plane = bool(self.blocks(kind) if kind else name in self.touched and self.out.first(name))
         twice = "a plane of the scene" if plane else "a repeat" if name in self.names and len(self.named[name]) > 1 else ""
@@ -400,7 +406,9 @@ class Validator:
             )
             return None
         of = QUANTITIES[kind, quantity]
-        if of.takes == "object" and not self.known_other(subject, quantity, argument, s.span(0)):
+        if of.takes in ("object", "joined") and not self.known_other(
+            subject, quantity, argument, s.span(0), of.takes == "joined"
+        ):
             return None
         if of.needs in BLOCKS and not self.blocks(of.needs) and not self.out.excused(of.needs):
             self.problem(s.span(0), f"{subject}.{quantity} needs a {of.needs}, and the scene has none")
@@ -432,12 +440,27 @@ class Validator:
             numbers[1] *= abs(numbers[0]) / 100.0
         return records.Expect(subject, quantity, numbers[0], numbers[1], time, relation, argument, s.span())
 
-    def known_other(self, subject: str, quantity: str, other: str, span: Span) -> bool:
-        """Another object."""
+    def known_other(self, subject: str, quantity: str, other: str, span: Span, or_world: bool) -> bool:
+        """Another object, or the world."""
         if other != subject:
-            return self.known_object(other, span)
+            return (or_world and other == "world") or self.known_object(other, span, ("world",) if or_world else ())
         self.problem(span, f"the {quantity} of {subject} and itself is 0", "name another object")
         return False
+
+
+def _known_in(v: Validator, name: str, span: Span, block: Block) -> bool:
+    """As `Validator.known_body`, in a block that takes words of its own in place of planes."""
+    if name in v.named:
+        if name in block.instead:
+            v.problem(span, f"{name} is the name of an object, and a word of {block.name}", "give the object another name")
+        return name not in block.instead
+    if name in block.instead or v.out.excused("object"):
+        return True
+    if name in v.touched:
+        v.problem(span, f"{name} is not an object", f"write {' or '.join(block.instead)} for what never moves")
+    else:
+        v.known_object(name, span, (*(n for n in islice(v.named, 2000) if n not in v.names), *block.instead))
+    return False
 
 
 def _tolerance_unfit(relation: str, part: bool, value: float, tolerance: Any) -> tuple[str, str] | None:

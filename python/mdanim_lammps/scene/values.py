@@ -109,6 +109,8 @@ class Evaluator:
         if kind == "number":
             if isinstance(x, tuple):
                 raise Fault(v.first, f"{what} is a number, found the vector {units.show(x)}", last=v.last)
+            if v.slot.other:
+                return self.of_two_units(s, v, x, what)
             return x if v.slot.unit == "?" else self.number(s, v, x, what, v.first, v.last)
         if not isinstance(x, tuple) or len(x) != v.slot.length:
             found = f"{len(x)} numbers" if isinstance(x, tuple) else f"the number {units.show(x)}"
@@ -157,6 +159,17 @@ class Evaluator:
                 first, f"{what} is too {size}: it {goes}, found {units.show(units.quantity(x, dim))}", limit.way_out, last
             )
         return x
+
+    def of_two_units(self, s: SettingNode, v: Value, x, what: str):
+        """A number that may have either of two dimensions, which it keeps."""
+        for text in (v.slot.unit, v.slot.other):
+            if units.dimension(x) in (units.unit(text).dim, units.NONE):
+                one = replace(v, slot=replace(v.slot, unit=text, dim=units.unit(text).dim))
+                self.number(s, one, x, what, v.first, v.last)
+                return x
+        one, other = (units.unit(text).dim for text in (v.slot.unit, v.slot.other))
+        cause = f"{what} must be {units.describe(one)} or {units.describe(other)}, found {_found(s, v, x)}"
+        raise Fault(v.first, cause, f"units that fit: {' '.join([*units.units_of(one), *units.units_of(other)])}", v.last)
 
     def _color(self, v: Value, x: str) -> str:
         try:

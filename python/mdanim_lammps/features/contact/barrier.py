@@ -70,8 +70,14 @@ def barrier(fix: str, context: Context, thin: tuple[str, ...] = ("group thin typ
     """Commands for a barrier of this name, with the columns ``stiffness`` and ``reach``; ``thin`` make the group of particles
     that are a barrier themselves, because there are none inside."""
     groups = ["group inner type 1 2 5 6", "group boundary type 3 4 7 8", *thin]
-    words = f"fix {fix} {context.pushed} mdanim/barrier boundary inner d_stiffness d_reach"
-    return [*groups, f"{words} thin thin {THIN!r}" if (context.system.layer == Layer.THIN).any() else words]
+    words = [f"fix {fix} {context.pushed} mdanim/barrier boundary inner d_stiffness d_reach"]
+    words += [f"thin thin {THIN!r}"] if (context.system.layer == Layer.THIN).any() else []
+    return [*groups, " ".join([*words, *excluded(context)])]
+
+
+def excluded(context: Context) -> list[str]:
+    """Words for pairs of objects that never touch."""
+    return [f"exclude {i + 1} {j + 1}" for i, j in context.passing]
 
 
 def barrier_rate(system: System, s: np.ndarray, reach: float) -> np.ndarray:
@@ -98,6 +104,8 @@ class ObjectContact(Form):
             return Verdict(self.name, False, "one object" if scene.solids else "no objects")
         if not moving:
             return Verdict(self.name, False, "every object is held")
+        if not reach.region.any_pair:
+            return Verdict(self.name, False, "all that could meet is joined")
         first, second, apart = reach.closest()
         if apart > 0.0:
             return Verdict(
@@ -185,7 +193,9 @@ class BarrierContact(ObjectContact):
 
     def warnings(self, context):
         scene = context.scene
+        passing = set(context.passing)
         found = touching(context.system, particle_stiffness(scene, context.system))
+        found = [t for t in found if (min(t.first, t.second), max(t.first, t.second)) not in passing]
         if not found:
             return []
         t = found[0]

@@ -144,7 +144,7 @@ class _Slopes:
         self.envelope, self.scene = envelope, envelope.scene
         self.gravity = np.array(self.scene.gravity)
         rolling = np.array([shapes.LAWS[type(s.shape)].rolls for s in self.scene.solids])
-        self.sliding = envelope.reach.moving & ~rolling
+        self.sliding = envelope.reach.moving & ~rolling & ~envelope.reach.acting.joined
 
     def on_floors(self) -> Iterator[Slope]:
         tangent = math.hypot(*self.gravity[:2]) / -self.gravity[2]

@@ -21,7 +21,7 @@ from ...model.system import System
 from ...reach import largest_of_others
 from ...scene.formatting import at_least, say
 from ...scene.scene import Box, SceneRecord
-from .barrier import GAP, ObjectContact, barrier, barrier_rate
+from .barrier import GAP, ObjectContact, barrier, barrier_rate, excluded
 from .forms import particle_stiffness
 from .pairs import USUAL_DAMPING, any_friction, damping, frictions, pair_rules
 from .planes import STIFFNESS, BarrierPlanes, Planes, Sides
@@ -197,7 +197,10 @@ class SurfaceContact(ObjectContact):
     def commands(self, context):
         scene, system = context.scene, context.system
         rules = [f"pair {i + 1} {j + 1} {mu!r} {beta!r}" for i, j, mu, beta in pair_rules(scene, system.names)]
-        return [*self.law.commands(context, " ".join(["objects", *rules])), *barrier(self.behind, context, self.thin(system))]
+        return [
+            *self.law.commands(context, " ".join(["objects", *rules, *excluded(context)])),
+            *barrier(self.behind, context, self.thin(system)),
+        ]
 
     def tunnelling(self, envelope):
         found, system = super().tunnelling(envelope), envelope.system

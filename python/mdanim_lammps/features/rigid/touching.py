@@ -149,6 +149,7 @@ def words(context: Context, part: Part, shapes: str) -> str:
     if part.objects and (guided(context) & part.shapes).any():
         found += [f"drive {fix}" for fix in sorted(drives)]
     if part.objects:
+        found += [f"exclude {i + 1} {j + 1}" for i, j in context.passing if part.shapes[i] and part.shapes[j]]
         found += [f"pair {i + 1} {j + 1} {mu!r} {beta!r}" for (i, j), (mu, beta) in _pair_laws(context, part).items()]
     own, usual = _of(context, frictions(scene)), dampings(context)
     free = np.flatnonzero(part.shapes & part.bodies).tolist()
