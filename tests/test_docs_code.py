@@ -47,7 +47,7 @@ def pieces(page: str) -> list[tuple[str, str, str]]:
 
 def is_scene(code: str) -> bool:
     """Whether a block is written in the scene language."""
-    return bool(re.match(r"(#.*\n|title .*\n|let .*\n)*(gravity|object|render|liquid) ", code))
+    return bool(re.match(r"(#.*\n|title .*\n|let .*\n)*(gravity|object|render|liquid|repeat|joint|expect) ", code))
 
 
 def command(line: str) -> list[str]:

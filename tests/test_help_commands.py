@@ -60,7 +60,7 @@ def test_every_word_is_explained():
         assert explain(name)
     said = explain("elasticity")
     assert "elasticity E | spring k | rigid   a setting in object { }" in said and "in Pa, N/m; must be > 0; needed" in said
-    assert len(explain("friction").split("\n\n")) == 3  # of objects, of two objects, of the scene
+    assert len(explain("friction").split("\n\n")) == 4  # of objects, of two objects, of joints, of the scene
     assert explain("time_step") == explain("Time Step")
     assert "`" not in "".join(map(explain, words()))
     with pytest.raises(KeyError, match="did you mean 'friction'"):

@@ -49,6 +49,7 @@ object c {
   hold all
   drive velocity (0.1, 0, 0)
 }
+joint spring a b { }
 """
 EVERY = with_every_effect(FULL)
 """The same with the words of all further effects, whose lines are those where they stand."""
@@ -67,6 +68,7 @@ LINES = {
     "liquid-drag": 4,
     "rigid": 16,
     "drives": 30,
+    "joint": 32,
 }
 
 

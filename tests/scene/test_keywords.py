@@ -3,6 +3,7 @@
 
 import pytest
 from mdanim_lammps.errors import SceneError
+from mdanim_lammps.features.joints.words import TAKES
 from mdanim_lammps.scene.forms import alternatives
 from mdanim_lammps.scene.keywords import KEYWORDS, all_keywords
 from mdanim_lammps.scene.page import language_page
@@ -29,6 +30,9 @@ def scene(block: str, **settings: str):
         blocks |= {"contact": {}, "floor": dict(BALL)}
     if block == "place":
         blocks |= {"place": {}}
+    kind = next((kind for word in settings for kind in TAKES.get(word, ())), "hinge")
+    if block == "joint" or "joint." in settings.get("expect", ""):
+        blocks |= {"joint": {"axis": "(0, 1, 0)"} if kind in TAKES["axis"] else {}, "floor": dict(BALL)}
     if block == "contact" or any(settings.get(word, "0") != "0" for word in OF_SURFACES):
         blocks["control"]["contact-model"] = "surface"
     if "restitution" in settings:  # of rigid objects
@@ -47,7 +51,7 @@ def scene(block: str, **settings: str):
     text = "".join(f"{word} {value}\n" for word, value in top.items())
     for name, content in blocks.items():
         heads = {"object": "object ball", "liquid": "liquid water", "contact": "contact ball floor", "floor": "object floor"}
-        head = (heads | {"place": "group few { } place few"}).get(name, name)
+        head = (heads | {"place": "group few { } place few", "joint": f"joint {kind} ball floor"}).get(name, name)
         text += f"{head} {{\n" + "".join(f"  {w} {v}\n" for w, v in content.items()) + "}\n"
     return parse_scene(text)
 
@@ -95,7 +99,7 @@ def test_every_quantity_can_be_expected(quantity):
     kind, what = quantity
     name = kind if kind in GLOBALS else "ball"
     unit = QUANTITIES[quantity][0].replace("1", "")
-    taken = {"object": "(floor)", "place": "(0.1 m, 20 cm)"}.get(QUANTITIES[quantity].takes, "")
+    taken = {"object": "(floor)", "joined": "(floor)", "place": "(0.1 m, 20 cm)"}.get(QUANTITIES[quantity].takes, "")
     expect = scene("", expect=f"{name}.{what}{taken} at 1 s = 0.5 {unit} +- 0.1 {unit}").expects[0]
     assert (expect.subject, expect.quantity, expect.value, expect.tolerance, expect.time) == (name, what, 0.5, 0.1, 1.0)
 

@@ -48,6 +48,9 @@ def _entries() -> Iterator[tuple[str, str]]:
     for block in BLOCKS.values():
         inside = ", ".join(KEYWORDS[block.name])
         yield block.name, f"{block.head} {{ ... }}   a block\n  {_plain(block.about)}\n  inside: {inside}"
+        for kind, about in block.kinds.items():
+            head = block.head.replace("|".join(block.kinds), kind)
+            yield kind, f"{head} {{ ... }}   a kind of {block.name}\n  {_plain(about)}: mdanim-lammps explain {block.name}"
     for block, keywords in KEYWORDS.items():
         for keyword in keywords.values():
             yield keyword.name, _keyword(keyword, f"in {block} {{ }}" if block else "outside of all blocks")

@@ -231,8 +231,9 @@ class Block:
     about: str
     names: tuple[str, ...] = ()
     """Fields of the record that take the names after its word."""
-    kinds: tuple[str, ...] = ()
-    """Words of which one stands before the names, ``joint hinge``; the field ``kind`` of the record takes it."""
+    kinds: Mapping[str, str] = dataclasses.field(default_factory=dict)
+    """Words of which one stands before the names, ``joint hinge``, each with its meaning; the field ``kind`` of the record takes
+    it."""
     indexed: bool = False
     """Whether a name may have an index, ``ball[3]``."""
     of_objects: bool = False
@@ -361,7 +362,7 @@ def syntax(keyword: Keyword) -> str:
     def shown(match: re.Match) -> str:
         text, _, u = match[1].removeprefix("@").partition(":")
         u, _, other = u.partition(" or ")
-        return text + (f"|{other}" if other else "")
+        return text + (f"|{other}" if other == "NAME" else "")
 
     return re.sub(r"<([^>]*)>", shown, keyword.form)
 

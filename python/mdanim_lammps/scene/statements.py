@@ -145,6 +145,9 @@ class Parser(SettingReader):
             raise Fault(word, f"'{word}' cannot stand {inside}", f"it belongs {'in' if homes[0] else 'on'} {place}")
         if str(word) in NOT_SUPPORTED:
             raise Fault(word, f"{word} is not supported yet", NOT_SUPPORTED[str(word)])
+        if (head := next((b for b in BLOCKS.values() if str(word) in b.kinds), None)) is not None:
+            names = " ".join(("A", "B")[: len(head.names)])
+            raise Fault(word, f"{word} is a kind of {head.name}", f"write {head.name} {word} {names} {{ ... }}")
         kind = f"a setting of {block}" if block else "a word of the scene language"
         home = home or next((k for k in KEYWORDS[block].values() if word in literals(k.form)), None)
         hint = did_you_mean(str(word), here)

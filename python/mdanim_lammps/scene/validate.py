@@ -149,14 +149,14 @@ class Validator:
 
     def in_world(self, block: EvaluatedBlock, record: Any) -> Any:
         """An object, or the place of a group, moved along with the groups that it stands in, and a record of a feature that has
-        ``placed(place)``; None after an error."""
+        ``moved(place)``; None after an error."""
         movable = isinstance(record, records.Solid | Placement)
-        if block.inside is None or not (movable or hasattr(record, "placed")):
+        if block.inside is None or not (movable or hasattr(record, "moved")):
             return record
         if (place := self.place_of(block.inside)) is None:
             return None
         if not movable:
-            return record.placed(place)
+            return record.moved(place)
         try:
             record = place.moved(record)
         except ValueError as e:

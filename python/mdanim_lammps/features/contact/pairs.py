@@ -14,14 +14,14 @@ USUAL_DAMPING = 0.3
 """Share of critical damping of a contact with friction: enough to end chatter."""
 
 
-class _Same:
+class Same:
     """A scene, which is equal to itself alone: its values take long to compare."""
 
     def __init__(self, scene: SceneRecord):
         self.scene = scene
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, _Same) and other.scene is self.scene
+        return isinstance(other, Same) and other.scene is self.scene
 
     def __hash__(self) -> int:
         return id(self.scene)
@@ -30,11 +30,11 @@ class _Same:
 def frictions(scene: SceneRecord, plane: str = "") -> list[float]:
     """Coefficient of friction of every object [-], its own or, with the name of a plane, that against the plane; not to be
     changed, because the list is kept: frames ask for it many times."""
-    return _frictions(_Same(scene), plane)
+    return _frictions(Same(scene), plane)
 
 
 @lru_cache(maxsize=16)
-def _frictions(of: _Same, plane: str) -> list[float]:
+def _frictions(of: Same, plane: str) -> list[float]:
     scene = of.scene
     found = [scene.control.friction if s.friction is None else s.friction for s in scene.solids]
     told = [c for c in scene.contacts if plane in (c.first, c.second) and c.friction is not None] if plane else []

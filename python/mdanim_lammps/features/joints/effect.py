@@ -1,0 +1,180 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Joints, by ``fix mdanim/joint``."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from ...effects.context import Context, Verdict
+from ...effects.effect import Effect
+from ...effects.margin import Margin
+from ...errors import Problem
+from ...scene.formatting import number, say
+from .links import NOTHING, Link, links_of
+from .measure import unmeasured
+from .place import misplaced
+from .rows import joint_field, rows_of_joints
+from .strength import GAP, Strength, Sums, strengths
+from .table import joints_text
+
+HEAT, WORK = "joint_heat", "work"
+"""Columns of the ledger."""
+RESOLVED = 120
+"""Steps in a period of a spring: leap-frog makes it too short by 1e-4, and its energy varies by 7e-4."""
+SHOWS = 4.0
+"""Times the gap of a joint between rigid objects, from which on it is worth a warning."""
+
+
+class Joints(Effect):
+    """Springs between material points of two bodies: U = k |g|^2/2 + k L^2/2 sum |F_A e - F_B e|^2 with the gap g of both points
+    and the directions e that a joint holds; motors, friction and stops act on the motion that it leaves (docs/physics-joints.md).
+    """
+
+    styles = (("fix", "mdanim/joint"),)
+    name = "joint"
+    fix = ledger = "joints"
+    order = 60
+    if_off = "what is joined falls apart"
+
+    def called_for(self, scene, reach):
+        if not scene.joints:
+            return Verdict(self.name, False, "the scene has no joint")
+        joint, more = scene.joints[0], len(links_of(scene).all) - 1
+        others = f" and {more} more" if more else ""
+        return Verdict(self.name, True, f"joint {joint.words}{others}", joint.spans.get("joint"))
+
+    # --- where things may be ------------------------------------------------------------------------------------------
+
+    def joins(self, scene):
+        return links_of(scene).pairs if scene.joints else ()
+
+    def holds(self, scene):
+        return links_of(scene).leashes if scene.joints else {}
+
+    def passes(self, scene):
+        return links_of(scene).passing if scene.joints else ()
+
+    # --- what it brings into a run ------------------------------------------------------------------------------------
+
+    def acts_on(self, context):
+        return bool(_here(context))
+
+    def commands(self, context):
+        return [f"fix {self.fix} {context.pushed} mdanim/joint joints table:{self.fix}"]
+
+    def tables(self, context):
+        return {self.fix: joints_text(_here(context), _numbers(context))}
+
+    def rate(self, context):
+        return _sums(context)[0]
+
+    def drag_rate(self, context):
+        return _sums(context)[1]
+
+    def max_timestep(self, context):
+        """Springs that may be seen to swing take RESOLVED steps in a period."""
+        return min((2.0 * math.pi / one.frequency / RESOLVED for one in strengths(context) if one.swings), default=math.inf)
+
+    # --- accounts and frames ------------------------------------------------------------------------------------------
+
+    def energy(self, readings):
+        return readings.fix_value(self.fix, "joints")
+
+    def losses(self, scene):
+        return (HEAT,)
+
+    def sources(self, scene):
+        return (WORK,) if any(joint.motor for joint in scene.joints) else ()
+
+    def lost(self, readings):
+        scene = readings.context.scene
+        return {term: readings.fix_value(self.fix, term) for term in (*self.losses(scene), *self.sources(scene))}
+
+    def fields(self, scene):
+        return (joint_field(scene),)
+
+    def tell(self, readings):
+        here = _here(readings.context)
+        told = readings.fix_rows(self.fix, len(here), 13)
+        numbers = _numbers(readings.context)
+        return {joint_field(readings.context.scene).name: rows_of_joints(here, told, numbers)}
+
+    # --- advice -------------------------------------------------------------------------------------------------------
+
+    def problems(self, resolved, models, grid):
+        return [*misplaced(resolved.scene, models), *unmeasured(resolved.scene)]
+
+    def margins(self, envelope):
+        found = [one for one in strengths(envelope.context) if not one.swings]
+        if not found:
+            return []
+        worst = max(found, key=lambda one: one.gap / one.thin)
+        joint, most = worst.link.joint, SHOWS * GAP * worst.thin
+        name = envelope.scene.solids[worst.link.first].name
+        stiffness = worst.load / (GAP * worst.thin)
+        return [
+            Margin(
+                "joint gap",
+                name,
+                worst.gap,
+                most,
+                "m",
+                f"joint {joint.words} opens by {say(worst.gap, 'm')} under {say(worst.load, 'N')}, what hangs on it at rest: "
+                f"{number(100.0 * worst.gap / worst.thin, 2)} % of the thinnest part of what it joins",
+                joint.spans.get("stiffness") or joint.spans.get("joint"),
+                "warning" if worst.gap > most else "ok",
+                hint=f"write stiffness {number(stiffness, 2)} N/m in it",
+            )
+        ]
+
+    def notes(self, envelope):
+        """The hardest joint, where joints set the time step."""
+        rates, found = envelope.rates, strengths(envelope.context)
+        free = ~envelope.system.held
+        if not found or not free.any():
+            return []
+        total = sum(rates.values())
+        worst = int(np.where(free, total, 0.0).argmax())
+        if rates[self.name][worst] < 0.5 * total[worst]:
+            return []
+        m = int(envelope.system.object[worst])
+        own = [one for one in found if m in (one.link.first, one.link.second)]
+        hardest = max(own, key=lambda one: one.stiffness)
+        joint = hardest.link.joint
+        return [
+            Problem(
+                joint.spans.get("joint"),
+                f"joint {joint.words} sets the time step: {number(hardest.stiffness)} N/m hold it together, it opens by "
+                f"{say(hardest.gap, 'm')} under {say(hardest.load, 'N')} at rest",
+                "write a lower stiffness in it where a larger gap may be seen",
+                severity="note",
+            )
+        ]
+
+
+def _numbers(context: Context) -> dict[int, int]:
+    """Molecule IDs of the solids of a context, by their numbers in the scene."""
+    of = {name: m + 1 for m, name in enumerate(context.system.names)}
+    return {m: of[solid.name] for m, solid in enumerate(context.scene.solids) if solid.name in of}
+
+
+def _here(context: Context) -> list[Strength]:
+    """The joints of a context: both of their objects are in it."""
+    numbers = _numbers(context)
+    return [one for one in strengths(context) if _is_in(one.link, numbers)]
+
+
+def _is_in(link: Link, numbers: dict[int, int]) -> bool:
+    return link.first in numbers and (link.second == NOTHING or link.second in numbers)
+
+
+def _sums(context: Context) -> tuple[np.ndarray, np.ndarray]:
+    sums = Sums(context)
+    for one in strengths(context):
+        one.add_to(sums)
+    return sums.of_particles()
+
+
+EFFECTS = (Joints(),)

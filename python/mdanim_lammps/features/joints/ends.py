@@ -1,0 +1,83 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""The ends of joints: how a body moves when it is pushed there."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from .links import Link
+from .patches import Patch
+
+
+@dataclass(frozen=True)
+class JointEnd:
+    """One end of a joint in something that moves: the motion that a push there gives."""
+
+    object: int
+    """Number in the scene, from 0."""
+    d: np.ndarray
+    """The point of the joint from the centre of the object, or of the patch [m], shape (3,)."""
+    patch: Patch | None
+    """None of what is rigid."""
+    root: np.ndarray
+    """M^-1/2 of the six motions of a rigid body, shape (6, 6); of all else nothing, shape (0, 0)."""
+
+    @property
+    def rigid(self) -> bool:
+        return self.patch is None
+
+    @cached_property
+    def mobility(self) -> float:
+        """Largest one of its point [1/kg]."""
+        if self.patch is not None:
+            return float(1.0 / self.patch.total + self.d @ self.patch.inverse @ self.d)
+        return self._largest(lever(self.d))
+
+    def turning(self, directions: np.ndarray) -> float:
+        """Largest mobility of directions that go with it, shape (n, 3) [1/(kg m^2)]."""
+        if self.patch is not None:
+            return float(np.einsum("ni,ij,nj->n", directions, self.patch.inverse, directions).max(initial=0.0))
+        return self._largest(spin(directions)) if len(directions) else 0.0
+
+    def about(self, axis: np.ndarray) -> float:
+        """Mobility about an axis [1/(kg m^2)]."""
+        if self.patch is None:
+            return self._largest(np.concatenate([np.zeros(3), axis])[None])
+        across = np.cross(axis, np.eye(3)[np.abs(axis).argmin()])
+        across /= np.linalg.norm(across)
+        moment = sum(float(e @ np.linalg.pinv(self.patch.inverse, hermitian=True) @ e) for e in (across, np.cross(axis, across)))
+        return 1.0 / moment
+
+    def _largest(self, rows: np.ndarray) -> float:
+        return float(np.linalg.eigvalsh(rows @ self.root @ self.root @ rows.T)[-1])
+
+
+def lever(d: np.ndarray) -> np.ndarray:
+    """Velocity of a point at d [m] by the six motions of a rigid body, shape (3, 6)."""
+    return np.hstack([np.eye(3), -skew(d)])
+
+
+def spin(directions: np.ndarray) -> np.ndarray:
+    """Velocities of directions, shape (n, 3), by the six motions of a rigid body, shape (3 n, 6)."""
+    return np.vstack([np.hstack([np.zeros((3, 3)), -skew(e)]) for e in directions])
+
+
+def skew(v: np.ndarray) -> np.ndarray:
+    """The matrix of v x."""
+    x, y, z = v.tolist()
+    return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+
+
+def unit(v) -> np.ndarray:
+    """A direction as a unit vector."""
+    return np.array(v, float) / np.linalg.norm(v)
+
+
+def directions_of(link: Link) -> np.ndarray:
+    """Directions that a joint holds, shape (n, 3)."""
+    if link.joint.kind == "hinge":
+        return unit(link.axis)[None]
+    return np.eye(3) if link.joint.kind in ("weld", "slider") else np.zeros((0, 3))

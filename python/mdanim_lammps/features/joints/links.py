@@ -1,0 +1,225 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""The joints of a scene one by one: what each connects, where, and how far what it holds may go."""
+
+from __future__ import annotations
+
+import heapq
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+
+import numpy as np
+
+from ...bodies import all_held, driven, kind_of
+from ...model import shapes
+from ...reach import Leash
+from ...scene import units
+from ...scene.naming import objects_by_name
+from ...scene.scene import SceneRecord
+from ...scene.schema import Vector
+from ..contact.pairs import Same
+from .words import WORLD, Joint
+
+NOTHING = -1
+"""In place of the number of an object: the world."""
+STRETCH = 1.5
+"""Largest growth of the arms of an object that deforms."""
+HAIR = 1.01
+"""Part of its length by which a leash is longer than the arms that it is made of: joints open a little."""
+
+
+@dataclass(frozen=True, slots=True)
+class Link:
+    """A joint of two objects."""
+
+    number: int
+    """Among all joints of the scene, from 0."""
+    joint: Joint
+    first: int
+    """Number of the object in the scene, from 0."""
+    second: int
+    """The same, or NOTHING for the world and for what never moves."""
+    named: int
+    """The same, of what never moves too."""
+    begin: Vector
+    """Its point in the first object at the start [m]."""
+    end: Vector
+    """The same in the second one; another one only of a spring."""
+    axis: Vector | None
+    """Axis about which the first one is seen from the second."""
+
+    @property
+    def length(self) -> float:
+        """Distance of its two points at the start [m]."""
+        return math.dist(self.begin, self.end)
+
+    @property
+    def rest(self) -> float:
+        """Length of a spring without a force [m]."""
+        return self.length if self.joint.length is None else self.joint.length
+
+    @property
+    def pair(self) -> tuple[int, int]:
+        """Both objects, the lower number first; of one that is joined to what never moves twice this one."""
+        other = self.first if self.second == NOTHING else self.second
+        return min(self.first, other), max(self.first, other)
+
+
+class Links:
+    """All joints of a scene."""
+
+    def __init__(self, scene: SceneRecord):
+        self.scene = scene
+        by_name = objects_by_name(s.name for s in scene.solids)
+        moved = driven(scene) if any(all_held(s) for s in scene.solids) else set()
+        self.still = np.array([all_held(s) and m not in moved for m, s in enumerate(scene.solids)], bool)
+        ends = [
+            (joint, i, j)
+            for joint in scene.joints
+            for i in by_name[joint.first]
+            for j in ([NOTHING] if joint.second == WORLD else by_name[joint.second])
+            if i != j
+        ]
+        self.all = [self._link(number, *end) for number, end in enumerate(ends)]
+
+    def _link(self, number: int, joint: Joint, first: int, second: int) -> Link:
+        centre = self.scene.solids[first].position
+        if joint.kind == "spring":
+            begin = joint.begin or centre
+            end = joint.end or self.scene.solids[second].position
+        else:
+            begin = end = joint.at or centre
+        axis = joint.axis
+        if second != NOTHING and self.still[first] and not self.still[second]:
+            # A thing that never moves stands second, as the world does. The angle of one seen from the other is that of the other
+            # seen from the one about the opposite axis.
+            first, second, begin, end = second, first, end, begin
+            axis = None if axis is None else tuple(-x for x in axis)
+        fixed = second == NOTHING or bool(self.still[second])
+        return Link(number, joint, first, NOTHING if fixed else second, second, begin, end, axis)
+
+    @cached_property
+    def pairs(self) -> list[tuple[int, int]]:
+        """Pairs of objects that one process has to simulate, i < j."""
+        return sorted({link.pair for link in self.all if link.second != NOTHING})
+
+    @cached_property
+    def passing(self) -> list[tuple[int, int]]:
+        """Pairs of objects, i < j, between which no contact acts: one of their joints says so, and none asks for it."""
+        off, asked = set(), set()
+        for link in (link for link in self.all if link.named != NOTHING):
+            pair = min(link.first, link.named), max(link.first, link.named)
+            if not link.joint.touches:
+                off.add(pair)
+            elif link.joint.contact is not None:
+                asked.add(pair)
+        return sorted(off - asked)
+
+    @cached_property
+    def leashes(self) -> dict[int, Leash]:
+        """How far the centre of each joined object may go from a point that never moves, and the speed that it may be given."""
+        found, given = self._distances(), self._speeds()
+        nowhere = (0.0, 0.0, 0.0), math.inf
+        joined = {m for link in self.all for m in (link.first, link.second) if m != NOTHING and not self.still[m]}
+        return {m: Leash(*found.get(m, nowhere), given.get(m, 0.0)) for m in sorted(joined)}
+
+    # --- how far ------------------------------------------------------------------------------------------------------
+
+    def _arm(self, m: int, point: Vector) -> float:
+        """Largest distance of a point of an object from its centre [m]."""
+        solid = self.scene.solids[m]
+        return math.dist(solid.position, point) * (STRETCH if kind_of(solid).deforms else 1.0) * HAIR
+
+    def _distances(self) -> dict[int, tuple[Vector, float]]:
+        """The nearest point that never moves, along joints, and the sum of arms to the centre of each object [m]."""
+        ways: dict[int, list[tuple[int, float]]] = {}
+        heap: list[tuple[float, int, Vector]] = []
+        for link in self.all:
+            if link.joint.breaks is not None or (more := _play(link)) == math.inf:
+                continue
+            own = self._arm(link.first, link.begin) + more
+            if link.second == NOTHING:
+                heap.append((own, link.first, link.end))
+            else:
+                far = own + self._arm(link.second, link.end)
+                ways.setdefault(link.first, []).append((link.second, far))
+                ways.setdefault(link.second, []).append((link.first, far))
+        heapq.heapify(heap)
+        found: dict[int, tuple[Vector, float]] = {}
+        while heap:
+            far, m, point = heapq.heappop(heap)
+            if m in found:
+                continue
+            found[m] = point, far
+            for other, more in ways.get(m, ()):
+                if other not in found:
+                    heapq.heappush(heap, (far + more, other, point))
+        return found
+
+    def _speeds(self) -> dict[int, float]:
+        """Speed that motors and springs may give to each object [m/s]: the sum over all that it hangs together with."""
+        own: dict[int, float] = {}
+        for link in self.all:
+            ends = [m for m in (link.first, link.second) if m != NOTHING]
+            own[min(ends)] = own.get(min(ends), 0.0) + self._given(link, ends)
+        if not any(own.values()):
+            return {}
+        found = {}
+        for part in parts(ends for link in self.all if (ends := [m for m in (link.first, link.second) if m != NOTHING])):
+            total = sum(own.get(m, 0.0) for m in part)
+            found |= dict.fromkeys(part, total)
+        return found
+
+    def _given(self, link: Link, ends: list[int]) -> float:
+        joint, solids = link.joint, self.scene.solids
+        if joint.motor is not None:
+            speed = abs(units.magnitude(joint.motor.speed))
+            if joint.kind == "slider":
+                return speed
+            return speed * min(shapes.radius(solids[m].shape) + math.dist(solids[m].position, link.begin) for m in ends)
+        if joint.kind == "spring" and joint.stiffness is not None:
+            lightest = min(shapes.mass(solids[m]) for m in ends)
+            return abs(link.length - link.rest) * math.sqrt(joint.stiffness / lightest)
+        return 0.0
+
+
+def _play(link: Link) -> float:
+    """How far both points of a joint may come apart [m]."""
+    joint = link.joint
+    if joint.kind == "slider":
+        return math.inf if joint.limits is None else max(abs(units.magnitude(x)) for x in joint.limits)
+    if joint.kind == "spring":  # a rod or a cable is as hard as a joint
+        return math.inf if joint.stiffness is not None else HAIR * link.rest
+    return 0.0
+
+
+def parts(groups: Iterable[list[int]]) -> list[list[int]]:
+    """Numbers that hang together by groups of them, each part ascending."""
+    root: dict[int, int] = {}
+
+    def find(m: int) -> int:
+        while root.setdefault(m, m) != m:
+            root[m] = root[root[m]]
+            m = root[m]
+        return m
+
+    for first, *others in groups:
+        find(first)
+        for other in others:
+            a, b = find(first), find(other)
+            root[max(a, b)] = min(a, b)
+    found: dict[int, list[int]] = {}
+    for m in sorted(root):
+        found.setdefault(find(m), []).append(m)
+    return list(found.values())
+
+
+def links_of(scene: SceneRecord) -> Links:
+    """The joints of a scene, found once."""
+    return _links(Same(scene))
+
+
+@lru_cache(maxsize=8)
+def _links(of: Same) -> Links:
+    return Links(of.scene)

@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""How what joints do is measured for ``expect``."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from ...effects.measured import Measured
+from ...errors import Problem
+from ...scene.scene import Expect, SceneRecord
+from .links import NOTHING, Link, links_of
+from .rows import FIELD, FORCE, GAP, NUMBER, TORQUE, WAY
+from .words import WORLD
+
+COLUMNS = {"angle": WAY, "way": WAY, "force": FORCE, "torque": TORQUE, "gap": GAP}
+
+
+KINDS = {"angle": ("hinge",), "way": ("slider", "spring"), "torque": ("weld", "hinge", "slider")}
+"""Kinds of joints that have a quantity; all have the others."""
+
+
+def joint_between(scene: SceneRecord, subject: str, other: str, what: str) -> Link | None:
+    """The joint that an ``expect`` is about: the first one of both objects that has the quantity."""
+    kinds = KINDS.get(what)
+    names = [solid.name for solid in scene.solids]
+    for link in links_of(scene).all:
+        ends = {names[link.first], WORLD if link.named == NOTHING else names[link.named]}
+        if ends == {subject, other} and (kinds is None or link.joint.kind in kinds):
+            return link
+    return None
+
+
+def unmeasured(scene: SceneRecord) -> list[Problem]:
+    """A problem for every ``expect`` about a joint that is not there."""
+    found = []
+    for e in scene.expects:
+        what = e.quantity.removeprefix("joint.")
+        if e.quantity == what or joint_between(scene, e.subject, str(e.argument), what) is not None:
+            continue
+        kinds = KINDS.get(what, ("joint",))
+        cause = f"no {' or '.join(kinds)} connects {e.subject} and {e.argument}"
+        found.append(Problem(e.span, cause, "write the names of what is joined, or another quantity"))
+    return found
+
+
+def _along(what: str) -> Callable[[Measured, Expect], float]:
+    def measure(m: Measured, e: Expect) -> float:
+        link = joint_between(m.context.scene, e.subject, str(e.argument), what)
+        values = np.full(len(m.times), np.nan)
+        for frame in range(len(m.times)):
+            rows = m.trajectory.field(FIELD, frame)["value"]
+            own = rows[rows[:, NUMBER] == link.number] if link is not None else rows[:0]
+            values[frame] = own[0, COLUMNS[what]] if len(own) else np.nan
+        return m.at(values, e.time)
+
+    return measure
+
+
+MEASURES = {("NAME", f"joint.{what}"): _along(what) for what in COLUMNS}

@@ -1,0 +1,249 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""How hard joints are, and their share in the bound on the time step (docs/physics-joints.md, "Stiffness" and "The time step").
+
+Where something deforms, a joint is as hard as its material: k = f E h. Between what does not deform its gap under the expected
+load F is GAP of the thinnest part: k = F/(GAP s). The share in the bound is exact for the six motions of a rigid body: with the
+motion q of a body and the matrix J of what a joint holds of it, K <= blockdiag(s_A K_A, s_B K_B) with K_A = k J_A' J_A and
+s_A = 1 + lambda_B/lambda_A, by the mobilities of both ends; s is 1 where the other one never moves.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from weakref import WeakKeyDictionary
+
+import numpy as np
+
+from ...effects.context import Context
+from ...model.shapes import thickness
+from ...reach import Reach
+from ...scene import units
+from .ends import JointEnd, directions_of, lever, spin, unit
+from .links import NOTHING, Link, links_of
+from .loads import loads
+from .patches import Patch, patch_of
+from .preload import preloads
+
+GAP = 0.005
+"""Gap of a joint between rigid objects under LOAD times what hangs on it, over the thinnest part of both."""
+DAMPING = 0.02
+"""Share of critical damping of the dashpots beside a joint: what a jerk has set ringing is gone after some ten periods."""
+STIFFER = 4.0
+"""Square of the frequency of what a joint holds against turning, over that of its gap: the most that arms make it."""
+_FOUND: WeakKeyDictionary[Reach, list[Strength]] = WeakKeyDictionary()
+"""Joints of scenes, each found once."""
+
+
+@dataclass(frozen=True)
+class Strength:
+    """A joint with all that follows for it."""
+
+    link: Link
+    first: JointEnd
+    second: JointEnd | None
+    """None for what never moves."""
+    stiffness: float
+    """k [N/m]"""
+    damping: float
+    """c beside it [N*s/m]"""
+    arm: float
+    """L: what is held against turning has the stiffness k L^2 [m]; 0 of what holds no direction."""
+    servo: tuple[float, float]
+    """Stiffness and damping of motor, friction and stops."""
+    load: float
+    """Weight that hangs on it at rest [N]."""
+    thin: float
+    """Thinnest part of what it joins [m]."""
+    preload: np.ndarray
+    """Force [N] and torque [N m] on the first object that it bears from the start, shape (6,)."""
+
+    @property
+    def bodies(self) -> list[JointEnd]:
+        return [self.first] if self.second is None else [self.first, self.second]
+
+    @property
+    def directions(self) -> np.ndarray:
+        """Directions that it holds, shape (n, 3)."""
+        return directions_of(self.link)
+
+    @property
+    def swings(self) -> bool:
+        """Whether it is a spring with a stiffness of its own."""
+        return self.link.joint.kind == "spring" and self.link.joint.stiffness is not None
+
+    @property
+    def frequency(self) -> float:
+        """Frequency of its point on its spring [1/s]."""
+        return math.sqrt(self.stiffness * sum(body.mobility for body in self.bodies))
+
+    @property
+    def gap(self) -> float:
+        """How far it opens by what hangs on it at rest [m]."""
+        return self.load / self.stiffness
+
+    def shares(self, mobilities: list[float]) -> list[float]:
+        """s of each end."""
+        total = sum(mobilities)
+        return [total / one for one in mobilities]
+
+    def add_to(self, rate: Sums) -> None:
+        """Add its springs and dashpots to the sums of what they join."""
+        bodies, n, k, ll = self.bodies, self.directions, self.stiffness, self.arm**2
+        axis = None if self.link.axis is None else unit(self.link.axis)
+        way = slide(self.link, self.bodies)
+        for body, share in zip(bodies, self.shares([b.mobility for b in bodies])):
+            points = [body.d] if way == 0.0 or axis is None else [body.d - way * axis, body.d + way * axis]
+            for point in points:
+                rate.point(body, point, share * k, share * self.damping)
+        if len(n) and ll:
+            for body, share in zip(bodies, self.shares([b.turning(n) for b in bodies])):
+                rate.turning(body, n, share * k * ll, share * self.damping * ll)
+        if self.servo[0] and axis is not None:
+            if self.link.joint.kind == "hinge":
+                for body, share in zip(bodies, self.shares([b.about(axis) for b in bodies])):
+                    rate.about(body, axis, share * self.servo[0])
+            else:
+                for body, share in zip(bodies, self.shares([b.mobility for b in bodies])):
+                    rate.point(body, body.d, share * self.servo[0], 0.0)
+
+
+class Sums:
+    """Sums of K and C over the joints of each body: six motions of a rigid one, particles of all others."""
+
+    def __init__(self, context: Context):
+        self.system = context.system
+        self.bodies: dict[int, tuple[JointEnd, np.ndarray, np.ndarray]] = {}
+        self.rate, self.drag = np.zeros(self.system.particles), np.zeros(self.system.particles)
+
+    def point(self, body: JointEnd, d: np.ndarray, k: float, c: float) -> None:
+        if body.patch is None:
+            self._rigid(body, lever(d), k, c)
+        else:
+            self._particles(body.patch, body.patch.of_point(body.patch.centre + d), k, c)
+
+    def turning(self, body: JointEnd, directions: np.ndarray, k: float, c: float) -> None:
+        if body.patch is None:
+            self._rigid(body, spin(directions), k, c)
+        else:
+            for e in directions:
+                self._particles(body.patch, body.patch.of_direction(e), k, c)
+
+    def about(self, body: JointEnd, axis: np.ndarray, k: float) -> None:
+        if body.patch is None:
+            self._rigid(body, np.concatenate([np.zeros(3), axis])[None], k, 0.0)
+        else:
+            self.rate[body.patch.rows] += k * body.about(axis)
+
+    def _rigid(self, body: JointEnd, rows: np.ndarray, k: float, c: float) -> None:
+        _, stiff, drag = self.bodies.setdefault(body.object, (body, np.zeros((6, 6)), np.zeros((6, 6))))
+        stiff += k * rows.T @ rows
+        drag += c * rows.T @ rows
+
+    def _particles(self, patch: Patch, weight: np.ndarray, k: float, c: float) -> None:
+        share = np.abs(weight).sum() * np.abs(weight) / patch.mass
+        self.rate[patch.rows] += k * share
+        self.drag[patch.rows] += c * share
+
+    def of_particles(self) -> tuple[np.ndarray, np.ndarray]:
+        """Shares in the bound of each particle, of stiffness [1/s^2] and of damping [1/s], each of shape (N,)."""
+        rate, drag = self.rate.copy(), self.drag.copy()
+        for m, (body, stiff, damped) in self.bodies.items():
+            own = slice(self.system.first[m], self.system.first[m + 1])
+            rate[own] += np.linalg.eigvalsh(body.root @ stiff @ body.root)[-1]
+            drag[own] += np.linalg.eigvalsh(body.root @ damped @ body.root)[-1]
+        return rate, drag
+
+
+def slide(link: Link, bodies: list[JointEnd]) -> float:
+    """How far a slider may get from its start [m]: its limits, or the sizes of what it joins."""
+    if link.joint.kind != "slider":
+        return 0.0
+    if link.joint.limits is not None:
+        return max(abs(units.magnitude(x)) for x in link.joint.limits)
+    return max(float(np.linalg.norm(b.d)) + (b.patch.size if b.patch else 0.0) for b in bodies)
+
+
+def strengths(context: Context) -> list[Strength]:
+    """All joints of a scene; also asked of the context of a part of it."""
+    reach = context.reach
+    if reach not in _FOUND:
+        _FOUND[reach] = _find(context)
+    return _FOUND[reach]
+
+
+def _find(context: Context) -> list[Strength]:
+    system, scene, links = context.reach.system, context.scene, links_of(context.scene)
+    pull = loads(context, links)
+    roots: dict[int, np.ndarray] = {}
+    thin = [thickness(solid.shape) for solid in scene.solids]
+
+    def body(m: int, point) -> JointEnd | None:
+        if m == NOTHING or system.held[system.first[m] : system.first[m + 1]].all():
+            return None
+        at = np.array(point, float)
+        if not system.rigid[m]:
+            patch = patch_of(system, m, at)
+            return JointEnd(m, at - patch.centre, patch, np.zeros((0, 0)))
+        if m not in roots:
+            values, axes = np.linalg.eigh(system.inertia[m])
+            roots[m] = np.zeros((6, 6))
+            roots[m][:3, :3] = np.eye(3) / math.sqrt(system.mass_of[m])
+            roots[m][3:, 3:] = axes / np.sqrt(values) @ axes.T
+        return JointEnd(m, at - np.array(scene.solids[m].position), None, roots[m])
+
+    found = []
+    for link, (load, most) in zip(links.all, pull):
+        first, second = body(link.first, link.begin), body(link.second, link.end)
+        if first is None:  # held, and driven
+            first, second = second, None
+        if first is None:
+            continue
+        found.append(_strength(context, link, first, second, load, most, thin))
+    return [replace(one, preload=load) for one, load in zip(found, preloads(context, found))]
+
+
+def _strength(context: Context, link: Link, first: JointEnd, second: JointEnd | None, load: float, most: float, thin) -> Strength:
+    joint, bodies = link.joint, [b for b in (first, second) if b is not None]
+    mobility = sum(b.mobility for b in bodies)
+    sides = [thin[b.object] for b in bodies]
+    slowest = (2.0 * math.pi * context.scene.control.frames) ** 2 / mobility
+    if joint.stiffness is not None:
+        k = joint.stiffness
+    elif soft := [b for b in bodies if not b.rigid]:
+        k = max(slowest, min(_of_material(context, b.object) for b in soft))
+    else:
+        k = max(slowest, most / (GAP * min(sides)))
+    usual = 2.0 * DAMPING * math.sqrt(k / mobility)
+    if joint.kind == "spring" and joint.stiffness is not None:
+        usual = 0.0
+    c = usual if joint.damping is None else joint.damping
+    arm = _arm(link, bodies, mobility)
+    return Strength(link, first, second, k, c, arm, _servo(link, bodies, k, mobility), load, min(sides), np.zeros(6))
+
+
+def _of_material(context: Context, m: int) -> float:
+    """E h of an object, with the factor of contact [N/m]."""
+    system = context.reach.system
+    return float(context.scene.control.contact_stiffness * system.young[m] * np.cbrt(system.cell_volume[m]))
+
+
+def _arm(link: Link, bodies: list[JointEnd], mobility: float) -> float:
+    """L, as long as the longest arm of what it joins, but no longer than gives STIFFER times the square of the frequency."""
+    directions = directions_of(link)
+    if not len(directions):
+        return 0.0
+    turning = sum(b.turning(directions) for b in bodies)
+    longest = max(b.patch.size if b.patch is not None else float(np.linalg.norm(b.d)) for b in bodies)
+    most = math.sqrt(STIFFER * mobility / turning)
+    return min(longest, most) if longest > 0.25 * most else 0.5 * most
+
+
+def _servo(link: Link, bodies: list[JointEnd], k: float, mobility: float) -> tuple[float, float]:
+    """Spring and dashpot of motor, friction and stops: of the frequency of the gap, and critically damped."""
+    joint = link.joint
+    if joint.motor is None and joint.friction is None and joint.limits is None:
+        return 0.0, 0.0
+    own = sum(b.about(unit(link.axis)) for b in bodies) if joint.kind == "hinge" else mobility
+    stiff = k * mobility / own
+    return stiff, 2.0 * math.sqrt(stiff / own)
