@@ -10,7 +10,8 @@ from mdanim_lammps.scene.keywords import KEYWORDS
 
 ELSEWHERE = {"drives", "joint", "rigid"}
 """Effects that cannot be on beside all others: the contact of the paper and the drag of a liquid refuse rigid objects
-(tests/effects/test_rigid_at_work.py), and what is driven needs a hold (tests/effects/test_drives_at_work.py), a joint a block (tests/effects/test_joints_at_work.py)."""
+(tests/effects/test_rigid_at_work.py), what is driven needs a hold (tests/effects/test_drives_at_work.py), and a joint a block
+(tests/effects/test_joints_at_work.py)."""
 
 
 def with_every_effect(text: str) -> str:
