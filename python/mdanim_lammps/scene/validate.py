@@ -440,12 +440,13 @@ class Validator:
             numbers[1] *= abs(numbers[0]) / 100.0
         return records.Expect(subject, quantity, numbers[0], numbers[1], time, relation, argument, s.span())
 
-    def known_other(self, subject: str, quantity: str, other: str, span: Span, or_world: bool) -> bool:
-        """Another object, or the world."""
-        if other != subject:
-            return (or_world and other == "world") or self.known_object(other, span, ("world",) if or_world else ())
-        self.problem(span, f"the {quantity} of {subject} and itself is 0", "name another object")
-        return False
+
+def _known_other(v: Validator, subject: str, quantity: str, other: str, span: Span, or_world: bool) -> bool:
+    """Another object, or the world."""
+    if other != subject:
+        return (or_world and other == "world") or v.known_object(other, span, ("world",) if or_world else ())
+    v.problem(span, f"the {quantity} of {subject} and itself is 0", "name another object")
+    return False
 
 
 def _known_in(v: Validator, name: str, span: Span, block: Block) -> bool:
