@@ -186,7 +186,11 @@ __attribute__((always_inline)) inline Buoyancy::Wet Buoyancy::act_on(const Actin
   const Immersed<double> particle{{now.volume ? now.volume[i] : volume.number, mass_of(atom->rmass, atom->mass, atom->type, i),
                                    now.gamma ? now.gamma[i] : gamma.number,
                                    now.per_length ? now.per_length[i] : per_length.number}};
-  const auto force = liquid_force(now.liquid, particle, at, vec3(now.v[i]));
+  auto force = liquid_force(now.liquid, particle, at, vec3(now.v[i]));
+  if (atom->mask[i] & driven) {
+    force.push -= force.lambda * vec3(now.v[i]);
+    force.lambda = 0.0;
+  }
   if (now.lambda) now.lambda[i] = (now.base ? now.base[i] : 0.0) + force.lambda;
   if (now.kept) {
     now.kept[i].impulse_x += force.impulse_x;

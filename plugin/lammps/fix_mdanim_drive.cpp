@@ -101,7 +101,7 @@ double **FixMdanimDrive::home() const
   return atom->darray[index];
 }
 
-int FixMdanimDrive::setmask() { return INITIAL_INTEGRATE | END_OF_STEP; }
+int FixMdanimDrive::setmask() { return INITIAL_INTEGRATE | FINAL_INTEGRATE | END_OF_STEP; }
 
 void FixMdanimDrive::init()
 {
@@ -126,7 +126,8 @@ void FixMdanimDrive::find_ways()
   for (const auto &[molecule, motion] : motions) {
     Ways &one = ways_now[molecule];
     one.before = follows ? one.now : motion.at(time(update->ntimestep - 1));
-    one.now = motion.at(time(update->ntimestep));
+    one.now = follows ? one.next : motion.at(time(update->ntimestep));
+    one.next = motion.at(time(update->ntimestep + 1));
   }
   found_at = update->ntimestep;
   last_molecule = -1;
@@ -169,15 +170,24 @@ std::set<int> FixMdanimDrive::present() const
   return found;
 }
 
-// Velocities are those of the step that has come to an end.
-void FixMdanimDrive::setup(int)
+void FixMdanimDrive::setup(int) { set_whole_velocities(); }
+
+void FixMdanimDrive::final_integrate()
+{
+  const Lap lap(seconds);
+  set_whole_velocities();
+}
+
+// Velocities of whole steps: the mean of the step that ends here and the next one.
+void FixMdanimDrive::set_whole_velocities()
 {
   double **const start = home();
+  const double per_two = 0.5 / update->dt;
   find_ways();
   for (int i = 0; i < atom->nlocal; ++i) {
     if (!(atom->mask[i] & groupbit)) continue;
     const Ways &way = ways(i);
-    const Vec3 velocity = (1.0 / update->dt) * (way.now.of(vec3(start[i])) - way.before.of(vec3(start[i])));
+    const Vec3 velocity = per_two * (way.next.of(vec3(start[i])) - way.before.of(vec3(start[i])));
     atom->v[i][0] = velocity.x, atom->v[i][1] = velocity.y, atom->v[i][2] = velocity.z;
   }
 }
@@ -200,8 +210,9 @@ void FixMdanimDrive::initial_integrate(int)
 void FixMdanimDrive::end_of_step()
 {
   const Lap lap(seconds);
+  double **const start = home();
   for (int i = 0; i < atom->nlocal; ++i)
-    if (atom->mask[i] & groupbit) work -= 0.5 * update->dt * dot(vec3(atom->f[i]), vec3(atom->v[i]));
+    if (atom->mask[i] & groupbit) work -= 0.5 * dot(vec3(atom->f[i]), vec3(atom->x[i]) - ways(i).before.of(vec3(start[i])));
 }
 
 // --- restart ---

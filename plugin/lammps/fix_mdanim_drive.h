@@ -13,7 +13,8 @@
 
 namespace LAMMPS_NS {
 
-// Sets places and velocities of all particles of its group at the beginning of each step, and counts the work that this takes:
+// Sets places of all particles of its group at the beginning of each step, with the mean velocity of the step, and at its end the
+// mean of this and the next one, as the leap-frog has both; counts the work that this takes:
 // -F dx with the mean of the forces before and after the step.
 class FixMdanimDrive : public mdanim::FixBase {
  public:
@@ -25,14 +26,15 @@ class FixMdanimDrive : public mdanim::FixBase {
   void init() override;
   void setup(int) override;
   void initial_integrate(int) override;
+  void final_integrate() override;
   void end_of_step() override;
   double compute_scalar() override { return 0.0; }
   void write_restart(FILE *) override;
   void restart(char *) override;
 
-  // Where an object is at the present step and was at the one before; null for one that no motion is given for.
+  // Where an object was at the step before, is now, and will be at the next one; null for one that no motion is given for.
   struct Ways {
-    mdanim::DrivenPlace before, now;
+    mdanim::DrivenPlace before, now, next;
   };
   const Ways *ways_of(int molecule);
   // Objects of which some particle is in the group, on any rank; all ranks ask together.
@@ -44,6 +46,7 @@ class FixMdanimDrive : public mdanim::FixBase {
   double **home() const;
   void find_ways();
   const Ways &ways(int i);
+  void set_whole_velocities();
   double time(bigint step) const;
 
   bool of_objects = false;                        // whether motions are those of molecules; else there is one, of molecule 0

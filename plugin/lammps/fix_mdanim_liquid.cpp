@@ -31,7 +31,7 @@ FixMdanimLiquid::FixMdanimLiquid(LAMMPS *lmp, int narg, char **arg)
   nevery = 1;
   restart_global = 1;
   need(THREE_DIMENSIONS | ORTHOGONAL_BOX | OPEN_BOX);
-  look_up({&solids.still_group}, {});
+  look_up({&solids.still_group, &solids.driven_group}, {});
   tell_numbers();
   command.read_keywords(free_keywords(), narg, arg);
   basin = command.make_basin(sums, arg);
@@ -71,6 +71,7 @@ void FixMdanimLiquid::init()
   if (solids.lattice_cells().given()) need(ATOM_MAP);
   FixBase::init();
   buoyancy.init(name());
+  buoyancy.driven = solids.driven_group.bit();
   if (makes_waves() && !solids.lattice_cells().given())
     error->all(FLERR, "{}: model waves needs the lattice cells of solids; add cells i2_NAME, or write model surface", name());
   solids.init(command.model == LiquidCommand::Model::PAPER, name());

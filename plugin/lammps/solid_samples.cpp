@@ -18,6 +18,7 @@ using namespace LAMMPS_NS;
 namespace mdanim {
 
 static constexpr const char *STYLE = "fix mdanim/liquid";
+static constexpr double UNYIELDING = 1e3;    // mass of what is driven as the liquid feels it, over its own
 
 std::vector<Keyword> SolidSamples::keywords(bool &changed)
 {
@@ -31,8 +32,13 @@ std::vector<Keyword> SolidSamples::keywords(bool &changed)
              softness = ParticleColumn(lmp, STYLE, arg[at], at + 1, arg[at + 1]);
              changed = true;
            }},
-          {"still", "GROUP", "", [&, this](int at, char **arg) {
+          {"still", "GROUP", "",
+           [&, this](int at, char **arg) {
              still_group = NamedGroup(lmp, STYLE, at + 1, arg[at + 1]);
+             changed = true;
+           }},
+          {"driven", "GROUP", "", [&, this](int at, char **arg) {
+             driven_group = NamedGroup(lmp, STYLE, at + 1, arg[at + 1]);
              changed = true;
            }}};
 }
@@ -142,9 +148,10 @@ void SolidSamples::add_mass(Occupancy &into, const Basin &basin, const std::vect
              [&](long n, const RowSlabs::Rows &, int) {
                const int i = these[n];
                const Vec3 place = basin.in_cells(atom->x[i]);
+               const bool driven = (atom->mask[i] & driven_group.bit()) != 0;
                if (place.z <= below)
-                 into.add_mass(place, mass_of(atom->rmass, atom->mass, atom->type, i) / liquid,
-                               soft ? soft[i] * pressure / base : 0.0, atom->v[i][2] / basin.speed_of_waves());
+                 into.add_mass(place, (driven ? UNYIELDING : 1.0) * mass_of(atom->rmass, atom->mass, atom->type, i) / liquid,
+                               soft && !driven ? soft[i] * pressure / base : 0.0, atom->v[i][2] / basin.speed_of_waves());
                return true;
              });
 }

@@ -41,6 +41,7 @@ class SolidSamples : protected LAMMPS_NS::Pointers {
   std::size_t bytes() const { return slabs.bytes(); }
 
   NamedGroup still_group;
+  NamedGroup driven_group;    // what goes its way whatever the liquid does
 
  private:
   int row_at(const Basin &basin, double y) const;

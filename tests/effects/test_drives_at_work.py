@@ -208,6 +208,51 @@ def test_the_ledger_closes_with_the_work(prepared, drive):
         assert abs(change - (last["work"] - first["work"])) < 1e-3 * in_play
 
 
+BASIN = "liquid water { basin from (-30, -20, 0) cm to (30, 20, 40) cm density 1000 kg/m^3 level 20 cm }\n"
+
+
+def ledger_of(instance):
+    return energies(instance, instance.system.center_of_mass(instance.array("x")))
+
+
+def test_what_dives_on_a_path_displaces_the_liquid(prepared):
+    """A held cube that goes down: the level rises by its volume over the area, and the work is that of Archimedes' lift, less its
+    weight, with what waves and drag take. Waves still run then, so the level is a mean."""
+    side, times = 0.12, np.arange(2.0, 6.0, 0.05)
+    cube = "object cube { shape box (12, 12, 12) cm position (0, 0, 30) cm density 500 elasticity 1 MPa hold all\n"
+    ready = prepared(GRAVITY + BASIN + cube + "  key 1.5 s at (0, 0, 10) cm\n}\ncontrol { time 6 s resolution 2 cm }\n")
+    first, *later = followed(ready, [1e-9, *times], lambda instance: (ledger_of(instance), instance.fix_value("liquid", "level")))
+    last = later[-1]
+    assert np.mean([level for _, level in later]) - first[1] == pytest.approx(side**3 / (0.6 * 0.4), rel=0.03)
+    work = last[0]["work"] - first[0]["work"]
+    lifting = work + 500 * side**3 * G * 0.2
+    rise = side**3 / (0.6 * 0.4)
+    diving, under = side - rise, 0.2 + rise - side - 0.04  # ways of the lower face until it is under, and from then on
+    lift = 1000 * G * side**2 * (0.5 * side * diving + side * under)
+    assert lift < lifting < 1.08 * lift
+    change = sum(last[0][k] - first[0][k] for k in last[0] if k != "work")
+    assert abs(change - work) < 1e-3 * sum(abs(last[0][k] - first[0][k]) for k in last[0])
+
+
+@pytest.mark.parametrize("model", ["waves", "surface"])
+def test_a_paddle_makes_waves_and_the_ledger_closes(prepared, model):
+    """A plate that swings in the basin: waves have energy, and what they and drag have taken is the work of the drive."""
+    basin = BASIN.replace(" level", f" model {model} level")
+    blade = "object blade { shape box (4, 30, 20) cm position (0, 0, 14) cm density 1000 elasticity 1 MPa hold all\n"
+    swing = "  drive oscillation (6, 0, 0) cm frequency 1 Hz phase 90 deg\n}\n"
+    ready = prepared(GRAVITY + basin + blade + swing + "control { time 1 s resolution 2 cm }\n")
+
+    def watch(instance):
+        return ledger_of(instance), instance.fix_value("liquid", "crest")
+
+    (first, _), *middle, (last, _) = followed(ready, [1e-9, 0.4, 0.7, 1.0], watch)
+    change, work = sum(last[k] - first[k] for k in last if k != "work"), last["work"] - first["work"]
+    assert abs(change - work) < 1e-3 * sum(abs(last[k] - first[k]) for k in last)
+    assert work > 0.02
+    if model == "waves":
+        assert max(found["waves"] for found, _ in middle) > 0.02 and max(crest for _, crest in middle) > 0.205
+
+
 # --- words ------------------------------------------------------------------------------------------------------------
 
 

@@ -97,11 +97,6 @@ def test_what_is_driven_covers_nothing():
     [
         (["motor"], {"table": ""}, "table is driven, and nothing of it is held"),
         (["crank", "motor"], {}, "table is driven by crank and by motor"),
-        (
-            ["motor"],
-            {"more": "gravity (0, 0, -9.81)\nliquid w { basin from (-1, -1, -1) m to (1, 1, 1) m density 1000 level -0.5 m }"},
-            "table is driven, and liquid takes what is held for something that stands",
-        ),
     ],
 )
 def test_what_cannot_be_driven_is_refused(driven, names, words, told):

@@ -72,8 +72,13 @@ def only_features(scene: SceneRecord) -> bool:
 
 
 def driven(scene: SceneRecord) -> set[int]:
-    """Numbers of the objects whose held particles some effect moves, if it is on, but for those that a fix tells the places of
-    (reach.Motion.guides). Known before effects are decided on, for which the spacing is needed."""
+    """Numbers of the objects whose held particles some effect moves, if it is on. Known before effects are decided on, for which
+    the spacing is needed."""
+    return {m for effect in features.effects() for m in effect.of(scene).drives(scene)}
+
+
+def unguided(scene: SceneRecord) -> set[int]:
+    """Numbers of those of `driven` that no fix tells the places of (reach.Motion.guides)."""
     effects = (effect.of(scene) for effect in features.effects())
     return {m for effect in effects if not effect.guides for m in effect.drives(scene)}
 

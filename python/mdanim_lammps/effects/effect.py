@@ -45,8 +45,6 @@ class Effect(Motion, Bounds, Accounts, Frames, Advice):
     rests_inside = 0.0
     """Part of a spacing by which surfaces that rest on each other by it may be in each other; 0 where it acts before they
     meet."""
-    sees_driven = True
-    """Whether held particles act on it as they move where they are driven; else a scene with both is refused."""
     keeps_apart = False
     """Whether objects cannot be inside each other where it is on."""
     needs: tuple[str, ...] = ()

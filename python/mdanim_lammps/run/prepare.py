@@ -136,11 +136,9 @@ def _unmeasurable(resolved: Resolved) -> list[Problem]:
 
 
 def _undriven(resolved: Resolved, models: Sequence[Model]) -> list[Problem]:
-    """A problem for each solid that cannot be driven: nothing of it is held, two effects would move it, or an effect that is on
-    takes what is held for something that stands."""
+    """A problem for each solid that cannot be driven: nothing of it is held, or two effects would move it."""
     found: list[Problem] = []
     by: dict[int, str] = {}
-    blind = next((e.name for e in resolved.effects if not e.sees_driven), None)
     for effect in resolved.effects:
         for m, drive in effect.drives(resolved.scene).items():
             solid, name = resolved.scene.solids[m], resolved.scene.solids[m].name
@@ -150,9 +148,6 @@ def _undriven(resolved: Resolved, models: Sequence[Model]) -> list[Problem]:
                 way_out = "write hold all, or hold face -x for a part of it"
             elif m in by:
                 cause, way_out = f"{name} is driven by {by[m]} and by {effect.name}", "leave one of them out"
-            elif blind:
-                cause = f"{name} is driven, and {blind} takes what is held for something that stands"
-                way_out = f"leave one of both out, or write  effects {{ {blind} off }}"
             if cause:
                 place = drive.span or solid.spans.get("hold", solid.spans.get("object"))
                 found.append(Problem(place, cause, way_out))

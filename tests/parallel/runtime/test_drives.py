@@ -41,7 +41,18 @@ object ball  { shape sphere 6 cm         position (0, -50, 12) cm density 900   
 object rest  { shape box (8, 8, 8) cm    position (40, -60, 20) cm density 900   elasticity rigid }
 control { time 0.08 s  frames 100 fps  friction 0.4 }
 """
-SCENES = {"elastic": SCENE, "rigid": RIGID}
+WET = """
+gravity (0, 0, -9.81) m/s^2
+liquid water { basin from (-30, -20, 0) cm to (30, 20, 40) cm density 1000 kg/m^3 level 20 cm }
+object blade { shape box (8, 24, 20) cm position (0, 0, 14) cm density 1000 elasticity 1 MPa hold all
+  drive oscillation (6, 0, 0) cm frequency 3 Hz  drive turn (0, 0, 2) rad/s }
+object duck { shape box (8, 8, 8) cm position (-20, 0, 21) cm density 500 elasticity 300 kPa }
+object far { shape box (8, 8, 8) cm position (20, 0, 50) cm density 500 elasticity 300 kPa }
+object club  { shape box (8, 20, 8) cm   position (0, 0, 60) cm  density 1000  elasticity 1 MPa  hold all
+  drive turn (20, 0, 0) rad/s }
+control { time 0.08 s  frames 100 fps  resolution 4 cm }
+"""
+SCENES = {"elastic": SCENE, "rigid": RIGID, "wet": WET}
 CASES = (
     matrix((2,), ["central"], name="all move ", rotate=True)
     | matrix((3,), ["peers"], name="all move ", rotate=True)
@@ -76,7 +87,10 @@ def test_all_forms_give_the_same(found, way):
     alone, other = (Checkpoint.read(found[name] / "checkpoint") for name in ("sequential", way))
     for name in "xvf":
         assert np.array_equal(getattr(alone, name), getattr(other, name)), name
-    assert alone.records == other.records
+    assert alone.records.keys() == other.records.keys()
+    for fix, records in alone.records.items():
+        if not (fix == "liquid" and way.startswith("teams")):  # its ledger is a sum over ranks
+            assert records == other.records[fix], fix
     assert other.carried["work"] == pytest.approx(alone.carried["work"], rel=1e-9)
 
 
@@ -84,7 +98,7 @@ def test_the_ledger_closes(found):
     """With the work that drives have brought in, in all forms."""
     for way in ("sequential", *CASES):
         ledger = Ledger.read(found[way] / "ledger.csv")
-        assert np.abs(ledger.array("residual")).max() < 1e-3 and np.abs(ledger.array("work")).max() > 0.5
+        assert np.abs(ledger.array("residual")).max() < 1e-3 and np.abs(ledger.array("work")).max() > 0.1
 
 
 def test_plain_lammps_gives_the_same(found, tmp_path, scene):

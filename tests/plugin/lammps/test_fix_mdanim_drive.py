@@ -40,20 +40,18 @@ def drive(words: str, group: str = "all") -> list[str]:
 
 @pytest.mark.parametrize("name", MOTIONS)
 def test_places_and_mean_velocities(tmp_path, name):
-    """At each step, in two runs: the places of the twin, and their difference over the step."""
+    """At each step, in two runs: the places of the twin, and their difference over the step before and the next one."""
     motion = MOTIONS[name]
     lmp = lab.load(BLOCK, tmp_path, [LOOSE, *drive(motion.words())])
-    before = BLOCK.x
     for step in range(1, STEPS + 1):
         lmp.command("run 1" if step in (1, STEPS // 2) else "run 1 pre no post no")
-        now = motion.places(BLOCK.x, step * DT)
+        before, now, after = (motion.places(BLOCK.x, (step + more) * DT) for more in (-1, 0, 1))
         np.testing.assert_allclose(lab.by_tag(lmp, "x"), now, rtol=0, atol=3e-14)
-        np.testing.assert_allclose(lab.by_tag(lmp, "v"), (now - before) / DT, rtol=0, atol=3e-12)
-        before = now
+        np.testing.assert_allclose(lab.by_tag(lmp, "v"), (after - before) / (2 * DT), rtol=0, atol=3e-12)
     lmp.close()
 
 
-def test_at_the_setup_velocities_are_those_of_the_step_before(tmp_path):
+def test_the_setup_sets_the_same_velocities(tmp_path):
     """A run that begins in the middle has the velocities that it would have had."""
     lmp = lab.load(BLOCK, tmp_path, [LOOSE, *drive(MOTIONS["all at once"].words()), "run 7 post no"])
     v = lab.by_tag(lmp, "v")

@@ -271,7 +271,7 @@ def leaky_walls(scene: SceneRecord, models: Sequence[Model], grid: Grid) -> list
     cell = max(grid.cell)
     thin: dict[tuple, list[str]] = {}  # objects of a repeat are one problem
     for solid, model in zip(scene.solids, models):
-        t, still = shapes.thickness(solid.shape), bool(model.held.all())
+        t, still = shapes.thickness(solid.shape), model.still
         enough = _enough(solid, TIGHT * cell, still) * cell
         if t < ESTIMATE * enough and not (still and _misses(model, grid)):
             thin.setdefault((solid.spans.get("shape") or solid.spans.get("object"), t, enough), []).append(solid.name)

@@ -52,6 +52,11 @@ SWEEPS = 4
 """Fewest sweeps of the automaton for each cell that the fastest solid travels; 8 are better (docs/physics-liquid.md)."""
 
 
+def moved(context) -> bool:
+    """Whether something of what is held is driven."""
+    return context.system.moved is not None
+
+
 def top_of_reach(grid) -> float:
     """Height above which no solid matters to the liquid, however high it splashes in its basin [m]."""
     return grid.high[2] + NEAR * grid.cell[2]
@@ -90,7 +95,6 @@ class LiquidAutomaton(Effect):
 
     styles = (("fix", "mdanim/liquid"),)
     name = fix = "liquid"
-    sees_driven = False
     on_grid = True
     order = 90
     needs = ("gravity",)
@@ -199,10 +203,10 @@ class LiquidAutomaton(Effect):
     def max_timestep(self, context):
         return PERIOD / EVERY * math.sqrt(min(context.grid.cell) / -context.scene.gravity[2])
 
-    def words(self, scene) -> str:
-        """Words of the command about the model."""
+    def words(self, scene, held: str) -> str:
+        """Words of the command about the model; ``held`` are those about what is held."""
         model = "model paper" if scene.liquid.model is LiquidModel.PAPER else "cells i2_cell"
-        return f"{model} still held sweeps {scene.liquid.sweeps or 'auto'} every {EVERY} stride {STRIDE} period {PERIOD}"
+        return f"{model} {held} sweeps {scene.liquid.sweeps or 'auto'} every {EVERY} stride {STRIDE} period {PERIOD}"
 
     def commands(self, context):
         scene = context.scene
@@ -216,10 +220,11 @@ class LiquidAutomaton(Effect):
             f"volume {liquid.volume!r}" if liquid.volume is not None else f"level {liquid.level!r}",
             *(["fill fill"] if fill else []),
             f"gravity {-scene.gravity[2]!r}",
-            self.words(scene),
+            self.words(scene, "still standing driven driven" if moved(context) else "still held"),
             f"seed {scene.control.seed}",
         ]
-        return ["group held type 5:8", f"region liquid {_block(liquid.low, liquid.high)}", *fill, " ".join(words)]
+        group = ["group held type 5:8", *(["group standing subtract held driven"] if moved(context) else [])]
+        return [*group, f"region liquid {_block(liquid.low, liquid.high)}", *fill, " ".join(words)]
 
 
 class LiquidWaves(LiquidAutomaton):
@@ -240,9 +245,9 @@ class LiquidWaves(LiquidAutomaton):
             CELLS_AND_LAYERS: np.hstack([lattice_cells(system), layers]),
         }
 
-    def words(self, scene):
+    def words(self, scene, held):
         calm = scene.liquid.calm or calm_time(scene)
-        solids = "cells i2_cell softness d_softness still held"
+        solids = f"cells i2_cell softness d_softness {held}"
         drops = f" drops {scene.liquid.drops!r}" if scene.liquid.drops else ""
         pace = f"every {EVERY} stride {WAVE_STRIDE} period {WAVE_PERIOD}"
         return f"model waves calm {calm!r}{drops} {solids} {pace}{_makers(scene.liquid)}"

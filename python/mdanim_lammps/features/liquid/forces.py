@@ -7,7 +7,7 @@ import math
 
 import numpy as np
 
-from ...bodies import all_held
+from ...bodies import all_held, driven
 from ...effects.context import Verdict
 from ...effects.effect import Effect
 from ...effects.fields import column
@@ -28,6 +28,12 @@ DRAGGING = 0.07
 def free_solid(scene):
     """A solid that can reach the liquid, or None: gravity brings there all that is not held."""
     return next((s for s in scene.solids if not all_held(s)), None)
+
+
+def wet_solid(scene):
+    """A solid that the liquid may push on, or None: one that is free, or driven."""
+    moved = driven(scene)
+    return next((s for m, s in enumerate(scene.solids) if m in moved or not all_held(s)), None)
 
 
 class Buoyancy(Effect):
@@ -189,7 +195,7 @@ def _reached(name: str, scene) -> Verdict:
     """On where a solid can reach the liquid."""
     if scene.liquid is None:
         return Verdict(name, False, "no liquid in the scene")
-    solid = free_solid(scene)
+    solid = wet_solid(scene)
     if solid is None:
         return Verdict(name, False, "nothing that can move reaches the liquid")
     return Verdict(name, True, f"{solid.name} can reach {scene.liquid.name}", solid.spans.get("object"))

@@ -6,7 +6,7 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
-from ...bodies import BodyKind, all_held, driven, kind_of
+from ...bodies import BodyKind, all_held, kind_of, unguided
 from ...model import shapes
 from ...model.build import lattice_model, single_cell_model
 from ...model.inertia import tensor
@@ -62,7 +62,7 @@ def by_features(scene) -> bool:
     points of their surfaces, nor particles inside. Beside held cuboids that cover sides of each other in part, balls alone touch
     by features; what an effect moves without telling where it is (reach.Motion.guides) is found at points."""
     solids = scene.solids
-    if scene.liquid is not None or all(map(all_held, solids)) or any(map(is_soft, solids)) or driven(scene):
+    if scene.liquid is not None or all(map(all_held, solids)) or any(map(is_soft, solids)) or unguided(scene):
         return False
     if not all(on_objects(s.shape) for s in solids):
         return False
