@@ -2,8 +2,6 @@
 
 #include "joints/joint.h"
 
-#include "numbers/portable.h"
-
 #include <cmath>
 #include <stdexcept>
 #include <utility>
@@ -51,13 +49,6 @@ void Joint::choose_directions()
 {
   const auto has = [](const Patch &patch, const Vec3 &e) { return norm(e - patch.within(e)) <= OFF; };
   const auto both_have = [&](const Vec3 &e) { return has(end_a.patch, e) && has(end_b.patch, e); };
-  const Vec3 x{1.0, 0.0, 0.0}, y{0.0, 1.0, 0.0}, z{0.0, 0.0, 1.0};
-  const auto any_across = [&](const Vec3 &axis) {
-    const Vec3 other = std::fabs(axis.x) <= std::fabs(axis.y) && std::fabs(axis.x) <= std::fabs(axis.z) ? x
-                       : std::fabs(axis.y) <= std::fabs(axis.z)                                         ? y
-                                                                                                        : z;
-    return unit(cross(axis, other));
-  };
   const auto need = [&](bool met, const char *lacks) {
     if (!met)
       throw std::runtime_error(std::string("the particles that it holds on to have no ") + lacks +
@@ -71,11 +62,7 @@ void Joint::choose_directions()
     case JointKind::HINGE:
       direction[0] = given.axis;
       held = 1;
-      across = any_across(given.axis);
-      if (flat.dimensions() == 2) {
-        const Vec3 along = cross(cross(flat.within_span(0), flat.within_span(1)), given.axis);
-        if (norm(along) > 0.5) across = unit(along);
-      }
+      across = choose_across();
       need(both_have(given.axis) && both_have(across), "axis to turn about");
       return;
     case JointKind::WELD:
@@ -85,6 +72,31 @@ void Joint::choose_directions()
       need(held > 0 && both_have(direction[0]) && both_have(direction[1]), "direction that both bodies have");
       need(given.kind == JointKind::WELD || has(end_b.patch, given.axis), "axis to slide along");
   }
+}
+
+// The direction across the axis of a hinge that is the hardest to turn, or the one that a flat patch has.
+Vec3 Joint::choose_across() const
+{
+  const Vec3 &n = given.axis;
+  const bool x_is_least = std::fabs(n.x) <= std::fabs(n.y) && std::fabs(n.x) <= std::fabs(n.z);
+  const Vec3 other = x_is_least                         ? Vec3{1.0, 0.0, 0.0}
+                     : std::fabs(n.y) <= std::fabs(n.z) ? Vec3{0.0, 1.0, 0.0}
+                                                        : Vec3{0.0, 0.0, 1.0};
+  const Vec3 u = unit(cross(n, other)), v = cross(n, u);
+  for (const Patch *patch : {&end_a.patch, &end_b.patch})
+    if (patch->dimensions() == 2) {
+      const Vec3 along = cross(cross(patch->within_span(0), patch->within_span(1)), n);
+      if (norm(along) > 0.5) return unit(along);
+    }
+  double uu = 0.0, vv = 0.0, uv = 0.0;    // of the sum of the mobilities of both patches
+  for (const Patch *patch : {&end_a.patch, &end_b.patch}) {
+    if (patch->is_world()) continue;
+    uu += patch->mobility_of_direction(u), vv += patch->mobility_of_direction(v);
+    uv += dot(u, patch->velocity_of_direction(v));
+  }
+  const double half = 0.5 * (uu - vv), least = 0.5 * (uu + vv) - std::sqrt(half * half + uv * uv);
+  const Vec3 found = std::fabs(uu - least) > std::fabs(vv - least) ? -uv * u + (uu - least) * v : (vv - least) * u - uv * v;
+  return norm(found) > 1e-9 * (uu + vv) ? unit(found) : u;
 }
 
 // If nothing else is said, all springs have the rate K (mobility of A + mobility of B) of the one between the two places.
@@ -104,7 +116,7 @@ void Joint::choose_laws(double ftm2v)
     lever[1] = ftm2v * dot(given.axis, to_n) / mobility;
   }
   const bool turns = given.kind == JointKind::HINGE;
-  servo_mobility = turns ? ftm2v * (end_a.mobility_about(given.axis) + end_b.mobility_about(given.axis)) : mobility;
+  servo_mobility = turns ? ftm2v * (end_a.mobility_of_direction(across) + end_b.mobility_of_direction(across)) : mobility;
   servo.k = given.servo ? given.servo->stiffness : law.k * mobility / servo_mobility;
   servo.c = given.servo ? given.servo->damping : 2.0 * std::sqrt(servo.k / servo_mobility);
 }
@@ -245,28 +257,8 @@ void Joint::hold(const Side &base, const Side &moving, const Time &time, Past &p
 
   // Dashpots beside them, and the free coordinate.
   if (law.c > 0.0) force += damp(base, moving, softer * law.c, slides ? axis : Vec3{});
-  if (turns || (held > 1 && turning.c > 0.0)) {
-    const PatchSpin of_base(base.patch, base.motion), of_moving(moving.patch, moving.motion);
-    const Vec3 omega = of_moving.omega - of_base.omega;
-    if (turns) axis = unit(base.motion.F * given.axis + moving.motion.F * given.axis);
-    const double about = turns ? dot(axis, omega) : 0.0;
-    Vec3 couple = turning.c * (about * axis - omega);
-    torque += couple;
-    if (turns) {
-      past.q = angle(base, moving, axis, past.q);
-      now.rate = about;
-      const Driving driving = drive(about, time, past);
-      couple += driving.losses * axis;
-      if (given.motor) {
-        of_base.couple(-driving.motor * axis, base.motor);
-        of_moving.couple(driving.motor * axis, moving.motor);
-      }
-    }
-    if (spends()) {
-      of_base.couple(-1.0 * couple, base.losses);
-      of_moving.couple(couple, moving.losses);
-    }
-  }
+  if (turning.c > 0.0 && (turns || held > 1)) brake(base, moving, torque);
+  if (turns) turn(base, moving, time, past);
   if (slides) {
     past.q = way;
     now.rate = dot(axis, moving.velocity() - base.velocity()) + over_drawn * dot(off, base.motion.G * given.axis);
@@ -278,13 +270,40 @@ void Joint::hold(const Side &base, const Side &moving, const Time &time, Past &p
   now.torque = norm(torque);
 }
 
-// The angle of a hinge that is nearest to the one before.
-double Joint::angle(const Side &base, const Side &moving, const Vec3 &axis, double previous) const
+// The angle of a hinge is the one nearest to that before.
+void Joint::turn(const Side &base, const Side &moving, const Time &time, Past &past)
 {
   constexpr double TURN = 6.283185307179586;
-  const Vec3 from = base.motion.F * across, to = moving.motion.F * across;
-  const double within_a_turn = angle_of(dot(axis, cross(from, to)), dot(from, to) - dot(from, axis) * dot(to, axis));
-  return within_a_turn + TURN * std::floor((previous - within_a_turn) / TURN + 0.5);
+  const Vec3 &n = given.axis;
+  const HingeAngle now_at =
+      hinge_angle(base.motion.F * across, moving.motion.F * across, base.motion.F * n + moving.motion.F * n);
+  past.q = now_at.q + TURN * std::floor((past.q - now_at.q) / TURN + 0.5);
+  now.rate = (dot(now_at.by_from, base.motion.G * across) + dot(now_at.by_to, moving.motion.G * across)) +
+             dot(now_at.by_axes, base.motion.G * n + moving.motion.G * n);
+  const auto push = [&](double torque, PatchLoad &on_base, PatchLoad &on_moving) {
+    if (torque == 0.0) return;
+    const Matrix3 by_axes = outer(torque * now_at.by_axes, n);
+    (on_base.moment += outer(torque * now_at.by_from, across)) += by_axes;
+    (on_moving.moment += outer(torque * now_at.by_to, across)) += by_axes;
+  };
+  const Driving driving = drive(now.rate, time, past);
+  push(driving.losses, base.losses, moving.losses);
+  push(driving.motor, base.motor, moving.motor);
+}
+
+// Dashpots of the rotation that is held.
+void Joint::brake(const Side &base, const Side &moving, Vec3 &torque) const
+{
+  const PatchSpin of_base(base.patch, base.motion), of_moving(moving.patch, moving.motion);
+  const Vec3 omega = of_moving.omega - of_base.omega;
+  Vec3 couple = -turning.c * omega;
+  if (given.kind == JointKind::HINGE) {
+    const Vec3 axis = unit(base.motion.F * given.axis + moving.motion.F * given.axis);
+    couple -= dot(couple, axis) * axis;
+  }
+  torque += couple;
+  of_base.couple(-1.0 * couple, base.losses);
+  of_moving.couple(couple, moving.losses);
 }
 
 // The force of the dashpot on what moves; there is none along `free`. It acts on those two material points that are at one place

@@ -10,6 +10,7 @@
 
 #pragma once
 
+#include "joints/hinge_angle.h"
 #include "joints/law.h"
 #include "joints/patch.h"
 #include "joints/words.h"
@@ -28,7 +29,6 @@ struct JointEnd {
   // Mobilities of the patch; 0 where no force acts.
   double mobility() const { return moves ? patch.mobility(d) : 0.0; }
   double mobility_of_direction(const Vec3 &e) const { return moves ? patch.mobility_of_direction(e) : 0.0; }
-  double mobility_about(const Vec3 &axis) const { return moves ? patch.mobility_about(axis) : 0.0; }
 };
 
 // Energy that joints hold, and that they have turned into heat or taken from motors.
@@ -103,13 +103,15 @@ class Joint {
   };
   void check() const;
   void choose_directions();
+  Vec3 choose_across() const;
   void choose_laws(double ftm2v);
   void load_before();
   Loads find(const PatchMotion &a, const PatchMotion &b, const Time &time, Past &past, Spending &spending, JointAccount &account);
   void pull(const Side &a, const Side &b, Past &past);
   void hold(const Side &base, const Side &moving, const Time &time, Past &past);
   Vec3 damp(const Side &base, const Side &moving, double c, const Vec3 &free) const;
-  double angle(const Side &base, const Side &moving, const Vec3 &axis, double previous) const;
+  void turn(const Side &base, const Side &moving, const Time &time, Past &past);
+  void brake(const Side &base, const Side &moving, Vec3 &torque) const;
   Driving drive(double rate, const Time &time, Past &past);
   double stored(double stretch) const { return 0.5 * servo.k * stretch * stretch; }
 

@@ -53,11 +53,4 @@ Patch Patch::from(std::vector<Member> members, const Vec3 &centre)
 
 double Patch::radius() const { return is_world() ? 0.0 : std::sqrt((S.row[0].x + S.row[1].y + S.row[2].z) / total); }
 
-double Patch::mobility_about(const Vec3 &axis) const
-{
-  if (is_world()) return 0.0;
-  const double about = (S.row[0].x + S.row[1].y + S.row[2].z) * dot(axis, axis) - dot(axis, S * axis);
-  return about > 0.0 ? 1.0 / about : HUGE_VAL;
-}
-
 }    // namespace mdanim

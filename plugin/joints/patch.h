@@ -77,11 +77,10 @@ class Patch {
   // Root of the mean square of the distances from the centre.
   double radius() const;
 
-  // Velocity of a material point for an impulse of 1 on it; of a direction; of rotation about an axis, for a couple.
+  // Velocity of a material point for an impulse of 1 on it; of a direction.
   double mobility(const Vec3 &d) const { return is_world() ? 0.0 : 1.0 / total + dot(d, inverse_S * d); }
   double mobility_of_direction(const Vec3 &e) const { return is_world() ? 0.0 : dot(e, inverse_S * e); }
   Vec3 velocity_of_direction(const Vec3 &e) const { return inverse_S * e; }
-  double mobility_about(const Vec3 &axis) const;
 
   // place(n) and speed(n) of the n-th member.
   template <class Place, class Speed> PatchMotion motion(const Place &place, const Speed &speed) const

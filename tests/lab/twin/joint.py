@@ -143,12 +143,27 @@ def forces(kind, words, patches, x, v, frequency, spring, damping):
         if kind == "hinge":
             free = sum(p.direction(axis) @ one for p, one in zip(patches, x))
             free /= np.linalg.norm(free)
-            told["rate"] = spin @ free
-            spin = spin - free * told["rate"]
+            spin = spin - free * (spin @ free)
+            # A direction across the axis in both bodies: the one that is hardest to turn.
+            across = np.cross(axis, np.eye(3)[np.abs(axis).argmin()])
+            across = np.array([across / np.linalg.norm(across), np.cross(axis, across / np.linalg.norm(across))])
+            mobility, directions = np.linalg.eigh(across @ sum(p.inverse_S for p in patches) @ across.T)
+            chosen = directions[:, 0] @ across if mobility[1] - mobility[0] > 1e-9 * mobility[1] else across[0]
+            turned = [angle(patches, axis, chosen, [y + shift * u for y, u in zip(x, v)]) for shift in (1e-6, -1e-6)]
+            told["rate"] = (turned[0] - turned[1]) / 2e-6
         torque = -damping * k_turning / k * spin
         found[0] += patches[0].couple(torque, x[0])
         found[1] += patches[1].couple(-torque, x[1])
     return found, told
+
+
+def angle(patches, axis, across, x) -> float:
+    """The angle of A seen from B about the mean axis of a hinge."""
+    n = sum(p.direction(axis) @ one for p, one in zip(patches, x))
+    n /= np.linalg.norm(n)
+    to, start = (p.direction(across) @ one for p, one in zip(patches, x))
+    to, start = to - n * (n @ to), start - n * (n @ start)
+    return np.arctan2(n @ np.cross(start, to), start @ to)
 
 
 def slope(value, x) -> np.ndarray:

@@ -152,6 +152,27 @@ def test_patches_may_be_flat(tmp_path, n):
         assert hung.told("gap") < 3.0 * n / 1e4 and hung.energy() == pytest.approx(start, abs=1e-3)
 
 
+@pytest.mark.parametrize("kind", ["hinge", "slider"])
+@pytest.mark.parametrize("damped", [True, False])
+def test_stops_do_not_pump_energy_into_what_shakes(tmp_path, kind, damped):
+    """A weight leans on a stop at the end of an elastic arm. Forces along the free coordinate are derivatives of an energy, and
+    their dashpots dissipate: a torque on the rotation of a patch alone, by an angle that sees its shear as well, would not."""
+    h, frequency = 0.05, 1000.0
+    arm = lab.elastic((3, 2, 2), h, 1000.0, 2e5, (0.0, -h, -h))
+    weight = lab.box((0.2, 0.1, 0.1), 5.0, (0.35, 0.03, 0.02))
+    words = "axis 0 1 0 limits -0.01 0.01" if kind == "hinge" else "axis 0.5 0 1 limits -0.001 0.001"
+    servo = "" if damped else "servo 50 0" if kind == "hinge" else "servo 2e4 0"
+    joints = [f"weld 1 world at 0 0 0 frequency {frequency}", f"{kind} 2 1 at 0.2 0 0 {words} frequency {frequency} {servo}"]
+    with lab.World(tmp_path, [arm, weight], joints, 0.2 / frequency, elastic=(1,)) as leaning:
+        start, heat = leaning.energy(), 0.0
+        for _ in range(10):
+            leaning.run(300)
+            assert leaning.energy() == pytest.approx(start, abs=1e-3)
+            told = leaning.number("joint_heat")
+            assert told >= heat - 1e-5 if damped else abs(told) < 1e-5
+            heat = told
+
+
 REFUSED = [
     ("joint rope 1 2", "joint 1: there is no joint rope; kinds are weld, ball, hinge, slider and spring"),
     ("joint ball 1 1 at 0 0 0 stiffness 1", "joint 1: a joint is between two objects, got one twice"),
