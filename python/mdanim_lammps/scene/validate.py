@@ -406,9 +406,7 @@ class Validator:
             )
             return None
         of = QUANTITIES[kind, quantity]
-        if of.takes in ("object", "joined") and not self.known_other(
-            subject, quantity, argument, s.span(0), of.takes == "joined"
-        ):
+        if of.takes in ("object", "joined") and not _known_other(self, subject, quantity, argument, s.span(0), of.takes):
             return None
         if of.needs in BLOCKS and not self.blocks(of.needs) and not self.out.excused(of.needs):
             self.problem(s.span(0), f"{subject}.{quantity} needs a {of.needs}, and the scene has none")
@@ -441,10 +439,11 @@ class Validator:
         return records.Expect(subject, quantity, numbers[0], numbers[1], time, relation, argument, s.span())
 
 
-def _known_other(v: Validator, subject: str, quantity: str, other: str, span: Span, or_world: bool) -> bool:
+def _known_other(v: Validator, subject: str, quantity: str, other: str, span: Span, takes: str) -> bool:
     """Another object, or the world."""
     if other != subject:
-        return (or_world and other == "world") or v.known_object(other, span, ("world",) if or_world else ())
+        more = ("world",) if takes == "joined" else ()
+        return other in more or v.known_object(other, span, more)
     v.problem(span, f"the {quantity} of {subject} and itself is 0", "name another object")
     return False
 
