@@ -126,7 +126,8 @@ void FixMdanimRigid::unpack(const StateRecords &all)
   const std::vector<RigidBody> bodies_before = bodies;
   const RigidTouching touching_before = touching;
   try {
-    if (bodies.empty() || !is_whole) make();    // those without a record as at the beginning
+    if (!is_whole) make();    // those without a record as at the beginning
+    bodies.resize(objects.size());
     std::vector<Pose> poses;
     for (int n = 0; n < objects.size(); ++n) {
       poses.push_back(rest[n] ? kept[n].pose : touching.pose(n));
