@@ -21,8 +21,43 @@ CurvePoint::CurvePoint(const Curve &line, double s)
 
 CurvePoint::CurvePoint(const Curve &circle, const Vec3 &e)
     : at(circle.middle + circle.size * e), tangent(cross(circle.along, e)), radius(circle.thick),
-      across{-1.0 * e, -1.0 * circle.along}
+      across{-1.0 * e, circle.into_side(e)}
 {
+}
+
+// The foot is p_k = a_k^2 x_k / (a_k^2 + t) with sum (p_k/a_k)^2 = 1: Newton from below, where the sum is convex and falls.
+EllipsoidFoot::EllipsoidFoot(const double (&x)[3], const double (&a)[3])
+{
+  constexpr double OFF_POLE = 1e-12;
+  constexpr int MOST_STEPS = 50;
+  double t = -HUGE_VAL;
+  for (int k = 0; k < 3; ++k) t = std::max(t, a[k] * ((OFF_POLE - 1.0) * a[k] + std::fabs(x[k])));
+  for (int n = 0; n < MOST_STEPS; ++n) {
+    double value = -1.0, slope = 0.0;
+    for (int k = 0; k < 3; ++k) {
+      const double share = a[k] * x[k] / (a[k] * a[k] + t);
+      value += share * share;
+      slope -= 2.0 * share * share / (a[k] * a[k] + t);
+    }
+    if (!(value > 0.0) || !(slope < 0.0)) break;
+    const double next = t - value / slope;
+    if (next == t) break;
+    t = next;
+  }
+  for (int k = 0; k < 3; ++k) {
+    const double over = x[k] / (a[k] * a[k] + t);
+    at[k] = a[k] * a[k] * over;
+    normal[k] = over;
+  }
+}
+
+static CurvePoint closest_on_egg(const Curve &egg, const Vec3 &from)
+{
+  const Vec3 axes[3] = {egg.any, cross(egg.along, egg.any), egg.along};
+  const EllipsoidFoot foot({dot(from, axes[0]), dot(from, axes[1]), dot(from, axes[2])}, {egg.half.x, egg.half.y, egg.half.z});
+  CurvePoint point;
+  point.at = egg.middle + (foot.at[0] * axes[0] + foot.at[1] * axes[1] + foot.at[2] * axes[2]);
+  return point;
 }
 
 // The surface about a ball that moves along a line, with a radius that falls by `taper`, is closest to p where the way along it
@@ -30,6 +65,7 @@ CurvePoint::CurvePoint(const Curve &circle, const Vec3 &e)
 CurvePoint closest(const Curve &curve, const Vec3 &p)
 {
   const Vec3 from = p - curve.middle;
+  if (curve.is_egg) return closest_on_egg(curve, from);
   const double s = dot(from, curve.along);
   const Vec3 across = from - s * curve.along;
   const double out = length(across);

@@ -12,16 +12,20 @@
 namespace mdanim {
 
 struct Curve {
-  bool is_circle = false;
-  Vec3 middle, along;    // along a line; the axis of a circle, out of its flat face. Of length 1
-  Vec3 any;              // of a circle: some direction from its middle to it, of length 1
-  double size = 0.0;     // half of the length of a surface about a line; radius of a circle
-  double thick = 0.0;    // radius about the curve, at the middle of a line
-  double taper = 0.0;    // by which it falls along a line
-  double reach = 0.0;    // how far the surface is from the curve
-  Vec3 across[2];        // of a sharp line: within its faces, away from it; of length 1
+  bool is_circle = false, is_egg = false;
+  Vec3 middle, along;      // along a line; the axis of a circle, out of its flat face. Of length 1
+  Vec3 any;                // of a circle: some direction from its middle to it, of length 1
+  double size = 0.0;       // half of the length of a surface about a line; radius of a circle
+  double thick = 0.0;      // radius about the curve, at the middle of a line
+  double taper = 0.0;      // by which it falls along a line
+  double reach = 0.0;      // how far the surface is from the curve
+  Vec3 across[2];          // of a sharp line: within its faces, away from it; of length 1
+  double narrows = 0.0;    // of a rim: sine of the lean of the curved side towards the axis
+  Vec3 half;               // of an ellipsoid: its half axes, along `any`, across both, and along `along`
 
-  bool is_sharp() const { return thick == 0.0; }
+  bool is_sharp() const { return thick == 0.0 && !is_egg; }
+  // Within the curved side of a rim, away from its point in the direction e.
+  Vec3 into_side(const Vec3 &e) const { return -std::sqrt(1.0 - narrows * narrows) * along - narrows * e; }
   double radius_at(double s) const { return thick - taper * s; }
   // Where the surface is, along the line, that the ball about the place s touches.
   double on_surface(double s) const { return s + taper * radius_at(s); }
@@ -50,6 +54,13 @@ struct CurvePoint {
 // Where two curves are closest.
 struct CurveMeeting {
   CurvePoint a, b;
+};
+
+// Where the surface of an ellipsoid is closest to x, and a vector along its normal there, both about its middle and along its
+// axes.
+struct EllipsoidFoot {
+  double at[3], normal[3];
+  EllipsoidFoot(const double (&x)[3], const double (&half)[3]);
 };
 
 // The point of a curve with its radius that is closest to p.

@@ -29,7 +29,7 @@ struct SolidPair {
 
 // Contacts of a pair of polyhedra.
 void touch_polyhedra(const TouchStep &step, SolidPair &pair, Solid &a, Solid &b, const TouchLaw &law);
-// Contacts of two bodies of which one is a cylinder, a cone or a torus, and none a ball or an ellipsoid.
+// Contacts of two bodies of which one is a cylinder, a cone or a torus, and none a ball; an ellipsoid only with a torus.
 void touch_with_curves(const TouchStep &step, SolidPair &pair, Solid &a, Solid &b, const TouchLaw &law);
 // The contact of an ellipsoid with any other shape.
 void touch_ellipsoid_and_other(const TouchStep &step, SolidPair &pair, Solid &egg, Solid &host, const TouchLaw &law);

@@ -89,6 +89,8 @@ void RigidContact::touch_pair(const TouchStep &step, SolidPair &pair)
     touch_ball_and_other(step, pair, a, b, law);
   else if (is_other_ball)
     touch_ball_and_other(step, pair, b, a, law);
+  else if (is(a, SolidShape::TORUS) || is(b, SolidShape::TORUS))
+    touch_with_curves(step, pair, a, b, law);
   else if (is(a, SolidShape::ELLIPSOID))
     touch_ellipsoid_and_other(step, pair, a, b, law);
   else if (is(b, SolidShape::ELLIPSOID))

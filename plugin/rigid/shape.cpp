@@ -112,6 +112,16 @@ void SolidShape::find_curves()
     circle.thick = circle.reach = size.y;
     its_curves.push_back(circle);
   }
+  if (its_kind == ELLIPSOID) {
+    Curve egg;
+    egg.is_egg = true;
+    egg.middle = its_middle;
+    egg.along = axes[2];
+    egg.any = axes[0];
+    egg.half = size;
+    egg.reach = std::max({size.x, size.y, size.z});
+    its_curves.push_back(egg);
+  }
   if (its_kind != CYLINDER && its_kind != CONE) return;
   const double tangent = its_kind == CONE ? 0.5 * size.x / size.z : 0.0, cosine = 1.0 / std::sqrt(1.0 + tangent * tangent);
   Curve axis;
@@ -122,6 +132,7 @@ void SolidShape::find_curves()
   axis.taper = tangent * cosine;
   axis.reach = size.x;
   its_curves.push_back(axis);
+  circle.narrows = axis.taper;
   for (const double end : {-1.0, 1.0}) {
     if (its_kind == CONE && end > 0.0) continue;
     circle.along = end * axes[2];
@@ -232,32 +243,14 @@ Polyhedron::Foot SolidShape::nearest_of_revolution(const Vec3 &from_middle) cons
   return {found.n.out * radial + found.n.along * axes[2], outside ? found.distance : found.above};
 }
 
-// The foot is p_k = a_k^2 x_k / (a_k^2 + t) with sum (p_k/a_k)^2 = 1: Newton from below, where the sum is convex and falls.
 Polyhedron::Foot SolidShape::nearest_of_ellipsoid(const Vec3 &from_middle) const
 {
-  const double x[3] = {dot(from_middle, axes[0]), dot(from_middle, axes[1]), dot(from_middle, axes[2])};
-  const double a[3] = {size.x, size.y, size.z};
-  constexpr double OFF_POLE = 1e-12;
-  constexpr int MOST_STEPS = 50;
-  double t = -HUGE_VAL;
-  for (int k = 0; k < 3; ++k) t = std::max(t, a[k] * ((OFF_POLE - 1.0) * a[k] + std::fabs(x[k])));
-  for (int n = 0; n < MOST_STEPS; ++n) {
-    double value = -1.0, slope = 0.0;
-    for (int k = 0; k < 3; ++k) {
-      const double share = a[k] * x[k] / (a[k] * a[k] + t);
-      value += share * share;
-      slope -= 2.0 * share * share / (a[k] * a[k] + t);
-    }
-    if (!(value > 0.0) || !(slope < 0.0)) break;
-    const double next = t - value / slope;
-    if (next == t) break;
-    t = next;
-  }
+  const EllipsoidFoot at({dot(from_middle, axes[0]), dot(from_middle, axes[1]), dot(from_middle, axes[2])},
+                         {size.x, size.y, size.z});
   Vec3 foot, n;
   for (int k = 0; k < 3; ++k) {
-    const double over = x[k] / (a[k] * a[k] + t);
-    foot += (a[k] * a[k] * over) * axes[k];
-    n += over * axes[k];
+    foot += at.at[k] * axes[k];
+    n += at.normal[k] * axes[k];
   }
   const double steepness = length(n);
   n = steepness > 0.0 ? (1.0 / steepness) * n : axes[0];

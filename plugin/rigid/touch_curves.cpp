@@ -113,13 +113,18 @@ template <class Host> class RimOnSide {
     return {(1.0 - leans) * slope_of_host, (2.0 * level * leans_slope * host.part(side, x, unused)) * cross(circle.along, n)};
   }
   // How far the side may lean out of what the rim turns towards it.
-  double cone(int k) const { return circle.is_sharp() ? -std::max(dot(n, out(k)), level) : 1.0; }
+  double cone(int k) const
+  {
+    if (!circle.is_sharp()) return 1.0;
+    const Vec3 e = out(k);
+    return std::min(-dot(n, e), dot(n, circle.into_side(e)));
+  }
   // Whether no point can begin to touch: all are above the side, too deep below it, or turned away from it.
   bool is_far(double deepest) const
   {
     const double middle = host.depth(side, circle.middle), around = circle.size * std::sqrt(std::max(0.0, 1.0 - level * level));
     return middle + around + circle.thick <= 0.0 || middle - around - circle.thick > deepest ||
-           (circle.is_sharp() && -level < AT_BIRTH);
+           (circle.is_sharp() && highest_cone() < AT_BIRTH);
   }
   // Whether a point that comes belongs to this side, as corners do.
   bool is_mine(int k, const Vec3 &x, double deepest) const
@@ -127,7 +132,7 @@ template <class Host> class RimOnSide {
     Polyhedron::Corner corner{x, {}, {}};
     if (circle.is_sharp()) {
       const Vec3 e = out(k), u = cross(circle.along, e);
-      corner.ways = {-1.0 * e, -1.0 * circle.along, u, -1.0 * u};
+      corner.ways = {-1.0 * e, circle.into_side(e), u, -1.0 * u};
     } else {
       const Vec3 u = unit(cross(n, std::fabs(n.x) < 0.6 ? Vec3{1.0, 0.0, 0.0} : Vec3{0.0, 1.0, 0.0})), w = cross(n, u);
       corner.ways = {n, u, -1.0 * u, w, -1.0 * w};
@@ -140,6 +145,11 @@ template <class Host> class RimOnSide {
   const Host &host;
   int side;
   const Curve &circle;
+  double highest_cone() const
+  {
+    return circle.narrows * std::sqrt(std::max(0.0, 1.0 - level * level)) -
+           std::sqrt(1.0 - circle.narrows * circle.narrows) * level;
+  }
   double level, leans_slope, leans;
 };
 
@@ -289,6 +299,7 @@ class CurveCrossing {
   double part(const CurveMeeting &points) const
   {
     double unused, part = 1.0;
+    if (a.is_egg || b.is_egg) return 1.0;
     if (!a.is_circle) part *= at_ends(a, points.a, ramp_a, b);
     if (!b.is_circle) part *= at_ends(b, points.b, ramp_b, a);
     if (a.is_circle != b.is_circle && !(a.is_sharp() && b.is_sharp())) return part;

@@ -45,7 +45,7 @@ BLOWS = [
     *((CONE, other) for other in (CUBE, CONE, EGG)),
     *((EGG, other) for other in (CUBE, EGG)),
     *((DISC, other) for other in (CUBE, DOMINO, DISC)),
-    *((RING, other) for other in (CUBE, CAN, BALL, RING)),
+    *((RING, other) for other in (CUBE, CAN, BALL, EGG, RING)),
 ]
 
 
@@ -193,3 +193,46 @@ def test_a_torus_lies_and_rolls_on_a_plane(tmp_path):
         assert world.number("touching") == 5
         assert np.abs(world.rows()[1, 3:6]).max() < 1e-6
     assert acceleration == pytest.approx(G * sine * ROLLS["torus"][2], rel=1e-5)
+
+
+def test_a_cone_lies_on_its_side(tmp_path):
+    """On the lowest point of its rim, whose normals reach to that of its side, and its tip: the centre of mass is as high as it
+    is far from its side."""
+    radius, height = 0.06, 0.1
+    lean = np.arctan(radius / height)
+    level = 0.75 * height * np.sin(lean)
+    cone = lab.cone(radius, height, at=(0, 0, level + 1e-3), q=lab.about((0, 1, 0), np.pi / 2 + lean))
+    with lab.World(tmp_path, [cone, FLOOR], frequency=lab.frequency_of(np.sqrt(G * radius), radius), planes=[]) as world:
+        world.run(round(0.4 / world.dt))
+        assert world.rows()[0, 2] == pytest.approx(level, abs=5e-3 * radius)
+        assert np.abs(world.rows()[0, [3, 4, 5, 10, 11, 12]]).max() < 1e-3
+
+
+MAKES = (
+    lambda random: lab.cylinder(random.uniform(0.03, 0.06), random.uniform(0.04, 0.14)),
+    lambda random: lab.cone(random.uniform(0.04, 0.06), random.uniform(0.06, 0.14)),
+    lambda random: lab.ellipsoid(random.uniform(0.03, 0.07, 3)),
+    lambda random: lab.torus(0.05, random.uniform(0.015, 0.025)),
+    lambda random: lab.box(random.uniform(0.05, 0.12, 3)),
+    lambda random: lab.ball(random.uniform(0.03, 0.06)),
+)
+
+
+@pytest.mark.parametrize("seed", [0, *(pytest.param(seed, marks=pytest.mark.soak) for seed in range(1, 9))])
+def test_heaps_of_all_shapes_keep_their_energy_and_stay_above_the_floor(tmp_path, seed):
+    """18 bodies of random sizes fall into a shaft of held boxes."""
+    random, wide, bodies = np.random.default_rng(seed), 0.45, []
+    for n in range(18):
+        place = ((n % 3 - 1) * wide / 3, (n // 3 % 3 - 1) * wide / 3, 0.1 + 0.17 * (n // 9))
+        q = lab.about(random.uniform(-1, 1, 3), random.uniform(0, 3))
+        bodies.append(MAKES[(n + seed) % 6](random).put(at=place, q=q, mu=0.4, beta=0.2))
+    walls = [lab.box((0.2, 1.2, 1.5), at=(s * (wide / 2 + 0.1), 0, 0.7), held=True) for s in (-1, 1)]
+    walls += [lab.box((wide, 0.2, 1.5), at=(0, s * (wide / 2 + 0.1), 0.7), held=True) for s in (-1, 1)]
+    thin = min(body.thin for body in bodies)
+    with lab.World(tmp_path, [*bodies, *walls, FLOOR], frequency=lab.frequency_of(3.0, thin), thin=thin, planes=[]) as world:
+        start = world.energy()
+        world.run(round(0.7 / world.dt))
+        assert world.energy() == pytest.approx(start, rel=1e-3)
+        assert world.number("let_go") < 1e-3 * start and world.number("touching") > 18
+        # The centre of mass of a cone of 4 x 6 cm is 1.5 cm above its base.
+        assert world.rows()[:, 2].min() > 0.014 and np.abs(world.rows()[:, :2]).max() < wide / 2
