@@ -8,18 +8,16 @@
 
 namespace mdanim {
 
-static constexpr double OFF = 1e-6;    // of its size, that a patch may lack of a place or direction
-
 static double norm(const Vec3 &v) { return std::sqrt(dot(v, v)); }
 static Vec3 unit(const Vec3 &v) { return (1.0 / norm(v)) * v; }
 
 // --- making ---
 
 Joint::Joint(JointWords words, JointEnd a, JointEnd b, double length, double ftm2v)
-    : given(std::move(words)), end_a(std::move(a)), end_b(std::move(b)), own_length(given.length.value_or(length))
+    : given(std::move(words)), end_a(std::move(a)), end_b(std::move(b)), own_length(given.length.value_or(length)),
+      directions(directions_of(given, end_a.patch, end_b.patch))
 {
-  check();
-  choose_directions();
+  for (const JointEnd *end : {&end_a, &end_b}) expect_place(end->patch, end->d);
   choose_laws(ftm2v);
   load_before();
   forget();
@@ -31,74 +29,6 @@ void Joint::forget()
   before.q = given.kind == JointKind::SPRING ? own_length : 0.0;
 }
 
-static const char *shape_of(int dimensions) { return dimensions == 0 ? "one point" : dimensions == 1 ? "a line" : "a plane"; }
-
-void Joint::check() const
-{
-  for (const JointEnd *end : {&end_a, &end_b}) {
-    const Vec3 missing = end->d - end->patch.within(end->d);
-    if (const double off = norm(missing); off > OFF * (end->patch.radius() + norm(end->d)))
-      throw std::runtime_error("the particles that it holds on to stand in " + std::string(shape_of(end->patch.dimensions())) +
-                               ", and its place is off by " + LineWords::short_form(off) +
-                               "; take a place there, or a larger 'patch'");
-  }
-}
-
-// The directions that are held are those that both patches have.
-void Joint::choose_directions()
-{
-  const auto has = [](const Patch &patch, const Vec3 &e) { return norm(e - patch.within(e)) <= OFF; };
-  const auto both_have = [&](const Vec3 &e) { return has(end_a.patch, e) && has(end_b.patch, e); };
-  const auto need = [&](bool met, const char *lacks) {
-    if (!met)
-      throw std::runtime_error(std::string("the particles that it holds on to have no ") + lacks +
-                               ": they stand in a plane, on a line or in a point; take a larger 'patch', or a ball");
-  };
-  const Patch &flat = end_a.patch.dimensions() <= end_b.patch.dimensions() ? end_a.patch : end_b.patch;
-  switch (given.kind) {
-    case JointKind::SPRING:
-    case JointKind::BALL:
-      return;
-    case JointKind::HINGE:
-      direction[0] = given.axis;
-      held = 1;
-      across = choose_across();
-      need(both_have(given.axis) && both_have(across), "axis to turn about");
-      return;
-    case JointKind::WELD:
-    case JointKind::SLIDER:
-      held = flat.dimensions();
-      for (int k = 0; k < held; ++k) direction[k] = flat.within_span(k);
-      need(held > 0 && both_have(direction[0]) && both_have(direction[1]), "direction that both bodies have");
-      need(given.kind == JointKind::WELD || has(end_b.patch, given.axis), "axis to slide along");
-  }
-}
-
-// The direction across the axis of a hinge that is the hardest to turn, or the one that a flat patch has.
-Vec3 Joint::choose_across() const
-{
-  const Vec3 &n = given.axis;
-  const bool x_is_least = std::fabs(n.x) <= std::fabs(n.y) && std::fabs(n.x) <= std::fabs(n.z);
-  const Vec3 other = x_is_least                         ? Vec3{1.0, 0.0, 0.0}
-                     : std::fabs(n.y) <= std::fabs(n.z) ? Vec3{0.0, 1.0, 0.0}
-                                                        : Vec3{0.0, 0.0, 1.0};
-  const Vec3 u = unit(cross(n, other)), v = cross(n, u);
-  for (const Patch *patch : {&end_a.patch, &end_b.patch})
-    if (patch->dimensions() == 2) {
-      const Vec3 along = cross(cross(patch->within_span(0), patch->within_span(1)), n);
-      if (norm(along) > 0.5) return unit(along);
-    }
-  double uu = 0.0, vv = 0.0, uv = 0.0;    // of the sum of the mobilities of both patches
-  for (const Patch *patch : {&end_a.patch, &end_b.patch}) {
-    if (patch->is_world()) continue;
-    uu += patch->mobility_of_direction(u), vv += patch->mobility_of_direction(v);
-    uv += dot(u, patch->velocity_of_direction(v));
-  }
-  const double half = 0.5 * (uu - vv), least = 0.5 * (uu + vv) - std::sqrt(half * half + uv * uv);
-  const Vec3 found = std::fabs(uu - least) > std::fabs(vv - least) ? -uv * u + (uu - least) * v : (vv - least) * u - uv * v;
-  return norm(found) > 1e-9 * (uu + vv) ? unit(found) : u;
-}
-
 // If nothing else is said, all springs have the rate K (mobility of A + mobility of B) of the one between the two places.
 void Joint::choose_laws(double ftm2v)
 {
@@ -106,9 +36,9 @@ void Joint::choose_laws(double ftm2v)
   law.k = given.stiffness ? *given.stiffness : *given.frequency * *given.frequency / mobility;
   law.c = given.damping_ratio ? *given.damping_ratio * 2.0 * std::sqrt(law.k / mobility) : given.damping;
   double of_directions = 0.0;
-  for (const Vec3 *e = direction; e < direction + held; ++e)
+  for (const Vec3 *e = directions.held; e < directions.held + directions.many; ++e)
     of_directions = std::fmax(of_directions, ftm2v * (end_a.mobility_of_direction(*e) + end_b.mobility_of_direction(*e)));
-  const double square = given.arm ? *given.arm * *given.arm : held > 0 ? mobility / of_directions : 0.0;
+  const double square = given.arm ? *given.arm * *given.arm : directions.many > 0 ? mobility / of_directions : 0.0;
   turning = {law.k * square, law.c * square};
   if (given.kind == JointKind::SLIDER && end_b.moves) {
     const Vec3 to_n = end_b.patch.velocity_of_direction(given.axis);
@@ -116,7 +46,9 @@ void Joint::choose_laws(double ftm2v)
     lever[1] = ftm2v * dot(given.axis, to_n) / mobility;
   }
   const bool turns = given.kind == JointKind::HINGE;
-  servo_mobility = turns ? ftm2v * (end_a.mobility_of_direction(across) + end_b.mobility_of_direction(across)) : mobility;
+  servo_mobility = turns
+                       ? ftm2v * (end_a.mobility_of_direction(directions.across) + end_b.mobility_of_direction(directions.across))
+                       : mobility;
   servo.k = given.servo ? given.servo->stiffness : law.k * mobility / servo_mobility;
   servo.c = given.servo ? given.servo->damping : 2.0 * std::sqrt(servo.k / servo_mobility);
 }
@@ -126,18 +58,18 @@ void Joint::choose_laws(double ftm2v)
 void Joint::load_before()
 {
   place_in_a = end_a.d;
-  for (int j = 0; j < held; ++j) turned_in_a[j] = direction[j];
+  for (int j = 0; j < directions.many; ++j) turned_in_a[j] = directions.held[j];
   if (!given.preload) return;
+  if (end_a.patch.dimensions() < 3 || end_b.patch.dimensions() < 3)
+    throw std::runtime_error("a preload needs particles that stand neither in a plane nor on a line, in both bodies");
   const auto across_axis = [&](const Vec3 &v) { return v - dot(v, given.axis) * given.axis; };
   const Vec3 force = given.kind == JointKind::SLIDER ? across_axis(given.preload->force) : given.preload->force;
   place_in_a += (-1.0 / law.k) * force;
-  if (held == 0) return;
+  if (directions.many == 0) return;
   const bool turns = given.kind == JointKind::HINGE;
   const Vec3 torque = turns ? across_axis(given.preload->torque) : given.preload->torque;
   const Vec3 phi = (-1.0 / (turning.k * (turns ? 1.0 : 2.0))) * torque;
-  for (int j = 0; j < held; ++j) turned_in_a[j] += cross(phi, direction[j]);
-  if ((norm(force) > 0.0 || norm(phi) > 0.0) && end_a.patch.dimensions() < 3)
-    throw std::runtime_error("a preload needs a first patch that is neither flat nor a line");
+  for (int j = 0; j < directions.many; ++j) turned_in_a[j] += cross(phi, directions.held[j]);
 }
 
 // --- a step ---
@@ -178,7 +110,7 @@ Joint::Loads Joint::find(const PatchMotion &a, const PatchMotion &b, const Time 
   Spending next;
   now = Reading();
   const Side of_a{end_a.patch, place_in_a, turned_in_a, a, loads.a, next.losses.a, next.motor.a};
-  const Side of_b{end_b.patch, end_b.d, direction, b, loads.b, next.losses.b, next.motor.b};
+  const Side of_b{end_b.patch, end_b.d, directions.held, b, loads.b, next.losses.b, next.motor.b};
   now.at_a = of_a.place(), now.at_b = of_b.place();
   const double lent = stored(past.motor.stretch), kept = stored(past.brake.stretch) + stored(past.depth);
   if (given.kind == JointKind::SPRING)
@@ -246,7 +178,7 @@ void Joint::hold(const Side &base, const Side &moving, const Time &time, Past &p
     base.springs.moment += outer((k * way * over_drawn) * off, given.axis);
     push_along(now.energy * softer * (lever[0] + 2.0 * way * lever[1]), base.springs, moving.springs);
   }
-  for (int j = 0; j < held; ++j) {
+  for (int j = 0; j < directions.many; ++j) {
     const Vec3 &in_base = base.direction[j], &in_moving = moving.direction[j];
     const Vec3 turned = moving.motion.F * in_moving, apart = turned - base.motion.F * in_base, pull = -turning.k * apart;
     base.springs.moment += outer(-1.0 * pull, in_base);
@@ -257,7 +189,7 @@ void Joint::hold(const Side &base, const Side &moving, const Time &time, Past &p
 
   // Dashpots beside them, and the free coordinate.
   if (law.c > 0.0) force += damp(base, moving, softer * law.c, slides ? axis : Vec3{});
-  if (turning.c > 0.0 && (turns || held > 1)) brake(base, moving, torque);
+  if (turning.c > 0.0 && (turns || directions.many > 1)) brake(base, moving, torque);
   if (turns) turn(base, moving, time, past);
   if (slides) {
     past.q = way;
@@ -275,16 +207,16 @@ void Joint::turn(const Side &base, const Side &moving, const Time &time, Past &p
 {
   constexpr double TURN = 6.283185307179586;
   const Vec3 &n = given.axis;
-  const HingeAngle now_at =
-      hinge_angle(base.motion.F * across, moving.motion.F * across, base.motion.F * n + moving.motion.F * n);
+  const HingeAngle now_at = hinge_angle(base.motion.F * directions.across, moving.motion.F * directions.across,
+                                        base.motion.F * n + moving.motion.F * n);
   past.q = now_at.q + TURN * std::floor((past.q - now_at.q) / TURN + 0.5);
-  now.rate = (dot(now_at.by_from, base.motion.G * across) + dot(now_at.by_to, moving.motion.G * across)) +
+  now.rate = (dot(now_at.by_from, base.motion.G * directions.across) + dot(now_at.by_to, moving.motion.G * directions.across)) +
              dot(now_at.by_axes, base.motion.G * n + moving.motion.G * n);
   const auto push = [&](double torque, PatchLoad &on_base, PatchLoad &on_moving) {
     if (torque == 0.0) return;
     const Matrix3 by_axes = outer(torque * now_at.by_axes, n);
-    (on_base.moment += outer(torque * now_at.by_from, across)) += by_axes;
-    (on_moving.moment += outer(torque * now_at.by_to, across)) += by_axes;
+    (on_base.moment += outer(torque * now_at.by_from, directions.across)) += by_axes;
+    (on_moving.moment += outer(torque * now_at.by_to, directions.across)) += by_axes;
   };
   const Driving driving = drive(now.rate, time, past);
   push(driving.losses, base.losses, moving.losses);

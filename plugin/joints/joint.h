@@ -10,6 +10,7 @@
 
 #pragma once
 
+#include "joints/directions.h"
 #include "joints/hinge_angle.h"
 #include "joints/law.h"
 #include "joints/patch.h"
@@ -101,9 +102,6 @@ class Joint {
   struct Driving {
     double losses = 0.0, motor = 0.0;
   };
-  void check() const;
-  void choose_directions();
-  Vec3 choose_across() const;
   void choose_laws(double ftm2v);
   void load_before();
   Loads find(const PatchMotion &a, const PatchMotion &b, const Time &time, Past &past, Spending &spending, JointAccount &account);
@@ -118,13 +116,12 @@ class Joint {
   JointWords given;
   JointEnd end_a, end_b;
   double own_length = 0.0;
+  JointDirections directions;
   SpringLaw law, turning, servo;
   double servo_mobility = 0.0;
-  double lever[2] = {0.0, 0.0};         // of a slider: its mobility at the way q is that at the start times 1 + lever q
-  Vec3 place_in_a;                      // the place of the joint, moved by what the joint bears at the start
-  Vec3 direction[3], turned_in_a[3];    // unit vectors at the start, in both bodies, and in A turned by what it bears then
-  int held = 0;                         // directions
-  Vec3 across;                          // of a hinge, for its angle
+  double lever[2] = {0.0, 0.0};    // of a slider: its mobility at the way q is that at the start times 1 + lever q
+  Vec3 place_in_a;                 // the place of the joint, moved by what the joint bears at the start
+  Vec3 turned_in_a[3];             // those that are held, in A, turned by what the joint bears at the start
   Past before;
   Spending spent_before;
   Reading now;

@@ -214,6 +214,7 @@ def test_refusals_say_how(tmp_path, words, message):
         ([[0, 0, 0], [0, 0, 1]], "hinge 1 world at 0 0 0 axis 1 0 0", "have no axis to turn about"),
         ([[0, 0, 0]], "weld 1 world at 0 0 0", "have no direction that both bodies have"),
         ([[0, 0, 0], [0, 0, 1], [0, 1, 0]], "ball 1 world at 0.2 0 0", "stand in a plane, and its place is off by 0.2"),
+        ([[0, 0, 0], [0, 0, 1]], "ball 1 world at 0 0 0 preload 1 0 0 0 0 0", "a preload needs particles that stand neither"),
     ],
 )
 def test_patches_without_place_or_axis_are_refused(tmp_path, x, words, message):
