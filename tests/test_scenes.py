@@ -23,6 +23,7 @@ LONG = {
     "boat": (1.8, True),
     "bottle": (1.0, False),
     "bowling": (0.25, False),
+    "paddle": (1.1, True),
     "pile": (0.5, False),
     "spiral": (0.8, False),
     "wake": (1.2, True),

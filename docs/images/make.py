@@ -55,6 +55,9 @@ PICTURES = {
     "blocks": 1.0,
     "barge": 4.5,
     "tops": 0.5,
+    "shaker": 1.34,
+    "conveyor": 1.7,
+    "paddle": 1.67,
 }
 """Scene and the moment to show [s]."""
 STEPS = {"falls": 0.0, "stands": 1.0, "pushed": 0.27, "rolls": 0.5, "splashes": 0.4, "show": 0.3}

@@ -253,6 +253,27 @@ def test_a_paddle_makes_waves_and_the_ledger_closes(prepared, model):
         assert max(found["waves"] for found, _ in middle) > 0.02 and max(crest for _, crest in middle) > 0.205
 
 
+def test_driven_objects_go_through_held_ones(prepared):
+    """Neither of two that are held gives way, so nothing acts between blades of a wheel that begin in each other and a post that
+    they pass; plates that are driven alike and apart are not named at all."""
+    blades = "".join(
+        f"object blade[{n}] {{ shape box (30, 8, 4) cm position (0, 0, 20) cm orientation axis (0, 1, 0) angle {90 * n} deg "
+        "density 500 elasticity 1 MPa hold all drive turn (0, 9, 0) rad/s }\n"
+        for n in range(2)
+    )
+    post = "object post { shape box (4, 8, 20) cm position (12, 0, 5) cm density 500 elasticity 1 MPa hold all }\n"
+    belts = "".join(
+        f"object belt[{n}] {{ shape box (10, 10, 2) cm position ({40 + 11 * n}, 0, 0) cm density 500 elasticity 1 MPa hold all "
+        "drive velocity (1, 0, 0) m/s }\n"
+        for n in range(3)
+    )
+    ball = "object ball { shape sphere 4 cm position (40, 0, 5) cm density 700 elasticity 300 kPa }\n"
+    ready = prepared(GRAVITY + blades + post + belts + ball + "control { time 0.3 s }\n")
+    assert motion.passing(ready.scene) == [(0, 1), (0, 2), (1, 2)]
+    ((found, deepest),) = followed(ready, [0.3], lambda i: (ledger_of(i), i.fix_value("contact", "deepest")))
+    assert abs(found["work"]) < 0.5 and deepest < 0.01
+
+
 # --- words ------------------------------------------------------------------------------------------------------------
 
 

@@ -46,6 +46,9 @@ class Drives(Effect):
         time = scene.control.time
         return {m: motion.bounds(solid, time) for m, solid in enumerate(scene.solids) if motion.is_driven(solid)}
 
+    def passes(self, scene):
+        return motion.passing(scene)
+
     def columns(self, context):
         return {HOME: context.system.position}
 

@@ -9,8 +9,10 @@ from typing import Any
 
 import numpy as np
 
+from ...bodies import all_held
 from ...errors import Span
 from ...model import shapes
+from ...model.boxes import box_pairs
 from ...reach import Drive
 from .words import DriveKey, DriveOscillation, DriveTurn, DriveVelocity
 
@@ -67,6 +69,35 @@ def words_of(solid: Any) -> str:
 
 def _digits(numbers: Any) -> str:
     return " ".join(repr(float(x)) for x in numbers)
+
+
+# --- which go through each other ---
+
+
+def passing(scene: Any) -> list[tuple[int, int]]:
+    """Pairs i < j of objects that are held as a whole, of which one is driven at least, and whose ways cross: neither gives way,
+    so nothing acts between them. Those that are driven alike stay as far apart as they are at the start."""
+    held = [m for m, solid in enumerate(scene.solids) if all_held(solid)]
+    if not any(is_driven(scene.solids[m]) for m in held):
+        return []
+    solids = [scene.solids[m] for m in held]
+    corner = [_corners(solid) for solid in solids]
+    ways = [bounds(s, scene.control.time) if is_driven(s) else Drive((0.0,) * 3, (0.0,) * 3, 0.0) for s in solids]
+    low, high = np.array([c.min(0) for c in corner]), np.array([c.max(0) for c in corner])
+    reached = low + [way.low for way in ways], high + [way.high for way in ways]
+    found = []
+    for a, b in (pair for block in box_pairs(*reached) for pair in zip(*(side.tolist() for side in block))):
+        one, other = solids[a], solids[b]
+        alike = (one.drive, one.key_points) == (other.drive, other.key_points) and not one.key_points
+        apart = (low[a] > high[b]).any() or (low[b] > high[a]).any()
+        if (is_driven(one) or is_driven(other)) and not (alike and apart and all(map(_is_straight, one.drive))):
+            found.append((min(held[a], held[b]), max(held[a], held[b])))
+    return sorted(found)
+
+
+def _is_straight(drive: Any) -> bool:
+    """Whether it moves all of an object alike."""
+    return not isinstance(drive, DriveTurn)
 
 
 # --- how far and how fast ---------------------------------------------------------------------------------------------
