@@ -164,6 +164,13 @@ def test_words_that_need_springs(prepared, words, is_named):
     assert before(prepared(wall(**words))) == (["brick[0...2]"] if is_named else [])
 
 
+def test_a_rope_is_not_named(prepared):
+    """It is there to bend; the weight on it may be rigid."""
+    rope = "object rope { shape rope from (0, 0, 1) m to (0, 0, 0.5) m thickness 2 cm  density 900  elasticity 5 MPa }\n"
+    ready = prepared(SCENE.format(objects=rope + BRICK.format(n=1, z=3, more=""), mu=0.5, control="", expect=""))
+    assert "rope" in ready.system.names and list(proposal.groups(ready.scene)) == ["brick"] and before(ready) == ["brick[1]"]
+
+
 def test_a_plank_that_sags_is_not_named(prepared):
     """A plank of 2 m, thin or soft enough to sag by more than a twentieth of its length between its ends."""
     plank = "object plank {{ shape box (200, {w}, {t}) cm  position (0, 0, {z}) cm  density 600  elasticity {E} MPa }}\n"

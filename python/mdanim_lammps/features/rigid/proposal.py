@@ -114,9 +114,10 @@ def _take_energy(scene: SceneRecord) -> list[bool]:
 
 
 def _may_be(solid: Solid, is_looked_at: bool, takes: bool) -> bool:
-    """Whether nothing that is said of an object needs its springs: no part is held, no `expect` asks for what springs tell, and
-    damping has a dashpot of the contact to take its place."""
-    if solid.hold or not kind_of(solid).deforms or is_looked_at:
+    """Whether nothing that is said of an object needs its springs: it is not a rope, no part is held, no `expect` asks for what
+    springs tell, and damping has a dashpot of the contact to take its place."""
+    kind = kind_of(solid)
+    if solid.hold or not (kind.deforms and kind.fills) or is_looked_at:
         return False
     return not any(getattr(solid, word) and (word != "damping" or not takes) for word in SENSELESS)
 

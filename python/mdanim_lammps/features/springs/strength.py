@@ -178,12 +178,11 @@ def _stress(env: Envelope, g: float) -> np.ndarray:
     low, high = system.bounds(system.position)
     size = np.maximum(high - low, 1e-300)
     weight = system.mass_of * g * np.maximum(0.0, env.reach.weight_left)
-    floor = size[:, 0] * size[:, 1]
     above = np.zeros(len(weight))
     for m, near in overlaps_in_plan(low, high, np.flatnonzero(_soft(env))):
         near = near[low[near, 2] >= high[m, 2] - 0.25 * size[m, 2]]
         wide = np.minimum(high[m, :2], high[near, :2]) - np.maximum(low[m, :2], low[near, :2])
-        above[m] = (wide[:, 0] * wide[:, 1] / floor[near]) @ weight[near]
+        above[m] = (wide / size[near, :2]).prod(axis=1) @ weight[near]  # nothing of a line that hangs there
     volume = np.add.reduceat(system.volume, system.first[:-1])
     return (weight + above) * size[:, 2] / volume
 
