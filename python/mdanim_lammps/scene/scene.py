@@ -278,7 +278,7 @@ class Check(Codec):
         return 0, (value.written(repr), value.time, value.relation, numbers[0], tolerance)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, weakref_slot=True)
 class SceneRecord:
     """A whole scene, validated word by word; geometry is checked when models are made."""
 

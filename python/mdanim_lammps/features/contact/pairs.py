@@ -4,9 +4,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import lru_cache
 from math import sqrt
 
+from ...effects.once import once_for
 from ...scene.naming import objects_by_name, pairs_of
 from ...scene.scene import SceneRecord
 
@@ -14,28 +14,10 @@ USUAL_DAMPING = 0.3
 """Share of critical damping of a contact with friction: enough to end chatter."""
 
 
-class Same:
-    """A scene, which is equal to itself alone: its values take long to compare."""
-
-    def __init__(self, scene: SceneRecord):
-        self.scene = scene
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, Same) and other.scene is self.scene
-
-    def __hash__(self) -> int:
-        return id(self.scene)
-
-
+@once_for(lambda scene, plane="": scene)
 def frictions(scene: SceneRecord, plane: str = "") -> list[float]:
     """Coefficient of friction of every object [-], its own or, with the name of a plane, that against the plane; not to be
     changed, because the list is kept: frames ask for it many times."""
-    return _frictions(Same(scene), plane)
-
-
-@lru_cache(maxsize=16)
-def _frictions(of: Same, plane: str) -> list[float]:
-    scene = of.scene
     found = [scene.control.friction if s.friction is None else s.friction for s in scene.solids]
     told = [c for c in scene.contacts if plane in (c.first, c.second) and c.friction is not None] if plane else []
     by_name = objects_by_name(s.name for s in scene.solids) if told else {}

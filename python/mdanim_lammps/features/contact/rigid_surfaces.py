@@ -10,24 +10,21 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from weakref import WeakKeyDictionary
 
 import numpy as np
 
 from ...effects.context import Context
+from ...effects.once import once_for
 from ...model import shapes
 from ...model.boxes import overlaps_in_plan
 from ...model.contact_body import FINE, ContactBody
 from ...model.inertia import mobility
 from ...model.system import System
-from ...reach import Reach
 
 DEPTH = 0.02
 """How deep the fastest blow goes, over the thinnest part of all rigid bodies."""
 HARD = 1e20
 """Modulus of what is rigid and held [Pa]: the surface of its partner alone yields."""
-_FOUND: WeakKeyDictionary[Reach, Frequency] = WeakKeyDictionary()
-"""Frequencies of scenes, each found once."""
 STICK = 0.8
 """Stiffness of the stick spring of friction over that of the contact."""
 
@@ -46,19 +43,13 @@ class Frequency:
     """Largest weight that a body bears, over its own, and one more for its own [-]."""
 
 
+@once_for(lambda context: context.reach)
 def frequency(context: Context) -> Frequency:
     """Omega = max(v, 2 sqrt(N g s)) / (DEPTH s): the fastest blow at v, and the load N at rest, sink in by DEPTH s at most.
 
     Of a scene in which rigid bodies move; also asked of the context of a part of it.
     """
-    reach = context.reach
-    if reach not in _FOUND:
-        _FOUND[reach] = _frequency(context, reach.system)
-    return _FOUND[reach]
-
-
-def _frequency(context: Context, system: System) -> Frequency:
-    reach = context.reach
+    reach, system = context.reach, context.reach.system
     free = np.flatnonzero(system.rigid)
     thin = min(shapes.thickness(shape) for shape in {context.scene.solids[m].shape for m in free.tolist()})
     speed = float(struck_at(context, system)[free].max())

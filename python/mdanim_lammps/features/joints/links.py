@@ -18,7 +18,6 @@ from ...scene import units
 from ...scene.naming import objects_by_name
 from ...scene.scene import SceneRecord
 from ...scene.schema import Vector
-from ..contact.pairs import Same
 from .words import WORLD, Joint
 
 NOTHING = -1
@@ -213,6 +212,19 @@ def parts(groups: Iterable[list[int]]) -> list[list[int]]:
     for m in sorted(root):
         found.setdefault(find(m), []).append(m)
     return list(found.values())
+
+
+class Same:
+    """A scene, which is equal to itself alone: its values take long to compare."""
+
+    def __init__(self, scene: SceneRecord):
+        self.scene = scene
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Same) and other.scene is self.scene
+
+    def __hash__(self) -> int:
+        return id(self.scene)
 
 
 def links_of(scene: SceneRecord) -> Links:
