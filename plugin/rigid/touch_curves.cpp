@@ -392,8 +392,9 @@ class CurvePair {
     touch.first = i;
     touch.second = j;
     const double rises = dot(TouchStep::relative_velocity(one, &other, at.x), at.n);
-    const bool came = at.depth + A_STEP * step.time_step() * rises <= 0.0 ||
-                      (at.part < LITTLE && part_after(step_before(step, one, other, at.x), state.points) <= 0.0);
+    const bool came =
+        at.depth + A_STEP * step.time_step() * rises <= 0.0 ||
+        (at.part < LITTLE && at.depth < SHALLOW * thin && part_after(step_before(step, one, other, at.x), state.points) <= 0.0);
     step.begin(touch, one, &other, at, came);
     touches.push_back(touch);
     press(touches.back(), state);
