@@ -13,8 +13,11 @@ static constexpr std::size_t MOST_MOVING = 26;    // points that move over one b
 
 void RigidContact::take(std::vector<Solid> now)
 {
+  for (Solid &one : now) {    // a state that is put has the bodies that there were
+    const int known = number_of(one.id);
+    if (known < 0 || !one.take_yields(solids[known])) one.find_yields();
+  }
   solids = std::move(now);
-  for (Solid &one : solids) one.find_yields();
   forget();
 }
 

@@ -62,6 +62,16 @@ SolidShape SolidShape::torus(double radius, double tube)
   return shape;
 }
 
+bool SolidShape::is_same(const SolidShape &other) const
+{
+  const auto are_same = [](const Vec3 &a, const Vec3 &b) { return a.x == b.x && a.y == b.y && a.z == b.z; };
+  const std::vector<Polyhedron::Corner> &one = its_polyhedron.corners(), &two = other.its_polyhedron.corners();
+  return its_kind == other.its_kind && are_same(its_middle, other.its_middle) && are_same(axes[0], other.axes[0]) &&
+         are_same(axes[1], other.axes[1]) && are_same(axes[2], other.axes[2]) && are_same(size, other.size) &&
+         std::equal(one.begin(), one.end(), two.begin(), two.end(),
+                    [&](const Polyhedron::Corner &a, const Polyhedron::Corner &b) { return are_same(a.at, b.at); });
+}
+
 SolidShape SolidShape::placed(const Pose &pose) const
 {
   const Matrix3 turn = matrix(pose.q);

@@ -32,6 +32,8 @@ class SolidShape {
   // A ring about the third axis: radius of its middle line, and of its tube, the smaller one.
   static SolidShape torus(double radius, double tube);
 
+  // Whether both have the same bits.
+  bool is_same(const SolidShape &other) const;
   // The same shape in the frame of its body.
   SolidShape placed(const Pose &pose) const;
 

@@ -65,6 +65,14 @@ struct Solid {
   }
   // To be called after the shape, the mass and the moments were set.
   void find_yields();
+  // Takes what another one yields, if it is the same body.
+  bool take_yields(const Solid &known)
+  {
+    const bool is_same = held == known.held && over_mass == known.over_mass && over.x == known.over.x && over.y == known.over.y &&
+                         over.z == known.over.z && shape.is_same(known.shape);
+    if (is_same) yields = known.yields, yields_any = known.yields_any;
+    return is_same;
+  }
 };
 
 // Largest eigenvalue of 1/m + [r]^T I^-1 [r]: how a point r yields along the direction in which it yields most.
