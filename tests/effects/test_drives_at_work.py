@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from mdanim_lammps.engine.instance import Instance
 from mdanim_lammps.errors import SceneError
+from mdanim_lammps.features.contact.rigid_surfaces import loads
 from mdanim_lammps.features.drives import motion
 from mdanim_lammps.run.energy import energies
 from mdanim_lammps.run.prepare import prepare
@@ -251,6 +252,16 @@ def test_a_paddle_makes_waves_and_the_ledger_closes(prepared, model):
     assert work > 0.02
     if model == "waves":
         assert max(found["waves"] for found, _ in middle) > 0.02 and max(crest for _, crest in middle) > 0.205
+
+
+def test_what_is_driven_is_not_a_load(prepared):
+    """A plate that is driven above a ball does not weigh on it, and bears loads itself without one of its own."""
+    lid = plate("drive velocity (0.1, 0, 0) m/s").replace("object plate", "object lid").replace("(0, 0, -2) cm", "(0, 0, 30) cm")
+    ball = "object ball { shape sphere 4 cm position (0, 0, 4) cm density 700 elasticity rigid }\n"
+    system = prepared(GRAVITY + plate("drive velocity (0.1, 0, 0) m/s") + ball + lid + "control { time 0.1 s }\n").system
+    with np.errstate(all="raise"):
+        found = loads(system, np.arange(3))
+    np.testing.assert_allclose(found, [1.0 + system.mass_of[1] / system.mass_of[0], 1.0, 1.0])
 
 
 def test_driven_objects_go_through_held_ones(prepared):

@@ -83,7 +83,7 @@ def loads(system: System, asked: np.ndarray) -> np.ndarray:
     found = np.ones(len(weight))
     for m, near in overlaps_in_plan(low, high, asked):
         above = near[low[near, 2] + high[near, 2] > low[m, 2] + high[m, 2]]
-        found[m] += weight[above].sum() / weight[m]
+        found[m] += weight[above].sum() / system.mass_of[m]
     return found[asked]
 
 
