@@ -180,4 +180,4 @@ CASES: dict[str, tuple[Callable[[], tuple[float, float]], float]] = {
     "cantilever, 2 cm, 25 links": (lambda: cantilever(0.02, 50e6), 0.03),
     "cantilever, 1 cm, 50 links": (lambda: cantilever(0.01, 200e6), 0.03),
 }
-"""What is compared, with the largest error."""
+"""Cases and the largest error of each."""

@@ -130,7 +130,8 @@ class _BoundingBoxes:
         if not len(model.hexahedron):
             return int(model.frame.cells.filled.sum())
         one = len(model.hexahedron) == 1
-        return int(np.rint(model.frame.cells.edge / model.cell).prod()) if one else len(model.hexahedron)
+        cells = model.frame.cells
+        return int(np.rint(cells.count * cells.edge / model.cell).prod()) if one else len(model.hexahedron)
 
     def cells(self, i: int) -> np.ndarray:
         """Centres of the cells of one body [m], shape (C, 3), as it is resolved."""
@@ -139,9 +140,10 @@ class _BoundingBoxes:
             return model.position
         if len(model.hexahedron) == 1:
             cells, corner = model.frame.cells, model.position[model.hexahedron[0, [0, 1, 3, 4]]]
-            parts = [(np.arange(n) + 0.5) / n for n in np.rint(cells.edge / model.cell).astype(int)]
+            size = cells.count * cells.edge
+            parts = [(np.arange(n) + 0.5) / n for n in np.rint(size / model.cell).astype(int)]
             t = np.stack(np.meshgrid(*parts, indexing="ij"), axis=-1).reshape(-1, 3)
-            t = t[shapes.contains(model.frame.shape, cells.low + t * cells.edge)]
+            t = t[shapes.contains(model.frame.shape, cells.low + t * size)]
             return corner[0] + t @ (corner[1:] - corner[0])
         if not len(model.hexahedron):
             cells, solid = model.frame.cells, self.solids[i]

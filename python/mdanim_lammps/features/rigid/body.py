@@ -9,6 +9,8 @@ from dataclasses import replace
 from ...bodies import BodyKind, all_held, kind_of, unguided
 from ...model import shapes
 from ...model.build import lattice_model, single_cell_model
+from ...model.cells import fill_cells
+from ...model.contact_body import BodyFrame
 from ...model.inertia import tensor
 from ...scene.scene import Box, Mesh, Sphere
 from .shapes import hidden, is_rigid, on_objects, only_balls_move
@@ -37,7 +39,7 @@ class RigidBody(BodyKind):
     def spacing(self, scene, h):
         """Two cells across, four of what is round or has no known features; no coarser than the scene where there is a liquid or
         something soft, whose forces find the body at its particles and at points as far apart as these."""
-        soft = any(is_soft(s) and kind_of(s).fills for s in scene.solids)
+        soft = any(is_soft(s) and not is_line(s) for s in scene.solids)
         finest = h if scene.liquid is not None or soft else math.inf
         return lambda solid: min(finest, shapes.thickness(solid.shape) / _across(solid))
 
@@ -48,9 +50,18 @@ class RigidBody(BodyKind):
         boxed = isinstance(solid.shape, Box | Sphere)  # the box around them has their middle
         if boxed and shared.by_features:
             model = single_cell_model(solid, h, shared)
+        elif boxed and lines_alone(shared.scene):
+            model = single_cell_model(solid, h, shared)
+            model = replace(model, frame=shared.once(_framed, solid.shape, h))
         else:
             model = lattice_model(solid, h, shared, loose=True)
         return replace(model, inertia=tensor(solid.shape, shapes.mass(solid), solid.rotation))
+
+
+def _framed(shared, shape, h: float) -> BodyFrame:
+    """The frame of a cuboid or a ball whose particles are the corners of the box around it, with cells of h [m]."""
+    corner, cells = shared.body(shape, math.inf).lattice.position, fill_cells(shape, h)
+    return BodyFrame(shape, cells, rigid=True, corners=(corner - cells.low) / cells.edge)
 
 
 def _across(solid) -> int:
@@ -61,7 +72,21 @@ def by_features(scene) -> bool:
     """Whether rigid objects move, and all contacts are of shapes that know each other by their features, so that nothing reads
     points of their surfaces, nor particles inside. Beside held cuboids that cover sides of each other in part, balls alone touch
     by features; what an effect moves without telling where it is (reach.Motion.guides) is found at points."""
-    solids = scene.solids
+    return not any(map(is_line, scene.solids)) and _features_alone(scene)
+
+
+def lines_alone(scene) -> bool:
+    """The same but for lines of particles that there are: these find places in a rigid object by four of its particles."""
+    return any(map(is_line, scene.solids)) and _features_alone(scene)
+
+
+def is_line(solid) -> bool:
+    """Whether an object is a line of particles that moves."""
+    return is_soft(solid) and not kind_of(solid).fills
+
+
+def _features_alone(scene) -> bool:
+    solids = [s for s in scene.solids if kind_of(s).fills]
     if scene.liquid is not None or all(map(all_held, solids)) or any(map(is_soft, solids)) or unguided(scene):
         return False
     if not all(on_objects(s.shape) for s in solids):

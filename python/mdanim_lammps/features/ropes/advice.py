@@ -31,7 +31,7 @@ def _each_other(envelope: Envelope, ropes: np.ndarray) -> list[Problem]:
     names = envelope.system.names
     more = f" and {len(ropes) - 2} more" if len(ropes) > 2 else ""
     cause = f"{names[ropes[0]]}, {names[ropes[1]]}{more} do not touch each other: ropes touch what is not a rope, and planes"
-    return [Problem(envelope.place(int(ropes[1]), "shape"), cause, "", severity="note")]
+    return [Problem(envelope.place(int(ropes[1]), "shape"), cause, "keep them apart where that would show", severity="note")]
 
 
 def _long_links(envelope: Envelope, ropes: np.ndarray) -> list[Problem]:
@@ -51,5 +51,6 @@ def _long_links(envelope: Envelope, ropes: np.ndarray) -> list[Problem]:
         f"links of {system.names[longest]} are {say(link, 'm')} long and {system.names[thinnest]} is {say(thin.min(), 'm')} "
         f"thin: it may slip through between particles of the {kind(rope)}"
     )
-    way_out = f"write resolution {say(finest, 'm')} in {system.names[longest]}"
-    return [Problem(envelope.place(longest, "resolution", "shape"), cause, way_out if finest < link else "", severity="note")]
+    finer = f"write resolution {say(finest, 'm')} in {system.names[longest]}"
+    way_out = finer if finest < link else f"make {system.names[thinnest]} thicker"
+    return [Problem(envelope.place(longest, "resolution", "shape"), cause, way_out, severity="note")]
