@@ -18,11 +18,13 @@ FRAGMENTS = {"rubber"}
 NAMES = sorted({p.stem for p in SCENES.glob("*.txt")} - FRAGMENTS)
 LONG = {
     "barge": (0.3, True),
+    "bridge": (0.2, True),
     "billiard": (0.5, False),
     "blocks": (0.2, False),
     "boat": (1.8, True),
     "bottle": (1.0, False),
     "bowling": (0.25, False),
+    "hammock": (0.2, True),
     "paddle": (1.1, True),
     "pile": (0.5, False),
     "spiral": (0.8, False),

@@ -58,6 +58,9 @@ PICTURES = {
     "shaker": 1.34,
     "conveyor": 1.7,
     "paddle": 1.67,
+    "pegs": 0.7,
+    "hammock": 2.0,
+    "bridge": 2.0,
 }
 """Scene and the moment to show [s]."""
 STEPS = {"falls": 0.0, "stands": 1.0, "pushed": 0.27, "rolls": 0.5, "splashes": 0.4, "show": 0.3}

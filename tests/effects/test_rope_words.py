@@ -94,6 +94,16 @@ REFUSED = {
         "line is 2 cm thick, more than two cells of box, which are 2 mm wide",
         "write resolution 1 cm in box",
     ),
+    "a hinge": (
+        line() + BOX + "joint hinge line box { at (1, 0, 1) m axis (0, 1, 0) }\n",
+        "has no direction across",
+        "write joint ball",
+    ),
+    "beside": (
+        line() + BOX + "joint ball line box { at (1, 0, 1.004) m }\n",
+        "is 4 mm beside the line of line",
+        "write (1, 0, 1) m, where its nearest particle is",
+    ),
     "in a box": (BOX + line(SLACK.replace("(0, 0, 1)", "(0, 0, 0.1)")), "line starts inside box", "move it"),
 }
 

@@ -12,7 +12,12 @@ from mdanim_lammps.model.rope import section
 from mdanim_lammps.scene.scene import Rope
 from rope_cases import CASES, DOWN, ROLLER, made, rope
 
-SLOW = {n for n in CASES if n.startswith("capstan") and n != "capstan, chain, 180 degrees"} | {"sag of a rope of 2 mm, 20 MPa"}
+SLOW = {
+    n
+    for n in CASES
+    if n.startswith(("capstan", "whirls")) and n not in ("capstan, chain, 180 degrees", "whirls a ball on a joint, rope")
+}
+SLOW |= {"sag of a rope of 2 mm, 20 MPa"}
 
 
 @pytest.mark.parametrize("name", [pytest.param(n, marks=[pytest.mark.soak] if n in SLOW else []) for n in CASES])

@@ -166,6 +166,29 @@ def fall(friction: float, thickness: float = 0.02) -> float:
     return float(sum(end.values()) - sum(begin.values())) / (G * float(ready.system.mass.sum()) * 0.5)
 
 
+def whirl(kind: str, speed: float = 5.0, radius: float = 0.04) -> tuple[float, float]:
+    """Mean pull of a rope of 1 m that whirls a ball of 1 kg on a joint at its end, and m v^2/r [N]."""
+    reach, pull = 1.0 + radius, speed**2 / (1.0 + radius)
+    length = 1.0 / (1.0 + pull / (20e6 * math.pi * 0.01**2 / 4.0))
+    turn = f"spin (0, 0, {speed / reach!r}) rad/s"
+    text = rope(
+        f"{kind} from (0, 0, 0) m to (1, 0, 0) m thickness 1 cm length {length!r} m",
+        f"elasticity 20 MPa  damping 0.2  hold start  {turn}  velocity (0, {0.5 * speed / reach!r}, 0) m/s",
+    )
+    text += f"object ball {{ shape sphere {radius} m  position ({reach}, 0, 0) m  mass 1 kg  elasticity rigid  {turn}\n"
+    text += f"  velocity (0, {speed!r}, 0) m/s }}\njoint ball line ball {{ at (1, 0, 0) m }}\n"
+    ready = made(text)
+    of_ball, pulls, wanted = slice(int(ready.system.first[1]), None), [], []
+    with Instance(ready.plan) as instance:
+        instance.setup()
+        for _ in range(60):
+            instance.run(round(0.02 / ready.certificate.timestep))
+            x, v = instance.array("x"), instance.array("v")[of_ball]
+            pulls.append(tension(ready, x)[-1])
+            wanted.append(float((v.mean(0) ** 2).sum() / np.linalg.norm(x[of_ball].mean(0))))
+    return float(np.mean(pulls[20:])), float(np.mean(wanted[20:]))
+
+
 CASES: dict[str, tuple[Callable[[], tuple[float, float]], float]] = {
     "sag of a chain of 40 particles, slack 1.1": (lambda: sag("chain", "5 mm", "100 MPa", 39), 0.005),
     "sag of a rope of 2 mm, 20 MPa": (lambda: sag("rope", "2 mm", "20 MPa", 80), 0.005),
@@ -177,6 +200,8 @@ CASES: dict[str, tuple[Callable[[], tuple[float, float]], float]] = {
     "capstan, rope, 90 degrees": (lambda: capstan("rope", 90), 0.03),
     "capstan, chain, 180 degrees": (lambda: capstan("chain", 180), 0.03),
     "capstan, rope, 180 degrees": (lambda: capstan("rope", 180), 0.03),
+    "whirls a ball on a joint, chain": (lambda: whirl("chain"), 0.01),
+    "whirls a ball on a joint, rope": (lambda: whirl("rope"), 0.01),
     "cantilever, 2 cm, 25 links": (lambda: cantilever(0.02, 50e6), 0.03),
     "cantilever, 1 cm, 50 links": (lambda: cantilever(0.01, 200e6), 0.03),
 }

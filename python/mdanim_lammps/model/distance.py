@@ -8,7 +8,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from ..scene.scene import Cone, Cylinder, Ellipsoid, Mesh, Shape, Sphere, Torus
+from ..scene.scene import Cone, Cylinder, Ellipsoid, Mesh, Rope, Shape, Sphere, Torus
 from . import mesh, mesh_distance, shapes
 from .nearest import blocks
 from .segments import to_segments
@@ -47,6 +47,11 @@ def _(shape: Sphere, points):
 @distance.register
 def _(shape: Torus, points):
     return shapes.depth(shape, points)
+
+
+@distance.register
+def _(shape: Rope, points):
+    return shapes.depth(shape, points)  # of one that hangs through, to straight parts of its curve
 
 
 @distance.register

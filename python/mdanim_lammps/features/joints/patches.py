@@ -65,10 +65,14 @@ class Patch:
 
 
 def patch_of(system: System, m: int, point: np.ndarray) -> Patch:
-    """The patch of an object around a point: as small as has three dimensions, or all of the object."""
+    """The patch of an object around a point: as small as has three dimensions, or all of the object; of a line of particles the
+    two nearest ones, and a third one that is as near as the second."""
     rows = np.arange(system.first[m], system.first[m + 1])
     place, mass = system.position[rows], system.mass[rows]
     away, h = np.linalg.norm(place - point, axis=1), float(system.spacing[m])
+    if system.lines[m]:
+        radius = float(np.sort(away)[1]) + 0.1 * h
+        return _patch(rows, mass, place, away <= radius, radius)
     radius = max(NEAR * h, float(away.min()) + MORE * h)
     while radius < away.max():
         near = away <= radius
@@ -77,6 +81,10 @@ def patch_of(system: System, m: int, point: np.ndarray) -> Patch:
         radius *= WIDER
     else:
         near, radius = np.ones(len(rows), bool), ALL
+    return _patch(rows, mass, place, near, radius)
+
+
+def _patch(rows: np.ndarray, mass: np.ndarray, place: np.ndarray, near: np.ndarray, radius: float) -> Patch:
     centre = (mass[near, None] * place[near]).sum(0) / mass[near].sum()
     return Patch(radius, rows[near], mass[near], place[near] - centre, centre)
 

@@ -11,6 +11,7 @@ from ...errors import Problem
 from ...model import shapes
 from ...model.distance import distance
 from ...model.model import Model
+from ...model.segments import to_segments
 from ...scene.formatting import say
 from ...scene.scene import Box, Mesh, SceneRecord, Solid
 from .links import NOTHING, Link, links_of
@@ -27,7 +28,29 @@ def misplaced(scene: SceneRecord, models: Sequence[Model]) -> list[Problem]:
             problems += [_far(scene, models, link, [end], ends_of.get(end[0])) for end in ends]
         else:
             problems.append(_far(scene, models, link, ends, joint.spans.get("at")))
+        problems += [p for m, point in ends if models[m].frame.line for p in _off_line(models[m], link, point, scene.solids[m])]
     return [p for p in problems if p is not None]
+
+
+ON = 1e-6
+"""Distance from a line of particles, over its spacing, up to which a point is on it."""
+
+
+def _off_line(model: Model, link: Link, point, solid: Solid) -> list[Problem]:
+    """Problems of a joint with a line of particles, which has no place beside them, and no direction across."""
+    joint, x, at = link.joint, model.position, np.array(point, float)
+    if joint.kind in ("hinge", "slider"):
+        cause = f"joint {joint.words} turns about an axis, and a rope does not resist twist: it has no direction across"
+        return [Problem(joint.spans.get("joint"), cause, f"write joint ball, or joint weld, for {solid.name}")]
+    away = to_segments(at[:, None], x[:-1].T, x[1:].T)
+    if away.min() <= ON * model.spacing:
+        return []
+    nearest = x[np.linalg.norm(x - at, axis=1).argmin()]
+    span = joint.spans.get("at") or joint.spans.get("from") or joint.spans.get("joint")
+    cause = (
+        f"joint {joint.words} is {say(float(away.min()), 'm')} beside the line of {solid.name}, which has all of its particles"
+    )
+    return [Problem(span, cause, f"write ({', '.join(f'{c:.9g}' for c in nearest)}) m, where its nearest particle is")]
 
 
 def _far(scene: SceneRecord, models: Sequence[Model], link: Link, ends, span) -> Problem | None:

@@ -86,7 +86,7 @@ class RopeBody(BodyKind):
 
 
 def _shared(shared, thickness: float, length: float, links: int):
-    """What ropes of one length, thickness and number of links share."""
+    """Parts that ropes of one length, thickness and number of links share."""
     from ...scene.scene import Rope
 
     straight = Rope((0.0, 0.0, 0.0), (length, 0.0, 0.0), thickness, length)
