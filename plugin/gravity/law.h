@@ -41,11 +41,15 @@ class AccelerationPath {
 class AccelerationWork {
  public:
   void begin(const Vec3 &g) { before = g; }
-  void step(const Vec3 &g, const Vec3 &momentum, double dt)
+  // Goes to the next step, and returns g_n + g_{n+1}.
+  Vec3 turn(const Vec3 &g)
   {
-    done += 0.5 * dt * dot(before + g, momentum);
+    const Vec3 both = before + g;
     before = g;
+    return both;
   }
+  // Adds the work of that step: `power` is (g_n + g_{n+1}) . P.
+  void add(double power, double dt) { done += 0.5 * dt * power; }
   double total() const { return done; }
 
  private:

@@ -61,8 +61,6 @@ bool CrewSearch::find(PassCrew &crew)
   for (int n = 0; n < modify->nfix; ++n) {
     Fix *fix = modify->fix[n];
     const int mask = modify->fmask[n];
-    if (auto *gravity = dynamic_cast<PassGravity *>(fix); gravity && !gravity->steady())
-      return plain(fmt::format("the acceleration of fix {} {} changes with time", fix->id, fix->style));
     if (auto *member = dynamic_cast<PassMember *>(fix)) {
       if (!member->join(crew))
         return plain(fmt::format("fix {} {} is the second of its kind, or comes after fixes that it must precede; use one fix "

@@ -77,9 +77,17 @@ void FixMdanimGravity::post_force(int)
 {
   const Lap lap(seconds);
   // Velocities are those of half a step before: what has moved the particles here.
-  if (!steady()) work.step(g = path.at(now()), momentum(), update->dt);
+  if (!steady()) worked(dot(turn_to_step(), momentum()));
   pull();
 }
+
+Vec3 FixMdanimGravity::turn_to_step()
+{
+  g = path.at(now());
+  return work.turn(g);
+}
+
+void FixMdanimGravity::worked(double power) { work.add(power, update->dt); }
 
 void FixMdanimGravity::pull() const
 {

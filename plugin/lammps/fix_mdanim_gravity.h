@@ -23,6 +23,8 @@ class FixMdanimGravity : public mdanim::FixBase, public mdanim::PassGravity {
   double pulled(int i) const override;
   bool steady() const override { return path.empty(); }
   const mdanim::Vec3 &acceleration() const override { return g; }
+  mdanim::Vec3 turn_to_step() override;
+  void worked(double power) override;
   void took(double more) override { seconds += more; }
 
  private:

@@ -86,6 +86,7 @@ using DashpotSums = DashpotWork<double>;    // over particles
 struct PassSums {
   double final_loss, first_loss;    // to friction in either half step
   double bend;                      // dt v^{n+1/2} . F^n
+  double pulled;                    // m v^{n-1/2} . `pull`
   DashpotSums dashpots;
   double liquid_work, liquid_lost;    // power of the liquid's forces but friction's; what its friction takes
 };
@@ -117,7 +118,9 @@ struct Pass {
   const Entry *crossing_entry;
   double *crossed;           // what crossing springs do to their lower particles: rows of (3, lanes), (6, lanes) with dashpots
   unsigned turn;             // number of the pass
-  double gravity[3];         // [velocity/time]
+  double gravity[3];         // [velocity/time],
+  double pull[3];            // and the sum of this one and that of the last step,
+  bool pulls;                // if its work is asked for
   double *external_force;    // rows of forces from elsewhere, (3, lanes) each, to be added after gravity; zero after a pass:
   int force_providers;       // so many in a row for a block that has any
   Friction friction;

@@ -233,6 +233,10 @@ MDANIM_ALWAYS_INLINE void advance(const Pass &pass, const Block &block, const do
   tally.squares += square;
   if (block.chunk != tally.chunk) tally.turn_to_chunk(block.chunk, pass);
   if (pass.bends) add_lanes(tally.sums.bend, dt * dot(last, f));
+  if (__builtin_expect(pass.pulls, 0)) {
+    const Vector mass = load(motion + OWNED_LANE * LANES) * load(motion + MASS * LANES);
+    add_lanes(tally.sums.pulled, mass * (pass.pull[0] * first.x + pass.pull[1] * first.y + pass.pull[2] * first.z));
+  }
   if (DAMPED && block.damped) account(pass, block, motion, load_own(total + 3 * LANES), first, last, tally.sums.dashpots);
   if constexpr (FRICTION != Friction::NONE) {    // 0 in lanes of others
     add_lanes(tally.sums.final_loss, law.loss(first, middle, f, mass, false));

@@ -103,8 +103,12 @@ class PassGravity : public PassMember {
  public:
   bool join(PassCrew &crew) final;
   virtual double pulled(int i) const = 0;    // the mass that it pulls at
-  virtual bool steady() const = 0;           // whether the acceleration is the same in all steps; passes need that
+  virtual bool steady() const = 0;           // whether the acceleration is the same in all steps
   virtual const Vec3 &acceleration() const = 0;
+  // Unless it is: called once in each step, sets the acceleration and returns the sum of this one and that of the last step.
+  virtual Vec3 turn_to_step() = 0;
+  // Then reports what that sum does, times the sum of m v^{n-1/2} of this rank's particles.
+  virtual void worked(double power) = 0;
   virtual void took(double seconds) = 0;
 };
 

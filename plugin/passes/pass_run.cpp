@@ -43,14 +43,19 @@ PassRun::PassRun(SimdBlocks &blocks, const Kernels &kernels, const Threads &thre
   look = !crew.late.empty() ||
          std::any_of(of_early.begin(), of_early.end(), [](const auto &particles) { return !particles.empty(); });
   blocks.fill(pass, atoms.f);
-  if (crew.gravity) {
-    const Vec3 &g = crew.gravity->acceleration();
-    pass.gravity[0] = g.x, pass.gravity[1] = g.y, pass.gravity[2] = g.z;
-  }
+  pass.pulls = crew.gravity && !crew.gravity->steady();
+  if (crew.gravity && !pass.pulls) set_gravity();
   pass.trace = crew.integrator->trace_rows();
   chunk_sums.resize(blocks.chunks());
   pass.sums = chunk_sums.data();
   hold_back();
+}
+
+void PassRun::set_gravity()
+{
+  const Vec3 both = pass.pulls ? crew.gravity->turn_to_step() : Vec3{}, &g = crew.gravity->acceleration();
+  pass.gravity[0] = g.x, pass.gravity[1] = g.y, pass.gravity[2] = g.z;
+  pass.pull[0] = both.x, pass.pull[1] = both.y, pass.pull[2] = both.z;
 }
 
 void PassRun::hold_back()
@@ -76,6 +81,7 @@ void PassRun::step(long long next, const std::function<void(bool at_end)> &late)
     blocks.hold_back(wanted, true);
   }
   early_participants_turn();
+  if (pass.pulls) set_gravity();
   double all = 0.0;
   pass.bends = crew.integrator->tells_of(next);
   pass.looks = crew.integrator->looks();
@@ -88,6 +94,7 @@ void PassRun::step(long long next, const std::function<void(bool at_end)> &late)
   const double pulling = crew.gravity ? OF_GRAVITY * all : 0.0, lifting = share_of_liquid * all;
   crew.integrator->moved(sums.final_loss, sums.first_loss, sums.bend, pass.largest_phi, moving);
   if (crew.gravity) crew.gravity->took(pulling);
+  if (pass.pulls) crew.gravity->worked(sums.pulled + pulled_at_held_back());
   if (crew.liquid) crew.liquid->acted(sums.liquid_work, sums.liquid_lost, pass.fastest_near, lifting);
   crew.springs->took(all - moving - pulling - lifting);
   if (!crew.late.empty()) {
@@ -95,6 +102,16 @@ void PassRun::step(long long next, const std::function<void(bool at_end)> &late)
     if (needs_all) hold_back();    // they may need other particles now
   }
   if (Loss *account = crew.springs->account()) account->passed(sums.dashpots, dt);
+}
+
+// The part of particles that are held back, before they move.
+double PassRun::pulled_at_held_back()
+{
+  const std::vector<int> &waiting = blocks.held_back();
+  if (!waiting.empty()) blocks.give_out_held_back(threads, atoms.x, atoms.v);
+  double sum = 0.0;
+  for (const int i : waiting) sum += crew.gravity->pulled(i) * dot({pass.pull[0], pass.pull[1], pass.pull[2]}, vec3(atoms.v[i]));
+  return sum;
 }
 
 void PassRun::take_pass()
@@ -122,6 +139,7 @@ void PassRun::take_pass()
     sums.final_loss += of_chunk.final_loss;
     sums.first_loss += of_chunk.first_loss;
     sums.bend += of_chunk.bend;
+    sums.pulled += of_chunk.pulled;
     sums.dashpots.work += of_chunk.dashpots.work;
     sums.dashpots.bend += of_chunk.dashpots.bend;
     sums.dashpots.ahead += of_chunk.dashpots.ahead;

@@ -47,6 +47,8 @@ class PassRun {
   // zero: such a lane may hold a particle of another object. The plain step has no such lanes.
   static constexpr double LARGEST_SQUARE = 1e200;
 
+  void set_gravity();
+  double pulled_at_held_back();
   void hold_back();
   void give_back_to_liquid();
   void update_liquid();
