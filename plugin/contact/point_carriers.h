@@ -11,12 +11,12 @@ struct PointCarrier {
   double weight;
 };
 
-// Those of a point, and from `middle` on those of the centre of its area if it has others.
+// Carriers of a point, and from `middle` on those of the centre of its area if it has others.
 struct PointCarriers {
   const PointCarrier *first, *middle, *last;
 };
 
-// Those of all points of a body.
+// Carriers of all points of a body.
 struct BodyCarriers {
   const PointCarrier *all;
   const int *first;    // of each point, then of the centre of its area; at the end, the number of all
