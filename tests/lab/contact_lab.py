@@ -158,7 +158,7 @@ def give_body(lmp, fix: str, kind: int, arrays: dict) -> None:
         open_parts,
         frame,
         frame_at,
-        ctypes.c_double(arrays["radius"]),
+        ctypes.c_double(arrays.get("radius", 0.0)),
         error,
         ctypes.c_int(1024),
     ):
