@@ -18,7 +18,7 @@ static const char *shape_of(int dimensions) { return dimensions == 0 ? "one poin
 void expect_place(const Patch &patch, const Vec3 &d)
 {
   const double off = norm(d - patch.within(d));
-  if (off > OFF * (patch.radius() + norm(d)))
+  if (off > OFF * (patch.radius() + norm(d)) + Patch::ROUNDING * norm(patch.centre()))
     throw std::runtime_error("the particles that it holds on to stand in " + std::string(shape_of(patch.dimensions())) +
                              ", and its place is off by " + LineWords::short_form(off) +
                              "; take a place there, or a larger 'patch'");

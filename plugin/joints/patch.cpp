@@ -37,8 +37,9 @@ Patch Patch::from(std::vector<Member> members, const Vec3 &centre)
   const PrincipalAxes found = principal_axes({S.row[0].x, S.row[1].y, S.row[2].z, S.row[0].y, S.row[0].z, S.row[1].z});
   const Matrix3 columns = transposed(matrix(found.q));
   const double second[3] = {found.moments.x, found.moments.y, found.moments.z};
+  const double nothing = ROUNDING * ROUNDING * made.total * dot(centre, centre);
   made.rank = 0;
-  for (int k = 2; k >= 0 && second[k] > FLAT * second[2]; --k) {
+  for (int k = 2; k >= 0 && second[k] > FLAT * second[2] && second[k] > nothing; --k) {
     const Vec3 axis = columns.row[k];
     made.inverse_S += outer((1.0 / second[k]) * axis, axis);
     made.span += outer(axis, axis);

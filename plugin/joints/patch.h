@@ -52,6 +52,7 @@ struct PatchLoad {
 // a plane, on a line or in a point, S^-1 is zero across it, and points and directions outside have no place in the patch.
 class Patch {
  public:
+  static constexpr double ROUNDING = 1e-12;    // of places, in which patches have no extent
   struct Member {
     double mass;
     Vec3 r;    // from the centre, at the start

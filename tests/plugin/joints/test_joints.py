@@ -173,6 +173,19 @@ def test_stops_do_not_pump_energy_into_what_shakes(tmp_path, kind, damped):
             heat = told
 
 
+@pytest.mark.parametrize("mass", [0.1, 0.3, 1.0, 7.0])
+def test_a_patch_of_one_particle_is_where_the_particle_is(tmp_path, mass):
+    """Its centre is off by rounding, which is no extent of the patch."""
+    for n in range(20):
+        x = np.random.default_rng(n).uniform(-2, 2, (1, 3))
+        one = plugin_lab.particles(x, np.ones(1, int), mass=np.array([mass]))
+        place_of = " ".join(repr(float(c)) for c in x[0])
+        with lab.World(
+            tmp_path, [one], [f"ball 1 world at {place_of} stiffness 1"], 1e-3, elastic=(1,), gravity=(0, 0, 0)
+        ) as alone:
+            assert alone.told("gap") < 1e-15
+
+
 REFUSED = [
     ("joint rope 1 2", "joint 1: there is no joint rope; kinds are weld, ball, hinge, slider and spring"),
     ("joint ball 1 1 at 0 0 0 stiffness 1", "joint 1: a joint is between two objects, got one twice"),
