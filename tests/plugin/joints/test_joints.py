@@ -175,7 +175,7 @@ def test_stops_do_not_pump_energy_into_what_shakes(tmp_path, kind, damped):
 
 @pytest.mark.parametrize("mass", [0.1, 0.3, 1.0, 7.0])
 def test_a_patch_of_one_particle_is_where_the_particle_is(tmp_path, mass):
-    """Its centre is off by rounding, which is no extent of the patch."""
+    """Its centre is off by rounding, which must not count as an extent of the patch."""
     for n in range(20):
         x = np.random.default_rng(n).uniform(-2, 2, (1, 3))
         one = plugin_lab.particles(x, np.ones(1, int), mass=np.array([mass]))
