@@ -36,6 +36,13 @@ def test_tables_have_their_place(parts, page):
         assert re.search(rf"^<!-- {part}: written by bench/.* -->\n(?!<!--)[^\0]+?^<!-- end of {part} -->$", text, re.M), part
 
 
+def test_a_scene_is_compared_with_its_rigid_form():
+    """By bench/as_rigid.py: one step a frame of what nothing touches, and the same parabola."""
+    row = said("import as_rigid; print(*as_rigid.compared('spin'), sep='|')").split("|")
+    assert row[0] == "`spin.txt`" and int(row[1]) > 5000 and int(row[2]) == 60
+    assert float(row[6]) < 1e-9 and int(row[7]) == 0
+
+
 def test_the_share_of_the_liquid_can_be_measured():
     """A body that lies still wakes no liquid; one that plunges in does."""
     scene = "edge=6, basin=16, top=16, level=8, model='waves'"
