@@ -142,3 +142,24 @@ def test_it_is_not_named_beside_held_cuboids_in_touch(prepared):
     text = SEESAW.format(pivot=CONCAVE, heavy="rigid", more="")
     certificate = prepared(text + f"repeat i in 0 .. 1 {{ {seam} }}\n").certificate
     assert not [n for n in certificate.notes if "sets the time step" in n.message]
+
+
+@pytest.mark.parametrize(("size", "is_refused"), [("2, 1, 0.000001", True), ("2, 1, 0.00001", False)])
+@pytest.mark.parametrize("how", ["elasticity rigid", "elasticity rigid  hold all", "elasticity 1 MPa  hold all"])
+def test_a_box_too_thin_for_its_corners_is_refused(size, is_refused, how):
+    """Corners that are nearer than 1e-6 of the diagonal are one: the fix stopped with its own error."""
+    text = f"object plate {{ shape box ({size}) m  position (0, 0, 0) m  density 500  {how} }}\n"
+    text = scene("elasticity rigid") + text
+    if not is_refused:
+        parse_scene(text)
+        return
+    with pytest.raises(SceneError, match=r"plate is 0\.001 mm thin, less than a millionth of its size") as caught:
+        parse_scene(text)
+    (problem,) = caught.value.problems
+    assert (problem.span.line, problem.span.column) == (5, 26) and "0.00226 mm" in problem.hint
+
+
+def test_a_thin_box_is_no_fault_where_nothing_rigid_moves():
+    """Features are not asked for there."""
+    text = "object plate { shape box (2, 1, 0.000001) m  position (0, 0, 0) m  density 500  elasticity rigid  hold all }\n"
+    parse_scene(text + "control { time 1 s }\n")

@@ -8,7 +8,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
-from ...scene.shapes import holds_all
+from ...scene.formatting import say
+from ...scene.shapes import Box, holds_all
 
 SWITCHES = {"rigid": "an object's `elasticity rigid`"}
 
@@ -58,7 +59,29 @@ def check_object(v: Any, block: Any, solid: Any) -> Any:
     return solid
 
 
+ONE_PLACE = 1e-6
+"""Distance of two corners, over the diagonal, below which the fix takes them for one."""
+
+
 def check(v: Any, top: Mapping, held: Mapping) -> None:
+    """Things that do not fit together, of all objects."""
+    _check_thickness(v, held)
+    _check_paper(v, held)
+
+
+def _check_thickness(v: Any, held: Mapping) -> None:
+    """Corners of a cuboid that touches by its features are apart."""
+    solids = held["solids"]
+    if not any(isinstance(s.elasticity, Rigid) and not holds_all(s.hold) for s in solids):
+        return
+    for solid in (s for s in solids if isinstance(s.shape, Box)):
+        thin, size = min(solid.shape.size), math.hypot(*solid.shape.size)
+        if thin <= ONE_PLACE * size and (isinstance(solid.elasticity, Rigid) or holds_all(solid.hold)):
+            cause = f"{solid.name} is {say(thin, 'm')} thin, less than a millionth of its size, {say(size, 'm')}"
+            v.problem(solid.spans["shape"], cause, f"make it thicker than {say(1.01 * ONE_PLACE * size, 'm')}")
+
+
+def _check_paper(v: Any, held: Mapping) -> None:
     """The contact of the paper is a barrier between particles of lattices with springs."""
     control = held["control"]
     if control is None or control.contact_model.value != "paper":
