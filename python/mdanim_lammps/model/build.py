@@ -20,6 +20,7 @@ from .cells import TooThin, fill_cells
 from .contact_body import BodyFrame
 from .cover import with_covers
 from .embed import make_surface
+from .held import corner_model, one_cell_as
 from .lattice import Lattice, make_lattice
 from .limits import bounding_cells
 from .masses import Fit, fit_masses
@@ -150,27 +151,9 @@ def single_cell_model(solid: Solid, h: float, shared: SharedParts) -> Model:
     """The model of a cuboid or a ball that does not deform and whose contact is found elsewhere: eight particles at the corners
     of the box around it, which say where it is. It counts as resolved with h [m]."""
     body = shared.body(solid.shape, math.inf)
-    mass, edge = shapes.mass(solid), body.lattice.cells.edge
-    cell = edge / np.maximum(1.0, np.rint(edge / h))
-    arm = _rotated(solid, body.lattice.position)
-    return Model(
-        name=solid.name,
-        position=arm + solid.position,
-        velocity=solid.velocity + np.cross(solid.spin, arm),
-        mass=np.full(8, mass / 8.0),
-        share=np.full(8, shapes.volume(solid.shape) / (8.0 * cell.prod())),
-        layer=body.lattice.layer,
-        held=np.zeros(8, bool),
-        spring=body.lattice.spring[:0],
-        spring_type=np.zeros(0, np.uint8),
-        constants=np.zeros((0, 4)),
-        young=equivalent_modulus(cell, solid.elasticity),
-        inertia_error=0.0,
-        hexahedron=body.lattice.hexahedron,
-        cell=tuple(cell.tolist()),
-        surface=body.surface,
-        frame=body.frame,
-    )
+    cell = one_cell_as(body.lattice.cells.edge, h)
+    arm, mass = _rotated(solid, body.lattice.position), np.full(8, shapes.mass(solid) / 8.0)
+    return corner_model(solid, cell, arm, mass, body.surface, body.frame, free=body.lattice.hexahedron)
 
 
 def lattice_model(solid: Solid, h: float, shared: SharedParts, *, loose: bool = False) -> Model:

@@ -46,26 +46,54 @@ def held_model(solid: Solid, h: float, shared: Any) -> Model:
     """
     bare = shared.by_features and isinstance(solid.shape, Box | Sphere)
     placed = shared.once(_placed, solid.shape, math.inf if bare else h, tuple(map(tuple, solid.rotation)))
-    mass, edge = shapes.mass(solid), placed.frame.cells.edge
-    edge = edge / np.maximum(1.0, np.rint(edge / h)) if bare else edge
-    none = np.zeros((0, 4))
+    edge = placed.frame.cells.edge
+    cell = one_cell_as(edge, h) if bare else edge
+    return corner_model(solid, cell, placed.corner, shapes.mass(solid) * placed.share, placed.surface, placed.frame, free=None)
+
+
+def one_cell_as(edge: np.ndarray, h: float) -> np.ndarray:
+    """Edges of cells of about h [m] in one cell with these edges [m], both of shape (3,)."""
+    return edge / np.maximum(1.0, np.rint(edge / h))
+
+
+def corner_model(
+    solid: Solid,
+    cell: np.ndarray,
+    arm: np.ndarray,
+    mass: np.ndarray,
+    surface: Surface,
+    frame: BodyFrame,
+    *,
+    free: np.ndarray | None,
+) -> Model:
+    """The model of an object with eight particles at the corners of a box, which say where it is.
+
+    Args:
+        solid: the object.
+        cell: edges of the cells that it counts as resolved with [m], shape (3,).
+        arm: places of the corners from its position [m], shape (8, 3).
+        mass: masses at them [kg], shape (8,).
+        surface: drawn surface, of weighted sums of the corners.
+        frame: its cells and the corners in them.
+        free: corners of a cell that may move, shape (1, 8); None for an object that is held.
+    """
     return Model(
         name=solid.name,
-        position=placed.corner + solid.position,
-        velocity=np.zeros((8, 3)),
-        mass=mass * placed.share,
-        share=np.full(8, shapes.volume(solid.shape) / (8.0 * edge.prod())),
-        layer=np.full(8, Layer.BOUNDARY, np.uint8),
-        held=np.ones(8, bool),
+        position=arm + solid.position,
+        velocity=np.zeros((8, 3)) if free is None else solid.velocity + np.cross(solid.spin, arm),
+        mass=mass,
+        share=np.full(8, shapes.volume(solid.shape) / (8.0 * cell.prod())),
+        layer=np.full(8, Layer.BOUNDARY if free is None else Layer.THIN, np.uint8),
+        held=np.full(8, free is None),
         spring=np.zeros((0, 2), np.int32),
         spring_type=np.zeros(0, np.uint8),
-        constants=none,
-        young=equivalent_modulus(edge, solid.elasticity),
+        constants=np.zeros((0, 4)),
+        young=equivalent_modulus(cell, solid.elasticity),
         inertia_error=0.0,
-        hexahedron=np.zeros((0, 8), np.int32),
-        cell=tuple(edge.tolist()),
-        surface=placed.surface,
-        frame=placed.frame,
+        hexahedron=np.zeros((0, 8), np.int32) if free is None else free,
+        cell=tuple(cell.tolist()),
+        surface=surface,
+        frame=frame,
     )
 
 
