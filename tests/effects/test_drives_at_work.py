@@ -254,6 +254,19 @@ def test_a_paddle_makes_waves_and_the_ledger_closes(prepared, model):
         assert max(found["waves"] for found, _ in middle) > 0.02 and max(crest for _, crest in middle) > 0.205
 
 
+@pytest.mark.parametrize(("elasticity", "model"), [("rigid", "surface"), ("1 MPa", "surface"), ("1 MPa", "paper")])
+def test_driven_objects_go_through_planes(prepared, elasticity, model):
+    """A plate that is driven into the ground neither gives way nor is pushed, whatever it is made of; what lies there is."""
+    block = (
+        "object block { shape box (6, 6, 6) cm position (0, 40, 4) cm density 500 elasticity 1 MPa velocity (0, 0, -1) m/s }\n"
+    )
+    down = plate("drive velocity (0, 0, -0.5) m/s").replace("elasticity 1 MPa", f"elasticity {elasticity}")
+    text = "ground z -5 cm\n" + down + block + f"control {{ time 0.2 s contact-model {model} }}\n"
+    ready = prepared(text)
+    most = followed(ready, [0.12, 0.2], lambda i: (abs(ledger_of(i)["work"]), i.array("v")[-1, 2]))
+    assert max(work for work, _ in most) == 0.0 and most[-1][1] > 0.5
+
+
 def test_what_is_driven_is_not_a_load(prepared):
     """A plate that is driven above a ball does not weigh on it, and bears loads itself without one of its own."""
     lid = plate("drive velocity (0.1, 0, 0) m/s").replace("object plate", "object lid").replace("(0, 0, -2) cm", "(0, 0, 30) cm")

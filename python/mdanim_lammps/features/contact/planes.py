@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ...effects.context import Verdict
+from ...effects.context import Context, Verdict
 from ...effects.fields import column
 from ...errors import Problem
 from ...model.planes import Plane, innermost
@@ -94,7 +94,8 @@ class BarrierPlanes(Planes):
 
     def commands(self, context):
         region = f"region {self.fix} {self.sides.region(context.scene)}"
-        return [region, f"fix {self.fix} {context.pushed} mdanim/wall {self.fix} d_stiffness"]
+        groups, pushed = yielding(context, context.pushed)
+        return [region, *groups, f"fix {self.fix} {pushed} mdanim/wall {self.fix} d_stiffness"]
 
     def warnings(self, context):
         scene = context.scene
@@ -121,3 +122,12 @@ class BarrierPlanes(Planes):
         # A wall does not move, so D_i alone bounds it, without the factor 2 of a pair.
         system = context.system
         return np.where(system.held, 0.0, particle_stiffness(context.scene, system) / system.mass)
+
+
+def yielding(context: Context, of: str) -> tuple[list[str], str]:
+    """Commands that make the group of what planes push on, and its name: those of the group ``of``, but for objects that are held
+    as a whole and driven. Neither these nor planes give way, so they go through each other."""
+    stubborn = np.flatnonzero(context.system.held_whole & context.system.driven) + 1
+    if not len(stubborn):
+        return [], of
+    return [f"group through molecule {' '.join(map(str, stubborn))}", f"group yielding subtract {of} through"], "yielding"

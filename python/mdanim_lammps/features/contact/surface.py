@@ -24,7 +24,7 @@ from ...scene.scene import Box, SceneRecord
 from .barrier import GAP, ObjectContact, barrier, barrier_rate, excluded
 from .forms import particle_stiffness
 from .pairs import USUAL_DAMPING, any_friction, damping, frictions, pair_rules
-from .planes import STIFFNESS, BarrierPlanes, Planes, Sides
+from .planes import STIFFNESS, BarrierPlanes, Planes, Sides, yielding
 from .resting import one_sided
 from .rigid_surfaces import moduli, spread_mobility
 
@@ -89,7 +89,8 @@ class SurfaceLaw:
         if damping(scene) != USUAL_DAMPING:
             words.append(f"damping {damping(scene)!r}")
         words += [f"except {group}" for _, group in settled(context, planes=bool(self.plane))]
-        return ["group solid type 1:8", " ".join([*words, "among solid", touched])]
+        groups, among = yielding(context, "solid") if self.plane else ([], "solid")
+        return ["group solid type 1:8", *groups, " ".join([*words, f"among {among}", touched])]
 
     def rubs(self, scene: SceneRecord) -> bool:
         """Whether some contact may have friction."""
