@@ -26,9 +26,11 @@ LONG = {
     "bowling": (0.25, False),
     "hammock": (0.2, True),
     "paddle": (1.1, True),
+    "buggy": (0.5, False),
     "pile": (0.5, False),
     "spiral": (0.8, False),
     "wake": (1.2, True),
+    "wrecking": (0.4, False),
 }
 """Scenes of ten seconds and more, up to when they are always run [s], and whether what is expected of the end holds then already;
 to their end they are run with `make soak`."""

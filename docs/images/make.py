@@ -61,6 +61,11 @@ PICTURES = {
     "pegs": 0.7,
     "hammock": 2.0,
     "bridge": 2.0,
+    "pendulums": 1.4,
+    "crank": 0.3,
+    "seesaw": 0.7,
+    "buggy": 1.9,
+    "wrecking": 1.2,
 }
 """Scene and the moment to show [s]."""
 STEPS = {"falls": 0.0, "stands": 1.0, "pushed": 0.27, "rolls": 0.5, "splashes": 0.4, "show": 0.3}

@@ -200,3 +200,12 @@ control { time 1 s }
 """
     corners = [one.load for one in strengths(prepared(text).context) if one.second is None]
     np.testing.assert_allclose(corners, 9 * 1000 * 4 / 3 * np.pi * 8e-6 * 9.81 / 4, rtol=1e-9)
+
+
+def test_a_start_that_tears_a_joint_is_warned_of(prepared):
+    """A rod that turns about its hinge does not; one that flies off does."""
+    turns = ROD.replace("rigid", "rigid spin (0, 2, 0) rad/s velocity (0, 0, -0.1) m/s")
+    assert not prepared(turns + "joint hinge rod world { at (-0.05, 0, 1) m axis (0, 1, 0) }\n" + END).warnings
+    flies = ROD.replace("rigid", "rigid velocity (0, 0, 3) m/s")
+    told = prepared(flies + "joint hinge rod world { at (-0.05, 0, 1) m axis (0, 1, 0) }\n" + END).warnings
+    assert "moves apart at 3 m/s at the start" in str(told[0].message)

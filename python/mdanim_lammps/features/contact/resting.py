@@ -39,14 +39,15 @@ class Slope(NamedTuple):
 def frictionless(envelope: Envelope) -> list[Problem]:
     """Note that objects will slide, once, where some may come to rest and nothing has friction."""
     scene, system = envelope.scene, envelope.system
-    if any_friction(scene) or envelope.reach.acting.changes or envelope.reach.g <= 0.0 or not envelope.reach.moving.any():
+    free = envelope.reach.moving & ~envelope.reach.acting.joined
+    if any_friction(scene) or envelope.reach.acting.changes or envelope.reach.g <= 0.0 or not free.any():
         return []
-    sinks = (envelope.reach.moving & (envelope.reach.weight_left > 0.0)).any()
+    sinks = (free & (envelope.reach.weight_left > 0.0)).any()
     if not any(sinks or p.effect != "basin" for p in floors(envelope)):
         low, high = system.bounds(system.position)
         holding = np.logical_or.reduceat(system.held, system.first[:-1])
         met = any(e.keeps_apart for e in envelope.on) and holding.any()
-        if not met or low[holding, 2].min() >= high[envelope.reach.moving, 2].max():
+        if not met or low[holding, 2].min() >= high[free, 2].max():
             return []
     paper = scene.control.contact_model is ContactModel.PAPER
     hint = f"write friction 0.5 in control{' in place of contact-model paper' if paper else ''}"

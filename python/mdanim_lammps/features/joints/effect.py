@@ -11,10 +11,12 @@ from ...effects.context import Context, Verdict
 from ...effects.effect import Effect
 from ...effects.margin import Margin
 from ...errors import Problem
+from ...model.shapes import radius
 from ...scene.formatting import number, say
 from .links import NOTHING, Link, links_of
 from .measure import unmeasured
 from .place import misplaced
+from .preload import torn
 from .rows import joint_field, rows_of_joints
 from .strength import GAP, Strength, Sums, strengths
 from .table import joints_text
@@ -23,6 +25,8 @@ HEAT, WORK = "joint_heat", "work"
 """Columns of the ledger."""
 RESOLVED = 120
 """Steps in a period of a spring: leap-frog makes it too short by 1e-4, and its energy varies by 7e-4."""
+TORN = 0.01
+"""Part of the largest speed at the start, at which a joint may be drawn apart there."""
 SHOWS = 4.0
 """Times the gap of a joint between rigid objects, from which on it is worth a warning."""
 
@@ -105,6 +109,26 @@ class Joints(Effect):
 
     def problems(self, resolved, models, grid):
         return [*misplaced(resolved.scene, models), *unmeasured(resolved.scene)]
+
+    def warnings(self, context):
+        """Objects that move against their joints at the start: the worst."""
+        speeds = [(torn(context, one), one) for one in strengths(context)]
+        if not speeds:
+            return []
+        speed, worst = max(speeds, key=lambda found: found[0])
+        fastest = max(math.hypot(*s.velocity) + math.hypot(*s.spin) * radius(s.shape) for s in context.scene.solids)
+        if speed <= TORN * fastest:
+            return []
+        names = [context.scene.solids[m].name for m in (worst.link.first, worst.link.named) if m != NOTHING]
+        return [
+            Problem(
+                worst.link.joint.spans.get("joint"),
+                f"joint {worst.link.joint.words}: what it holds together moves apart at {say(speed, 'm/s')} at the start, which "
+                "begins with a blow",
+                f"write a velocity and a spin of {' and '.join(names)} that belong together",
+                severity="warning",
+            )
+        ]
 
     def margins(self, envelope):
         found = [one for one in strengths(envelope.context) if not one.swings]

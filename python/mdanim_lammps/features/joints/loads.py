@@ -11,7 +11,7 @@ from scipy.sparse.linalg import spsolve
 
 from ...effects.context import Context
 from ...model.shapes import radius
-from ...scene import units
+from ...scene.units import magnitude
 from .links import NOTHING, Link, Links, parts
 
 LOAD = 4.0
@@ -24,7 +24,7 @@ def loads(context: Context, links: Links) -> list[tuple[float, float]]:
     The objects that hang together are nodes, joints the springs of a net, all alike; what never moves is its ground. The weights
     flow to the ground along them: in a tree each joint bears what hangs on it, in a net they share. Where nothing holds the
     objects, half of all their weight is taken for each joint. The most is LOAD times the weights, and the forces that keep
-    objects on their way at the start or by motors: m v^2/r.
+    objects on their way at the start, m v^2/r, or drive the heavier one of a joint about as fast as motors turn, m w^2 r.
     """
     if not links.all:
         return []
@@ -47,10 +47,19 @@ def loads(context: Context, links: Links) -> list[tuple[float, float]]:
             rest[numbers], most[numbers] = _flow(part, [ends[n] for n in numbers], weights)
         else:
             rest[numbers], most[numbers] = 0.5 * weights.sum(axis=1)
+        if driven := max(_drives(context, links.all[n]) for n in numbers):
+            most[numbers] += driven * np.array([max(mass[m] for m in ends[n]) for n in numbers])
     for n, link in enumerate(links.all):
         if (motor := link.joint.motor) is not None and motor.most is not None:
             most[n] += motor.most if link.joint.kind == "slider" else motor.most / _size(context, links.all[n])
     return list(zip(rest.tolist(), most.tolist()))
+
+
+def _drives(context: Context, link: Link) -> float:
+    """Acceleration that the motor of a hinge gives to what hangs together with it, w^2 r [m/s^2]."""
+    if link.joint.motor is None or link.joint.kind != "hinge":
+        return 0.0
+    return magnitude(link.joint.motor.speed) ** 2 * _size(context, link)
 
 
 def _flow(part: list[int], ends: list[list[int]], weights: np.ndarray) -> np.ndarray:
@@ -74,7 +83,7 @@ def _flow(part: list[int], ends: list[list[int]], weights: np.ndarray) -> np.nda
 
 
 def _accelerations(context: Context, links: Links) -> np.ndarray:
-    """v^2/r of each object by its motion at the start, and w^2 r by motors [m/s^2], shape (M,)."""
+    """v^2/r of each object by its motion at the start [m/s^2], shape (M,)."""
     scene = context.scene
     found = np.zeros(len(scene.solids))
     for link in links.all:
@@ -84,9 +93,6 @@ def _accelerations(context: Context, links: Links) -> np.ndarray:
             solid = scene.solids[m]
             r = max(radius(solid.shape), math.dist(solid.position, point))
             speed = math.hypot(*solid.velocity) + math.hypot(*solid.spin) * r
-            motor = link.joint.motor
-            if motor is not None and link.joint.kind == "hinge":
-                speed = max(speed, abs(units.magnitude(motor.speed)) * r)
             found[m] = max(found[m], speed**2 / r)
     return found
 

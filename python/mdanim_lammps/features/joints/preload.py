@@ -20,7 +20,8 @@ from scipy.sparse import coo_array, diags_array
 from scipy.sparse.linalg import spsolve
 
 from ...effects.context import Context
-from .ends import JointEnd, directions_of, unit
+from .ends import JointEnd, directions_of, skew, unit
+from .links import NOTHING
 
 if TYPE_CHECKING:
     from .strength import Strength
@@ -86,6 +87,23 @@ def preloads(context: Context, joints: Sequence[Strength]) -> np.ndarray:
     return found
 
 
+def torn(context: Context, one: Strength) -> float:
+    """Speed at which what a joint holds together moves apart at the start [m/s]: points, and directions one arm long."""
+
+    def motion(m: int) -> tuple[np.ndarray, np.ndarray]:
+        if m == NOTHING:
+            return np.zeros(3), np.zeros(3)
+        solid = context.scene.solids[m]
+        arm = np.subtract(one.link.begin if m == one.link.first else one.link.end, solid.position)
+        return np.array(solid.velocity) + skew(np.array(solid.spin)) @ arm, np.array(solid.spin)
+
+    (v, w), (u, s) = motion(one.link.first), motion(one.link.second)
+    return max(
+        (abs(float(along @ (w - s))) * one.arm if turns else abs(float(along @ (v - u))) for along, turns in _rows(one)),
+        default=0.0,
+    )
+
+
 def _rows(one: Strength) -> list[tuple[np.ndarray, bool]]:
     """Directions in which a joint holds its point, and about which it holds its objects."""
     link = one.link
@@ -108,12 +126,13 @@ def _across(axis: np.ndarray) -> list[np.ndarray]:
 
 def _motion(body: JointEnd, along: np.ndarray, turns: bool) -> np.ndarray:
     """Part of the six motions of a body along a direction, or about it."""
-    return np.concatenate([np.zeros(3), along] if turns else [along, np.cross(body.d, along)])
+    return np.concatenate([np.zeros(3), along] if turns else [along, skew(body.d) @ along])
 
 
 def _turning(body: JointEnd, along: np.ndarray, turns: bool, spin: np.ndarray) -> float:
     """Acceleration of its point along a direction because it turns."""
-    return 0.0 if turns else float(along @ np.cross(spin, np.cross(spin, body.d)))
+    around = skew(spin)
+    return 0.0 if turns else float(along @ around @ around @ body.d)
 
 
 def _add_springs(joints: Sequence[Strength], number: dict[int, int], inverse: dict[int, np.ndarray], free: np.ndarray) -> None:
