@@ -23,13 +23,17 @@ LIMIT = 1800
 
 
 class Step:
-    """bench/step.py: whole steps against stock LAMMPS."""
+    """bench/step.py: whole steps against stock LAMMPS, and against the limits of one core."""
+
+    IN_CACHE = 100_000
+    """Particles, of 100 bytes each, that caches hold."""
 
     @staticmethod
     def measure(rounds: int, quick: bool) -> list[dict]:
+        import limits
         import step
 
-        rows = []
+        rows, (machines,) = [], limits.measure()
         for title, text in list(step.SCENES.items())[: 1 if quick else None]:
             found = step.measure(text, rounds)
             samples = {name: Sample(tuple(values)) for name, values in found["ns"].items()}
@@ -43,6 +47,9 @@ class Step:
                     "median": s.median,
                     "least": s.least,
                     "faster": {k: 1.0 / r for k, r in s.over(base).items()},
+                    "limits": limits.of_scene(
+                        machines, found["springs"] / found["particles"], found["particles"] < Step.IN_CACHE
+                    ),
                 }
                 for name, s in samples.items()
             ]
@@ -59,6 +66,9 @@ class Step:
                 "minimum",
                 "times as fast as stock, medians",
                 "minima",
+                "minimum over the limit of roots",
+                "of loads and stores",
+                "binds",
             ],
             [
                 (
@@ -69,6 +79,9 @@ class Step:
                     r["least"],
                     r["faster"]["medians"],
                     r["faster"]["minima"],
+                    r["least"] / r["limits"]["roots"],
+                    r["least"] / r["limits"]["loads and stores"],
+                    max(r["limits"], key=r["limits"].get),
                 )
                 for r in rows
             ],

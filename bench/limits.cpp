@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // Limits of this machine, on one core: bandwidth of a triad in memory and in cache, throughput of square root
-// and division. Prints JSON. Built by bench/limits.py with -O3 -march=native.
+// and division, and of the loads and stores of a spring. Prints JSON. Built by bench/limits.py with -O3 -march=native.
 
 #include <algorithm>
 #include <chrono>
@@ -50,8 +50,30 @@ static double divider()
   return 1e9 * seconds / n / repeats;
 }
 
+// ns of eight loads and three stores of a double, in vectors and in the nearest cache: a pass loads three coordinates, three sums
+// of forces and two coefficients for a spring, and stores three sums.
+static double moves()
+{
+  const size_t n = 256, row = 288;    // no two rows are 4096 bytes apart, or nearly
+  const int repeats = 1000;
+  std::vector<double> rows(8 * row, 1e-9);
+  double *const r = rows.data();
+  const double seconds = least(100, [&] {
+    for (int k = 0; k < repeats; ++k) {
+#pragma GCC ivdep
+      for (size_t i = 0; i < n; ++i) {
+        r[i] -= r[3 * row + i] + r[4 * row + i];
+        r[row + i] -= r[5 * row + i] + r[6 * row + i];
+        r[2 * row + i] -= r[7 * row + i];
+      }
+      asm volatile("" : : "r"(r) : "memory");
+    }
+  });
+  return 1e9 * seconds / n / repeats;
+}
+
 int main()
 {
-  std::printf("{\"triad_memory\": %.4g, \"triad_cache\": %.4g, \"divider\": %.4g}\n", triad(size_t(8) << 20, 1),
-              triad(24 << 10, 300), divider());
+  std::printf("{\"triad_memory\": %.4g, \"triad_cache\": %.4g, \"divider\": %.4g, \"moves\": %.4g}\n", triad(size_t(8) << 20, 1),
+              triad(24 << 10, 300), divider(), moves());
 }

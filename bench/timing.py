@@ -72,10 +72,13 @@ def print_tables(tables: Mapping[str, Callable[[], tuple[Sequence[str], Iterable
 
 def machine() -> str:
     """Processor and load, in a line."""
-    cpu = next(
-        (line.split(":")[1].strip() for line in Path("/proc/cpuinfo").read_text().splitlines() if line.startswith("model name")),
-        platform.processor(),
-    )
+    told: dict[str, str] = {}
+    for line in Path("/proc/cpuinfo").read_text().splitlines():
+        name, _, value = line.partition(":")
+        told.setdefault(name.strip(), value.strip())
+    cpu = told.get("model name", platform.processor())
+    if "model" in told:  # names of virtual machines do not say which generation
+        cpu += f" (family {told['cpu family']}, model {told['model']})"
     busy = os.getloadavg()[0] / os.cpu_count()
     return f"{cpu}, {os.cpu_count()} cores; load at the start {busy:.1f} per core" + (
         ": **a busy machine, so read ratios and minima**" if busy > 0.3 else ""
