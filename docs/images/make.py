@@ -55,6 +55,7 @@ PICTURES = {
     "blocks": 1.0,
     "barge": 4.5,
     "tops": 0.5,
+    "marbles": 1.6,
     "shaker": 1.34,
     "conveyor": 1.7,
     "paddle": 1.67,

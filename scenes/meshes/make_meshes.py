@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """Make the meshes of the scenes: duck.ply, a plump bath duck of smoothly joined ellipsoids, contoured and thinned out;
-boat.stl, an open hull, and bottle.stl, of rings of points; stone.stl, a wedge of an arch; chute.stl, a spiral of half a pipe;
+boat.stl, an open hull, and bottle.stl, of rings of points; stone.stl, a wedge of an arch;
 barge.stl, a box without a lid.
 
 Run ``python make_meshes.py`` in this folder; needs only what mdanim-lammps needs. Units are centimetres.
@@ -111,32 +111,6 @@ def stone() -> pyvista.PolyData:
     return _of_faces(points, [(3, 2, 1, 0), (4, 5, 6, 7), *((k, (k + 1) % 4, (k + 1) % 4 + 4, k + 4) for k in range(4))])
 
 
-WIDE, PIPE, WALL = 24.0, 2.4, 0.6
-"""Radius of the spiral, inner radius of its pipe, thickness of that [cm]."""
-TURNS, DROP, STATIONS, ARC = 2, 14.0, 60, 8
-"""Turns, the way down in one of them [cm], sections in a turn, points of half a circle less one."""
-
-
-def chute() -> pyvista.PolyData:
-    """The spiral as a closed triangle mesh [cm], around z: half a pipe, open above, which goes down and around."""
-    across = np.pi * np.arange(ARC + 1)[::-1] / ARC
-    arc = -np.stack([np.cos(across), np.sin(across)], axis=1)
-    section = np.concatenate([(PIPE + WALL) * arc, PIPE * arc[::-1]])  # outside from rim to rim, and back inside
-    turn = 2.0 * np.pi * np.arange(TURNS * STATIONS + 1) / STATIONS
-    out = np.stack([np.cos(turn), np.sin(turn), 0.0 * turn], axis=1)
-    middle = WIDE * out - np.outer(DROP * turn / (2.0 * np.pi), (0, 0, 1))
-    points = middle[:, None] + section[:, :1] * out[:, None] + section[:, 1:] * np.array((0, 0, 1))
-    many, last, around = len(section), len(turn) - 1, 2 * ARC + 1
-    sides = [
-        (k * many + i, k * many + (i + 1) % many, (k + 1) * many + (i + 1) % many, (k + 1) * many + i)
-        for k in range(last)
-        for i in range(many)
-    ]
-    ends = [(i, around - i, around - i - 1, i + 1) for i in range(ARC)]
-    far = [tuple(last * many + k for k in reversed(end)) for end in ends]
-    return _of_faces(points.reshape(-1, 3), [*sides, *ends, *far])
-
-
 BARGE = np.array([120.0, 60.0, 30.0])
 """Length, width and height of the barge [cm]; its rim lies at z = 0."""
 PLANK = 9.0
@@ -166,7 +140,7 @@ def _distance(points: np.ndarray, centre: np.ndarray, half: np.ndarray) -> np.nd
 
 
 if __name__ == "__main__":
-    for make in (duck, boat, bottle, stone, chute, barge):
+    for make in (duck, boat, bottle, stone, barge):
         mesh = make()
         colored = "RGB" in mesh.point_data
         path = Path(__file__).with_name(make.__name__ + (".ply" if colored else ".stl"))
