@@ -27,7 +27,7 @@ APART = {
         "36*k + 4": "44*k + 5",
     }
 }
-"""What is other in both forms of a scene, whose objects start in each other by a few millimetres: rigid ones may not."""
+"""Changes in both forms of a scene, whose objects start in each other by a few millimetres: rigid ones may not."""
 NAMES = (
     *("dominoes", "tower", "cards", "plates", "henge", "quake", "spin", "race", "cradle", "billiard", "pile"),
     *("splash", "float"),

@@ -12,7 +12,7 @@ from scipy.spatial import ConvexHull
 CELL = 0.24
 """Distance of objects at the start [m]; the ball around each is smaller."""
 KINDS = ("fall", "fall", "fall", "bin", "stack", "space", "space", "pool")
-"""What scenes are like, by turns: onto the ground; into a bin; stacks that are struck; without gravity; into a liquid."""
+"""Kinds of scenes, by turns: onto the ground; into a bin; stacks that are struck; without gravity; into a liquid."""
 
 
 def scene(seed: int, folder: Path) -> tuple[str, str]:
