@@ -60,7 +60,7 @@ bool LatticeField::look_at(std::size_t q, const ContactArrays &arrays, bool may_
     }
     track.cell = cell, track.X = middle;
   }
-  if (stays_away(q, x, search, by_splines)) return false;
+  if (body.is_cuboid() && stays_away(q, x, search, by_splines)) return false;
   Spot<double> spot;
   Vec3 X, normal;
   const Vec3 shift = owner->shift_of(near[q], arrays.place());

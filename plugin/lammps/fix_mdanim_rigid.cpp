@@ -68,22 +68,13 @@ void FixMdanimRigid::tell_numbers()
       if (present[n] > 0) all += (bodies[n].*energy)();
     return force->mvv2e * all;
   };
-  const TouchAccount &account = touching.contact.account;
-  tell({{"bodies", true, [this] { return static_cast<double>(bodies.size()); }},
-        {"translation", true, [total] { return total(&RigidBody::translation); }},
-        {"rotation", true, [total] { return total(&RigidBody::rotation); }},
-        clock(),
-        {"contact", true, [&, this] { return force->mvv2e * account.energy; }},
-        {"friction_heat", true, [&, this] { return force->mvv2e * account.heat; }},
-        {"damping_loss", true, [&, this] { return force->mvv2e * account.damped; }},
-        {"let_go", true, [&, this] { return force->mvv2e * account.let_go; }},
-        {"drag_loss", true, [this] { return force->mvv2e * drag_loss; }},
-        {"deepest", false, [&] { return account.deepest; }},
-        {"touching", true, [&] { return static_cast<double>(account.touching); }},
-        {"near", true, [this] { return static_cast<double>(touching.contact.near_pairs()); }},
-        {"worst_bound", false, [&] { return account.worst_bound; }},
-        {"most_touching", false, [&] { return static_cast<double>(account.most_touching); }},
-        {"work", true, [this] { return force->mvv2e * touching.work; }}});
+  std::vector<mdanim::Output> outputs = {{"bodies", true, [this] { return static_cast<double>(bodies.size()); }},
+                                         {"translation", true, [total] { return total(&RigidBody::translation); }},
+                                         {"rotation", true, [total] { return total(&RigidBody::rotation); }},
+                                         clock(),
+                                         {"drag_loss", true, [this] { return force->mvv2e * drag_loss; }}};
+  for (mdanim::Output &output : touching.outputs()) outputs.push_back(std::move(output));
+  tell(std::move(outputs));
 }
 
 int FixMdanimRigid::setmask() { return INITIAL_INTEGRATE | FINAL_INTEGRATE | PRE_NEIGHBOR; }

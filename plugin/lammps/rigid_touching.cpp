@@ -7,6 +7,7 @@
 
 #include "error.h"
 #include "fmt/format.h"
+#include "force.h"
 #include "lammps.h"
 #include "modify.h"
 #include "update.h"
@@ -24,6 +25,22 @@ using namespace LAMMPS_NS;
 namespace mdanim {
 
 static const char *const STYLE = "fix mdanim/rigid";
+
+std::vector<Output> RigidTouching::outputs()
+{
+  const TouchAccount &account = contact.account;
+  const double &mvv2e = lmp->force->mvv2e;
+  return {{"contact", true, [&] { return mvv2e * account.energy; }},
+          {"friction_heat", true, [&] { return mvv2e * account.heat; }},
+          {"damping_loss", true, [&] { return mvv2e * account.damped; }},
+          {"let_go", true, [&] { return mvv2e * account.let_go; }},
+          {"deepest", false, [&] { return account.deepest; }},
+          {"touching", true, [&] { return static_cast<double>(account.touching); }},
+          {"near", true, [this] { return static_cast<double>(contact.near_pairs()); }},
+          {"worst_bound", false, [&] { return account.worst_bound; }},
+          {"most_touching", false, [&] { return static_cast<double>(account.most_touching); }},
+          {"work", true, [&, this] { return mvv2e * work; }}};
+}
 
 // --- the command ---
 

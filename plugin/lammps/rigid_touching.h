@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include "lammps/fix_base.h"
 #include "lammps/keywords.h"
 #include "lammps/object_table.h"
 #include "records/byte_reader.h"
@@ -36,6 +37,9 @@ class RigidTouching {
   // Refuses words that do not belong together, and shapes that contact does not know on each other.
   void check() const;
   bool is_on() const { return contact.settings.objects || !contact.settings.planes.empty(); }
+
+  // What the fix tells of contact.
+  std::vector<Output> outputs();
 
   // Looks up the fix that drives some of the shapes, if there is one; to be called before each run. `fix` begins messages.
   void init(const std::string &fix);

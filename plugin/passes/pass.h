@@ -102,6 +102,12 @@ struct ImmersedRows {
   double top_of_near;    // below it the speed of what is LISTED counts
 };
 
+struct PassAcceleration {
+  double now[3];     // [velocity/time]
+  double both[3];    // the sum of this one and that of the last step,
+  bool works;        // if its work is asked for
+};
+
 struct Pass {
   const Block *block;
   const Entry *entry;
@@ -116,11 +122,9 @@ struct Pass {
   const Range *range;
   const Crossing *crossing;
   const Entry *crossing_entry;
-  double *crossed;           // what crossing springs do to their lower particles: rows of (3, lanes), (6, lanes) with dashpots
-  unsigned turn;             // number of the pass
-  double gravity[3];         // [velocity/time],
-  double pull[3];            // and the sum of this one and that of the last step,
-  bool pulls;                // if its work is asked for
+  double *crossed;    // what crossing springs do to their lower particles: rows of (3, lanes), (6, lanes) with dashpots
+  unsigned turn;      // number of the pass
+  PassAcceleration gravity;
   double *external_force;    // rows of forces from elsewhere, (3, lanes) each, to be added after gravity; zero after a pass:
   int force_providers;       // so many in a row for a block that has any
   Friction friction;

@@ -149,7 +149,8 @@ template <bool DAMPED> MDANIM_ALWAYS_INLINE void add_up(const Pass &pass, const 
   const int i = block.start;
   const double *const motion = pass.motion + static_cast<unsigned long>(block.motion) * (MOTIONS * LANES);
   const Vector mass = load(motion + MASS * LANES), others = load(motion + FOREIGN_LANE * LANES);
-  const Vector3 received = load(f, i), gravity{mass * pass.gravity[0], mass * pass.gravity[1], mass * pass.gravity[2]};
+  const Vector3 received = load(f, i),
+                gravity{mass * pass.gravity.now[0], mass * pass.gravity.now[1], mass * pass.gravity.now[2]};
   store(f, i, others * received);
   store_own(total, (received + felt.springs) + gravity);
   if (DAMPED) {
@@ -233,9 +234,10 @@ MDANIM_ALWAYS_INLINE void advance(const Pass &pass, const Block &block, const do
   tally.squares += square;
   if (block.chunk != tally.chunk) tally.turn_to_chunk(block.chunk, pass);
   if (pass.bends) add_lanes(tally.sums.bend, dt * dot(last, f));
-  if (__builtin_expect(pass.pulls, 0)) {
+  if (__builtin_expect(pass.gravity.works, 0)) {
     const Vector mass = load(motion + OWNED_LANE * LANES) * load(motion + MASS * LANES);
-    add_lanes(tally.sums.pulled, mass * (pass.pull[0] * first.x + pass.pull[1] * first.y + pass.pull[2] * first.z));
+    add_lanes(tally.sums.pulled,
+              mass * (pass.gravity.both[0] * first.x + pass.gravity.both[1] * first.y + pass.gravity.both[2] * first.z));
   }
   if (DAMPED && block.damped) account(pass, block, motion, load_own(total + 3 * LANES), first, last, tally.sums.dashpots);
   if constexpr (FRICTION != Friction::NONE) {    // 0 in lanes of others

@@ -43,8 +43,8 @@ PassRun::PassRun(SimdBlocks &blocks, const Kernels &kernels, const Threads &thre
   look = !crew.late.empty() ||
          std::any_of(of_early.begin(), of_early.end(), [](const auto &particles) { return !particles.empty(); });
   blocks.fill(pass, atoms.f);
-  pass.pulls = crew.gravity && !crew.gravity->steady();
-  if (crew.gravity && !pass.pulls) set_gravity();
+  pass.gravity.works = crew.gravity && !crew.gravity->steady();
+  if (crew.gravity && !pass.gravity.works) set_gravity();
   pass.trace = crew.integrator->trace_rows();
   chunk_sums.resize(blocks.chunks());
   pass.sums = chunk_sums.data();
@@ -53,9 +53,9 @@ PassRun::PassRun(SimdBlocks &blocks, const Kernels &kernels, const Threads &thre
 
 void PassRun::set_gravity()
 {
-  const Vec3 both = pass.pulls ? crew.gravity->turn_to_step() : Vec3{}, &g = crew.gravity->acceleration();
-  pass.gravity[0] = g.x, pass.gravity[1] = g.y, pass.gravity[2] = g.z;
-  pass.pull[0] = both.x, pass.pull[1] = both.y, pass.pull[2] = both.z;
+  const Vec3 both = pass.gravity.works ? crew.gravity->turn_to_step() : Vec3{}, &g = crew.gravity->acceleration();
+  pass.gravity.now[0] = g.x, pass.gravity.now[1] = g.y, pass.gravity.now[2] = g.z;
+  pass.gravity.both[0] = both.x, pass.gravity.both[1] = both.y, pass.gravity.both[2] = both.z;
 }
 
 void PassRun::hold_back()
@@ -81,7 +81,7 @@ void PassRun::step(long long next, const std::function<void(bool at_end)> &late)
     blocks.hold_back(wanted, true);
   }
   early_participants_turn();
-  if (pass.pulls) set_gravity();
+  if (pass.gravity.works) set_gravity();
   double all = 0.0;
   pass.bends = crew.integrator->tells_of(next);
   pass.looks = crew.integrator->looks();
@@ -94,7 +94,7 @@ void PassRun::step(long long next, const std::function<void(bool at_end)> &late)
   const double pulling = crew.gravity ? OF_GRAVITY * all : 0.0, lifting = share_of_liquid * all;
   crew.integrator->moved(sums.final_loss, sums.first_loss, sums.bend, pass.largest_phi, moving);
   if (crew.gravity) crew.gravity->took(pulling);
-  if (pass.pulls) crew.gravity->worked(sums.pulled + pulled_at_held_back());
+  if (pass.gravity.works) crew.gravity->worked(sums.pulled + pulled_at_held_back());
   if (crew.liquid) crew.liquid->acted(sums.liquid_work, sums.liquid_lost, pass.fastest_near, lifting);
   crew.springs->took(all - moving - pulling - lifting);
   if (!crew.late.empty()) {
@@ -110,7 +110,8 @@ double PassRun::pulled_at_held_back()
   const std::vector<int> &waiting = blocks.held_back();
   if (!waiting.empty()) blocks.give_out_held_back(threads, atoms.x, atoms.v);
   double sum = 0.0;
-  for (const int i : waiting) sum += crew.gravity->pulled(i) * dot({pass.pull[0], pass.pull[1], pass.pull[2]}, vec3(atoms.v[i]));
+  for (const int i : waiting)
+    sum += crew.gravity->pulled(i) * dot({pass.gravity.both[0], pass.gravity.both[1], pass.gravity.both[2]}, vec3(atoms.v[i]));
   return sum;
 }
 

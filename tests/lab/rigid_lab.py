@@ -194,7 +194,7 @@ class World:
 
 
 NAMES = (
-    *("bodies", "translation", "rotation", "seconds", "contact", "friction_heat", "damping_loss", "let_go", "drag_loss"),
+    *("bodies", "translation", "rotation", "seconds", "drag_loss", "contact", "friction_heat", "damping_loss", "let_go"),
     *("deepest", "touching", "near", "worst_bound", "most_touching"),
 )
 

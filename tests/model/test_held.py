@@ -8,6 +8,7 @@ from mdanim_lammps.model import build_models
 from mdanim_lammps.model.system import assemble
 from mdanim_lammps.scene.scene import Box, HoldAll, Sphere
 from model_samples import SHAPES, rotation, scene, shape_id, solid
+from paths import MESHES
 
 PLACE = (3.0, -2.0, 1.5)
 
@@ -63,11 +64,12 @@ def test_equal_ones_share_their_surface():
     assert system.contact_bodies[0].carried.tolist() == [0.0] * 8
 
 
-def test_what_is_moved_or_lies_in_a_liquid_has_its_lattice():
-    """Driven ones, and those of a scene in which particles inside act."""
+def test_what_lies_in_a_liquid_has_its_lattice():
+    """All of a scene in which particles inside act; a driven one alone is a box as others are."""
     made = scene(solid(Box((1.0, 1.0, 1.0)), hold=(HoldAll(),)), resolution=0.1)
     assert len(build_models(made)[0].position) == 8
-    assert len(build_models(made, driven={0})[0].position) == 11**3
+    assert len(build_models(made, driven={0})[0].position) == 8
+    assert len(build_models(made, driven={0}, inside=True)[0].position) == 11**3
     assert len(build_models(made, inside=True)[0].position) == 11**3
 
 
@@ -76,7 +78,9 @@ object floor { shape box (100, 100, 1) cm  position (0, 0, -0.005) m  density 10
 object ball { shape sphere 5 cm  position (0, 0, 0.06) m  mass 1 kg  elasticity rigid  velocity (0, 0, -10) m/s }
 control { time 0.1 s }
 """
-RING = "object ring { shape torus 10 cm 3 cm  position (3, 0, 3) m  density 500  elasticity rigid }\n"
+BARBELL = (
+    f'object barbell {{ shape mesh "{MESHES}/dumbbell.obj" scale 0.1  position (3, 0, 3) m  density 500  elasticity rigid }}\n'
+)
 
 
 @pytest.mark.parametrize("how", ["elasticity rigid", "elasticity 10 kPa"])
@@ -95,8 +99,8 @@ def test_features_alone_need_neither_inside_nor_surface(prepared, how):
 
 
 def test_points_of_a_surface_are_as_far_apart_as_the_spacing(prepared):
-    """A torus has no features: it meets the plate at points of both surfaces, and a resolution sets them."""
+    """A mesh that is not convex has no features: it meets the plate at points of both surfaces, and a resolution sets them."""
     with pytest.raises(SceneError, match="floor: thinner than the spacing allows"):
-        prepared(PLATE.replace("HOW", "elasticity rigid  resolution 1 m") + RING)
-    ready = prepared(PLATE.replace("HOW", "elasticity rigid  resolution 1 cm") + RING)
+        prepared(PLATE.replace("HOW", "elasticity rigid  resolution 1 m") + BARBELL)
+    ready = prepared(PLATE.replace("HOW", "elasticity rigid  resolution 1 cm") + BARBELL)
     assert np.diff(ready.system.first)[0] == 8 and len(ready.context.models[0].surface.triangle) == 2 * (2 * 100**2 + 4 * 100)

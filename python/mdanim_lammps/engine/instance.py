@@ -95,6 +95,8 @@ class Instance:
                 what, count = f"take {len(plan.bonds)} springs", ctypes.c_int(len(plan.bonds))
                 self.lammps.call(what, "mdanim_give_springs", count, *springs)
             lmp.commands_list([f"bond_coeff {row}" for row in bond_coeffs(plan)])
+        if self._comm:  # before there are fixes, which would take what is shorter along rows for the places of objects
+            self.particles.cut_space(plan.system.position)
         threads = asked_threads() or choose_threads(plan, share_of_cores(self._comm)).threads
         with tempfile.TemporaryDirectory(prefix="mdanim-") if plan.tables else nullcontext("") as folder:
             for name, text in plan.tables.items():  # the first rank reads them for all
@@ -104,7 +106,6 @@ class Instance:
             for kind, body in plan.contact_bodies.items():
                 self.lammps.call(f"give body {kind} to fix {fix}", "mdanim_contact_body", fix, *body_arguments(kind, body))
         if self._comm:
-            self.particles.cut_space(plan.system.position)
             lmp.command(BALANCE[1])
         # The springs' energy is all that is asked for; while there is a compute of the pressure, their virial is worked
         # out with it.

@@ -14,6 +14,7 @@ from mdanim_lammps.results.checkpoint import Checkpoint
 from mdanim_lammps.results.compare import compare
 from mdanim_lammps.results.dump import read_dump
 from mdanim_lammps.results.ledger import Ledger
+from paths import MESHES
 
 pytestmark = pytest.mark.mpi
 
@@ -28,10 +29,11 @@ SCENE = f"""gravity (0, 0, -9.81) m/s^2
 ground z 0 m
 {PAIRS}
 object soft {{ shape box (10, 10, 10) cm  position (150, 0, 6) cm  density 1000  elasticity 200 kPa }}
-object slab {{ shape cylinder 4 cm 8 cm  position (150, 0, 16) cm  density 1000  elasticity rigid  velocity (0, 0, -1) m/s }}
+object barbell {{ shape mesh "{MESHES}/dumbbell.obj" scale 0.02  position (150, 0, 16) cm
+  density 1000  elasticity rigid  velocity (0, 0, -1) m/s }}
 control {{ time 0.1 s  frames 100 fps  friction 0.5  resolution 2.5 cm }}
 """
-"""Two pairs by features, a cylinder on something soft by surfaces; the first box flies to the second pair."""
+"""Two pairs by features, a mesh that is not convex on something soft by surfaces; the first box flies to the second pair."""
 
 
 def records(folder) -> dict:
