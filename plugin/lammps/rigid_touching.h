@@ -38,7 +38,7 @@ class RigidTouching {
   void check() const;
   bool is_on() const { return contact.settings.objects || !contact.settings.planes.empty(); }
 
-  // What the fix tells of contact.
+  // Outputs of the fix that are of contact.
   std::vector<Output> outputs();
 
   // Looks up the fix that drives some of the shapes, if there is one; to be called before each run. `fix` begins messages.

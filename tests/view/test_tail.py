@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What follows the folder of a run, without a page."""
+"""The view follows the folder of a run, here without a page."""
 
 import pytest
 from mdanim_lammps import Scene
