@@ -154,7 +154,7 @@ def forms() -> None:
 
 
 def cost() -> None:
-    """Wall seconds of a step for each joint."""
+    """Processor time of a joint in a step: that of the process, by the share that the fix has of the wall time."""
     for text, name in ((CHAIN, "chain of 20"), *((NET.format(n=n), f"net of {2 * n * (n + 1) + 4} joints") for n in (10, 70))):
         began = time.perf_counter()
         with tempfile.TemporaryDirectory() as folder:
@@ -165,9 +165,13 @@ def cost() -> None:
         joints, steps = len(ready.plan.tables["joints"].splitlines()) - 1, 200
         with Instance(ready.plan) as instance:
             instance.setup()
-            before, began = instance.fix_seconds("joints"), time.perf_counter()
-            instance.run(steps)
-            took, all_of_it = instance.fix_seconds("joints") - before, time.perf_counter() - began
+            tries = []
+            for _ in range(5):
+                before, began, own = instance.fix_seconds("joints"), time.perf_counter(), time.process_time()
+                instance.run(steps)
+                wall, own = time.perf_counter() - began, time.process_time() - own
+                tries.append((own * (instance.fix_seconds("joints") - before) / wall, own))
+            took, all_of_it = np.min(tries, axis=0)
         print(
             f"{name}: {1e6 * took / steps / joints:.2f} us a joint and step, all of the step {1e3 * all_of_it / steps:.2f} ms, "
             f"modelling {made:.1f} s, time step {1e6 * ready.certificate.timestep:.0f} us",

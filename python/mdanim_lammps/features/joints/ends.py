@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -10,6 +12,9 @@ import numpy as np
 
 from .links import Link
 from .patches import Patch
+
+ALIKE = 1e-9
+"""Part of the mobilities of both directions across an axis, by which they differ at least where one is taken."""
 
 
 @dataclass(frozen=True)
@@ -42,14 +47,12 @@ class JointEnd:
             return float(np.einsum("ni,ij,nj->n", directions, self.patch.inverse, directions).max(initial=0.0))
         return self._largest(spin(directions)) if len(directions) else 0.0
 
-    def about(self, axis: np.ndarray) -> float:
-        """Mobility about an axis [1/(kg m^2)]."""
+    def about(self, axis: np.ndarray, across: np.ndarray) -> float:
+        """Mobility of the angle about an axis [1/(kg m^2)]: of what deforms, that of the direction across it which a servo
+        turns."""
         if self.patch is None:
             return self._largest(np.concatenate([np.zeros(3), axis])[None])
-        across = np.cross(axis, np.eye(3)[np.abs(axis).argmin()])
-        across /= np.linalg.norm(across)
-        moment = sum(float(e @ np.linalg.pinv(self.patch.inverse, hermitian=True) @ e) for e in (across, np.cross(axis, across)))
-        return 1.0 / moment
+        return float(across @ self.patch.inverse @ across)
 
     def _largest(self, rows: np.ndarray) -> float:
         return float(np.linalg.eigvalsh(rows @ self.root @ self.root @ rows.T)[-1])
@@ -81,3 +84,15 @@ def directions_of(link: Link) -> np.ndarray:
     if link.joint.kind == "hinge":
         return unit(link.axis)[None]
     return np.eye(3) if link.joint.kind in ("weld", "slider") else np.zeros((0, 3))
+
+
+def across(axis: np.ndarray, inverses: Sequence[np.ndarray]) -> np.ndarray:
+    """The direction across an axis that is hardest to turn in all ends, on which the servo of a hinge acts; ``inverses`` are
+    their S^-1 [1/(kg m^2)], each of shape (3, 3)."""
+    u = unit(np.cross(axis, np.eye(3)[np.abs(axis).argmin()]))
+    v = np.cross(axis, u)
+    net = sum(inverses, np.zeros((3, 3)))
+    uu, vv, uv = (float(a @ net @ b) for a, b in ((u, u), (v, v), (u, v)))
+    least = 0.5 * (uu + vv) - math.hypot(0.5 * (uu - vv), uv)
+    found = -uv * u + (uu - least) * v if abs(uu - least) > abs(vv - least) else (vv - least) * u - uv * v
+    return unit(found) if np.linalg.norm(found) > ALIKE * (uu + vv) else u

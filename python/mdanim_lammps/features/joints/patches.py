@@ -64,16 +64,16 @@ class Patch:
         return self.mass * (self.arm @ self.inverse @ along)
 
 
-def patch_of(system: System, m: int, point: np.ndarray) -> Patch:
-    """The patch of an object around a point: as small as has three dimensions, or all of the object; of a line of particles the
-    two nearest ones, and a third one that is as near as the second."""
+def patch_of(system: System, m: int, point: np.ndarray, least: float = 0.0) -> Patch:
+    """The patch of an object around a point: as small as has three dimensions and a radius of `least` [m], or all of the object;
+    of a line of particles the two nearest ones, and a third one that is as near as the second."""
     rows = np.arange(system.first[m], system.first[m + 1])
     place, mass = system.position[rows], system.mass[rows]
     away, h = np.linalg.norm(place - point, axis=1), float(system.spacing[m])
     if system.lines[m]:
         radius = float(np.sort(away)[1]) + 0.1 * h
         return _patch(rows, mass, place, away <= radius, radius)
-    radius = max(NEAR * h, float(away.min()) + MORE * h)
+    radius = max(NEAR * h, float(away.min()) + MORE * h, least)
     while radius < away.max():
         near = away <= radius
         if _dimensions(place[near]) == 3:
@@ -82,6 +82,12 @@ def patch_of(system: System, m: int, point: np.ndarray) -> Patch:
     else:
         near, radius = np.ones(len(rows), bool), ALL
     return _patch(rows, mass, place, near, radius)
+
+
+def whole(system: System, m: int) -> Patch:
+    """All of an object."""
+    rows = np.arange(system.first[m], system.first[m + 1])
+    return _patch(rows, system.mass[rows], system.position[rows], np.ones(len(rows), bool), ALL)
 
 
 def _patch(rows: np.ndarray, mass: np.ndarray, place: np.ndarray, near: np.ndarray, radius: float) -> Patch:

@@ -19,10 +19,10 @@ from ...effects.context import Context
 from ...model.shapes import thickness
 from ...reach import Reach
 from ...scene import units
-from .ends import JointEnd, directions_of, lever, spin, unit
+from .ends import JointEnd, across, directions_of, lever, spin, unit
 from .links import NOTHING, Link, links_of
 from .loads import loads
-from .patches import Patch, patch_of
+from .patches import Patch, patch_of, whole
 from .preload import preloads
 
 GAP = 0.005
@@ -51,6 +51,8 @@ class Strength:
     """L: what is held against turning has the stiffness k L^2 [m]; 0 of what holds no direction."""
     servo: tuple[float, float]
     """Stiffness and damping of motor, friction and stops."""
+    across: np.ndarray
+    """Direction across the axis of a hinge that the servo turns, shape (3,); zeros of all else."""
     load: float
     """Weight that hangs on it at rest [N]."""
     thin: float
@@ -100,12 +102,13 @@ class Strength:
             for body, share in zip(bodies, self.shares([b.turning(n) for b in bodies])):
                 rate.turning(body, n, share * k * ll, share * self.damping * ll)
         if self.servo[0] and axis is not None:
+            servo = servos(self.link) * self.servo[0]
             if self.link.joint.kind == "hinge":
-                for body, share in zip(bodies, self.shares([b.about(axis) for b in bodies])):
-                    rate.about(body, axis, share * self.servo[0])
+                for body, share in zip(bodies, self.shares([b.about(axis, self.across) for b in bodies])):
+                    rate.about(body, axis, self.across, share * servo)
             else:
                 for body, share in zip(bodies, self.shares([b.mobility for b in bodies])):
-                    rate.point(body, body.d, share * self.servo[0], 0.0)
+                    rate.point(body, body.d, share * servo, 0.0)
 
 
 class Sums:
@@ -129,11 +132,11 @@ class Sums:
             for e in directions:
                 self._particles(body.patch, body.patch.of_direction(e), k, c)
 
-    def about(self, body: JointEnd, axis: np.ndarray, k: float) -> None:
+    def about(self, body: JointEnd, axis: np.ndarray, turned: np.ndarray, k: float) -> None:
         if body.patch is None:
             self._rigid(body, np.concatenate([np.zeros(3), axis])[None], k, 0.0)
         else:
-            self.rate[body.patch.rows] += k * body.about(axis)
+            self._particles(body.patch, body.patch.of_direction(turned), k, 0.0)
 
     def _rigid(self, body: JointEnd, rows: np.ndarray, k: float, c: float) -> None:
         _, stiff, drag = self.bodies.setdefault(body.object, (body, np.zeros((6, 6)), np.zeros((6, 6))))
@@ -157,11 +160,23 @@ class Sums:
 
 def slide(link: Link, bodies: list[JointEnd]) -> float:
     """How far a slider may get from its start [m]: its limits, or the sizes of what it joins."""
+    if math.isfinite(rail := _rail(link)):
+        return rail
+    return max(float(np.linalg.norm(b.d)) + (b.patch.size if b.patch else 0.0) for b in bodies)
+
+
+def servos(link: Link) -> int:
+    """How many springs of its servo a joint has: motor, friction and stops have one each."""
+    joint = link.joint
+    return sum(one is not None for one in (joint.motor, joint.friction, joint.limits))
+
+
+def _rail(link: Link) -> float:
+    """Distance from the point of a joint within which it holds on to what deforms, at least [m]: the way of a slider, all of a
+    body without limits. A patch that ends before the way does turns over under what slides there."""
     if link.joint.kind != "slider":
         return 0.0
-    if link.joint.limits is not None:
-        return max(abs(units.magnitude(x)) for x in link.joint.limits)
-    return max(float(np.linalg.norm(b.d)) + (b.patch.size if b.patch else 0.0) for b in bodies)
+    return math.inf if link.joint.limits is None else max(abs(units.magnitude(x)) for x in link.joint.limits)
 
 
 def strengths(context: Context) -> list[Strength]:
@@ -178,12 +193,12 @@ def _find(context: Context) -> list[Strength]:
     roots: dict[int, np.ndarray] = {}
     thin = [thickness(solid.shape) for solid in scene.solids]
 
-    def body(m: int, point) -> JointEnd | None:
+    def body(m: int, point, rail: float) -> JointEnd | None:
         if m == NOTHING or system.held[system.first[m] : system.first[m + 1]].all():
             return None
         at = np.array(point, float)
         if not system.rigid[m]:
-            patch = patch_of(system, m, at)
+            patch = patch_of(system, m, at, rail)
             return JointEnd(m, at - patch.centre, patch, np.zeros((0, 0)))
         if m not in roots:
             values, axes = np.linalg.eigh(system.inertia[m])
@@ -194,7 +209,8 @@ def _find(context: Context) -> list[Strength]:
 
     found = []
     for link, (load, most) in zip(links.all, pull):
-        first, second = body(link.first, link.begin), body(link.second, link.end)
+        rail = _rail(link)
+        first, second = body(link.first, link.begin, rail), body(link.second, link.end, rail)
         if first is None:  # held, and driven
             first, second = second, None
         if first is None:
@@ -219,7 +235,10 @@ def _strength(context: Context, link: Link, first: JointEnd, second: JointEnd | 
         usual = 0.0
     c = usual if joint.damping is None else joint.damping
     arm = _arm(link, bodies, mobility)
-    return Strength(link, first, second, k, c, arm, _servo(link, bodies, k, mobility), load, min(sides), np.zeros(6))
+    turned = _turned(context, link, bodies)
+    return Strength(
+        link, first, second, k, c, arm, _servo(link, bodies, turned, k, mobility), turned, load, min(sides), np.zeros(6)
+    )
 
 
 def _of_material(context: Context, m: int) -> float:
@@ -239,11 +258,19 @@ def _arm(link: Link, bodies: list[JointEnd], mobility: float) -> float:
     return min(longest, most) if longest > 0.25 * most else 0.5 * most
 
 
-def _servo(link: Link, bodies: list[JointEnd], k: float, mobility: float) -> tuple[float, float]:
+def _turned(context: Context, link: Link, bodies: list[JointEnd]) -> np.ndarray:
+    """The direction that the servo of a hinge turns, as the fix chooses it from the particles that each end holds on to."""
+    if link.joint.kind != "hinge":
+        return np.zeros(3)
+    patches = {body.object: body.patch.inverse for body in bodies if body.patch is not None}
+    ends = [m for m in (link.first, link.second) if m != NOTHING]
+    return across(unit(link.axis), [patches[m] if m in patches else whole(context.reach.system, m).inverse for m in ends])
+
+
+def _servo(link: Link, bodies: list[JointEnd], turned: np.ndarray, k: float, mobility: float) -> tuple[float, float]:
     """Spring and dashpot of motor, friction and stops: of the frequency of the gap, and critically damped."""
-    joint = link.joint
-    if joint.motor is None and joint.friction is None and joint.limits is None:
+    if not servos(link):
         return 0.0, 0.0
-    own = sum(b.about(unit(link.axis)) for b in bodies) if joint.kind == "hinge" else mobility
+    own = sum(b.about(unit(link.axis), turned) for b in bodies) if link.joint.kind == "hinge" else mobility
     stiff = k * mobility / own
     return stiff, 2.0 * math.sqrt(stiff / own)
