@@ -206,6 +206,31 @@ control {{ time 1 s }}
     assert watched.residual() < 1e-4
 
 
+@pytest.mark.parametrize("most", [8, 30])
+def test_check_tells_the_gap_of_a_slider_at_the_end_of_its_way(prepared, most):
+    """It holds a part of 25 cm by a longer lever there, with K over the ratio of the mobilities 1/M + d.S^-1 d of its points."""
+    text = f"""gravity (0, 0, -9.81) m/s^2
+object base {{ shape box (0.1, 0.15, 0.25) m position (0, 0, 3) m density 300 elasticity 1 MPa }}
+object block {{ shape box (0.2, 0.2, 0.2) m position (0.15, 0, 3) m density 7800 elasticity rigid }}
+joint weld base world {{ at (0, 0, 3) m stiffness 1e8 N/m }}
+joint slider block base {{ at (0.05, 0, 3) m axis (0, 0, 1) limits {-most} cm to {most} cm }}
+control {{ time 1 s accuracy preview }}
+"""
+    ready = prepared(text)
+    words = ready.plan.tables["joints"].splitlines()[2].split()
+    k, radius = float(words[words.index("stiffness") + 1]), words[words.index("patch") + 2]
+    system, at = ready.system, np.array([0.05, 0.0, 3.0])
+    near = (system.object == 0) & (np.linalg.norm(system.position - at, axis=1) <= (np.inf if radius == "all" else float(radius)))
+    centre = np.average(system.position[near], axis=0, weights=system.mass[near])
+    place, mass = system.position[near] - centre, system.mass[near]
+    inverse = np.linalg.inv(np.einsum("p,pi,pj->ij", mass, place, place))
+    own = 1.0 / (7800 * 0.2**3) * (1.0 + 0.1**2 / (0.2**2 / 6.0))
+    start, end = (own + 1.0 / mass.sum() + d @ inverse @ d for d in (at - centre, at - centre + [0.0, 0.0, most / 100.0]))
+    gap = next(m for m in ready.certificate.margins if m.name == "joint gap")
+    assert gap.value == pytest.approx(7800 * 0.2**3 * G / k * end / start, rel=1e-3)
+    assert "at the end of its way" in gap.text
+
+
 @pytest.mark.parametrize(
     ("more", "springs"), [("", 1), (" friction 0.5 N*m", 2), (" friction 0.5 N*m limits -1 rad to 1 rad", 3)]
 )

@@ -137,7 +137,8 @@ class Joints(Effect):
         worst = max(found, key=lambda one: one.gap / one.thin)
         joint, most = worst.link.joint, SHOWS * GAP * worst.thin
         name = envelope.scene.solids[worst.link.first].name
-        stiffness = worst.load / (GAP * worst.thin)
+        stiffness = worst.load * worst.softening / (GAP * worst.thin)
+        where = " at the end of its way" if worst.softening > 1.0 else ""
         return [
             Margin(
                 "joint gap",
@@ -145,8 +146,8 @@ class Joints(Effect):
                 worst.gap,
                 most,
                 "m",
-                f"joint {joint.words} opens by {say(worst.gap, 'm')} under {say(worst.load, 'N')}, what hangs on it at rest: "
-                f"{number(100.0 * worst.gap / worst.thin, 2)} % of the thinnest part of what it joins",
+                f"joint {joint.words} opens by {say(worst.gap, 'm')}{where} under {say(worst.load, 'N')}, what hangs on it at "
+                f"rest: {number(100.0 * worst.gap / worst.thin, 2)} % of the thinnest part of what it joins",
                 joint.spans.get("stiffness") or joint.spans.get("joint"),
                 "warning" if worst.gap > most else "ok",
                 hint=f"write stiffness {number(stiffness, 2)} N/m in it",

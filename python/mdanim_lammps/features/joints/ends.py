@@ -37,9 +37,13 @@ class JointEnd:
     @cached_property
     def mobility(self) -> float:
         """Largest one of its point [1/kg]."""
+        return self.mobility_at(self.d)
+
+    def mobility_at(self, d: np.ndarray) -> float:
+        """Largest one of a point that is at d [m] [1/kg]."""
         if self.patch is not None:
-            return float(1.0 / self.patch.total + self.d @ self.patch.inverse @ self.d)
-        return self._largest(lever(self.d))
+            return float(1.0 / self.patch.total + d @ self.patch.inverse @ d)
+        return self._largest(lever(d))
 
     def turning(self, directions: np.ndarray) -> float:
         """Largest mobility of directions that go with it, shape (n, 3) [1/(kg m^2)]."""

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from functools import cached_property
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -81,8 +82,19 @@ class Strength:
 
     @property
     def gap(self) -> float:
-        """How far it opens by what hangs on it at rest [m]."""
-        return self.load / self.stiffness
+        """How far it opens by what hangs on it at rest, of a slider at that end of its way where it is softer [m]."""
+        return self.load * self.softening / self.stiffness
+
+    @cached_property
+    def softening(self) -> float:
+        """Gap of a slider at the softer end of its way over that at the start, under the same load: it holds its second object
+        there by a longer lever, at the rate that it has at the start. 1 of all else."""
+        way, base = slide(self.link, self.bodies), [b for b in self.bodies if b.object == self.link.second]
+        if way == 0.0 or not base:
+            return 1.0
+        start = sum(b.mobility for b in self.bodies)
+        ends = (base[0].mobility_at(base[0].d + q * unit(self.link.axis)) for q in (-way, way))
+        return max(1.0, 1.0 + (max(ends) - base[0].mobility) / start)
 
     def shares(self, mobilities: list[float]) -> list[float]:
         """s of each end."""
