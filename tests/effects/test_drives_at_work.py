@@ -61,17 +61,19 @@ def test_all_drives_add_up(prepared):
         np.testing.assert_allclose(x, TWIN.places(start, round(time / dt) * dt), rtol=0, atol=1e-14)
 
 
-@pytest.mark.parametrize("drive", [
-    ALL, *ALL.replace("  drive", "\n  drive").replace("  key", "\n  key").splitlines()[:5],
-    "drive turn (0, 0, 0.3) rad/s about (2, 0, 0) m", "key 0.2 s at (0, 0, 0) cm axis (1, 1, 0) angle 90 deg",
+@pytest.mark.parametrize(("drive", "time"), [
+    *((drive, 0.4) for drive in [ALL, *ALL.replace("  drive", "\n  drive").replace("  key", "\n  key").splitlines()[:5]]),
+    ("drive turn (0, 0, 0.3) rad/s about (2, 0, 0) m", 0.4), ("key 0.2 s at (0, 0, 0) cm axis (1, 1, 0) angle 90 deg", 0.4),
+    ("drive turn (5, -5, 0) rad/s  key 10 s at (1, 1, 1) m", 10.0),
+    ("drive turn (1, 1, 1) rad/s about (1, 0, 0) m  key 5 s at (1, -2, 1) m  key 10 s at (-1, 1, 0) m", 10.0),
 ])  # fmt: skip
-def test_bounds_hold_and_are_near(drive):
+def test_bounds_hold_and_are_near(drive, time):
     """Ways of all corners, and their speeds, at many times: within the bounds, which are no more than four times as wide."""
     if not drive.strip():
         return
-    scene = parse_scene(plate(drive) + "control { time 0.4 s }\n")
+    scene = parse_scene(plate(drive) + f"control {{ time {time} s }}\n")
     solid = scene.solids[0]
-    found = motion.bounds(solid, 0.4)
+    found = motion.bounds(solid, time)
     start = motion._corners(solid)
     rate, about = motion.turn_of(solid)
     twin = Motion(
@@ -82,8 +84,8 @@ def test_bounds_hold_and_are_near(drive):
         pivot=solid.position,
         keys=[(key.time, np.subtract(key.at, solid.position), key.rotation) for key in motion.keys_of(solid)],
     )
-    x = np.array([twin.places(start, t) for t in np.linspace(0.0, 0.4, 2001)])
-    way, speed = x - start, np.linalg.norm(np.diff(x, axis=0), axis=2).max() / (0.4 / 2000)
+    x = np.array([twin.places(start, t) for t in np.linspace(0.0, time, 2001)])
+    way, speed = x - start, np.linalg.norm(np.diff(x, axis=0), axis=2).max() / (time / 2000)
     box = (x - start).min((0, 1)), (x - start).max((0, 1))
     corner = x.min((0, 1)) - start.min(0), x.max((0, 1)) - start.max(0)  # of the box around all places
     assert (np.array(found.low) <= corner[0] + 1e-12).all() and (np.array(found.high) >= corner[1] - 1e-12).all()

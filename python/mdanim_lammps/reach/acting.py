@@ -33,7 +33,7 @@ class Drive:
     """Bounds of a motion that an effect gives the held particles of a solid."""
 
     low: tuple[float, float, float]
-    """How far they may go from their places at the start, at least along each axis [m]."""
+    """How far the box around them may reach beyond that at the start, at least along each axis [m]."""
     high: tuple[float, float, float]
     """The same at most [m]."""
     speed: float

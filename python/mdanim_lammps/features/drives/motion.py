@@ -104,7 +104,8 @@ def _is_straight(drive: Any) -> bool:
 
 
 def bounds(solid: Any, time: float) -> Drive:
-    """How far any point of the object may be moved until a time [s], and how fast; never too small.
+    """How far the box around the object may reach beyond that at the start until a time [s], and how fast any point of it may be;
+    never too small. With a turn a point in the box may go farther than the box does.
 
     Along each axis the way of its displacements, and that of its rotations: of a turn no more than the box of the circle of each
     corner, and than the chord of the angle; of keys no more than the chord.
@@ -118,7 +119,7 @@ def bounds(solid: Any, time: float) -> Drive:
     low, high = low - wide, high + wide
     rate, about = turn_of(solid)
     if size := float(np.linalg.norm(rate)):
-        more = wide + float(np.abs([path.low, path.high]).max())  # by which keys move points from where they are at the start
+        more = wide + float(np.linalg.norm(np.maximum(-path.low, path.high)))  # by which keys move points from their first places
         swept = _swept(corner, about, rate / size, size * time, more)
         low, high = low + swept[0], high + swept[1]
         speed += size * (_from_axis(corner - about, rate / size).max() + more)
