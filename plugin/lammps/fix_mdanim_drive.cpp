@@ -25,6 +25,7 @@ using namespace FixConst;
 using namespace mdanim;
 
 static const char *const STYLE = "fix mdanim/drive";
+static constexpr int KEPT = 3;    // numbers in restart files
 
 // --- the command ---
 
@@ -111,7 +112,7 @@ void FixMdanimDrive::init()
     error->all(FLERR, "{}: the time step has changed from {} to {}, and places would jump; define the fix anew", name(),
                dt_before, update->dt);
   dt_before = update->dt;
-  found_at = -1;
+  found_at.reset();
 }
 
 // --- motion ---
@@ -122,7 +123,7 @@ double FixMdanimDrive::time(bigint step) const { return static_cast<double>(step
 void FixMdanimDrive::find_ways()
 {
   if (found_at == update->ntimestep) return;
-  const bool follows = found_at + 1 == update->ntimestep;
+  const bool follows = found_at && *found_at + 1 == update->ntimestep;
   for (const auto &[molecule, motion] : motions) {
     Ways &one = ways_now[molecule];
     one.before = follows ? one.now : motion.at(time(update->ntimestep - 1));
@@ -219,7 +220,7 @@ void FixMdanimDrive::end_of_step()
 
 void FixMdanimDrive::write_restart(FILE *file)
 {
-  const double all = sum(work), list[2] = {static_cast<double>(since), all};
+  const double all = sum(work), list[KEPT] = {static_cast<double>(since), all, dt_before};
   if (comm->me != 0) return;
   const int size = sizeof list;
   fwrite(&size, sizeof(int), 1, file);
@@ -228,8 +229,9 @@ void FixMdanimDrive::write_restart(FILE *file)
 
 void FixMdanimDrive::restart(char *buffer)
 {
-  double list[2];
+  double list[KEPT];
   std::memcpy(list, buffer, sizeof list);
   since = static_cast<bigint>(list[0]);
   work = comm->me == 0 ? list[1] : 0.0;
+  dt_before = list[2];
 }

@@ -7,6 +7,7 @@
 #include "lammps/fix_base.h"
 
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -52,7 +53,7 @@ class FixMdanimDrive : public mdanim::FixBase {
   bool of_objects = false;                        // whether motions are those of molecules; else there is one, of molecule 0
   std::map<int, mdanim::DrivenMotion> motions;    // by molecule IDs
   std::map<int, Ways> ways_now;
-  bigint found_at = -1;    // step of `ways_now`
+  std::optional<bigint> found_at;    // step of `ways_now`
   int last_molecule = -1;
   const Ways *last_ways = nullptr;
   std::string home_name, own_home;    // the property with the places at the start; the fix that we made for it, or none

@@ -60,6 +60,29 @@ def test_the_setup_sets_the_same_velocities(tmp_path):
     lmp.close()
 
 
+@pytest.mark.parametrize("since", [0, -50])
+def test_a_run_of_no_step_changes_nothing(tmp_path, since):
+    """At the setup of step 0 velocities are those of whole steps, as at any other; work counts from there."""
+    motion = MOTIONS["all at once"]
+    found = []
+    for first in ([], ["run 0"], ["run 0", "run 4"]):
+        commands = [LOOSE, "fix g all mdanim/gravity 0.5 0 -9.81", *drive(f"since {since} {motion.words()}"), *first]
+        lmp = lab.load(BLOCK, tmp_path, [*commands, f"run {10 - 4 * (len(first) == 2)}"])
+        found.append((lab.by_tag(lmp, "v"), lab.by_tag(lmp, "x"), lmp.extract_fix("drive", 0, 1, 0)))
+        lmp.close()
+    for v, x, work in found[1:]:
+        assert np.array_equal(v, found[0][0]) and np.array_equal(x, found[0][1]) and work == found[0][2]
+
+
+def test_velocities_at_step_0(tmp_path):
+    """Mean velocities of the steps before and after it, by the twin."""
+    motion = MOTIONS["all at once"]
+    lmp = lab.load(BLOCK, tmp_path, [LOOSE, *drive(motion.words()), "run 0"])
+    expected = (motion.places(BLOCK.x, DT) - motion.places(BLOCK.x, -DT)) / (2 * DT)
+    np.testing.assert_allclose(lab.by_tag(lmp, "v"), expected, rtol=0, atol=1e-11)
+    lmp.close()
+
+
 def test_work_against_gravity(tmp_path):
     """A force that stays: -F dx, to rounding."""
     motion = MOTIONS["all at once"]
@@ -126,6 +149,25 @@ def test_a_restart_file_carries_it_on(tmp_path):
         again.command(command)
     assert np.array_equal(lab.by_tag(again, "x"), x)
     assert again.extract_fix("drive", 0, 1, 0) == pytest.approx(work, rel=1e-13)
+    again.close()
+
+
+def test_a_restart_file_with_another_time_step_is_refused(tmp_path):
+    """Its steps are not those of the new time step."""
+    lmp = lab.load(BLOCK, tmp_path, [LOOSE, *drive("velocity 1 0 0"), "run 20", f"write_restart {tmp_path}/r"])
+    lmp.close()
+    again = lab.plugin_path.lammps()
+    for command in [
+        "atom_modify map array sort 0 0",
+        "newton off",
+        f"read_restart {tmp_path}/r",
+        "fix model all property/atom rmass",
+    ]:
+        again.command(command)
+    for command in [*drive("velocity 1 0 0"), "timestep 0.001"]:
+        again.command(command)
+    with pytest.raises(Exception, match=r"the time step has changed from 0\.02 to 0\.001"):
+        again.command("run 1")
     again.close()
 
 
