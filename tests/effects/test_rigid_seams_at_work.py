@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """Rigid objects roll and slide from one held slab on to the next, flush one, as over one slab."""
 
+import sys
+from collections import Counter
+
 import numpy as np
 import pytest
 from mdanim_lammps.engine.instance import Instance
@@ -122,3 +125,19 @@ def held(size, at):
 def test_hidden_sides(slabs, expected):
     """By their numbers."""
     assert hidden_sides([held(size, at) for size, at in slabs]) == expected
+
+
+def test_what_overlaps_costs_its_number():
+    """Calls of functions for boxes that are all in each other are in proportion to their number, not to that of their pairs."""
+
+    def calls(count):
+        boxes = [held((4, 4, 4), (0.01 * k, 0, 0)) for k in range(count)]
+        found = Counter()
+        sys.setprofile(lambda frame, event, of: found.update([event]))
+        try:
+            hidden_sides(boxes)
+        finally:
+            sys.setprofile(None)
+        return found["call"]
+
+    assert calls(80) < 2.5 * calls(40)

@@ -50,7 +50,7 @@ def with_covers(models: Sequence[Model], solids: Sequence[Solid]) -> tuple[Model
     found = list(models)
     for n in corners:
         frame, turn = models[n].frame, np.array(solids[n].rotation)
-        others = [(corners[k] - solids[n].position) @ turn for k in sorted(beside[n])]
+        others = (np.array([corners[k] for k in sorted(beside[n])]) - solids[n].position) @ turn
         if len(left := open_parts(frame, others)):
             key = (id(frame), left.tobytes())
             found[n] = replace(models[n], frame=frames.setdefault(key, replace(frame, open=left)))
@@ -85,20 +85,22 @@ def hidden_sides(held: Sequence[Solid]) -> list[tuple[int, ...]] | None:
     for i, j in beside_each_other(held):
         beside.setdefault(i, []).append(j)
         beside.setdefault(j, []).append(i)
+    unit = np.array(list(product((-0.5, 0.5), repeat=3)))
+    corner, thin = np.zeros((len(held), 8, 3)), np.zeros(len(held))
     for n in beside:
-        size, turn = np.array(held[n].shape.size), np.array(held[n].rotation)
-        spacing = 0.25 * min(min(held[k].shape.size) for k in (n, *beside[n]))
+        corner[n] = (unit * held[n].shape.size) @ np.array(held[n].rotation).T + held[n].position
+        thin[n] = min(held[n].shape.size)
+    for n in beside:
+        size, turn, near = np.array(held[n].shape.size), np.array(held[n].rotation), sorted(beside[n])
+        spacing = 0.25 * thin[[n, *near]].min()
         count = np.maximum(1.0, np.rint(size / spacing))
         frame = SimpleNamespace(cells=SimpleNamespace(low=-0.5 * size, count=count, edge=size / count))
-        others = []
-        for k in sorted(beside[n]):
-            corner = (np.array(list(product((-0.5, 0.5), repeat=3))) * held[k].shape.size) @ np.array(held[k].rotation).T
-            others.append((corner + held[k].position - held[n].position) @ turn)
-            low, high = others[-1].min(axis=0), others[-1].max(axis=0)
-            hair = FLUSH * spacing
-            is_along = (np.minimum(others[-1] - low, high - others[-1]) <= hair).all()
-            if not is_along or (np.maximum(low - 0.5 * size, -0.5 * size - high) > hair).any():
-                return None
+        others = (corner[near] - held[n].position) @ turn
+        low, high = others.min(axis=1), others.max(axis=1)
+        hair = FLUSH * spacing
+        is_along = (np.minimum(others - low[:, None], high[:, None] - others) <= hair).all()
+        if not is_along or (np.maximum(low - 0.5 * size, -0.5 * size - high) > hair).any():
+            return None
         rows = open_parts(frame, others)
         if (rows[:, 1:] != NOTHING).any():
             return None
@@ -111,48 +113,46 @@ def _corners(frame: BodyFrame) -> np.ndarray:
     return frame.cells.low + np.array(list(product((0, 1), repeat=3))) * frame.cells.count * frame.cells.edge
 
 
-def open_parts(frame: BodyFrame | SimpleNamespace, others: Sequence[np.ndarray]) -> np.ndarray:
+def open_parts(frame: BodyFrame | SimpleNamespace, others: np.ndarray) -> np.ndarray:
     """The parts of the sides of a cuboid that others leave open, rows as `ContactBody.open`, shape (R, 5).
 
-    ``others`` are the corners of cuboids in the body frame [m], each of shape (8, 3). Those whose axes are not along its own
+    ``others`` are the corners of cuboids in the body frame [m], shape (K, 8, 3). Those whose axes are not along its own
     cover nothing.
     """
     cells = frame.cells
     hair = FLUSH * np.cbrt(cells.edge.prod()) / cells.edge
-    spans = []
-    for corner in others:
-        at = (corner - cells.low) / cells.edge
-        low, high = at.min(axis=0), at.max(axis=0)
-        if (np.minimum(at - low, high - at) <= hair).all():
-            spans.append((low, high))
+    at = (others - cells.low) / cells.edge
+    low, high = at.min(axis=1), at.max(axis=1)
+    is_along = (np.minimum(at - low[:, None], high[:, None] - at) <= hair).all(axis=(1, 2))
+    low, high = low[is_along], high[is_along]
     rows = []
     for side, (axis, end) in enumerate(product(range(3), (0, 1))):
         across = [a for a in range(3) if a != axis]
         layer = end * cells.count[axis] + (2 * end - 1) * hair[axis]  # just outside of the side
-        covers = []
-        for low, high in spans:
-            if low[axis] <= layer <= high[axis]:
-                covers.append((low[across] - hair[across], high[across] + hair[across]))
-        left = _left(covers, cells.count[across].astype(float), hair[across])
+        meets = np.flatnonzero((low[:, axis] <= layer) & (layer <= high[:, axis]))[:, None]
+        covers = low[meets, across] - hair[across], high[meets, across] + hair[across]
+        left = _left(*covers, cells.count[across].astype(float), hair[across])
         if left is not None:
             rows += [(side, *part) for part in left or [NOTHING]]
     return np.round(np.array(rows, float).reshape(-1, 5), DIGITS)
 
 
-def _left(covers: list[tuple[np.ndarray, np.ndarray]], size: np.ndarray, hair: np.ndarray) -> list[tuple[float, ...]] | None:
+def _left(low: np.ndarray, high: np.ndarray, size: np.ndarray, hair: np.ndarray) -> list[tuple[float, ...]] | None:
     """Rectangles that covers leave of a side of this size, shape (2,), and what is around them; None where nothing is covered.
 
-    A cover counts that comes to an edge of the side: what stands in its middle is met from above alone.
+    ``low`` and ``high`` are the ends of the covers, shape (K, 2). A cover counts that comes to an edge of the side: what stands
+    in its middle is met from above alone.
     """
-    left, touched = [(0.0, size[0], 0.0, size[1])], False
-    for low, high in covers:
-        (a, c), (b, d) = np.maximum(low, 0.0), np.minimum(high, size)
-        if (np.array([b - a, d - c]) <= 2.0 * hair).any() or ((low > AROUND) & (high < size - AROUND)).all():
-            continue
-        touched = True
-        left = [part for one in left for part in _without(one, a, b, c, d)]
-    if not touched:
+    start, stop = np.maximum(low, 0.0), np.minimum(high, size)
+    is_inside = ((low > AROUND) & (high < size - AROUND)).all(axis=1)
+    counts = (stop - start > 2.0 * hair).all(axis=1) & ~is_inside
+    if not counts.any():
         return None
+    left = [(0.0, size[0], 0.0, size[1])]
+    for (a, c), (b, d) in zip(start[counts].tolist(), stop[counts].tolist()):
+        left = [part for one in left for part in _without(one, a, b, c, d)]
+        if not left:
+            break
     return [part for one in left for part in _with_around(one, size.tolist())]
 
 
