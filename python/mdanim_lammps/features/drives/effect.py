@@ -5,8 +5,6 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-
 from ...effects.context import Verdict
 from ...effects.effect import Effect
 from ...effects.fields import column
@@ -19,7 +17,7 @@ WORK = "work"
 MOTIONS = "motions"
 """Table of motions."""
 IN_A_PERIOD = 40.0
-"""Steps in a period of an oscillation, and in a turn."""
+"""Steps in a period of an oscillation, and in a turn; the time between two keys is half a period."""
 
 
 class Drives(Effect):
@@ -62,12 +60,9 @@ class Drives(Effect):
 
     def max_timestep(self, context):
         """A part of the shortest period."""
-        found = math.inf
-        for solid in filter(motion.is_driven, context.scene.solids):
-            rate = float(np.linalg.norm(motion.turn_of(solid)[0])) / motion.TURN
-            quickest = max([rate, *(one.frequency for one in motion.oscillations_of(solid))])
-            found = min(found, 1.0 / (IN_A_PERIOD * quickest) if quickest else math.inf)
-        return found
+        time = context.scene.control.time
+        quickest = max((motion.quickest(solid, time) for solid in filter(motion.is_driven, context.scene.solids)), default=0.0)
+        return 1.0 / (IN_A_PERIOD * quickest) if quickest else math.inf
 
     def sources(self, scene):
         return (WORK,)

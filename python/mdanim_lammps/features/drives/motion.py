@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import math
-from itertools import product
+from itertools import pairwise, product
 from typing import Any
 
 import numpy as np
@@ -124,6 +124,15 @@ def bounds(solid: Any, time: float) -> Drive:
         low, high = low + swept[0], high + swept[1]
         speed += size * (_from_axis(corner - about, rate / size).max() + more)
     return Drive(tuple(low.tolist()), tuple(high.tolist()), float(speed), place_of(solid))
+
+
+def quickest(solid: Any, time: float) -> float:
+    """Highest frequency in its motion until a time [s]: of oscillations, of turns by drives and keys, and of keys, which are half
+    a period apart [Hz]."""
+    keys = keys_of(solid)
+    turning = float(np.linalg.norm(turn_of(solid)[0])) + _path(keys, solid.position, time).turning
+    between = [0.5 / (then.time - now.time) for now, then in pairwise(keys) if now.time < time]
+    return max([turning / TURN, *between, *(one.frequency for one in oscillations_of(solid))])
 
 
 def _displaced(solid: Any, time: float) -> tuple[np.ndarray, np.ndarray, float]:
