@@ -311,6 +311,9 @@ def test_driven_objects_go_through_held_ones(prepared):
     (plate("drive oscillation (0, 0, 1) cm frequency 0 Hz"), "the frequency of a drive must be > 0, found 0 Hz", "e.g."),
     (plate("key 2 s at (0, 0, 0) m  key 1 s at (0, 0, 1) m"), "the times of keys must rise, found 1 s after 2 s", "order"),
     (plate("key -2 s at (0, 0, 0) m"), "the time of a key must be >= 0, found -2 s", "begins at 0 s"),
+    (plate("key 1e-300 s at (0, 0, 1) m"), "at least 1e-6 s after the start and after the one before, found 1e-300 s after 0 s",
+     "write the key later"),
+    (plate("key 0.5 s at (0, 0, 1) m  key 0.5000005 s at (0, 0, 0) m"), "found 5e-7 s after 0.5 s", "or leave it out"),
     (plate("key 0 s at (0, 0, 1) m"), "at its position (0, 0, -0.02) m, and this key has it at (0, 0, 1) m", "leave"),
     (plate("key 1 s at (0, 0, 1) m axis (0, 0, 0) angle 1 rad"), "the axis of a key needs a direction, found (0, 0, 0)", "axis"),
 ])  # fmt: skip

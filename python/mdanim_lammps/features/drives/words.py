@@ -14,6 +14,8 @@ SWITCHES = {"drives": "an object's `drive ...` or `key ...`"}
 
 NEAR = 1e-9
 """Distance of two points that are one, over their distance from the origin."""
+LEAST = 1e-6
+"""Time between two keys, and from the start to the first one that is behind it [s]: a step is a part of it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -135,6 +137,10 @@ def _check_keys(v: Any, settings: Any, solid: Any) -> None:
         elif key.time <= last:
             cause = f"the times of keys must rise, found {number(key.time, 6)} s after {number(last, 6)} s"
             v.problem(s.span(0), cause, "write the keys in the order of their times, one for each")
+        elif key.time and (after := key.time - max(last, 0.0)) < LEAST:
+            found = f"{number(after, 6)} s after {number(max(last, 0.0), 6)} s"
+            cause = f"a key must be at least {number(LEAST)} s after the start and after the one before, found {found}"
+            v.problem(s.span(0), cause, "write the key later, or leave it out")
         last = max(last, key.time)
         if key.angle and not 1e-150 < math.hypot(*key.axis) < 1e150:
             v.problem(s.span(2), f"the axis of a key needs a direction, found {vector(key.axis)}", "e.g. axis (0, 0, 1)")
