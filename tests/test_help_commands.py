@@ -67,6 +67,23 @@ def test_every_word_is_explained():
         explain("frction")
 
 
+@pytest.mark.parametrize(
+    ("word", "told"),
+    [
+        *((word, "rope from") for word in ("rope", "chain")),
+        ("string", "explain rope"),
+        ("force", "motor speed 1 m/s force 20 N"),
+        ("torque", "is a word of breaks, motor, and nothing by itself"),
+        *((word, "joint hinge") for word in ("wheel", "axle", "engine", "pendulum", "door", "pulley")),
+        *((word, "drive velocity") for word in ("belt", "conveyor")),
+        *((word, "drive oscillation") for word in ("shake", "vibrate", "wiggle")),
+    ],
+)
+def test_words_of_things_lead_to_what_makes_them(word, told):
+    assert told in explain(word)
+    assert "not in the language" not in explain(word) or word not in ("rope", "chain", "force", "torque")
+
+
 def typos(word):
     """A word with one letter missing, doubled, swapped with the next, or wrong."""
     for k in range(len(word)):
@@ -88,7 +105,7 @@ def test_typos_are_guessed():
             assert edits(typo, word) <= 1
 
 
-@pytest.mark.parametrize("word", ["domino", "unicorn", "table", "water", "jelly", "roughness", "butter"])
+@pytest.mark.parametrize("word", ["domino", "unicorn", "kettle", "water", "jelly", "roughness", "butter"])
 def test_no_guess_that_is_far_off(word):
     """A word that the language does not have, and of which no word is a typo."""
     assert did_you_mean(word, words()) == ""

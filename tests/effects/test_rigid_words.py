@@ -34,6 +34,11 @@ def scene(*objects, more=""):
             "",
             "write friction 0.5 in control, and damping 0.2 in object b: without damping an object that lands keeps hopping",
         ),
+        (
+            ["elasticity rigid hold all drive velocity (1, 0, 0) m/s", "elasticity rigid"],
+            "",
+            "write friction 0.5 in control, or restitution 0.3: without either a rigid object that lands keeps hopping",
+        ),
     ],
 )
 def test_no_damping_is_advised_for_rigid_objects(prepared, objects, control, hint):

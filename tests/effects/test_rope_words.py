@@ -102,8 +102,14 @@ REFUSED = {
     "beside": (
         line() + BOX + "joint ball line box { at (1, 0, 1.004) m }\n",
         "is 4 mm beside the line of line",
-        "write (1, 0, 1) m, where its nearest particle is",
+        "write at (1, 0, 1) m, where its nearest particle is",
     ),
+    "a spring without its end": (
+        line() + BOX + "joint spring box line { from (1, 0, 1) m }\n",
+        "joint spring box line has no to, and the centre of line is",
+        "write to (1, 0, 1) m, where its nearest particle is",
+    ),
+    "no length": (line(SLACK.replace("1.2 m", "0 m")), "L of rope must be > 0, found 0 m", "write L > 0"),
     "in a box": (BOX + line(SLACK.replace("(0, 0, 1)", "(0, 0, 0.1)")), "line starts inside box", "move it"),
 }
 
@@ -114,6 +120,14 @@ def test_what_does_not_fit_is_refused_with_its_place(name):
     text, cause, way_out = REFUSED[name]
     found = problem(text)
     assert found.span is not None and re.search(cause, found.message) and way_out in found.hint, (found.message, found.hint)
+
+
+@pytest.mark.parametrize("joint", ["spring box line { from (0, 0, 0.15) m }", "ball box line { at (0.5, 0, 0.2) m }"])
+def test_a_joint_off_a_rope_is_one_problem(joint):
+    """It does not tell of the same place twice."""
+    with pytest.raises(SceneError) as error:
+        prepare(parse_scene(line() + BOX + f"joint {joint}\n", "odd"))
+    assert ["beside the line" in p.message for p in error.value.problems] == [True]
 
 
 def test_a_group_that_turns_one_end_above_the_other_is_refused():

@@ -80,8 +80,22 @@ expect rod.joint.force(rod) = 3 N
     [
         (
             "joint hinge rod bar " + PLACE + "limits 10 deg to 20 deg }",
-            "limits from 0.175 rad to 0.349 rad do not hold the start",
+            "limits from 0.175 rad to 0.349 rad do not hold the start, which is 0 | it counts from the start, which lies between",
         ),
+        ("joint hinge rod bar " + PLACE + "limits 20 deg to -10 deg }", "which is 0 | the lower one stands first"),
+        (
+            "joint hinge rod bar " + PLACE + "motor speed 1 rad/s torque 2 N }",
+            "M of motor must be a torque, found 2 N, a force | units that fit: N*m",
+        ),
+        (
+            "joint hinge rod bar " + PLACE + "friction 2 kg }",
+            "friction must be a torque or a force, found 2 kg | units that fit: N*m N kN",
+        ),
+        ("joint spring rod bar { length 0 m }", "length must be > 0, found 0 m | e.g. length 20 cm"),
+        ("joint spring rod bar { stiffness 0 N/m }", "stiffness must be > 0, found 0 N/m | e.g. stiffness 2000 N/m"),
+        ("joint spring rod bar { damping -1 }", "damping must be >= 0, found -1 N*s/m | e.g. damping 3 N*s/m"),
+        ("expect rod.joint.angle = 3", "| write joint.angle(world), or in place of world the name of the object"),
+        ("expect rod.joint.torque(world) = 3 N", "rod.joint.torque is a torque, found 3 N, a force | units that fit: N*m"),
         ("joint hinge rod bar " + PLACE + "friction 2 N }", "a hinge has its friction in N*m, found 2 N"),
         ("joint hinge rod bar " + PLACE + "motor speed 1 rad/s force 2 N }", "the motor of a hinge has no force"),
         ("joint hinge rod bar " + PLACE + "motor speed 1 rad/s torque 0 N*m }", "the torque of a motor must be > 0, found 0"),
@@ -109,6 +123,32 @@ def test_places_far_from_what_is_joined_are_refused(prepared):
         prepared(ROD + BAR + "joint ball rod world { }\nexpect rod.joint.force(bar) = 1 N\n" + END)
     with pytest.raises(SceneError, match="no hinge connects rod and world"):
         prepared(ROD + "joint ball rod world { }\nexpect rod.joint.angle(world) = 1\n" + END)
+
+
+def refused(prepared, text: str) -> list[str]:
+    """Ways out of a scene that is read and then refused."""
+    with pytest.raises(SceneError) as error:
+        prepared(text + END)
+    return [p.hint for p in error.value.problems]
+
+
+def test_a_hinge_beside_its_only_object_tells_of_rods_and_springs(prepared):
+    (way_out,) = refused(prepared, ROD + "joint hinge rod world { at (0, 0, 2) m axis (0, 1, 0) }\n")
+    assert "joint spring rod world { from (0, 0, 1) m to (0, 0, 2) m }" in way_out and "joint weld" in way_out
+
+
+def test_what_an_object_is_joined_to_is_advised(prepared):
+    (way_out,) = refused(prepared, ROD + BAR + "joint hinge rod bar " + PLACE + "}\nexpect rod.joint.angle(world) = 0\n")
+    assert way_out == "write rod.joint.angle(bar)"
+
+
+def test_a_joint_that_stands_twice_is_warned_of(prepared):
+    """In either order of its objects and either direction of its axis; not at another place."""
+    once = "joint hinge rod bar " + PLACE + "}\n"
+    twice = once.replace("rod bar", "bar rod").replace("(0, 1, 0)", "(0, -1, 0)")
+    told = prepared(ROD + BAR + once + twice + END).warnings
+    assert ["the same place as joint hinge rod bar" in str(w.message) for w in told] == [True]
+    assert not prepared(ROD + BAR + once + twice.replace("0.05, 0, 1", "0.05, 0.04, 1") + END).warnings
 
 
 def test_names_of_repeats_and_groups():

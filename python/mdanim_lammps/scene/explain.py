@@ -8,7 +8,8 @@ from collections.abc import Iterator
 from ..features import facets
 from . import shapes, units
 from .formatting import say
-from .keywords import BLOCKS, KEYWORDS, NOT_SUPPORTED, STATEMENTS, SYNONYMS, did_you_mean, example
+from .forms import literals
+from .keywords import BLOCKS, KEYWORDS, NOT_SUPPORTED, STATEMENTS, SYNONYMS, all_keywords, did_you_mean, example
 from .limits import LIMITS
 from .scene import QUANTITIES
 from .schema import Keyword, Rule, meaning, syntax, units_shown
@@ -58,7 +59,8 @@ def _entries() -> Iterator[tuple[str, str]]:
         yield name, f"{form}   a statement\n  {_plain(about)}"
     for kind in vars(shapes).values():
         if isinstance(kind, type) and (forms := getattr(kind, "FORMS", ())) and forms[0].split()[0].isalpha():
-            yield forms[0].split()[0], f"{_slots(' | '.join(forms))}\n  {_plain((kind.__doc__ or '').splitlines()[0])}"
+            for name in dict.fromkeys(form.split()[0] for form in forms):
+                yield name, f"{_slots(' | '.join(forms))}\n  {_plain((kind.__doc__ or '').splitlines()[0])}"
     for kind in (k for words in facets("words") for k in getattr(words, "ELASTICITIES", ())):
         for form in kind.FORMS:
             about = kind.ABOUT.replace(f"`{form}`: ", "", 1)
@@ -76,7 +78,9 @@ def _entries() -> Iterator[tuple[str, str]]:
     for name, about in LEDGER.items():
         yield name, f"{name}   a column of ledger.csv\n  {about}"
     for name, instead in NOT_SUPPORTED.items():
-        yield name, f"{name}   is not in the language\n  instead: {_plain(instead)}"
+        within = ", ".join(sorted({k.name for k in all_keywords() if name in literals(k.form)}))
+        alone = f"is a word of {within}, and nothing by itself" if within else "is not in the language"
+        yield name, f"{name}   {alone}\n  instead: {_plain(instead)}"
     for name, shape in SYNONYMS.items():
         yield name, f"{name}   is written as the shape '{shape}': mdanim-lammps explain {shape}"
 

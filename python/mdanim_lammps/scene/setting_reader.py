@@ -21,7 +21,7 @@ from .units import UNITS, unit
 
 TAKEN = {
     "object": ("another object", "(cube)"),
-    "joined": ("another object, or world,", "(world)"),
+    "joined": ("another object, or world,", "(world), or in place of world the name of the object that it is joined to"),
     "place": ("a place (x, y)", "(0.2 m, 0 m)"),
 }
 """Arguments of quantities in words, and an example."""

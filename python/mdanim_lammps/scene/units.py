@@ -131,6 +131,20 @@ def describe(dim: Dim) -> str:
     return NAMES[dim][1] if dim in NAMES else f"a quantity in {symbol(dim)}"
 
 
+TORQUE = "N*m"
+"""SI unit of a torque, which has the dimension of an energy, and is none."""
+
+
+def describe_unit(text: str) -> str:
+    """The dimension of a SI unit in words; of N*m ``a torque``."""
+    return "a torque" if text == TORQUE else describe(unit(text).dim)
+
+
+def fitting(text: str) -> list[str]:
+    """The listed units that measure the same as a SI unit; of N*m itself alone."""
+    return [TORQUE] if text == TORQUE else units_of(unit(text).dim)
+
+
 def units_of(dim: Dim) -> list[str]:
     """The listed units of a dimension, the SI one among them."""
     found = [text for *_, texts in LISTED for text in texts.split() if unit(text).dim == dim]

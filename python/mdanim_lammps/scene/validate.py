@@ -425,8 +425,9 @@ class Validator:
             if units.dimension(x) not in (dim, units.NONE):
                 self.problem(
                     s.span(n),
-                    f"{subject}.{quantity} is {units.describe(dim)}, found {units.show(x)}, {units.describe(units.dimension(x))}",
-                    f"units that fit: {' '.join(units.units_of(dim))}" if dim != units.NONE else "leave out the unit",
+                    f"{subject}.{quantity} is {units.describe_unit(of.unit)}, found {units.show(x)}, "
+                    f"{units.describe(units.dimension(x))}",
+                    f"units that fit: {' '.join(units.fitting(of.unit))}" if dim != units.NONE else "leave out the unit",
                 )
                 return None
             if not math.isfinite(units.magnitude(x)):

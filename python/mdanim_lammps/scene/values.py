@@ -136,8 +136,8 @@ class Evaluator:
             if x.dim != dim:
                 raise Fault(
                     first,
-                    f"{what} must be {units.describe(dim)}, found {_found(s, v, x)}, {units.describe(x.dim)}",
-                    _unit_hint(dim, x.dim),
+                    f"{what} must be {units.describe_unit(v.slot.unit)}, found {_found(s, v, x)}, {units.describe(x.dim)}",
+                    _unit_hint(v.slot.unit, x.dim),
                     last,
                 )
             x = x.value
@@ -148,7 +148,8 @@ class Evaluator:
         if x - x != 0.0:
             raise Fault(first, f"{what} is not a finite number", "a calculation in it overflows", last)
         if rule is not Rule.ANY and not rule.holds(x):
-            raise Fault(first, f"{what} must be {rule.value}, found {_found(s, v, units.quantity(x, dim))}", last=last)
+            way_out = f"write {v.slot.text} {rule.value}" if " | " in s.keyword.form else example(s.keyword)
+            raise Fault(first, f"{what} must be {rule.value}, found {_found(s, v, units.quantity(x, dim))}", way_out, last)
         limit = limit_of(s.keyword, v.slot)
         least = limit.least if rule is Rule.POSITIVE else -limit.most
         if not least <= x <= limit.most:
@@ -167,9 +168,9 @@ class Evaluator:
                 one = replace(v, slot=replace(v.slot, unit=text, dim=units.unit(text).dim))
                 self.number(s, one, x, what, v.first, v.last)
                 return x
-        one, other = (units.unit(text).dim for text in (v.slot.unit, v.slot.other))
-        cause = f"{what} must be {units.describe(one)} or {units.describe(other)}, found {_found(s, v, x)}"
-        raise Fault(v.first, cause, f"units that fit: {' '.join([*units.units_of(one), *units.units_of(other)])}", v.last)
+        one, other = v.slot.unit, v.slot.other
+        cause = f"{what} must be {units.describe_unit(one)} or {units.describe_unit(other)}, found {_found(s, v, x)}"
+        raise Fault(v.first, cause, f"units that fit: {' '.join([*units.fitting(one), *units.fitting(other)])}", v.last)
 
     def _color(self, v: Value, x: str) -> str:
         try:
@@ -225,12 +226,13 @@ def _found(s: SettingNode, v: Value, x) -> str:
     return text if v.node.constant else f"{text} = {units.show(x)}" if v.slot.length == 1 else f"{units.show(x)} in {text}"
 
 
-def _unit_hint(dim: units.Dim, found: units.Dim) -> str:
+def _unit_hint(wanted: str, found: units.Dim) -> str:
+    dim = units.unit(wanted).dim
     if dim == units.NONE:
         return "leave out the unit"
     if dim == units.unit("rad/s").dim and found == units.unit("1/s").dim:
         return "write rad/s or rpm: one turn is 2*pi rad"
-    return f"units that fit: {' '.join(units.units_of(dim))}"
+    return f"units that fit: {' '.join(units.fitting(wanted))}"
 
 
 def kinds(x) -> list:

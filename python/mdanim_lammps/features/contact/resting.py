@@ -39,7 +39,7 @@ class Slope(NamedTuple):
 def frictionless(envelope: Envelope) -> list[Problem]:
     """Note that objects will slide, once, where some may come to rest and nothing has friction."""
     scene, system = envelope.scene, envelope.system
-    free = envelope.reach.moving & ~envelope.reach.acting.joined
+    free = envelope.reach.free & ~envelope.reach.acting.joined
     if any_friction(scene) or envelope.reach.acting.changes or envelope.reach.g <= 0.0 or not free.any():
         return []
     sinks = (free & (envelope.reach.weight_left > 0.0)).any()
@@ -65,9 +65,9 @@ def frictionless(envelope: Envelope) -> list[Problem]:
 def _against_hops(envelope: Envelope) -> str:
     """Addition to a hint, where nothing that moves loses energy in blows: damping of an object that deforms, or restitution."""
     system, scene = envelope.system, envelope.scene
-    if not ((envelope.context.damping_ratio == 0.0) | ~envelope.reach.moving).all():
+    if not ((envelope.context.damping_ratio == 0.0) | ~envelope.reach.free).all():
         return ""
-    if (soft := np.flatnonzero(envelope.reach.moving & ~system.rigid)).size:
+    if (soft := np.flatnonzero(envelope.reach.free & ~system.rigid)).size:
         return f", and damping 0.2 in object {system.names[soft[0]]}: without damping an object that lands keeps hopping"
     given = (scene.control.restitution, *(part.restitution for part in (*scene.solids, *scene.contacts)))
     return (

@@ -15,7 +15,7 @@ from ...model.shapes import radius
 from ...scene.formatting import number, say
 from .links import NOTHING, Link, links_of
 from .measure import unmeasured
-from .place import misplaced
+from .place import doubled, misplaced
 from .preload import torn
 from .rows import joint_field, rows_of_joints
 from .strength import GAP, Strength, Sums, strengths
@@ -111,7 +111,11 @@ class Joints(Effect):
         return [*misplaced(resolved.scene, models), *unmeasured(resolved.scene)]
 
     def warnings(self, context):
-        """Objects that move against their joints at the start: the worst."""
+        """Joints that stand twice; objects that move against their joints at the start: the worst."""
+        return [*doubled(context.scene), *self._torn(context)]
+
+    def _torn(self, context):
+        """The object that moves against its joints at the start more than any other, where one does."""
         speeds = [(torn(context, one), one) for one in strengths(context)]
         if not speeds:
             return []

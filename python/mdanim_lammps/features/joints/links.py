@@ -47,6 +47,8 @@ class Link:
     """The same in the second one; another one only of a spring."""
     axis: Vector | None
     """Axis about which the first one is seen from the second."""
+    swapped: bool = False
+    """Whether the scene names the second object first."""
 
     @property
     def length(self) -> float:
@@ -90,13 +92,14 @@ class Links:
         else:
             begin = end = joint.at or centre
         axis = joint.axis
-        if second != NOTHING and self.still[first] and not self.still[second]:
+        swapped = second != NOTHING and bool(self.still[first]) and not self.still[second]
+        if swapped:
             # A thing that never moves stands second, as the world does. The angle of one seen from the other is that of the other
             # seen from the one about the opposite axis.
             first, second, begin, end = second, first, end, begin
             axis = None if axis is None else tuple(-x for x in axis)
         fixed = second == NOTHING or bool(self.still[second])
-        return Link(number, joint, first, NOTHING if fixed else second, second, begin, end, axis)
+        return Link(number, joint, first, NOTHING if fixed else second, second, begin, end, axis, swapped)
 
     @cached_property
     def pairs(self) -> list[tuple[int, int]]:

@@ -41,8 +41,19 @@ def unmeasured(scene: SceneRecord) -> list[Problem]:
             continue
         kinds = KINDS.get(what, ("joint",))
         cause = f"no {' or '.join(kinds)} connects {e.subject} and {e.argument}"
-        found.append(Problem(e.span, cause, "write the names of what is joined, or another quantity"))
+        others = [other for other in _partners(scene, e.subject) if joint_between(scene, e.subject, other, what) is not None]
+        way_out = (
+            f"write {e.subject}.{e.quantity}({others[0]})" if others else "write the names of what is joined, or another quantity"
+        )
+        found.append(Problem(e.span, cause, way_out))
     return found
+
+
+def _partners(scene: SceneRecord, subject: str) -> list[str]:
+    """Names of what an object is joined to, in the order of joints."""
+    names = {NOTHING: WORLD, **{m: solid.name for m, solid in enumerate(scene.solids)}}
+    ends = [(names[link.first], names[link.named]) for link in links_of(scene).all]
+    return [two if one == subject else one for one, two in ends if subject in (one, two)]
 
 
 def _along(what: str) -> Callable[[Measured, Expect], float]:

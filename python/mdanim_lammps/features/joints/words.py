@@ -14,7 +14,7 @@ from ...scene.formatting import number, say, whole
 from ...scene.naming import objects_by_name
 from ...scene.schema import Block, Codec, Observable, Rule, Vector, Words, setting
 from ...scene.shapes import holds_all
-from ...scene.units import NONE, Scalar, dimension, magnitude, show, unit, units_of
+from ...scene.units import NONE, Scalar, dimension, fitting, magnitude, show, unit
 
 WORLD = "world"
 """Word for what never moves."""
@@ -291,7 +291,7 @@ def _check_units(v: Any, joint: Joint) -> None:
         text, dim = wanted[word], unit(wanted[word]).dim
         if (other := next((value for value in values if dimension(value) not in (NONE, dim)), None)) is not None:
             cause = f"a {joint.kind} has its {word} in {text}, found {show(other)}: {KINDS[joint.kind]}"
-            v.problem(joint.spans[word], cause, f"units that fit: {' '.join(units_of(dim))}")
+            v.problem(joint.spans[word], cause, f"units that fit: {' '.join(fitting(text))}")
     if joint.motor and (joint.motor.force if turns else joint.motor.torque) is not None:
         wrong, right = ("force", "torque 2 N*m") if turns else ("torque", "force 20 N")
         v.problem(joint.spans["motor"], f"the motor of a {joint.kind} has no {wrong}: {KINDS[joint.kind]}", f"write {right}")
@@ -299,8 +299,8 @@ def _check_units(v: Any, joint: Joint) -> None:
         low, high = map(magnitude, joint.limits)
         if not low <= 0.0 <= high or low == high:
             cause = f"limits from {say(low, wanted['limits'])} to {say(high, wanted['limits'])} do not hold the start, which is 0"
-            v.problem(joint.spans["limits"], cause, "the lower one stands first: limits -30 deg to 60 deg" if turns
-                      else "the lower one stands first: limits -10 cm to 20 cm")  # fmt: skip
+            order = "the lower one stands first" if low >= high else "it counts from the start, which lies between both"
+            v.problem(joint.spans["limits"], cause, f"{order}: limits {'-30 deg to 60 deg' if turns else '-10 cm to 20 cm'}")
 
 
 def check(v: Any, top: Mapping, held: Mapping) -> None:
