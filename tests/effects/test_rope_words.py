@@ -3,8 +3,11 @@
 
 import re
 
+import numpy as np
 import pytest
 from mdanim_lammps.errors import SceneError
+from mdanim_lammps.features.contact.rigid_surfaces import moduli
+from mdanim_lammps.features.contact.surface import SurfaceContact, surface_stiffness
 from mdanim_lammps.run.prepare import prepare
 from mdanim_lammps.scene.lock import lock_text
 from mdanim_lammps.scene.parse import parse_scene
@@ -148,3 +151,40 @@ def test_check_tells_what_passes_through(prepared):
     thin = BOX.replace("(20, 20, 20) cm", "(20, 20, 4) cm")
     told = [p.message for p in prepared("gravity (0, 0, -9.81)\n" + line(more="resolution 6 cm") + thin).certificate.notes]
     assert any("links of line are 6 cm long and box is 4 cm thin" in m for m in told)
+
+
+SWING = """gravity (0, 0, -9.81) m/s^2
+object seat { shape box (40, 20, 4) cm  position (0, 0, 0.5) m  mass 20 kg  elasticity SEAT }
+object left { shape rope from (-0.18, 0, 2.5) m to (-0.18, 0, 0.5) m thickness 1 cm  density 800  elasticity 100 MPa  hold start }
+object right { shape rope from (0.18, 0, 2.5) m to (0.18, 0, 0.5) m thickness 1 cm  density 800  elasticity 100 MPa  hold start }
+joint ball left seat { at (-0.18, 0, 0.5) m }
+joint ball right seat { at (0.18, 0, 0.5) m }
+control { time 1 s }
+"""
+OTHER = "object other { shape box (4, 4, 4) cm  position (-0.17, 0, 0.6) m  density 500  elasticity 1 MPa }\n"
+
+
+@pytest.mark.parametrize("seat", ["rigid", "1 MPa"])
+def test_ropes_and_what_hangs_on_them_need_no_contact(prepared, seat):
+    """A swing: ropes do not touch each other, nor the seat that they are joined with."""
+    swing = SWING.replace("SEAT", seat)
+    ready, off = prepared(swing), prepared(swing + "effects { contact off }")
+    assert not ready.resolved.on("contact") and ready.certificate.timestep == off.certificate.timestep
+    assert ready.verdicts["contact"].reason == "all that could meet is joined, or ropes, which do not touch each other"
+
+
+def test_what_never_touches_counts_in_no_bound(prepared):
+    """With something else on the swing, ropes touch that alone: contact is as stiff as that is, and nothing with what a joint
+    holds on to all that there is."""
+    contact = SurfaceContact()
+    for text, partners in (
+        (OTHER.replace("-0.17", "0"), [1e6, 1e6, 1e6, 1e8]),
+        (OTHER + "joint ball left other { at (-0.18, 0, 0.6) m }\n", [1e6, 0.0, 1e6, 1e8]),
+    ):
+        ready = prepared(SWING.replace("SEAT", "1 MPa") + text)
+        context = ready.context
+        assert ready.resolved.on("contact")
+        young = moduli(context)
+        share = 2.0 * np.array(partners) / (young + partners)
+        assert contact.stiffness(context) == pytest.approx(surface_stiffness(context, young, share), rel=1e-12)
+        assert (contact.rate(context)[context.system.object == 1] == 0.0).all() == (partners[1] == 0.0)

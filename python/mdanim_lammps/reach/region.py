@@ -45,20 +45,43 @@ class Sweeps:
     """Solids that are held entirely, bool, shape (M,): two of them never are in contact."""
     passing: frozenset[tuple[int, int]] = frozenset()
     """Pairs i < j that never are in contact, whatever moves."""
+    lines: np.ndarray | None = None
+    """Solids that are lines of particles, bool, shape (M,): two of them never are in contact. None for none."""
 
     @property
     def any_pair(self) -> bool:
         """Whether there are two solids that may be in contact wherever they are."""
-        count, fixed = len(self.fixed), int(self.fixed.sum())
-        apart = sum(not (self.fixed[i] and self.fixed[j]) for i, j in self.passing)
-        return count * (count - 1) // 2 - fixed * (fixed - 1) // 2 > apart
+        i, j = np.array(sorted(self.passing), int).reshape(-1, 2).T
+        apart = int(self.may_touch(i, j, of_passing=True).sum())
+        line = self._line
+        within = _pairs(self.fixed) + _pairs(line) - _pairs(self.fixed & line)
+        return _pairs(np.ones(len(self.fixed), bool)) - within > apart
+
+    def may_touch(self, i: np.ndarray, j: np.ndarray, *, of_passing: bool = False) -> np.ndarray:
+        """Pairs of solids that contact may act between wherever they are, bool, of the shape of ``i`` and ``j``;
+        ``of_passing``: but for `passing`."""
+        found = ~(self.fixed[i] & self.fixed[j]) & ~(self._line[i] & self._line[j])
+        if self.passing and not of_passing:
+            pairs = zip(np.minimum(i, j).tolist(), np.maximum(i, j).tolist())
+            found &= np.array([pair not in self.passing for pair in pairs], bool)
+        return found
+
+    @property
+    def _line(self) -> np.ndarray:
+        return np.zeros(len(self.fixed), bool) if self.lines is None else self.lines
+
+
+def _pairs(of: np.ndarray) -> int:
+    """Number of pairs of those that are marked."""
+    count = int(of.sum())
+    return count * (count - 1) // 2
 
 
 def closest(scene: SceneRecord, swept: Sweeps) -> tuple[Solid, Solid, float]:
     """Two solids of which one can move, and the least distance that remains between their boxes, along one axis [m].
 
     The first two found whose boxes overlap, with 0.0; where there are none, those whose boxes come nearest. Raises ValueError
-    where no solid can meet another: one solid, all held, or all joined.
+    where no solid can meet another: one solid, all held, all joined, or all ropes.
     """
     if not swept.any_pair:
         raise ValueError("two solids are needed, of which one can move")
@@ -120,7 +143,8 @@ def sweeps(acting: Acting, h: np.ndarray) -> Sweeps:
     half[bodies.clamped] = _clamped(scene, bodies)[bodies.clamped] + reach[bodies.clamped]
     for m, drive in acting.drives.items():
         low[m], high[m] = low[m] + drive.low, high[m] + drive.high
-    return Sweeps(low - half, high + half, bodies.fixed, acting.passing)
+    lines = np.array([not kind_of(solid).fills for solid in scene.solids], bool)
+    return Sweeps(low - half, high + half, bodies.fixed, acting.passing, lines)
 
 
 class _Movers:
@@ -234,10 +258,7 @@ def _clamped(scene: SceneRecord, bodies: _Movers) -> np.ndarray:
 def _overlaps(swept: Sweeps) -> Iterator[np.ndarray]:
     """Pairs of solids whose boxes overlap and of which one can move, in blocks of shape (P, 2)."""
     for i, j in box_pairs(swept.low, swept.high):
-        moves = ~(swept.fixed[i] & swept.fixed[j])
-        pairs = np.sort(np.column_stack([i[moves], j[moves]]), axis=1)
-        if swept.passing:
-            apart = [pair not in swept.passing for pair in map(tuple, pairs.tolist())]
-            pairs = pairs[np.array(apart, bool)]
+        may = swept.may_touch(i, j)
+        pairs = np.sort(np.column_stack([i[may], j[may]]), axis=1)
         if len(pairs):
             yield pairs[np.lexsort((pairs[:, 1], pairs[:, 0]))]

@@ -8,17 +8,16 @@ from math import ceil
 
 import numpy as np
 
-from ...bodies import all_held
+from ...bodies import all_held, kind_of
 from ...effects.context import Context, Verdict
 from ...effects.envelope import Envelope
 from ...effects.fields import column
 from ...effects.margin import Margin
 from ...errors import Problem
 from ...model.model import Layer
-from ...model.system import System
-from ...reach import largest_of_others
 from ...scene.formatting import at_least, say
 from .forms import Form, particle_stiffness, stiffness_told
+from .pairs import largest_of_partners
 from .planes import OR_ON_SURFACES, STIFFNESS, others
 from .touching import REACH, THIN, WAY_NAMES, touching
 
@@ -80,9 +79,10 @@ def excluded(context: Context) -> list[str]:
     return [f"exclude {i + 1} {j + 1}" for i, j in context.passing]
 
 
-def barrier_rate(system: System, s: np.ndarray, reach: float) -> np.ndarray:
+def barrier_rate(context: Context, s: np.ndarray, reach: float) -> np.ndarray:
     """Its share in the bound, see `Effect.rate`: stiffness of each particle [N/m], shape (N,), and the largest reach [m]."""
-    partner = largest_of_others(np.maximum.reduceat(s, system.first[:-1]))[system.object]
+    system = context.system
+    partner = largest_of_partners(context, np.maximum.reduceat(s, system.first[:-1]))[system.object]
     k = np.divide(2.0 * s * partner, s + partner, out=np.zeros(len(s)), where=s > 0.0)
     over_spacing = float(reach / np.cbrt(system.cell_volume.min()))
     return 2.0 * plane_stiffness(round(over_spacing, 3)) * k / system.mass
@@ -105,7 +105,9 @@ class ObjectContact(Form):
         if not moving:
             return Verdict(self.name, False, "every object is held")
         if not reach.region.any_pair:
-            return Verdict(self.name, False, "all that could meet is joined")
+            ropes = sum(not kind_of(s).fills for s in scene.solids) > 1
+            told = ", or ropes, which do not touch each other" if ropes else ""
+            return Verdict(self.name, False, f"all that could meet is joined{told}")
         first, second, apart = reach.closest()
         if apart > 0.0:
             return Verdict(
@@ -189,7 +191,7 @@ class BarrierContact(ObjectContact):
 
     def rate(self, context):
         system = context.system
-        return barrier_rate(system, particle_stiffness(context.scene, system), REACH * system.spacing.max())
+        return barrier_rate(context, particle_stiffness(context.scene, system), REACH * system.spacing.max())
 
     def warnings(self, context):
         scene = context.scene

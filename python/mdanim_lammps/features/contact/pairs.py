@@ -1,12 +1,16 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""Friction and damping of objects and of pairs, as contact blocks, objects and ``control`` say."""
+"""Friction and damping of objects and of pairs, as contact blocks, objects and ``control`` say, and what touches what."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from math import sqrt
 
+import numpy as np
+
+from ...effects.context import Context
 from ...effects.once import once_for
+from ...reach import largest_of_others
 from ...scene.naming import objects_by_name, pairs_of
 from ...scene.scene import SceneRecord
 
@@ -49,3 +53,26 @@ def damping(scene: SceneRecord) -> float:
 def any_friction(scene: SceneRecord) -> bool:
     """Whether anything in a scene may have friction."""
     return any(frictions(scene)) or any(c.friction for c in scene.contacts)
+
+
+def largest_of_partners(context: Context, value: np.ndarray, apart: Sequence[np.ndarray] = ()) -> np.ndarray:
+    """Largest value among the solids that may touch each solid, both of shape (M,); 0 where there are none.
+
+    Two ropes never touch, nor do two solids of one of the sets ``apart``, bool, each of shape (M,), nor what is joined.
+    """
+    lines = context.system.lines
+    sets = [*apart, *([lines] if lines.any() else [])]
+    found = largest_of_others(value)
+    for own in sets:
+        found = np.where(own, value[~own].max(initial=0.0), found)
+    passed: dict[int, list[int]] = {}
+    for i, j in context.passing:
+        passed.setdefault(i, []).append(j)
+        passed.setdefault(j, []).append(i)
+    for m, others in passed.items():
+        may = np.ones(len(value), bool)
+        may[[m, *others]] = False
+        for own in sets:
+            may &= ~(own & own[m])
+        found[m] = value[may].max(initial=0.0)
+    return found

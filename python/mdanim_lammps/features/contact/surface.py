@@ -18,12 +18,11 @@ from ...model.model import Layer, Model
 from ...model.overlap import BORN_AT_REST
 from ...model.planes import AXES
 from ...model.system import System
-from ...reach import largest_of_others
 from ...scene.formatting import at_least, say
 from ...scene.scene import Box, SceneRecord
 from .barrier import GAP, ObjectContact, barrier, barrier_rate, excluded
 from .forms import particle_stiffness
-from .pairs import USUAL_DAMPING, any_friction, damping, frictions, pair_rules
+from .pairs import USUAL_DAMPING, any_friction, damping, frictions, largest_of_partners, pair_rules
 from .planes import STIFFNESS, BarrierPlanes, Planes, Sides, yielding
 from .resting import one_sided
 from .rigid_surfaces import moduli, spread_mobility
@@ -234,7 +233,7 @@ class SurfaceContact(ObjectContact):
         if system.lines.any():
             area = np.where(system.lines[system.object], RESOLVED * LINE * own, area)
         surface = 2.0 * kappa * _of_bodies(context, area / system.mass, 2.0)
-        return surface + barrier_rate(system, self.barrier_stiffness(context), self.longest_reach(context))
+        return surface + barrier_rate(context, self.barrier_stiffness(context), self.longest_reach(context))
 
     def own_rate(self, context):
         system = context.system
@@ -248,11 +247,9 @@ class SurfaceContact(ObjectContact):
         return None if one is None else 4.0 * one
 
     def stiffness(self, context: Context) -> np.ndarray:
-        """kappa of the surface of each solid with the stiffest partner [N/m^3], shape (M,)."""
+        """kappa of the surface of each solid with the stiffest partner [N/m^3], shape (M,); 0 without a partner."""
         young = moduli(context)
-        partner = largest_of_others(young)
-        for own, _ in settled(context):  # these have the others as partners alone
-            partner = np.where(own, young[~own].max(initial=0.0), partner)
+        partner = largest_of_partners(context, young, [own for own, _ in settled(context)])
         return surface_stiffness(context, young, 2.0 * partner / (young + partner))
 
     def problems(self, resolved, models, grid):
