@@ -300,6 +300,26 @@ def test_driven_objects_go_through_held_ones(prepared):
     assert abs(found["work"]) < 0.5 and deepest < 0.01
 
 
+def test_too_many_that_go_through_each_other_are_refused(monkeypatch):
+    """At the word that drives one of them, with the limit and a way out; plates that are driven alike and apart do not count."""
+    monkeypatch.setattr(motion, "MOST_PASSING", 45)
+    belts, wheels = (
+        [
+            plate(f"drive {way}", "(4, 4, 4) cm").replace("plate", f"plate[{n}]").replace("(0, 0, -2)", f"({5 * n}, 0, 0)")
+            for n in range(11)
+        ]
+        for way in ("velocity (1, 0, 0) m/s", "turn (0, 0, 1) rad/s about (0, 0, 0) m")
+    )
+    end = "control { time 1 s }\n"
+    assert motion.passing(parse_scene("".join(belts) + end)) == []
+    assert len(motion.passing(parse_scene("".join(wheels[1:]) + end))) == 45
+    with pytest.raises(SceneError) as e:
+        prepare(parse_scene("".join(wheels) + end))
+    (problem,) = e.value.problems
+    assert problem.message == "more than 45 pairs of driven and held objects go through each other"
+    assert "fewer" in problem.hint and problem.span.line == 2
+
+
 # --- words ------------------------------------------------------------------------------------------------------------
 
 

@@ -10,13 +10,16 @@ from typing import Any
 import numpy as np
 
 from ...bodies import all_held
-from ...errors import Span
+from ...errors import Problem, SceneError, Span
 from ...model import shapes
 from ...model.boxes import box_pairs
 from ...reach import Drive
+from ...scene.formatting import whole
 from .words import DriveKey, DriveOscillation, DriveTurn, DriveVelocity
 
 TURN = 2.0 * math.pi
+MOST_PASSING = 10**5
+"""Pairs of objects that go through each other: each is named to all that act between objects."""
 
 
 def is_driven(solid: Any) -> bool:
@@ -76,7 +79,10 @@ def _digits(numbers: Any) -> str:
 
 def passing(scene: Any) -> list[tuple[int, int]]:
     """Pairs i < j of objects that are held as a whole, of which one is driven at least, and whose ways cross: neither gives way,
-    so nothing acts between them. Those that are driven alike stay as far apart as they are at the start."""
+    so nothing acts between them. Those that are driven alike stay as far apart as they are at the start.
+
+    Raises SceneError where they are more than MOST_PASSING.
+    """
     held = [m for m, solid in enumerate(scene.solids) if all_held(solid)]
     if not any(is_driven(scene.solids[m]) for m in held):
         return []
@@ -84,14 +90,20 @@ def passing(scene: Any) -> list[tuple[int, int]]:
     corner = [_corners(solid) for solid in solids]
     ways = [bounds(s, scene.control.time) if is_driven(s) else Drive((0.0,) * 3, (0.0,) * 3, 0.0) for s in solids]
     low, high = np.array([c.min(0) for c in corner]), np.array([c.max(0) for c in corner])
-    reached = low + [way.low for way in ways], high + [way.high for way in ways]
-    found = []
-    for a, b in (pair for block in box_pairs(*reached) for pair in zip(*(side.tolist() for side in block))):
-        one, other = solids[a], solids[b]
-        alike = (one.drive, one.key_points) == (other.drive, other.key_points) and not one.key_points
-        apart = (low[a] > high[b]).any() or (low[b] > high[a]).any()
-        if (is_driven(one) or is_driven(other)) and not (alike and apart and all(map(_is_straight, one.drive))):
-            found.append((min(held[a], held[b]), max(held[a], held[b])))
+    driven = np.array([is_driven(solid) for solid in solids])
+    straight = np.array([not solid.key_points and all(map(_is_straight, solid.drive)) for solid in solids])
+    kinds: dict[Any, int] = {}
+    kind = np.array([kinds.setdefault((solid.drive, solid.key_points), len(kinds)) for solid in solids])
+    found: list[tuple[int, int]] = []
+    for a, b in box_pairs(low + [way.low for way in ways], high + [way.high for way in ways]):
+        apart = ((low[a] > high[b]) | (low[b] > high[a])).any(axis=1)
+        crosses = (driven[a] | driven[b]) & ~((kind[a] == kind[b]) & straight[a] & apart)
+        if len(found) + crosses.sum() > MOST_PASSING:
+            cause = f"more than {whole(MOST_PASSING)} pairs of driven and held objects go through each other"
+            place = place_of(solids[int(np.argmax(driven))])
+            raise SceneError([Problem(place, cause, "drive fewer objects, or place them where their ways do not cross")])
+        pairs = np.sort(np.array(held)[np.column_stack([a, b])[crosses]], axis=1)
+        found += [(i, j) for i, j in pairs.tolist()]
     return sorted(found)
 
 
