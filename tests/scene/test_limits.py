@@ -225,7 +225,8 @@ def test_eight_thousand_objects_with_checks_are_quick():
 WORDS = [
     ("two indices", text().replace("ball", "ball[1, 2]"), 1, 14, "has one index, found ','", "ball[100*i + j]"),
     ("restitution", text(restitution="0.5"), 6, 15, "ball is elastic: waves in it take part of a blow", "set damping in it"),
-    ("rope", "rope r { }\n" + text(), 1, 1, "rope is not supported yet", "cylinder"),
+    *((word, f"{word} r {{ }}\n" + text(), 1, 1, f"{word} is a shape of an object", f"write object NAME {{ shape {word} ... }}")
+      for word in ("rope", "chain", "sphere")),
     ("ball", text(shape="ball 10 cm"), 2, 9, "shape cannot be followed by 'ball'", "did you mean 'sphere'?"),
     ("cube", text(shape="cube 10 cm"), 2, 9, "shape cannot be followed by 'cube'", "did you mean 'box'?"),
 ]  # fmt: skip

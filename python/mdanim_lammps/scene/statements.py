@@ -9,7 +9,19 @@ from pathlib import Path
 
 from .expressions import RESERVED, Node
 from .forms import Slot, literals
-from .keywords import BLOCKS, KEYWORDS, NOT_SUPPORTED, STATEMENTS, Block, belongs, did_you_mean, foreign_line, nearest, owner
+from .keywords import (
+    BLOCKS,
+    KEYWORDS,
+    NOT_SUPPORTED,
+    STATEMENTS,
+    Block,
+    beginnings,
+    belongs,
+    did_you_mean,
+    foreign_line,
+    nearest,
+    owner,
+)
 from .limits import DEEPEST_INCLUDE, DEEPEST_REPEAT, MOST_BYTES, MOST_FILES
 from .reader import ODD
 from .setting_reader import SettingReader, Shared
@@ -148,6 +160,8 @@ class Parser(SettingReader):
         if (head := next((b for b in BLOCKS.values() if str(word) in b.kinds), None)) is not None:
             names = " ".join(("A", "B")[: len(head.names)])
             raise Fault(word, f"{word} is a kind of {head.name}", f"write {head.name} {word} {names} {{ ... }}")
+        if not block and str(word) in beginnings(KEYWORDS["object"]["shape"]):
+            raise Fault(word, f"{word} is a shape of an object", f"write object NAME {{ shape {word} ... }}")
         kind = f"a setting of {block}" if block else "a word of the scene language"
         home = home or next((k for k in KEYWORDS[block].values() if word in literals(k.form)), None)
         hint = did_you_mean(str(word), here)
