@@ -5,6 +5,8 @@ import numpy as np
 import pytest
 from mdanim_lammps.errors import SceneError
 from mdanim_lammps.model import build_models
+from mdanim_lammps.model.inertia import tensor
+from mdanim_lammps.model.shapes import extent
 from mdanim_lammps.model.system import assemble
 from mdanim_lammps.scene.scene import Box, HoldAll, Sphere
 from model_samples import SHAPES, rotation, scene, shape_id, solid
@@ -104,3 +106,20 @@ def test_points_of_a_surface_are_as_far_apart_as_the_spacing(prepared):
         prepared(PLATE.replace("HOW", "elasticity rigid  resolution 1 m") + BARBELL)
     ready = prepared(PLATE.replace("HOW", "elasticity rigid  resolution 1 cm") + BARBELL)
     assert np.diff(ready.system.first)[0] == 8 and len(ready.context.models[0].surface.triangle) == 2 * (2 * 100**2 + 4 * 100)
+
+
+@pytest.mark.parametrize("shape", ["cylinder 1 cm 1 m", "cone 6 cm 5 cm", "ellipsoid (3, 4, 5) cm"])
+def test_a_rigid_object_has_the_corners_of_a_box_about_its_centre(prepared, shape):
+    """Eight particles, also of what is turned; their mean and velocity are those of the object, and the drawn surface is the
+    shape."""
+    turn = "orientation euler (20 deg, 30 deg, 40 deg)  velocity (1, 2, 3)  spin (0, 4, 5)"
+    body = f"shape {shape}  position (0.1, 0.2, 3)  {turn}  density 1000  elasticity rigid"
+    ready = prepared(f"object a {{ {body} }}\ncontrol {{ time 1 s }}\n")
+    (model,), (solid,) = ready.models, ready.scene.solids
+    assert len(model.position) == 8 and model.mass.min() > 0.0
+    assert np.average(model.position, axis=0, weights=model.mass) == pytest.approx(solid.position, abs=1e-12)
+    assert np.average(model.velocity, axis=0, weights=model.mass) == pytest.approx(solid.velocity, abs=1e-12)
+    assert model.inertia == pytest.approx(tensor(solid.shape, model.mass.sum(), solid.rotation), rel=1e-12)
+    drawn = (model.surface.vertices(model.position) - solid.position) @ np.array(solid.rotation)
+    size = np.abs(extent(solid.shape)).max()
+    assert np.abs(drawn).max() <= size * (1.0 + 1e-9)

@@ -21,6 +21,10 @@ from .springs import equivalent_modulus
 
 ENDS = np.array(list(product((0, 1), repeat=3)))[:, ::-1]
 """Corners of a box, x fastest, shape (8, 3)."""
+CELL = np.array([[0, 1, 3, 2, 4, 5, 7, 6]], np.int32)
+"""The cell that they are the corners of, shape (1, 8)."""
+UPRIGHT = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+"""Axes of an object that is not turned."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,6 +53,17 @@ def held_model(solid: Solid, h: float, shared: Any) -> Model:
     edge = placed.frame.cells.edge
     cell = one_cell_as(edge, h) if bare else edge
     return corner_model(solid, cell, placed.corner, shapes.mass(solid) * placed.share, placed.surface, placed.frame, free=None)
+
+
+def free_model(solid: Solid, h: float, shared: Any) -> Model:
+    """The same of an object that moves and does not deform, with the corners of a box along its own axes; their centre of mass is
+    that of the object.
+
+    Raises cells.TooThin, mesh.MeshError.
+    """
+    placed = shared.once(_placed, solid.shape, h, UPRIGHT)
+    arm, mass = placed.corner @ np.array(solid.rotation).T, shapes.mass(solid) * placed.share
+    return corner_model(solid, placed.frame.cells.edge, arm, mass, placed.surface, placed.frame, free=CELL)
 
 
 def one_cell_as(edge: np.ndarray, h: float) -> np.ndarray:

@@ -11,17 +11,22 @@ from ...model import shapes
 from ...model.build import lattice_model, single_cell_model
 from ...model.cells import fill_cells
 from ...model.contact_body import BodyFrame
+from ...model.held import free_model
 from ...model.inertia import tensor
-from ...scene.scene import Box, Mesh, Sphere
+from ...scene.scene import Box, Cone, Cylinder, Ellipsoid, Mesh, Sphere
 from .shapes import hidden, is_rigid, on_objects, only_balls_move
 
 ACROSS, ROUND = 2, 4
 """Cells across its thinnest part: the least that have an inside; and of what is round, or touches others at points of its
 surface, a third of a cell apart: a torus of 2 rolls so down a slope with 0.96 of its acceleration, one of 4 with 0.995."""
+OF_CORNERS = (Cone, Cylinder, Ellipsoid)
+"""Shapes whose particles are the corners of a box around the drawn surface. Its middle is inside of these, not in a hole as that
+of a torus: an object there counts as one inside the other (engine.geometry.Geometry.sunk)."""
 
 
 class RigidBody(BodyKind):
-    """An object with ``elasticity rigid``. Its particles are points of the body: a lattice of hexahedra without springs."""
+    """An object with ``elasticity rigid``. Its particles are points of the body: corners of a box around it, or a lattice of
+    hexahedra without springs where something reads its inside or points of its surface."""
 
     name = "rigid"
     order = 100
@@ -53,6 +58,8 @@ class RigidBody(BodyKind):
         elif boxed and lines_alone(shared.scene):
             model = single_cell_model(solid, h, shared)
             model = replace(model, frame=shared.once(_framed, solid.shape, h))
+        elif isinstance(solid.shape, OF_CORNERS) and shared.by_features:
+            model = free_model(solid, h, shared)
         else:
             model = lattice_model(solid, h, shared, loose=True)
         return replace(model, inertia=tensor(solid.shape, shapes.mass(solid), solid.rotation))
