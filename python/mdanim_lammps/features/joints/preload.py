@@ -16,8 +16,6 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.sparse import coo_array, diags_array
-from scipy.sparse.linalg import spsolve
 
 from ...effects.context import Context
 from .ends import JointEnd, directions_of, skew, unit
@@ -33,6 +31,9 @@ SHARED = 1e-9
 def preloads(context: Context, joints: Sequence[Strength]) -> np.ndarray:
     """Force [N] and torque [N m] on the first object of each joint at the start, shape (J, 6); zeros where something deforms, and
     of springs."""
+    from scipy.sparse import coo_array, diags_array  # both take 0.2 s
+    from scipy.sparse.linalg import spsolve
+
     found = np.zeros((len(joints), 6))
     held = [(n, row) for n, one in enumerate(joints) if all(b.rigid for b in one.bodies) for row in _rows(one)]
     if not held:
