@@ -27,12 +27,6 @@ Ramps ramps_of(const ContactBody &host, PointKind kind)
   return ramps;
 }
 
-double swing_of(const Vec3 &X, const Vec3 &X_centre)
-{
-  const Vec3 shift = X_centre - X;
-  return 2.0 * std::sqrt(dot(shift, shift));
-}
-
 double slack_of_far(const ContactBody &host, const SurfacePoint &point, double radius, const Vec3 &X, const Vec3 &X_centre,
                     double off)
 {
@@ -67,8 +61,7 @@ Verdict judge(const ContactBody &host, const SurfacePoint &point, double radius,
   const double h = host.spacing();
   int side = -1;
   bool is_shut = false, is_surely_shut = false, may_face = false;
-  double best = NEVER, until = 0.0, slack = NEVER, away = NEVER;
-  const double swing = swing_of(X, X_centre);
+  double best = NEVER, until = 0.0, slack = NEVER;
   Vec3 inward_of_side;
   Verdict verdict;
   for (int s = 0; s < host.sides(); ++s) {
@@ -78,21 +71,19 @@ Verdict judge(const ContactBody &host, const SurfacePoint &point, double radius,
     const Vec3 inward = spot.gradient(below.slope);
     const double cosine = radius > 0.0 ? 1.0 : dot(normal, inward) / std::sqrt(dot(inward, inward));
     // Smallest change before the side can begin a contact, in cells: the largest of these three.
-    double apart = -depth, beyond = -NEVER;
+    double apart = -depth;
     const double turned = PRESSED * (LEAST_COSINE - cosine);
     if (host.is_cuboid())
       for (int d = 0; d < 3; ++d) {
         if (d == s / 2) continue;
         const double inside = std::min(component(X_centre, d), grid.cells[d] - component(X_centre, d));
-        beyond = std::max(beyond, near_edges.from[d] - inside);
+        apart = std::max(apart, near_edges.from[d] - inside);
       }
-    apart = std::max(apart, beyond);
     if (apart <= 0.0 || turned > apart) verdict.open |= static_cast<std::uint8_t>(1u << s);
     verdict.is_sure &= std::fabs(apart - std::max(0.0, turned)) > (turned > 0.0 ? turn : far);
     const double covered = host.covered(s, X);
     verdict.is_sure &= std::fabs(covered) > far + off;
     slack = std::min(slack, PRESSED * h * std::max({apart, turned, depth - DEEPEST_BIRTH}));
-    away = std::min(away, PRESSED * h * std::max({-depth, beyond - swing, depth - DEEPEST_BIRTH}));
     if (covered >= 0.0) continue;    // another held body is there, and no point reaches this side
     is_surely_shut |= turned < -turn && depth < -far;
     may_face |= turned < turn && apart < far && depth < DEEPEST_BIRTH + far;
@@ -107,11 +98,10 @@ Verdict judge(const ContactBody &host, const SurfacePoint &point, double radius,
   }
   verdict.is_sure &= is_surely_shut || !may_face;
   verdict.slack = is_shut ? std::max(slack, until) : slack;
-  verdict.away = away;
   const bool is_deep = verdict.depth > DEEPEST_BIRTH * h;
   if (host.is_cuboid() && is_crushed(spot, host)) {
     verdict.is_crushed = true;
-    verdict.open = EVERY_SIDE, verdict.slack = verdict.away = 0.0;    // X may be different in the next step
+    verdict.open = EVERY_SIDE, verdict.slack = 0.0;    // X may be different in the next step
   }
   if (side >= 0 && is_smooth(host, point.kind)) {
     verdict.depth *= Flattened<double>(std::sqrt(dot(inward_of_side, inward_of_side))).value;

@@ -18,7 +18,6 @@ struct Verdict {
   double depth = 0.0;
   std::uint8_t open = 0;    // as that of PointTrack
   double slack = 0.0;       // a motion that cannot yet begin a contact [m]
-  double away = 0.0;        // a motion of X alone that cannot, however the normal of the point turns [m]
   bool is_crushed = false;
   bool is_sure = true;    // no contact, and open is right, although the place of the point is guessed
 };
@@ -33,8 +32,6 @@ inline bool is_smooth(const ContactBody &host, PointKind kind) { return kind != 
 // the error of X, in cells.
 double slack_of_far(const ContactBody &host, const SurfacePoint &point, double radius, const Vec3 &X, const Vec3 &X_centre,
                     double off);
-// How far the centre of a point's area can swing while the point stays where it is, in cells.
-double swing_of(const Vec3 &X, const Vec3 &X_centre);
 // `normal` is the outward one of the point, in space. Around a point with a radius [m] the surface faces every side.
 Verdict judge(const ContactBody &host, const SurfacePoint &point, double radius, const Vec3 &X, const Vec3 &X_centre,
               const Spot<double> &spot, const Vec3 &normal, double off);

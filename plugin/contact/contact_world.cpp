@@ -104,7 +104,6 @@ void ContactWorld::list_fields()
 
 void ContactWorld::forget()
 {
-  drop_lists();
   for (auto &[key, field] : fields) field->forget();
 }
 

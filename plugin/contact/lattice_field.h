@@ -19,7 +19,6 @@ class LatticeField : public ObjectField {
 
  private:
   bool look_at(std::size_t q, const ContactArrays &arrays, bool may_begin) override;
-  bool stays_away(std::size_t q, const Vec3 &x, const PointSearch &search, bool by_splines);
   Fate push(FieldContact &contact, std::size_t q, const PushTask &task, const PointNow &now, ContactArrays &arrays,
             ContactAccount &account) const override;
 };

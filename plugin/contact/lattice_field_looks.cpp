@@ -14,26 +14,12 @@ static constexpr double JUMP = 0.25;      // cells that X may jump between cells
 static constexpr int MOST_GUESSES = 3;
 static constexpr double NEAR_PLACE = 0.1;    // cells that a guess may be away from the last one
 
-// Whether a point has moved so little against the place where it was found last that none of what was judged there has changed:
-// then it is looked at again later. `budget` counts all ways of both objects, most of which do not lead to each other. A point
-// that may soon begin a contact is judged, because sides count as open as they were at the last look.
-bool LatticeField::stays_away(std::size_t q, const Vec3 &x, const PointSearch &search, bool by_splines)
-{
-  const PointTrack &track = known[q];
-  const double least = std::max(0.5 * track.away, 2.0 * approach());
-  if (!(track.away > least)) return false;
-  const double left = track.away - search.moved(track, x, by_splines);
-  if (!(left > least)) return false;
-  wake.set(q, budget + left);
-  return true;
-}
-
 bool LatticeField::look_at(std::size_t q, const ContactArrays &arrays, bool may_begin)
 {
   ++looks;
   PointTrack &track = known[q];
   const SurfacePoint &point = surface_point(q);
-  const Vec3 x = owner->place_of(near[q], arrays.place());
+  const Vec3 x = near.place(q, arrays.place());
   const ContactBody &body = *host->body;
   const double h = body.spacing(), radius = owner->body->radius();
   const Placed at = {body, host->slot.data(), arrays.place()};
@@ -42,7 +28,6 @@ bool LatticeField::look_at(std::size_t q, const ContactArrays &arrays, bool may_
   const auto lost = [&] {
     track.cell = {-1, -1, -1};
     track.open = EVERY_SIDE;
-    track.away = 0.0;
     wake.set(q, budget);    // searched again in the next step
     return false;
   };
@@ -60,10 +45,9 @@ bool LatticeField::look_at(std::size_t q, const ContactArrays &arrays, bool may_
     }
     track.cell = cell, track.X = middle;
   }
-  if (body.is_cuboid() && stays_away(q, x, search, by_splines)) return false;
   Spot<double> spot;
   Vec3 X, normal;
-  const Vec3 shift = owner->shift_of(near[q], arrays.place());
+  const Vec3 shift = near.shift(q, arrays.place());
   const std::uint8_t was_open = track.open;
   Verdict verdict;
   verdict.is_sure = false;
@@ -76,7 +60,6 @@ bool LatticeField::look_at(std::size_t q, const ContactArrays &arrays, bool may_
     if (const double slack = slack_of_far(body, point, radius, X, X_centre, off); slack > 0.0) {
       verdict = {};
       verdict.slack = slack;
-      verdict.away = slack - PRESSED * h * swing_of(X, X_centre);
       break;
     }
     if (!has_normal && !world_normal(point, arrays, normal)) return lost();
@@ -86,14 +69,12 @@ bool LatticeField::look_at(std::size_t q, const ContactArrays &arrays, bool may_
   if (!verdict.is_sure) {
     if (!search.find(track, x, by_splines, spot, X) || !(has_normal || world_normal(point, arrays, normal))) return lost();
     verdict = judge(body, point, radius, X, X + spot.to_material(shift), spot, normal, 0.0);
-    if (by_splines) verdict.away = 0.0;    // this X is not the one that is known
   }
   track.open = verdict.open;
   if (!may_begin || verdict.side < 0) {
     // In another cell the depth may be different.
-    const auto in_this_cell = [&](double slack) { return std::min(slack, std::max(track.room, slack - PRESSED * JUMP * h)); };
-    track.away = in_this_cell(verdict.away);
-    wake.set(q, budget + std::max(0.0, in_this_cell(verdict.slack)));
+    const double slack = std::min(verdict.slack, std::max(track.room, verdict.slack - PRESSED * JUMP * h));
+    wake.set(q, budget + std::max(0.0, slack));
     return false;
   }
 

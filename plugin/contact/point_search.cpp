@@ -10,7 +10,6 @@
 namespace mdanim {
 
 static constexpr double NEVER = std::numeric_limits<double>::infinity();
-static constexpr double HEALTHY = 0.7;    // volume over that of a cell
 
 // The cell of X in a cuboid.
 std::array<int, 3> PointSearch::cell_of(const Vec3 &X) const
@@ -54,7 +53,7 @@ std::array<int, 3> PointSearch::cell_nearest(const Vec3 &x, std::array<int, 3> c
 
 void PointSearch::guess(PointTrack &known, const Vec3 &x, bool by_splines, Spot<double> &spot, Vec3 &X, double &off) const
 {
-  constexpr double NEARBY = 3.0;    // cells from the middle of one
+  constexpr double HEALTHY = 0.7, NEARBY = 3.0;    // volume over that of a cell; cells from the middle of one
   const double h = at.body.spacing();
   off = NEVER;
   if (!evaluate(at, by_splines ? smooth(known.X, at.body) : trilinear(known.X, known.cell, at.body), spot)) return;
@@ -75,16 +74,6 @@ void PointSearch::guess(PointTrack &known, const Vec3 &x, bool by_splines, Spot<
   if (dot(away, away) > NEARBY * NEARBY) return;
   known.cell = cell, known.X = X, known.room = room;
   off = is_there ? std::sqrt(square) : 1.0;
-}
-
-double PointSearch::moved(const PointTrack &known, const Vec3 &x, bool by_splines) const
-{
-  const double h = at.body.spacing();
-  Spot<double> spot;
-  if (!evaluate(at, by_splines ? smooth(known.X, at.body) : trilinear(known.X, known.cell, at.body), spot)) return NEVER;
-  if (!(spot.det > HEALTHY * h * h * h)) return NEVER;
-  const Vec3 change = spot.to_material(x - spot.x);
-  return h * std::sqrt(dot(change, change));
 }
 
 bool PointSearch::find(PointTrack &known, const Vec3 &x, bool by_splines, Spot<double> &spot, Vec3 &X) const

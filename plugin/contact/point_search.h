@@ -12,11 +12,10 @@
 namespace mdanim {
 
 // Knowledge of a point without a contact.
-struct alignas(64) PointTrack {
+struct PointTrack {
   std::array<int, 3> cell = {-1, -1, -1};    // where it was found last, -1 for nowhere
   Vec3 X;
   double room = 0.0;        // a motion that leaves it in this cell [m]
-  double away = 0.0;        // a motion of the point against X that cannot begin a contact, whatever its normal does [m]
   std::uint8_t open = 0;    // sides in which the point would have had a potential when it was looked at last
 };
 
@@ -30,9 +29,6 @@ class PointSearch {
   // X of a point at x by one step of Newton's method from where it was found last. `off`: its distance from there in cells; 1 and
   // more where the step tells nothing. It takes a small part of the work of find(). `by_splines`: by the smooth map.
   void guess(PointTrack &known, const Vec3 &x, bool by_splines, Spot<double> &spot, Vec3 &X, double &off) const;
-  // How far X of a point at x is now from where it was found last, to first order [m]; infinite where cells are pressed, or a
-  // particle is not here. It takes a small part of the work of guess().
-  double moved(const PointTrack &known, const Vec3 &x, bool by_splines) const;
   // X of a point at x, with the same bits whatever was known of it: the last search begins in the middle of the cell that X lies
   // in. False where it cannot be found.
   bool find(PointTrack &known, const Vec3 &x, bool by_splines, Spot<double> &spot, Vec3 &X) const;
