@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// Plain C functions for ctypes: names of the output values of fixes.
+// Plain C functions for ctypes: output values of fixes, and their names.
 
 #include "c_api/abi.h"
 #include "lammps/fix_base.h"
@@ -7,6 +7,7 @@
 #include "lammps.h"
 #include "modify.h"
 
+#include <algorithm>
 #include <vector>
 
 using namespace LAMMPS_NS;
@@ -34,4 +35,16 @@ MDANIM_EXPORT int mdanim_output_place(void *handle, const char *fix, const char 
       ++place;
     }
   return -1;
+}
+
+// The first rows of the array of a fix, one after the other. Returns how many there are, at most so many; 0 where there is no fix
+// with an array of so many columns.
+MDANIM_EXPORT int mdanim_output_rows(void *handle, const char *fix, int rows, int columns, double *to) noexcept
+{
+  Fix *const found = static_cast<LAMMPS *>(handle)->modify->get_fix_by_id(fix);
+  if (!found || !found->array_flag || found->size_array_cols != columns) return 0;
+  const int there = std::min(rows, found->size_array_rows);
+  for (int row = 0; row < there; ++row)
+    for (int column = 0; column < columns; ++column) *to++ = found->compute_array(row, column);
+  return there;
 }

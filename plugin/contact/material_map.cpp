@@ -12,8 +12,6 @@ static constexpr double DONE = 1e-11;        // of a cell edge
 static constexpr double FARTHEST = 4.0;      // cells from the middle of the last cell within which a result is trusted
 static constexpr double ON_THE_WAY = 0.2;    // cells by which X may be outside of a cell before it is found
 
-static double norm(const Vec3 &a) { return std::sqrt(dot(a, a)); }
-
 static Vec3 middle(const std::array<int, 3> &cell) { return {cell[0] + 0.5, cell[1] + 0.5, cell[2] + 0.5}; }
 
 bool MaterialSearch::is_collapsed(const Spot<double> &spot) const { return !(spot.det > smallest_volume(host.body.spacing())); }
@@ -36,9 +34,9 @@ bool MaterialSearch::solve(const Vec3 &x, std::array<int, 3> &cell, Vec3 &X, boo
     const bool done = dot(miss, miss) < near * near;
     if (!done) {
       const Vec3 change = spot.to_material(miss);
-      const double length = norm(change);
-      X += (length > 1.0 ? 1.0 / length : 1.0) * change;
-      if (norm(X - middle(cell)) > FARTHEST) return false;
+      const double far = length(change);
+      X += (far > 1.0 ? 1.0 / far : 1.0) * change;
+      if (length(X - middle(cell)) > FARTHEST) return false;
     }
     if (walk && step_to_neighbour(cell, X, done ? 1e-12 : ON_THE_WAY)) continue;
     if (done) return true;
@@ -72,8 +70,8 @@ bool MaterialSearch::solve_smooth(const Vec3 &x, Vec3 &X) const
     const Vec3 miss = x - spot.x;
     if (dot(miss, miss) < near * near) return true;
     const Vec3 change = spot.to_material(miss);
-    const double length = norm(change);
-    X += (length > 0.5 ? 0.5 / length : 1.0) * change;
+    const double far = length(change);
+    X += (far > 0.5 ? 0.5 / far : 1.0) * change;
   }
   return false;
 }

@@ -28,7 +28,7 @@ struct DrivenPlace {
 inline Quaternion rotation_by(const Vec3 &angle)
 {
   constexpr double FOUR_PI = 12.566370614359172;
-  const double size = std::sqrt(dot(angle, angle));
+  const double size = length(angle);
   if (size == 0.0) return {};
   const double half = size / FOUR_PI, s = sine_of_turns(half) / size;    // `half` in turns
   return unit({sine_of_turns(half + 0.25), s * angle.x, s * angle.y, s * angle.z});

@@ -2,7 +2,7 @@
 
 #include "drives/motion_words.h"
 
-#include "rigid/line_words.h"
+#include "records/line_words.h"
 
 namespace mdanim {
 

@@ -10,15 +10,12 @@ namespace mdanim {
 
 static constexpr double OFF = 1e-6;    // of its size, that a patch may lack of a place or direction
 
-static double norm(const Vec3 &v) { return std::sqrt(dot(v, v)); }
-static Vec3 unit(const Vec3 &v) { return (1.0 / norm(v)) * v; }
-
 static const char *shape_of(int dimensions) { return dimensions == 0 ? "one point" : dimensions == 1 ? "a line" : "a plane"; }
 
 void expect_place(const Patch &patch, const Vec3 &d)
 {
-  const double off = norm(d - patch.within(d));
-  if (off > OFF * (patch.radius() + norm(d)) + Patch::ROUNDING * norm(patch.centre()))
+  const double off = length(d - patch.within(d));
+  if (off > OFF * (patch.radius() + length(d)) + Patch::ROUNDING * length(patch.centre()))
     throw std::runtime_error("the particles that it holds on to stand in " + std::string(shape_of(patch.dimensions())) +
                              ", and its place is off by " + LineWords::short_form(off) +
                              "; take a place there, or a larger 'patch'");
@@ -35,7 +32,7 @@ static Vec3 across_of(const Vec3 &n, const Patch &a, const Patch &b)
   for (const Patch *patch : {&a, &b})
     if (patch->dimensions() == 2) {
       const Vec3 along = cross(cross(patch->within_span(0), patch->within_span(1)), n);
-      if (norm(along) > 0.5) return unit(along);
+      if (length(along) > 0.5) return unit(along);
     }
   double uu = 0.0, vv = 0.0, uv = 0.0;    // of the sum of the mobilities of both patches
   for (const Patch *patch : {&a, &b}) {
@@ -45,14 +42,14 @@ static Vec3 across_of(const Vec3 &n, const Patch &a, const Patch &b)
   }
   const double half = 0.5 * (uu - vv), least = 0.5 * (uu + vv) - std::sqrt(half * half + uv * uv);
   const Vec3 found = std::fabs(uu - least) > std::fabs(vv - least) ? -uv * u + (uu - least) * v : (vv - least) * u - uv * v;
-  return norm(found) > 1e-9 * (uu + vv) ? unit(found) : u;
+  return length(found) > 1e-9 * (uu + vv) ? unit(found) : u;
 }
 
 // The directions that are held are those that both patches have.
 JointDirections directions_of(const JointWords &words, const Patch &a, const Patch &b)
 {
   JointDirections found;
-  const auto has = [](const Patch &patch, const Vec3 &e) { return norm(e - patch.within(e)) <= OFF; };
+  const auto has = [](const Patch &patch, const Vec3 &e) { return length(e - patch.within(e)) <= OFF; };
   const auto both_have = [&](const Vec3 &e) { return has(a, e) && has(b, e); };
   const auto need = [&](bool met, const char *lacks) {
     if (!met)

@@ -20,7 +20,7 @@ struct HingeAngle {
 
 inline HingeAngle hinge_angle(const Vec3 &from, const Vec3 &to, const Vec3 &axes)
 {
-  const double over = 1.0 / std::sqrt(dot(axes, axes));
+  const double over = 1.0 / length(axes);
   const Vec3 n = over * axes, side = cross(from, to);
   const double along_from = dot(n, from), along_to = dot(n, to), y = dot(n, side), x = dot(from, to) - along_from * along_to;
   const double square = x * x + y * y, by_y = x / square, by_x = -y / square;

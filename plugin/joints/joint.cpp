@@ -8,9 +8,6 @@
 
 namespace mdanim {
 
-static double norm(const Vec3 &v) { return std::sqrt(dot(v, v)); }
-static Vec3 unit(const Vec3 &v) { return (1.0 / norm(v)) * v; }
-
 // --- making ---
 
 Joint::Joint(JointWords words, JointEnd a, JointEnd b, double length, double ftm2v)
@@ -138,11 +135,11 @@ Joint::Loads Joint::find(const PatchMotion &a, const PatchMotion &b, const Time 
 void Joint::pull(const Side &a, const Side &b, Past &past)
 {
   const Vec3 way = now.at_b - now.at_a;
-  const double length = norm(way), more = length - own_length;
-  past.q = length;
+  past.q = length(way);
+  const double more = past.q - own_length;
   now.gap = more;
-  if (!(length > 0.0)) return;
-  const Vec3 along = (1.0 / length) * way;
+  if (!(past.q > 0.0)) return;
+  const Vec3 along = (1.0 / past.q) * way;
   now.rate = dot(along, b.velocity() - a.velocity());
   now.force = tension(law, more, now.rate, given.pulls_only);
   if (given.pulls_only && !(more > 0.0)) return;
@@ -159,12 +156,12 @@ void Joint::hold(const Side &base, const Side &moving, const Time &time, Past &p
   // The springs.
   const bool slides = given.kind == JointKind::SLIDER, turns = given.kind == JointKind::HINGE;
   const Vec3 gap = moving.place() - base.place(), drawn = slides ? base.motion.F * given.axis : Vec3{};
-  const double over_drawn = slides ? 1.0 / norm(drawn) : 0.0;
+  const double over_drawn = slides ? 1.0 / length(drawn) : 0.0;
   Vec3 axis = over_drawn * drawn;
   const double way = dot(axis, gap);
   const Vec3 off = gap - way * axis;
   const double softer = 1.0 / (1.0 + way * (lever[0] + way * lever[1])), k = softer * law.k;
-  now.gap = norm(off);
+  now.gap = length(off);
   now.energy = 0.5 * k * dot(off, off);
   Vec3 force = -k * off, torque;    // on what moves
   base.springs.push(-1.0 * force, base.d);
@@ -198,8 +195,8 @@ void Joint::hold(const Side &base, const Side &moving, const Time &time, Past &p
     push_along(driving.losses, base.losses, moving.losses);
     push_along(driving.motor, base.motor, moving.motor);
   }
-  now.force = norm(force);
-  now.torque = norm(torque);
+  now.force = length(force);
+  now.torque = length(torque);
 }
 
 // The angle of a hinge is the one nearest to that before.

@@ -68,7 +68,7 @@ class Joint {
   const JointWords &words() const { return given; }
   const JointEnd &a() const { return end_a; }
   const JointEnd &b() const { return end_b; }
-  double length() const { return own_length; }
+  double rest_length() const { return own_length; }
   const Past &past() const { return before; }
   const Spending &spending() const { return spent_before; }
   bool spends() const { return law.c > 0.0 || given.has_servo(); }    // otherwise spending() stays zero

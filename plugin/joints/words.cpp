@@ -56,9 +56,8 @@ const JointWord WORDS[] = {
     {"axis", WITH_AXIS,
      [](JointWords &of, LineWords &line) {
        const Vec3 along = line.place("the axis");
-       const double length = std::sqrt(dot(along, along));
-       if (!(length > 0.0)) line.fail("the axis has no direction");
-       of.axis = (1.0 / length) * along;
+       if (!(length(along) > 0.0)) line.fail("the axis has no direction");
+       of.axis = unit(along);
      }},
     {"patch", ALL,
      [](JointWords &of, LineWords &line) {

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "numbers/vec3.h"
-#include "rigid/line_words.h"
+#include "records/line_words.h"
 
 #include <cmath>
 #include <limits>
@@ -52,7 +52,6 @@ struct JointWords {
   double breaks = HUGE_VAL, breaks_torque = HUGE_VAL;
   bool pulls_only = false;
 
-  bool has_axis() const { return kind == JointKind::HINGE || kind == JointKind::SLIDER; }
   bool has_servo() const { return motor || friction > 0.0 || limits; }
   // "hinge 1 2", for messages.
   std::string name() const;

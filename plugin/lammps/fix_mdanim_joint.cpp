@@ -105,20 +105,23 @@ void FixMdanimJoint::init()
 
 // --- particles ---
 
-void FixMdanimJoint::number_particles()
+std::vector<tagint> FixMdanimJoint::tags_of(const std::vector<Joint> &of)
 {
   std::vector<tagint> tags;
-  const auto each_tag = [&](const auto &visit) {
-    for (const Joint &joint : joints)
-      for (const JointEnd *end : {&joint.a(), &joint.b()})
-        for (const std::int64_t tag : end->tags) visit(static_cast<tagint>(tag));
-  };
-  each_tag([&](tagint tag) { tags.push_back(tag); });
+  for (const Joint &joint : of)
+    for (const JointEnd *end : {&joint.a(), &joint.b()}) tags.insert(tags.end(), end->tags.begin(), end->tags.end());
   std::sort(tags.begin(), tags.end());
   tags.erase(std::unique(tags.begin(), tags.end()), tags.end());
-  shared.choose(std::move(tags));
+  return tags;
+}
+
+void FixMdanimJoint::number_particles()
+{
+  shared.choose(tags_of(joints));
   number.clear();
-  each_tag([&](tagint tag) { number.push_back(shared.number_of(tag)); });
+  for (const Joint &joint : joints)
+    for (const JointEnd *end : {&joint.a(), &joint.b()})
+      for (const std::int64_t tag : end->tags) number.push_back(shared.number_of(static_cast<tagint>(tag)));
 }
 
 // A joint does nothing when an end has left the group: its object has been laid aside.

@@ -38,6 +38,8 @@ class FixMdanimJoint : public mdanim::FixBase, public mdanim::Stateful {
 
  private:
   void read_words(int narg, char **arg);
+  // Particles of the patches of joints, ascending, each once.
+  static std::vector<tagint> tags_of(const std::vector<mdanim::Joint> &of);
   void number_particles();
   void locate();
   void expect_particles(const std::vector<mdanim::Joint> &of) const;

@@ -75,7 +75,7 @@ StateRecords FixMdanimJoint::pack() const
     Bytes &record = records[key_of(own)];
     ByteWriter writer(std::move(record));
     if (writer.is_empty()) writer.put(STATE_VERSION);
-    writer.put(static_cast<std::int64_t>(own.kind)).put(joints[n].past()).put(joints[n].length());
+    writer.put(static_cast<std::int64_t>(own.kind)).put(joints[n].past()).put(joints[n].rest_length());
     writer.put_counted(joints[n].spends() ? std::vector<Joint::Spending>{joints[n].spending()} : std::vector<Joint::Spending>());
     put_end(writer, joints[n].a(), lowest_of(own.a.object));
     put_end(writer, joints[n].b(), lowest_of(own.b.object));
@@ -124,11 +124,7 @@ void FixMdanimJoint::unpack(const StateRecords &records)
 // LAMMPS's own map may be out of date.
 void FixMdanimJoint::expect_particles(const std::vector<Joint> &of) const
 {
-  std::vector<tagint> tags;
-  for (const Joint &joint : of)
-    for (const JointEnd *end : {&joint.a(), &joint.b()}) tags.insert(tags.end(), end->tags.begin(), end->tags.end());
-  std::sort(tags.begin(), tags.end());
-  tags.erase(std::unique(tags.begin(), tags.end()), tags.end());
+  const std::vector<tagint> tags = tags_of(of);
   bigint here = 0, all = 0;
   for (int i = 0; i < atom->nlocal; ++i) here += std::binary_search(tags.begin(), tags.end(), atom->tag[i]);
   MPI_Allreduce(&here, &all, 1, MPI_LMP_BIGINT, MPI_SUM, world);

@@ -37,8 +37,6 @@ struct Found {
   bool operator<(const Found &other) const { return std::tie(end, tag) < std::tie(other.end, other.tag); }
 };
 
-double distance(const Vec3 &a, const Vec3 &b) { return std::sqrt(dot(a - b, a - b)); }
-
 // Objects with joints, and their particles on this rank.
 class ObjectsOfJoints {
  public:
@@ -93,7 +91,7 @@ FoundJoints find_joints(LAMMPS *lmp, int groupbit, const std::vector<JointWords>
     if (wanted.object == WORLD) continue;
     for (const int i : objects.particles[objects.number_of(wanted.object)]) {
       const Vec3 x = vec3(atom.x[i]);
-      const double far = distance(x, wanted.at);
+      const double far = length(x - wanted.at);
       nearest[end] = std::min(nearest[end], far);
       if (far <= wanted.radius * ROUNDING)
         here.push_back({static_cast<int>(end), (atom.mask[i] & groupbit) != 0, atom.tag[i],
@@ -127,7 +125,7 @@ FoundJoints find_joints(LAMMPS *lmp, int groupbit, const std::vector<JointWords>
       JointEnd a = make_end(2 * n, from), b = make_end(2 * n + 1, from);
       if (!found.pushes[2 * n] && !found.pushes[2 * n + 1])
         throw std::runtime_error("none of the particles that it holds on to is in the group of the fix");
-      found.joints.emplace_back(words[n], std::move(a), std::move(b), distance(words[n].a.at, words[n].b.at), lmp->force->ftm2v);
+      found.joints.emplace_back(words[n], std::move(a), std::move(b), length(words[n].a.at - words[n].b.at), lmp->force->ftm2v);
     } catch (const std::exception &problem) {
       found.problem = name_of_joint(n, words[n]) + ": " + problem.what();
       found.joints.clear();

@@ -5,6 +5,8 @@
 
 #include "numbers/real.h"
 
+#include <cmath>
+
 namespace mdanim {
 
 // Three coordinates, each a double or one for each lane of a vector unit (real.h).
@@ -36,6 +38,9 @@ template <class Real> struct Vec {
 };
 
 using Vec3 = Vec<double>;
+
+MDANIM_ALWAYS_INLINE double length(const Vec3 &a) { return std::sqrt(dot(a, a)); }
+MDANIM_ALWAYS_INLINE Vec3 unit(const Vec3 &a) { return (1.0 / length(a)) * a; }
 
 MDANIM_ALWAYS_INLINE Vec3 vec3(const double *a) { return {a[0], a[1], a[2]}; }
 MDANIM_ALWAYS_INLINE void add_to(double *a, const Vec3 &b)

@@ -8,9 +8,6 @@
 
 namespace mdanim {
 
-static double length(const Vec3 &a) { return std::sqrt(dot(a, a)); }
-static Vec3 unit(const Vec3 &a) { return (1.0 / length(a)) * a; }
-
 static constexpr double PARALLEL = 1e-4;    // square of the sine below which two lines have no crossing
 
 CurvePoint::CurvePoint(const Curve &line, double s)

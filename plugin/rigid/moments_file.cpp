@@ -2,7 +2,7 @@
 
 #include "rigid/moments_file.h"
 
-#include "rigid/line_words.h"
+#include "records/line_words.h"
 
 namespace mdanim {
 

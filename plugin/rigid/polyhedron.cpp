@@ -15,9 +15,6 @@ static constexpr double BLUNT = 0.7;         // cosine between the normals of tw
 static constexpr double ROUNDING = 1e-9;     // over the size
 static constexpr double ONE_PLACE = 1e-6;    // the same: corners that are nearer to each other are one
 
-static double length(const Vec3 &a) { return std::sqrt(dot(a, a)); }
-static Vec3 unit(const Vec3 &a) { return (1.0 / length(a)) * a; }
-
 Polyhedron Polyhedron::box(const Vec3 &half)
 {
   std::vector<Vec3> corners;

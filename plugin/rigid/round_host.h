@@ -20,7 +20,7 @@ class RoundHost {
   {
     if (side > 0) return end(side).along;
     const Vec3 away = x - closest(round, x).at;
-    const double far = std::sqrt(dot(away, away));
+    const double far = length(away);
     return far > 0.0 ? (1.0 / far) * away : shape.axis(0);
   }
   double depth(int side, const Vec3 &x) const
@@ -28,7 +28,7 @@ class RoundHost {
     if (side > 0) return dot(end(side).along, end(side).middle - x);
     const CurvePoint foot = closest(round, x);
     const Vec3 away = x - foot.at;
-    return foot.radius - std::sqrt(dot(away, away));
+    return foot.radius - length(away);
   }
   double outside(const Vec3 &x) const
   {
@@ -43,7 +43,7 @@ class RoundHost {
     slope = Vec3();
     if (side > 0) {
       const Vec3 from = x - end(side).middle, across = from - dot(from, end(side).along) * end(side).along;
-      const double out = std::sqrt(dot(across, across));
+      const double out = length(across);
       double steep;
       part = smooth_step(end(side).size - out, ramp, steep);
       if (steep != 0.0) slope = (-steep / out) * across;

@@ -8,8 +8,6 @@
 
 namespace mdanim {
 
-static double length(const Vec3 &a) { return std::sqrt(dot(a, a)); }
-
 SolidShape SolidShape::of(Polyhedron polyhedron)
 {
   SolidShape shape;

@@ -2,7 +2,7 @@
 
 #include "rigid/shapes_file.h"
 
-#include "rigid/line_words.h"
+#include "records/line_words.h"
 
 #include <algorithm>
 #include <cmath>

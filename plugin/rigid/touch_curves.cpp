@@ -12,9 +12,6 @@
 
 namespace mdanim {
 
-static double length(const Vec3 &a) { return std::sqrt(dot(a, a)); }
-static Vec3 unit(const Vec3 &a) { return (1.0 / length(a)) * a; }
-
 namespace {
 
 constexpr double FADED = 0.02, FADES = 0.015;                    // square of a sine: the ramp of nearly parallel curves

@@ -11,7 +11,6 @@ namespace mdanim {
 
 static constexpr int MOST_CROSSINGS = 64;    // pairs of directions of edges that are tried to separate two bodies
 
-static double length(const Vec3 &a) { return std::sqrt(dot(a, a)); }
 static double thinner(const Solid &a, const Solid &b) { return std::min(a.shape.thin(), b.shape.thin()); }
 
 namespace {

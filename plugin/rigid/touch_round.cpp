@@ -8,7 +8,6 @@
 
 namespace mdanim {
 
-static double length(const Vec3 &a) { return std::sqrt(dot(a, a)); }
 static Vec3 middle_of(const Solid &solid) { return solid.place(solid.shape.middle()); }
 
 void touch_balls(const TouchStep &step, SolidPair &pair, Solid &a, Solid &b, const TouchLaw &law)
