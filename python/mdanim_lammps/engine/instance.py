@@ -19,7 +19,7 @@ from .commands import BALANCE, SKIN, bond_coeffs, box, physics, prelude, table_f
 from .cut import box_to_cut, shorter_along_rows
 from .lines_of_scene import run_lines_of_scene
 from .opened_lammps import OpenedLammps
-from .outputs import output_place
+from .outputs import output_place, output_rows
 from .particle_arrays import ParticleArrays
 from .plan import Ends, Plan
 from .state import NO_RECORDS, Records, State, StateRecords
@@ -28,7 +28,7 @@ from .trace import Trace
 
 MANY = 20_000
 """Particles from which on what making them has left free in the heap goes back to the system: 100 to 400 bytes each."""
-GLOBAL, SCALAR, VECTOR, ARRAY = 0, 0, 1, 2  # LAMMPS's constants for extract_fix
+GLOBAL, SCALAR, VECTOR = 0, 0, 1  # LAMMPS's constants for extract_fix
 
 
 class Instance:
@@ -241,9 +241,8 @@ class Instance:
         return float(self.lammps.lmp.extract_fix(fix, GLOBAL, VECTOR, place))
 
     def fix_rows(self, fix: str, rows: int, columns: int) -> np.ndarray:
-        """The first rows of a fix's array, shape (rows, columns)."""
-        told = self.lammps.lmp.extract_fix
-        return np.array([told(fix, GLOBAL, ARRAY, i, j) for i in range(rows) for j in range(columns)]).reshape(rows, columns)
+        """The first rows of a fix's array, shape (rows, columns). Raises SetupError where it has no such array."""
+        return output_rows(self.lammps.library, self.lammps.handle, fix, rows, columns)
 
     def elastic_energy(self) -> float:
         """Energy of all springs [J], at the last step of a `run` or after `setup`."""

@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""Output of fixes of the plugin in their vectors, by the names on their pages (plugin/lammps/fix_base.h)."""
+"""Output of fixes: entries of vectors by the names on the pages of those of the plugin (plugin/lammps/fix_base.h), and arrays."""
 
 from __future__ import annotations
 
 import ctypes
+
+import numpy as np
 
 from ..errors import SetupError
 
@@ -25,4 +27,13 @@ def output_place(library: ctypes.CDLL, handle: ctypes.c_void_p, fix: str, name: 
     found = place(handle, fix.encode(), name.encode())
     if found < 0:
         raise SetupError(f"fix {fix} has no output {name}; it has {', '.join(output_names(library, handle, fix)) or 'nothing'}")
+    return found
+
+
+def output_rows(library: ctypes.CDLL, handle: ctypes.c_void_p, fix: str, rows: int, columns: int) -> np.ndarray:
+    """The first rows of the array of a fix, shape (rows, columns). Raises SetupError where it has no such array."""
+    told, found = library.mdanim_output_rows, np.empty((rows, columns))
+    told.restype, told.argtypes = ctypes.c_int, [ctypes.c_void_p, ctypes.c_char_p, ctypes.c_int, ctypes.c_int, ctypes.c_void_p]
+    if told(handle, fix.encode(), rows, columns, found.ctypes.data) < rows:
+        raise SetupError(f"fix {fix} has no array of {rows} rows and {columns} columns")
     return found

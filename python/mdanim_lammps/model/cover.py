@@ -6,7 +6,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 from itertools import product
-from types import SimpleNamespace
 
 import numpy as np
 
@@ -51,7 +50,7 @@ def with_covers(models: Sequence[Model], solids: Sequence[Solid]) -> tuple[Model
     for n in corners:
         frame, turn = models[n].frame, np.array(solids[n].rotation)
         others = (np.array([corners[k] for k in sorted(beside[n])]) - solids[n].position) @ turn
-        if len(left := open_parts(frame, others)):
+        if len(left := open_parts(frame.cells.low, frame.cells.count, frame.cells.edge, others)):
             key = (id(frame), left.tobytes())
             found[n] = replace(models[n], frame=frames.setdefault(key, replace(frame, open=left)))
     return tuple(found)
@@ -94,14 +93,13 @@ def hidden_sides(held: Sequence[Solid]) -> list[tuple[int, ...]] | None:
         size, turn, near = np.array(held[n].shape.size), np.array(held[n].rotation), sorted(beside[n])
         spacing = 0.25 * thin[[n, *near]].min()
         count = np.maximum(1.0, np.rint(size / spacing))
-        frame = SimpleNamespace(cells=SimpleNamespace(low=-0.5 * size, count=count, edge=size / count))
         others = (corner[near] - held[n].position) @ turn
         low, high = others.min(axis=1), others.max(axis=1)
         hair = FLUSH * spacing
         is_along = (np.minimum(others - low[:, None], high[:, None] - others) <= hair).all()
         if not is_along or (np.maximum(low - 0.5 * size, -0.5 * size - high) > hair).any():
             return None
-        rows = open_parts(frame, others)
+        rows = open_parts(-0.5 * size, count, size / count, others)
         if (rows[:, 1:] != NOTHING).any():
             return None
         hidden[n] = tuple(rows[:, 0].astype(int).tolist())
@@ -113,25 +111,27 @@ def _corners(frame: BodyFrame) -> np.ndarray:
     return frame.cells.low + np.array(list(product((0, 1), repeat=3))) * frame.cells.count * frame.cells.edge
 
 
-def open_parts(frame: BodyFrame | SimpleNamespace, others: np.ndarray) -> np.ndarray:
+def open_parts(lowest: np.ndarray, count: np.ndarray, edge: np.ndarray, others: np.ndarray) -> np.ndarray:
     """The parts of the sides of a cuboid that others leave open, rows as `ContactBody.open`, shape (R, 5).
 
-    ``others`` are the corners of cuboids in the body frame [m], shape (K, 8, 3). Those whose axes are not along its own
-    cover nothing.
+    Args:
+        lowest: its lowest corner [m], shape (3,).
+        count: its cells along each axis, shape (3,).
+        edge: edges of a cell [m], shape (3,).
+        others: corners of cuboids in the body frame [m], shape (K, 8, 3). Those whose axes are not along its own cover nothing.
     """
-    cells = frame.cells
-    hair = FLUSH * np.cbrt(cells.edge.prod()) / cells.edge
-    at = (others - cells.low) / cells.edge
+    hair = FLUSH * np.cbrt(edge.prod()) / edge
+    at = (others - lowest) / edge
     low, high = at.min(axis=1), at.max(axis=1)
     is_along = (np.minimum(at - low[:, None], high[:, None] - at) <= hair).all(axis=(1, 2))
     low, high = low[is_along], high[is_along]
     rows = []
     for side, (axis, end) in enumerate(product(range(3), (0, 1))):
         across = [a for a in range(3) if a != axis]
-        layer = end * cells.count[axis] + (2 * end - 1) * hair[axis]  # just outside of the side
+        layer = end * count[axis] + (2 * end - 1) * hair[axis]  # just outside of the side
         meets = np.flatnonzero((low[:, axis] <= layer) & (layer <= high[:, axis]))[:, None]
         covers = low[meets, across] - hair[across], high[meets, across] + hair[across]
-        left = _left(*covers, cells.count[across].astype(float), hair[across])
+        left = _left(*covers, count[across].astype(float), hair[across])
         if left is not None:
             rows += [(side, *part) for part in left or [NOTHING]]
     return np.round(np.array(rows, float).reshape(-1, 5), DIGITS)

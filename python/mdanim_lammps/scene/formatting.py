@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""Numbers and quantities for messages, written as people do and as they may be written in a scene."""
+"""Numbers and quantities for messages, written as people do and as they may be written in a scene, and for programs."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from decimal import Decimal
 
 PREFIXED = {
@@ -26,6 +27,11 @@ def say(value: float, unit: str = "", digits: int = 3) -> str:
     if size < 1e-3 * worth:  # too small for the smallest: the power of ten then belongs to the SI unit
         name, worth = unit, 1.0
     return f"{number(value / worth, digits)} {name}".rstrip()
+
+
+def in_full(numbers: Iterable[float]) -> str:
+    """Numbers with all their bits, for programs."""
+    return " ".join(repr(float(number)) for number in numbers)
 
 
 def number(value: float, digits: int = 3) -> str:

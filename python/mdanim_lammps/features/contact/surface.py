@@ -120,9 +120,7 @@ class SurfaceLaw:
             return None
         h = float(np.cbrt(system.cell_volume).max())
         eta = 2.0 * beta * np.sqrt(kappa * (system.density * h) / 2.0)
-        area = borne_area(system)
-        if system.lines.any():
-            area = np.where(system.lines[system.object], own_area(system), area)
+        area = np.where(system.lines[system.object], own_area(system), borne_area(system))
         return eta[system.object] * _of_bodies(context, area / system.mass)
 
     def penetration(self, readings: Readings) -> float:
@@ -230,15 +228,14 @@ class SurfaceContact(ObjectContact):
         area = own + borne
         if dense.any() and not dense.all():
             area = np.maximum(area, ALONE * np.where(dense[system.object], own, borne))
-        if system.lines.any():
-            area = np.where(system.lines[system.object], RESOLVED * LINE * own, area)
+        area = np.where(system.lines[system.object], RESOLVED * LINE * own, area)
         surface = 2.0 * kappa * _of_bodies(context, area / system.mass, 2.0)
         return surface + barrier_rate(context, self.barrier_stiffness(context), self.longest_reach(context))
 
     def own_rate(self, context):
         system = context.system
         kappa = self.stiffness(context)[system.object]
-        share = np.where(system.lines, RESOLVED * LINE, 1.0)[system.object] if system.lines.any() else 1.0
+        share = np.where(system.lines, RESOLVED * LINE, 1.0)[system.object]
         return 2.0 * kappa * share * _of_bodies(context, own_area(system) / system.mass)
 
     def drag_rate(self, context):
@@ -437,9 +434,7 @@ def own_area(system: System) -> np.ndarray:
 def borne_area(system: System) -> np.ndarray:
     """s_i, the area of another surface that each particle may bear [m^2], shape (N,): h^2 within a face, less where fewer cells
     are behind it."""
-    area = (
-        np.where(system.lines, 0.0, np.cbrt(system.cell_volume) ** 2) if system.lines.any() else np.cbrt(system.cell_volume) ** 2
-    )
+    area = np.where(system.lines, 0.0, np.cbrt(system.cell_volume) ** 2)
     return area[system.object] * np.minimum(1.0, 2.0 * system.share)
 
 

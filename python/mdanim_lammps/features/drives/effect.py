@@ -41,8 +41,7 @@ class Drives(Effect):
         return any(map(motion.is_driven, context.solids))
 
     def drives(self, scene):
-        time = scene.control.time
-        return {m: motion.bounds(solid, time) for m, solid in enumerate(scene.solids) if motion.is_driven(solid)}
+        return motion.ways(scene)
 
     def passes(self, scene):
         return motion.passing(scene)
@@ -68,7 +67,7 @@ class Drives(Effect):
         return (WORK,)
 
     def lost(self, readings):
-        return {WORK: readings.fix_value(self.fix, "work")}
+        return {WORK: readings.fix_value(self.fix, WORK)}
 
 
 EFFECTS = (Drives(),)

@@ -10,11 +10,12 @@ from typing import Any
 import numpy as np
 
 from ...bodies import all_held
+from ...effects.once import once_for
 from ...errors import Problem, SceneError, Span
 from ...model import shapes
 from ...model.boxes import box_pairs
 from ...reach import Drive
-from ...scene.formatting import whole
+from ...scene.formatting import in_full, whole
 from .words import DriveKey, DriveOscillation, DriveTurn, DriveVelocity
 
 TURN = 2.0 * math.pi
@@ -59,24 +60,21 @@ def words_of(solid: Any) -> str:
     """The motion in the words of the fix."""
     found = []
     if (velocity := velocity_of(solid)).any():
-        found.append(f"velocity {_digits(velocity)}")
+        found.append(f"velocity {in_full(velocity)}")
     rate, about = turn_of(solid)
     if rate.any():
-        found.append(f"turn {_digits(rate)} {_digits(about)}")
-    found += [f"oscillation {_digits(one.way)} {one.frequency!r} {one.phase / TURN!r}" for one in oscillations_of(solid)]
+        found.append(f"turn {in_full(rate)} {in_full(about)}")
+    found += [f"oscillation {in_full(one.way)} {one.frequency!r} {one.phase / TURN!r}" for one in oscillations_of(solid)]
     if keys := keys_of(solid):
-        found.append(f"pivot {_digits(solid.position)}")
-        found += [f"key {k.time!r} {_digits(np.subtract(k.at, solid.position))} {_digits(k.rotation)}" for k in keys]
+        found.append(f"pivot {in_full(solid.position)}")
+        found += [f"key {k.time!r} {in_full(np.subtract(k.at, solid.position))} {in_full(k.rotation)}" for k in keys]
     return " ".join(found) or "velocity 0.0 0.0 0.0"
-
-
-def _digits(numbers: Any) -> str:
-    return " ".join(repr(float(x)) for x in numbers)
 
 
 # --- which go through each other ---
 
 
+@once_for(lambda scene: scene)
 def passing(scene: Any) -> list[tuple[int, int]]:
     """Pairs i < j of objects that are held as a whole, of which one is driven at least, and whose ways cross: neither gives way,
     so nothing acts between them. Those that are driven alike stay as far apart as they are at the start.
@@ -88,14 +86,14 @@ def passing(scene: Any) -> list[tuple[int, int]]:
         return []
     solids = [scene.solids[m] for m in held]
     corner = [_corners(solid) for solid in solids]
-    ways = [bounds(s, scene.control.time) if is_driven(s) else Drive((0.0,) * 3, (0.0,) * 3, 0.0) for s in solids]
+    way = [ways(scene).get(m, Drive((0.0,) * 3, (0.0,) * 3, 0.0)) for m in held]
     low, high = np.array([c.min(0) for c in corner]), np.array([c.max(0) for c in corner])
     driven = np.array([is_driven(solid) for solid in solids])
     straight = np.array([not solid.key_points and all(map(_is_straight, solid.drive)) for solid in solids])
     kinds: dict[Any, int] = {}
     kind = np.array([kinds.setdefault((solid.drive, solid.key_points), len(kinds)) for solid in solids])
     found: list[tuple[int, int]] = []
-    for a, b in box_pairs(low + [way.low for way in ways], high + [way.high for way in ways]):
+    for a, b in box_pairs(low + [one.low for one in way], high + [one.high for one in way]):
         apart = ((low[a] > high[b]) | (low[b] > high[a])).any(axis=1)
         crosses = (driven[a] | driven[b]) & ~((kind[a] == kind[b]) & straight[a] & apart)
         if len(found) + crosses.sum() > MOST_PASSING:
@@ -115,6 +113,12 @@ def _is_straight(drive: Any) -> bool:
 # --- how far and how fast ---------------------------------------------------------------------------------------------
 
 
+@once_for(lambda scene: scene)
+def ways(scene: Any) -> dict[int, Drive]:
+    """`bounds` of all driven objects until the end of a scene, by their numbers."""
+    return {m: bounds(solid, scene.control.time) for m, solid in enumerate(scene.solids) if is_driven(solid)}
+
+
 def bounds(solid: Any, time: float) -> Drive:
     """How far the box around the object may reach beyond that at the start until a time [s], and how fast any point of it may be;
     never too small. With a turn a point in the box may go farther than the box does.
@@ -125,7 +129,7 @@ def bounds(solid: Any, time: float) -> Drive:
     low, high, speed = _displaced(solid, time)
     corner = _corners(solid)
     arm = np.linalg.norm(corner - solid.position, axis=1).max()
-    path = _path(keys_of(solid), solid.position, time)
+    path = KeyPath(keys_of(solid), solid.position, time)
     low, high, speed = low + path.low, high + path.high, speed + path.speed + path.turning * arm
     wide = _chord(arm, path.angle)
     low, high = low - wide, high + wide
@@ -142,7 +146,7 @@ def quickest(solid: Any, time: float) -> float:
     """Highest frequency in its motion until a time [s]: of oscillations, of turns by drives and keys, and of keys, which are half
     a period apart [Hz]."""
     keys = keys_of(solid)
-    turning = float(np.linalg.norm(turn_of(solid)[0])) + _path(keys, solid.position, time).turning
+    turning = float(np.linalg.norm(turn_of(solid)[0])) + KeyPath(keys, solid.position, time).turning
     between = [0.5 / (then.time - now.time) for now, then in pairwise(keys) if now.time < time]
     return max([turning / TURN, *between, *(one.frequency for one in oscillations_of(solid))])
 
@@ -186,7 +190,7 @@ def _swept(corner: np.ndarray, about: np.ndarray, axis: np.ndarray, angle: float
     return np.minimum(low, 0.0), np.maximum(high, 0.0)
 
 
-class _path:
+class KeyPath:
     """Bounds on a path through keys: displacements [m], the largest rotation [rad], speed [m/s], rate of rotation [rad/s]."""
 
     def __init__(self, keys: tuple[DriveKey, ...], start: Any, time: float):

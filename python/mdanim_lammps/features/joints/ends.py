@@ -90,11 +90,16 @@ def directions_of(link: Link) -> np.ndarray:
     return np.eye(3) if link.joint.kind in ("weld", "slider") else np.zeros((0, 3))
 
 
+def both_across(axis: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Two directions across an axis and each other."""
+    first = unit(np.cross(axis, np.eye(3)[np.abs(axis).argmin()]))
+    return first, np.cross(axis, first)
+
+
 def across(axis: np.ndarray, inverses: Sequence[np.ndarray]) -> np.ndarray:
     """The direction across an axis that is hardest to turn in all ends, on which the servo of a hinge acts; ``inverses`` are
     their S^-1 [1/(kg m^2)], each of shape (3, 3)."""
-    u = unit(np.cross(axis, np.eye(3)[np.abs(axis).argmin()]))
-    v = np.cross(axis, u)
+    u, v = both_across(axis)
     net = sum(inverses, np.zeros((3, 3)))
     uu, vv, uv = (float(a @ net @ b) for a, b in ((u, u), (v, v), (u, v)))
     least = 0.5 * (uu + vv) - math.hypot(0.5 * (uu - vv), uv)

@@ -7,11 +7,12 @@ import heapq
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import cached_property
 
 import numpy as np
 
 from ...bodies import all_held, driven, kind_of
+from ...effects.once import once_for
 from ...model import shapes
 from ...reach import Leash
 from ...scene import units
@@ -61,6 +62,11 @@ class Link:
         return self.length if self.joint.length is None else self.joint.length
 
     @property
+    def way(self) -> float:
+        """Distance from the start within which a slider stays [m]; infinite without limits."""
+        return math.inf if self.joint.limits is None else max(abs(units.magnitude(x)) for x in self.joint.limits)
+
+    @property
     def pair(self) -> tuple[int, int]:
         """Both objects, the lower number first; of one that is joined to what never moves twice this one."""
         other = self.first if self.second == NOTHING else self.second
@@ -68,10 +74,10 @@ class Link:
 
 
 class Links:
-    """All joints of a scene."""
+    """All joints of a scene, which it does not hold."""
 
     def __init__(self, scene: SceneRecord):
-        self.scene = scene
+        self.solids = scene.solids
         by_name = objects_by_name(s.name for s in scene.solids)
         moved = driven(scene) if any(all_held(s) for s in scene.solids) else set()
         self.still = np.array([all_held(s) and m not in moved for m, s in enumerate(scene.solids)], bool)
@@ -85,10 +91,10 @@ class Links:
         self.all = [self._link(number, *end) for number, end in enumerate(ends)]
 
     def _link(self, number: int, joint: Joint, first: int, second: int) -> Link:
-        centre = self.scene.solids[first].position
+        centre = self.solids[first].position
         if joint.kind == "spring":
             begin = joint.begin or centre
-            end = joint.end or self.scene.solids[second].position
+            end = joint.end or self.solids[second].position
         else:
             begin = end = joint.at or centre
         axis = joint.axis
@@ -100,6 +106,16 @@ class Links:
             axis = None if axis is None else tuple(-x for x in axis)
         fixed = second == NOTHING or bool(self.still[second])
         return Link(number, joint, first, NOTHING if fixed else second, second, begin, end, axis, swapped)
+
+    @cached_property
+    def of_names(self) -> dict[str, list[tuple[str, Link]]]:
+        """Joints of each object by its name, with the name of the other one, in the order of joints."""
+        found: dict[str, list[tuple[str, Link]]] = {}
+        for link in self.all:
+            ends = [WORLD if m == NOTHING else self.solids[m].name for m in (link.first, link.named)]
+            for one, two in (ends, ends[::-1]):
+                found.setdefault(one, []).append((two, link))
+        return found
 
     @cached_property
     def pairs(self) -> list[tuple[int, int]]:
@@ -130,7 +146,7 @@ class Links:
 
     def _arm(self, m: int, point: Vector) -> float:
         """Largest distance of a point of an object from its centre [m]."""
-        solid = self.scene.solids[m]
+        solid = self.solids[m]
         return math.dist(solid.position, point) * (STRETCH if kind_of(solid).deforms else 1.0) * HAIR
 
     def _distances(self) -> dict[int, tuple[Vector, float]]:
@@ -174,7 +190,7 @@ class Links:
         return found
 
     def _given(self, link: Link, ends: list[int]) -> float:
-        joint, solids = link.joint, self.scene.solids
+        joint, solids = link.joint, self.solids
         if joint.motor is not None:
             speed = abs(units.magnitude(joint.motor.speed))
             if joint.kind == "slider":
@@ -190,7 +206,7 @@ def _play(link: Link) -> float:
     """How far both points of a joint may come apart [m]."""
     joint = link.joint
     if joint.kind == "slider":
-        return math.inf if joint.limits is None else max(abs(units.magnitude(x)) for x in joint.limits)
+        return link.way
     if joint.kind == "spring":  # a rod or a cable is as hard as a joint
         return math.inf if joint.stiffness is not None else HAIR * link.rest
     return 0.0
@@ -217,24 +233,7 @@ def parts(groups: Iterable[list[int]]) -> list[list[int]]:
     return list(found.values())
 
 
-class Same:
-    """A scene, which is equal to itself alone: its values take long to compare."""
-
-    def __init__(self, scene: SceneRecord):
-        self.scene = scene
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, Same) and other.scene is self.scene
-
-    def __hash__(self) -> int:
-        return id(self.scene)
-
-
+@once_for(lambda scene: scene)
 def links_of(scene: SceneRecord) -> Links:
     """The joints of a scene, found once."""
-    return _links(Same(scene))
-
-
-@lru_cache(maxsize=8)
-def _links(of: Same) -> Links:
-    return Links(of.scene)
+    return Links(scene)

@@ -49,7 +49,7 @@ def loads(context: Context, links: Links) -> list[tuple[float, float]]:
             most[numbers] += driven * np.array([max(mass[m] for m in ends[n]) for n in numbers])
     for n, link in enumerate(links.all):
         if (motor := link.joint.motor) is not None and motor.most is not None:
-            most[n] += motor.most if link.joint.kind == "slider" else motor.most / _size(context, links.all[n])
+            most[n] += motor.most if link.joint.kind == "slider" else motor.most / _size(context, link)
     return list(zip(rest.tolist(), most.tolist()))
 
 

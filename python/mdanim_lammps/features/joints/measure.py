@@ -10,9 +10,8 @@ import numpy as np
 from ...effects.measured import Measured
 from ...errors import Problem
 from ...scene.scene import Expect, SceneRecord
-from .links import NOTHING, Link, links_of
+from .links import Link, links_of
 from .rows import FIELD, FORCE, GAP, NUMBER, TORQUE, WAY
-from .words import WORLD
 
 COLUMNS = {"angle": WAY, "way": WAY, "force": FORCE, "torque": TORQUE, "gap": GAP}
 
@@ -24,12 +23,8 @@ KINDS = {"angle": ("hinge",), "way": ("slider", "spring"), "torque": ("weld", "h
 def joint_between(scene: SceneRecord, subject: str, other: str, what: str) -> Link | None:
     """The joint that an ``expect`` is about: the first one of both objects that has the quantity."""
     kinds = KINDS.get(what)
-    names = [solid.name for solid in scene.solids]
-    for link in links_of(scene).all:
-        ends = {names[link.first], WORLD if link.named == NOTHING else names[link.named]}
-        if ends == {subject, other} and (kinds is None or link.joint.kind in kinds):
-            return link
-    return None
+    own = links_of(scene).of_names.get(subject, ())
+    return next((link for name, link in own if name == other and (kinds is None or link.joint.kind in kinds)), None)
 
 
 def unmeasured(scene: SceneRecord) -> list[Problem]:
@@ -41,19 +36,13 @@ def unmeasured(scene: SceneRecord) -> list[Problem]:
             continue
         kinds = KINDS.get(what, ("joint",))
         cause = f"no {' or '.join(kinds)} connects {e.subject} and {e.argument}"
-        others = [other for other in _partners(scene, e.subject) if joint_between(scene, e.subject, other, what) is not None]
+        own = links_of(scene).of_names.get(e.subject, ())
+        others = [other for other, _ in own if joint_between(scene, e.subject, other, what) is not None]
         way_out = (
             f"write {e.subject}.{e.quantity}({others[0]})" if others else "write the names of what is joined, or another quantity"
         )
         found.append(Problem(e.span, cause, way_out))
     return found
-
-
-def _partners(scene: SceneRecord, subject: str) -> list[str]:
-    """Names of what an object is joined to, in the order of joints."""
-    names = {NOTHING: WORLD, **{m: solid.name for m, solid in enumerate(scene.solids)}}
-    ends = [(names[link.first], names[link.named]) for link in links_of(scene).all]
-    return [two if one == subject else one for one, two in ends if subject in (one, two)]
 
 
 def _along(what: str) -> Callable[[Measured, Expect], float]:

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...effects.context import Context
-from .ends import JointEnd, directions_of, skew, unit
+from .ends import JointEnd, both_across, directions_of, skew, unit
 from .links import NOTHING
 
 if TYPE_CHECKING:
@@ -113,16 +113,10 @@ def _rows(one: Strength) -> list[tuple[np.ndarray, bool]]:
             hard = link.joint.stiffness is None and link.length > 0.0 and link.joint.length is None
             return [(unit(np.subtract(link.end, link.begin)), False)] if hard else []
         case "slider":
-            return [*((e, False) for e in _across(unit(link.axis))), *((e, True) for e in np.eye(3))]
+            return [*((e, False) for e in both_across(unit(link.axis))), *((e, True) for e in np.eye(3))]
         case "hinge":
-            return [*((e, False) for e in np.eye(3)), *((e, True) for e in _across(unit(link.axis)))]
+            return [*((e, False) for e in np.eye(3)), *((e, True) for e in both_across(unit(link.axis)))]
     return [*((e, False) for e in np.eye(3)), *((e, True) for e in directions_of(link))]
-
-
-def _across(axis: np.ndarray) -> list[np.ndarray]:
-    first = np.cross(axis, np.eye(3)[np.abs(axis).argmin()])
-    first /= np.linalg.norm(first)
-    return [first, np.cross(axis, first)]
 
 
 def _motion(body: JointEnd, along: np.ndarray, turns: bool) -> np.ndarray:

@@ -12,14 +12,12 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from functools import cached_property
-from weakref import WeakKeyDictionary
 
 import numpy as np
 
 from ...effects.context import Context
+from ...effects.once import once_for
 from ...model.shapes import thickness
-from ...reach import Reach
-from ...scene import units
 from .ends import JointEnd, across, directions_of, lever, spin, unit
 from .links import NOTHING, Link, links_of
 from .loads import loads
@@ -32,8 +30,6 @@ DAMPING = 0.02
 """Share of critical damping of the dashpots beside a joint: what a jerk has set ringing is gone after some ten periods."""
 STIFFER = 4.0
 """Square of the frequency of what a joint holds against turning, over that of its gap: the most that arms make it."""
-_FOUND: WeakKeyDictionary[Reach, list[Strength]] = WeakKeyDictionary()
-"""Joints of scenes, each found once."""
 
 
 @dataclass(frozen=True)
@@ -186,20 +182,12 @@ def servos(link: Link) -> int:
 def _rail(link: Link) -> float:
     """Distance from the point of a joint within which it holds on to what deforms, at least [m]: the way of a slider, all of a
     body without limits. A patch that ends before the way does turns over under what slides there."""
-    if link.joint.kind != "slider":
-        return 0.0
-    return math.inf if link.joint.limits is None else max(abs(units.magnitude(x)) for x in link.joint.limits)
+    return link.way if link.joint.kind == "slider" else 0.0
 
 
+@once_for(lambda context: context.reach)
 def strengths(context: Context) -> list[Strength]:
     """All joints of a scene; also asked of the context of a part of it."""
-    reach = context.reach
-    if reach not in _FOUND:
-        _FOUND[reach] = _find(context)
-    return _FOUND[reach]
-
-
-def _find(context: Context) -> list[Strength]:
     system, scene, links = context.reach.system, context.scene, links_of(context.scene)
     pull = loads(context, links)
     roots: dict[int, np.ndarray] = {}

@@ -4,15 +4,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import lru_cache
-from types import SimpleNamespace
 
 import numpy as np
 
-from ... import features
-from ...bodies import all_held
+from ...bodies import all_held, driven
+from ...effects.once import once_for
 from ...model.cover import hidden_sides
 from ...model.polyhedron import hull, polyhedron
+from ...scene.formatting import in_full
 from ...scene.scene import Box, Cone, Cylinder, Ellipsoid, Mesh, SceneRecord, Shape, Solid, Sphere, Torus
 from .words import Rigid
 
@@ -36,22 +35,15 @@ def only_balls_move(solids: Sequence[Solid]) -> bool:
     return all(isinstance(s.shape, Sphere) or all_held(s) or not is_rigid(s) or not on_objects(s.shape) for s in solids)
 
 
+@once_for(lambda scene: scene)
 def hidden(scene: SceneRecord) -> dict[str, tuple[int, ...]] | None:
     """Sides of held cuboids that others hide, by the names of objects; None where features would catch at a seam: a side is
     hidden in part, or what is beside another one may move."""
-    held = [solid for solid in scene.solids if all_held(solid) and isinstance(solid.shape, Box)]
-    moved = {scene.solids[m].name for effect in features.effects() for m in effect.of(scene).drives(scene)}
-    found = _hidden(tuple((solid.shape.size, tuple(solid.position), tuple(map(tuple, solid.rotation))) for solid in held))
-    if moved and any(solid.name in moved for solid in held) and (found is None or any(found)):
+    held = {m: solid for m, solid in enumerate(scene.solids) if all_held(solid) and isinstance(solid.shape, Box)}
+    found = hidden_sides(list(held.values()))
+    if found is None or (any(found) and not held.keys().isdisjoint(driven(scene))):
         return None
-    return None if found is None else {solid.name: sides for solid, sides in zip(held, found) if sides}
-
-
-@lru_cache(maxsize=8)
-def _hidden(held: tuple) -> tuple[tuple[int, ...], ...] | None:
-    solids = [SimpleNamespace(shape=Box(size), position=np.array(place), rotation=turn) for size, place, turn in held]
-    found = hidden_sides(solids)
-    return None if found is None else tuple(found)
+    return {solid.name: sides for solid, sides in zip(held.values(), found) if sides}
 
 
 def is_rigid(solid: Solid) -> bool:
@@ -82,13 +74,8 @@ def in_file(solid: Solid, hides: Sequence[int] = ()) -> tuple[list[float], str]:
             kind, sizes = "torus", (shape.major, shape.minor)
         case Mesh() if (body := polyhedron(shape) or hull(shape)) is not None:
             faces = " ".join(f"{len(face)} {' '.join(map(str, face))}" for face in body.faces)
-            return place.tolist(), f"polyhedron {len(body.corner)} {digits(body.corner.ravel())} {len(body.faces)} {faces}"
+            return place.tolist(), f"polyhedron {len(body.corner)} {in_full(body.corner.ravel())} {len(body.faces)} {faces}"
         case _:
             raise TypeError(f"no features of {shape!r}")
     covered = f" covered {' '.join(SIDES[side] for side in hides)}" if hides else ""
-    return place.tolist(), f"{kind} {digits(sizes)}{covered}"
-
-
-def digits(numbers) -> str:
-    """Numbers with all their bits, as text."""
-    return " ".join(repr(float(number)) for number in numbers)
+    return place.tolist(), f"{kind} {in_full(sizes)}{covered}"

@@ -19,13 +19,13 @@ from ...effects.margin import Margin
 from ...model.planes import Plane
 from ...model.shapes import thickness
 from ...model.system import System
-from ...scene.formatting import number, say
+from ...scene.formatting import in_full, number, say
 from ...scene.naming import objects_by_name, pairs_of
 from ...scene.scene import Shape, Solid
 from ..contact.pairs import damping, frictions
 from ..contact.restitution import damping_for
 from ..contact.rigid_surfaces import frequency
-from .shapes import digits, hidden, in_file, on_objects, on_planes, only_balls_move
+from .shapes import hidden, in_file, on_objects, on_planes, only_balls_move
 
 ONSET = 0.005
 """Depth up to which a contact begins gently, over the thinnest part."""
@@ -175,7 +175,7 @@ def shapes_text(context: Context, part: Part) -> str:
         pose = [*place, *quaternion(np.array(solids[m].rotation))]
         kind = "free" if part.bodies[m] else "driven" if driven[m] else "held"
         kind = f"usual {kind}" if given and blows[m] is None else kind  # where one of two has a restitution, it counts alone
-        lines.append(f"{m + 1} {digits([own[m], shares[m]])} {kind} {digits(pose)} {shape}\n")
+        lines.append(f"{m + 1} {in_full([own[m], shares[m]])} {kind} {in_full(pose)} {shape}\n")
     return "".join(lines)
 
 

@@ -12,7 +12,7 @@ from ...model.shapes import mass
 from ...model.springs import reduced_mass, types
 from ...model.tube import make_tube
 from ...scene.formatting import say
-from ...scene.scene import Accuracy, HoldAll, HoldEnds, HoldWithin
+from ...scene.scene import Accuracy, HoldAll, HoldEnds, HoldWithin, Rope
 from .chain import line_frame, links_of, places, springs
 from .words import is_rope
 
@@ -87,8 +87,6 @@ class RopeBody(BodyKind):
 
 def _shared(shared, thickness: float, length: float, links: int):
     """Parts that ropes of one length, thickness and number of links share."""
-    from ...scene.scene import Rope
-
     straight = Rope((0.0, 0.0, 0.0), (length, 0.0, 0.0), thickness, length)
     triangle, index, weight, tube = make_tube(links, 0.5 * thickness)
     for array in (triangle, index, weight, tube):
