@@ -40,7 +40,7 @@ def elastic(size, spacing, density, modulus, corner, moved=lambda x: x) -> lab.B
 
 
 @dataclass
-class World:
+class World(lab.Running):
     """An instance of bodies with joints; all that is not in ``elastic`` or ``held`` is rigid. Molecules count from 1."""
 
     folder: Path
@@ -52,6 +52,9 @@ class World:
     held: tuple[int, ...] = ()
     commands: tuple[str, ...] = ()
     skin: float = 0.3
+
+    fix = "j"
+    outputs = OUTPUTS
 
     def __post_init__(self):
         self.dt = float(self.dt)
@@ -67,7 +70,6 @@ class World:
         words = [f"joint {joint}" for joint in self.joints]
         commands.append(f"fix j moving mdanim/joint {' '.join(words)}")
         self.script = [*commands, f"timestep {self.dt!r}", "thermo_modify lost ignore", *self.commands]
-        self.lmp = None
 
     def __enter__(self) -> World:
         self.lmp = lab.load(self.body, self.folder, self.script, **self.options)
@@ -76,13 +78,6 @@ class World:
         self.lmp.command("run 0")
         return self
 
-    def __exit__(self, *_) -> None:
-        self.lmp.close()
-
-    def run(self, steps: int) -> None:
-        """Go on."""
-        self.lmp.command(f"run {steps} pre no post no")
-
     def rows(self) -> np.ndarray:
         """The array of the fix, shape (J, 13)."""
         return np.array([[self.lmp.extract_fix("j", 0, 2, n, c) for c in range(len(COLUMNS))] for n in range(len(self.joints))])
@@ -90,10 +85,6 @@ class World:
     def told(self, column: str, joint: int = 0) -> float:
         """An entry of the array."""
         return self.lmp.extract_fix("j", 0, 2, joint, COLUMNS.index(column))
-
-    def number(self, name: str) -> float:
-        """An output of the fix by its name."""
-        return self.lmp.extract_fix("j", 0, 1, OUTPUTS.index(name))
 
     def array(self, name: str) -> np.ndarray:
         """Values of particles in tag order."""

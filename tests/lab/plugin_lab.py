@@ -185,6 +185,38 @@ def load(body: Body, folder: Path, commands=(), **options):
     return lmp
 
 
+def restarted(file: Path, body: Body, commands=(), **options):
+    """A LAMMPS instance that goes on from a restart file of one with this body; ``commands`` follow. Options are those of
+    `prelude`."""
+    lmp = plugin_path.lammps()
+    kept = [c for c in prelude(**options) if not c.startswith(("fix", "atom_style", "units", "boundary", "newton"))]
+    read = [f"read_restart {file}", "fix model all property/atom rmass ghost yes"]
+    for command in [*kept, *read, *springs(body), *commands]:
+        lmp.command(command)
+    return lmp
+
+
+class Running:
+    """A LAMMPS instance that lives as long as a context."""
+
+    fix = ""
+    """The fix that is asked for its outputs."""
+    outputs: tuple[str, ...] = ()
+    """Names of the entries of its vector."""
+    lmp = None
+
+    def __exit__(self, *_) -> None:
+        self.lmp.close()
+
+    def run(self, steps: int) -> None:
+        """Go on."""
+        self.lmp.command(f"run {steps} pre no post no")
+
+    def number(self, name: str) -> float:
+        """An output of the fix by its name."""
+        return self.lmp.extract_fix(self.fix, 0, 1, self.outputs.index(name))
+
+
 def in_child(body: Body, folder: Path, commands=(), ranks=1, timeout=60.0, **options) -> str:
     """Run the same in processes of their own, which may hang or crash. Returns tags, positions, velocities and forces at the end
     as text to the last bit, a title and a line for each particle."""

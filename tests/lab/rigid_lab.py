@@ -129,8 +129,17 @@ def torus(radius, tube, density=600.0, **more) -> Rigid:
     return Rigid(f"torus {radius!r} {tube!r}", mass, moments, np.array([radius / 2, radius / 2, tube / 2]), 2 * tube).put(**more)
 
 
-class World:
+NAMES = (
+    *("bodies", "translation", "rotation", "seconds", "drag_loss", "contact", "friction_heat", "damping_loss", "let_go"),
+    *("deepest", "touching", "near", "worst_bound", "most_touching"),
+)
+
+
+class World(lab.Running):
     """An instance with rigid bodies. The time step is 0.35 of 1/frequency, if nothing else is told."""
+
+    fix = "r"
+    outputs = NAMES
 
     def __init__(
         self,
@@ -159,7 +168,6 @@ class World:
             f"timestep {self.dt!r}",
             *commands,
         ]
-        self.lmp = None
         self.folder = folder
         self.started = False
 
@@ -168,13 +176,6 @@ class World:
         self.lmp.command("run 0")
         return self
 
-    def __exit__(self, *_) -> None:
-        self.lmp.close()
-
-    def run(self, steps: int) -> None:
-        """Go on."""
-        self.lmp.command(f"run {steps} pre no post no")
-
     def rows(self) -> np.ndarray:
         """Centre, velocity, quaternion of the principal axes, angular velocity of each free body in the order given, shape
         (M, 13)."""
@@ -182,21 +183,11 @@ class World:
         order = np.argsort([n for _, n in self.free])
         return rows[order]
 
-    def number(self, name: str) -> float:
-        """An output of the fix by its name."""
-        return self.lmp.extract_fix("r", 0, 1, NAMES.index(name))
-
     def energy(self, gravity=9.81) -> float:
         """All energy, with what was lost."""
         rows, mass = self.rows(), np.array([b.mass for b in self.bodies if not b.held])
         names = ("translation", "rotation", "contact", "friction_heat", "damping_loss", "let_go", "drag_loss")
         return sum(map(self.number, names)) + gravity * (mass * rows[:, 2]).sum()
-
-
-NAMES = (
-    *("bodies", "translation", "rotation", "seconds", "drag_loss", "contact", "friction_heat", "damping_loss", "let_go"),
-    *("deepest", "touching", "near", "worst_bound", "most_touching"),
-)
 
 
 def setup(folder: Path, bodies: Sequence[Rigid], molecules: Sequence[int]) -> lab.Body:

@@ -52,14 +52,7 @@ def test_a_restart_file_has_the_state(tmp_path):
         world.lmp.command("run 0")
         world.run(300)
         expected, told = world.array("x"), world.rows()
-    again = plugin_lab.plugin_path.lammps()
-    for command in plugin_lab.prelude(**world.options):
-        if not command.startswith(("fix", "atom_style", "units", "boundary", "newton")):
-            again.command(command)
-    again.command(f"read_restart {tmp_path}/half")
-    springs = plugin_lab.springs(world.body)
-    for command in ["fix model all property/atom rmass ghost yes", *springs, *world.script, "run 300"]:
-        again.command(command)
+    again = plugin_lab.restarted(tmp_path / "half", world.body, [*world.script, "run 300"], **world.options)
     assert np.array_equal(plugin_lab.by_tag(again, "x"), expected)
     assert [again.extract_fix("j", 0, 2, n, 2) for n in range(len(WORDS))] == told[:, 2].tolist()
     again.close()

@@ -143,10 +143,7 @@ def test_a_restart_file_carries_it_on(tmp_path):
     lmp = lab.load(BLOCK, tmp_path, [LOOSE, field, *drive(words), "run 20", f"write_restart {tmp_path}/r", "run 20"])
     x, work = lab.by_tag(lmp, "x"), lmp.extract_fix("drive", 0, 1, 0)
     lmp.close()
-    again = lab.plugin_path.lammps()
-    read = ["atom_modify map array sort 0 0", "newton off", f"read_restart {tmp_path}/r", "fix model all property/atom rmass"]
-    for command in [*read, field, *drive(words), "run 20"]:
-        again.command(command)
+    again = lab.restarted(tmp_path / "r", BLOCK, [field, *drive(words), "run 20"])
     assert np.array_equal(lab.by_tag(again, "x"), x)
     assert again.extract_fix("drive", 0, 1, 0) == pytest.approx(work, rel=1e-13)
     again.close()
@@ -156,16 +153,7 @@ def test_a_restart_file_with_another_time_step_is_refused(tmp_path):
     """Its steps are not those of the new time step."""
     lmp = lab.load(BLOCK, tmp_path, [LOOSE, *drive("velocity 1 0 0"), "run 20", f"write_restart {tmp_path}/r"])
     lmp.close()
-    again = lab.plugin_path.lammps()
-    for command in [
-        "atom_modify map array sort 0 0",
-        "newton off",
-        f"read_restart {tmp_path}/r",
-        "fix model all property/atom rmass",
-    ]:
-        again.command(command)
-    for command in [*drive("velocity 1 0 0"), "timestep 0.001"]:
-        again.command(command)
+    again = lab.restarted(tmp_path / "r", BLOCK, [*drive("velocity 1 0 0"), "timestep 0.001"])
     with pytest.raises(Exception, match=r"the time step has changed from 0\.02 to 0\.001"):
         again.command("run 1")
     again.close()

@@ -219,13 +219,7 @@ def test_a_restart_file_goes_on_to_the_bit(tmp_path):
     whole = lab.load(TWO, tmp_path, [*commands, f"write_restart {tmp_path / 'half'}", "run 40"])
     expected = lab.by_tag(whole, "x")
     whole.close()
-    again = lab.plugin_path.lammps()
-    for command in lab.prelude():
-        if not command.startswith(("fix", "atom_style", "units", "boundary", "newton")):
-            again.command(command)
-    again.command(f"read_restart {tmp_path / 'half'}")
-    for command in ["fix model all property/atom rmass ghost yes", *lab.springs(TWO), BELOW, *FORCES[2:], "run 40"]:
-        again.command(command)
+    again = lab.restarted(tmp_path / "half", TWO, [BELOW, *FORCES[2:], "run 40"])
     assert np.array_equal(lab.by_tag(again, "x"), expected)
     again.close()
 

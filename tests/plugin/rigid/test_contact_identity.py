@@ -197,14 +197,7 @@ def test_a_restart_file_goes_on_to_the_bit(tmp_path, heap):
         world.lmp.command(f"write_restart {tmp_path / 'half'}")
         world.run(100)
         end = ends(world)
-    again = plugin_lab.plugin_path.lammps()
-    for command in plugin_lab.prelude(**OPTIONS):
-        if not command.startswith(("fix", "atom_style", "units", "boundary", "newton")):
-            again.command(command)
-    again.command(f"read_restart {tmp_path / 'half'}")
-    springs = plugin_lab.springs(world.setup)
-    for command in ["fix model all property/atom rmass ghost yes", *springs, *world.commands, "run 100"]:
-        again.command(command)
+    again = plugin_lab.restarted(tmp_path / "half", world.setup, [*world.commands, "run 100"], **OPTIONS)
     assert np.array_equal(plugin_lab.by_tag(again, "x"), end[0]) and np.array_equal(plugin_lab.by_tag(again, "v"), end[1])
     again.close()
 
