@@ -155,7 +155,7 @@ def test_pairs_are_those_of_the_naive_way(n, size, monkeypatch):
         if (swept.low[i] <= swept.high[j]).all()
         and (swept.low[j] <= swept.high[i]).all()
         and not (swept.fixed[i] and swept.fixed[j])
-        and not (swept.lines[i] and swept.lines[j])
+        and not (swept.bare[i] and swept.bare[j])
         and (i, j) not in swept.passing
     }
     for block in (1, 50, 1 << 20):

@@ -108,10 +108,15 @@ class BodyFrame:
     """As that of ContactBody; None where nothing is covered."""
     rigid: bool = False
     """Whether it does not deform."""
-    line: ClassVar = False
-    """Whether it is a line of particles, whose points touch others, and which nothing is ever in."""
+    dimensions: ClassVar[int] = 3
+    """Those that its particles span: 1 of a line, 2 of a sheet."""
     corners: np.ndarray | None = None
     """X of its eight particles, the corners of a box [-], shape (8, 3); None where particles are at the corners of cells."""
+
+    @property
+    def bare(self) -> bool:
+        """Whether its particles are its points of contact, and nothing is ever in it."""
+        return self.dimensions < 3
 
     @cached_property
     def contact(self) -> ContactBody:

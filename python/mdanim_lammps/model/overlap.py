@@ -82,7 +82,7 @@ class _BoundingBoxes:
         self.low = np.array([v.min(axis=0) for v in vertices])
         self.high = np.array([v.max(axis=0) for v in vertices])
         self.fixed = np.array([m.still for m in models])
-        self.lines = np.array([m.frame.line for m in models])
+        self.bare = np.array([m.frame.bare for m in models])
         spacing = max(m.spacing for m in models)
         self.hair = HAIR * spacing
         inside = contact.rests_inside if contact else 0.0
@@ -136,7 +136,7 @@ class _BoundingBoxes:
     def cells(self, i: int) -> np.ndarray:
         """Centres of the cells of one body [m], shape (C, 3), as it is resolved."""
         model = self.models[i]
-        if model.frame.line:
+        if model.frame.bare:
             return model.position
         if len(model.hexahedron) == 1:
             cells, corner = model.frame.cells, model.position[model.hexahedron[0, [0, 1, 3, 4]]]
@@ -205,7 +205,7 @@ def _candidates(scene: SceneRecord, bodies: _BoundingBoxes) -> tuple[np.ndarray,
     radius = np.array([np.linalg.norm(v - c, axis=1).max() for v, c in zip(bodies.vertices, centre)])
     found = [np.zeros((2, 0), np.intp)]
     for i, j in box_pairs(bodies.low + bodies.hair, bodies.high):
-        near = ~(bodies.fixed[i] & bodies.fixed[j]) & ~(bodies.lines[i] & bodies.lines[j])
+        near = ~(bodies.fixed[i] & bodies.fixed[j]) & ~(bodies.bare[i] & bodies.bare[j])
         near &= np.linalg.norm(centre[i] - centre[j], axis=1) < radius[i] + radius[j]
         found.append(np.sort([i[near], j[near]], axis=0))
     i, j = np.concatenate(found, axis=1)

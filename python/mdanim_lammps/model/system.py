@@ -83,9 +83,10 @@ class System(Particles):
         return self.inertia.any(axis=(1, 2))
 
     @cached_property
-    def lines(self) -> np.ndarray:
-        """Solids that are lines of particles, bool, shape (M,)."""
-        return np.array([frame.line for frame in self.frames], bool)[self.contact_kind]
+    def bare(self) -> np.ndarray:
+        """Solids whose particles are their points of contact, and which nothing is ever in: lines and sheets of particles, bool,
+        shape (M,)."""
+        return np.array([frame.bare for frame in self.frames], bool)[self.contact_kind]
 
     @property
     def moved(self) -> np.ndarray | None:

@@ -43,30 +43,30 @@ class Sweeps:
     """Solids that are held entirely, bool, shape (M,): two of them never are in contact."""
     passing: frozenset[tuple[int, int]] = frozenset()
     """Pairs i < j that never are in contact, whatever moves."""
-    lines: np.ndarray | None = None
-    """Solids that are lines of particles, bool, shape (M,): two of them never are in contact. None for none."""
+    bare: np.ndarray | None = None
+    """Solids that are lines or sheets of particles, bool, shape (M,): two of them never are in contact. None for none."""
 
     @property
     def any_pair(self) -> bool:
         """Whether there are two solids that may be in contact wherever they are."""
         i, j = np.array(sorted(self.passing), int).reshape(-1, 2).T
         apart = int(self.may_touch(i, j, of_passing=True).sum())
-        line = self._line
-        within = _pairs(self.fixed) + _pairs(line) - _pairs(self.fixed & line)
+        bare = self._bare
+        within = _pairs(self.fixed) + _pairs(bare) - _pairs(self.fixed & bare)
         return _pairs(np.ones(len(self.fixed), bool)) - within > apart
 
     def may_touch(self, i: np.ndarray, j: np.ndarray, *, of_passing: bool = False) -> np.ndarray:
         """Pairs of solids that contact may act between wherever they are, bool, of the shape of ``i`` and ``j``;
         ``of_passing``: but for `passing`."""
-        found = ~(self.fixed[i] & self.fixed[j]) & ~(self._line[i] & self._line[j])
+        found = ~(self.fixed[i] & self.fixed[j]) & ~(self._bare[i] & self._bare[j])
         if self.passing and not of_passing:
             pairs = zip(np.minimum(i, j).tolist(), np.maximum(i, j).tolist())
             found &= np.array([pair not in self.passing for pair in pairs], bool)
         return found
 
     @property
-    def _line(self) -> np.ndarray:
-        return np.zeros(len(self.fixed), bool) if self.lines is None else self.lines
+    def _bare(self) -> np.ndarray:
+        return np.zeros(len(self.fixed), bool) if self.bare is None else self.bare
 
 
 def _pairs(of: np.ndarray) -> int:
@@ -141,8 +141,8 @@ def sweeps(acting: Acting, h: np.ndarray) -> Sweeps:
     half[bodies.clamped] = _clamped(scene, bodies)[bodies.clamped] + reach[bodies.clamped]
     for m, drive in acting.drives.items():
         low[m], high[m] = low[m] + drive.low, high[m] + drive.high
-    lines = np.array([not kind_of(solid).fills for solid in scene.solids], bool)
-    return Sweeps(low - half, high + half, bodies.fixed, acting.passing, lines)
+    bare = np.array([not kind_of(solid).fills for solid in scene.solids], bool)
+    return Sweeps(low - half, high + half, bodies.fixed, acting.passing, bare)
 
 
 class _Movers:

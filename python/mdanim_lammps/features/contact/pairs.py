@@ -58,10 +58,11 @@ def any_friction(scene: SceneRecord) -> bool:
 def largest_of_partners(context: Context, value: np.ndarray, apart: Sequence[np.ndarray] = ()) -> np.ndarray:
     """Largest value among the solids that may touch each solid, both of shape (M,); 0 where there are none.
 
-    Two ropes never touch, nor do two solids of one of the sets ``apart``, bool, each of shape (M,), nor what is joined.
+    Two lines or sheets of particles never touch, nor do two solids of one of the sets ``apart``, bool, each of shape (M,), nor
+    what is joined.
     """
-    lines = context.system.lines
-    sets = [*apart, *([lines] if lines.any() else [])]
+    bare = context.system.bare
+    sets = [*apart, *([bare] if bare.any() else [])]
     found = largest_of_others(value)
     for own in sets:
         found = np.where(own, value[~own].max(initial=0.0), found)

@@ -37,7 +37,7 @@ one direction at once, and the excess that `rate` counts covers the usual dampin
 ALONE = 2.0
 """kappa where only the dense points of one act, over that where both have points."""
 LINE = 0.2
-"""The same of a line of particles, of which each bears all that it meets."""
+"""The same of a line or a sheet of particles, of which each bears all that it meets."""
 RESOLVED = 60.0
 """How many times its share counts in the bound: in a blow all of its energy goes through its contact, which is then resolved to
 1e-3 (a rope that falls flat on a floor, bench/ropes.py)."""
@@ -120,7 +120,7 @@ class SurfaceLaw:
             return None
         h = float(np.cbrt(system.cell_volume).max())
         eta = 2.0 * beta * np.sqrt(kappa * (system.density * h) / 2.0)
-        area = np.where(system.lines[system.object], own_area(system), borne_area(system))
+        area = np.where(system.bare[system.object], own_area(system), borne_area(system))
         return eta[system.object] * _of_bodies(context, area / system.mass)
 
     def penetration(self, readings: Readings) -> float:
@@ -172,7 +172,7 @@ class SurfaceContact(ObjectContact):
         would not roll. The surface alone stops it up to SLOW. What never moves has particles at the corners of a box.
         """
         system = context.system
-        with_barrier = (~are_dense(system) | fast(context)) & np.isfinite(system.young) & ~are_boxed(system) & ~system.lines
+        with_barrier = (~are_dense(system) | fast(context)) & np.isfinite(system.young) & ~are_boxed(system) & ~system.bare
         return np.where(with_barrier[system.object], particle_stiffness(context.scene, system), 0.0)
 
     def barrier_reach(self, context: Context) -> np.ndarray:
@@ -185,7 +185,7 @@ class SurfaceContact(ObjectContact):
         quick = fast(context)[system.object]
         behind = np.where(system.boundary, 0.0, SHORT * shortest_edge(system)[system.object])
         reach = np.where(quick, FULL * system.spacing[system.object], behind)
-        return np.where((np.isfinite(system.young) & ~system.lines)[system.object], reach, 0.0)
+        return np.where((np.isfinite(system.young) & ~system.bare)[system.object], reach, 0.0)
 
     def longest_reach(self, context: Context) -> float:
         """No barrier of the scene reaches farther [m]."""
@@ -228,14 +228,14 @@ class SurfaceContact(ObjectContact):
         area = own + borne
         if dense.any() and not dense.all():
             area = np.maximum(area, ALONE * np.where(dense[system.object], own, borne))
-        area = np.where(system.lines[system.object], RESOLVED * LINE * own, area)
+        area = np.where(system.bare[system.object], RESOLVED * LINE * own, area)
         surface = 2.0 * kappa * _of_bodies(context, area / system.mass, 2.0)
         return surface + barrier_rate(context, self.barrier_stiffness(context), self.longest_reach(context))
 
     def own_rate(self, context):
         system = context.system
         kappa = self.stiffness(context)[system.object]
-        share = np.where(system.lines, RESOLVED * LINE, 1.0)[system.object]
+        share = np.where(system.bare, RESOLVED * LINE, 1.0)[system.object]
         return 2.0 * kappa * share * _of_bodies(context, own_area(system) / system.mass)
 
     def drag_rate(self, context):
@@ -347,7 +347,7 @@ class SurfacePlanes(Planes):
     def stiffness(self, context: Context) -> np.ndarray:
         """kappa of the surface of each solid against a plane, which has no points of its own [N/m^3], shape (M,)."""
         system = context.system
-        share = np.where(are_dense(system), np.where(system.lines, 2.0 * RESOLVED * LINE, ALONE), 1.0)
+        share = np.where(are_dense(system), np.where(system.bare, 2.0 * RESOLVED * LINE, ALONE), 1.0)
         for own, _ in settled(context, planes=True):
             share = np.where(own, 0.0, share)
         return surface_stiffness(context, moduli(context), share)
@@ -359,17 +359,17 @@ def touching_planes(sides: Sides) -> Planes:
 
 
 def too_fine(scene: SceneRecord, models: Sequence[Model]) -> list[Problem]:
-    """Objects that deform and whose cells are finer than a line of particles is thick around these: a cell beyond its surface the
-    map of such a host leads nowhere."""
-    lines = [m for m, model in enumerate(models) if model.frame.line]
-    if not lines:
+    """Objects that deform and whose cells are finer than lines or sheets of particles are thick around
+    these: a cell beyond its surface the map of such a host leads nowhere."""
+    bare = [m for m, model in enumerate(models) if model.frame.bare]
+    if not bare:
         return []
-    thickest = max(lines, key=lambda m: models[m].frame.contact.radius)
+    thickest = max(bare, key=lambda m: models[m].frame.contact.radius)
     radius, name = models[thickest].frame.contact.radius, models[thickest].name
     found = []
     for solid, model in zip(scene.solids, models):
         h = float(np.cbrt(np.prod(model.cell)))
-        if model.frame.line or model.frame.rigid or model.inertia is not None or model.still or h >= radius * (1.0 - 1e-9):
+        if model.frame.bare or model.frame.rigid or model.inertia is not None or model.still or h >= radius * (1.0 - 1e-9):
             continue
         cause = f"{name} is {say(2.0 * radius, 'm')} thick, more than two cells of {solid.name}, which are {say(h, 'm')} wide"
         way_out = f"write resolution {say(at_least(radius), 'm')} in {solid.name}, elasticity rigid, or a thinner {name}"
@@ -434,7 +434,7 @@ def own_area(system: System) -> np.ndarray:
 def borne_area(system: System) -> np.ndarray:
     """s_i, the area of another surface that each particle may bear [m^2], shape (N,): h^2 within a face, less where fewer cells
     are behind it."""
-    area = np.where(system.lines, 0.0, np.cbrt(system.cell_volume) ** 2)
+    area = np.where(system.bare, 0.0, np.cbrt(system.cell_volume) ** 2)
     return area[system.object] * np.minimum(1.0, 2.0 * system.share)
 
 
@@ -442,7 +442,7 @@ def fast(context: Context) -> np.ndarray:
     """Solids that may meet others at more than SLOW of the wave speed of the softest, as if through air, bool, shape (M,)."""
     reach = context.reach
     slow = np.where(needles(reach.system), SLOW_NEEDLE, SLOW)
-    return (reach.closing(reach.drop) > slow * float(reach.wave.min())) & ~reach.system.lines
+    return (reach.closing(reach.drop) > slow * float(reach.wave.min())) & ~reach.system.bare
 
 
 def needles(system: System) -> np.ndarray:

@@ -65,18 +65,19 @@ class Patch:
 
 
 def patch_of(system: System, m: int, point: np.ndarray, least: float = 0.0) -> Patch:
-    """The patch of an object around a point: as small as has three dimensions and a radius of `least` [m], or all of the object;
-    of a line of particles the two nearest ones, and a third one that is as near as the second."""
+    """The patch of an object around a point: as small as has the dimensions of the object and a radius of `least` [m], or all of
+    the object; of a line of particles the two nearest ones, and a third one that is as near as the second."""
     rows = np.arange(system.first[m], system.first[m + 1])
     place, mass = system.position[rows], system.mass[rows]
     away, h = np.linalg.norm(place - point, axis=1), float(system.spacing[m])
-    if system.lines[m]:
+    dimensions = system.frames[system.contact_kind[m]].dimensions
+    if dimensions == 1:
         radius = float(np.sort(away)[1]) + 0.1 * h
         return _patch(rows, mass, place, away <= radius, radius)
     radius = max(NEAR * h, float(away.min()) + MORE * h, least)
     while radius < away.max():
         near = away <= radius
-        if _dimensions(place[near]) == 3:
+        if _dimensions(place[near]) >= dimensions:
             break
         radius *= WIDER
     else:

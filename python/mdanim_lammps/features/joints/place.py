@@ -22,10 +22,10 @@ def misplaced(scene: SceneRecord, models: Sequence[Model]) -> list[Problem]:
     problems: list[Problem | None] = []
     for link in links_of(scene).all:
         ends = [(m, n) for n, m in enumerate((link.first, link.named)) if m != NOTHING]
-        lines = [p for m, n in ends if models[m].frame.line for p in _off_line(models[m], link, n, scene.solids[m])]
+        lines = [p for m, n in ends if models[m].frame.dimensions == 1 for p in _off_line(models[m], link, n, scene.solids[m])]
         problems += lines
         if link.joint.kind == "spring":
-            problems += [_far(scene, models, link, [end]) for end in ends if not models[end[0]].frame.line]
+            problems += [_far(scene, models, link, [end]) for end in ends if models[end[0]].frame.dimensions > 1]
         elif not lines:
             problems.append(_far(scene, models, link, ends))
     return [p for p in problems if p is not None]

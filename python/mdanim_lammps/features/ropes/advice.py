@@ -9,7 +9,7 @@ from ...effects.envelope import Envelope
 from ...errors import Problem
 from ...model import shapes
 from ...scene.formatting import say
-from .words import kind
+from .words import is_rope, kind
 
 FINE = 0.5
 """Length of a link over the thinnest part of what it may meet, above which that may slip through between particles."""
@@ -17,8 +17,8 @@ FINE = 0.5
 
 def notes(envelope: Envelope) -> list[Problem]:
     """Remarks on a scene in which something can move."""
-    system = envelope.system
-    ropes, touches = np.flatnonzero(system.lines), any(effect.touches for effect in envelope.on)
+    ropes = np.flatnonzero([is_rope(solid) for solid in envelope.scene.solids])
+    touches = any(effect.touches for effect in envelope.on)
     if not len(ropes) or not touches:
         return []
     return [*_each_other(envelope, ropes), *_long_links(envelope, ropes)]
@@ -37,7 +37,7 @@ def _each_other(envelope: Envelope, ropes: np.ndarray) -> list[Problem]:
 def _long_links(envelope: Envelope, ropes: np.ndarray) -> list[Problem]:
     """The rope of the longest links, beside the thinnest object that it may meet."""
     system, solids = envelope.system, envelope.scene.solids
-    others = np.flatnonzero(~system.lines)
+    others = np.flatnonzero(~system.bare)
     if not len(others):
         return []
     thin = np.array([shapes.thickness(solids[m].shape) for m in others.tolist()])

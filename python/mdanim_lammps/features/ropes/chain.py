@@ -97,7 +97,7 @@ def springs(rope: Rope, young: float, links: int) -> tuple[np.ndarray, np.ndarra
 class LineFrame(BodyFrame):
     """A chain of particles as contact sees it: points of its own, in one row of cells."""
 
-    line = True
+    dimensions = 1
 
     @cached_property
     def contact(self) -> ContactBody:

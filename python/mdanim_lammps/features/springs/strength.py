@@ -44,7 +44,7 @@ THINNEST = 2
 def amplitude(env: Envelope) -> Margin:
     scene, system = env.scene, env.system
     meets = len(system.names) > 1 or len(env.planes) > 0
-    ratio = np.where(meets & ~system.lines, env.reach.speed / env.reach.wave, 0.0)  # 0 of what is rigid
+    ratio = np.where(meets & ~system.bare, env.reach.speed / env.reach.wave, 0.0)  # 0 of what is rigid
     hard = (len(env.planes) > 0 or not env.reach.moving.all()) and env.context.grid is None  # a liquid breaks the fall
     spot = spots(env) if hard else np.full(len(ratio), np.inf)
     limit = folds_at(spot)
@@ -86,7 +86,7 @@ def strength(env: Envelope) -> list[Margin]:
 
 def _soft(env: Envelope) -> np.ndarray:
     """Solids that can move and deform as lattices do, bool, shape (M,)."""
-    return env.reach.moving & np.isfinite(env.system.young) & ~env.system.lines
+    return env.reach.moving & np.isfinite(env.system.young) & ~env.system.bare
 
 
 def _stiffer(enough: dict[str, float]) -> str:
@@ -152,7 +152,7 @@ def load(env: Envelope) -> list[Margin]:
         return []
     system = env.system
     stress = _stress(env, g)
-    ratio = np.where(env.reach.moving & ~system.lines, stress / (CRUSH * system.young), 0.0)
+    ratio = np.where(env.reach.moving & ~system.bare, stress / (CRUSH * system.young), 0.0)
     m = int(np.where(_soft(env), ratio, -1.0).argmax())
     strength = CRUSH * system.young[m]
     return [
