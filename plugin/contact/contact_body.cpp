@@ -73,9 +73,11 @@ ContactBody::ContactBody(const ContactBodyArrays &given)
                        vec3(given.normal + 3 * p),
                        given.area[p],
                        static_cast<PointKind>(given.kind[p])});
+    area.push_back(given.area[p]);
     has_fine |= surface.back().kind == PointKind::FINE;
   }
   take_open_parts(given);
+  find_carriers();
   sort_points();
 }
 
@@ -159,6 +161,39 @@ bool ContactBody::operator==(const ContactBody &other) const
          filled == other.filled && depth_grid == other.depth_grid &&
          std::equal(open_parts.begin(), open_parts.end(), other.open_parts.begin(), other.open_parts.end(), same_parts) &&
          std::equal(surface.begin(), surface.end(), other.surface.begin(), other.surface.end(), same_points);
+}
+
+void ContactBody::add_carriers(const SurfacePoint &point, const Vec3 &X)
+{
+  if (is_line()) {
+    point_carriers.push_back({point.cell[0], 1.0});
+    return;
+  }
+  if (rigid) {
+    for (int k = 0; k < RigidFrame::PARTICLES; ++k) point_carriers.push_back({k, rigid->weight(k, X)});
+    return;
+  }
+  Weights<double> axis;
+  for (int d = 0; d < 3; ++d) linear_weights<double>(component(X, d), point.cell[d], axis[d]);
+  for (int k = 0; k < 2; ++k)
+    for (int j = 0; j < 2; ++j)
+      for (int i = 0; i < 2; ++i)
+        if (const double weight = axis[0].w[i] * axis[1].w[j] * axis[2].w[k]; weight != 0.0)
+          point_carriers.push_back({place(point.cell[0] + i, point.cell[1] + j, point.cell[2] + k), weight});
+}
+
+void ContactBody::find_carriers()
+{
+  const auto now = [this] { return static_cast<int>(point_carriers.size()); };
+  for (const SurfacePoint &point : surface) {
+    first_carrier.push_back(now());
+    add_carriers(point, point.at);
+    first_carrier.push_back(now());
+    if (point.kind == PointKind::SHARP) add_carriers(point, point.centre);
+  }
+  first_carrier.push_back(now());
+  point_carriers.push_back({});    // the end of the last point has an address
+  point_carriers.shrink_to_fit();
 }
 
 void ContactBody::sort_points()
@@ -257,7 +292,8 @@ double ContactBody::covered(int side, const Vec3 &X) const
 std::size_t ContactBody::bytes() const
 {
   return place_of_node.capacity() * sizeof(int) + filled.capacity() + surface.capacity() * sizeof(SurfacePoint) +
-         depth_grid.capacity() * sizeof(double) + open_parts.capacity() * sizeof(OpenPart) +
+         depth_grid.capacity() * sizeof(double) + open_parts.capacity() * sizeof(OpenPart) + area.capacity() * sizeof(double) +
+         point_carriers.capacity() * sizeof(PointCarrier) + first_carrier.capacity() * sizeof(int) +
          carriers.capacity() * sizeof(PointCell) + by_cell.capacity() * sizeof(int) + is_carrier.capacity();
 }
 

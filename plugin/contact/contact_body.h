@@ -5,6 +5,7 @@
 #pragma once
 
 #include "contact/contact_push.h"
+#include "contact/point_carriers.h"
 #include "contact/rigid_map.h"
 
 #include "geometry/boxes.h"
@@ -92,6 +93,14 @@ class ContactBody {
             is_cuboid() ? nullptr : depth_grid.data()};
   }
   const std::vector<SurfacePoint> &points() const { return surface; }
+  // The particles with a weight in a point. All objects of a body share them, so that they stay in the cache.
+  PointCarriers carriers_of(int point) const
+  {
+    const int *const at = &first_carrier[2 * point];
+    return {&point_carriers[at[0]], &point_carriers[at[1]], &point_carriers[at[2]]};
+  }
+  BodyCarriers all_carriers() const { return {point_carriers.data(), first_carrier.data()}; }
+  const double *areas() const { return area.data(); }    // of points
   const std::vector<PointCell> &point_cells() const { return carriers; }
   const std::vector<int> &points_by_cell() const { return by_cell; }
   // The first and the end of the points of a cell that act on a plane or a cuboid, or on a shape that is not flat. Points of a
@@ -135,6 +144,8 @@ class ContactBody {
   void take_line(const ContactBodyArrays &given);
   void take_frame(const ContactBodyArrays &given);
   void take_open_parts(const ContactBodyArrays &given);
+  void add_carriers(const SurfacePoint &point, const Vec3 &X);
+  void find_carriers();
   void sort_points();
 
   int cells[3];
@@ -145,6 +156,9 @@ class ContactBody {
   Vec3 low, high;
   std::vector<std::uint8_t> filled;
   std::vector<SurfacePoint> surface;
+  std::vector<double> area;                    // of points, also here: kernels read no SurfacePoint
+  std::vector<PointCarrier> point_carriers;    // of all points, one after the other, and one more
+  std::vector<int> first_carrier;              // of each point, then of the centre of its area; at the end, the number of all
   std::vector<PointCell> carriers;
   std::vector<int> by_cell;    // numbers of points, cell by cell, ascending in each
   std::vector<char> is_carrier;

@@ -11,10 +11,10 @@ void ContactField::settle(const ContactArrays &arrays)
     if (wake[q] < NEVER && wake[q] <= budget) look_at(q, arrays, false);
 }
 
-void ContactField::look(const ContactArrays &arrays, double dt)
+void ContactField::look(const ContactArrays &arrays, double dt, double now)
 {
-  budget += approach();
-  if (dt > 0.0) wake.look_below(budget, [&](std::size_t q) { look_at(q, arrays, true); });
+  budget = now;
+  if (dt > 0.0) wake.look_below(budget, [this](std::size_t q) { fetch(q); }, [&](std::size_t q) { look_at(q, arrays, true); });
   begin_step(arrays);
 }
 

@@ -14,6 +14,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 namespace mdanim {
@@ -41,8 +42,13 @@ class ContactField {
   virtual void forget() = 0;
   // Looks at every point without a contact as it is now; no contact begins. For the setup of a run.
   void settle(const ContactArrays &arrays);
-  // The part of a step that fields may do side by side: contacts begin. dt = 0: nothing moves, as at the setup of a run.
-  void look(const ContactArrays &arrays, double dt);
+  // The part of a step that fields may do side by side: contacts begin. dt = 0: nothing moves, as at the setup of a run. `now` is
+  // the budget: how much points and host have come nearer since it was 0 [m].
+  void look(const ContactArrays &arrays, double dt, double now);
+  // The budget up to which neither look() nor add_forces() has anything to do.
+  double rests_until() const { return is_idle() ? wake.least_value() : AT_ONCE; }
+  double budget_now() const { return budget; }
+  void rest(double now) { budget = now; }
   // After look(), computes contacts ahead for add_forces(), which otherwise computes them itself.
   virtual void work_ahead(const ContactArrays &arrays, double dt) = 0;
   // The part of a step that fields do one after the other.
@@ -52,25 +58,28 @@ class ContactField {
   bool is_idle() const { return touching() == 0; }
   bool has_something() const { return !is_idle() || looks > 0; }    // whether there are forces to add, after look()
   virtual int cost() const = 0;                                     // of a step, approximately, when lists were made [ns]
+  virtual std::optional<Vec3> normal() const { return {}; }         // of a plane
   virtual Vec3 force_on_plane() const { return {}; }                // in this step
   virtual void put_rows(ByteWriter &writer) const = 0;              // of contacts, without their number
   virtual std::size_t bytes() const = 0;
 
  protected:
   static constexpr double NEVER = Wakes::NEVER;
-  static constexpr double AT_ONCE = -1.0;
+  static constexpr double AT_ONCE = -NEVER;    // budgets at planes fall below 0
 
   // Upper bound of how much points and host have come nearer since the last step [m].
   virtual double approach() const = 0;
   // Looks at a point without a contact: whether a contact begins; otherwise sets when to look again.
   virtual bool look_at(std::size_t q, const ContactArrays &arrays, bool may_begin) = 0;
+  // Has what is known of a point brought into the cache.
+  virtual void fetch(std::size_t q) const = 0;
   // For the forces of a step, once contacts have begun.
   virtual void begin_step(const ContactArrays &arrays) = 0;
 
   ContactObject *owner, *host;
   ContactLaw law;
-  NearPoints near;
-  Wakes wake;                             // of near points, against `budget`
+  std::vector<int> near;                  // points
+  Wakes wake;                             // of these, against `budget`
   std::vector<std::size_t> of_contact;    // near points of contacts
   int looks = 0;                          // at points of objects, in this step
   double budget = 0.0;
@@ -96,8 +105,7 @@ template <class Contact, class Known> class FieldOf : public ContactField {
   template <class Distance>
   void list_points(const FieldLists &with, const Zone &zone, bool on_flat, double reach, double trusted, const Distance &distance)
   {
-    std::vector<int> points_before(near.size());
-    for (std::size_t q = 0; q < near.size(); ++q) points_before[q] = near.point(q);
+    const std::vector<int> points_before = std::move(near);
     const std::vector<Known> known_before = std::move(known);
     const Wakes wake_before = std::move(wake);
     const double spent = budget + approach();
@@ -107,12 +115,11 @@ template <class Contact, class Known> class FieldOf : public ContactField {
       while (contact < contacts.size() && contacts[contact].point < p) ++contact;
       const bool touches = contact < contacts.size() && contacts[contact].point == p;
       while (before < points_before.size() && points_before[before] < p) ++before;
-      const CarriedPoint point(*owner, p);
-      if (!point.is_there) continue;
-      const double out = distance(point.place(with.arrays.place()));
+      if (!owner->has_point(p)) continue;
+      const double out = distance(owner->place_of(p, with.arrays.place()));
       const bool is_known = before < points_before.size() && points_before[before] == p;
       if (!touches && out > reach) continue;
-      near.add(point);
+      near.push_back(p);
       if (touches) of_contact.push_back(near.size() - 1);
       known.push_back(is_known ? known_before[before] : Known{});
       const double seen = is_known && wake_before[before] < NEVER ? std::min(wake_before[before] - spent, trusted) : AT_ONCE;
@@ -121,6 +128,14 @@ template <class Contact, class Known> class FieldOf : public ContactField {
     drop_lost_contacts();
   }
 
+  void fetch(std::size_t q) const final
+  {
+    const char *const point = reinterpret_cast<const char *>(&owner->body->points()[near[q]]);
+    __builtin_prefetch(&known[q]);
+    __builtin_prefetch(point);
+    __builtin_prefetch(point + sizeof(SurfacePoint) - 1);
+    __builtin_prefetch(owner->body->carriers_of(near[q]).first);
+  }
   void begin(std::size_t q, const Contact &contact)
   {
     const auto where = std::lower_bound(of_contact.begin(), of_contact.end(), q);
@@ -137,8 +152,8 @@ template <class Contact, class Known> class FieldOf : public ContactField {
   void keep_first(std::size_t left) { contacts.resize(left), of_contact.resize(left); }
   std::size_t bytes_of_rows() const
   {
-    return near.bytes() + wake.bytes() + known.capacity() * sizeof(Known) + contacts.capacity() * sizeof(Contact) +
-           of_contact.capacity() * sizeof(std::size_t);
+    return near.capacity() * sizeof(int) + wake.bytes() + known.capacity() * sizeof(Known) +
+           contacts.capacity() * sizeof(Contact) + of_contact.capacity() * sizeof(std::size_t);
   }
 
   std::vector<Known> known;
@@ -151,7 +166,7 @@ template <class Contact, class Known> class FieldOf : public ContactField {
     if (of_contact.size() == contacts.size()) return;
     std::size_t left = 0, n = 0;
     for (const std::size_t q : of_contact) {
-      while (contacts[n].point != near.point(q)) ++n;
+      while (contacts[n].point != near[q]) ++n;
       contacts[left++] = contacts[n];
     }
     contacts.resize(left);

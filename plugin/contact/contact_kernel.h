@@ -7,6 +7,7 @@
 #include "contact/contact_push.h"
 #include "contact/field_contact.h"
 #include "contact/padded_vec3.h"
+#include "contact/point_carriers.h"
 #include "contact/rigid_map.h"
 
 namespace mdanim {
@@ -53,11 +54,24 @@ struct PushedBlock {
   PaddedVec3 on_node[27][CONTACT_LANES];
 };
 
+// The object whose points are in contact.
+struct PointsTask {
+  BodyCarriers carriers;
+  const double *area;         // of each point
+  const int *slot;            // numbers of its particles, by those of carriers
+  const PaddedVec3 *place;    // as that of Placed
+};
+
 struct ContactKernels {
+  // Places of the points of the first `n` contacts from `first` on.
+  void (*find_points)(const PointsTask &, const FieldContact *first, int n, PointNow *now);
   // Computes the first `n` of the contacts from `first` on, all of points of one kind; those in `hard` stay as they are.
   void (*push)(const PushTask &, FieldContact *first, const PointNow *now, int n, PushedBlock &pushed);
   // Adds the forces of lanes from `first` to `end` - 1 on the host's nodes.
   void (*add_to_nodes)(const PushedBlock &pushed, int first, int end, PaddedVec3 *on);
+  // Adds the forces of these lanes on the particles that carry their points; `contacts` are those of the block.
+  void (*add_to_points)(const PointsTask &, const FieldContact *contacts, const PushedBlock &pushed, int first, int end,
+                        PaddedVec3 *on);
 };
 
 }    // namespace mdanim

@@ -277,6 +277,50 @@ void add_to_nodes(const PushedBlock &pushed, int first, int end, PaddedVec3 *on)
   }
 }
 
+MDANIM_ALWAYS_INLINE Four weighted_sum(const PointsTask &task, int one, int last)
+{
+  const auto term = [&](int n) {
+    const PointCarrier &carrier = task.carriers.all[n];
+    return carrier.weight * load<Four>(&task.place[task.slot[carrier.slot]].value.x);
+  };
+  Four sum = term(one);
+  while (++one < last) sum += term(one);
+  return sum;
+}
+
+void find_points(const PointsTask &task, const FieldContact *first, int n, PointNow *now)
+{
+  for (int c = 0; c < n; ++c) {
+    const int point = first[c].point, *const from = &task.carriers.first[2 * point];
+    const Four x = weighted_sum(task, from[0], from[1]);
+    const Four shift = from[1] == from[2] ? Four{} : weighted_sum(task, from[1], from[2]) - x;
+    now[c] = {{x[0], x[1], x[2]}, {shift[0], shift[1], shift[2]}, task.area[point]};
+  }
+}
+
+MDANIM_ALWAYS_INLINE void push_carriers(const PointsTask &task, int one, int last, const Vec3 &force, PaddedVec3 *on)
+{
+  const Four row = {force.x, force.y, force.z, 0.0};
+  for (; one < last; ++one) {
+    const PointCarrier &carrier = task.carriers.all[one];
+    double *const to = &on[task.slot[carrier.slot]].value.x;
+    store(to, load<Four>(to) + carrier.weight * row);
+  }
+}
+
+void add_to_points(const PointsTask &task, const FieldContact *contacts, const PushedBlock &pushed, int first, int end,
+                   PaddedVec3 *on)
+{
+  for (int lane = first; lane < end; ++lane) {
+    const int *const from = &task.carriers.first[2 * contacts[lane].point];
+    push_carriers(task, from[0], from[1], contacts[lane].last.force, on);
+    if (pushed.on_ramp >> lane & 1) {
+      const bool own = from[1] < from[2];
+      push_carriers(task, from[own], from[1 + own], pushed.contact[lane].at_centre, on);
+    }
+  }
+}
+
 void push(const PushTask &task, FieldContact *first, const PointNow *now, int n, PushedBlock &pushed)
 {
   if (task.frame)
@@ -293,6 +337,6 @@ void push(const PushTask &task, FieldContact *first, const PointNow *now, int n,
 }    // namespace
 
 extern const ContactKernels MDANIM_OF_SET(contact_kernels);
-const ContactKernels MDANIM_OF_SET(contact_kernels) = {push, add_to_nodes};
+const ContactKernels MDANIM_OF_SET(contact_kernels) = {find_points, push, add_to_nodes, add_to_points};
 
 }    // namespace mdanim

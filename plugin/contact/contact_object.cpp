@@ -7,48 +7,6 @@
 
 namespace mdanim {
 
-// Adds the particles around X that have a weight. False where one of them is not here.
-bool CarriedPoint::add(const ContactObject &owner, const SurfacePoint &point, const Vec3 &X)
-{
-  const ContactBody &body = *owner.body;
-  if (body.is_line()) {
-    carrier[last++] = {owner.slot[point.cell[0]], 1.0};
-    return owner.slot[point.cell[0]] >= 0;
-  }
-  if (body.frame()) {
-    for (int k = 0; k < RigidFrame::PARTICLES; ++k) carrier[last++] = {owner.slot[k], body.frame()->weight(k, X)};
-    return owner.slot[0] >= 0;
-  }
-  const MapWeights weights = trilinear(X, {point.cell[0], point.cell[1], point.cell[2]}, body);
-  const int *const slots = owner.slot.data() + weights.base;
-  int missing = 0;
-  for (int k = 0; k < 2; ++k)
-    for (int j = 0; j < 2; ++j)
-      for (int i = 0; i < 2; ++i) {
-        const double weight = weights.axis[0].w[i] * weights.axis[1].w[j] * weights.axis[2].w[k];
-        const int slot = slots[i + body.row() * j + body.layer() * k];
-        carrier[last] = {slot, weight};
-        missing |= weight == 0.0 ? 0 : slot;
-        last += weight != 0.0;
-      }
-  return missing >= 0;
-}
-
-CarriedPoint::CarriedPoint(const ContactObject &owner, int number) : number(number)
-{
-  const SurfacePoint &point = owner.body->points()[number];
-  is_there = add(owner, point, point.at);
-  middle = last;
-  if (is_there && point.kind == PointKind::SHARP) is_there = add(owner, point, point.centre);
-}
-
-void NearPoints::add(const CarriedPoint &point)
-{
-  const int first = static_cast<int>(carriers.size());
-  near.push_back({point.number, first, first + point.middle, first + point.last});
-  carriers.insert(carriers.end(), point.carrier, point.carrier + point.last);
-}
-
 // A map that is linear along each axis maps a box into the box around the images of its corners.
 static Box box_of(const PointCell &cell, const ContactObject &owner, const PaddedVec3 *place, bool &is_there)
 {
@@ -109,8 +67,7 @@ double PointFinder::least_along(const Vec3 &direction) const
   double least = Box::FAR;
   const auto try_points_of = [&](const PointCell &cell) {
     for (int n = cell.first; n < cell.fine; ++n) {    // points that are not fine are close enough for this
-      const CarriedPoint point(owner, points[n]);
-      if (point.is_there) least = std::min(least, dot(direction, point.place(arrays.place())));
+      if (owner.has_point(points[n])) least = std::min(least, dot(direction, owner.place_of(points[n], arrays.place())));
     }
   };
   if (first != cells.end()) try_points_of(owner.body->point_cells()[first->first]);

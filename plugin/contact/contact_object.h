@@ -51,9 +51,50 @@ struct ContactObject {
       found[c] = rigid.x + rigid.to_space({c & 1 ? high.x : low.x, c & 2 ? high.y : low.y, c & 4 ? high.z : low.z});
     return found;
   }
+
+  // Whether all particles that carry a point are here.
+  bool has_point(int point) const
+  {
+    if (is_rigid()) return slot[0] >= 0;
+    const PointCarriers by = body->carriers_of(point);
+    return std::all_of(by.first, by.last, [this](const PointCarrier &one) { return slot[one.slot] >= 0; });
+  }
+  Vec3 place_of(int point, const PaddedVec3 *at) const
+  {
+    const PointCarriers by = body->carriers_of(point);
+    return weighted_sum(by.first, by.middle, at);
+  }
+  // From the point to the centre of its area.
+  Vec3 shift_of(int point, const PaddedVec3 *at) const
+  {
+    const PointCarriers by = body->carriers_of(point);
+    return by.middle == by.last ? Vec3{} : weighted_sum(by.middle, by.last, at) - weighted_sum(by.first, by.middle, at);
+  }
+  void push_point(int point, const Vec3 &force, PaddedVec3 *on) const
+  {
+    const PointCarriers by = body->carriers_of(point);
+    push(by.first, by.middle, force, on);
+  }
+  void push_centre(int point, const Vec3 &force, PaddedVec3 *on) const
+  {
+    const PointCarriers by = body->carriers_of(point);
+    by.middle < by.last ? push(by.middle, by.last, force, on) : push(by.first, by.middle, force, on);
+  }
   // Whether contacts of `other`, an object of the same id, have the same points.
   bool has_points_of(const ContactObject &other) const
   { return first_tag == other.first_tag && (body == other.body || *body == *other.body); }
+
+ private:
+  Vec3 weighted_sum(const PointCarrier *one, const PointCarrier *last, const PaddedVec3 *at) const
+  {
+    Vec3 x = one->weight * at[slot[one->slot]].value;
+    while (++one < last) x += one->weight * at[slot[one->slot]].value;
+    return x;
+  }
+  void push(const PointCarrier *one, const PointCarrier *last, const Vec3 &force, PaddedVec3 *on) const
+  {
+    for (; one < last; ++one) on[slot[one->slot]].value += one->weight * force;
+  }
 };
 
 // Upper bound of how much two objects have come nearer in this step.
@@ -62,6 +103,9 @@ inline double nearer(const ContactObject &a, const ContactObject &b)
   const Vec3 together = a.way - b.way;
   return std::sqrt(dot(together, together)) + a.stir + b.stir;
 }
+
+// The same of an object and a plane that faces along `normal`.
+inline double nearer(const ContactObject &a, const Vec3 &normal) { return a.stir - dot(normal, a.way); }
 
 // Energies, heat and counts of contacts in a step, and since the beginning.
 struct ContactAccount {
@@ -110,74 +154,6 @@ class ContactArrays {
 
  private:
   std::vector<PaddedVec3> place_rows = std::vector<PaddedVec3>(1), rows_before, force_rows;
-};
-
-// The weight of a particle in a point.
-struct Carrier {
-  int slot;
-  double weight;
-};
-
-inline Vec3 weighted_sum(const Carrier *first, const Carrier *last, const PaddedVec3 *at)
-{
-  Vec3 x = first->weight * at[first->slot].value;
-  while (++first < last) x += first->weight * at[first->slot].value;
-  return x;
-}
-
-// A point of an object and the particles that carry it.
-class CarriedPoint {
- public:
-  CarriedPoint(const ContactObject &owner, int number);
-  Vec3 place(const PaddedVec3 *at) const { return weighted_sum(carrier, carrier + middle, at); }
-
-  int number;
-  bool is_there;           // whether all of those particles are here
-  int middle, last = 0;    // carriers of the point, and from `middle` on those of the centre of its area, if it has others
-  Carrier carrier[2 * 8 + 1];
-
- private:
-  bool add(const ContactObject &owner, const SurfacePoint &point, const Vec3 &X);
-};
-
-// Points of one object that are near another, with the particles that carry them.
-class NearPoints {
- public:
-  struct Near {
-    int point;
-    int first, middle, last;    // carriers of the point, then of the centre of its area, empty where both are the same
-  };
-
-  void clear() { near.clear(), carriers.clear(); }
-  void add(const CarriedPoint &point);
-  std::size_t size() const { return near.size(); }
-  int point(std::size_t q) const { return near[q].point; }
-  std::size_t bytes() const { return near.capacity() * sizeof(Near) + carriers.capacity() * sizeof(Carrier); }
-
-  Vec3 place(std::size_t q, const PaddedVec3 *at) const { return sum(near[q].first, near[q].middle, at); }
-  // From the point to the centre of its area.
-  Vec3 shift(std::size_t q, const PaddedVec3 *at) const
-  {
-    const Near &n = near[q];
-    return n.middle == n.last ? Vec3{} : sum(n.middle, n.last, at) - sum(n.first, n.middle, at);
-  }
-  void add_force(std::size_t q, const Vec3 &force, PaddedVec3 *on) const
-  {
-    for (int c = near[q].first; c < near[q].middle; ++c) on[carriers[c].slot].value += carriers[c].weight * force;
-  }
-  void add_force_at_centre(std::size_t q, const Vec3 &force, PaddedVec3 *on) const
-  {
-    const Near &n = near[q];
-    const bool own = n.middle < n.last;
-    for (int c = own ? n.middle : n.first; c < (own ? n.last : n.middle); ++c)
-      on[carriers[c].slot].value += carriers[c].weight * force;
-  }
-
- private:
-  Vec3 sum(int first, int last, const PaddedVec3 *at) const { return weighted_sum(&carriers[first], &carriers[0] + last, at); }
-
-  std::vector<Near> near;
-  std::vector<Carrier> carriers;
 };
 
 // The points of an object whose particles are here, by the places that the cells that carry them had when lists were made.

@@ -104,6 +104,7 @@ void ContactWorld::list_fields()
 
 void ContactWorld::forget()
 {
+  drop_lists();
   for (auto &[key, field] : fields) field->forget();
 }
 

@@ -48,7 +48,7 @@ class ContactWorld {
 
   // Sets the particles that may take part in contacts, ascending, and their places; `near` must have looked ahead before.
   void list(const std::vector<ContactParticle> &particles, const Coordinates &places);
-  // Forgets all points except those in contact: to be called before list() at the setup of a run.
+  // Forgets lists and all points except those in contact: to be called before list() at the setup of a run.
   void forget();
 
   // Sets kernels and threads. Null: contacts one at a time, with the same bits. The number of threads changes no bit either.

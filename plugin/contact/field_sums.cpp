@@ -11,47 +11,74 @@ namespace mdanim {
 
 static constexpr int FIELD_COST = 20;    // cost of a field without points [ns], approximately
 
+void FieldSums::clear()
+{
+  for (std::size_t k = 0; k < rests.size(); ++k) active[k].field->rest(rests[k].budget);
+  active.clear(), rests.clear(), costs.assign(1, 0);
+}
+
 void FieldSums::weigh()
 {
   costs.assign(1, 0);
-  for (const Active &one : active) costs.push_back(costs.back() + FIELD_COST + one.field->cost());
+  rests.clear();
+  for (const Active &one : active) {
+    costs.push_back(costs.back() + FIELD_COST + one.field->cost());
+    const std::optional<Vec3> normal = one.field->normal();
+    rests.push_back(
+        {one.a, one.b, normal.has_value(), false, one.field->budget_now(), one.field->rests_until(), normal.value_or(Vec3{})});
+  }
 }
 
-static void add_forces(FieldSums::Active &one, std::vector<ContactObject> &objects, ContactArrays &arrays, double dt)
+// Adds what has come nearer in this step to the budget.
+bool FieldSums::goes_on_resting(Rest &rest, const std::vector<ContactObject> &objects)
 {
+  rest.budget += rest.at_plane ? nearer(objects[rest.a], rest.normal) : nearer(objects[rest.a], objects[rest.b]);
+  rest.has_something = false;
+  return !(rest.until < rest.budget);
+}
+
+void FieldSums::add_forces(std::size_t k, std::vector<ContactObject> &objects, ContactArrays &arrays, double dt)
+{
+  Active &one = active[k];
   one.of_step = {};
   one.field->add_forces(arrays, dt, one.of_step);
   if (!one.field->is_idle()) objects[one.a].is_pushed = objects[one.b].is_pushed = true;
+  rests[k].until = one.field->rests_until();
 }
 
 void FieldSums::step(std::vector<ContactObject> &objects, ContactArrays &arrays, const Threads &threads, double dt,
                      ContactAccount &account)
 {
   if (dt > 0.0 && threads.pays(static_cast<double>(costs.back()))) {
-    look_and_work_ahead(arrays, threads, dt);
+    look_and_work_ahead(objects, arrays, threads, dt);
     add_side_by_side(objects, arrays, threads, dt);
   } else {
-    for (Active &one : active) {
-      if (dt == 0.0) one.field->settle(arrays);
-      one.field->look(arrays, dt);
-      one.has_something = true;
-      add_forces(one, objects, arrays, dt);
+    for (std::size_t k = 0; k < active.size(); ++k) {
+      ContactField &field = *active[k].field;
+      if (goes_on_resting(rests[k], objects) && dt > 0.0) continue;
+      if (dt == 0.0) field.settle(arrays);
+      field.look(arrays, dt, rests[k].budget);
+      rests[k].has_something = true;
+      add_forces(k, objects, arrays, dt);
     }
   }
-  for (const Active &one : active)
-    if (one.has_something) account.add(one.of_step);
+  for (std::size_t k = 0; k < active.size(); ++k)
+    if (rests[k].has_something) account.add(active[k].of_step);
 }
 
 // The work that fields do independently. Their contributions to shared particles and sums are added afterwards, in one order.
-void FieldSums::look_and_work_ahead(const ContactArrays &arrays, const Threads &threads, double dt)
+void FieldSums::look_and_work_ahead(const std::vector<ContactObject> &objects, const ContactArrays &arrays,
+                                    const Threads &threads, double dt)
 {
   threads.parts(costs.back(), 1.0, [&](long from, long to) {    // costs are in ns, approximately
     const auto number = [&](long cost) { return std::lower_bound(costs.begin(), costs.end() - 1, cost) - costs.begin(); };
     for (long k = number(from), end = number(to); k < end; ++k) {
-      Active &one = active[k];
-      one.field->look(arrays, dt);
-      one.field->work_ahead(arrays, dt);
-      one.has_something = one.field->has_something();
+      if (goes_on_resting(rests[k], objects)) continue;
+      ContactField &field = *active[k].field;
+      field.look(arrays, dt, rests[k].budget);
+      field.work_ahead(arrays, dt);
+      rests[k].has_something = field.has_something();
+      if (!rests[k].has_something) rests[k].until = field.rests_until();
     }
   });
 }
@@ -62,11 +89,12 @@ void FieldSums::order(std::size_t objects)
 {
   std::vector<int> before(objects, 0), longest(objects, 0);    // number of fields so far, and the longest chain of them
   for (auto &some : after_chain) some.clear();
-  for (Active &one : active) {
-    if (!one.has_something) continue;
+  for (std::size_t k = 0; k < active.size(); ++k) {
+    if (!rests[k].has_something) continue;
+    const Active &one = active[k];
     const int chain = std::max(longest[one.a], longest[one.b]);
     if (static_cast<std::size_t>(chain) == after_chain.size()) after_chain.emplace_back();
-    after_chain[chain].push_back({&one, before[one.a], before[one.b]});
+    after_chain[chain].push_back({k, before[one.a], before[one.b]});
     ++before[one.a];
     if (one.b != one.a) ++before[one.b];
     longest[one.a] = longest[one.b] = chain + 1;
@@ -85,12 +113,12 @@ void FieldSums::add_side_by_side(std::vector<ContactObject> &objects, ContactArr
   threads.each(threads.many(), PART * static_cast<double>(costs.back()), [&](int) {
     for (std::size_t n = next++; n < ordered.size(); n = next++) {
       const OrderedField &turn = ordered[n];
-      Active &one = *turn.field;
+      const Active &one = active[turn.number];
       wait_until([&] {
         return added[one.a].load(std::memory_order_acquire) == turn.on_a &&
                added[one.b].load(std::memory_order_acquire) == turn.on_b;
       });
-      add_forces(one, objects, arrays, dt);
+      add_forces(turn.number, objects, arrays, dt);
       added[one.a].store(turn.on_a + 1, std::memory_order_release);
       if (one.b != one.a) added[one.b].store(turn.on_b + 1, std::memory_order_release);
     }

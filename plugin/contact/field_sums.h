@@ -19,12 +19,11 @@ class FieldSums {
     int a, b;
     ContactField *field;
     const Zone *host_zone;     // for lists
-    bool has_something;        // whether it has forces to add in this step,
-    ContactAccount of_step;    // and the account of these
+    ContactAccount of_step;    // of the forces that it adds in this step
   };
 
-  void clear() { active.clear(), costs.assign(1, 0); }
-  void add(int a, int b, ContactField *field, const Zone *host_zone) { active.push_back({a, b, field, host_zone, false, {}}); }
+  void clear();
+  void add(int a, int b, ContactField *field, const Zone *host_zone) { active.push_back({a, b, field, host_zone, {}}); }
   const std::vector<Active> &all() const { return active; }
   // To be called when all fields have their lists.
   void weigh();
@@ -33,16 +32,28 @@ class FieldSums {
             ContactAccount &account);
 
  private:
+  // A field's budget. Until it exceeds `until` a step does not look at the field: what a step needs of resting fields is all
+  // here.
+  struct Rest {
+    int a, b;
+    bool at_plane, has_something;    // whether it has forces to add in this step
+    double budget, until;
+    Vec3 normal;    // of the plane
+  };
   // A field with forces to add in this step, and the number of fields that come before it on each of its objects.
   struct OrderedField {
-    Active *field;
+    std::size_t number;
     int on_a, on_b;
   };
-  void look_and_work_ahead(const ContactArrays &arrays, const Threads &threads, double dt);
+  static bool goes_on_resting(Rest &rest, const std::vector<ContactObject> &objects);
+  void add_forces(std::size_t k, std::vector<ContactObject> &objects, ContactArrays &arrays, double dt);
+  void look_and_work_ahead(const std::vector<ContactObject> &objects, const ContactArrays &arrays, const Threads &threads,
+                           double dt);
   void order(std::size_t objects);
   void add_side_by_side(std::vector<ContactObject> &objects, ContactArrays &arrays, const Threads &threads, double dt);
 
   std::vector<Active> active;                            // in the order of sums,
+  std::vector<Rest> rests;                               // the same,
   std::vector<long> costs = {0};                         // and the cost of all before each of them; at the end, that of all
   std::vector<OrderedField> ordered;                     // in an order in which no field waits for a later one
   std::vector<std::vector<OrderedField>> after_chain;    // fields that wait for chains of n others, for each n

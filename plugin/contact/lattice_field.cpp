@@ -79,7 +79,9 @@ LatticeField::Fate LatticeField::push(FieldContact &contact, std::size_t q, cons
   contact.last = push.outcome;
 
   spread(at, weights, -1.0 * push.both, {-1.0 * push.moment[0], -1.0 * push.moment[1], -1.0 * push.moment[2]}, arrays.force());
-  count(contact, q, {push.at_centre, push.heat, push.damped}, is_on_ramp(part_slope), arrays, account);
+  const PushedContact<double> found = {push.at_centre, push.heat, push.damped};
+  push_point(contact, q, found, is_on_ramp(part_slope), arrays);
+  count(contact, found, account);
   return Fate::STAYS;
 }
 

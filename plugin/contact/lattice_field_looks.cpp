@@ -19,7 +19,7 @@ bool LatticeField::look_at(std::size_t q, const ContactArrays &arrays, bool may_
   ++looks;
   PointTrack &track = known[q];
   const SurfacePoint &point = surface_point(q);
-  const Vec3 x = near.place(q, arrays.place());
+  const Vec3 x = owner->place_of(near[q], arrays.place());
   const ContactBody &body = *host->body;
   const double h = body.spacing(), radius = owner->body->radius();
   const Placed at = {body, host->slot.data(), arrays.place()};
@@ -47,7 +47,7 @@ bool LatticeField::look_at(std::size_t q, const ContactArrays &arrays, bool may_
   }
   Spot<double> spot;
   Vec3 X, normal;
-  const Vec3 shift = near.shift(q, arrays.place());
+  const Vec3 shift = owner->shift_of(near[q], arrays.place());
   const std::uint8_t was_open = track.open;
   Verdict verdict;
   verdict.is_sure = false;

@@ -40,8 +40,11 @@ PushTask ObjectField::task(PointKind kind, const ContactArrays &arrays, double d
           owner->body->radius()};
 }
 
+PointsTask ObjectField::points_task(const ContactArrays &arrays) const
+{ return {owner->body->all_carriers(), owner->body->areas(), owner->slot.data(), arrays.place()}; }
+
 PointNow ObjectField::point_now(std::size_t q, const ContactArrays &arrays) const
-{ return {near.place(q, arrays.place()), near.shift(q, arrays.place()), surface_point(q).area}; }
+{ return {owner->place_of(near[q], arrays.place()), owner->shift_of(near[q], arrays.place()), surface_point(q).area}; }
 
 bool ObjectField::world_normal(const SurfacePoint &point, const ContactArrays &arrays, Vec3 &normal) const
 {
@@ -64,7 +67,7 @@ bool ObjectField::world_normal(const SurfacePoint &point, const ContactArrays &a
 void ObjectField::begin_contact(std::size_t q, const Verdict &verdict, const Vec3 &X, std::uint8_t was_open)
 {
   FieldContact contact{};
-  contact.point = near.point(q);
+  contact.point = near[q];
   contact.side = verdict.side;
   for (int d = 0; d < 3; ++d) contact.cell[d] = known[q].cell[d];
   contact.state.X = contact.state.anchor = X;
@@ -73,20 +76,15 @@ void ObjectField::begin_contact(std::size_t q, const Verdict &verdict, const Vec
   begin(q, contact);
 }
 
-// Does the work of push() with results of the kernel. All forces of a block are added at once where that does not change the
-// order of sums.
-void ObjectField::take(const FieldContact &contact, std::size_t q, const PushedBlock &pushed, int lane, ContactArrays &arrays,
-                       ContactAccount &account) const
+void ObjectField::push_point(const FieldContact &contact, std::size_t q, const PushedContact<double> &found, bool on_ramp,
+                             ContactArrays &arrays) const
 {
-  if (pushed.hard) arrays.kernels->add_to_nodes(pushed, lane, lane + 1, arrays.force());
-  count(contact, q, pushed.contact[lane], pushed.on_ramp >> lane & 1, arrays, account);
+  owner->push_point(near[q], contact.last.force, arrays.force());
+  if (on_ramp) owner->push_centre(near[q], found.at_centre, arrays.force());
 }
 
-void ObjectField::count(const FieldContact &contact, std::size_t q, const PushedContact<double> &found, bool on_ramp,
-                        ContactArrays &arrays, ContactAccount &account) const
+void ObjectField::count(const FieldContact &contact, const PushedContact<double> &found, ContactAccount &account)
 {
-  near.add_force(q, contact.last.force, arrays.force());
-  if (on_ramp) near.add_force_at_centre(q, found.at_centre, arrays.force());
   account.energy += contact.last.energy;
   account.stick_energy += contact.state.memory.stick_energy;
   account.heat += found.heat;
@@ -112,9 +110,12 @@ void ObjectField::end(const FieldContact &contact, std::size_t q, Fate fate, con
 
 void ObjectField::begin_step(const ContactArrays &arrays)
 {
-  now.clear();
-  for (const std::size_t q : of_contact) now.push_back(point_now(q, arrays));
   known_ahead = 0;
+  now.resize(contacts.size());
+  if (arrays.kernels)
+    arrays.kernels->find_points(points_task(arrays), contacts.data(), static_cast<int>(contacts.size()), now.data());
+  else
+    for (std::size_t c = 0; c < contacts.size(); ++c) now[c] = point_now(of_contact[c], arrays);
 }
 
 // Calls run(first, end, task) for contacts from `first` to `end` - 1, all of points of one kind, from the first kind to the last.
@@ -158,12 +159,17 @@ void ObjectField::add_forces(ContactArrays &arrays, double dt, ContactAccount &a
 }
 
 // Moves the contacts, among those from `first` to `end` - 1, that continue to the places from `left` on; `block` counts those
-// that were computed ahead.
+// that were computed ahead. All forces of a block are added at once where that does not change the order of sums.
 void ObjectField::push_run(std::size_t first, std::size_t end, std::size_t &left, std::size_t &block, const PushTask &task,
                            ContactArrays &arrays, ContactAccount &account)
 {
   PushedBlock scratch;
   const PushedBlock *pushed = &scratch;
+  const PointsTask points = points_task(arrays);
+  const auto add = [&](std::size_t of_block, int from, int to) {
+    arrays.kernels->add_to_nodes(*pushed, from, to, arrays.force());
+    arrays.kernels->add_to_points(points, &contacts[of_block], *pushed, from, to, arrays.force());
+  };
   for (std::size_t c = first; c < end; ++c) {
     const std::size_t lane = (c - first) % CONTACT_LANES;
     if (lane == 0 && arrays.kernels) {
@@ -171,13 +177,16 @@ void ObjectField::push_run(std::size_t first, std::size_t end, std::size_t &left
         arrays.kernels->push(task, &contacts[c], &now[c], lanes_of(c, end), scratch);
       else
         pushed = &ahead[block++];
-      if (!pushed->hard) arrays.kernels->add_to_nodes(*pushed, 0, lanes_of(c, end), arrays.force());
+      if (!pushed->hard) add(c, 0, lanes_of(c, end));
     }
     Fate fate = Fate::STAYS;
-    if (!arrays.kernels || pushed->hard >> lane & 1)
+    if (!arrays.kernels || pushed->hard >> lane & 1) {
       fate = push(contacts[c], of_contact[c], task, now[c], arrays, account);
-    else
-      take(contacts[c], of_contact[c], *pushed, static_cast<int>(lane), arrays, account);
+    } else {
+      const int n = static_cast<int>(lane);
+      if (pushed->hard) add(c - lane, n, n + 1);
+      count(contacts[c], pushed->contact[n], account);
+    }
     if (fate != Fate::STAYS) {
       this->end(contacts[c], of_contact[c], fate, arrays, account);
       continue;

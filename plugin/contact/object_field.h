@@ -32,18 +32,18 @@ class ObjectField : public FieldOf<FieldContact, PointTrack> {
 
   double approach() const override { return nearer(*owner, *host); }
   void begin_step(const ContactArrays &arrays) override;
-  const SurfacePoint &surface_point(std::size_t q) const { return owner->body->points()[near.point(q)]; }
+  const SurfacePoint &surface_point(std::size_t q) const { return owner->body->points()[near[q]]; }
   bool world_normal(const SurfacePoint &point, const ContactArrays &arrays, Vec3 &normal) const;
   // Begins a contact at X as a look found it; `was_open` are the sides that were open in the look before.
   void begin_contact(std::size_t q, const Verdict &verdict, const Vec3 &X, std::uint8_t was_open);
-  // Adds forces to the point, and counts the contact.
-  void count(const FieldContact &contact, std::size_t q, const PushedContact<double> &found, bool on_ramp, ContactArrays &arrays,
-             ContactAccount &account) const;
+  // Adds forces to the point.
+  void push_point(const FieldContact &contact, std::size_t q, const PushedContact<double> &found, bool on_ramp,
+                  ContactArrays &arrays) const;
+  static void count(const FieldContact &contact, const PushedContact<double> &found, ContactAccount &account);
 
  private:
   PushTask task(PointKind kind, const ContactArrays &arrays, double dt) const;
-  void take(const FieldContact &contact, std::size_t q, const PushedBlock &pushed, int lane, ContactArrays &arrays,
-            ContactAccount &account) const;
+  PointsTask points_task(const ContactArrays &arrays) const;
   PointNow point_now(std::size_t q, const ContactArrays &arrays) const;
   void push_run(std::size_t first, std::size_t end, std::size_t &left, std::size_t &block, const PushTask &task,
                 ContactArrays &arrays, ContactAccount &account);

@@ -17,7 +17,7 @@ void PlaneField::list(const FieldLists &with)
 
 bool PlaneField::look_at(std::size_t q, const ContactArrays &arrays, bool may_begin)
 {
-  const Vec3 x = near.place(q, arrays.place());
+  const Vec3 x = owner->place_of(near[q], arrays.place());
   const double depth = depth_at(x);
   const bool was_below = known[q];
   known[q] = depth > 0.0;
@@ -26,7 +26,7 @@ bool PlaneField::look_at(std::size_t q, const ContactArrays &arrays, bool may_be
     return false;
   }
   PlaneContact contact{};
-  contact.point = near.point(q);
+  contact.point = near[q];
   contact.plane = number;
   contact.anchor = x;
   contact.memory.depth = depth;
@@ -51,10 +51,10 @@ void PlaneField::begin_step(const ContactArrays &)
 PlaneField::OnPoint PlaneField::push(PlaneContact &contact, std::size_t q, const ContactArrays &arrays, double dt) const
 {
   const Vec3 downward = -1.0 * plane.normal();    // gradient of the depth
-  const Vec3 x = near.place(q, arrays.place());
+  const Vec3 x = owner->place_of(near[q], arrays.place());
   const double depth = depth_at(x);
   if (depth <= 0.0) return {{}, depth, 0.0, 0.0, 0.0};
-  const double area = owner->body->points()[near.point(q)].area;
+  const double area = owner->body->points()[near[q]].area;
   ContactForce<double> force = contact_pressure(law, area, 1.0, depth, dt, contact.memory);
   if (law.friction > 0.0) {
     Vec3 away = x - contact.anchor;
@@ -86,7 +86,7 @@ void PlaneField::add_forces(ContactArrays &arrays, double dt, ContactAccount &ac
       wake.set(q, budget - found.depth);
       continue;
     }
-    near.add_force(q, found.force, arrays.force());
+    owner->push_point(near[q], found.force, arrays.force());
     on_plane -= found.force;
     account.energy += found.energy;
     account.stick_energy += contact.memory.stick_energy;

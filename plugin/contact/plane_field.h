@@ -7,6 +7,7 @@
 #include "contact/contact_field.h"
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace mdanim {
@@ -49,6 +50,7 @@ class PlaneField : public FieldOf<PlaneContact, std::uint8_t> {
   void work_ahead(const ContactArrays &arrays, double dt) override;
   void add_forces(ContactArrays &arrays, double dt, ContactAccount &account) override;
   int cost() const override;
+  std::optional<Vec3> normal() const override { return plane.normal(); }
   Vec3 force_on_plane() const override { return on_plane; }
   std::size_t bytes() const override { return bytes_of_rows() + ahead.capacity() * sizeof(OnPoint); }
 
@@ -58,7 +60,7 @@ class PlaneField : public FieldOf<PlaneContact, std::uint8_t> {
     double depth, energy, heat, damped;
   };
   double depth_at(const Vec3 &x) const { return plane.depth(x) + owner->body->radius(); }
-  double approach() const override { return owner->stir - dot(plane.normal(), owner->way); }
+  double approach() const override { return nearer(*owner, plane.normal()); }
   bool look_at(std::size_t q, const ContactArrays &arrays, bool may_begin) override;
   void begin_step(const ContactArrays &arrays) override;
   OnPoint push(PlaneContact &contact, std::size_t q, const ContactArrays &arrays, double dt) const;

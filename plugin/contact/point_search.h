@@ -12,7 +12,7 @@
 namespace mdanim {
 
 // Knowledge of a point without a contact.
-struct PointTrack {
+struct alignas(64) PointTrack {
   std::array<int, 3> cell = {-1, -1, -1};    // where it was found last, -1 for nowhere
   Vec3 X;
   double room = 0.0;        // a motion that leaves it in this cell [m]

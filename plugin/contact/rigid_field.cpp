@@ -49,13 +49,13 @@ bool RigidField::look_at(std::size_t q, const ContactArrays &arrays, bool may_be
   const ContactBody &body = *host->body;
   const std::uint8_t was_open = track.open;
   track.cell = {0, 0, 0};
-  track.X = to_material(near.place(q, arrays.place()));
+  track.X = to_material(owner->place_of(near[q], arrays.place()));
   if (const double out = outside(track.X) - LOOKED_AT * body.spacing(); out > 0.0) {
     track.open = 0;
     wake.set(q, budget + out);
     return false;
   }
-  const Vec3 X_centre = track.X + host->rigid.to_material(near.shift(q, arrays.place()));
+  const Vec3 X_centre = track.X + host->rigid.to_material(owner->shift_of(near[q], arrays.place()));
   Verdict verdict;
   verdict.slack = slack_of_far(body, point, owner->body->radius(), track.X, X_centre, 0.0);
   if (verdict.slack <= 0.0) {
@@ -100,7 +100,9 @@ ObjectField::Fate RigidField::push(FieldContact &contact, std::size_t q, const P
   if (task.takes_force)
     spread_to_frame(*task.frame, X, -1.0 * push.both, moment,
                     [&](int k, const Vec3 &force) { arrays.force()[task.slot[k]].value += force; });
-  count(contact, q, {push.at_centre, push.heat, push.damped}, is_on_ramp(part_slope), arrays, account);
+  const PushedContact<double> found = {push.at_centre, push.heat, push.damped};
+  push_point(contact, q, found, is_on_ramp(part_slope), arrays);
+  count(contact, found, account);
   return Fate::STAYS;
 }
 

@@ -23,6 +23,7 @@ class Wakes {
     set(wake.size() - 1, at);
   }
   std::size_t size() const { return wake.size(); }
+  double least_value() const { return least; }    // of all, or less
   double operator[](std::size_t q) const { return wake[q]; }
   void set(std::size_t q, double at)
   {
@@ -30,31 +31,39 @@ class Wakes {
     least_of[q / BLOCK] = std::min(least_of[q / BLOCK], at);
     least = std::min(least, at);
   }
-  // Calls look(q), which sets the value of point q anew, for every point whose value a budget exceeds, in ascending order.
-  template <class Look> void look_below(double budget, const Look &look)
+  // Calls look(q), which sets the value of point q anew, for every point whose value a budget exceeds, in ascending order; before
+  // all that, fetch(q) for each of them, so that waits for memory overlap.
+  template <class Fetch, class Look> void look_below(double budget, const Fetch &fetch, const Look &look)
   {
     if (!(least < budget)) return;
-    least = NEVER;
-    for (std::size_t block = 0; block < least_of.size(); ++block) {
+    due_blocks.clear(), due.clear();
+    double least_left = NEVER;
+    for (std::size_t block = 0; block < least_of.size(); ++block)
       if (least_of[block] < budget) {
-        const std::size_t end = std::min(wake.size(), (block + 1) * BLOCK);
-        double left = NEVER;
-        for (std::size_t q = block * BLOCK; q < end; ++q) {
-          if (wake[q] < budget) look(q);
-          left = std::min(left, wake[q]);
-        }
-        least_of[block] = left;
+        __builtin_prefetch(&wake[block * BLOCK]);
+        due_blocks.push_back(block);
+      } else {
+        least_left = std::min(least_left, least_of[block]);
       }
-      least = std::min(least, least_of[block]);
+    for (const std::size_t block : due_blocks)
+      for (std::size_t q = block * BLOCK; q < end_of(block); ++q)
+        if (wake[q] < budget) fetch(q), due.push_back(q);
+    for (const std::size_t q : due) look(q);
+    for (const std::size_t block : due_blocks) {
+      least_of[block] = *std::min_element(wake.begin() + block * BLOCK, wake.begin() + end_of(block));
+      least_left = std::min(least_left, least_of[block]);
     }
+    least = least_left;
   }
   std::size_t bytes() const { return (wake.capacity() + least_of.capacity()) * sizeof(double); }
 
  private:
   static constexpr std::size_t BLOCK = 8;
+  std::size_t end_of(std::size_t block) const { return std::min(wake.size(), (block + 1) * BLOCK); }
 
-  std::vector<double> wake, least_of;    // value of each point; for each block of points the least of them, or less
-  double least = NEVER;                  // least of all values, or less
+  std::vector<double> wake, least_of;          // value of each point; for each block of points the least of them, or less
+  double least = NEVER;                        // least of all values, or less
+  std::vector<std::size_t> due_blocks, due;    // while points are looked at
 };
 
 }    // namespace mdanim
