@@ -72,8 +72,8 @@ def test_every_word_is_explained():
     [
         *((word, "rope from") for word in ("rope", "chain")),
         ("string", "explain rope"),
-        ("force", "motor speed 1 m/s force 20 N"),
-        ("torque", "is a word of breaks, motor, and nothing by itself"),
+        *((word, "write force") for word in ("push", "thrust", "impulse", "addforce")),
+        *((word, f"{word} (") for word in ("force", "torque")),
         *((word, "joint hinge") for word in ("wheel", "axle", "engine", "pendulum", "door", "pulley")),
         *((word, "drive velocity") for word in ("belt", "conveyor")),
         *((word, "drive oscillation") for word in ("shake", "vibrate", "wiggle")),

@@ -1,29 +1,16 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// The particles of rigid bodies: which body each is of, its place in it, and sums over the particles of bodies.
+// The particles of rigid bodies: the place of each in its body.
 
 #pragma once
 
-#include "lammps/object_table.h"
-#include "numbers/unordered_sum.h"
+#include "lammps/whole_objects.h"
 #include "rigid/body.h"
-#include "rigid/inertia.h"
 
-#include "atom.h"
-#include "comm.h"
-#include "error.h"
-#include "fix.h"
-#include "pointers.h"
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstdint>
-#include <string>
 #include <vector>
 
 namespace mdanim {
 
-class RigidParticles : protected LAMMPS_NS::Pointers {
+class RigidParticles : public WholeObjects {
  public:
   // Takes the objects of the group of a fix.
   RigidParticles(LAMMPS_NS::LAMMPS *lmp, const LAMMPS_NS::Fix &fix);
@@ -31,44 +18,8 @@ class RigidParticles : protected LAMMPS_NS::Pointers {
   RigidParticles(const RigidParticles &) = delete;
   RigidParticles &operator=(const RigidParticles &) = delete;
 
-  bool moves(int i) const { return atom->mask[i] & fix.groupbit; }
-  double mass_at(int i) const;
-  int body_of(int i) const { return of_particle[i]; }    // ObjectTable::NONE of one that is not in the group
   Vec3 own(int i) const { return vec3(own_place[i]); }
   void set_own(int i, const Vec3 &place);
-
-  // Called by all ranks together. find_objects() tells whether there are other objects or particles than before, or they are all
-  // new. Objects whose particles have left the group together are laid aside: they stay known until there are others.
-  bool find_objects(bool are_new = false);
-  void locate();
-  const ObjectTable &objects() const { return known; }
-  LAMMPS_NS::bigint particles_of(int body) const { return particles[body]; }
-  // Numbers of particles in the group now, of each object on all ranks.
-  std::vector<LAMMPS_NS::bigint> present() const;
-
-  // Sums over the particles of an object, as points.
-  struct MassProperties {
-    double mass = 0.0;
-    Vec3 centre;
-    Inertia inertia;
-  };
-  std::vector<MassProperties> weigh() const;
-  struct BodyMotion {
-    Vec3 momentum, angular;    // the latter about the centre
-  };
-  std::vector<BodyMotion> motion(const std::vector<MassProperties> &about) const;
-  std::vector<double> kinetic() const;
-  // Sums of terms_of(i), N numbers of each local particle of a body, over all particles of each body on all ranks. They have the
-  // same bits for any distribution of particles over ranks.
-  template <int N, class Terms> std::vector<std::array<double, N>> sums(const Terms &terms_of) const;
-
-  template <class Term> std::vector<double> sum_of(const Term &term_of) const
-  {
-    const auto values = sums<1>([&](int i) { return std::array<double, 1>{term_of(i)}; });
-    std::vector<double> found;
-    for (const auto &value : values) found.push_back(value[0]);
-    return found;
-  }
 
   // Sets the places of particles in bodies from their places in space.
   void fix_places(const std::vector<RigidBody> &bodies);
@@ -79,8 +30,6 @@ class RigidParticles : protected LAMMPS_NS::Pointers {
     bool moved = false, pushed = false;
   };
   BodyChanges changes(const std::vector<RigidBody> &bodies) const;
-  // Degrees of freedom that bodies take from the temperature of a group, if all their particles belong to it.
-  LAMMPS_NS::bigint degrees_taken(int group_number) const;
   double bytes() const;
 
   // Places in the body go with particles from rank to rank.
@@ -91,43 +40,7 @@ class RigidParticles : protected LAMMPS_NS::Pointers {
   int unpack(int i, const double *buffer) const;
 
  private:
-  std::string name() const;
-  std::vector<LAMMPS_NS::bigint> take_objects(bool with_aside);    // their numbers of particles
-
-  const LAMMPS_NS::Fix &fix;
-  ObjectTable known;
-  std::vector<LAMMPS_NS::bigint> particles;    // of each object, on all ranks
-  std::vector<int> of_particle;
   double **own_place = nullptr;    // along the axes of the body, from its centre
 };
-
-template <int N, class Terms> std::vector<std::array<double, N>> RigidParticles::sums(const Terms &terms_of) const
-{
-  const std::size_t count = known.size();
-  std::vector<double> largest(N * count, 0.0);
-  std::vector<UnorderedSum> sum(N * count);
-  for (int i = 0; i < atom->nlocal; ++i) {
-    if (of_particle[i] == ObjectTable::NONE) continue;
-    const std::array<double, N> terms = terms_of(i);
-    double *const of_body = &largest[N * of_particle[i]];
-    for (int k = 0; k < N; ++k) of_body[k] = std::isfinite(terms[k]) ? std::max(of_body[k], std::fabs(terms[k])) : HUGE_VAL;
-  }
-  if (comm->nprocs > 1) MPI_Allreduce(MPI_IN_PLACE, largest.data(), static_cast<int>(largest.size()), MPI_DOUBLE, MPI_MAX, world);
-  for (double &one : largest) {
-    if (one == HUGE_VAL) error->all(FLERR, "{}: a force, velocity or place of a particle is not a finite number", name());
-    one = UnorderedSum::scale_for(one);
-  }
-  for (int i = 0; i < atom->nlocal; ++i) {
-    if (of_particle[i] == ObjectTable::NONE) continue;
-    const std::array<double, N> terms = terms_of(i);
-    const std::size_t first = N * of_particle[i];
-    for (int k = 0; k < N; ++k) sum[first + k].add(terms[k], largest[first + k]);
-  }
-  static_assert(sizeof(UnorderedSum) == 2 * sizeof(std::int64_t), "two numbers, summed over ranks");
-  if (comm->nprocs > 1) MPI_Allreduce(MPI_IN_PLACE, sum.data(), static_cast<int>(2 * sum.size()), MPI_INT64_T, MPI_SUM, world);
-  std::vector<std::array<double, N>> values(count);
-  for (std::size_t n = 0; n < N * count; ++n) values[n / N][n % N] = sum[n].value(largest[n]);
-  return values;
-}
 
 }    // namespace mdanim

@@ -54,6 +54,16 @@ class Leash:
     """Speed that it may be given besides that of its start and its fall [m/s]."""
 
 
+@dataclass(frozen=True, slots=True)
+class Throw:
+    """Bounds of what forces that act wherever a solid is give to it."""
+
+    speed: float
+    """Speed that they give any point of it until the end [m/s]."""
+    acceleration: float
+    """Largest acceleration of any point of it by them [m/s^2]."""
+
+
 class Motion:
     """How an effect moves solids; all of it may be asked of any scene."""
 
@@ -95,6 +105,10 @@ class Motion:
     def most_push(self, scene: SceneRecord, bodies: Bodies) -> np.ndarray | float:
         """Largest force of that kind on each solid over its mass [m/s^2], shape (M,)."""
         return 0.0
+
+    def throws(self, scene: SceneRecord) -> Mapping[int, Throw]:
+        """Solids that it pushes in any direction wherever they are, by number, and how fast they may get by that."""
+        return {}
 
     def surface(self, scene: SceneRecord) -> float | None:
         """Height below which solids are immersed in it [m]; None where it immerses nothing."""
@@ -156,9 +170,14 @@ class Acting:
 
     @property
     def strongest(self) -> float:
-        """No acceleration is larger [m/s^2]."""
+        """No acceleration of everything is larger [m/s^2]."""
         low, high = self.accelerations
         return float(np.linalg.norm(np.maximum(np.abs(low), np.abs(high)) if self.changes else self.acceleration))
+
+    @cached_property
+    def strongest_of_any(self) -> float:
+        """The same with what pushes single solids [m/s^2]."""
+        return self.strongest + max((throw.acceleration for throw in self.throws.values()), default=0.0)
 
     @cached_property
     def swing(self) -> float:
@@ -214,6 +233,30 @@ class Acting:
         found = np.zeros(len(self.scene.solids))
         for m, leash in self.leashes.items():
             found[m] = leash.speed if leash is not None else 0.0
+        return found
+
+    @cached_property
+    def thrown_at(self) -> np.ndarray:
+        """Speed that what pushes each solid wherever it is may give to it [m/s], shape (M,)."""
+        found = np.zeros(len(self.scene.solids))
+        for m, throw in self.throws.items():
+            found[m] = throw.speed
+        return found
+
+    @cached_property
+    def throws(self) -> dict[int, Throw]:
+        """As `Motion.throws`, of all effects together."""
+        found: dict[int, Throw] = {}
+        for m, throw in ((m, throw) for e in self.effects for m, throw in e.throws(self.scene).items()):
+            before = found.get(m, Throw(0.0, 0.0))
+            found[m] = Throw(before.speed + throw.speed, before.acceleration + throw.acceleration)
+        return found
+
+    @cached_property
+    def acted_on(self) -> np.ndarray:
+        """Solids that are `joined`, or that are pushed wherever they are, bool, shape (M,)."""
+        found = self.joined.copy()
+        found[list(self.throws)] = True
         return found
 
     @cached_property

@@ -138,14 +138,14 @@ class Reach:
         """The start's speed, with that of a fall [m], shape (M,), and at which it is driven."""
         start = np.maximum.reduceat((self.system.velocity**2).sum(1), self.system.first[:-1])
         fallen = np.sqrt(np.maximum(0.0, start + 2.0 * self.g * fall)) + self.acting.swing
-        return np.where(self.free, fallen + self.acting.given, 0.0) + self.acting.driven_at
+        return np.where(self.free, fallen + self.acting.given + self.acting.thrown_at, 0.0) + self.acting.driven_at
 
     def closing(self, fall: np.ndarray) -> np.ndarray:
         """Speed at which each solid may meet another [m/s], shape (M,): all fall alike, so only the start tells them apart until
         one has landed; ``fall`` [m], shape (M,), is how far."""
         low, high = self.system.bounds(self.system.velocity)
         apart = np.maximum(high + largest_of_others(-low), largest_of_others(high) - low)
-        moved = self.acting.driven_at + self.acting.given
+        moved = self.acting.driven_at + self.acting.given + self.acting.thrown_at
         driven = moved + largest_of_others(moved)
         apart = np.sqrt((np.maximum(apart, 0.0) ** 2).sum(1)) + driven
         fall = np.where(self.free, np.maximum(0.0, fall), 0.0)

@@ -103,8 +103,9 @@ def sweeps(acting: Acting, h: np.ndarray) -> Sweeps:
     (M,).
 
     Along an axis on which nothing but gravity and drag of air acts, the centre of mass moves on its parabola. Along one on which
-    a wall, the ground or a liquid may act, it gets no farther than at the largest speed that energy allows. A plane acts along
-    its own axis, one with friction along all of them. Raises SceneError for a mesh that is not a body.
+    a wall, the ground or a liquid may act, it gets no farther than at the largest speed that energy allows; so does what is
+    joined or pushed everywhere. A plane acts along its own axis, one with friction along all of them.
+    Raises SceneError for a mesh that is not a body.
     """
     scene, (limit_low, limit_high) = acting.scene, acting.limits
     bodies = _Movers(acting, h)
@@ -118,11 +119,11 @@ def sweeps(acting: Acting, h: np.ndarray) -> Sweeps:
         wet = (low - radius[:, None])[:, 2] <= wet_below
         return reached | wet[:, None], wet
 
-    hit = touched(calm)[0].any(axis=1) | acting.joined
+    hit = touched(calm)[0].any(axis=1) | acting.acted_on
     radius = np.where(hit, wild, calm)
     by_axis, _ = touched(radius)
     by_axis[~hit] = False
-    by_axis |= acting.joined[:, None]
+    by_axis |= acting.acted_on[:, None]
     by_axis |= (acting.rough & by_axis.any(axis=1))[:, None]  # friction acts along the other axes
     far = bodies.speed * scene.control.time
     # A body that has bounced may fall into a liquid that its parabola misses.
@@ -172,12 +173,13 @@ class _Movers:
         bound = acting.bound | ~np.array([kind_of(s).deforms for s in solids], bool)
         self.loose = np.where(bound, 0.0, self.tip * scene.control.time)
         self.pull = acting.most_pull(self)
-        self.speed = _speed(acting, self)
+        self.speed = _speed(acting, self) + acting.thrown_at
         self.speed = _shared(acting, self.mass, self.speed) + acting.given if acting.leashes else self.speed
         if acting.joined.any():  # nothing is known of what pulls: what is faster than waves is refused
             waves = np.where(np.isfinite(self.wave), self.wave, 0.0)
             self.speed = np.where(acting.joined, np.maximum(self.speed, waves), self.speed)
         self.driven_at = acting.driven_at
+        self.thrown = np.array([acting.throws[m].acceleration if m in acting.throws else 0.0 for m in range(len(solids))])
 
     def size(self, speed: np.ndarray) -> np.ndarray:
         """Radius of a body when this speed [m/s] is converted into deformation [m], shape (M,)."""
@@ -241,7 +243,8 @@ def _clamped(scene: SceneRecord, bodies: _Movers) -> np.ndarray:
     A solid that is held in one place may swing around that place like a pendulum. A cuboid held at whole faces bends by twice
     the deflection of a cantilever, 1.5 rho g L^4 / (E t^2), and by its own velocity, 1.7 v L^2 / (c t).
     """
-    speed = np.sqrt((bodies.velocity**2).sum(axis=1) + bodies.tip**2 + 4.0 * bodies.pull * bodies.radius) + bodies.driven_at
+    pull = bodies.pull + bodies.thrown
+    speed = np.sqrt((bodies.velocity**2).sum(axis=1) + bodies.tip**2 + 4.0 * pull * bodies.radius) + bodies.driven_at
     pendulum = 3.0 * bodies.radius * (SLACK + STRETCH * speed / bodies.wave)
     half = np.repeat(pendulum[:, None], 3, axis=1)
     for k in np.flatnonzero(bodies.clamped):
@@ -250,7 +253,7 @@ def _clamped(scene: SceneRecord, bodies: _Movers) -> np.ndarray:
             continue
         length, thin, c = 2.0 * bodies.radius[k], min(solid.shape.size), bodies.wave[k]
         moving = np.linalg.norm(solid.velocity) + bodies.tip[k] + bodies.driven_at[k]
-        sag = 2.0 * 1.8 * bodies.pull[k] * length**4 / (c * thin) ** 2 + 1.7 * moving * length**2 / (c * thin)
+        sag = 2.0 * 1.8 * pull[k] * length**4 / (c * thin) ** 2 + 1.7 * moving * length**2 / (c * thin)
         half[k] = np.minimum(half[k], SLACK * bodies.half[k] + SAG * sag)
     return half
 

@@ -29,7 +29,7 @@ def standing(acting: Acting, system: System) -> np.ndarray:
         return found
     low, high = system.bounds(system.position)
     slowest, fastest = system.bounds(system.velocity)
-    calm = ~system.still & ~acting.joined & ~slowest.any(axis=1) & ~fastest.any(axis=1)
+    calm = ~system.still & ~acting.acted_on & ~slowest.any(axis=1) & ~fastest.any(axis=1)
     near = BORN_AT_REST * system.spacing
     for plane in acting.planes:
         if plane.axis == 2 and plane.sign > 0:

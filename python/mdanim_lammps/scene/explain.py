@@ -21,8 +21,11 @@ MARGINS = {
 }
 """Limits that `check` prints with their margins, and certificate.json holds."""
 
-LEDGER = {name: about for words in facets("words") for name, about in getattr(words, "LEDGER", {}).items()}
-"""Columns of the ledger with a meaning of their own."""
+LEDGER: dict[str, str] = {}
+"""Columns of the ledger with a meaning of their own; of one that several features share, what each of them says."""
+for _words in facets("words"):
+    for _name, _about in getattr(_words, "LEDGER", {}).items():
+        LEDGER[_name] = f"{LEDGER[_name]}; {_about}" if _name in LEDGER else _about
 
 
 def explain(word: str) -> str:

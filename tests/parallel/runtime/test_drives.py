@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""Scenes with driven objects give the same bits in all forms of the distribution, resumed, and by plain LAMMPS."""
+"""Scenes with objects that are driven, or pushed by forces, give the same bits in all forms of the distribution, resumed, and by
+plain LAMMPS."""
 
 import subprocess
 
@@ -52,7 +53,21 @@ object club  { shape box (8, 20, 8) cm   position (0, 0, 60) cm  density 1000  e
   drive turn (20, 0, 0) rad/s }
 control { time 0.08 s  frames 100 fps  resolution 4 cm }
 """
-SCENES = {"elastic": SCENE, "rigid": RIGID, "wet": WET}
+PUSHED = """
+gravity (0, 0, -9.81) m/s^2
+ground z -0.2 m
+object sled  { shape box (16, 8, 8) cm   position (0, 0, -16) cm   density 1000  elasticity 500 kPa
+  force (30, 0, 0) N from 0.013 s to 0.0561 s  torque (0, 0, 2) N*m }
+object box   { shape box (8, 8, 8) cm    position (14, 0, -16) cm  density 700   elasticity 300 kPa }
+object top   { shape cylinder 8 cm 4 cm  position (60, 0, 0) cm    density 800   elasticity rigid
+  torque (0, 0, 0.4) N*m from 0.02 s  force (0, 0, 12) N to 0.031 s }
+object stone { shape box (8, 8, 8) cm    position (60, 13, 0) cm   density 300   elasticity rigid  force (0, -4, 0) N }
+object pole  { shape box (8, 8, 24) cm   position (0, 60, 0) cm    density 800   elasticity 500 kPa  hold face -z
+  force (5, 0, 0) N to 0.04 s }
+object far   { shape sphere 6 cm         position (90, 60, 10) cm  density 900   elasticity 300 kPa }
+control { time 0.08 s  frames 100 fps  resolution 4 cm  friction 0.4 }
+"""
+SCENES = {"elastic": SCENE, "rigid": RIGID, "wet": WET, "pushed": PUSHED}
 CASES = (
     matrix((2,), ["central"], name="all move ", rotate=True)
     | matrix((3,), ["peers"], name="all move ", rotate=True)

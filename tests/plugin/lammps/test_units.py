@@ -212,8 +212,15 @@ def joints() -> Scene:
     )  # fmt: skip
 
 
+def forces() -> Scene:
+    """In windows of time, on elastic objects."""
+    words = "force 0.01:force 0.0:force 0.02:force to 5.1:time torque 0.0:energy 0.02:energy 0.01:energy to 7.0:time"
+    return Scene(lab.block((1, 1, 4)), (f"fix p all mdanim/force {words}", MOVE), {**ENERGIES, "f_p[1]": "energy"}, steps=100)
+
+
 SCENES = {
     "joints": joints,
+    "forces": forces,
     "springs": springs,
     "exponential drag": exponential_drag,
     "wall": wall,

@@ -39,7 +39,7 @@ class Slope(NamedTuple):
 def frictionless(envelope: Envelope) -> list[Problem]:
     """Note that objects will slide, once, where some may come to rest and nothing has friction."""
     scene, system = envelope.scene, envelope.system
-    free = envelope.reach.free & ~envelope.reach.acting.joined
+    free = envelope.reach.free & ~envelope.reach.acting.acted_on
     if any_friction(scene) or envelope.reach.acting.changes or envelope.reach.g <= 0.0 or not free.any():
         return []
     sinks = (free & (envelope.reach.weight_left > 0.0)).any()
@@ -145,7 +145,7 @@ class _Slopes:
         self.envelope, self.scene = envelope, envelope.scene
         self.gravity = np.array(self.scene.gravity)
         rolling = np.array([shapes.LAWS[type(s.shape)].rolls for s in self.scene.solids])
-        self.sliding = envelope.reach.moving & ~rolling & ~envelope.reach.acting.joined
+        self.sliding = envelope.reach.moving & ~rolling & ~envelope.reach.acting.acted_on
 
     def on_floors(self) -> Iterator[Slope]:
         tangent = math.hypot(*self.gravity[:2]) / -self.gravity[2]

@@ -91,7 +91,7 @@ def _columns(envelope: Envelope) -> Iterator[_Column]:
     for plane in floors(envelope):
         floor |= np.abs(low[:, 2] - plane.at) <= near
     floor[above[~moving[below]]] = True
-    moving = moving & ~envelope.reach.acting.joined
+    moving = moving & ~envelope.reach.acting.acted_on
     for m in np.flatnonzero(moving & floor).tolist():
         members = [m]
         while bears[members[-1]] == 1 and borne[on[members[-1]]] == 1 and moving[on[members[-1]]]:

@@ -12,6 +12,9 @@ from ...scene.schema import OneOf, Vector, setting
 
 SWITCHES = {"drives": "an object's `drive ...` or `key ...`"}
 
+LEDGER = {"work": "what drives have brought in so far [J]"}
+"""Columns of the ledger."""
+
 NEAR = 1e-9
 """Distance of two points that are one, over their distance from the origin."""
 LEAST = 1e-6

@@ -173,7 +173,7 @@ class PlanContext:
         d = window(
             speed,
             steps * self.whole.certificate.timestep,
-            self.whole.context.reach.acting.strongest,
+            self.whole.context.reach.acting.strongest_of_any,
             MARGIN * self.whole.spacing,
             self.settings.safety,
         )

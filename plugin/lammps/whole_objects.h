@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// The particles of objects that a fix acts on as a whole: which object each is of, and sums over them.
+
+#pragma once
+
+#include "lammps/object_table.h"
+#include "numbers/unordered_sum.h"
+#include "numbers/vec3.h"
+#include "rigid/inertia.h"
+
+#include "atom.h"
+#include "comm.h"
+#include "error.h"
+#include "fix.h"
+#include "pointers.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace mdanim {
+
+class WholeObjects : protected LAMMPS_NS::Pointers {
+ public:
+  // Takes the objects of the group of a fix.
+  WholeObjects(LAMMPS_NS::LAMMPS *lmp, const LAMMPS_NS::Fix &fix) : Pointers(lmp), fix(fix) {}
+
+  bool moves(int i) const { return atom->mask[i] & fix.groupbit; }
+  double mass_at(int i) const;
+  int body_of(int i) const { return of_particle[i]; }    // ObjectTable::NONE of one that is not in the group
+
+  // Called by all ranks together. find_objects() tells whether there are other objects or particles than before, or they are all
+  // new. Objects whose particles have left the group together are laid aside: they stay known until there are others.
+  bool find_objects(bool are_new = false);
+  void locate();
+  const ObjectTable &objects() const { return known; }
+  LAMMPS_NS::bigint particles_of(int body) const { return particles[body]; }
+  // Numbers of particles in the group now, of each object on all ranks.
+  std::vector<LAMMPS_NS::bigint> present() const;
+
+  // Sums over the particles of an object, as points.
+  struct MassProperties {
+    double mass = 0.0;
+    Vec3 centre;
+    Inertia inertia;
+  };
+  std::vector<MassProperties> weigh() const;
+  struct BodyMotion {
+    Vec3 momentum, angular;    // the latter about the centre
+  };
+  std::vector<BodyMotion> motion(const std::vector<MassProperties> &about) const;
+  std::vector<double> kinetic() const;
+  // Sums of terms_of(i), N numbers of each local particle of a body, over all particles of each body on all ranks. They have the
+  // same bits for any distribution of particles over ranks.
+  template <int N, class Terms> std::vector<std::array<double, N>> sums(const Terms &terms_of) const;
+
+  template <class Term> std::vector<double> sum_of(const Term &term_of) const
+  {
+    const auto values = sums<1>([&](int i) { return std::array<double, 1>{term_of(i)}; });
+    std::vector<double> found;
+    for (const auto &value : values) found.push_back(value[0]);
+    return found;
+  }
+
+  // Degrees of freedom that bodies take from the temperature of a group, if all their particles belong to it.
+  LAMMPS_NS::bigint degrees_taken(int group_number) const;
+  double bytes() const;
+
+ protected:
+  std::vector<int> of_particle;
+
+ private:
+  std::string name() const;
+  std::vector<LAMMPS_NS::bigint> take_objects(bool with_aside);    // their numbers of particles
+
+  const LAMMPS_NS::Fix &fix;
+  ObjectTable known;
+  std::vector<LAMMPS_NS::bigint> particles;    // of each object, on all ranks
+};
+
+template <int N, class Terms> std::vector<std::array<double, N>> WholeObjects::sums(const Terms &terms_of) const
+{
+  const std::size_t count = known.size();
+  std::vector<double> largest(N * count, 0.0);
+  std::vector<UnorderedSum> sum(N * count);
+  for (int i = 0; i < atom->nlocal; ++i) {
+    if (of_particle[i] == ObjectTable::NONE) continue;
+    const std::array<double, N> terms = terms_of(i);
+    double *const of_body = &largest[N * of_particle[i]];
+    for (int k = 0; k < N; ++k) of_body[k] = std::isfinite(terms[k]) ? std::max(of_body[k], std::fabs(terms[k])) : HUGE_VAL;
+  }
+  if (comm->nprocs > 1) MPI_Allreduce(MPI_IN_PLACE, largest.data(), static_cast<int>(largest.size()), MPI_DOUBLE, MPI_MAX, world);
+  for (double &one : largest) {
+    if (one == HUGE_VAL) error->all(FLERR, "{}: a force, velocity or place of a particle is not a finite number", name());
+    one = UnorderedSum::scale_for(one);
+  }
+  for (int i = 0; i < atom->nlocal; ++i) {
+    if (of_particle[i] == ObjectTable::NONE) continue;
+    const std::array<double, N> terms = terms_of(i);
+    const std::size_t first = N * of_particle[i];
+    for (int k = 0; k < N; ++k) sum[first + k].add(terms[k], largest[first + k]);
+  }
+  static_assert(sizeof(UnorderedSum) == 2 * sizeof(std::int64_t), "two numbers, summed over ranks");
+  if (comm->nprocs > 1) MPI_Allreduce(MPI_IN_PLACE, sum.data(), static_cast<int>(2 * sum.size()), MPI_INT64_T, MPI_SUM, world);
+  std::vector<std::array<double, N>> values(count);
+  for (std::size_t n = 0; n < N * count; ++n) values[n / N][n % N] = sum[n].value(largest[n]);
+  return values;
+}
+
+}    // namespace mdanim
