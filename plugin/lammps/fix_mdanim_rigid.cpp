@@ -61,19 +61,25 @@ FixMdanimRigid::~FixMdanimRigid() { atom->delete_callback(id, Atom::GROW); }
 
 void FixMdanimRigid::tell_numbers()
 {
-  const auto total = [this](double (RigidBody::*energy)() const) {
+  const auto total = [this](const auto &energy_of) {
     const std::vector<bigint> present = particles.present();    // what was laid aside has no part
     double all = 0.0;
     for (std::size_t n = 0; n < bodies.size(); ++n)
-      if (present[n] > 0) all += (bodies[n].*energy)();
+      if (present[n] > 0) all += energy_of(n);
     return force->mvv2e * all;
   };
-  std::vector<mdanim::Output> outputs = {{"bodies", true, [this] { return static_cast<double>(bodies.size()); }},
-                                         {"translation", true, [total] { return total(&RigidBody::translation); }},
-                                         {"rotation", true, [total] { return total(&RigidBody::rotation); }},
-                                         clock(),
-                                         {"drag_loss", true, [this] { return force->mvv2e * drag_loss; }}};
+  const auto kinetic = [this, total] {
+    if (!collected) collect();
+    return total([this](std::size_t n) { return bodies[n].kinetic(half_dt, drag[n]); });
+  };
+  std::vector<mdanim::Output> outputs = {
+      {"bodies", true, [this] { return static_cast<double>(bodies.size()); }},
+      {"translation", true, [this, total] { return total([this](std::size_t n) { return bodies[n].translation(); }); }},
+      {"rotation", true, [this, total] { return total([this](std::size_t n) { return bodies[n].rotation(); }); }},
+      clock(),
+      {"drag_loss", true, [this] { return force->mvv2e * drag_loss; }}};
   for (mdanim::Output &output : touching.outputs()) outputs.push_back(std::move(output));
+  outputs.push_back({"kinetic", true, kinetic});
   tell(std::move(outputs));
 }
 

@@ -167,7 +167,7 @@ class RigidMotion(Effect):
         return points.notes(envelope)
 
     def kinetic(self, readings):
-        return self._sum(readings, "translation") + self._sum(readings, "rotation")
+        return self._sum(readings, "kinetic")
 
     def drag_taken(self, readings):
         return self._sum(readings, "drag_loss")
