@@ -30,6 +30,7 @@ RIGHT = {
     ".walls": ("from (-3, -3, -1) m to (3, 3, 3) m",),
     ".expect": ("energy.residual = 0 +- 1", "ball.position.z at 0.2 s = 0 +- 1 m", "penetration.max = 0 +- 1 m"),
     "object.shape": ("box (10, 10, 10) cm", "sphere 8 cm", "cylinder 8 cm 12 cm", "torus 12 cm 5 cm", "ellipsoid (8, 9, 10) cm"),
+    "object.material": ("oak", "rubber", "glass"),
     "object.orientation": ("axis (1, 0, 0) angle 20 deg", "euler (0, 20, 10) deg"),
     "object.hold": ("all", "face -z", "faces x"),
     "liquid.basin": ("from (-1, -1, 0) m to (1, 1, 1) m",),
@@ -76,7 +77,8 @@ def scene(chance: random.Random, used: set[str]) -> str:
     lines = [make.setting(k) for k in KEYWORDS[""].values() if chance.random() < (0.8 if k.name == "gravity" else 0.3)]
     names = NAMES[: chance.randrange(1, 4)]
     blocks = [f"object {name}" for name in names]
-    blocks += [b for b in ("liquid w", "contact ball slab", "effects", "render", "place few") if chance.random() < 0.3]
+    more = ("liquid w", "contact ball slab", "effects", "render", "place few", "material own")
+    blocks += [b for b in more if chance.random() < 0.3]
     if odd == 0.0 and len(names) < 2:
         blocks = [b for b in blocks if not b.startswith("contact")]
     for head in (*blocks, "control"):

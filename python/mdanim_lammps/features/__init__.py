@@ -12,6 +12,8 @@ A folder has facets, each a module that is looked for by its name:
              touched(scene), whether it brings something that objects may touch; points(scene), whether objects touch it or each
              other with points of their surfaces; width(scene), the width that sets the spacing of
              scenes without objects
+``follow``   what follows from its words: fill(validator) gives blocks settings that follow from others, before records are made;
+             explained() has texts for ``explain`` by the words that are told
 ``measure``  how its quantities are measured (effects/measured.py): MEASURES in a run that has ended, RECORDED in one object
 ``effect``   EFFECTS, the effects that it brings (effects/effect.py): causes, columns, commands, planes, bound, ledger
 ``kept``     KEPT, the records that a trajectory keeps of it (effects/kept.py): attributes, tables of frames; Track, what it adds

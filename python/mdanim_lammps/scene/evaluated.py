@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 from ..errors import Span
+from .keywords import KEYWORDS
 from .tokens import Token
 from .tree import Group, SettingNode, Use
 
@@ -69,6 +70,11 @@ class EvaluatedBlock:
     def excused(self, *words: str) -> bool:
         """Whether these words may be missing because something could not be read."""
         return not self.broken.isdisjoint((*words, "include", "repeat", "use"))
+
+    def words(self) -> set[str]:
+        """Words that it says itself, and those that these exclude."""
+        own = KEYWORDS[self.block] if self.block in KEYWORDS else KEYWORDS["object"]
+        return {other for word in self.settings for other in (word, *own[word].one_of)}
 
     def first(self, word: str) -> EvaluatedSetting | None:
         """The setting of a keyword, if there is one."""

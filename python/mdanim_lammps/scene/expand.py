@@ -238,8 +238,7 @@ class Expander(Evaluator):
 
     def take_uses(self, out: EvaluatedBlock, env: Env) -> None:
         """Give a block the settings that it uses, where it has none of its own."""
-        own, origin = set(out.settings), {}
-        own |= {other for word in own for other in KEYWORDS["object"][word].one_of}
+        own, origin = out.words(), {}
         for s in out.uses:
             found = env.values.get(str(s.token))
             if type(found) is not Properties:

@@ -55,9 +55,12 @@ def _entries() -> Iterator[tuple[str, str]]:
         for kind, about in block.kinds.items():
             head = block.head.replace("|".join(block.kinds), kind)
             yield kind, f"{head} {{ ... }}   a kind of {block.name}\n  {_plain(about)}: mdanim-lammps explain {block.name}"
-    for block, keywords in KEYWORDS.items():
-        for keyword in keywords.values():
-            yield keyword.name, _keyword(keyword, f"in {block} {{ }}" if block else "outside of all blocks")
+    for keyword in all_keywords():
+        places = [b for b in (keyword.block, *(b.name for b in BLOCKS.values() if keyword.shared and b.of == keyword.block)) if b]
+        yield (
+            keyword.name,
+            _keyword(keyword, f"in {' and '.join(f'{b} {{ }}' for b in places)}" if places else "outside of all blocks"),
+        )
     for name, (form, about) in STATEMENTS.items():
         yield name, f"{form}   a statement\n  {_plain(about)}"
     for kind in vars(shapes).values():
@@ -78,6 +81,8 @@ def _entries() -> Iterator[tuple[str, str]]:
             yield name, f"{name}   a unit of {about.split(' ', 1)[1]} (also {others}){limit}"
     for name, about in MARGINS.items():
         yield name, f"{name}   a limit that check prints with its margin\n  {about}"
+    for name, about in (entry for facet in facets("follow") for entry in facet.explained().items()):
+        yield name, about
     for name, about in LEDGER.items():
         yield name, f"{name}   a column of ledger.csv\n  {about}"
     for name, instead in NOT_SUPPORTED.items():

@@ -64,6 +64,15 @@ KEYWORDS: dict[str, dict[str, Keyword]] = {
     "effects": {name: _switch(name, cause) for words in facets("words") for name, cause in words.SWITCHES.items()},
 }
 """Keywords by block and name; the empty string is the scene itself."""
+KEYWORDS |= {
+    b.name: {
+        k.name: replace(k, block=b.name, one_of=(), needed=False, absent=None, default="")
+        for k in KEYWORDS[b.of].values()
+        if k.shared
+    }
+    for b in BLOCKS.values()
+    if b.of
+}
 
 STATEMENTS = {
     "let": ("let name = expression", "Gives a number, a quantity or a vector a name. `--set name=value` overrides it."),
@@ -140,8 +149,8 @@ def belongs(keyword: Keyword, word: str) -> str:
 
 
 def all_keywords() -> list[Keyword]:
-    """The keywords of all blocks, in the order of the docs."""
-    return [k for block in KEYWORDS.values() for k in block.values()]
+    """The keywords of all blocks, in the order of the docs; one that blocks share counts where it is from."""
+    return [k for name, block in KEYWORDS.items() if not (name and BLOCKS[name].of) for k in block.values()]
 
 
 def example(keyword: Keyword) -> str:

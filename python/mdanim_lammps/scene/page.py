@@ -87,6 +87,8 @@ include "rubber.txt"            # relative to this file
   `let` inside braces is known up to the closing brace.
 - `let name = { ... }` gives settings of an object a name. `use name` in an object stands for them; what the object says itself
   counts instead. Such settings may use others, and are evaluated where the `let` stands.
+- `material oak` gives an object the settings of a known material, or of a [`material` block](#material): those that suit it and
+  that it has not itself. What these are stands in [materials](materials.md).
 - `repeat i in a .. b { }` repeats its statements for the whole numbers i from a to b; objects, `expect` and
   `camera` lines, `hold` and other repeats may stand inside.
 - An index is one number, which may be computed: of two repeats write `object box[100*r + c]`; `box[r, c]` is refused.
@@ -197,8 +199,12 @@ def language_page() -> str:
     for block in BLOCKS.values():
         forms = block.head.replace(" | ", " { ... }\n")
         parts += [f"\n## {block.name}\n\n", f"```\n{forms} {{ ... }}\n```\n\n{block.about}\n\n"]
-        parts[-1] = parts[-1] if KEYWORDS[block.name] else parts[-1].removesuffix("\n")
-        parts.append(_table(KEYWORDS[block.name].values()) if KEYWORDS[block.name] else "")
+        own = KEYWORDS[block.name]
+        if block.of:
+            parts.append(f"Settings, as in `{block.of}`: {', '.join(f'**{word}**' for word in own)}.\n")
+        else:
+            parts[-1] = parts[-1] if own else parts[-1].removesuffix("\n")
+            parts.append(_table(own.values()) if own else "")
     parts += ["\n## What `expect` can check\n\n", "| quantity | unit | meaning |\n|---|---|---|\n"]
     parts += [f"| `{k}.{q}` | {x.unit if x.unit != '1' else '-'} | {meaning(k, x)} |\n" for (k, q), x in QUANTITIES.items()]
     parts += [_END, _LIMITS]

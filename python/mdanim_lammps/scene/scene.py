@@ -92,12 +92,13 @@ class Solid:
             "Young's modulus; or the paper's one k for every spring, Wcislo 1999, eq. (3.6).",
             *(kind.ABOUT for kind in _ELASTICITIES),
         )),
-        "200 kPa", Rule.POSITIVE, codec=OneOf(Young, SpringConstant, *_ELASTICITIES))  # fmt: skip
+        "200 kPa", Rule.POSITIVE, codec=OneOf(Young, SpringConstant, *_ELASTICITIES), shared=True)  # fmt: skip
     mass: float | None = setting(
         "<m:kg>", "Mass of the whole object.", "2 kg", Rule.POSITIVE, default=None, one_of=("mass", "density"))  # fmt: skip
     """[kg]; exactly one of mass and density is given."""
     density: float | None = setting(
-        "<rho:kg/m^3>", "Mass per volume.", "900 kg/m^3", Rule.POSITIVE, default=None, one_of=("mass", "density"))  # fmt: skip
+        "<rho:kg/m^3>", "Mass per volume.", "900 kg/m^3", Rule.POSITIVE, default=None, one_of=("mass", "density"),
+        shared=True)  # fmt: skip
     """[kg/m^3]"""
     velocity: Vector = setting("<(vx, vy, vz):m/s>", "Velocity at the start.", "(0, 0, -1) m/s", default=(0.0, 0.0, 0.0))
     """[m/s]"""
@@ -116,7 +117,7 @@ class Solid:
         "scene.",
         "1 cm", Rule.POSITIVE, default=None)  # fmt: skip
     """[m]"""
-    color: str | None = setting("<color>", f"Colour in pictures: {COLOR}", "steelblue", default=None)
+    color: str | None = setting("<color>", f"Colour in pictures: {COLOR}", "steelblue", default=None, shared=True)
     """``#rrggbb``; None lets the renderer choose."""
     spans: Mapping[str, Span] = field(default_factory=dict, compare=False, repr=False)
     """Where each keyword's value stands; ``spans["object"]`` is the object's name."""

@@ -185,6 +185,8 @@ class Keyword:
     """Exactly one of these is given."""
     also: tuple[str, ...] = ()
     """Further fields that the values fill, after the first."""
+    shared: bool = False
+    """Whether blocks that are `of` its block have it, too."""
     needed: bool = False
     absent: Any = None
     """Value of the record's field where the keyword is not given."""
@@ -243,6 +245,8 @@ class Block:
     many: bool = False
     holds: tuple[str, ...] = ()
     """Blocks that may stand in it."""
+    of: str = ""
+    """The block whose shared settings it has, to give them to others; it becomes no record, and has names of its own."""
     in_group: bool = False
     """Whether it may stand in a group."""
     raw: bool = False
@@ -274,12 +278,14 @@ def setting(
     absent: Any = dataclasses.MISSING,
     codec: Codec | None = None,
     after: str = "",
+    compare: bool = True,
     **facts: Any,
 ) -> Any:
     """A field of a record together with its keyword, which is called as the field unless ``name`` says otherwise.
 
     ``default`` is that of the field, ``absent`` one that the field itself does not have; without both the keyword must be given.
-    ``after`` is the field behind which a setting that a feature adds is told.
+    ``after`` is the field behind which a setting that a feature adds is told. Without ``compare`` records that differ in it alone
+    are equal.
     ``facts`` are further fields of Keyword.
     """
     codec = codec or PLAIN
@@ -291,7 +297,7 @@ def setting(
         form, about, example, rule, codec=codec, name=name, needed=needed,
         absent=None if value is dataclasses.MISSING else value, **facts,
     )  # fmt: skip
-    return dataclasses.field(default=default, metadata={"keyword": keyword, "after": after})
+    return dataclasses.field(default=default, compare=compare, metadata={"keyword": keyword, "after": after})
 
 
 def with_words(record: type, kind: str) -> type:

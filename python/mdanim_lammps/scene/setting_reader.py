@@ -196,6 +196,14 @@ class SettingReader(Reader):
                 raise Fault(t, f"{keyword.name} needs a colour, found {t.found()}", 'write a name such as red, or "#rrggbb"')
             name = self.word()
             return Value(slot, t, self.tokens[self.at - 1], text=str(name))
+        if slot.kind == "name":
+            if str(t) in KEYWORDS[keyword.block]:
+                self._missing(self.tokens[self.at - 1], keyword)
+            if t.type != "NAME":
+                hint = "leave out the quotes" if t.type == "STRING" else example(keyword)
+                raise Fault(t, f"{keyword.name} needs a name, found {t.found()}", hint)
+            self.take()
+            return Value(slot, t, t, text=str(t))
         if slot.kind == "check":
             return self.check(slot, keyword)
         if slot.kind == "relation":

@@ -112,6 +112,8 @@ class Rope:
     ALSO: ClassVar = ("cable", "cord", "string", "wire", "thread", "line")
     BRINGS: ClassVar = ("position", "orientation")
     """Settings of an object that follow from it."""
+    BENDS: ClassVar = True
+    """Whether it is there to bend, so that no material makes it rigid."""
 
     start: Vector
     """[m]"""

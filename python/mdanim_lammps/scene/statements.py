@@ -147,7 +147,7 @@ class Parser(SettingReader):
     def unknown(self, word: Token, block: str, opened: Token | None, repeats: int) -> list:
         """A word that has no meaning here: report it, and read on with what was most likely meant."""
         here = [*KEYWORDS[block], *((*BLOCKS[block].holds, *STATEMENTS) if block else (*BLOCKS, *STATEMENTS))]
-        homes = [b for b in KEYWORDS if word in KEYWORDS[b]]
+        homes = [b for b in KEYWORDS if word in KEYWORDS[b] and not (b and BLOCKS[b].of)]
         if "" in homes and opened is not None and self._first_on_line(word) and word.column <= opened.column:
             raise Unclosed(word)
         guess, home = nearest(str(word), here), owner(KEYWORDS[block], str(word))

@@ -32,7 +32,10 @@ from .source import Problems, SceneFile
 
 def validate(out: EvaluatedBlock, problems: Problems, name: str, source: SceneFile) -> records.SceneRecord | None:
     """The scene, or None where errors make it impossible."""
-    return Validator(out, problems, Span(source.name, 1, 1)).scene(name, source.path)
+    validator = Validator(out, problems, Span(source.name, 1, 1))
+    for facet in facets("follow"):
+        facet.fill(validator)
+    return validator.scene(name, source.path)
 
 
 def validate_render(out: EvaluatedBlock, problems: Problems, names: Sequence[str], source: SceneFile) -> records.Render | None:
@@ -225,19 +228,19 @@ class Validator:
 
     def names_once(self) -> None:
         """No two blocks of one name, and no name that expect uses for something else."""
-        first: dict[str, EvaluatedBlock] = {}
+        first: dict[tuple[str, str], EvaluatedBlock] = {}
         own = {kind.name for kind in BLOCKS.values() if kind.names and not kind.of_objects}
         for block in (b for b in self.out.blocks if b.block in own):  # as they stand in the scene
-            if block.name in first:
+            if (key := (block.name, BLOCKS[block.block].of)) in first:
                 self.problem(
                     block.head,
                     f"the name {block.name} is given twice{block.where}",
-                    f"first given at {first[block.name].head}",
+                    f"first given at {first[key].head}",
                     key=("name", id(block.group)),
                 )
             elif block.block == "object" and block.name in GLOBALS:
                 self.problem(block.head, f"an object cannot be called {block.name}: expect uses this word", "take another name")
-            first.setdefault(block.name, block)
+            first.setdefault(key, block)
 
     def frames(self, control: records.Control | None, render: records.Render | None) -> records.Control | None:
         """Control with as many frames as slow motion asks for, unless it says how many: at least one, and not too many."""

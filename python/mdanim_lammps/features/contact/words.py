@@ -80,13 +80,13 @@ class FrictionWords:
         "<mu>",
         "Coefficient of friction; two objects in touch have sqrt(mu_A mu_B), an object has its own against ground, walls and "
         "basin. Not with `contact-model paper`. Absent: that of `control`.",
-        "0.4", Rule.NOT_NEGATIVE, default=None, limit=FRICTION, after="drag")  # fmt: skip
+        "0.4", Rule.NOT_NEGATIVE, default=None, limit=FRICTION, after="drag", shared=True)  # fmt: skip
     """mu [-]; None is that of the scene."""
     restitution: float | None = setting(
         "<e>",
         "Coefficient of restitution, speed after a blow over the speed before it, of a rigid or held object on rigid and held "
         "ones, ground and walls; the lower one of two counts. Absent: that of `control`.",
-        "0.8", Rule.NOT_NEGATIVE, default=None, limit=RESTITUTION, after="friction")  # fmt: skip
+        "0.8", Rule.NOT_NEGATIVE, default=None, limit=RESTITUTION, after="friction", shared=True)  # fmt: skip
     """e [-]; None is that of the scene."""
 
 

@@ -16,7 +16,7 @@ class DampingWords:
 
     damping: float = setting(
         "<zeta>", "Internal damping, as a fraction of critical damping in each spring.",
-        "0.05", Rule.NOT_NEGATIVE, default=0.0, limit=DAMPING, after="density")  # fmt: skip
+        "0.05", Rule.NOT_NEGATIVE, default=0.0, limit=DAMPING, after="density", shared=True)  # fmt: skip
     """Fraction of critical damping at the bond level [-]."""
 
 

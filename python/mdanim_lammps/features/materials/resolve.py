@@ -1,0 +1,115 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""What an object is made of, as settings of the object: those of its material that it has not itself and that suit it."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import Any
+
+from ...scene.evaluated import EvaluatedBlock, EvaluatedSetting
+from ...scene.keywords import KEYWORDS, did_you_mean
+from ...scene.shapes import HoldAll, Young
+from ...scene.tree import SettingNode
+from ..rigid.words import SENSELESS, Rigid
+from .table import MATERIALS, Material
+
+STIFF = 200.0
+"""Wave speed sqrt(E/rho) from which on what is made of a material is rigid [m/s]: where it is struck at 10 m/s, as after
+a fall from 5 m, it is strained by about v/c, a twentieth, which is not seen; and a step of its springs would last h/c at
+most, less than 0.1 ms at h = 2 cm."""
+
+Settings = dict[str, list[EvaluatedSetting]]
+
+
+def fill(v: Any) -> None:
+    """Give objects what their materials say; v is the scene/validate.Validator."""
+    own = {block.name: block for block in v.blocks("material")}
+    for block in v.blocks("object"):
+        given = block.first("material")
+        found = _made_of(v, own, given, (), block.where) if given is not None else {}
+        if found is None or "material" in block.broken:
+            block.broken |= set(KEYWORDS["material"])
+        else:
+            mine = block.words()
+            block.settings |= {word: s for word, s in _suited(block, found).items() if word not in mine}
+    for name, block in own.items():
+        if (given := block.first("material")) is not None:
+            _made_of(v, own, given, (name,), "")
+
+
+def _made_of(
+    v: Any, own: dict[str, EvaluatedBlock], given: EvaluatedSetting, within: tuple[str, ...], where: str
+) -> Settings | None:
+    """Settings of the material that a setting names, where it stands in the blocks ``within``; None after a problem. A block that
+    names its own name means the known material."""
+    name = given.values[0]
+    block = own.get(name) if name not in within else None
+    if block is not None:
+        used_at = (*given.used_at, given.entry.source.span(given.entry.token))
+        said = {
+            word: [replace(one, used_at=used_at) for one in found] for word, found in block.settings.items() if word != "material"
+        }
+        base = block.first("material")
+        under = _made_of(v, own, base, (*within, name), where) if base is not None else {}
+        if block.broken:
+            return None
+        return None if under is None else under | said
+    if name in MATERIALS:
+        return _known(given, MATERIALS[name])
+    if name in within:
+        cause = f"the material {name} is made of itself: {' -> '.join((*within, name))}"
+        v.problem(given.span(0), cause, "take one of them out", key=("material", *sorted(within)))
+    else:
+        cause, known = f"no material is called {name}{where}", [*own, *MATERIALS]
+        v.problem(
+            given.span(0), cause, did_you_mean(name, known) or "docs/materials.md lists them", key=("material", given.entry)
+        )
+    return None
+
+
+def _known(given: EvaluatedSetting, material: Material) -> Settings:
+    """Settings of a known material, at the place that names it."""
+    values: dict[str, Any] = {word: figure.value for word, figure in material.figures().items()}
+    values |= {"elasticity": Young(material.elasticity.value), "color": material.color}
+    return {word: [_at(given, KEYWORDS["object"][word], value)] for word, value in values.items() if word in KEYWORDS["material"]}
+
+
+def _at(given: EvaluatedSetting, keyword: Any, value: Any) -> EvaluatedSetting:
+    """A setting with a value of the record, at the place of another setting."""
+    choice, values = keyword.codec.write(keyword, value)
+    place = given.entry.values[0]
+    return EvaluatedSetting(
+        SettingNode(given.entry.source, given.entry.token, keyword, choice, (), (place,) * max(1, len(values))),
+        tuple(values),
+        given.used_at,
+    )
+
+
+def _suited(block: EvaluatedBlock, found: Settings) -> Settings:
+    """Those that suit an object: its form of elasticity decides on damping and restitution."""
+    found = dict(found)
+    holds = [_kind(s) for s in block.settings.get("hold", ())]
+    held = HoldAll in holds
+    shape = block.first("shape")
+    bends = shape is not None and getattr(_kind(shape), "BENDS", False)
+    if "elasticity" in found and not bends and (held or not holds) and _stiff(found):
+        given = found["elasticity"][0]
+        found["elasticity"] = [_at(given, given.entry.keyword, Rigid())]
+    elasticity = block.first("elasticity") or next(iter(found.get("elasticity", ())), None)
+    rigid = elasticity is not None and _kind(elasticity) is Rigid
+    left_out = set(SENSELESS) if rigid else set() if held and not bends else {"restitution"}
+    return {word: s for word, s in found.items() if word not in left_out}
+
+
+def _stiff(found: Settings) -> bool:
+    """Whether waves in a material are so fast that it counts as rigid."""
+    elasticity, density = found["elasticity"][0], found.get("density")
+    if _kind(elasticity) is not Young or not density:
+        return False
+    return math.sqrt(elasticity.values[0] / density[0].values[0]) >= STIFF
+
+
+def _kind(s: EvaluatedSetting) -> type:
+    """The class of the record that a setting becomes."""
+    return s.entry.keyword.codec.rows[s.entry.choice]
