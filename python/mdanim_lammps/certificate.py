@@ -12,6 +12,7 @@ is taken exponentially, see `strong_drag`.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import asdict, dataclass
 from fractions import Fraction
 
@@ -23,6 +24,7 @@ from .effects import Context
 from .effects.envelope import Envelope
 from .effects.margin import Margin
 from .errors import Problem, RefusedError, SceneError, Span
+from .model import shapes
 from .scene.formatting import estimate, number, say
 from .scene.scene import Control, SceneRecord
 
@@ -281,13 +283,27 @@ def _margins(envelope: Envelope, limit: np.ndarray) -> list[Margin]:
 
 
 def _notes(envelope: Envelope) -> list[Problem]:
-    """Notes of the effects that are on, and the advice of all features."""
+    """What was done to surfaces of files; notes of the effects that are on, and the advice of all features, where something
+    can move."""
+    mended = list(_mended(envelope))
     if not envelope.reach.moving.any():
-        return []
+        return mended
     return [
+        *mended,
         *(n for e in envelope.on for n in e.notes(envelope)),
         *(n for advice in features.facets("advice") for n in advice.notes(envelope)),
     ]
+
+
+def _mended(envelope: Envelope) -> Iterator[Problem]:
+    """A note for each surface that is not as its file has it."""
+    first = {}
+    for m, solid in enumerate(envelope.scene.solids):
+        first.setdefault(solid.shape, m)
+    for shape, m in first.items():
+        if done := shapes.mended(shape):
+            cause = f"{envelope.system.names[m]}: in {shape.path.name} {done}; it encloses {say(shapes.volume(shape), 'm^3')}"
+            yield Problem(envelope.place(m, "shape"), cause, "look at its picture: mdanim-lammps picture", severity="note")
 
 
 def _bounds(env: Envelope, limit: np.ndarray) -> list[Margin]:

@@ -10,16 +10,7 @@ from mdanim_lammps.model.cells import fill_cells
 from mdanim_lammps.model.orientation import MeshError, outward
 from mdanim_lammps.model.triangles import volume_and_centre
 from mdanim_lammps.scene.scene import Box, Mesh, Sphere
-
-
-def joined(parts) -> tuple[np.ndarray, np.ndarray]:
-    """Boxes and balls (shape, place [m], whether turned inside out) as one surface."""
-    points, triangles = [], []
-    for shape, place, turned in parts:
-        p, t = shapes.surface(shape, 0.5)
-        triangles.append((t[:, ::-1] if turned else t) + sum(map(len, points)))
-        points.append(p + place)
-    return np.concatenate(points), np.concatenate(triangles).astype(np.int32)
+from mesh_samples import joined
 
 
 @pytest.mark.parametrize("turned", list(product((False, True), repeat=3)))
@@ -57,7 +48,7 @@ def test_parts_that_cross_are_refused():
     points, triangles = joined([(Box((1.0,) * 3), (0.5 * k, 0.0, 0.0), False) for k in range(2)])
     with pytest.raises(MeshError, match=r"3[34] % of the inside is enclosed more than once") as caught:
         outward(points, triangles, "boxes")
-    assert "unite its parts" in caught.value.hint
+    assert "write solid in place of mesh" in caught.value.hint
     points, triangles = joined([(Box((1.0,) * 3), (0.999 * k, 0.0, 0.0), False) for k in range(2)])
     outward(points, triangles, "boxes")
 

@@ -20,8 +20,9 @@ from .mesh_formats import UnreadableMesh
 from .mesh_reader import read_polygons
 from .nearest import Nearest, blocks
 from .orientation import MeshError, outward
+from .solid import solid
 from .thickness import thickness
-from .triangles import areas, edges, spots, volume_and_centre
+from .triangles import areas, edges, spots, surface_of, volume_and_centre
 
 SUFFIXES = (".stl", ".obj", ".ply")
 SIZES = 1e-9, 1e9
@@ -41,7 +42,9 @@ class Triangles:
     thickness: float
     """Thickness of the thinnest part, an estimate [m]."""
     color: np.ndarray | None = None
-    """RGB of the points, uint8, shape (V, 3); None where the file has none."""
+    """RGB of the points, uint8, shape (V, 3); None where the file has none, or the surface is made anew."""
+    mended: str = ""
+    """Changes to the surface of the file, in words."""
 
     @property
     def area(self) -> float:
@@ -59,13 +62,17 @@ def load(shape: Mesh) -> Triangles:
     except OSError as error:
         hint = "paths count from the folder of the scene file"
         raise MeshError(f"mesh {path}: {error.strerror}", hint) from None
-    return _load(path, shape.scale, stamp.st_mtime_ns, stamp.st_size)
+    return _load(path, shape.scale, shape.mended, stamp.st_mtime_ns, stamp.st_size)
 
 
 @lru_cache(maxsize=64)
-def _load(path: Path, scale: float, changed: int, size: int) -> Triangles:
+def _load(path: Path, scale: float, mend: bool, changed: int, size: int) -> Triangles:
     points, triangles, color = _read(path)
-    triangles = outward(points, triangles, path.name)
+    read, mended = len(points), ""
+    if mend:
+        points, triangles, mended = solid(points, triangles, path.name)
+    else:
+        triangles = outward(points, triangles, path.name)
     volume, centre = volume_and_centre(points, triangles)
     size = float(np.ptp(points, axis=0).max()) * scale
     if not SIZES[0] <= size <= SIZES[1]:
@@ -75,7 +82,8 @@ def _load(path: Path, scale: float, changed: int, size: int) -> Triangles:
             "'scale' is the length of a unit of the file; is an exponent wrong?",
         )
     points = (points - centre) * scale
-    return Triangles(points, triangles, volume * scale**3, thickness(points, triangles, volume * scale**3), color)
+    color = color if len(points) == read else None
+    return Triangles(points, triangles, volume * scale**3, thickness(points, triangles, volume * scale**3), color, mended)
 
 
 def _read(path: Path) -> tuple[np.ndarray, np.ndarray, np.ndarray | None]:
@@ -90,8 +98,7 @@ def _read(path: Path) -> tuple[np.ndarray, np.ndarray, np.ndarray | None]:
     if len(color):
         surface.point_data["color"] = color
     surface = surface.triangulate().clean(tolerance=1e-7, absolute=False)
-    triangles = np.asarray(surface.faces).reshape(-1, 4)[:, 1:].astype(np.int32)
-    points = np.asarray(surface.points, float)
+    points, triangles = surface_of(surface)
     corners = np.sort(triangles, axis=1)
     triangles = triangles[(corners[:, 0] != corners[:, 1]) & (corners[:, 1] != corners[:, 2])]
     if not len(triangles):
@@ -185,4 +192,5 @@ def refined_surface(mesh: Triangles, size: float) -> tuple[np.ndarray, np.ndarra
         if fine.n_cells == before:
             break
     fine = fine.clean(tolerance=1e-9)
-    return unit * np.asarray(fine.points, float), np.asarray(fine.faces).reshape(-1, 4)[:, 1:].astype(np.int32)
+    points, triangles = surface_of(fine)
+    return unit * points, triangles

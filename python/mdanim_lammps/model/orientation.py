@@ -7,12 +7,15 @@ import numpy as np
 
 from .boxes import box_pairs
 from .crossings import crossings
-from .triangles import edges, volume_and_centre
+from .triangles import edges, surface_of, volume_and_centre
 
 LINES = 64
 """Lines along x and along y that look for what is enclosed twice."""
 CROSSED = 0.01
 """Part of the inside that may be: volume and mass count it twice, and cells leave it out."""
+
+
+CLOSE = "write solid in place of mesh to have all that it encloses"
 
 
 class MeshError(Exception):
@@ -30,17 +33,17 @@ def outward(points: np.ndarray, triangles: np.ndarray, name: str) -> np.ndarray:
     if (uses == 1).any():
         raise MeshError(
             f"mesh {name}: not closed, {np.count_nonzero(uses == 1)} edges belong to one triangle only",
-            "fill its holes in a mesh editor (Blender: Select > Non Manifold, then Fill)",
+            f"{CLOSE}; or fill its holes in a mesh editor (Blender: Select > Non Manifold, then Fill)",
         )
     if (uses > 2).any():
         raise MeshError(
             f"mesh {name}: {np.count_nonzero(uses > 2)} edges belong to more than two triangles",
-            "remove inner faces and doubled triangles in a mesh editor",
+            f"{CLOSE}; or remove inner faces and doubled triangles in a mesh editor",
         )
     if not _consistent(triangles):
         triangles = _reorient(points, triangles)
     if not _consistent(triangles):
-        raise MeshError(f"mesh {name}: has no inside and outside", "a one-sided surface cannot be a solid")
+        raise MeshError(f"mesh {name}: has no inside and outside", f"{CLOSE}; a one-sided surface has no inside")
     triangles = _turned_by_part(points, triangles)
     volume, _ = volume_and_centre(points, triangles)
     if volume <= 1e-9 * np.ptp(points, axis=0).max() ** 3:
@@ -48,7 +51,7 @@ def outward(points: np.ndarray, triangles: np.ndarray, name: str) -> np.ndarray:
     if (twice := _enclosed_twice(points, triangles)) > CROSSED:
         raise MeshError(
             f"mesh {name}: its surface crosses itself, {100 * twice:.0f} % of the inside is enclosed more than once",
-            "unite its parts in a mesh editor (Blender: Boolean > Union, or Remesh), or write an object for each part",
+            f"{CLOSE}; or write an object for each part",
         )
     return triangles
 
@@ -119,4 +122,4 @@ def _reorient(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
     surface = pyvista.PolyData.from_regular_faces(points, triangles).compute_normals(
         consistent_normals=True, auto_orient_normals=True, split_vertices=False, non_manifold_traversal=False
     )
-    return np.asarray(surface.faces).reshape(-1, 4)[:, 1:].astype(np.int32)
+    return surface_of(surface)[1]

@@ -331,6 +331,11 @@ def mass(solid: kinds.Solid) -> float:
     return solid.mass if solid.mass is not None else solid.density * volume(solid.shape)
 
 
+def mended(shape: kinds.Shape) -> str:
+    """Changes to the surface of a file, in words; "" where it is as it was, and of other shapes. Raises mesh.MeshError."""
+    return mesh.load(shape).mended if isinstance(shape, kinds.Mesh) else ""
+
+
 def area(shape: kinds.Shape) -> float:
     """Surface area [m^2] in closed form; of a mesh, the sum of its triangles. Raises mesh.MeshError as `volume` does."""
     return LAWS[type(shape)].area(shape)

@@ -33,6 +33,11 @@ def spots(corners: np.ndarray, first: int = 0) -> np.ndarray:
     return a + u[:, None] * (b - a) + v[:, None] * (c - a)
 
 
+def surface_of(polydata) -> tuple[np.ndarray, np.ndarray]:
+    """Points, float (V, 3), and triangles, int32 (T, 3), of a pyvista.PolyData of triangles."""
+    return np.asarray(polydata.points, float), np.asarray(polydata.faces).reshape(-1, 4)[:, 1:].astype(np.int32)
+
+
 def edges(triangles: np.ndarray) -> np.ndarray:
     """Directed edges, shape (3 T, 2)."""
     return triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)

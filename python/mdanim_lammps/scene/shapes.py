@@ -91,15 +91,27 @@ class Torus:
 
 @dataclass(frozen=True, slots=True)
 class Mesh:
-    """A closed triangle mesh from an STL, OBJ or PLY file; axes as in the file."""
+    """The inside of a closed mesh from an STL, OBJ or PLY file, or all that a surface with gaps encloses; axes as in the file."""
 
-    FORMS: ClassVar = ('mesh <"file"> [scale <s>]',)
+    FORMS: ClassVar = tuple(f'{word} <"file"> [scale <s>]' for word in ("mesh", "solid"))
     ALSO: ClassVar = ("stl", "obj", "ply", "file")
 
     path: Path
     """Absolute path."""
     scale: float = 1.0
     """Metres per unit of the file."""
+    mended: bool = False
+    """Whether it is all that a surface encloses which has gaps, is doubled or crosses itself."""
+
+    @classmethod
+    def read(cls, form: int, values: tuple) -> Mesh:
+        """A mesh or a solid."""
+        path, scale = values
+        return cls(path, 1.0 if scale is None else scale, form == 1)
+
+    def write(self) -> tuple[int, tuple]:
+        """Form and values that are read as this."""
+        return int(self.mended), (self.path, self.scale)
 
 
 @dataclass(frozen=True, slots=True)
