@@ -283,8 +283,8 @@ def _margins(envelope: Envelope, limit: np.ndarray) -> list[Margin]:
 
 
 def _notes(envelope: Envelope) -> list[Problem]:
-    """What was done to surfaces of files; notes of the effects that are on, and the advice of all features, where something
-    can move."""
+    """Changes to surfaces of files; notes of the effects that are on, and the advice of all features, where something can
+    move."""
     mended = list(_mended(envelope))
     if not envelope.reach.moving.any():
         return mended

@@ -109,7 +109,7 @@ class BodyFrame:
     rigid: bool = False
     """Whether it does not deform."""
     dimensions: ClassVar[int] = 3
-    """Those that its particles span: 1 of a line, 2 of a sheet."""
+    """Dimensions that its particles span: 1 of a line, 2 of a sheet."""
     corners: np.ndarray | None = None
     """X of its eight particles, the corners of a box [-], shape (8, 3); None where particles are at the corners of cells."""
 

@@ -26,7 +26,7 @@ def twin(x, mass, push=(0.0, 0.0, 0.0), torque=(0.0, 0.0, 0.0)) -> np.ndarray:
 
 
 def test_forces_are_those_of_the_twin(tmp_path):
-    """Of two objects by their lines of a file; the sums are what was asked for."""
+    """Two objects by their lines of a file; the sums are what was asked for."""
     push, torque = (0.3, -0.2, 0.1), (0.5, 1.5, -0.7)
     (tmp_path / "forces").write_text("1 force 0.3 -0.2 0.1 torque 0.5 1.5 -0.7\n2 torque 0 0 2 # turns\n")
     lmp = lab.load(TWO, tmp_path, [LOOSE, *force(f"forces {tmp_path}/forces"), "run 0"])
