@@ -75,6 +75,7 @@ TouchLaw RigidContact::law_at(const Solid &one, int plane) const
 void RigidContact::touch_pair(const TouchStep &step, SolidPair &pair)
 {
   Solid &a = solids[pair.a], &b = solids[pair.b];
+  forget_parted(pair.touches);
   if (a.aside || b.aside) return;
   const double way = a.stir + b.stir;
   pair.asleep -= way;
@@ -106,8 +107,6 @@ void RigidContact::touch_pair(const TouchStep &step, SolidPair &pair)
 
 void RigidContact::step(double dt)
 {
-  account.energy = 0.0;
-  account.touching = 0;
   for (Solid &one : solids) {
     one.begin_step();
     one.stir =
@@ -116,12 +115,15 @@ void RigidContact::step(double dt)
   const TouchStep step(dt, settings.onset, account);
   for (std::size_t k = 0; k < settings.planes.size(); ++k)
     for (std::size_t n = 0; n < solids.size(); ++n)
-      if (!solids[n].held && !solids[n].aside)
+      if (!solids[n].held && !solids[n].aside) {
+        forget_parted(at_plane[k][n]);
         touch_plane(step, at_plane[k][n], solids[n], settings.planes[k], law_at(solids[n], static_cast<int>(k)));
+      }
   if (settings.objects) {
     near.update(solids, settings.excluded);
     for (SolidPair &pair : near.pairs) touch_pair(step, pair);
   }
+  find_energy();
   for (const Solid &one : solids) {
     account.worst_bound = std::max(account.worst_bound, 0.25 * dt * dt * one.stiffness_sum + 0.5 * dt * one.damping_sum);
     account.most_touching = std::max(account.most_touching, one.touching);
@@ -146,7 +148,7 @@ void RigidContact::find_energy()
   account.energy = 0.0;
   account.touching = 0;
   const auto add = [this](const std::vector<Touch> &touches) {
-    for (const Touch &touch : touches) account.energy += touch.energy, ++account.touching;
+    for (const Touch &touch : touches) account.energy += touch.energy, account.touching += touch.parted == 0.0;
   };
   for (const auto &of_plane : at_plane)
     for (const std::vector<Touch> &touches : of_plane) add(touches);

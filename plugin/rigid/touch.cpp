@@ -25,6 +25,7 @@ Vec3 TouchStep::relative_velocity(const Solid &a, const Solid *b, const Vec3 &x)
 
 void TouchStep::end(Touch &touch, double depth) const
 {
+  account.let_go -= touch.owed;
   account.heat += touch.memory.stick_energy;
   account.damped += last_damping_work(touch.memory, std::min(depth, touch.memory.depth));
 }
@@ -35,7 +36,17 @@ void TouchStep::let_go(Touch &touch, double depth, double part) const
   end(touch, depth);
 }
 
-// Energy over the way from depth a to b, less the mean of the forces at both ends: 0 where the spring is linear.
+// --- the work of contacts ---
+//
+// Leap-frog takes F_n (d_n+1 - d_n-1)/2 from the motion by the force F of a step, d being the depths: summed over steps this is
+// the mean of the forces at both ends of each way, times the way. Of a linear spring it is the energy U. Where a contact begins
+// or ends, and in its onset, U changes by something else, and a force `more` beside that of the spring makes up for it,
+//   sum more_n (d_n+1 - d_n-1)/2 = sum over ways of E,   E = U(d') - U(d) - (d' - d) (U'(d') + U'(d))/2.
+// The deeper end of a way has its E. d_n+1 is where the motion leads to by the force and by all else that acted in the step
+// before; what comes otherwise is owed, and given by the next steps, the last part of it in the step after the bodies have
+// parted.
+
+// E over the way, for a spring of 1.
 static double more_force(double a, double b, double onset)
 {
   constexpr double SMALL = 1e-4;    // way over the onset on which both are the same
@@ -44,29 +55,60 @@ static double more_force(double a, double b, double onset)
   return (at_b.value - at_a.value) / (b - a) - 0.5 * (at_a.slope + at_b.slope);
 }
 
-// A force acts over the mean of the ways before and after it: the way over that mean, where the other one goes on in the same
-// sense.
-static double share_of(double way, double other) { return 2.0 * way / (way + std::max(other, 0.0)); }
+// The force that does this work over the ways before and after a step: none where these nearly cancel each other, and at most as
+// hard as the spring over both.
+static double force_over(double work, double k, double came, double next_way)
+{
+  constexpr double LEAST = 0.5;
+  const double both = std::fabs(came) + std::fabs(next_way), way = came + next_way;
+  if (work == 0.0 || std::fabs(way) <= LEAST * both) return 0.0;
+  return std::clamp(2.0 * work / way, -0.5 * k * both, 0.5 * k * both);
+}
 
-// The force F of a step does the work F (d' - d_)/2, d_ and d' being the depths of the step before and of the next one. Summed
-// over steps this is the mean of the forces at both ends of each way, times the way: too much where a contact begins or ends, and
-// in its onset. The deeper end of a way has the force that is missing or too much. d' is where speed and force lead to.
+// Books the work of the last step's force, now that its way is known. Returns the change of depth by all other forces.
+double TouchStep::follow(Touch &touch, double depth, double k) const
+{
+  if (touch.followed == 0.0) return 0.0;
+  const double last = touch.memory.depth, offset = touch.memory.offset;
+  if (depth < last) touch.owed += k * (depth - last) * more_force(last - offset, depth - offset, onset);
+  touch.owed -= 0.5 * touch.more * (depth - touch.earlier);
+  return (depth - last) - (last - touch.earlier) + dt * dt * touch.yields * touch.press;
+}
+
 ContactForce<double> TouchStep::pressure(Touch &touch, const ContactLaw &law, double part, double depth) const
 {
-  const double before = touch.memory.depth;
+  constexpr int LOOKS = 3;    // each is nearer to the next depth by (dt Omega)^2 and more
+  const double before = touch.memory.depth, k = touch.stiffness * part, pulled = is_first() ? 0.0 : follow(touch, depth, k);
   ContactForce<double> force = contact_pressure<double>(law, 1.0, part, depth, dt, touch.memory);
   if (is_first()) return force;
-  const double now = depth - touch.memory.offset, last = before - touch.memory.offset,
-               next = 2.0 * now - last - dt * dt * touch.yields * force.press;
-  const double k = touch.stiffness * part, came = now - last, goes = now - next;
-  if (came > 0.0) force.press += k * share_of(came, -goes) * more_force(last, now, onset);
-  if (goes > 0.0) force.press += k * share_of(goes, -came) * more_force(now, next, onset);
-  if (force.press < 0.0) {    // a dashpot never pulls
-    touch.memory.damping -= force.press;
-    force.damped -= 0.5 * force.press * (depth - before);
-    force.press = 0.0;
+  const double now = depth - touch.memory.offset, came = depth - before;
+  if (came > 0.0) touch.owed += k * came * more_force(now - came, now, onset);
+  touch.more = 0.0;
+  for (int look = 0; look < LOOKS; ++look) {
+    const double way = came + pulled - dt * dt * touch.yields * (force.press + touch.more);
+    const double goes = way < 0.0 ? k * way * more_force(now, now + way, onset) : 0.0;
+    touch.more = std::max(force_over(touch.owed + goes, k, came, way), -force.press);    // a contact never pulls
   }
+  force.press += touch.more;
+  touch.press = force.press;
+  touch.earlier = before;
+  touch.followed = 1.0;
   return force;
+}
+
+void TouchStep::part(Touch &touch, Solid &a, Solid *b, const Meeting &at) const
+{
+  const double before = touch.memory.depth, depth = std::min(at.depth, before), came = depth - before;
+  const double way = came + follow(touch, depth, touch.stiffness * at.part);
+  touch.parted = 1.0;
+  touch.energy = 0.0;
+  if (depth <= 0.0) {
+    touch.more = force_over(touch.owed, touch.stiffness, came, way);
+    apply(a, b, at.x, touch.more * at.n);
+    touch.energy = -0.5 * touch.more * way;    // for half of the last way
+    touch.owed -= 0.5 * touch.more * (came + way);
+  }
+  end(touch, depth);
 }
 
 void TouchStep::apply(Solid &a, Solid *b, const Vec3 &x, const Vec3 &f) const
@@ -83,11 +125,11 @@ void TouchStep::apply(Solid &a, Solid *b, const Vec3 &x, const Vec3 &f) const
 // dashpots, k eta (n n + 0.5 sqrt(0.8) t t).
 void TouchStep::book(Solid &a, Solid *b, Touch &touch, double part, const ContactForce<double> &force) const
 {
-  touch.energy = part * force.surface_energy + touch.memory.stick_energy;
-  account.energy += touch.energy;
+  // `more` has done a half of its work.
+  touch.energy = part * force.surface_energy + touch.memory.stick_energy - touch.owed +
+                 0.5 * touch.more * (touch.memory.depth - touch.earlier);
   account.heat += force.heat;
   account.damped += force.damped;
-  ++account.touching;
   account.deepest = std::max(account.deepest, touch.memory.depth - touch.memory.offset);
   const auto add_to_sums = [&](Solid &one) {
     const auto along = [&](double stick) {    // sum of lambda n n and `stick` t t
@@ -123,14 +165,13 @@ void TouchStep::press(Touch &touch, const TouchLaw &its_law, Solid &a, Solid *b,
   book(a, b, touch, part, push);
 }
 
-Touch *TouchStep::meet(std::vector<Touch> &list, Touch::TouchKind kind, int number, const TouchLaw &law, const Solid &a,
-                       const Solid *b, const Vec3 &x, const Vec3 &n, double depth, const Vec3 &anchor) const
+Touch *TouchStep::meet(std::vector<Touch> &list, Touch::TouchKind kind, int number, const TouchLaw &law, Solid &a, Solid *b,
+                       const Vec3 &x, const Vec3 &n, double depth, const Vec3 &anchor) const
 {
   const auto found = find_touch(list, kind, number);
   if (depth <= 0.0) {
     if (found == list.end()) return nullptr;
-    end(*found, depth);
-    list.erase(found);
+    this->part(*found, a, b, {x, n, depth, 1.0});
     return nullptr;
   }
   if (found != list.end()) return &*found;

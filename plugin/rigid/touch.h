@@ -24,8 +24,20 @@ struct Touch {
   Vec3 anchor;    // corners: in the host; edges: places along both; moving points: way from the anchor, in the host's frame
   Vec3 place;     // of curves, which may meet at several: in the host. Of an ellipsoid: the normal
   ContactMemory<double> memory;
-  double energy = 0.0;    // now, with that of sticking [J]
+  double earlier = 0.0;    // depth of the step before that of memory [m], where it is `followed`
+  double press = 0.0;      // force of the last step, without friction, and its part `more` [N] (see touch.cpp)
+  double more = 0.0;
+  double owed = 0.0;        // work that `more` has still to do [J]
+  double followed = 0.0;    // 1 from the second step on
+  double parted = 0.0;      // 1 in the step after the bodies have parted, the last one that it is there
+  double energy = 0.0;      // now, with that of sticking [J]
 };
+
+// Takes out contacts of bodies that had parted in the step before.
+inline void forget_parted(std::vector<Touch> &list)
+{
+  list.erase(std::remove_if(list.begin(), list.end(), [](const Touch &one) { return one.parted != 0.0; }), list.end());
+}
 
 // The contact of these features in a list; its end where there is none.
 inline std::vector<Touch>::iterator find_touch(std::vector<Touch> &list, Touch::TouchKind kind, int first, int second = 0)
@@ -79,6 +91,8 @@ class TouchStep {
   // Velocity of the point x of `a` over that of `b`, or of a plane.
   static Vec3 relative_velocity(const Solid &a, const Solid *b, const Vec3 &x);
   void end(Touch &touch, double depth) const;
+  // Ends a contact of bodies that have parted: what is owed is given by a last force. It is taken out before the next step.
+  void part(Touch &touch, Solid &a, Solid *b, const Meeting &at) const;
   // Ends a contact that is still pressed.
   void let_go(Touch &touch, double depth, double part) const;
   // The same of one whose place is not known any more.
@@ -108,8 +122,8 @@ class TouchStep {
              const Vec3 &n) const;
   // The contact of a point of `a` at x, at the depth d below a surface with the outward normal n: found in the list, or begun
   // with this anchor. Null where there is none, or has ended.
-  Touch *meet(std::vector<Touch> &list, Touch::TouchKind kind, int number, const TouchLaw &law, const Solid &a, const Solid *b,
-              const Vec3 &x, const Vec3 &n, double depth, const Vec3 &anchor) const;
+  Touch *meet(std::vector<Touch> &list, Touch::TouchKind kind, int number, const TouchLaw &law, Solid &a, Solid *b, const Vec3 &x,
+              const Vec3 &n, double depth, const Vec3 &anchor) const;
   // Begins a contact: `came` where it came through the surface or over an edge, else it overlaps without a force.
   void begin(Touch &touch, const Solid &a, const Solid *b, const Meeting &at, bool came) const;
   // A contact whose points move over both bodies. `slope` may be null: that of a part that is 1.
@@ -121,6 +135,7 @@ class TouchStep {
 
  private:
   static constexpr double STICK_DAMPING = 0.5;
+  double follow(Touch &touch, double depth, double k) const;
   double dt, onset;
   TouchAccount &account;
 };

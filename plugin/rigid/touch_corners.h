@@ -127,8 +127,7 @@ void touch_corners(const TouchStep &step, std::vector<Touch> &touches, Touch::To
       depth = host.depth(found->side, x);
       part = host.part(found->side, x, slope);
       if (depth <= 0.0 || part <= 0.0) {
-        step.end(*found, depth);
-        touches.erase(found);
+        step.part(*found, a, &b, {b.place(x), b.in_space(host.normal(found->side, x)), depth, part});
         continue;
       }
     }

@@ -193,11 +193,12 @@ void touch_rim(const TouchStep &step, std::vector<Touch> &touches, Touch::TouchK
       touches.push_back(touch);
       found = touches.end() - 1;
     } else if (depth <= 0.0 || part <= 0.0 || cone < AT_END) {
-      if (depth > 0.0 && part > 0.0)
+      if (depth <= 0.0 || part <= 0.0) {
+        step.part(*found, a, &b, at);
+      } else {
         step.let_go(*found, depth, part);
-      else
-        step.end(*found, depth);
-      touches.erase(found);
+        touches.erase(found);
+      }
       continue;
     }
     if (is_between(part)) {
@@ -351,7 +352,7 @@ class CurvePair {
   }
 
  private:
-  // The place of a known contact among those found, which takes it out. Whether it goes on.
+  // The place of a known contact among those found, which takes it out. Whether it stays in the list.
   bool go_on(Touch &known, std::vector<std::optional<CurveCrossing::State>> &found)
   {
     std::optional<CurveCrossing::State> *nearest = nullptr;
@@ -373,10 +374,11 @@ class CurvePair {
       press(known, state);
       return true;
     }
-    if (state.at.depth > 0.0 && state.at.part > 0.0)
-      step.let_go(known, state.at.depth, state.at.part);
-    else
-      step.end(known, state.at.depth);
+    if (state.at.depth <= 0.0 || state.at.part <= 0.0) {
+      step.part(known, one, &other, state.at);
+      return true;
+    }
+    step.let_go(known, state.at.depth, state.at.part);
     return false;
   }
   void begin(const CurveCrossing::State &state)

@@ -214,11 +214,12 @@ void touch_edges(const TouchStep &step, SolidPair &pair, Solid &a, Solid &b, con
       pair.touches.push_back(touch);
       found = pair.touches.end() - 1;
     } else if (at.cone < AT_END || at.depth <= 0.0 || part <= 0.0) {
-      if (at.depth > 0.0 && part > 0.0)
+      if (at.depth <= 0.0 || part <= 0.0) {
+        step.part(*found, a, &b, {x, -1.0 * at.n, at.depth, part});
+      } else {
         step.let_go(*found, at.depth, part);
-      else
-        step.end(*found, at.depth);
-      pair.touches.erase(found);
+        pair.touches.erase(found);
+      }
       continue;
     }
     Touch &touch = *found;

@@ -82,6 +82,26 @@ class TwinTouch:
     """From the anchor to the point."""
     pull: np.ndarray
     at: np.ndarray
+    earlier: float | None = None
+    """Depth a step before the last one; None in the first step."""
+    press: float = 0.0
+    more: float = 0.0
+    """The part of the force beside spring and dashpot, for the work of beginning, onset and end."""
+    owed: float = 0.0
+
+    def look_back(self, now: float, dt: float, work: float) -> float:
+        """Books the last step, whose way ends here; the change of depth by other forces in it."""
+        if self.earlier is None:
+            return 0.0
+        self.owed += work - 0.5 * self.more * (now - self.earlier)
+        return now - 2.0 * self.depth + self.earlier + dt * dt * self.mobility * self.press
+
+    def force_over(self, work: float, came: float, goes: float) -> float:
+        """The force that does this work over both ways."""
+        both = abs(came) + abs(goes)
+        if work == 0.0 or abs(came + goes) <= 0.5 * both:
+            return 0.0
+        return float(np.clip(2.0 * work / (came + goes), -0.5 * self.k * both, 0.5 * self.k * both))
 
 
 class TwinWorld:
@@ -101,16 +121,19 @@ class TwinWorld:
             return depth**3 / (6.0 * self.onset), depth**2 / (2.0 * self.onset)
         return (depth - self.onset / 2.0) ** 2 / 2.0 + self.onset**2 / 24.0, depth - self.onset / 2.0
 
-    def _more(self, a: float, b: float) -> float:
+    def _missing(self, a: float, b: float) -> float:
+        """Energy over the way from depth a to b, less the mean of the forces at both ends times the way."""
         if abs(b - a) < 1e-4 * self.onset or min(a, b) >= self.onset:
             return 0.0
         (ga, sa), (gb, sb) = self.energy_and_force(a), self.energy_and_force(b)
-        return (gb - ga) / (b - a) - 0.5 * (sa + sb)
+        return gb - ga - 0.5 * (b - a) * (sa + sb)
 
     def _touch(self, key, a: TwinBody, b: TwinBody | None, at, n, depth: float, dt: float) -> None:
         touch = self.touches.get(key)
         if depth <= 0.0:
-            self.touches.pop(key, None)
+            if touch is not None:
+                self.touches.pop(key)
+                self._last_push(touch, a, b, at, n, depth)
             return
         way = a.velocity(at) - (b.velocity(at) if b else 0.0)
         mu = np.sqrt(a.mu * b.mu) if b else a.mu
@@ -122,16 +145,18 @@ class TwinWorld:
             touch = TwinTouch(k, eta, mobility, min(0.0, depth + dt * way @ n), np.zeros(3), np.zeros(3), at)
             self.touches[key] = touch
         last, now, k = touch.depth, depth, touch.k
+        others = touch.look_back(now, dt, k * self._missing(last, now) if now < last else 0.0)
         press = k * self.energy_and_force(now)[1]
-        dash = max(touch.eta * (now - last) / dt, -press)
-        following = 2.0 * now - last - dt * dt * touch.mobility * (press + dash)
-        came, goes = now - last, now - following
-        press += dash
-        if came > 0.0:
-            press += k * 2.0 * came / (came + max(-goes, 0.0)) * self._more(last, now)
-        if goes > 0.0:
-            press += k * 2.0 * goes / (goes + max(-came, 0.0)) * self._more(now, following)
-        press = max(press, 0.0)
+        press += max(touch.eta * (now - last) / dt, -press)
+        if now > last:
+            touch.owed += k * self._missing(last, now)
+        more = 0.0
+        for _ in range(3):
+            goes = now - last + others - dt * dt * touch.mobility * (press + more)
+            work = touch.owed + (k * self._missing(now, now + goes) if goes < 0.0 else 0.0)
+            more = max(touch.force_over(work, now - last, goes), -press)
+        press += more
+        touch.earlier, touch.more, touch.press = last, more, press
         touch.depth = now
         force = press * n
         if mu > 0.0:
@@ -148,6 +173,15 @@ class TwinWorld:
         a.push(at, force)
         if b:
             b.push(at, -force)
+
+    def _last_push(self, touch: TwinTouch, a: TwinBody, b: TwinBody | None, at, n, depth: float) -> None:
+        """What is owed when both have parted."""
+        now, last = min(depth, touch.depth), touch.depth
+        others = touch.look_back(now, self.dt, touch.k * self._missing(last, now))
+        push = touch.force_over(touch.owed, now - last, now - last + others)
+        a.push(at, push * n)
+        if b:
+            b.push(at, -push * n)
 
     def _forces(self, dt: float) -> None:
         up = np.array([0.0, 0.0, 1.0])

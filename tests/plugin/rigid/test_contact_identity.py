@@ -86,7 +86,7 @@ def test_what_is_remembered_changes_no_bit(tmp_path, heap):
     """A state that is put drops all that is known of features and bodies near each other: 300 steps with one each time, and 300
     steps on end."""
     with heap(tmp_path) as world:
-        world.run(1500)
+        world.run(1700)
         before = state_lab.pack(world.lmp, "r")
         world.run(300)
         assert world.number("touching") > 8
