@@ -41,6 +41,8 @@ class Triangles:
     """[m^3]"""
     thickness: float
     """Thickness of the thinnest part, an estimate [m]."""
+    centre: np.ndarray
+    """Centre of mass as the file has it [m], shape (3,)."""
     color: np.ndarray | None = None
     """RGB of the points, uint8, shape (V, 3); None where the file has none, or the surface is made anew."""
     mended: str = ""
@@ -83,7 +85,8 @@ def _load(path: Path, scale: float, mend: bool, changed: int, size: int) -> Tria
         )
     points = (points - centre) * scale
     color = color if len(points) == read else None
-    return Triangles(points, triangles, volume * scale**3, thickness(points, triangles, volume * scale**3), color, mended)
+    volume *= scale**3
+    return Triangles(points, triangles, volume, thickness(points, triangles, volume), centre * scale, color, mended)
 
 
 def _read(path: Path) -> tuple[np.ndarray, np.ndarray, np.ndarray | None]:
