@@ -30,7 +30,7 @@ def solid_angles(points, triangles, places) -> np.ndarray:
 
 
 def test_winding_number_is_the_solid_angle():
-    """Of a ball with a third of its triangles, at all nodes more than two cells from them."""
+    """A ball with a third of its triangles, at all nodes more than two cells from them."""
     points, triangles = ball()
     open_ = triangles[points[triangles].mean(axis=1)[:, 2] < -0.3]
     size = np.array([40, 41, 42])

@@ -135,7 +135,7 @@ def test_mistakes(text, line, column, words, hint):
 
 
 def test_a_problem_in_a_material_names_its_use():
-    """What is wrong for an object alone is told at the material, with the place that uses it."""
+    """A fault for an object alone is told at the material, with the place that uses it."""
     text = f"material u {{ density 3 kg/m^3 elasticity rigid }}\nobject a {{ material u {AT} damping 0.3 }}\n"
     (problem,) = problems(text)
     assert "a is rigid" in problem.message

@@ -52,7 +52,7 @@ def fill(v: Any) -> None:
 
 
 def _record(block: EvaluatedBlock, word: str) -> Any:
-    """What a setting becomes; None where it is absent or wrong, which is told later."""
+    """The record that a setting becomes; None where it is absent or wrong, which is told later."""
     given = block.first(word)
     try:
         return None if given is None else WORDS[word].codec.read(WORDS[word], given.entry.choice, given.values)
