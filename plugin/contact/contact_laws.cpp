@@ -8,7 +8,7 @@
 namespace mdanim {
 
 static constexpr double ALONE = 2.0;     // stiffness where only the dense points of one body act, over that of points of both
-static constexpr double LINE = 0.2;      // the same of a line of particles, of which each bears all that it meets
+static constexpr double LINE = 0.2;      // the same of a line or a sheet of particles, of which each bears all that it meets
 static constexpr double ONSET = 0.05;    // eps over the spacing
 
 static ContactLaw law_of(const ContactObject &owner, double density, double kappa, double friction, double damping)
@@ -21,9 +21,11 @@ ContactLaw ContactSettings::law_of_pair(const ContactObject &owner, const Contac
 {
   const bool ascend = owner.id < host.id;
   const ContactObject &lower = ascend ? owner : host, &higher = ascend ? host : owner;    // so that both laws have the same bits
-  const double h = std::max(lower.body->spacing(), higher.body->spacing());
-  const bool line = lower.body->is_line() || higher.body->is_line();
-  const double part = line ? LINE : lower.body->is_cuboid() == higher.body->is_cuboid() ? 1.0 : ALONE;
+  // A line or a sheet gives way as its own links do, however coarse the body is that it lies on.
+  const ContactBody *const bare =
+      lower.body->is_line() ? lower.body.get() : higher.body->is_line() ? higher.body.get() : nullptr;
+  const double h = bare ? bare->spacing() : std::max(lower.body->spacing(), higher.body->spacing());
+  const double part = bare ? LINE : lower.body->is_cuboid() == higher.body->is_cuboid() ? 1.0 : ALONE;
   const double kappa = part * stiffness * 2.0 * lower.young * higher.young / (lower.young + higher.young) / h;
   double mu = std::sqrt(lower.friction * higher.friction), beta = mu > 0.0 ? damping : 0.0;
   if (const auto own = pairs.find({lower.id, higher.id}); own != pairs.end())

@@ -13,6 +13,7 @@ from mdanim_lammps.scene.scene import (
     Mesh,
     Rope,
     SceneRecord,
+    Sheet,
     Solid,
     Sphere,
     Torus,
@@ -33,6 +34,8 @@ SHAPES = [
 """One of each that a lattice fills."""
 ROPE = Rope((0.0, 0.0, 0.0), (1.0, 0.0, 0.0), 0.1, 1.0)
 """A line."""
+SHEET = Sheet((1.0, 0.8), 0.01)
+"""A layer."""
 
 
 def shape_id(shape) -> str:

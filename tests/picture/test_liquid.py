@@ -10,7 +10,7 @@ import pytest
 from mdanim_lammps.model.grid import Grid
 from mdanim_lammps.picture import tank
 from mdanim_lammps.picture.camera import action_of
-from mdanim_lammps.picture.liquid import Blocks, Drops, Sheet, droplets, overhang, without_puddles
+from mdanim_lammps.picture.liquid import Blocks, Drops, LiquidSheet, droplets, overhang, without_puddles
 from mdanim_lammps.picture.render import Painter
 from mdanim_lammps.results.trajectory import Trajectory
 from mdanim_lammps.scene.render import Camera, Render
@@ -54,7 +54,7 @@ def area_sum(points, triangle):
 def test_sheet_holds_the_volume(heights):
     """Below the sheet is the volume of the columns."""
     height = heights(GRID) + GRID.low[2]
-    sheet = Sheet(GRID)
+    sheet = LiquidSheet(GRID)
     points, _ = sheet.mesh(height)
     expected = (height - GRID.low[2]).sum() * GRID.cell[0] * GRID.cell[1]
     # Bilinear patches hold it exactly; two triangles differ by the twist, which cancels but for this.
@@ -62,7 +62,7 @@ def test_sheet_holds_the_volume(heights):
 
 
 @pytest.mark.parametrize("heights", [dam, splash])
-@pytest.mark.parametrize("form", [Sheet, Blocks])
+@pytest.mark.parametrize("form", [LiquidSheet, Blocks])
 def test_mesh_is_closed_but_for_its_bottom(form, heights):
     """Walls leave no gap, and every face looks outwards: area vectors add up to the open bottom's."""
     mesh = form(GRID)
@@ -71,7 +71,7 @@ def test_mesh_is_closed_but_for_its_bottom(form, heights):
     np.testing.assert_allclose(area_sum(points, mesh.triangle), [0.0, 0.0, 2.0 * 1.4], rtol=0, atol=1e-12)
 
 
-@pytest.mark.parametrize("form", [Sheet, Blocks])
+@pytest.mark.parametrize("form", [LiquidSheet, Blocks])
 def test_normals_look_out_of_the_faces(form):
     """A vertex's normal has unit length and is on the outer side of its triangles, for drawing by side."""
     mesh = form(GRID)
@@ -84,13 +84,13 @@ def test_normals_look_out_of_the_faces(form):
     assert real.sum() > 500
     cosine = np.einsum("td,td->t", face[real] / size[real, None], normals[mesh.triangle[real, 0]])
     # Walls and blocks are flat; of the sheet neighbouring slopes differ.
-    assert cosine.min() > (0.8 if form is Sheet else 1 - 1e-9)
+    assert cosine.min() > (0.8 if form is LiquidSheet else 1 - 1e-9)
 
 
 def test_slope_turns_the_normals():
     """On a slope that rises along x and falls along y normals lean against the rise, out to the edges."""
     x, y = column_centres(GRID)
-    _, normals = Sheet(GRID).mesh(0.7 + 0.5 * x - 0.25 * y)
+    _, normals = LiquidSheet(GRID).mesh(0.7 + 0.5 * x - 0.25 * y)
     inner = normals[: 22 * 16].reshape(16, 22, 3)[2:-2, 2:-2]
     expected = np.array([-0.5, 0.25, 1.0]) / np.linalg.norm([-0.5, 0.25, 1.0])
     np.testing.assert_allclose(inner, np.broadcast_to(expected, inner.shape), atol=1e-12)
@@ -98,7 +98,7 @@ def test_slope_turns_the_normals():
 
 def test_sheet_reaches_the_edges_and_its_rim_runs_there():
     """The sheet ends at the basin's walls, and so does the bright line on the glass, all around."""
-    sheet = Sheet(GRID)
+    sheet = LiquidSheet(GRID)
     height = splash(GRID, centre=(0.4, 0.2))
     points, _ = sheet.mesh(height)
     ends = [points.min(axis=0)[:2], points.max(axis=0)[:2]]
@@ -185,7 +185,7 @@ def test_what_falls_off_a_solid_passes_in_front_of_it():
     np.testing.assert_allclose(aside[crest], np.broadcast_to([0.055, 0.0], (14, 2)))
     assert not aside[~crest].any() and not overhang(GRID, np.full_like(height, 0.6), block).any()
     assert not overhang(GRID, height, block[:0]).any()
-    sheet = Sheet(GRID)
+    sheet = LiquidSheet(GRID)
     points, _ = sheet.mesh(height)
     before = points.copy()
     sheet.move_aside(points, aside)

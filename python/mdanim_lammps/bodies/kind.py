@@ -9,7 +9,7 @@ from typing import Any
 
 from .. import features
 from ..features import facets
-from ..scene.scene import SceneRecord, Solid
+from ..scene.scene import Box, SceneRecord, Solid
 from ..scene.shapes import holds_all
 
 
@@ -81,6 +81,17 @@ def unguided(scene: SceneRecord) -> set[int]:
     """Numbers of those of `driven` that no fix tells the places of (reach.Motion.guides)."""
     effects = (effect.of(scene) for effect in features.effects())
     return {m for effect in effects if not effect.guides for m in effect.drives(scene)}
+
+
+BENEATH = 8
+"""Cells across what bears lines or sheets of particles and does not have the shape of a cuboid, at least: the depth below its
+surface is then true to a thousandth of its thickness (tests/model/test_depth_beneath.py)."""
+
+
+def beneath(scene: SceneRecord, solid: Solid) -> int:
+    """Cells across an object that does not deform that lines and sheets of particles ask for; 0 where there are none, and of a
+    cuboid, whose depth is exact."""
+    return BENEATH if not isinstance(solid.shape, Box) and any(not kind_of(s).fills for s in scene.solids) else 0
 
 
 def all_held(solid: Solid) -> bool:

@@ -22,7 +22,7 @@ gravity (0, 0, -9.81) m/s^2          # leave it out, and nothing falls
 ground z 0 m                         # a floor; objects also touch each other, walls and the basin of a liquid
 
 object cube {{
-  shape       box (20, 20, 20) cm    # or sphere, ellipsoid, cylinder, cone, torus, rope, mesh "file.stl"
+  shape       box (20, 20, 20) cm    # or sphere, ellipsoid, cylinder, cone, torus, rope, sheet, mesh "file.stl"
   position    (0 m, 0 m, h)          # of its centre
   orientation axis (0, 1, 0) angle 40 deg
   density     1000 kg/m^3            # or mass 8 kg

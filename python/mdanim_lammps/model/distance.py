@@ -8,7 +8,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from ..scene.scene import Cone, Cylinder, Ellipsoid, Mesh, Rope, Shape, Sphere, Torus
+from ..scene.scene import Cone, Cylinder, Ellipsoid, Mesh, Rope, Shape, Sheet, Sphere, Torus
 from . import mesh, mesh_distance, shapes
 from .nearest import blocks
 from .segments import to_segments
@@ -52,6 +52,13 @@ def _(shape: Torus, points):
 @distance.register
 def _(shape: Rope, points):
     return shapes.depth(shape, points)  # of one that hangs through, to straight parts of its curve
+
+
+@distance.register
+def _(shape: Sheet, points):
+    half = 0.5 * np.array(shape.plate.size)
+    out = np.abs(points) - half
+    return -np.where((out > 0.0).any(axis=1), np.linalg.norm(np.maximum(out, 0.0), axis=1), out.max(axis=1))
 
 
 @distance.register

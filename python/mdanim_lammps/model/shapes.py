@@ -67,6 +67,30 @@ class _Box:
         return _Box.area(s) / h**2
 
 
+def _of_plate(formula):
+    return staticmethod(lambda s, *more: formula(s.plate, *more))
+
+
+class _Sheet:
+    """A cuboid of its thickness."""
+
+    rolls, end = False, "flat"
+    volume, area, moments = _of_plate(_Box.volume), _of_plate(_Box.area), _of_plate(_Box.moments)
+    extent, depth, radius = _of_plate(_Box.extent), _of_plate(_Box.depth), _of_plate(_Box.radius)
+
+    @staticmethod
+    def thickness(s):
+        return s.thickness
+
+    @staticmethod
+    def surface(s, size):
+        raise TypeError("the surface of a sheet is that of its particles")
+
+    @staticmethod
+    def vertices(s, h):
+        return 2.0 * s.size[0] * s.size[1] / h**2
+
+
 class _Ellipsoid:
     rolls, end = True, "pointed"
 
@@ -305,6 +329,7 @@ LAWS: dict[type, Any] = {
     kinds.Torus: _Torus,
     kinds.Mesh: _Mesh,
     kinds.Rope: RopeLaw,
+    kinds.Sheet: _Sheet,
 }
 FORMULAS = ("volume", "area", "thickness", "moments", "extent", "depth", "surface", "radius", "vertices", "rolls", "end")
 """Formulas that each has. ``rolls``: whether it rolls down a slope before it slides; ``end``: the part with which it may land

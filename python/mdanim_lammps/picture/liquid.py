@@ -11,7 +11,7 @@ import numpy as np
 from ..model.grid import Grid
 
 
-class Sheet:
+class LiquidSheet:
     """The surface over the column centres, drawn out to the basin's edges, and its walls down to the floor.
 
     V vertices: (nx + 2)(ny + 2) of the surface, then top and bottom of each wall. T triangles,

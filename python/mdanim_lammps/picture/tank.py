@@ -12,7 +12,7 @@ from . import shading
 from .behind import Behind
 from .foam import Foam
 from .hulls import FINER, dry_spots
-from .liquid import Blocks, Drops, Sheet, droplets, kept_dry, overhang, undersides, without_puddles
+from .liquid import Blocks, Drops, LiquidSheet, droplets, kept_dry, overhang, undersides, without_puddles
 from .palette import LIQUID, rgb
 from .pieces import Lookup, MovingLine, MovingMesh, box_edges, lit_actor, plane
 from .ponds import Ponds, parted
@@ -45,7 +45,7 @@ class Tank:
         self._trajectory, self._look = trajectory, look
         self._low, self._high = np.array(pool.low), np.array(pool.high)
         self._color = rgb(pool.color or LIQUID)
-        self._form = Sheet(pool.grid) if look == "smooth" else Blocks(pool.grid)
+        self._form = LiquidSheet(pool.grid) if look == "smooth" else Blocks(pool.grid)
         self._heights = Lookup(*pool.shape[:2], smooth=look == "smooth")
         vertices = self._form.mesh(np.full(pool.shape[1::-1], pool.low[2]))[0]
         self._mesh = MovingMesh(len(vertices), self._form.triangle)

@@ -65,7 +65,7 @@ def _slot(text: str) -> Slot:
         return Slot("choice", shown, choices=tuple(shown.split("|")))
     if shown in KINDS:
         return Slot(KINDS[shown], shown)
-    return Slot("number", shown, u, dim=dim, other=other)
+    return Slot("number", shown, u, dim=dim, anywhere=anywhere, other=other)
 
 
 @cache

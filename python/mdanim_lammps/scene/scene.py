@@ -30,6 +30,7 @@ from .shapes import (  # noqa: F401
     Mesh,
     Rope,
     Shape,
+    Sheet,
     Side,
     Sphere,
     SpringConstant,

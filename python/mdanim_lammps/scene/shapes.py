@@ -192,12 +192,48 @@ class Rope:
         )
 
 
+@dataclass(frozen=True, slots=True)
+class Sheet:
+    """A flat sheet in the xy plane."""
+
+    FORMS: ClassVar = ("sheet <(lx, ly):m> thickness <t:m> [bending <@f>]",)
+    ALSO: ClassVar = ("cloth", "sail", "flag", "membrane", "foil", "fabric", "towel")
+
+    size: tuple[float, float]
+    """Edge lengths [m]."""
+    thickness: float
+    """[m]"""
+    bending: float = 1.0
+    """Flexural rigidity over that of a plate of this thickness."""
+
+    @classmethod
+    def read(cls, form: int, values: tuple) -> Sheet:
+        """Raises ValueError(message, hint, number of the value)."""
+        size, thickness, bending = values
+        if bending is not None and bending < 0.0:
+            raise ValueError(f"bending must be 0 or more, found {number(bending, 6)}", "write bending 0 for what bends freely", 2)
+        if min(size) < 2.0 * thickness:
+            wide, thick = number(min(size), 6), number(thickness, 6)
+            cause = f"the sheet is less than twice as wide as it is thick: {wide} m, {thick} m thick"
+            raise ValueError(cause, "write a smaller thickness, or shape box (lx, ly, lz) for a body so thick", 0)
+        return cls(tuple(size), thickness, 1.0 if bending is None else bending)
+
+    @property
+    def plate(self) -> Box:
+        """The cuboid that it is."""
+        return Box((*self.size, self.thickness))
+
+    def write(self) -> tuple[int, tuple]:
+        """Form and values that are read as this."""
+        return 0, (self.size, self.thickness, None if self.bending == 1.0 else self.bending)
+
+
 MOST_STRETCHED = 1.5
 """Distance of the ends of a rope over its length, at most."""
 LEAST_SPAN = 0.01
 """Horizontal distance of the ends of a rope that hangs through, over its length, at least."""
 
-Shape = Box | Sphere | Ellipsoid | Cylinder | Cone | Torus | Mesh | Rope
+Shape = Box | Sphere | Ellipsoid | Cylinder | Cone | Torus | Mesh | Rope | Sheet
 
 
 # --- what is held, elasticity ---------------------------------------------------------------------------------

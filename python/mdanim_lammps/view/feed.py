@@ -28,7 +28,7 @@ from ..features.liquid.kept import DROPS, HEIGHT, RAW
 from ..picture.camera import FIELD_OF_VIEW, Action, CameraPath, action_of, automatic_view
 from ..picture.floor import grid_spacing
 from ..picture.foam import Foam
-from ..picture.liquid import Sheet, without_puddles
+from ..picture.liquid import LiquidSheet, without_puddles
 from ..picture.palette import LIQUID, background_colors, is_dark, object_colors, rgb, vertex_colors
 from ..picture.ponds import one_sheet
 from ..picture.rays import direction
@@ -164,7 +164,7 @@ class Feed:
         if self.metadata.skin.painted.any():
             found["tint"] = vertex_colors(self.metadata)[self._of_skin].ravel()
         if self.scenery.liquid:
-            sheet = Sheet(self.scenery.liquid.grid)
+            sheet = LiquidSheet(self.scenery.liquid.grid)
             found |= {"sheet": sheet.triangle.astype("<u4"), "rim": sheet.rim.astype("<u4")}
         return found
 

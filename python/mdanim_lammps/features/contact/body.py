@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from ...bodies import BodyKind, all_held, only_features
+from ...bodies import BodyKind, all_held, beneath, only_features
 from ...model import shapes
 from ...model.build import lattice_model
 from ...model.held import held_model
@@ -24,9 +24,10 @@ class HeldBody(BodyKind):
         return not only_features(scene)
 
     def spacing(self, scene, h):
-        """As the scene, where something reads its surface."""
+        """As the scene, where something reads its surface, and fine enough for what lies on it."""
         if not only_features(scene):
-            return lambda solid: h
+            bare = any(beneath(scene, solid) for solid in scene.solids)
+            return lambda solid: min(h, shapes.thickness(solid.shape) / max(1, beneath(scene, solid))) if bare else h
         return lambda solid: min(h, shapes.thickness(solid.shape) / 2)
 
     def particles(self, scene, solid, lattice, h):

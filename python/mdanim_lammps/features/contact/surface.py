@@ -38,9 +38,9 @@ ALONE = 2.0
 """kappa where only the dense points of one act, over that where both have points."""
 LINE = 0.2
 """The same of a line or a sheet of particles, of which each bears all that it meets."""
-RESOLVED = 60.0
-"""How many times its share counts in the bound: in a blow all of its energy goes through its contact, which is then resolved to
-1e-3 (a rope that falls flat on a floor, bench/ropes.py)."""
+RESOLVED = {1: 60.0, 2: 15.0}
+"""How many times the share of a line and of a sheet counts in the bound: in a blow all of its energy goes through its contact,
+which is then resolved to 1e-3 (a rope and a sheet that fall flat on a floor, bench/ropes.py, bench/sheets.py)."""
 SLOW = 0.3
 """Closing speed over the wave speed up to which a short barrier stops all that meets."""
 SLOW_NEEDLE = 0.1
@@ -228,14 +228,15 @@ class SurfaceContact(ObjectContact):
         area = own + borne
         if dense.any() and not dense.all():
             area = np.maximum(area, ALONE * np.where(dense[system.object], own, borne))
-        area = np.where(system.bare[system.object], RESOLVED * LINE * own, area)
-        surface = 2.0 * kappa * _of_bodies(context, area / system.mass, 2.0)
+        load = pressed_by_points(system, kappa, borne)
+        area = np.where(system.bare[system.object], resolved(system)[system.object] * own, area)
+        surface = 2.0 * kappa * _of_bodies(context, area / system.mass, 2.0) + 2.0 * load / system.mass
         return surface + barrier_rate(context, self.barrier_stiffness(context), self.longest_reach(context))
 
     def own_rate(self, context):
         system = context.system
         kappa = self.stiffness(context)[system.object]
-        share = np.where(system.bare, RESOLVED * LINE, 1.0)[system.object]
+        share = resolved(system)[system.object]
         return 2.0 * kappa * share * _of_bodies(context, own_area(system) / system.mass)
 
     def drag_rate(self, context):
@@ -347,7 +348,7 @@ class SurfacePlanes(Planes):
     def stiffness(self, context: Context) -> np.ndarray:
         """kappa of the surface of each solid against a plane, which has no points of its own [N/m^3], shape (M,)."""
         system = context.system
-        share = np.where(are_dense(system), np.where(system.bare, 2.0 * RESOLVED * LINE, ALONE), 1.0)
+        share = np.where(are_dense(system), np.where(system.bare, 2.0 * resolved(system), ALONE), 1.0)
         for own, _ in settled(context, planes=True):
             share = np.where(own, 0.0, share)
         return surface_stiffness(context, moduli(context), share)
@@ -421,6 +422,11 @@ def are_boxed(system: System) -> np.ndarray:
     return np.array([frame.corners is not None for frame in system.frames])[system.contact_kind]
 
 
+def resolved(system: System) -> np.ndarray:
+    """LINE times RESOLVED of lines and sheets of particles, 1 of all others, shape (M,)."""
+    return np.array([LINE * RESOLVED[frame.dimensions] if frame.bare else 1.0 for frame in system.frames])[system.contact_kind]
+
+
 def shortest_edge(system: System) -> np.ndarray:
     """Shortest edge of the cells of each solid [m], shape (M,)."""
     return np.array([frame.cells.edge.min() for frame in system.frames])[system.contact_kind]
@@ -436,6 +442,20 @@ def borne_area(system: System) -> np.ndarray:
     are behind it."""
     area = np.where(system.bare, 0.0, np.cbrt(system.cell_volume) ** 2)
     return area[system.object] * np.minimum(1.0, 2.0 * system.share)
+
+
+def pressed_by_points(system: System, kappa: np.ndarray, borne: np.ndarray) -> np.ndarray:
+    """Stiffness [N/m] with which points of lines and sheets of particles may press on each particle of what deforms, shape (N,):
+    of one point, or of all on the area that the particle bears [m^2], shape (N,). ``kappa`` of each particle [N/m^3], shape (N,).
+
+    They give way by their own links, whatever the cells that they lie on."""
+    bare = system.bare
+    if not bare.any():
+        return np.zeros(1)
+    point = (kappa * own_area(system))[bare[system.object]].max()
+    area = float((system.spacing[bare] ** 2).min())
+    deforms = ~bare & ~system.rigid & ~system.held_whole
+    return np.where(deforms[system.object], LINE * point * np.maximum(1.0, borne / area), 0.0)
 
 
 def fast(context: Context) -> np.ndarray:

@@ -6,7 +6,7 @@ from __future__ import annotations
 from functools import lru_cache
 
 from ...picture.drawn import Drawn, Medium
-from ...picture.liquid import Sheet
+from ...picture.liquid import LiquidSheet
 from ...picture.palette import LIQUID, rgb
 
 
@@ -14,7 +14,7 @@ def drawn(trajectory):
     """The sheet."""
     if (pool := trajectory.liquid) is None:
         return ()
-    sheet = Sheet(pool.grid)
+    sheet = LiquidSheet(pool.grid)
 
     @lru_cache(maxsize=1)
     def mesh(frame):

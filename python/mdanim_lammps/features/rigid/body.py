@@ -6,7 +6,7 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
-from ...bodies import BodyKind, all_held, kind_of, unguided
+from ...bodies import BodyKind, all_held, beneath, kind_of, unguided
 from ...model import shapes
 from ...model.build import lattice_model, single_cell_model
 from ...model.cells import fill_cells
@@ -46,7 +46,8 @@ class RigidBody(BodyKind):
         something soft, whose forces find the body at its particles and at points as far apart as these."""
         soft = any(is_soft(s) and not is_line(s) for s in scene.solids)
         finest = h if scene.liquid is not None or soft else math.inf
-        return lambda solid: min(finest, shapes.thickness(solid.shape) / _across(solid))
+        across = lambda s: max(_across(s), beneath(scene, s) if isinstance(s.shape, Sphere) else 0)
+        return lambda solid: min(finest, shapes.thickness(solid.shape) / across(solid))
 
     def has_spacing(self, scene):
         return not by_features(scene)

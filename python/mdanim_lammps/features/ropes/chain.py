@@ -10,12 +10,11 @@ import numpy as np
 
 from ...model.contact_body import BodyFrame, ContactBody
 from ...model.lattice import Cells
+from ...model.rods import Rod, springs_of
 from ...model.rope import section
 from ...scene.curve import Curve
 from ...scene.scene import Rope
 
-SOFT = 1.0 / 16.0
-"""Constant of a spring over two links, over E A/h: so soft that its push hardly changes where the rope is bent."""
 NEWTON = 30
 """Steps at most."""
 EXACT = 1e-13
@@ -76,22 +75,9 @@ def springs(rope: Rope, young: float, links: int) -> tuple[np.ndarray, np.ndarra
     A section crosses one link and two springs over two links, at its ends one, which together bear E A. Each of the latter pushes
     with P = 2 E I/h^2, so that a bend by an angle theta has the energy (E I/h) theta^2/2, and the links hold them.
     """
-    h, area = rope.length / links, section(rope)
-    i = np.arange(links)
-    link = np.stack([i, i + 1], axis=1)
-    stiff = np.full(links, young * area / h)
-    if not rope.bends:
-        return link.astype(np.int32), np.stack([stiff, np.full(links, h), np.full(links, h)], axis=1)
-    inertia = math.pi * rope.thickness**4 / 64.0
-    k2, push = SOFT * young * area / h, 2.0 * young * inertia / h**2
-    crossed = np.minimum(1, i) + np.minimum(1, links - 1 - i)  # springs over two links beside each link
-    k1 = stiff - 2.0 * k2 * crossed
-    two = np.stack([i[:-1], i[:-1] + 2], axis=1)
-    of_link = np.stack([k1, h - push * crossed / k1, np.full(links, h)], axis=1)
-    of_two = np.tile([k2, 2.0 * h + push / k2, 2.0 * h], (links - 1, 1))
-    pair, value = np.concatenate([link, two]), np.concatenate([of_link, of_two])
-    order = np.lexsort((pair[:, 1], pair[:, 0]))
-    return pair[order].astype(np.int32), value[order]
+    line = Rod(np.arange(links + 1), np.full(links, rope.length / links), np.ones(links), np.ones(links - 1))
+    inertia = math.pi * rope.thickness**4 / 64.0 if rope.bends else 0.0
+    return springs_of([line], young * section(rope), young * inertia)
 
 
 class LineFrame(BodyFrame):

@@ -1,0 +1,55 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Remarks of ``check`` on sheets: what they pass through."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...effects.envelope import Envelope
+from ...errors import Problem
+from ...model import shapes
+from ...scene.formatting import say
+from .words import finest, is_sheet
+
+FINE = 0.5
+"""Spacing of a sheet over the thinnest part of what it may meet, above which that may slip through between particles."""
+
+
+def notes(envelope: Envelope) -> list[Problem]:
+    """Remarks on a scene in which something can move."""
+    sheets = np.flatnonzero([is_sheet(solid) for solid in envelope.scene.solids])
+    moving = sheets[~envelope.system.held_whole[sheets]]
+    if not len(moving):
+        return []
+    touches = any(effect.touches for effect in envelope.on)
+    return [*_themselves(envelope, moving), *(_coarse(envelope, sheets) if touches else [])]
+
+
+def _themselves(envelope: Envelope, sheets: np.ndarray) -> list[Problem]:
+    """A sheet touches neither itself nor another one, nor a rope."""
+    system, first = envelope.system, int(sheets[0])
+    others = [system.names[m] for m in np.flatnonzero(system.bare).tolist() if m != first]
+    more = f" and {len(others) - 1} more" if len(others) > 1 else ""
+    nor = f", nor {others[0]}{more}" if others else ""
+    cause = f"{system.names[first]} does not touch itself{nor}: folds of it pass through each other"
+    way_out = "let it lie on or hang from what is not a sheet or a rope, so that it does not fold"
+    return [Problem(envelope.place(first, "shape"), cause, way_out, severity="note")]
+
+
+def _coarse(envelope: Envelope, sheets: np.ndarray) -> list[Problem]:
+    """The coarsest sheet, beside the thinnest object that it may meet."""
+    system, solids = envelope.system, envelope.scene.solids
+    others = np.flatnonzero(~system.bare)
+    if not len(others):
+        return []
+    thin = np.array([shapes.thickness(solids[m].shape) for m in others.tolist()])
+    thinnest, coarsest = int(others[thin.argmin()]), int(sheets[system.spacing[sheets].argmax()])
+    h, least = float(system.spacing[coarsest]), float(thin.min())
+    if h <= FINE * least:
+        return []
+    sheet, name = solids[coarsest].shape, system.names[coarsest]
+    fine = max(finest(sheet), FINE * least)
+    thing = system.names[thinnest]
+    cause = f"particles of {name} are {say(h, 'm')} apart and {thing} is {say(least, 'm')} thin: it may slip through between them"
+    way_out = f"write resolution {say(fine, 'm')} in {name}" if fine < h else f"make {thing} thicker"
+    return [Problem(envelope.place(coarsest, "resolution", "shape"), cause, way_out, severity="note")]

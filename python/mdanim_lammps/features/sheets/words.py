@@ -1,0 +1,71 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Words of a scene that belong to this feature: what a sheet cannot have."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+from ...scene.formatting import number, say
+from ...scene.shapes import HoldFaces, Sheet, Young
+
+SWITCHES: dict[str, str] = {}
+
+
+def is_sheet(solid: Any) -> bool:
+    """Whether an object is a layer of particles."""
+    return isinstance(solid.shape, Sheet)
+
+
+def finest(sheet: Sheet) -> float:
+    """Least spacing of its particles [m]: of finer ones, springs that hold those which resist bending would have no length."""
+    return sheet.thickness * math.sqrt(max(1.0, sheet.bending))
+
+
+def check_object(v: Any, block: Any, solid: Any) -> Any:
+    """Settings that make no sense in a sheet."""
+    if not is_sheet(solid):
+        return solid
+    spans, sheet = solid.spans, solid.shape
+    if not isinstance(solid.elasticity, Young):
+        cause = f"{solid.name} is a sheet: its springs follow from Young's modulus and its thickness"
+        v.problem(
+            spans["elasticity"], cause, "write elasticity 1 MPa, or whatever its material has, or shape box for a rigid plate"
+        )
+    if any(side.value[1] == "z" for hold in solid.hold if isinstance(hold, HoldFaces) for side in hold.sides):
+        cause = f"{solid.name} is a sheet in its xy plane, and its faces along z are all of it"
+        v.problem(spans["hold"], cause, "write hold face -x, +x, -y or +y, hold all, or a box")
+    if solid.restitution is not None:
+        cause = f"{solid.name} is a sheet: restitution is of rigid and held objects"
+        v.problem(spans["restitution"], cause, "leave it out; damping takes energy of its springs")
+    least, most = finest(sheet), 0.5 * min(sheet.size)
+    if solid.resolution is not None and not least * (1.0 - 1e-9) <= solid.resolution <= most:
+        cause = (
+            f"particles of {solid.name} are at least {say(least, 'm', 6)} apart and there are two spacings or more across: "
+            f"found {number(solid.resolution, 6)} m"
+        )
+        way_out = f"write resolution {say(least, 'm', 6)} or more, up to {say(most, 'm', 6)}, or leave it out"
+        v.problem(spans["resolution"], cause, way_out)
+    elif least > most:
+        cause = f"{solid.name} with bending {number(sheet.bending, 6)} is too stiff for its size"
+        v.problem(
+            spans["shape"], cause, f"write bending {number((most / sheet.thickness) ** 2, 2)} or less, or a larger elasticity"
+        )
+    return solid
+
+
+def check(v: Any, top: Mapping, held: Mapping) -> None:
+    """Parts of a scene that know objects by their cells, which a sheet does not have."""
+    control = held["control"]
+    for sheet in [s for s in held["solids"] if is_sheet(s)][:1]:
+        at = sheet.spans.get("shape")
+        if held.get("liquid") is not None:
+            cause = f"{sheet.name} is a sheet, and a liquid finds objects by their cells, which a sheet does not have"
+            v.problem(at, cause, "take the liquid out, or write shape box for what is to float", key="sheet-liquid")
+        if control is not None and control.contact_model.value == "paper" and len(held["solids"]) > 1:
+            cause = f"{sheet.name} is a sheet, which touches others with its surface alone"
+            v.problem(at, cause, "take contact-model paper out of control", key="sheet-paper")
+
+
+CHECKS = {"object": check_object}

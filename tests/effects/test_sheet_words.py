@@ -1,0 +1,113 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Words of sheets: what is read, what is refused with its place, what `check` remarks, and the lock."""
+
+import re
+
+import numpy as np
+import pytest
+from mdanim_lammps.errors import SceneError
+from mdanim_lammps.model.spacing import plan_spacing
+from mdanim_lammps.run.prepare import prepare
+from mdanim_lammps.scene.lock import lock_text
+from mdanim_lammps.scene.parse import parse_scene
+from mdanim_lammps.scene.scene import Sheet
+
+CLOTH = """object cloth {{
+  shape {shape}
+  position (0, 0, 1) m
+  density 300
+  elasticity 1 MPa
+  {more}
+}}
+control {{ time 1 s }}
+"""
+USUAL = "sheet (1, 0.8) m thickness 2 mm"
+BOX = "object box { shape box (20, 20, 20) cm  position (0, 0, 0.1) m  density 500  elasticity 1 MPa }\n"
+
+
+def cloth(shape: str = USUAL, more: str = "") -> str:
+    return CLOTH.format(shape=shape, more=more)
+
+
+def problem(text: str):
+    with pytest.raises(SceneError) as error:
+        prepare(parse_scene(text))
+    return error.value.problems[0]
+
+
+@pytest.mark.parametrize(
+    ("shape", "record"),
+    [
+        (USUAL, Sheet((1.0, 0.8), 0.002)),
+        (USUAL + " bending 0", Sheet((1.0, 0.8), 0.002, 0.0)),
+        (USUAL + " bending 2.5", Sheet((1.0, 0.8), 0.002, 2.5)),
+    ],
+)
+def test_it_is_read_and_written_back(shape, record):
+    """Size, thickness and what scales bending."""
+    scene = parse_scene(cloth(shape, "hold face -x  hold faces y"))
+    assert scene.solids[0].shape == record
+    assert parse_scene(lock_text(scene)) == scene
+
+
+REFUSED = {
+    "too thick": (
+        cloth("sheet (1, 0.8) m thickness 50 cm"),
+        "less than twice as wide as it is thick",
+        "write a smaller thickness",
+    ),
+    "negative": (cloth("sheet (1, 0.8) m thickness -1 mm"), "must be > 0", ""),
+    "no width": (cloth("sheet (1, 0) m thickness 1 mm"), "must be > 0", ""),
+    "bending": (cloth(USUAL + " bending -1"), "bending must be 0 or more, found -1", "write bending 0"),
+    "too stiff": (cloth(USUAL + " bending 1e5"), "too stiff for its size", "write bending 40000 or less"),
+    "rigid": (cloth().replace("1 MPa", "rigid"), "its springs follow from Young's modulus", "shape box for a rigid plate"),
+    "one k": (cloth().replace("1 MPa", "spring 10 N/m"), "its springs follow from Young's modulus", "write elasticity 1 MPa"),
+    "faces": (cloth(more="hold faces z"), "its faces along z are all of it", "write hold face -x, +x, -y or +y"),
+    "ends": (cloth(more="hold ends"), "cloth is not a rope", "write hold faces x"),
+    "no particle": (cloth(more="hold within box (5, 5, 5) m to (6, 6, 6) m"), "catches no particle", "hold face -x holds a side"),
+    "restitution": (cloth(more="restitution 0.5"), "restitution is of rigid and held objects", "leave it out"),
+    "too fine": (cloth(more="resolution 1 mm"), "at least 2 mm apart", "write resolution 2 mm or more, up to 40 cm"),
+    "too coarse": (cloth(more="resolution 1 m"), "two spacings or more across", "write resolution 2 mm or more, up to 40 cm"),
+    "paper": (
+        cloth().replace("time 1 s", "time 1 s contact-model paper") + BOX,
+        "touches others with its surface",
+        "take contact-model",
+    ),
+    "liquid": (
+        "gravity (0, 0, -9.81)\nliquid sea { basin from (-1, -1, 0) m to (2, 1, 2) m density 1000 level 0.5 m }\n" + cloth(),
+        "a liquid finds objects by their cells",
+        "take the liquid out",
+    ),
+    "in a box": (BOX + cloth().replace("(0, 0, 1)", "(0, 0, 0.1)"), "cloth starts inside box", "move it"),
+}
+
+
+@pytest.mark.parametrize("name", REFUSED)
+def test_what_does_not_fit_is_refused_with_its_place(name):
+    """Cause and way out."""
+    text, cause, way_out = REFUSED[name]
+    found = problem(text)
+    assert found.span is not None and re.search(cause, found.message) and way_out in found.hint, (found.message, found.hint)
+
+
+def notes(text: str) -> list[str]:
+    return [p.message for p in prepare(parse_scene("gravity (0, 0, -9.81)\n" + text)).certificate.notes]
+
+
+def test_check_says_what_a_sheet_passes_through():
+    """Itself, other sheets and ropes, and what is thinner than two spacings."""
+    (alone,) = notes(cloth())
+    assert alone == "cloth does not touch itself: folds of it pass through each other"
+    rope = "object line { shape rope from (0, 0, 2) m to (1, 0, 2) m thickness 1 cm density 1000 elasticity 1 MPa }\n"
+    assert any("cloth does not touch itself, nor line" in said for said in notes(rope + cloth()))
+    thin = BOX.replace("(20, 20, 20)", "(20, 20, 2)")
+    assert any("box is 2 cm thin: it may slip through between them" in said for said in notes(thin + cloth()))
+    assert not any("slip through" in said for said in notes(thin + cloth(more="resolution 1 cm")))
+    assert not any("does not touch itself" in said for said in notes(BOX + cloth(more="hold all")))
+
+
+def test_its_spacing_is_its_own():
+    """It does not make other objects finer; its particles are no closer than it is thick."""
+    alone, beside = (plan_spacing(parse_scene(text)).of for text in (BOX + "control { time 1 s }", BOX + cloth()))
+    assert beside[0] == alone[0] and beside[1] == pytest.approx(np.sqrt(0.8 / 1200))
+    assert plan_spacing(parse_scene(cloth("sheet (1, 0.8) m thickness 10 cm"))).of == pytest.approx([0.1])

@@ -1,0 +1,68 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Sheets in runs: against closed forms, their energy, and what they lie on; tests/lab/sheet_cases.py has the scenes."""
+
+import numpy as np
+import pytest
+import sheet_cases
+from mdanim_lammps.engine.instance import Instance
+from mdanim_lammps.run.energy import energies
+from rope_cases import DOWN, made
+
+SHORT = ("stretch by its weight, hangs from +y", "cloth over a held table")
+
+
+def check(name: str) -> None:
+    case, most = sheet_cases.CASES[name]
+    found, expected = case()
+    assert found == pytest.approx(expected, rel=most, abs=0.0 if expected else most)
+
+
+@pytest.mark.parametrize("name", SHORT)
+def test_closed_forms(name):
+    """One way each."""
+    check(name)
+
+
+@pytest.mark.soak
+@pytest.mark.parametrize("name", [name for name in sheet_cases.CASES if name not in SHORT])
+def test_all_closed_forms(name):
+    """All, as bench/sheets.py prints them."""
+    check(name)
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.3])
+def test_a_fall_keeps_energy(friction):
+    """Flat on the ground from 0.5 m: a thousandth."""
+    assert abs(sheet_cases.fall(friction)) < 1e-3
+
+
+def test_a_sheet_that_flies_keeps_momentum_and_energy():
+    """Bent, spun and loose: its centre of mass goes straight on."""
+    text = sheet_cases.sheet("(0.4, 0.3)", "2 mm", "elasticity 500 kPa  velocity (1, 0, 0) m/s  spin (0, 3, 9) rad/s")
+    ready = made(text, 0.3)
+    with Instance(ready.plan) as instance:
+        instance.setup()
+        begin = energies(instance, ready.system.center_of_mass(instance.array("x")))
+        instance.run(round(0.3 / ready.certificate.timestep))
+        x = instance.array("x").copy()
+        end = energies(instance, ready.system.center_of_mass(x))
+    centre = ready.system.center_of_mass(x)[0]
+    assert centre == pytest.approx((0.3, 0.0, 0.0), abs=1e-4)
+    assert sum(end.values()) == pytest.approx(sum(begin.values()), rel=1e-5)
+
+
+@pytest.mark.parametrize("joint", ["ball", "weld"])
+def test_a_weight_hangs_from_a_corner(joint):
+    """A joint at a corner holds a box there."""
+    more = "position (0, 0, 1) m  elasticity 100 kPa  damping 0.2  hold face -x  resolution 5 cm"
+    text = DOWN + sheet_cases.sheet("(0.4, 0.3)", "5 mm", more)
+    text += "object box { shape box (10, 10, 10) cm  position (0.2, 0.15, 0.92) m  mass 100 g  elasticity rigid }\n"
+    ready = made(f"{text}joint {joint} cloth box {{ at (0.2, 0.15, 1) m }}\n", 0.1)
+    with Instance(ready.plan) as instance:
+        instance.setup()
+        instance.run(round(0.1 / ready.certificate.timestep))
+        x = instance.array("x").copy()
+    middle = x[ready.system.first[1] :].mean(axis=0)
+    corner = x[ready.models[0].frame.woven.sides["+x"][-1]]
+    assert np.linalg.norm(corner - middle) == pytest.approx(0.08, rel=0.02)
+    assert 0.02 < 0.92 - middle[2] < 0.06
