@@ -22,8 +22,7 @@ ContactLaw ContactSettings::law_of_pair(const ContactObject &owner, const Contac
   const bool ascend = owner.id < host.id;
   const ContactObject &lower = ascend ? owner : host, &higher = ascend ? host : owner;    // so that both laws have the same bits
   // A line or a sheet gives way as its own links do, however coarse the body is that it lies on.
-  const ContactBody *const bare =
-      lower.body->is_line() ? lower.body.get() : higher.body->is_line() ? higher.body.get() : nullptr;
+  const ContactBody *const bare = lower.body->is_line() ? lower.body.get() : higher.body->is_line() ? higher.body.get() : nullptr;
   const double h = bare ? bare->spacing() : std::max(lower.body->spacing(), higher.body->spacing());
   const double part = bare ? LINE : lower.body->is_cuboid() == higher.body->is_cuboid() ? 1.0 : ALONE;
   const double kappa = part * stiffness * 2.0 * lower.young * higher.young / (lower.young + higher.young) / h;
