@@ -48,7 +48,7 @@ ROOMS = [
 ]
 
 
-LANGUAGE = {"curve", "formatting", "forms", "limits", "naming", "rotation", "schema", "shapes", "units"}
+LANGUAGE = {"curve", "formatting", "forms", "in_time", "limits", "naming", "rotation", "schema", "shapes", "units"}
 """Modules of scene/ that know no word of a scene: words of features are written with them."""
 
 
@@ -139,7 +139,7 @@ FOLDERS = [
     *("numbers", "simd", "threads", "geometry", "records"),  # plain floors
     # effects; passes know those before them
     *("springs", "leapfrog", "gravity", "buoyancy", "barrier", "passes", "wall", "contact", "rigid", "joints", "drives"),
-    "forces",
+    *("forces", "air"),
     *("liquid", "liquid/automaton", "liquid/waves"),
     *("lammps", "c_api"),
 ]

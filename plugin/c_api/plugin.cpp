@@ -6,6 +6,7 @@
 #include "lammps/bond_mdanim_harmonic.h"
 #include "lammps/checked_verlet.h"
 #include "lammps/compute_mdanim_timestep.h"
+#include "lammps/fix_mdanim_air.h"
 #include "lammps/fix_mdanim_barrier.h"
 #include "lammps/fix_mdanim_contact.h"
 #include "lammps/fix_mdanim_drive.h"
@@ -126,6 +127,7 @@ MDANIM_EXPORT void lammpsplugin_init(void *handle_of_lammps, void *handle, void 
       style<FixMdanimLeapfrog>("fix", "mdanim/leapfrog", "leap-frog with friction"),
       style<FixMdanimGravity>("fix", "mdanim/gravity", "m g on every particle"),
       style<FixMdanimJoint>("fix", "mdanim/joint", "joints between objects"),
+      style<FixMdanimAir>("fix", "mdanim/air", "air pushes at surfaces"),
       style<FixMdanimBarrier>("fix", "mdanim/barrier", "a barrier between objects"),
       style<FixMdanimContact>("fix", "mdanim/contact", "objects and planes touch, with friction"),
       style<FixMdanimDrive>("fix", "mdanim/drive", "what is held goes where functions of time say"),

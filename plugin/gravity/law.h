@@ -1,38 +1,11 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// An acceleration that changes with time.
+// The work of an acceleration that changes with time.
 
 #pragma once
 
 #include "numbers/vec3.h"
 
-#include <algorithm>
-#include <cstddef>
-#include <vector>
-
 namespace mdanim {
-
-// Straight from point to point,
-//   g(t) = g_k + (g_{k+1} - g_k) (t - t_k) / (t_{k+1} - t_k),   t_k <= t < t_{k+1},
-// the first value before the first point, the last one behind the last point. Times ascend.
-class AccelerationPath {
- public:
-  void append(double time, const Vec3 &g) { times.push_back(time), values.push_back(g); }
-  bool empty() const { return times.empty(); }
-  double last_time() const { return times.back(); }
-
-  Vec3 at(double t) const
-  {
-    const std::size_t k = std::upper_bound(times.begin(), times.end(), t) - times.begin();    // points up to t
-    if (k == 0) return values.front();
-    if (k == times.size()) return values.back();
-    const double part = (t - times[k - 1]) / (times[k] - times[k - 1]);
-    return values[k - 1] + part * (values[k] - values[k - 1]);
-  }
-
- private:
-  std::vector<double> times;
-  std::vector<Vec3> values;
-};
 
 // Work that an acceleration does on masses with the momentum P = sum of m v, from step to step:
 //   W = sum_n dt (g_n + g_{n+1})/2 . P^{n+1/2},

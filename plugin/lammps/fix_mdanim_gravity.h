@@ -6,6 +6,7 @@
 #include "gravity/law.h"
 #include "lammps/fix_base.h"
 #include "numbers/vec3.h"
+#include "numbers/vector_path.h"
 #include "passes/pass_participant.h"
 
 namespace LAMMPS_NS {
@@ -34,7 +35,7 @@ class FixMdanimGravity : public mdanim::FixBase, public mdanim::PassGravity {
   mdanim::Vec3 momentum() const;    // of the particles here that it pulls at
 
   mdanim::Vec3 g;
-  mdanim::AccelerationPath path;    // empty where g stays
+  mdanim::VectorPath path;          // empty where g stays
   mdanim::AccelerationWork work;    // of what is here, counted where there is a path
 };
 

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from mdanim_lammps import Scene, SceneError, Trajectory
 from mdanim_lammps.features.gravity.effect import GRAVITY_WORK
-from mdanim_lammps.features.gravity.words import MOST_POINTS, acceleration_at
 from mdanim_lammps.results.compare import compare
+from mdanim_lammps.scene.in_time import MOST_POINTS, vector_at
 from mdanim_lammps.scene.lock import lock_text
 from mdanim_lammps.scene.parse import parse_scene
 from plugin_path import lmp
@@ -75,7 +75,7 @@ def test_flight_and_work(tmp_path):
 def test_path_at_any_time():
     """Straight between points, and as at the ends beyond them."""
     for t in (-1.0, 0.0, 0.03, 0.1, 0.2, 0.3, 7.0):
-        np.testing.assert_allclose(acceleration_at(PATH, t), acceleration(np.array([t]))[0], rtol=1e-15, atol=1e-15)
+        np.testing.assert_allclose(vector_at(PATH, t), acceleration(np.array([t]))[0], rtol=1e-15, atol=1e-15)
 
 
 @pytest.fixture(scope="module")

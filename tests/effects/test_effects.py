@@ -50,6 +50,7 @@ object c {
   drive velocity (0.1, 0, 0)
 }
 joint spring a b { }
+air { }
 """
 EVERY = with_every_effect(FULL)
 """The same with the words of all further effects, whose lines are those where they stand."""
@@ -69,6 +70,7 @@ LINES = {
     "rigid": 16,
     "drives": 30,
     "joint": 32,
+    "air": 33,
 }
 
 

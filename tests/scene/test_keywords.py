@@ -33,6 +33,8 @@ def scene(block: str, **settings: str):
     kind = next((kind for word in settings for kind in TAKES.get(word, ())), "hinge")
     if block == "joint" or "joint." in settings.get("expect", ""):
         blocks |= {"joint": {"axis": "(0, 1, 0)"} if kind in TAKES["axis"] else {}, "floor": dict(BALL)}
+    if block == "air" or "air." in settings.get("expect", ""):
+        blocks |= {"air": {}}
     if block == "contact" or any(settings.get(word, "0") != "0" for word in OF_SURFACES):
         blocks["control"]["contact-model"] = "surface"
     if "restitution" in settings:  # of rigid objects

@@ -253,6 +253,14 @@ class Acting:
         return found
 
     @cached_property
+    def thrown_by(self) -> np.ndarray:
+        """Acceleration that what pushes single solids gives to each [m/s^2], shape (M,)."""
+        found = np.zeros(len(self.scene.solids))
+        for m, throw in self.throws.items():
+            found[m] = throw.acceleration
+        return found
+
+    @cached_property
     def acted_on(self) -> np.ndarray:
         """Solids that are `joined`, or that are pushed wherever they are, bool, shape (M,)."""
         found = self.joined.copy()

@@ -179,7 +179,7 @@ class _Movers:
             waves = np.where(np.isfinite(self.wave), self.wave, 0.0)
             self.speed = np.where(acting.joined, np.maximum(self.speed, waves), self.speed)
         self.driven_at = acting.driven_at
-        self.thrown = np.array([acting.throws[m].acceleration if m in acting.throws else 0.0 for m in range(len(solids))])
+        self.thrown = acting.thrown_by
 
     def size(self, speed: np.ndarray) -> np.ndarray:
         """Radius of a body when this speed [m/s] is converted into deformation [m], shape (M,)."""

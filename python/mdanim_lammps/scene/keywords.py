@@ -96,7 +96,6 @@ NOT_SUPPORTED = {
     "thrust": "write force (0.2, 0, 0) N from 1 s to 2 s in the object",
     "impulse": "write force (20, 0, 0) N from 1 s to 1.01 s in the object, or give it a velocity at the start",
     "addforce": "write force (0.2, 0, 0) N from 1 s to 2 s in the object",
-    "wind": "air is at rest; an object feels it by its drag",
     "plasticity": "solids are elastic",
     "fracture": "solids do not break",
     "temperature": "there is no heat in the model",

@@ -7,7 +7,7 @@ import numpy as np
 
 from ...effects.context import Verdict
 from ...effects.effect import Effect
-from .words import acceleration_at
+from ...scene.in_time import vector_at
 
 
 class Gravity(Effect):
@@ -73,12 +73,12 @@ class ChangingGravity(Gravity):
     def accelerations(self, scene):
         end = scene.control.time
         points = [g for t, g in scene.gravity_path if 0.0 < t < end]
-        points += [acceleration_at(scene.gravity_path, t) for t in (0.0, end)]
+        points += [vector_at(scene.gravity_path, t) for t in (0.0, end)]
         return np.min(points, axis=0), np.max(points, axis=0)
 
     def swing(self, scene):
         times = np.array([0.0, *(t for t, _ in scene.gravity_path if 0.0 < t < scene.control.time), scene.control.time])
-        g = np.array([acceleration_at(scene.gravity_path, t) for t in times])
+        g = np.array([vector_at(scene.gravity_path, t) for t in times])
         g[:, 2] = np.maximum(g[:, 2], 0.0)  # falls are counted by their heights
         gained = np.cumsum(0.5 * (g[1:] + g[:-1]) * np.diff(times)[:, None], axis=0)
         return float(np.linalg.norm(np.ptp(np.concatenate([np.zeros((1, 3)), gained]), axis=0)))

@@ -22,12 +22,14 @@ def loads(context: Context, links: Links) -> list[tuple[float, float]]:
     The objects that hang together are nodes, joints the springs of a net, all alike; what never moves is its ground. The weights
     flow to the ground along them: in a tree each joint bears what hangs on it, in a net they share. Where nothing holds the
     objects, half of all their weight is taken for each joint. The most is LOAD times the weights, and the forces that keep
-    objects on their way at the start, m v^2/r, or drive the heavier one of a joint about as fast as motors turn, m w^2 r.
+    objects on their way at the start, m v^2/r, or drive the heavier one of a joint about as fast as motors turn, m w^2 r. What
+    pushes objects from outside, as air does, counts like a weight.
     """
     if not links.all:
         return []
     system, g = context.reach.system, context.reach.g
     mass, moving = system.mass_of, _accelerations(context, links)
+    pushed = context.reach.acting.thrown_by
     ground = np.logical_or.reduceat(system.held, system.first[:-1])
     ends = [[m for m in (link.first, link.second) if m != NOTHING and not ground[m]] for link in links.all]
     rest, most = np.zeros(len(links.all)), np.zeros(len(links.all))
@@ -40,7 +42,7 @@ def loads(context: Context, links: Links) -> list[tuple[float, float]]:
         else:  # both are held in a part, and deform
             rest[n] = most[n] = mass[[m for m in (links.all[n].first, links.all[n].second) if m != NOTHING]].sum() * g
     for part, numbers in zip(groups, own):
-        weights = np.stack([mass[part] * g, mass[part] * (LOAD * g + moving[part])])
+        weights = np.stack([mass[part] * (g + pushed[part]), mass[part] * (LOAD * g + pushed[part] + moving[part])])
         if any(len(ends[n]) == 1 for n in numbers):
             rest[numbers], most[numbers] = _flow(part, [ends[n] for n in numbers], weights)
         else:

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: GPL-2.0-only
+
+#include "air/skin.h"
+
+#include <algorithm>
+
+namespace mdanim {
+
+void AirSkin::append_point(const Weights &weights)
+{
+  for (const auto &[particle, part] : weights) {
+    node.push_back(particle);
+    weight.push_back(part);
+  }
+  first.push_back(node.size());
+}
+
+void AirSkin::finish()
+{
+  needed = node;
+  std::sort(needed.begin(), needed.end());
+  needed.erase(std::unique(needed.begin(), needed.end()), needed.end());
+  for (int &one : node) one = static_cast<int>(std::lower_bound(needed.begin(), needed.end(), one) - needed.begin());
+}
+
+std::size_t AirSkin::bytes() const
+{
+  return first.capacity() * sizeof(std::size_t) + (node.capacity() + needed.capacity()) * sizeof(int) +
+         weight.capacity() * sizeof(double) + triangles.capacity() * sizeof(triangles[0]) +
+         cylinders.capacity() * sizeof(Cylinder) + balls.capacity() * sizeof(Ball) + panels.capacity() * sizeof(Panel);
+}
+
+void AirSkin::find_points(AirScratch &with) const
+{
+  with.place.assign(points(), {});
+  with.velocity.assign(points(), {});
+  for (int p = 0; p < points(); ++p)
+    for (std::size_t k = first[p]; k < first[p + 1]; ++k) {
+      with.place[p] += weight[k] * with.x[node[k]];
+      with.velocity[p] += weight[k] * with.v[node[k]];
+    }
+}
+
+Vec3 AirSkin::area_of(const Points &t, const AirScratch &with)
+{
+  const Vec3 &a = with.place[t[0]], &b = with.place[t[1]], &c = with.place[t[2]];
+  return 0.5 * cross(b - a, c - a);
+}
+
+AirSkin::Areas AirSkin::areas_of_frame(const AirScratch &with) const
+{
+  if (!has_frame()) return {};
+  const Vec3 &from = with.place[frame[0]];
+  const Vec3 x = with.place[frame[1]] - from, y = with.place[frame[2]] - from, z = with.place[frame[3]] - from;
+  return {cross(y, z), cross(z, x), cross(x, y)};
+}
+
+// Part of the surface of each point.
+void AirSkin::find_areas(const Areas &areas, AirScratch &with) const
+{
+  with.area.assign(points(), 0.0);
+  for (const Points &t : triangles) {
+    const double third = length(area_of(t, with)) / 3.0;
+    for (const int p : t) with.area[p] += third;
+  }
+  for (const Cylinder &one : cylinders) {
+    const double half = 0.5 * one.diameter * length(with.place[one.to] - with.place[one.from]);
+    with.area[one.from] += half;
+    with.area[one.to] += half;
+  }
+  for (const Ball &one : balls) with.area[one.at] += AirLaw::face_of_ball(one.diameter);
+  for (const Panel &one : panels) with.area[one.at] += length(areas.of(one.part));
+}
+
+// Largest area over mass of the nodes of each point, where a node carries the areas of its points by its weights.
+void AirSkin::find_loads(AirScratch &with) const
+{
+  std::vector<double> &of_node = with.load_of_node;
+  of_node.assign(needed.size(), 0.0);
+  for (int p = 0; p < points(); ++p)
+    for (std::size_t k = first[p]; k < first[p + 1]; ++k) of_node[node[k]] += std::fabs(weight[k]) * with.area[p];
+  for (std::size_t n = 0; n < needed.size(); ++n) of_node[n] /= with.mass[n];
+  with.load.assign(points(), 0.0);
+  for (int p = 0; p < points(); ++p)
+    for (std::size_t k = first[p]; k < first[p + 1]; ++k) with.load[p] = std::max(with.load[p], of_node[node[k]]);
+}
+
+template <class Push> void AirSkin::each_force(const AirLaw &law, double above, const AirScratch &with, const Push &push) const
+{
+  const std::vector<Vec3> &x = with.place, &v = with.velocity;
+  const std::vector<double> &load = with.load;
+  for (const Points &t : triangles) {
+    const auto [a, b, c] = t;
+    if ((x[a].z + x[b].z + x[c].z) / 3.0 < above) continue;
+    const Vec3 velocity = (1.0 / 3.0) * (v[a] + v[b] + v[c]);
+    push(law.on_surface(area_of(t, with), velocity, sides, std::max({load[a], load[b], load[c]})), t, 1.0 / 3.0);
+  }
+  for (const Cylinder &one : cylinders) {
+    const std::array<int, 2> ends = {one.from, one.to};
+    if (0.5 * (x[one.from].z + x[one.to].z) < above) continue;
+    const Vec3 velocity = 0.5 * (v[one.from] + v[one.to]);
+    push(law.on_cylinder(x[one.to] - x[one.from], one.diameter, velocity, std::max(load[one.from], load[one.to])), ends, 0.5);
+  }
+  for (const Ball &one : balls)
+    if (x[one.at].z >= above) push(law.on_ball(one.diameter, v[one.at], load[one.at]), std::array<int, 1>{one.at}, 1.0);
+  const Areas areas = areas_of_frame(with);
+  for (const Panel &one : panels)
+    if (x[one.at].z >= above)
+      push(law.on_surface(areas.of(one.part), v[one.at], sides, load[one.at]), std::array<int, 1>{one.at}, 1.0);
+}
+
+Vec3 AirSkin::push(const AirLaw &law, double above, AirScratch &with) const
+{
+  find_points(with);
+  find_areas(areas_of_frame(with), with);
+  find_loads(with);
+  with.push.assign(points(), {});
+  with.force.assign(needed.size(), {});
+  Vec3 sum;
+  each_force(law, above, with, [&](const Vec3 &force, const auto &at, double part) {
+    sum += force;
+    for (const int p : at) with.push[p] += part * force;
+  });
+  for (int p = 0; p < points(); ++p)
+    for (std::size_t k = first[p]; k < first[p + 1]; ++k) with.force[node[k]] += weight[k] * with.push[p];
+  return sum;
+}
+
+}    // namespace mdanim

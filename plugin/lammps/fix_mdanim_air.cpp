@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// fix mdanim/air: from particles to points of surfaces, and from their forces to those on particles.
+
+#include "lammps/fix_mdanim_air.h"
+
+#include "lammps/keywords.h"
+#include "lammps/object_table.h"
+#include "lammps/particle_value.h"
+#include "lammps/shared_file.h"
+#include "numbers/stopwatch.h"
+
+#include "atom.h"
+#include "error.h"
+#include "fmt/format.h"
+#include "force.h"
+#include "update.h"
+#include "utils.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <stdexcept>
+
+using namespace LAMMPS_NS;
+using namespace FixConst;
+using namespace mdanim;
+
+static const char *const STYLE = "fix mdanim/air";
+static constexpr int COLUMNS = 3;    // of compute_array()
+
+// fix ID group mdanim/air DENSITY C [wind wx wy wz] [path T wx wy wz T wx wy wz ...] [above z] skins FILE
+FixMdanimAir::FixMdanimAir(LAMMPS *lmp, int narg, char **arg) : FixBase(lmp, narg, arg), above(-HUGE_VAL), shared(lmp)
+{
+  array_flag = 1;
+  size_array_cols = COLUMNS;
+  extarray = 0;
+  need(THREE_DIMENSIONS | OPEN_BOX | OBJECTS | ATOM_MAP);
+  if (!atom->molecule_flag) error->all(FLERR, "{}: {}", STYLE, NO_OBJECTS);
+  tell({{"work", true, [this] { return sum(work); }}, {"air_loss", true, [this] { return taken(); }}, clock()});
+
+  need_words(lmp, STYLE, "fix ID group mdanim/air", "DENSITY C", narg - 3);
+  density = positive(lmp, STYLE, "DENSITY", 3, arg);
+  coefficient = positive(lmp, STYLE, "C", 4, arg);
+  const auto number = [this, arg](int at) { return utils::numeric(FLERR, arg[at], false, this->lmp); };
+  std::map<int, std::shared_ptr<const AirSkin>> skins;
+  const std::vector<Keyword> known = {{"wind", "wx wy wz", "",
+                                       [&](int at, char **) {
+                                         path = VectorPath();
+                                         path.append(0.0, {number(at + 1), number(at + 2), number(at + 3)});
+                                       }},
+                                      {"above", "z", "", [&](int at, char **) { above = number(at + 1); }},
+                                      {"skins", "FILE", "", [&](int at, char **words) {
+                                         try {
+                                           skins = read_skins(words[at + 1],
+                                                              read_shared_file(this->lmp, STYLE, "skins", words[at + 1]));
+                                         } catch (const std::runtime_error &wrong) {
+                                           error->all(FLERR, "{}: {}", STYLE, wrong.what());
+                                         }
+                                       }}};
+  for (int iarg = 5; iarg < narg;) {
+    if (strcmp(arg[iarg], "path") == 0)
+      read_path(narg, arg, iarg);
+    else
+      iarg += take_keyword(lmp, STYLE, known, iarg, narg, arg);
+  }
+  if (path.empty()) path.append(0.0, {});
+  if (skins.empty()) error->all(FLERR, "{}: there is no surface to push at; write skins FILE with a line object first", STYLE);
+  for (auto &[molecule, skin] : skins) objects.push_back({molecule, std::move(skin), {}, 0, true, {}});
+  size_array_rows = static_cast<int>(objects.size());
+}
+
+// Points of a path: a time and a velocity each.
+void FixMdanimAir::read_path(int narg, char **arg, int &iarg)
+{
+  path = VectorPath();
+  const auto is_number = [](const char *word) { return utils::is_double(word); };
+  for (++iarg; iarg < narg && is_number(arg[iarg]); iarg += 4) {
+    if (iarg + 4 > narg || !std::all_of(arg + iarg, arg + iarg + 4, is_number))
+      error->all(FLERR, iarg, "{}: each point of a path is T wx wy wz", STYLE);
+    double value[4];
+    for (int k = 0; k < 4; ++k) value[k] = utils::numeric(FLERR, arg[iarg + k], false, lmp);
+    if (!path.empty() && !(value[0] > path.last_time()))
+      error->all(FLERR, iarg, "{}: times of a path ascend, got {} behind {}", STYLE, value[0], path.last_time());
+    path.append(value[0], {value[1], value[2], value[3]});
+  }
+  if (path.empty()) error->all(FLERR, iarg - 1, "{}: a path has a point, T wx wy wz", STYLE);
+}
+
+int FixMdanimAir::setmask() { return PRE_NEIGHBOR | POST_INTEGRATE | POST_FORCE; }
+
+void FixMdanimAir::init()
+{
+  FixBase::init();
+  find_objects();
+}
+
+// --- particles ---
+
+// Tags and masses of nodes. Objects may have changed since the last run.
+void FixMdanimAir::find_objects()
+{
+  const auto object_of = [this](int i) {
+    const auto found = std::lower_bound(objects.begin(), objects.end(), atom->molecule[i],
+                                        [](const AirObject &one, tagint id) { return one.molecule < id; });
+    return found != objects.end() && found->molecule == atom->molecule[i] ? static_cast<int>(found - objects.begin()) : -1;
+  };
+  std::vector<tagint> lowest(objects.size(), MAXTAGINT);
+  for (int i = 0; i < atom->nlocal; ++i)
+    if (const int n = object_of(i); n >= 0) lowest[n] = std::min(lowest[n], atom->tag[i]);
+  MPI_Allreduce(MPI_IN_PLACE, lowest.data(), static_cast<int>(lowest.size()), MPI_LMP_TAGINT, MPI_MIN, world);
+
+  std::size_t all = 0;
+  for (AirObject &one : objects) {
+    one.first = all;
+    all += one.skin->nodes().size();
+  }
+  std::vector<double> mass(all, 0.0);    // each of one rank, so that sums are the numbers themselves
+  for (int i = 0; i < atom->nlocal; ++i) {
+    const int n = object_of(i);
+    if (n < 0) continue;
+    const std::vector<int> &nodes = objects[n].skin->nodes();
+    const auto found = std::lower_bound(nodes.begin(), nodes.end(), atom->tag[i] - lowest[n]);
+    if (found != nodes.end() && *found == atom->tag[i] - lowest[n])
+      mass[objects[n].first + (found - nodes.begin())] = mass_of(atom->rmass, atom->mass, atom->type, i);
+  }
+  MPI_Allreduce(MPI_IN_PLACE, mass.data(), static_cast<int>(mass.size()), MPI_DOUBLE, MPI_SUM, world);
+
+  std::vector<tagint> tags;
+  for (std::size_t n = 0; n < objects.size(); ++n) {
+    AirObject &one = objects[n];
+    const std::vector<int> &nodes = one.skin->nodes();
+    one.mass.assign(mass.begin() + one.first, mass.begin() + one.first + nodes.size());
+    if (lowest[n] == MAXTAGINT) error->all(FLERR, "{}: there is no object {} (molecule ID)", name(), one.molecule);
+    if (const auto gone = std::find(one.mass.begin(), one.mass.end(), 0.0); gone != one.mass.end())
+      error->all(FLERR, "{}: object {} (molecule ID) has no particle {}, counted from its lowest tag, 1", name(), one.molecule,
+                 nodes[gone - one.mass.begin()] + 1);
+    for (const int node : nodes) tags.push_back(lowest[n] + node);
+  }
+  std::vector<tagint> ascending = tags;
+  std::sort(ascending.begin(), ascending.end());
+  shared.choose(std::move(ascending));
+  number.clear();
+  for (const tagint tag : tags) number.push_back(shared.number_of(tag));
+}
+
+// An object of which no node is in the group feels nothing: it has been laid aside, or is held.
+void FixMdanimAir::locate()
+{
+  shared.locate(name(), groupbit);
+  row.resize(number.size());
+  target.resize(number.size());
+  for (AirObject &one : objects) {
+    one.acts = false;
+    for (std::size_t n = one.first; n < one.first + one.mass.size(); ++n) {
+      row[n] = shared.row_of(number[n]);
+      target[n] = shared.is_pushed(number[n]) ? shared.local(number[n]) : SharedMotion::ELSEWHERE;
+      one.acts = one.acts || shared.is_pushed(number[n]);
+    }
+  }
+}
+
+// --- forces ---
+
+// Simulated time by the step alone, as all that changes with time has it.
+Vec3 FixMdanimAir::wind() const { return path.at(static_cast<double>(update->ntimestep) * update->dt); }
+
+// Velocities are those of half a step before: what has moved the particles here.
+void FixMdanimAir::push()
+{
+  wind_now = wind();
+  const AirLaw law{wind_now, 0.5 * density * coefficient, update->dt};
+  const double units = 1.0 / force->ftm2v;
+  shared.share();
+  pushes.clear();
+  for (AirObject &one : objects) {
+    one.force = {};
+    if (!one.acts) continue;
+    const std::size_t nodes = one.mass.size();
+    scratch.x.resize(nodes);
+    scratch.v.resize(nodes);
+    scratch.mass = one.mass;
+    for (std::size_t n = 0; n < nodes; ++n) {
+      scratch.x[n] = shared.place(row[one.first + n]);
+      scratch.v[n] = shared.speed(row[one.first + n]);
+    }
+    one.force = units * one.skin->push(law, above, scratch);
+    for (std::size_t n = 0; n < nodes; ++n)
+      if (const int i = target[one.first + n]; i != SharedMotion::ELSEWHERE) {
+        pushes.push_back({i, units * scratch.force[n]});
+        add_to(atom->f[i], pushes.back().force);
+      }
+  }
+}
+
+// A force acts over the half steps before and behind it, as leap-frog takes it: work F.w dt/2 of the wind, of which F.v dt/2 goes
+// to the particle.
+void FixMdanimAir::count()
+{
+  const double half = 0.5 * update->dt;
+  double of_wind = 0.0, given = 0.0;
+  for (const GivenForce &one : pushes) {
+    of_wind += dot(one.force, wind_now);
+    given += dot(one.force, vec3(atom->v[one.i]));
+  }
+  work += half * of_wind;
+  loss += half * (of_wind - given);
+}
+
+void FixMdanimAir::post_integrate()
+{
+  const Lap lap(seconds);
+  count();
+}
+
+void FixMdanimAir::post_force(int)
+{
+  const Lap lap(seconds);
+  push();
+  count();
+}
+
+// --- output ---
+
+double FixMdanimAir::compute_array(int n, int column)
+{
+  const Vec3 &force = objects[n].force;
+  return column == 0 ? force.x : column == 1 ? force.y : force.z;
+}
+
+double FixMdanimAir::memory_usage()
+{
+  std::size_t skins = 0;
+  std::vector<const AirSkin *> seen;
+  for (const AirObject &one : objects) {
+    skins += one.mass.size() * sizeof(double);
+    if (std::find(seen.begin(), seen.end(), one.skin.get()) != seen.end()) continue;
+    seen.push_back(one.skin.get());
+    skins += one.skin->bytes();
+  }
+  return static_cast<double>(shared.bytes() + skins + (number.size() + row.size() + target.size()) * sizeof(int));
+}

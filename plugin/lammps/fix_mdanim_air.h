@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// fix mdanim/air: air that streams past objects, or that they move through.
+
+#pragma once
+
+#include "air/skin.h"
+#include "lammps/fix_base.h"
+#include "lammps/shared_motion.h"
+#include "numbers/vector_path.h"
+
+#include <map>
+#include <memory>
+#include <vector>
+
+namespace LAMMPS_NS {
+
+// Every rank computes the forces on all objects, from places and velocities that ranks share, and pushes its own particles of the
+// group.
+class FixMdanimAir : public mdanim::FixBase {
+ public:
+  FixMdanimAir(class LAMMPS *, int, char **);
+
+  int setmask() override;
+  void init() override;
+  void setup_pre_neighbor() override { locate(); }
+  void pre_neighbor() override { locate(); }
+  void setup(int) override { push(); }
+  void post_integrate() override;
+  void post_force(int) override;
+  double compute_scalar() override { return taken() - sum(work); }
+  double compute_array(int object, int column) override;
+  double memory_usage() override;
+
+ private:
+  struct AirObject {
+    int molecule;
+    std::shared_ptr<const mdanim::AirSkin> skin;
+    std::vector<double> mass;    // of nodes
+    std::size_t first;           // node among those of all objects
+    bool acts;                   // some node is in the group
+    mdanim::Vec3 force;          // on all of it
+  };
+  struct GivenForce {
+    int i;    // local particle
+    mdanim::Vec3 force;
+  };
+
+  void read_path(int narg, char **arg, int &iarg);
+  void find_objects();
+  void locate();
+  void push();
+  void count();    // the work of half a step
+  mdanim::Vec3 wind() const;
+  double taken() const { return sum(loss); }
+
+  double density, coefficient;
+  mdanim::VectorPath path;    // of the wind
+  double above;               // only there
+  std::vector<AirObject> objects;
+  mdanim::SharedMotion shared;
+  // Nodes of all objects, one after the other: their numbers among shared particles, where these are, and the local particle that
+  // is pushed, if any.
+  std::vector<int> number, row, target;
+  mdanim::AirScratch scratch;
+  std::vector<GivenForce> pushes;    // of this step
+  mdanim::Vec3 wind_now;
+  double work = 0.0, loss = 0.0;    // on this rank
+};
+
+}    // namespace LAMMPS_NS

@@ -1,0 +1,86 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Air against closed forms, its books, and light objects in storms; tests/lab/air_cases.py has the scenes."""
+
+import air_cases
+import numpy as np
+import pytest
+from air_cases import CASES, DOWN, made, residual
+from mdanim_lammps.engine.instance import Instance
+from mdanim_lammps.features.air.effect import _skins
+
+SLOW = {
+    "plate face on, 1 MPa, 20 cm, 5 cm of 20 kg/m^3",
+    "plate that turns, 1 MPa",
+    "rope hangs in wind of 4 m/s",
+    "windmill, 4 m/s",
+}
+
+
+@pytest.mark.parametrize("name", [pytest.param(n, marks=[pytest.mark.soak] if n in SLOW else []) for n in CASES])
+def test_it_agrees_with_the_closed_form(name):
+    """At the defaults of the language."""
+    case, most = CASES[name]
+    found, expected = case()
+    assert found == pytest.approx(expected, rel=most)
+
+
+@pytest.mark.parametrize(("shape", "area", "drag"), [
+    ("box (0.2, 0.3, 0.4) m", 0.52, None), ("sphere 0.2 m", None, 0.6), ("cylinder 0.1 m 0.4 m", None, None),
+    ("ellipsoid (0.1, 0.2, 0.3) m", None, None), ("cone 0.1 m 0.3 m", None, None),
+])  # fmt: skip
+@pytest.mark.parametrize("elasticity", ["rigid", "300 kPa"])
+def test_panels_push_as_the_drawn_surface_does(shape, area, drag, elasticity):
+    """The force on an object at rest in wind is the integral over its drawn surface, whatever it is made of; a ball has a drag
+    coefficient of C/2."""
+    turned = "position (5, 0, 0) m  orientation axis (1, 2, 0) angle 30 deg"
+    one = f"object one {{ shape {shape}  {turned}  density 100  elasticity {elasticity} }}\n"
+    ready = made(f"air {{ wind (2, 3, 6) m/s }}\n{one}", 0.1)
+    with Instance(ready.plan) as instance:
+        instance.setup()
+        force = instance.fix_rows("air", 1, 3)[0]
+    surface = ready.models[0].surface
+    place = surface.vertices(ready.system.position)
+    a, b, c = (place[corner] for corner in surface.triangle.T)
+    normal = 0.5 * np.cross(b - a, c - a)
+    size, wind = np.linalg.norm(normal, axis=1), np.array([2.0, 3.0, 6.0])
+    u = np.minimum(normal @ wind / size, 0.0)
+    expected = (-0.72 * (u**2)[:, None] * normal).sum(axis=0)
+    np.testing.assert_allclose(force, expected, rtol=0.02, atol=0.01 * np.linalg.norm(expected))
+    if drag is not None:
+        assert np.linalg.norm(force) == pytest.approx(0.6 * drag * np.pi * 0.2**2 * 49.0, rel=0.01)
+    if area is not None:
+        assert _skins(ready.context)[0].area == pytest.approx(area, rel=1e-9)
+
+
+AT = "position (0, 0, 0) m"
+BOOKS = {
+    "a plate that falls and glides": f"{DOWN}air {{ wind (3, 0, 0) m/s }}\nobject plate {{ shape box (20, 20, 1) cm  {AT}"
+    "  orientation axis (0, 1, 0) angle 20 deg  density 60  elasticity rigid  spin (1, 2, 3) rad/s }\n",
+    "an elastic block in wind": f"air {{ wind (10, 2, 0) m/s }}\nobject block {{ shape box (20, 10, 10) cm  {AT}"
+    "  density 20  elasticity 100 kPa  spin (0, 5, 0) rad/s }\n",
+    "a held bar in gusts": "air { wind at 0 s (0, 0, 0) m/s\n wind at 0.1 s (20, 0, 0) m/s\n wind at 0.2 s (-5, 3, 0) m/s }\n"
+    f"object bar {{ shape box (10, 10, 40) cm  {AT}  density 50  elasticity 200 kPa  hold face -z }}\n",
+    "a driven plate": f"air {{ }}\nobject fan {{ shape box (40, 10, 2) cm  {AT}  density 500  elasticity rigid  hold all"
+    "  drive turn (20, 0, 0) rad/s }\nobject ball { shape sphere 5 cm  position (0, 0, 1) m  density 10  elasticity rigid"
+    "  velocity (0, 0, 20) m/s }\n",
+}
+
+
+@pytest.mark.parametrize("name", BOOKS)
+def test_the_ledger_closes(name):
+    """With the work of the wind and what the air takes."""
+    assert residual(BOOKS[name], 0.5) < 1e-3
+
+
+@pytest.mark.parametrize("elasticity", ["rigid", "100 kPa"])
+def test_a_light_plate_in_a_storm(elasticity):
+    """Foil of 80 g/m^2 and a block of foam in a wind of 60 m/s: no speed above that of the wind along it."""
+    size = "(20, 20, 0.1) cm" if elasticity == "rigid" else "(10, 10, 5) cm"
+    density = 80 if elasticity == "rigid" else 5
+    block = f"object foil {{ shape box {size}  position (0, 0, 0) m  orientation axis (0, 1, 0) angle 80 deg  density {density}"
+    ready = made(f"air {{ wind (60, 0, 0) m/s }}\n{block}  elasticity {elasticity} }}\n", 0.05)
+    with Instance(ready.plan) as instance:
+        instance.setup()
+        instance.run(round(0.05 / ready.certificate.timestep))
+        v = air_cases.mean(ready, instance.array("v"))
+    assert np.isfinite(v).all() and 10.0 < v[0] < 60.0 and np.linalg.norm(v - [60.0, 0, 0]) < 60.0

@@ -1,0 +1,96 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Scenes with air give the same bits in all forms of the distribution, resumed, and by plain LAMMPS."""
+
+import subprocess
+
+import numpy as np
+import plugin_path
+import pytest
+from distribution_lab import SEQUENTIAL, matrix, readied, ways
+from mdanim_lammps.results.checkpoint import Checkpoint
+from mdanim_lammps.results.compare import compare
+from mdanim_lammps.results.dump import read_dump
+from mdanim_lammps.results.ledger import Ledger
+from mdanim_lammps.results.trajectory import Trajectory
+
+pytestmark = pytest.mark.mpi
+
+WIND = """
+gravity (0, 0, -9.81) m/s^2
+air { wind at 0 s (0, 0, 0) m/s
+  wind at 0.04 s (6, 3, 2) m/s }
+"""
+SCENES = {
+    "elastic": WIND + """
+object mast  { shape box (8, 8, 24) cm   position (0, 0, 0) cm    density 100  elasticity 300 kPa  hold face -z }
+object crate { shape box (8, 8, 8) cm    position (30, 0, 0) cm   density 30   elasticity 200 kPa  velocity (-4, 0, 0) m/s }
+object fan   { shape box (8, 24, 8) cm   position (60, 0, 0) cm   density 1000 elasticity 1 MPa    hold all
+  drive turn (20, 0, 0) rad/s }
+object ball  { shape sphere 6 cm         position (60, -20, 12) cm density 20  elasticity 100 kPa }
+object rope  { shape rope from (0, 50, 0) cm to (0, 50, 40) cm thickness 2 cm  density 100 elasticity 300 kPa  hold end }
+control { time 0.08 s  frames 100 fps  resolution 4 cm }
+""",
+    "rigid": WIND + """
+ground z -10 cm
+object kite  { shape box (20, 20, 1) cm  position (0, 0, 0) cm    density 40   elasticity rigid
+  orientation axis (0, 1, 0) angle 30 deg }
+object ball  { shape sphere 6 cm         position (30, 2, 0) cm   density 20   elasticity rigid  velocity (-3, 0, 1) m/s }
+object can   { shape cylinder 4 cm 10 cm position (0, -50, 12) cm density 30   elasticity rigid  spin (10, 3, 0) rad/s }
+object rest  { shape box (8, 8, 8) cm    position (40, -60, -6) cm density 900  elasticity rigid }
+control { time 0.08 s  frames 100 fps  friction 0.4 }
+""",
+}  # fmt: skip
+CASES = (
+    matrix((2,), ["central"], name="all move ", rotate=True)
+    | matrix((3,), ["peers"], name="all move ", rotate=True)
+    | matrix((2,), ["peers"], name="teams ", settings={"least": 30, "by_threads": False})
+    | matrix((2,), ["central"], name="threads ", settings={"least": 30, "by_threads": True})
+    | {
+        "stopped": {"executors": 3, "control": "central", "stop": 3},
+        "stopped and gone on with": {"executors": 2, "control": "peers", "resume": True, "in": "stopped"},
+        "alone": SEQUENTIAL | {"stop": 4},
+        "alone and gone on with": {"executors": 4, "control": "central", "resume": True, "in": "alone"},
+    }
+)
+
+
+@pytest.fixture(scope="module", params=SCENES)
+def scene(request):
+    return request.param
+
+
+@pytest.fixture(scope="module")
+def found(tmp_path_factory, scene):
+    """The folder of each form, all made in one start of MPI."""
+    path = tmp_path_factory.mktemp("air") / "scene.txt"
+    path.write_text(SCENES[scene])
+    return ways(path, CASES, timeout=200.0)
+
+
+@pytest.mark.parametrize("way", CASES)
+def test_all_forms_give_the_same(found, way):
+    """Frames, the state, and the books but for rounding of their sums."""
+    assert compare(found["sequential"], found[way]).equal
+    alone, other = (Checkpoint.read(found[name] / "checkpoint") for name in ("sequential", way))
+    for name in "xvf":
+        assert np.array_equal(getattr(alone, name), getattr(other, name)), name
+    for column in ("work", "air_loss"):
+        assert other.carried[column] == pytest.approx(alone.carried[column], rel=1e-4)
+
+
+def test_the_ledger_closes(found):
+    """With the work of the wind, in all forms."""
+    for way in ("sequential", *CASES):
+        ledger = Ledger.read(found[way] / "ledger.csv")
+        assert np.abs(ledger.array("residual")).max() < 1e-3 and np.abs(ledger.array("air_loss")).max() > 0.001
+
+
+def test_plain_lammps_gives_the_same(found, tmp_path, scene):
+    """The script and data of the scene, with two ranks."""
+    _, folder = readied(tmp_path, SCENES[scene])
+    command = [plugin_path.BIN / "mpiexec", "-n", "2", plugin_path.BIN / "lmp", "-in", "in.film", "-log", "none", "-nocite"]
+    done = subprocess.run(command, cwd=folder, env=plugin_path.environment(), capture_output=True, text=True, timeout=120)
+    assert done.returncode == 0, done.stdout[-2000:] + done.stderr
+    with Trajectory(found["sequential"]) as trajectory:
+        film = np.array([trajectory.position(n) for n in range(len(trajectory))])
+    assert np.array_equal([x for _, x, _ in read_dump(folder / "film.lammpstrj", film.shape[1])], film)
