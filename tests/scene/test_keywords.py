@@ -19,6 +19,7 @@ BALL = {"shape": "sphere 10 cm", "position": "(0, 0, 1) m", "mass": "2 kg", "ela
 WATER = {"basin": "from (-1, -1, 0) m to (1, 1, 1.2) m", "density": "1000 kg/m^3", "volume": "2 m^3"}
 
 
+DUCK = Path(__file__).parents[2] / "scenes/meshes/duck.ply"
 OF_SURFACES = ("friction", "contact-damping")
 """Settings that the contact of the paper has only as 0."""
 
@@ -40,6 +41,8 @@ def scene(block: str, **settings: str):
     if "restitution" in settings:  # of rigid objects
         for name in {"object", "floor"} & set(blocks):
             blocks[name]["elasticity"] = "rigid"
+    if "origin" in settings:
+        blocks["object"]["shape"] = f'mesh "{DUCK}"'
     if "(floor)" in settings.get("expect", ""):
         blocks["floor"] = dict(BALL)
     if settings.get("sweeps", "auto") != "auto":
