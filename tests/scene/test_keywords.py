@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """The keyword table: what it says about itself is true, and the docs page says the same."""
 
+from pathlib import Path
+
 import pytest
 from mdanim_lammps.errors import SceneError
 from mdanim_lammps.features.joints.words import TAKES
