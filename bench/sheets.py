@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""Sheets against closed forms, and the energy of a fall: ``python bench/sheets.py [closed|falls]``.
+"""Sheets against closed forms, and the energy of a fall: ``python bench/sheets.py [closed|bends|falls]``.
 
 The tables are those of docs/physics-sheets.md; scenes and closed forms are in tests/lab/sheet_cases.py.
 """
@@ -29,7 +29,17 @@ def falls() -> tuple[list[str], list[list]]:
     return ["friction", "energy, over that of the fall"], [[mu, f"{sheet_cases.fall(mu):+.1e}"] for mu in (0.0, 0.3)]
 
 
-TABLES = {"closed": closed, "falls": falls}
+def bends() -> tuple[list[str], list[list]]:
+    """Springs of rods, and an energy of the angle between triangles: how a strip yields, over what a plate does."""
+    rows = []
+    for size, h in (((0.5, 0.1), 0.01), ((0.5, 0.1), 0.005), ((0.5, 0.05), 0.01)):
+        for kind in ("rods", "angles"):
+            found = sheet_cases.bends(kind, size, h)
+            rows.append([f"{size[0]} m by {size[1]} m, h {h} m", kind, f"{found['force']:.3f}", f"{found['couple']:.3f}"])
+    return ["strip", "bending by", "force at its end", "couple about its length"], rows
+
+
+TABLES = {"closed": closed, "bends": bends, "falls": falls}
 
 if __name__ == "__main__":
     print_tables(TABLES, sys.argv[1:])

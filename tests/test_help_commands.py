@@ -72,6 +72,8 @@ def test_every_word_is_explained():
     [
         *((word, "rope from") for word in ("rope", "chain")),
         ("string", "explain rope"),
+        ("cloth", "explain sheet"),
+        ("rope", "rope from (x0, y0, z0) to"),
         *((word, "write force") for word in ("push", "thrust", "impulse", "addforce")),
         *((word, f"{word} (") for word in ("force", "torque")),
         *((word, "joint hinge") for word in ("wheel", "axle", "engine", "pendulum", "door", "pulley")),

@@ -24,11 +24,13 @@ LONG = {
     "boat": (1.8, True),
     "bottle": (1.0, False),
     "bowling": (0.25, False),
+    "cloth": (0.3, True),
     "hammock": (0.2, True),
     "paddle": (1.1, True),
     "buggy": (0.5, False),
     "pile": (0.5, False),
     "spiral": (0.8, False),
+    "trampoline": (0.6, False),
     "wake": (1.2, True),
     "wrecking": (0.4, False),
 }

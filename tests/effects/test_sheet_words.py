@@ -107,7 +107,7 @@ def test_check_says_what_a_sheet_passes_through():
 
 
 def test_its_spacing_is_its_own():
-    """It does not make other objects finer; its particles are no closer than it is thick."""
+    """It does not make other objects finer; its particles are at least as far apart as it is thick."""
     alone, beside = (plan_spacing(parse_scene(text)).of for text in (BOX + "control { time 1 s }", BOX + cloth()))
     assert beside[0] == alone[0] and beside[1] == pytest.approx(np.sqrt(0.8 / 1200))
     assert plan_spacing(parse_scene(cloth("sheet (1, 0.8) m thickness 10 cm"))).of == pytest.approx([0.1])

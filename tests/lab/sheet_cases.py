@@ -281,3 +281,58 @@ CASES: dict[str, tuple[Callable[[], tuple[float, float]], float]] = {
     "cloth over a held table": (lambda: draped(TABLE, time=0.5), 0.05),
 }
 """Cases and the largest error of each."""
+
+
+# --- bending: rods, and the angle between triangles -----------------------------------------------------------------
+
+
+def angles(woven, rigidity: float):
+    """The matrix across the plane of an energy of the angle between each two triangles that share an edge, c (sum a_i w_i)^2/2,
+    with c such that the sheet has this flexural rigidity [N m]; sparse, shape (N, N)."""
+    from scipy.sparse import csr_matrix
+
+    place, sides = woven.place, {}
+    for triangle in woven.triangle.tolist():
+        for _ in range(3):
+            sides.setdefault(frozenset(triangle[:2]), []).append(triangle[2])
+            triangle = triangle[1:] + triangle[:1]
+    hinges = [(*sorted(edge), *ends) for edge, ends in sides.items() if len(ends) == 2]
+    rows, values = [], []
+    for p, q, r, s in hinges:
+        way = place[[q, r, s]] - place[p]
+        edge = math.hypot(*way[0])
+        one, other = (abs(way[0, 0] * w[1] - way[0, 1] * w[0]) / edge for w in way[1:])  # heights of both triangles
+        along = [w @ way[0] / edge**2 for w in way[1:]]
+        slope = np.array([-(1 - along[0]) / one - (1 - along[1]) / other, -along[0] / one - along[1] / other, 1 / one, 1 / other])
+        rows.append((p, q, r, s))
+        values.append(math.sqrt(2.0 / math.sqrt(3.0) * rigidity * edge / (0.5 * (one + other)) * math.sqrt(0.75)) * slope)
+    index = np.repeat(np.arange(len(rows)), 4)
+    matrix = csr_matrix((np.concatenate(values), (index, np.concatenate(rows))), (len(rows), len(place)))
+    return matrix.T @ matrix
+
+
+def bends(kind: str, size: tuple[float, float] = (0.5, 0.1), h: float = 0.01) -> dict[str, float]:
+    """How far the end of a strip along x yields to a force and to a couple about x, over P l^3/3 E I and M l/G J."""
+    from scipy.sparse.linalg import spsolve
+
+    young, thickness = 1e6, 2e-3
+    woven = weave(Sheet(size, thickness), h)
+    held = woven.place[:, 0] < 0.51 * woven.h - 0.5 * size[0]
+    rigidity = young * thickness**3 / 12.0 / (1.0 - NU**2)
+    rods = across(*woven.springs(young, thickness, 1.0, held), len(held))
+    matrix = rods if kind == "rods" else angles(woven, rigidity).tocsr()
+    tip = woven.sides["+x"]
+    share, arm = woven.share[tip] / woven.share[tip].sum(), woven.place[tip, 1]
+    free, found = size[0] - 0.25 * woven.h, {}
+    for name, load in (("force", share), ("couple", share * arm / (share * arm**2).sum())):
+        full = np.zeros(len(held))
+        full[tip] = load
+        moved = np.zeros(len(held))
+        moved[~held] = spsolve(matrix[~held][:, ~held].tocsc(), full[~held])
+        found[name] = float(load @ moved[tip])
+    shear = young / (2.0 * (1.0 + NU))
+    width = size[1]
+    return {
+        "force": found["force"] * 3.0 * young * width * thickness**3 / 12.0 / free**3,
+        "couple": found["couple"] * shear * width * thickness**3 / 3.0 / free,
+    }

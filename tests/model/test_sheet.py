@@ -90,6 +90,13 @@ def test_bending_scales_its_rigidity():
     assert abs(found[0]).max() == 0.0 and abs(found[2] - 2.0 * found[1]).max() < 1e-12 * abs(found[1]).max()
 
 
+def test_a_strip_twists_as_a_plate_does():
+    """With rods; an energy of the angle between triangles, of the same rigidity, resists twice as much."""
+    rods, angles = (sheet_cases.bends(kind) for kind in ("rods", "angles"))
+    assert rods["force"] == pytest.approx(1.0, rel=0.02) and rods["couple"] == pytest.approx(1.0, rel=0.06)
+    assert angles["force"] == pytest.approx(1.0, rel=0.03) and angles["couple"] == pytest.approx(0.5, rel=0.05)
+
+
 def test_both_sides_are_drawn_smooth():
     """Each side all of it, through all particles, and on a ball between them too."""
     woven = weave(Sheet((1.0, 1.0), 0.001), 0.05)

@@ -23,7 +23,7 @@ class Rod:
     width: np.ndarray
     """Of each link, shape (n - 1,)."""
     bent: np.ndarray
-    """What it bears against bending is a multiple of, at each particle between two links, shape (n - 2,)."""
+    """The same against bending, at each particle between two links, shape (n - 2,)."""
 
 
 def springs_of(rods: Sequence[Rod], pull: float, bend: float) -> tuple[np.ndarray, np.ndarray]:

@@ -104,7 +104,7 @@ def _keyword(k: Keyword, where: str) -> str:
 
 
 def _slots(form: str) -> str:
-    return form.replace("<", "").replace(">", "").replace(":m", "")
+    return form.replace("<@", "<").replace("<", "").replace(">", "").replace(":m", "")
 
 
 def _plain(text: str) -> str:

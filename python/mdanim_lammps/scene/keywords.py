@@ -90,7 +90,6 @@ NOT_SUPPORTED = {
     "break": "solids do not break; build it of parts that lie on each other",
     "tear": "solids do not tear",
     "balloon": "nothing is filled with gas; a ball of low density and elasticity comes near it",
-    "cloth": "a thin box comes near it",
     "glue": "write joint weld A B { }",
     "push": "write force (0.2, 0, 0) N from 1 s to 2 s in the object",
     "thrust": "write force (0.2, 0, 0) N from 1 s to 2 s in the object",

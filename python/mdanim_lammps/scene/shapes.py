@@ -194,10 +194,11 @@ class Rope:
 
 @dataclass(frozen=True, slots=True)
 class Sheet:
-    """A flat sheet in the xy plane."""
+    """One layer in the xy plane, as cloth, a sail or a trampoline; bending scales its resistance to bending, 0 for none."""
 
     FORMS: ClassVar = ("sheet <(lx, ly):m> thickness <t:m> [bending <@f>]",)
     ALSO: ClassVar = ("cloth", "sail", "flag", "membrane", "foil", "fabric", "towel")
+    BENDS: ClassVar = True
 
     size: tuple[float, float]
     """Edge lengths [m]."""
