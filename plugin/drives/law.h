@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 namespace mdanim {
@@ -22,6 +23,20 @@ struct DrivenPlace {
   Vec3 from, to;
 
   Vec3 of(const Vec3 &start) const { return to + turn * (start - from); }
+};
+
+// The map from one place of what is driven to another, which is near it.
+struct DrivenStep {
+  DrivenStep(const DrivenPlace &a, const DrivenPlace &b)
+      : a(a), b(b), turned(b.q * Quaternion{a.q.w, -a.q.x, -a.q.y, -a.q.z}),
+        angle((turned.w < 0.0 ? -2.0 : 2.0) * Vec3{turned.x, turned.y, turned.z})
+  {
+  }
+  Vec3 of(const Vec3 &there) const { return b.of(a.from + transposed_times(a.turn, there - a.to)); }
+
+  const DrivenPlace &a, &b;
+  const Quaternion turned;
+  const Vec3 angle;    // rotation vector
 };
 
 // A rotation by the length of a vector about it.
@@ -89,6 +104,10 @@ struct DrivenMotion {
   std::vector<Oscillation> oscillations;
   KeyPath path;
   Vec3 pivot;
+  double until = std::numeric_limits<double>::infinity();    // time at which it is released
+
+  // The last step that it takes: the one next to `until`.
+  double last_step(double dt) const { return std::floor(until / dt + 0.5); }
 
   DrivenPlace at(double t) const
   {

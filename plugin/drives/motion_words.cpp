@@ -4,6 +4,8 @@
 
 #include "records/line_words.h"
 
+#include <cmath>
+
 namespace mdanim {
 
 static void read_key(LineWords &words, DrivenMotion &motion)
@@ -35,12 +37,15 @@ static DrivenMotion read_words(LineWords &words)
       one.frequency = words.at_least_zero("the frequency of an oscillation");
       one.phase = words.number<double>("the phase of an oscillation");
       motion.oscillations.push_back(one);
+    } else if (kind == "until") {
+      if (std::isfinite(motion.until)) words.fail("until stands twice");
+      motion.until = words.at_least_zero("the time of a release");
     } else if (kind == "pivot") {
       motion.pivot = words.vector("the pivot of keys");
     } else if (kind == "key") {
       read_key(words, motion);
     } else {
-      words.fail("a motion is velocity, turn, oscillation, pivot or key, got " + kind);
+      words.fail("a motion is velocity, turn, oscillation, pivot, key or until, got " + kind);
     }
   }
   if (!any) words.fail("there is no motion; write velocity, turn, oscillation or key");

@@ -12,11 +12,13 @@
 #include "comm.h"
 #include "error.h"
 #include "fmt/format.h"
+#include "force.h"
 #include "modify.h"
 #include "update.h"
 #include "utils.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <stdexcept>
 
@@ -29,14 +31,15 @@ static constexpr int KEPT = 3;    // numbers in restart files
 
 // --- the command ---
 
-// fix ID group mdanim/drive [home d2_NAME] [since STEP] motions FILE
-// fix ID group mdanim/drive [home d2_NAME] [since STEP] WORDS of drives/motion_words.h
+// fix ID group mdanim/drive [home d2_NAME] [since STEP] [release FIXID] [leave GROUP] motions FILE
+// fix ID group mdanim/drive [home d2_NAME] [since STEP] [release FIXID] [leave GROUP] WORDS of drives/motion_words.h
 FixMdanimDrive::FixMdanimDrive(LAMMPS *lmp, int narg, char **arg) : FixBase(lmp, narg, arg), since(update->ntimestep)
 {
   time_integrate = 1;
   restart_global = 1;
   nevery = 1;
   need(THREE_DIMENSIONS | OPEN_BOX);
+  look_up({&left}, {});
   tell({{"work", true, [this] { return sum(work); }}, clock()});
   try {
     read_command(narg, arg);
@@ -44,6 +47,7 @@ FixMdanimDrive::FixMdanimDrive(LAMMPS *lmp, int narg, char **arg) : FixBase(lmp,
     error->all(FLERR, "{}", problem.what());
   }
   if (of_objects) need(OBJECTS);
+  for (const auto &[molecule, motion] : motions) releases = releases || std::isfinite(motion.until);
 }
 
 FixMdanimDrive::~FixMdanimDrive()
@@ -64,6 +68,12 @@ void FixMdanimDrive::read_command(int narg, char **arg)
       more = true;
     } else if (is("since")) {
       since = utils::bnumeric(FLERR, arg[iarg + 1], false, lmp);
+      more = true;
+    } else if (is("release")) {
+      integrator = arg[iarg + 1];
+      more = true;
+    } else if (is("leave")) {
+      left = NamedGroup(lmp, STYLE, iarg + 1, arg[iarg + 1]);
       more = true;
     }
     if (more) iarg += 2;
@@ -113,6 +123,13 @@ void FixMdanimDrive::init()
                dt_before, update->dt);
   dt_before = update->dt;
   found_at.reset();
+  if (!releases) return;
+  const Fix *const mover = integrator.empty() ? nullptr : modify->get_fix_by_id(integrator);
+  if (!integrator.empty() && !mover)
+    error->all(FLERR, "{}: release {} is not the ID of a fix; write that of the fix that moves what is released", name(),
+               integrator);
+  joined = mover ? mover->groupbit : 0;
+  release(update->ntimestep + 1);
 }
 
 // --- motion ---
@@ -153,6 +170,52 @@ const FixMdanimDrive::Ways &FixMdanimDrive::ways(int i)
   return *last_ways;
 }
 
+bool FixMdanimDrive::holds(int molecule) const
+{
+  const auto found = motions.find(of_objects ? molecule : 0);
+  return found != motions.end() && static_cast<double>(update->ntimestep - since) <= found->second.last_step(update->dt);
+}
+
+// A particle of the group that is not laid aside.
+bool FixMdanimDrive::guides(int i)
+{
+  if (!(atom->mask[i] & groupbit)) return false;
+  return !releases || holds(of_objects ? static_cast<int>(atom->molecule[i]) : 0);
+}
+
+// Whether something is released in this step.
+bool FixMdanimDrive::is_due() const
+{
+  return releases && std::any_of(motions.begin(), motions.end(), [this](const auto &one) {
+           return static_cast<double>(update->ntimestep - since) == one.second.last_step(update->dt) + 1.0;
+         });
+}
+
+// From its release on, a particle is in the group of those that an integrator moves, unless a fix of rigid bodies does so;
+// before, it is not. At that step it brings its energy of motion.
+void FixMdanimDrive::release(bigint step)
+{
+  int rigid = 0;
+  for (const Fix *const fix : modify->get_fix_list())
+    if (fix->rigid_flag) rigid |= fix->groupbit;
+  for (int i = 0; i < atom->nlocal; ++i) {
+    int &mask = atom->mask[i];
+    if (!(mask & groupbit)) continue;
+    const auto motion = motions.find(of_objects ? static_cast<int>(atom->molecule[i]) : 0);
+    if (motion == motions.end() || !std::isfinite(motion->second.until)) continue;
+    const double behind = static_cast<double>(step - since) - motion->second.last_step(update->dt);
+    const bool is_free = behind > 0.0;
+    mask = is_free ? mask & ~left.bit() : mask | left.bit();
+    if (mask & rigid) continue;
+    const bool joins = is_free && joined && !(mask & joined);
+    mask = is_free ? mask | joined : mask & ~joined;
+    if (joins && behind == 1.0) {
+      const Vec3 v = vec3(atom->v[i]);
+      work += 0.5 * force->mvv2e * mass_of(atom->rmass, atom->mass, atom->type, i) * dot(v, v);
+    }
+  }
+}
+
 std::set<int> FixMdanimDrive::present() const
 {
   std::vector<int> ids, here;
@@ -186,7 +249,7 @@ void FixMdanimDrive::set_whole_velocities()
   const double per_two = 0.5 / update->dt;
   find_ways();
   for (int i = 0; i < atom->nlocal; ++i) {
-    if (!(atom->mask[i] & groupbit)) continue;
+    if (!guides(i)) continue;
     const Ways &way = ways(i);
     const Vec3 velocity = per_two * (way.next.of(vec3(start[i])) - way.before.of(vec3(start[i])));
     atom->v[i][0] = velocity.x, atom->v[i][1] = velocity.y, atom->v[i][2] = velocity.z;
@@ -199,8 +262,9 @@ void FixMdanimDrive::initial_integrate(int)
   double **const start = home();
   const double per_dt = 1.0 / update->dt;
   find_ways();
+  if (is_due()) release(update->ntimestep);
   for (int i = 0; i < atom->nlocal; ++i) {
-    if (!(atom->mask[i] & groupbit)) continue;
+    if (!guides(i)) continue;
     const Vec3 there = ways(i).now.of(vec3(start[i])), way = there - vec3(atom->x[i]), velocity = per_dt * way;
     work -= 0.5 * dot(vec3(atom->f[i]), way);
     atom->v[i][0] = velocity.x, atom->v[i][1] = velocity.y, atom->v[i][2] = velocity.z;
@@ -213,7 +277,7 @@ void FixMdanimDrive::end_of_step()
   const Lap lap(seconds);
   double **const start = home();
   for (int i = 0; i < atom->nlocal; ++i)
-    if (atom->mask[i] & groupbit) work -= 0.5 * dot(vec3(atom->f[i]), vec3(atom->x[i]) - ways(i).before.of(vec3(start[i])));
+    if (guides(i)) work -= 0.5 * dot(vec3(atom->f[i]), vec3(atom->x[i]) - ways(i).before.of(vec3(start[i])));
 }
 
 // --- restart ---

@@ -38,6 +38,8 @@ class FixMdanimDrive : public mdanim::FixBase {
     mdanim::DrivenPlace before, now, next;
   };
   const Ways *ways_of(int molecule);
+  // Whether an object goes its way in this step; not from its release on, and where no motion is given for it.
+  bool holds(int molecule) const;
   // Objects of which some particle is in the group, on any rank; all ranks ask together.
   std::set<int> present() const;
 
@@ -48,6 +50,9 @@ class FixMdanimDrive : public mdanim::FixBase {
   void find_ways();
   const Ways &ways(int i);
   void set_whole_velocities();
+  bool guides(int i);    // whether a local particle goes its way in this step
+  bool is_due() const;
+  void release(bigint step);
   double time(bigint step) const;
 
   bool of_objects = false;                        // whether motions are those of molecules; else there is one, of molecule 0
@@ -57,6 +62,10 @@ class FixMdanimDrive : public mdanim::FixBase {
   int last_molecule = -1;
   const Ways *last_ways = nullptr;
   std::string home_name, own_home;    // the property with the places at the start; the fix that we made for it, or none
+  std::string integrator;             // ID of the fix that moves what is released; empty for none
+  mdanim::NamedGroup left;            // by what is released
+  int joined = 0;                     // bit of the group of `integrator`
+  bool releases = false;              // whether some motion ends
   bigint since;                       // step at which time is 0
   double dt_before = 0.0;
   double work = 0.0;    // on this rank

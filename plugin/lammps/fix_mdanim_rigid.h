@@ -61,6 +61,9 @@ class FixMdanimRigid : public mdanim::FixBase, public mdanim::Stateful {
   void follow_changes();
   void collect();
   void kick(bool first);
+  void find_guided();
+  void guide(int body);
+  void set_whole_motion();
 
   std::map<int, mdanim::Inertia> given;    // by molecule IDs, from a file
   mdanim::ParticleValue lambda;

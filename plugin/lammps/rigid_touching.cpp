@@ -213,10 +213,8 @@ void RigidTouching::place_driven()
                       "mdanim/drive that has one",
                       STYLE, one.id);
     const Vec3 centre = ways->now.of(one.start.place);
-    const Quaternion &before = ways->before.q, turned = ways->now.q * Quaternion{before.w, -before.x, -before.y, -before.z};
-    const double twice = turned.w < 0.0 ? -2.0 : 2.0;    // of the half angle, which is small
     one.way = centre - ways->before.of(one.start.place);
-    one.turned = {twice * turned.x, twice * turned.y, twice * turned.z};
+    one.turned = DrivenStep(ways->before, ways->now).angle;
     contact.place_driven(one.solid, centre, matrix(ways->now.q * one.start.q), per_dt * one.way, per_dt * one.turned);
   }
 }

@@ -65,6 +65,8 @@ class RigidTouching {
   }
   int solid(int body) const { return solid_of[body]; }
 
+  LAMMPS_NS::FixMdanimDrive *guide() const { return drive; }
+
   // Driven shapes of which no particle is driven any more are laid aside, too.
   void lay_driven_aside();
   // Driven shapes: a record of the push on each, and the work of moving them against it since the fix was made.

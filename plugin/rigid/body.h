@@ -17,7 +17,8 @@ struct RigidBody {
   Quaternion q;    // takes its principal axes into space
   Vec3 L;          // angular momentum about the centre, in space
 
-  bool aside = false;    // has left the simulation: does not move, and has no energy
+  bool aside = false;     // has left the simulation: does not move, and has no energy
+  bool guided = false;    // goes its way whatever pushes at it, and has no energy
 
   Vec3 force, torque;
   Matrix3 turn;    // matrix(q)
@@ -60,6 +61,22 @@ struct RigidBody {
     find_spin();
   }
 
+  // Goes somewhere else, turned by this rotation.
+  void move_to(const Vec3 &there, const Quaternion &turned)
+  {
+    centre = there;
+    q = unit(turned * q);
+    turn = matrix(q);
+  }
+  // Has this velocity and angular velocity from now on.
+  void set_motion(const Vec3 &v, const Vec3 &angular)
+  {
+    velocity = v;
+    const Vec3 own = transposed_times(turn, angular);
+    L = turn * Vec3{moments.x * own.x, moments.y * own.y, moments.z * own.z};
+    find_spin();
+  }
+
   // Velocity of a point of the body, given by its place in space from the centre.
   Vec3 velocity_at(const Vec3 &from_centre) const { return velocity + cross(spin, from_centre); }
 
@@ -70,8 +87,8 @@ struct RigidBody {
     return turn * Vec3{over.x * body.x, over.y * body.y, over.z * body.z};
   }
 
-  double translation() const { return aside ? 0.0 : 0.5 * mass * dot(velocity, velocity); }
-  double rotation() const { return aside ? 0.0 : 0.5 * dot(L, spin); }
+  double translation() const { return aside || guided ? 0.0 : 0.5 * mass * dot(velocity, velocity); }
+  double rotation() const { return aside || guided ? 0.0 : 0.5 * dot(L, spin); }
   // Both together, by the velocities v- and v+ of half a step before and after: m v-.v+/2 + L-.I^-1 L+/2. Of this leap-frog gives
   // springs exactly what they gain, F dx with the mean of the forces at both ends of a way. Velocities of whole steps hold half
   // of a kick, and in a blow that takes a few steps up to (dt Omega)^2/4 of its energy too much.
@@ -79,7 +96,7 @@ struct RigidBody {
   {
     const double phi = lambda * half / mass;
     const Vec3 to_v = (half / mass) * force - phi * velocity, to_L = half * torque - phi * L;
-    return aside ? 0.0 : translation() + rotation() - 0.5 * (mass * dot(to_v, to_v) + dot(to_L, over_moments(to_L)));
+    return aside || guided ? 0.0 : translation() + rotation() - 0.5 * (mass * dot(to_v, to_v) + dot(to_L, over_moments(to_L)));
   }
 
  private:

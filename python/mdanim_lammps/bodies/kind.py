@@ -9,8 +9,8 @@ from typing import Any
 
 from .. import features
 from ..features import facets
+from ..scene.holding import all_held
 from ..scene.scene import Box, SceneRecord, Solid
-from ..scene.shapes import holds_all
 
 
 class BodyKind:
@@ -92,11 +92,6 @@ def beneath(scene: SceneRecord, solid: Solid) -> int:
     """Cells across an object that does not deform that lines and sheets of particles ask for; 0 where there are none, and of a
     cuboid, whose depth is exact."""
     return BENEATH if not isinstance(solid.shape, Box) and any(not kind_of(s).fills for s in scene.solids) else 0
-
-
-def all_held(solid: Solid) -> bool:
-    """Whether no particle of an object ever moves by forces."""
-    return holds_all(solid.hold)
 
 
 @lru_cache(maxsize=1)

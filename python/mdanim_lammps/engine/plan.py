@@ -22,7 +22,7 @@ from ..scene.scene import SceneRecord
 from .columns import Places, most_bonds, places
 
 HELD = 4
-"""Atom types 1-4 are the layers of free particles (model.Layer), 5-8 those of held ones."""
+"""Atom types 1-4 are the layers of free particles (model.Layer), 5-8 those of particles that are held at the start."""
 
 
 BODY = "body"
@@ -92,7 +92,7 @@ class Plan:
     @property
     def kind(self) -> np.ndarray:
         """Atom type of each particle, int32, shape (N,)."""
-        return (self.system.layer + HELD * self.system.held).astype(np.int32)
+        return (self.system.layer + HELD * (self.system.held | self.system.pinned)).astype(np.int32)
 
     def ends(self) -> Ends:
         """The springs at both ends."""

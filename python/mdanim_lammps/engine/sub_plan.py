@@ -142,6 +142,7 @@ class SubPlans:
             contact_kind=lambda: s.contact_kind[index],
             frames=lambda: s.frames,
             driven=lambda: s.driven[index],
+            pinned=lambda: particle(s.pinned),
             inertia=lambda: s.inertia[index],
             rigid=lambda: s.rigid[index],
         )

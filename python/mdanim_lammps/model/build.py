@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from ..bodies import kind_of, only_features
+from ..bodies import kind_of, lets_go, only_features
 from ..errors import Problem, SceneError
 from ..scene.formatting import number, say
 from ..scene.scene import Elasticity, HoldAll, HoldFaces, HoldWithin, SceneRecord, Shape, Solid
@@ -50,6 +50,8 @@ def build_models(
     for m, solid in enumerate(scene.solids):
         try:
             model = kind_of(solid).make(solid, spacing[m], shared)
+            if lets_go(solid):
+                model = _let_go(model)
             models.append(replace(model, driven=True) if m in driven else model)
         except TooThin as error:
             problems.append(_too_thin(solid, spacing[m], error))
@@ -60,6 +62,12 @@ def build_models(
     if problems:
         raise SceneError(problems)
     return with_covers(models, scene.solids)
+
+
+def _let_go(model: Model) -> Model:
+    """The same of an object that is held at first: all of one that does not deform."""
+    pinned = model.held if model.held.any() else np.ones_like(model.held)
+    return replace(model, held=np.zeros_like(pinned), pinned=pinned, velocity=np.where(pinned[:, None], 0.0, model.velocity))
 
 
 # --- what equal objects share -------------------------------------------------------------------------------
@@ -166,7 +174,7 @@ def lattice_model(solid: Solid, h: float, shared: SharedParts, *, loose: bool = 
     lattice = body.lattice
     held = _held(solid, lattice)
     mass = shapes.mass(solid)
-    loose = loose or bool(held.all())
+    loose = loose or bool(held.all() and not lets_go(solid))
     material = shared.material(body, mass, solid.elasticity, loose)
     arm = _rotated(solid, lattice.position)
     velocity = solid.velocity + np.cross(solid.spin, arm)

@@ -122,6 +122,8 @@ class Model(Particles):
     surface: Surface
     frame: BodyFrame
     """Its shape and cells; objects of equal shape share one, and with it the contact body."""
+    pinned: np.ndarray | None = None
+    """Particles that are held until they are let go, bool, shape (N,); None for none. Otherwise they are as all that move."""
     driven: bool = False
     """Whether some effect moves its held particles."""
     inertia: np.ndarray | None = None

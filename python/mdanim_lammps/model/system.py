@@ -39,6 +39,8 @@ class System(Particles):
     """The frames from which the contact body of each kind of the scene is made."""
     driven: np.ndarray
     """Solids whose held particles some effect moves, bool, shape (M,)."""
+    pinned: np.ndarray
+    """Particles that are held until they are let go, bool, shape (N,)."""
     inertia: np.ndarray
     """Tensor of inertia of each solid that moves as a whole, see `Model` [kg m^2], shape (M, 3, 3); zeros of all others."""
 
@@ -91,7 +93,7 @@ class System(Particles):
     @property
     def moved(self) -> np.ndarray | None:
         """Held particles that some effect moves, bool, shape (N,); None where there are none."""
-        return self.held & self.driven[self.object] if self.driven.any() else None
+        return (self.held | self.pinned) & self.driven[self.object] if self.driven.any() else None
 
     def stretches(self, solids: Sequence[int]) -> list[slice]:
         """Particles of some solids, in their order; one stretch of those that are side by side:
@@ -170,6 +172,7 @@ def assemble(models: Sequence[Model], scene: SceneRecord) -> System:
         contact_kind=np.array([kind[id(m.frame)] for m in models], np.int32),
         frames=frames,
         driven=np.array([m.driven for m in models], bool),
+        pinned=join([np.zeros_like(m.held) if m.pinned is None else m.pinned for m in models]),
         inertia=np.array([np.zeros((3, 3)) if m.inertia is None else m.inertia for m in models]),
     )
 

@@ -211,7 +211,10 @@ def _speed(acting: Acting, bodies: _Movers) -> np.ndarray:
     g, floor = acting.acceleration, acting.limits[0][2]
     if acting.changes or np.isfinite(acting.wet_below) or g[0] or g[1] or g[2] > 0.0 or not np.isfinite(floor):
         return most
-    way = np.maximum(0.0, bodies.position[:, 2] - floor) + bodies.radius
+    lift = np.zeros(len(bodies.position))
+    for m, drive in acting.drives.items():
+        lift[m] = drive.high[2]
+    way = np.maximum(0.0, bodies.position[:, 2] + lift - floor) + bodies.radius
     return np.minimum(most, np.sqrt(start + 2.0 * bodies.pull * way))
 
 

@@ -143,8 +143,8 @@ def _undriven(resolved: Resolved, models: Sequence[Model]) -> list[Problem]:
         for m, drive in effect.drives(resolved.scene).items():
             solid, name = resolved.scene.solids[m], resolved.scene.solids[m].name
             cause = ""
-            if not models[m].held.any():
-                cause = f"{name} is driven, and nothing of it is held"
+            if not models[m].held.any() and models[m].pinned is None:
+                cause = f"nothing of {name} is held, so nothing of it can be driven or released"
                 way_out = "write hold all, or hold face -x for a part of it"
             elif m in by:
                 cause, way_out = f"{name} is driven by {by[m]} and by {effect.name}", "leave one of them out"

@@ -49,6 +49,7 @@ object blade { shape box (8, 24, 20) cm position (0, 0, 14) cm density 1000 elas
   drive oscillation (6, 0, 0) cm frequency 3 Hz  drive turn (0, 0, 2) rad/s }
 object duck { shape box (8, 8, 8) cm position (-20, 0, 21) cm density 500 elasticity 300 kPa }
 object far { shape box (8, 8, 8) cm position (20, 0, 50) cm density 500 elasticity 300 kPa }
+object cork { shape box (8, 8, 8) cm position (20, 10, 16) cm density 300 elasticity 300 kPa hold all release 0.034 s }
 object club  { shape box (8, 20, 8) cm   position (0, 0, 60) cm  density 1000  elasticity 1 MPa  hold all
   drive turn (20, 0, 0) rad/s }
 control { time 0.08 s  frames 100 fps  resolution 4 cm }
@@ -67,7 +68,21 @@ object pole  { shape box (8, 8, 24) cm   position (0, 60, 0) cm    density 800  
 object far   { shape sphere 6 cm         position (90, 60, 10) cm  density 900   elasticity 300 kPa }
 control { time 0.08 s  frames 100 fps  resolution 4 cm  friction 0.4 }
 """
-SCENES = {"elastic": SCENE, "rigid": RIGID, "wet": WET, "pushed": PUSHED}
+RELEASED = """
+gravity (0, 0, -9.81) m/s^2
+ground z -0.2 m
+object table { shape box (24, 24, 8) cm  position (0, 0, 0) cm    density 1000  elasticity 1 MPa  hold all  release 0.035 s
+  drive oscillation (0, 0, 1) cm frequency 12 Hz  drive turn (0, 0, 3) rad/s }
+object rider { shape box (8, 8, 8) cm    position (2, 1, 8.5) cm  density 700   elasticity 300 kPa }
+object brick { shape box (8, 8, 24) cm   position (60, 0, 0) cm   density 800   elasticity rigid  hold all  release 0.04 s
+  drive velocity (0, 0.3, 1) m/s  drive turn (9, 0, 3) rad/s }
+object ball  { shape sphere 6 cm         position (60, 3, 18.2) cm density 900  elasticity rigid }
+object flag  { shape box (24, 8, 8) cm   position (0, 60, 0) cm   density 300   elasticity 200 kPa
+  hold face -x  release 0.011 s }
+object stone { shape box (8, 8, 8) cm    position (30, 60, 8) cm  density 900   elasticity rigid  hold all  release 0.03 s }
+control { time 0.08 s  frames 100 fps  resolution 4 cm  friction 0.4 }
+"""
+SCENES = {"elastic": SCENE, "rigid": RIGID, "wet": WET, "pushed": PUSHED, "released": RELEASED}
 CASES = (
     matrix((2,), ["central"], name="all move ", rotate=True)
     | matrix((3,), ["peers"], name="all move ", rotate=True)

@@ -162,7 +162,7 @@ def test_a_restart_file_with_another_time_step_is_refused(tmp_path):
 @pytest.mark.parametrize(("words", "told"), [
     ("", "there is no motion; write velocity, turn, oscillation or key"),
     ("velocity 1 2", "the velocity is missing"), ("velocity 1 2 a", "a is not a number; it stands for the velocity"),
-    ("spin 1 2 3", "a motion is velocity, turn, oscillation, pivot or key, got spin"),
+    ("spin 1 2 3", "a motion is velocity, turn, oscillation, pivot, key or until, got spin"),
     ("turn 0 0 1 0 0 0 turn 0 0 1 0 0 0", "a second turn"),
     ("oscillation 1 0 0 -1 0", "frequency of an oscillation must be at least 0"),
     ("key 1 0 0 0 0 0 0 key 1 0 0 1 0 0 0", "times of keys ascend, got 1 behind 1"),

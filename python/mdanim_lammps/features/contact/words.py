@@ -11,10 +11,10 @@ from typing import Any
 
 from ...errors import Span
 from ...scene.formatting import whole
+from ...scene.holding import all_held
 from ...scene.limits import Limit
 from ...scene.naming import objects_by_name, pairs_of
 from ...scene.schema import Block, Observable, Rule, Words, setting
-from ...scene.shapes import holds_all
 
 CONTACT_STIFFNESS = Limit(
     "contact-stiffness",
@@ -180,7 +180,7 @@ def check(v: Any, top: Mapping, held: Mapping) -> None:
 
 def _check_restitution(v: Any, held: Mapping) -> None:
     """Blows of what is rigid or held alone have a restitution that can be promised."""
-    hard = {s.name for s in held["solids"] if _is_rigid(s) or holds_all(s.hold)}
+    hard = {s.name for s in held["solids"] if _is_rigid(s) or all_held(s)}
     way_out = "set damping in it, or write elasticity rigid"
     for solid in held["solids"]:
         if solid.restitution is not None and solid.name not in hard:

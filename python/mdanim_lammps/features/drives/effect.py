@@ -8,12 +8,16 @@ import math
 from ...effects.context import Verdict
 from ...effects.effect import Effect
 from ...effects.fields import column
+from ...reach import Throw
 from . import motion
+from .words import lets_go
 
 HOME = column("home", "m", shape=(3,))
 """Places at the start."""
 WORK = "work"
 """Column of the ledger: energy that drives have brought in."""
+GUIDED = "guided"
+"""Group of all that is driven at the start, also of what is released."""
 MOTIONS = "motions"
 """Table of motions."""
 IN_A_PERIOD = 40.0
@@ -34,7 +38,8 @@ class Drives(Effect):
     def called_for(self, scene, reach):
         for solid in scene.solids:
             if motion.is_driven(solid):
-                return Verdict(self.name, True, f"{solid.name} is driven", motion.place_of(solid))
+                what = "driven" if solid.drive or solid.key_points else "released"
+                return Verdict(self.name, True, f"{solid.name} is {what}", motion.place_of(solid))
         return Verdict(self.name, False, "nothing is driven")
 
     def acts_on(self, context):
@@ -46,12 +51,18 @@ class Drives(Effect):
     def passes(self, scene):
         return motion.passing(scene)
 
+    def throws(self, scene):
+        return {m: Throw(motion.ways(scene)[m].speed, 0.0) for m, solid in enumerate(scene.solids) if lets_go(solid)}
+
     def columns(self, context):
         return {HOME: context.system.position}
 
     def commands(self, context):
-        group = "driven"
-        return [f"fix {self.fix} {group} mdanim/drive home d2_{HOME.name} since 0 motions table:{MOTIONS}"]
+        group, made, release = "driven", [], ""
+        if context.system.pinned.any():
+            group, made = GUIDED, [f"group {GUIDED} variable driven"]
+            release = "release leapfrog leave driven "
+        return [*made, f"fix {self.fix} {group} mdanim/drive home d2_{HOME.name} since 0 {release}motions table:{MOTIONS}"]
 
     def tables(self, context):
         lines = (f"{m + 1} {motion.words_of(s)}\n" for m, s in enumerate(context.solids) if motion.is_driven(s))

@@ -24,13 +24,13 @@ MOST_PASSING = 10**5
 
 
 def is_driven(solid: Any) -> bool:
-    """Whether something moves what is held of an object."""
-    return bool(solid.drive or solid.key_points)
+    """Whether something moves what is held of an object, or lets it go."""
+    return bool(solid.drive or solid.key_points or solid.release is not None)
 
 
 def place_of(solid: Any) -> Span | None:
     """Where the scene says that it is driven."""
-    return solid.spans.get("drive", solid.spans.get("key"))
+    return next((solid.spans[word] for word in ("drive", "key", "release") if word in solid.spans), None)
 
 
 def velocity_of(solid: Any) -> np.ndarray:
@@ -68,7 +68,8 @@ def words_of(solid: Any) -> str:
     if keys := keys_of(solid):
         found.append(f"pivot {in_full(solid.position)}")
         found += [f"key {k.time!r} {in_full(np.subtract(k.at, solid.position))} {in_full(k.rotation)}" for k in keys]
-    return " ".join(found) or "velocity 0.0 0.0 0.0"
+    found = found or ["velocity 0.0 0.0 0.0"]
+    return " ".join(found if solid.release is None else [*found, f"until {solid.release!r}"])
 
 
 # --- which go through each other ---
@@ -116,7 +117,13 @@ def _is_straight(drive: Any) -> bool:
 @once_for(lambda scene: scene)
 def ways(scene: Any) -> dict[int, Drive]:
     """`bounds` of all driven objects until the end of a scene, by their numbers."""
-    return {m: bounds(solid, scene.control.time) for m, solid in enumerate(scene.solids) if is_driven(solid)}
+    time = scene.control.time
+    return {m: bounds(solid, _driven_until(solid, time)) for m, solid in enumerate(scene.solids) if is_driven(solid)}
+
+
+def _driven_until(solid: Any, time: float) -> float:
+    """How long an object is driven before this time [s]."""
+    return time if solid.release is None else min(time, solid.release)
 
 
 def bounds(solid: Any, time: float) -> Drive:
@@ -145,6 +152,7 @@ def bounds(solid: Any, time: float) -> Drive:
 def quickest(solid: Any, time: float) -> float:
     """Highest frequency in its motion until a time [s]: of oscillations, of turns by drives and keys, and of keys, which are half
     a period apart [Hz]."""
+    time = _driven_until(solid, time)
     keys = keys_of(solid)
     turning = float(np.linalg.norm(turn_of(solid)[0])) + KeyPath(keys, solid.position, time).turning
     between = [0.5 / (then.time - now.time) for now, then in pairwise(keys) if now.time < time]

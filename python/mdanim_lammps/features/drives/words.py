@@ -8,9 +8,9 @@ from dataclasses import dataclass, replace
 from typing import Any, ClassVar
 
 from ...scene.formatting import number, vector
-from ...scene.schema import OneOf, Vector, setting
+from ...scene.schema import OneOf, Rule, Vector, setting
 
-SWITCHES = {"drives": "an object's `drive ...` or `key ...`"}
+SWITCHES = {"drives": "an object's `drive ...`, `key ...` or `release ...`"}
 
 LEDGER = {"work": "what drives have brought in so far [J]"}
 """Columns of the ledger."""
@@ -105,9 +105,20 @@ class DriveWords:
         "What is held of it follows a smooth path: its centre is there at time T, turned by the angle from how it is at the "
         "start. Before the first key it goes there from its `position`, behind the last one it stays. `drive` adds to it.",
         "1 s at (0, 0, 0.5) m", default=(), name="key", many=True, codec=OneOf(DriveKey), after="drive")  # fmt: skip
+    release: float | None = setting(
+        "<T:s>",
+        "From this time on what is held of it is free, and goes on with the velocity that it has. Until then it stands, or goes "
+        "as `drive` and `key` say.",
+        "1 s", Rule.NOT_NEGATIVE, default=None, after="key")  # fmt: skip
+    """[s]; None is never."""
 
 
 OBJECT = DriveWords
+
+
+def lets_go(solid: Any) -> bool:
+    """Whether what is held of an object moves by forces later on."""
+    return solid.release is not None and bool(solid.hold)
 
 
 # --- checks: v is the scene/validate.Validator ----------------------------------------------------------------------

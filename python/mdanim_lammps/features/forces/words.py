@@ -8,8 +8,9 @@ from dataclasses import dataclass, replace
 from typing import Any, ClassVar
 
 from ...scene.formatting import number
+from ...scene.holding import all_held
 from ...scene.schema import OneOf, Vector, setting
-from ...scene.shapes import Rope, holds_all
+from ...scene.shapes import Rope
 
 SWITCHES = {"forces": "an object's `force` or `torque`"}
 
@@ -73,7 +74,7 @@ def check_object(v: Any, block: Any, solid: Any) -> Any:
 
 
 def _check(v: Any, s: Any, word: str, one: Push, solid: Any) -> None:
-    if holds_all(solid.hold):
+    if all_held(solid):
         cause = f"{solid.name} is held as a whole, so a {word} does not move it"
         v.problem(s.span(), cause, f"leave the {word} out, or write drive velocity (0.5, 0, 0) m/s, or hold a part of it")
     if word == "torque" and isinstance(solid.shape, Rope):

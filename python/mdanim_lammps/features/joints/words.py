@@ -11,9 +11,9 @@ from typing import Any
 
 from ...errors import Span
 from ...scene.formatting import number, say, whole
+from ...scene.holding import all_held
 from ...scene.naming import objects_by_name
 from ...scene.schema import Block, Codec, Observable, Rule, Vector, Words, setting
-from ...scene.shapes import holds_all
 from ...scene.units import NONE, Scalar, dimension, fitting, magnitude, show, unit
 
 WORLD = "world"
@@ -307,7 +307,7 @@ def check(v: Any, top: Mapping, held: Mapping) -> None:
     """Something that a joint joins can move."""
     solids = held["solids"]
     by_name = objects_by_name(s.name for s in solids)
-    moves = [not holds_all(s.hold) for s in solids]
+    moves = [not all_held(s) for s in solids]
     for joint in held["joints"]:
         ends = [by_name.get(name, ()) for name in (joint.first, joint.second)]
         if not any(moves[m] for of in ends for m in of) and all(ends[: 1 if joint.second == WORLD else 2]):

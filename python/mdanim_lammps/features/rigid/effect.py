@@ -79,7 +79,8 @@ class RigidMotion(Effect):
         fixes = []
         for part in touching.parts(context):
             groups[part.fix] = part.bodies
-            words = f" {touching.words(context, part, f'table:{SHAPES}-{part.fix}')}" if part.shapes.any() else ""
+            words = "".join(f" {word}" for word in touching.guides(context)) if touching.released(context, part) else ""
+            words += f" {touching.words(context, part, f'table:{SHAPES}-{part.fix}')}" if part.shapes.any() else ""
             fixes.append(f"fix {part.fix} {part.fix} mdanim/rigid inertia table:{INERTIA}-{part.fix}{words}")
         return [*(f"group {name} molecule {molecule_ranges(solids)}" for name, solids in groups.items()), *fixes]
 
@@ -123,11 +124,7 @@ class RigidMotion(Effect):
         return tuple(TAKEN) if _may_touch(scene) else ()
 
     def sources(self, scene):
-        return (
-            (WORK,)
-            if _may_touch(scene) and any(e.of(scene).guides and e.of(scene).drives(scene) for e in features.effects())
-            else ()
-        )
+        return (WORK,) if any(e.of(scene).guides and e.of(scene).drives(scene) for e in features.effects()) else ()
 
     def lost(self, readings):
         scene = readings.context.scene

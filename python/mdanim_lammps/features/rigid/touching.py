@@ -80,6 +80,17 @@ def guided(context: Context) -> np.ndarray:
     return context.system.held_whole & np.array([name in names for name in context.system.names], bool)
 
 
+def released(context: Context, part: Part) -> bool:
+    """Whether a fix moves some of the bodies of a part until it lets them go."""
+    pinned = np.logical_or.reduceat(context.system.pinned, context.system.first[:-1])
+    return bool((part.bodies & pinned).any())
+
+
+def guides(context: Context) -> list[str]:
+    """Words that name the fixes that tell where driven solids are."""
+    return [f"drive {fix}" for fix in sorted(set(context.reach.acting.guided.values()))]
+
+
 def meets_planes(context: Context) -> np.ndarray:
     """Solids that move and touch planes by their features, bool, shape (M,)."""
     system = context.system
@@ -145,9 +156,8 @@ def words(context: Context, part: Part, shapes: str) -> str:
     found = [f"shapes {shapes} contact {omega(context)!r} {ONSET * frequency(context).thin!r}"]
     found += ["objects"] if part.objects else []
     found += [f"plane {'xyz'[p.axis]} {'lo' if p.sign > 0 else 'hi'} {float(p.at)!r}" for p in planes]
-    drives = {context.reach.acting.guided[m] for m in sorted(context.reach.acting.guided)}
-    if part.objects and (guided(context) & part.shapes).any():
-        found += [f"drive {fix}" for fix in sorted(drives)]
+    if part.objects and (guided(context) & part.shapes).any() and not released(context, part):
+        found += guides(context)
     if part.objects:
         found += [f"exclude {i + 1} {j + 1}" for i, j in context.passing if part.shapes[i] and part.shapes[j]]
         found += [f"pair {i + 1} {j + 1} {mu!r} {beta!r}" for (i, j), (mu, beta) in _pair_laws(context, part).items()]

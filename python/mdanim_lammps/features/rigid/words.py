@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from ...scene.formatting import say
+from ...scene.holding import all_held
 from ...scene.shapes import Box, holds_all
 
 SWITCHES = {"rigid": "an object's `elasticity rigid`"}
@@ -72,7 +73,7 @@ def check(v: Any, top: Mapping, held: Mapping) -> None:
 def _check_thickness(v: Any, held: Mapping) -> None:
     """Corners of a cuboid that touches by its features are apart."""
     solids = held["solids"]
-    if not any(isinstance(s.elasticity, Rigid) and not holds_all(s.hold) for s in solids):
+    if not any(isinstance(s.elasticity, Rigid) and not all_held(s) for s in solids):
         return
     for solid in (s for s in solids if isinstance(s.shape, Box)):
         thin, size = min(solid.shape.size), math.hypot(*solid.shape.size)

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...bodies import BodyKind, all_held
+from ...bodies import BodyKind, lets_go
 from ...model.build import NothingHeld, caught_in_box
 from ...model.model import Layer, Model, Surface
 from ...model.shapes import mass
@@ -59,7 +59,7 @@ class RopeBody(BodyKind):
         share[[0, -1]] = 0.5
         m = mass(solid) * share / links
         held = held_particles(solid, x)
-        if held.all():
+        if held.all() and not lets_go(solid):
             pair, of_spring = pair[:0], of_spring[:0]
         kind, constants = types(np.column_stack([of_spring[:, :2], reduced_mass(m, pair), of_spring[:, 2]]))
         velocity = solid.velocity + np.cross(solid.spin, x - solid.position)
@@ -96,7 +96,7 @@ def _shared(shared, thickness: float, length: float, links: int):
 
 def held_particles(solid, x: np.ndarray) -> np.ndarray:
     """Particles [m], shape (N, 3), in any ``hold`` of a rope, bool, shape (N,). Raises NothingHeld."""
-    held = np.full(len(x), all_held(solid))
+    held = np.zeros(len(x), bool)
     for hold in solid.hold:
         if isinstance(hold, HoldEnds):
             held[0] |= hold.start
@@ -111,6 +111,7 @@ def held_particles(solid, x: np.ndarray) -> np.ndarray:
             held |= caught
         else:
             assert isinstance(hold, HoldAll)
+            held[:] = True
     return held
 
 
