@@ -94,7 +94,10 @@ def test_what_is_driven_covers_nothing():
 
 @pytest.mark.parametrize(
     ("names", "words", "told"),
-    [(["motor"], {"table": ""}, "nothing of table is held"), (["crank", "motor"], {}, "table is driven by crank and by motor")],
+    [
+        (["motor"], {"table": ""}, "nothing of table is held, so nothing of it can be driven or released"),
+        (["crank", "motor"], {}, "table is driven by crank and by motor"),
+    ],
 )
 def test_what_cannot_be_driven_is_refused(driven, names, words, told):
     """With the place of the object, and a way out."""
