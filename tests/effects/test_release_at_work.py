@@ -44,7 +44,7 @@ def off(rows: list[dict]) -> float:
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_what_is_let_go_falls(prepared, kind):
-    """It stands until then, and falls by g t^2/2 to a step; the ledger closes, with its drive's work 0."""
+    """It stands until then, and falls by g t^2/2 to a step; the ledger closes, and its drive does no work."""
     ready = prepared(GRAVITY + KINDS[kind] + "  release 0.1 s }\ncontrol { time 0.3 s }\n")
     rows, places, velocities = rows_of(ready, 3)
     dt = ready.certificate.timestep
@@ -52,7 +52,8 @@ def test_what_is_let_go_falls(prepared, kind):
     assert np.array_equal(places[0], places[1]) or np.abs(places[1] - places[0]).max() < 0.5 * G * dt * dt
     assert places[0][2] - places[3][2] == pytest.approx(0.5 * G * (end - 0.1) ** 2, abs=0.6 * G * 0.2 * dt)
     assert velocities[3] == pytest.approx([0.0, 0.0, -G * (end - 0.1)], abs=G * dt)
-    assert off(rows) < 1e-3 and abs(rows[-1]["work"]) < 1e-9
+    # the energy of a rigid body is that of the velocities half a step before and after, which is m (g dt/2)^2/2 less
+    assert off(rows) < 1e-3 and abs(rows[-1]["work"]) < 0.13 * ready.system.mass.sum() * (G * dt) ** 2
 
 
 @pytest.mark.parametrize("kind", ["soft", "hard", "rigid"])
