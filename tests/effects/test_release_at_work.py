@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What is held, or driven, and released: it falls and flies from then on, keeps its motion, and the ledger closes."""
+"""Release of what is held or driven: it falls and flies from then on, keeps its motion, and the ledger closes."""
 
 import numpy as np
 import pytest
