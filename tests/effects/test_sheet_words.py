@@ -111,3 +111,15 @@ def test_its_spacing_is_its_own():
     alone, beside = (plan_spacing(parse_scene(text)).of for text in (BOX + "control { time 1 s }", BOX + cloth()))
     assert beside[0] == alone[0] and beside[1] == pytest.approx(np.sqrt(0.8 / 1200))
     assert plan_spacing(parse_scene(cloth("sheet (1, 0.8) m thickness 10 cm"))).of == pytest.approx([0.1])
+
+
+@pytest.mark.parametrize("kind", ["sheet", "rope"])
+def test_friction_between_what_never_touches_is_not_asked_for(kind):
+    """A rope and a sheet, or two ropes."""
+    ends = "from (0, {y}, 1.01) m to (1, {y}, 1.01) m"
+    rope = f"object line {{{{ shape rope {ends} thickness 1 cm  density 1000  elasticity 1 MPa  {{more}} }}}}\n"
+    rough = cloth(more="friction 0.5") if kind == "sheet" else rope.format(y=0.02, more="friction 0.5") + "control { time 1 s }\n"
+    text = rope.format(y=0, more="").replace("line", "other") + rough + "gravity (0, 0, -9.81)\n"
+    ready = prepare(parse_scene(text + BOX.replace("MPa", "MPa  friction 0.5")))
+    told = [p.message for p in (*ready.warnings, *ready.certificate.notes)]
+    assert not [said for said in told if "works as 0 against other" in said and " of box " not in said]

@@ -106,14 +106,14 @@ def one_sided(scene: SceneRecord, system: System) -> list[Problem]:
     """
     solids, own = scene.solids, np.array(frictions(scene))
     rough = np.array([bool(s.friction) for s in solids])
-    bare = np.array([s.friction is None for s in solids]) & (own == 0.0)
-    if not rough.any() or not bare.any():
+    smooth = np.array([s.friction is None for s in solids]) & (own == 0.0)
+    if not rough.any() or not smooth.any():
         return []
     told = {(i, j) for i, j, _, _ in pair_rules(scene, system.names)}
     low, high = system.bounds(system.position)
 
     def counts(i: np.ndarray, j: np.ndarray) -> np.ndarray:
-        right = rough[i] & bare[j] & ~(system.still[i] & system.still[j])
+        right = rough[i] & smooth[j] & ~(system.still[i] & system.still[j]) & ~(system.bare[i] & system.bare[j])
         for k in np.flatnonzero(right).tolist() if told else ():
             right[k] = (min(i[k], j[k]), max(i[k], j[k])) not in told
         return right
