@@ -16,6 +16,7 @@
 #include "lammps/fix_mdanim_leapfrog.h"
 #include "lammps/fix_mdanim_liquid.h"
 #include "lammps/fix_mdanim_rigid.h"
+#include "lammps/fix_mdanim_tear.h"
 #include "lammps/fix_mdanim_wall.h"
 #include "lammps/verlet_mdanim.h"
 
@@ -134,6 +135,7 @@ MDANIM_EXPORT void lammpsplugin_init(void *handle_of_lammps, void *handle, void 
       style<FixMdanimForce>("fix", "mdanim/force", "forces and torques on objects as a whole"),
       style<FixMdanimLiquid>("fix", "mdanim/liquid", "liquid that solids float and sink in"),
       style<FixMdanimRigid>("fix", "mdanim/rigid", "objects that do not deform"),
+      style<FixMdanimTear>("fix", "mdanim/tear", "springs that break where they are stretched too far"),
       style<FixMdanimWall>("fix", "mdanim/wall", "walls that withstand any impact"),
       style<VerletMdanim>("run", "verlet/mdanim", "verlet with springs, gravity and leap-frog in one pass"),
   };

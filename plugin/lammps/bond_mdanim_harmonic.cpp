@@ -138,7 +138,9 @@ void BondMdanimHarmonic::compute(int eflag, int vflag)
   ev_init(eflag, vflag);
   const bool other_lists = neighbor->ago == 0 || made_after != neighbor->ncalls;    // made in this step, or between two passes
   made_after = neighbor->ncalls;
-  if (other_lists && rows.update_rows(update->setupflag || bonds_are_swapped)) made = ++versions;
+  if ((other_lists || bonds_are_changed) && rows.update_rows(update->setupflag || bonds_are_swapped || bonds_are_changed))
+    made = ++versions;
+  bonds_are_changed = false;
   refresh_coefficients();
 
   std::vector<Vec3> *dashpots = nullptr;

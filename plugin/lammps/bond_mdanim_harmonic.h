@@ -34,6 +34,7 @@ class BondMdanimHarmonic : public Bond, public mdanim::PassSprings {
 
   void take(mdanim::SpringRows &&upper_rows);    // see BondRows
 
+  void change_bonds() { bonds_are_changed = true; }    // some fix has: rows are made anew before the next forces
   const std::vector<mdanim::Spring> &springs() const { return spring; }    // by bond type
   bool are_given() const { return rows.are_given(); }
   double wall_seconds() const { return seconds; }    // of this rank, as the next
@@ -60,6 +61,7 @@ class BondMdanimHarmonic : public Bond, public mdanim::PassSprings {
   bool damped = false;                      // some spring has a dashpot
   bool coefficients_may_differ = false;     // since their laws were made
   bool bonds_are_swapped = false;           // some fix changes partners during a run
+  bool bonds_are_changed = false;           // since rows were made
   mdanim::BondRows rows;
   bigint made = 0;           // version of rows and coefficients
   bigint made_after = -1;    // number of the lists that they were made after

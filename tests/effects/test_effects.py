@@ -54,6 +54,9 @@ air { }
 """
 EVERY = with_every_effect(FULL)
 """The same with the words of all further effects, whose lines are those where they stand."""
+ROPE = "object w { shape rope from (1, 0, 1) to (1, 0, 2) thickness 0.01 mass 1 elasticity 1e6\ntear-strain 0.1 }\n"
+BESIDE = {"tearing": re.sub(r"liquid w \{[^}]*\}\n", ROPE, FULL)}
+"""Scenes for effects of objects that a liquid refuses beside it."""
 BARE = "object a {\n shape sphere 0.1\n position (0, 0, 0)\n mass 1\n elasticity 1e5\n}\ncontrol { time 1 }\n"
 LINES = {
     "springs": 8,
@@ -71,6 +74,7 @@ LINES = {
     "drives": 30,
     "joint": 32,
     "air": 33,
+    "tearing": 19,
 }
 
 
@@ -83,7 +87,7 @@ def verdicts(text):
 @pytest.mark.parametrize("effect", [e.name for e in features.effects()])
 def test_each_effect_is_called_for_by_its_line(effect):
     """Switch on with the line that calls for it."""
-    verdict = verdicts(EVERY)[0][effect]
+    verdict = verdicts(BESIDE.get(effect, EVERY))[0][effect]
     assert verdict.on and verdict.span.line == LINES.get(effect, verdict.span.line)
 
 
@@ -106,7 +110,7 @@ def test_each_effect_is_off_without_cause(effect):
 @pytest.mark.parametrize("effect", [e.name for e in features.effects()])
 def test_a_needed_effect_switched_off_is_a_warning(effect):
     """Say what will look wrong."""
-    found, warnings = verdicts(EVERY + f"effects {{ {effect} off }}\n")
+    found, warnings = verdicts(BESIDE.get(effect, EVERY) + f"effects {{ {effect} off }}\n")
     assert not found[effect].on
     assert [w.severity for w in warnings] == ["warning"]
     assert next(e for e in features.effects() if e.name == effect).if_off in warnings[0].hint

@@ -214,8 +214,9 @@ class Cut:
     def surfaces(self, frame: int) -> list[tuple[np.ndarray, np.ndarray]]:
         """Vertices [m] and outward unit normals of each of `bodies` in a frame of the trajectory, shape (V, 3) each."""
         position = self.position(frame)
-        vertices = self._mesh.vertices(position)
-        normals = self._mesh.normals(vertices, position)[self._order]
+        gone = self.trajectory.gone(frame)
+        vertices = self._mesh.vertices(position, gone)
+        normals = self._mesh.normals(vertices, position, gone)[self._order]
         vertices = vertices[self._order]
         made = [(vertices[a:b], normals[a:b]) for a, b in zip(self._first, self._first[1:])]
         return made + [shape_of(one, self.trajectory, frame) for one in self._drawn]

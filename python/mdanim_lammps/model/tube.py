@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
@@ -11,6 +11,8 @@ SIDES = 10
 """Vertices around."""
 FEW = 250
 """Links up to which there is a ring in the middle of each, besides those at particles."""
+OF_TORN = 3
+"""Rings for each link of a line that may tear: two between particles, of which either side gets one where the link is gone."""
 CAP = (0.5, 0.85)
 """Rings of an end, a half of a ball: how far out, over the radius."""
 
@@ -31,6 +33,13 @@ class Tubes:
             self._parts.append((particles, place, ring.reshape(-1), vertex[:, 1:], slice(first, first + len(vertex))))
             first += len(vertex)
         self.count = first
+
+    def torn(self, position: np.ndarray, gone: np.ndarray) -> Iterator[tuple[slice, np.ndarray]]:
+        """Vertices of tubes that are torn [m], shape (n, 3), with their rows, for particle positions [m], shape (N, 3), and which
+        of them have lost the link to the next one, bool, shape (N,)."""
+        for particles, place, ring, way, rows in self._parts:
+            if gone[particles][:-1].any():
+                yield rows, in_pieces(position[particles], gone[particles][:-1], place, ring, way)
 
     def around(self, position: np.ndarray) -> np.ndarray:
         """From sums of particle positions to vertices [m], shape (V, 3), for particle positions [m], shape (N, 3)."""
@@ -93,10 +102,35 @@ def frames(along: np.ndarray) -> np.ndarray:
     return np.stack([u, np.cross(along, u), along], axis=1)
 
 
-def make_tube(links: int, radius: float) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """A tube of this radius [m] around so many links, with round ends: triangles, particles and weights of the line at each
-    vertex, and vertices as `Tubes` takes them; shapes (T, 3), (V, 4), (V, 4), (V, 4)."""
-    each = 2 if links <= FEW else 1
+def in_pieces(chain: np.ndarray, gone: np.ndarray, place: np.ndarray, ring: np.ndarray, way: np.ndarray) -> np.ndarray:
+    """Vertices of a tube around a line of particles [m], shape (V, 3), whose links are ``gone`` in part, bool, shape (L,).
+
+    Each piece is a line of its own. Of the rings between the particles of a link that is gone, those of either half are a point
+    at their particle: they close the piece, and what is between them has no area.
+    """
+    links = len(gone)
+    link = np.minimum(place.astype(np.int64), links - 1)
+    part = place - link
+    open_ = gone[link] & (part > 0.0) & (part < 1.0)
+    at = np.where(open_, link + (part >= 0.5), place)
+    centre, frame = np.empty((len(place), 3)), np.tile(np.eye(3), (len(place), 1, 1))
+    cut = np.flatnonzero(gone)
+    for a, b in zip([0, *(cut + 1).tolist()], [*cut.tolist(), links]):
+        own = np.flatnonzero((at >= a) & (at <= b))
+        if a == b:
+            centre[own] = chain[a]
+            continue
+        index, weight, _ = smooth(b - a, at[own] - a)
+        centre[own] = np.einsum("pk,pkd->pd", weight, chain[a : b + 1][index])
+        frame[own] = frames(slopes(chain[a : b + 1], at[own] - a))
+    return centre[ring] + np.einsum("va,vad->vd", np.where(open_[ring], 0.0, 1.0)[:, None] * way, frame[ring])
+
+
+def make_tube(links: int, radius: float, each: int = 0) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """A tube of this radius [m] around so many links, with ``each`` rings for a link, 0 for as many as show, and round ends:
+    triangles, particles and weights of the line at each vertex, and vertices as `Tubes` takes them; shapes (T, 3) and
+    three of (V, 4)."""
+    each = each or (2 if links <= FEW else 1)
     place = np.arange(each * links + 1) / each
     ends = [(place[0], -c, np.sqrt(1 - c * c)) for c in CAP[::-1]], [(place[-1], c, np.sqrt(1 - c * c)) for c in CAP]
     rings = np.array([*ends[0], *((s, 0.0, 1.0) for s in place), *ends[1]])

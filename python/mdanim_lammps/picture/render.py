@@ -90,11 +90,12 @@ class Painter:
 
     def frame(self, index: int) -> np.ndarray:
         """Picture of a frame, uint8 RGB, shape (height, width, 3), first row on top."""
-        position = self.trajectory.position(index)
-        vertices = self._mesh.vertices(position)
+        position, gone = self.trajectory.position(index), self.trajectory.gone(index)
+        vertices = self._mesh.vertices(position, gone)
         time = float(self.trajectory.times[index])
         points, normals = self._more.show(index)
-        self._surface.move(np.concatenate([vertices, points]), np.concatenate([self._mesh.normals(vertices, position), normals]))
+        shown = self._mesh.normals(vertices, position, gone)
+        self._surface.move(np.concatenate([vertices, points]), np.concatenate([shown, normals]))
         if self._tank:
             self._tank.show(index, position, vertices, self._mesh.triangle)
         self._marks.show(position)

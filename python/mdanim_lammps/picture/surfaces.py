@@ -42,11 +42,12 @@ class ShadedMesh:
     tangent: tuple[Weights, ...]
     """Weights of these in two tangents at each of the coarse ones, shape (C, S) each."""
 
-    def vertices(self, position: np.ndarray) -> np.ndarray:
-        """Vertex positions [m], shape (V, 3), for stored particle positions [m], shape (N, 3)."""
-        return self.carry.places(position)
+    def vertices(self, position: np.ndarray, gone: np.ndarray | None = None) -> np.ndarray:
+        """Vertex positions [m], shape (V, 3), for stored particle positions [m], shape (N, 3), of which some have lost the link
+        to the next one (Trajectory.gone)."""
+        return self.carry.places(position, gone)
 
-    def normals(self, vertices: np.ndarray, position: np.ndarray) -> np.ndarray:
+    def normals(self, vertices: np.ndarray, position: np.ndarray, gone: np.ndarray | None = None) -> np.ndarray:
         """Outward unit normals, shape (V, 3), of ``vertices`` that were carried by ``position``.
 
         The mean over a vertex's triangles, weighted by area; where triangles were made fewer, those of the fine surface, so that
@@ -57,7 +58,7 @@ class ShadedMesh:
         else:
             normal = np.empty_like(vertices)
         if len(self.coarse):
-            fine = self.fine.places(position)
+            fine = self.fine.places(position, gone)
             normal[self.coarse] = np.cross(*(t @ fine for t in self.tangent))
         length = np.linalg.norm(normal, axis=1, keepdims=True)
         return np.divide(normal, length, out=np.zeros_like(normal), where=length > 0.0)

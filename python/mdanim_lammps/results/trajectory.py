@@ -20,6 +20,7 @@ from ..scene.scene import Save, SceneRecord
 from .frame_reader import EVERYTHING, FrameReader
 from .html import html_table
 from .trajectory_file import NOT_WRITTEN, find_trajectory, frame_shapes, open_trajectory, read_metadata, row_checksum
+from .trajectory_metadata import links_gone
 from .untrusted import check_frames, check_hdf5, check_metadata, check_steps
 
 if TYPE_CHECKING:
@@ -184,6 +185,10 @@ class Trajectory(*TRACKS):  # type: ignore[misc]  # features are found when the 
             raise OutputError(f"{self.path}: damaged: a row of {name} in frame {frame} is of objects that are not there")
         return found
 
+    def gone(self, frame: int) -> np.ndarray | None:
+        """Which stored particles have lost the spring to the next one, bool, shape (N,); None where none may."""
+        return links_gone(self.metadata, lambda name: self._read(name, frame))
+
     def surface(self, frame: int) -> pyvista.PolyData:
         """Surfaces of all objects in one frame [m], as one mesh.
 
@@ -193,7 +198,7 @@ class Trajectory(*TRACKS):  # type: ignore[misc]  # features are found when the 
         import pyvista
 
         skin = self.metadata.skin
-        mesh = pyvista.PolyData.from_regular_faces(skin.vertices(self.position(frame)), skin.triangle)
+        mesh = pyvista.PolyData.from_regular_faces(skin.vertices(self.position(frame), self.gone(frame)), skin.triangle)
         mesh.cell_data["object"] = skin.object_of_triangle
         if any(self.metadata.colors):
             palette = np.array([_rgb(color) for color in self.metadata.colors], dtype=np.uint8)
@@ -359,7 +364,9 @@ class ObjectTrack:
         own = skin.object_of_triangle == self.index
         start = int(np.searchsorted(skin.object_of_vertex, self.index))
         end = int(np.searchsorted(skin.object_of_vertex, self.index, side="right"))
-        return pyvista.PolyData.from_regular_faces(skin.vertices(t.position(frame))[start:end], skin.triangle[own] - start)
+        return pyvista.PolyData.from_regular_faces(
+            skin.vertices(t.position(frame), t.gone(frame))[start:end], skin.triangle[own] - start
+        )
 
     def __repr__(self) -> str:
         return f"<ObjectTrack {self.name}: {self.particles.stop - self.particles.start} particles>"

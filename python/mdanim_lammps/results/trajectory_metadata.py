@@ -3,13 +3,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
 
-from ..effects.fields import OF_OBJECTS, Field
+from ..effects.fields import GONE, OF_OBJECTS, Field
 from ..effects.kept import KeptRecord, records_of
 from ..model.grid import Grid
 from ..model.model import Layer, Model, Surface
@@ -90,9 +90,23 @@ class Skin:
     paint: np.ndarray
     """These colours, uint8 RGB, shape (painted.sum(), 3)."""
 
-    def vertices(self, position: np.ndarray) -> np.ndarray:
-        """Vertex positions [m], shape (V, 3), for stored particle positions [m], shape (N, 3)."""
-        return self.carry.places(position)
+    def vertices(self, position: np.ndarray, gone: np.ndarray | None = None) -> np.ndarray:
+        """Vertex positions [m], shape (V, 3), for stored particle positions [m], shape (N, 3), of which some have lost the link
+        to the next one (`links_gone`)."""
+        return self.carry.places(position, gone)
+
+
+def links_gone(metadata: TrajectoryMetadata, value: Callable[[str], np.ndarray]) -> np.ndarray | None:
+    """Which stored particles have lost the spring to the next one in a frame, bool, shape (N,); None where no spring may be gone.
+    ``value`` reads a table of the frame by its name."""
+    of = next((field for field in metadata.fields if field.name == GONE and field.per == "bond"), None)
+    if of is None:
+        return None
+    first, second = np.searchsorted(metadata.id, metadata.bond).T
+    lost = first[(np.asarray(value(of.table)) > 0.0) & (second == first + 1)]
+    found = np.zeros(len(metadata.id), bool)
+    found[lost] = True
+    return found
 
 
 def stored_particles(model: Model, save: Save) -> np.ndarray:

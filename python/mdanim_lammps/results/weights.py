@@ -30,8 +30,9 @@ class Weights:
     def __len__(self) -> int:
         return len(self.first)
 
-    def places(self, position: np.ndarray) -> np.ndarray:
-        """Places [m], shape (V, 3), that hang on particles at these positions [m], shape (N, 3)."""
+    def places(self, position: np.ndarray, gone: np.ndarray | None = None) -> np.ndarray:
+        """Places [m], shape (V, 3), that hang on particles at these positions [m], shape (N, 3), of which some have lost the
+        link to the next one, bool, shape (N,)."""
         return self @ np.asarray(position, dtype=np.float64)
 
     def __matmul__(self, value: np.ndarray) -> np.ndarray:
@@ -61,11 +62,14 @@ class Carry(Weights):
     around: np.ndarray
     """Row of each vertex among those of the tubes, -1 for none, int64, shape (V,)."""
 
-    def places(self, position: np.ndarray) -> np.ndarray:
+    def places(self, position: np.ndarray, gone: np.ndarray | None = None) -> np.ndarray:
         position = np.asarray(position, dtype=np.float64)
         found = self @ position
         here = self.around >= 0
         found[here] += self.tubes.around(position)[self.around[here]]
+        for rows, vertices in () if gone is None else self.tubes.torn(position, gone):
+            torn = here & (self.around >= rows.start) & (self.around < rows.stop)
+            found[torn] = vertices[self.around[torn] - rows.start]
         return found
 
     def __getitem__(self, row: np.ndarray) -> Carry:

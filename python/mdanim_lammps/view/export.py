@@ -176,7 +176,7 @@ class _Frames:
 
     def _about(self, n: int, own: np.ndarray) -> np.ndarray:
         """Vertices of a frame about the centres of mass of their objects ``own`` [m], shape (V, 3)."""
-        return self.feed.vertices(self.feed.frames.value("position", n)) - self._moving(n)[own, :3]
+        return self.feed.vertices(self.feed.frames.value("position", n), self.feed.gone(n)) - self._moving(n)[own, :3]
 
     def pieces(self, news: dict, every: int) -> Iterator[bytes]:
         """Scene, then times, centres and velocities, positions and liquid of every n-th frame."""

@@ -35,6 +35,7 @@ from ..picture.rays import direction
 from ..picture.scenery import scenery
 from ..picture.surfaces import shaded_mesh
 from ..results.trajectory import Trajectory
+from ..results.trajectory_metadata import links_gone
 from ..results.untrusted import check_places
 from ..scene.render import Floor, Render
 
@@ -99,9 +100,14 @@ class Feed:
         """Close the trajectory."""
         self.frames.close()
 
-    def vertices(self, position: np.ndarray) -> np.ndarray:
-        """Vertices of all surfaces [m], shape (V, 3), for stored particles [m], shape (N, 3)."""
-        return self._carry.places(position)
+    def vertices(self, position: np.ndarray, gone: np.ndarray | None = None) -> np.ndarray:
+        """Vertices of all surfaces [m], shape (V, 3), for stored particles [m], shape (N, 3), of which some have lost the link
+        to the next one."""
+        return self._carry.places(position, gone)
+
+    def gone(self, n: int) -> np.ndarray | None:
+        """Which stored particles have lost the link to the next one in a frame, as Trajectory.gone."""
+        return links_gone(self.metadata, lambda name: self.frames.value(name, n))
 
     # --- the scene ----------------------------------------------------------------------------------------------
 
@@ -206,7 +212,7 @@ class Feed:
         """A frame. Raises OutputError where it is not there or damaged, IndexError."""
         frames = self.frames
         x, center, speed = (frames.value(name, n) for name in ("position", "center_of_mass", "center_of_mass_velocity"))
-        vertices = self.vertices(x)
+        vertices = self.vertices(x, self.gone(n))
         check_places(frames.path, vertices, center, speed, frame=n)
         low, size = self._boxes(vertices)
         scale = np.divide(STEPS, size, out=np.zeros_like(size), where=size > 0.0)

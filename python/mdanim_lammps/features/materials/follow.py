@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What follows from materials: settings of objects, and what ``explain`` says of each."""
+"""Consequences of materials: settings of objects, and texts of ``explain``."""
 
 from __future__ import annotations
 

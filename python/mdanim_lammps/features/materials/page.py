@@ -91,7 +91,7 @@ def rule(a: str, b: str) -> float:
 
 
 def explained() -> dict[str, str]:
-    """What ``explain`` says of each material."""
+    """Texts of ``explain`` by the names of materials."""
     return {name: _told(name, material) for name, material in MATERIALS.items()}
 
 

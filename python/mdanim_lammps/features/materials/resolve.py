@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What an object is made of, as settings of the object: those of its material that it has not itself and that suit it."""
+"""Settings of an object by its material: those that it has not itself and that suit it."""
 
 from __future__ import annotations
 
@@ -87,7 +87,7 @@ def _at(given: EvaluatedSetting, keyword: Any, value: Any) -> EvaluatedSetting:
 
 
 def _suited(block: EvaluatedBlock, found: Settings) -> Settings:
-    """Those that suit an object: its form of elasticity decides on damping and restitution."""
+    """Settings of a material that suit an object: its form of elasticity decides on damping and restitution."""
     found = dict(found)
     holds = [_kind(s) for s in block.settings.get("hold", ())]
     held = HoldAll in holds

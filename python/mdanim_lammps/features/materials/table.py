@@ -53,16 +53,16 @@ class Figure(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Material:
-    """What is known of a material; None where it says nothing."""
+    """Figures of a material; None where it says nothing."""
 
     about: str
     density: Figure
     elasticity: Figure
     friction: Figure
     restitution: Figure | None
-    """Of rigid and held objects."""
+    """The figure of rigid and held objects."""
     damping: Figure | None
-    """Of objects that deform."""
+    """The figure of objects that deform."""
     strength: Figure
     color: str
 

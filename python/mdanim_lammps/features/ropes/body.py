@@ -10,9 +10,10 @@ from ...model.build import NothingHeld, caught_in_box
 from ...model.model import Layer, Model, Surface
 from ...model.shapes import mass
 from ...model.springs import reduced_mass, types
-from ...model.tube import make_tube
+from ...model.tube import OF_TORN, make_tube
 from ...scene.formatting import say
 from ...scene.scene import Accuracy, HoldAll, HoldEnds, HoldWithin, Rope
+from ..tearing.words import tears
 from .chain import line_frame, links_of, places, springs
 from .words import is_rope
 
@@ -64,7 +65,8 @@ class RopeBody(BodyKind):
         kind, constants = types(np.column_stack([of_spring[:, :2], reduced_mass(m, pair), of_spring[:, 2]]))
         velocity = solid.velocity + np.cross(solid.spin, x - solid.position)
         velocity[held] = 0.0
-        frame, surface = shared.once(_shared, rope.thickness, rope.length, links)
+        rings = OF_TORN if tears(solid) else 0
+        frame, surface = shared.once(_shared, rope.thickness, rope.length, links, rings)
         return Model(
             name=solid.name,
             position=x,
@@ -85,10 +87,10 @@ class RopeBody(BodyKind):
         )
 
 
-def _shared(shared, thickness: float, length: float, links: int):
-    """Parts that ropes of one length, thickness and number of links share."""
+def _shared(shared, thickness: float, length: float, links: int, rings: int):
+    """Parts that ropes of one length, thickness and number of links share, and of rings that are drawn."""
     straight = Rope((0.0, 0.0, 0.0), (length, 0.0, 0.0), thickness, length)
-    triangle, index, weight, tube = make_tube(links, 0.5 * thickness)
+    triangle, index, weight, tube = make_tube(links, 0.5 * thickness, rings)
     for array in (triangle, index, weight, tube):
         array.setflags(write=False)
     return line_frame(straight, links), Surface(triangle, index, weight, tube=tube)

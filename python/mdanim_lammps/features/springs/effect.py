@@ -8,6 +8,7 @@ import numpy as np
 from ...bodies import all_held, kind_of
 from ...effects.context import Context, Verdict
 from ...effects.effect import Effect
+from ..tearing.gone import change_of_energy
 from .strength import strength, turning
 
 DASHPOTS = 0.44
@@ -75,7 +76,8 @@ class Springs(Effect):
         return turning(envelope)
 
     def energy(self, readings):
-        return readings.elastic_energy() - float(readings.system.preload_energy.sum())
+        stored = float(readings.system.preload_energy.sum())
+        return readings.elastic_energy() - stored + change_of_energy(readings)
 
     def clocks(self, readings):
         return {"springs": readings.bond_seconds() / (1.0 + time_of_dashpots(readings.context))}

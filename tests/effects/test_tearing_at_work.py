@@ -1,0 +1,135 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Ropes that tear, against closed forms: what remains is a rope, where and when it tears, and the energy that is gone."""
+
+import math
+
+import numpy as np
+import pytest
+from mdanim_lammps.engine.instance import Instance
+from mdanim_lammps.errors import SceneError
+from mdanim_lammps.results.ledger import Ledger
+from mdanim_lammps.results.trajectory import Trajectory
+from mdanim_lammps.run.energy import energies
+from mdanim_lammps.run.loop import simulate
+from mdanim_lammps.scene.parse import parse_scene
+
+ROPE = """object cord {{
+  shape {shape} from (0, 0, 3) m to (0, 0, 2) m thickness {thick} cm  resolution {h} cm
+  elasticity {young} MPa  density 1000 kg/m^3  hold start  {more}
+}}
+control {{ time 1 s }}
+"""
+HUNG = """gravity (0, 0, -9.81) m/s^2
+object cord {{
+  shape {shape} from (0, 0, 3) m to (0, 0, 2) m thickness {thick} cm  resolution {h} cm
+  elasticity {young} MPa  density 1000 kg/m^3  hold start  damping 0.2  tear-strain {e}
+}}
+object ball {{ shape sphere 10 cm  position (0, 0, 1.9) m  mass {mass} kg  elasticity rigid }}
+joint ball cord ball {{ at (0, 0, 2) m }}
+control {{ time {time} s }}
+"""
+
+
+@pytest.mark.parametrize("shape", ["rope", "chain"])
+@pytest.mark.parametrize(("thick", "h"), [(1, 5), (3, 4), (4, 4)])
+@pytest.mark.parametrize("cut", [[0], [7], [7, 8], [7, 9], [1, 4], [-1], [0, 2, 3, 5, -1]], ids=str)
+def test_pieces_are_free_of_stress(prepared, shape, thick, h, cut):
+    """Without load no force acts on any particle, and there is no energy, wherever a rope of any thickness is torn."""
+    ready = prepared(ROPE.format(shape=shape, thick=thick, h=h, young=20, more="tear-strain 0.1"))
+    low, high = ready.system.spring.T
+    for link in (c % int(low.max() + 1) for c in cut):
+        ready.plan.columns["torn"][(low <= link) & (high > link)] = 1.0
+    with Instance(ready.plan) as instance:
+        instance.setup()
+        pull = 20e6 * math.pi / 4 * (thick / 100) ** 2
+        assert np.abs(instance.array("f")).max() < 1e-12 * pull
+        found = energies(instance, ready.system.center_of_mass(instance.array("x")))
+    assert abs(found["elastic"]) < 1e-12 * pull and found["torn"] == 0.0
+
+
+def watched(ready, seconds, looks):
+    """Largest strain of a link, share that is torn, and energies, at even times."""
+    strain, torn, told = [], [], []
+    system, (i, j) = ready.system, ready.system.spring.T
+    link = j - i == 1
+    with Instance(ready.plan) as instance:
+        instance.setup()
+        for _ in range(looks):
+            instance.run(max(1, round(seconds / looks / ready.certificate.timestep)))
+            x, gone = instance.array("x"), instance.column("torn") > 0.0
+            stretch = np.linalg.norm(x[i] - x[j], axis=1) / system.unloaded - 1.0
+            strain.append(stretch[link & ~gone].max())
+            torn.append(gone[link].sum())
+            told.append(energies(instance, system.center_of_mass(x)))
+    return np.array(strain), np.array(torn), told
+
+
+@pytest.mark.parametrize(
+    ("shape", "thick", "h", "young", "e", "mass", "time"),
+    [("chain", 1, 5, 5, 0.1, 40, 0.25), ("rope", 1, 5, 5, 0.1, 40, 0.25), ("rope", 2, 4, 2, 0.3, 60, 0.4)],
+)
+def test_it_tears_at_the_strain_and_in_one_place(prepared, shape, thick, h, young, e, mass, time):
+    """A ball pulls a cord apart: one link goes, at the strain e, with the energy E A e^2 h/2, and the ledger adds up."""
+    ready = prepared(HUNG.format(shape=shape, thick=thick, h=h, young=young, e=e, mass=mass, time=time))
+    strain, torn, told = watched(ready, time, 400)
+    assert torn[-1] == 1
+    first = int(torn.argmax())
+    assert e * 0.97 < strain[:first].max() < e * 1.25  # others bear a quarter more; looks are far apart
+    length, area = ready.system.unloaded[0], math.pi / 4 * (thick / 100) ** 2
+    energy = 0.5 * young * 1e6 * area * e**2 * length
+    # A rope that bends has the springs over two links besides, of which the neighbours keep what is theirs.
+    assert told[-1]["torn"] == pytest.approx(energy, rel=0.03 if shape == "chain" else 0.1)
+    total = [sum(v for v in one.values()) for one in told]
+    swing = max(np.ptp([one[k] for one in told]) for k in told[0])
+    assert np.ptp(total) < 1e-3 * swing
+
+
+def test_it_never_heals(prepared):
+    """A torn cord that lies together again stays torn; one that is only pushed together does not tear."""
+    text = "gravity (0, 0, -9.81) m/s^2\nground z 0 m\n" + ROPE.format(
+        shape="chain", thick=2, h=5, young=1, more="tear-strain 0.01 velocity (0, 0, 2) m/s"
+    )
+    _, torn, _ = watched(prepared(text), 0.2, 20)
+    assert (np.diff(torn) >= 0).all()
+    text = ROPE.format(shape="chain", thick=2, h=5, young=1, more="tear-strain 0.5 velocity (0, 0, 3) m/s")
+    _, torn, _ = watched(prepared(text), 0.02, 20)
+    assert torn[-1] == 0
+
+
+def test_frames_expectations_and_surfaces_know_it(prepared, tmp_path):
+    """`expect` counts shares and pieces, frames hold what is gone, and the surface has nothing between the pieces."""
+    text = HUNG.format(shape="rope", thick=1, h=5, young=5, e=0.1, mass=40, time=0.3).replace("0.3 s }", "0.3 s frames 50 fps }")
+    text += "expect cord.torn > 0\nexpect cord.pieces = 2\nexpect cord.pieces at 0 s = 1\nexpect cord.strain.max < 0.13\n"
+    ready = prepared(text)
+    done = simulate(ready, tmp_path)
+    assert [outcome.met for outcome in done.outcomes] == [True] * 4, done.outcomes
+    with Trajectory(tmp_path / "trajectory.h5") as trajectory:
+        last = len(trajectory) - 1
+        assert trajectory.field("torn", 0).sum() == 0 and trajectory.field("torn", last).sum() == 3
+        gone = trajectory.gone(last)
+        (link,) = np.flatnonzero(gone)
+        ends = trajectory.position(last)[link : link + 2]
+        surface = trajectory.objects["cord"].surface(last)
+        height, middle = np.asarray(surface.points)[:, 2], ends[:, 2].mean()
+        assert np.abs(ends[0, 2] - ends[1, 2]) > 0.1
+        assert not ((height > middle - 0.02) & (height < middle + 0.02)).any()
+        assert surface.n_points == trajectory.objects["cord"].surface(0).n_points
+    assert Ledger.read(tmp_path / "ledger.csv").array("torn")[-1] > 0.0
+
+
+BOX = "object a { shape box (1, 1, 1) m position (0, 0, 1) m density 1 elasticity 1 MPa tear-strain 0.1 }"
+CHAIN = "object a { shape chain from (0, 0, 1) m to (1, 0, 1) m thickness 1 cm density 1 elasticity 1 MPa "
+MISTAKES = [
+    (BOX, 94, "only ropes"),
+    (CHAIN.replace("1 cm", "1 cm length 0.8 m") + "tear-strain 0.1 }", 123, "is stretched by 25 % from the start"),
+    (CHAIN + "tear-strain -1 }", 110, "tear-strain must be > 0"),
+]
+
+
+@pytest.mark.parametrize(("text", "column", "words"), MISTAKES, ids=["solid", "stretched", "negative"])
+def test_mistakes(text, column, words):
+    """Place, cause and way out."""
+    with pytest.raises(SceneError) as error:
+        parse_scene(text + "\ncontrol { time 1 s }\n")
+    (problem,) = error.value.problems
+    assert words in problem.message and problem.hint and (problem.line, problem.column) == (1, column), str(problem)

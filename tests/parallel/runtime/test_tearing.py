@@ -1,0 +1,84 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Ropes that tear give the same bits in all forms of the distribution, gone on with, and by plain `lmp`."""
+
+import subprocess
+
+import numpy as np
+import plugin_path
+import pytest
+from distribution_lab import SEQUENTIAL, matrix, readied, ways
+from mdanim_lammps.results.checkpoint import Checkpoint
+from mdanim_lammps.results.compare import compare
+from mdanim_lammps.results.dump import read_dump
+from mdanim_lammps.results.ledger import Ledger
+from mdanim_lammps.results.trajectory import Trajectory
+
+pytestmark = pytest.mark.mpi
+
+SCENE = """
+gravity (0, 0, -9.81) m/s^2
+ground z 0 m
+repeat i in 1 .. 3 {
+  object line[i] {
+    shape rope from (-0.4, 0.05*i - 0.1, 0.6 + 0.02*i) m to (0.4, 0.05*i - 0.1, 0.6 + 0.02*i) m thickness 1 cm
+    resolution 2 cm  density 1000  elasticity 1 MPa  damping 0.1  friction 0.3  hold ends  tear-strain 0.05*i
+  }
+}
+object loose {
+  shape chain from (-0.6, 0.3, 0.4) m to (-0.2, 0.3, 0.4) m thickness 1 cm  density 1000  elasticity 1 MPa
+  velocity (0, 0, 1) m/s  hold start  tear-strain 0.1
+}
+object stone { shape box (12, 20, 10) cm  position (0, 0, 0.74) m  velocity (0, 0, -2) m/s  density 2500  elasticity rigid }
+object crate { shape box (10, 10, 10) cm  position (0.5, 0.4, 0.06) m  density 300  elasticity 200 kPa  friction 0.4 }
+control { time 0.3 s }
+"""
+
+CASES = (
+    matrix((2,), ["central"], name="all move ", rotate=True)
+    | matrix((3,), ["peers"])
+    | matrix((2,), ["peers"], name="teams ", settings={"least": 30, "by_threads": False})
+    | {
+        "stopped": SEQUENTIAL | {"stop": 5},
+        "stopped and gone on with": {"executors": 2, "control": "central", "resume": True, "in": "stopped"},
+    }
+)
+
+
+@pytest.fixture(scope="module")
+def found(tmp_path_factory):
+    """The folder of each form, all made in one start of MPI."""
+    path = tmp_path_factory.mktemp("tearing") / "scene.txt"
+    path.write_text(SCENE)
+    return ways(path, CASES, timeout=120.0)
+
+
+@pytest.mark.parametrize("way", CASES)
+def test_all_forms_give_the_same(found, way):
+    """Frames, with what is torn in each, the state, and the energy that is gone but for rounding."""
+    assert compare(found["sequential"], found[way]).equal
+    alone, other = (Checkpoint.read(found[name] / "checkpoint") for name in ("sequential", way))
+    assert "column torn" in alone.records
+    torn = [of.records.pop("column torn") for of in (alone, other)]
+    tearing = [one.where(one.keys[:, 0] <= 4) for one in torn]  # what never tears may be without
+    assert tearing[0] == tearing[1] and alone.records == other.records and np.array_equal(alone.x, other.x)
+    torn = [Ledger.read(found[name] / "ledger.csv").array("torn") for name in ("sequential", way)]
+    assert torn[0][-1] > 0.0 and torn[1] == pytest.approx(torn[0], rel=1e-9, abs=1e-12)
+
+
+def test_ropes_tear(found):
+    """Some before the run was stopped, some after."""
+    with Trajectory(found["sequential"]) as trajectory:
+        torn = [trajectory.field("torn", frame).sum() for frame in range(len(trajectory))]
+    assert torn[0] == 0.0 and 0.0 < torn[4] < torn[-1]
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_lammps_alone_makes_the_same_frames(found, tmp_path, ranks):
+    """The script that `build` writes."""
+    _, folder = readied(tmp_path, SCENE)
+    command = [plugin_path.BIN / "mpiexec", "-n", str(ranks), plugin_path.BIN / "lmp", "-in", "in.film", "-screen", "none"]
+    done = subprocess.run(command, cwd=folder, env=plugin_path.environment(), capture_output=True, text=True, timeout=100)
+    assert done.returncode == 0, done.stdout + done.stderr
+    with Trajectory(found["sequential"]) as trajectory:
+        last = trajectory.position(len(trajectory) - 1)
+    assert np.array_equal([x for _, x, _ in read_dump(folder / "film.lammpstrj", len(last))][-1], last)
