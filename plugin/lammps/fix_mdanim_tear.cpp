@@ -103,7 +103,7 @@ bool FixMdanimTear::breaks(int i, int b, const BondValues &now) const
   return is_too_long(place(i, low) - middle, now.limit[i][b]) || is_too_long(middle - place(i, high), now.second[i][b]);
 }
 
-// What is torn comes from records, or from a run before: bonds follow.
+// The property torn comes from records, or from a run before: bonds follow it.
 void FixMdanimTear::setup_pre_force(int)
 {
   const BondValues now = values();

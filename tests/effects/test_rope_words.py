@@ -188,3 +188,11 @@ def test_what_never_touches_counts_in_no_bound(prepared):
         share = 2.0 * np.array(partners) / (young + partners)
         assert contact.stiffness(context) == pytest.approx(surface_stiffness(context, young, share), rel=1e-12)
         assert (contact.rate(context)[context.system.object == 1] == 0.0).all() == (partners[1] == 0.0)
+
+
+def test_a_rope_outside_the_walls_is_told_at_its_shape():
+    """It has no position of its own."""
+    found = problem(
+        "walls from (0, 0, 0) m to (1, 1, 2) m\n" + line("shape chain from (2, 0, 1) m to (3, 0, 1) m thickness 1 cm")
+    )
+    assert "line stands outside the walls" in found.message and (found.line, found.column) == (3, 20)

@@ -20,8 +20,8 @@ SECOND = column("tear_second", "m", per="bond")
 STORED = column("tear_stored", "J", per="bond")
 """Energy of a spring in the body without load."""
 REST = column("tear_rest", "1", per="bond", shape=(3,))
-"""Remainder along a link of a spring over it and one that is gone: constant [N/m], length [m], energy in the body without load [J];
-zeros of other springs."""
+"""Remainder along a link of a spring over it and one that is gone: constant [N/m], length [m], energy in the body without
+load [J]; zeros of other springs."""
 TORN = column(NAME, "1", per="bond", state=True)
 """1 for a spring that is gone."""
 MORE = 1.25

@@ -56,7 +56,7 @@ def check(v: Any, top: Mapping, held: Mapping) -> None:
     for s in held["solids"]:
         if not all(a < x < b for a, x, b in zip(walls.low, s.position, walls.high)):
             v.problem(
-                s.spans["position"],
+                s.spans.get("position") or s.spans.get("shape"),
                 f"{s.name} stands outside the walls: its centre is {show(s.position)} m",
                 f"the walls go from {show(walls.low)} to {show(walls.high)} m",
             )
