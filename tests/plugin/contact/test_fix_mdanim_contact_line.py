@@ -73,6 +73,19 @@ def test_a_line_lies_on_a_cuboid_that_it_pushes_as_much(tmp_path, rigid):
         np.testing.assert_allclose(found.sum(axis=0), 0.0, atol=1e-12)
 
 
+def test_a_line_is_as_stiff_on_wide_cells_as_on_narrow_ones(tmp_path):
+    """It gives way by its own links, so that it does not sink into what is coarse."""
+    depth, found = 0.1, []
+    for width in (1.0, 2.0):
+        host = Cuboid((round(4 / width), round(4 / width), round(2 / width)), spacing=width, held=True, rigid=True)
+        line = Line((3, 1, 1), (-1.0, 0.2, 1.01 + RADIUS), velocity=(0.0, 0.0, -(depth + 0.01) / 0.15))
+        lmp = load((host, line), tmp_path, "objects", 0.15)
+        found.append(pushed(lmp)[-3:, 2])
+        lmp.close()
+    assert found[0].min() > 0.0
+    np.testing.assert_allclose(found[1], found[0], rtol=1e-9)
+
+
 def test_lines_do_not_touch_each_other(tmp_path):
     """One across the other."""
     lmp = load((Line((3, 1, 1)), Line((3, 1, 1), (0.5, 0.0, 0.7), velocity=(0.0, 0.0, -2.0))), tmp_path, "objects", 0.15)
