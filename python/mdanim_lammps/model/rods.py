@@ -21,9 +21,9 @@ class Rod:
     length: np.ndarray
     """Of each link [m], shape (n - 1,)."""
     width: np.ndarray
-    """Of each link, shape (n - 1,)."""
+    """Factor of the section of each link, shape (n - 1,)."""
     bent: np.ndarray
-    """The same against bending, at each particle between two links, shape (n - 2,)."""
+    """The same of its resistance to bending at each particle between two links, shape (n - 2,)."""
 
 
 def springs_of(rods: Sequence[Rod], pull: float, bend: float) -> tuple[np.ndarray, np.ndarray]:

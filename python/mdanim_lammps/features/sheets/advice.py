@@ -26,14 +26,26 @@ def notes(envelope: Envelope) -> list[Problem]:
 
 
 def _themselves(envelope: Envelope, sheets: np.ndarray) -> list[Problem]:
-    """A sheet touches neither itself nor another one, nor a rope."""
-    system, first = envelope.system, int(sheets[0])
-    others = [system.names[m] for m in np.flatnonzero(system.bare).tolist() if m != first]
-    more = f" and {len(others) - 1} more" if len(others) > 1 else ""
-    nor = f", nor {others[0]}{more}" if others else ""
-    cause = f"{system.names[first]} does not touch itself{nor}: folds of it pass through each other"
+    """A sheet touches neither itself nor another one, nor a rope: a warning where two of them may meet."""
+    system = envelope.system
+    for first in sheets.tolist():
+        if others := _met(envelope, first):
+            more = f" and {len(others) - 1} more" if len(others) > 1 else ""
+            both = f"{system.names[first]} may meet {system.names[others[0]]}{more}"
+            cause = f"{both}, and passes through: sheets and ropes do not touch each other"
+            way_out = "keep them apart, or write shape box for what the sheet is to lie on"
+            return [Problem(envelope.place(first, "shape"), cause, way_out, severity="warning")]
+    first = int(sheets[0])
+    cause = f"{system.names[first]} does not touch itself: folds of it pass through each other"
     way_out = "let it lie on or hang from what is not a sheet or a rope, so that it does not fold"
     return [Problem(envelope.place(first, "shape"), cause, way_out, severity="note")]
+
+
+def _met(envelope: Envelope, m: int) -> list[int]:
+    """Other sheets and ropes that a sheet may meet, but for what a joint ties to it."""
+    swept = envelope.reach.region
+    near = ((swept.low[m] < swept.high) & (swept.low < swept.high[m])).all(axis=1) & envelope.system.bare
+    return [k for k in np.flatnonzero(near).tolist() if k != m and (min(k, m), max(k, m)) not in swept.passing]
 
 
 def _coarse(envelope: Envelope, sheets: np.ndarray) -> list[Problem]:
