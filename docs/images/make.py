@@ -70,6 +70,9 @@ PICTURES = {
     "seesaw": 0.7,
     "buggy": 1.9,
     "wrecking": 1.2,
+    "windmill": 4.0,
+    "parachute": 1.1,
+    "glide": 0.55,
 }
 """Scene and the moment to show [s]."""
 STEPS = {"falls": 0.0, "stands": 1.0, "pushed": 0.27, "rolls": 0.5, "splashes": 0.4, "show": 0.3}

@@ -17,6 +17,7 @@ void AirSkin::append_point(const Weights &weights)
 
 void AirSkin::finish()
 {
+  for (const double part : weight) largest_weight = std::max(largest_weight, std::fabs(part));
   needed = node;
   std::sort(needed.begin(), needed.end());
   needed.erase(std::unique(needed.begin(), needed.end()), needed.end());
@@ -32,13 +33,17 @@ std::size_t AirSkin::bytes() const
 
 void AirSkin::find_points(AirScratch &with) const
 {
-  with.place.assign(points(), {});
-  with.velocity.assign(points(), {});
-  for (int p = 0; p < points(); ++p)
+  with.place.resize(points());
+  with.velocity.resize(points());
+  for (int p = 0; p < points(); ++p) {
+    Vec3 place, velocity;
     for (std::size_t k = first[p]; k < first[p + 1]; ++k) {
-      with.place[p] += weight[k] * with.x[node[k]];
-      with.velocity[p] += weight[k] * with.v[node[k]];
+      place += weight[k] * with.x[node[k]];
+      velocity += weight[k] * with.v[node[k]];
     }
+    with.place[p] = place;
+    with.velocity[p] = velocity;
+  }
 }
 
 Vec3 AirSkin::area_of(const Points &t, const AirScratch &with)
@@ -85,6 +90,16 @@ void AirSkin::find_loads(AirScratch &with) const
     for (std::size_t k = first[p]; k < first[p + 1]; ++k) with.load[p] = std::max(with.load[p], of_node[node[k]]);
 }
 
+// Whether a force may have to be lowered, by a load above that of any point: all of the surface on the lightest node.
+bool AirSkin::may_be_lowered(const AirLaw &law, const AirScratch &with) const
+{
+  double all = 0.0, fastest = 0.0;
+  for (const double area : with.area) all += area;
+  for (const Vec3 &v : with.velocity) fastest = std::max(fastest, dot(law.wind - v, law.wind - v));
+  const double lightest = *std::min_element(with.mass.begin(), with.mass.end());
+  return law.half * std::sqrt(fastest) * law.dt * largest_weight * all > AirLaw::MOST * lightest;
+}
+
 template <class Push> void AirSkin::each_force(const AirLaw &law, double above, const AirScratch &with, const Push &push) const
 {
   const std::vector<Vec3> &x = with.place, &v = with.velocity;
@@ -113,7 +128,10 @@ Vec3 AirSkin::push(const AirLaw &law, double above, AirScratch &with) const
 {
   find_points(with);
   find_areas(areas_of_frame(with), with);
-  find_loads(with);
+  if (may_be_lowered(law, with))
+    find_loads(with);
+  else
+    with.load.assign(points(), 0.0);
   with.push.assign(points(), {});
   with.force.assign(needed.size(), {});
   Vec3 sum;
@@ -121,8 +139,11 @@ Vec3 AirSkin::push(const AirLaw &law, double above, AirScratch &with) const
     sum += force;
     for (const int p : at) with.push[p] += part * force;
   });
-  for (int p = 0; p < points(); ++p)
-    for (std::size_t k = first[p]; k < first[p + 1]; ++k) with.force[node[k]] += weight[k] * with.push[p];
+  for (int p = 0; p < points(); ++p) {
+    const Vec3 force = with.push[p];
+    if (force.x == 0.0 && force.y == 0.0 && force.z == 0.0) continue;    // half of a solid, where air leaves it
+    for (std::size_t k = first[p]; k < first[p + 1]; ++k) with.force[node[k]] += weight[k] * force;
+  }
   return sum;
 }
 

@@ -74,6 +74,7 @@ class AirSkin {
   };
   void find_points(AirScratch &with) const;
   void find_areas(const Areas &areas, AirScratch &with) const;
+  bool may_be_lowered(const AirLaw &law, const AirScratch &with) const;
   void find_loads(AirScratch &with) const;
   Areas areas_of_frame(const AirScratch &with) const;
   static Vec3 area_of(const Points &t, const AirScratch &with);
@@ -84,6 +85,7 @@ class AirSkin {
   std::vector<std::size_t> first{0};    // weights of each point, and the end
   std::vector<int> node;                // a particle, after finish() the number of a node
   std::vector<double> weight;
+  double largest_weight = 0.0;
   std::vector<Points> triangles;
   std::vector<Cylinder> cylinders;
   std::vector<Ball> balls;
