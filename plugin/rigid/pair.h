@@ -5,6 +5,7 @@
 
 #include "rigid/touch.h"
 
+#include <algorithm>
 #include <utility>
 #include <vector>
 
@@ -19,6 +20,9 @@ struct SolidPair {
   int axis = 0;                   // number of the direction that separated the bodies last
   std::vector<int> corners[2];    // of a near b, of b near a
   std::vector<std::pair<int, int>> edges;
+  // For meshes: sides of b near a, of a near b; corners with the sides that they may be below; triangles near what is round.
+  std::vector<int> sides[2], triangles;
+  std::vector<std::pair<int, int>> below[2];
 
   void forget()
   {
@@ -37,6 +41,19 @@ void touch_ellipsoid_and_other(const TouchStep &step, SolidPair &pair, Solid &eg
 void touch_balls(const TouchStep &step, SolidPair &pair, Solid &a, Solid &b, const TouchLaw &law);
 void touch_ball_and_other(const TouchStep &step, SolidPair &pair, Solid &ball, Solid &host, const TouchLaw &law);
 
+void touch_ball_and_mesh(const TouchStep &step, SolidPair &pair, Solid &ball, Solid &mesh, const TouchLaw &law);
+void touch_ellipsoid_and_mesh(const TouchStep &step, SolidPair &pair, Solid &egg, Solid &mesh, const TouchLaw &law);
+
+inline bool is_with_mesh(const Solid &a, const Solid &b)
+{ return a.shape.kind() == SolidShape::MESH || b.shape.kind() == SolidShape::MESH; }
+// Whether nothing of a mesh is within the sphere about the other body. They then sleep until something may be.
+bool is_far_from_mesh(SolidPair &pair, const Solid &a, const Solid &b);
+// Looks up sides of a mesh, if there is one, near the other body, which hold until both have moved by the margin.
+void look_up_sides(SolidPair &pair, const Solid &a, const Solid &b, double margin);
+// Corners of `a` in `b`, of any shapes but balls and ellipsoids. `of_other`: `a` is the second one of the pair.
+void touch_corners_in(const TouchStep &step, SolidPair &pair, bool of_other, Solid &a, Solid &b, const TouchLaw &law,
+                      double margin, bool stale);
+
 // A plane: what is allowed lies where n . x >= at.
 struct SolidPlane {
   Vec3 n;
@@ -45,6 +62,13 @@ struct SolidPlane {
 void touch_plane(const TouchStep &step, std::vector<Touch> &touches, Solid &one, const SolidPlane &plane, const TouchLaw &law);
 
 constexpr double NEAR = 0.02;    // over the thinnest part: how near features are that are remembered
+// The walls of a mesh may be thin beside all that touches it.
+inline double margin_of(const Solid &a, const Solid &b)
+{
+  const bool is_mesh = a.shape.kind() == SolidShape::MESH, is_other_mesh = b.shape.kind() == SolidShape::MESH;
+  if (is_mesh != is_other_mesh) return NEAR * (is_mesh ? b : a).shape.thin();
+  return NEAR * std::min(a.shape.thin(), b.shape.thin());
+}
 
 // Width of the ramps about edges over the thinnest part.
 inline double ramp_of(const Solid &solid) { return 0.0625 * solid.shape.thin(); }

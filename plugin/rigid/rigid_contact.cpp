@@ -87,7 +87,16 @@ void RigidContact::touch_pair(const TouchStep &step, SolidPair &pair)
   const TouchLaw law = law_of(a, b);
   const auto is = [](const Solid &one, SolidShape::ShapeKind kind) { return one.shape.kind() == kind; };
   const bool is_ball = is(a, SolidShape::BALL), is_other_ball = is(b, SolidShape::BALL);
-  if (is_ball && is_other_ball)
+  const bool is_mesh = is(a, SolidShape::MESH), is_other_mesh = is(b, SolidShape::MESH);
+  if (is_ball && is_other_mesh)
+    touch_ball_and_mesh(step, pair, a, b, law);
+  else if (is_other_ball && is_mesh)
+    touch_ball_and_mesh(step, pair, b, a, law);
+  else if (is(a, SolidShape::ELLIPSOID) && is_other_mesh)
+    touch_ellipsoid_and_mesh(step, pair, a, b, law);
+  else if (is(b, SolidShape::ELLIPSOID) && is_mesh)
+    touch_ellipsoid_and_mesh(step, pair, b, a, law);
+  else if (is_ball && is_other_ball)
     touch_balls(step, pair, a, b, law);
   else if (is_ball)
     touch_ball_and_other(step, pair, a, b, law);
@@ -99,7 +108,7 @@ void RigidContact::touch_pair(const TouchStep &step, SolidPair &pair)
     touch_ellipsoid_and_other(step, pair, a, b, law);
   else if (is(b, SolidShape::ELLIPSOID))
     touch_ellipsoid_and_other(step, pair, b, a, law);
-  else if (is(a, SolidShape::POLYHEDRON) && is(b, SolidShape::POLYHEDRON))
+  else if ((is_mesh || is(a, SolidShape::POLYHEDRON)) && (is_other_mesh || is(b, SolidShape::POLYHEDRON)))
     touch_polyhedra(step, pair, a, b, law);
   else
     touch_with_curves(step, pair, a, b, law);
@@ -175,12 +184,11 @@ void RigidContact::put_at_planes(int n, ByteWriter &writer) const
 static void check(const std::vector<Touch> &touches, const Solid &a, const Solid *b, const ByteReader &reader)
 {
   const auto corners = [](const Solid &one) { return std::max<std::size_t>(one.shape.corners().size(), 1); };
-  const auto edges = [](const Solid &one) { return one.shape.polyhedron().edges().size(); };
+  const auto edges = [](const Solid &one) { return one.shape.edges().size(); };
   const auto curves = [](const Solid &one) { return one.shape.curves().size(); };
   const auto sides = [&](const Solid *one) {
     if (!one) return std::size_t(1);
-    return std::max<std::size_t>(
-        one->shape.kind() == SolidShape::POLYHEDRON ? one->shape.polyhedron().faces().size() : curves(*one), 1);
+    return std::max<std::size_t>(one->shape.sides(), 1);
   };
   for (const Touch &touch : touches) {
     std::size_t first = 0, second = 1, side = 1;

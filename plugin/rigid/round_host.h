@@ -14,7 +14,10 @@ class RoundHost {
   RoundHost(const SolidShape &shape, double ramp) : shape(shape), ramp(ramp), round(shape.curves()[0]) {}
 
   int sides() const { return static_cast<int>(shape.curves().size()); }
-  bool is_flat(int side) const { return side > 0; }
+  template <class Visit> void each_flat_side(const Visit &visit) const
+  {
+    for (int side = 1; side < sides(); ++side) visit(side);
+  }
   static bool is_open(int) { return true; }
   Vec3 normal(int side, const Vec3 &x) const
   {

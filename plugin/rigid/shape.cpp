@@ -60,10 +60,19 @@ SolidShape SolidShape::torus(double radius, double tube)
   return shape;
 }
 
+SolidShape SolidShape::of(TriangleMesh mesh, double thin)
+{
+  SolidShape shape;
+  shape.its_kind = MESH;
+  shape.its_mesh = std::make_shared<const TriangleMesh>(std::move(mesh));
+  shape.its_thin = thin;
+  return shape;
+}
+
 bool SolidShape::is_same(const SolidShape &other) const
 {
   const auto are_same = [](const Vec3 &a, const Vec3 &b) { return a.x == b.x && a.y == b.y && a.z == b.z; };
-  const std::vector<Polyhedron::Corner> &one = its_polyhedron.corners(), &two = other.its_polyhedron.corners();
+  const std::vector<Polyhedron::Corner> &one = corners(), &two = other.corners();
   return its_kind == other.its_kind && are_same(its_middle, other.its_middle) && are_same(axes[0], other.axes[0]) &&
          are_same(axes[1], other.axes[1]) && are_same(axes[2], other.axes[2]) && are_same(size, other.size) &&
          std::equal(one.begin(), one.end(), two.begin(), two.end(),
@@ -77,6 +86,10 @@ SolidShape SolidShape::placed(const Pose &pose) const
   shape.its_middle = pose.place + turn * its_middle;
   for (Vec3 &axis : shape.axes) axis = turn * axis;
   if (its_kind == POLYHEDRON) shape.its_polyhedron = its_polyhedron.moved([&](const Vec3 &at) { return pose.place + turn * at; });
+  const bool is_moved = length(pose.place) > 0.0 || pose.q.w != 1.0;
+  if (its_kind == MESH && is_moved)
+    shape.its_mesh =
+        std::make_shared<const TriangleMesh>(its_mesh->moved([&](const Vec3 &at) { return pose.place + turn * at; }));
   const double middle = length(shape.its_middle);
   double bound = 0.0;
   for (const Polyhedron::Corner &corner : shape.its_polyhedron.corners()) bound = std::max(bound, length(corner.at));
@@ -84,6 +97,7 @@ SolidShape SolidShape::placed(const Pose &pose) const
   if (its_kind == CYLINDER || its_kind == CONE) bound = middle + std::sqrt(size.x * size.x + size.z * size.z);
   if (its_kind == ELLIPSOID) bound = middle + std::max({size.x, size.y, size.z});
   if (its_kind == TORUS) bound = middle + size.x + size.y;
+  if (its_kind == MESH) bound = shape.its_mesh->bound();
   shape.its_bound = bound;
   shape.find_curves();
   return shape;
@@ -91,7 +105,7 @@ SolidShape SolidShape::placed(const Pose &pose) const
 
 const char *SolidShape::name() const
 {
-  static const char *const NAMES[] = {"polyhedron", "ball", "cylinder", "cone", "ellipsoid", "torus"};
+  static const char *const NAMES[] = {"polyhedron", "ball", "cylinder", "cone", "ellipsoid", "torus", "mesh"};
   return NAMES[its_kind];
 }
 
@@ -100,7 +114,7 @@ void SolidShape::find_curves()
 {
   its_curves.clear();
   its_tip.clear();
-  for (const Polyhedron::Edge &edge : its_polyhedron.edges()) {
+  for (const Polyhedron::Edge &edge : edges()) {
     if (edge.covered) continue;
     Curve line;
     line.middle = edge.middle;
@@ -175,6 +189,9 @@ void SolidShape::each_feature(const std::function<void(const Vec3 &, const Vec3 
           visit(its_middle + turned(at), turned(n));
         }
   if (its_kind == TORUS) each_feature_of_torus(visit);
+  if (its_kind == MESH)
+    for (const Polyhedron::Corner &corner : its_mesh->corners())
+      for (const int side : corner.faces) visit(corner.at, its_mesh->sides()[side].normal);
   if (its_kind == CYLINDER || its_kind == CONE)
     for (const double end : {-1.0, 1.0}) {
       if (its_kind == CONE && end > 0.0) {

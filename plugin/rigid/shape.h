@@ -7,8 +7,10 @@
 #include "rigid/body.h"
 #include "rigid/curve.h"
 #include "rigid/polyhedron.h"
+#include "rigid/triangle_mesh.h"
 
 #include <functional>
+#include <memory>
 #include <vector>
 
 namespace mdanim {
@@ -21,7 +23,7 @@ struct Pose {
 
 class SolidShape {
  public:
-  enum ShapeKind { POLYHEDRON, BALL, CYLINDER, CONE, ELLIPSOID, TORUS };
+  enum ShapeKind { POLYHEDRON, BALL, CYLINDER, CONE, ELLIPSOID, TORUS, MESH };
 
   static SolidShape of(Polyhedron polyhedron);
   static SolidShape ball(double radius);
@@ -31,6 +33,8 @@ class SolidShape {
   static SolidShape ellipsoid(const Vec3 &half_axes);
   // A ring about the third axis: radius of its middle line, and of its tube, the smaller one.
   static SolidShape torus(double radius, double tube);
+  // A closed surface, with the thickness of its thinnest part.
+  static SolidShape of(TriangleMesh mesh, double thin);
 
   // Whether both have the same bits.
   bool is_same(const SolidShape &other) const;
@@ -40,6 +44,7 @@ class SolidShape {
   ShapeKind kind() const { return its_kind; }
   const char *name() const;
   const Polyhedron &polyhedron() const { return its_polyhedron; }
+  const TriangleMesh &mesh() const { return *its_mesh; }
   const Vec3 &middle() const { return its_middle; }
   const Vec3 &axis(int k) const { return axes[k]; }
   double radius() const { return size.x; }
@@ -50,11 +55,21 @@ class SolidShape {
   double thin() const { return its_thin; }      // thinnest part
 
   // Corners, and the tip of a cone.
-  const std::vector<Polyhedron::Corner> &corners() const { return its_kind == CONE ? its_tip : its_polyhedron.corners(); }
+  const std::vector<Polyhedron::Corner> &corners() const
+  { return its_kind == CONE ? its_tip : its_kind == MESH ? its_mesh->corners() : its_polyhedron.corners(); }
+  // Straight sharp edges that are convex.
+  const std::vector<Polyhedron::Edge> &edges() const { return its_kind == MESH ? its_mesh->edges() : its_polyhedron.edges(); }
+  // Flat sides of what has corners, and sides of what is round.
+  std::size_t sides() const
+  {
+    return its_kind == MESH         ? its_mesh->sides().size()
+           : its_kind == POLYHEDRON ? its_polyhedron.faces().size()
+                                    : its_curves.size();
+  }
   // Edges, rims, and curves with a radius: the axes of cylinders and cones, the middle line of a torus.
   const std::vector<Curve> &curves() const { return its_curves; }
 
-  // The closest point of the surface to x in the frame of the body: its normal, and the distance, negative inside.
+  // The closest point of the surface to x in the frame of the body: its normal, and the distance, negative inside. Not of a mesh.
   Polyhedron::Foot nearest(const Vec3 &x) const;
   // Calls visit(place, normal) for features of the surface that other bodies touch first: corners with their faces, ends of axes.
   void each_feature(const std::function<void(const Vec3 &, const Vec3 &)> &visit) const;
@@ -67,6 +82,7 @@ class SolidShape {
 
   ShapeKind its_kind = BALL;
   Polyhedron its_polyhedron;
+  std::shared_ptr<const TriangleMesh> its_mesh;
   Vec3 its_middle, axes[3] = {{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}};
   Vec3 size;    // radius and half of the height, half axes, or the radii of a torus
   std::vector<Polyhedron::Corner> its_tip;

@@ -38,6 +38,21 @@ SolidShape read_polyhedron(LineWords &words)
   return made(words, [&] { return Polyhedron(corners, faces); });
 }
 
+SolidShape read_mesh(LineWords &words)
+{
+  const double thin = words.extent("the thickness");
+  std::vector<Vec3> places(words.many("the number of corners", 3));
+  for (Vec3 &at : places) at = words.place("a corner");
+  std::vector<TriangleMesh::Corners> triangles(words.many("the number of triangles", 3));
+  for (TriangleMesh::Corners &triangle : triangles)
+    for (int &corner : triangle) corner = words.number<int>("a corner of a triangle");
+  try {
+    return SolidShape::of(TriangleMesh(std::move(places), triangles), thin);
+  } catch (const std::runtime_error &problem) {
+    words.fail(problem.what());
+  }
+}
+
 // The sides of a box that other bodies cover.
 std::vector<int> read_covered(LineWords &words)
 {
@@ -82,7 +97,8 @@ SolidShape read_shape(LineWords &words)
     return SolidShape::torus(radius, tube);
   }
   if (kind == "polyhedron") return read_polyhedron(words);
-  words.fail("a shape is box, ball, cylinder, cone, ellipsoid, torus or polyhedron, got " + kind);
+  if (kind == "mesh") return read_mesh(words);
+  words.fail("a shape is box, ball, cylinder, cone, ellipsoid, torus, polyhedron or mesh, got " + kind);
 }
 
 }    // namespace

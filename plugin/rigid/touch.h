@@ -40,7 +40,7 @@ inline void forget_parted(std::vector<Touch> &list)
 }
 
 // The contact of these features in a list; its end where there is none.
-inline std::vector<Touch>::iterator find_touch(std::vector<Touch> &list, Touch::TouchKind kind, int first, int second = 0)
+template <class List> auto find_touch(List &list, Touch::TouchKind kind, int first, int second = 0)
 {
   return std::find_if(list.begin(), list.end(),
                       [&](const Touch &one) { return one.kind == kind && one.first == first && one.second == second; });
@@ -100,6 +100,13 @@ class TouchStep {
   {
     account.let_go += touch.energy - touch.memory.stick_energy;
     end(touch, touch.memory.depth);
+  }
+
+  // The part of a contact that counts is to change: what it held for the rest is let go.
+  void count_part(const Touch &touch, double part) const
+  {
+    const Onset<double> g(touch.memory.depth - touch.memory.offset, onset);
+    account.let_go += touch.energy - touch.memory.stick_energy - touch.stiffness * part * g.value;
   }
 
   ContactLaw law_of(const Touch &touch, const TouchLaw &law) const

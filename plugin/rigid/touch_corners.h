@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace mdanim {
 
@@ -16,7 +17,11 @@ class PolyhedronHost {
   PolyhedronHost(const Polyhedron &shape, double ramp) : shape(shape), ramp(ramp) {}
 
   int sides() const { return static_cast<int>(shape.faces().size()); }
-  bool is_flat(int side) const { return is_open(side); }
+  template <class Visit> void each_flat_side(const Visit &visit) const
+  {
+    for (int side = 0; side < sides(); ++side)
+      if (is_open(side)) visit(side);
+  }
   bool is_open(int side) const { return !shape.faces()[side].covered; }
   Vec3 normal(int side, const Vec3 &) const { return shape.faces()[side].normal; }
   double depth(int side, const Vec3 &x) const { return shape.faces()[side].at - dot(shape.faces()[side].normal, x); }
@@ -78,7 +83,81 @@ int side_of_birth(const Host &host, const Polyhedron::Corner &corner, const Turn
   return depth > deepest ? -1 : found;
 }
 
-// Corners of `a` in `host`, the shape of `b`. `near`: those that may touch, looked up anew where `stale`.
+// Whether it belongs to this side.
+template <class Host, class Turn>
+bool is_born_below(const Host &host, int side, const Polyhedron::Corner &corner, const Turn &in_owner, const Vec3 &x,
+                   double deepest)
+{
+  double unused;
+  return side_of_birth(host, corner, in_owner, x, deepest, unused) == side;
+}
+
+// Begins the contact of corner q of `a`, which is at x in the frame of `b`, this deep below a side.
+template <class Host>
+Touch born_below(const TouchStep &step, Touch::TouchKind kind, int q, int side, const Vec3 &x, double depth, const Solid &a,
+                 const Solid &b, const Host &host, const TouchLaw &law)
+{
+  const Vec3 place = b.place(x), n = b.in_space(host.normal(side, x));
+  Touch touch = step.born(kind, law, a, &b, place, n);
+  touch.first = q;
+  touch.side = side;
+  touch.anchor = x;
+  const Vec3 relative = TouchStep::relative_velocity(a, &b, place);
+  const Vec3 before = x - (A_STEP * step.time_step()) * b.in_body(relative);
+  Vec3 unused;
+  const bool came = !step.is_first() && (host.depth(side, before) <= 0.0 ||
+                                         (depth < SHALLOW * b.shape.thin() && host.part(side, before, unused) <= 0.0));
+  if (came)
+    TouchStep::came_from(touch, depth + step.time_step() * dot(relative, n));
+  else
+    TouchStep::overlaps(touch, depth);
+  return touch;
+}
+
+// The force of the contact of a corner that is at x now, which may have ended.
+template <class Host>
+void press_corner(const TouchStep &step, Touch &touch, const Vec3 &x, Solid &a, Solid &b, const Host &host, const TouchLaw &law)
+{
+  const double depth = host.depth(touch.side, x);
+  const Vec3 n = b.in_space(host.normal(touch.side, x));
+  Vec3 slope;
+  const double part = host.part(touch.side, x, slope);
+  if (depth <= 0.0 || part <= 0.0)
+    step.part(touch, a, &b, {b.place(x), n, depth, part});
+  else
+    step.press(touch, law, a, &b, x, depth, part, slope, n);
+}
+
+// A box around what may touch `other`, in the frame of `one`.
+inline Box box_around(const Solid &one, const Solid &other, double more)
+{
+  const Vec3 middle = one.in_body(other.centre - one.centre);
+  Box box;
+  box.include(&middle.x);
+  return box.grown(other.shape.bound() + more);
+}
+
+// Calls visit(q) for corners of `one` that may be near `other`, among them all that touch it. `touches`: contacts of this kind.
+template <class Visit>
+void each_corner_near(const Solid &one, const Solid &other, double more, const std::vector<Touch> &touches, Touch::TouchKind kind,
+                      const Visit &visit)
+{
+  const std::vector<Polyhedron::Corner> &corners = one.shape.corners();
+  std::vector<int> numbers(corners.size());
+  if (one.shape.kind() == SolidShape::MESH) {
+    numbers = one.shape.mesh().corners_near(box_around(one, other, more));
+    for (const Touch &touch : touches)
+      if (touch.kind == kind) numbers.push_back(touch.first);
+    std::sort(numbers.begin(), numbers.end());
+    numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
+  } else {
+    std::iota(numbers.begin(), numbers.end(), 0);
+  }
+  for (const int q : numbers)
+    if (!corners[q].covered) visit(q);
+}
+
+// Corners of `a` in `host`, the convex shape of `b`. `near`: those that may touch, looked up anew where `stale`.
 template <class Host>
 void touch_corners(const TouchStep &step, std::vector<Touch> &touches, Touch::TouchKind kind, std::vector<int> &near, Solid &a,
                    Solid &b, const Host &host, const TouchLaw &law, double ramp, double margin, bool stale)
@@ -89,49 +168,27 @@ void touch_corners(const TouchStep &step, std::vector<Touch> &touches, Touch::To
   const auto in_host = [&](const Vec3 &own) { return between + b.in_body(a.in_space(own)); };
   if (stale) {
     near.clear();
-    for (int q = 0; q < static_cast<int>(corners.size()); ++q)
-      if (!corners[q].covered &&
-          (host.outside(in_host(corners[q].at)) < ramp + margin || find_touch(touches, kind, q) != touches.end()))
+    each_corner_near(a, b, ramp + margin, touches, kind, [&](int q) {
+      if (host.outside(in_host(corners[q].at)) < ramp + margin || find_touch(touches, kind, q) != touches.end())
         near.push_back(q);
+    });
   }
   for (const int q : near) {
     const Vec3 x = in_host(corners[q].at);
     auto found = find_touch(touches, kind, q);
-    double depth, part;
-    Vec3 slope;
     if (found == touches.end()) {
       if (host.outside(x) >= ramp) continue;
       const auto in_owner = [&](const Vec3 &n) { return a.in_body(b.in_space(n)); };
+      double depth;
       const int side = side_of_birth(host, corners[q], in_owner, x, DEEPEST_BIRTH * b.shape.thin(), depth);
-      if (side < 0) continue;
-      part = host.part(side, x, slope);
-      if (part <= 0.0) continue;
-      const Vec3 place = b.place(x), n = b.in_space(host.normal(side, x));
-      Touch touch = step.born(kind, law, a, &b, place, n);
-      touch.first = q;
-      touch.side = side;
-      touch.anchor = x;
-      const Vec3 relative = TouchStep::relative_velocity(a, &b, place);
-      const Vec3 before = x - (A_STEP * step.time_step()) * b.in_body(relative);
       Vec3 unused;
-      const bool came = !step.is_first() && (host.depth(side, before) <= 0.0 ||
-                                             (depth < SHALLOW * b.shape.thin() && host.part(side, before, unused) <= 0.0));
-      if (came)
-        TouchStep::came_from(touch, depth + step.time_step() * dot(relative, n));
-      else
-        TouchStep::overlaps(touch, depth);
-      touches.push_back(touch);
+      if (side < 0 || host.part(side, x, unused) <= 0.0) continue;
+      touches.push_back(born_below(step, kind, q, side, x, depth, a, b, host, law));
       found = touches.end() - 1;
     } else {
       found->side = host.shallowest(found->side, x);
-      depth = host.depth(found->side, x);
-      part = host.part(found->side, x, slope);
-      if (depth <= 0.0 || part <= 0.0) {
-        step.part(*found, a, &b, {b.place(x), b.in_space(host.normal(found->side, x)), depth, part});
-        continue;
-      }
     }
-    step.press(*found, law, a, &b, x, depth, part, slope, b.in_space(host.normal(found->side, x)));
+    press_corner(step, *found, x, a, b, host, law);
   }
 }
 

@@ -2,12 +2,14 @@
 // Two bodies of which one is a cylinder, a cone or a torus: corners in sides, rims on flat sides, curves across curves. Each
 // contact has an energy that is a function of where both bodies are, and its force is the gradient of that.
 
+#include "rigid/mesh_host.h"
 #include "rigid/pair.h"
 #include "rigid/round_host.h"
 #include "rigid/touch_corners.h"
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <optional>
 
 namespace mdanim {
@@ -134,8 +136,7 @@ template <class Host> class RimOnSide {
       const Vec3 u = unit(cross(n, std::fabs(n.x) < 0.6 ? Vec3{1.0, 0.0, 0.0} : Vec3{0.0, 1.0, 0.0})), w = cross(n, u);
       corner.ways = {n, u, -1.0 * u, w, -1.0 * w};
     }
-    double unused;
-    return side_of_birth(host, corner, [](const Vec3 &a) { return a; }, x, deepest, unused) == side;
+    return is_born_below(host, side, corner, [](const Vec3 &a) { return a; }, x, deepest);
   }
 
  private:
@@ -223,8 +224,7 @@ void touch_rims(const TouchStep &step, std::vector<Touch> &touches, Touch::Touch
   for (const Curve &curve : a.shape.curves()) {
     if (!curve.is_circle) continue;
     const Curve circle = curve.moved(place, turn);
-    for (int side = 0; side < host.sides(); ++side)
-      if (host.is_flat(side)) touch_rim(step, touches, kind, number, circle, host, side, a, b, law);
+    host.each_flat_side([&](int side) { touch_rim(step, touches, kind, number, circle, host, side, a, b, law); });
     number += RIM_POINTS;
   }
 }
@@ -233,13 +233,13 @@ void touch_rims(const TouchStep &step, std::vector<Touch> &touches, Touch::Touch
 void touch_sides(const TouchStep &step, SolidPair &pair, bool of_other, Solid &a, Solid &b, const TouchLaw &law, double margin,
                  bool stale)
 {
-  const auto with = [&](const auto &host) {
-    touch_corners(step, pair.touches, of_other ? Touch::CORNER_OF_OTHER : Touch::CORNER, pair.corners[of_other], a, b, host, law,
-                  ramp_of(b), margin, stale);
-    touch_rims(step, pair.touches, of_other ? Touch::MOVING_OF_OTHER : Touch::MOVING, a, b, host, law);
-  };
+  touch_corners_in(step, pair, of_other, a, b, law, margin, stale);
+  const Touch::TouchKind kind = of_other ? Touch::MOVING_OF_OTHER : Touch::MOVING;
+  const auto with = [&](const auto &host) { touch_rims(step, pair.touches, kind, a, b, host, law); };
   if (b.shape.kind() == SolidShape::POLYHEDRON)
     with(PolyhedronHost(b.shape.polyhedron(), ramp_of(b)));
+  else if (b.shape.kind() == SolidShape::MESH)
+    with(MeshHost(b.shape.mesh(), ramp_of(b), pair.sides[of_other]));
   else
     with(RoundHost(b.shape, ramp_of(b)));
 }
@@ -422,15 +422,29 @@ class CurvePair {
   double ramp_a, ramp_b;
 };
 
+// Numbers of the curves of one that may be near the other, among them all that touch it.
+std::vector<int> curves_near(const Solid &one, const Solid &other, double more, const std::vector<Touch> &touches, bool of_first)
+{
+  std::vector<int> found(one.shape.curves().size());
+  std::iota(found.begin(), found.end(), 0);
+  if (one.shape.kind() != SolidShape::MESH) return found;
+  found = one.shape.mesh().edges_near(box_around(one, other, more));
+  for (const Touch &touch : touches)
+    if (touch.kind == Touch::CURVES) found.push_back(of_first ? touch.first : touch.second);
+  std::sort(found.begin(), found.end());
+  found.erase(std::unique(found.begin(), found.end()), found.end());
+  return found;
+}
+
 // Curves that may touch before both bodies have moved by the margin.
 void look_up_curves(SolidPair &pair, const Solid &a, const Solid &b, double margin)
 {
   const double slack = margin + SHALLOW_BIRTH * std::min(a.shape.thin(), b.shape.thin());
   pair.edges.clear();
-  const int of_a = static_cast<int>(a.shape.curves().size()), of_b = static_cast<int>(b.shape.curves().size());
-  for (int i = 0; i < of_a; ++i) {
+  const std::vector<int> of_b = curves_near(b, a, slack, pair.touches, false);
+  for (const int i : curves_near(a, b, slack, pair.touches, true)) {
     const Curve one = placed(a, i);
-    for (int j = 0; j < of_b; ++j) {
+    for (const int j : of_b) {
       const Curve other = placed(b, j);
       if (least_gap(one, other) < slack || find_touch(pair.touches, Touch::CURVES, i, j) != pair.touches.end())
         pair.edges.emplace_back(i, j);
@@ -452,10 +466,11 @@ bool are_apart(SolidPair &pair, const Solid &a, const Solid &b)
 
 void touch_with_curves(const TouchStep &step, SolidPair &pair, Solid &a, Solid &b, const TouchLaw &law)
 {
-  if (pair.touches.empty() && (pair.asleep > 0.0 || are_apart(pair, a, b))) return;
-  const double margin = NEAR * std::min(a.shape.thin(), b.shape.thin());
+  if (pair.touches.empty() && (pair.asleep > 0.0 || (is_with_mesh(a, b) ? is_far_from_mesh(pair, a, b) : are_apart(pair, a, b))))
+    return;
+  const double margin = margin_of(a, b);
   const bool stale = pair.known_for < 0.0;
-  if (stale) pair.known_for = margin;
+  if (stale) look_up_sides(pair, a, b, margin);
   touch_sides(step, pair, false, a, b, law, margin, stale);
   touch_sides(step, pair, true, b, a, law, margin, stale);
   if (stale) look_up_curves(pair, a, b, margin);

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // Two polyhedra: corners of each in the other, edges across edges. The overlap of two faces is a polygon whose corners are these.
 
+#include "rigid/mesh_host.h"
 #include "rigid/pair.h"
 #include "rigid/touch_corners.h"
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace mdanim {
 
@@ -80,7 +82,7 @@ struct PlacedEdge {
   double half;
   PlacedEdge(const Solid &solid, int number)
   {
-    const Polyhedron::Edge &edge = solid.shape.polyhedron().edges()[number];
+    const Polyhedron::Edge &edge = solid.shape.edges()[number];
     middle = solid.place(edge.middle);
     along = solid.in_space(edge.along);
     across[0] = solid.in_space(edge.across[0]);
@@ -121,6 +123,14 @@ struct EdgeCrossing {
 bool passes(const Solid &host, const PlacedEdge &edge, double more, double by)
 {
   const Vec3 x = host.in_body(edge.middle - host.centre), way = host.in_body(edge.along);
+  if (host.shape.kind() == SolidShape::MESH) {
+    Box box;
+    for (const double end : {-1.0, 1.0}) {
+      const Vec3 at = x + (end * (edge.half + more)) * way;
+      box.include(&at.x);
+    }
+    return !host.shape.mesh().edges_near(box.grown(by)).empty();
+  }
   double low = -edge.half - more, high = edge.half + more;
   for (const Polyhedron::Face &face : host.shape.polyhedron().faces()) {
     const double room = face.at + by - dot(face.normal, x), speed = dot(face.normal, way);
@@ -143,16 +153,32 @@ constexpr double SHALLOW_BIRTH = 0.06;              // over the thinnest part
 
 std::vector<int> edges_near(const Solid &one, const Solid &host, const std::vector<Touch> &touches, bool of_first, double margin)
 {
-  std::vector<int> near;
-  const int count = static_cast<int>(one.shape.polyhedron().edges().size());
-  for (int e = 0; e < count; ++e) {
-    if (one.shape.polyhedron().edges()[e].covered) continue;
-    const bool is_known = std::any_of(touches.begin(), touches.end(), [&](const Touch &touch) {
+  std::vector<int> near, numbers(one.shape.edges().size());
+  std::iota(numbers.begin(), numbers.end(), 0);
+  const auto is_known = [&](int e) {
+    return std::any_of(touches.begin(), touches.end(), [&](const Touch &touch) {
       return touch.kind == Touch::EDGES && (of_first ? touch.first : touch.second) == e;
     });
-    if (is_known || passes(host, PlacedEdge(one, e), ramp_of(one) + margin, margin)) near.push_back(e);
+  };
+  if (one.shape.kind() == SolidShape::MESH) {
+    numbers = one.shape.mesh().edges_near(box_around(one, host, ramp_of(one) + margin));
+    for (const Touch &touch : touches)
+      if (touch.kind == Touch::EDGES) numbers.push_back(of_first ? touch.first : touch.second);
+    std::sort(numbers.begin(), numbers.end());
+    numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
   }
+  for (const int e : numbers)
+    if (!one.shape.edges()[e].covered && (is_known(e) || passes(host, PlacedEdge(one, e), ramp_of(one) + margin, margin)))
+      near.push_back(e);
   return near;
+}
+
+// Whether the balls around two edges are this far apart.
+bool are_apart(const PlacedEdge &a, const PlacedEdge &b, double by)
+{
+  const Vec3 between = a.middle - b.middle;
+  const double reach = a.half + b.half + by;
+  return dot(between, between) > reach * reach;
 }
 
 // Pairs of edges that may touch before both bodies have moved by the margin.
@@ -168,6 +194,7 @@ void look_up_edges(SolidPair &pair, const Solid &a, const Solid &b, double margi
     for (const int j : of_b) {
       if (find_touch(pair.touches, Touch::EDGES, i, j) == pair.touches.end()) {
         const PlacedEdge other(b, j);
+        if (is_with_mesh(a, b) && are_apart(one, other, ramp_of(a) + ramp_of(b) + margin)) continue;
         EdgeCrossing at(one, other);
         if (at.square < FADED - FADES - 2.0 * turn) continue;
         if (at.square > PARALLEL) {
@@ -268,13 +295,14 @@ void touch_edges(const TouchStep &step, SolidPair &pair, Solid &a, Solid &b, con
 
 void touch_polyhedra(const TouchStep &step, SolidPair &pair, Solid &a, Solid &b, const TouchLaw &law)
 {
-  if (pair.touches.empty() && (pair.asleep > 0.0 || are_separated(pair, a, b))) return;
-  const double margin = NEAR * thinner(a, b);
+  if (pair.touches.empty() &&
+      (pair.asleep > 0.0 || (is_with_mesh(a, b) ? is_far_from_mesh(pair, a, b) : are_separated(pair, a, b))))
+    return;
+  const double margin = margin_of(a, b);
   const bool stale = pair.known_for < 0.0;
-  if (stale) pair.known_for = margin;
-  const PolyhedronHost of_a(a.shape.polyhedron(), ramp_of(a)), of_b(b.shape.polyhedron(), ramp_of(b));
-  touch_corners(step, pair.touches, Touch::CORNER, pair.corners[0], a, b, of_b, law, ramp_of(b), margin, stale);
-  touch_corners(step, pair.touches, Touch::CORNER_OF_OTHER, pair.corners[1], b, a, of_a, law, ramp_of(a), margin, stale);
+  if (stale) look_up_sides(pair, a, b, margin);
+  touch_corners_in(step, pair, false, a, b, law, margin, stale);
+  touch_corners_in(step, pair, true, b, a, law, margin, stale);
   if (stale) look_up_edges(pair, a, b, margin);
   touch_edges(step, pair, a, b, law);
 }

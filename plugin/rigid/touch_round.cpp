@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // Contacts of round shapes, whose points of contact move over them; and of all shapes with planes.
 
+#include "rigid/egg_point.h"
 #include "rigid/pair.h"
 
 #include <algorithm>
@@ -32,25 +33,6 @@ void touch_ball_and_other(const TouchStep &step, SolidPair &pair, Solid &ball, S
 }
 
 // --- ellipsoids ---
-
-// Where an ellipsoid is touched by a plane with the normal n, from its middle and in the frame of its body, and the mean of both
-// radii of its curvature there: its support function is h = |D n| with D the half axes, and the radii are the eigenvalues of the
-// second derivatives of h.
-struct EggPoint {
-  Vec3 at;
-  double radius;
-  EggPoint(const Solid &one, const Vec3 &n)
-  {
-    const Vec3 &half = one.shape.half_axes();
-    const double along[3] = {dot(n, one.shape.axis(0)), dot(n, one.shape.axis(1)), dot(n, one.shape.axis(2))},
-                 square[3] = {half.x * half.x, half.y * half.y, half.z * half.z};
-    double h = 0.0, fourth = 0.0;
-    for (int k = 0; k < 3; ++k) h += square[k] * along[k] * along[k], fourth += square[k] * square[k] * along[k] * along[k];
-    h = std::sqrt(h);
-    for (int k = 0; k < 3; ++k) at += (square[k] * along[k] / h) * one.shape.axis(k);
-    radius = 0.5 * ((square[0] + square[1] + square[2]) / h - fourth / (h * h * h));
-  }
-};
 
 // The ball that fits the ellipsoid where its normal is n touches the host with a normal nearer to the one sought: both are
 // opposite in the end. The contact remembers its normal as the first guess.
@@ -148,8 +130,8 @@ void touch_plane(const TouchStep &step, std::vector<Touch> &touches, Solid &one,
   const Vec3 middle = middle_of(one), along = shape.half_height() * one.in_space(shape.axis(2));
   switch (shape.kind()) {
     case SolidShape::POLYHEDRON:
-      for (std::size_t q = 0; q < shape.polyhedron().corners().size(); ++q)
-        on.corner(static_cast<int>(q), one.place(shape.polyhedron().corners()[q].at));
+    case SolidShape::MESH:
+      for (std::size_t q = 0; q < shape.corners().size(); ++q) on.corner(static_cast<int>(q), one.place(shape.corners()[q].at));
       break;
     case SolidShape::BALL:
       on.moving(0, middle - shape.radius() * plane.n);

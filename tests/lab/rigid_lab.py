@@ -135,6 +135,14 @@ NAMES = (
 )
 
 
+def mesh(points, triangles, thin: float, **more) -> Rigid:
+    """A held surface of triangles, counter-clockwise from outside, with the thickness of its thinnest part."""
+    numbers = " ".join(repr(float(c)) for point in points for c in point)
+    corners = " ".join(str(int(k)) for triangle in triangles for k in triangle)
+    shape = f"mesh {float(thin)!r} {len(points)} {numbers} {len(triangles)} {corners}"
+    return Rigid(shape, 0.0, np.zeros(3), np.zeros(3), thin, held=True).put(**more)
+
+
 class World(lab.Running):
     """An instance with rigid bodies. The time step is 0.35 of 1/frequency, if nothing else is told."""
 

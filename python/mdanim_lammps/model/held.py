@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from ..scene.scene import Box, Shape, Solid, Sphere
+from ..scene.scene import Box, Mesh, Shape, Solid, Sphere
 from . import shapes
 from .cells import fill_cells
 from .contact_body import BodyFrame
@@ -43,27 +43,29 @@ def held_model(solid: Solid, h: float, shared: Any) -> Model:
     """The model of an object that is held as a whole, with the cells of its contact h [m] wide.
 
     The drawn surface is that of its lattice: each vertex is a weighted sum of the eight corners. ``shared`` makes what equal
-    objects share (build.SharedParts). A cuboid or a ball whose contact is found elsewhere has a surface of one cell, and counts
-    as resolved with h.
+    objects share (build.SharedParts). A cuboid, a ball or a mesh whose contact is found elsewhere has a surface of one cell, and
+    counts as resolved with h.
 
     Raises cells.TooThin, mesh.MeshError.
     """
-    bare = shared.by_features and isinstance(solid.shape, Box | Sphere)
+    bare = shared.by_features and isinstance(solid.shape, Box | Sphere | Mesh)
     placed = shared.once(_placed, solid.shape, math.inf if bare else h, tuple(map(tuple, solid.rotation)))
     edge = placed.frame.cells.edge
     cell = one_cell_as(edge, h) if bare else edge
     return corner_model(solid, cell, placed.corner, shapes.mass(solid) * placed.share, placed.surface, placed.frame, free=None)
 
 
-def free_model(solid: Solid, h: float, shared: Any) -> Model:
+def free_model(solid: Solid, h: float, shared: Any, hollow: bool = False) -> Model:
     """The same of an object that moves and does not deform, with the corners of a box along its own axes; their centre of mass is
-    that of the object.
+    that of the object. Of one that is ``hollow`` the box is not a cell: it may surround others.
 
     Raises cells.TooThin, mesh.MeshError.
     """
     placed = shared.once(_placed, solid.shape, h, UPRIGHT)
     arm, mass = placed.corner @ np.array(solid.rotation).T, shapes.mass(solid) * placed.share
-    return corner_model(solid, placed.frame.cells.edge, arm, mass, placed.surface, placed.frame, free=CELL)
+    return corner_model(
+        solid, placed.frame.cells.edge, arm, mass, placed.surface, placed.frame, free=CELL[:0] if hollow else CELL
+    )
 
 
 def one_cell_as(edge: np.ndarray, h: float) -> np.ndarray:
@@ -90,7 +92,7 @@ def corner_model(
         mass: masses at them [kg], shape (8,).
         surface: drawn surface, of weighted sums of the corners.
         frame: its cells and the corners in them.
-        free: corners of a cell that may move, shape (1, 8); None for an object that is held.
+        free: corners of its cell, if there is one, shape (1, 8) or (0, 8), that may move; None for an object that is held.
     """
     return Model(
         name=solid.name,

@@ -36,7 +36,13 @@ if __name__ == "__main__":
     outline = [(0, 0), (3, 0), (3, 1.6), (4.3, 1.6), (4.3, 0), (7.3, 0), (7.3, 3), (4.3, 3), (4.3, 1.8), (3, 1.8), (3, 3), (0, 3)]
     n = len(outline)
     sides = [(k, (k + 1) % n, n + (k + 1) % n, n + k) for k in range(n)]
-    write_obj("dumbbell.obj", [(*p, z) for z in (0, 3) for p in outline], [tuple(range(n))[::-1], tuple(range(n, 2 * n)), *sides])
+    ends = [tuple(range(n))[::-1], tuple(range(n, 2 * n))]
+    corners = [(*p, z) for z in (0, 3) for p in outline]
+    write_obj("dumbbell.obj", corners, [*ends, *sides])
+    # The same with a triangle of no area, at an edge.
+    middle = 2 * n
+    split = [(0, 1, middle), (0, middle, n), (middle, 1, n + 1), (middle, n + 1, n)]
+    write_obj("sliver.obj", [*corners, (1.5, 0, 0)], [*ends, *split, *sides[1:]])
     u = np.linspace(0, 2 * np.pi, 90, endpoint=False)
     x, y, z = np.sin(u) + 2 * np.sin(2 * u), np.cos(u) - 2 * np.cos(2 * u), -np.sin(3 * u)
     centre = np.stack([x, y, z], axis=1) * 20

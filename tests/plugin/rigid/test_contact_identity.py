@@ -7,6 +7,7 @@ import numpy as np
 import plugin_lab
 import pytest
 import rigid_lab as lab
+import rigid_meshes
 import state_lab
 
 OPTIONS = {"cutoff": 0.2, "skin": 0.1}
@@ -58,7 +59,38 @@ def heap(folder, commands=()) -> lab.World:
     )
 
 
-HEAPS = pytest.mark.parametrize("heap", [heap, round_heap])
+def bowl_of_triangles(folder, commands=()) -> lab.World:
+    """Shapes of all kinds, and a channel, that fall into a held bowl of triangles."""
+    random = np.random.default_rng(8)
+    channel = [
+        (-0.05, -0.03),
+        (0.05, -0.03),
+        (0.05, 0.03),
+        (0.03, 0.03),
+        (0.03, -0.01),
+        (-0.03, -0.01),
+        (-0.03, 0.03),
+        (-0.05, 0.03),
+    ]
+    shapes = [
+        lab.box((0.1, 0.06, 0.08)),
+        lab.ball(0.04),
+        lab.cylinder(0.04, 0.09),
+        lab.ellipsoid((0.04, 0.05, 0.07)),
+        rigid_meshes.solid(*rigid_meshes.profile(channel, 0.08), 0.02),
+        lab.cone(0.05, 0.1),
+        lab.torus(0.05, 0.02),
+    ]
+    bodies = []
+    for n, shape in enumerate(shapes):
+        q = lab.about(random.uniform(-1, 1, 3), random.uniform(0, 3))
+        at = (0.1 * np.cos(2.4 * n), 0.1 * np.sin(2.4 * n), 0.12 + 0.04 * n)
+        bodies.append(shape.put(at=at, q=q, v=(0, 0, -1), mu=0.3))
+    bodies.append(lab.mesh(*rigid_meshes.bowl(0.3, 0.03, 1.3, 24, 10), 0.03))
+    return lab.World(folder, bodies, frequency=lab.frequency_of(2.0, 0.06), planes=("plane z lo -0.1",), commands=commands)
+
+
+HEAPS = pytest.mark.parametrize("heap", [heap, round_heap, bowl_of_triangles])
 
 
 @HEAPS
@@ -294,7 +326,11 @@ def two_cubes(shift):
         ("shapes FILE contact 1 1 objects", "\n1 0 0 loose", "line 2 of FILE: a body is free, held or driven, got loose"),
         ("shapes FILE contact 1 1 objects", "1 0 0 free 0 0 0 1 1 0 0 box 1 1 1", "the rotation is not a unit quaternion"),
         ("shapes FILE contact 1 1 objects", "1 0 0 free 0 0 0 1 0 0 0 box 1 1", "line 1 of FILE: a side is missing"),
-        ("shapes FILE contact 1 1 objects", "1 0 0 free 0 0 0 1 0 0 0 knot 1 1", "ellipsoid, torus or polyhedron, got knot"),
+        (
+            "shapes FILE contact 1 1 objects",
+            "1 0 0 free 0 0 0 1 0 0 0 knot 1 1",
+            "ellipsoid, torus, polyhedron or mesh, got knot",
+        ),
         ("shapes FILE contact 1 1 objects", f"1 0 0 {BOX} 3", "there is more than belongs to it, from 3 on"),
         ("shapes FILE contact 1 1 objects", f"7 0 0 {BOX}", "has object 7 (molecule ID) as free, and it has no particle"),
         (

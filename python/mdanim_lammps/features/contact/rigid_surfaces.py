@@ -130,7 +130,7 @@ def _body(context: Context, m: int) -> tuple[ContactBody, np.ndarray, np.ndarray
     """Contact body of a solid, its points from the centre [m], shape (P, 3), and its tensor of inertia, both along its axes."""
     system = context.system
     kind, turn = int(system.contact_kind[m]), np.array(context.scene.solids[m].rotation)
-    body = system.contact_bodies[kind]
+    body = system.frames[kind].contact
     return body, system.frames[kind].cells.low + body.at * body.edge, turn.T @ system.inertia[m] @ turn
 
 

@@ -223,6 +223,8 @@ class SurfaceContact(ObjectContact):
         more than one layer.
         """
         system = context.system
+        if not meet_here(context).any():  # nothing reads points of surfaces, which may take long to find
+            return np.zeros(len(system.object))
         kappa = self.stiffness(context)[system.object]
         own, borne, dense = own_area(system), borne_area(system), are_dense(system)
         area = own + borne
@@ -235,12 +237,16 @@ class SurfaceContact(ObjectContact):
 
     def own_rate(self, context):
         system = context.system
+        if not meet_here(context).any():
+            return np.zeros(len(system.object))
         kappa = self.stiffness(context)[system.object]
         share = resolved(system)[system.object]
         return 2.0 * kappa * share * _of_bodies(context, own_area(system) / system.mass)
 
     def drag_rate(self, context):
         """Points of the own body and of another, and the factor 2 as in `rate`."""
+        if not meet_here(context).any():
+            return None
         one = self.law.dashpots(context, self.stiffness(context))
         return None if one is None else 4.0 * one
 

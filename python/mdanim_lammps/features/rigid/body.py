@@ -13,15 +13,15 @@ from ...model.cells import fill_cells
 from ...model.contact_body import BodyFrame
 from ...model.held import free_model
 from ...model.inertia import tensor
-from ...scene.scene import Box, Cone, Cylinder, Ellipsoid, Mesh, Sphere
-from .shapes import hidden, is_rigid, on_objects, only_balls_move
+from ...model.polyhedron import polyhedron
+from ...scene.scene import Box, Cone, Cylinder, Ellipsoid, Mesh, Sphere, Torus
+from .shapes import hidden, is_known, is_rigid, on_objects, only_balls_move
 
 ACROSS, ROUND = 2, 4
 """Cells across its thinnest part: the least that have an inside; and of what is round, or touches others at points of its
 surface, a third of a cell apart: a torus of 2 rolls so down a slope with 0.96 of its acceleration, one of 4 with 0.995."""
-OF_CORNERS = (Cone, Cylinder, Ellipsoid)
-"""Shapes whose particles are the corners of a box around the drawn surface. Its middle is inside of these, not in a hole as that
-of a torus: an object there counts as one inside the other (engine.geometry.Geometry.sunk)."""
+OF_CORNERS = (Cone, Cylinder, Ellipsoid, Torus, Mesh)
+"""Shapes whose particles are the corners of a box around the drawn surface."""
 
 
 class RigidBody(BodyKind):
@@ -60,10 +60,16 @@ class RigidBody(BodyKind):
             model = single_cell_model(solid, h, shared)
             model = replace(model, frame=shared.once(_framed, solid.shape, h))
         elif isinstance(solid.shape, OF_CORNERS) and shared.by_features:
-            model = free_model(solid, h, shared)
+            model = free_model(solid, h, shared, hollow=is_hollow(solid.shape))
         else:
             model = lattice_model(solid, h, shared, loose=True)
         return replace(model, inertia=tensor(solid.shape, shapes.mass(solid), solid.rotation))
+
+
+def is_hollow(shape) -> bool:
+    """Whether the middle of the box around a shape may be outside of it, as in the hole of a torus: an object there is not one
+    inside the other (engine.geometry.Geometry.sunk)."""
+    return isinstance(shape, Torus) or (isinstance(shape, Mesh) and polyhedron(shape) is None)
 
 
 def _framed(shared, shape, h: float) -> BodyFrame:
@@ -97,7 +103,7 @@ def _features_alone(scene) -> bool:
     solids = [s for s in scene.solids if kind_of(s).fills]
     if scene.liquid is not None or all(map(all_held, solids)) or any(map(is_soft, solids)) or unguided(scene):
         return False
-    if not all(on_objects(s.shape) for s in solids):
+    if not all(map(is_known, solids)):
         return False
     return only_balls_move(solids) or hidden(scene) is not None
 

@@ -12,7 +12,7 @@ from ...errors import Problem
 from ...model.polyhedron import MOST_CORNERS
 from ...scene.formatting import estimate
 from . import touching
-from .shapes import on_objects
+from .shapes import is_known
 
 MUCH = 2.0
 """Times as many steps from which on another shape is advised."""
@@ -53,7 +53,7 @@ def _unknown(envelope: Envelope, m: int) -> tuple[int, int] | None:
     system, solids = envelope.system, envelope.scene.solids
     low, high = system.bounds(system.position)
     gap = np.linalg.norm(np.maximum(0.0, np.maximum(low - high[m], low[m] - high)), axis=1)
-    known = np.array([on_objects(solid.shape) for solid in solids])
+    known = np.array([is_known(solid) for solid in solids])
     partner = np.where(np.arange(len(gap)) != m, gap, np.inf)
     partner = np.where((system.rigid | system.still) & (~known if known[m] else True), partner, np.inf)
     nearest = int(partner.argmin())

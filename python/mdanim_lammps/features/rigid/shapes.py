@@ -9,30 +9,40 @@ import numpy as np
 
 from ...bodies import all_held, driven
 from ...effects.once import once_for
+from ...model import creased, mesh
 from ...model.cover import hidden_sides
 from ...model.polyhedron import hull, polyhedron
+from ...model.shapes import thickness
 from ...scene.formatting import in_full
 from ...scene.scene import Box, Cone, Cylinder, Ellipsoid, Mesh, SceneRecord, Shape, Solid, Sphere, Torus
 from .words import Rigid
 
 KNOWN = (Box, Sphere, Ellipsoid, Cylinder, Cone, Torus)
-"""Shapes with features; of meshes those that are convex."""
+"""Shapes with features; meshes have them where they are clean."""
 
 
-def on_objects(shape: Shape) -> bool:
+def on_objects(shape: Shape, moves: bool = True) -> bool:
     """Whether the fix knows the features of a shape on others of that kind."""
-    return isinstance(shape, KNOWN) or (isinstance(shape, Mesh) and polyhedron(shape) is not None)
+    return isinstance(shape, KNOWN) or (
+        isinstance(shape, Mesh)
+        and (polyhedron(shape) is not None or (creased.may_move(shape) if moves else creased.is_known(shape)))
+    )
+
+
+def is_known(solid: Solid) -> bool:
+    """Whether the fix knows the features of an object."""
+    return on_objects(solid.shape, not all_held(solid))
 
 
 def on_planes(shape: Shape) -> bool:
-    """The same on planes, which touch of a mesh what its hull touches."""
+    """The same of what moves on planes, which touch of a mesh what its hull touches."""
     return on_objects(shape) or (isinstance(shape, Mesh) and hull(shape) is not None)
 
 
 def only_balls_move(solids: Sequence[Solid]) -> bool:
     """Whether balls are all that moves and touches objects by features. They meet each surface at one point, whose force turns
     steadily from a side to an edge, so edges in a seam of held cuboids hardly stop them."""
-    return all(isinstance(s.shape, Sphere) or all_held(s) or not is_rigid(s) or not on_objects(s.shape) for s in solids)
+    return all(isinstance(s.shape, Sphere) or all_held(s) or not is_rigid(s) or not is_known(s) for s in solids)
 
 
 @once_for(lambda scene: scene)
@@ -72,6 +82,16 @@ def in_file(solid: Solid, hides: Sequence[int] = ()) -> tuple[list[float], str]:
             place = place + np.array(solid.rotation) @ (0.0, 0.0, 0.25 * shape.height)
         case Torus():
             kind, sizes = "torus", (shape.major, shape.minor)
+        case Mesh() if polyhedron(shape) is None and is_known(solid):
+            of = mesh.load(shape)
+            corners, triangles = (
+                f"{len(rows)} {text}"
+                for rows, text in (
+                    (of.points, in_full(of.points.ravel())),
+                    (of.triangles, " ".join(map(str, of.triangles.ravel().tolist()))),
+                )
+            )
+            return place.tolist(), f"mesh {thickness(shape)!r} {corners} {triangles}"
         case Mesh() if (body := polyhedron(shape) or hull(shape)) is not None:
             faces = " ".join(f"{len(face)} {' '.join(map(str, face))}" for face in body.faces)
             return place.tolist(), f"polyhedron {len(body.corner)} {in_full(body.corner.ravel())} {len(body.faces)} {faces}"

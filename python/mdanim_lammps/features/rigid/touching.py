@@ -55,7 +55,7 @@ class Part:
 def parts(context: Context) -> list[Part]:
     """The fixes of a context that move some bodies."""
     system = context.system
-    known = _are(system, on_objects)
+    known = _known(system)
     first = Part(FIXES[0], system.rigid & known, meets_objects(context) | (meets_planes(context) & known), objects_touch(context))
     rest = Part(FIXES[1], system.rigid & ~known, meets_planes(context) & ~known, False)
     return [part for part in (first, rest) if part.bodies.any()]
@@ -66,12 +66,12 @@ def meets_objects(context: Context) -> np.ndarray:
     fix knows. Where others cover a side of a held cuboid, its edges there are none: the file says so. Those that are covered in
     part are known to balls alone, others catch."""
     whole = context.reach.system
-    if not objects_touch(context) or not (_are(whole, on_objects) & whole.rigid).any():
+    if not objects_touch(context) or not (_known(whole) & whole.rigid).any():
         return np.zeros(len(context.system.names), bool)  # the same in all parts of a scene
     system = context.system
     uncovered = np.array([frame.open is None or not len(frame.open) for frame in system.frames])[system.contact_kind]
     everywhere = only_balls_move(context.scene.solids) or hidden(context.scene) is not None
-    return _are(system, on_objects) & (system.rigid | ((system.still | guided(context)) & (uncovered | everywhere)))
+    return _known(system) & (system.rigid | ((system.still | guided(context)) & (uncovered | everywhere)))
 
 
 def guided(context: Context) -> np.ndarray:
@@ -94,11 +94,20 @@ def guides(context: Context) -> list[str]:
 def meets_planes(context: Context) -> np.ndarray:
     """Solids that move and touch planes by their features, bool, shape (M,)."""
     system = context.system
-    return system.rigid & _are(system, on_planes) & bool(planes_of(context))
+    return _are(system, system.rigid, on_planes) & bool(planes_of(context))
 
 
-def _are(system: System, known: Callable[[Shape], bool]) -> np.ndarray:
-    return np.array([known(frame.shape) for frame in system.frames])[system.contact_kind]
+def _known(system: System) -> np.ndarray:
+    """Solids whose features the fix knows, bool, shape (M,)."""
+    return _are(system, system.rigid, on_objects) | _are(system, ~system.rigid, lambda shape: on_objects(shape, moves=False))
+
+
+def _are(system: System, asked: np.ndarray, known: Callable[[Shape], bool]) -> np.ndarray:
+    """Some solids whose shapes are known, bool, shape (M,): others are not asked, which may take long."""
+    kinds = np.unique(system.contact_kind[asked]).tolist()
+    found = np.zeros(len(system.frames), bool)
+    found[kinds] = [known(system.frames[kind].shape) for kind in kinds]
+    return asked & found[system.contact_kind]
 
 
 def planes_of(context: Context) -> list[Plane]:

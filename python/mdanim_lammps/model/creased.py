@@ -1,0 +1,41 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Closed surfaces of triangles with creases and holes, clean enough for ``fix mdanim/rigid`` (plugin/rigid/triangle_mesh.cpp)."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+import numpy as np
+
+from ..scene.scene import Mesh
+from . import mesh
+from .polyhedron import hull
+from .triangles import areas
+
+MOST_TRIANGLES = 1_000_000
+"""Triangles of a mesh up to which its features are found."""
+MOST_CORNERS = 1000
+"""Corners of a mesh that moves, the same: each of them is looked at where it meets a plane."""
+LEAST_AREA = 2e-14
+"""Area of a triangle over the square of the size, the diagonal of its box, from which the fix knows its normal."""
+
+
+@lru_cache(maxsize=256)
+def is_known(shape: Mesh) -> bool:
+    """Whether the fix takes the triangles of a mesh: each has an area, and each edge has two of them. Raises mesh.MeshError."""
+    body = mesh.load(shape)
+    if len(body.triangles) > MOST_TRIANGLES:
+        return False
+    size = float(np.linalg.norm(np.ptp(body.points, axis=0)))
+    if areas(body.points, body.triangles).min() <= LEAST_AREA * size**2:
+        return False
+    first, second = body.triangles, np.roll(body.triangles, -1, axis=1)
+    edge = (first.astype(np.int64) * len(body.points) + second).ravel()
+    back = (second.astype(np.int64) * len(body.points) + first).ravel()
+    return len(np.unique(edge)) == len(edge) and np.array_equal(np.sort(edge), np.sort(back))
+
+
+@lru_cache(maxsize=256)
+def may_move(shape: Mesh) -> bool:
+    """The same of a mesh that moves, whose corners also meet planes. Raises mesh.MeshError."""
+    return len(mesh.load(shape).points) <= MOST_CORNERS and is_known(shape) and hull(shape) is not None

@@ -1,0 +1,108 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Scenes with meshes that have creases and holes: what is held or rigid touches them by their features."""
+
+import numpy as np
+import pytest
+import rigid_meshes
+from mdanim_lammps.engine.geometry import Geometry
+from mdanim_lammps.engine.instance import Instance
+from mdanim_lammps.features.rigid.touching import STEP, omega
+from mdanim_lammps.model import creased
+from mdanim_lammps.scene.scene import Mesh
+from model_samples import MESHES
+
+STAIRS = [(0, 0), (0.9, 0), (0.9, 0.2), (0.6, 0.2), (0.6, 0.4), (0.3, 0.4), (0.3, 0.6), (0, 0.6)]
+SCENE = """gravity (0, 0, -9.81) m/s^2
+object held {{ shape mesh "held.obj" scale 1  position ({x!r}, {y!r}, {z!r}) m  density 1000  elasticity rigid  hold all }}
+object it {{ {it}  density 1000  elasticity rigid }}
+control {{ time {time} s  friction 0.5  restitution 0.5 }}
+"""
+
+
+def scene(folder, points, triangles, it, time) -> str:
+    """The text of a scene with a mesh at its own place, whose file is written."""
+    rows = [f"v {x!r} {y!r} {z!r}\n" for x, y, z in points.tolist()] + [f"f {a} {b} {c}\n" for a, b, c in triangles + 1]
+    (folder / "held.obj").write_text("".join(rows))
+    a, b, c = (points[triangles[:, k]] for k in range(3))
+    six = np.einsum("td,td->t", a, np.cross(b, c))
+    x, y, z = ((six[:, None] * (a + b + c)).sum(0) / (4 * six.sum())).tolist()
+    return SCENE.format(x=x, y=y, z=z, it=it, time=time)
+
+
+def run(ready) -> np.ndarray:
+    """Centres of mass at the end [m]."""
+    with Instance(ready.plan) as instance:
+        instance.setup()
+        instance.run(ready.certificate.steps)
+        return ready.system.center_of_mass(instance.array("x"))
+
+
+def test_a_marble_runs_through_a_spiral_pipe(prepared, tmp_path):
+    """By features: eight particles each, and steps that they allow; at points of surfaces it took eight times as many. It stays
+    in the pipe and comes down by as much as the pipe does on its way."""
+    radius, drop = 0.15, 0.06
+    text = scene(
+        tmp_path, *rigid_meshes.pipe(radius, drop, 2, 0.025, 0.029, 60, 20), "shape sphere 1 cm  position (15, 1, -1.4) cm", 0.6
+    )
+    ready = prepared(text)
+    assert ready.system.particles == 16 and not ready.warnings
+    assert ready.certificate.timestep > 0.9 * STEP / omega(ready.context)
+    x, y, z = run(ready)[1]
+    turned = np.arctan2(y, x) % (2 * np.pi)
+    assert turned > 0.5
+    assert np.hypot(np.hypot(x, y) - radius, z + drop * turned / (2 * np.pi)) < 0.025 - 0.01 + 1e-3
+
+
+@pytest.mark.parametrize("it", ["shape box (20, 20, 20) cm", "shape cylinder 10 cm 20 cm", "shape torus 10 cm 4 cm"])
+def test_it_stands_on_a_step(prepared, tmp_path, it):
+    """Where it is put down: nothing creeps, and nothing falls through."""
+    height = 0.04 if "torus" in it else 0.1
+    ready = prepared(scene(tmp_path, *rigid_meshes.profile(STAIRS, 1.0), f"{it}  position (0.45, 0, {0.4 + height}) m", 0.5))
+    assert ready.system.particles == 16 and ready.certificate.timestep > 0.9 * STEP / omega(ready.context)
+    assert run(ready)[1] == pytest.approx((0.45, 0.0, 0.4 + height), abs=2e-3)
+
+
+@pytest.mark.parametrize(("name", "known"), [("dumbbell", True), ("knot", True), ("sliver", False)])
+def test_which_meshes_are_known(name, known):
+    """All that are closed and whose triangles have areas; those that move with up to 1000 corners."""
+    shape = Mesh(MESHES / f"{name}.{'ply' if name == 'knot' else 'obj'}")
+    assert creased.is_known(shape) == known
+    assert creased.may_move(shape) == (name == "dumbbell")
+
+
+def test_a_concave_mesh_that_moves_touches_by_features(prepared):
+    """A dumbbell, whose neck falls across the edge of a box: it stays there."""
+    text = f"""gravity (0, 0, -9.81) m/s^2
+    object post {{ shape box (4, 40, 40) cm  position (0, 0, 0.2) m  density 1000  elasticity rigid  hold all }}
+    object barbell {{ shape mesh "{MESHES}/dumbbell.obj" scale 0.03  position (0, 0, 0.4155) m
+      orientation axis (1, 0, 0) angle 90 deg  density 1000  elasticity rigid }}
+    control {{ time 0.5 s  friction 0.5 }}
+    """
+    ready = prepared(text)
+    assert ready.certificate.timestep > 0.9 * STEP / omega(ready.context) and not ready.warnings
+    before = ready.system.center_of_mass(ready.system.position)[1]
+    after = run(ready)[1]
+    assert abs(after[0] - before[0]) < 0.02 and before[2] - 0.06 < after[2] < before[2] + 1e-3
+
+
+@pytest.mark.parametrize(
+    "shape", ["torus 10 cm 3 cm", f'mesh "{MESHES}/cuboid.obj" scale 0.05', f'mesh "{MESHES}/dumbbell.obj" scale 0.03']
+)
+def test_few_particles_of_rings_and_meshes(prepared, shape):
+    """Eight, with mass, centre and moments of the shape; a rod through the hole of a ring is not inside of it, and a convex mesh
+    has the cell in which things would be."""
+    aside = 0 if "torus" in shape else 1
+    text = f"""gravity (0, 0, -9.81) m/s^2
+    object it {{ shape {shape}  position (0, 0, 0.5) m  density 1000  elasticity rigid  spin (1, 2, 3) rad/s }}
+    object rod {{ shape cylinder 1 cm 40 cm  position ({aside}, 0, 0.5) m  density 1000  elasticity rigid }}
+    control {{ time 0.1 s }}
+    """
+    ready = prepared(text)
+    assert np.diff(ready.system.first).tolist() == [8, 8]
+    assert ready.system.center_of_mass(ready.system.position)[0] == pytest.approx((0, 0, 0.5), abs=1e-12)
+    with Instance(ready.plan) as instance:
+        instance.setup()
+        instance.run(ready.certificate.steps)
+        x = instance.array("x")
+        assert ready.system.center_of_mass(x)[0, 2] == pytest.approx(0.5 - 0.5 * 9.81 * 0.1**2, abs=1e-6)
+        assert Geometry(ready.system).sunk(x) is None
