@@ -30,6 +30,7 @@ struct Touch {
   double owed = 0.0;        // work that `more` has still to do [J]
   double followed = 0.0;    // 1 from the second step on
   double parted = 0.0;      // 1 in the step after the bodies have parted, the last one that it is there
+  double counted = 0.0;     // part of it that counted in the last step, of points that are nearest on a mesh
   double energy = 0.0;      // now, with that of sticking [J]
 };
 
@@ -102,11 +103,12 @@ class TouchStep {
     end(touch, touch.memory.depth);
   }
 
-  // The part of a contact that counts is to change: what it held for the rest is let go.
-  void count_part(const Touch &touch, double part) const
+  // Another part of a contact counts from now on: what it held for the rest is let go.
+  void count_part(Touch &touch, double part) const
   {
     const Onset<double> g(touch.memory.depth - touch.memory.offset, onset);
-    account.let_go += touch.energy - touch.memory.stick_energy - touch.stiffness * part * g.value;
+    if (touch.followed != 0.0) account.let_go += touch.stiffness * (touch.counted - part) * g.value;
+    touch.counted = part;
   }
 
   ContactLaw law_of(const Touch &touch, const TouchLaw &law) const

@@ -116,8 +116,8 @@ def test_a_plank_on_a_cylinder_takes_the_steps_of_one_on_a_box(prepared):
 
 
 def test_check_names_the_shape_that_makes_steps_short(prepared):
-    """A plank on a mesh with a triangle of no area takes many times the steps of one on a box: the pair, the way out, and the steps with
-    it, which are those of the scene with a box."""
+    """A plank on a mesh with a triangle of no area takes many times the steps of one on a box: the pair, the way out, and the
+    steps with it, which are those of the scene with a box."""
     certificate = prepared(SEESAW.format(pivot=UNCLEAN, heavy="rigid", more="")).certificate
     (note,) = [n for n in certificate.notes if "sets the time step" in n.message]
     assert note.message.startswith("contact of pivot with plank") and "this mesh" in note.message

@@ -101,7 +101,8 @@ def test_features_alone_need_neither_inside_nor_surface(prepared, how):
 
 
 def test_points_of_a_surface_are_as_far_apart_as_the_spacing(prepared):
-    """A mesh with a triangle of no area has no features: it meets the plate at points of both surfaces. A resolution sets them."""
+    """A mesh with a triangle of no area has no features: it meets the plate at points of both surfaces, and a
+    resolution sets them."""
     with pytest.raises(SceneError, match="floor: thinner than the spacing allows"):
         prepared(PLATE.replace("HOW", "elasticity rigid  resolution 1 m") + BARBELL)
     ready = prepared(PLATE.replace("HOW", "elasticity rigid  resolution 1 cm") + BARBELL)

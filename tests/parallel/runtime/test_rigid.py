@@ -36,8 +36,8 @@ object neck {{ shape mesh "{MESHES}/dumbbell.obj" scale 0.02  position (-150, 0,
 object pin {{ shape sphere 2 cm  position (-150, 0, 8) cm  density 1000  elasticity rigid  velocity (0, 0, -2) m/s }}
 control {{ time 0.1 s  frames 100 fps  friction 0.5  resolution 2.5 cm }}
 """
-"""Two pairs by features, a mesh with a triangle of no area on something soft by surfaces, one that is not convex below a ball; the
-first box flies to the second pair."""
+"""Two pairs by features, a mesh with a triangle of no area on something soft by surfaces, one that is not convex below a ball;
+the first box flies to the second pair."""
 
 
 def records(folder) -> dict:
