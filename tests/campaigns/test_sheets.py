@@ -6,7 +6,7 @@ import pytest
 from campaign import rounds
 from random_objects import keeps_energy, others
 
-FEW = (1, 2, 5, 6)
+FEW = (0, 3, 4, 9)
 """Seeds of scenes that are run every day."""
 HOLDS = ("", "hold face -x", "hold faces y", "hold face +y")
 

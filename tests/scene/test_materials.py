@@ -50,11 +50,13 @@ def test_the_figures_are_those_of_the_table(name):
 
 
 def test_what_cannot_be_rigid_has_its_elasticity():
-    """A rope and what is held in a part bend; what is held as a whole is rigid, and has restitution."""
+    """A rope, a sheet and what is held in a part bend; what is held as a whole is rigid, and has restitution."""
     beam = one("material oak shape box (1, 0.1, 0.1) m position (0, 0, 1) m hold face -x")
     assert (beam.elasticity, beam.restitution, beam.damping) == (Young(11e9), None, 0.0)
     rope = one(f"material cotton {ROPE}")
     assert (rope.elasticity, rope.restitution, rope.damping) == (Young(5e8), None, 0.2)
+    sheet = one("material cotton shape sheet (1, 1) m thickness 1 mm position (0, 0, 1) m")
+    assert (sheet.elasticity, sheet.restitution) == (rope.elasticity, None)
     held = one(f"material oak {AT} hold all")
     assert (held.elasticity, held.restitution) == (Rigid(), 0.5)
     mat = one(f"material rubber {AT} hold all")
