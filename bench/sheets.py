@@ -1,16 +1,20 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""Sheets against closed forms, and the energy of a fall: ``python bench/sheets.py [closed|bends|falls]``.
+"""Sheets against closed forms, and the energy of a fall: ``python bench/sheets.py [closed|bends|falls|cost]``.
 
 The tables are those of docs/physics-sheets.md; scenes and closed forms are in tests/lab/sheet_cases.py.
 """
 
 import sys
+import time
+from contextlib import ExitStack
 from pathlib import Path
 
+from mdanim_lammps.engine.instance import Instance
 from timing import print_tables
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "lab"))
 import sheet_cases
+from rope_cases import DOWN, made
 
 
 def closed() -> tuple[list[str], list[list]]:
@@ -39,7 +43,31 @@ def bends() -> tuple[list[str], list[list]]:
     return ["strip", "bending by", "force at its end", "couple about its length"], rows
 
 
-TABLES = {"closed": closed, "bends": bends, "falls": falls}
+def cost() -> tuple[list[str], list[list]]:
+    """Time of a step per spring, of a sheet and of a solid of about as many springs, both damped: the least of many, in turns."""
+    texts = {
+        "sheet": sheet_cases.sheet("(1, 1)", "2 mm", "elasticity 1 MPa  damping 0.1  resolution 1.5 cm"),
+        "solid": "object block { shape box (1, 0.5, 0.5) m  position (0, 0, 0) m  density 1000 kg/m^3  elasticity 1 MPa"
+        "  damping 0.1  resolution 4 cm }\n",
+    }
+    ready = {name: made(DOWN + text) for name, text in texts.items()}
+    with ExitStack() as opened:
+        open_ones = {name: opened.enter_context(Instance(one.plan)) for name, one in ready.items()}
+        least = dict.fromkeys(texts, float("inf"))
+        for instance in open_ones.values():
+            instance.setup()
+        for _ in range(60):
+            for name, instance in open_ones.items():
+                begun = time.perf_counter()
+                instance.run(100)
+                least[name] = min(least[name], (time.perf_counter() - begun) / 100)
+    springs = {name: len(one.system.spring) for name, one in ready.items()}
+    return ["object", "springs", "ns per spring"], [
+        [name, springs[name], f"{1e9 * least[name] / springs[name]:.2f}"] for name in texts
+    ]
+
+
+TABLES = {"closed": closed, "bends": bends, "falls": falls, "cost": cost}
 
 if __name__ == "__main__":
     print_tables(TABLES, sys.argv[1:])
