@@ -69,7 +69,9 @@ void AirSkin::find_areas(const Areas &areas, AirScratch &with) const
     for (const int p : t) with.area[p] += third;
   }
   for (const Cylinder &one : cylinders) {
-    const double half = 0.5 * one.diameter * length(with.place[one.to] - with.place[one.from]);
+    const double way = length(with.place[one.to] - with.place[one.from]);
+    if (way > one.most) continue;
+    const double half = 0.5 * one.diameter * way;
     with.area[one.from] += half;
     with.area[one.to] += half;
   }
@@ -112,7 +114,7 @@ template <class Push> void AirSkin::each_force(const AirLaw &law, double above, 
   }
   for (const Cylinder &one : cylinders) {
     const std::array<int, 2> ends = {one.from, one.to};
-    if (0.5 * (x[one.from].z + x[one.to].z) < above) continue;
+    if (0.5 * (x[one.from].z + x[one.to].z) < above || length(x[one.to] - x[one.from]) > one.most) continue;
     const Vec3 velocity = 0.5 * (v[one.from] + v[one.to]);
     push(law.on_cylinder(x[one.to] - x[one.from], one.diameter, velocity, std::max(load[one.from], load[one.to])), ends, 0.5);
   }

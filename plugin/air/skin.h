@@ -33,6 +33,7 @@ class AirSkin {
   struct Cylinder {
     int from, to;
     double diameter;
+    double most;    // length from which on it is torn: air goes through
   };
   struct Ball {
     int at;

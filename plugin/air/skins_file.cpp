@@ -3,6 +3,8 @@
 #include "air/skin.h"
 #include "records/line_words.h"
 
+#include <cmath>
+
 namespace mdanim {
 
 namespace {
@@ -49,7 +51,9 @@ void read_part(LineWords &words, const std::string &kind, AirSkin &skin)
     skin.append_triangle(a, b, c);
   } else if (kind == "cylinder") {
     const int from = read_point(words, skin), to = read_point(words, skin);
-    skin.append_cylinder({from, to, words.positive("the diameter of a cylinder")});
+    const double diameter = words.positive("the diameter of a cylinder");
+    const double most = words.is_at_end() ? HUGE_VAL : words.positive("the length from which on a cylinder is torn");
+    skin.append_cylinder({from, to, diameter, most});
   } else if (kind == "ball") {
     const int at = read_point(words, skin);
     skin.append_ball({at, words.positive("the diameter of a ball")});

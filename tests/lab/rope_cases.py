@@ -166,6 +166,45 @@ def fall(friction: float, thickness: float = 0.02) -> float:
     return float(sum(end.values()) - sum(begin.values())) / (G * float(ready.system.mass.sum()) * 0.5)
 
 
+def pulley(kind: str, mu: float = 0.5, density: float = 2000.0, thickness: float = 0.01, radius: float = 0.1):
+    """Acceleration of a rope that runs over a pulley on a hinge, pulled by F1 and F2 at its ends, which rubs without slipping:
+    (F1 - F2)/(m + I/r^2) with r in the middle of the rope [m/s^2]. An Atwood machine has the weights m1 g and m2 g, and these
+    masses besides."""
+    top, reach, wide = radius + thickness / 2 + 1e-4, 0.35, 0.1
+    line = rope(
+        f"{kind} from (-{reach}, 0, {top}) m to ({reach}, 0, {top}) m thickness {thickness} m",
+        f"elasticity 5 MPa  friction {mu}  damping 0.5",
+    )
+    wheel = f"shape cylinder {radius} m {wide} m  orientation axis (1, 0, 0) angle 90 deg  position (0, 0, 0) m"
+    ready = made(
+        f"{line}object wheel {{ {wheel}  density {density}  elasticity rigid  friction {mu} }}\n"
+        "joint hinge wheel world { axis (0, 1, 0) }\n"
+    )
+    last, dt = int(ready.system.first[1]), ready.certificate.timestep
+    low, more, own = 8.0, 4.0, slice(last, None)
+    inertia = 0.5 * density * math.pi * radius**4 * wide
+    r, mass = radius + 0.5 * thickness, float(ready.system.mass[:last].sum())
+    with Instance(ready.plan) as instance:
+        lmp = instance.lammps.lmp
+        for command in (f"group tip id {last}", "group root id 1", "group both union tip root", f"group line id 1:{last}"):
+            lmp.command(command)
+        lmp.command(f"fix pull both addforce 0 0 -{low}")
+        lmp.command("fix calm line viscous 0.02")
+        instance.setup()
+        instance.run(round(0.6 / dt))
+        lmp.command("unfix calm")
+        lmp.command(f"fix more tip addforce 0 0 -{more}")
+        instance.setup()
+        spins = []
+        for seconds in (0.1, 0.15):
+            instance.run(round(seconds / dt))
+            x, v = instance.array("x")[own], instance.array("v")[own]
+            arm = x - x.mean(axis=0)
+            arm[:, 1] = 0.0
+            spins.append(float(np.cross(arm, v)[:, 1].sum() / (arm**2).sum()))
+    return abs(spins[1] - spins[0]) / 0.15 * r, more / (mass + inertia / r**2)
+
+
 def whirl(kind: str, speed: float = 5.0, radius: float = 0.04) -> tuple[float, float]:
     """Mean pull of a rope of 1 m that whirls a ball of 1 kg on a joint at its end, and m v^2/r [N]."""
     reach, pull = 1.0 + radius, speed**2 / (1.0 + radius)
@@ -200,6 +239,8 @@ CASES: dict[str, tuple[Callable[[], tuple[float, float]], float]] = {
     "capstan, rope, 90 degrees": (lambda: capstan("rope", 90), 0.03),
     "capstan, chain, 180 degrees": (lambda: capstan("chain", 180), 0.03),
     "capstan, rope, 180 degrees": (lambda: capstan("rope", 180), 0.03),
+    "pulley that turns, chain": (lambda: pulley("chain"), 0.015),
+    "pulley that turns, rope": (lambda: pulley("rope"), 0.015),
     "whirls a ball on a joint, chain": (lambda: whirl("chain"), 0.01),
     "whirls a ball on a joint, rope": (lambda: whirl("rope"), 0.01),
     "cantilever, 2 cm, 25 links": (lambda: cantilever(0.02, 50e6), 0.03),

@@ -19,6 +19,7 @@ class Skin:
     points: Sequence[Sequence[tuple[int, float]]]
     triangles: Sequence[tuple[int, int, int]] = ()
     cylinders: Sequence[tuple[int, int, float]] = ()
+    """Points, diameter and, where it may tear, the largest length."""
     balls: Sequence[tuple[int, float]] = ()
     frame: tuple[int, int, int, int] | None = None
     panels: Sequence[tuple[int, Sequence[float]]] = field(default_factory=list)
@@ -29,7 +30,7 @@ class Skin:
         lines = [f"object {molecule} {'both' if self.both else 'outer'}"]
         lines += ["point " + " ".join(f"{i + 1} {w!r}" for i, w in point) for point in self.points]
         lines += ["triangle " + " ".join(str(p + 1) for p in t) for t in self.triangles]
-        lines += [f"cylinder {a + 1} {b + 1} {d!r}" for a, b, d in self.cylinders]
+        lines += [" ".join(["cylinder", str(a + 1), str(b + 1), *map(repr, more)]) for a, b, *more in self.cylinders]
         lines += [f"ball {p + 1} {d!r}" for p, d in self.balls]
         lines += ["frame " + " ".join(str(p + 1) for p in self.frame)] if self.frame else []
         lines += [f"panel {p + 1} " + " ".join(map(repr, map(float, part))) for p, part in self.panels]
@@ -80,8 +81,10 @@ class Skin:
             a, b, c = place[list(t)]
             area = 0.5 * np.cross(b - a, c - a)
             yield list(t), np.linalg.norm(area), surface(area)
-        for a, b, d in self.cylinders:
+        for a, b, d, *most in self.cylinders:
             way = place[b] - place[a]
+            if most and np.linalg.norm(way) > most[0]:
+                continue
             yield [a, b], d * np.linalg.norm(way), cylinder(way, d)
         for p, d in self.balls:
             face = 0.25 * np.pi * d**2

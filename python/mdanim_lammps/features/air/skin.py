@@ -16,6 +16,8 @@ FINE = 16
 """Edges of triangles along the longest one of an object that does not deform, before they become panels."""
 BINS = 6
 """Directions of panels along the edge of a cube around a sphere: a ball of such panels has 0.4 % less drag than the sphere."""
+SLACK = 1.3
+"""Strain of a link above which it is torn for sure, over ``tear-strain``."""
 CORNERS = 8
 """Most particles of an object that does not deform by which its surface is found; others have a lattice."""
 WIDE = 0.05
@@ -84,7 +86,10 @@ def skin_of(model: Model, solid: Any) -> AirSkin:
         links = np.stack([np.arange(n - 1), np.arange(1, n)], axis=1)
         diameter = solid.shape.thickness
         length = np.linalg.norm(np.diff(model.position, axis=0), axis=1)
-        cylinders = AirPart("cylinder", links, np.full((n - 1, 1), diameter), diameter * length)
+        value = np.full((n - 1, 1), diameter)
+        if solid.tear_strain is not None:
+            value = np.column_stack([value, (1.0 + SLACK * solid.tear_strain) * solid.shape.length / (n - 1) * np.ones(n - 1)])
+        cylinders = AirPart("cylinder", links, value, diameter * length)
         return AirSkin(np.arange(n)[:, None], np.ones((n, 1)), (cylinders,), both=True)
     if model.frame.dimensions == 2:
         triangle = model.frame.triangle
