@@ -47,12 +47,12 @@ def scenes() -> Path:
 def prepared(tmp_path):
     """Make a prepared scene from text."""
 
-    def make(text: str, name: str = "small"):
+    def make(text: str, name: str = "small", *, insist: bool = False):
         from mdanim_lammps.run.prepare import prepare
         from mdanim_lammps.scene.parse import load_scene
 
         path = tmp_path / f"{name}.txt"
         path.write_text(text, encoding="utf-8")
-        return prepare(load_scene(path))
+        return prepare(load_scene(path), allow_unstable=insist)
 
     return make

@@ -8,6 +8,8 @@
 
 namespace mdanim {
 
+static double stored(const SpringLaw &spring, double stretch) { return 0.5 * spring.k * stretch * stretch; }
+
 // --- making ---
 
 Joint::Joint(JointWords words, JointEnd a, JointEnd b, double length, double ftm2v)
@@ -48,6 +50,8 @@ void Joint::choose_laws(double ftm2v)
                        : mobility;
   servo.k = given.servo ? given.servo->stiffness : law.k * mobility / servo_mobility;
   servo.c = given.servo ? given.servo->damping : 2.0 * std::sqrt(servo.k / servo_mobility);
+  stop = given.stop ? SpringLaw{given.stop->stiffness, given.stop->damping} : servo;
+  stop_mobility = given.stop ? given.stop->mobility : servo_mobility;
 }
 
 // Small motions of A that give the force -K g and the torque -K L^2 sum e x (phi x e) = -K L^2 n phi on it; n is 2 where three
@@ -109,7 +113,9 @@ Joint::Loads Joint::find(const PatchMotion &a, const PatchMotion &b, const Time 
   const Side of_a{end_a.patch, place_in_a, turned_in_a, a, loads.a, next.losses.a, next.motor.a};
   const Side of_b{end_b.patch, end_b.d, directions.held, b, loads.b, next.losses.b, next.motor.b};
   now.at_a = of_a.place(), now.at_b = of_b.place();
-  const double lent = stored(past.motor.stretch), kept = stored(past.brake.stretch) + stored(past.depth);
+  const auto lent_by = [this](const Past &now) { return stored(servo, now.motor.stretch); };
+  const auto kept_by = [this](const Past &now) { return stored(servo, now.brake.stretch) + stored(stop, now.depth); };
+  const double lent = lent_by(past), kept = kept_by(past);
   if (given.kind == JointKind::SPRING)
     pull(of_a, of_b, past);
   else
@@ -122,8 +128,8 @@ Joint::Loads Joint::find(const PatchMotion &a, const PatchMotion &b, const Time 
   const auto work = [&](const Loads &first, const Loads &last) {
     return 0.5 * ((first.a.work(dc_a, dF_a) + first.b.work(dc_b, dF_b)) + (last.a.work(dc_a, dF_a) + last.b.work(dc_b, dF_b)));
   };
-  account.heat -= work(spending.losses, next.losses) + stored(past.brake.stretch) + stored(past.depth) - kept;
-  account.work += work(spending.motor, next.motor) + stored(past.motor.stretch) - lent;
+  account.heat -= work(spending.losses, next.losses) + kept_by(past) - kept;
+  account.work += work(spending.motor, next.motor) + lent_by(past) - lent;
   for (const Loads *more : {&next.losses, &next.motor}) {
     loads.a += more->a;
     loads.b += more->b;
@@ -257,17 +263,18 @@ Joint::Driving Joint::drive(double rate, const Time &time, Past &past)
   if (!given.has_servo()) return found;
   const SpringLaw stable{servo.k, implicit(servo.c, servo_mobility, time.step)};
   const auto move = [&](const Drive &how, DriveState &state) {
-    state = driven(how, stable, state.anchor + how.speed * time.passed, past.q, rate);
-    now.energy += stored(state.stretch);
+    state = driven(how, stable, state, past.q, rate, time.passed, !past.began);
+    now.energy += stored(servo, state.stretch);
     return state.force;
   };
-  if (given.motor) found.motor = move({given.motor->speed, given.motor->most}, past.motor);
+  if (given.motor) found.motor = move({given.motor->speed, given.motor->most, given.rise}, past.motor);
   if (given.friction > 0.0) found.losses = move({0.0, given.friction}, past.brake);
   if (given.limits) {
-    const Stop stop = stopped(given.limits->low, given.limits->high, stable, past.q, rate);
-    past.depth = stop.depth;
-    now.energy += stored(stop.depth);
-    found.losses += stop.force;
+    const SpringLaw its{stop.k, implicit(stop.c, stop_mobility, time.step)};
+    const Stop reached = stopped(given.limits->low, given.limits->high, its, past.q, rate);
+    past.depth = reached.depth;
+    now.energy += stored(stop, reached.depth);
+    found.losses += reached.force;
   }
   now.driving = found.motor + found.losses;
   return found;

@@ -111,14 +111,13 @@ class Joint {
   void turn(const Side &base, const Side &moving, const Time &time, Past &past);
   void brake(const Side &base, const Side &moving, Vec3 &torque) const;
   Driving drive(double rate, const Time &time, Past &past);
-  double stored(double stretch) const { return 0.5 * servo.k * stretch * stretch; }
 
   JointWords given;
   JointEnd end_a, end_b;
   double own_length = 0.0;
   JointDirections directions;
-  SpringLaw law, turning, servo;
-  double servo_mobility = 0.0;
+  SpringLaw law, turning, servo, stop;
+  double servo_mobility = 0.0, stop_mobility = 0.0;
   double lever[2] = {0.0, 0.0};    // of a slider: its mobility at the way q is that at the start times 1 + lever q
   Vec3 place_in_a;                 // the place of the joint, moved by what the joint bears at the start
   Vec3 turned_in_a[3];             // those that are held, in A, turned by what the joint bears at the start

@@ -16,18 +16,24 @@ struct SpringLaw {
 // A motor that drives towards the speed w with at most M; dry friction is the motor of speed 0. Its spring goes from an anchor
 // that moves on with the speed, and is dragged along where the spring would be stronger than M:
 //   s = clip(anchor - q, +-M/k),   F = clip(k s + c (w - q'), +-M).
+// The speed that it has at first is that of q; it goes from there to its own by `rise` in a unit of time.
 struct Drive {
-  double speed = 0.0, most = HUGE_VAL;
+  double speed = 0.0, most = HUGE_VAL, rise = HUGE_VAL;
 };
 
 struct DriveState {
-  double anchor = 0.0, stretch = 0.0, force = 0.0;
+  double anchor = 0.0, stretch = 0.0, force = 0.0, speed = 0.0;
 };
 
-inline DriveState driven(const Drive &drive, const SpringLaw &law, double anchor, double q, double rate)
+// After the time dt; `begins` where nothing was before.
+inline DriveState driven(const Drive &drive, const SpringLaw &law, const DriveState &before, double q, double rate, double dt,
+                         bool begins)
 {
-  const double s = std::clamp(anchor - q, -drive.most / law.k, drive.most / law.k);
-  return {q + s, s, std::clamp(law.k * s + law.c * (drive.speed - rate), -drive.most, drive.most)};
+  double speed = drive.speed;
+  if (drive.rise < HUGE_VAL)
+    speed = begins ? rate : before.speed + std::clamp(speed - before.speed, -drive.rise * dt, drive.rise * dt);
+  const double s = std::clamp(before.anchor + speed * dt - q, -drive.most / law.k, drive.most / law.k);
+  return {q + s, s, std::clamp(law.k * s + law.c * (speed - rate), -drive.most, drive.most), speed};
 }
 
 // A dashpot beside other forces, taken implicitly over the step that follows: with the mobility y of q, force to acceleration,

@@ -75,6 +75,12 @@ const JointWord WORDS[] = {
        of.servo = JointWords::Servo{stiffness, line.at_least_zero("the damping of the servo")};
      }},
     {"motor", WITH_AXIS, [](JointWords &of, LineWords &line) { of.motor = motor(line); }},
+    {"rise", WITH_AXIS, [](JointWords &of, LineWords &line) { of.rise = line.positive("the acceleration of the motor"); }},
+    {"stop", WITH_AXIS,
+     [](JointWords &of, LineWords &line) {
+       const double stiffness = line.positive("the stiffness of the stop"), damping = line.at_least_zero("its damping");
+       of.stop = JointWords::StopSpring{stiffness, damping, line.positive("the mobility of what it stops")};
+     }},
     {"friction", WITH_AXIS, [](JointWords &of, LineWords &line) { of.friction = line.at_least_zero("the friction"); }},
     {"limits", WITH_AXIS, [](JointWords &of, LineWords &line) { of.limits = limits(line); }},
     {"preload", WITH_PLACE,

@@ -40,6 +40,11 @@ struct JointWords {
     double speed, most;    // most: infinite where there is no limit
   };
   std::optional<Motor> motor;
+  double rise = HUGE_VAL;    // of the motor's speed in a unit of time
+  struct StopSpring {
+    double stiffness, damping, mobility;    // the latter of the free coordinate, force to acceleration
+  };
+  std::optional<StopSpring> stop;
   double friction = 0.0;
   struct Limits {
     double low, high;

@@ -178,10 +178,13 @@ Touch *TouchStep::meet(std::vector<Touch> &list, Touch::TouchKind kind, int numb
   Touch touch = born(kind, law, a, b, x, n);
   touch.first = number;
   touch.anchor = anchor;
-  if (is_first())
+  // What was that deep before it was seen overlaps.
+  constexpr double SHALLOW = 0.03;
+  const double before = depth + dt * dot(relative_velocity(a, b, x), n);
+  if (is_first() || before > SHALLOW * a.shape.thin())
     overlaps(touch, depth);
   else
-    came_from(touch, depth + dt * dot(relative_velocity(a, b, x), n));
+    came_from(touch, before);
   list.push_back(touch);
   return &list.back();
 }

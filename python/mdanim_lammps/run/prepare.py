@@ -12,7 +12,7 @@ from ..certificate import Certificate, certify
 from ..certificate import warnings as margin_warnings
 from ..effects import Context, Resolved, Verdict, resolve
 from ..engine.plan import Plan, make_plan
-from ..errors import Problem, SceneError
+from ..errors import Problem, RefusedError, SceneError
 from ..model.build import build_models
 from ..model.grid import Grid
 from ..model.model import Model
@@ -111,9 +111,22 @@ def _prepare(scene: SceneRecord, spacing: Spacing, allow_unstable: bool) -> Prep
     ):
         context = _context(resolved, build_models(scene, spacing.of, driven=drives, inside=True), spacing, grid)
     certificate = certify(context, allow_unstable=allow_unstable)
+    if not allow_unstable:
+        _refuse(certificate)
     plan = make_plan(context, certificate)
     warnings = [*scene.warnings, *note(scene), *resolved.warnings, *(w for e in resolved.effects for w in e.warnings(context))]
     return Prepared(context, (*warnings, *margin_warnings(certificate)), certificate, plan, allow_unstable)
+
+
+def _refuse(certificate: Certificate) -> None:
+    """Raise RefusedError where limits are passed with which no run goes well."""
+    passed = [
+        Problem(m.span, m.text, f"{m.hint}, or insist with --allow-unstable")
+        for m in certificate.margins
+        if m.severity == "refused"
+    ]
+    if passed:
+        raise RefusedError("\n".join(map(str, passed)))
 
 
 def _context(resolved: Resolved, models: Sequence[Model], spacing: Spacing, grid: Grid | None) -> Context:

@@ -175,7 +175,7 @@ class TwinWorld:
             b.push(at, -force)
 
     def _last_push(self, touch: TwinTouch, a: TwinBody, b: TwinBody | None, at, n, depth: float) -> None:
-        """What is owed when both have parted."""
+        """Gives what is owed when both have parted."""
         now, last = min(depth, touch.depth), touch.depth
         others = touch.look_back(now, self.dt, touch.k * self._missing(last, now))
         push = touch.force_over(touch.owed, now - last, now - last + others)

@@ -101,7 +101,7 @@ def test_records_are_of_pairs_and_do_not_depend_on_numbers(tmp_path):
     [
         (lambda data: data[:-4], "is cut off"),
         (lambda data: np.r_[data, data[:8]], "is too long"),
-        (lambda data: np.r_[data[:8] * 0, data[8:]], "has version 0, 1 is needed"),
+        (lambda data: np.r_[data[:8] * 0, data[8:]], "has version 0, 2 is needed"),
         (lambda data: np.r_[data[:8], data[8:16] + 1, data[16:]], "is of joints of other kinds, or in another order"),
     ],
 )

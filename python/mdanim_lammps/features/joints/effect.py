@@ -153,7 +153,7 @@ class Joints(Effect):
                 f"joint {joint.words} opens by {say(worst.gap, 'm')}{where} under {say(worst.load, 'N')}, what hangs on it at "
                 f"rest: {number(100.0 * worst.gap / worst.thin, 2)} % of the thinnest part of what it joins",
                 joint.spans.get("stiffness") or joint.spans.get("joint"),
-                "warning" if worst.gap > most else "ok",
+                "refused" if worst.turns_over and worst.gap > worst.thin else "warning" if worst.gap > most else "ok",
                 hint=f"write stiffness {number(stiffness, 2)} N/m in it",
             )
         ]

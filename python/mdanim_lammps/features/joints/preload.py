@@ -35,7 +35,7 @@ def preloads(context: Context, joints: Sequence[Strength]) -> np.ndarray:
     from scipy.sparse.linalg import spsolve
 
     found = np.zeros((len(joints), 6))
-    held = [(n, row) for n, one in enumerate(joints) if all(b.rigid for b in one.bodies) for row in _rows(one)]
+    held = [(n, row) for n, one in enumerate(joints) if all(b.rigid for b in one.bodies) for row in held_rows(one)]
     if not held:
         return found
     number: dict[int, int] = {}
@@ -57,7 +57,7 @@ def preloads(context: Context, joints: Sequence[Strength]) -> np.ndarray:
     for k, (n, (along, turns)) in enumerate(held):
         one, right = joints[n], 0.0
         for sign, body in zip((1.0, -1.0), one.bodies):
-            j = _motion(body, along, turns)
+            j = motion_along(body, along, turns)
             right -= sign * (j @ free[number[body.object]] + _turning(body, along, turns, spin[body.object]))
             rows += [k] * 6
             columns += range(6 * number[body.object], 6 * number[body.object] + 6)
@@ -100,12 +100,12 @@ def torn(context: Context, one: Strength) -> float:
 
     (v, w), (u, s) = motion(one.link.first), motion(one.link.second)
     return max(
-        (abs(float(along @ (w - s))) * one.arm if turns else abs(float(along @ (v - u))) for along, turns in _rows(one)),
+        (abs(float(along @ (w - s))) * one.arm if turns else abs(float(along @ (v - u))) for along, turns in held_rows(one)),
         default=0.0,
     )
 
 
-def _rows(one: Strength) -> list[tuple[np.ndarray, bool]]:
+def held_rows(one: Strength) -> list[tuple[np.ndarray, bool]]:
     """Directions in which a joint holds its point, and about which it holds its objects."""
     link = one.link
     match link.joint.kind:
@@ -119,7 +119,7 @@ def _rows(one: Strength) -> list[tuple[np.ndarray, bool]]:
     return [*((e, False) for e in np.eye(3)), *((e, True) for e in directions_of(link))]
 
 
-def _motion(body: JointEnd, along: np.ndarray, turns: bool) -> np.ndarray:
+def motion_along(body: JointEnd, along: np.ndarray, turns: bool) -> np.ndarray:
     """Part of the six motions of a body along a direction, or about it."""
     return np.concatenate([np.zeros(3), along] if turns else [along, skew(body.d) @ along])
 
@@ -140,4 +140,4 @@ def _add_springs(joints: Sequence[Strength], number: dict[int, int], inverse: di
         way = unit(np.subtract(link.end, link.begin))
         for sign, body in zip((1.0, -1.0), one.bodies):
             if body.object in number:
-                free[number[body.object]] += inverse[body.object] @ _motion(body, sign * force * way, False)
+                free[number[body.object]] += inverse[body.object] @ motion_along(body, sign * force * way, False)

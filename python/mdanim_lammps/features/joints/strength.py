@@ -19,6 +19,7 @@ from ...effects.context import Context
 from ...effects.once import once_for
 from ...model.shapes import thickness
 from .ends import JointEnd, across, directions_of, lever, spin, unit
+from .free import rise_of, stop_of
 from .links import NOTHING, Link, links_of
 from .loads import loads
 from .patches import Patch, patch_of, whole
@@ -26,6 +27,8 @@ from .preload import preloads
 
 GAP = 0.005
 """Gap of a joint between rigid objects under LOAD times what hangs on it, over the thinnest part of both."""
+STOPPED = 2.0
+"""Times the frequency that a joint between rigid objects has with limits: its stops are softer than itself (free.py)."""
 DAMPING = 0.02
 """Share of critical damping of the dashpots beside a joint: what a jerk has set ringing is gone after some ten periods."""
 STIFFER = 4.0
@@ -47,7 +50,7 @@ class Strength:
     arm: float
     """L: what is held against turning has the stiffness k L^2 [m]; 0 of what holds no direction."""
     servo: tuple[float, float]
-    """Stiffness and damping of motor, friction and stops."""
+    """Stiffness and damping of motor and friction."""
     across: np.ndarray
     """Direction across the axis of a hinge that the servo turns, shape (3,); zeros of all else."""
     load: float
@@ -56,6 +59,10 @@ class Strength:
     """Thinnest part of what it joins [m]."""
     preload: np.ndarray
     """Force [N] and torque [N m] on the first object that it bears from the start, shape (6,)."""
+    stop: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    """Stiffness and damping of its stops, and the mobility of what they act on; 0 where they are those of the servo."""
+    rise: float = math.inf
+    """Change of the speed of a motor without limit in a second, at most."""
 
     @property
     def bodies(self) -> list[JointEnd]:
@@ -92,6 +99,11 @@ class Strength:
         ends = (base[0].mobility_at(base[0].d + q * unit(self.link.axis)) for q in (-way, way))
         return max(1.0, 1.0 + (max(ends) - base[0].mobility) / start)
 
+    @property
+    def turns_over(self) -> bool:
+        """Whether what it holds on to may turn over where it opens by its thickness: something that deforms."""
+        return self.link.joint.stiffness is None and not all(body.rigid for body in self.bodies)
+
     def shares(self, mobilities: list[float]) -> list[float]:
         """s of each end."""
         total = sum(mobilities)
@@ -110,7 +122,8 @@ class Strength:
             for body, share in zip(bodies, self.shares([b.turning(n) for b in bodies])):
                 rate.turning(body, n, share * k * ll, share * self.damping * ll)
         if self.servo[0] and axis is not None:
-            servo = servos(self.link) * self.servo[0]
+            own = self.link.joint.limits is not None and not self.stop[0]
+            servo = (servos(self.link) + own) * self.servo[0] + self.stop[0]
             if self.link.joint.kind == "hinge":
                 for body, share in zip(bodies, self.shares([b.about(axis, self.across) for b in bodies])):
                     rate.about(body, axis, self.across, share * servo)
@@ -174,9 +187,8 @@ def slide(link: Link, bodies: list[JointEnd]) -> float:
 
 
 def servos(link: Link) -> int:
-    """How many springs of its servo a joint has: motor, friction and stops have one each."""
-    joint = link.joint
-    return sum(one is not None for one in (joint.motor, joint.friction, joint.limits))
+    """How many springs of its servo a joint has: motor and friction have one each."""
+    return sum(one is not None for one in (link.joint.motor, link.joint.friction))
 
 
 def _rail(link: Link) -> float:
@@ -216,7 +228,8 @@ def strengths(context: Context) -> list[Strength]:
         if first is None:
             continue
         found.append(_strength(context, link, first, second, load, most, thin))
-    return [replace(one, preload=load) for one, load in zip(found, preloads(context, found))]
+    more = zip(found, preloads(context, found))
+    return [replace(one, preload=load, stop=stop_of(one), rise=rise_of(context, one, GAP * one.thin)) for one, load in more]
 
 
 def _strength(context: Context, link: Link, first: JointEnd, second: JointEnd | None, load: float, most: float, thin) -> Strength:
@@ -229,7 +242,7 @@ def _strength(context: Context, link: Link, first: JointEnd, second: JointEnd | 
     elif soft := [b for b in bodies if not b.rigid]:
         k = max(slowest, min(_of_material(context, b.object) for b in soft))
     else:
-        k = max(slowest, most / (GAP * min(sides)))
+        k = max(slowest, most / (GAP * min(sides))) * (1.0 if joint.limits is None else STOPPED**2)
     usual = 2.0 * DAMPING * math.sqrt(k / mobility)
     if joint.kind == "spring" and joint.stiffness is not None:
         usual = 0.0
@@ -268,8 +281,8 @@ def _turned(context: Context, link: Link, bodies: list[JointEnd]) -> np.ndarray:
 
 
 def _servo(link: Link, bodies: list[JointEnd], turned: np.ndarray, k: float, mobility: float) -> tuple[float, float]:
-    """Spring and dashpot of motor, friction and stops: of the frequency of the gap, and critically damped."""
-    if not servos(link):
+    """Spring and dashpot of motor and friction: of the frequency of the gap, and critically damped."""
+    if not servos(link) and link.joint.limits is None:
         return 0.0, 0.0
     own = sum(b.about(unit(link.axis), turned) for b in bodies) if link.joint.kind == "hinge" else mobility
     stiff = k * mobility / own

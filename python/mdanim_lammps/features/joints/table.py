@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping
 
 import numpy as np
@@ -39,6 +40,8 @@ def _line(one: Strength, number: Mapping[int, int]) -> str:
     words += ["arm", one.arm] if one.arm else []
     words += ["damping", one.damping] if one.damping else []
     words += ["servo", *one.servo] if one.servo[0] else []
+    words += ["stop", *one.stop] if one.stop[0] else []
+    words += ["rise", one.rise] if math.isfinite(one.rise) else []
     words += ["preload", *one.preload.tolist()] if one.preload.any() and joint.kind != "spring" else []
     if joint.motor is not None:
         words += ["motor", units.magnitude(joint.motor.speed), "none" if joint.motor.most is None else joint.motor.most]

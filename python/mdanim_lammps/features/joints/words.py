@@ -12,12 +12,14 @@ from typing import Any
 from ...errors import Span
 from ...scene.formatting import number, say, whole
 from ...scene.holding import all_held
+from ...scene.limits import Limit
 from ...scene.naming import objects_by_name
 from ...scene.schema import Block, Codec, Observable, Rule, Vector, Words, setting
 from ...scene.units import NONE, Scalar, dimension, fitting, magnitude, show, unit
 
 WORLD = "world"
 """Word for what never moves."""
+RETURNS = Limit("restitution of stops", 1.0, way_out="1 is a stop that takes nothing")
 MOST_JOINTS = 10**5
 """Joints of a scene."""
 
@@ -129,12 +131,15 @@ class Joint:
     motor: Motor | None = setting(
         "speed <w:rad/s or m/s> [torque <M:N*m>] [force <F:N>]",
         "Drives the first object of a hinge or slider against the second towards this speed, about or along the axis, with the "
-        "torque or force at most. Without these it is as hard as the joint.",
+        "torque or force at most. Without these it is as hard as the joint, and gets there as fast as the joint bears.",
         "speed 60 rpm torque 2 N*m", default=None, codec=MotorCodec())  # fmt: skip
     limits: tuple[Scalar, Scalar] | None = setting(
         "<a:rad or m> to <b:rad or m>",
         "Range of the angle of a hinge or the way of a slider: those of the first object seen from the second, 0 at the start.",
         "-30 deg to 90 deg", default=None)  # fmt: skip
+    restitution: float | None = setting(
+        "<e>", "Part of its speed with which what meets a limit comes back. Absent: that of critical damping, 0.14, the least.",
+        "0.5", Rule.NOT_NEGATIVE, default=None, limit=RETURNS)  # fmt: skip
     friction: Scalar | None = setting(
         "<M:N*m or N>", "Dry friction of a hinge, a torque, or of a slider, a force.", "0.1 N*m", Rule.NOT_NEGATIVE,
         default=None)  # fmt: skip
@@ -217,7 +222,7 @@ BLOCKS = (
 
 TAKES = {
     "at": ("weld", "ball", "hinge", "slider"),
-    **dict.fromkeys(("axis", "motor", "limits", "friction"), ("hinge", "slider")),
+    **dict.fromkeys(("axis", "motor", "limits", "restitution", "friction"), ("hinge", "slider")),
     **dict.fromkeys(("from", "to", "length", "damping", "pulls"), ("spring",)),
 }
 """Kinds of joints that have a setting; all have the others."""
@@ -295,6 +300,9 @@ def _check_units(v: Any, joint: Joint) -> None:
     if joint.motor and (joint.motor.force if turns else joint.motor.torque) is not None:
         wrong, right = ("force", "torque 2 N*m") if turns else ("torque", "force 20 N")
         v.problem(joint.spans["motor"], f"the motor of a {joint.kind} has no {wrong}: {KINDS[joint.kind]}", f"write {right}")
+    if joint.restitution is not None and not joint.limits:
+        cause = f"joint {joint.words} has a restitution and no limits: it is that of what meets a limit"
+        v.problem(joint.spans["restitution"], cause, f"write limits {'-30 deg to 60 deg' if turns else '-10 cm to 20 cm'}")
     if joint.limits:
         low, high = map(magnitude, joint.limits)
         if not low <= 0.0 <= high or low == high:

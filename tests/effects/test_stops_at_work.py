@@ -1,0 +1,115 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Stops and motors of joints in scenes, at the defaults of the language."""
+
+import numpy as np
+import pytest
+from mdanim_lammps.engine.instance import Instance
+from mdanim_lammps.errors import RefusedError, SceneError
+from mdanim_lammps.features.joints.free import share_for
+from mdanim_lammps.features.joints.rows import GAP, NUMBER, RATE, WAY
+from mdanim_lammps.run.energy import energies, tell
+
+SLIDER = """object o {{ shape box ({a}, {b}, {b}) m position (0, 0, 1.5) m density {density} elasticity rigid
+  velocity (2, 0, 0) m/s }}
+joint slider o world {{ axis (1, 0, 0) limits -1 cm to 60 cm {more} }}
+control {{ time 1 s }}
+"""
+HINGE = """object o {{ shape {shape} position ({x}, 0, 1.5) m orientation axis (1, 0, 0) angle {angle} deg density {density}
+  elasticity rigid  spin (0, 2, 0) rad/s  velocity (0, 0, -2*{x}) m/s }}
+joint hinge o world {{ at (0, 0, 1.5) m axis (0, 1, 0) limits -1 deg to 60 deg {more} }}
+control {{ time 1 s }}
+"""
+
+
+def watched(ready, seconds, looks=150):
+    """Times, rows of the first joint, and all energies together."""
+    times, rows, sums, dt = [], [], [], ready.certificate.timestep
+    with Instance(ready.plan) as instance:
+        instance.setup()
+        for _ in range(looks + 1):
+            told = tell(instance)["joint"]["value"]
+            rows.append(told[np.argsort(told[:, NUMBER])][0])
+            energy = energies(instance, ready.system.center_of_mass(instance.array("x")))
+            sums.append(sum(-v if k == "work" else v for k, v in energy.items()))
+            times.append(instance.step * dt)
+            instance.run(max(1, round(seconds / dt / looks)))
+    return np.array(times), np.array(rows), np.array(sums)
+
+
+def comes_back(ready, seconds) -> float:
+    """Mean speed after the stop over that before it: between, the joint rings."""
+    times, rows, _ = watched(ready, seconds)
+    way, top = rows[:, WAY], int(rows[:, WAY].argmax())
+    after = slice(top + (len(way) - top) // 3, None)
+    return float(-np.polyfit(times[after], way[after], 1)[0] / rows[1, RATE])
+
+
+@pytest.mark.parametrize(("e", "left"), [("", 0.135), ("restitution 0.3", 0.3), ("restitution 0.5", 0.5), ("restitution 1", 1.0)])
+@pytest.mark.parametrize(("a", "b", "density"), [(0.2, 0.1, 700), (0.05, 0.03, 7800)])
+def test_what_slides_comes_back_with_its_part(prepared, a, b, density, e, left):
+    """Nothing but the stop gives way: critical damping leaves exp(-2)."""
+    found = comes_back(prepared(SLIDER.format(a=a, b=b, density=density, more=e)), 0.4)
+    assert found == pytest.approx(left, abs=0.02)
+
+
+@pytest.mark.parametrize(
+    ("shape", "x", "angle"), [("cylinder 10 cm 6 cm", 0.0, 90), ("box (100, 4, 4) cm", 0.5, 0), ("box (20, 4, 10) cm", 0.1, 0)]
+)
+@pytest.mark.parametrize(
+    ("e", "left", "more"), [("", 0.135, 0.27), ("restitution 0.5", 0.5, 0.12), ("restitution 0.9", 0.9, 0.05)]
+)
+def test_what_turns_comes_back_with_its_part(prepared, shape, x, angle, e, left, more):
+    """The hinge springs too, and gives a part of the blow of the dashpot back; it was up to 0.67 without restitution."""
+    found = comes_back(prepared(HINGE.format(shape=shape, x=x, angle=angle, density=900, more=e)), 0.7)
+    assert left - 0.05 < found < left + more
+
+
+def test_shares_of_damping_leave_the_part_that_is_asked():
+    """By small steps of x'' + 2 b x' + x = 0 until the force would pull."""
+    for e in (0.9, 0.5, 0.2):
+        b, x, v, dt = share_for(e), 0.0, 1.0, 1e-4
+        while v > 0.0 or x + 2.0 * b * v > 0.0:
+            v += dt * (-2.0 * b * v - x)
+            x += dt * v
+        assert -v == pytest.approx(e, abs=1e-3)
+
+
+def test_restitution_needs_limits(prepared):
+    """It is that of stops."""
+    with pytest.raises(SceneError, match="has a restitution and no limits"):
+        prepared(SLIDER.format(a=0.2, b=0.1, density=700, more="restitution 0.5").replace("limits -1 cm to 60 cm", ""))
+
+
+ROD = """gravity (0, 0, -9.81) m/s^2
+object rod {{ shape box ({length}, {wide}, {wide}) m density 700 position ({length}/2, 0, 10) m elasticity rigid }}
+joint hinge rod world {{ at (0, 0, 10) m axis (0, 1, 0) motor speed {speed} rad/s }}
+control {{ time 1 s }}
+"""
+
+
+@pytest.mark.parametrize(("length", "wide", "speed"), [(1.0, 0.04, 6.3), (0.1, 0.01, 20.0), (3.0, 0.1, -2.0)])
+def test_a_motor_without_limit_starts_as_hard_as_its_joint_bears(prepared, length, wide, speed):
+    """The joint opens by no more than 0.0125 of the thickness: twice the gap of its expected load, because acceleration begins at
+    once, and a quarter of that for the weight; it was more than a tenth. The motor has its speed after a tenth of a turn, and the
+    books close."""
+    ready = prepared(ROD.format(length=length, wide=wide, speed=speed))
+    _, rows, sums = watched(ready, 3.0 / abs(speed))
+    assert rows[:, GAP].max() < 0.0125 * wide
+    turned = int(np.argmax(np.abs(rows[:, WAY]) > 0.63))
+    assert rows[turned:, RATE] == pytest.approx(speed, rel=0.02)
+    assert np.ptp(sums) < 1e-3 * ready.system.mass_of[0] * 9.81 * length
+
+
+def test_a_heavy_block_on_a_long_soft_slider_is_refused(prepared):
+    """What it holds on to would open by more than its thickness, and turn over."""
+    text = """gravity (0, 0, -9.81) m/s^2
+object rail { shape box (15, 15, 15) cm position (0, 0, 1) m density 300 elasticity 1 MPa hold face -x }
+object block { shape box (20, 20, 20) cm position (10, 0, 100) cm density DENSITY elasticity rigid }
+joint slider block rail { at (0, 0, 1) m axis (1, 0, 0) limits -5 cm to 30 cm }
+control { time 1 s }
+"""
+    lighter = prepared(text.replace("DENSITY", "300"))
+    assert next(m.severity for m in lighter.certificate.margins if m.name == "joint gap") == "warning"
+    with pytest.raises(RefusedError, match=r"joint slider block rail opens by .* at the end of its way"):
+        prepared(text.replace("DENSITY", "7800"))
+    assert prepared(text.replace("DENSITY", "7800"), insist=True).certificate.steps > 0
