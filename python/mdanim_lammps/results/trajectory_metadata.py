@@ -99,7 +99,7 @@ class Skin:
 def links_gone(metadata: TrajectoryMetadata, value: Callable[[str], np.ndarray]) -> np.ndarray | None:
     """Which stored particles have lost the spring to the next one in a frame, bool, shape (N,); None where no spring may be gone.
     ``value`` reads a table of the frame by its name."""
-    of = next((field for field in metadata.fields if field.name == GONE and field.per == "bond"), None)
+    of = next((field for field in metadata.fields if field.name == GONE and field.per == "bond" and not field.shape), None)
     if of is None:
         return None
     first, second = np.searchsorted(metadata.id, metadata.bond).T
