@@ -73,6 +73,11 @@ PICTURES = {
     "windmill": 4.0,
     "parachute": 1.1,
     "glide": 0.55,
+    "catapult": 1.1,
+    "swing": 7.8,
+    "merry": 5.0,
+    "drawbridge": 2.5,
+    "marble_lift": 2.3,
 }
 """Scene and the moment to show [s]."""
 STEPS = {"falls": 0.0, "stands": 1.0, "pushed": 0.27, "rolls": 0.5, "splashes": 0.4, "show": 0.3}
