@@ -7,6 +7,8 @@ import numpy as np
 import pytest
 from mdanim_lammps.engine.instance import Instance
 from mdanim_lammps.errors import SceneError
+from mdanim_lammps.export.csv import elastic
+from mdanim_lammps.export.cut import Cut
 from mdanim_lammps.results.ledger import Ledger
 from mdanim_lammps.results.trajectory import Trajectory
 from mdanim_lammps.run.energy import energies
@@ -133,3 +135,18 @@ def test_mistakes(text, column, words):
         parse_scene(text + "\ncontrol { time 1 s }\n")
     (problem,) = error.value.problems
     assert words in problem.message and problem.hint and (problem.line, problem.column) == (1, column), str(problem)
+
+
+def test_exports_leave_out_what_is_gone(prepared, tmp_path):
+    """Strains of a torn cord are those of its pieces, and a table says nothing of its elastic energy."""
+    text = HUNG.format(shape="chain", thick=1, h=5, young=5, e=0.1, mass=40, time=0.3).replace("0.3 s }", "0.3 s frames 50 fps }")
+    ready = prepared(text)
+    simulate(ready, tmp_path)
+    with Trajectory(tmp_path / "trajectory.h5") as trajectory:
+        last = len(trajectory) - 1
+        assert trajectory.gone(last).sum() == 1
+        cut = Cut(trajectory, (), 1, slice(None))
+        assert cut.strain(cut.position(last), last).max() < 0.13
+        found = elastic(ready.system, trajectory.position(last), trajectory.gone(last))
+        assert np.isnan(found).tolist() == [True, False]
+        assert np.isfinite(elastic(ready.system, trajectory.position(0), trajectory.gone(0))).all()

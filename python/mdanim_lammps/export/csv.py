@@ -39,7 +39,7 @@ def write(cut: Cut, folder: Path, stem: str, on_frame: Callable[[int], None]) ->
         for done, frame in enumerate(cut.frames.tolist(), 1):
             numbers = table.numbers(frame)
             if system:
-                numbers = np.column_stack([numbers, elastic(system, t.position(frame))[cut.objects]])
+                numbers = np.column_stack([numbers, elastic(system, t.position(frame), t.gone(frame))[cut.objects]])
             numbers = np.column_stack([numbers, *cut.of_objects(frame).values()])
             time = float(t.times[frame])
             rows = (["" if number != number else number for number in row] for row in numbers.tolist())
@@ -63,9 +63,13 @@ def system_of(trajectory: Trajectory) -> System | None:
         return None
 
 
-def elastic(system: System, position: np.ndarray) -> np.ndarray:
-    """Energy of the springs of each object [J], shape (O,), for positions of all particles [m], shape (N, 3)."""
+def elastic(system: System, position: np.ndarray, gone: np.ndarray | None = None) -> np.ndarray:
+    """Energy of the springs of each object [J], shape (O,), for positions of all particles [m], shape (N, 3), of which some have
+    lost the spring to the next one; NaN for objects that are torn, whose springs are no longer those of the scene."""
     i, j = system.spring.T
     stretch = np.linalg.norm(position[i] - position[j], axis=1) - system.rest
     energy = 0.5 * system.stiffness * stretch**2 - system.preload_energy
-    return np.bincount(system.object[i], energy, len(system.names))
+    found = np.bincount(system.object[i], energy, len(system.names))
+    if gone is not None:
+        found[np.unique(system.object[gone])] = np.nan
+    return found

@@ -16,7 +16,7 @@ from ..picture.palette import object_colors, vertex_colors
 from ..picture.scenery import scenery
 from ..picture.surfaces import ShadedMesh, shaded_mesh
 from ..results.trajectory import Trajectory
-from ..results.trajectory_metadata import TrajectoryMetadata
+from ..results.trajectory_metadata import TrajectoryMetadata, springs_gone
 from ..results.untrusted import check_places
 from ..scene.keywords import did_you_mean
 
@@ -129,10 +129,13 @@ class Cut:
         size = np.ptp(self.position(0), axis=0)
         return float(max(size.max(), np.finfo(np.float32).tiny) / max(1.0, len(self.metadata.id) ** (1 / 3)))
 
-    def strain(self, position: np.ndarray) -> np.ndarray:
-        """Largest \\|r/r0 - 1\\| of the springs of each particle [-], shape (N,); r0 is the length in the first frame of the run,
-        which is undeformed. Of stored springs only (``save boundary`` leaves inner ones out)."""
+    def strain(self, position: np.ndarray, frame: int) -> np.ndarray:
+        """Largest \\|r/r0 - 1\\| of the springs of each particle that a frame has [-], shape (N,); r0 is the length in the first
+        frame of the run, which is undeformed. Of stored springs only (``save boundary`` leaves inner ones out)."""
         stretch = np.abs(self._lengths(position) / self._rest - 1.0)
+        gone = springs_gone(self.trajectory.metadata, lambda name: self.trajectory.field(name.rpartition("/")[2], frame))
+        if gone is not None:
+            stretch[gone[self._kept_bonds]] = 0.0
         strain = np.zeros(len(position))
         for end in self.bonds.T:
             np.maximum.at(strain, end, stretch)

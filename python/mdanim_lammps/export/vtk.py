@@ -38,7 +38,7 @@ def write(cut: Cut, folder: Path, stem: str, on_frame: Callable[[int], None]) ->
                     "mass": m.mass,
                     "layer": m.layer,
                     "velocity": cut.velocity(frame),
-                    "strain": cut.strain(x),
+                    "strain": cut.strain(x, frame),
                     **cut.of_particles(frame),
                 },
             ),

@@ -96,16 +96,21 @@ class Skin:
         return self.carry.places(position, gone)
 
 
+def springs_gone(metadata: TrajectoryMetadata, value: Callable[[str], np.ndarray]) -> np.ndarray | None:
+    """Which stored springs are gone in a frame, bool, shape (B,); None where none may be. ``value`` reads a table of it."""
+    of = next((field for field in metadata.fields if field.name == GONE and field.per == "bond" and not field.shape), None)
+    return None if of is None else np.asarray(value(of.table)) > 0.0
+
+
 def links_gone(metadata: TrajectoryMetadata, value: Callable[[str], np.ndarray]) -> np.ndarray | None:
     """Which stored particles have lost the spring to the next one in a frame, bool, shape (N,); None where no spring may be gone.
     ``value`` reads a table of the frame by its name."""
-    of = next((field for field in metadata.fields if field.name == GONE and field.per == "bond" and not field.shape), None)
-    if of is None:
+    gone = springs_gone(metadata, value)
+    if gone is None:
         return None
     first, second = np.searchsorted(metadata.id, metadata.bond).T
-    lost = first[(np.asarray(value(of.table)) > 0.0) & (second == first + 1)]
     found = np.zeros(len(metadata.id), bool)
-    found[lost] = True
+    found[first[gone & (second == first + 1)]] = True
     return found
 
 

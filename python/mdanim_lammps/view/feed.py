@@ -35,7 +35,7 @@ from ..picture.rays import direction
 from ..picture.scenery import scenery
 from ..picture.surfaces import shaded_mesh
 from ..results.trajectory import Trajectory
-from ..results.trajectory_metadata import links_gone
+from ..results.trajectory_metadata import links_gone, springs_gone
 from ..results.untrusted import check_places
 from ..scene.render import Floor, Render
 
@@ -228,7 +228,7 @@ class Feed:
             padded(drops.astype("<f4")),
         ]
         if layers & STRAIN:
-            parts.append(padded(self._strain(x)))
+            parts.append(padded(self._strain(x, n)))
         if layers & PARTICLES:
             parts.append(padded(x.astype("<f4")))
         return b"".join(parts)
@@ -272,10 +272,12 @@ class Feed:
         length = np.linalg.norm(x[bond[:, 0]] - x[bond[:, 1]], axis=1)
         return np.maximum(length, np.finfo(float).tiny), np.maximum(np.bincount(bond.ravel(), minlength=len(x)), 1)
 
-    def _strain(self, x: np.ndarray) -> np.ndarray:
+    def _strain(self, x: np.ndarray, n: int) -> np.ndarray:
         """Mean of |strain| over the springs of a particle, carried to vertices, u8, shape (V,)."""
         bond, (length, springs) = self.bond, self._springs
         strain = np.abs(np.linalg.norm(x[bond[:, 0]] - x[bond[:, 1]], axis=1) / length - 1.0)
+        if (gone := springs_gone(self.metadata, lambda name: self.frames.value(name, n))) is not None:
+            strain[gone] = 0.0
         mean = (np.bincount(bond[:, 0], strain, len(x)) + np.bincount(bond[:, 1], strain, len(x))) / springs
         return np.clip(np.rint(self._carry @ mean * (255.0 / MOST_STRAIN)), 0, 255).astype("u1")
 
