@@ -56,6 +56,7 @@ PICTURES = {
     "barge": 4.5,
     "tops": 0.5,
     "marbles": 1.6,
+    "helter": 3.35,
     "shaker": 1.34,
     "conveyor": 1.7,
     "paddle": 1.67,

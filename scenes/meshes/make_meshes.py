@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """Make the meshes of the scenes: duck.ply, a plump bath duck of smoothly joined ellipsoids, contoured and thinned out;
 boat.stl, an open hull, and bottle.stl, of rings of points; stone.stl, a wedge of an arch;
-barge.stl, a box without a lid.
+barge.stl, a box without a lid; pipe.stl, a spiral pipe, and bowl.stl.
 
 Run ``python make_meshes.py`` in this folder; needs only what mdanim-lammps needs. Units are centimetres.
 """
@@ -127,6 +127,42 @@ def barge() -> pyvista.PolyData:
     return _of_faces(points, [(3, 2, 1, 0), *sides, (12, 13, 14, 15)])
 
 
+SPIRAL, DROP, TURNS = 15.0, 8.0, 2.25
+"""Radius of the middle of the pipe about z, how far it comes down in a turn [cm], and its turns."""
+PIPE = 2.0, 2.3
+"""Radii of the pipe inside and outside [cm]."""
+
+
+def pipe() -> pyvista.PolyData:
+    """A pipe that winds down about z from (SPIRAL, 0, 0), as a closed triangle mesh [cm]."""
+    along, across = 81, 18
+    t, a = np.linspace(0, 2 * np.pi * TURNS, along), 2 * np.pi * np.arange(across) / across
+    out = np.stack([np.cos(t), np.sin(t), 0 * t], axis=1)
+    middle = SPIRAL * out - np.outer(DROP * t / (2 * np.pi), (0, 0, 1))
+    way = np.stack([-SPIRAL * np.sin(t), SPIRAL * np.cos(t), np.full(along, -DROP / (2 * np.pi))], axis=1)
+    up = np.cross(out, way / np.linalg.norm(way, axis=1)[:, None])
+    circle = np.cos(a)[:, None] * out[:, None] + np.sin(a)[:, None] * up[:, None]
+    rows = np.concatenate([middle[:, None] + PIPE[1] * circle, (middle[:, None] + PIPE[0] * circle)[::-1]])
+    at = np.arange(rows[..., 0].size).reshape(rows.shape[:2])
+    last, right = np.roll(at, -1, axis=0), np.roll(at, -1, axis=1)
+    corner = np.roll(last, -1, axis=1)
+    quads = np.stack([at, last, corner, right], axis=-1).reshape(-1, 4)
+    return _of_faces(rows.reshape(-1, 3), quads)
+
+
+BOWL, THICK, RIM = 30.0, 1.0, 0.75
+"""Radius of the inside of the bowl and its thickness [cm]; the angle of its rim [rad]."""
+
+
+def bowl() -> pyvista.PolyData:
+    """A part of a hollow ball whose inside begins at the origin, as a closed triangle mesh [cm]."""
+    angle = np.linspace(0, RIM, 13)
+    inside = np.stack([BOWL * np.sin(angle), BOWL * (1 - np.cos(angle))], axis=1)
+    outside = np.stack([(BOWL + THICK) * np.sin(angle), BOWL - (BOWL + THICK) * np.cos(angle)], axis=1)
+    points, triangles = revolve(np.concatenate([outside, inside[::-1]]), 48)
+    return pyvista.PolyData.from_regular_faces(points, triangles)
+
+
 def _of_faces(points: np.ndarray, faces: list[tuple[int, ...]]) -> pyvista.PolyData:
     """A triangle mesh of faces of four corners."""
     return pyvista.PolyData.from_regular_faces(points, [(a, b, c) for a, b, c, _ in faces] + [(a, c, d) for a, _, c, d in faces])
@@ -140,7 +176,7 @@ def _distance(points: np.ndarray, centre: np.ndarray, half: np.ndarray) -> np.nd
 
 
 if __name__ == "__main__":
-    for make in (duck, boat, bottle, stone, barge):
+    for make in (duck, boat, bottle, stone, barge, pipe, bowl):
         mesh = make()
         colored = "RGB" in mesh.point_data
         path = Path(__file__).with_name(make.__name__ + (".ply" if colored else ".stl"))

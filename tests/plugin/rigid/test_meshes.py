@@ -28,8 +28,8 @@ def test_a_ball_rolls_over_edges_within_a_plane(tmp_path, count):
 
 @pytest.mark.parametrize("body", [CUBE, DOMINO, CAN, CONE, EGG, RING, BALL, COIN], ids=lambda body: body.shape.split()[0])
 def test_a_slab_of_triangles_is_as_a_box(tmp_path, body):
-    """What falls on both moves alike: corners, edges, rims and round sides. A prism of twelve sides meets the wide faces of both
-    with rims of corners, whose order differs, so that rounding grows."""
+    """A body that falls on both moves alike: corners, edges, rims and round sides. A prism of twelve sides meets the
+    wide faces of both with rims of corners, whose order differs, so that rounding grows."""
     found = []
     for host in (lab.box((4, 4, 0.5), at=(0, 0, -0.25), held=True), lab.mesh(*rigid_meshes.slab((4, 4), 0.5, 60), 0.5)):
         start = body.put(at=(0, 0, 0.25), q=lab.about((1, 2, 0.5), 0.4), v=(1, 0, -1), spin=(1, 2, 3))
@@ -66,7 +66,7 @@ def test_a_ball_swings_in_a_bowl(tmp_path, across, along):
 
 
 def test_a_ball_rests_on_both_walls_of_a_groove(tmp_path):
-    """Of 90 degrees and without friction: each bears m g/sqrt(2) on a contact in its onset, k d^2/(2 eps) with k = m Omega^2."""
+    """At 90 degrees and without friction each wall bears m g/sqrt(2), on a contact in its onset: k d^2/(2 eps), k = m Omega^2."""
     groove = [(-0.3, -0.1), (0.3, -0.1), (0.3, 0.3), (0.0, 0.0), (-0.3, 0.3)]
     top, frequency = 0.05 * np.sqrt(2), lab.frequency_of(1.0, 0.1)
     bodies = [lab.ball(0.05, at=(0, 0, top), mu=0.0), lab.mesh(*rigid_meshes.profile(groove, 1.0), 0.1, mu=0.0)]
