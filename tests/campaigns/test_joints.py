@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from campaign import rounds
 from mdanim_lammps.engine.instance import Instance
-from mdanim_lammps.errors import SceneError
+from mdanim_lammps.errors import RefusedError, SceneError
 from mdanim_lammps.run.energy import energies, source_terms
 from mdanim_lammps.run.prepare import prepare
 from mdanim_lammps.scene.parse import parse_scene
@@ -26,7 +26,7 @@ def residual(seed: int) -> float | None:
     text = joint_scenes.scene(seed)
     try:
         ready = prepare(parse_scene(text))
-    except SceneError as error:
+    except (SceneError, RefusedError) as error:
         assert any(part in str(error) for part in FIT), f"{error}\n{text}"
         return None
     sources, told = source_terms(ready.plan), []

@@ -101,7 +101,7 @@ def test_a_motor_without_limit_starts_as_hard_as_its_joint_bears(prepared, lengt
 
 
 def test_a_heavy_block_on_a_long_soft_slider_is_refused(prepared):
-    """What it holds on to would open by more than its thickness, and turn over."""
+    """The rail would open by more than its thickness, and turn over."""
     text = """gravity (0, 0, -9.81) m/s^2
 object rail { shape box (15, 15, 15) cm position (0, 0, 1) m density 300 elasticity 1 MPa hold face -x }
 object block { shape box (20, 20, 20) cm position (10, 0, 100) cm density DENSITY elasticity rigid }
@@ -113,3 +113,15 @@ control { time 1 s }
     with pytest.raises(RefusedError, match=r"joint slider block rail opens by .* at the end of its way"):
         prepared(text.replace("DENSITY", "7800"))
     assert prepared(text.replace("DENSITY", "7800"), insist=True).certificate.steps > 0
+
+
+def test_a_rope_that_bears_much_is_not_refused(prepared):
+    """A ball joint turns nothing over, however far it opens."""
+    text = """gravity (0, 0, -9.81) m/s^2
+object line { shape rope from (0, 0, 2) m to (0, 0, 1.5) m thickness 1 cm density 1000 elasticity 1 MPa hold start }
+object weight { shape sphere 10 cm position (0, 0, 1.5) m density 7800 elasticity rigid }
+joint ball line weight { at (0, 0, 1.5) m }
+control { time 1 s }
+"""
+    gap = next(m for m in prepared(text).certificate.margins if m.name == "joint gap")
+    assert gap.value > 0.01 and gap.severity == "warning"

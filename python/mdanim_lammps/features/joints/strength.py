@@ -101,8 +101,8 @@ class Strength:
 
     @property
     def turns_over(self) -> bool:
-        """Whether what it holds on to may turn over where it opens by its thickness: something that deforms."""
-        return self.link.joint.stiffness is None and not all(body.rigid for body in self.bodies)
+        """Whether what it holds on to may turn over where it opens by its thickness: something soft, by its directions."""
+        return self.link.joint.stiffness is None and bool(self.arm) and not all(body.rigid for body in self.bodies)
 
     def shares(self, mobilities: list[float]) -> list[float]:
         """s of each end."""
