@@ -32,6 +32,7 @@ LONG = {
     "spiral": (0.8, False),
     "trampoline": (0.6, False),
     "wake": (1.2, True),
+    "windmill": (0.2, False),
     "wrecking": (0.4, False),
 }
 """Scenes of ten seconds and more, up to when they are always run [s], and whether what is expected of the end holds then already;

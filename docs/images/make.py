@@ -71,7 +71,7 @@ PICTURES = {
     "seesaw": 0.7,
     "buggy": 1.9,
     "wrecking": 1.2,
-    "windmill": 4.0,
+    "windmill": 3.9,
     "parachute": 1.1,
     "glide": 0.55,
     "catapult": 1.1,
@@ -79,6 +79,7 @@ PICTURES = {
     "merry": 5.0,
     "drawbridge": 2.5,
     "marble_lift": 2.3,
+    "flag": 0.5,
 }
 """Scene and the moment to show [s]."""
 STEPS = {"falls": 0.0, "stands": 1.0, "pushed": 0.27, "rolls": 0.5, "splashes": 0.4, "show": 0.3}

@@ -52,6 +52,14 @@ def face_on(size: float, thick: float, density: float, elasticity: str, part: fl
     return -float(mean(ready, v)[2]), last * math.tanh(part)
 
 
+def falling_sheet(size: float, thick: float, density: float, part: float) -> tuple[float, float]:
+    """The same of a sheet, which air pushes at from both sides."""
+    last = math.sqrt(2.0 * density * thick * G / (RHO * C))
+    sheet = f"shape sheet ({size}, {size}) m thickness {thick} m  position (0, 0, 0) m  density {density}  elasticity 1 MPa"
+    _, v, ready = after(f"{DOWN}air {{ }}\nobject sheet {{ {sheet} }}\n", part * last / G)
+    return -float(mean(ready, v)[2]), last * math.tanh(part)
+
+
 def ball_rate(radius: float, density: float) -> float:
     """k of dv/dt = -k v^2 for a ball, with half of C: rho C A/4 m [1/m]."""
     return 3.0 * RHO * C / (16.0 * density * radius)
@@ -150,6 +158,7 @@ CASES: dict[str, tuple[Case, float]] = {
     "plate face on, rigid, 2 m, 5 mm of 800 kg/m^3": (lambda: face_on(2.0, 0.005, 800.0, "rigid", 3.0), 0.005),
     "plate face on, half way, rigid": (lambda: face_on(0.4, 0.01, 40.0, "rigid", 0.5), 0.005),
     "plate face on, 1 MPa, 20 cm, 5 cm of 20 kg/m^3": (lambda: face_on(0.2, 0.05, 20.0, "1 MPa", 1.0), 0.01),
+    "sheet face on, 40 cm, 1 mm of 300 kg/m^3": (lambda: falling_sheet(0.4, 0.001, 300.0, 2.0), 0.005),
     "ball falls, rigid, 10 cm of 30 kg/m^3": (lambda: falling_ball(0.1, 30.0, "rigid", 3.0), 0.005),
     "ball falls, 100 kPa, 10 cm of 10 kg/m^3": (lambda: falling_ball(0.1, 10.0, "100 kPa", 2.0), 0.02),
     "ball in wind, rigid, 5 m/s": (lambda: ball_in_wind(0.1, 10.0, "rigid", 5.0, 3.0), 0.01),
