@@ -217,7 +217,7 @@ std::vector<int> TriangleMesh::near(const BoxTree &tree, const Box &box)
   return found;
 }
 
-// Of two borders with the nearest point at their common end, that counts whose line is farther away.
+// Where the nearest point is the common end of two borders, that one counts whose line is farther away.
 TriangleMesh::Footprint TriangleMesh::footprint(int number, const Vec3 &x) const
 {
   const MeshSide &side = all_sides[number];
