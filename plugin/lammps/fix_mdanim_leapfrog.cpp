@@ -314,13 +314,12 @@ void FixMdanimLeapfrog::begin_step(const std::vector<int> &particles)
       if (atom->mask[i] & groupbit) way_of(i).box.include(atom->x[i]);
 }
 
-void FixMdanimLeapfrog::moved(double final_loss, double first_loss, double bend, double phi, double more_seconds)
+void FixMdanimLeapfrog::moved(double loss, double bend, double phi, double more_seconds)
 {
   largest_phi = std::max(largest_phi, phi);
   told = tells_of(update->ntimestep + 1);
   bent = -bend;
-  lost += force->mvv2e * final_loss;
-  lost += force->mvv2e * first_loss;
+  lost += force->mvv2e * loss;
   seconds += more_seconds;
 }
 

@@ -52,7 +52,7 @@ class FixMdanimLeapfrog : public mdanim::FixBase, public mdanim::PassIntegrator 
   void begin_step(const std::vector<int> &particles) override;
   bool tells_of(long long step) const override;
   void equip(const mdanim::Kernels &, const mdanim::Threads &now) override { threads = now; }
-  void moved(double final_loss, double first_loss, double bend, double phi, double more_seconds) override;
+  void moved(double loss, double bend, double phi, double more_seconds) override;
   const double *friction_of_particles() const override { return has_drag ? lambda.values(lmp) : nullptr; }
 
  private:

@@ -41,6 +41,14 @@ template <class Real> struct Implicit {
     const Vec<Real> push = kick * f, lag = first ? (2.0 / 3.0) * vb - 0.5 * va : 0.5 * vb - (2.0 / 3.0) * va;
     return mass * (0.5 * dot(va + vb, push - (vb - va)) + phi * dot(push, lag));
   }
+  // Both halves of a step, from `first` v^{n-1/2} by `middle` v^n to `last` v^{n+1/2}. In each of them k F - (vb - va) is phi
+  // v^n.
+  MDANIM_ALWAYS_INLINE Real loss_of_step(const Vec<Real> &first, const Vec<Real> &middle, const Vec<Real> &last,
+                                         const Vec<Real> &f, const Real &mass) const
+  {
+    const Vec<Real> push = kick * f;
+    return mass * phi * (dot(middle, middle + 0.5 * (first + last)) + (2.0 / 3.0) * dot(push, last - first));
+  }
 };
 
 // 2^-n for n >= 0, exactly; 0 below the normal range.
@@ -97,6 +105,9 @@ template <class Real> struct Exponential {
   // The work of F less the gain in kinetic energy, (va + vb)/2 . (F dt/2 - m (vb - va)): right for the velocities at any phi.
   MDANIM_ALWAYS_INLINE Real loss(const Vec<Real> &va, const Vec<Real> &vb, const Vec<Real> &f, const Real &mass, bool) const
   { return 0.5 * mass * dot(va + vb, kick * f - (vb - va)); }
+  MDANIM_ALWAYS_INLINE Real loss_of_step(const Vec<Real> &first, const Vec<Real> &middle, const Vec<Real> &last,
+                                         const Vec<Real> &f, const Real &mass) const
+  { return loss(first, middle, f, mass, false) + loss(middle, last, f, mass, true); }
 };
 
 }    // namespace mdanim

@@ -20,6 +20,7 @@ struct Entry {
 struct Block {
   int start;
   short lanes;       // lanes of its own particles; others are loaded with them but left as they are
+  short strip;       // blocks of the strip that begins with it (strips.h), 0 within a strip
   bool held_back;    // other forces are added before it may move
   bool damped;       // some of its particles have dashpots
   bool bound;        // some have springs
@@ -32,6 +33,9 @@ struct Block {
   bool at_border;        // of a range of blocks: some of what is loaded for it belongs to another range
   int crossing;          // its row of Pass::crossed; negative where none of its springs crosses the border above it
 };
+
+// Blocks of a strip at most (docs/decisions/one-pass.md).
+constexpr int LONGEST_STRIP = 16;
 
 // The springs of a block that cross a border between two ranges of blocks: entries behind the previous crossing's end.
 struct Crossing {
@@ -84,9 +88,9 @@ using DashpotSums = DashpotWork<double>;    // over particles
 // Sums over particles that have moved in a pass. They are kept for each chunk of particles (Cut) and added up in the order of
 // chunks: no number depends on how many lanes a block has, nor on which threads take the pass.
 struct PassSums {
-  double final_loss, first_loss;    // to friction in either half step
-  double bend;                      // dt v^{n+1/2} . F^n
-  double pulled;                    // m v^{n-1/2} . `pull`
+  double loss;      // to friction
+  double bend;      // dt v^{n+1/2} . F^n
+  double pulled;    // m v^{n-1/2} . `pull`
   DashpotSums dashpots;
   double liquid_work, liquid_lost;    // power of the liquid's forces but friction's; what its friction takes
 };

@@ -10,32 +10,12 @@
 #pragma once
 
 #include "leapfrog/law.h"
-#include "passes/pass.h"
-#include "simd/vectors.h"
-#include "springs/law.h"
+#include "passes/spring_kernel.h"
 
 #include <sched.h>
 
 namespace mdanim {
 namespace {
-
-constexpr int LANES = MDANIM_LANES;
-typedef double Vector __attribute__((vector_size(8 * LANES)));
-using Vector3 = Vec<Vector>;
-
-MDANIM_ALWAYS_INLINE Vector load(const double *from) { return load<Vector>(from); }
-
-MDANIM_ALWAYS_INLINE Vector3 load(const double *const *from, long i) { return load<Vector>(from, i); }
-
-// Loads components of a block's own numbers, LANES of each.
-MDANIM_ALWAYS_INLINE Vector3 load_own(const double *from) { return {load(from), load(from + LANES), load(from + 2 * LANES)}; }
-
-MDANIM_ALWAYS_INLINE void store_own(double *to, const Vector3 &value)
-{
-  store(to, value.x);
-  store(to + LANES, value.y);
-  store(to + 2 * LANES, value.z);
-}
 
 MDANIM_ALWAYS_INLINE Vector largest(Vector a, Vector b) { return a > b ? a : b; }
 
@@ -107,66 +87,6 @@ struct Tally {
     object = next;
   }
 };
-
-// Forces on the particles of a block: of springs to upper partners, and of dashpots alone.
-struct Felt {
-  Vector3 springs, dashpots;
-};
-
-// Evaluates the springs of a block, each once, and the dashpots beside them: forces on its own particles go into `felt`, those on
-// their partners into f and part. place(array, i) gives the lanes of particles from i on.
-template <bool DAMPED, class Place>
-MDANIM_ALWAYS_INLINE void add_springs(const Pass &pass, const Entry *entry, unsigned &e, unsigned end, int i, double *const *of_f,
-                                      double *const *of_part, Felt &felt, const Place &place)
-{
-  constexpr int COEFFS = DAMPED ? 3 : 2;
-  double *const x[] = {pass.x[0], pass.x[1], pass.x[2]}, *const f[] = {of_f[0], of_f[1], of_f[2]};
-  const double *const coeffs = DAMPED ? pass.damped_law : pass.law;
-  const Vector3 here = place(x, i);
-  Vector3 v;
-  if (DAMPED) v = place(pass.v, i);
-  for (; e < end; ++e) {
-    const int j = i + entry[e].offset;
-    const double *const own = coeffs + static_cast<unsigned long>(entry[e].law) * (COEFFS * LANES);
-    const Vector3 d = here - place(x, j);
-    const Vector square = floored_square(d);
-    Vector3 force = spring_factor(load(own), load(own + LANES), square) * d;
-    if (DAMPED) {
-      const Vector3 slowing = dashpot_factor(load(own + 2 * LANES), d, v - place(pass.v, j), square) * d;
-      force += slowing;
-      felt.dashpots += slowing;
-      store(of_part, j, load(of_part, j) - slowing);
-    }
-    felt.springs += force;
-    store(f, j, load(f, j) - force);
-  }
-}
-
-// Adds up the forces on a block's own particles: of springs and gravity, and behind that of dashpots alone.
-template <bool DAMPED> MDANIM_ALWAYS_INLINE void add_up(const Pass &pass, const Block &block, const Felt &felt, double *total)
-{
-  double *const f[] = {pass.range->f[0], pass.range->f[1], pass.range->f[2]};
-  const int i = block.start;
-  const double *const motion = pass.motion + static_cast<unsigned long>(block.motion) * (MOTIONS * LANES);
-  const Vector mass = load(motion + MASS * LANES), others = load(motion + FOREIGN_LANE * LANES);
-  const Vector3 received = load(f, i),
-                gravity{mass * pass.gravity.now[0], mass * pass.gravity.now[1], mass * pass.gravity.now[2]};
-  store(f, i, others * received);
-  store_own(total, (received + felt.springs) + gravity);
-  if (DAMPED) {
-    const Vector3 slowed = load(pass.range->part, i);
-    store(pass.range->part, i, others * slowed);
-    store_own(total + 3 * LANES, slowed + felt.dashpots);
-  }
-}
-
-template <bool DAMPED> MDANIM_ALWAYS_INLINE void feel(const Pass &pass, const Block &block, unsigned &e, double *total)
-{
-  Felt felt{};
-  const auto place = [](double *const *from, int i) { return load(from, i); };
-  add_springs<DAMPED>(pass, pass.entry, e, block.end, block.start, pass.range->f, pass.range->part, felt, place);
-  add_up<DAMPED>(pass, block, felt, total);
-}
 
 // Adds the forces of participants and clears their rows for the next pass while they are in the cache. Not inlined: most blocks
 // have none, and the springs need all registers.
@@ -241,8 +161,7 @@ MDANIM_ALWAYS_INLINE void advance(const Pass &pass, const Block &block, const do
   }
   if (DAMPED && block.damped) account(pass, block, motion, load_own(total + 3 * LANES), first, last, tally.sums.dashpots);
   if constexpr (FRICTION != Friction::NONE) {    // 0 in lanes of others
-    add_lanes(tally.sums.final_loss, law.loss(first, middle, f, mass, false));
-    add_lanes(tally.sums.first_loss, law.loss(middle, last, f, mass, true));
+    add_lanes(tally.sums.loss, law.loss_of_step(first, middle, last, f, mass));
   }
   then(middle, last, place);
   if (pass.trace) {
@@ -388,7 +307,23 @@ MDANIM_ALWAYS_INLINE void move_anywhere(const Pass &pass, const Block &block, co
     move<FRICTION, DAMPED>(pass, block, total, tally);
 }
 
-// A block moves while the next one's springs keep the divider busy, so nothing waits for its forces.
+// The step of a strip.
+template <Friction FRICTION, bool DAMPED_PASS, bool DAMPED>
+MDANIM_ALWAYS_INLINE void step_strip(const Pass &pass, const Block *block, unsigned &e, Tally &tally)
+{
+  constexpr int NUMBERS = (DAMPED ? 6 : 3) * LANES;
+  alignas(64) double felt[LONGEST_STRIP * NUMBERS], total[(DAMPED_PASS ? 6 : 3) * LANES];
+  feel_strip<DAMPED>(pass, block, e, felt);
+  const Block *const end = block + block->strip;
+  for (const double *own = felt; block < end; ++block, own += NUMBERS) {
+    add_up<DAMPED>(pass, *block, {load_own(own), DAMPED ? load_own(own + 3 * LANES) : Vector3{}}, total);
+    if (__builtin_expect(block->external_force >= 0, 0)) take_external_force(pass, *block, total);
+    move<FRICTION, DAMPED_PASS>(pass, *block, total, tally);
+  }
+  e = end[-1].end;
+}
+
+// A block alone moves while the next one's springs keep the divider busy, so nothing waits for its forces.
 template <Friction FRICTION, bool DAMPED> MDANIM_ALWAYS_INLINE void go(Pass &pass)
 {
   double total[2][(DAMPED ? 6 : 3) * LANES];
@@ -398,11 +333,19 @@ template <Friction FRICTION, bool DAMPED> MDANIM_ALWAYS_INLINE void go(Pass &pas
   const int blocks = pass.range->blocks;
   unsigned e = pass.range->first_entry;
   if (pass.range->below) see_crossed<DAMPED>(pass, *pass.range->below);
-  for (int n = 0; n < blocks; ++n) {
-    feel_anywhere<DAMPED>(pass, block[n], e, total[n & 1]);
-    if (n) move_anywhere<FRICTION, DAMPED>(pass, block[n - 1], total[~n & 1], tally);
+  const Block *waiting = nullptr;    // a block that has not moved
+  for (int n = 0; n < blocks; n += block[n].strip) {
+    const bool alone = block[n].strip == 1;
+    if (alone) feel_anywhere<DAMPED>(pass, block[n], e, total[n & 1]);
+    if (waiting) move_anywhere<FRICTION, DAMPED>(pass, *waiting, total[~n & 1], tally);
+    waiting = alone ? block + n : nullptr;
+    if (alone) continue;
+    if (DAMPED && block[n].damped)
+      step_strip<FRICTION, DAMPED, DAMPED>(pass, block + n, e, tally);
+    else
+      step_strip<FRICTION, DAMPED, false>(pass, block + n, e, tally);
   }
-  if (blocks) move_anywhere<FRICTION, DAMPED>(pass, block[blocks - 1], total[~blocks & 1], tally);
+  if (waiting) move_anywhere<FRICTION, DAMPED>(pass, *waiting, total[~blocks & 1], tally);
 
   if (pass.trace) tally.turn_to_object(-1, pass);
   tally.turn_to_chunk(-1, pass);

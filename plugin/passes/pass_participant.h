@@ -90,7 +90,7 @@ class PassIntegrator : public PassMember {
   virtual void finish_step(const std::vector<int> &particles) = 0;    // v^{n-1/2} -> v^n
   virtual void begin_step(const std::vector<int> &particles) = 0;     // v^n -> v^{n+1/2}, r^n -> r^{n+1}
   // Reports a pass that moved particles for the integrator.
-  virtual void moved(double final_loss, double first_loss, double bend, double largest_phi, double seconds) = 0;
+  virtual void moved(double loss, double bend, double largest_phi, double seconds) = 0;
   // Friction of particles that have values of their own, else null.
   virtual const double *friction_of_particles() const = 0;
   // Called by all ranks together, after lists were made: own particles that other ranks have as ghosts, and the object and owner

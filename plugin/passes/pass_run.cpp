@@ -92,7 +92,7 @@ void PassRun::step(long long next, const std::function<void(bool at_end)> &late)
   const double share_of_liquid = blocks.share_of_liquid(MORE_IN_LIQUID);
   const double moving = (1.0 - share_of_liquid) * (OF_LEAPFROG + (pass.friction == Friction::NONE ? 0.0 : OF_DRAG)) * all;
   const double pulling = crew.gravity ? OF_GRAVITY * all : 0.0, lifting = share_of_liquid * all;
-  crew.integrator->moved(sums.final_loss, sums.first_loss, sums.bend, pass.largest_phi, moving);
+  crew.integrator->moved(sums.loss, sums.bend, pass.largest_phi, moving);
   if (crew.gravity) crew.gravity->took(pulling);
   if (pass.gravity.works) crew.gravity->worked(sums.pulled + pulled_at_held_back());
   if (crew.liquid) crew.liquid->acted(sums.liquid_work, sums.liquid_lost, pass.fastest_near, lifting);
@@ -137,8 +137,7 @@ void PassRun::take_pass()
   }
   sums = {};
   for (const PassSums &of_chunk : chunk_sums) {
-    sums.final_loss += of_chunk.final_loss;
-    sums.first_loss += of_chunk.first_loss;
+    sums.loss += of_chunk.loss;
     sums.bend += of_chunk.bend;
     sums.pulled += of_chunk.pulled;
     sums.dashpots.work += of_chunk.dashpots.work;

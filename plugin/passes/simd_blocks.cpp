@@ -4,6 +4,7 @@
 #include "passes/simd_blocks.h"
 
 #include "leapfrog/law.h"
+#include "passes/strips.h"
 
 #include <algorithm>
 #include <utility>
@@ -19,6 +20,7 @@ SimdBlocks::SimdBlocks(const Cutter &of, Cut &&cut, RangeCut &&ranges)
       all(std::move(cut.block)), entries(std::move(cut.entry)), immersed(lanes),
       range(std::move(ranges), (damped() ? 6 : 3) * lanes)
 {
+  set_strips(all, entries, lanes, range.cut());
   // A processor compares loads with pending stores by their place in a page only. So the places of a particle in all arrays that
   // a thread works on are spread evenly over a page.
   const int kinds = damped() ? 5 : 2, kinds_of_range = damped() ? 2 : 1;

@@ -28,6 +28,7 @@ def functions() -> ctypes.CDLL:
         ("cut_tell", None, handle, INTS, INTS, DOUBLES),
         ("cut_ranges", i, handle, i, INTS, INTS),
         ("ranges_tell", None, handle, INTS, INTS, INTS, INTS, DOUBLES, INTS),
+        ("strips_tell", None, handle, INTS),
         ("team_count", None, i, i, i, i, INTS),
         ("team_throws", i, i, i, i),
         ("team_wakes", None, i, i, i, i, INTS),
@@ -75,6 +76,8 @@ class Block:
     at_border: bool = False
     crossing: Block | None = None
     """Its springs over the border above it, which are not among the entries."""
+    strip: int = 1
+    """How many blocks the strip has that begins with it, 0 within a strip."""
 
 
 def cut(lanes: int, particles: int, springs, krc, objects=None) -> list[Block]:
@@ -99,6 +102,8 @@ def cut_into_ranges(lanes: int, particles: int, springs, krc, objects, wanted: i
         crossing, far = np.zeros((crossings[0], 3), np.int32), np.zeros(crossing_entries[0], np.int32)
         far_coeffs = np.zeros((crossing_entries[0], 3, lanes))
         functions().mdanim_ranges_tell(made, first, of_border, crossing, far, far_coeffs, border)
+        strips = np.zeros(blocks, np.int32)
+        functions().mdanim_strips_tell(made, strips)
     finally:
         functions().mdanim_cut_delete(made)
     far_ends, ends = [0, *crossing[:, 1].tolist()], [0, *block[:, 2].tolist()]
@@ -110,9 +115,9 @@ def cut_into_ranges(lanes: int, particles: int, springs, krc, objects, wanted: i
     made_blocks = [
         Block(
             int(start), int(own), bool(damped), tuple(Entry(int(offset[e]), coeffs[e]) for e in range(begin, end)),
-            bool(at_border), over[c] if c >= 0 else None,
+            bool(at_border), over[c] if c >= 0 else None, int(strip),
         )
-        for (start, own, end, damped), begin, (at_border, c) in zip(block, ends, border)
+        for (start, own, end, damped), begin, (at_border, c), strip in zip(block, ends, border, strips)
     ]  # fmt: skip
     # Crossings of a border are those of the blocks of the range below it.
     for n, (low, high) in enumerate(zip([0, *of_border[:-2]], of_border[:-1])):

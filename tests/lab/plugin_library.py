@@ -32,7 +32,7 @@ FLOORS = (
     "lammps/named_group",
     "lammps/particle_value",
 )
-PASSES = ("passes/cutter", "passes/displacement_budget", "passes/range_cut", "passes/tag_order")
+PASSES = ("passes/cutter", "passes/displacement_budget", "passes/range_cut", "passes/strips", "passes/tag_order")
 SOURCES = (
     *sorted(TESTS.glob("*.cpp")),
     *sorted(path for path in (PLUGIN / "liquid").rglob("*.cpp") if not path.stem.endswith("_of_set")),

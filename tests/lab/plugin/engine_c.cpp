@@ -6,6 +6,7 @@
 #include "passes/displacement_budget.h"
 #include "passes/loss.h"
 #include "passes/range_cut.h"
+#include "passes/strips.h"
 #include "passes/tag_order.h"
 #include "threads/team.h"
 
@@ -91,6 +92,15 @@ MDANIM_EXPORT void mdanim_ranges_tell(void *p, int *first, int *end_of_border, i
     *at_border++ = b.at_border;
     *at_border++ = b.crossing;
   }
+}
+
+// How many blocks the strip has that begins with each block, 0 within a strip.
+MDANIM_EXPORT void mdanim_strips_tell(void *p, int *strip)
+{
+  const auto &[cutter, cut, ranges] = *static_cast<MadeCut *>(p);
+  std::vector<Block> block = cut.block;
+  set_strips(block, cut.entry, cutter.lanes(), ranges);
+  for (const Block &b : block) *strip++ = b.strip;
 }
 
 // Shares out so many tasks among so many threads, `calls` times: `count` tells how often each task was done. A task takes so many

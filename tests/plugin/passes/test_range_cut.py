@@ -2,30 +2,12 @@
 """Ranges of blocks for threads: plugin/passes/range_cut.h, without LAMMPS."""
 
 import numpy as np
-import plugin_lab as lab
 import pytest
+from cut_samples import CASES, lattice, several
 from engine_lab import cut, cut_into_ranges
 
 CHUNK = 512
 """Particles of one object whose sums are kept together, as cutter.h has it."""
-
-
-def lattice(cells, damped=False):
-    """Springs and K, r0, c of a block of cells, numbered row by row."""
-    body = lab.block(cells)
-    c = np.full(len(body.k), 0.1) if damped else 0.0 * body.k
-    return len(body.x), body.bond, np.stack([0.5 * body.k, body.r0, c], 1)
-
-
-def several(*bodies):
-    """Bodies one after the other, each an object of its own."""
-    springs, krc, objects, start = [], [], [], 0
-    for n, (particles, bond, coeffs) in enumerate(bodies, 1):
-        springs.append(np.asarray(bond) + start)
-        krc.append(coeffs)
-        objects += [n] * particles
-        start += particles
-    return start, np.concatenate(springs), np.concatenate(krc), np.array(objects)
 
 
 def springs_in_order(blocks, low_first, ranges):
@@ -47,14 +29,6 @@ def springs_in_order(blocks, low_first, ranges):
     for block in blocks:
         note(block)
     return seen
-
-
-CASES = {
-    "a cube": several(lattice((11, 11, 11))),
-    "a damped cube": several(lattice((11, 11, 11), damped=True)),
-    "blocks of which some are damped": several(lattice((9, 9, 9)), lattice((8, 8, 9), damped=True), lattice((9, 9, 9))),
-    "many small ones": several(*[lattice((4, 4, 4))] * 20),
-}
 
 
 @pytest.mark.parametrize("lanes", [4, 8])

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// The springs of a pass, block by block and strip by strip, for vectors of MDANIM_LANES doubles.
+
+#pragma once
+
+#include "passes/pass.h"
+#include "simd/vectors.h"
+#include "springs/law.h"
+
+namespace mdanim {
+namespace {
+
+constexpr int LANES = MDANIM_LANES;
+typedef double Vector __attribute__((vector_size(8 * LANES)));
+using Vector3 = Vec<Vector>;
+
+MDANIM_ALWAYS_INLINE Vector load(const double *from) { return load<Vector>(from); }
+
+MDANIM_ALWAYS_INLINE Vector3 load(const double *const *from, long i) { return load<Vector>(from, i); }
+
+// Loads components of a block's own numbers, LANES of each.
+MDANIM_ALWAYS_INLINE Vector3 load_own(const double *from) { return {load(from), load(from + LANES), load(from + 2 * LANES)}; }
+
+MDANIM_ALWAYS_INLINE void store_own(double *to, const Vector3 &value)
+{
+  store(to, value.x);
+  store(to + LANES, value.y);
+  store(to + 2 * LANES, value.z);
+}
+
+// Forces on the particles of a block: of springs to upper partners, and of dashpots alone.
+struct Felt {
+  Vector3 springs, dashpots;
+};
+
+// Evaluates the springs of a block, each once, and the dashpots beside them: forces on its own particles go into `felt`, those on
+// their partners into f and part. place(array, i) gives the lanes of particles from i on.
+template <bool DAMPED, class Place>
+MDANIM_ALWAYS_INLINE void add_springs(const Pass &pass, const Entry *entry, unsigned &e, unsigned end, int i, double *const *of_f,
+                                      double *const *of_part, Felt &felt, const Place &place)
+{
+  constexpr int COEFFS = DAMPED ? 3 : 2;
+  double *const x[] = {pass.x[0], pass.x[1], pass.x[2]}, *const f[] = {of_f[0], of_f[1], of_f[2]};
+  const double *const coeffs = DAMPED ? pass.damped_law : pass.law;
+  const Vector3 here = place(x, i);
+  Vector3 v;
+  if (DAMPED) v = place(pass.v, i);
+  for (; e < end; ++e) {
+    const int j = i + entry[e].offset;
+    const double *const own = coeffs + static_cast<unsigned long>(entry[e].law) * (COEFFS * LANES);
+    const Vector3 d = here - place(x, j);
+    const Vector square = floored_square(d);
+    Vector3 force = spring_factor(load(own), load(own + LANES), square) * d;
+    if (DAMPED) {
+      const Vector3 slowing = dashpot_factor(load(own + 2 * LANES), d, v - place(pass.v, j), square) * d;
+      force += slowing;
+      felt.dashpots += slowing;
+      store(of_part, j, load(of_part, j) - slowing);
+    }
+    felt.springs += force;
+    store(f, j, load(f, j) - force);
+  }
+}
+
+// Evaluates the springs of a strip, offset by offset; forces on the blocks' own particles go into rows of `felt`, those of
+// dashpots behind the rest. Block by block a load of forces on partners overlaps the store for the offset before, which differs
+// by a row or by one place, and waits until that store has reached the cache. In a strip the same places come again after all of
+// its blocks. Each sum keeps its order: a longer offset leads to a particle from a lower one.
+template <bool DAMPED>
+__attribute__((noinline)) void feel_strip(const Pass &pass, const Block *block, unsigned first_entry, double *felt)
+{
+  constexpr int NUMBERS = (DAMPED ? 6 : 3) * LANES, COEFFS = (DAMPED ? 3 : 2) * LANES;
+  const double *const x[] = {pass.x[0], pass.x[1], pass.x[2]}, *const v[] = {pass.v[0], pass.v[1], pass.v[2]};
+  double *const f[] = {pass.range->f[0], pass.range->f[1], pass.range->f[2]};
+  double *const part[] = {pass.range->part[0], pass.range->part[1], pass.range->part[2]};
+  const double *const coeffs = DAMPED ? pass.damped_law : pass.law;
+  const long entries = block->end - first_entry;
+  double *const end = felt + block->strip * NUMBERS;
+  const auto add = [&](long i, long j, unsigned law, const Felt &before, double *to) __attribute__((always_inline)) {
+    const double *const own = coeffs + static_cast<unsigned long>(law) * COEFFS;
+    const Vector3 d = load<Vector>(x, i) - load<Vector>(x, j);
+    const Vector square = floored_square(d);
+    Vector3 force = spring_factor(load(own), load(own + LANES), square) * d;
+    if (DAMPED) {
+      const Vector3 faster = load<Vector>(v, i) - load<Vector>(v, j);
+      const Vector3 slowing = dashpot_factor(load(own + 2 * LANES), d, faster, square) * d;
+      force += slowing;
+      store_own(to + 3 * LANES, before.dashpots + slowing);
+      store(part, j, load<Vector>(part, j) - slowing);
+    }
+    store_own(to, before.springs + force);
+    store(f, j, load<Vector>(f, j) - force);
+  };
+  for (long k = 0; k < entries; ++k) {
+    const Entry *entry = pass.entry + first_entry + k;
+    long i = block->start, j = i + entry->offset;
+    if (k == 0)
+      for (double *to = felt; to < end; to += NUMBERS, entry += entries, i += LANES, j += LANES) add(i, j, entry->law, {}, to);
+    else
+      for (double *to = felt; to < end; to += NUMBERS, entry += entries, i += LANES, j += LANES)
+        add(i, j, entry->law, {load_own(to), DAMPED ? load_own(to + 3 * LANES) : Vector3{}}, to);
+  }
+}
+
+// Adds up the forces on a block's own particles: of springs and gravity, and behind that of dashpots alone.
+template <bool DAMPED> MDANIM_ALWAYS_INLINE void add_up(const Pass &pass, const Block &block, const Felt &felt, double *total)
+{
+  double *const f[] = {pass.range->f[0], pass.range->f[1], pass.range->f[2]};
+  const int i = block.start;
+  const double *const motion = pass.motion + static_cast<unsigned long>(block.motion) * (MOTIONS * LANES);
+  const Vector mass = load(motion + MASS * LANES), others = load(motion + FOREIGN_LANE * LANES);
+  const Vector3 received = load(f, i),
+                gravity{mass * pass.gravity.now[0], mass * pass.gravity.now[1], mass * pass.gravity.now[2]};
+  store(f, i, others * received);
+  store_own(total, (received + felt.springs) + gravity);
+  if (DAMPED) {
+    const Vector3 slowed = load(pass.range->part, i);
+    store(pass.range->part, i, others * slowed);
+    store_own(total + 3 * LANES, slowed + felt.dashpots);
+  }
+}
+
+template <bool DAMPED> MDANIM_ALWAYS_INLINE void feel(const Pass &pass, const Block &block, unsigned &e, double *total)
+{
+  Felt felt{};
+  const auto place = [](double *const *from, int i) { return load(from, i); };
+  add_springs<DAMPED>(pass, pass.entry, e, block.end, block.start, pass.range->f, pass.range->part, felt, place);
+  add_up<DAMPED>(pass, block, felt, total);
+}
+
+}    // namespace
+}    // namespace mdanim
