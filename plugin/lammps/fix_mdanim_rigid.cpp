@@ -3,8 +3,6 @@
 
 #include "lammps/fix_mdanim_rigid.h"
 
-#include "drives/law.h"
-#include "lammps/fix_mdanim_drive.h"
 #include "lammps/keywords.h"
 #include "numbers/stopwatch.h"
 
@@ -27,7 +25,8 @@ using namespace mdanim;
 static constexpr int COLUMNS = 13;    // of compute_array()
 
 // fix ID group mdanim/rigid [inertia FILE] [lambda L] [shapes FILE contact OMEGA EPS], and words of RigidTouching
-FixMdanimRigid::FixMdanimRigid(LAMMPS *lmp, int narg, char **arg) : FixBase(lmp, narg, arg), particles(lmp, *this), touching(lmp)
+FixMdanimRigid::FixMdanimRigid(LAMMPS *lmp, int narg, char **arg)
+    : FixBase(lmp, narg, arg), particles(lmp, *this), touching(lmp), guided(particles, touching, bodies)
 {
   time_integrate = 1;
   rigid_flag = 1;
@@ -123,8 +122,8 @@ void FixMdanimRigid::setup(int)
   account.deepest = account.worst_bound = 0.0;
   account.most_touching = 0;
   if (touching.guide()) {
-    find_guided();
-    set_whole_motion();
+    guided.find(half_dt, drag);
+    guided.set_whole_motion(update->dt);
     particles.put(bodies, false);
   }
   if (touching.is_current)
@@ -185,72 +184,25 @@ void FixMdanimRigid::kick(bool first)
       drag_loss += bodies[n].kick_with_drag(half_dt, drag[n], first);
 }
 
-// Bodies that a fix mdanim/drive moves in this step. One that it has let go brings its energy of motion.
-void FixMdanimRigid::find_guided()
-{
-  const FixMdanimDrive *const drive = touching.guide();
-  if (!drive) return;
-  for (std::size_t n = 0; n < bodies.size(); ++n) {
-    RigidBody &body = bodies[n];
-    const bool was_guided =
-        std::exchange(body.guided, drive->holds(static_cast<int>(particles.objects().id(static_cast<int>(n)))));
-    if (was_guided && !body.guided) touching.work += body.kinetic(half_dt, drag.empty() ? 0.0 : drag[n]);
-  }
-}
-
-// To its place at the end of the step, with the mean velocities of the step.
-void FixMdanimRigid::guide(int n)
-{
-  const FixMdanimDrive::Ways &ways = *touching.guide()->ways_of(static_cast<int>(particles.objects().id(n)));
-  const DrivenStep step(ways.before, ways.now);
-  const Vec3 there = step.of(bodies[n].centre), velocity = (1.0 / update->dt) * (there - bodies[n].centre);
-  bodies[n].move_to(there, step.turned);
-  bodies[n].set_motion(velocity, (1.0 / update->dt) * step.angle);
-}
-
-// Velocities of guided bodies at whole steps: the mean of the step that ends here and the next one.
-void FixMdanimRigid::set_whole_motion()
-{
-  for (std::size_t n = 0; n < bodies.size(); ++n) {
-    RigidBody &body = bodies[n];
-    if (!body.guided) continue;
-    const FixMdanimDrive::Ways &ways = *touching.guide()->ways_of(static_cast<int>(particles.objects().id(static_cast<int>(n))));
-    const DrivenStep back(ways.now, ways.before), on(ways.now, ways.next);
-    const double per_two = 0.5 / update->dt;
-    body.set_motion(per_two * (on.of(body.centre) - back.of(body.centre)), per_two * (on.angle - back.angle));
-  }
-}
-
 void FixMdanimRigid::initial_integrate(int)
 {
   const Lap lap(seconds);
   if (!collected) collect();
-  find_guided();
+  guided.find(half_dt, drag);
   kick(true);
-  for (std::size_t n = 0; n < bodies.size(); ++n)
-    if (bodies[n].guided)
-      guide(static_cast<int>(n));
-    else if (!bodies[n].aside)
-      bodies[n].drift(update->dt);
+  for (RigidBody &body : bodies)
+    if (!body.guided && !body.aside) body.drift(update->dt);
+  guided.move(update->dt);
   particles.put(bodies, true);
 }
 
 void FixMdanimRigid::final_integrate()
 {
   const Lap lap(seconds);
-  std::vector<RigidTouching::Push> before;
-  for (std::size_t n = 0; touching.guide() && n < bodies.size(); ++n) before.push_back(touching.push(static_cast<int>(n)));
-  touching.step(bodies, update->dt);
-  for (std::size_t n = 0; n < bodies.size(); ++n)    // the mean velocity of the step, which a guided body has here
-    if (bodies[n].guided) {
-      const RigidTouching::Push &now = touching.push(static_cast<int>(n));
-      touching.work -=
-          0.5 * update->dt *
-          (dot(before[n].force + now.force, bodies[n].velocity) + dot(before[n].torque + now.torque, bodies[n].spin));
-    }
+  guided.touch(update->dt);
   collect();
   kick(false);
-  set_whole_motion();
+  guided.set_whole_motion(update->dt);
   particles.put(bodies, false);
 }
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "lammps/fix_base.h"
+#include "lammps/guided_bodies.h"
 #include "lammps/rigid_particles.h"
 #include "lammps/rigid_touching.h"
 #include "lammps/stateful.h"
@@ -61,9 +62,6 @@ class FixMdanimRigid : public mdanim::FixBase, public mdanim::Stateful {
   void follow_changes();
   void collect();
   void kick(bool first);
-  void find_guided();
-  void guide(int body);
-  void set_whole_motion();
 
   std::map<int, mdanim::Inertia> given;    // by molecule IDs, from a file
   mdanim::ParticleValue lambda;
@@ -71,6 +69,7 @@ class FixMdanimRigid : public mdanim::FixBase, public mdanim::Stateful {
   mdanim::RigidParticles particles;
   mdanim::RigidTouching touching;
   std::vector<mdanim::RigidBody> bodies;
+  mdanim::GuidedBodies guided;
   std::vector<double> drag;                         // of bodies
   std::optional<mdanim::StateRecords> restarted;    // state of a restart file, until there are particles
   double half_dt = 0.0;                             // dt/2 in units that turn force/mass into velocity
