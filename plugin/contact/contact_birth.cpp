@@ -28,13 +28,13 @@ Ramps ramps_of(const ContactBody &host, PointKind kind)
 }
 
 double slack_of_far(const ContactBody &host, const SurfacePoint &point, double radius, const Vec3 &X, const Vec3 &X_centre,
-                    double off)
+                    const Spot<double> &spot, double off)
 {
   const double least = PRESSED * (LEAST_COSINE + 1.0) + 1e-3 + off;    // cells; more than any normal can give
   const double h = host.spacing();
   if (!host.is_cuboid()) {
     const double apart = -(host.depth(0, X).value + radius) / h;
-    return apart > least ? PRESSED * h * apart : 0.0;
+    return apart > least ? PRESSED * host.pressed(spot) * h * apart : 0.0;
   }
   const Lattice grid = host.lattice();
   const Ramps near_edges = ramps_of(host, point.kind);
@@ -47,18 +47,18 @@ double slack_of_far(const ContactBody &host, const SurfacePoint &point, double r
     for (int d = 0; d < 3; ++d)
       if (d != s / 2) of_side = std::max(of_side, beyond[d]);
     if (of_side <= least) return 0.0;
-    slack = std::min(slack, PRESSED * h * std::max(of_side, depth - DEEPEST_BIRTH));
+    slack = std::min(slack, h * std::max(of_side, depth - DEEPEST_BIRTH));
   }
-  return slack;
+  return PRESSED * host.pressed(spot) * slack;
 }
 
 Verdict judge(const ContactBody &host, const SurfacePoint &point, double radius, const Vec3 &X, const Vec3 &X_centre,
-              const Spot<double> &spot, const Vec3 &normal, double off)
+              const Spot<double> &spot, const Facing &facing, double off)
 {
   const double far = 1e-5 + off * off, turn = 1e-3 + 0.5 * off;    // errors of a depth and of a cosine of a guess, in cells
   const Lattice grid = host.lattice();
   const Ramps near_edges = ramps_of(host, point.kind);
-  const double h = host.spacing();
+  const double h = host.spacing(), press = PRESSED * host.pressed(spot), turning = std::min(h, facing.cell);
   int side = -1;
   bool is_shut = false, is_surely_shut = false, may_face = false;
   double best = NEVER, until = 0.0, slack = NEVER;
@@ -69,7 +69,7 @@ Verdict judge(const ContactBody &host, const SurfacePoint &point, double radius,
     below.value += radius;
     const double depth = below.value / h;    // in cells
     const Vec3 inward = spot.gradient(below.slope);
-    const double cosine = radius > 0.0 ? 1.0 : dot(normal, inward) / std::sqrt(dot(inward, inward));
+    const double cosine = radius > 0.0 ? 1.0 : dot(facing.normal, inward) / std::sqrt(dot(inward, inward));
     // Smallest change before the side can begin a contact, in cells: the largest of these three.
     double apart = -depth;
     const double turned = PRESSED * (LEAST_COSINE - cosine);
@@ -80,17 +80,16 @@ Verdict judge(const ContactBody &host, const SurfacePoint &point, double radius,
         apart = std::max(apart, near_edges.from[d] - inside);
       }
     if (apart <= 0.0 || turned > apart) verdict.open |= static_cast<std::uint8_t>(1u << s);
-    verdict.is_sure &= std::fabs(apart - std::max(0.0, turned)) > (turned > 0.0 ? turn : far);
     const double covered = host.covered(s, X);
     verdict.is_sure &= std::fabs(covered) > far + off;
-    slack = std::min(slack, PRESSED * h * std::max({apart, turned, depth - DEEPEST_BIRTH}));
+    slack = std::min(slack, press * std::max({h * apart, turning * turned, h * (depth - DEEPEST_BIRTH)}));
     if (covered >= 0.0) continue;    // another held body is there, and no point reaches this side
     is_surely_shut |= turned < -turn && depth < -far;
     may_face |= turned < turn && apart < far && depth < DEEPEST_BIRTH + far;
     if (cosine < LEAST_COSINE) continue;
     if (depth <= 0.0) {
       is_shut = true;
-      until = std::max(until, std::min(-PRESSED * depth * h, 0.5 * PRESSED * h * (cosine - LEAST_COSINE)));
+      until = std::max(until, std::min(-press * depth * h, 0.5 * press * turning * (cosine - LEAST_COSINE)));
     } else if (depth / cosine < best) {
       best = depth / cosine, side = s, inward_of_side = inward;
       verdict.depth = below.value;

@@ -16,10 +16,16 @@ constexpr std::uint8_t EVERY_SIDE = 63;
 struct Verdict {
   int side = -1;    // of the contact that begins; -1 for none
   double depth = 0.0;
-  std::uint8_t open = 0;    // as that of PointTrack
+  std::uint8_t open = 0;    // sides in which the point would have a potential if it faced them
   double slack = 0.0;       // a motion that cannot yet begin a contact [m]
   bool is_crushed = false;
-  bool is_sure = true;    // no contact, and open is right, although the place of the point is guessed
+  bool is_sure = true;    // no contact, although the place of the point is guessed
+};
+
+// The outward normal of a point, in space, and the edge of the cell that turns it [m].
+struct Facing {
+  Vec3 normal;
+  double cell = 0.0;
 };
 
 // Ramps: half of a flat point counts one and a half cells inside of an edge, half of other points at the edge.
@@ -31,9 +37,9 @@ inline bool is_smooth(const ContactBody &host, PointKind kind) { return kind != 
 // point that is nearer. Beside a cuboid some of its sides are far above the point: their edges separate it from these. `off` is
 // the error of X, in cells.
 double slack_of_far(const ContactBody &host, const SurfacePoint &point, double radius, const Vec3 &X, const Vec3 &X_centre,
-                    double off);
-// `normal` is the outward one of the point, in space. Around a point with a radius [m] the surface faces every side.
+                    const Spot<double> &spot, double off);
+// Around a point with a radius [m] the surface faces every side.
 Verdict judge(const ContactBody &host, const SurfacePoint &point, double radius, const Vec3 &X, const Vec3 &X_centre,
-              const Spot<double> &spot, const Vec3 &normal, double off);
+              const Spot<double> &spot, const Facing &facing, double off);
 
 }    // namespace mdanim

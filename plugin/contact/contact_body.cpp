@@ -39,6 +39,7 @@ ContactBody::ContactBody(const ContactBodyArrays &given)
   }
   need(nodes < (std::size_t{1} << 31), "it has too many places");
   mean_edge = std::cbrt(product);
+  for (int d = 0; d < 3; ++d) steep += 1.0 / (edges[d] * edges[d]);
   filled.assign(given.filled, given.filled + volume);
   number = given.particles;
   if (given.frame) {

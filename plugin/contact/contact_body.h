@@ -85,6 +85,12 @@ class ContactBody {
   int count(int axis) const { return cells[axis]; }
   double edge(int axis) const { return edges[axis]; }
   double spacing() const { return mean_edge; }    // cube root of a cell's volume [m]
+  // How much a cell is pressed: 1 where it is not, else at least half of the smallest stretch.
+  double pressed(const Spot<double> &spot) const
+  {
+    const double square = dot(spot.K[0], spot.K[0]) + dot(spot.K[1], spot.K[1]) + dot(spot.K[2], spot.K[2]);
+    return square > steep ? std::sqrt(steep / square) : 1.0;
+  }
   int particles() const { return number; }
   // Inline, so that code that asks for one of its fields does not fill the others.
   Lattice lattice() const
@@ -149,9 +155,9 @@ class ContactBody {
   void sort_points();
 
   int cells[3];
-  double edges[3], mean_edge;
-  int number;                        // of particles
-  std::vector<int> place_of_node;    // empty for a rigid body
+  double edges[3], mean_edge, steep = 0.0;    // square of the gradient of X where the body is undeformed [1/m^2]
+  int number;                                 // of particles
+  std::vector<int> place_of_node;             // empty for a rigid body
   std::optional<RigidFrame> rigid;
   Vec3 low, high;
   std::vector<std::uint8_t> filled;

@@ -73,6 +73,8 @@ class ContactField {
   virtual bool look_at(std::size_t q, const ContactArrays &arrays, bool may_begin) = 0;
   // Has what is known of a point brought into the cache.
   virtual void fetch(std::size_t q) const = 0;
+  // Whether a point is due in each step while its host is crushed, because looks do not tell when to look again.
+  virtual bool distrusts(std::size_t q) const = 0;
   // For the forces of a step, once contacts have begun.
   virtual void begin_step(const ContactArrays &arrays) = 0;
 
@@ -108,8 +110,9 @@ template <class Contact, class Known> class FieldOf : public ContactField {
     const std::vector<int> points_before = std::move(near);
     const std::vector<Known> known_before = std::move(known);
     const Wakes wake_before = std::move(wake);
-    const double spent = budget + approach();
+    const double now = budget + approach();
     forget();
+    budget = now;
     std::size_t before = 0, contact = 0;
     for (const int p : with.points.inside(zone, on_flat, contacts)) {
       while (contact < contacts.size() && contacts[contact].point < p) ++contact;
@@ -122,8 +125,8 @@ template <class Contact, class Known> class FieldOf : public ContactField {
       near.push_back(p);
       if (touches) of_contact.push_back(near.size() - 1);
       known.push_back(is_known ? known_before[before] : Known{});
-      const double seen = is_known && wake_before[before] < NEVER ? std::min(wake_before[before] - spent, trusted) : AT_ONCE;
-      wake.push_back(touches ? NEVER : std::max({out, seen, AT_ONCE}));
+      const double seen = is_known && wake_before[before] < NEVER ? std::min(wake_before[before], budget + trusted) : AT_ONCE;
+      wake.push_back(touches ? NEVER : std::max(budget + out, seen));
     }
     drop_lost_contacts();
   }

@@ -3,9 +3,49 @@
 #include "contact/contact_object.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdlib>
 #include <limits>
 
 namespace mdanim {
+
+// Volume of a cell, by the means of its edges; more than any where it is not here.
+static double volume_of_cell(const int *slots, int row, int layer, const PaddedVec3 *place)
+{
+  Vec3 corner[8];
+  int missing = 0;
+  for (int c = 0; c < 8; ++c) {
+    const int slot = slots[(c & 1) + row * (c >> 1 & 1) + layer * (c >> 2)];
+    missing |= slot;
+    corner[c] = place[slot].value;
+  }
+  const auto edge = [&corner](int step) {
+    Vec3 sum;
+    for (int c = 0; c < 8; ++c)
+      if (!(c & step)) sum += corner[c | step] - corner[c];
+    return 0.25 * sum;
+  };
+  return missing < 0 ? Box::FAR : dot(edge(1), cross(edge(2), edge(4)));
+}
+
+void ContactObject::find_crushed(const PaddedVec3 *place)
+{
+  constexpr double LEAST = 0.5, CALM = 0.8;    // volumes of cells: not crushed, and not soon without a push
+  constexpr double CHANGE = 12.0;              // of a volume over that of places, in cells, at most
+  if (slot.empty() || is_rigid() || body->is_line() || (is_calm && !is_pushed) || (unchecked -= stir) >= 0.0) return;
+  const double h = body->spacing();
+  double least = 1.0;
+  for (int k = 0; k < body->count(2); ++k)
+    for (int j = 0; j < body->count(1); ++j)
+      for (int i = 0; i < body->count(0); ++i)
+        if (body->is_filled(i, j, k)) {
+          const int *const slots = slot.data() + body->place(i, j, k);
+          if (slots[0] >= 0) least = std::min(least, volume_of_cell(slots, body->row(), body->layer(), place) / (h * h * h));
+        }
+  is_crushed = least < LEAST;
+  is_calm = least > CALM;
+  unchecked = h * std::fabs(least - LEAST) / CHANGE;
+}
 
 // A map that is linear along each axis maps a box into the box around the images of its corners.
 static Box box_of(const PointCell &cell, const ContactObject &owner, const PaddedVec3 *place, bool &is_there)
@@ -77,7 +117,7 @@ double PointFinder::least_along(const Vec3 &direction) const
 }
 
 OuterCells::OuterCells(const ContactObject &owner, const ContactArrays &arrays)
-    : grid([](int) { return static_cast<const double *>(nullptr); }, 0, 1.0)
+    : spacing(owner.body->spacing()), grid([](int) { return static_cast<const double *>(nullptr); }, 0, 1.0)
 {
   const ContactBody &body = *owner.body;
   for (int k = 0; k < body.count(2); ++k)
@@ -93,16 +133,32 @@ OuterCells::OuterCells(const ContactObject &owner, const ContactArrays &arrays)
 }
 
 // Uses the present places of cells, so that the answer does not depend on when lists were made.
-std::array<int, 3> OuterCells::nearest(const Vec3 &x, const PaddedVec3 *place) const
+OuterCells::NearestCell OuterCells::nearest(const Vec3 &x, const PaddedVec3 *place) const
 {
+  constexpr double KNOWN = 3.0;    // spacings to go to a cell that is not searched, at least, since this was made
+  struct Seen {
+    int number;
+    double square;
+  };
+  thread_local std::vector<Seen> seen;
+  seen.clear();
   int best = -1;
-  double least = std::numeric_limits<double>::infinity();
+  double least = std::numeric_limits<double>::infinity(), others = KNOWN * spacing * KNOWN * spacing;
   grid.around(&x.x, [&](int slot) {
     const int n = grid.order()[slot];
     const Vec3 d = 0.5 * (place[cells[n].low].value + place[cells[n].high].value) - x;
-    if (dot(d, d) < least || (dot(d, d) == least && n < best)) least = dot(d, d), best = n;
+    const double square = dot(d, d);
+    if (square < least || (square == least && n < best)) least = square, best = n;
+    if (square < others) seen.push_back({n, square});
   });
-  return best < 0 ? std::array<int, 3>{-1, -1, -1} : cells[best].at;
+  if (best < 0) return {};
+  const std::array<int, 3> &cell = cells[best].at;
+  for (const Seen &one : seen) {
+    const std::array<int, 3> &at = cells[one.number].at;
+    if (one.square < others && (std::abs(at[0] - cell[0]) > 1 || std::abs(at[1] - cell[1]) > 1 || std::abs(at[2] - cell[2]) > 1))
+      others = one.square;
+  }
+  return {cell, std::sqrt(least), std::sqrt(others)};
 }
 
 }    // namespace mdanim

@@ -22,6 +22,12 @@ namespace mdanim {
 struct ContactKernels;
 class LateOuterCells;
 
+// All particles where they are now, or where they were in the step before.
+struct Moment {
+  const PaddedVec3 *place;    // by slots
+  bool is_before;
+};
+
 struct ContactObject {
   int id;    // ascending in the order of the scene
   std::shared_ptr<const ContactBody> body;
@@ -32,16 +38,23 @@ struct ContactObject {
   bool is_excepted = false;    // contacts with others of this kind, and with planes, are left to another fix
 
   std::vector<int>
-      slot;    // numbers of its particles by ContactBody::slot_of(), in the arrays of ContactWorld; -1 for one that is not here
+      slot{};    // numbers of its particles by ContactBody::slot_of(), in the arrays of ContactWorld; -1 for one that is not here
   int first_slot = 0, last_slot = 0;
-  std::shared_ptr<LateOuterCells> outer;    // empty until first asked for after lists were made
-  Spot<double> rigid;                       // of a rigid body: x(X) at X = 0, and its gradient
-  bool takes_force = true;                  // whether forces on its particles matter
-  Vec3 way;                                 // displacement of its first particle, or of the middle of a rigid body, in this step
-  double stir = 0.0;                        // the largest displacement of a point relative to that in this step
-  bool is_pushed = false;                   // by contacts, in the last step
+  std::shared_ptr<LateOuterCells> outer{};    // empty until first asked for after lists were made
+  Spot<double> rigid{}, rigid_before{};       // of a rigid body: x(X) at X = 0, and its gradient; those of the step before
+  bool takes_force = true;                    // whether forces on its particles matter
+  Vec3 way{};                 // displacement of its first particle, or of the middle of a rigid body, in this step
+  double stir = 0.0;          // the largest displacement of a point relative to that in this step
+  bool is_pushed = false;     // by contacts, in the last step
+  bool is_crushed = false;    // some cell is: a place in space may then be in several cells
+  bool is_calm = false;       // no cell is soon, unless the object is pushed
+  double unchecked = 0.0;     // how far its points may go until that is found anew [m]
+
+  // To be called when it has moved.
+  void find_crushed(const PaddedVec3 *place);
 
   bool is_rigid() const { return body->frame().has_value(); }
+  const Spot<double> &rigid_at(const Moment &at) const { return at.is_before ? rigid_before : rigid; }
   // Corners of the box around a rigid body.
   std::array<Vec3, 8> corners() const
   {
@@ -135,25 +148,31 @@ class ContactArrays {
  public:
   const ContactKernels *kernels = nullptr;    // null: contacts one at a time, with the same bits
 
-  // For this number of particles from now on, with zero forces; their places must then be set.
+  // For this number of particles from now on, with zero forces; their places, now and before, must then be set.
   void renew(std::size_t particles)
   {
-    place_rows.swap(rows_before);
+    place_rows.swap(old_rows);
     place_rows.resize(particles + 1);
+    rows_before.resize(particles + 1);
     force_rows.resize(particles);
   }
+  // The places become those of the step before; new ones must then be set.
+  void keep_places() { place_rows.swap(rows_before); }
   std::size_t size() const { return force_rows.size(); }
   void clear_forces(int from, int to) { std::fill(force_rows.begin() + from, force_rows.begin() + to, PaddedVec3{}); }
   PaddedVec3 *place() { return place_rows.data() + 1; }    // slot -1, of a particle that is not here, may be read
   const PaddedVec3 *place() const { return place_rows.data() + 1; }
-  const PaddedVec3 *place_before() const { return rows_before.data() + 1; }    // the places before renew() was called
+  PaddedVec3 *place_before() { return rows_before.data() + 1; }                   // in the step before
+  const PaddedVec3 *place_of_old_slots() const { return old_rows.data() + 1; }    // the places before renew() was called
+  Moment now() const { return {place(), false}; }
+  Moment before() const { return {rows_before.data() + 1, true}; }
   PaddedVec3 *force() { return force_rows.data(); }
   const PaddedVec3 *force() const { return force_rows.data(); }
   std::size_t bytes() const
-  { return (place_rows.capacity() + rows_before.capacity() + force_rows.capacity()) * sizeof(PaddedVec3); }
+  { return (place_rows.capacity() + rows_before.capacity() + old_rows.capacity() + force_rows.capacity()) * sizeof(PaddedVec3); }
 
  private:
-  std::vector<PaddedVec3> place_rows = std::vector<PaddedVec3>(1), rows_before, force_rows;
+  std::vector<PaddedVec3> place_rows = std::vector<PaddedVec3>(1), rows_before = place_rows, old_rows, force_rows;
 };
 
 // The points of an object whose particles are here, by the places that the cells that carry them had when lists were made.
@@ -191,9 +210,14 @@ class PointFinder {
 // Cells on an object's surface, from which a search begins. They are found by the places that they had when this was made.
 class OuterCells {
  public:
+  // The cell whose middle is nearest to a place.
+  struct NearestCell {
+    std::array<int, 3> cell = {-1, -1, -1};    // -1 if none was within SEARCHED cells
+    double away = 0.0, others = 0.0;           // of its middle, and of all middles but those around it, or less [m]
+  };
   OuterCells(const ContactObject &owner, const ContactArrays &arrays);
-  // The cell whose middle is nearest, with particles at `place` now; -1 if no cell was within SEARCHED cells.
-  std::array<int, 3> nearest(const Vec3 &x, const PaddedVec3 *place) const;
+  // With particles at `place`.
+  NearestCell nearest(const Vec3 &x, const PaddedVec3 *place) const;
   std::size_t bytes() const { return cells.capacity() * (sizeof cells[0] + sizeof middle[0]); }
   static constexpr double SEARCHED = 5.0;
 
@@ -204,6 +228,7 @@ class OuterCells {
   };
   std::vector<OuterCell> cells;
   std::vector<Vec3> middle;
+  double spacing;
   Grid grid;
 };
 

@@ -179,6 +179,7 @@ void ContactWorld::place_rigid(const std::vector<Vec3> &frames, std::vector<Box>
     if (boxes[n].empty()) continue;    // an object without particles
     Spot<double> spot;
     evaluate_frame(*all[n].body->frame(), frame, spot);
+    all[n].rigid_before = all[n].slot.empty() ? spot : all[n].rigid;    // without a place in the step before
     all[n].rigid.det > 0.0 ? move_rigid(all[n], spot) : void(all[n].rigid = spot);
     boxes[n] = Box();
     for (const Vec3 &corner : all[n].corners()) boxes[n].include(&corner.x);
@@ -208,40 +209,51 @@ void ContactWorld::list(const std::vector<ContactParticle> &particles, const Coo
     for (; from < particles.size() && particles[from].object == n; ++from) {
       const int at = one.body->slot_of(particles[from].node);
       one.slot[at] = static_cast<int>(from);
-      if (!slot_before.empty() && slot_before[at] >= 0)
-        changes.push_back(arrays.place()[from].value - arrays.place_before()[slot_before[at]].value);
+      const bool was_here = !slot_before.empty() && slot_before[at] >= 0;
+      arrays.place_before()[from] = was_here ? arrays.place_of_old_slots()[slot_before[at]] : arrays.place()[from];
+      if (was_here) changes.push_back(arrays.place()[from].value - arrays.place_before()[from].value);
     }
     one.last_slot = static_cast<int>(from);
-    if (one.is_rigid()) continue;    // it has been placed
+    one.is_calm = false, one.unchecked = -1.0;    // its cells that are here may be others
+    if (one.is_rigid()) continue;                 // it has been placed
     Deviation motion{changes.empty() ? Vec3{} : changes.front()};
     for (const Vec3 &change : changes) motion.include(change);
     motion.tell(one);
+    one.find_crushed(arrays.place());
   }
   list_fields();
   find_points();
-  listed = true;
+  listed = has_before = true;
 }
 
 // --- steps ---
 
 void ContactWorld::move_to(const Coordinates &places)
 {
+  if (!has_before) {
+    arrays.keep_places();
+    for (ContactObject &one : all) one.rigid_before = one.rigid;
+  }
+  const PaddedVec3 *const last = has_before ? arrays.place() : arrays.place_before();    // as motions are counted
+  has_before = false;
   threads.parts(static_cast<long>(arrays.size()), NS_OF_PARTICLE, [&](long from, long to) {
     for (ContactObject &one : all) {
       if (one.first_slot == one.last_slot || one.first_slot < from || one.first_slot >= to) continue;
+      PaddedVec3 *const now = arrays.place();
       if (one.is_rigid()) {
-        for (int s = one.first_slot; s < one.last_slot; ++s) arrays.place()[s].value = place(places, s);
-        move_rigid(one, place_of(one, arrays.place()));
+        for (int s = one.first_slot; s < one.last_slot; ++s) now[s].value = place(places, s);
+        move_rigid(one, place_of(one, now));
         clear_forces(one);
         continue;
       }
-      Deviation motion{place(places, one.first_slot) - arrays.place()[one.first_slot].value};
+      Deviation motion{place(places, one.first_slot) - last[one.first_slot].value};
       for (int s = one.first_slot; s < one.last_slot; ++s) {
         const Vec3 x = place(places, s);
-        motion.include(x - arrays.place()[s].value);
-        arrays.place()[s].value = x;
+        motion.include(x - last[s].value);
+        now[s].value = x;
       }
       motion.tell(one);
+      one.find_crushed(now);
       clear_forces(one);
     }
   });

@@ -102,8 +102,8 @@ class ContactWorld {
 
   std::vector<ContactObject> all;
   std::vector<char> movable;
-  std::map<int, int> number_of;    // of ids
-  bool listed = false;
+  std::map<int, int> number_of;               // of ids
+  bool listed = false, has_before = false;    // lists are there; they have been made since the last step, and know its places
   Fields fields;
   FieldSums sums;
   Threads threads;

@@ -34,7 +34,7 @@ bool FieldSums::goes_on_resting(Rest &rest, const std::vector<ContactObject> &ob
 {
   rest.budget += rest.at_plane ? nearer(objects[rest.a], rest.normal) : nearer(objects[rest.a], objects[rest.b]);
   rest.has_something = false;
-  return !(rest.until < rest.budget);
+  return !(rest.until < rest.budget || (objects[rest.b].is_crushed && !rest.at_plane));
 }
 
 void FieldSums::add_forces(std::size_t k, std::vector<ContactObject> &objects, ContactArrays &arrays, double dt)

@@ -28,9 +28,9 @@ void LatticeField::list(const FieldLists &with)
   owner = &with.owner, host = &with.host;
   const ContactBody &body = *host->body;
   if (body.is_line()) return;    // no point is in it
-  const double out = stands_out(*owner->body, body);
+  const double out = host->is_crushed ? NEAREST * body.spacing() + owner->body->radius() : stands_out(*owner->body, body);
   Zone zone = with.host_zone->grown(out);
-  const double beyond = body.is_cuboid() ? out : BETWEEN_POINTS * body.spacing() + owner->body->radius();
+  const double beyond = body.is_cuboid() || host->is_crushed ? out : BETWEEN_POINTS * body.spacing() + owner->body->radius();
   zone.from = with.of_host.least_along(zone.across) - beyond;
   list_points(with, zone.grown(with.skin), body.is_cuboid(), with.skin, TRUSTED * body.spacing(),
               [&zone](const Vec3 &x) { return zone.outside(x); });

@@ -12,12 +12,18 @@ class LatticeField : public ObjectField {
   using ObjectField::ObjectField;
 
   static constexpr double STRETCHED = 2.0;    // the largest stretch that is assumed of cells
+  static constexpr double NEAREST = 2.2;      // in cells, from the middle of a cell on the surface; no contact beyond
   // How far a point may be outside of its host's particles in contact.
   static double stands_out(const ContactBody &owner, const ContactBody &host);
 
   void list(const FieldLists &with) override;
 
  private:
+  static Verdict lost();
+  bool start(const Vec3 &x, const Moment &at, const ContactArrays &arrays, PointTrack &track, std::array<int, 3> &cell,
+             Verdict &verdict) const;
+  bool is_surely_apart(std::size_t q, const Vec3 &x, const Moment &at, PointTrack &track, Verdict &verdict) const;
+  Verdict sight(std::size_t q, const Moment &at, const ContactArrays &arrays, PointTrack &track, Vec3 &X) const;
   bool look_at(std::size_t q, const ContactArrays &arrays, bool may_begin) override;
   Fate push(FieldContact &contact, std::size_t q, const PushTask &task, const PointNow &now, ContactArrays &arrays,
             ContactAccount &account) const override;

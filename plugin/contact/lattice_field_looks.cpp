@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// Points without a contact: where they are in the host, whether a contact begins, and when they are looked at again.
+// Points without a contact: where they are in the host, whether a contact begins, and when they are looked at again. What is
+// known of a point from earlier looks tells at most that no contact begins. Whether one begins, and how, follows from places now
+// and in the step before, so that a run that is resumed, and a part of a scene, has the same contacts.
 
 #include "contact/contact_birth.h"
 #include "contact/lattice_field.h"
@@ -9,76 +11,114 @@
 
 namespace mdanim {
 
-static constexpr double NEAREST = 2.2;    // in cells, from the middle of a cell on the surface; no contact beyond
-static constexpr double JUMP = 0.25;      // cells that X may jump between cells of a round host
+static constexpr double JUMP = 0.25;    // cells that X may jump between cells of a round host
 static constexpr int MOST_GUESSES = 3;
 static constexpr double NEAR_PLACE = 0.1;    // cells that a guess may be away from the last one
+static constexpr std::array<int, 3> NOWHERE = {-1, -1, -1};
+
+static Vec3 middle_of(const std::array<int, 3> &cell) { return {cell[0] + 0.5, cell[1] + 0.5, cell[2] + 0.5}; }
+
+// Finds the cell on the surface of the host whose middle is nearest to x. Where that is too far for a contact, it gives the
+// verdict.
+bool LatticeField::start(const Vec3 &x, const Moment &at, const ContactArrays &arrays, PointTrack &track,
+                         std::array<int, 3> &cell, Verdict &verdict) const
+{
+  const ContactBody &body = *host->body;
+  const double reach = NEAREST * body.spacing() + owner->body->radius();
+  double away = NEVER;
+  if (track.start != NOWHERE && budget < track.trusted) cell = PointSearch(*host, at).outer_around(x, track.start, away);
+  if (!(away < NEVER)) {
+    const OuterCells::NearestCell found = host->outer->of(*host, arrays).nearest(x, at.place);
+    cell = track.start = found.cell;
+    away = cell == NOWHERE ? 0.5 * OuterCells::SEARCHED * body.spacing() : found.away;
+    track.trusted = budget + 0.5 * (found.others - found.away);    // each of the two distances changes by this much at most
+  }
+  if (cell != NOWHERE && away <= reach) return true;
+  verdict = {};
+  verdict.slack = std::max(0.0, away - reach);
+  track.cell = NOWHERE, track.room = NEVER;
+  return false;
+}
+
+// Whether a guess from where the point was last tells that no contact begins, and the verdict that it gives.
+bool LatticeField::is_surely_apart(std::size_t q, const Vec3 &x, const Moment &at, PointTrack &track, Verdict &verdict) const
+{
+  const SurfacePoint &point = surface_point(q);
+  const ContactBody &body = *host->body;
+  const double radius = owner->body->radius();
+  const bool by_splines = is_smooth(body, point.kind);
+  const PointSearch search(*host, at);
+  const Vec3 shift = owner->shift_of(near[q], at.place);
+  Spot<double> spot;
+  Vec3 X;
+  Facing facing;
+  bool has_facing = false;
+  double off = 1.0;
+  for (int step = 0; step < MOST_GUESSES && off > SAME_PLACE && off < NEVER; ++step) {
+    search.guess(track, x, by_splines, spot, X, off);
+    if (!(off < NEAR_PLACE)) continue;
+    const Vec3 X_centre = X + spot.to_material(shift);
+    if (const double slack = slack_of_far(body, point, radius, X, X_centre, spot, off); slack > 0.0) {
+      verdict = {};
+      verdict.slack = slack;
+      return true;
+    }
+    if (!has_facing && !find_facing(point, at, facing)) return false;
+    has_facing = true;
+    verdict = judge(body, point, radius, X, X_centre, spot, facing, off);
+    if (verdict.is_sure) return true;
+  }
+  return false;
+}
+
+Verdict LatticeField::lost()
+{
+  Verdict verdict;
+  verdict.open = EVERY_SIDE;    // and no slack: searched again in the next step
+  return verdict;
+}
+
+// The verdict on a point from places alone, and its X.
+Verdict LatticeField::sight(std::size_t q, const Moment &at, const ContactArrays &arrays, PointTrack &track, Vec3 &X) const
+{
+  const SurfacePoint &point = surface_point(q);
+  const ContactBody &body = *host->body;
+  const Vec3 x = owner->place_of(near[q], at.place);
+  Verdict verdict;
+  Spot<double> spot;
+  Facing facing;
+  if (!start(x, at, arrays, track, track.cell, verdict)) return verdict;
+  track.X = middle_of(track.cell);
+  if (!PointSearch(*host, at).find(track, x, is_smooth(body, point.kind), spot, X) || !find_facing(point, at, facing)) {
+    track = {};
+    return lost();
+  }
+  const Vec3 X_centre = X + spot.to_material(owner->shift_of(near[q], at.place));
+  return judge(body, point, owner->body->radius(), X, X_centre, spot, facing, 0.0);
+}
 
 bool LatticeField::look_at(std::size_t q, const ContactArrays &arrays, bool may_begin)
 {
   ++looks;
   PointTrack &track = known[q];
-  const SurfacePoint &point = surface_point(q);
-  const Vec3 x = owner->place_of(near[q], arrays.place());
-  const ContactBody &body = *host->body;
-  const double h = body.spacing(), radius = owner->body->radius();
-  const Placed at = {body, host->slot.data(), arrays.place()};
-  const PointSearch search(*host, arrays);
-  const bool by_splines = is_smooth(body, point.kind);
-  const auto lost = [&] {
-    track.cell = {-1, -1, -1};
-    track.open = EVERY_SIDE;
-    wake.set(q, budget);    // searched again in the next step
-    return false;
-  };
-  if (track.cell[0] < 0) {
-    const std::array<int, 3> cell = host->outer->of(*host, arrays).nearest(x, arrays.place());
-    Spot<double> there;
-    const Vec3 middle = {cell[0] + 0.5, cell[1] + 0.5, cell[2] + 0.5};
-    if (cell[0] >= 0 && !evaluate(at, trilinear(middle, cell, at.body), there)) return lost();
-    const double away = cell[0] < 0 ? 0.5 * OuterCells::SEARCHED * h : std::sqrt(dot(x - there.x, x - there.x));
-    const double nearest = NEAREST * h + radius;
-    if (cell[0] < 0 || away > nearest) {
-      track.open = 0;
-      wake.set(q, budget + std::max(0.0, away - nearest));
-      return false;
-    }
-    track.cell = cell, track.X = middle;
-  }
-  Spot<double> spot;
-  Vec3 X, normal;
-  const Vec3 shift = owner->shift_of(near[q], arrays.place());
-  const std::uint8_t was_open = track.open;
+  const Moment now = arrays.now();
+  const Vec3 x = owner->place_of(near[q], now.place);
   Verdict verdict;
-  verdict.is_sure = false;
-  bool has_normal = false;
-  double off = 1.0;
-  for (int step = 0; step < MOST_GUESSES && !verdict.is_sure && off > SAME_PLACE && off < NEVER; ++step) {
-    search.guess(track, x, by_splines, spot, X, off);
-    if (!(off < NEAR_PLACE)) continue;
-    const Vec3 X_centre = X + spot.to_material(shift);
-    if (const double slack = slack_of_far(body, point, radius, X, X_centre, off); slack > 0.0) {
-      verdict = {};
-      verdict.slack = slack;
-      break;
-    }
-    if (!has_normal && !world_normal(point, arrays, normal)) return lost();
-    has_normal = true;
-    verdict = judge(body, point, radius, X, X_centre, spot, normal, off);
-  }
-  if (!verdict.is_sure) {
-    if (!search.find(track, x, by_splines, spot, X) || !(has_normal || world_normal(point, arrays, normal))) return lost();
-    verdict = judge(body, point, radius, X, X + spot.to_material(shift), spot, normal, 0.0);
-  }
-  track.open = verdict.open;
+  Vec3 X;
+  std::array<int, 3> cell;
+  const bool is_trusted = track.cell != NOWHERE && (host->body->is_cuboid() || budget < track.trusted) && !host->is_crushed;
+  const bool is_near = is_trusted || start(x, now, arrays, track, cell, verdict);
+  if (is_near && track.cell == NOWHERE) track.cell = cell, track.X = middle_of(cell);
+  if (is_near && (host->is_crushed || !is_surely_apart(q, x, now, track, verdict))) verdict = sight(q, now, arrays, track, X);
   if (!may_begin || verdict.side < 0) {
     // In another cell the depth may be different.
-    const double slack = std::min(verdict.slack, std::max(track.room, verdict.slack - PRESSED * JUMP * h));
+    const double slack = std::min(verdict.slack, std::max(track.room, verdict.slack - PRESSED * JUMP * host->body->spacing()));
     wake.set(q, budget + std::max(0.0, slack));
     return false;
   }
-
-  begin_contact(q, verdict, X, was_open);
+  PointTrack before;
+  Vec3 X_before;
+  begin_contact(q, verdict, X, track.cell, sight(q, arrays.before(), arrays, before, X_before).open);
   return true;
 }
 

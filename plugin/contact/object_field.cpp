@@ -46,30 +46,33 @@ PointsTask ObjectField::points_task(const ContactArrays &arrays) const
 PointNow ObjectField::point_now(std::size_t q, const ContactArrays &arrays) const
 { return {owner->place_of(near[q], arrays.place()), owner->shift_of(near[q], arrays.place()), surface_point(q).area}; }
 
-bool ObjectField::world_normal(const SurfacePoint &point, const ContactArrays &arrays, Vec3 &normal) const
+bool ObjectField::find_facing(const SurfacePoint &point, const Moment &at, Facing &facing) const
 {
   const ContactBody &body = *owner->body;
+  facing.cell = body.spacing();
   if (body.is_line()) return true;    // no side of its points is the outer one
   Spot<double> spot;
   if (!body.frame()) {
     const std::array<int, 3> cell = {point.cell[0], point.cell[1], point.cell[2]};
-    const Placed own = {body, owner->slot.data(), arrays.place()};
+    const Placed own = {body, owner->slot.data(), at.place};
     if (!evaluate(own, trilinear({cell[0] + 0.5, cell[1] + 0.5, cell[2] + 0.5}, cell, body), spot)) return false;
+    facing.cell *= body.pressed(spot);
   }
   const Vec3 by_cells = {point.normal.x * body.edge(0), point.normal.y * body.edge(1), point.normal.z * body.edge(2)};
-  normal = (body.frame() ? owner->rigid : spot).gradient(by_cells);
+  const Vec3 normal = (body.frame() ? owner->rigid_at(at) : spot).gradient(by_cells);
   const double length = std::sqrt(dot(normal, normal));
   if (!(length > 0.0)) return false;
-  normal = (1.0 / length) * normal;
+  facing.normal = (1.0 / length) * normal;
   return true;
 }
 
-void ObjectField::begin_contact(std::size_t q, const Verdict &verdict, const Vec3 &X, std::uint8_t was_open)
+void ObjectField::begin_contact(std::size_t q, const Verdict &verdict, const Vec3 &X, const std::array<int, 3> &cell,
+                                std::uint8_t was_open)
 {
   FieldContact contact{};
   contact.point = near[q];
   contact.side = verdict.side;
-  for (int d = 0; d < 3; ++d) contact.cell[d] = known[q].cell[d];
+  for (int d = 0; d < 3; ++d) contact.cell[d] = cell[d];
   contact.state.X = contact.state.anchor = X;
   contact.state.memory.depth = verdict.depth;
   contact.state.memory.offset = verdict.is_crushed || was_open >> verdict.side & 1 ? verdict.depth : 0.0;

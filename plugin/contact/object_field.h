@@ -31,11 +31,13 @@ class ObjectField : public FieldOf<FieldContact, PointTrack> {
                     ContactAccount &account) const = 0;
 
   double approach() const override { return nearer(*owner, *host); }
+  bool distrusts(std::size_t q) const override { return known[q].cell[0] >= 0; }    // what is near to the host
   void begin_step(const ContactArrays &arrays) override;
   const SurfacePoint &surface_point(std::size_t q) const { return owner->body->points()[near[q]]; }
-  bool world_normal(const SurfacePoint &point, const ContactArrays &arrays, Vec3 &normal) const;
-  // Begins a contact at X as a look found it; `was_open` are the sides that were open in the look before.
-  void begin_contact(std::size_t q, const Verdict &verdict, const Vec3 &X, std::uint8_t was_open);
+  // False where not all of its particles are here.
+  bool find_facing(const SurfacePoint &point, const Moment &at, Facing &facing) const;
+  // Begins a contact at X as a look found it; `was_open` are the sides that were open in the step before.
+  void begin_contact(std::size_t q, const Verdict &verdict, const Vec3 &X, const std::array<int, 3> &cell, std::uint8_t was_open);
   // Adds forces to the point.
   void push_point(const FieldContact &contact, std::size_t q, const PushedContact<double> &found, bool on_ramp,
                   ContactArrays &arrays) const;

@@ -62,6 +62,7 @@ class PlaneField : public FieldOf<PlaneContact, std::uint8_t> {
   double depth_at(const Vec3 &x) const { return plane.depth(x) + owner->body->radius(); }
   double approach() const override { return nearer(*owner, plane.normal()); }
   bool look_at(std::size_t q, const ContactArrays &arrays, bool may_begin) override;
+  bool distrusts(std::size_t) const override { return false; }
   void begin_step(const ContactArrays &arrays) override;
   OnPoint push(PlaneContact &contact, std::size_t q, const ContactArrays &arrays, double dt) const;
 

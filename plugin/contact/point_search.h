@@ -14,9 +14,10 @@ namespace mdanim {
 // Knowledge of a point without a contact.
 struct alignas(64) PointTrack {
   std::array<int, 3> cell = {-1, -1, -1};    // where it was found last, -1 for nowhere
+  std::array<int, 3> start = cell;           // this cell on the surface or one around it is the nearest one
+  double trusted = 0.0;                      // up to this budget
   Vec3 X;
-  double room = 0.0;        // a motion that leaves it in this cell [m]
-  std::uint8_t open = 0;    // sides in which the point would have had a potential when it was looked at last
+  double room = 0.0;    // a motion that leaves it in this cell [m]
 };
 
 constexpr double PRESSED = 0.5;    // cells are assumed to be pressed to half at most: motion in space over that in X
@@ -24,17 +25,21 @@ constexpr double PRESSED = 0.5;    // cells are assumed to be pressed to half at
 // A host with its particles where they are now.
 class PointSearch {
  public:
-  PointSearch(const ContactObject &host, const ContactArrays &arrays) : at{*host.body, host.slot.data(), arrays.place()} {}
+  PointSearch(const ContactObject &host, const Moment &when) : at{*host.body, host.slot.data(), when.place} {}
 
+  // The nearest of the cells on the surface among one of them and those around it. `away`: how far its middle is from x [m].
+  std::array<int, 3> outer_around(const Vec3 &x, const std::array<int, 3> &cell, double &away) const;
   // X of a point at x by one step of Newton's method from where it was found last. `off`: its distance from there in cells; 1 and
   // more where the step tells nothing. It takes a small part of the work of find(). `by_splines`: by the smooth map.
   void guess(PointTrack &known, const Vec3 &x, bool by_splines, Spot<double> &spot, Vec3 &X, double &off) const;
-  // X of a point at x, with the same bits whatever was known of it: the last search begins in the middle of the cell that X lies
-  // in. False where it cannot be found.
+  // X of a point at x from a cell near by; the last search begins in the middle of the cell that X lies in. False where it cannot
+  // be found.
   bool find(PointTrack &known, const Vec3 &x, bool by_splines, Spot<double> &spot, Vec3 &X) const;
 
  private:
   std::array<int, 3> cell_of(const Vec3 &X) const;
+  template <class See> void each_around(const Vec3 &x, const std::array<int, 3> &cell, const See &see) const;
+  bool is_cell_of(const Vec3 &x, const std::array<int, 3> &cell, const std::array<int, 3> &start, double &room) const;
   std::array<int, 3> cell_nearest(const Vec3 &x, std::array<int, 3> cell, double &room) const;
 
   Placed at;

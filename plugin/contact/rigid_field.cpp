@@ -41,38 +41,37 @@ void RigidField::list(const FieldLists &with)
   list_points(with, with.host_zone->grown(reach), body.is_cuboid(), with.skin, TRUSTED * body.spacing(), distance);
 }
 
+// The verdict on a point, and its X.
+Verdict RigidField::sight(std::size_t q, const Moment &at, Vec3 &X) const
+{
+  const SurfacePoint &point = surface_point(q);
+  const ContactBody &body = *host->body;
+  const Spot<double> &frame = host->rigid_at(at);
+  const double radius = owner->body->radius();
+  Verdict verdict;
+  X = frame.to_material(owner->place_of(near[q], at.place) - frame.x);
+  verdict.slack = outside(X) - LOOKED_AT * body.spacing();
+  if (verdict.slack > 0.0) return verdict;
+  const Vec3 X_centre = X + frame.to_material(owner->shift_of(near[q], at.place));
+  verdict.slack = slack_of_far(body, point, radius, X, X_centre, frame, 0.0);
+  if (verdict.slack > 0.0) return verdict;
+  Facing facing;
+  if (find_facing(point, at, facing)) return judge(body, point, radius, X, X_centre, frame, facing, 0.0);
+  verdict.open = EVERY_SIDE;    // not all of its particles are here
+  verdict.slack = 0.0;
+  return verdict;
+}
+
 bool RigidField::look_at(std::size_t q, const ContactArrays &arrays, bool may_begin)
 {
   ++looks;
-  PointTrack &track = known[q];
-  const SurfacePoint &point = surface_point(q);
-  const ContactBody &body = *host->body;
-  const std::uint8_t was_open = track.open;
-  track.cell = {0, 0, 0};
-  track.X = to_material(owner->place_of(near[q], arrays.place()));
-  if (const double out = outside(track.X) - LOOKED_AT * body.spacing(); out > 0.0) {
-    track.open = 0;
-    wake.set(q, budget + out);
-    return false;
-  }
-  const Vec3 X_centre = track.X + host->rigid.to_material(owner->shift_of(near[q], arrays.place()));
-  Verdict verdict;
-  verdict.slack = slack_of_far(body, point, owner->body->radius(), track.X, X_centre, 0.0);
-  if (verdict.slack <= 0.0) {
-    Vec3 normal;
-    if (!world_normal(point, arrays, normal)) {    // not all of its particles are here
-      track.open = EVERY_SIDE;
-      wake.set(q, budget);
-      return false;
-    }
-    verdict = judge(body, point, owner->body->radius(), track.X, X_centre, host->rigid, normal, 0.0);
-  }
-  track.open = verdict.open;
+  Vec3 X, X_before;
+  const Verdict verdict = sight(q, arrays.now(), X);
   if (!may_begin || verdict.side < 0) {
     wake.set(q, budget + std::max(0.0, verdict.slack));
     return false;
   }
-  begin_contact(q, verdict, track.X, was_open);
+  begin_contact(q, verdict, X, {0, 0, 0}, sight(q, arrays.before(), X_before).open);
   return true;
 }
 

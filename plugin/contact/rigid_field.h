@@ -17,6 +17,7 @@ class RigidField : public ObjectField {
  private:
   Vec3 to_material(const Vec3 &x) const { return host->rigid.to_material(x - host->rigid.x); }
   double outside(const Vec3 &X) const;
+  Verdict sight(std::size_t q, const Moment &at, Vec3 &X) const;
   bool look_at(std::size_t q, const ContactArrays &arrays, bool may_begin) override;
   Fate push(FieldContact &contact, std::size_t q, const PushTask &task, const PointNow &now, ContactArrays &arrays,
             ContactAccount &account) const override;

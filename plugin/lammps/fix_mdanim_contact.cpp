@@ -179,22 +179,7 @@ void FixMdanimContact::take_objects(Contacts contacts)
     const double volume = body.edge(0) * body.edge(1) * body.edge(2);
     const double inertia = one.mass / force->ftm2v;    // the ratio of force to acceleration
     const double density = inertia / (volume * static_cast<double>(body.filled_cells()));
-    made.push_back({one.id,
-                    found->second,
-                    one.young,
-                    one.friction,
-                    density,
-                    one.lowest,
-                    one.excepted != 0,
-                    {},
-                    0,
-                    0,
-                    {},
-                    {},
-                    true,
-                    {},
-                    0.0,
-                    false});
+    made.push_back({one.id, found->second, one.young, one.friction, density, one.lowest, one.excepted != 0});
     moves.push_back(static_cast<char>(one.moves));
     ids.push_back(one.id);
     lowest.push_back(one.lowest);

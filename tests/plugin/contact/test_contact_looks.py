@@ -2,6 +2,8 @@
 """How often fix mdanim/contact looks points up that touch nothing: what was seen of a point holds when lists are made again."""
 
 from dataclasses import replace
+from itertools import product
+from random import Random
 
 import pytest
 from mdanim_lammps.engine.commands import SKIN
@@ -77,6 +79,46 @@ def test_what_is_lost_is_found_where_cells_are_now():
 def test_contacts_begin_in_the_same_cells_whatever_is_known_of_points():
     """Coarse cells are bent so much that a point may be in one of them and beyond another one, at another depth."""
     assert film_of_crowd(0.06, 16) == film_of_crowd(0.06, 16, anew=7)
+
+
+SHAPES = ("box (9, 8, 7)", "sphere 4.5", "cylinder 4 cm 8", "ellipsoid (4, 4, 5)", "cone 5 cm 9", "torus 4 cm 1.8")
+
+
+def thrown(seed: int, young: str) -> str:
+    """Twelve soft objects that are thrown onto the ground and each other, so hard that cells are crushed."""
+    random, lines = Random(seed), ["gravity (0, 0, -9.81)", "ground z 0 m", "walls from (-20, -20, -5) cm to (20, 20, 200) cm"]
+    for z, x, y in product((8, 22, 36), (-9, 9), (-9, 9)):
+        shape = random.choice(SHAPES)
+        place = f"({x + random.uniform(-2, 2):.3f}, {y + random.uniform(-2, 2):.3f}, {z:.3f})"
+        turn = f"({random.uniform(0, 90):.2f}, {random.uniform(0, 90):.2f}, {random.uniform(0, 90):.2f})"
+        speed = f"({random.uniform(-1, 1):.3f}, {random.uniform(-1, 1):.3f}, {-random.uniform(0, 3):.3f})"
+        spin = f"({random.uniform(-9, 9):.2f}, 0, {random.uniform(-9, 9):.2f})"
+        lines.append(
+            f"object o{len(lines)} {{ shape {shape} cm  position {place} cm  orientation euler {turn} deg  density 800"
+            f"  elasticity {young}  friction 0.4  velocity {speed}  spin {spin} rad/s }}"
+        )
+    return "\n".join([*lines, "control { time 0.5 s  frames 50 fps  resolution 2 cm }\n"])
+
+
+def film_of_thrown(plan, frames: int, anew: int) -> list[bytes]:
+    """Frames of a scene; every `anew` steps its state is put."""
+    steps, film = plan.certificate.steps_per_frame, []
+    with Instance(plan) as instance:
+        instance.setup()
+        for _ in range(frames):
+            for begin in range(0, steps, anew or steps):
+                if anew:
+                    instance.put(instance.step, instance.state())
+                instance.run(min(anew or steps, steps - begin))
+            film.append(instance.array("x").tobytes() + instance.array("v").tobytes())
+    return film
+
+
+@pytest.mark.parametrize(("seed", "young", "frames"), [(1, "0.2 MPa", 3), (4, "0.03 MPa", 5)])
+def test_contacts_of_what_is_hit_hard_follow_from_the_state(prepared, seed, young, frames):
+    """Earlier looks at a point decided in which of several cells it was, and with what energy its contact began."""
+    plan = prepared(thrown(seed, young), f"thrown{seed}").plan
+    assert film_of_thrown(plan, frames, 0) == film_of_thrown(plan, frames, 7)
 
 
 def film_of_stairs(skins: float) -> list[bytes]:
