@@ -4,7 +4,9 @@
 #include "lammps/fix_mdanim_rigid.h"
 
 #include "lammps/keywords.h"
+#include "lammps/shared_file.h"
 #include "numbers/stopwatch.h"
+#include "rigid/moments_file.h"
 
 #include "atom.h"
 #include "error.h"
@@ -23,6 +25,17 @@ using namespace FixConst;
 using namespace mdanim;
 
 static constexpr int COLUMNS = 13;    // of compute_array()
+
+static std::map<int, Inertia> moments_of(LAMMPS *lmp, const char *file)
+{
+  const std::string text = read_shared_file(lmp, "fix mdanim/rigid", "moments of inertia", file);
+  try {
+    return read_moments(file, text);
+  } catch (const std::exception &problem) {
+    lmp->error->all(FLERR, "fix mdanim/rigid: {}", problem.what());
+  }
+  return {};
+}
 
 // fix ID group mdanim/rigid [inertia FILE] [lambda L] [shapes FILE contact OMEGA EPS], and words of RigidTouching
 FixMdanimRigid::FixMdanimRigid(LAMMPS *lmp, int narg, char **arg)
@@ -46,7 +59,7 @@ FixMdanimRigid::FixMdanimRigid(LAMMPS *lmp, int narg, char **arg)
   for (int iarg = 3, words = 0; iarg < narg; iarg += words) {
     words = words_of_keyword(lmp, "fix mdanim/rigid", known, iarg, narg, arg);
     if (strcmp(arg[iarg], "inertia") == 0) {
-      read_moments_of(arg[iarg + 1]);
+      given = moments_of(lmp, arg[iarg + 1]);
     } else if (strcmp(arg[iarg], "lambda") == 0) {
       lambda = ParticleValue(lmp, "fix mdanim/rigid: lambda", iarg + 1, arg[iarg + 1]);
       has_drag = true;

@@ -55,7 +55,6 @@ class FixMdanimRigid : public mdanim::FixBase, public mdanim::Stateful {
 
  private:
   void tell_numbers();
-  void read_moments_of(const char *file);
   void locate();
   void make();
   void set_velocities(const std::vector<mdanim::RigidParticles::MassProperties> &found);

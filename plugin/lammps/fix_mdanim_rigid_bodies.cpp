@@ -3,25 +3,23 @@
 
 #include "lammps/fix_mdanim_rigid.h"
 
-#include "lammps/shared_file.h"
-#include "rigid/moments_file.h"
-
-#include <stdexcept>
-#include <string>
+#include "error.h"
 
 using namespace LAMMPS_NS;
 using namespace mdanim;
 
 static constexpr double THIN = 1e-10;    // smallest moment over the largest of what counts as a line
 
-void FixMdanimRigid::read_moments_of(const char *file)
+// A body at rest.
+static RigidBody body_of(const RigidParticles::MassProperties &found, const PrincipalAxes &axes)
 {
-  const std::string text = read_shared_file(lmp, "fix mdanim/rigid", "moments of inertia", file);
-  try {
-    for (const auto &[molecule, inertia] : read_moments(file, text)) given[molecule] = inertia;
-  } catch (const std::exception &problem) {
-    error->all(FLERR, "fix mdanim/rigid: {}", problem.what());
-  }
+  RigidBody body;
+  body.mass = found.mass;
+  body.centre = found.centre;
+  body.moments = axes.moments;
+  body.q = axes.q;
+  body.refresh();
+  return body;
 }
 
 void FixMdanimRigid::make()
@@ -38,12 +36,7 @@ void FixMdanimRigid::make()
                  "{}: the particles of object {} (molecule ID) stand on a line, so it has no moment of inertia about it; add "
                  "'inertia FILE' with the moments of the body",
                  name(), objects.id(n));
-    RigidBody &body = bodies[n] = RigidBody();
-    body.mass = found[n].mass;
-    body.centre = found[n].centre;
-    body.moments = axes.moments;
-    body.q = axes.q;
-    body.refresh();
+    bodies[n] = body_of(found[n], axes);
   }
   particles.fix_places(bodies);
   set_velocities(found);
