@@ -29,7 +29,7 @@ class CurvedTriangle {
   // How far the patch is from the flat triangle, at most.
   double bulge() const { return its_bulge; }
   TrianglePoint closest(const Vec3 &x) const;
-  // Of the flat triangle, outward; not of length 1.
+  // The normal of the flat triangle, outward; its length is not 1.
   Vec3 flat_normal() const { return cross(its_corner[1] - its_corner[0], its_corner[2] - its_corner[0]); }
 
  private:

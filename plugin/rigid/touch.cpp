@@ -178,7 +178,7 @@ Touch *TouchStep::meet(std::vector<Touch> &list, Touch::TouchKind kind, int numb
   Touch touch = born(kind, law, a, b, x, n);
   touch.first = number;
   touch.anchor = anchor;
-  // What was that deep before it was seen overlaps.
+  // A body that was so deep before it was seen overlaps.
   constexpr double SHALLOW = 0.03;
   const double before = depth + dt * dot(relative_velocity(a, b, x), n);
   if (is_first() || before > SHALLOW * a.shape.thin())

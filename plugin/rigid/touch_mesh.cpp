@@ -160,7 +160,7 @@ class BallOnMesh {
       if (is_least(one)) feet.push_back(one);
     std::stable_sort(feet.begin(), feet.end(),
                      [](const BallFoot &a, const BallFoot &b) { return a.point.distance < b.point.distance; });
-    // Of two in about one direction the nearer one counts.
+    // The nearer one counts of two in about one direction.
     for (std::size_t k = 0; k < feet.size(); ++k)
       for (std::size_t i = 0; i < k; ++i) {
         double unused;

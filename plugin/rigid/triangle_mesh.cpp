@@ -119,7 +119,7 @@ std::vector<int> TriangleMesh::around(int triangle, int k) const
   return around(triangle, k, [](int, int) { return true; });
 }
 
-// Those of them that are reached over edges that `passes` lets through.
+// The ones among them that are reached over edges that `passes` lets through.
 template <class Passes> std::vector<int> TriangleMesh::around(int triangle, int k, const Passes &passes) const
 {
   std::vector<int> found{triangle};

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """The keyword table: what it says about itself is true, and the docs page says the same."""
 
-from pathlib import Path
-
 import pytest
 from mdanim_lammps.errors import SceneError
 from mdanim_lammps.features.joints.words import TAKES
@@ -21,7 +19,7 @@ BALL = {"shape": "sphere 10 cm", "position": "(0, 0, 1) m", "mass": "2 kg", "ela
 WATER = {"basin": "from (-1, -1, 0) m to (1, 1, 1.2) m", "density": "1000 kg/m^3", "volume": "2 m^3"}
 
 
-DUCK = Path(__file__).parents[2] / "scenes/meshes/duck.ply"
+DUCK = REPOSITORY / "scenes" / "meshes" / "duck.ply"
 OF_SURFACES = ("friction", "contact-damping")
 """Settings that the contact of the paper has only as 0."""
 
@@ -45,6 +43,11 @@ def scene(block: str, **settings: str):
             blocks[name]["elasticity"] = "rigid"
     if "origin" in settings:
         blocks["object"]["shape"] = f'mesh "{DUCK}"'
+    if "tear-strain" in settings:
+        blocks["object"]["shape"] = "rope from (0, 0, 0) m to (1, 0, 0) m thickness 1 cm"
+        del blocks["object"]["position"], blocks["liquid"]
+    if block == "joint" and "restitution" in settings:
+        blocks["joint"]["limits"] = "-30 deg to 60 deg"
     if "(floor)" in settings.get("expect", ""):
         blocks["floor"] = dict(BALL)
     if settings.get("sweeps", "auto") != "auto":

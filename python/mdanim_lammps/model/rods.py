@@ -19,7 +19,7 @@ class Rod:
     particle: np.ndarray
     """int64, shape (n,)."""
     length: np.ndarray
-    """Of each link [m], shape (n - 1,)."""
+    """Lengths of links [m], shape (n - 1,)."""
     width: np.ndarray
     """Factor of the section of each link, shape (n - 1,)."""
     bent: np.ndarray
