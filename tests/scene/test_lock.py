@@ -169,7 +169,7 @@ def scenes(draw):
     cameras = tuple(c for c in cameras if c.eye != c.look)
     expects = []
     for kind, quantity in draw(st.lists(st.sampled_from(sorted(QUANTITIES)), max_size=3)):
-        if wet or (kind != "liquid" and QUANTITIES[kind, quantity].needs != "liquid"):
+        if wet if kind == "liquid" else QUANTITIES[kind, quantity].needs in ("", "liquid" * wet):
             subject = kind if kind in GLOBALS else draw(st.sampled_from([b.name for b in bodies]))
             time = draw(st.none() | st.floats(0, control.time))
             others, takes = [b.name for b in bodies if b.name != subject], QUANTITIES[kind, quantity].takes

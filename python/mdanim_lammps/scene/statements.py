@@ -150,7 +150,8 @@ class Parser(SettingReader):
         homes = [b for b in KEYWORDS if word in KEYWORDS[b] and not (b and BLOCKS[b].of)]
         if "" in homes and opened is not None and self._first_on_line(word) and word.column <= opened.column:
             raise Unclosed(word)
-        guess, home = nearest(str(word), here), owner(KEYWORDS[block], str(word))
+        home = owner(KEYWORDS[block], str(word))
+        guess = "" if home else nearest(str(word), here)  # a word that a form begins with is not a misspelt one
         if homes and not guess and home is None:
             place = " or ".join(f"{b} {{ }}" if b else "the outermost level" for b in homes)
             inside = f"inside {block} {{ }}" if block else "outside of all blocks"
