@@ -78,6 +78,17 @@ def crossing(points, triangles):
     return joined([(Sphere(1.0), (0, 0, 0), False), (Sphere(0.8), (1.0, 0, 0), False)])
 
 
+def crossing_inside_out(points, triangles):
+    """The same, the second one of which faces inward: what both have is inside all the same."""
+    return joined([(Sphere(1.0), (0, 0, 0), False), (Sphere(0.8), (1.0, 0, 0), True)])
+
+
+def crossing_with_a_cavity(points, triangles):
+    """The same, and a ball of 0.3 inside the first one that faces inward."""
+    cavity = (Sphere(0.3), (-0.5, 0, 0), True)
+    return joined([(Sphere(1.0), (0, 0, 0), False), (Sphere(0.8), (1.0, 0, 0), False), cavity])
+
+
 def apart(points, triangles):
     """No triangle shares a point with another, and all have shrunk by a hundredth: gaps along all edges."""
     corners = points[triangles]
@@ -98,6 +109,8 @@ def volumes() -> list:
         pytest.param(faces_inside_out, whole, "", id="inside out"),
         pytest.param(doubled, whole, "what is doubled or crosses is united", id="doubled"),
         pytest.param(crossing, two, "what is doubled or crosses is united, its surface is made anew", id="crossing"),
+        pytest.param(crossing_inside_out, two, "united, its surface is made anew", id="crossing and inside out"),
+        pytest.param(crossing_with_a_cavity, two - whole * 0.3**3, "united, its surface is made anew", id="a cavity"),
         pytest.param(apart, whole, "gaps are closed, its surface is made anew", id="apart"),
     ]
 

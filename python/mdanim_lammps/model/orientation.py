@@ -7,7 +7,7 @@ import numpy as np
 
 from .boxes import box_pairs
 from .crossings import crossings
-from .triangles import edges, surface_of, volume_and_centre
+from .triangles import connected, edges, surface_of, volume_and_centre
 
 LINES = 64
 """Lines along x and along y that look for what is enclosed twice."""
@@ -44,7 +44,7 @@ def outward(points: np.ndarray, triangles: np.ndarray, name: str) -> np.ndarray:
         triangles = _reorient(points, triangles)
     if not _consistent(triangles):
         raise MeshError(f"mesh {name}: has no inside and outside", f"{CLOSE}; a one-sided surface has no inside")
-    triangles = _turned_by_part(points, triangles)
+    triangles = _turned_by_part(points, triangles, np.ones(len(triangles), bool), True)
     volume, _ = volume_and_centre(points, triangles)
     if volume <= 1e-9 * np.ptp(points, axis=0).max() ** 3:
         raise MeshError(f"mesh {name}: encloses no volume", "export a body, not a sheet")
@@ -56,22 +56,25 @@ def outward(points: np.ndarray, triangles: np.ndarray, name: str) -> np.ndarray:
     return triangles
 
 
-def _turned_by_part(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
-    """The triangles of each connected part turned: outward, inward where the part lies inside of an odd number of others."""
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
+def parts_outward(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
+    """Turn the triangles of closed parts outward, of parts that may cross. One that lies inside of an odd number of others stays
+    as it is, and so does one with a gap."""
+    edge, uses = np.unique(np.sort(edges(triangles), axis=1), axis=0, return_inverse=True, return_counts=True)[1:]
+    open_ = (uses[edge.reshape(-1, 3)] != 2).any(axis=1)
+    return _turned_by_part(points, triangles, ~open_, False)
 
-    edge = np.sort(edges(triangles), axis=1)
-    # Each edge is one of two triangles; parts that touch in a corner are two.
-    first, second = (np.lexsort(edge.T) // 3).reshape(-1, 2).T
-    joined = coo_array((np.ones(len(first), bool), (first, second)), shape=(len(triangles),) * 2)
-    part = connected_components(joined, directed=False)[1]
+
+def _turned_by_part(points: np.ndarray, triangles: np.ndarray, closed: np.ndarray, cavities: bool) -> np.ndarray:
+    """The triangles of each connected part that is ``closed``, bool, shape (T,), turned: outward, where the part lies inside an
+    odd number of others inward for ``cavities``, else as it is."""
+    part = connected(triangles)
     parts = np.split(np.argsort(part, kind="stable"), np.cumsum(np.bincount(part))[:-1])
+    parts = [rows for rows in parts if closed[rows].all()]
     turned = triangles.copy()
-    inside = _depths(points, [triangles[rows] for rows in parts])
-    for rows, depth in zip(parts, inside):
+    inside = _depths(points, [triangles[rows] for rows in parts]) % 2 == 1
+    for rows, within in zip(parts, inside):
         volume, _ = volume_and_centre(points, triangles[rows])
-        if (volume > 0) != (depth % 2 == 0):
+        if (volume > 0) == within and (cavities or not within):
             turned[rows] = turned[rows, ::-1]
     return turned
 
@@ -79,7 +82,7 @@ def _turned_by_part(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
 def _depths(points: np.ndarray, parts: list[np.ndarray]) -> np.ndarray:
     """In how many other parts each part lies, by its first point, int, shape (K,)."""
     depth = np.zeros(len(parts), int)
-    if len(parts) == 1:
+    if len(parts) < 2:
         return depth
     low, high = (np.array([f(points[p].reshape(-1, 3), axis=0) for p in parts]) for f in (np.min, np.max))
     first = points[[p[0, 0] for p in parts]]

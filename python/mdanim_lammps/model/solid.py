@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .orientation import MeshError, outward
+from .orientation import MeshError, outward, parts_outward
 from .triangles import edges, surface_of
 from .winding import enclosing
 
@@ -29,7 +29,7 @@ def solid(points: np.ndarray, triangles: np.ndarray, name: str) -> tuple[np.ndar
         filled, around = _filled(points, triangles)
         return filled, outward(filled, around, name), told
     except MeshError:
-        points, around = enclosing(points, triangles)
+        points, around = enclosing(points, parts_outward(points, triangles))
     if not len(around):
         raise MeshError(f"mesh {name}: encloses no volume", "export a body, not a sheet")
     told += ", its surface is made anew"

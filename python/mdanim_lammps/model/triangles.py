@@ -52,3 +52,17 @@ def volume_and_centre(points: np.ndarray, triangles: np.ndarray) -> tuple[float,
     if volume == 0:
         return 0.0, origin
     return float(volume), origin + (six[:, None] * (a + b + c)).sum(axis=0) / (24 * volume)
+
+
+def connected(triangles: np.ndarray) -> np.ndarray:
+    """The part of each triangle, its number, int, shape (T,): triangles hang together by edges that two of them have. Parts that
+    touch in a corner are two."""
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
+    _, number, uses = np.unique(np.sort(edges(triangles), axis=1), axis=0, return_inverse=True, return_counts=True)
+    number = number.reshape(-1)
+    by_edge = np.argsort(number, kind="stable")
+    first, second = (by_edge[uses[number[by_edge]] == 2] // 3).reshape(-1, 2).T
+    joined = coo_array((np.ones(len(first), bool), (first, second)), shape=(len(triangles),) * 2)
+    return connected_components(joined, directed=False)[1]
