@@ -61,6 +61,10 @@ def test_what_cannot_be_rigid_has_its_elasticity():
     assert (held.elasticity, held.restitution) == (Rigid(), 0.5)
     mat = one(f"material rubber {AT} hold all")
     assert (mat.elasticity, mat.restitution) == (Young(2e6), 0.75)
+    loose = one(f"material rubber {AT} hold all release 0.1 s")  # it is held until then, and deforms
+    assert (loose.elasticity, loose.restitution, loose.damping) == (Young(2e6), None, 0.6)
+    thrown = one(f"material oak {AT} hold all release 0.1 s")
+    assert (thrown.elasticity, thrown.restitution) == (Rigid(), 0.5)
 
 
 @pytest.mark.parametrize("order", ["material oak {own} {at}", "{own} {at} material oak", "{at} {own} material oak"])

@@ -15,6 +15,8 @@ SWITCHES = {"drives": "an object's `drive ...`, `key ...` or `release ...`"}
 LEDGER = {"work": "what drives have brought in so far [J]"}
 """Columns of the ledger."""
 
+RELEASE = "release"
+"""Setting of an object whose hold ends."""
 NEAR = 1e-9
 """Distance of two points that are one, over their distance from the origin."""
 LEAST = 1e-6

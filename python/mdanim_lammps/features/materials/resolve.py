@@ -11,6 +11,7 @@ from ...scene.evaluated import EvaluatedBlock, EvaluatedSetting
 from ...scene.keywords import KEYWORDS, did_you_mean
 from ...scene.shapes import HoldAll, Young
 from ...scene.tree import SettingNode
+from ..drives.words import RELEASE
 from ..rigid.words import SENSELESS, Rigid
 from .table import MATERIALS, Material
 
@@ -98,7 +99,8 @@ def _suited(block: EvaluatedBlock, found: Settings) -> Settings:
         found["elasticity"] = [_at(given, given.entry.keyword, Rigid())]
     elasticity = block.first("elasticity") or next(iter(found.get("elasticity", ())), None)
     rigid = elasticity is not None and _kind(elasticity) is Rigid
-    left_out = set(SENSELESS) if rigid else set() if held and not bends else {"restitution"}
+    stays = held and block.first(RELEASE) is None
+    left_out = set(SENSELESS) if rigid else set() if stays and not bends else {"restitution"}
     return {word: s for word, s in found.items() if word not in left_out}
 
 
