@@ -84,3 +84,12 @@ def test_a_light_plate_in_a_storm(elasticity):
         instance.run(round(0.05 / ready.certificate.timestep))
         v = air_cases.mean(ready, instance.array("v"))
     assert np.isfinite(v).all() and 10.0 < v[0] < 60.0 and np.linalg.norm(v - [60.0, 0, 0]) < 60.0
+
+
+def test_ropes_of_one_shape_tear_each_by_its_own_strain(prepared):
+    """Air goes through links beyond 1.3 times the strain at which they tear: 1 cm, by 0.1 and by 2."""
+    rope = "object {} {{ shape rope from (0, 0, 1) m to (0, 0.5, 1) m thickness 1 cm density 900 elasticity 1 MPa {} }}\n"
+    text = "air { wind (5, 0, 0) m/s }\n" + rope.format("weak", "tear-strain 0.1") + rope.format("strong", "tear-strain 2")
+    table = prepared(text + "control { time 0.1 s }\n").plan.tables["air"].splitlines()
+    first = [line.split()[-1] for line in table if line.startswith("cylinder 1 2 ")]
+    assert [float(most) for most in first] == pytest.approx([0.0113, 0.036])

@@ -193,7 +193,7 @@ def _skins(context: Context) -> dict[int, AirSkin]:
     found = {}
     for m in _pushed(context):
         model, solid = of[context.system.names[m]]
-        key = (id(model.surface), solid.shape)
+        key = (id(model.surface), solid.shape, solid.tear_strain)
         if key not in made:
             made[key] = skin_of(model, solid)
         found[m] = made[key]
