@@ -150,3 +150,20 @@ def test_what_is_refused(words, message, way_out):
     with pytest.raises(SceneError) as refused:
         prepare(parse_scene(f"{KINDS['soft'].replace('hold all ', '')} {words} }}\ncontrol {{ time 2 s }}\n", "cube.txt"))
     assert message in str(refused.value) and way_out in str(refused.value) and "cube.txt:1:" in str(refused.value), refused.value
+
+
+@pytest.mark.parametrize(
+    ("words", "message", "way_out"),
+    [
+        ("hold all release 1 s velocity (1, 0, 0) m/s", "cube is held until 1 s, and its velocity is not used", "drive velocity"),
+        ("hold all release 1 s spin (0, 0, 3) rad/s", "cube is held until 1 s, and its spin is not used", "drive turn"),
+        ("hold all release 2 s", "cube is let go at 2 s, and the run ends at 2 s", "write an earlier time"),
+    ],
+)
+def test_what_does_nothing_is_told(words, message, way_out):
+    """A velocity of what is held is lost when it is let go; what is held in a part has it, and says nothing."""
+    told = lambda own: [str(w) for w in parse_scene(f"{cube} {own} }}\ncontrol {{ time 2 s }}\n", "cube.txt").warnings]
+    cube = KINDS["soft"].replace("hold all ", "")
+    found = told(words)
+    assert len(found) == 1 and message in found[0] and way_out in found[0], found
+    assert not told(words.replace("hold all", "hold face -x").replace("2 s", "1 s"))

@@ -4,11 +4,13 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar
 
 from ...scene.formatting import number, vector
 from ...scene.schema import OneOf, Rule, Vector, setting
+from ...scene.shapes import holds_all
 
 SWITCHES = {"drives": "an object's `drive ...`, `key ...` or `release ...`"}
 
@@ -142,6 +144,11 @@ def check_object(v: Any, block: Any, solid: Any) -> Any:
                 s.span(1), f"the frequency of a drive must be > 0, found {number(one.frequency, 6)} Hz", "e.g. frequency 5 Hz"
             )
     _check_keys(v, keys, solid)
+    if lets_go(solid) and holds_all(solid.hold):
+        for word, drive in (("velocity", "velocity (1, 0, 0) m/s"), ("spin", "turn (0, 0, 3) rad/s")):
+            if (s := block.first(word)) is not None and any(getattr(solid, word)):
+                cause = f"{solid.name} is held until {number(solid.release, 6)} s, and its {word} is not used"
+                v.problem(s.span(), cause, f"write drive {drive}, which it keeps when it is let go", severity="warning")
     return solid
 
 
@@ -168,6 +175,16 @@ def _check_keys(v: Any, settings: Any, solid: Any) -> None:
             if key.angle:
                 cause = f"at 0 s {solid.name} is turned as its orientation says, and this key turns it"
             v.problem(s.span(1), cause, "leave the key at 0 s out, or change position and orientation")
+
+
+def check(v: Any, top: Mapping, held: Mapping) -> None:
+    """Objects that are let go when the run has ended."""
+    if (control := held["control"]) is None:
+        return
+    for solid in held["solids"]:
+        if lets_go(solid) and solid.release >= control.time:
+            cause = f"{solid.name} is let go at {number(solid.release, 6)} s, and the run ends at {number(control.time, 6)} s"
+            v.problem(solid.spans[RELEASE], cause, "write an earlier time behind release", severity="warning")
 
 
 CHECKS = {"object": check_object}
