@@ -132,6 +132,21 @@ control { time 0.5 s resolution 5 cm }
     assert off(rows) < 1e-2
 
 
+@pytest.mark.parametrize(
+    "shape",
+    [
+        "box (10, 10, 10) cm position (0, 0, 1) m hold face -x",
+        "sheet (20, 20) cm thickness 1 mm position (0, 0, 1) m hold face -x",
+        "rope from (0, 0, 1) m to (0.4, 0, 1) m thickness 1 cm hold start",
+    ],
+)
+def test_all_of_it_is_held_where_a_hold_says_so(prepared, shape):
+    """Also where another one names a part."""
+    text = f"object cube {{ shape {shape} hold all density 300 elasticity 1 MPa release 0.1 s }}\ncontrol {{ time 0.2 s }}\n"
+    system = prepared(text).system
+    assert system.pinned.all() and not system.held.any() and len(system.spring)
+
+
 def test_the_lock_has_it():
     scene = parse_scene(KINDS["rigid"] + " release 250 ms }\ncontrol { time 1 s }\n", "cube.txt")
     assert scene.solids[0].release == 0.25

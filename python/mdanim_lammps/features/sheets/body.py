@@ -10,7 +10,7 @@ from functools import cached_property
 
 import numpy as np
 
-from ...bodies import BodyKind, all_held
+from ...bodies import BodyKind, lets_go
 from ...model.build import NothingHeld, caught_in_box
 from ...model.contact_body import BodyFrame, ContactBody
 from ...model.lattice import Cells
@@ -71,8 +71,8 @@ class SheetBody(BodyKind):
         arm = arm @ np.array(solid.rotation).T
         x = arm + solid.position
         held = held_particles(solid, woven, x)
-        pair, of_spring = woven.springs(solid.elasticity.modulus, sheet.thickness, sheet.bending, held)
-        if held.all():
+        pair, of_spring = woven.springs(solid.elasticity.modulus, sheet.thickness, sheet.bending, held & ~held.all())
+        if held.all() and not lets_go(solid):
             pair, of_spring = pair[:0], of_spring[:0]
         m = mass(solid) * woven.share / woven.share.sum()
         kind, constants = types(np.column_stack([of_spring[:, :2], reduced_mass(m, pair), of_spring[:, 2]]))
@@ -156,7 +156,7 @@ def _shared(shared, sheet: Sheet, h: float):
 
 def held_particles(solid, woven: Weave, x: np.ndarray) -> np.ndarray:
     """Particles at x [m], shape (N, 3), in any ``hold`` of a sheet, bool, shape (N,). Raises NothingHeld."""
-    held = np.full(len(x), all_held(solid))
+    held = np.zeros(len(x), bool)
     for hold in solid.hold:
         if isinstance(hold, HoldFaces):
             for side in hold.sides:
@@ -173,6 +173,7 @@ def held_particles(solid, woven: Weave, x: np.ndarray) -> np.ndarray:
             held |= caught
         else:
             assert isinstance(hold, HoldAll)
+            held[:] = True
     return held
 
 
