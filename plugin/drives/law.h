@@ -49,8 +49,13 @@ inline Quaternion rotation_by(const Vec3 &angle)
   return unit({sine_of_turns(half + 0.25), s * angle.x, s * angle.y, s * angle.z});
 }
 
-// A path through keys: between two of them a cubic curve whose slopes are those of the neighbours,
-//   p'_k = (p_{k+1} - p_{k-1}) / (t_{k+1} - t_{k-1}),   0 at both ends;
+// The one next to 0 of two numbers of the same sign, else 0.
+inline double least(double a, double b) { return std::max(std::min(a, b), 0.0) + std::min(std::max(a, b), 0.0); }
+inline Vec3 least(const Vec3 &a, const Vec3 &b) { return {least(a.x, b.x), least(a.y, b.y), least(a.z, b.z)}; }
+
+// A path through keys: between two of them a cubic curve, each component of which is monotone (Fritsch and Carlson 1980). Its
+// slopes are those of the neighbours, but no more than three times that to either of them:
+//   m_ij = (p_j - p_i) / (t_j - t_i),   p'_k = least(m_{k-1,k+1}, 3 least(m_{k-1,k}, m_{k,k+1})),   0 at both ends;
 // at rest at the first key before it, and at the last one behind it. Times ascend.
 class KeyPath {
  public:
@@ -72,10 +77,9 @@ class KeyPath {
     if (k == keys.size()) return keys.back();
     const Key &a = keys[k - 1], &b = keys[k];
     const double h = b.time - a.time, s = (t - a.time) / h, r = 1.0 - s;
-    const double of_a = (1.0 + 2.0 * s) * (r * r), of_b = s * s * (3.0 - 2.0 * s), slope_a = s * (r * r) * h,
-                 slope_b = -(s * s) * r * h;
+    const double of_b = s * s * (3.0 - 2.0 * s), slope_a = s * (r * r) * h, slope_b = -(s * s) * r * h;
     const auto along = [&](Vec3 Key::*what) {
-      return (of_a * (a.*what) + of_b * (b.*what)) + (slope_a * slope(k - 1, what) + slope_b * slope(k, what));
+      return a.*what + (of_b * (b.*what - a.*what) + (slope_a * slope(k - 1, what) + slope_b * slope(k, what)));
     };
     return {t, along(&Key::way), along(&Key::angle)};
   }
@@ -84,8 +88,10 @@ class KeyPath {
   Vec3 slope(std::size_t k, Vec3 Key::*what) const
   {
     if (k == 0 || k + 1 == keys.size()) return {};
-    return (1.0 / (keys[k + 1].time - keys[k - 1].time)) * (keys[k + 1].*what - keys[k - 1].*what);
+    return least(mean(k - 1, k + 1, what), 3.0 * least(mean(k - 1, k, what), mean(k, k + 1, what)));
   }
+  Vec3 mean(std::size_t i, std::size_t j, Vec3 Key::*what) const
+  { return (1.0 / (keys[j].time - keys[i].time)) * (keys[j].*what - keys[i].*what); }
 
   std::vector<Key> keys;
 };

@@ -3,6 +3,7 @@
 
 import math
 import re
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -61,11 +62,34 @@ def test_all_drives_add_up(prepared):
         np.testing.assert_allclose(x, TWIN.places(start, round(time / dt) * dt), rtol=0, atol=1e-14)
 
 
+def test_a_lift_that_waits_stands(prepared):
+    """It stands until its first key and from the one at the top on, in all digits, tilted as it is; on its way it is never below
+    or above. Its bounds have no way that it does not go, and 3/2 of its mean speed with up to a fifth for what is between the
+    places at which they look."""
+    tilted = " axis (1, 0, 0) angle 10 deg"
+    keys = f"key 0.1 s at (0, 0, -2) cm  key 0.3 s at (0, 0, 18) cm{tilted}  key 0.4 s at (0, 0, 18) cm{tilted}"
+    ready = prepared(plate(keys) + "control { time 0.5 s }\n")
+    start, times = ready.system.position, [*np.linspace(0.01, 0.5, 50)]
+    x = [start, *followed(ready, times, lambda instance: instance.array("x").copy())]
+    for a, b in pairwise(x[:11]):
+        assert np.array_equal(a, b)
+    for a, b in pairwise(x[31:]):
+        assert np.array_equal(a, b)
+    height = np.array([now[:, 2].mean() for now in x])
+    assert height.min() >= height[0] - 1e-15 and height.max() <= height[0] + 0.2 + 1e-12
+    assert height[-1] == pytest.approx(height[0] + 0.2, abs=1e-12)
+    path = motion.KeyPath(motion.keys_of(solid := ready.scene.solids[0]), solid.position, 0.5)
+    assert path.low[2] == 0.0 and path.high[2] == pytest.approx(0.2, rel=1e-12)
+    assert 1.5 * 0.2 / 0.2 <= path.speed <= 1.2 * 1.5 * 0.2 / 0.2
+
+
 @pytest.mark.parametrize(("drive", "time"), [
     *((drive, 0.4) for drive in [ALL, *ALL.replace("  drive", "\n  drive").replace("  key", "\n  key").splitlines()[:5]]),
     ("drive turn (0, 0, 0.3) rad/s about (2, 0, 0) m", 0.4), ("key 0.2 s at (0, 0, 0) cm axis (1, 1, 0) angle 90 deg", 0.4),
     ("drive turn (5, -5, 0) rad/s  key 10 s at (1, 1, 1) m", 10.0),
     ("drive turn (1, 1, 1) rad/s about (1, 0, 0) m  key 5 s at (1, -2, 1) m  key 10 s at (-1, 1, 0) m", 10.0),
+    ("key 1 s at (0, 0, -2) cm  key 3 s at (0, 0, 2) m  key 4 s at (0, 0, 2) m", 5.0),
+    ("key 1 s at (0, 0, 0) m  key 3 s at (0, 0, 2) m axis (0, 1, 0) angle 1  key 4 s at (0, 0, 5) m axis (0, 1, 0) angle 1", 5.0),
 ])  # fmt: skip
 def test_bounds_hold_and_are_near(drive, time):
     """Ways of all corners, and their speeds, at many times: within the bounds, which are no more than four times as wide."""

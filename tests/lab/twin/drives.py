@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""Places of what is driven, by numpy's sines and the curve of cameras."""
+"""Places of what is driven, by numpy's sines and Bezier curves between keys."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from itertools import pairwise
 
 import numpy as np
-from mdanim_lammps.picture.camera import hermite_weights
 
 
 def rotation(angle: np.ndarray) -> np.ndarray:
@@ -18,6 +18,25 @@ def rotation(angle: np.ndarray) -> np.ndarray:
     x, y, z = np.asarray(angle) / size
     cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
     return np.eye(3) + np.sin(size) * cross + (1.0 - np.cos(size)) * cross @ cross
+
+
+def through(times: np.ndarray, points: np.ndarray, time: float) -> np.ndarray:
+    """The point at a time of a path through points of shape (K, 3): Bezier curves that leave no box around two of them."""
+    if time <= times[0] or time >= times[-1]:
+        return points[0 if time <= times[0] else -1]
+    mean = np.diff(points, axis=0) / np.diff(times)[:, None]
+    across = (points[2:] - points[:-2]) / (times[2:] - times[:-2])[:, None]
+    slope = np.zeros_like(points)
+    alike = mean[:-1] * mean[1:] > 0.0
+    least = 3.0 * np.minimum(np.abs(mean[:-1]), np.abs(mean[1:]))
+    slope[1:-1] = np.where(alike, np.clip(across, -least, least), 0.0)
+    k = int(np.searchsorted(times, time, side="right")) - 1
+    h = times[k + 1] - times[k]
+    s = (time - times[k]) / h
+    line = [points[k], points[k] + h / 3.0 * slope[k], points[k + 1] - h / 3.0 * slope[k + 1], points[k + 1]]
+    while len(line) > 1:
+        line = [(1.0 - s) * a + s * b for a, b in pairwise(line)]
+    return line[0]
 
 
 @dataclass
@@ -44,8 +63,7 @@ class Motion:
         moved, centre, pivot = np.asarray(start, float), np.asarray(self.about, float), np.asarray(self.pivot, float)
         if self.keys:
             times, ways, angles = (np.array([key[k] for key in self.keys], float) for k in range(3))
-            weights = hermite_weights(times, time)
-            moved = pivot + weights @ ways + (moved - pivot) @ rotation(weights @ angles).T
+            moved = pivot + through(times, ways, time) + (moved - pivot) @ rotation(through(times, angles, time)).T
         moved = centre + (moved - centre) @ rotation(time * np.asarray(self.turn, float)).T
         for way, frequency, phase in self.oscillations:
             moved = moved + np.asarray(way) * (np.sin(2 * np.pi * (frequency * time + phase)) - np.sin(2 * np.pi * phase))

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """fix mdanim/drive: places and velocities against numpy, the work that it takes, restart files, ranks, and what is refused."""
 
+from itertools import pairwise
+
 import numpy as np
 import plugin_lab as lab
 import pytest
@@ -49,6 +51,49 @@ def test_places_and_mean_velocities(tmp_path, name):
         np.testing.assert_allclose(lab.by_tag(lmp, "x"), now, rtol=0, atol=3e-14)
         np.testing.assert_allclose(lab.by_tag(lmp, "v"), (after - before) / (2 * DT), rtol=0, atol=3e-12)
     lmp.close()
+
+
+WAITS = {
+    "a lift": [(0.2, 0.0), (0.6, 2.0), (0.8, 2.0), (1.0, 0.5)],
+    "small and large ways": [(0.1, 1e-3), (0.5, 1.0), (0.52, 1.001), (1.0, 50.0)],
+    "to and fro": [(0.2, 1.0), (0.3, -1.0), (0.7, 3.0), (1.0, 2.0)],
+}
+
+
+@pytest.mark.parametrize("name", WAITS)
+@pytest.mark.parametrize("of", ["way", "angle"])
+def test_keys_hold(tmp_path, name, of):
+    """Between two keys it stays between them: two that are equal mean that it stands, in all digits. It is at each key."""
+    keys = [(0.0, 0.0), *WAITS[name]]
+    direction = {"way": (1.0, -0.5, 0.0, 0.0, 0.0, 0.0), "angle": (0.0, 0.0, 0.0, 0.0, 0.0, 0.05)}[of]
+    words = " ".join(f"key {t} {' '.join(str(p * d) for d in direction)}" for t, p in keys)
+    lmp = lab.load(BLOCK, tmp_path, [LOOSE, *drive(f"pivot 0 0 0 {words}")])
+    found = [0.0]
+    for step in range(1, STEPS + 1):
+        lmp.command("run 1" if step == 1 else "run 1 pre no post no")
+        (x, y), (start, beside) = lab.by_tag(lmp, "x")[-1, :2], BLOCK.x[-1, :2]
+        turned = np.arctan2(y * start - x * beside, x * start + y * beside)
+        found.append(x - start if of == "way" else turned / 0.05)
+    lmp.close()
+    times, found = DT * np.arange(STEPS + 1), np.array(found)
+    for (t, p), (u, q) in pairwise(keys):
+        here = found[(times > t - 1e-9) & (times < u + 1e-9)]
+        assert here[[0, -1]] == pytest.approx([p, q], abs=1e-11)
+        assert here.min() >= min(p, q) - 1e-11 and here.max() <= max(p, q) + 1e-11
+        assert p != q or len(set(here[:-1].tolist())) == 1
+
+
+def test_slopes_at_keys(tmp_path):
+    """By hand: between ways of 1 and 3 in 0.4 each the slope is the mean, 5; between 0.1 and 3 it is three times that of the
+    smaller one, 0.75, instead of 3.875. Half-way between two keys p is their mean and h/8 of the difference of their slopes."""
+    for rise, slope in ((1.0, 5.0), (0.1, 0.75)):
+        words = f"key 0 0 0 0 0 0 0 key 0.4 {rise} 0 0 0 0 0 key 0.8 {rise + 3.0} 0 0 0 0 0"
+        lmp = lab.load(BLOCK, tmp_path, [LOOSE, *drive(words)])
+        for half, ends in ((0.5 * rise, (0.0, slope)), (rise + 1.5, (slope, 0.0))):
+            lmp.command(f"run {10 if half < rise else 20}")
+            way = lab.by_tag(lmp, "x")[0, 0] - BLOCK.x[0, 0]
+            assert way == pytest.approx(half + 0.4 / 8.0 * (ends[0] - ends[1]), abs=1e-13)
+        lmp.close()
 
 
 def test_the_setup_sets_the_same_velocities(tmp_path):

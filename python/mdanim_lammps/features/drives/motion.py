@@ -198,6 +198,21 @@ def _swept(corner: np.ndarray, about: np.ndarray, axis: np.ndarray, angle: float
     return np.minimum(low, 0.0), np.maximum(high, 0.0)
 
 
+def slopes(time: np.ndarray, value: np.ndarray) -> np.ndarray:
+    """Slopes at keys, shape (K, n), of values of this shape at times that ascend, shape (K,): those of the neighbours, but at
+    most three times that to either of them (Fritsch and Carlson 1980), and 0 at both ends and where a component turns back."""
+    mean = np.diff(value, axis=0) / np.diff(time)[:, None]
+    across = (value[2:] - value[:-2]) / (time[2:] - time[:-2])[:, None]
+    found = np.zeros_like(value)
+    found[1:-1] = _least(across, 3.0 * _least(mean[:-1], mean[1:]))
+    return found
+
+
+def _least(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    """The one next to 0 of two numbers of the same sign, else 0."""
+    return np.maximum(np.minimum(a, b), 0.0) + np.minimum(np.maximum(a, b), 0.0)
+
+
 class KeyPath:
     """Bounds on a path through keys: displacements [m], the largest rotation [rad], speed [m/s], rate of rotation [rad/s]."""
 
@@ -208,20 +223,19 @@ class KeyPath:
             return
         t = np.array([key.time for key in keys])
         value = np.array([[*np.subtract(key.at, start), *key.rotation] for key in keys])
-        slope = np.zeros_like(value)
-        slope[1:-1] = (value[2:] - value[:-2]) / (t[2:] - t[:-2])[:, None]
+        slope = slopes(t, value)
         h = np.diff(t)[:, None]
         # Between two keys as a polynomial of s, 0 to 1: a + b s + c s^2 + d s^3.
         a, b = value[:-1], h * slope[:-1]
         c = 3.0 * (value[1:] - a) - h * (2.0 * slope[:-1] + slope[1:])
         d = 2.0 * (a - value[1:]) + h * (slope[:-1] + slope[1:])
         s = np.linspace(0.0, 1.0, 65)[:, None, None]
-        here = a + s * (b + s * (c + s * d))
         rate = np.abs((b + s * (2.0 * c + 3.0 * s * d)) / h)
         between = (np.abs(2.0 * c) + np.abs(6.0 * d)) / 64.0  # by which the derivative changes from one s to the next
         rate = (rate + between / h).reshape(-1, 6)
-        here, off = here.reshape(-1, 6), (rate.max(0) * h.max() / 64.0)
-        self.low, self.high = np.minimum(here.min(0) - off, 0.0)[:3], np.maximum(here.max(0) + off, 0.0)[:3]
-        self.angle = float(np.linalg.norm(np.abs(here[:, 3:]) + off[3:], axis=1).max())
+        # No component leaves the interval between two keys.
+        self.low, self.high = np.minimum(value.min(0), 0.0)[:3], np.maximum(value.max(0), 0.0)[:3]
+        widest = np.maximum(np.abs(value[:-1, 3:]), np.abs(value[1:, 3:]))
+        self.angle = float(np.linalg.norm(widest, axis=1).max())
         self.speed = float(np.linalg.norm(rate[:, :3], axis=1).max())
         self.turning = float(np.linalg.norm(rate[:, 3:], axis=1).max())
