@@ -16,6 +16,9 @@ from .patches import Patch
 ALIKE = 1e-9
 """Part of the mobilities of both directions across an axis, by which they differ at least where one is taken."""
 
+THIN = 1e-12
+"""Mobility of a direction over the largest one, up to which an end does not have it."""
+
 
 @dataclass(frozen=True)
 class JointEnd:
@@ -97,8 +100,14 @@ def both_across(axis: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def across(axis: np.ndarray, inverses: Sequence[np.ndarray]) -> np.ndarray:
-    """The direction across an axis that is hardest to turn in all ends, on which the servo of a hinge acts; ``inverses`` are
-    their S^-1 [1/(kg m^2)], each of shape (3, 3)."""
+    """The direction across an axis that is hardest to turn in all ends, or the one that a flat end has, on which the servo of a
+    hinge acts; ``inverses`` are their S^-1 [1/(kg m^2)], each of shape (3, 3)."""
+    for inverse in inverses:
+        values, vectors = np.linalg.eigh(inverse)
+        if (values > THIN * values[-1]).tolist() == [False, True, True]:
+            along = np.cross(vectors[:, 0], axis)
+            if np.linalg.norm(along) > 0.5:
+                return unit(along)
     u, v = both_across(axis)
     net = sum(inverses, np.zeros((3, 3)))
     uu, vv, uv = (float(a @ net @ b) for a, b in ((u, u), (v, v), (u, v)))

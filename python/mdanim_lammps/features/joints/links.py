@@ -17,8 +17,9 @@ from ...model import shapes
 from ...reach import Leash
 from ...scene import units
 from ...scene.naming import objects_by_name
-from ...scene.scene import SceneRecord
+from ...scene.scene import Rope, SceneRecord, Sheet
 from ...scene.schema import Vector
+from .planes import settled
 from .words import WORLD, Joint
 
 NOTHING = -1
@@ -105,7 +106,24 @@ class Links:
             first, second, begin, end = second, first, end, begin
             axis = None if axis is None else tuple(-x for x in axis)
         fixed = second == NOTHING or bool(self.still[second])
+        if joint.kind == "spring":
+            begin, end = self._settled([first], begin), self._settled([second], end)
+        else:
+            begin = end = self._settled([first, second], begin)
         return Link(number, joint, first, NOTHING if fixed else second, second, begin, end, axis, swapped)
+
+    def sheets(self, objects: Iterable[int]) -> list[int]:
+        """Sheets among these objects whose particles hold a joint: they move, or parts of them do."""
+        return [m for m in objects if m != NOTHING and isinstance(self.solids[m].shape, Sheet) and not self.still[m]]
+
+    def rope(self, objects: Iterable[int]) -> str | None:
+        """Name of the first of these objects that is a line of particles."""
+        return next((self.solids[m].name for m in objects if m != NOTHING and isinstance(self.solids[m].shape, Rope)), None)
+
+    def _settled(self, objects: list[int], point: Vector) -> Vector:
+        """A place in the planes of sheets that hold it, where it is there but for a rounding; a rope has it at its line."""
+        sheets = [self.solids[m] for m in self.sheets(objects)]
+        return settled(sheets, point) if sheets and self.rope(objects) is None else point
 
     @cached_property
     def of_names(self) -> dict[str, list[tuple[str, Link]]]:

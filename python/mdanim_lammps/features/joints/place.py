@@ -15,6 +15,10 @@ from ...model.segments import to_segments
 from ...scene.formatting import say
 from ...scene.scene import Box, Mesh, SceneRecord, Solid
 from .links import NOTHING, Link, links_of
+from .planes import ON, across, off_plane
+
+BENT = 3e-5
+"""Part of its length by which a piece of a rope is off a straight line, from which on it has two directions."""
 
 
 def misplaced(scene: SceneRecord, models: Sequence[Model]) -> list[Problem]:
@@ -24,10 +28,12 @@ def misplaced(scene: SceneRecord, models: Sequence[Model]) -> list[Problem]:
         ends = [(m, n) for n, m in enumerate((link.first, link.named)) if m != NOTHING]
         lines = [p for m, n in ends if models[m].frame.dimensions == 1 for p in _off_line(models[m], link, n, scene.solids[m])]
         problems += lines
+        problems += [_tilted(scene, link), _unlike(scene, models, link)]
         if link.joint.kind == "spring":
-            problems += [_far(scene, models, link, [end]) for end in ends if models[end[0]].frame.dimensions > 1]
-        elif not lines:
-            problems.append(_far(scene, models, link, ends))
+            places = [[end] for end in ends if models[end[0]].frame.dimensions > 1]
+        else:
+            places = [] if lines else [ends]
+        problems += [_far(scene, models, link, place) or _off_sheet(scene, models, link, place) for place in places]
     return [p for p in problems if p is not None]
 
 
@@ -51,10 +57,6 @@ def _word(link: Link, n: int) -> str:
     return "at" if link.joint.kind != "spring" else ("from", "to")[n ^ link.swapped]
 
 
-ON = 1e-6
-"""Distance from a line of particles, over its spacing, up to which a point is on it."""
-
-
 def _off_line(model: Model, link: Link, n: int, solid: Solid) -> list[Problem]:
     """Problems of a joint whose object n is a line of particles, which has no place beside them, and no direction across."""
     joint, x, at = link.joint, model.position, np.array((link.begin, link.end)[n], float)
@@ -72,6 +74,60 @@ def _off_line(model: Model, link: Link, n: int, solid: Solid) -> list[Problem]:
     cause = f"joint {place} is {say(float(away.min()), 'm')} beside the line of {solid.name}, which has all of its particles"
     way_out = f"write {word} ({', '.join(f'{c:.9g}' for c in nearest)}) m, where its nearest particle is"
     return [Problem(span or joint.spans.get("joint"), cause, way_out)]
+
+
+def _off_sheet(scene: SceneRecord, models: Sequence[Model], link: Link, ends: list[tuple[int, int]]) -> Problem | None:
+    """The problem of a place that is off the plane of a sheet among these objects, each with its number in the joint, 0 or 1."""
+    links, objects = links_of(scene), [m for m, _ in ends]
+    n = next((n for m, n in ends if links.sheets([m])), None)
+    if n is None:
+        return None
+    at, word = np.array((link.begin, link.end)[n], float), _word(link, n)
+    span = link.joint.spans.get(word)
+    place = f"joint {link.joint.words}"
+    if span is None:
+        place += f" has no {word}, and the centre of {link.joint.first}"
+    sheets = [(scene.solids[m], models[m]) for m in links.sheets(objects)]
+    found = off_plane(place, at, word, sheets, links.rope(objects))
+    return None if found is None else Problem(span or link.joint.spans.get("joint"), *found)
+
+
+def _tilted(scene: SceneRecord, link: Link) -> Problem | None:
+    """The problem of an axis across a sheet: a hinge takes a direction of both objects, a slider one of the second."""
+    if link.axis is None:
+        return None
+    links, joint = links_of(scene), link.joint
+    sheets = [scene.solids[m] for m in links.sheets([link.second] if joint.kind == "slider" else [link.first, link.second])]
+    others = [joint.first, joint.second]
+    found = across(joint.words, joint.kind, link.axis, sheets, others[others[0] == sheets[0].name]) if sheets else None
+    return None if found is None else Problem(joint.spans.get("axis") or joint.spans.get("joint"), *found)
+
+
+def _unlike(scene: SceneRecord, models: Sequence[Model], link: Link) -> Problem | None:
+    """The problem of what a weld or a slider cannot hold, as two sheets or ropes have no directions in common there."""
+    joint = link.joint
+    if joint.kind not in ("weld", "slider") or NOTHING in (link.first, link.second):
+        return None
+    spans = [_span(models[m], scene.solids[m], np.array(link.begin, float)) for m in (link.first, link.second)]
+    flat, other = sorted((s for s in spans if len(s) < 3), key=len) if max(map(len, spans)) < 3 else (np.eye(3), np.eye(3))
+    if np.linalg.norm(flat - flat @ other.T @ other, axis=1).max() <= ON:
+        return None
+    names = " and ".join(scene.solids[m].name for m in (link.first, link.second))
+    cause = f"joint {joint.words} holds the directions of both objects, and {names} have not the same ones there"
+    way_out = f"write joint ball {joint.first} {joint.second}, or hold both to a small rigid object by joint weld"
+    return Problem(joint.spans.get("joint"), cause, way_out)
+
+
+def _span(model: Model, solid: Solid, at: np.ndarray) -> np.ndarray:
+    """Directions that an object has at a point, orthonormal rows, shape (1..3, 3): of a rope that of its particles there."""
+    if model.frame.dimensions == 3:
+        return np.eye(3)
+    if model.frame.dimensions == 2:
+        return np.array(solid.rotation, float).T[:2]
+    away = np.linalg.norm(model.position - at, axis=1)
+    near = model.position[away <= np.sort(away)[1] + 0.1 * model.spacing]
+    _, sizes, rows = np.linalg.svd(near - near.mean(axis=0), full_matrices=False)
+    return rows[sizes > BENT * sizes[0]]
 
 
 def _far(scene: SceneRecord, models: Sequence[Model], link: Link, ends: list[tuple[int, int]]) -> Problem | None:
