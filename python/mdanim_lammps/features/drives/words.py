@@ -107,7 +107,8 @@ class DriveWords:
     key_points: tuple[DriveKey, ...] = setting(
         None,
         "What is held of it follows a smooth path: its centre is there at time T, turned by the angle from how it is at the "
-        "start. Before the first key it goes there from its `position`, behind the last one it stays. `drive` adds to it.",
+        "start. Before the first key it goes there from its `position`, behind the last one and between two that are equal it "
+        "stays. `drive` adds to it.",
         "1 s at (0, 0, 0.5) m", default=(), name="key", many=True, codec=OneOf(DriveKey), after="drive")  # fmt: skip
     release: float | None = setting(
         "<T:s>",
