@@ -284,3 +284,54 @@ def test_a_rigid_object_in_the_ground(shape, height, told):
     """A ball of 10 cm that starts 1 cm in the ground is refused, by a tenth of a millimetre it is not."""
     found = problems(solid(shape, position=(0, 0, height), elasticity=Rigid()), ground=0.0)
     assert [p.message for p in found] == ([] if told is None else [told])
+
+
+def star(tmp_path, corners):
+    """A prism of 20 cm in depth about the origin over corners (x, z) around it, as a mesh."""
+    count = len(corners)
+    points = [(0, y, 0) for y in (-0.1, 0.1)] + [(x, y, z) for y in (-0.1, 0.1) for x, z in corners]
+    faces = []
+    for k in range(count):
+        a, b = 2 + k, 2 + (k + 1) % count
+        faces += [(0, a, b), (1, b + count, a + count), (a, a + count, b), (b, a + count, b + count)]
+    lines = [f"v {x} {y} {z}" for x, y, z in points] + [f"f {a + 1} {b + 1} {c + 1}" for a, b, c in faces]
+    (tmp_path / "star.obj").write_text("\n".join(lines))
+    return Mesh(tmp_path / "star.obj", scale=1.0)
+
+
+DIAMOND = [(0.3, 0.0), (0.0, 0.3), (-0.3, 0.0), (0.0, -0.3)]
+FOUR_POINTS = [p for (x, z), (u, w) in zip(DIAMOND, DIAMOND[1:] + DIAMOND[:1]) for p in ((x, z), (0.3 * (x + u), 0.3 * (z + w)))]
+"""A star with the corners of the diamond and others nearer to the middle."""
+
+
+@pytest.mark.parametrize("h", [0.02, 0.05, 0.2])
+@pytest.mark.parametrize("corners", [DIAMOND, FOUR_POINTS], ids=["convex", "concave"])
+@pytest.mark.parametrize(("deep", "told"), [(0.01, True), (0.002, True), (0.00002, False), (-0.001, False)])
+def test_a_rigid_mesh_in_the_ground(tmp_path, corners, h, deep, told):
+    """Whether a mesh starts in the ground follows from its corners, whatever the resolution, with creases or without."""
+    body = solid(star(tmp_path, corners), position=(0, 0, 0.3 - deep), elasticity=Rigid())
+    found = problems(body, ground=0.0, h=h)
+    assert [p.message for p in found] == (
+        [f"body is {1000 * deep:.3g} mm below the ground".replace("10 mm", "1 cm")] if told else []
+    )
+
+
+@pytest.mark.parametrize("h", [0.02, 0.05, 0.2])
+@pytest.mark.parametrize("turn", [(0.0, 0.0, 0.0), (0.4, 0.7, -1.3), (np.pi / 2, 0.0, 0.0)])
+def test_a_rigid_ring_in_the_ground(h, turn):
+    """A ring reaches R sin(a) + r down where its axis is tilted by a: 2 mm more are refused, a hundredth of 1 mm is not."""
+    turned = rotation(*turn)
+    low = 0.5 * np.hypot(*np.array(turned)[2, :2]) + 0.1
+    for deep, told in ((0.002, ["body is 2 mm below the ground"]), (0.00001, [])):
+        body = solid(Torus(0.5, 0.1), position=(0, 0, low - deep), rotation=turned, elasticity=Rigid())
+        assert [p.message for p in problems(body, ground=0.0, h=h)] == told
+
+
+@pytest.mark.parametrize("h", [0.02, 0.05, 0.2])
+@pytest.mark.parametrize("shape", THICK, ids=shape_id)
+def test_a_rigid_object_in_a_held_floor(shape, h):
+    """A floor that never moves is as the ground: 2 mm are refused at any resolution, a tenth of a millimetre is not."""
+    floor = solid(Box((1.0, 1.0, 0.2)), "floor", position=(0, 0, -0.1), hold=(HoldAll(),))
+    for deep, told in ((0.002, ["b starts inside floor, about 2 mm deep"]), (0.0001, [])):
+        body = solid(shape, "b", position=(0, 0, 0.1 - deep), elasticity=Rigid())
+        assert [p.message for p in problems(floor, body, h=h)] == told

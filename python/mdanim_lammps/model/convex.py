@@ -9,7 +9,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..scene.scene import Box, Cone, Cylinder, Ellipsoid, Mesh, Solid, Sphere
+from ..scene.scene import Box, Cone, Cylinder, Ellipsoid, Mesh, Solid, Sphere, Torus
+from . import mesh
 from .polyhedron import Polyhedron, polyhedron
 
 
@@ -65,7 +66,10 @@ def _units(vectors: np.ndarray) -> np.ndarray:
 
 
 def bounds(solid: Solid) -> tuple[np.ndarray, np.ndarray] | None:
-    """Exact low and high corner of the box around an ellipsoid, a cylinder or a cone [m]; None of other shapes."""
+    """Exact low and high corner of the box around an ellipsoid, a cylinder, a cone, a torus or a mesh [m]; None of other shapes.
+
+    Raises mesh.MeshError.
+    """
     shape, turn, place = solid.shape, np.array(solid.rotation), np.array(solid.position, float)
     along = turn[:, 2]
     if isinstance(shape, Ellipsoid):
@@ -76,6 +80,12 @@ def bounds(solid: Solid) -> tuple[np.ndarray, np.ndarray] | None:
         base, top = (place + (sign * shape.height / 2.0 + _CENTRES[type(shape)] * shape.height) * along for sign in (-1, 1))
         tip = disc if isinstance(shape, Cylinder) else 0.0
         return np.minimum(base - disc, top - tip), np.maximum(base + disc, top + tip)
+    if isinstance(shape, Torus):
+        half = shape.major * np.sqrt(np.maximum(0.0, 1.0 - along**2)) + shape.minor
+        return place - half, place + half
+    if isinstance(shape, Mesh):
+        corner = mesh.load(shape).points @ turn.T + place
+        return corner.min(axis=0), corner.max(axis=0)
     return None
 
 

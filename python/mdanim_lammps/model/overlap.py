@@ -10,7 +10,7 @@ import numpy as np
 
 from ..errors import Problem
 from ..scene.formatting import say, whole
-from ..scene.scene import SceneRecord, Solid
+from ..scene.scene import Mesh, SceneRecord, Solid
 from . import shapes
 from .boxes import box_pairs
 from .convex import bounds, overlap, placed
@@ -89,7 +89,7 @@ class _BoundingBoxes:
         self.on_surfaces = contact is None or inside > 0.0
         """Whether contact acts at the surfaces, not before them."""
         self.allowed = max(inside, HAIR) * np.array([m.spacing for m in models])
-        """Depth of a start in a plane that is no problem [m], shape (n,); in another one, the larger of both."""
+        """Depth of a start in a plane that is no problem [m], shape (n,)."""
         self._exact_shapes()
         self.outer_low, self.outer_high = self.low, self.high
         if self.on_surfaces:
@@ -101,17 +101,25 @@ class _BoundingBoxes:
     def _exact_shapes(self) -> None:
         """Take rigid objects as their shapes: the spacing of their few particles says nothing of what shows."""
         self.rigid = np.array([m.inertia is not None for m in self.models])
-        exact = self.rigid | (self.fixed & self.rigid.any())
-        self.placed = [placed(solid) if e else None for solid, e in zip(self.solids, exact.tolist())]
+        self.hard = self.rigid | (self.fixed & self.rigid.any())
+        self.placed = [placed(solid) if hard else None for solid, hard in zip(self.solids, self.hard.tolist())]
         """Bodies of what is rigid or never moves; None of all else, and of shapes that are not known so."""
         thin = [shapes.thickness(solid.shape) if r else np.inf for solid, r in zip(self.solids, self.rigid.tolist())]
         self.rounded = RIGID_AT_REST * np.array(thin)
         """Depth of the start of a rigid object that is no problem [m], shape (n,)."""
+        self.smooth = np.array(
+            [h and p is None and isinstance(s.shape, Mesh) for h, p, s in zip(self.hard, self.placed, self.solids)]
+        )
+        """Whether contact with an object is at smooth patches over its triangles, which are below them by their height."""
+        self.in_another = self.allowed.copy()
+        """Depth of a start in another object that is no problem, of two the larger one [m], shape (n,)."""
         for m in np.flatnonzero(self.rigid).tolist():
             body = self.placed[m]
             if (box := body.box() if body else bounds(self.solids[m])) is not None:
                 self.low[m], self.high[m] = box
-                self.allowed[m] = self.rounded[m]
+            self.allowed[m] = self.rounded[m]
+        exact = self.rigid & ~self.smooth
+        self.in_another[exact] = self.rounded[exact]
 
     def exact(self, i: int, j: int) -> Callable[[np.ndarray], float] | None:
         """The exact depth of two objects in each other, as `convex.overlap`; None where contact acts at points of surfaces."""
@@ -119,6 +127,13 @@ class _BoundingBoxes:
         if first is None or second is None or not (self.rigid[i] or self.rigid[j]):
             return None
         return overlap(first, second)
+
+    def forgiven(self, i: int, j: int) -> float:
+        """Depth of the start of two objects in each other that is no problem [m]: by their shapes where none is elastic."""
+        exact = self.hard & ~self.smooth
+        if exact[i] and exact[j] and (self.rigid[i] or self.rigid[j]):
+            return float(min(self.rounded[i], self.rounded[j]))
+        return float(max(self.in_another[i], self.in_another[j]))
 
     def clearance(self, i: int, j: int) -> float:
         """Gap between the boxes of two bodies at which contact has no energy [m]."""
@@ -218,7 +233,7 @@ def _pair(scene: SceneRecord, bodies: _BoundingBoxes, planes: tuple[Plane, ...],
     exact = bodies.exact(i, j)
     deepest = exact or _at_points(scene, bodies, i, j)
     depth = deepest(np.zeros(3))
-    if depth <= (min(bodies.rounded[i], bodies.rounded[j]) if exact else max(bodies.allowed[i], bodies.allowed[j])):
+    if depth <= bodies.forgiven(i, j):
         return None
     axis, sign, step = _way_out(planes, bodies, i, j)
     if bodies.on_surfaces:  # surfaces may touch where boxes overlap
