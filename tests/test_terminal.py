@@ -12,8 +12,8 @@ from contextlib import suppress
 from pathlib import Path
 
 import pytest
-from mdanim_lammps.errors import ExitCode, OutputError
-from mdanim_lammps.terminal import Printable, documented_exit
+from mdanim_lammps.errors import ExitCode, OutputError, Problem, SceneError, Span
+from mdanim_lammps.terminal import Printable, documented_exit, error_line
 
 PROGRAM = [sys.executable, "-m", "mdanim_lammps"]
 BALL = """
@@ -58,6 +58,14 @@ def test_output_that_nothing_reads(scene):
     process.stdout.close()
     assert "Error" not in process.stderr.read()
     assert process.wait() == 0
+
+
+@pytest.mark.parametrize("first", ["warning", "note", "error"])
+@pytest.mark.parametrize("span", [Span("a.txt", 3, 7), None], ids=["at a place", "without a place"])
+def test_the_first_of_several_problems_may_be_a_warning(first, span):
+    """A problem says itself how grave it is: no name of the program and no second word stands before it."""
+    told = error_line(SceneError([Problem(span, "friction has no effect", severity=first), Problem(None, "no time")]))
+    assert told.startswith(f"a.txt:3:7: {first}: friction" if span else f"{first}: friction") and "mdanim-lammps" not in told
 
 
 def test_another_broken_pipe_is_an_error(capsys):

@@ -94,9 +94,9 @@ def stdout_is_closed() -> bool:
 
 
 def error_line(error: object) -> str:
-    """An error as it is printed: with the name of the program, unless it begins with a place in a scene."""
+    """An error as it is printed: with the name of the program, unless it is made of problems, which say how grave they are."""
     text = str(error)
-    placed = text.startswith("error: ") or ": error: " in text.split("\n")[0]
+    placed = isinstance(error, SceneError) or text.startswith("error: ") or ": error: " in text.split("\n")[0]
     return text if placed else f"{PROGRAM}: error: {text}"
 
 

@@ -21,6 +21,8 @@ control { time 0.1 s  resolution 5 cm  CONTROL }
         pytest.param("friction 0", "", "", "far", id="0 is meant"),
         pytest.param("", "", "contact cube slab { friction 0.2 }", "far", id="a pair"),
         pytest.param("", "friction 0.1", "", "", id="all have some"),
+        pytest.param("", "", "joint weld cube slab { }", "far", id="a joint lets them be in each other"),
+        pytest.param("", "", "joint weld cube slab { contact on }", "slab", id="joined, with contact"),
         pytest.param("", "", "contact cube slab { friction 0 }\ncontact far cube { friction 0 }", "", id="pairs"),
     ],
 )

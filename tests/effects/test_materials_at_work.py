@@ -65,3 +65,12 @@ def test_cork_swims_and_steel_sinks(prepared):
     draft = 0.15 - (place[15:, 0, 2].mean() - 0.04)  # both displace as much as at the start, where the level is given
     assert draft == pytest.approx(0.17 * 0.08, abs=3e-4)  # it still bobs by so much
     assert place[-1, 1, 2] == pytest.approx(0.04, abs=0.001)
+
+
+def test_what_is_rigid_by_material_is_told_in_one_short_line(prepared):
+    """Nearly every scene has such objects: the note names them and gives no advice."""
+    block = "object {0} {{ material {1} shape box (1, 1, 1) m position ({2}, 0, 2) m }}\n"
+    text = "".join(block.format(*row) for row in (("a", "steel", 0), ("b", "steel", 2), ("c", "oak", 4)))
+    notes = prepared(text + "control { time 0.1 s }").certificate.notes
+    (note,) = [n for n in notes if "rigid by material" in n.message]
+    assert note.message == "rigid by material: a (2 objects) (steel), c (oak)" and not note.hint

@@ -122,13 +122,14 @@ def test_frames_expectations_and_surfaces_know_it(prepared, tmp_path):
 BOX = "object a { shape box (1, 1, 1) m position (0, 0, 1) m density 1 elasticity 1 MPa tear-strain 0.1 }"
 CHAIN = "object a { shape chain from (0, 0, 1) m to (1, 0, 1) m thickness 1 cm density 1 elasticity 1 MPa "
 MISTAKES = [
-    (BOX, 94, "only ropes"),
+    (BOX, 94, "a is a box, and only ropes and chains tear"),
+    (BOX.replace("box (1, 1, 1) m", "sheet (1, 1) m thickness 1 mm"), 108, "a is a sheet, and only ropes and chains tear"),
     (CHAIN.replace("1 cm", "1 cm length 0.8 m") + "tear-strain 0.1 }", 123, "is stretched by 25 % from the start"),
     (CHAIN + "tear-strain -1 }", 110, "tear-strain must be > 0"),
 ]
 
 
-@pytest.mark.parametrize(("text", "column", "words"), MISTAKES, ids=["solid", "stretched", "negative"])
+@pytest.mark.parametrize(("text", "column", "words"), MISTAKES, ids=["solid", "sheet", "stretched", "negative"])
 def test_mistakes(text, column, words):
     """Place, cause and way out."""
     with pytest.raises(SceneError) as error:

@@ -203,6 +203,7 @@ def test_what_is_too_light_for_waves_is_told():
     told = [w for w in scene(density=50).warnings if "as dense as" in w.message]
     assert len(told) == 1 and told[0].message.startswith("cube: 0.05 times as dense as") and "100 kg/m^3" in told[0].hint
     assert not [w for w in scene(density=100).warnings if "as dense as" in w.message]
+    assert not [w for w in scene(density=99.9999999999).warnings if "as dense as" in w.message]
     assert not [w for w in scene(density=50, model=LiquidModel.SURFACE).warnings if "as dense as" in w.message]
 
 

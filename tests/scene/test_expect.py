@@ -95,6 +95,7 @@ def test_a_liquid_may_be_called_by_its_name():
         ("ball.distance(cub[2]) < 1 m", "no object is called cub[2]", "did you mean 'cube[2]'?"),
         ("ball.distance() < 1 m", "distance needs another object in brackets, found ')'", ""),
         ("ball.distance(cube[2] < 1 m", "a ) is missing after cube, found '<'", ""),
+        ("ball.air.force < 1 N", "ball.air.force needs an air block, and the scene has none", ""),
         ("liquid.height < 1 m", "height needs a place (x, y) in brackets", "write height(0.2 m, 0 m)"),
         ("liquid.height(6 m, 0 m) < 1 m", "the place (6, 0) m lies outside the basin",
          "the basin goes from (-5, -4) to (5, 4) m"),

@@ -113,6 +113,8 @@ def test_scenes_without_the_word_and_locks():
 
 MISTAKES = [
     ("unknown", f"object a {{ material oka {AT} }}", 1, 21, "no material is called oka", "did you mean 'oak'?"),
+    ("in itself", f"material goo {{ material bar }}\nobject a {{ material oak {AT} }}", 1, 25, "no material is called bar",
+     "known here: steel,"),
     ("far off", f"object a {{ material xyzzy {AT} }}", 1, 21, "no material is called xyzzy", "known here: steel,"),
     ("own one", f"material goo {{ }}\nobject a {{ material gop {AT} }}", 2, 21, "no material is called gop", "'goo'"),
     ("twice", f"object a {{ material oak material pine {AT} }}", 1, 25, "material is given twice", "scene:1:12"),

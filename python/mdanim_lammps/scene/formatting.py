@@ -48,6 +48,11 @@ def number(value: float, digits: int = 3) -> str:
     return f"{float(mantissa):g}e{int(power)}"
 
 
+def with_article(noun: str) -> str:
+    """``a box``, ``an air block``."""
+    return f"{'an' if noun[0] in 'aeiou' else 'a'} {noun}"
+
+
 def exact(value: float) -> str:
     """A number with as many digits as tell it from all others; no point where it is whole."""
     return repr(value).removesuffix(".0")

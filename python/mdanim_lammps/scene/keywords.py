@@ -7,7 +7,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from difflib import get_close_matches
 from typing import get_args
@@ -16,7 +16,7 @@ from ..features import facets
 from .forms import Word, alternatives
 from .placement import Placement
 from .scene import Command, Control, Render, SceneRecord, Solid, Switch
-from .schema import Block, Keyword, Words, keywords
+from .schema import Block, Keyword, Words, keywords, syntax
 from .shapes import Shape
 
 BLOCKS = {b.name: b for b in (
@@ -154,6 +154,14 @@ def all_keywords() -> list[Keyword]:
 def example(keyword: Keyword) -> str:
     """``e.g. mass 2 kg``"""
     return f"e.g. {keyword.name} {keyword.example}"
+
+
+def example_of(keyword: Keyword, words: Sequence[str]) -> str:
+    """The form that begins with the first of some words, where the example is of another one: ``write shape cylinder r h``."""
+    if not words or words[0] in keyword.example.split():
+        return example(keyword)
+    forms = [form for form in syntax(keyword).split(" | ") if form.split()[0] == words[0]]
+    return f"write {keyword.name} {forms[0]}" if forms else example(keyword)
 
 
 def examples(keyword: Keyword) -> str:

@@ -119,7 +119,8 @@ class Render(Worded):
     camera: tuple[Camera, ...] = setting(
         None,
         "Where the camera stands and what it looks at; several lines with times T make a smooth path. `look NAME` follows an "
-        "object. Absent: chosen so that everything is seen.",
+        "object. Absent: one view for all frames, chosen from the whole run so that what happens is seen large; what flies or "
+        "falls far off, and what few objects do for a short time, may be left out.",
         "from (4, -4, 2) m look (0, 0, 0.5) m", default=(), many=True, codec=OneOf(Camera))  # fmt: skip
     spans: Mapping[str, Span] = field(default_factory=dict, compare=False, repr=False)
 

@@ -65,7 +65,7 @@ class Observable(NamedTuple):
 
 def meaning(subject: str, quantity: Observable) -> str:
     """In words, with what it needs besides its subject."""
-    return quantity.about + (f"; needs a {quantity.needs}" if quantity.needs not in ("", subject) else "")
+    return quantity.about + (f"; needs the effect `{quantity.needs}`" if quantity.needs not in ("", subject) else "")
 
 
 class Codec:

@@ -9,7 +9,7 @@ from functools import cache
 from itertools import count
 
 from .forms import OptionalPart, Slot, Word, alternatives, literals, pieces
-from .keywords import KEYWORDS, NOT_SUPPORTED, STATEMENTS, belongs, did_you_mean, example, misplaced, nearest, owner
+from .keywords import KEYWORDS, NOT_SUPPORTED, STATEMENTS, belongs, did_you_mean, example, example_of, misplaced, nearest, owner
 from .limits import DEEPEST_GROUP
 from .reader import ODD, Reader
 from .scene import GLOBALS, QUANTITIES, RELATIONS
@@ -137,9 +137,9 @@ class SettingReader(Reader):
         starts = [p[0].text for p in options if isinstance(p[0], Word)]
         free = [n for n, p in enumerate(options) if not isinstance(p[0], Word)]
         mistyped = t.type == "NAME" and t not in self.shared.names and (nearest(str(t), starts) or not free)
+        if t.type in ("NEWLINE", "END", "RBRACE") and (not free or isinstance(options[free[0]][0], Slot)):
+            self._missing(word, keyword)
         if not free or mistyped:
-            if t.type in ("NEWLINE", "END", "RBRACE"):
-                self._missing(word, keyword)
             hint = did_you_mean(str(t), starts) if len(starts) > 1 or mistyped else example(keyword)
             raise Fault(t, f"{keyword.name} cannot be followed by {t.found()}", misplaced(keyword, str(t), starts) or hint)
         return free[0]
@@ -161,7 +161,7 @@ class SettingReader(Reader):
             t = self.peek
             if isinstance(part, Word):
                 if part.text != t and not (part.text == "+-" and t.type == "PLUS_MINUS"):
-                    raise Fault(t, f"'{part.text}' is missing in {keyword.name}, found {t.found()}", example(keyword))
+                    raise Fault(t, f"'{part.text}' is missing in {keyword.name}, found {t.found()}", example_of(keyword, words))
                 words.append(str(self.take()))
             elif isinstance(part, OptionalPart):
                 first = part.parts[0]

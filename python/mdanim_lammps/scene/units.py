@@ -189,14 +189,15 @@ def quantity(value: float, dim: Dim) -> Scalar:
     return value if dim == NONE else Quantity(value, dim)
 
 
-def show(x: object) -> str:
-    """A value for messages: ``0.12 m``, ``(0, 0, 1) m/s``."""
+def show(x: object, unit_wanted: str = "") -> str:
+    """A value for messages: ``0.12 m``, ``(0, 0, 1) m/s``; a number with the dimension of a torque is one where N*m is wanted."""
     if isinstance(x, tuple):
         dims = {dimension(c) for c in x}
         if len(dims) == 1:
             return f"({', '.join(number(magnitude(c), 6) for c in x)}) {symbol(dims.pop())}".rstrip()
         return f"({', '.join(map(show, x))})"
-    return say(magnitude(x), symbol(dimension(x)), 6)
+    torque = unit_wanted == TORQUE and dimension(x) == unit(TORQUE).dim
+    return say(magnitude(x), TORQUE if torque else symbol(dimension(x)), 6)
 
 
 def same_kind(x: Scalar, y: Scalar, doing: str) -> Dim:

@@ -17,7 +17,7 @@ from ..features import facets
 from . import keywords, units
 from . import scene as records
 from .evaluated import EvaluatedBlock, EvaluatedSetting, around
-from .formatting import number, say, whole
+from .formatting import number, say, whole, with_article
 from .keywords import BLOCKS, KEYWORDS, Block, did_you_mean, example, examples
 from .lammps_lines import commands
 from .limits import MOST_FRAMES
@@ -412,7 +412,7 @@ class Validator:
         if of.takes in ("object", "joined") and not _known_other(self, subject, quantity, argument, s.span(0), of.takes):
             return None
         if of.needs in BLOCKS and not self.blocks(of.needs) and not self.out.excused(of.needs):
-            self.problem(s.span(0), f"{subject}.{quantity} needs a {of.needs}, and the scene has none")
+            self.problem(s.span(0), f"{subject}.{quantity} needs {with_article(of.needs)} block, and the scene has none")
         if time is not None and (time < 0.0 or (control is not None and time > control.time * (1.0 + 1e-9))):
             end = f", which ends at {number(control.time, 6)} s" if control else ""
             self.problem(s.span(1), f"{number(time, 6)} s lies outside the run{end}", "an earlier time, or a longer control time")

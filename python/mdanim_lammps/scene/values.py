@@ -113,7 +113,7 @@ class Evaluator:
                 return self.of_two_units(s, v, x, what)
             return x if v.slot.unit == "?" else self.number(s, v, x, what, v.first, v.last)
         if not isinstance(x, tuple) or len(x) != v.slot.length:
-            found = f"{len(x)} numbers" if isinstance(x, tuple) else f"the number {units.show(x)}"
+            found = f"{len(x)} numbers" if isinstance(x, tuple) else f"the number {units.show(x, v.slot.unit)}"
             hint = (
                 "a decimal number is written with a point: 0.5, not 0,5"
                 if isinstance(x, tuple) and len(x) > v.slot.length

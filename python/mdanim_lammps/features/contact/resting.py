@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -99,17 +99,17 @@ def slopes(envelope: Envelope) -> list[Problem]:
     ]
 
 
-def one_sided(scene: SceneRecord, system: System) -> list[Problem]:
+def one_sided(scene: SceneRecord, system: System, passing: Sequence[tuple[int, int]] = ()) -> list[Problem]:
     """Warning that friction of one object is 0 against others that have none: once, for the pair that is nearest at the start.
 
-    A warning where that is within a spacing, else a note.
+    A warning where that is within a spacing, else a note. ``passing``: pairs i < j that may be in each other, which never touch.
     """
     solids, own = scene.solids, np.array(frictions(scene))
     rough = np.array([bool(s.friction) for s in solids])
     smooth = np.array([s.friction is None for s in solids]) & (own == 0.0)
     if not rough.any() or not smooth.any():
         return []
-    told = {(i, j) for i, j, _, _ in pair_rules(scene, system.names)}
+    told = {*passing, *((i, j) for i, j, _, _ in pair_rules(scene, system.names))}
     low, high = system.bounds(system.position)
 
     def counts(i: np.ndarray, j: np.ndarray) -> np.ndarray:

@@ -267,7 +267,7 @@ class SurfaceContact(ObjectContact):
 
     def about_friction(self, context: Context) -> list[Problem]:
         """Where it does not act, as notes and warnings."""
-        return [*self.full_reaches(context), *one_sided(context.scene, context.system)]
+        return [*self.full_reaches(context), *one_sided(context.scene, context.system, context.passing)]
 
     def full_reaches(self, context: Context) -> list[Problem]:
         """Warning that the barrier keeps fast objects apart: without friction, whatever was written."""

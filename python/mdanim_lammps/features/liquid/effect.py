@@ -44,6 +44,8 @@ and the body leaps as high to 2 %; with 0.2 and 2.0 these are 2 and 7 %: bodies 
 from their own height (bench/dives.py)."""
 CALM = 50.0
 """Time in which waves die, over sqrt(depth/g)."""
+ROUNDING = 1e-9
+"""Share by which the density of a body, mass over volume of its cells, may miss the one that was written."""
 SHALLOW = 4
 """Fewest cells of depth that show waves."""
 LIGHT = 0.1
@@ -280,7 +282,9 @@ def _shallow(liquid, cell: float) -> list[Problem]:
 def _light(scene, system) -> list[Problem]:
     """Solids that waves push late: one problem for all of them."""
     liquid, density = scene.liquid, system.density
-    light = [m for m in np.flatnonzero(density < LIGHT * liquid.density).tolist() if not all_held(scene.solids[m])]
+    light = [
+        m for m in np.flatnonzero(density < LIGHT * liquid.density * (1.0 - ROUNDING)).tolist() if not all_held(scene.solids[m])
+    ]
     if not light:
         return []
     m = min(light, key=density.__getitem__)

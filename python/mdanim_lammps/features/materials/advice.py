@@ -6,12 +6,9 @@ from __future__ import annotations
 from ...bodies import all_held
 from ...effects.envelope import Envelope
 from ...errors import Problem
-from ...scene.formatting import say
 from ...scene.naming import told_together
 from ...scene.scene import Solid
 from ..rigid.words import Rigid
-from .resolve import STIFF
-from .table import MATERIALS
 
 MOST = 3
 """Materials that are told one by one."""
@@ -27,13 +24,8 @@ def notes(envelope: Envelope) -> list[Problem]:
         return []
     told = [f"{told_together([s.name for s in of])} ({name})" for name, of in found.items()]
     more = f" and objects of {len(told) - MOST} more" if len(told) > MOST else ""
-    cause = (
-        f"rigid by material: {', '.join(told[:MOST])}{more}: waves in it take {STIFF:g} m/s or more, so nobody would see it bend"
-    )
-    first = next(iter(found))
-    figure = f"elasticity {say(MATERIALS[first].elasticity.value, 'Pa')}" if first in MATERIALS else "its elasticity"
-    way_out = f"to see it bend all the same write {figure} beside material {first}"
-    return [Problem(found[first][0].spans.get("material"), cause, way_out, severity="note")]
+    cause = f"rigid by material: {', '.join(told[:MOST])}{more}"
+    return [Problem(next(iter(found.values()))[0].spans.get("material"), cause, severity="note")]
 
 
 def _said(solid: Solid) -> bool:

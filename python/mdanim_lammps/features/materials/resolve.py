@@ -62,7 +62,7 @@ def _made_of(
         cause = f"the material {name} is made of itself: {' -> '.join((*within, name))}"
         v.problem(given.span(0), cause, "take one of them out", key=("material", *sorted(within)))
     else:
-        cause, known = f"no material is called {name}{where}", [*own, *MATERIALS]
+        cause, known = f"no material is called {name}{where}", [*(one for one in own if one not in within), *MATERIALS]
         v.problem(
             given.span(0), cause, did_you_mean(name, known) or "docs/materials.md lists them", key=("material", given.entry)
         )

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from ...scene.formatting import with_article
 from ...scene.limits import Limit
 from ...scene.schema import Observable, Rule, setting
 from ...scene.shapes import HoldAll, Rope
@@ -46,7 +47,8 @@ def check_object(v: Any, block: Any, solid: Any) -> Any:
         return solid
     span, rope = solid.spans["tear-strain"], solid.shape
     if not isinstance(rope, Rope):
-        cause = f"{solid.name} is a solid, and only ropes and chains tear"
+        kind = with_article(type(rope).FORMS[0].split()[0])
+        cause = f"{solid.name} is {kind}, and only ropes and chains tear"
         v.problem(span, cause, "leave it out, or build the object of parts that joints with breaks hold together")
     elif (stretched := rope.curve.length / rope.length - 1.0) > solid.tear_strain:
         cause = (
