@@ -273,7 +273,8 @@ def margin_lines(certificate: Certificate) -> list[str]:
 
 def note_lines(certificate: Certificate) -> list[str]:
     """Lines for ``check``: what may not be known, and what to write."""
-    return [f"  {n.severity:<8} {n.message}; {n.hint}" + (f"  [{n.span}]" if n.span else "") for n in certificate.notes]
+    told = [(n, f"{n.message}; {n.hint}" if n.hint else n.message) for n in certificate.notes]
+    return [f"  {n.severity:<8} {words}" + (f"  [{n.span}]" if n.span else "") for n, words in told]
 
 
 def _margins(envelope: Envelope, limit: np.ndarray) -> list[Margin]:

@@ -5,6 +5,7 @@ import math
 
 import numpy as np
 import pytest
+from mdanim_lammps.certificate import note_lines
 from mdanim_lammps.engine.instance import Instance
 from mdanim_lammps.features.materials.page import rule
 from mdanim_lammps.features.materials.table import MATERIALS
@@ -71,6 +72,7 @@ def test_what_is_rigid_by_material_is_told_in_one_short_line(prepared):
     """Nearly every scene has such objects: the note names them and gives no advice."""
     block = "object {0} {{ material {1} shape box (1, 1, 1) m position ({2}, 0, 2) m }}\n"
     text = "".join(block.format(*row) for row in (("a", "steel", 0), ("b", "steel", 2), ("c", "oak", 4)))
-    notes = prepared(text + "control { time 0.1 s }").certificate.notes
-    (note,) = [n for n in notes if "rigid by material" in n.message]
+    certificate = prepared(text + "control { time 0.1 s }").certificate
+    (note,) = [n for n in certificate.notes if "rigid by material" in n.message]
     assert note.message == "rigid by material: a (2 objects) (steel), c (oak)" and not note.hint
+    assert [line for line in note_lines(certificate) if "c (oak)  [" in line]
