@@ -19,7 +19,7 @@ from ...effects.context import Context
 from ...effects.once import once_for
 from ...model.shapes import thickness
 from .ends import JointEnd, across, directions_of, lever, spin, unit
-from .free import rise_of, stop_of
+from .free import rise_of, stop_of, welds_of
 from .links import NOTHING, Link, links_of
 from .loads import loads
 from .patches import Patch, patch_of, whole
@@ -228,8 +228,22 @@ def strengths(context: Context) -> list[Strength]:
         if first is None:
             continue
         found.append(_strength(context, link, first, second, load, most, thin))
-    more = zip(found, preloads(context, found))
-    return [replace(one, preload=load, stop=stop_of(one), rise=rise_of(context, one, GAP * one.thin)) for one, load in more]
+    welded = welds_of(found)
+    stopped = {n for one, welds in zip(found, welded) if one.link.joint.limits is not None for n in welds}
+    found = [_harder(one) if n in stopped else one for n, one in enumerate(found)]
+
+    def whole_one(one: Strength, load: np.ndarray, numbers: list[int]) -> Strength:
+        welds = [found[n] for n in numbers]
+        return replace(one, preload=load, stop=stop_of(one, welds), rise=rise_of(context, one, GAP * one.thin, welds))
+
+    return [whole_one(*more) for more in zip(found, preloads(context, found), welded)]
+
+
+def _harder(weld: Strength) -> Strength:
+    """A weld of what a stop stops, with the frequency of a joint with limits, where the scene does not tell its stiffness."""
+    k = weld.stiffness * (STOPPED**2 if weld.link.joint.stiffness is None else 1.0)
+    c = weld.damping * (math.sqrt(k / weld.stiffness) if weld.link.joint.damping is None else 1.0)
+    return replace(weld, stiffness=k, damping=c)
 
 
 def _strength(context: Context, link: Link, first: JointEnd, second: JointEnd | None, load: float, most: float, thin) -> Strength:
