@@ -93,3 +93,27 @@ def test_ropes_of_one_shape_tear_each_by_its_own_strain(prepared):
     table = prepared(text + "control { time 0.1 s }\n").plan.tables["air"].splitlines()
     first = [line.split()[-1] for line in table if line.startswith("cylinder 1 2 ")]
     assert [float(most) for most in first] == pytest.approx([0.0113, 0.036])
+
+
+WINDY = """gravity (0, 0, -9.81) m/s^2
+ground z 0
+air { wind (20, 0, 0) m/s }
+object sled { shape box (40, 20, 10) cm  position (0, 0, 0.05) m  density 125  elasticity 300 kPa  velocity (1, 0, 0) m/s }
+object load { shape box (10, 10, 10) cm  position (0, 0, 0.15) m  density 500  elasticity 300 kPa  velocity (1, 0, 0) m/s }
+"""
+
+
+def test_friction_does_not_depend_on_how_long_the_wind_may_blow(prepared):
+    """A load stays on its sled in a wind of 20 m/s, in a scene of any length: friction was off in long ones."""
+    found = []
+    for seconds in (0.2, 3.0):
+        ready = prepared(WINDY + f"control {{ time {seconds} s  friction 0.5 }}")
+        with Instance(ready.plan) as instance:
+            instance.setup()
+            instance.run(round(0.2 / ready.certificate.timestep))
+            found.append(ready.system.center_of_mass(instance.array("v")))
+    sled, load = found[0][:, 0]
+    assert load == pytest.approx(sled, abs=0.2)  # it slipped off at 1.2 m/s
+    np.testing.assert_allclose(found[1], found[0], atol=0.02)
+    told = {m.name: m for m in ready.certificate.margins}["closing speed"]
+    assert told.severity == "warning" and "by the wind" in told.text and "wind at T" in told.hint and told.span.line == 3

@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 from mdanim_lammps.engine.instance import Instance
 from mdanim_lammps.errors import SceneError
+from mdanim_lammps.features.contact.surface import fast
 from mdanim_lammps.model.inertia import tensor
 from mdanim_lammps.run.energy import energies
 from mdanim_lammps.scene.lock import lock_text
@@ -138,3 +139,60 @@ def test_a_rope_is_pulled_and_not_turned():
 def test_a_force_that_begins_behind_the_end_is_told():
     scene = parse_scene(CUBE + "rigid force (1, 0, 0) N from 3 s }\ncontrol { time 1 s }\n", "late.txt")
     assert any("begins at 3 s, and the run ends at 1 s" in w.message for w in scene.warnings)
+
+
+SLED = """gravity (0, 0, -9.81) m/s^2
+ground z 0
+object sled { shape box (40, 20, 10) cm  position (0, 0, 0.05) m  density 125  elasticity 300 kPa  force (12, 0, 0) N }
+object load { shape box (10, 10, 10) cm  position (0, 0, 0.15) m  density 500  elasticity 300 kPa }
+"""
+
+
+def velocities_after(ready, seconds: float) -> np.ndarray:
+    """Velocities of the centres of mass."""
+    with Instance(ready.plan) as instance:
+        instance.setup()
+        instance.run(round(seconds / ready.certificate.timestep))
+        return ready.system.center_of_mass(instance.array("v"))
+
+
+@pytest.mark.parametrize("seconds", [1.0, 3.0])
+def test_friction_does_not_depend_on_how_long_the_scene_is(prepared, seconds):
+    """A pushed sled takes its load along, in a scene of any length: friction was off where the force could act for long."""
+    short, long = (prepared(SLED + f"control {{ time {t} s  friction 0.5 }}") for t in (0.3, seconds))
+    early, late = velocities_after(short, 0.3), velocities_after(long, 0.3)
+    sled, load = early[:, 0]
+    along, _, up = np.array([1.0, 0.5]) @ early  # momenta: the ground gives M g t + p_z, and mu of that along itself
+    assert along == pytest.approx(12.0 * 0.3 - 0.5 * (1.5 * 9.81 * 0.3 + up), rel=2e-3)
+    assert load > 0.8 * sled  # it starts without weight on the sled and slips at first; it had -0.005 m/s
+    np.testing.assert_allclose(late, early, atol=0.02)
+
+
+def test_check_tells_the_force_that_makes_it_fast(prepared):
+    """The warning counts the force until the end, and says how to end it."""
+    ready = prepared(SLED + "control { time 3 s  friction 0.5 }")
+    found = {m.name: m for m in ready.certificate.margins}
+    for name in ("amplitude", "closing speed"):
+        assert found[name].severity == "warning"
+        assert "36 m/s by the force of sled" in found[name].text
+        assert "write force … to T in sled" in found[name].hint
+    assert found["closing speed"].span.line == 3
+    assert not any("without friction" in w.message for w in ready.warnings)
+
+
+@pytest.mark.parametrize(
+    ("push", "speed"),
+    [
+        pytest.param("(30, 0, 0) N", np.sqrt(2.0 * 30.0 / 0.5 * 0.4), id="slow"),
+        pytest.param("(6000, 0, 0) N", np.sqrt(2.0 * 6000.0 / 0.5 * 0.4), id="fast"),
+        pytest.param("(6000, 0, 0) N to 1 ms", 6000.0 / 0.5 * 1e-3, id="a blow"),
+    ],
+)
+def test_the_way_to_a_partner_chooses_the_barrier(prepared, push, speed):
+    """The speed across 0.4 m to a target, v = sqrt(2 F s/m), or in a window, F T/m, over 0.3 c; at any time of the scene."""
+    cube = "shape box (10, 10, 10) cm  density 500  elasticity 300 kPa"
+    objects = f"object ball {{ {cube}  position (0, 0, 0) m  force {push} }}\nobject wall {{ {cube}  position (0.5, 0, 0) m }}\n"
+    for seconds in (1.0, 5.0):
+        context = prepared(objects + f"control {{ time {seconds} s  friction 0.5 }}", insist=True).plan.context
+        assert context.reach.thrown_across == pytest.approx([speed, 0.0])
+        assert fast(context).tolist() == 2 * [speed > 0.3 * np.sqrt(1.2 * 300e3 / 500.0)]

@@ -1,7 +1,19 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """Where solids can be, until when, and how fast."""
 
-from .acting import Acting, Bodies, Drive, Leash, Motion, Throw
+from .acting import Acting, Bodies, Drive, Leash, Motion, Throw, by, thrower_of
 from .reach import Reach, largest_of_others, wave_speed
 
-__all__ = ["Acting", "Bodies", "Drive", "Leash", "Motion", "Reach", "Throw", "largest_of_others", "wave_speed"]
+__all__ = [
+    "Acting",
+    "Bodies",
+    "Drive",
+    "Leash",
+    "Motion",
+    "Reach",
+    "Throw",
+    "by",
+    "largest_of_others",
+    "thrower_of",
+    "wave_speed",
+]

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Protocol
@@ -62,6 +62,25 @@ class Throw:
     """Speed that they give any point of it until the end [m/s]."""
     acceleration: float
     """Largest acceleration of any point of it by them [m/s^2]."""
+    lasting: float = math.inf
+    """Speed that they give it however long the scene goes on [m/s]."""
+    push: float = math.inf
+    """Largest acceleration by which they give it that speed [m/s^2]; infinite where it has the speed at once."""
+    cause: str = ""
+    """Words for what it gets the speed by; empty where nothing is told of it."""
+    way_out: str = ""
+    """Words that give it a lower speed."""
+    span: Span | None = None
+    """Where the scene says so."""
+
+    def within(self, way: float) -> float:
+        """Speed that they give to it within a way [m] from rest: v^2 = 2 a s at most [m/s]."""
+        return self.lasting if math.isinf(self.push) else min(self.lasting, math.sqrt(2.0 * self.push * way))
+
+
+def by(thrower: Throw | None) -> str:
+    """Words for what gives a speed, after the speed; empty for none."""
+    return f" by {thrower.cause}" if thrower else ""
 
 
 class Motion:
@@ -177,7 +196,7 @@ class Acting:
     @cached_property
     def strongest_of_any(self) -> float:
         """The same with what pushes single solids [m/s^2]."""
-        return self.strongest + max((throw.acceleration for throw in self.throws.values()), default=0.0)
+        return self.strongest + float(self.thrown_by.max(initial=0.0))
 
     @cached_property
     def swing(self) -> float:
@@ -237,34 +256,24 @@ class Acting:
 
     @cached_property
     def thrown_at(self) -> np.ndarray:
-        """Speed that what pushes each solid wherever it is may give to it [m/s], shape (M,)."""
-        found = np.zeros(len(self.scene.solids))
-        for m, throw in self.throws.items():
-            found[m] = throw.speed
-        return found
-
-    @cached_property
-    def throws(self) -> dict[int, Throw]:
-        """As `Motion.throws`, of all effects together."""
-        found: dict[int, Throw] = {}
-        for m, throw in ((m, throw) for e in self.effects for m, throw in e.throws(self.scene).items()):
-            before = found.get(m, Throw(0.0, 0.0))
-            found[m] = Throw(before.speed + throw.speed, before.acceleration + throw.acceleration)
-        return found
+        """Speed that what pushes each solid wherever it is may give to it until the end [m/s], shape (M,)."""
+        return _of_throws(self, lambda m, throw: throw.speed)
 
     @cached_property
     def thrown_by(self) -> np.ndarray:
         """Acceleration that what pushes single solids gives to each [m/s^2], shape (M,)."""
-        found = np.zeros(len(self.scene.solids))
-        for m, throw in self.throws.items():
-            found[m] = throw.acceleration
-        return found
+        return _of_throws(self, lambda m, throw: throw.acceleration)
+
+    @cached_property
+    def throws(self) -> tuple[tuple[int, Throw], ...]:
+        """As `Motion.throws`, of all effects one after another."""
+        return tuple(one for e in self.effects for one in e.throws(self.scene).items())
 
     @cached_property
     def acted_on(self) -> np.ndarray:
         """Solids that are `joined`, or that are pushed wherever they are, bool, shape (M,)."""
         found = self.joined.copy()
-        found[list(self.throws)] = True
+        found[[m for m, _ in self.throws]] = True
         return found
 
     @cached_property
@@ -314,3 +323,22 @@ class Acting:
     def most_pull(self, bodies: Bodies) -> np.ndarray:
         """Largest force from outside on each solid over its mass [m/s^2], shape (M,)."""
         return np.full(len(bodies.mass), self.strongest) + sum(e.most_push(self.scene, bodies) for e in self.effects)
+
+
+def _of_throws(acting: Acting, of: Callable[[int, Throw], float]) -> np.ndarray:
+    found = np.zeros(len(acting.scene.solids))
+    for m, throw in acting.throws:
+        found[m] += of(m, throw)
+    return found
+
+
+def thrown_within(acting: Acting, way: np.ndarray) -> np.ndarray:
+    """Speed that what pushes each solid may give to it within a way [m], shape (M,), however long the scene goes on [m/s],
+    shape (M,)."""
+    return _of_throws(acting, lambda m, throw: throw.within(float(way[m])))
+
+
+def thrower_of(acting: Acting, m: int, speed: float, *, others: bool = False) -> Throw | None:
+    """The throw that gives a solid, or with ``others`` one that it meets, most of a speed [m/s]; None where others do."""
+    told = [one for k, one in acting.throws if one.cause and one.speed > 0.5 * speed and (others or k == m)]
+    return max(told, key=lambda one: one.speed, default=None)

@@ -12,7 +12,7 @@ from ..model.spacing import choose_spacing, spacings
 from ..model.system import System
 from ..scene.scene import SceneRecord, Solid
 from . import region
-from .acting import Acting, Motion
+from .acting import Acting, Motion, thrown_within
 from .flight import Flight
 from .standing import standing
 
@@ -140,12 +140,21 @@ class Reach:
         fallen = np.sqrt(np.maximum(0.0, start + 2.0 * self.g * fall)) + self.acting.swing
         return np.where(self.free, fallen + self.acting.given + self.acting.thrown_at, 0.0) + self.acting.driven_at
 
-    def closing(self, fall: np.ndarray) -> np.ndarray:
+    @cached_property
+    def thrown_across(self) -> np.ndarray:
+        """Speed that each solid is given by what pushes it wherever it is, on its way to the farthest other one as they are at
+        the start [m/s], shape (M,). What is pushed for longer is on its way with the others; no speed depends on the end."""
+        low, high = self.system.bounds(self.system.position)
+        apart = np.maximum(largest_of_others(low) - high, low + largest_of_others(-high))
+        return thrown_within(self.acting, np.sqrt((np.maximum(apart, 0.0) ** 2).sum(axis=1)))
+
+    def closing(self, fall: np.ndarray, thrown: np.ndarray | None = None) -> np.ndarray:
         """Speed at which each solid may meet another [m/s], shape (M,): all fall alike, so only the start tells them apart until
-        one has landed; ``fall`` [m], shape (M,), is how far."""
+        one has landed; ``fall`` [m], shape (M,), is how far. ``thrown`` is what pushes give each [m/s], shape (M,): all that
+        they may until the end where it is None."""
         low, high = self.system.bounds(self.system.velocity)
         apart = np.maximum(high + largest_of_others(-low), largest_of_others(high) - low)
-        moved = self.acting.driven_at + self.acting.given + self.acting.thrown_at
+        moved = self.acting.driven_at + self.acting.given + (self.acting.thrown_at if thrown is None else thrown)
         driven = moved + largest_of_others(moved)
         apart = np.sqrt((np.maximum(apart, 0.0) ** 2).sum(1)) + driven
         fall = np.where(self.free, np.maximum(0.0, fall), 0.0)

@@ -147,7 +147,16 @@ def _throws(scene: Any) -> dict[int, Throw]:
             speed = wind + math.hypot(*solid.velocity) + math.hypot(*solid.spin) * shapes.radius(solid.shape)
             rate = _half(scene) * 0.5 * shapes.area(solid.shape) / shapes.mass(solid)
             part = rate * wind * scene.control.time
-            found[m] = Throw(wind * part / (1.0 + part), rate * speed**2 + LAST * math.hypot(*scene.gravity))
+            push = rate * speed**2
+            found[m] = Throw(
+                wind * part / (1.0 + part),
+                push + LAST * math.hypot(*scene.gravity),
+                wind,
+                push,
+                "the wind",
+                "write a lower wind, or one that ends, with 'wind at T'",
+                scene.air.spans.get("wind") or scene.air.spans.get("air"),
+            )
     return found
 
 

@@ -15,6 +15,7 @@ from ...effects.fields import column
 from ...effects.margin import Margin
 from ...errors import Problem
 from ...model.model import Layer
+from ...reach import by, thrower_of
 from ...scene.formatting import at_least, say
 from .forms import Form, particle_stiffness, stiffness_told
 from .pairs import largest_of_partners
@@ -148,19 +149,24 @@ class ObjectContact(Form):
         fastest = int((closing / np.minimum(limit, limit[weakest])).argmax())
         value, most = float(closing[fastest]), float(min(limit[fastest], limit[weakest]))
         partner = "" if limit[fastest] <= limit[weakest] else f", in {system.names[weakest]}"
+        thrower = thrower_of(envelope.reach.acting, fastest, value, others=True)
+        usual = envelope.place(fastest, "velocity", "position")
+        way_out = "write a lower speed, a higher elasticity, or a resolution of three cells across the thinnest part"
         told = Margin(
             "closing speed",
             system.names[fastest],
             value,
             most,
             "m/s",
-            f"{system.names[fastest]} may meet another object at {say(value, 'm/s')}; "
+            f"{system.names[fastest]} may meet another object at {say(value, 'm/s')}{by(thrower)}; "
             f"up to {say(most, 'm/s')}{partner} nothing passes through",
-            envelope.scene.control.spans.get("contact-stiffness") if soft else envelope.place(fastest, "velocity", "position"),
+            envelope.scene.control.spans.get("contact-stiffness") if soft else thrower.span if thrower else usual,
             "warning" if value > most else "ok",
             hint="write contact-stiffness 1, or a lower speed"
             if soft
-            else "write a lower speed, a higher elasticity, or a resolution of three cells across the thinnest part",
+            else way_out.replace("write a lower speed", thrower.way_out)
+            if thrower
+            else way_out,
         )
         return [told]
 

@@ -18,6 +18,7 @@ from ...model.model import Layer, Model
 from ...model.overlap import BORN_AT_REST
 from ...model.planes import AXES
 from ...model.system import System
+from ...reach import by, thrower_of
 from ...scene.formatting import at_least, say
 from ...scene.scene import Box, SceneRecord
 from .barrier import GAP, ObjectContact, barrier, barrier_rate, excluded
@@ -204,6 +205,7 @@ class SurfaceContact(ObjectContact):
         found, system = super().tunnelling(envelope), envelope.system
         bare = (envelope.cells < 1.5) & ~self.guards(envelope.context)
         found = np.minimum(found, np.where(needles(system), NEEDLE, np.where(bare, UNGUARDED, np.inf)))
+        found = np.where(fast_late(envelope.context), np.minimum(found, slowest(system)), found)
         return np.where(meet_here(envelope.context), found, np.inf)
 
     def thin(self, system: System) -> tuple[str, ...]:
@@ -275,16 +277,19 @@ class SurfaceContact(ObjectContact):
         found = np.flatnonzero(fast(context) & np.isfinite(system.young))
         if not len(found):
             return []
-        spans = scene.solids[found[0]].spans
+        m, reach, spans = int(found[0]), context.reach, scene.solids[found[0]].spans
+        thrower = thrower_of(reach.acting, m, float(reach.closing(reach.drop, reach.thrown_across)[m]), others=True)
         more = f" and {len(found) - 1} more" if len(found) > 1 else ""
         rubs = self.law.rubs(scene)
         so = ": friction with others works as 0" if rubs else ""
         return [
             Problem(
-                next((spans[k] for k in ("velocity", "position", "object") if k in spans), None),
-                f"{system.names[found[0]]}{more} may meet others at more than {SLOW:g} of the wave speed and keeps the full "
-                f"reach of the barrier, which bears objects without friction{so}",
-                "write a lower speed or a higher elasticity where friction matters",
+                thrower.span if thrower else next((spans[k] for k in ("velocity", "position", "object") if k in spans), None),
+                f"{system.names[m]}{more} may meet others at more than {SLOW:g} of the wave speed{by(thrower)} and keeps the "
+                f"full reach of the barrier, which bears objects without friction{so}",
+                f"{thrower.way_out}, or a higher elasticity where friction matters"
+                if thrower
+                else "write a lower speed or a higher elasticity where friction matters",
                 severity="warning" if rubs else "note",
             )
         ]
@@ -465,10 +470,25 @@ def pressed_by_points(system: System, kappa: np.ndarray, borne: np.ndarray) -> n
 
 
 def fast(context: Context) -> np.ndarray:
-    """Solids that may meet others at more than SLOW of the wave speed of the softest, as if through air, bool, shape (M,)."""
+    """Solids that may meet others at more than SLOW of the wave speed of the softest, as if through air, bool, shape (M,).
+
+    Forces and wind count by the way between the solids at the start: not by how long they may act, on which no motion depends."""
+    return _above_slow(context, context.reach.thrown_across)
+
+
+def fast_late(context: Context) -> np.ndarray:
+    """Solids that are not `fast`, and may get so until the end by what pushes them or another one, bool, shape (M,)."""
+    return _above_slow(context, context.reach.acting.thrown_at) & ~fast(context)
+
+
+def _above_slow(context: Context, thrown: np.ndarray) -> np.ndarray:
     reach = context.reach
-    slow = np.where(needles(reach.system), SLOW_NEEDLE, SLOW)
-    return (reach.closing(reach.drop) > slow * float(reach.wave.min())) & ~reach.system.bare
+    return (reach.closing(reach.drop, thrown) > slowest(reach.system) * float(reach.wave.min())) & ~reach.system.bare
+
+
+def slowest(system: System) -> np.ndarray:
+    """Closing speed over the wave speed up to which a short barrier stops each solid, shape (M,)."""
+    return np.where(needles(system), SLOW_NEEDLE, SLOW)
 
 
 def needles(system: System) -> np.ndarray:

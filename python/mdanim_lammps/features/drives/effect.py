@@ -52,7 +52,9 @@ class Drives(Effect):
         return motion.passing(scene)
 
     def throws(self, scene):
-        return {m: Throw(motion.ways(scene)[m].speed, 0.0) for m, solid in enumerate(scene.solids) if lets_go(solid)}
+        return {
+            m: Throw(speed := motion.ways(scene)[m].speed, 0.0, speed) for m, solid in enumerate(scene.solids) if lets_go(solid)
+        }
 
     def columns(self, context):
         return {HOME: context.system.position}

@@ -105,7 +105,19 @@ def throws(scene) -> dict[int, Throw]:
             least = float(np.linalg.eigvalsh(tensor(solid.shape, mass, solid.rotation))[0])
             most += [(float(np.linalg.norm(one.vector)) / least * arm, one) for one in solid.torque]
         speed = sum(a * _seconds(one, scene.control.time) for a, one in most)
-        found[m] = Throw(float(speed), float(sum(a for a, _ in most)))
+        lasting = sum(a * (math.inf if one.end is None else _seconds(one, one.end)) for a, one in most if a)
+        word = "force" if solid.force else "torque"
+        found[m] = Throw(
+            float(speed),
+            acceleration := float(sum(a for a, _ in most)),
+            float(lasting),
+            acceleration,
+            f"the {word} of {solid.name}",
+            f"write {word} … to T in {solid.name} with the time T at which it ends"
+            if math.isinf(lasting)
+            else f"write less {word}",
+            solid.spans.get(word),
+        )
     return found
 
 

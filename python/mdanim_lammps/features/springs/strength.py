@@ -14,6 +14,7 @@ from ...model.boxes import overlaps_in_plan
 from ...model.cells import TooThin, end_share, fill_cells
 from ...model.shapes import LAWS, thickness
 from ...model.system import System
+from ...reach import by, thrower_of
 from ...scene.formatting import at_least, number, say
 from ...scene.scene import Box, Solid
 
@@ -59,18 +60,20 @@ def amplitude(env: Envelope) -> Margin:
         h = float(np.cbrt(system.cell_volume[m]))
         if others < 1 and ratio[m] < FOLDS and (h := _coarser(env, scene.solids[m], h, float(ratio[m]))):
             coarser = f", or resolution {say(h, 'm')}"
+    thrower = thrower_of(env.reach.acting, m, float(env.reach.speed[m]))
     return Margin(
         "amplitude",
         system.names[m],
         float(ratio[m]),
         float(limit[m]),
         "",
-        f"{system.names[m]}{f' and {others} more' if others > 0 else ''} may hit at {say(env.reach.speed[m], 'm/s', 2)}, "
-        f"{ratio[m]:.2f} of the wave speed {say(env.reach.wave[m], 'm/s', 2)}; "
+        f"{system.names[m]}{f' and {others} more' if others > 0 else ''} may hit at {say(env.reach.speed[m], 'm/s', 2)}"
+        f"{by(thrower)}, {ratio[m]:.2f} of the wave speed {say(env.reach.wave[m], 'm/s', 2)}; "
         f"above about {number(limit[m], 2)} {what} and stays crumpled",
         env.place(m, "elasticity"),
         "warning" if folds[m] else "ok",
-        hint=f"write elasticity {_stiffer(enough)} or more{coarser}, or a lower density, height or speed",
+        hint=f"write elasticity {_stiffer(enough)} or more{coarser}, or a lower density, height or speed"
+        + (f"; or {thrower.way_out}" if thrower else ""),
     )
 
 
