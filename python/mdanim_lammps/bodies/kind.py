@@ -10,6 +10,7 @@ from typing import Any
 from .. import features
 from ..features import facets
 from ..scene.holding import all_held
+from ..scene.once import once_for
 from ..scene.scene import Box, SceneRecord, Solid
 
 
@@ -91,7 +92,13 @@ surface is then true to a thousandth of its thickness (tests/model/test_depth_be
 def beneath(scene: SceneRecord, solid: Solid) -> int:
     """Cells across an object that does not deform that lines and sheets of particles ask for; 0 where there are none, and of a
     cuboid, whose depth is exact."""
-    return BENEATH if not isinstance(solid.shape, Box) and any(not kind_of(s).fills for s in scene.solids) else 0
+    return BENEATH if not isinstance(solid.shape, Box) and has_bare(scene) else 0
+
+
+@once_for(lambda scene: scene)
+def has_bare(scene: SceneRecord) -> bool:
+    """Whether an object is a line or a sheet of particles."""
+    return any(not kind_of(s).fills for s in scene.solids)
 
 
 @lru_cache(maxsize=1)

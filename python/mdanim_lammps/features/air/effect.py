@@ -12,11 +12,11 @@ from ...bodies import all_held
 from ...effects.context import Context, Verdict
 from ...effects.effect import Effect
 from ...effects.fields import Field
-from ...effects.once import once_for
 from ...errors import Problem
 from ...model import shapes
 from ...reach import Throw
 from ...scene.formatting import say
+from ...scene.once import once_for
 from .skin import AirSkin, skin_of
 
 LOSS, WORK = "air_loss", "work"

@@ -9,9 +9,9 @@ from math import sqrt
 import numpy as np
 
 from ...effects.context import Context
-from ...effects.once import once_for
 from ...reach import largest_of_others
 from ...scene.naming import objects_by_name, pairs_of
+from ...scene.once import once_for
 from ...scene.scene import SceneRecord
 
 USUAL_DAMPING = 0.3

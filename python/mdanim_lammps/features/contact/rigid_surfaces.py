@@ -14,12 +14,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...effects.context import Context
-from ...effects.once import once_for
 from ...model import shapes
 from ...model.boxes import overlaps_in_plan
 from ...model.contact_body import FINE, ContactBody
 from ...model.inertia import mobility
 from ...model.system import System
+from ...scene.once import once_for
 
 DEPTH = 0.02
 """How deep the fastest blow goes, over the thinnest part of all rigid bodies."""

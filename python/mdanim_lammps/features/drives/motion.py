@@ -10,12 +10,12 @@ from typing import Any
 import numpy as np
 
 from ...bodies import all_held
-from ...effects.once import once_for
 from ...errors import Problem, SceneError, Span
 from ...model import shapes
 from ...model.boxes import box_pairs
 from ...reach import Drive
 from ...scene.formatting import in_full, whole
+from ...scene.once import once_for
 from .words import DriveKey, DriveOscillation, DriveTurn, DriveVelocity
 
 TURN = 2.0 * math.pi

@@ -9,11 +9,11 @@ import numpy as np
 
 from ...effects.context import Verdict
 from ...effects.effect import Effect
-from ...effects.once import once_for
 from ...model import shapes
 from ...model.inertia import tensor
 from ...reach import Throw
 from ...scene.formatting import in_full
+from ...scene.once import once_for
 from ..rigid.effect import molecule_ranges
 
 GROUP = "forced"

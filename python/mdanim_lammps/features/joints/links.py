@@ -12,11 +12,11 @@ from functools import cached_property
 import numpy as np
 
 from ...bodies import all_held, driven, kind_of
-from ...effects.once import once_for
 from ...model import shapes
 from ...reach import Leash
 from ...scene import units
 from ...scene.naming import objects_by_name
+from ...scene.once import once_for
 from ...scene.scene import Rope, SceneRecord, Sheet
 from ...scene.schema import Vector
 from .planes import settled

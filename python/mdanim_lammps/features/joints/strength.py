@@ -16,8 +16,8 @@ from functools import cached_property
 import numpy as np
 
 from ...effects.context import Context
-from ...effects.once import once_for
 from ...model.shapes import thickness
+from ...scene.once import once_for
 from .ends import JointEnd, across, directions_of, lever, spin, unit
 from .free import rise_of, stop_of, welds_of
 from .links import NOTHING, Link, links_of

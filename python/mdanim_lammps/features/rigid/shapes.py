@@ -8,12 +8,12 @@ from collections.abc import Sequence
 import numpy as np
 
 from ...bodies import all_held, driven
-from ...effects.once import once_for
 from ...model import creased, mesh
 from ...model.cover import hidden_sides
 from ...model.polyhedron import hull, polyhedron
 from ...model.shapes import thickness
 from ...scene.formatting import in_full
+from ...scene.once import once_for
 from ...scene.scene import Box, Cone, Cylinder, Ellipsoid, Mesh, SceneRecord, Shape, Solid, Sphere, Torus
 from .words import Rigid
 

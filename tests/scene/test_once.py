@@ -5,7 +5,7 @@ import gc
 import weakref
 from dataclasses import replace
 
-from mdanim_lammps.effects.once import once_for
+from mdanim_lammps.scene.once import once_for
 from mdanim_lammps.scene.parse import parse_scene
 
 TEXT = "object ball { shape sphere 5 cm  position (0, 0, 1) m  mass 1 kg  elasticity 1 MPa }\ncontrol { time 1 s }\n"
