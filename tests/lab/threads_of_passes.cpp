@@ -68,8 +68,7 @@ class Integrator final : public PassIntegrator {
   bool tells_of(long long) const override { return true; }
   void finish_step(const std::vector<int> &) override {}
   void begin_step(const std::vector<int> &) override {}
-  void moved(double final_loss, double first_loss, double bend, double, double) override
-  { sums = {final_loss, first_loss, bend}; }
+  void moved(double loss, double bend, double, double) override { sums = {loss, bend}; }
   const double *friction_of_particles() const override { return nullptr; }
   std::vector<Known> survey_ghosts(std::vector<int> &) override { return {}; }
 

@@ -180,7 +180,8 @@ def test_a_long_run_need_not_fit_in_memory(tmp_path):
     values = {"position": x, "center_of_mass": np.zeros((1, 3)), "center_of_mass_velocity": np.ones((1, 3))}
     frames = SimpleNamespace(value=lambda name, n: (1.0 + 0.001 * n) * values[name], time=float, path=tmp_path)
     feed = SimpleNamespace(
-        frames=frames, first=np.zeros(1, int), count=np.array([4000]), vertices=np.array, liquid=lambda n: None,
+        frames=frames, first=np.zeros(1, int), count=np.array([4000]), vertices=lambda x, gone: np.array(x),
+        gone=lambda n: None, liquid=lambda n: None,
         drops=lambda n: np.zeros((0, 4)), head=lambda: {"frameTime": 0.1}, buffers=dict,
     )  # fmt: skip
     tracemalloc.start()
