@@ -12,7 +12,7 @@ from ...scene.formatting import say
 from .words import is_rope, kind
 
 FINE = 0.5
-"""Length of a link over the thinnest part of what it may meet, above which that may slip through between particles."""
+"""Distance of particles over the thinnest part of what they may meet, above which that may slip through between them."""
 
 
 def notes(envelope: Envelope) -> list[Problem]:
@@ -36,21 +36,34 @@ def _each_other(envelope: Envelope, ropes: np.ndarray) -> list[Problem]:
 
 def _long_links(envelope: Envelope, ropes: np.ndarray) -> list[Problem]:
     """The rope of the longest links, beside the thinnest object that it may meet."""
+    if (found := coarsest(envelope, ropes)) is None:
+        return []
+    longest, thinnest, least = found
+    link, rope = float(envelope.system.spacing[longest]), envelope.scene.solids[longest].shape
+    name, thing = envelope.system.names[longest], envelope.system.names[thinnest]
+    cause = (
+        f"links of {name} are {say(link, 'm')} long and {thing} is {say(least, 'm')} "
+        f"thin: it may slip through between particles of the {kind(rope)}"
+    )
+    return [slips(envelope, found, cause, rope.thickness)]
+
+
+def coarsest(envelope: Envelope, bare: np.ndarray) -> tuple[int, int, float] | None:
+    """The coarsest of these ropes or sheets, the thinnest object that it may meet, and how thin that is [m], where it may slip
+    through between particles."""
     system, solids = envelope.system, envelope.scene.solids
     others = np.flatnonzero(~system.bare)
     if not len(others):
-        return []
+        return None
     thin = np.array([shapes.thickness(solids[m].shape) for m in others.tolist()])
-    thinnest, longest = int(others[thin.argmin()]), int(ropes[system.spacing[ropes].argmax()])
-    link = float(system.spacing[longest])
-    if link <= FINE * thin.min():
-        return []
-    rope = solids[longest].shape
-    finest = max(rope.thickness, FINE * float(thin.min()))
-    cause = (
-        f"links of {system.names[longest]} are {say(link, 'm')} long and {system.names[thinnest]} is {say(thin.min(), 'm')} "
-        f"thin: it may slip through between particles of the {kind(rope)}"
-    )
-    finer = f"write resolution {say(finest, 'm')} in {system.names[longest]}"
-    way_out = finer if finest < link else f"make {system.names[thinnest]} thicker"
-    return [Problem(envelope.place(longest, "resolution", "shape"), cause, way_out, severity="note")]
+    m, least = int(bare[system.spacing[bare].argmax()]), float(thin.min())
+    return (m, int(others[thin.argmin()]), least) if float(system.spacing[m]) > FINE * least else None
+
+
+def slips(envelope: Envelope, found: tuple[int, int, float], cause: str, finest: float) -> Problem:
+    """The note of what `coarsest` has found; particles may be ``finest`` [m] apart, or more."""
+    m, thinnest, least = found
+    fine, names = max(finest, FINE * least), envelope.system.names
+    finer = fine < float(envelope.system.spacing[m])
+    way_out = f"write resolution {say(fine, 'm')} in {names[m]}" if finer else f"make {names[thinnest]} thicker"
+    return Problem(envelope.place(m, "resolution", "shape"), cause, way_out, severity="note")

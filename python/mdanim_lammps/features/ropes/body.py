@@ -5,11 +5,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...bodies import BodyKind, lets_go
+from ...model.bare import BareBody, bare_model
 from ...model.build import NothingHeld, caught_in_box
-from ...model.model import Layer, Model, Surface
-from ...model.shapes import mass
-from ...model.springs import reduced_mass, types
+from ...model.model import Surface
 from ...model.tube import OF_TORN, make_tube
 from ...scene.formatting import say
 from ...scene.scene import Accuracy, HoldAll, HoldEnds, HoldWithin, Rope
@@ -22,20 +20,14 @@ MOST_LINKS = {Accuracy.PREVIEW: 100, Accuracy.BALANCED: 200, Accuracy.REFERENCE:
 LEAST_LINKS = {Accuracy.PREVIEW: 10, Accuracy.BALANCED: 20, Accuracy.REFERENCE: 40}
 
 
-class RopeBody(BodyKind):
+class RopeBody(BareBody):
     """An object with ``shape rope`` or ``shape chain``."""
 
     name = "rope"
     order = 60
-    sets_spacing = fills = False
-    particle_bytes = 6000.0
-    particle_seconds = 30e-6
 
     def takes(self, solid):
         return is_rope(solid)
-
-    def cells(self, scene, solid):
-        return 1
 
     def spacing(self, scene, h):
         accuracy, given = scene.control.accuracy, scene.control.resolution
@@ -55,36 +47,13 @@ class RopeBody(BodyKind):
         rope = solid.shape
         links = links_of(rope, h)
         x = places(rope, links)
-        pair, of_spring = springs(rope, solid.elasticity.modulus, links)
         share = np.ones(links + 1)
         share[[0, -1]] = 0.5
-        m = mass(solid) * share / links
-        held = held_particles(solid, x)
-        if held.all() and not lets_go(solid):
-            pair, of_spring = pair[:0], of_spring[:0]
-        kind, constants = types(np.column_stack([of_spring[:, :2], reduced_mass(m, pair), of_spring[:, 2]]))
-        velocity = solid.velocity + np.cross(solid.spin, x - solid.position)
-        velocity[held] = 0.0
         rings = OF_TORN if tears(solid) else 0
-        frame, surface = shared.once(_shared, rope.thickness, rope.length, links, rings)
-        return Model(
-            name=solid.name,
-            position=x,
-            velocity=velocity,
-            mass=m,
-            share=share,
-            layer=np.full(links + 1, Layer.BOUNDARY, np.uint8),
-            held=held,
-            spring=pair,
-            spring_type=kind,
-            constants=constants,
-            young=solid.elasticity.modulus,
-            inertia_error=0.0,
-            hexahedron=np.zeros((0, 8), np.int32),
-            cell=tuple(frame.cells.edge.tolist()),
-            surface=surface,
-            frame=frame,
-        )
+        drawn = shared.once(_shared, rope.thickness, rope.length, links, rings)
+        of_rope = springs(rope, solid.elasticity.modulus, links)
+        cell = tuple(drawn[0].cells.edge.tolist())
+        return bare_model(solid, x, x - solid.position, share, held_particles(solid, x), of_rope, drawn, cell)
 
 
 def _shared(shared, thickness: float, length: float, links: int, rings: int):

@@ -8,7 +8,7 @@ from functools import cached_property, lru_cache
 
 import numpy as np
 
-from ...model.contact_body import BodyFrame, ContactBody
+from ...model.bare import BareFrame
 from ...model.lattice import Cells
 from ...model.rods import Rod, springs_of
 from ...model.rope import section
@@ -80,42 +80,18 @@ def springs(rope: Rope, young: float, links: int) -> tuple[np.ndarray, np.ndarra
     return springs_of([line], young * section(rope), young * inertia)
 
 
-class LineFrame(BodyFrame):
-    """A chain of particles as contact sees it: points of its own, in one row of cells."""
+class LineFrame(BareFrame):
+    """A chain of particles as contact sees it."""
 
     dimensions = 1
 
     @cached_property
-    def contact(self) -> ContactBody:
-        """The same object at every call."""
+    def points(self) -> tuple[np.ndarray, float]:
+        """The surface of half of both links, and the half thickness."""
         rope, n = self.shape, int(self.cells.count[0])
-        number = np.arange(n, dtype=np.int32)
-        at = np.stack([number + 0.5, np.full(n, 0.5), np.full(n, 0.5)], axis=1)
         length = np.full(n, rope.length / (n - 1))
         length[[0, -1]] *= 0.5
-        body = ContactBody(
-            count=self.cells.count.astype(np.int32),
-            edge=self.cells.edge,
-            node=number,
-            filled=np.ones(n, np.uint8),
-            cell=number,
-            at=at,
-            centre=at,
-            normal=np.tile([0.0, 0.0, 1.0], (n, 1)),
-            area=rope.thickness * length,
-            kind=np.full(n, 2, np.uint8),
-            depth=None,
-            open=np.zeros((0, 5)),
-            radius=0.5 * rope.thickness,
-        )
-        for array in (number, at, body.edge, body.filled, body.normal, body.area, body.kind, body.open, body.count):
-            array.setflags(write=False)
-        return body
-
-    @cached_property
-    def drawn(self) -> np.ndarray:
-        """Which particles lie inside the shape, bool, shape (N,): all."""
-        return np.ones(int(self.cells.count[0]), bool)
+        return rope.thickness * length, 0.5 * rope.thickness
 
 
 def line_frame(rope: Rope, links: int) -> LineFrame:

@@ -7,12 +7,9 @@ import numpy as np
 
 from ...effects.envelope import Envelope
 from ...errors import Problem
-from ...model import shapes
 from ...scene.formatting import say
+from ..ropes.advice import coarsest, slips
 from .words import finest, is_sheet
-
-FINE = 0.5
-"""Spacing of a sheet over the thinnest part of what it may meet, above which that may slip through between particles."""
 
 
 def notes(envelope: Envelope) -> list[Problem]:
@@ -50,18 +47,10 @@ def _met(envelope: Envelope, m: int) -> list[int]:
 
 def _coarse(envelope: Envelope, sheets: np.ndarray) -> list[Problem]:
     """The coarsest sheet, beside the thinnest object that it may meet."""
-    system, solids = envelope.system, envelope.scene.solids
-    others = np.flatnonzero(~system.bare)
-    if not len(others):
+    if (found := coarsest(envelope, sheets)) is None:
         return []
-    thin = np.array([shapes.thickness(solids[m].shape) for m in others.tolist()])
-    thinnest, coarsest = int(others[thin.argmin()]), int(sheets[system.spacing[sheets].argmax()])
-    h, least = float(system.spacing[coarsest]), float(thin.min())
-    if h <= FINE * least:
-        return []
-    sheet, name = solids[coarsest].shape, system.names[coarsest]
-    fine = max(finest(sheet), FINE * least)
-    thing = system.names[thinnest]
+    m, thinnest, least = found
+    name, thing = envelope.system.names[m], envelope.system.names[thinnest]
+    h = float(envelope.system.spacing[m])
     cause = f"particles of {name} are {say(h, 'm')} apart and {thing} is {say(least, 'm')} thin: it may slip through between them"
-    way_out = f"write resolution {say(fine, 'm')} in {name}" if fine < h else f"make {thing} thicker"
-    return [Problem(envelope.place(coarsest, "resolution", "shape"), cause, way_out, severity="note")]
+    return [slips(envelope, found, cause, finest(envelope.scene.solids[m].shape))]

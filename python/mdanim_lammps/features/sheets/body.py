@@ -10,13 +10,9 @@ from functools import cached_property
 
 import numpy as np
 
-from ...bodies import BodyKind, lets_go
+from ...model.bare import BareBody, BareFrame, bare_model
 from ...model.build import NothingHeld, caught_in_box
-from ...model.contact_body import BodyFrame, ContactBody
 from ...model.lattice import Cells
-from ...model.model import Layer, Model
-from ...model.shapes import mass
-from ...model.springs import reduced_mass, types
 from ...scene.formatting import say
 from ...scene.scene import Accuracy, HoldAll, HoldFaces, HoldWithin, Sheet
 from .drawn import both_sides
@@ -36,20 +32,14 @@ GAP = 1.0 / 12.0
 shows what it lies on."""
 
 
-class SheetBody(BodyKind):
+class SheetBody(BareBody):
     """An object with ``shape sheet``."""
 
     name = "sheet"
     order = 65
-    sets_spacing = fills = False
-    particle_bytes = 6000.0
-    particle_seconds = 30e-6
 
     def takes(self, solid):
         return is_sheet(solid)
-
-    def cells(self, scene, solid):
-        return 1
 
     def spacing(self, scene, h):
         accuracy, given = scene.control.accuracy, scene.control.resolution
@@ -71,37 +61,14 @@ class SheetBody(BodyKind):
         arm = arm @ np.array(solid.rotation).T
         x = arm + solid.position
         held = held_particles(solid, woven, x)
-        pair, of_spring = woven.springs(solid.elasticity.modulus, sheet.thickness, sheet.bending, held & ~held.all())
-        if held.all() and not lets_go(solid):
-            pair, of_spring = pair[:0], of_spring[:0]
-        m = mass(solid) * woven.share / woven.share.sum()
-        kind, constants = types(np.column_stack([of_spring[:, :2], reduced_mass(m, pair), of_spring[:, 2]]))
-        velocity = solid.velocity + np.cross(solid.spin, arm)
-        velocity[held] = 0.0
-        frame, surface = shared.once(_shared, sheet, h)
-        return Model(
-            name=solid.name,
-            position=x,
-            velocity=velocity,
-            mass=m,
-            share=woven.share,
-            layer=np.full(len(x), Layer.BOUNDARY, np.uint8),
-            held=held,
-            spring=pair,
-            spring_type=kind,
-            constants=constants,
-            young=solid.elasticity.modulus,
-            inertia_error=0.0,
-            hexahedron=np.zeros((0, 8), np.int32),
-            cell=(woven.h, woven.apart, sheet.thickness),
-            surface=surface,
-            frame=frame,
-        )
+        of_sheet = woven.springs(solid.elasticity.modulus, sheet.thickness, sheet.bending, held & ~held.all())
+        cell = (woven.h, woven.apart, sheet.thickness)
+        return bare_model(solid, x, arm, woven.share, held, of_sheet, shared.once(_shared, sheet, h), cell)
 
 
 @dataclass(frozen=True, eq=False)
-class SheetFrame(BodyFrame):
-    """A layer of particles as contact sees it: points of its own, in one row of cells."""
+class SheetFrame(BareFrame):
+    """A layer of particles as contact sees it."""
 
     dimensions = 2
     woven: Weave = field(kw_only=True)
@@ -112,34 +79,10 @@ class SheetFrame(BodyFrame):
         return self.woven.triangle
 
     @cached_property
-    def contact(self) -> ContactBody:
-        """The same object at every call."""
-        n = len(self.woven.place)
-        number, area = np.arange(n, dtype=np.int32), POINT * self.shape.thickness * float(self.cells.edge[0])
-        at = np.stack([number + 0.5, np.full(n, 0.5), np.full(n, 0.5)], axis=1)
-        body = ContactBody(
-            count=self.cells.count.astype(np.int32),
-            edge=self.cells.edge,
-            node=number,
-            filled=np.ones(n, np.uint8),
-            cell=number,
-            at=at,
-            centre=at,
-            normal=np.tile([0.0, 0.0, 1.0], (n, 1)),
-            area=area * self.woven.share,
-            kind=np.full(n, 2, np.uint8),
-            depth=None,
-            open=np.zeros((0, 5)),
-            radius=max(0.5 * self.shape.thickness, GAP * self.woven.h),
-        )
-        for array in (number, at, body.edge, body.filled, body.normal, body.area, body.kind, body.open, body.count):
-            array.setflags(write=False)
-        return body
-
-    @cached_property
-    def drawn(self) -> np.ndarray:
-        """Which particles lie inside the shape, bool, shape (N,): all."""
-        return np.ones(len(self.woven.place), bool)
+    def points(self) -> tuple[np.ndarray, float]:
+        """Shares of POINT, and the half thickness or GAP."""
+        area = POINT * self.shape.thickness * float(self.cells.edge[0])
+        return area * self.woven.share, max(0.5 * self.shape.thickness, GAP * self.woven.h)
 
 
 def _shared(shared, sheet: Sheet, h: float):
