@@ -6,7 +6,7 @@ from __future__ import annotations
 import numpy as np
 
 from .nearest import blocks
-from .triangles import areas, spots, surface_of
+from .triangles import normals, spots, surface_of
 
 CELLS = 96
 """Cells along the longest edge of the box about a surface: a body of 20 lattice cells has five of them in each."""
@@ -58,8 +58,8 @@ def winding_number(points: np.ndarray, triangles: np.ndarray, size: np.ndarray) 
 def _flux(points: np.ndarray, triangles: np.ndarray, size: np.ndarray) -> np.ndarray:
     """n dA, spread over the eight nodes around each sample of the surface by linear weights, shape (3, *size)."""
     corners = points[triangles]
-    vector = 0.5 * np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    count = np.ceil(areas(points, triangles) * SAMPLES**2).clip(min=1).astype(np.int64)
+    vector = 0.5 * normals(points, triangles)
+    count = np.ceil(np.linalg.norm(vector, axis=1) * SAMPLES**2).clip(min=1).astype(np.int64)
     of = np.repeat(np.arange(len(count)), count)
     flux = np.zeros((3, size.prod()))
     for rows in blocks(len(of)):

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from ...model.model import Model
+from ...model.triangles import areas, normals
 from ...scene.scene import Sphere
 
 FINE = 16
@@ -93,22 +94,14 @@ def skin_of(model: Model, solid: Any) -> AirSkin:
         return AirSkin(np.arange(n)[:, None], np.ones((n, 1)), (cylinders,), both=True)
     if model.frame.dimensions == 2:
         triangle = model.frame.triangle
-        sheet = AirPart("triangle", triangle, np.zeros((len(triangle), 0)), _sizes(_areas(model.position, triangle)))
+        sheet = AirPart("triangle", triangle, np.zeros((len(triangle), 0)), areas(model.position, triangle))
         return AirSkin(np.arange(n)[:, None], np.ones((n, 1)), (sheet,), both=True)
     corner = np.unique(surface.index)
     if len(corner) <= CORNERS and (model.inertia is not None or model.held.all()):
         return _of_one_piece(model, solid, corner)
     place = surface.vertices(model.position)
-    triangles = AirPart(
-        "triangle", surface.triangle, np.zeros((len(surface.triangle), 0)), _sizes(_areas(place, surface.triangle))
-    )
+    triangles = AirPart("triangle", surface.triangle, np.zeros((len(surface.triangle), 0)), areas(place, surface.triangle))
     return AirSkin(surface.index, surface.weight, (triangles,))
-
-
-def _areas(place: np.ndarray, triangle: np.ndarray) -> np.ndarray:
-    """Areas with the directions of outward normals [m^2], shape (T, 3)."""
-    a, b, c = (place[corner] for corner in triangle.T)
-    return 0.5 * np.cross(b - a, c - a)
 
 
 def _sizes(vectors: np.ndarray) -> np.ndarray:
@@ -178,7 +171,7 @@ def _panels(place: np.ndarray, triangle: np.ndarray, solid: Any) -> tuple[np.nda
     turns about its middle has the torque of the integral.
     """
     turn = np.array(solid.rotation, float)
-    area, middle = _areas(place, triangle), place[triangle].mean(axis=1)
+    area, middle = 0.5 * normals(place, triangle), place[triangle].mean(axis=1)
     keep = _sizes(area) > 0.0
     area, middle = area[keep], middle[keep]
     size = _sizes(area)
