@@ -5,9 +5,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from typing import Any
 
 from ..errors import Span
 from .keywords import KEYWORDS
+from .schema import Keyword
 from .tokens import Token
 from .tree import Group, SettingNode, Use
 
@@ -32,6 +34,18 @@ class EvaluatedSetting:
     def between(self, first: Token, last: Token | None = None) -> Span:
         """The stretch from one token of it to another."""
         return self.entry.source.span(first, last, self.used_at)
+
+    def record(self) -> Any:
+        """The value of the record's field. Raises ValueError as Codec.read."""
+        keyword = self.entry.keyword
+        return keyword.codec.read(keyword, self.entry.choice, self.values)
+
+    def following(self, keyword: Keyword, value: Any) -> EvaluatedSetting:
+        """A setting that follows from this one, at its place, with this value of the record's field."""
+        choice, values = keyword.codec.write(keyword, value)
+        places = (self.entry.values[0],) * max(1, len(values))
+        node = SettingNode(self.entry.source, self.entry.token, keyword, choice, (), places)
+        return EvaluatedSetting(node, tuple(values), self.used_at)
 
 
 @dataclass(slots=True, eq=False)

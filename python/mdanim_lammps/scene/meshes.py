@@ -36,6 +36,11 @@ def _digest(path: Path, changed: int, size: int) -> str:
     return digest.hexdigest()[:32]
 
 
+def beside(folder: Path | str, path: Path) -> Path:
+    """The absolute path of a mesh that a file in this folder names."""
+    return Path(os.path.abspath(Path(folder) / path))
+
+
 def refusal_of_mesh(path: Path, name: str) -> tuple[str, str] | None:
     """Why the file that a scene calls by this name cannot be its mesh, and a way out; None where it can."""
     if path.suffix.lower() not in (".stl", ".obj", ".ply"):

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import math
-import os
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from functools import cached_property
@@ -21,7 +20,7 @@ from .formatting import number, say, whole, with_article
 from .keywords import BLOCKS, KEYWORDS, Block, did_you_mean, example, examples
 from .lammps_lines import commands
 from .limits import MOST_FRAMES
-from .meshes import refusal_of_mesh
+from .meshes import beside, refusal_of_mesh
 from .naming import objects_by_name
 from .placement import Placement, beyond_limits
 from .render import SMOOTH_RATE, few_pictures
@@ -326,7 +325,7 @@ class Validator:
                 self.corners(s, "the held box")
         s, shape = block.first("shape"), solid.shape
         if isinstance(shape, records.Mesh):
-            path = Path(os.path.abspath(s.entry.source.folder / shape.path))
+            path = beside(s.entry.source.folder, shape.path)
             if refusal := refusal_of_mesh(path, str(shape.path)):
                 self.problem(s.span(0), *refusal)
                 return None

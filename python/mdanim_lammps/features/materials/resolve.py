@@ -10,7 +10,6 @@ from typing import Any
 from ...scene.evaluated import EvaluatedBlock, EvaluatedSetting
 from ...scene.keywords import KEYWORDS, did_you_mean
 from ...scene.shapes import HoldAll, Young
-from ...scene.tree import SettingNode
 from ..drives.words import RELEASE
 from ..rigid.words import SENSELESS, Rigid
 from .table import MATERIALS, Material
@@ -73,18 +72,9 @@ def _known(given: EvaluatedSetting, material: Material) -> Settings:
     """Settings of a known material, at the place that names it."""
     values: dict[str, Any] = {word: figure.value for word, figure in material.figures().items()}
     values |= {"elasticity": Young(material.elasticity.value), "color": material.color}
-    return {word: [_at(given, KEYWORDS["object"][word], value)] for word, value in values.items() if word in KEYWORDS["material"]}
-
-
-def _at(given: EvaluatedSetting, keyword: Any, value: Any) -> EvaluatedSetting:
-    """A setting with a value of the record, at the place of another setting."""
-    choice, values = keyword.codec.write(keyword, value)
-    place = given.entry.values[0]
-    return EvaluatedSetting(
-        SettingNode(given.entry.source, given.entry.token, keyword, choice, (), (place,) * max(1, len(values))),
-        tuple(values),
-        given.used_at,
-    )
+    return {
+        word: [given.following(KEYWORDS["object"][word], value)] for word, value in values.items() if word in KEYWORDS["material"]
+    }
 
 
 def _suited(block: EvaluatedBlock, found: Settings) -> Settings:
@@ -96,7 +86,7 @@ def _suited(block: EvaluatedBlock, found: Settings) -> Settings:
     bends = shape is not None and getattr(_kind(shape), "BENDS", False)
     if "elasticity" in found and not bends and (held or not holds) and _stiff(found):
         given = found["elasticity"][0]
-        found["elasticity"] = [_at(given, given.entry.keyword, Rigid())]
+        found["elasticity"] = [given.following(given.entry.keyword, Rigid())]
     elasticity = block.first("elasticity") or next(iter(found.get("elasticity", ())), None)
     rigid = elasticity is not None and _kind(elasticity) is Rigid
     stays = held and block.first(RELEASE) is None

@@ -3,22 +3,17 @@
 
 from __future__ import annotations
 
-import os
 from contextlib import suppress
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from ...model import mesh
-from ...scene.evaluated import EvaluatedBlock, EvaluatedSetting
+from ...scene.evaluated import EvaluatedBlock
 from ...scene.keywords import KEYWORDS
-from ...scene.meshes import refusal_of_mesh
+from ...scene.meshes import beside, refusal_of_mesh
 from ...scene.rotation import IDENTITY
 from ...scene.shapes import Mesh
-from ...scene.tree import SettingNode
-
-WORDS = KEYWORDS["object"]
 
 
 def explained() -> dict[str, str]:
@@ -41,26 +36,20 @@ def fill(v: Any) -> None:
                 v.problem(origin.span(), f"origin file is for a mesh or a solid{block.where}", "write position")
             block.broken.add("position")
             continue
-        path = Path(os.path.abspath(shape.entry.source.folder / form.path))
+        path = beside(shape.entry.source.folder, form.path)
         centre = np.zeros(3)
         if refusal_of_mesh(path, str(form.path)) is None:  # else told where shapes are checked
             with suppress(mesh.MeshError):  # told where bodies are made, as that of a mesh with a position
                 centre = mesh.load(Mesh(path, form.scale, form.mended)).centre
         turn = np.array(_record(block, "orientation") or IDENTITY)
         at = np.array(block.first("position").values[0] if "position" in block.settings else (0.0, 0.0, 0.0))
-        block.settings["position"] = [_at(origin, tuple((at + turn @ centre).tolist()))]
+        block.settings["position"] = [origin.following(KEYWORDS["object"]["position"], tuple((at + turn @ centre).tolist()))]
 
 
 def _record(block: EvaluatedBlock, word: str) -> Any:
     """The record that a setting becomes; None where it is absent or wrong, which is told later."""
     given = block.first(word)
     try:
-        return None if given is None else WORDS[word].codec.read(WORDS[word], given.entry.choice, given.values)
+        return None if given is None else given.record()
     except ValueError:
         return None
-
-
-def _at(origin: EvaluatedSetting, position: tuple[float, float, float]) -> EvaluatedSetting:
-    """A position at the place of the word that it follows from."""
-    node = SettingNode(origin.entry.source, origin.entry.token, WORDS["position"], 0, (), (origin.entry.values[0],))
-    return EvaluatedSetting(node, (position,), origin.used_at)
