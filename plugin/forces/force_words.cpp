@@ -39,14 +39,6 @@ ForceWindows read_force(const std::string &text, const std::string &where)
 }
 
 std::map<int, ForceWindows> read_forces(const std::string &name, const std::string &text)
-{
-  std::map<int, ForceWindows> found;
-  each_line(name, text, [&](LineWords &words) {
-    const int molecule = words.molecule();
-    if (!found.emplace(molecule, read_words(words)).second)
-      words.fail("object " + std::to_string(molecule) + " has a line already");
-  });
-  return found;
-}
+{ return by_molecule(name, text, read_words); }
 
 }    // namespace mdanim

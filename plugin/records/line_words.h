@@ -9,6 +9,7 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -125,6 +126,18 @@ template <class Visit> void each_line(const std::string &name, const std::string
     LineWords words(line, "line " + std::to_string(number) + " of " + name);
     if (!words.is_at_end()) visit(words);
   }
+}
+
+// A file with a line for each object, a molecule ID and what read(words) makes of the rest: by molecule IDs, none of which may
+// stand twice.
+template <class Read> auto by_molecule(const std::string &name, const std::string &text, const Read &read)
+{
+  std::map<int, decltype(read(std::declval<LineWords &>()))> found;
+  each_line(name, text, [&](LineWords &words) {
+    const int molecule = words.molecule();
+    if (!found.emplace(molecule, read(words)).second) words.fail("object " + std::to_string(molecule) + " has a line already");
+  });
+  return found;
 }
 
 }    // namespace mdanim

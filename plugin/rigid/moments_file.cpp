@@ -8,9 +8,7 @@ namespace mdanim {
 
 std::map<int, Inertia> read_moments(const std::string &name, const std::string &text)
 {
-  std::map<int, Inertia> found;
-  each_line(name, text, [&](LineWords &words) {
-    const int molecule = words.molecule();
+  return by_molecule(name, text, [](LineWords &words) {
     Inertia inertia;
     for (double *one : {&inertia.xx, &inertia.yy, &inertia.zz, &inertia.xy, &inertia.xz, &inertia.yz})
       *one = words.number<double>("a moment of Ixx Iyy Izz Ixy Ixz Iyz");
@@ -20,9 +18,8 @@ std::map<int, Inertia> read_moments(const std::string &name, const std::string &
       words.fail("no body has the principal moments " + LineWords::short_form(moments.x) + ", " +
                  LineWords::short_form(moments.y) + " and " + LineWords::short_form(moments.z) +
                  ", which must be positive, none above the sum of the other two");
-    if (!found.emplace(molecule, inertia).second) words.fail("object " + std::to_string(molecule) + " has a line already");
+    return inertia;
   });
-  return found;
 }
 
 }    // namespace mdanim

@@ -105,9 +105,7 @@ SolidShape read_shape(LineWords &words)
 
 std::map<int, GivenShape> read_shapes(const std::string &name, const std::string &text)
 {
-  std::map<int, GivenShape> found;
-  each_line(name, text, [&](LineWords &words) {
-    const int molecule = words.molecule();
+  return by_molecule(name, text, [](LineWords &words) {
     GivenShape one;
     one.material.friction = words.at_least_zero("friction");
     one.material.damping = words.from_zero_to("damping", Material::MOST_DAMPING);
@@ -127,9 +125,8 @@ std::map<int, GivenShape> read_shapes(const std::string &name, const std::string
     q = unit(q);
     one.shape = read_shape(words);
     words.expect_end();
-    if (!found.emplace(molecule, std::move(one)).second) words.fail("object " + std::to_string(molecule) + " has a line already");
+    return one;
   });
-  return found;
 }
 
 }    // namespace mdanim
