@@ -5,12 +5,16 @@ from __future__ import annotations
 
 import json
 import os
+import subprocess
 from pathlib import Path
 
+import numpy as np
 import plugin_library
 import plugin_path
 import pytest
+from mdanim_lammps.results.dump import read_dump
 from mdanim_lammps.results.ledger import Ledger
+from mdanim_lammps.results.trajectory import Trajectory
 from mdanim_lammps.run.loop import write_inputs
 from mdanim_lammps.run.prepare import Prepared, prepare
 from mdanim_lammps.scene.parse import load_scene
@@ -72,9 +76,37 @@ def readied(place: Path, text: str) -> tuple[Prepared, Path]:
     return ready, place / "film.out"
 
 
+def film_of_lammps(folder: Path, particles: int, *, name: str = "film", ranks: int = 2, more: dict | None = None) -> np.ndarray:
+    """Positions [m] in the frames that plain `lmp` makes on ranks by the script of a folder, in.NAME, shape (F, N, 3)."""
+    command = [plugin_path.BIN / "mpiexec", "-n", str(ranks), plugin_path.BIN / "lmp", "-in", f"in.{name}"]
+    env = plugin_path.environment() | (more or {})
+    done = subprocess.run([*command, "-log", "none", "-nocite"], cwd=folder, env=env, capture_output=True, text=True, timeout=120)
+    assert done.returncode == 0, done.stdout[-2000:] + done.stderr
+    return np.array([x for _, x, _ in read_dump(folder / f"{name}.lammpstrj", particles)])
+
+
+def film_of(folder: Path) -> np.ndarray:
+    """Positions [m] in the frames of an output folder, shape (F, N, 3)."""
+    with Trajectory(folder) as trajectory:
+        return np.array([trajectory.position(n) for n in range(len(trajectory))])
+
+
 def matrix(executors=(1, 2, 3, 4), controls=BOTH, name="", **more) -> dict[str, dict]:
     """Cases for every number of executors under each control."""
     return {f"{name}{control}{k}": {"executors": k, "control": control, **more} for control in controls for k in executors}
+
+
+TEAMS = matrix((2,), ["peers"], name="teams ", settings={"least": 30, "by_threads": False})
+"""Ranks share the particles of an object."""
+THREADS = matrix((2,), ["central"], name="threads ", settings={"least": 30, "by_threads": True})
+"""Threads share them."""
+RESUMED = {
+    "stopped": {"executors": 3, "control": "central", "stop": 3},
+    "stopped and gone on with": {"executors": 2, "control": "peers", "resume": True, "in": "stopped"},
+    "alone": SEQUENTIAL | {"stop": 4},
+    "alone and gone on with": {"executors": 4, "control": "central", "resume": True, "in": "alone"},
+}
+"""Runs that are stopped, and go on with other executors."""
 
 
 @pytest.fixture

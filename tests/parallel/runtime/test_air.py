@@ -1,17 +1,12 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """Scenes with air give the same bits in all forms of the distribution, resumed, and by plain LAMMPS."""
 
-import subprocess
-
 import numpy as np
-import plugin_path
 import pytest
-from distribution_lab import SEQUENTIAL, matrix, readied, ways
+from distribution_lab import RESUMED, TEAMS, THREADS, film_of, film_of_lammps, matrix, readied, ways
 from mdanim_lammps.results.checkpoint import Checkpoint
 from mdanim_lammps.results.compare import compare
-from mdanim_lammps.results.dump import read_dump
 from mdanim_lammps.results.ledger import Ledger
-from mdanim_lammps.results.trajectory import Trajectory
 
 pytestmark = pytest.mark.mpi
 
@@ -43,14 +38,9 @@ control { time 0.08 s  frames 100 fps  friction 0.4 }
 CASES = (
     matrix((2,), ["central"], name="all move ", rotate=True)
     | matrix((3,), ["peers"], name="all move ", rotate=True)
-    | matrix((2,), ["peers"], name="teams ", settings={"least": 30, "by_threads": False})
-    | matrix((2,), ["central"], name="threads ", settings={"least": 30, "by_threads": True})
-    | {
-        "stopped": {"executors": 3, "control": "central", "stop": 3},
-        "stopped and gone on with": {"executors": 2, "control": "peers", "resume": True, "in": "stopped"},
-        "alone": SEQUENTIAL | {"stop": 4},
-        "alone and gone on with": {"executors": 4, "control": "central", "resume": True, "in": "alone"},
-    }
+    | TEAMS
+    | THREADS
+    | RESUMED
 )
 
 
@@ -88,9 +78,5 @@ def test_the_ledger_closes(found):
 def test_plain_lammps_gives_the_same(found, tmp_path, scene):
     """The script and data of the scene, with two ranks."""
     _, folder = readied(tmp_path, SCENES[scene])
-    command = [plugin_path.BIN / "mpiexec", "-n", "2", plugin_path.BIN / "lmp", "-in", "in.film", "-log", "none", "-nocite"]
-    done = subprocess.run(command, cwd=folder, env=plugin_path.environment(), capture_output=True, text=True, timeout=120)
-    assert done.returncode == 0, done.stdout[-2000:] + done.stderr
-    with Trajectory(found["sequential"]) as trajectory:
-        film = np.array([trajectory.position(n) for n in range(len(trajectory))])
-    assert np.array_equal([x for _, x, _ in read_dump(folder / "film.lammpstrj", film.shape[1])], film)
+    film = film_of(found["sequential"])
+    assert np.array_equal(film_of_lammps(folder, film.shape[1]), film)

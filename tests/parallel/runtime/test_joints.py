@@ -1,15 +1,11 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """Joints give the same bits in all forms of the distribution: executors, teams of ranks, resumed runs, kills, plain LAMMPS."""
 
-import subprocess
-
 import numpy as np
-import plugin_path
 import pytest
-from distribution_lab import SEQUENTIAL, WINDOWS, matrix, readied, same_file, ways
+from distribution_lab import RESUMED, TEAMS, WINDOWS, film_of, film_of_lammps, matrix, readied, same_file, ways
 from mdanim_lammps.results.checkpoint import Checkpoint
 from mdanim_lammps.results.compare import compare
-from mdanim_lammps.results.dump import read_dump
 from mdanim_lammps.results.trajectory import Trajectory
 
 pytestmark = pytest.mark.mpi
@@ -42,13 +38,8 @@ control { time 0.4 s frames 25 fps friction 0.3 accuracy preview }
 CASES = (
     matrix((2,), ["central"], name="all move ", rotate=True)
     | matrix((3,), ["peers"], name="again ", settings=WINDOWS | {"safety": 0.2})
-    | matrix((2,), ["peers"], name="teams ", settings={"least": 30, "by_threads": False})
-    | {
-        "stopped": {"executors": 3, "control": "central", "stop": 3},
-        "stopped and gone on with": {"executors": 2, "control": "peers", "resume": True, "in": "stopped"},
-        "alone": SEQUENTIAL | {"stop": 4},
-        "alone and gone on with": {"executors": 4, "control": "central", "resume": True, "in": "alone"},
-    }
+    | TEAMS
+    | RESUMED
 )
 
 
@@ -92,9 +83,5 @@ def test_plain_lammps_gives_the_same(found, tmp_path):
     text, steps = script.read_text().split("\nrun ")
     script.write_text(f"{text}\nrun {2 * ready.certificate.steps_per_frame}\n")
     assert int(steps) == ready.certificate.steps
-    command = [plugin_path.BIN / "mpiexec", "-n", "2", plugin_path.BIN / "lmp", "-in", script.name, "-log", "none", "-nocite"]
-    done = subprocess.run(command, cwd=folder, env=plugin_path.environment(), capture_output=True, text=True, timeout=120)
-    assert done.returncode == 0, done.stdout[-2000:] + done.stderr
-    with Trajectory(found["sequential"]) as trajectory:
-        film = np.array([trajectory.position(n) for n in range(3)])
-    assert np.array_equal([x for _, x, _ in read_dump(folder / "film.lammpstrj", film.shape[1])], film)
+    film = film_of(found["sequential"])[:3]
+    assert np.array_equal(film_of_lammps(folder, film.shape[1]), film)

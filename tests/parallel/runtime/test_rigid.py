@@ -2,17 +2,14 @@
 """Rigid objects in all forms of the distribution: blows on each other, on the ground and on soft ones, with friction, have the
 same bits on executors, in teams, after a resume, and in plain `lmp`."""
 
-import subprocess
 from dataclasses import replace
 
 import numpy as np
-import plugin_path
 import pytest
-from distribution_lab import SEQUENTIAL, WINDOWS, matrix, readied, scene, ways  # noqa: F401
+from distribution_lab import SEQUENTIAL, WINDOWS, film_of_lammps, matrix, readied, scene, ways  # noqa: F401
 from mdanim_lammps.engine.instance import Instance
 from mdanim_lammps.results.checkpoint import Checkpoint
 from mdanim_lammps.results.compare import compare
-from mdanim_lammps.results.dump import read_dump
 from mdanim_lammps.results.ledger import Ledger
 from paths import MESHES
 
@@ -135,7 +132,4 @@ def test_lammps_alone_makes_the_same_frames(tmp_path, ranks):
         instance.setup()
         instance.run(ready.certificate.steps)
         last = instance.array("x").copy()
-    command = [plugin_path.BIN / "mpiexec", "-n", str(ranks), plugin_path.BIN / "lmp", "-in", "in.film", "-screen", "none"]
-    done = subprocess.run(command, cwd=folder, env=plugin_path.environment(), capture_output=True, text=True, timeout=100)
-    assert done.returncode == 0, done.stdout + done.stderr
-    assert np.array_equal([x for _, x, _ in read_dump(folder / "film.lammpstrj", len(last))][-1], last)
+    assert np.array_equal(film_of_lammps(folder, len(last), ranks=ranks)[-1], last)

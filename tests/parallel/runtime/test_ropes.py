@@ -1,15 +1,11 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """Ropes give the same bits in all forms of the distribution, and by plain `lmp`."""
 
-import subprocess
-
 import numpy as np
-import plugin_path
 import pytest
-from distribution_lab import SEQUENTIAL, matrix, readied, ways
+from distribution_lab import SEQUENTIAL, TEAMS, THREADS, film_of, film_of_lammps, matrix, readied, ways
 from mdanim_lammps.results.checkpoint import Checkpoint
 from mdanim_lammps.results.compare import compare
-from mdanim_lammps.results.dump import read_dump
 from mdanim_lammps.results.trajectory import Trajectory
 
 pytestmark = pytest.mark.mpi
@@ -39,8 +35,8 @@ control { time 0.4 s }
 CASES = (
     matrix((2,), ["central"], name="all move ", rotate=True)
     | matrix((3,), ["peers"])
-    | matrix((2,), ["peers"], name="teams ", settings={"least": 30, "by_threads": False})
-    | matrix((2,), ["central"], name="threads ", settings={"least": 30, "by_threads": True})
+    | TEAMS
+    | THREADS
     | {
         "stopped": SEQUENTIAL | {"stop": 4},
         "stopped and gone on with": {"executors": 2, "control": "central", "resume": True, "in": "stopped"},
@@ -76,9 +72,5 @@ def test_something_happens(found):
 def test_lammps_alone_makes_the_same_frames(found, tmp_path, ranks):
     """The script that `build` writes, with its file of bodies."""
     _, folder = readied(tmp_path, SCENE)
-    command = [plugin_path.BIN / "mpiexec", "-n", str(ranks), plugin_path.BIN / "lmp", "-in", "in.film", "-screen", "none"]
-    done = subprocess.run(command, cwd=folder, env=plugin_path.environment(), capture_output=True, text=True, timeout=100)
-    assert done.returncode == 0, done.stdout + done.stderr
-    with Trajectory(found["sequential"]) as trajectory:
-        last = trajectory.position(len(trajectory) - 1)
-    assert np.array_equal([x for _, x, _ in read_dump(folder / "film.lammpstrj", len(last))][-1], last)
+    film = film_of(found["sequential"])
+    assert np.array_equal(film_of_lammps(folder, film.shape[1], ranks=ranks), film)

@@ -10,12 +10,11 @@ import numpy as np
 import plugin_path
 import pytest
 import whole
-from distribution_lab import SEQUENTIAL, WINDOWS, matrix, of_features, ways
+from distribution_lab import RESUMED, TEAMS, THREADS, WINDOWS, film_of, film_of_lammps, matrix, of_features, ways
 from mdanim_lammps.export.cut import Cut
 from mdanim_lammps.export.write import export
 from mdanim_lammps.results.checkpoint import Checkpoint
 from mdanim_lammps.results.compare import compare
-from mdanim_lammps.results.dump import read_dump
 from mdanim_lammps.results.ledger import Ledger
 from mdanim_lammps.results.trajectory import Trajectory
 
@@ -25,14 +24,9 @@ CASES = (
     matrix((2,), ["central"], name="all move ", rotate=True)
     | matrix((3,), ["peers"], name="all move ", rotate=True)
     | matrix((3,), ["central"], name="again ", settings=WINDOWS | {"safety": 0.2})
-    | matrix((2,), ["peers"], name="teams ", settings={"least": 30, "by_threads": False})
-    | matrix((2,), ["central"], name="threads ", settings={"least": 30, "by_threads": True})
-    | {
-        "stopped": {"executors": 3, "control": "central", "stop": 3},
-        "stopped and gone on with": {"executors": 2, "control": "peers", "resume": True, "in": "stopped"},
-        "alone": SEQUENTIAL | {"stop": 4},
-        "alone and gone on with": {"executors": 4, "control": "central", "resume": True, "in": "alone"},
-    }
+    | TEAMS
+    | THREADS
+    | RESUMED
 )
 
 
@@ -161,13 +155,8 @@ def test_a_run_that_is_killed_goes_on(found, killed):
 
 def test_plain_lammps_gives_the_same(found, killed):
     """The script and data of the scene for two frames, with two ranks; columns come by the section Model and by their file."""
-    env = {**plugin_path.environment(), **of_features("whole")}
     script = killed / "in.scene"
     text, steps = script.read_text().split("\nrun ")
     script.write_text(f"{text}\nrun {int(steps) // 4}\n")
-    command = [plugin_path.BIN / "mpiexec", "-n", "2", plugin_path.BIN / "lmp", "-in", "in.scene", "-log", "none", "-nocite"]
-    done = subprocess.run(command, cwd=killed, env=env, capture_output=True, text=True, timeout=120)
-    assert done.returncode == 0, done.stdout[-2000:] + done.stderr
-    with Trajectory(found["sequential"]) as trajectory:
-        film = np.array([trajectory.position(n) for n in range(3)])
-    assert np.array_equal([x for _, x, _ in read_dump(killed / "scene.lammpstrj", film.shape[1])], film)
+    film = film_of(found["sequential"])[:3]
+    assert np.array_equal(film_of_lammps(killed, film.shape[1], name="scene", more=of_features("whole")), film)
