@@ -56,7 +56,7 @@ def test_what_cannot_be_rigid_has_its_elasticity():
     rope = one(f"material cotton {ROPE}")
     assert (rope.elasticity, rope.restitution, rope.damping) == (Young(5e8), None, 0.2)
     sheet = one("material cotton shape sheet (1, 1) m thickness 1 mm position (0, 0, 1) m")
-    assert (sheet.elasticity, sheet.restitution) == (rope.elasticity, None)
+    assert (sheet.elasticity, sheet.density, sheet.restitution) == (Young(1e7), 470.0, None)  # of cloth, not of its threads
     held = one(f"material oak {AT} hold all")
     assert (held.elasticity, held.restitution) == (Rigid(), 0.5)
     mat = one(f"material rubber {AT} hold all")
@@ -101,6 +101,16 @@ def test_own_materials():
     assert one(f"material goo {AT}", goo + "object goo { material oak shape sphere 1 m position (0, 0, 5) m }\n").damping == 0.5
 
 
+def test_cloth_of_own_materials():
+    """The base of a block gives a sheet the figures of cloth, unless the block has its own."""
+    sheet = "shape sheet (1, 1) m thickness 1 mm position (0, 0, 1) m"
+    soft = one(f"material canvas {sheet}", "material canvas { material cotton color navy }")
+    assert (soft.elasticity, soft.density) == (Young(1e7), 470.0)
+    own = one(f"material canvas {sheet}", "material canvas { material cotton elasticity 50 MPa density 600 kg/m^3 }")
+    assert (own.elasticity, own.density) == (Young(5e7), 600.0)
+    assert one(f"material paper {sheet}").elasticity == Young(3e9)
+
+
 def test_scenes_without_the_word_and_locks():
     """The same records; the lock has what followed from the material, and is read as the same scene."""
     plain = f'object a {{ density 930 kg/m^3 elasticity 2 MPa damping 0.6 friction 1 color "#3a3d42" {AT} }}\n{CONTROL}'
@@ -115,6 +125,7 @@ MISTAKES = [
     ("unknown", f"object a {{ material oka {AT} }}", 1, 21, "no material is called oka", "did you mean 'oak'?"),
     ("in itself", f"material goo {{ material bar }}\nobject a {{ material oak {AT} }}", 1, 25, "no material is called bar",
      "known here: steel,"),
+    ("wood", f"object a {{ material wood {AT} }}", 1, 21, "no material is called wood", "did you mean 'oak' or 'pine'?"),
     ("far off", f"object a {{ material xyzzy {AT} }}", 1, 21, "no material is called xyzzy", "known here: steel,"),
     ("own one", f"material goo {{ }}\nobject a {{ material gop {AT} }}", 2, 21, "no material is called gop", "'goo'"),
     ("twice", f"object a {{ material oak material pine {AT} }}", 1, 25, "material is given twice", "scene:1:12"),
@@ -161,7 +172,7 @@ def test_every_figure_has_its_range_and_source():
         assert (material.restitution is None) or 0.0 <= material.restitution.value <= 1.0
         stiff = page.speed(material)
         assert stiff >= 1.5 * STIFF or stiff <= STIFF / 1.5, f"{name} is near the rule, where a digit more would decide"
-    used = {key for m in MATERIALS.values() for f in m.figures().values() for key in f.sources()} | set(
+    used = {key for m in MATERIALS.values() for f in (*m.figures().values(), *m.sheet.values()) for key in f.sources()} | set(
         "".join(p[4] for p in PAIRS)
     )
     assert used | {"J"} == set(SOURCES)

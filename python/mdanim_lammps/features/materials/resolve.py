@@ -9,10 +9,10 @@ from typing import Any
 
 from ...scene.evaluated import EvaluatedBlock, EvaluatedSetting
 from ...scene.keywords import KEYWORDS, did_you_mean
-from ...scene.shapes import HoldAll, Young
+from ...scene.shapes import HoldAll, Sheet, Young
 from ..drives.words import RELEASE
 from ..rigid.words import SENSELESS, Rigid
-from .table import MATERIALS, Material
+from .table import MATERIALS, MEANT, Material
 
 STIFF = 200.0
 """Wave speed sqrt(E/rho) from which on what is made of a material is rigid [m/s]: where it is struck at 10 m/s, as after
@@ -27,7 +27,7 @@ def fill(v: Any) -> None:
     own = {block.name: block for block in v.blocks("material")}
     for block in v.blocks("object"):
         given = block.first("material")
-        found = _made_of(v, own, given, (), block.where) if given is not None else {}
+        found = _made_of(v, own, given, (), block.where, _is_sheet(block)) if given is not None else {}
         if found is None or "material" in block.broken:
             block.broken |= set(KEYWORDS["material"])
         else:
@@ -35,14 +35,14 @@ def fill(v: Any) -> None:
             block.settings |= {word: s for word, s in _suited(block, found).items() if word not in mine}
     for name, block in own.items():
         if (given := block.first("material")) is not None:
-            _made_of(v, own, given, (name,), "")
+            _made_of(v, own, given, (name,), "", False)
 
 
 def _made_of(
-    v: Any, own: dict[str, EvaluatedBlock], given: EvaluatedSetting, within: tuple[str, ...], where: str
+    v: Any, own: dict[str, EvaluatedBlock], given: EvaluatedSetting, within: tuple[str, ...], where: str, sheet: bool
 ) -> Settings | None:
-    """Settings of the material that a setting names, where it stands in the blocks ``within``; None after a problem. A block that
-    names its own name means the known material."""
+    """Settings of the material that a setting names, where it stands in the blocks ``within``, of a sheet or another object; None
+    after a problem. A block that names its own name means the known material."""
     name = given.values[0]
     block = own.get(name) if name not in within else None
     if block is not None:
@@ -51,27 +51,27 @@ def _made_of(
             word: [replace(one, used_at=used_at) for one in found] for word, found in block.settings.items() if word != "material"
         }
         base = block.first("material")
-        under = _made_of(v, own, base, (*within, name), where) if base is not None else {}
+        under = _made_of(v, own, base, (*within, name), where, sheet) if base is not None else {}
         if block.broken:
             return None
         return None if under is None else under | said
     if name in MATERIALS:
-        return _known(given, MATERIALS[name])
+        return _known(given, MATERIALS[name], sheet)
     if name in within:
         cause = f"the material {name} is made of itself: {' -> '.join((*within, name))}"
         v.problem(given.span(0), cause, "take one of them out", key=("material", *sorted(within)))
     else:
         cause, known = f"no material is called {name}{where}", [*(one for one in own if one not in within), *MATERIALS]
-        v.problem(
-            given.span(0), cause, did_you_mean(name, known) or "docs/materials.md lists them", key=("material", given.entry)
-        )
+        meant = f"did you mean {' or '.join(map(repr, MEANT[name]))}?" if name in MEANT else did_you_mean(name, known)
+        v.problem(given.span(0), cause, meant or f"known here: {', '.join(known)}", key=("material", given.entry))
     return None
 
 
-def _known(given: EvaluatedSetting, material: Material) -> Settings:
+def _known(given: EvaluatedSetting, material: Material, sheet: bool) -> Settings:
     """Settings of a known material, at the place that names it."""
-    values: dict[str, Any] = {word: figure.value for word, figure in material.figures().items()}
-    values |= {"elasticity": Young(material.elasticity.value), "color": material.color}
+    figures = material.figures() | (dict(material.sheet) if sheet else {})
+    values: dict[str, Any] = {word: figure.value for word, figure in figures.items()}
+    values |= {"elasticity": Young(figures["elasticity"].value), "color": material.color}
     return {
         word: [given.following(KEYWORDS["object"][word], value)] for word, value in values.items() if word in KEYWORDS["material"]
     }
@@ -100,6 +100,11 @@ def _stiff(found: Settings) -> bool:
     if _kind(elasticity) is not Young or not density:
         return False
     return math.sqrt(elasticity.values[0] / density[0].values[0]) >= STIFF
+
+
+def _is_sheet(block: EvaluatedBlock) -> bool:
+    shape = block.first("shape")
+    return shape is not None and _kind(shape) is Sheet
 
 
 def _kind(s: EvaluatedSetting) -> type:
