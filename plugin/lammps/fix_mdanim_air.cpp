@@ -8,6 +8,7 @@
 #include "lammps/particle_value.h"
 #include "lammps/shared_file.h"
 #include "numbers/stopwatch.h"
+#include "records/byte_reader.h"
 
 #include "atom.h"
 #include "error.h"
@@ -27,11 +28,13 @@ using namespace mdanim;
 
 static const char *const STYLE = "fix mdanim/air";
 static constexpr int COLUMNS = 3;    // of compute_array()
+static constexpr std::int64_t STATE_VERSION = 1;
 
 // fix ID group mdanim/air DENSITY C [wind wx wy wz] [path T wx wy wz T wx wy wz ...] [above z] skins FILE
 FixMdanimAir::FixMdanimAir(LAMMPS *lmp, int narg, char **arg) : FixBase(lmp, narg, arg), above(-HUGE_VAL), shared(lmp)
 {
   array_flag = 1;
+  restart_global = 1;
   size_array_cols = COLUMNS;
   extarray = 0;
   need(THREE_DIMENSIONS | OPEN_BOX | OBJECTS | ATOM_MAP);
@@ -165,7 +168,7 @@ void FixMdanimAir::locate()
 Vec3 FixMdanimAir::wind() const { return path.at(static_cast<double>(update->ntimestep) * update->dt); }
 
 // Velocities are those of half a step before: what has moved the particles here.
-void FixMdanimAir::push()
+void FixMdanimAir::find_pushes()
 {
   wind_now = wind();
   const AirLaw law{wind_now, 0.5 * density * coefficient, update->dt};
@@ -185,25 +188,39 @@ void FixMdanimAir::push()
     }
     one.force = units * one.skin->push(law, above, scratch);
     for (std::size_t n = 0; n < nodes; ++n)
-      if (const int i = target[one.first + n]; i != SharedMotion::ELSEWHERE) {
-        pushes.push_back({i, units * scratch.force[n]});
-        add_to(atom->f[i], pushes.back().force);
-      }
+      if (const int i = target[one.first + n]; i != SharedMotion::ELSEWHERE) pushes.push_back({i, units * scratch.force[n]});
   }
 }
 
+void FixMdanimAir::push() const
+{
+  for (const GivenForce &one : pushes) add_to(atom->f[one.i], one.force);
+}
+
 // A force acts over the half steps before and behind it, as leap-frog takes it: work F.w dt/2 of the wind, of which F.v dt/2 goes
-// to the particle.
+// to the particle. What has been laid aside since then moves in another instance, which counts it.
 void FixMdanimAir::count()
 {
   const double half = 0.5 * update->dt;
   double of_wind = 0.0, given = 0.0;
   for (const GivenForce &one : pushes) {
+    if (!(atom->mask[one.i] & groupbit)) continue;
     of_wind += dot(one.force, wind_now);
     given += dot(one.force, vec3(atom->v[one.i]));
   }
   work += half * of_wind;
   loss += half * (of_wind - given);
+}
+
+// What acts after a state are the forces that are in it.
+void FixMdanimAir::setup(int)
+{
+  if (restarted) unpack(StateRecords(*restarted));
+  find_pushes();
+  for (GivenForce &one : pushes)
+    if (const auto found = acted.find(atom->tag[one.i]); found != acted.end()) one.force = found->second;
+  acted.clear();
+  push();
 }
 
 void FixMdanimAir::post_integrate()
@@ -215,8 +232,42 @@ void FixMdanimAir::post_integrate()
 void FixMdanimAir::post_force(int)
 {
   const Lap lap(seconds);
+  find_pushes();
   push();
   count();
+}
+
+// --- state ---
+
+// Forces on the particles of an object.
+StateRecords FixMdanimAir::pack() const
+{
+  if (restarted) return *restarted;
+  StateRecords records;
+  ParticleRows rows(lmp, STATE_VERSION, sizeof(Vec3));
+  for (const GivenForce &one : pushes)
+    if (atom->mask[one.i] & groupbit) rows.add(one.i, &one.force);
+  rows.pack(records);
+  return records;
+}
+
+void FixMdanimAir::unpack(const StateRecords &records)
+{
+  std::map<tagint, Vec3> found;
+  ParticleRows(lmp, STATE_VERSION, sizeof(Vec3)).unpack(records, [&](int i, const std::uint8_t *from) {
+    const auto force = ByteReader(from, sizeof(Vec3), "the force on a particle").get<Vec3>();
+    if (!std::isfinite(dot(force, force))) throw std::runtime_error("a force of the air is damaged");
+    found[atom->tag[i]] = force;
+  });
+  acted = std::move(found);
+  restarted.reset();
+}
+
+void FixMdanimAir::write_restart(FILE *file) { mdanim::write_restart(*this, lmp, name(), file); }
+
+void FixMdanimAir::restart(char *buffer)
+{
+  mdanim::read_restart([this](const StateRecords &all) { restarted = all; }, lmp, name(), buffer);
 }
 
 // --- output ---

@@ -6,17 +6,19 @@
 #include "air/skin.h"
 #include "lammps/fix_base.h"
 #include "lammps/shared_motion.h"
+#include "lammps/stateful.h"
 #include "numbers/vector_path.h"
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace LAMMPS_NS {
 
 // Every rank computes the forces on all objects, from places and velocities that ranks share, and pushes its own particles of the
-// group.
-class FixMdanimAir : public mdanim::FixBase {
+// group. Its state are the forces of the last step, which follow from velocities of half a step before.
+class FixMdanimAir : public mdanim::FixBase, public mdanim::Stateful {
  public:
   FixMdanimAir(class LAMMPS *, int, char **);
 
@@ -24,12 +26,17 @@ class FixMdanimAir : public mdanim::FixBase {
   void init() override;
   void setup_pre_neighbor() override { locate(); }
   void pre_neighbor() override { locate(); }
-  void setup(int) override { push(); }
+  void setup(int) override;
   void post_integrate() override;
   void post_force(int) override;
   double compute_scalar() override { return taken() - sum(work); }
   double compute_array(int object, int column) override;
   double memory_usage() override;
+  void write_restart(FILE *) override;
+  void restart(char *) override;
+
+  mdanim::StateRecords pack() const override;
+  void unpack(const mdanim::StateRecords &) override;
 
  private:
   struct AirObject {
@@ -48,7 +55,8 @@ class FixMdanimAir : public mdanim::FixBase {
   void read_path(int narg, char **arg, int &iarg);
   void find_objects();
   void locate();
-  void push();
+  void find_pushes();
+  void push() const;
   void count();    // the work of half a step
   mdanim::Vec3 wind() const;
   double taken() const { return sum(loss); }
@@ -62,7 +70,9 @@ class FixMdanimAir : public mdanim::FixBase {
   // is pushed, if any.
   std::vector<int> number, row, target;
   mdanim::AirScratch scratch;
-  std::vector<GivenForce> pushes;    // of this step
+  std::vector<GivenForce> pushes;                   // of this step
+  std::map<tagint, mdanim::Vec3> acted;             // forces of a state, until the setup of a run
+  std::optional<mdanim::StateRecords> restarted;    // of a restart file, until a run begins
   mdanim::Vec3 wind_now;
   double work = 0.0, loss = 0.0;    // on this rank
 };

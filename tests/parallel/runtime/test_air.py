@@ -65,7 +65,7 @@ def test_all_forms_give_the_same(found, way):
     for name in "xvf":
         assert np.array_equal(getattr(alone, name), getattr(other, name)), name
     for column in ("work", "air_loss"):
-        assert other.carried[column] == pytest.approx(alone.carried[column], rel=1e-4)
+        assert other.carried[column] == pytest.approx(alone.carried[column], rel=1e-9)
 
 
 def test_the_ledger_closes(found):

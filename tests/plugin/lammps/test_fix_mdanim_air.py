@@ -177,3 +177,23 @@ def test_words(tmp_path, words, told):
     """Words that are missing, unknown, or out of range."""
     with pytest.raises(Exception, match=told):
         lab.load(cube(), tmp_path, [f"fix air all mdanim/air {words}", "run 0"])
+
+
+def test_a_restart_file_has_the_last_forces(tmp_path):
+    """They act half a step longer: places, velocities and books go on as if nothing had been."""
+    body = cube(1.0)
+    script = [*air(tmp_path, SKINS["triangles, outer"]), "fix run all mdanim/leapfrog"]
+    lmp = lab.load(body, tmp_path, [*script, "run 20", f"write_restart {tmp_path}/half"])
+    half = books(lmp)
+    lmp.command("run 20 pre no")
+    whole, x = books(lmp), lab.by_tag(lmp, "x").copy()
+    lmp.close()
+    again = lab.restarted(tmp_path / "half", body, [*script, "run 20"])
+    np.testing.assert_array_equal(lab.by_tag(again, "x"), x)
+    np.testing.assert_allclose(half + books(again), whole, rtol=1e-13)
+    again.close()
+
+
+def books(lmp) -> np.ndarray:
+    """Work of the wind, and what the air has taken."""
+    return np.array([lmp.extract_fix("air", 0, 1, n) for n in range(2)])
