@@ -72,19 +72,9 @@ TouchLaw RigidContact::law_of(const Solid &a, const Solid &b) const
 TouchLaw RigidContact::law_at(const Solid &one, int plane) const
 { return law_with(one.yields, one.material, {one.id, -1 - plane}); }
 
-void RigidContact::touch_pair(const TouchStep &step, SolidPair &pair)
+// Contacts of two bodies, by their shapes.
+static void touch_solids(const TouchStep &step, SolidPair &pair, Solid &a, Solid &b, const TouchLaw &law)
 {
-  Solid &a = solids[pair.a], &b = solids[pair.b];
-  forget_parted(pair.touches);
-  if (a.aside || b.aside) return;
-  const double way = a.stir + b.stir;
-  pair.asleep -= way;
-  pair.known_for -= way;
-  const Vec3 between = a.centre - b.centre;
-  // Two bodies begin to touch within their spheres, and may go on touching beyond them, on ramps.
-  const double reach = a.shape.bound() + b.shape.bound();
-  if (pair.touches.empty() && (pair.asleep > 0.0 || dot(between, between) > reach * reach)) return;
-  const TouchLaw law = law_of(a, b);
   const auto is = [](const Solid &one, SolidShape::ShapeKind kind) { return one.shape.kind() == kind; };
   const bool is_ball = is(a, SolidShape::BALL), is_other_ball = is(b, SolidShape::BALL);
   const bool is_mesh = is(a, SolidShape::MESH), is_other_mesh = is(b, SolidShape::MESH);
@@ -112,6 +102,21 @@ void RigidContact::touch_pair(const TouchStep &step, SolidPair &pair)
     touch_polyhedra(step, pair, a, b, law);
   else
     touch_with_curves(step, pair, a, b, law);
+}
+
+void RigidContact::touch_pair(const TouchStep &step, SolidPair &pair)
+{
+  Solid &a = solids[pair.a], &b = solids[pair.b];
+  forget_parted(pair.touches);
+  if (a.aside || b.aside) return;
+  const double way = a.stir + b.stir;
+  pair.asleep -= way;
+  pair.known_for -= way;
+  const Vec3 between = a.centre - b.centre;
+  // Two bodies begin to touch within their spheres, and may go on touching beyond them, on ramps.
+  const double reach = a.shape.bound() + b.shape.bound();
+  if (pair.touches.empty() && (pair.asleep > 0.0 || dot(between, between) > reach * reach)) return;
+  touch_solids(step, pair, a, b, law_of(a, b));
 }
 
 void RigidContact::step(double dt)
@@ -162,6 +167,16 @@ void RigidContact::find_energy()
   for (const auto &of_plane : at_plane)
     for (const std::vector<Touch> &touches : of_plane) add(touches);
   for (const SolidPair &pair : near.pairs) add(pair.touches);
+}
+
+double overlap(Solid &a, Solid &b)
+{
+  TouchAccount account;
+  SolidPair pair;
+  touch_solids(TouchStep(0.0, 1.0, account), pair, a, b, {1.0, 0.0, 0.0});
+  double deepest = 0.0;
+  for (const Touch &touch : pair.touches) deepest = std::max(deepest, touch.memory.offset);
+  return deepest;
 }
 
 std::size_t RigidContact::bytes() const

@@ -98,6 +98,11 @@ class Effect(Motion, Bounds, Accounts, Frames, Advice):
         """Gap between the boxes of two solids from which it has no energy [m]; asked of what keeps solids apart."""
         return 0.0
 
+    def outline(self, scene: SceneRecord, m: int) -> str | None:
+        """A solid, by number, as its fix has the features with which it touches: a line of the file of shapes of fix mdanim/rigid
+        after the molecule ID (docs/fix_mdanim_rigid.md); None where it touches otherwise."""
+        return None
+
     def commands(self, context: Context) -> list[str]:
         """LAMMPS commands; group ``mobile`` exists by then. A word ``table:NAME`` is the path of one of its `tables`."""
         return []

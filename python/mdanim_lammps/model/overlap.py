@@ -39,17 +39,29 @@ class Contact(Protocol):
         """Gap between the boxes of two solids from which it has no energy [m]."""
 
 
+class Features(Protocol):
+    """Contact by features, engine.overlaps.Overlaps."""
+
+    def known(self, i: int, j: int) -> bool:
+        """Whether two objects touch each other so."""
+
+    def depths(self, pairs: np.ndarray, moved: np.ndarray) -> np.ndarray:
+        """Depth of each pair [m], shape (K,), when the second one is moved by these vectors [m], shape (K, 3)."""
+
+
 def check_geometry(
     scene: SceneRecord,
     models: tuple[Model, ...],
     planes: Iterable[Plane] = (),
     contact: Contact | None = None,
     passing: Container[tuple[int, int]] = (),
+    features: Features | None = None,
 ) -> list[Problem]:
     """Find every object that starts in another one, below the ground, or outside walls or basin.
 
     ``planes`` push objects back, ``contact`` keeps them apart. Each problem stands at the position of the (second) object and
-    tells how deep it is in and which move frees it, so far that contact holds no energy afterwards. Objects that are held
+    tells how deep it is in and which move frees it, so far that contact holds no energy afterwards. ``features`` is asked of
+    rigid objects that are neither cuboids, balls nor polyhedra. Objects that are held
     entirely may overlap each other and extend beyond the walls: such objects are the scene's architecture. Others may overlap by
     ``contact.rests_inside``, and those of the pairs i < j in ``passing`` as they like. Pairs after the first MOST_PAIRS in each
     other are not looked at.
@@ -58,9 +70,10 @@ def check_geometry(
     if not models:
         return problems
     planes = tuple(planes)
-    bodies = _BoundingBoxes(models, scene.solids, [m.surface.vertices(m.position) for m in models], contact)
+    bodies = _BoundingBoxes(models, scene.solids, [m.surface.vertices(m.position) for m in models], contact, features)
     problems += _outside(scene, bodies, planes)
     first, second = _candidates(scene, bodies)
+    bodies.find_features(first, second, passing)
     inside = 0
     for looked, (i, j) in enumerate(zip(first, second), 1):
         found = None if (int(i), int(j)) in passing else _pair(scene, bodies, planes, int(i), int(j))
@@ -76,8 +89,10 @@ def check_geometry(
 class _BoundingBoxes:
     """Bounding boxes of all objects: low, high [m], shape (n, 3), from the true surfaces."""
 
-    def __init__(self, models, solids, vertices, contact: Contact | None):
-        self.models, self.solids, self.contact = models, solids, contact
+    def __init__(self, models, solids, vertices, contact: Contact | None, features: Features | None):
+        self.models, self.solids, self.contact, self.features = models, solids, contact, features
+        self.felt: dict[tuple[int, int], float] = {}
+        """Depths by features of the pairs that have them [m]."""
         self.vertices = vertices
         self.low = np.array([v.min(axis=0) for v in vertices])
         self.high = np.array([v.max(axis=0) for v in vertices])
@@ -128,6 +143,19 @@ class _BoundingBoxes:
             return None
         return overlap(first, second)
 
+    def find_features(self, first: np.ndarray, second: np.ndarray, passing: Container[tuple[int, int]]) -> None:
+        """Take the depths by features of all of some pairs that have them."""
+        hard = self.hard[first] & self.hard[second] & (self.rigid[first] | self.rigid[second])
+        pairs = [
+            (i, j)
+            for i, j in zip(first[hard].tolist(), second[hard].tolist())
+            if self.features and (self.placed[i] is None or self.placed[j] is None) and (i, j) not in passing
+            if self.features.known(i, j)
+        ]
+        if self.features and pairs:
+            depths = self.features.depths(np.array(pairs), np.zeros((len(pairs), 3)))
+            self.felt = dict(zip(pairs, depths.tolist()))
+
     def forgiven(self, i: int, j: int) -> float:
         """Depth of the start of two objects in each other that is no problem [m]: by their shapes where none is elastic."""
         exact = self.hard & ~self.smooth
@@ -160,10 +188,10 @@ class _BoundingBoxes:
             t = np.stack(np.meshgrid(*parts, indexing="ij"), axis=-1).reshape(-1, 3)
             t = t[shapes.contains(model.frame.shape, cells.low + t * size)]
             return corner[0] + t @ (corner[1:] - corner[0])
-        if not len(model.hexahedron):
+        if not len(model.hexahedron):  # cells as large as the shape is thick may have their centres outside
             cells, solid = model.frame.cells, self.solids[i]
-            place = np.stack(np.nonzero(cells.filled)[::-1], axis=1)
-            return (cells.low + (place + 0.5) * cells.edge) @ np.array(solid.rotation).T + solid.position
+            centre = cells.low + (np.stack(np.nonzero(cells.filled)[::-1], axis=1) + 0.5) * cells.edge
+            return centre[shapes.contains(model.frame.shape, centre)] @ np.array(solid.rotation).T + solid.position
         return (model.position[model.hexahedron[:, 0]] + model.position[model.hexahedron[:, 6]]) / 2
 
 
@@ -230,11 +258,22 @@ def _candidates(scene: SceneRecord, bodies: _BoundingBoxes) -> tuple[np.ndarray,
 
 def _pair(scene: SceneRecord, bodies: _BoundingBoxes, planes: tuple[Plane, ...], i: int, j: int) -> Problem | None:
     first, second = scene.solids[i], scene.solids[j]
-    exact = bodies.exact(i, j)
-    deepest = exact or _at_points(scene, bodies, i, j)
-    depth = deepest(np.zeros(3))
+    shapes_or_points = bodies.exact(i, j) or _at_points(scene, bodies, i, j)
+    depth = shapes_or_points(np.zeros(3))
+    by_features = bodies.felt.get((i, j), 0.0)
+    felt = by_features > min(bodies.rounded[i], bodies.rounded[j])
     if depth <= bodies.forgiven(i, j):
-        return None
+        if not felt:
+            return None
+        depth = 0.0  # of triangles, which may be below the smooth surface
+    depth = max(depth, by_features)
+
+    def deepest(moved: np.ndarray) -> float:
+        found = shapes_or_points(moved)
+        if found > 0.0 or not bodies.features or (i, j) not in bodies.felt:
+            return found
+        return float(bodies.features.depths(np.array([(i, j)]), moved[None])[0])
+
     axis, sign, step = _way_out(planes, bodies, i, j)
     if bodies.on_surfaces:  # surfaces may touch where boxes overlap
         way, short = sign * np.eye(3)[axis], 0.0

@@ -11,6 +11,7 @@ from .. import features
 from ..certificate import Certificate, certify
 from ..certificate import warnings as margin_warnings
 from ..effects import Context, Resolved, Verdict, resolve
+from ..engine.overlaps import Overlaps
 from ..engine.plan import Plan, make_plan
 from ..errors import Problem, RefusedError, SceneError
 from ..model.build import build_models
@@ -99,7 +100,8 @@ def _prepare(scene: SceneRecord, spacing: Spacing, allow_unstable: bool) -> Prep
     planes = [p for e in features.effects() for p in e.of(scene).planes(scene)]  # also of those that are off
     contact = next((e.of(scene) for e in features.effects() if e.keeps_apart), None)
     passing = {pair for e in resolved.effects for pair in e.passes(scene)}
-    problems = check_geometry(scene, models, planes, contact, passing) + [
+    overlaps = Overlaps(lambda m: next((line for e in resolved.effects if (line := e.outline(scene, m)) is not None), None))
+    problems = check_geometry(scene, models, planes, contact, passing, overlaps) + [
         p for e in resolved.effects for p in e.problems(resolved, models, grid)
     ]
     problems += _unmeasurable(resolved) + _undriven(resolved, models)

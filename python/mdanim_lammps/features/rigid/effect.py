@@ -73,6 +73,9 @@ class RigidMotion(Effect):
             chosen, group = touching.meets_objects(context), TOUCHING
         return (chosen, group) if chosen.any() else None
 
+    def outline(self, scene, m):
+        return touching.outline(scene.solids[m])
+
     def commands(self, context):
         groups = {GROUP: context.system.rigid}
         groups |= {found[1]: found[0] for planes in (False, True) if (found := self.settles(context, planes=planes))}

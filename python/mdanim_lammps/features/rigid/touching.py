@@ -13,6 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ...bodies import all_held
 from ...effects.context import Context
 from ...effects.envelope import Envelope
 from ...effects.margin import Margin
@@ -25,7 +26,7 @@ from ...scene.scene import Shape, Solid
 from ..contact.pairs import damping, frictions
 from ..contact.restitution import damping_for
 from ..contact.rigid_surfaces import frequency
-from .shapes import hidden, in_file, on_objects, on_planes, only_balls_move
+from .shapes import hidden, in_file, is_known, is_rigid, on_objects, on_planes, only_balls_move
 
 ONSET = 0.005
 """Depth up to which a contact begins gently, over the thinnest part."""
@@ -196,6 +197,14 @@ def shapes_text(context: Context, part: Part) -> str:
         kind = f"usual {kind}" if given and blows[m] is None else kind  # where one of two has a restitution, it counts alone
         lines.append(f"{m + 1} {in_full([own[m], shares[m]])} {kind} {in_full(pose)} {shape}\n")
     return "".join(lines)
+
+
+def outline(solid: Solid) -> str | None:
+    """A solid that is rigid or never moves as the file of shapes has it, held and without friction; None of all others."""
+    if not (is_rigid(solid) or all_held(solid)) or not is_known(solid):
+        return None
+    place, shape = in_file(solid)
+    return f"0 0 held {in_full([*place, *quaternion(np.array(solid.rotation))])} {shape}"
 
 
 def _solids(context: Context) -> list[Solid]:
