@@ -19,6 +19,7 @@ _PLACES = {
     "effects": ("Verdict",),
     "results.trajectory": ("ObjectTrack", "Snapshot", "Trajectory"),
     "results.ledger": ("Ledger",),
+    "results.records": ("Records",),
     "results.expect": ("Outcome",),
     "results.cost": ("Cost",),
     "results.timeline": ("Timeline",),

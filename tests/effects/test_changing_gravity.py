@@ -184,10 +184,18 @@ def test_mistakes(text, line, column, words, hint):
     assert hint in problem.hint
 
 
-def test_forces_of_contact_are_not_told(shaken):
-    """Frames do not hold the impulse of a gravity that changes between them: `csv` says so."""
+def test_forces_of_contact(shaken):
+    """The impulse of gravity between two frames is known: a box that falls is touched by nothing, one on the ground is borne, and
+    friction holds it by 0.3 of its weight at most."""
     from mdanim_lammps.results.motion import ContactForces
 
     _, whole, _ = shaken
     with Trajectory(whole) as trajectory:
-        assert "gravity changes" in ContactForces(trajectory).why
+        forces = ContactForces(trajectory)
+        found = np.array([forces.since(frame) for frame in range(1, len(trajectory))])
+        mass, names = trajectory.metadata.object_mass, list(trajectory.names)
+    np.testing.assert_allclose(found[:5, names.index("far")], 0.0, atol=1e-5)  # points of the path lie within steps
+    for name in ("cube[1]", "cube[2]", "cube[3]"):
+        of, weight = found[2:, names.index(name)], 9.81 * mass[names.index(name)]
+        assert of[:, 2].mean() == pytest.approx(weight, rel=0.05)
+        assert 0.1 * weight < np.abs(of[:, 0]).max() and (np.abs(of[:, 0]) <= 0.3 * of[:, 2] + 1e-9).all()

@@ -10,7 +10,8 @@ import pytest
 from mdanim_lammps.effects.measured import Measured
 from mdanim_lammps.features.liquid.measure import immersed_depth, immersed_share
 from mdanim_lammps.model.grid import Grid
-from mdanim_lammps.results.expect import Outcome, evaluate, recorded
+from mdanim_lammps.results.expect import Outcome, evaluate
+from mdanim_lammps.results.quantities import recorded
 from mdanim_lammps.scene.scene import Expect
 
 GRID = Grid((-1.0, -2.0, 0.0), (1.0, 2.0, 3.0), (20, 40, 30))
@@ -22,16 +23,17 @@ def corners(low, high):
     return np.array([[(low, high)[k >> axis & 1][axis] for axis in range(3)] for k in range(8)], dtype=float)
 
 
-BOX = SimpleNamespace(system=SimpleNamespace(names=("box",)), grid=SimpleNamespace(cell_volume=0.25))
+CELLS = SimpleNamespace(cell_volume=0.25)
 
 
 def found(subject, quantity, time=None, level=None, fed=False, **columns):
     """Value of one expect line in a run of three frames at 0, 1 and 2 s in which nothing moves, with these columns of the
     ledger and levels."""
     still = np.zeros((3, 1, 3))
-    BOX.scene = SimpleNamespace(liquid=SimpleNamespace(fed=fed))
+    scene = SimpleNamespace(liquid=SimpleNamespace(fed=fed))
     ledger = {name: np.array(column, float) for name, column in columns.items()}
-    run = Measured(BOX, np.array([0.0, 1.0, 2.0]), still, still, 0.0, ledger.__getitem__, SimpleNamespace(liquid_levels=level))
+    times, levels = np.array([0.0, 1.0, 2.0]), SimpleNamespace(liquid_levels=level)
+    run = Measured(scene, ("box",), CELLS, times, still, still, 0.0, ledger.__getitem__, levels)
     (outcome,) = evaluate((Expect(subject, quantity, 0.0, time=time),), run)
     return outcome.found
 
@@ -129,7 +131,7 @@ def test_what_to_record_is_named_once():
     """Every quantity that a line asks about and frames alone do not tell, in order, whatever the time."""
     wanted = [("b", "draft"), ("c", "position.z"), ("a", "strain.max"), ("liquid", "level"), ("b", "draft"), ("b", "immersed")]
     named = recorded(tuple(Expect(*line, 0.1, time=float(i)) for i, line in enumerate(wanted)))
-    assert list(named.values()) == ["draft.b", "strain.a", "immersed.b"]
+    assert list(named) == ["draft.b", "strain.a", "immersed.b"]
 
 
 def test_immersed_share_of_cells_across_a_slope():

@@ -9,13 +9,12 @@ import numpy as np
 import pytest
 from mdanim_lammps.effects.measured import Glance, Measured
 from mdanim_lammps.features.liquid.measure import height_at
-from mdanim_lammps.features.motion.measure import RECORDED
+from mdanim_lammps.features.motion.measure import MEASURES
 from mdanim_lammps.model.grid import Grid
 from mdanim_lammps.results.expect import evaluate
 from mdanim_lammps.scene.scene import Expect
 
 TIMES = np.array([0.0, 0.5, 1.0])
-CONTEXT = SimpleNamespace(system=SimpleNamespace(names=("a", "b[1]")))
 
 
 def found(quantity, time, argument=None):
@@ -23,7 +22,7 @@ def found(quantity, time, argument=None):
     t = TIMES[:, None]
     velocity = np.stack([[3.0, 0.0, 4.0] - t * [0.0, 0.0, 9.81], np.tile([0.0, 2.0, 0.0], (3, 1))], axis=1)
     place = np.stack([[1.0, 2.0, 3.0] + t * [3.0, 0.0, 4.0] - 0.5 * t**2 * [0.0, 0.0, 9.81], t * [0.0, 2.0, 0.0]], axis=1)
-    run = Measured(CONTEXT, TIMES, place, velocity, 0.0, None, None)
+    run = Measured(None, ("a", "b[1]"), None, TIMES, place, velocity, 0.0, None, None)
     return evaluate((Expect("a", quantity, 0.0, time=time, argument=argument),), run)[0].found
 
 
@@ -46,8 +45,8 @@ def test_spin_of_a_rigid_motion(sizes):
     everything = lambda own, other: np.concatenate([np.full_like(own[:7], other), own])
     system = SimpleNamespace(first=np.array([0, 7, 67]), mass=everything(mass, 3.0))
     glance = Glance(SimpleNamespace(system=system), 1, None, everything(x, 1.0), everything(v, np.nan), MappingProxyType({}))
-    assert RECORDED["spin"].look(glance) == pytest.approx(np.linalg.norm(omega), rel=1e-9)
-    assert [RECORDED[f"spin.{axis}"].look(glance) for axis in "xyz"] == pytest.approx(omega, rel=1e-9)
+    assert MEASURES["NAME", "spin"].look(glance) == pytest.approx(np.linalg.norm(omega), rel=1e-9)
+    assert [MEASURES["NAME", f"spin.{axis}"].look(glance) for axis in "xyz"] == pytest.approx(omega, rel=1e-9)
 
 
 @pytest.mark.parametrize("shape", [(20, 40, 30), (7, 3, 5), (1, 1, 1)])

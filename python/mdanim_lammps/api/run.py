@@ -20,11 +20,12 @@ from ..report import progress_line
 from ..results.checkpoint import Checkpoint
 from ..results.cost import Cost
 from ..results.expect import Outcome
-from ..results.files import CHECKPOINT, SUMMARY, claimed, in_use, read_json
+from ..results.files import CHECKPOINT, RECORDS, SUMMARY, claimed, in_use, read_json
 from ..results.html import THUMBNAIL, html_table
 from ..results.ledger import Ledger
 from ..results.overwriting import output_file
 from ..results.progress import ENDED, ProgressTail
+from ..results.records import Records
 from ..results.stored import SUMMARY as SUMMARY_FILE
 from ..results.stored import read_manifest
 from ..results.timeline import Timeline
@@ -116,6 +117,16 @@ class Run:
     def ledger(self) -> Ledger:
         """Energies of each frame. Raises OutputError."""
         return self._result.ledger if self._result else Ledger.read(self.folder / "ledger.csv")
+
+    @property
+    def records(self) -> Records:
+        """The quantities of the scene's ``record`` lines, at every frame. Raises OutputError as long as the run is not
+        complete, and where the scene records nothing."""
+        path = self.folder / RECORDS
+        if not path.exists():
+            missing = "the run is not complete" if not (self.folder / SUMMARY).exists() else "the scene has no record line"
+            raise OutputError(f"{self.folder} has no {RECORDS}: {missing}; write e.g. record ball.speed in the scene, and run it")
+        return Records.read(path)
 
     @property
     def outcomes(self) -> list[Outcome]:

@@ -98,6 +98,7 @@ def simulate_and_draw(ready, folder: Path, executing: Executing, *, quiet: bool,
     from ..api.run import run_frames
     from ..cost.saving import after_run
     from ..report import cost_line, progress_line, saving_lines, spread_line
+    from ..results.files import RECORDS
     from ..results.timeline import Timeline
     from ..run.folder import movie_file
     from ..scene.formatting import number
@@ -116,6 +117,8 @@ def simulate_and_draw(ready, folder: Path, executing: Executing, *, quiet: bool,
         if executing.executors > 1 or executing.control:
             print(spread_line(Timeline.read(folder), folder))
         print(f"ledger   energy residual {number(result.ledger.residual)}   {folder / 'ledger.csv'}")
+        if ready.scene.records:
+            print(f"records  {', '.join(of.what for of in ready.scene.records)}   {folder / RECORDS}")
         for outcome in result.outcomes:
             if outcome.met:
                 print(outcome)

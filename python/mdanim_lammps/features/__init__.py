@@ -4,17 +4,18 @@
 A folder has facets, each a module that is looked for by its name:
 
 ``words``    its part of the language (scene/): SWITCHES, the causes that call for each of its effects; QUANTITIES, which
-             ``expect`` can check; MARGINS, the meaning of each of its limits; classes with settings, SCENE outside of all blocks,
-             OBJECT, CONTROL and RENDER in these; BLOCKS of its own; TOUCHED, words for what objects touch, with the kind of block
-             that brings it; MISPLACED, words that people write behind a setting, and what to write instead; ELASTICITIES, classes
-             of further forms of ``elasticity``;
+             ``expect``, ``record`` and pictures can ask for; MARGINS, the meaning of each of its limits; classes with settings,
+             SCENE outside of all blocks, OBJECT, CONTROL and RENDER in these; BLOCKS of its own; TOUCHED, words for what objects
+             touch, with the kind of block that brings it; MISPLACED, words that people write behind a setting, and what to write
+             instead; ELASTICITIES, classes of further forms of ``elasticity``;
              CHECKS by the word of a block, and check(validator, top, held) of a whole scene (scene/validate.py);
              touched(scene), whether it brings something that objects may touch; points(scene), whether objects touch it or each
              other with points of their surfaces; width(scene), the width that sets the spacing of
              scenes without objects
 ``follow``   what follows from its words: fill(validator) gives blocks settings that follow from others, before records are made;
              explained() has texts for ``explain`` by the words that are told
-``measure``  how its quantities are measured (effects/measured.py): MEASURES in a run that has ended, RECORDED in one object
+``measure``  how its quantities are measured (effects/measured.py): MEASURES, by subject and word as in QUANTITIES;
+             unmeasured(scene, asked), problems of what is asked for and cannot be told
 ``effect``   EFFECTS, the effects that it brings (effects/effect.py): causes, columns, commands, planes, bound, ledger
 ``kept``     KEPT, the records that a trajectory keeps of it (effects/kept.py): attributes, tables of frames; Track, what it adds
              to a results.trajectory.Trajectory

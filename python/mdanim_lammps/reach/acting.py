@@ -137,9 +137,14 @@ class Motion:
         """Part of the mass of each immersed solid that it carries [kg], shape (M,)."""
         return 0.0
 
-    def untold(self, scene: SceneRecord) -> str:
-        """Reason why frames do not tell its forces on objects from those of contact; empty where they do."""
-        return ""
+    def impulses(self, scene: SceneRecord, mass: np.ndarray, times: np.ndarray, center: np.ndarray) -> np.ndarray | None:
+        """Momentum that it has given to each solid up to each frame [N s], shape (F, M, 3), where that follows from masses [kg],
+        shape (M,), times [s], shape (F,), and centres of mass [m], shape (F, M, 3), alone; None for nothing."""
+        return None
+
+    def untold(self, scene: SceneRecord) -> Mapping[int, str]:
+        """Solids, by number, of which frames do not tell its forces from those of contact, each with the reason."""
+        return {}
 
     def joins(self, scene: SceneRecord) -> Iterable[tuple[int, int]]:
         """Pairs of solids, by number, that it couples wherever they are: one process simulates both."""

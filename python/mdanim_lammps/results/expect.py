@@ -5,12 +5,13 @@ from __future__ import annotations
 
 import operator
 from dataclasses import dataclass
-from functools import lru_cache
 
-from ..effects.measured import Measure, Measured, Recorded
-from ..features import facets
+import numpy as np
+
+from ..effects.measured import Measurable, Measured
 from ..scene.formatting import number
-from ..scene.scene import GLOBALS, Expect
+from ..scene.scene import Expect
+from .quantities import quantity_of
 
 ROUNDING = 1e-12
 """Relative error of a value that was read from text [-]."""
@@ -41,9 +42,11 @@ class Outcome:
     def __str__(self) -> str:
         e = self.expect
         when = "" if e.time is None else f" at {number(e.time, 6)} s"
+        if e.begin is not None:
+            when = f" from {number(e.begin, 6)} s to {number(e.time, 6)} s"
         verdict = "met" if self.met else "MISSED"
         place = f"{e.span}: " if e.span else ""
-        return f"{place}expect {e.what}{when} {self.asked}: found {number(self.found, 6)}, {verdict}"
+        return f"{place}expect {e.said}{when} {self.asked}: found {number(self.found, 6)}, {verdict}"
 
     @property
     def asked(self) -> str:
@@ -54,33 +57,24 @@ class Outcome:
 
 def evaluate(expects: tuple[Expect, ...], measured: Measured) -> list[Outcome]:
     """Measure every expectation. What needs an effect is refused before a run in which that is off."""
-    return [Outcome(e, _measure(e, measured)) for e in expects]
+    return [Outcome(e, _found(e, quantity_of(e), measured)) for e in expects]
 
 
-@lru_cache(maxsize=1)
-def measures() -> dict[tuple[str, str], Measure]:
-    """How features find their quantities, by subject and word as in scene.QUANTITIES."""
-    return {of: measure for facet in facets("measure") for of, measure in getattr(facet, "MEASURES", {}).items()}
+def _found(e: Expect, quantity: Measurable, m: Measured) -> float:
+    """The value at a time; of a window, or with ``over``, that of all frames in it."""
+    if e.begin is None and not e.over:
+        return quantity.value(m, e, e.time)
+    begin, end = (m.times[0], m.times[-1]) if e.begin is None else (e.begin, e.time)
+    if e.over == "mean":
+        return quantity.mean(m, e, begin, end)
+    values = quantity.within(m, e, begin, end)[1]
+    if e.over:
+        return float({"min": np.min, "max": np.max}[e.over](values))
+    return float(_worst(e, values))
 
 
-@lru_cache(maxsize=1)
-def recordable() -> dict[str, Recorded]:
-    """Quantities of objects that need all particles at every frame."""
-    return {word: found for facet in facets("measure") for word, found in getattr(facet, "RECORDED", {}).items()}
-
-
-def recorded(expects: tuple[Expect, ...]) -> dict[tuple[str, str], str]:
-    """Quantities that must be recorded during the run: (solid, quantity) to the ledger's column, in order and once."""
-    return {(e.subject, e.quantity): _column(e) for e in expects if e.quantity in recordable()}
-
-
-def _column(e: Expect) -> str:
-    return f"{recordable()[e.quantity].column}.{e.subject}"
-
-
-def _measure(e: Expect, m: Measured) -> float:
-    if e.quantity in recordable():
-        return recordable()[e.quantity].measure(m, m.ledger(_column(e)), e.time)
-    if (e.subject, e.quantity) == ("energy", "residual"):
-        return m.largest(m.ledger("residual"), e.time)
-    return measures()[e.subject if e.subject in GLOBALS else "NAME", e.quantity](m, e)
+def _worst(e: Expect, values: np.ndarray) -> float:
+    """The value of a window that keeps what is expected the least."""
+    if e.relation in ("<", "<="):
+        return values.max()
+    return values.min() if e.relation in (">", ">=") else values[np.abs(values - e.value).argmax()]

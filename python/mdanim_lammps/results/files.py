@@ -27,6 +27,8 @@ SUMMARY = "summary.json"
 """Written last: a folder that has it holds a complete run."""
 CHECKPOINT = "checkpoint"
 """Name of the file from which a run is resumed."""
+RECORDS = "records.csv"
+"""Quantities that the scene records, of a complete run."""
 PROGRAM = "mdanim-lammps"
 """Only a folder whose manifest says that this program made it is emptied by ``--force``."""
 STOP = "stop"
@@ -56,7 +58,16 @@ SCRIPT = "# Written by mdanim-lammps"
 INPUTS = ("in.", "data.", "contact.", "columns.")
 """Beginnings of the names of files for ``lmp``; the scene's name follows."""
 RESULTS = (
-    *("scene.lock.txt", "certificate.json", "trajectory.h5", "trajectory.h5.part", "ledger.csv", CHECKPOINT, "cost.json"),
+    *(
+        "scene.lock.txt",
+        "certificate.json",
+        "trajectory.h5",
+        "trajectory.h5.part",
+        "ledger.csv",
+        RECORDS,
+        CHECKPOINT,
+        "cost.json",
+    ),
     *(SUMMARY, "progress.jsonl", "timeline.json", "edited.txt", STOP, PAUSE, "log.lammps"),
 )
 """Files of every run."""

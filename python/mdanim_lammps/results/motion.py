@@ -11,9 +11,9 @@ import numpy as np
 from .. import features
 from ..bodies import all_held, kind_of
 from ..effects import acting
+from ..effects.balance import Balance, untold
 from ..model.inertia import tensor
 from ..model.spin import spin
-from ..reach import Acting
 from ..scene.scene import Save
 
 if TYPE_CHECKING:
@@ -26,11 +26,7 @@ def kinetic(mass: np.ndarray, first: np.ndarray, velocity: np.ndarray) -> np.nda
 
 
 class ContactForces:
-    """Mean force of contact with objects, ground and walls on each object since the frame before.
-
-    No frame holds forces. But where only gravity and contact act on an object from outside, contact has made exactly that change
-    of its momentum that gravity has not made, as the leap-frog adds up forces. So the numbers cost nothing in a run. A single
-    object that is held, or has air drag, gets the opposite of the force of contact on all others, where there are no planes.
+    """Mean force of contact with objects, ground and walls on each object since the frame before, by effects/balance.py.
 
     Args:
         trajectory: of the run.
@@ -39,33 +35,20 @@ class ContactForces:
     """
 
     def __init__(self, trajectory: Trajectory):
-        m, self._trajectory, self.why = trajectory.metadata, trajectory, ""
-        self._told = np.zeros(len(m.names), bool)
+        self.why, self._force = "the scene of this run, or one of its meshes, cannot be read here", None
         if (scene := trajectory.scene) is None:
-            self.why = "the scene of this run, or one of its meshes, cannot be read here"
             return
-        effects = acting(features.effects(), scene)
-        uniform = Acting(scene, effects)
-        self._gravity = uniform.acceleration
-        held = np.add.reduceat(m.held, m.first[:-1]) > 0
-        self._told = ~held & ~m.still & ~uniform.slowed
-        self._alone = np.flatnonzero(~self._told)
-        if len(self._alone) != 1 or uniform.planes:
-            self._alone = self._alone[:0]
-        self.why = next((why for e in effects if (why := e.untold(scene))), "")
-        if not self.why and not self._told.any():
-            self.why = "every object is held or has air drag, whose forces frames do not tell apart"
+        reasons = untold(scene, effects := acting(features.effects(), scene))
+        self.why = next(iter(reasons.values()), "") if len(reasons) == len(scene.solids) else ""
+        if not self.why:
+            t, mass = trajectory, trajectory.metadata.object_mass
+            self._force = Balance(scene, effects, mass, t.times, t.centers, t.center_velocities).contact
 
     def since(self, frame: int) -> np.ndarray:
-        """[N], shape (O, 3), mean from the frame before to this one; NaN in the first frame, and for objects that are held or
-        have air drag, unless there is one of them alone and neither ground nor walls."""
-        t = self._trajectory
-        force = np.full((len(self._told), 3), np.nan)
-        if frame and not self.why:
-            change = (t.center_velocities[frame] - t.center_velocities[frame - 1]) / (t.times[frame] - t.times[frame - 1])
-            force[self._told] = (t.metadata.object_mass[:, None] * (change - self._gravity))[self._told]
-            force[self._alone] = -force[self._told].sum(0)
-        return force
+        """[N], shape (O, 3), mean from the frame before to this one; NaN in the first frame, and for objects of which frames do
+        not tell it: those that are held, unless there is one of them alone and neither ground nor walls, and those that joints,
+        air or a liquid push."""
+        return self._force[frame]
 
 
 class _RigidOnes:

@@ -39,7 +39,7 @@ SUMMARY = record(
         "expect": many(
             record(
                 {"what": text, "time": maybe(number), "value": number, "tolerance": number, "found": maybe(number), "met": flag},
-                {"relation": text},
+                {"relation": text, "from": maybe(number)},
             )
         ),
     },

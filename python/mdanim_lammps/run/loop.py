@@ -23,10 +23,12 @@ from ..errors import ExitCode, MdanimError, OutputError
 from ..interrupts import Interrupts
 from ..results.checkpoint import Checkpoint
 from ..results.cost import Cost, CostShare
-from ..results.expect import Outcome, evaluate, recorded
-from ..results.files import CHECKPOINT, PAUSE, STOP, SUMMARY, disk_errors, write_json, write_whole
+from ..results.expect import Outcome, evaluate
+from ..results.files import CHECKPOINT, PAUSE, RECORDS, STOP, SUMMARY, disk_errors, write_json, write_whole
 from ..results.ledger import Ledger
 from ..results.progress import ProgressLog
+from ..results.quantities import recorded
+from ..results.records import Records
 from ..results.trajectory import Trajectory
 from ..results.trajectory_writer import TrajectoryWriter
 from ..scene.formatting import number
@@ -200,7 +202,7 @@ class _Run:
         self.extras = extra_fields(ready.plan)
         self.ledger = Ledger(
             ledger_terms(ready.plan),
-            (*recorded(ready.scene.expects).values(), *(field.name for field in self.extras)),
+            (*recorded(ready.scene.asked), *(field.name for field in self.extras)),
             least_energy(ready.scene, ready.system),
             potential_terms(ready.plan),
             tuple(field.name for field in self.extras if field.whole),
@@ -318,18 +320,21 @@ class _Run:
 
     def _finish(self, account: Account) -> Result:
         with self._clock("output"), Trajectory(self.folder) as trajectory:
-            outcomes = evaluate(
-                self.ready.scene.expects,
-                Measured(
-                    self.ready.context,
-                    trajectory.times,
-                    trajectory.centers,
-                    trajectory.center_velocities,
-                    self.penetration,
-                    self.ledger.array,
-                    trajectory,
-                ),
+            measured = Measured(
+                self.ready.scene,
+                tuple(self.ready.system.names),
+                self.ready.plan.grid,
+                trajectory.times,
+                trajectory.centers,
+                trajectory.center_velocities,
+                self.penetration,
+                self.ledger.array,
+                trajectory,
             )
+            outcomes = evaluate(self.ready.scene.expects, measured)
+            if self.ready.scene.records:
+                records = Records.of(self.ready.scene.records, measured)
+                write_whole(self.folder / RECORDS, records.write)
         cost = self._cost(account)
         write_json(self.folder / "cost.json", cost.to_json())
         write_json(self.folder / SUMMARY, self._summary(outcomes))
@@ -359,8 +364,9 @@ class _Run:
             "seconds": sum(self.seconds.values()),
             "expect": [
                 {
-                    "what": o.expect.what,
+                    "what": o.expect.said,
                     "time": o.expect.time,
+                    "from": o.expect.begin,
                     "relation": o.expect.relation,
                     "value": o.expect.value,
                     "tolerance": o.expect.tolerance,

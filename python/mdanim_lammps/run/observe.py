@@ -15,7 +15,7 @@ from ..engine.geometry import INVERTED, NOT_FINITE, Geometry
 from ..engine.plan import Plan
 from ..model.model import Model
 from ..model.system import centers
-from ..results.expect import recordable, recorded
+from ..results.quantities import recorded
 from .folds import Folds
 
 
@@ -44,12 +44,12 @@ class Observation:
     fold: np.ndarray
     """Their mean place [m], shape (m, 3)."""
     recorded: dict[str, float]
-    """Quantities that an ``expect`` needs at every frame, by their columns of the ledger."""
+    """Quantities that a scene asks for and that need every frame, by their columns of the ledger."""
 
 
 def recorded_models(models: Sequence[Model], plan: Plan) -> tuple[Model, ...]:
     """Models that an `Observer` of a plan needs."""
-    wanted = {name for name, _ in recorded(plan.scene.expects)}
+    wanted = {name for name, _ in recorded(plan.scene.asked).values()}
     return tuple(model for model in models if model.name in wanted)
 
 
@@ -67,8 +67,8 @@ class Observer:
         self.apart = any(effect.keeps_apart for effect in plan.effects)
         model_of, number = {model.name: model for model in models}, {name: m for m, name in enumerate(plan.system.names)}
         self.recorded = [
-            (number[name], recordable()[quantity].look, model_of[name], column)
-            for (name, quantity), column in recorded(plan.scene.expects).items()
+            (number[name], quantity.look, model_of[name], column)
+            for column, (name, quantity) in recorded(plan.scene.asked).items()
         ]
 
     def observe(

@@ -14,6 +14,7 @@ from ..effects import Context, Resolved, Verdict, resolve
 from ..engine.overlaps import Overlaps
 from ..engine.plan import Plan, make_plan
 from ..errors import Problem, RefusedError, SceneError
+from ..features import facets
 from ..model.build import build_models
 from ..model.grid import Grid
 from ..model.model import Model
@@ -138,16 +139,19 @@ def _context(resolved: Resolved, models: Sequence[Model], spacing: Spacing, grid
 
 
 def _unmeasurable(resolved: Resolved) -> list[Problem]:
-    """A problem for every ``expect`` whose quantity is that of an effect that is off."""
-    return [
+    """A problem for every quantity that is asked for and that of an effect that is off, or that frames do not tell."""
+    wanted = resolved.scene.asked
+    off = [
         Problem(
-            e.span,
-            f"{e.subject}.{e.quantity} needs the {needs}, which is off ({resolved.verdicts[needs].reason})",
-            f"take this expect out, or switch the {needs} on",
+            of.span,
+            f"{of.subject}.{of.quantity} needs the {needs}, which is off ({resolved.verdicts[needs].reason})",
+            f"take this line out, or switch the {needs} on",
         )
-        for e in resolved.scene.expects
-        if (needs := e.kind.needs) and not resolved.on(needs)
+        for of in wanted
+        if (needs := of.kind.needs) and not resolved.on(needs)
     ]
+    unmeasured = (facet.unmeasured for facet in facets("measure") if hasattr(facet, "unmeasured"))
+    return [*off, *(problem for find in unmeasured for problem in find(resolved.scene, wanted))]
 
 
 def _undriven(resolved: Resolved, models: Sequence[Model]) -> list[Problem]:

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from itertools import pairwise
 from typing import Any
 
@@ -61,3 +62,16 @@ def vector_at(path: tuple, time: float) -> Vector:
             part = (time - a) / (b - a)
             return tuple(x + part * (y - x) for x, y in zip(low, high))
     return path[-1][1]
+
+
+def integral(path: tuple, times: Iterable[float]) -> list[Vector]:
+    """Integrals of `vector_at` from 0 to each of these times [s], which ascend: exact, as it is straight between points."""
+    found, last, sums = [], 0.0, (0.0, 0.0, 0.0)
+    corners = [t for t, _ in path]
+    for time in times:
+        for end in (*(t for t in corners if last < t < time), time):
+            a, b = vector_at(path, last), vector_at(path, end)
+            sums = tuple(s + (end - last) * (x + y) / 2.0 for s, x, y in zip(sums, a, b))
+            last = end
+        found.append(sums)
+    return found

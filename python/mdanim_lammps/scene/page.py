@@ -205,7 +205,10 @@ def language_page() -> str:
         else:
             parts[-1] = parts[-1] if own else parts[-1].removesuffix("\n")
             parts.append(_table(own.values()) if own else "")
-    parts += ["\n## What `expect` can check\n\n", "| quantity | unit | meaning |\n|---|---|---|\n"]
+    parts += [
+        "\n## Quantities\n\n`expect` checks them, `record` writes them at every frame to `records.csv`: [how](show.md).\n\n",
+        "| quantity | unit | meaning |\n|---|---|---|\n",
+    ]
     parts += [f"| `{k}.{q}` | {x.unit if x.unit != '1' else '-'} | {meaning(k, x)} |\n" for (k, q), x in QUANTITIES.items()]
     parts += [_END, _LIMITS]
     numbers = [

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import Enum
 from pathlib import Path
@@ -12,10 +12,11 @@ from typing import TYPE_CHECKING, Any, get_args
 
 from ..errors import Span
 from ..features import facets
-from .formatting import number, vector
+from .formatting import vector
+from .quantities import GLOBALS, OVER, QUANTITIES, RELATIONS, VECTORS, Asked, Check, Expect, QuantityName  # noqa: F401
 from .render import Camera, Render  # noqa: F401
 from .rotation import IDENTITY, departure, rotation_about, rotation_euler
-from .schema import COLOR, Codec, Keyword, Observable, OneOf, Rule, Vector, Worded, Words, of_features, setting, with_words
+from .schema import COLOR, Codec, Keyword, OneOf, Rule, Vector, Worded, Words, of_features, setting, with_words
 from .shapes import (  # noqa: F401
     Box,
     Cone,
@@ -212,75 +213,6 @@ class Control(Worded):
         __getattr__ = of_features
 
 
-_OF_FEATURES = {of: quantity for words in facets("words") for of, quantity in getattr(words, "QUANTITIES", {}).items()}
-QUANTITIES = {
-    **{of: quantity for of, quantity in _OF_FEATURES.items() if of[0] == "NAME"},
-    ("energy", "residual"): Observable("1", "relative error of the energy ledger", bound=True),
-    **{of: quantity for of, quantity in _OF_FEATURES.items() if of[0] != "NAME"},
-}
-"""Quantities that ``expect`` can check, by subject and word; NAME stands for any object."""
-
-GLOBALS = tuple(dict.fromkeys(subject for subject, _ in QUANTITIES if subject != "NAME"))
-"""Subjects of ``expect`` that are not objects."""
-
-
-RELATIONS = {"=": "=", "<": "<", ">": ">", "<=": "<=", ">=": ">=", "≤": "<=", "≥": ">="}
-"""How what is found may stand to a value, by how it is written."""
-
-
-@dataclass(frozen=True, slots=True)
-class Expect:
-    """A self-check, evaluated after the run."""
-
-    subject: str
-    """Object name, ``liquid``, ``energy`` or ``penetration``."""
-    quantity: str
-    """``position.z``, ``velocity.x``, ``draft``, ``strain.max``, ``residual``, ``max`` ..."""
-    value: float
-    """SI."""
-    tolerance: float = 0.0
-    """SI, >= 0."""
-    time: float | None = None
-    """[s]; None is the end of the run (``strain.max``, ``penetration.max``, ``crest``, residuals: the whole run)."""
-    relation: str = "="
-    """One of RELATIONS."""
-    argument: str | tuple[float, float] | None = None
-    """The other object of a distance, the place of a height [m]; None of quantities that take none."""
-    span: Span | None = field(default=None, compare=False, repr=False)
-
-    @property
-    def what(self) -> str:
-        """The checked quantity, as it is written in scenes."""
-        return self.written(lambda x: number(x, 6))
-
-    def written(self, number: Callable[[float], str]) -> str:
-        """The same with its numbers in this form."""
-        taken = self.argument
-        if isinstance(taken, tuple):
-            taken = ", ".join(f"{number(x)} m" for x in taken)
-        return f"{self.subject}.{self.quantity}" + ("" if taken is None else f"({taken})")
-
-    @property
-    def unit(self) -> str:
-        """SI unit of what is checked; empty for plain numbers."""
-        unit = self.kind.unit
-        return "" if unit == "1" else unit
-
-    @property
-    def kind(self) -> Observable:
-        """The kind of the checked quantity."""
-        return QUANTITIES[self.subject if self.subject in GLOBALS else "NAME", self.quantity]
-
-
-class Check(Codec):
-    """A self-check; its values are read in validate.py, for their unit is that of the quantity."""
-
-    def write(self, k: Keyword, value: Any) -> tuple[int, tuple]:
-        numbers = [f"{x!r} {value.unit}".rstrip() for x in (value.value, value.tolerance)]
-        tolerance = numbers[1] if value.relation == "=" else None
-        return 0, (value.written(repr), value.time, value.relation, numbers[0], tolerance)
-
-
 @dataclass(frozen=True, slots=True, weakref_slot=True)
 class SceneRecord:
     """A whole scene, validated word by word; geometry is checked when models are made."""
@@ -301,17 +233,27 @@ class SceneRecord:
     """Only what ``effects { }`` says; everything else is ``auto``."""
     render: Render = field(default_factory=Render)
     expects: tuple[Expect, ...] = setting(
-        "<NAME.QUANTITY> [at <T:s>] <RELATION> <value:?> [+- <tolerance:?> [%]]",
+        "[<min|max|mean>] <NAME.QUANTITY> [at <T:s>] [from <T0:s> to <T1:s>] <RELATION> <value:?> [+- <tolerance:?> [%]]",
         "A self-check, evaluated after the run; a miss is exit code 6. Without `at`: the end of the run, and the whole run for "
-        "residuals and maxima. RELATION is `=`, `<`, `>`, `<=` or `>=`; only `=` has a tolerance, in the unit of the value or in "
-        "per cent of it: `= 12 cm +- 2 %`. Without `+-`: exactly.",
+        "residuals and maxima. With `from` and `to` it holds at all frames of that time; the value found is the worst one. "
+        "`min`, `max` and `mean` are those of that time, or of the whole run. RELATION is `=`, `<`, `>`, `<=` or `>=`; only `=` "
+        "has a tolerance, in the unit of the value or in per cent of it: `= 12 cm +- 2 %`. Without `+-`: exactly.",
         "ball.position.z at 1 s = 0.1 m +- 1 cm", name="expect", default=(), many=True, codec=Check())  # fmt: skip
+    records: tuple[Asked, ...] = setting(
+        "<NAME.QUANTITY>",
+        "A column of `records.csv`: the quantity at every frame, in SI units; `run.records` has them in Python.",
+        "ball.speed", name="record", default=(), many=True, codec=QuantityName())  # fmt: skip
     path: Path | None = field(default=None, compare=False)
     """The file that was read, absolute."""
     spans: Mapping[str, Span] = field(default_factory=dict, compare=False, repr=False)
     """Places of ``gravity``, ``ground``, ``walls``, ``effects.NAME`` ..."""
     warnings: tuple = field(default=(), compare=False)
     """Problems of severity ``warning`` that were found while reading."""
+
+    @property
+    def asked(self) -> tuple[Asked | Expect, ...]:
+        """All quantities that it asks for."""
+        return (*self.expects, *self.records)
 
     if TYPE_CHECKING:
         __getattr__ = of_features

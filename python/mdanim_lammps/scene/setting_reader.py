@@ -11,8 +11,8 @@ from itertools import count
 from .forms import OptionalPart, Slot, Word, alternatives, literals, pieces
 from .keywords import KEYWORDS, NOT_SUPPORTED, STATEMENTS, belongs, did_you_mean, example, example_of, misplaced, nearest, owner
 from .limits import DEEPEST_GROUP
+from .quantities import GLOBALS, QUANTITIES, RELATIONS
 from .reader import ODD, Reader
-from .scene import GLOBALS, QUANTITIES, RELATIONS
 from .schema import Keyword
 from .source import Fault, Problems, SceneFile
 from .tokens import Token
@@ -167,6 +167,8 @@ class SettingReader(Reader):
                 first = part.parts[0]
                 if isinstance(first, Word):
                     present = first.text == t or (first.text == "+-" and t.type == "PLUS_MINUS")
+                elif first.kind == "choice":
+                    present = str(t) in first.choices and self.ahead(1).type not in ("DOT", "LSQB")
                 else:
                     following = parts[n + 1].text if n + 1 < len(parts) else None
                     present = t.type not in ("NEWLINE", "END", "RBRACE") and t != following
@@ -238,10 +240,10 @@ class SettingReader(Reader):
         return Value(slot, first, last, text=text)
 
     def check(self, slot: Slot, keyword: Keyword) -> Value:
-        """NAME.QUANTITY of an expect."""
+        """NAME.QUANTITY."""
         if self.peek.type != "NAME":
             hint = f"NAME is an object, or one of {', '.join(GLOBALS)}"
-            raise Fault(self.peek, f"expect needs NAME.QUANTITY, found {self.peek.found()}", hint)
+            raise Fault(self.peek, f"{keyword.name} needs NAME.QUANTITY, found {self.peek.found()}", hint)
         parts = [self.part_of_name()]
         while self.peek.type == "DOT":
             if self.ahead(1).type != "NAME":
@@ -250,7 +252,7 @@ class SettingReader(Reader):
         at = quantity_of(parts)
         name, last = joined(parts[:at]), parts[-1].last
         if at == len(parts):
-            raise Fault(name.token, f"expect {name.token} names no quantity", f"e.g. {name.token}.position.z", name.last)
+            raise Fault(name.token, f"{keyword.name} {name.token} names no quantity", f"e.g. {name.token}.position.z", name.last)
         text = ".".join(part.token for part in parts[at:])
         argument = self.argument(text, last, stops(keyword))
         return Value(slot, name.token, argument.last if argument else last, text=text, name=name, argument=argument)

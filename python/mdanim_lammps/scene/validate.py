@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from functools import cached_property
 from itertools import islice
@@ -13,10 +13,11 @@ from typing import Any
 
 from ..errors import Span
 from ..features import facets
-from . import keywords, units
+from . import keywords
 from . import scene as records
+from .asked import ASKED, asked_for
 from .evaluated import EvaluatedBlock, EvaluatedSetting, around
-from .formatting import number, say, whole, with_article
+from .formatting import number, say, whole
 from .keywords import BLOCKS, KEYWORDS, Block, did_you_mean, example, examples
 from .lammps_lines import commands
 from .limits import MOST_FRAMES
@@ -24,7 +25,7 @@ from .meshes import beside, refusal_of_mesh
 from .naming import objects_by_name
 from .placement import Placement, beyond_limits
 from .render import SMOOTH_RATE, few_pictures
-from .scene import GLOBALS, QUANTITIES, Vector
+from .scene import GLOBALS, Vector
 from .schema import OneOf
 from .source import Problems, SceneFile
 
@@ -47,6 +48,8 @@ class Validator:
 
     def __init__(self, out: EvaluatedBlock, problems: Problems, top: Span, names: Sequence[str] = ()):
         self.out, self.problems = out, problems
+        self.has_scene = not names
+        """Whether there is a whole scene, not a render block alone."""
         self.top = top
         """The beginning of the scene, for problems of the scene as a whole."""
         self.by_kind: dict[str, list[EvaluatedBlock]] = {}
@@ -90,18 +93,25 @@ class Validator:
                 words.check(self, top, held)
         held["control"] = control = self.frames(control, held["render"])
         self.cameras()
-        top["expects"] = self.expects(control)
+        top |= asked_for(self, control)
         enough = [block for block in BLOCKS.values() if block.enough]
         if not any(held[b.field] for b in enough) and not self.out.excused("object") and not self.problems.errors:
             cause = f"the scene has neither an {' nor a '.join(b.name for b in enough)}: there is nothing to compute"
             self.problem(self.top, cause, "write object NAME { ... }", key="empty")
         if self.problems.errors or control is None:
             return None
-        spans = {w: found[0].span() for w, found in self.out.settings.items() if w != "expect"}
+        spans = {w: found[0].span() for w, found in self.out.settings.items() if not isinstance(KEYWORDS[""][w].codec, ASKED)}
         for block in self.blocks("effects"):
             spans |= {f"effects.{w}": found[0].span() for w, found in block.settings.items()}
         held = {field: value for field, value in held.items() if value is not None}
         return keywords.SCENE(name=name, path=path, spans=spans, warnings=tuple(self.problems.ordered()), **held, **top)
+
+    def quantities(self) -> Iterator[tuple[tuple, Span]]:
+        """Quantities that the scene asks for, each as subject, word and argument, with its place."""
+        for block in (self.out, *self.blocks("render")):
+            for s in (s for found in block.settings.values() for s in found):
+                places = (n for n, value in enumerate(s.entry.values) if value is not None and value.slot.kind == "check")
+                yield from ((s.values[n], s.span(n)) for n in places)
 
     def render(self) -> records.Render | None:
         """The render block alone; None after an error."""
@@ -181,7 +191,7 @@ class Validator:
         values = {k.field: k.absent for k in own.values() if k.absent is not None} if block.block != "effects" else {}
         for word, found in block.settings.items():
             k, read = own[word], []
-            for s in found if k.field != "expects" else ():
+            for s in found if not isinstance(k.codec, ASKED) else ():
                 try:
                     read.append(k.read(s.entry.choice, s.values))
                 except ValueError as e:
@@ -390,66 +400,6 @@ class Validator:
             self.known_object(name, span, (repeat for repeat in islice(self.named, 2000) if repeat not in self.names))
         return False
 
-    def expects(self, control: records.Control | None) -> tuple[records.Expect, ...]:
-        return tuple(e for s in self.out.settings.get("expect", ()) if (e := self.expect(s, control)) is not None)
-
-    def expect(self, s: EvaluatedSetting, control: records.Control | None) -> records.Expect | None:
-        """One self-check, with the unit of its quantity."""
-        (subject, quantity, argument), time, relation, value, tolerance = s.values
-        if subject not in GLOBALS:
-            subject = self.own_names.get(subject, subject)
-        kind = subject if subject in GLOBALS else "NAME"
-        known = [q for k, q in QUANTITIES if k == kind]
-        if kind == "NAME" and not self.known_object(subject, s.span(0), (*self.own_names, *GLOBALS)):
-            return None
-        if (kind, quantity) not in QUANTITIES:
-            self.problem(
-                s.span(0), f"{quantity} is not a quantity of {subject} that expect can check", did_you_mean(quantity, known)
-            )
-            return None
-        of = QUANTITIES[kind, quantity]
-        if of.takes in ("object", "joined") and not _known_other(self, subject, quantity, argument, s.span(0), of.takes):
-            return None
-        if of.needs in BLOCKS and not self.blocks(of.needs) and not self.out.excused(of.needs):
-            self.problem(s.span(0), f"{subject}.{quantity} needs {with_article(of.needs)} block, and the scene has none")
-        if time is not None and (time < 0.0 or (control is not None and time > control.time * (1.0 + 1e-9))):
-            end = f", which ends at {number(control.time, 6)} s" if control else ""
-            self.problem(s.span(1), f"{number(time, 6)} s lies outside the run{end}", "an earlier time, or a longer control time")
-        dim = units.unit(of.unit).dim
-        numbers, part = [], "%" in s.entry.words
-        for n, (x, what) in enumerate(((value, "the value"), (tolerance, "the tolerance")), 3):
-            if x is None:
-                numbers.append(0.0)
-                continue
-            if n == 4 and (cause := _tolerance_unfit(relation, part, numbers[0], x)):
-                self.problem(s.span(n), *cause)
-                return None
-            if units.dimension(x) not in (dim, units.NONE):
-                self.problem(
-                    s.span(n),
-                    f"{subject}.{quantity} is {units.describe_unit(of.unit)}, found {units.show(x)}, "
-                    f"{units.describe(units.dimension(x))}",
-                    f"units that fit: {' '.join(units.fitting(of.unit))}" if dim != units.NONE else "leave out the unit",
-                )
-                return None
-            if not math.isfinite(units.magnitude(x)):
-                self.problem(s.span(n), f"{what} is not a finite number")
-            numbers.append(units.magnitude(x))
-        if numbers[1] < 0.0:
-            self.problem(s.span(4), f"the tolerance must be >= 0, found {units.show(tolerance)}")
-        if part:
-            numbers[1] *= abs(numbers[0]) / 100.0
-        return records.Expect(subject, quantity, numbers[0], numbers[1], time, relation, argument, s.span())
-
-
-def _known_other(v: Validator, subject: str, quantity: str, other: str, span: Span, takes: str) -> bool:
-    """Another object, or the world."""
-    if other != subject:
-        more = ("world",) if takes == "joined" else ()
-        return other in more or v.known_object(other, span, more)
-    v.problem(span, f"the {quantity} of {subject} and itself is 0", "name another object")
-    return False
-
 
 def _known_in(v: Validator, name: str, span: Span, block: Block) -> bool:
     """As `Validator.known_body`, in a block that takes words of its own in place of planes."""
@@ -464,14 +414,3 @@ def _known_in(v: Validator, name: str, span: Span, block: Block) -> bool:
     else:
         v.known_object(name, span, (*(n for n in islice(v.named, 2000) if n not in v.names), *block.instead))
     return False
-
-
-def _tolerance_unfit(relation: str, part: bool, value: float, tolerance: Any) -> tuple[str, str] | None:
-    """Cause and way out where a tolerance says nothing."""
-    if relation != "=":
-        return f"a tolerance cannot follow '{relation}'", f"write the bound itself, or = {number(value, 6)} +- ..."
-    if part and units.dimension(tolerance) != units.NONE:
-        return f"per cent is of a plain number, found {units.show(tolerance)}", "leave out the unit, or the per cent"
-    if part and value == 0.0:
-        return "per cent of 0 is nothing", "write a tolerance with the unit of the value"
-    return None

@@ -285,6 +285,11 @@ def _asked(e: dict) -> str:
     return f"{e['value']:.6g} ± {e['tolerance']:.3g}" if relation == "=" else f"{relation} {e['value']:.6g}"
 
 
+def _when(e: dict) -> float | str | None:
+    """The time of an expectation, or its window."""
+    return e["time"] if e.get("from") is None else f"{e['from']:.6g} to {e['time']:.6g}"
+
+
 def _sections(folder: Path, news: dict) -> Iterable[str]:
     facts = news["facts"]
     yield _table("Cost", ["effect", "seconds", "asked for at"], _cost_rows(facts.get("cost") or {"other": news["cost"]}))
@@ -292,7 +297,7 @@ def _sections(folder: Path, news: dict) -> Iterable[str]:
     yield _table(
         "Expected and found",
         ["", "what", "at [s]", "expected", "found"],
-        [("met" if e["met"] else "MISSED", e["what"], e["time"], _asked(e), e["found"]) for e in summary.get("expect", ())],
+        [("met" if e["met"] else "MISSED", e["what"], _when(e), _asked(e), e["found"]) for e in summary.get("expect", ())],
     )
     certificate = facts.get("certificate", {})
     if certificate:

@@ -57,7 +57,8 @@ class Air(Effect):
         return _throws(scene) if scene.air is not None else {}
 
     def untold(self, scene):
-        return "air pushes at objects, and frames do not tell its forces from those of contact" if scene.air is not None else ""
+        why = "air pushes at objects, and frames do not tell its forces from those of contact"
+        return dict.fromkeys(range(len(scene.solids)), why) if scene.air is not None else {}
 
     # --- what it brings into a run ------------------------------------------------------------------------------------
 

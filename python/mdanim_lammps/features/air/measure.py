@@ -5,16 +5,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...effects.measured import Measured
-from ...scene.scene import Expect
+from ...effects.measured import Measurable, Measured, Of
 from .effect import FORCE
 
 
-def force(m: Measured, e: Expect) -> float:
-    """[N]"""
-    n = list(m.trajectory.names).index(e.subject)
-    of_frames = (m.trajectory.field(FORCE, frame)[n] for frame in range(len(m.times)))
-    return m.at(np.array([float(np.linalg.norm(one)) for one in of_frames]), e.time)
+def force(m: Measured, of: Of) -> np.ndarray:
+    """[N], shape (F,)."""
+    n = m.solid(of.subject)
+    return np.array([float(np.linalg.norm(m.trajectory.field(FORCE, frame)[n])) for frame in range(len(m.times))])
 
 
-MEASURES = {("NAME", "air.force"): force}
+MEASURES = {("NAME", "air.force"): Measurable(force)}

@@ -34,6 +34,10 @@ class AirDrag(Effect):
     def slows(self, scene):
         return np.array([solid.drag > 0.0 for solid in scene.solids], bool)
 
+    def impulses(self, scene, mass, times, center):
+        # -lambda v has given -lambda (x - x0), whatever the motion: the leap-frog takes the mean of the velocities around a step.
+        return -np.array([solid.drag for solid in scene.solids])[:, None] * (center - center[0])
+
     def drag(self, context):
         rate = np.array([solid.drag / mass(solid) if solid.drag else 0.0 for solid in context.solids])
         return context.system.mass * rate[context.system.object]

@@ -34,7 +34,16 @@ MOST_PAIRS = 10**5
 
 SWITCHES = {"contact": "two objects that can meet"}
 
-QUANTITIES = {("penetration", "max"): Observable("m", "deepest overlap of two objects", bound=True)}
+QUANTITIES = {
+    ("penetration", "max"): Observable("m", "deepest overlap of two objects", bound=True),
+    ("NAME", "contact"): Observable("N", "magnitude of the force of contact"),
+    **{
+        ("NAME", f"contact.{axis}"): Observable(
+            "N", f"force of contact with objects, ground and walls on an object, mean since the frame before, {axis}"
+        )
+        for axis in "xyz"
+    },
+}
 
 MARGINS = {
     "contact": "the time step that contact alone would bear, by its largest curvature over a plane (an estimate)",

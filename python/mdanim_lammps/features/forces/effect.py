@@ -66,8 +66,13 @@ class Forces(Effect):
         windows = (_seconds(one, time) for s in context.scene.solids for one in (*s.force, *s.torque))
         return min((w / IN_A_WINDOW for w in windows if w > 0.0), default=math.inf)
 
-    def untold(self, scene):
-        return "forces act on objects, and frames do not tell them apart from those of contact" if throws(scene) else ""
+    def impulses(self, scene, mass, times, center):
+        found = np.zeros((len(times), len(mass), 3))
+        for m, solid in enumerate(scene.solids):
+            for one in solid.force:
+                begin, end = one.begin or 0.0, np.inf if one.end is None else one.end
+                found[:, m] += np.clip(times - begin, 0.0, end - begin)[:, None] * np.array(one.vector)
+        return found
 
     def sources(self, scene):
         return (WORK,)

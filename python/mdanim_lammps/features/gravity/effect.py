@@ -7,7 +7,7 @@ import numpy as np
 
 from ...effects.context import Verdict
 from ...effects.effect import Effect
-from ...scene.in_time import vector_at
+from ...scene.in_time import integral, vector_at
 
 
 class Gravity(Effect):
@@ -40,6 +40,9 @@ class Gravity(Effect):
 
     def acceleration(self, scene):
         return np.array(scene.gravity, float)
+
+    def impulses(self, scene, mass, times, center):
+        return mass[:, None] * (times[:, None] * np.array(scene.gravity, float))[:, None]
 
     def weighed(self, scene, system):
         return float((system.mass * np.abs(system.position @ np.array(scene.gravity))).sum())
@@ -83,8 +86,8 @@ class ChangingGravity(Gravity):
         gained = np.cumsum(0.5 * (g[1:] + g[:-1]) * np.diff(times)[:, None], axis=0)
         return float(np.linalg.norm(np.ptp(np.concatenate([np.zeros((1, 3)), gained]), axis=0)))
 
-    def untold(self, scene):
-        return "gravity changes with time, and frames do not tell what it has done between them"
+    def impulses(self, scene, mass, times, center):
+        return mass[:, None] * np.array(integral(scene.gravity_path, times))[:, None]
 
     def weighed(self, scene, system):
         low, high = self.accelerations(scene)

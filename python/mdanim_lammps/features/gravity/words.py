@@ -4,9 +4,14 @@
 from __future__ import annotations
 
 from ...scene.in_time import InTime
-from ...scene.schema import Vector, setting
+from ...scene.schema import Observable, Vector, setting
 
 SWITCHES = {"gravity": "a gravity vector that is not zero"}
+
+QUANTITIES = {
+    ("NAME", "weight"): Observable("N", "magnitude of the weight of an object"),
+    **{("NAME", f"weight.{axis}"): Observable("N", f"weight of an object, mass times gravity, {axis}") for axis in "xyz"},
+}
 
 
 class GravityWords:

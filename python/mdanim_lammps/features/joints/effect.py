@@ -14,7 +14,6 @@ from ...errors import Problem
 from ...model.shapes import radius
 from ...scene.formatting import number, say
 from .links import NOTHING, Link, links_of
-from .measure import unmeasured
 from .place import doubled, misplaced
 from .preload import torn
 from .rows import joint_field, rows_of_joints
@@ -59,6 +58,10 @@ class Joints(Effect):
 
     def passes(self, scene):
         return links_of(scene).passing if scene.joints else ()
+
+    def untold(self, scene):
+        ends = (m for link in links_of(scene).all for m in (link.first, link.named)) if scene.joints else ()
+        return {m: "its joint pulls at it, and frames do not tell that from contact" for m in ends if m != NOTHING}
 
     # --- what it brings into a run ------------------------------------------------------------------------------------
 
@@ -108,7 +111,7 @@ class Joints(Effect):
     # --- advice -------------------------------------------------------------------------------------------------------
 
     def problems(self, resolved, models, grid):
-        return [*misplaced(resolved.scene, models), *unmeasured(resolved.scene)]
+        return misplaced(resolved.scene, models)
 
     def warnings(self, context):
         """Joints that stand twice; objects that move against their joints at the start: the worst."""

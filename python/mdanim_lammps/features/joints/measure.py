@@ -3,13 +3,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Iterable
 
 import numpy as np
 
-from ...effects.measured import Measured
+from ...effects.measured import Measurable, Measure, Measured, Of
 from ...errors import Problem
-from ...scene.scene import Expect, SceneRecord
+from ...scene.scene import SceneRecord
 from .links import Link, links_of
 from .rows import FIELD, FORCE, GAP, NUMBER, TORQUE, WAY
 
@@ -27,10 +27,10 @@ def joint_between(scene: SceneRecord, subject: str, other: str, what: str) -> Li
     return next((link for name, link in own if name == other and (kinds is None or link.joint.kind in kinds)), None)
 
 
-def unmeasured(scene: SceneRecord) -> list[Problem]:
-    """A problem for every ``expect`` about a joint that is not there."""
+def unmeasured(scene: SceneRecord, asked: Iterable[Of]) -> list[Problem]:
+    """A problem for everything asked about a joint that is not there."""
     found = []
-    for e in scene.expects:
+    for e in asked:
         what = e.quantity.removeprefix("joint.")
         if e.quantity == what or joint_between(scene, e.subject, str(e.argument), what) is not None:
             continue
@@ -45,17 +45,17 @@ def unmeasured(scene: SceneRecord) -> list[Problem]:
     return found
 
 
-def _along(what: str) -> Callable[[Measured, Expect], float]:
-    def measure(m: Measured, e: Expect) -> float:
-        link = joint_between(m.context.scene, e.subject, str(e.argument), what)
+def _along(what: str) -> Measure:
+    def measure(m: Measured, e: Of) -> np.ndarray:
+        link = joint_between(m.scene, e.subject, str(e.argument), what)
         values = np.full(len(m.times), np.nan)
         for frame in range(len(m.times)):
             rows = m.trajectory.field(FIELD, frame)["value"]
             own = rows[rows[:, NUMBER] == link.number] if link is not None else rows[:0]
             values[frame] = own[0, COLUMNS[what]] if len(own) else np.nan
-        return m.at(values, e.time)
+        return values
 
     return measure
 
 
-MEASURES = {("NAME", f"joint.{what}"): _along(what) for what in COLUMNS}
+MEASURES = {("NAME", f"joint.{what}"): Measurable(_along(what)) for what in COLUMNS}

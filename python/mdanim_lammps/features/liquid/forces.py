@@ -64,7 +64,8 @@ class Buoyancy(Effect):
         return ["fix_modify liquid buoyancy d_volume"]
 
     def untold(self, scene):
-        return "lift and drag of the liquid act as well, and frames do not tell them apart" if scene.liquid else ""
+        why = "lift and drag of the liquid act as well, and frames do not tell them apart"
+        return dict.fromkeys(range(len(scene.solids)), why) if scene.liquid else {}
 
     def pushes_below(self, scene):
         # Waves rise up to the rim of the basin.

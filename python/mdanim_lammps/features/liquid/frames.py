@@ -47,7 +47,7 @@ def is_wavy(scene: SceneRecord) -> bool:
 def fields(scene: SceneRecord) -> tuple[Field, ...]:
     """Cells to the unit: whole ones of an automaton, whole 2^-20 of one of waves. Columns of the ledger are the highest liquid
     and the energy of waves where an ``expect`` asks for them."""
-    asked = {e.quantity for e in scene.expects if e.subject == "liquid"}
+    asked = {e.quantity for e in scene.asked if e.subject == "liquid"}
     return (
         Field(CELLS, "1", ledger=True, whole=True),
         Field(DUE, "1", ledger=scene.liquid.fed, whole=True),

@@ -5,28 +5,21 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...effects.measured import Glance, Measured, Recorded
+from ...effects.measured import Glance, Measurable, Measured, Of, Recorded
 from ...model.grid import Grid
-from ...scene.scene import Expect
 from .kept import HEIGHT
 from .ledger import CELLS, CREST, DUE, WAVES
 
 
-def residual(m: Measured, e: Expect) -> float:
-    """Cells more or fewer than there should be, the most at any frame."""
+def residual(m: Measured, of: Of) -> np.ndarray:
+    """Cells more or fewer than there should be."""
     cells = m.ledger(CELLS)
-    return m.largest(cells - (m.ledger(DUE) if m.context.scene.liquid.fed else cells[0]), e.time)
+    return cells - (m.ledger(DUE) if m.scene.liquid.fed else cells[0])
 
 
-def volume(m: Measured, e: Expect) -> float:
-    """[m^3]"""
-    return m.at(m.ledger(CELLS), e.time) * m.context.grid.cell_volume
-
-
-def height(m: Measured, e: Expect) -> float:
-    """Height of the smooth surface at a place [m], linear between the middles of columns and between frames."""
-    frames = range(len(m.times))
-    return m.at(np.array([height_at(e.argument, m.context.grid, m.trajectory.liquid_height(k)) for k in frames]), e.time)
+def height(m: Measured, of: Of) -> np.ndarray:
+    """Height of the smooth surface at a place [m], linear between the middles of columns."""
+    return np.array([height_at(of.argument, m.grid, m.trajectory.liquid_height(k)) for k in range(len(m.times))])
 
 
 def height_at(place: tuple[float, float], grid: Grid, heights: np.ndarray) -> float:
@@ -42,16 +35,6 @@ def _between(x: float, count: int) -> tuple[int, float]:
     """The column before a place, and how far the place is on the way to the next one; the outermost middles go on to the edge."""
     x = min(max(x, 0.0), count - 1.0)
     return int(x), x - int(x)
-
-
-MEASURES = {
-    ("liquid", "height"): height,
-    ("liquid", "residual"): residual,
-    ("liquid", "volume"): volume,
-    ("liquid", "level"): lambda m, e: m.at(m.trajectory.liquid_levels, e.time),
-    ("liquid", "crest"): lambda m, e: float(m.until(m.ledger(CREST), e.time).max()),
-    ("liquid", "waves"): lambda m, e: m.at(m.ledger(WAVES), e.time),
-}
 
 
 def immersed_share(corners: np.ndarray, grid: Grid, height: np.ndarray) -> float:
@@ -115,4 +98,13 @@ def _height(g: Glance) -> np.ndarray:
     return g.fields[HEIGHT.name] if HEIGHT.name in g.fields else np.full(grid.shape[1::-1], grid.low[2])
 
 
-RECORDED = {"draft": Recorded("draft", _draft, Measured.at), "immersed": Recorded("immersed", _immersed, Measured.at)}
+MEASURES = {
+    ("liquid", "height"): Measurable(height),
+    ("liquid", "residual"): Measurable(residual, Measured.largest),
+    ("liquid", "volume"): Measurable(lambda m, of: m.ledger(CELLS) * m.grid.cell_volume),
+    ("liquid", "level"): Measurable(lambda m, of: np.asarray(m.trajectory.liquid_levels)),
+    ("liquid", "crest"): Measurable(lambda m, of: m.ledger(CREST), Measured.highest),
+    ("liquid", "waves"): Measurable(lambda m, of: m.ledger(WAVES)),
+    ("NAME", "draft"): Recorded("draft", _draft),
+    ("NAME", "immersed"): Recorded("immersed", _immersed),
+}

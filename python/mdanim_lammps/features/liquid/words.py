@@ -123,12 +123,11 @@ def ground_below(v: Any, liquid: Any) -> None:
 
 
 def within_basin(v: Any, liquid: Any) -> None:
-    """Places at which heights are expected lie in the basin."""
-    for s in v.out.settings.get("expect", ()) if liquid is not None else ():
-        _, quantity, place = s.values[0]
+    """Places whose heights are asked for lie in the basin."""
+    for (_, quantity, place), span in v.quantities() if liquid is not None else ():
         if quantity == "height" and not all(a <= x <= b for a, x, b in zip(liquid.low, place, liquid.high)):
             cause = f"the place {vector(place)} m lies outside the basin"
-            v.problem(s.span(0), cause, f"the basin goes from {vector(liquid.low[:2])} to {vector(liquid.high[:2])} m")
+            v.problem(span, cause, f"the basin goes from {vector(liquid.low[:2])} to {vector(liquid.high[:2])} m")
 
 
 def check_liquid(v: Any, block: Any, liquid: Any) -> Any:

@@ -1,55 +1,120 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""Quantities of the motion of objects that ``expect`` can ask for."""
+"""Quantities of the motion of objects."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from operator import itemgetter
 
 import numpy as np
 
-from ...effects.measured import Glance, Measured, Recorded
+from ... import features
+from ...effects import acting
+from ...effects.balance import Balance
+from ...effects.measured import Glance, Mean, Measurable, Measured, Of, Recorded
 from ...model.spin import spin
-from ...scene.scene import Expect
+
+Vectors = Callable[[Measured, Of], np.ndarray]
+"""Finds a vector at all frames, shape (F, 3)."""
 
 
-def _place(m: Measured, e: Expect) -> np.ndarray:
-    return motion(m, m.solid(e.subject), e.time)[0]
+def _place(m: Measured, of: Of) -> np.ndarray:
+    return m.center[:, m.solid(of.subject)]
 
 
-def _velocity(m: Measured, e: Expect) -> np.ndarray:
-    return motion(m, m.solid(e.subject), e.time)[1]
+def _velocity(m: Measured, of: Of) -> np.ndarray:
+    return m.velocity[:, m.solid(of.subject)]
 
 
-def _distance(m: Measured, e: Expect) -> float:
-    return float(np.linalg.norm(_place(m, e) - motion(m, m.solid(e.argument), e.time)[0]))
+def _between(part: int, number: Callable[[np.ndarray], float]) -> Callable[[Measured, Of, float], float]:
+    return lambda m, of, time: float(number(motion(m, m.solid(of.subject), time)[part]))
 
 
-def _along(vector: Callable[[Measured, Expect], np.ndarray], axis: int) -> Callable[[Measured, Expect], float]:
-    return lambda m, e: float(vector(m, e)[axis])
+def _distance(m: Measured, of: Of) -> np.ndarray:
+    return np.linalg.norm(_place(m, of) - m.center[:, m.solid(of.argument)], axis=1)
+
+
+def _distance_between(m: Measured, of: Of, time: float) -> float:
+    return float(np.linalg.norm(motion(m, m.solid(of.subject), time)[0] - motion(m, m.solid(of.argument), time)[0]))
+
+
+def _component(of_vector: Vectors, axis: int) -> Callable[[Measured, Of], np.ndarray]:
+    return lambda m, of: of_vector(m, of)[:, axis]
+
+
+def _size(of_vector: Vectors) -> Callable[[Measured, Of], np.ndarray]:
+    return lambda m, of: np.linalg.norm(of_vector(m, of), axis=1)
+
+
+def _norm(vector: np.ndarray) -> float:
+    return float(np.linalg.norm(vector))
+
+
+def balance(m: Measured) -> Balance:
+    """The momenta of all objects."""
+    effects = acting(features.effects(), m.scene)
+    return Balance(m.scene, effects, np.asarray(m.trajectory.metadata.object_mass), m.times, m.center, m.velocity)
+
+
+def _resultant(m: Measured, of: Of) -> np.ndarray:
+    return balance(m).resultant[:, m.solid(of.subject)]
+
+
+def _spin(g: Glance) -> np.ndarray:
+    return spin(g.context.system.mass[g.mine], np.zeros(1, int), g.position[g.mine], g.velocity[g.mine])[0]
+
+
+def turn(g: Glance) -> np.ndarray:
+    """Rotation of an object since the start, of least squares over its particles: a matrix, shape (3, 3)."""
+    mass = g.context.system.mass[g.mine]
+    start, now = g.context.system.position[g.mine], g.position[g.mine]
+    start, now = (x - np.average(x, axis=0, weights=mass) for x in (start, now))
+    u, _, v = np.linalg.svd(np.einsum("n,ni,nj->ij", mass, now, start))
+    return u @ np.diag([1.0, 1.0, np.sign(np.linalg.det(u @ v))]) @ v
+
+
+def _angle(g: Glance, axis: int) -> float:
+    """Part of a rotation about an axis [rad], from -pi to pi: the twist of its quaternion."""
+    r = turn(g)
+    i, j = (axis + 1) % 3, (axis + 2) % 3
+    return float(np.arctan2(r[j, i] - r[i, j], 1.0 + np.trace(r))) * 2.0
+
+
+def _follow(angles: np.ndarray) -> np.ndarray:
+    """Angles without jumps by whole turns from frame to frame."""
+    return np.unwrap(angles)
+
+
+def _kinetic(g: Glance) -> float:
+    """Kinetic energy of flight, spin and vibrations [J]. A rigid object has the inertia of its shape, no other."""
+    system, v = g.context.system, g.velocity[g.mine]
+    mass = system.mass[g.mine]
+    if not system.rigid[g.solid]:
+        return float(0.5 * mass @ np.einsum("nd,nd->n", v, v))
+    mean = np.average(v, axis=0, weights=mass)
+    along = turn(g).T @ _spin(g)
+    return float(0.5 * mass.sum() * mean @ mean + 0.5 * along @ system.inertia[g.solid] @ along)
 
 
 MEASURES = {
     **{
-        ("NAME", f"{word}.{letter}"): _along(vector, axis)
-        for word, vector in (("position", _place), ("velocity", _velocity))
+        ("NAME", f"{word}.{letter}"): Measurable(_component(vector, axis), between=_between(part, itemgetter(axis)))
+        for part, (word, vector) in enumerate((("position", _place), ("velocity", _velocity)))
         for axis, letter in enumerate("xyz")
     },
-    ("NAME", "speed"): lambda m, e: float(np.linalg.norm(_velocity(m, e))),
-    ("NAME", "distance"): _distance,
-}
-
-
-def _spin(g: Glance) -> np.ndarray:
-    first = g.context.system.first
-    own = slice(first[g.solid], first[g.solid + 1])
-    return spin(g.context.system.mass[own], np.zeros(1, int), g.position[own], g.velocity[own])[0]
-
-
-RECORDED = {
-    "spin": Recorded("spin", lambda g: float(np.linalg.norm(_spin(g))), Measured.at),
+    ("NAME", "speed"): Measurable(_size(_velocity), between=_between(1, _norm)),
+    ("NAME", "distance"): Measurable(_distance, between=_distance_between),
+    ("NAME", "force"): Mean(_size(_resultant)),
+    ("NAME", "spin"): Recorded("spin", lambda g: _norm(_spin(g))),
+    ("NAME", "kinetic"): Recorded("kinetic", _kinetic),
     **{
-        f"spin.{letter}": Recorded(f"spin.{letter}", lambda g, axis=axis: float(_spin(g)[axis]), Measured.at)
+        ("NAME", f"{word}.{letter}"): of
         for axis, letter in enumerate("xyz")
+        for word, of in (
+            ("force", Mean(_component(_resultant, axis))),
+            ("spin", Recorded(f"spin.{letter}", lambda g, axis=axis: float(_spin(g)[axis]))),
+            ("angle", Recorded(f"angle.{letter}", lambda g, axis=axis: _angle(g, axis), follow=_follow)),
+        )
     },
 }
 

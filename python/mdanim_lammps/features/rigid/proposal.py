@@ -20,7 +20,7 @@ from ...scene.scene import SceneRecord, Solid
 from ..contact.pairs import damping, frictions
 from ..contact.rigid_surfaces import loads, struck_at
 from ..contact.words import ContactModel
-from ..springs.measure import RECORDED
+from ..springs import measure as springs
 from ..springs.strength import folds_at, spots
 from .strains import Strains
 from .words import SENSELESS, Rigid
@@ -93,7 +93,7 @@ def groups(scene: SceneRecord) -> dict[str, np.ndarray]:
     found: dict[str, list[int]] = {}
     for m, solid in enumerate(scene.solids):
         found.setdefault(bare_name(solid.name), []).append(m)
-    looked_at = {e.subject for e in scene.expects if e.quantity in RECORDED}
+    looked_at = {e.subject for e in scene.asked if e.key in springs.MEASURES}
     free = [_may_be(s, s.name in looked_at, takes) for s, takes in zip(scene.solids, _take_energy(scene))]
     return {name: np.array(of) for name, of in found.items() if all(free[m] for m in of)}
 

@@ -10,20 +10,38 @@ from ...model.system import System
 from ..tearing.gone import gone_of
 
 
+def kept(system: System, solid: int, gone: np.ndarray | None) -> np.ndarray:
+    """Numbers of the springs of a solid without those that are ``gone``, bool, in the order of the solid's springs."""
+    low, high = np.searchsorted(system.spring[:, 0], system.first[solid : solid + 2])
+    return np.arange(low, high) if gone is None else np.arange(low, high)[~gone]
+
+
 def largest_strain(system: System, solid: int, position: np.ndarray, gone: np.ndarray | None = None) -> float:
     """Largest |r/r0 - 1| of the springs of a solid [-], for particle positions [m], shape (N, 3); r0 is the length in the body
-    without load. Those that are ``gone`` do not count, bool, in the order of the solid's springs."""
-    low, high = np.searchsorted(system.spring[:, 0], system.first[solid : solid + 2])
-    kept = np.arange(low, high) if gone is None else np.arange(low, high)[~gone]
-    if not len(kept):
+    without load. Those that are ``gone`` do not count."""
+    own = kept(system, solid, gone)
+    if not len(own):
         return 0.0
-    i, j = system.spring[kept].T
-    r = np.linalg.norm(position[i] - position[j], axis=1)
-    return float(np.abs(r / system.unloaded[kept] - 1.0).max())
+    return float(np.abs(_lengths(system, own, position) / system.unloaded[own] - 1.0).max())
+
+
+def _lengths(system: System, springs: np.ndarray, position: np.ndarray) -> np.ndarray:
+    i, j = system.spring[springs].T
+    return np.linalg.norm(position[i] - position[j], axis=1)
+
+
+def _elastic(g: Glance) -> float:
+    system = g.context.system
+    own = kept(system, g.solid, gone_of(system, g.solid, g.fields))
+    stretch = _lengths(system, own, g.position) - system.rest[own]
+    return float((0.5 * system.stiffness[own] * stretch**2 - system.preload_energy[own]).sum())
 
 
 def _look(g: Glance) -> float:
     return largest_strain(g.context.system, g.solid, g.position, gone_of(g.context.system, g.solid, g.fields))
 
 
-RECORDED = {"strain.max": Recorded("strain", _look, Measured.largest)}
+MEASURES = {
+    ("NAME", "strain.max"): Recorded("strain", _look, Measured.largest),
+    ("NAME", "elastic"): Recorded("elastic", _elastic),
+}

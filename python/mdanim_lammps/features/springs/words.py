@@ -5,7 +5,10 @@ from ...scene.schema import Observable
 
 SWITCHES = {"springs": "an object that is not all held"}
 
-QUANTITIES = {("NAME", "strain.max"): Observable("1", "largest relative change of length of a spring")}
+QUANTITIES = {
+    ("NAME", "strain.max"): Observable("1", "largest relative change of length of a spring"),
+    ("NAME", "elastic"): Observable("J", "energy of the springs of an object"),
+}
 
 MARGINS = {
     "amplitude": "the speed of a hit over the wave speed of the object; above about 0.2 a soft object stays crumpled",

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...effects.measured import Glance, Measured, Recorded
+from ...effects.measured import Glance, Recorded
 from .gone import gone_of
 
 
@@ -28,4 +28,4 @@ def pieces(g: Glance) -> int:
     return int(connected_components(joined, directed=False)[0])
 
 
-RECORDED = {"torn": Recorded("torn", share, Measured.at), "pieces": Recorded("pieces", pieces, Measured.at)}
+MEASURES = {("NAME", "torn"): Recorded("torn", share), ("NAME", "pieces"): Recorded("pieces", pieces)}

@@ -1,4 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """Quantities of the rig for ``expect``."""
 
-MEASURES = {("rig", "work"): lambda m, e: m.at(m.ledger("work"), e.time)}
+from mdanim_lammps.effects.measured import Measurable
+
+MEASURES = {("rig", "work"): Measurable(lambda m, of: m.ledger("work"))}

@@ -1,0 +1,25 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Quantities of gravity."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...effects.measured import Measurable, Measured, Of
+from ...scene.in_time import vector_at
+
+
+def _weight(m: Measured, of: Of) -> np.ndarray:
+    """Mass times gravity [N], shape (F, 3)."""
+    path = m.scene.gravity_path or ((0.0, m.scene.gravity),)
+    mass = float(m.trajectory.metadata.object_mass[m.solid(of.subject)])
+    return mass * np.array([vector_at(path, float(t)) for t in m.times])
+
+
+MEASURES = {
+    ("NAME", "weight"): Measurable(lambda m, of: np.linalg.norm(_weight(m, of), axis=1)),
+    **{
+        ("NAME", f"weight.{letter}"): Measurable(lambda m, of, axis=axis: _weight(m, of)[:, axis])
+        for axis, letter in enumerate("xyz")
+    },
+}

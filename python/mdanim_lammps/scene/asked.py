@@ -1,0 +1,122 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Checks of the quantities that a scene asks for: in ``expect``, ``record``, ``plot`` and ``arrows``."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+from ..errors import Span
+from . import units
+from .evaluated import EvaluatedSetting
+from .formatting import number, with_article
+from .keywords import BLOCKS, did_you_mean
+from .quantities import GLOBALS, QUANTITIES, Asked, Check, Expect, QuantityName
+
+if TYPE_CHECKING:
+    from .scene import Control
+    from .validate import Validator
+
+ASKED = (Check, QuantityName)
+"""Codecs of settings that are read here."""
+
+
+def asked_for(v: Validator, control: Control | None) -> dict[str, tuple]:
+    """Fields of the scene with what ``expect`` and ``record`` ask for."""
+    expects = (_expect(v, s, control) for s in v.out.settings.get("expect", ()))
+    records = (quantity(v, s.values[0], s.span(0)) for s in v.out.settings.get("record", ()))
+    return {"expects": tuple(filter(None, expects)), "records": tuple(dict.fromkeys(filter(None, records)))}
+
+
+def quantity(v: Validator, named: tuple, span: Span) -> Asked | None:
+    """A quantity with names that there are; None after an error."""
+    subject, word, argument = named
+    if subject not in GLOBALS:
+        subject = v.own_names.get(subject, subject)
+    kind = subject if subject in GLOBALS else "NAME"
+    known = [q for k, q in QUANTITIES if k == kind]
+    if kind == "NAME" and not v.known_object(subject, span, (*v.own_names, *GLOBALS)):
+        return None
+    if (kind, word) not in QUANTITIES:
+        v.problem(span, f"{word} is not a quantity of {subject}", did_you_mean(word, known))
+        return None
+    of = QUANTITIES[kind, word]
+    if of.takes in ("object", "joined") and not _known_other(v, subject, word, argument, span, of.takes):
+        return None
+    if of.needs in BLOCKS and v.has_scene and not v.blocks(of.needs) and not v.out.excused(of.needs):
+        v.problem(span, f"{subject}.{word} needs {with_article(of.needs)} block, and the scene has none")
+    return Asked(subject, word, argument, span)
+
+
+def _known_other(v: Validator, subject: str, word: str, other: str, span: Span, takes: str) -> bool:
+    """Another object, or the world."""
+    if other != subject:
+        more = ("world",) if takes == "joined" else ()
+        return other in more or v.known_object(other, span, more)
+    v.problem(span, f"the {word} of {subject} and itself is 0", "name another object")
+    return False
+
+
+def _expect(v: Validator, s: EvaluatedSetting, control: Control | None) -> Expect | None:
+    """One self-check, with the unit of its quantity."""
+    over, named, at, begin, end, relation, value, tolerance = s.values
+    of = quantity(v, named, s.span(1))
+    if of is None or not _times(v, s, control):
+        return None
+    dim = units.unit(of.kind.unit).dim
+    numbers, part = [], "%" in s.entry.words
+    for n, (x, what) in enumerate(((value, "the value"), (tolerance, "the tolerance")), 6):
+        if x is None:
+            numbers.append(0.0)
+            continue
+        if n == 7 and (cause := _tolerance_unfit(relation, part, numbers[0], x)):
+            v.problem(s.span(n), *cause)
+            return None
+        if units.dimension(x) not in (dim, units.NONE):
+            v.problem(
+                s.span(n),
+                f"{of.subject}.{of.quantity} is {units.describe_unit(of.kind.unit)}, found {units.show(x)}, "
+                f"{units.describe(units.dimension(x))}",
+                f"units that fit: {' '.join(units.fitting(of.kind.unit))}" if dim != units.NONE else "leave out the unit",
+            )
+            return None
+        if not math.isfinite(units.magnitude(x)):
+            v.problem(s.span(n), f"{what} is not a finite number")
+        numbers.append(units.magnitude(x))
+    if numbers[1] < 0.0:
+        v.problem(s.span(7), f"the tolerance must be >= 0, found {units.show(tolerance)}")
+    if part:
+        numbers[1] *= abs(numbers[0]) / 100.0
+    time = at if end is None else end
+    return Expect(of.subject, of.quantity, *numbers, time, relation, of.argument, over or "", begin, s.span())
+
+
+def _times(v: Validator, s: EvaluatedSetting, control: Control | None) -> bool:
+    """Whether its times are one moment, or a window that ends after it begins; those outside of the run are problems, too."""
+    over, at, begin, end = s.values[0], *s.values[2:5]
+    if at is not None and begin is not None:
+        v.problem(s.span(3), "an expect is at a time, or from one to another, not both", "leave one of them out")
+        return False
+    if at is not None and over:
+        v.problem(s.span(2), f"{over} is of many moments, found one", "write from T0 to T1 in place of at T")
+        return False
+    if begin is not None and end <= begin:
+        cause = f"the window ends at {number(end, 6)} s and begins at {number(begin, 6)} s"
+        v.problem(s.span(4), cause, "write the earlier time first")
+        return False
+    for n, time in ((2, at), (3, begin), (4, end)):
+        if time is not None and (time < 0.0 or (control is not None and time > control.time * (1.0 + 1e-9))):
+            stop = f", which ends at {number(control.time, 6)} s" if control else ""
+            v.problem(s.span(n), f"{number(time, 6)} s lies outside the run{stop}", "an earlier time, or a longer control time")
+    return True
+
+
+def _tolerance_unfit(relation: str, part: bool, value: float, tolerance: Any) -> tuple[str, str] | None:
+    """Cause and way out where a tolerance says nothing."""
+    if relation != "=":
+        return f"a tolerance cannot follow '{relation}'", f"write the bound itself, or = {number(value, 6)} +- ..."
+    if part and units.dimension(tolerance) != units.NONE:
+        return f"per cent is of a plain number, found {units.show(tolerance)}", "leave out the unit, or the per cent"
+    if part and value == 0.0:
+        return "per cent of 0 is nothing", "write a tolerance with the unit of the value"
+    return None

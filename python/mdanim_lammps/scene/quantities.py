@@ -1,0 +1,137 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Quantities of a run, as scenes ask for them: in ``expect``, ``record``, ``plot`` and ``arrows``."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+from ..errors import Span
+from ..features import facets
+from .formatting import number
+from .schema import Codec, Keyword, Observable
+
+_OF_FEATURES = {of: quantity for words in facets("words") for of, quantity in getattr(words, "QUANTITIES", {}).items()}
+QUANTITIES: dict[tuple[str, str], Observable] = {
+    **{of: quantity for of, quantity in _OF_FEATURES.items() if of[0] == "NAME"},
+    ("energy", "residual"): Observable("1", "relative error of the energy ledger", bound=True),
+    **{of: quantity for of, quantity in _OF_FEATURES.items() if of[0] != "NAME"},
+}
+"""The one catalogue of quantities, by subject and word; NAME stands for any object."""
+
+GLOBALS = tuple(dict.fromkeys(subject for subject, _ in QUANTITIES if subject != "NAME"))
+"""Subjects of quantities that are not objects."""
+
+VECTORS = tuple(
+    word.removesuffix(".x")
+    for subject, word in QUANTITIES
+    if subject == "NAME" and word.endswith(".x") and all(("NAME", f"{word[:-1]}{axis}") in QUANTITIES for axis in "yz")
+)
+"""Quantities of objects that are vectors: they have components x, y, z."""
+
+RELATIONS = {"=": "=", "<": "<", ">": ">", "<=": "<=", ">=": ">=", "≤": "<=", "≥": ">="}
+"""How what is found may stand to a value, by how it is written."""
+OVER = ("min", "max", "mean")
+"""Numbers of all frames in a time that an ``expect`` may ask for."""
+
+Argument = str | tuple[float, float] | None
+
+
+class _OfQuantity:
+    """The words of something that has ``subject``, ``quantity`` and ``argument``."""
+
+    __slots__ = ()
+    subject: str
+    quantity: str
+    argument: Argument
+
+    @property
+    def what(self) -> str:
+        """The quantity, as it is written in scenes."""
+        return self.written(lambda x: number(x, 6))
+
+    def written(self, number: Callable[[float], str]) -> str:
+        """The same with its numbers in this form."""
+        taken = self.argument
+        if isinstance(taken, tuple):
+            taken = ", ".join(f"{number(x)} m" for x in taken)
+        return f"{self.subject}.{self.quantity}" + ("" if taken is None else f"({taken})")
+
+    @property
+    def key(self) -> tuple[str, str]:
+        """Its place among QUANTITIES."""
+        return (self.subject if self.subject in GLOBALS else "NAME", self.quantity)
+
+    @property
+    def kind(self) -> Observable:
+        """The kind of the quantity."""
+        return QUANTITIES[self.key]
+
+    @property
+    def unit(self) -> str:
+        """Its SI unit; empty for plain numbers."""
+        unit = self.kind.unit
+        return "" if unit == "1" else unit
+
+
+@dataclass(frozen=True, slots=True)
+class Asked(_OfQuantity):
+    """A quantity whose values at all frames are asked for."""
+
+    subject: str
+    """Object name, ``liquid``, ``energy`` or ``penetration``."""
+    quantity: str
+    """``position.z``, ``velocity.x``, ``draft``, ``strain.max``, ``residual``, ``max`` ..."""
+    argument: Argument = None
+    """The other object of a distance, the place of a height [m]; None of quantities that take none."""
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Expect(_OfQuantity):
+    """A self-check, evaluated after the run."""
+
+    subject: str
+    """As of `Asked`."""
+    quantity: str
+    value: float
+    """SI."""
+    tolerance: float = 0.0
+    """SI, >= 0."""
+    time: float | None = None
+    """[s]; None is the end of the run (``strain.max``, ``penetration.max``, ``crest``, residuals: the whole run)."""
+    relation: str = "="
+    """One of RELATIONS."""
+    argument: Argument = None
+    """As of `Asked`."""
+    over: str = ""
+    """One of OVER; empty for the value at a time, or at all times of a window."""
+    begin: float | None = None
+    """Begin of a window that ends at ``time`` [s]; None without one."""
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+    @property
+    def said(self) -> str:
+        """``max ball.speed``: the quantity, with what is asked of it."""
+        return f"{self.over} {self.what}".lstrip()
+
+
+class Check(Codec):
+    """A self-check; its values are read in asked.py, for their unit is that of the quantity."""
+
+    def write(self, k: Keyword, value: Any) -> tuple[int, tuple]:
+        numbers = [f"{x!r} {value.unit}".rstrip() for x in (value.value, value.tolerance)]
+        tolerance = numbers[1] if value.relation == "=" else None
+        at, end = (value.time, None) if value.begin is None else (None, value.time)
+        return 0, (value.over or None, value.written(repr), at, value.begin, end, value.relation, numbers[0], tolerance)
+
+
+class QuantityName(Codec):
+    """A quantity alone, as `Asked`; its names are checked in asked.py."""
+
+    def read(self, k: Keyword, choice: int, values: tuple) -> Asked:
+        return Asked(*values[0])
+
+    def write(self, k: Keyword, value: Asked) -> tuple[int, tuple]:
+        return 0, (value.written(repr),)
