@@ -12,6 +12,7 @@
 #include "lammps/fix_mdanim_drive.h"
 #include "lammps/fix_mdanim_force.h"
 #include "lammps/fix_mdanim_gravity.h"
+#include "lammps/fix_mdanim_inflate.h"
 #include "lammps/fix_mdanim_joint.h"
 #include "lammps/fix_mdanim_leapfrog.h"
 #include "lammps/fix_mdanim_liquid.h"
@@ -129,6 +130,7 @@ MDANIM_EXPORT void lammpsplugin_init(void *handle_of_lammps, void *handle, void 
       style<FixMdanimGravity>("fix", "mdanim/gravity", "m g on every particle"),
       style<FixMdanimJoint>("fix", "mdanim/joint", "joints between objects"),
       style<FixMdanimAir>("fix", "mdanim/air", "air pushes at surfaces"),
+      style<FixMdanimInflate>("fix", "mdanim/inflate", "gas in closed surfaces"),
       style<FixMdanimBarrier>("fix", "mdanim/barrier", "a barrier between objects"),
       style<FixMdanimContact>("fix", "mdanim/contact", "objects and planes touch, with friction"),
       style<FixMdanimDrive>("fix", "mdanim/drive", "what is held goes where functions of time say"),

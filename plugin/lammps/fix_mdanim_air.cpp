@@ -5,7 +5,6 @@
 
 #include "lammps/keywords.h"
 #include "lammps/object_table.h"
-#include "lammps/particle_value.h"
 #include "lammps/shared_file.h"
 #include "numbers/stopwatch.h"
 #include "records/byte_reader.h"
@@ -31,7 +30,7 @@ static constexpr int COLUMNS = 3;    // of compute_array()
 static constexpr std::int64_t STATE_VERSION = 1;
 
 // fix ID group mdanim/air DENSITY C [wind wx wy wz] [path T wx wy wz T wx wy wz ...] [above z] skins FILE
-FixMdanimAir::FixMdanimAir(LAMMPS *lmp, int narg, char **arg) : FixBase(lmp, narg, arg), above(-HUGE_VAL), shared(lmp)
+FixMdanimAir::FixMdanimAir(LAMMPS *lmp, int narg, char **arg) : FixBase(lmp, narg, arg), above(-HUGE_VAL), nodes(lmp)
 {
   array_flag = 1;
   restart_global = 1;
@@ -68,7 +67,10 @@ FixMdanimAir::FixMdanimAir(LAMMPS *lmp, int narg, char **arg) : FixBase(lmp, nar
   }
   if (path.empty()) path.append(0.0, {});
   if (skins.empty()) error->all(FLERR, "{}: there is no surface to push at; write skins FILE with a line object first", STYLE);
-  for (auto &[molecule, skin] : skins) objects.push_back({molecule, std::move(skin), {}, 0, true, {}});
+  for (auto &[molecule, skin] : skins) {
+    nodes.append(molecule, skin->nodes());
+    objects.push_back({std::move(skin), {}});
+  }
   size_array_rows = static_cast<int>(objects.size());
 }
 
@@ -94,72 +96,7 @@ int FixMdanimAir::setmask() { return PRE_NEIGHBOR | POST_INTEGRATE | POST_FORCE;
 void FixMdanimAir::init()
 {
   FixBase::init();
-  find_objects();
-}
-
-// --- particles ---
-
-// Tags and masses of nodes. Objects may have changed since the last run.
-void FixMdanimAir::find_objects()
-{
-  const auto object_of = [this](int i) {
-    const auto found = std::lower_bound(objects.begin(), objects.end(), atom->molecule[i],
-                                        [](const AirObject &one, tagint id) { return one.molecule < id; });
-    return found != objects.end() && found->molecule == atom->molecule[i] ? static_cast<int>(found - objects.begin()) : -1;
-  };
-  std::vector<tagint> lowest(objects.size(), MAXTAGINT);
-  for (int i = 0; i < atom->nlocal; ++i)
-    if (const int n = object_of(i); n >= 0) lowest[n] = std::min(lowest[n], atom->tag[i]);
-  MPI_Allreduce(MPI_IN_PLACE, lowest.data(), static_cast<int>(lowest.size()), MPI_LMP_TAGINT, MPI_MIN, world);
-
-  std::size_t all = 0;
-  for (AirObject &one : objects) {
-    one.first = all;
-    all += one.skin->nodes().size();
-  }
-  std::vector<double> mass(all, 0.0);    // each of one rank, so that sums are the numbers themselves
-  for (int i = 0; i < atom->nlocal; ++i) {
-    const int n = object_of(i);
-    if (n < 0) continue;
-    const std::vector<int> &nodes = objects[n].skin->nodes();
-    const auto found = std::lower_bound(nodes.begin(), nodes.end(), atom->tag[i] - lowest[n]);
-    if (found != nodes.end() && *found == atom->tag[i] - lowest[n])
-      mass[objects[n].first + (found - nodes.begin())] = mass_of(atom->rmass, atom->mass, atom->type, i);
-  }
-  MPI_Allreduce(MPI_IN_PLACE, mass.data(), static_cast<int>(mass.size()), MPI_DOUBLE, MPI_SUM, world);
-
-  std::vector<tagint> tags;
-  for (std::size_t n = 0; n < objects.size(); ++n) {
-    AirObject &one = objects[n];
-    const std::vector<int> &nodes = one.skin->nodes();
-    one.mass.assign(mass.begin() + one.first, mass.begin() + one.first + nodes.size());
-    if (lowest[n] == MAXTAGINT) error->all(FLERR, "{}: there is no object {} (molecule ID)", name(), one.molecule);
-    if (const auto gone = std::find(one.mass.begin(), one.mass.end(), 0.0); gone != one.mass.end())
-      error->all(FLERR, "{}: object {} (molecule ID) has no particle {}, counted from its lowest tag, 1", name(), one.molecule,
-                 nodes[gone - one.mass.begin()] + 1);
-    for (const int node : nodes) tags.push_back(lowest[n] + node);
-  }
-  std::vector<tagint> ascending = tags;
-  std::sort(ascending.begin(), ascending.end());
-  shared.choose(std::move(ascending));
-  number.clear();
-  for (const tagint tag : tags) number.push_back(shared.number_of(tag));
-}
-
-// An object of which no node is in the group feels nothing: it has been laid aside, or is held.
-void FixMdanimAir::locate()
-{
-  shared.locate(name(), groupbit);
-  row.resize(number.size());
-  target.resize(number.size());
-  for (AirObject &one : objects) {
-    one.acts = false;
-    for (std::size_t n = one.first; n < one.first + one.mass.size(); ++n) {
-      row[n] = shared.row_of(number[n]);
-      target[n] = shared.is_pushed(number[n]) ? shared.local(number[n]) : SharedMotion::ELSEWHERE;
-      one.acts = one.acts || shared.is_pushed(number[n]);
-    }
-  }
+  nodes.find(name());
 }
 
 // --- forces ---
@@ -173,22 +110,24 @@ void FixMdanimAir::find_pushes()
   wind_now = wind();
   const AirLaw law{wind_now, 0.5 * density * coefficient, update->dt};
   const double units = 1.0 / force->ftm2v;
-  shared.share();
+  nodes.share();
   pushes.clear();
-  for (AirObject &one : objects) {
+  for (int n = 0; n < nodes.count(); ++n) {
+    AirObject &one = objects[n];
     one.force = {};
-    if (!one.acts) continue;
-    const std::size_t nodes = one.mass.size();
-    scratch.x.resize(nodes);
-    scratch.v.resize(nodes);
-    scratch.mass = one.mass;
-    for (std::size_t n = 0; n < nodes; ++n) {
-      scratch.x[n] = shared.place(row[one.first + n]);
-      scratch.v[n] = shared.speed(row[one.first + n]);
+    if (!nodes.acts(n)) continue;
+    const std::size_t first = nodes.first(n), count = nodes.end(n) - first;
+    scratch.x.resize(count);
+    scratch.v.resize(count);
+    scratch.mass.resize(count);
+    for (std::size_t k = 0; k < count; ++k) {
+      scratch.x[k] = nodes.place(first + k);
+      scratch.v[k] = nodes.speed(first + k);
+      scratch.mass[k] = nodes.mass(first + k);
     }
     one.force = units * one.skin->push(law, above, scratch);
-    for (std::size_t n = 0; n < nodes; ++n)
-      if (const int i = target[one.first + n]; i != SharedMotion::ELSEWHERE) pushes.push_back({i, units * scratch.force[n]});
+    for (std::size_t k = 0; k < count; ++k)
+      if (const int i = nodes.target(first + k); i != ObjectNodes::ELSEWHERE) pushes.push_back({i, units * scratch.force[k]});
   }
 }
 
@@ -212,7 +151,7 @@ void FixMdanimAir::count()
   loss += half * (of_wind - given);
 }
 
-// What acts after a state are the forces that are in it.
+// Forces of a state act in place of those by its velocities.
 void FixMdanimAir::setup(int)
 {
   if (restarted) unpack(StateRecords(*restarted));
@@ -283,10 +222,9 @@ double FixMdanimAir::memory_usage()
   std::size_t skins = 0;
   std::vector<const AirSkin *> seen;
   for (const AirObject &one : objects) {
-    skins += one.mass.size() * sizeof(double);
     if (std::find(seen.begin(), seen.end(), one.skin.get()) != seen.end()) continue;
     seen.push_back(one.skin.get());
     skins += one.skin->bytes();
   }
-  return static_cast<double>(shared.bytes() + skins + (number.size() + row.size() + target.size()) * sizeof(int));
+  return static_cast<double>(nodes.bytes() + skins);
 }

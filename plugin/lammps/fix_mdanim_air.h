@@ -5,7 +5,7 @@
 
 #include "air/skin.h"
 #include "lammps/fix_base.h"
-#include "lammps/shared_motion.h"
+#include "lammps/object_nodes.h"
 #include "lammps/stateful.h"
 #include "numbers/vector_path.h"
 
@@ -40,12 +40,8 @@ class FixMdanimAir : public mdanim::FixBase, public mdanim::Stateful {
 
  private:
   struct AirObject {
-    int molecule;
     std::shared_ptr<const mdanim::AirSkin> skin;
-    std::vector<double> mass;    // of nodes
-    std::size_t first;           // node among those of all objects
-    bool acts;                   // some node is in the group
-    mdanim::Vec3 force;          // on all of it
+    mdanim::Vec3 force;    // on all of it
   };
   struct GivenForce {
     int i;    // local particle
@@ -53,8 +49,7 @@ class FixMdanimAir : public mdanim::FixBase, public mdanim::Stateful {
   };
 
   void read_path(int narg, char **arg, int &iarg);
-  void find_objects();
-  void locate();
+  void locate() { nodes.locate(name(), groupbit); }
   void find_pushes();
   void push() const;
   void count();    // the work of half a step
@@ -65,10 +60,7 @@ class FixMdanimAir : public mdanim::FixBase, public mdanim::Stateful {
   mdanim::VectorPath path;    // of the wind
   double above;               // only there
   std::vector<AirObject> objects;
-  mdanim::SharedMotion shared;
-  // Nodes of all objects, one after the other: their numbers among shared particles, where these are, and the local particle that
-  // is pushed, if any.
-  std::vector<int> number, row, target;
+  mdanim::ObjectNodes nodes;
   mdanim::AirScratch scratch;
   std::vector<GivenForce> pushes;                   // of this step
   std::map<tagint, mdanim::Vec3> acted;             // forces of a state, until the setup of a run

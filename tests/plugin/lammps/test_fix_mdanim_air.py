@@ -4,26 +4,12 @@
 import numpy as np
 import plugin_lab as lab
 import pytest
+from bag_lab import FACES, cube
 from twin.air import Skin
 
 RHO, C, DT = 0.3, 1.2, 0.05
 WIND = (0.7, -0.4, 0.2)
 CUBE = [[(i, 1.0)] for i in range(8)]
-FACES = [
-    (0, 2, 1),
-    (1, 2, 3),
-    (4, 5, 6),
-    (5, 7, 6),
-    (0, 1, 4),
-    (1, 5, 4),
-    (2, 6, 3),
-    (3, 6, 7),
-    (0, 4, 2),
-    (2, 4, 6),
-    (1, 3, 5),
-    (3, 7, 5),
-]
-"""Triangles of a cube whose corners are numbered x fastest, outward."""
 MIDDLE = [(i, 0.125) for i in range(8)]
 SKINS = {
     "triangles, outer": Skin(CUBE, FACES),
@@ -34,16 +20,6 @@ SKINS = {
     "ball": Skin([MIDDLE], balls=[(0, 0.8)]),
     "panels": Skin([*CUBE, MIDDLE], frame=(0, 1, 2, 4), panels=[(8, (0, 0, -1)), (7, (0.3, 0.1, 0.2)), (3, (1, 0, 0))]),
 }  # fmt: skip
-
-
-def cube(speed: float = 1.0, seed: int = 3):
-    """A cube of one cell that is deformed and moves in itself, and its random numbers."""
-    random = np.random.default_rng(seed)
-    body = lab.block((1, 1, 1))
-    return lab.particles(
-        body.x + 0.2 * random.standard_normal((8, 3)), molecule=np.ones(8, int), v=speed * random.standard_normal((8, 3)),
-        mass=0.1 + random.random(8),
-    )  # fmt: skip
 
 
 def air(tmp_path, skin: Skin | str, more: str = "", group: str = "all") -> list[str]:
