@@ -386,7 +386,8 @@ class CurvePair {
     const Meeting &at = state.at;
     if (at.depth <= 0.0 || at.part <= 0.0 || state.cone < AT_BIRTH) return;
     const double thin = std::min(one.shape.thin(), other.shape.thin());
-    if (at.depth > SHALLOW_BIRTH * thin && !step.is_first()) return;
+    // Rims on the far sides of both have opposite normals too.
+    if (at.depth > SHALLOW_BIRTH * thin && (!step.is_first() || a.is_sharp() || b.is_sharp())) return;
     Touch touch = step.born(Touch::CURVES, law, one, &other, at.x, at.n);
     touch.first = i;
     touch.second = j;

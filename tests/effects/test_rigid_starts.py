@@ -85,3 +85,38 @@ def test_depths_that_show_are_refused(tmp_path, monkeypatch, case):
         told = re.fullmatch(r"it starts inside held, about (\S+) mm deep", found.message)
         assert told and float(told[1]) == pytest.approx(1e3 * deep, rel=0.15)
         assert not problems(freed(text(deep), found.hint))
+
+
+def posed(place, q) -> str:
+    """Words of a place [m] and of a rotation by a unit quaternion."""
+    axis = ", ".join(map(repr, q[1:]))
+    return f"position ({', '.join(map(repr, place))}) m  orientation axis ({axis}) angle {2 * math.acos(q[0])!r} rad"
+
+
+APART = {
+    "a bar and a cone": (
+        "shape cylinder 10 cm 30 cm",
+        (-0.08227546094667487, -0.13487158626060364, 0.5827939804344887, -0.7971145338750796),
+        "shape cone 12 cm 25 cm",
+        (0.13745059605308868, 0.13774045561621986, -0.20241478280309402),
+        (-0.4382245727904903, 0.5174050557385859, -0.56782707068759, -0.4667158127737841),
+    ),
+    "a box and a can": (
+        "shape box (30, 20, 15) cm",
+        (0.32615428408434314, -0.31805492615310915, -0.7549900030014133, -0.4716508690691718),
+        "shape cylinder 15 cm 10 cm",
+        (-0.03102059055572441, 0.06589414102498155, -0.26493993265739885),
+        (0.7447088255102811, -0.041136023270545954, 0.22034316742850862, 0.628621890618005),
+    ),
+}
+
+
+@pytest.mark.parametrize("case", APART)
+def test_round_shapes_that_are_apart_may_start(case):
+    """By 0.3 mm: normals of their far rims are opposite, too, at depths of the size of both, where nothing touches."""
+    held, turn, it, place, turned = APART[case]
+    if "cone" in it:  # a cone is placed by its centre of mass, below its middle
+        w, x, y, z = turned
+        along = (2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y))
+        place = tuple(a - 0.25 * 0.25 * b for a, b in zip(place, along))
+    assert not problems(scene(None, f"{held}  {posed((0, 0, 0), turn)}", f"{it}  {posed(place, turned)}"))

@@ -4,8 +4,8 @@
 import numpy as np
 import pytest
 from mdanim_lammps.model import shapes
-from mdanim_lammps.model.convex import bounds, overlap, placed
-from mdanim_lammps.scene.scene import Box, Cone, Cylinder, Ellipsoid, Mesh, Sphere
+from mdanim_lammps.model.convex import bounds, depth_by_supports, overlap, placed, support
+from mdanim_lammps.scene.scene import Box, Cone, Cylinder, Ellipsoid, Mesh, Sphere, Torus
 from model_samples import MESHES, rotation, shape_id, solid
 
 CUBE, BALL = Box((0.2, 0.2, 0.2)), Sphere(0.1)
@@ -78,3 +78,33 @@ def test_boxes_around_round_shapes(shape):
     low, high = bounds(body)
     assert low == pytest.approx(points.min(axis=0), abs=1e-3) and high == pytest.approx(points.max(axis=0), abs=1e-3)
     assert (low <= points.min(axis=0) + 1e-12).all() and (high >= points.max(axis=0) - 1e-12).all()
+
+
+LYING = rotation(np.pi / 2, 0, 0)
+ROD, TIP = Cylinder(0.1, 0.6), Cone(0.1, 0.4)
+
+
+@pytest.mark.parametrize(
+    ("first", "second", "place", "turn", "deep"),
+    [
+        pytest.param(ROD, ROD, (0.19, 0.02, 0.03), LYING, 0.01, id="rods that cross"),
+        pytest.param(ROD, ROD, (0.01, 0.02, 0.59), None, 0.01, id="ends"),
+        pytest.param(ROD, CUBE, (0.19, 0.01, 0.05), None, 0.01, id="a side on a face"),
+        pytest.param(CUBE, TIP, (0.02, 0.01, -0.39), None, 0.01, id="a tip in a face"),
+        pytest.param(Ellipsoid((0.3, 0.2, 0.1)), Ellipsoid((0.1, 0.2, 0.3)), (0, 0, 0.395), None, 0.005, id="eggs"),
+        pytest.param(ROD, BALL, (0.0, 0.0, 0.38), None, 0.02, id="a ball on an end"),
+        pytest.param(ROD, BALL, (0.2, 0.1, 0.1), None, 0.0, id="apart"),
+        pytest.param(CUBE, ROD, (0.0, 0.0, 0.4), None, 0.0, id="touching"),
+    ],
+)
+def test_depths_of_round_shapes(first, second, place, turn, deep):
+    """By their farthest points alone; both ways around."""
+    turned = {} if turn is None else {"rotation": turn}
+    one, other = support(solid(first)), support(solid(second, position=place, **turned))
+    assert depth_by_supports(one, other) == pytest.approx(deep, abs=1e-6)
+    assert depth_by_supports(other, one) == pytest.approx(deep, abs=1e-6)
+
+
+def test_rings_are_not_convex():
+    """So they have no farthest points that tell all."""
+    assert support(solid(Torus(0.2, 0.05))) is None

@@ -13,7 +13,7 @@ from ..scene.formatting import say, whole
 from ..scene.scene import Mesh, SceneRecord, Solid
 from . import shapes
 from .boxes import box_pairs
-from .convex import bounds, overlap, placed
+from .convex import bounds, depth_by_supports, overlap, placed, support
 from .model import Model
 from .planes import Plane
 
@@ -156,6 +156,24 @@ class _BoundingBoxes:
             depths = self.features.depths(np.array(pairs), np.zeros((len(pairs), 3)))
             self.felt = dict(zip(pairs, depths.tolist()))
 
+    def by_supports(self, i: int, j: int) -> Callable[[np.ndarray], float] | None:
+        """The same of two convex objects that touch by features, of which one is round."""
+        if (i, j) not in self.felt:
+            return None
+        first, second = support(self.solids[i]), support(self.solids[j])
+        if first is None or second is None:
+            return None
+        return lambda moved: depth_by_supports(first, lambda n: second(n) + moved)
+
+    def with_features(self, i: int, j: int, others: Callable[[np.ndarray], float]) -> Callable[[np.ndarray], float]:
+        """Another depth of two objects, and that by features where it is 0."""
+
+        def deepest(moved: np.ndarray) -> float:
+            assert self.features is not None
+            return others(moved) or float(self.features.depths(np.array([(i, j)]), moved[None])[0])
+
+        return deepest
+
     def forgiven(self, i: int, j: int) -> float:
         """Depth of the start of two objects in each other that is no problem [m]: by their shapes where none is elastic."""
         exact = self.hard & ~self.smooth
@@ -258,22 +276,16 @@ def _candidates(scene: SceneRecord, bodies: _BoundingBoxes) -> tuple[np.ndarray,
 
 def _pair(scene: SceneRecord, bodies: _BoundingBoxes, planes: tuple[Plane, ...], i: int, j: int) -> Problem | None:
     first, second = scene.solids[i], scene.solids[j]
-    shapes_or_points = bodies.exact(i, j) or _at_points(scene, bodies, i, j)
-    depth = shapes_or_points(np.zeros(3))
-    by_features = bodies.felt.get((i, j), 0.0)
-    felt = by_features > min(bodies.rounded[i], bodies.rounded[j])
-    if depth <= bodies.forgiven(i, j):
-        if not felt:
+    deepest = bodies.exact(i, j) or _at_points(scene, bodies, i, j)
+    depth, by_features = deepest(np.zeros(3)), bodies.felt.get((i, j), 0.0)
+    if not (too_deep := depth > bodies.forgiven(i, j)) and by_features <= min(bodies.rounded[i], bodies.rounded[j]):
+        return None
+    if (sure := bodies.by_supports(i, j)) is not None:
+        deepest, depth = sure, sure(np.zeros(3))
+        if depth <= bodies.forgiven(i, j):
             return None
-        depth = 0.0  # of triangles, which may be below the smooth surface
-    depth = max(depth, by_features)
-
-    def deepest(moved: np.ndarray) -> float:
-        found = shapes_or_points(moved)
-        if found > 0.0 or not bodies.features or (i, j) not in bodies.felt:
-            return found
-        return float(bodies.features.depths(np.array([(i, j)]), moved[None])[0])
-
+    elif (i, j) in bodies.felt:  # triangles may be below the smooth surface
+        deepest, depth = bodies.with_features(i, j, deepest), max(by_features, depth if too_deep else 0.0)
     axis, sign, step = _way_out(planes, bodies, i, j)
     if bodies.on_surfaces:  # surfaces may touch where boxes overlap
         way, short = sign * np.eye(3)[axis], 0.0
