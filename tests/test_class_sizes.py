@@ -79,4 +79,4 @@ def test_classes_are_small(name):
 
 def test_the_sizes_are_found():
     """A class over several files, and one with values of many kinds."""
-    assert 250 < SIZES["WaveColumns"][0] <= MOST_LINES and SIZES["PairLaw"] == (3, 2) and SIZES["ContactAccount"][1] == 8
+    assert 250 < SIZES["WaveColumns"][0] <= MOST_LINES and SIZES["PairLaw"] == (3, 2) and SIZES["ContactAccount"][1] == 9

@@ -8,6 +8,7 @@
 #pragma once
 
 #include "contact/contact_object.h"
+#include "contact/contact_plane.h"
 #include "contact/law.h"
 #include "contact/wakes.h"
 #include "records/byte_writer.h"
@@ -56,11 +57,11 @@ class ContactField {
 
   virtual std::size_t touching() const = 0;    // number of contacts
   bool is_idle() const { return touching() == 0; }
-  bool has_something() const { return !is_idle() || looks > 0; }    // whether there are forces to add, after look()
-  virtual int cost() const = 0;                                     // of a step, approximately, when lists were made [ns]
-  virtual std::optional<Vec3> normal() const { return {}; }         // of a plane
-  virtual Vec3 force_on_plane() const { return {}; }                // in this step
-  virtual void put_rows(ByteWriter &writer) const = 0;              // of contacts, without their number
+  bool has_something() const { return !is_idle() || looks > 0; }      // whether there are forces to add, after look()
+  virtual int cost() const = 0;                                       // of a step, approximately, when lists were made [ns]
+  virtual const ContactPlane *at_plane() const { return nullptr; }    // null for a field of two objects
+  virtual Vec3 force_on_plane() const { return {}; }                  // in this step
+  virtual void put_rows(ByteWriter &writer) const = 0;                // of contacts, without their number
   virtual std::size_t bytes() const = 0;
 
  protected:

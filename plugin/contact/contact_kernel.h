@@ -41,6 +41,7 @@ struct PushTask {
 template <class Real> struct PushedContact {
   Vec<Real> at_centre;    // force there
   Real heat, damped;      // [J]
+  Real work;              // of surfaces that run [J]
 };
 
 // Results for up to four contacts. Values of a lane in `hard` are wrong: its contact is over, or needs a search.

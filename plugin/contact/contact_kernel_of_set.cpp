@@ -262,7 +262,7 @@ MDANIM_ALWAYS_INLINE void push_block(const PushTask &task, FieldContact *first, 
   }
   scatter_record(state, [&](int lane) { return &to[lane]->state; });
   scatter_record(push.outcome, [&](int lane) { return &to[lane]->last; });
-  const PushedContact<Four> more = {push.at_centre, push.heat, push.damped};
+  const PushedContact<Four> more = {push.at_centre, push.heat, push.damped, push.work};
   scatter_record(more, [&](int lane) { return &pushed.contact[lane]; });
 }
 

@@ -29,7 +29,9 @@ ContactLaw ContactSettings::law_of_pair(const ContactObject &owner, const Contac
   double mu = std::sqrt(lower.friction * higher.friction), beta = mu > 0.0 ? damping : 0.0;
   if (const auto own = pairs.find({lower.id, higher.id}); own != pairs.end())
     mu = own->second.friction, beta = own->second.damping;
-  return law_of(owner, density, kappa, mu, beta);
+  ContactLaw law = law_of(owner, density, kappa, mu, beta);
+  if (!belts.empty()) law.belt = belt(host.id) - belt(owner.id);
+  return law;
 }
 
 ContactLaw ContactSettings::law_at_plane(const ContactObject &one) const

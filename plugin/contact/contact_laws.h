@@ -26,6 +26,12 @@ struct ContactSettings {
   std::vector<ContactPlane> planes;
   std::map<std::pair<int, int>, PairLaw> pairs;    // by ids, the lower one first
   std::set<std::pair<int, int>> excluded;          // the same, of pairs that never touch
+  std::map<int, Vec3> belts;                       // by ids: velocities at which surfaces run over objects that stand [m/s]
+  Vec3 belt(int id) const
+  {
+    const auto found = belts.find(id);
+    return found == belts.end() ? Vec3{} : found->second;
+  }
 
   // Law for points of an object against another one; `density` is that of the lighter one that can move, because that one swings.
   ContactLaw law_of_pair(const ContactObject &owner, const ContactObject &host, double density) const;

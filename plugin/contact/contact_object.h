@@ -117,14 +117,16 @@ inline double nearer(const ContactObject &a, const ContactObject &b)
   return std::sqrt(dot(together, together)) + a.stir + b.stir;
 }
 
-// The same of an object and a plane that faces along `normal`.
-inline double nearer(const ContactObject &a, const Vec3 &normal) { return a.stir - dot(normal, a.way); }
+// The same of an object and a plane that faces along `normal`, and went this way.
+inline double nearer(const ContactObject &a, const Vec3 &normal, const Vec3 &way_of_plane)
+{ return a.stir - dot(normal, a.way - way_of_plane); }
 
 // Energies, heat and counts of contacts in a step, and since the beginning.
 struct ContactAccount {
   double energy = 0.0, stick_energy = 0.0;          // now [J]
   int touching = 0;                                 // points, now
   double heat = 0.0, damped = 0.0, let_go = 0.0;    // since the beginning [J]
+  double work = 0.0;                                // of surfaces and planes that move, since the beginning [J]
   double deepest = 0.0;                             // in this run [m]
   double looks = 0.0;                               // at points of objects without a contact, since the beginning
 
@@ -138,6 +140,7 @@ struct ContactAccount {
     heat += some.heat;
     damped += some.damped;
     let_go += some.let_go;
+    work += some.work;
     deepest = std::max(deepest, some.deepest);
     looks += some.looks;
   }

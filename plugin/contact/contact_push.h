@@ -129,7 +129,7 @@ template <class Real> struct ContactOutcome {
 template <class Real> struct ContactPush {
   ContactOutcome<Real> outcome;
   Vec<Real> at_centre, both, moment[3];
-  Real heat, damped;
+  Real heat, damped, work;
 };
 
 // Whether the part that counts has a slope.
@@ -189,13 +189,18 @@ MDANIM_ALWAYS_INLINE ContactPush<Real> contact_push(const ContactLaw &law, doubl
   if (flat.is_flat) force.press = flat.part * press;
   ContactPush<Real> push;
   Vec<Real> lean;
+  push.work = Real{};
   if (law.friction > 0.0) {
     // To the depth of the point, along the normal in space; the stick spring does no work on this way.
     lean = state.anchor - state.X;
+    const Vec<Real> before = state.memory.pull + state.memory.drag;
+    const Vec<Real> way = {constant<Real>(dt * law.belt.x), constant<Real>(dt * law.belt.y), constant<Real>(dt * law.belt.z)};
+    if (law.runs()) lean += spot.to_material(way);    // the anchor runs along
     lean -= (dot(lean, below.slope) / dot(normal, normal)) * spot.to_material(normal);
     contact_friction(law, area, part, -1.0 * spot.to_space(lean), normal, dt, state.memory, force);
     lean = force.kept * lean;
     state.anchor = state.X + lean;
+    if (law.runs()) push.work = 0.5 * dot(before + force.pull + force.drag, way);
   }
   Vec<Real> on_point = -force.press * normal + force.pull + force.drag + force.surface_energy * turn;
   if (flat.is_flat) on_point -= press * flat.on_point;

@@ -16,7 +16,8 @@ namespace mdanim {
 
 static constexpr std::int64_t STATE_VERSION = 1;
 
-// Both fields of a pair, each with the number of its contacts, or those of an object at all planes with one number.
+// Both fields of a pair, each with the number of its contacts, or those of an object at all planes with one number; behind these
+// the forces on planes that move.
 StateRecords ContactWorld::records() const
 {
   StateRecords found;
@@ -25,13 +26,18 @@ StateRecords ContactWorld::records() const
     std::int64_t touching = 0;
     for (; end != fields.end() && !(key < end->first.record()) && !(end->first.record() < key); ++end)
       touching += static_cast<std::int64_t>(end->second->touching());
-    if (touching == 0) continue;
+    if (touching == 0) continue;    // a plane that nothing touches bears no force
     ByteWriter writer;
     writer.put(STATE_VERSION);
     if (key.b == 0) writer.put(touching);
     for (auto field = one; field != end; ++field) {
       if (key.b != 0) writer.put(static_cast<std::int64_t>(field->second->touching()));
       field->second->put_rows(writer);
+    }
+    for (int p = 0; key.b == 0 && p < static_cast<int>(settings.planes.size()); ++p) {
+      if (!settings.planes[p].moves) continue;
+      const auto at = fields.find({true, key.a, p, false});
+      writer.put(at == fields.end() ? Vec3{} : static_cast<const PlaneField &>(*at->second).kept_force());
     }
     found[key] = writer.take();
   }
@@ -109,6 +115,13 @@ ContactWorld::Fields ContactWorld::read(const StateRecords &records)
       int plane = 0;
       for (auto &rows : read_planes(reader, *one->body, settings.planes.size()))
         put<PlaneField>(found, {true, key.a, plane++, false}, std::move(rows));
+      for (int p = 0; p < static_cast<int>(settings.planes.size()); ++p) {
+        if (!settings.planes[p].moves) continue;
+        const auto force = reader.get<Vec3>();
+        if (!has_numbers(force, 0)) reader.fail("has a value that is not a number");
+        const auto at = found.find({true, key.a, p, false});
+        if (at != found.end()) static_cast<PlaneField &>(*at->second).restore_force(force);
+      }
     }
     reader.expect_end();
   }

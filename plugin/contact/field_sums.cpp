@@ -23,16 +23,15 @@ void FieldSums::weigh()
   rests.clear();
   for (const Active &one : active) {
     costs.push_back(costs.back() + FIELD_COST + one.field->cost());
-    const std::optional<Vec3> normal = one.field->normal();
-    rests.push_back(
-        {one.a, one.b, normal.has_value(), false, one.field->budget_now(), one.field->rests_until(), normal.value_or(Vec3{})});
+    rests.push_back({one.a, one.b, one.field->at_plane(), false, one.field->budget_now(), one.field->rests_until()});
   }
 }
 
 // Adds what has come nearer in this step to the budget.
 bool FieldSums::goes_on_resting(Rest &rest, const std::vector<ContactObject> &objects)
 {
-  rest.budget += rest.at_plane ? nearer(objects[rest.a], rest.normal) : nearer(objects[rest.a], objects[rest.b]);
+  rest.budget += rest.at_plane ? nearer(objects[rest.a], rest.at_plane->normal(), rest.at_plane->way)
+                               : nearer(objects[rest.a], objects[rest.b]);
   rest.has_something = false;
   return !(rest.until < rest.budget || (objects[rest.b].is_crushed && !rest.at_plane));
 }

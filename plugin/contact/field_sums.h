@@ -36,9 +36,9 @@ class FieldSums {
   // here.
   struct Rest {
     int a, b;
-    bool at_plane, has_something;    // whether it has forces to add in this step
+    const ContactPlane *at_plane;    // null for a field of two objects
+    bool has_something;              // whether it has forces to add in this step
     double budget, until;
-    Vec3 normal;    // of the plane
   };
   // A field with forces to add in this step, and the number of fields that come before it on each of its objects.
   struct OrderedField {

@@ -79,7 +79,7 @@ LatticeField::Fate LatticeField::push(FieldContact &contact, std::size_t q, cons
   contact.last = push.outcome;
 
   spread(at, weights, -1.0 * push.both, {-1.0 * push.moment[0], -1.0 * push.moment[1], -1.0 * push.moment[2]}, arrays.force());
-  const PushedContact<double> found = {push.at_centre, push.heat, push.damped};
+  const PushedContact<double> found = {push.at_centre, push.heat, push.damped, push.work};
   push_point(contact, q, found, is_on_ramp(part_slope), arrays);
   count(contact, found, account);
   return Fate::STAYS;

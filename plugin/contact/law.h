@@ -18,7 +18,9 @@ struct ContactLaw {
   double onset = 0.0;                     // eps [m]
   double friction = 0.0;                  // mu
   double damping = 0.0;                   // dashpot of the depth over kappa [s], 2 beta sqrt(kappa rho h / 2) / kappa
+  Vec3 belt{};                            // velocity at which the other body's surface runs over it, less that of the own [m/s]
   static constexpr double STICK = 0.8;    // kappa_t / kappa
+  bool runs() const { return belt.x != 0.0 || belt.y != 0.0 || belt.z != 0.0; }
 };
 
 // g(d) and its derivative.

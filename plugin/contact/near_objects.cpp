@@ -28,7 +28,7 @@ std::vector<std::pair<int, int>> NearObjects::pairs_within(const std::vector<Box
 }
 
 static double distance(const Box &box, const ContactPlane &plane)
-{ return plane.sign > 0 ? box.low(plane.axis) - plane.at : plane.at - box.high(plane.axis); }
+{ return plane.sign > 0 ? box.low(plane.axis) - plane.place() : plane.place() - box.high(plane.axis); }
 
 std::vector<std::pair<int, int>> NearObjects::planes_within(const std::vector<Box> &boxes, double gap) const
 {
@@ -36,8 +36,8 @@ std::vector<std::pair<int, int>> NearObjects::planes_within(const std::vector<Bo
   for (int n = 0; n < static_cast<int>(all.size()); ++n)
     for (int p = 0; p < static_cast<int>(settings.planes.size()); ++p)
       if (movable[n] && !all[n].is_excepted && !boxes[n].empty() &&
-          distance(boxes[n], settings.planes[p]) <=
-              gap + LatticeField::STRETCHED * all[n].body->overhang() + all[n].body->radius())
+          distance(boxes[n], settings.planes[p]) <= gap + settings.planes[p].ahead(skin_now) +
+                                                        LatticeField::STRETCHED * all[n].body->overhang() + all[n].body->radius())
         found.emplace_back(n, p);
   return found;
 }
@@ -84,8 +84,10 @@ void NearObjects::find_zones()
   }
   for (const auto &[n, p] : near_planes) {
     const ContactBody &body = *all[n].body;
-    const double gap = PlaneField::REACH * skin_now + CARRIED * body.spacing() + body.overhang() + body.radius();
-    zones[n].push_back({settings.planes[p].within(gap), -1});
+    const ContactPlane &plane = settings.planes[p];
+    const double gap =
+        PlaneField::REACH * skin_now + plane.ahead(skin_now) + CARRIED * body.spacing() + body.overhang() + body.radius();
+    zones[n].push_back({plane.within(gap), -1});
   }
 }
 

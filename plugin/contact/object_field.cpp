@@ -92,6 +92,7 @@ void ObjectField::count(const FieldContact &contact, const PushedContact<double>
   account.stick_energy += contact.state.memory.stick_energy;
   account.heat += found.heat;
   account.damped += found.damped;
+  account.work += found.work;
   account.deepest = std::max(account.deepest, contact.state.memory.depth);
   ++account.touching;
 }

@@ -10,7 +10,7 @@ namespace mdanim {
 void PlaneField::list(const FieldLists &with)
 {
   owner = host = &with.owner;
-  const double reach = REACH * with.skin;
+  const double reach = REACH * with.skin + plane.ahead(with.skin);
   list_points(with, plane.within(reach + owner->body->radius()), true, reach, AT_ONCE,
               [this](const Vec3 &x) { return -depth_at(x); });
 }
@@ -28,7 +28,7 @@ bool PlaneField::look_at(std::size_t q, const ContactArrays &arrays, bool may_be
   PlaneContact contact{};
   contact.point = near[q];
   contact.plane = number;
-  contact.anchor = x;
+  contact.anchor = x - plane.shift;
   contact.memory.depth = depth;
   contact.memory.offset = was_below ? depth : 0.0;
   begin(q, contact);
@@ -57,10 +57,11 @@ PlaneField::OnPoint PlaneField::push(PlaneContact &contact, std::size_t q, const
   const double area = owner->body->points()[near[q]].area;
   ContactForce<double> force = contact_pressure(law, area, 1.0, depth, dt, contact.memory);
   if (law.friction > 0.0) {
-    Vec3 away = x - contact.anchor;
+    const Vec3 there = x - plane.shift;    // anchors go with the plane
+    Vec3 away = there - contact.anchor;
     away -= dot(away, downward) * downward;
     contact_friction(law, area, 1.0, away, downward, dt, contact.memory, force);
-    contact.anchor = x - force.kept * away;
+    contact.anchor = there - force.kept * away;
   }
   return {-force.press * downward + force.pull + force.drag, depth, force.surface_energy, force.heat, force.damped};
 }
@@ -99,6 +100,10 @@ void PlaneField::add_forces(ContactArrays &arrays, double dt, ContactAccount &ac
     keep(c, left);
   }
   if (moves) keep_first(left);
+  if (!plane.moves) return;
+  // -F dx with the mean of the forces before and after the step; at the setup of a run nothing has moved.
+  if (moves) account.work -= 0.5 * dot(kept_force() + on_plane, plane.of_step);
+  if (moves || !before) before = on_plane;
 }
 
 }    // namespace mdanim

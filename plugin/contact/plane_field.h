@@ -1,33 +1,17 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// Points of one object's surface against a plane across an axis, below which the depth is known exactly. The plane is rigid and
-// does not move.
+// Points of one object's surface against a plane across an axis, below which the depth is known exactly. The plane is rigid; it
+// may be moved without being turned.
 
 #pragma once
 
 #include "contact/contact_field.h"
+#include "contact/contact_plane.h"
 
 #include <cstdint>
 #include <optional>
 #include <vector>
 
 namespace mdanim {
-
-struct ContactPlane {
-  int axis;
-  double sign;    // 1: objects belong above, -1: below
-  double at;      // [m]
-  double depth(const Vec3 &x) const { return sign * (at - (axis == 0 ? x.x : axis == 1 ? x.y : x.z)); }
-  // The zone up to `gap` above the plane.
-  Zone within(double gap) const
-  {
-    Zone zone;
-    for (double &side : zone.box.bound) side = -Box::FAR;
-    zone.across = -1.0 * normal();
-    zone.from = -sign * at - gap;
-    return zone;
-  }
-  Vec3 normal() const { return {axis == 0 ? sign : 0.0, axis == 1 ? sign : 0.0, axis == 2 ? sign : 0.0}; }
-};
 
 struct PlaneContact {
   std::int32_t point, plane;
@@ -41,6 +25,7 @@ class PlaneField : public FieldOf<PlaneContact, std::uint8_t> {
   // Reach of lists over the skin: 1/2 for particles, and half of that for points outside of cells.
   static constexpr double REACH = 0.75;
 
+  // The plane must outlive the field.
   PlaneField(ContactObject &owner, int number, const ContactPlane &plane, const ContactLaw &law)
       : FieldOf(owner, owner, law), number(number), plane(plane)
   {
@@ -50,8 +35,11 @@ class PlaneField : public FieldOf<PlaneContact, std::uint8_t> {
   void work_ahead(const ContactArrays &arrays, double dt) override;
   void add_forces(ContactArrays &arrays, double dt, ContactAccount &account) override;
   int cost() const override;
-  std::optional<Vec3> normal() const override { return plane.normal(); }
+  const ContactPlane *at_plane() const override { return &plane; }
   Vec3 force_on_plane() const override { return on_plane; }
+  // The force on a plane that moves, for the work of the next step.
+  Vec3 kept_force() const { return before.value_or(Vec3{}); }
+  void restore_force(const Vec3 &force) { before = force; }
   std::size_t bytes() const override { return bytes_of_rows() + ahead.capacity() * sizeof(OnPoint); }
 
  private:
@@ -60,16 +48,17 @@ class PlaneField : public FieldOf<PlaneContact, std::uint8_t> {
     double depth, energy, heat, damped;
   };
   double depth_at(const Vec3 &x) const { return plane.depth(x) + owner->body->radius(); }
-  double approach() const override { return nearer(*owner, plane.normal()); }
+  double approach() const override { return nearer(*owner, plane.normal(), plane.way); }
   bool look_at(std::size_t q, const ContactArrays &arrays, bool may_begin) override;
   bool distrusts(std::size_t) const override { return false; }
   void begin_step(const ContactArrays &arrays) override;
   OnPoint push(PlaneContact &contact, std::size_t q, const ContactArrays &arrays, double dt) const;
 
   int number;
-  ContactPlane plane;
+  const ContactPlane &plane;
   std::vector<OnPoint> ahead;
   Vec3 on_plane;
+  std::optional<Vec3> before;    // force on a plane that moves in the step before; none at the start
 };
 
 }    // namespace mdanim

@@ -99,7 +99,7 @@ ObjectField::Fate RigidField::push(FieldContact &contact, std::size_t q, const P
   if (task.takes_force)
     spread_to_frame(*task.frame, X, -1.0 * push.both, moment,
                     [&](int k, const Vec3 &force) { arrays.force()[task.slot[k]].value += force; });
-  const PushedContact<double> found = {push.at_centre, push.heat, push.damped};
+  const PushedContact<double> found = {push.at_centre, push.heat, push.damped, push.work};
   push_point(contact, q, found, is_on_ramp(part_slope), arrays);
   count(contact, found, account);
   return Fate::STAYS;

@@ -66,6 +66,11 @@ class KeyPath {
 
   void append(const Key &key) { keys.push_back(key); }
   bool empty() const { return keys.empty(); }
+  bool turns() const
+  {
+    return std::any_of(keys.begin(), keys.end(),
+                       [](const Key &key) { return key.angle.x != 0.0 || key.angle.y != 0.0 || key.angle.z != 0.0; });
+  }
   double last_time() const { return keys.back().time; }
 
   Key at(double t) const
@@ -112,6 +117,7 @@ struct DrivenMotion {
   Vec3 pivot;
   double until = std::numeric_limits<double>::infinity();    // time at which it is released
 
+  bool turns() const { return turn.x != 0.0 || turn.y != 0.0 || turn.z != 0.0 || path.turns(); }
   // The last step that it takes: the one next to `until`.
   double last_step(double dt) const { return std::floor(until / dt + 0.5); }
 

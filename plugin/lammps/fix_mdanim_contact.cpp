@@ -34,9 +34,10 @@ static const char *const LEFT_OUT = ", or leave it out by 'among GROUP'";
 
 // --- the command ---
 
-// fix ID group mdanim/contact BODY YOUNG FRICTION [objects] [plane x|y|z lo|hi at]… [stiffness f] [damping beta]
-//     [pair MOL MOL mu beta]… [exclude MOL MOL]… [among GROUP] [except GROUP] [bodies FILE]
-FixMdanimContact::FixMdanimContact(LAMMPS *lmp, int narg, char **arg) : FixBase(lmp, narg, arg), shared(lmp)
+// fix ID group mdanim/contact BODY YOUNG FRICTION [objects] [plane x|y|z lo|hi at]… [moving x|y|z lo|hi at FIXID]…
+//     [stiffness f] [damping beta] [pair MOL MOL mu beta]… [exclude MOL MOL]… [belt MOL vx vy vz]… [among GROUP] [except GROUP]
+//     [bodies FILE]
+FixMdanimContact::FixMdanimContact(LAMMPS *lmp, int narg, char **arg) : FixBase(lmp, narg, arg), moving(lmp), shared(lmp)
 {
   restart_global = 1;
   need(THREE_DIMENSIONS | ORTHOGONAL_BOX | OPEN_BOX | OBJECTS | PROMPT_LISTS, "surfaces may meet");
@@ -56,7 +57,8 @@ FixMdanimContact::FixMdanimContact(LAMMPS *lmp, int narg, char **arg) : FixBase(
         {"bytes_of_bodies", false, [this] { return static_cast<double>(bytes_of_bodies()); }},
         {"bytes_of_pairs", false, [this] { return static_cast<double>(world_of_contact.bytes_of_fields()); }},
         {"bytes_of_particles", false, [this] { return static_cast<double>(bytes_of_particles()); }},
-        {"looks", true, [&] { return account.looks; }}});
+        {"looks", true, [&] { return account.looks; }},
+        {"work", true, [&] { return account.work; }}});
 
   need_words(lmp, "fix mdanim/contact", "fix ID group mdanim/contact", "BODY YOUNG FRICTION", narg - 3);
   kind = ParticleValue(lmp, "fix mdanim/contact: BODY", 3, arg[3]);
@@ -66,6 +68,7 @@ FixMdanimContact::FixMdanimContact(LAMMPS *lmp, int narg, char **arg) : FixBase(
   settings.damping = USUAL_DAMPING;
   const std::vector<Keyword> known = keywords();
   for (int iarg = 6; iarg < narg;) iarg += take_keyword(lmp, STYLE, known, iarg, narg, arg);
+  force_reneighbor = moving.any();
   if (!settings.objects && settings.planes.empty())
     error->all(FLERR, "fix mdanim/contact: nothing can touch; write objects, or plane x|y|z lo|hi and its place");
 }
@@ -81,12 +84,18 @@ std::vector<Keyword> FixMdanimContact::keywords()
   const auto group = [this](NamedGroup &into) {
     return [this, &into](int at, char **arg) { into = NamedGroup(lmp, STYLE, at + 1, arg[at + 1]); };
   };
+  const auto plane = [&settings, this](int at, char **arg) -> ContactPlane & {
+    const int axis = choice(lmp, STYLE, "the axis of a plane is", {"x", "y", "z"}, at + 1, arg);
+    const int upper = choice(lmp, STYLE, "the end of what is allowed at a plane is", {"lo", "hi"}, at + 2, arg);
+    settings.planes.push_back({axis, upper ? -1.0 : 1.0, utils::numeric(FLERR, arg[at + 3], false, lmp)});
+    return settings.planes.back();
+  };
   return {{"objects", "", "", [&settings](int, char **) { settings.objects = true; }},
-          {"plane", "x|y|z lo|hi at", "",
-           [&settings, this](int at, char **arg) {
-             const int axis = choice(lmp, STYLE, "the axis of a plane is", {"x", "y", "z"}, at + 1, arg);
-             const int upper = choice(lmp, STYLE, "the end of what is allowed at a plane is", {"lo", "hi"}, at + 2, arg);
-             settings.planes.push_back({axis, upper ? -1.0 : 1.0, utils::numeric(FLERR, arg[at + 3], false, lmp)});
+          {"plane", "x|y|z lo|hi at", "", [=](int at, char **arg) { plane(at, arg); }},
+          {"moving", "x|y|z lo|hi at FIXID", "",
+           [=, &settings, this](int at, char **arg) {
+             plane(at, arg).moves = true;
+             moving.add(static_cast<int>(settings.planes.size()) - 1, arg[at + 4]);
            }},
           {"stiffness", "f", "",
            [=, &settings, this](int at, char **arg) {
@@ -103,6 +112,12 @@ std::vector<Keyword> FixMdanimContact::keywords()
            }},
           {"exclude", "MOL1 MOL2", "",
            [&settings, this](int at, char **arg) { settings.excluded.insert(two_molecules(lmp, STYLE, at + 1, arg)); }},
+          {"belt", "MOL vx vy vz", "",
+           [&settings, this](int at, char **arg) {
+             const int id = utils::inumeric(FLERR, arg[at + 1], false, lmp);
+             const auto along = [&](int k) { return utils::numeric(FLERR, arg[at + k], false, lmp); };
+             settings.belts[id] = {along(2), along(3), along(4)};
+           }},
           {"among", "GROUP", "", group(among)},
           {"except", "GROUP", "", group(except)},
           {"bodies", "FILE", "", [this](int at, char **arg) { read_bodies_of(arg[at + 1]); }}};
@@ -127,6 +142,7 @@ void FixMdanimContact::init()
 {
   FixBase::init();
   need_molecules_of_pairs();
+  moving.init(name());
   threads_now = Threads();
   world_of_contact.use(nullptr, threads_now);    // until passes give those of their instructions
 }
@@ -138,8 +154,11 @@ void FixMdanimContact::need_molecules_of_pairs() const
   std::vector<int> with_laws, apart;
   for (const auto &[ids, law] : settings.pairs) with_laws.insert(with_laws.end(), {ids.first, ids.second});
   for (const auto &[a, b] : settings.excluded) apart.insert(apart.end(), {a, b});
+  std::vector<int> with_belts;
+  for (const auto &[id, velocity] : settings.belts) with_belts.push_back(id);
   need_molecules(this, lmp, "pair", with_laws);
   need_molecules(this, lmp, "exclude", apart);
+  need_molecules(this, lmp, "belt", with_belts);
 }
 
 // --- objects ---
@@ -242,9 +261,19 @@ void FixMdanimContact::place_rigid(std::vector<Box> &boxes)
   world_of_contact.place_rigid(frames, boxes);
 }
 
+// To where planes are in this step.
+void FixMdanimContact::move_planes()
+{
+  moving.each([this](int plane, const Vec3 &shift, const Vec3 &way) {
+    world_of_contact.settings.planes[plane].move_to(shift, way);
+  });
+}
+
 void FixMdanimContact::list()
 {
   const Lap lap(seconds);
+  move_planes();
+  moving.listed();
   const int nlocal = atom->nlocal;
   std::vector<Box> boxes =
       objects.place(*atom, world, [this](int i) { return is_among(i); }, [this](int i) { refuse_new_object(i); });
@@ -315,7 +344,9 @@ void FixMdanimContact::push(double dt)
 {
   const Lap lap(seconds);
   need_lists();
+  move_planes();
   world_of_contact.step(places_now(), dt);
+  if (moving.any() && moving.needs_lists(0.5 * neighbor->skin)) next_reneighbor = update->ntimestep + 1;
   give_forces([this](std::size_t n, const Vec3 &force) { add_to(atom->f[mine[n]], force); });
 }
 

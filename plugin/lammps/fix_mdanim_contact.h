@@ -6,6 +6,7 @@
 #include "contact/contact_world.h"
 #include "lammps/fix_base.h"
 #include "lammps/keywords.h"
+#include "lammps/moving_planes.h"
 #include "lammps/object_table.h"
 #include "lammps/shared_places.h"
 #include "lammps/stateful.h"
@@ -65,6 +66,7 @@ class FixMdanimContact : public mdanim::FixBase, public mdanim::PassParticipant,
   mdanim::Coordinates places_now();
   template <class Add> void give_forces(const Add &add) const;
   void push(double dt);
+  void move_planes();
   std::size_t bytes_of_bodies() const;
   std::size_t bytes_of_particles() const;
 
@@ -75,6 +77,7 @@ class FixMdanimContact : public mdanim::FixBase, public mdanim::PassParticipant,
   std::map<int, std::shared_ptr<const mdanim::ContactBody>> bodies;
   std::optional<mdanim::StateRecords> restarted;    // state of a restart file, until there are bodies
   mdanim::ContactWorld world_of_contact;
+  mdanim::MovingPlanes moving;
 
   mdanim::ObjectTable objects;    // at the setup; their particles when lists were made
   std::vector<tagint> lowest;     // tags of objects

@@ -31,8 +31,8 @@ static constexpr int KEPT = 3;    // numbers in restart files
 
 // --- the command ---
 
-// fix ID group mdanim/drive [home d2_NAME] [since STEP] [release FIXID] [leave GROUP] motions FILE
-// fix ID group mdanim/drive [home d2_NAME] [since STEP] [release FIXID] [leave GROUP] WORDS of drives/motion_words.h
+// fix ID group mdanim/drive [home d2_NAME|none] [since STEP] [release FIXID] [leave GROUP] motions FILE
+// fix ID group mdanim/drive [home d2_NAME|none] [since STEP] [release FIXID] [leave GROUP] WORDS of drives/motion_words.h
 FixMdanimDrive::FixMdanimDrive(LAMMPS *lmp, int narg, char **arg) : FixBase(lmp, narg, arg), since(update->ntimestep)
 {
   time_integrate = 1;
@@ -62,9 +62,10 @@ void FixMdanimDrive::read_command(int narg, char **arg)
   for (bool more = true; more;) {
     more = false;
     if (is("home")) {
-      if (strncmp(arg[iarg + 1], "d2_", 3) != 0)
-        error->all(FLERR, iarg + 1, "{}: home is a property of three numbers, d2_NAME, got {}", STYLE, arg[iarg + 1]);
-      home_name = arg[iarg + 1] + 3;
+      tells_alone = strcmp(arg[iarg + 1], "none") == 0;
+      if (!tells_alone && strncmp(arg[iarg + 1], "d2_", 3) != 0)
+        error->all(FLERR, iarg + 1, "{}: home is none, or a property of three numbers, d2_NAME, got {}", STYLE, arg[iarg + 1]);
+      if (!tells_alone) home_name = arg[iarg + 1] + 3;
       more = true;
     } else if (is("since")) {
       since = utils::bnumeric(FLERR, arg[iarg + 1], false, lmp);
@@ -92,7 +93,7 @@ void FixMdanimDrive::read_command(int narg, char **arg)
 // Places at the start as a property of particles, so that they migrate with them and are in restart files.
 void FixMdanimDrive::post_constructor()
 {
-  if (!home_name.empty()) return;
+  if (tells_alone || !home_name.empty()) return;
   home_name = fmt::format("{}_home", id);
   own_home = fmt::format("{}_HOME", id);
   Fix *const keeper = modify->add_fix(fmt::format("{} all property/atom d2_{} 3", own_home, home_name));
@@ -117,7 +118,7 @@ int FixMdanimDrive::setmask() { return INITIAL_INTEGRATE | FINAL_INTEGRATE | END
 void FixMdanimDrive::init()
 {
   FixBase::init();
-  home();
+  if (!tells_alone) home();
   if (dt_before != 0.0 && dt_before != update->dt)
     error->all(FLERR, "{}: the time step has changed from {} to {}, and places would jump; define the fix anew", name(),
                dt_before, update->dt);
@@ -175,6 +176,8 @@ bool FixMdanimDrive::holds(int molecule) const
   const auto found = motions.find(of_objects ? molecule : 0);
   return found != motions.end() && static_cast<double>(update->ntimestep - since) <= found->second.last_step(update->dt);
 }
+
+bool FixMdanimDrive::shifts() const { return !of_objects && !motions.at(0).turns(); }
 
 // A particle of the group that is not laid aside.
 bool FixMdanimDrive::guides(int i)
@@ -245,6 +248,7 @@ void FixMdanimDrive::final_integrate()
 // Velocities of whole steps: the mean of the step that ends here and the next one.
 void FixMdanimDrive::set_whole_velocities()
 {
+  if (tells_alone) return;
   double **const start = home();
   const double per_two = 0.5 / update->dt;
   find_ways();
@@ -258,6 +262,7 @@ void FixMdanimDrive::set_whole_velocities()
 
 void FixMdanimDrive::initial_integrate(int)
 {
+  if (tells_alone) return;
   const Lap lap(seconds);
   double **const start = home();
   const double per_dt = 1.0 / update->dt;
@@ -274,6 +279,7 @@ void FixMdanimDrive::initial_integrate(int)
 
 void FixMdanimDrive::end_of_step()
 {
+  if (tells_alone) return;
   const Lap lap(seconds);
   double **const start = home();
   for (int i = 0; i < atom->nlocal; ++i)

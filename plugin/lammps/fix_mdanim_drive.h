@@ -38,6 +38,8 @@ class FixMdanimDrive : public mdanim::FixBase {
     mdanim::DrivenPlace before, now, next;
   };
   const Ways *ways_of(int molecule);
+  // Whether there is one motion, a displacement alone, of all that it moves.
+  bool shifts() const;
   // Whether an object goes its way in this step; not from its release on, and where no motion is given for it.
   bool holds(int molecule) const;
   // Objects of which some particle is in the group, on any rank; all ranks ask together.
@@ -55,6 +57,7 @@ class FixMdanimDrive : public mdanim::FixBase {
   void release(bigint step);
   double time(bigint step) const;
 
+  bool tells_alone = false;                       // moves no particle, and tells other fixes where planes are
   bool of_objects = false;                        // whether motions are those of molecules; else there is one, of molecule 0
   std::map<int, mdanim::DrivenMotion> motions;    // by molecule IDs
   std::map<int, Ways> ways_now;

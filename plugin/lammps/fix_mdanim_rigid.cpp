@@ -229,7 +229,7 @@ double FixMdanimRigid::compute_scalar()
   double more = 0.0;
   for (std::size_t n = 0; n < bodies.size(); ++n) more += bodies[n].translation() + bodies[n].rotation() - of_particles[n];
   const TouchAccount &account = touching.contact.account;
-  return force->mvv2e * (more + account.energy + account.heat + account.damped + account.let_go + drag_loss - touching.work);
+  return force->mvv2e * (more + account.energy + account.heat + account.damped + account.let_go + drag_loss - touching.taken());
 }
 
 double FixMdanimRigid::compute_array(int row, int column)

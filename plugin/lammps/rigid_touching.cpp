@@ -39,15 +39,16 @@ std::vector<Output> RigidTouching::outputs()
           {"near", true, [this] { return static_cast<double>(contact.near_pairs()); }},
           {"worst_bound", false, [&] { return account.worst_bound; }},
           {"most_touching", false, [&] { return static_cast<double>(account.most_touching); }},
-          {"work", true, [&, this] { return mvv2e * work; }}};
+          {"work", true, [&, this] { return mvv2e * taken(); }}};
 }
 
 // --- the command ---
 
 std::vector<Keyword> RigidTouching::words()
 {
-  return {{"shapes", "FILE"},          {"contact", "OMEGA EPS"}, {"objects", ""},   {"drive", "FIXID"},
-          {"plane", "x|y|z lo|hi at"}, {"pair", "A B mu beta"},  {"exclude", "A B"}};
+  return {{"shapes", "FILE"}, {"contact", "OMEGA EPS"},           {"objects", ""},
+          {"drive", "FIXID"}, {"plane", "x|y|z lo|hi at"},        {"pair", "A B mu beta"},
+          {"exclude", "A B"}, {"moving", "x|y|z lo|hi at FIXID"}, {"belt", "A vx vy vz"}};
 }
 
 static double number(LAMMPS *lmp, int iarg, char **arg, const char *what, double least, bool or_equal)
@@ -76,7 +77,15 @@ void RigidTouching::read_word(int iarg, char **arg)
   }
   if (is("drive")) drive_id = arg[iarg + 1];
   if (is("objects")) contact.settings.objects = true;
-  if (is("plane")) read_plane(iarg, arg);
+  if (is("plane") || is("moving")) read_plane(iarg, arg);
+  if (is("moving")) {
+    contact.settings.planes.back().moves = true;
+    moving.add(static_cast<int>(contact.settings.planes.size()) - 1, arg[iarg + 4]);
+  }
+  if (is("belt")) {
+    const auto along = [&](int k) { return utils::numeric(FLERR, arg[iarg + k], false, lmp); };
+    contact.settings.belts[utils::inumeric(FLERR, arg[iarg + 1], false, lmp)] = {along(2), along(3), along(4)};
+  }
   if (is("pair")) read_pair(iarg, arg);
   if (is("exclude")) contact.settings.excluded.insert(two_molecules(lmp, STYLE, iarg + 1, arg));
 }
@@ -91,7 +100,10 @@ void RigidTouching::read_plane(int iarg, char **arg)
     lmp->error->all(FLERR, iarg + 2, "{}: a plane is the lower end of what is allowed, lo, or the upper, hi; got {}", STYLE,
                     arg[iarg + 2]);
   const double sign = low ? 1.0 : -1.0, at = utils::numeric(FLERR, arg[iarg + 3], false, lmp);
-  contact.settings.planes.push_back({{axis == 0 ? sign : 0.0, axis == 1 ? sign : 0.0, axis == 2 ? sign : 0.0}, sign * at});
+  SolidPlane plane;
+  plane.n = {axis == 0 ? sign : 0.0, axis == 1 ? sign : 0.0, axis == 2 ? sign : 0.0};
+  plane.at = sign * at;
+  contact.settings.planes.push_back(plane);
 }
 
 // The second of a pair may be a plane: plane1 is the first one of the command.
@@ -171,6 +183,7 @@ void RigidTouching::take(const std::string &fix, const ObjectTable &objects, con
     one.id = id;
     one.held = given.held;
     one.driven = given.driven;
+    if (const auto belt = contact.settings.belts.find(id); belt != contact.settings.belts.end()) one.belt = belt->second;
     if (given.driven) driven.push_back({id, static_cast<int>(solids.size()), given.pose, {}, {}, {}});
     one.material = given.material;
     if (given.held) {
@@ -188,6 +201,8 @@ void RigidTouching::take(const std::string &fix, const ObjectTable &objects, con
   for (const auto &[ids, law] : contact.settings.pairs)
     for (const int id : {ids.first, ids.second})
       if (id > 0 && !shapes.count(id)) lmp->error->all(FLERR, "{}: pair names molecule {}, which has no shape", fix, id);
+  for (const auto &[id, velocity] : contact.settings.belts)
+    if (!shapes.count(id)) lmp->error->all(FLERR, "{}: belt names molecule {}, which has no shape", fix, id);
   for (const auto &[a, b] : contact.settings.excluded)
     for (const int id : {a, b})
       if (!shapes.count(id)) lmp->error->all(FLERR, "{}: exclude names molecule {}, which has no shape", fix, id);
@@ -219,6 +234,15 @@ void RigidTouching::place_driven()
   }
 }
 
+void RigidTouching::move_planes()
+{
+  const double per_dt = 1.0 / lmp->update->dt;
+  moving.each([&](int k, const Vec3 &shift, const Vec3 &way) {
+    SolidPlane &plane = contact.settings.planes[k];
+    plane.shift = shift, plane.way = way, plane.velocity = per_dt * way;
+  });
+}
+
 // -F dx with the mean of the forces before and after the step.
 void RigidTouching::count_work(bool moves)
 {
@@ -234,6 +258,7 @@ void RigidTouching::step(const std::vector<RigidBody> &bodies, double dt)
   if (!is_on()) return;
   place_all(bodies);
   place_driven();
+  move_planes();
   contact.step(dt);
   count_work(dt > 0.0);
   for (std::size_t n = 0; n < bodies.size(); ++n)
@@ -245,6 +270,7 @@ void RigidTouching::step(const std::vector<RigidBody> &bodies, double dt)
 
 void RigidTouching::init(const std::string &fix)
 {
+  moving.init(fix);
   if (drive_id.empty()) return;
   drive = dynamic_cast<FixMdanimDrive *>(lmp->modify->get_fix_by_id(drive_id));
   if (!drive) lmp->error->all(FLERR, "{}: drive {} is not the ID of a fix mdanim/drive", fix, drive_id);

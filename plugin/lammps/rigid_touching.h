@@ -5,6 +5,7 @@
 
 #include "lammps/fix_base.h"
 #include "lammps/keywords.h"
+#include "lammps/moving_planes.h"
 #include "lammps/object_table.h"
 #include "records/byte_reader.h"
 #include "records/state_records.h"
@@ -30,7 +31,7 @@ class RigidTouching {
  public:
   static constexpr int NO_SHAPE = -1;     // of a body that does not touch by features
   static std::vector<Keyword> words();    // of the command
-  explicit RigidTouching(LAMMPS_NS::LAMMPS *lmp) : lmp(lmp) {}
+  explicit RigidTouching(LAMMPS_NS::LAMMPS *lmp) : lmp(lmp), moving(lmp) {}
 
   // Reads a word with its values, where it is one of words().
   void read_word(int iarg, char **arg);
@@ -74,6 +75,8 @@ class RigidTouching {
   void put_driven(std::int64_t version, StateRecords &records) const;
   void read_driven(std::int64_t version, const StateRecords &records);
   double work = 0.0;
+  // This work, with that of planes and of surfaces that move.
+  double taken() const { return work + contact.account.work; }
 
   // Contacts from the records of pairs, and at planes from what is left of those of bodies. Throws std::runtime_error.
   void read_contacts(const StateRecords &records, std::int64_t version, std::vector<std::optional<ByteReader>> &at_planes);
@@ -90,11 +93,13 @@ class RigidTouching {
   };
   void place_all(const std::vector<RigidBody> &bodies);
   void place_driven();
+  void move_planes();
   void count_work(bool moves);
   void read_plane(int iarg, char **arg);
   void read_pair(int iarg, char **arg);
 
   LAMMPS_NS::LAMMPS *lmp;
+  MovingPlanes moving;
   std::map<int, GivenShape> shapes;    // by molecule IDs
   std::vector<Pose> poses;             // of bodies
   std::vector<Push> pushes;

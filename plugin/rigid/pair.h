@@ -57,7 +57,9 @@ void touch_corners_in(const TouchStep &step, SolidPair &pair, bool of_other, Sol
 // A plane: what is allowed lies where n . x >= at.
 struct SolidPlane {
   Vec3 n;
-  double at = 0.0;
+  double at = 0.0;    // at the start
+  bool moves = false;
+  Vec3 shift, way, velocity;    // of one that moves: from the start, of the step that ends here, and its mean velocity
 };
 void touch_plane(const TouchStep &step, std::vector<Touch> &touches, Solid &one, const SolidPlane &plane, const TouchLaw &law);
 

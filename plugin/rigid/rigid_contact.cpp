@@ -33,6 +33,7 @@ void RigidContact::forget()
   near.pairs.clear();
   near.forget();
   at_plane.assign(settings.planes.size(), std::vector<std::vector<Touch>>(solids.size()));
+  plane_push.clear();
 }
 
 void RigidContact::place(int n, const RigidBody &body)
@@ -119,6 +120,23 @@ void RigidContact::touch_pair(const TouchStep &step, SolidPair &pair)
   touch_solids(step, pair, a, b, law_of(a, b));
 }
 
+// In the frame of a plane that moves, contact is as with one that stands. The work is -F dx of the plane with the mean of the
+// forces before and after the step.
+void RigidContact::touch_plane(const TouchStep &step, std::vector<Touch> &touches, Solid &one, int k)
+{
+  const SolidPlane &plane = settings.planes[k];
+  const TouchLaw law = law_at(one, k);
+  if (!plane.moves) return mdanim::touch_plane(step, touches, one, plane, law);
+  const Vec3 centre = one.centre, velocity = one.velocity, force = one.force;
+  one.centre = centre - plane.shift, one.velocity = velocity - plane.velocity;
+  mdanim::touch_plane(step, touches, one, plane, law);
+  one.centre = centre, one.velocity = velocity;
+  const Vec3 now = one.force - force;
+  auto &before = plane_push[{k, one.id}];
+  if (!step.is_first()) account.work += 0.5 * dot(before.value_or(Vec3{}) + now, plane.way);
+  if (!step.is_first() || !before) before = now;
+}
+
 void RigidContact::step(double dt)
 {
   for (Solid &one : solids) {
@@ -131,7 +149,7 @@ void RigidContact::step(double dt)
     for (std::size_t n = 0; n < solids.size(); ++n)
       if (!solids[n].held && !solids[n].aside) {
         forget_parted(at_plane[k][n]);
-        touch_plane(step, at_plane[k][n], solids[n], settings.planes[k], law_at(solids[n], static_cast<int>(k)));
+        touch_plane(step, at_plane[k][n], solids[n], static_cast<int>(k));
       }
   if (settings.objects) {
     near.update(solids, settings.excluded);
@@ -149,6 +167,7 @@ bool RigidContact::lay_aside(int n, bool aside)
   if (solids[n].aside == aside) return false;
   solids[n].aside = aside;
   for (auto &of_plane : at_plane) of_plane[n].clear();
+  for (int k = 0; k < static_cast<int>(settings.planes.size()); ++k) plane_push.erase({k, solids[n].id});
   for (SolidPair &pair : near.pairs) {
     if (pair.a != n && pair.b != n) continue;
     pair.touches.clear();
@@ -193,6 +212,11 @@ std::size_t RigidContact::bytes() const
 void RigidContact::put_at_planes(int n, ByteWriter &writer) const
 {
   for (const auto &of_plane : at_plane) writer.put_counted(of_plane[n]);
+  for (int k = 0; k < static_cast<int>(settings.planes.size()); ++k) {
+    if (!settings.planes[k].moves) continue;
+    const auto push = plane_push.find({k, solids[n].id});
+    writer.put(push == plane_push.end() ? Vec3{} : push->second.value_or(Vec3{}));
+  }
 }
 
 // Features that the shapes have, and finite numbers.
@@ -229,6 +253,13 @@ void RigidContact::read_at_planes(int n, ByteReader &reader)
   for (auto &of_plane : at_plane) {
     of_plane[n] = reader.get_counted<Touch>();
     check(of_plane[n], solids[n], nullptr, reader);
+  }
+  for (int k = 0; k < static_cast<int>(settings.planes.size()); ++k) {
+    if (!settings.planes[k].moves) continue;
+    const auto push = reader.get<Vec3>();
+    const double values[] = {push.x, push.y, push.z};
+    reader.expect_numbers(values, "a force on a plane");
+    plane_push[{k, solids[n].id}] = push;
   }
 }
 

@@ -11,6 +11,7 @@
 #include "rigid/touch.h"
 
 #include <map>
+#include <optional>
 #include <set>
 #include <utility>
 #include <vector>
@@ -25,6 +26,7 @@ struct RigidContactSettings {
   // Friction and damping of pairs, by ids, the lower one first; of a body and plane k the second is -1 - k.
   std::map<std::pair<int, int>, Material> pairs;
   std::set<std::pair<int, int>> excluded;    // ids of pairs that never touch, the lower one first
+  std::map<int, Vec3> belts;                 // velocities at which surfaces run over bodies, by their ids
 };
 
 // How deep two bodies are in each other: the depth of the deepest contact that begins without a force at the setup of a run; 0
@@ -72,10 +74,13 @@ class RigidContact {
   TouchLaw law_at(const Solid &one, int plane) const;
   TouchLaw law_with(double yields, Material material, std::pair<int, int> ids) const;
   void touch_pair(const TouchStep &step, SolidPair &pair);
+  void touch_plane(const TouchStep &step, std::vector<Touch> &touches, Solid &one, int plane);
 
   std::vector<Solid> solids;
   NearSolids near;
   std::vector<std::vector<std::vector<Touch>>> at_plane;    // by planes and bodies
+  // Forces on bodies from planes that move, in the last step, by planes and ids; none before the first one.
+  std::map<std::pair<int, int>, std::optional<Vec3>> plane_push;
 };
 
 }    // namespace mdanim

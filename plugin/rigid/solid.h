@@ -29,6 +29,8 @@ struct Solid {
   double yields = 0.0;        // largest lambda along normals at its features (see find_yields)
   double yields_any = 0.0;    // along any direction
 
+  Vec3 belt;    // velocity at which its surface runs over it
+
   Vec3 centre, velocity, spin;
   Matrix3 turn;
   Vec3 axis[3];                 // columns of `turn`

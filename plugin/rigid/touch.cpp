@@ -154,9 +154,10 @@ void TouchStep::press(Touch &touch, const TouchLaw &its_law, Solid &a, Solid *b,
   if (b && (slope.x != 0.0 || slope.y != 0.0 || slope.z != 0.0)) force -= push.surface_energy * b->in_space(slope);
   if (law.friction > 0.0) {
     const Vec3 from_anchor = own - touch.anchor;
-    Vec3 away = b ? b->in_space(from_anchor) : from_anchor;
+    const Vec3 ran = this->ran(a, b);
+    Vec3 away = (b ? b->in_space(from_anchor) : from_anchor) + ran;
     away -= dot(away, n) * n;    // the anchor follows along the normal
-    friction(touch, law, part, away, n, push);
+    friction(touch, law, part, away, n, ran, push);
     const Vec3 left = push.kept * away;
     touch.anchor = own - (b ? b->in_body(left) : left);
     force += push.pull + push.drag;
@@ -219,9 +220,10 @@ void TouchStep::press_between(Touch &touch, const TouchLaw &its_law, Solid &a, S
   if (law.friction > 0.0) {
     // The way that the material of one went over that of the other, step by step.
     Vec3 away = b ? b->in_space(touch.anchor) : touch.anchor;
-    away += dt * relative_velocity(a, b, at.x);
+    const Vec3 ran = this->ran(a, b);
+    away += dt * relative_velocity(a, b, at.x) + ran;
     away -= dot(away, at.n) * at.n;
-    friction(touch, law, at.part, away, at.n, push);
+    friction(touch, law, at.part, away, at.n, ran, push);
     const Vec3 left = push.kept * away;
     touch.anchor = b ? b->in_body(left) : left;
     force += push.pull + push.drag;

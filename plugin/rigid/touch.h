@@ -56,6 +56,7 @@ struct TouchAccount {
   double energy = 0.0;                              // of contacts and of sticking, now [J]
   int touching = 0;                                 // now
   double heat = 0.0, damped = 0.0, let_go = 0.0;    // since the beginning [J]
+  double work = 0.0;                                // of surfaces and planes that move, since the beginning [J]
   double deepest = 0.0;                             // in this run [m]
   double worst_bound = 0.0;                         // largest dt^2 S / 4 + dt D / 2 of a body in this run
   int most_touching = 0;                            // contacts of one body, in this run
@@ -112,15 +113,21 @@ class TouchStep {
   }
 
   ContactLaw law_of(const Touch &touch, const TouchLaw &law) const
-  { return {touch.stiffness, onset, law.friction, touch.damping}; }
+  { return {touch.stiffness, onset, law.friction, touch.damping, {}}; }
   // The part of a contact that depends on its depth. In the step in which it begins or ends, its force counts for as long as it
   // acts (see touch.cpp).
   ContactForce<double> pressure(Touch &touch, const ContactLaw &law, double part, double depth) const;
+  // The way of the surface of `a` over that of `b`, or of a plane, in this step, besides that of their bodies.
+  Vec3 ran(const Solid &a, const Solid *b) const { return b ? dt * (a.belt - b->belt) : dt * a.belt; }
   // Friction, whose spring has half of the dashpot: with all of it a stack of ten boxes that are turned trembles at 0.35/Omega.
-  void friction(Touch &touch, ContactLaw law, double part, const Vec3 &away, const Vec3 &n, ContactForce<double> &force) const
+  // `ran` is a part of the way that bodies do not see: surfaces that run do work by it.
+  void friction(Touch &touch, ContactLaw law, double part, const Vec3 &away, const Vec3 &n, const Vec3 &ran,
+                ContactForce<double> &force) const
   {
+    const Vec3 before = touch.memory.pull + touch.memory.drag;
     law.damping *= STICK_DAMPING;
     contact_friction<double>(law, 1.0, part, away, n, dt, touch.memory, force);
+    account.work -= 0.5 * dot(before + force.pull + force.drag, ran);
   }
   void apply(Solid &a, Solid *b, const Vec3 &x, const Vec3 &f) const;
   void book(Solid &a, Solid *b, Touch &touch, double part, const ContactForce<double> &force) const;

@@ -209,6 +209,14 @@ void look_up_edges(SolidPair &pair, const Solid &a, const Solid &b, double margi
   }
 }
 
+// Anchors along both edges where the surface of the first body ran over that of the other: ran = s one - r other, beside n.
+void run_along(Vec3 &anchor, const Vec3 &ran, const Vec3 &one, const Vec3 &other, const EdgeCrossing &at)
+{
+  const double by_one = dot(ran, one), by_other = dot(ran, other);
+  anchor.x += (by_one - at.cosine * by_other) / at.square;
+  anchor.y += (at.cosine * by_one - by_other) / at.square;
+}
+
 void touch_edges(const TouchStep &step, SolidPair &pair, Solid &a, Solid &b, const TouchLaw &law)
 {
   for (const auto &[i, j] : pair.edges) {
@@ -273,8 +281,10 @@ void touch_edges(const TouchStep &step, SolidPair &pair, Solid &a, Solid &b, con
       b.torque -= torque;
     }
     if (law.friction > 0.0) {
+      const Vec3 ran = step.ran(a, &b);
+      run_along(touch.anchor, ran, one.along, other.along, at);
       const Vec3 away = (touch.anchor.x - at.s) * one.along - (touch.anchor.y - at.r) * other.along;
-      step.friction(touch, its_law, part, away, at.n, push);
+      step.friction(touch, its_law, part, away, at.n, ran, push);
       touch.anchor = {at.s + push.kept * (touch.anchor.x - at.s), at.r + push.kept * (touch.anchor.y - at.r), 0.0};
       const Vec3 between = 0.5 * ((one.middle + touch.anchor.x * one.along) + (other.middle + touch.anchor.y * other.along));
       step.apply(a, &b, between, push.pull);

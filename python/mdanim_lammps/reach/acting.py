@@ -12,9 +12,10 @@ from typing import Protocol
 import numpy as np
 
 from ..errors import Span
-from ..model.planes import Plane, innermost
+from ..model.planes import Plane, closest, innermost
 from ..model.system import System
 from ..scene.scene import SceneRecord
+from ..scene.schema import Vector
 
 
 class Bodies(Protocol):
@@ -164,6 +165,10 @@ class Motion:
         positions and velocities, and counts the work that they do."""
         return {}
 
+    def belts(self, scene: SceneRecord) -> Mapping[int, Vector]:
+        """Velocities at which surfaces run over solids that it holds, by number [m/s]; friction sees them."""
+        return {}
+
 
 class Acting:
     """The declarations of several effects together."""
@@ -219,6 +224,16 @@ class Acting:
         return innermost(self.planes)
 
     @cached_property
+    def touched(self) -> tuple[np.ndarray, np.ndarray]:
+        """As `closest`."""
+        return closest(self.planes)
+
+    @cached_property
+    def stirred(self) -> float:
+        """Speed that planes which move may give to solids in a blow [m/s]: twice their own."""
+        return 2.0 * max((p.motion.speed for p in self.planes if p.motion), default=0.0)
+
+    @cached_property
     def slowed(self) -> np.ndarray:
         """Solids that are slowed down wherever they are, bool, shape (M,)."""
         return self._any(e.slows(self.scene) for e in self.effects)
@@ -253,10 +268,10 @@ class Acting:
 
     @cached_property
     def given(self) -> np.ndarray:
-        """Speed that what holds each solid may give to it [m/s], shape (M,)."""
-        found = np.zeros(len(self.scene.solids))
+        """Speed that what holds each solid, and planes that move, may give to it [m/s], shape (M,)."""
+        found = np.full(len(self.scene.solids), self.stirred)
         for m, leash in self.leashes.items():
-            found[m] = leash.speed if leash is not None else 0.0
+            found[m] += leash.speed if leash is not None else 0.0
         return found
 
     @cached_property

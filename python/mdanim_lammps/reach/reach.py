@@ -92,7 +92,7 @@ class Reach:
     def heights(self) -> tuple[np.ndarray, float]:
         """Height of the lowest point of each solid [m], shape (M,), and of the lowest solid or floor [m]."""
         bottom = np.minimum.reduceat(self.system.position[:, 2], self.system.first[:-1])
-        return bottom, min([bottom.min(), *(p.at for p in self.acting.planes if p.axis == 2 and p.sign > 0)])
+        return bottom, min([bottom.min(), *(p.least for p in self.acting.planes if p.axis == 2 and p.sign > 0)])
 
     @cached_property
     def farthest_down(self) -> np.ndarray:

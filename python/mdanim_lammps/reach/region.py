@@ -107,7 +107,7 @@ def sweeps(acting: Acting, h: np.ndarray) -> Sweeps:
     joined or pushed everywhere. A plane acts along its own axis, one with friction along all of them.
     Raises SceneError for a mesh that is not a body.
     """
-    scene, (limit_low, limit_high) = acting.scene, acting.limits
+    scene, (limit_low, limit_high), (near_low, near_high) = acting.scene, acting.limits, acting.touched
     bodies = _Movers(acting, h)
     low, high = _flight(acting, bodies)
     calm = bodies.size(bodies.tip)  # the largest size by its own spin
@@ -115,7 +115,7 @@ def sweeps(acting: Acting, h: np.ndarray) -> Sweeps:
     wet_below = acting.wet_below
 
     def touched(radius):
-        reached = (low - radius[:, None] <= limit_low) | (high + radius[:, None] >= limit_high)
+        reached = (low - radius[:, None] <= near_low) | (high + radius[:, None] >= near_high)
         wet = (low - radius[:, None])[:, 2] <= wet_below
         return reached | wet[:, None], wet
 
@@ -174,7 +174,7 @@ class _Movers:
         self.loose = np.where(bound, 0.0, self.tip * scene.control.time)
         self.pull = acting.most_pull(self)
         self.speed = _speed(acting, self) + acting.thrown_at
-        self.speed = _shared(acting, self.mass, self.speed) + acting.given if acting.leashes else self.speed
+        self.speed = _shared(acting, self.mass, self.speed) + acting.given if acting.leashes or acting.stirred else self.speed
         if acting.joined.any():  # nothing is known of what pulls: what is faster than waves is refused
             waves = np.where(np.isfinite(self.wave), self.wave, 0.0)
             self.speed = np.where(acting.joined, np.maximum(self.speed, waves), self.speed)

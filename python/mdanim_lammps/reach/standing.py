@@ -32,7 +32,7 @@ def standing(acting: Acting, system: System) -> np.ndarray:
     calm = ~system.still & ~acting.acted_on & ~slowest.any(axis=1) & ~fastest.any(axis=1)
     near = BORN_AT_REST * system.spacing
     for plane in acting.planes:
-        if plane.axis == 2 and plane.sign > 0:
+        if plane.axis == 2 and plane.sign > 0 and plane.motion is None:
             found |= calm & (np.abs(low[:, 2] - plane.at) <= near)
     flat = np.array(
         [isinstance(s.shape, Box) and np.abs(np.array(s.rotation))[2].max() > 1.0 - LEVEL for s in acting.scene.solids]

@@ -53,7 +53,6 @@ class Guard:
         self.cells = np.diff(Geometry(ready.system).first_cell)
         """Number of cells of each solid, shape (M,)."""
         self.sides = ready.context.reach.acting.planes
-        self.planes = np.array([s.sign * s.at for s in self.sides])
         self.columns = [s.axis if s.sign > 0 else 3 + s.axis for s in self.sides]
         """Column of an object's reach: the one towards the plane, for objects below it."""
         self.allowed = np.where(ready.system.still, np.inf, ready.system.spacing)[:, None]
@@ -128,15 +127,16 @@ class Guard:
         ``reach`` as in `Observation`."""
         if not self.sides:
             return
-        beyond = self.planes - reach[:, self.columns]
+        places = [side.at_time(step * self.ready.certificate.timestep) for side in self.sides]
+        beyond = np.array([side.sign * at for side, at in zip(self.sides, places)]) - reach[:, self.columns]
         gone = beyond > self.allowed
         if gone.any():
             n = int(np.where(gone, beyond, -np.inf).argmax())
-            m, side = n // len(self.sides), self.sides[n % len(self.sides)]
+            m, k = divmod(n, len(self.sides))
+            side, at = self.sides[k], say(places[k], "m", 6)
             raise self.error_at(
                 step,
-                f"it has left {side.name}: all of it is beyond {'xyz'[side.axis]} = {say(side.at, 'm', 6)}, by "
-                f"{say(float(beyond.flat[n]), 'm')}",
+                f"it has left {side.name}: all of it is beyond {'xyz'[side.axis]} = {at}, by {say(float(beyond.flat[n]), 'm')}",
                 m,
                 "time step",
                 "amplitude",

@@ -345,7 +345,9 @@ def _default(k: Keyword, record: type) -> str:
     rest = {f.name: f.default for f in dataclasses.fields(record)}
     value = (k.absent, *(rest[name] for name in k.also)) if k.also else k.absent
     if k.many:
-        value = k.codec.scatter(value)[0]
+        if not (several := k.codec.scatter(value)):
+            return ""
+        value = several[0]
         return write(alternatives(k.form)[0], k.codec.write(k, value)[1], number)
     if value is None or (k.also and None in value):
         written = k.codec.write(k, None) if not k.also else None

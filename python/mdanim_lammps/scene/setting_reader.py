@@ -128,12 +128,18 @@ class SettingReader(Reader):
         return SettingNode(self.source, word, keyword, choice, tuple(words), tuple(values))
 
     def choose(self, word: Token, keyword: Keyword) -> int:
-        """The alternative of the form that the next word calls for."""
+        """The alternative of the form that the next word calls for, or the next two of alternatives that begin alike."""
         t = self.peek
         options = alternatives(keyword.form)
-        for n, parts in enumerate(options):
-            if isinstance(parts[0], Word) and parts[0].text == t:
-                return n
+        called = [n for n, parts in enumerate(options) if isinstance(parts[0], Word) and parts[0].text == t]
+        if len(called) > 1:
+            seconds = {options[n][1].text: n for n in called}
+            if (second := self.ahead(1)) not in seconds:
+                hint = did_you_mean(str(second), list(seconds)) or example(keyword)
+                raise Fault(second, f"{keyword.name} {t} cannot be followed by {second.found()}", hint)
+            return seconds[str(second)]
+        if called:
+            return called[0]
         starts = [p[0].text for p in options if isinstance(p[0], Word)]
         free = [n for n, p in enumerate(options) if not isinstance(p[0], Word)]
         mistyped = t.type == "NAME" and t not in self.shared.names and (nearest(str(t), starts) or not free)

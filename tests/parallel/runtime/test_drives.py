@@ -77,7 +77,24 @@ object flag  { shape box (24, 8, 8) cm   position (0, 60, 0) cm   density 300   
 object stone { shape box (8, 8, 8) cm    position (30, 60, 8) cm  density 900   elasticity rigid  hold all  release 0.03 s }
 control { time 0.08 s  frames 100 fps  resolution 4 cm  friction 0.4 }
 """
-SCENES = {"elastic": SCENE, "rigid": RIGID, "wet": WET, "pushed": PUSHED, "released": RELEASED}
+SHAKEN = """
+gravity (0, 0, -9.81) m/s^2
+walls from (-40, -40, 0) cm to (40, 40, 40) cm
+walls drive oscillation (3, 0, 0) cm frequency 4 Hz
+walls key 0.05 s by (0, 0, 2) cm
+object belt  { shape box (60, 8, 8) cm   position (0, 30, 10) cm   density 1000  elasticity 1 MPa  hold all
+  drive surface (1, 0, 0) m/s }
+object rider { shape box (8, 8, 8) cm    position (-20, 30, 18.01) cm  density 700  elasticity 300 kPa }
+object stone { shape box (8, 8, 8) cm    position (0, 30, 18.005) cm  density 700  elasticity rigid }
+object cube  { shape box (8, 8, 8) cm    position (-35, 0, 4.01) cm  density 900   elasticity 300 kPa }
+object brick { shape box (8, 8, 8) cm    position (20, -20, 4.005) cm  density 900  elasticity rigid }
+object rope  { shape rope from (-20, -20, 1) cm to (10, -20, 1) cm thickness 2 cm density 900 elasticity 1 MPa }
+object ball  { shape sphere 6 cm         position (33, 10, 12) cm  density 900   elasticity rigid }
+control { time 0.08 s  frames 100 fps  resolution 4 cm  friction 0.4 }
+"""
+SCENES = {
+    "elastic": SCENE, "rigid": RIGID, "wet": WET, "pushed": PUSHED, "released": RELEASED, "shaken": SHAKEN
+}  # fmt: skip
 CASES = (
     matrix((2,), ["central"], name="all move ", rotate=True)
     | matrix((3,), ["peers"], name="all move ", rotate=True)

@@ -320,3 +320,43 @@ def test_what_starts_below_a_plane_stays(tmp_path, depth):
     assert np.abs(lab.by_tag(lmp, "x") - x).max() < 3.3e-5
     assert lmp.extract_fix("contact", 0, 1, 5) > 0
     lmp.close()
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.5])
+def test_a_plane_that_comes_is_as_one_that_stands(tmp_path, friction):
+    """In the frame of the plane nothing differs: not where lists are made while it comes, and with friction along it. The work is
+    what the force on it has done on its way."""
+    for folder in ("stands", "comes"):
+        (tmp_path / folder).mkdir()
+    way, steps = np.array([0.02, 0.01, 0.05]), 400
+    block = Cuboid((2, 2, 2), (0.0, 0.0, 1.303), friction=friction)
+    stands = contact_lab.load(
+        [replace(block, velocity=tuple(-way))], tmp_path / "stands", "plane z lo 0.0", STEP, more=["neighbor 0.2 bin"]
+    )
+    drive = "fix floor all mdanim/drive home none since 0 velocity {} {} {}".format(*way)
+    comes = contact_lab.load(
+        [block], tmp_path / "comes", "moving z lo 0.0 floor", STEP, before=[drive], more=["neighbor 0.2 bin"]
+    )
+    work, before = 0.0, np.zeros(3)
+    for n in range(1, steps + 1):
+        for lmp in (stands, comes):
+            lmp.command("run 1 pre no post no")
+        on_plane = np.array([comes.extract_fix("contact", 0, 1, k) for k in (8, 9, 10)])
+        work -= 0.5 * (before + on_plane) @ way * STEP
+        before = on_plane
+        np.testing.assert_allclose(lab.by_tag(comes, "x") - n * STEP * way, lab.by_tag(stands, "x"), rtol=0, atol=1e-11)
+    assert lab.by_tag(comes, "v")[:, 2].mean() > 0.05 and stands.extract_fix("contact", 0, 1, 4) > 0.0
+    assert comes.extract_fix("contact", 0, 1, 15) == pytest.approx(work, rel=1e-12) and work > 0.0
+    stands.close(), comes.close()
+
+
+@pytest.mark.parametrize(("words", "told"), [
+    ("moving z lo 0.0 none", "moving none is not the ID of a fix mdanim/drive"),
+    ("moving z lo 0.0 mill", "fix mill gives no displacement of planes; write its motion in the command, without a turn"),
+    ("objects belt 9 1 0 0", "belt names molecule 9"),
+])  # fmt: skip
+def test_what_moves_is_there(tmp_path, words, told):
+    """A fix that tells where planes are; a molecule whose surface runs."""
+    mill = "fix mill all mdanim/drive home none since 0 turn 0 0 1 0 0 0"
+    with pytest.raises(Exception, match=told):
+        contact_lab.load([Cuboid((2, 2, 2), (0.0, 0.0, 1.3))], tmp_path, words, STEP, before=[mill])

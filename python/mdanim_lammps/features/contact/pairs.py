@@ -8,8 +8,10 @@ from math import sqrt
 
 import numpy as np
 
+from ... import features
 from ...effects.context import Context
 from ...reach import largest_of_others
+from ...scene.formatting import in_full
 from ...scene.naming import objects_by_name, pairs_of
 from ...scene.once import once_for
 from ...scene.scene import SceneRecord
@@ -42,6 +44,19 @@ def pair_rules(scene: SceneRecord, names: Sequence[str]) -> list[tuple[int, int,
             usual = damping(scene) if mu > 0.0 else 0.0
             rules.append((i, j, mu, usual if c.contact_damping is None else c.contact_damping))
     return rules
+
+
+def runs(scene: SceneRecord) -> bool:
+    """Whether the surface of something runs over it."""
+    return any(effect.of(scene).belts(scene) for effect in features.effects())
+
+
+def belts(context: Context, among: np.ndarray | None = None) -> list[str]:
+    """Words for surfaces that run over solids, or over those of them that are ``among``, bool, shape (M,)."""
+    running = [one for effect in context.reach.acting.effects for one in effect.belts(context.scene).items()]
+    number = {name: m for m, name in enumerate(context.system.names)} if running else {}
+    found = ((number.get(context.scene.solids[m].name), velocity) for m, velocity in running)
+    return [f"belt {m + 1} {in_full(u)}" for m, u in found if m is not None and (among is None or among[m])]
 
 
 def damping(scene: SceneRecord) -> float:

@@ -10,7 +10,7 @@ import numpy as np
 from ...effects.context import Context, Verdict
 from ...effects.fields import column
 from ...errors import Problem
-from ...model.planes import Plane, innermost
+from ...model.planes import AXES, Plane, innermost
 from ...scene.formatting import at_least, say, whole
 from ...scene.scene import SceneRecord
 from .forms import Form, particle_stiffness
@@ -24,6 +24,12 @@ STIFFNESS = column("stiffness", "N/m")
 """Stiffness with which particles push back."""
 DEEPEST = "deepest"
 """In the vector of fix mdanim/wall: the deepest particle behind the region in this run [m]."""
+
+
+def word_of(plane: Plane) -> str:
+    """Words for a plane in commands of fixes."""
+    place = f"{AXES[plane.axis]} {'lo' if plane.sign > 0 else 'hi'} {float(plane.at)!r}"
+    return f"moving {place} {plane.motion.fix}" if plane.motion else f"plane {place}"
 
 
 def others(found: Sequence[Touch], what: str) -> str:

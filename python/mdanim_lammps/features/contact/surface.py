@@ -16,15 +16,14 @@ from ...errors import Problem
 from ...model.boxes import box_pairs
 from ...model.model import Layer, Model
 from ...model.overlap import BORN_AT_REST
-from ...model.planes import AXES
 from ...model.system import System
 from ...reach import by, thrower_of
 from ...scene.formatting import at_least, say
 from ...scene.scene import Box, SceneRecord
 from .barrier import GAP, ObjectContact, barrier, barrier_rate, excluded
 from .forms import particle_stiffness
-from .pairs import USUAL_DAMPING, any_friction, damping, frictions, largest_of_partners, pair_rules
-from .planes import STIFFNESS, BarrierPlanes, Planes, Sides, yielding
+from .pairs import USUAL_DAMPING, any_friction, belts, damping, frictions, largest_of_partners, pair_rules, runs
+from .planes import STIFFNESS, BarrierPlanes, Planes, Sides, word_of, yielding
 from .resting import one_sided
 from .rigid_surfaces import moduli, spread_mobility
 
@@ -49,9 +48,9 @@ SLOW_NEEDLE = 0.1
 UNGUARDED, NEEDLE = 0.35, 0.2
 """Closing speed over the wave speed from which something passes what is one cell thin and no barrier (`guards`), and what is one
 cell across along two axes (bench/contact.py)."""
-HEAT, DAMPED, LET_GO = "friction_heat", "contact_damping_loss", "let_go"
-"""Columns of the ledger."""
-TAKEN = {HEAT: "friction_heat", DAMPED: "damping_loss", LET_GO: "let_go"}
+HEAT, DAMPED, LET_GO, WORK = "friction_heat", "contact_damping_loss", "let_go", "work"
+"""Columns of the ledger; the last is what surfaces and planes that move bring in."""
+TAKEN = {HEAT: "friction_heat", DAMPED: "damping_loss", LET_GO: "let_go", WORK: "work"}
 """Their entries of the fix's vector."""
 DEEPEST = "deepest"
 """In the fix's vector: the deepest point below a surface in this run [m]."""
@@ -197,7 +196,7 @@ class SurfaceContact(ObjectContact):
         scene, system = context.scene, context.system
         rules = [f"pair {i + 1} {j + 1} {mu!r} {beta!r}" for i, j, mu, beta in pair_rules(scene, system.names)]
         return [
-            *self.law.commands(context, " ".join(["objects", *rules, *excluded(context)])),
+            *self.law.commands(context, " ".join(["objects", *rules, *excluded(context), *belts(context)])),
             *barrier(self.behind, context, self.thin(system)),
         ]
 
@@ -300,8 +299,11 @@ class SurfaceContact(ObjectContact):
     def losses(self, scene):
         return (*self.law.losses(scene), LET_GO)
 
+    def sources(self, scene):
+        return (WORK,) if runs(scene) else ()
+
     def lost(self, readings):
-        return self.law.lost(readings, self.losses(readings.context.scene))
+        return self.law.lost(readings, (*self.losses(readings.context.scene), *self.sources(readings.context.scene)))
 
     def energy(self, readings):
         return readings.fix_scalar(self.fix) + readings.fix_scalar(self.behind)
@@ -332,8 +334,7 @@ class SurfacePlanes(Planes):
         return self.law.columns(context)
 
     def commands(self, context):
-        planes = (f"plane {AXES[p.axis]} {'lo' if p.sign > 0 else 'hi'} {p.at!r}" for p in self.planes(context.scene))
-        return self.law.commands(context, " ".join(planes))
+        return self.law.commands(context, " ".join(map(word_of, self.planes(context.scene))))
 
     def rate(self, context):
         """a_i = kappa w_i / m_i with w_i as in `SurfaceContact.rate`: the plane does not move, so there is no factor 2."""
@@ -350,8 +351,11 @@ class SurfacePlanes(Planes):
     def losses(self, scene):
         return self.law.losses(scene)
 
+    def sources(self, scene):
+        return (WORK,) if any(p.motion for p in self.planes(scene)) else ()
+
     def lost(self, readings):
-        return self.law.lost(readings, self.losses(readings.context.scene))
+        return self.law.lost(readings, (*self.losses(readings.context.scene), *self.sources(readings.context.scene)))
 
     def penetration(self, readings):
         return self.law.penetration(readings)

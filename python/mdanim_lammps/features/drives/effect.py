@@ -5,9 +5,11 @@ from __future__ import annotations
 
 import math
 
+from ... import features
 from ...effects.context import Verdict
 from ...effects.effect import Effect
 from ...effects.fields import column
+from ...model.planes import Plane
 from ...reach import Throw
 from . import motion
 from .words import lets_go
@@ -40,10 +42,15 @@ class Drives(Effect):
             if motion.is_driven(solid):
                 what = "driven" if solid.drive or solid.key_points else "released"
                 return Verdict(self.name, True, f"{solid.name} is {what}", motion.place_of(solid))
+        if (moving := next(iter(shifts(scene)), None)) is not None:
+            return Verdict(self.name, True, f"{moving.name} moves", scene.spans.get(moving.effect))
         return Verdict(self.name, False, "nothing is driven")
 
     def acts_on(self, context):
-        return any(map(motion.is_driven, context.solids))
+        return self._drives_objects(context) or bool(shifts(context.scene))
+
+    def belts(self, scene):
+        return {m: tuple(u.tolist()) for m, solid in enumerate(scene.solids) if (u := motion.belt_of(solid)).any()}
 
     def drives(self, scene):
         return motion.ways(scene)
@@ -57,9 +64,16 @@ class Drives(Effect):
         }
 
     def columns(self, context):
-        return {HOME: context.system.position}
+        return {HOME: context.system.position} if self._drives_objects(context) else {}
 
     def commands(self, context):
+        moving = {p.motion.fix: p.motion.words for p in shifts(context.scene)}
+        alone = [f"fix {fix} all mdanim/drive home none since 0 {words}" for fix, words in moving.items()]
+        return [*self._of_objects(context), *alone]
+
+    def _of_objects(self, context):
+        if not self._drives_objects(context):
+            return []
         group, made, release = "driven", [], ""
         if context.system.pinned.any():
             group, made = GUIDED, [f"group {GUIDED} variable driven"]
@@ -67,20 +81,36 @@ class Drives(Effect):
         return [*made, f"fix {self.fix} {group} mdanim/drive home d2_{HOME.name} since 0 {release}motions table:{MOTIONS}"]
 
     def tables(self, context):
-        lines = (f"{m + 1} {motion.words_of(s)}\n" for m, s in enumerate(context.solids) if motion.is_driven(s))
+        lines = [f"{m + 1} {motion.words_of(s)}\n" for m, s in enumerate(context.solids) if motion.is_driven(s)]
+        if not lines:
+            return {}
         return {MOTIONS: "# Motions of what is held, written by mdanim-lammps: molecule words\n" + "".join(lines)}
 
     def max_timestep(self, context):
         """A part of the shortest period."""
         time = context.scene.control.time
-        quickest = max((motion.quickest(solid, time) for solid in filter(motion.is_driven, context.scene.solids)), default=0.0)
+        driven = filter(motion.is_driven, context.scene.solids)
+        moving = (plane.motion.quickest for plane in shifts(context.scene))
+        quickest = max((*(motion.quickest(solid, time) for solid in driven), *moving), default=0.0)
         return 1.0 / (IN_A_PERIOD * quickest) if quickest else math.inf
 
     def sources(self, scene):
         return (WORK,)
 
     def lost(self, readings):
-        return {WORK: readings.fix_value(self.fix, WORK)}
+        return {WORK: readings.fix_value(self.fix, WORK) if self._drives_objects(readings.context) else 0.0}
+
+    def clocks(self, readings):
+        return super().clocks(readings) if self._drives_objects(readings.context) else {}
+
+    @staticmethod
+    def _drives_objects(context):
+        return any(map(motion.is_driven, context.solids))
+
+
+def shifts(scene) -> list[Plane]:
+    """Planes of a scene that move."""
+    return [p for effect in features.effects() for p in effect.of(scene).planes(scene) if p.motion]
 
 
 EFFECTS = (Drives(),)

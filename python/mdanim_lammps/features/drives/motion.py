@@ -16,7 +16,7 @@ from ...model.boxes import box_pairs
 from ...reach import Drive
 from ...scene.formatting import in_full, whole
 from ...scene.once import once_for
-from .words import DriveKey, DriveOscillation, DriveTurn, DriveVelocity
+from .words import DriveKey, DriveOscillation, DriveSurface, DriveTurn, DriveVelocity
 
 TURN = 2.0 * math.pi
 MOST_PASSING = 10**5
@@ -36,6 +36,11 @@ def place_of(solid: Any) -> Span | None:
 def velocity_of(solid: Any) -> np.ndarray:
     """Sum of all velocities of its drives [m/s], shape (3,)."""
     return sum((np.array(one.velocity) for one in solid.drive if isinstance(one, DriveVelocity)), np.zeros(3))
+
+
+def belt_of(solid: Any) -> np.ndarray:
+    """Velocity at which its surface runs over it [m/s], shape (3,)."""
+    return sum((np.array(one.velocity) for one in solid.drive if isinstance(one, DriveSurface)), np.zeros(3))
 
 
 def turn_of(solid: Any) -> tuple[np.ndarray, np.ndarray]:
@@ -133,7 +138,7 @@ def bounds(solid: Any, time: float) -> Drive:
     Along each axis the way of its displacements, and that of its rotations: of a turn no more than the box of the circle of each
     corner, and than the chord of the angle; of keys no more than the chord.
     """
-    low, high, speed = _displaced(solid, time)
+    low, high, speed = displaced(solid, time)
     corner = _corners(solid)
     arm = np.linalg.norm(corner - solid.position, axis=1).max()
     path = KeyPath(keys_of(solid), solid.position, time)
@@ -146,6 +151,7 @@ def bounds(solid: Any, time: float) -> Drive:
         swept = _swept(corner, about, rate / size, size * time, more)
         low, high = low + swept[0], high + swept[1]
         speed += size * (_from_axis(corner - about, rate / size).max() + more)
+    speed += float(np.linalg.norm(belt_of(solid)))
     return Drive(tuple(low.tolist()), tuple(high.tolist()), float(speed), place_of(solid))
 
 
@@ -159,7 +165,9 @@ def quickest(solid: Any, time: float) -> float:
     return max([turning / TURN, *between, *(one.frequency for one in oscillations_of(solid))])
 
 
-def _displaced(solid: Any, time: float) -> tuple[np.ndarray, np.ndarray, float]:
+def displaced(solid: Any, time: float) -> tuple[np.ndarray, np.ndarray, float]:
+    """Displacement by velocities and oscillations until a time, at least and at most [m], each of shape (3,), and the largest
+    speed [m/s]."""
     velocity = velocity_of(solid)
     low, high = np.minimum(velocity, 0.0) * time, np.maximum(velocity, 0.0) * time
     speed = float(np.linalg.norm(velocity))

@@ -4,13 +4,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar
 
 from ...scene.formatting import number, vector
 from ...scene.schema import OneOf, Rule, Vector, setting
 from ...scene.shapes import holds_all
+from ..contact.words import ContactModel
 
 SWITCHES = {"drives": "an object's `drive ...`, `key ...` or `release ...`"}
 
@@ -71,6 +72,30 @@ class DriveOscillation:
 
 
 @dataclass(frozen=True, slots=True)
+class DriveSurface:
+    """The surface runs over an object that stands: a belt."""
+
+    FORMS: ClassVar = ("surface <(vx, vy, vz):m/s>",)
+    velocity: Vector
+    """[m/s]"""
+
+    def moved(self, place: Any) -> DriveSurface:
+        """The same of an object in a group that is placed."""
+        return replace(self, velocity=place.turn(self.velocity))
+
+
+@dataclass(frozen=True, slots=True)
+class ShiftKey:
+    """A point of the path of walls or of a basin, which are not turned."""
+
+    FORMS: ClassVar = ("<T:s> by <(x, y, z):m>",)
+    time: float
+    """[s]"""
+    by: Vector
+    """Displacement from the start [m]."""
+
+
+@dataclass(frozen=True, slots=True)
 class DriveKey:
     """A point of a path."""
 
@@ -97,12 +122,13 @@ class DriveKey:
 class DriveWords:
     """Settings of an object."""
 
-    drive: tuple[DriveVelocity | DriveTurn | DriveOscillation, ...] = setting(
+    drive: tuple[DriveVelocity | DriveTurn | DriveOscillation | DriveSurface, ...] = setting(
         None,
         "How what is held of it moves: at a velocity, by turning about a point (absent: its `position`), which is moved along by "
         "the others, or to and fro by d sin(2 π f t + phase) from where it is at the start. Several add up; turns are about one "
-        "point.",
-        "velocity (0.5, 0, 0) m/s", default=(), many=True, codec=OneOf(DriveVelocity, DriveTurn, DriveOscillation),
+        "point. `surface` has its surface run along at this velocity while it stands, as that of a belt does: friction feels it.",
+        "velocity (0.5, 0, 0) m/s", default=(), many=True,
+        codec=OneOf(DriveVelocity, DriveTurn, DriveOscillation, DriveSurface),
         after="hold")  # fmt: skip
     key_points: tuple[DriveKey, ...] = setting(
         None,
@@ -139,11 +165,10 @@ def check_object(v: Any, block: Any, solid: Any) -> Any:
             both = f"{vector(points[0])} m and about {vector(point)} m"
             cause = f"{solid.name} turns about {both}{block.where}; turns are about one point"
             v.problem(s.span(), cause, "write the same point behind about, or add a drive velocity or oscillation")
+    _check_surface(v, block, solid)
     for s, one in zip(drives, solid.drive):
         if isinstance(one, DriveOscillation) and not one.frequency > 0.0:
-            v.problem(
-                s.span(1), f"the frequency of a drive must be > 0, found {number(one.frequency, 6)} Hz", "e.g. frequency 5 Hz"
-            )
+            _no_frequency(v, s, one)
     _check_keys(v, keys, solid)
     if lets_go(solid) and holds_all(solid.hold):
         for word, drive in (("velocity", "velocity (1, 0, 0) m/s"), ("spin", "turn (0, 0, 3) rad/s")):
@@ -153,19 +178,44 @@ def check_object(v: Any, block: Any, solid: Any) -> Any:
     return solid
 
 
+def _check_surface(v: Any, block: Any, solid: Any) -> None:
+    """A surface runs over what is held as a whole, is not turned, and is not let go."""
+    drives = block.settings.get("drive", ())
+    at = next((s for s, one in zip(drives, solid.drive) if isinstance(one, DriveSurface)), None)
+    if at is None:
+        return
+    if solid.hold and not holds_all(solid.hold):
+        cause = f"the surface of {solid.name} runs, and it is held in a part: a surface runs over what does not deform"
+        v.problem(at.span(), cause, f"write hold all in {solid.name}")
+    if any(isinstance(one, DriveTurn) for one in solid.drive) or any(key.angle for key in solid.key_points):
+        cause = f"the surface of {solid.name} runs along one direction of the world, and {solid.name} is turned"
+        v.problem(at.span(), cause, "leave the turn out, or the drive surface: a drum that turns moves its surface by itself")
+    if solid.release is not None:
+        cause = f"the surface of {solid.name} runs while it is held, and it is let go"
+        v.problem(at.span(), cause, "leave the release out, or drive the object itself by drive velocity")
+
+
+def check_shift(v: Any, what: str, said: Sequence[tuple[Any, Any]]) -> None:
+    """Motions of walls or of a basin (``what``): oscillations have a frequency, keys ascend from where it is. Settings, each with
+    what it says."""
+    for s, one in said:
+        if isinstance(one, DriveOscillation) and not one.frequency > 0.0:
+            _no_frequency(v, s, one)
+    keys = [(s, one) for s, one in said if isinstance(one, ShiftKey)]
+    _check_times(v, [s for s, _ in keys], [key for _, key in keys])
+    for s, key in keys:
+        if key.time == 0.0 and any(key.by):
+            cause = f"at 0 s {what} is where the scene has it, and this key has it {vector(key.by)} m from there"
+            v.problem(s.span(), cause, "leave the key at 0 s out")
+
+
+def _no_frequency(v: Any, s: Any, one: DriveOscillation) -> None:
+    v.problem(s.span(1), f"the frequency of a drive must be > 0, found {number(one.frequency, 6)} Hz", "e.g. frequency 5 Hz")
+
+
 def _check_keys(v: Any, settings: Any, solid: Any) -> None:
-    last = -math.inf
+    _check_times(v, settings, solid.key_points)
     for s, key in zip(settings, solid.key_points):
-        if key.time < 0.0:
-            v.problem(s.span(0), f"the time of a key must be >= 0, found {number(key.time, 6)} s", "the run begins at 0 s")
-        elif key.time <= last:
-            cause = f"the times of keys must rise, found {number(key.time, 6)} s after {number(last, 6)} s"
-            v.problem(s.span(0), cause, "write the keys in the order of their times, one for each")
-        elif key.time and (after := key.time - max(last, 0.0)) < LEAST:
-            found = f"{number(after, 6)} s after {number(max(last, 0.0), 6)} s"
-            cause = f"a key must be at least {number(LEAST)} s after the start and after the one before, found {found}"
-            v.problem(s.span(0), cause, "write the key later, or leave it out")
-        last = max(last, key.time)
         if key.angle and not 1e-150 < math.hypot(*key.axis) < 1e150:
             v.problem(s.span(2), f"the axis of a key needs a direction, found {vector(key.axis)}", "e.g. axis (0, 0, 1)")
         away = math.dist(key.at, solid.position)
@@ -178,10 +228,29 @@ def _check_keys(v: Any, settings: Any, solid: Any) -> None:
             v.problem(s.span(1), cause, "leave the key at 0 s out, or change position and orientation")
 
 
+def _check_times(v: Any, settings: Any, points: Any) -> None:
+    last = -math.inf
+    for s, key in zip(settings, points):
+        if key.time < 0.0:
+            v.problem(s.span(0), f"the time of a key must be >= 0, found {number(key.time, 6)} s", "the run begins at 0 s")
+        elif key.time <= last:
+            cause = f"the times of keys must rise, found {number(key.time, 6)} s after {number(last, 6)} s"
+            v.problem(s.span(0), cause, "write the keys in the order of their times, one for each")
+        elif key.time and (after := key.time - max(last, 0.0)) < LEAST:
+            found = f"{number(after, 6)} s after {number(max(last, 0.0), 6)} s"
+            cause = f"a key must be at least {number(LEAST)} s after the start and after the one before, found {found}"
+            v.problem(s.span(0), cause, "write the key later, or leave it out")
+        last = max(last, key.time)
+
+
 def check(v: Any, top: Mapping, held: Mapping) -> None:
-    """Objects that are let go when the run has ended."""
+    """Objects that are let go when the run has ended; surfaces that run without friction."""
     if (control := held["control"]) is None:
         return
+    belts = [solid for solid in held["solids"] if any(isinstance(one, DriveSurface) for one in solid.drive)]
+    if belts and control.contact_model is ContactModel.PAPER:
+        cause = f"the surface of {belts[0].name} runs, and contact-model paper has no friction that would feel it"
+        v.problem(belts[0].spans["drive"], cause, "take contact-model paper out of control")
     for solid in held["solids"]:
         if lets_go(solid) and solid.release >= control.time:
             cause = f"{solid.name} is let go at {number(solid.release, 6)} s, and the run ends at {number(control.time, 6)} s"

@@ -127,7 +127,9 @@ class RigidMotion(Effect):
         return tuple(TAKEN) if _may_touch(scene) else ()
 
     def sources(self, scene):
-        return (WORK,) if any(e.of(scene).guides and e.of(scene).drives(scene) for e in features.effects()) else ()
+        effects = [e.of(scene) for e in features.effects()]
+        moves = any((e.guides and e.drives(scene)) or any(p.motion for p in e.planes(scene)) for e in effects)
+        return (WORK,) if moves else ()
 
     def lost(self, readings):
         scene = readings.context.scene

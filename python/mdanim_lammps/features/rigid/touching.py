@@ -23,7 +23,8 @@ from ...model.system import System
 from ...scene.formatting import in_full, number, say
 from ...scene.naming import objects_by_name, pairs_of
 from ...scene.scene import Shape, Solid
-from ..contact.pairs import damping, frictions
+from ..contact.pairs import belts, damping, frictions
+from ..contact.planes import word_of
 from ..contact.restitution import damping_for
 from ..contact.rigid_surfaces import frequency
 from .shapes import hidden, in_file, is_known, is_rigid, on_objects, on_planes, only_balls_move
@@ -165,7 +166,8 @@ def words(context: Context, part: Part, shapes: str) -> str:
     planes, scene = planes_of(context), context.scene
     found = [f"shapes {shapes} contact {omega(context)!r} {ONSET * frequency(context).thin!r}"]
     found += ["objects"] if part.objects else []
-    found += [f"plane {'xyz'[p.axis]} {'lo' if p.sign > 0 else 'hi'} {float(p.at)!r}" for p in planes]
+    found += map(word_of, planes)
+    found += belts(context, part.shapes) if part.objects else []
     if part.objects and (guided(context) & part.shapes).any() and not released(context, part):
         found += guides(context)
     if part.objects:

@@ -8,6 +8,7 @@ from ...model.planes import box_sides
 from ..contact.forms import stiffness_told
 from ..contact.planes import Sides
 from ..contact.surface import touching_planes
+from ..drives.shift import motion_of
 
 
 class WallSides(Sides):
@@ -23,7 +24,10 @@ class WallSides(Sides):
         return Verdict(self.name, True, f"walls around the scene{stiffness_told(scene)}", scene.spans.get("walls"))
 
     def planes(self, scene):
-        return () if scene.walls is None else box_sides(self.name, scene.walls, 3, "the space between the walls")
+        if scene.walls is None:
+            return ()
+        motion = motion_of(self.name, scene.walls_drive, scene.walls_keys, scene.control.time)
+        return box_sides(self.name, scene.walls, 3, "the space between the walls", motion)
 
     def region(self, scene):
         low, high = scene.walls.low, scene.walls.high

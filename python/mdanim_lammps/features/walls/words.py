@@ -9,6 +9,8 @@ from typing import Any, ClassVar
 
 from ...scene.schema import BOX, OneOf, Vector, setting
 from ...scene.units import show
+from ..contact.words import ContactModel
+from ..drives.words import DriveOscillation, DriveVelocity, ShiftKey, check_shift
 
 SWITCHES = {"walls": "`walls`"}
 
@@ -24,12 +26,61 @@ class Walls:
     """[m]"""
 
 
+@dataclass(frozen=True, slots=True)
+class WallsVelocity(DriveVelocity):
+    """The box goes straight on."""
+
+    FORMS: ClassVar = tuple(f"drive {form}" for form in DriveVelocity.FORMS)
+
+
+@dataclass(frozen=True, slots=True)
+class WallsOscillation(DriveOscillation):
+    """The box goes to and fro."""
+
+    FORMS: ClassVar = tuple(f"drive {form}" for form in DriveOscillation.FORMS)
+
+
+@dataclass(frozen=True, slots=True)
+class WallsKey(ShiftKey):
+    """A point of the box's path."""
+
+    FORMS: ClassVar = tuple(f"key {form}" for form in ShiftKey.FORMS)
+
+
+class BoxAndMotion(OneOf):
+    """One box, and lines that say how it moves: the record has the box, its drives and its keys."""
+
+    def __init__(self):
+        super().__init__(Walls, WallsVelocity, WallsOscillation, WallsKey)
+
+    def gather(self, values: tuple) -> tuple:
+        """The box, its drives, its keys."""
+        boxes = [n for n, one in enumerate(values) if isinstance(one, Walls)]
+        if not boxes:
+            raise ValueError("these walls have no place", "write walls from (-2, -2, 0) m to (2, 2, 3) m, too", 0)
+        if len(boxes) > 1:
+            raise ValueError("walls have one place", "leave one of these lines out", boxes[1])
+        keys = tuple(one for one in values if isinstance(one, ShiftKey))
+        drives = tuple(one for one in values if not isinstance(one, Walls | ShiftKey))
+        return values[boxes[0]], drives, keys
+
+    def scatter(self, value: tuple) -> tuple:
+        """The lines."""
+        box, drives, keys = value if isinstance(value, tuple) else (value, (), ())
+        return () if box is None else (box, *drives, *keys)
+
+
 class WallsWords:
     """Settings outside of all blocks."""
 
     walls: Walls | None = setting(
-        None, "A box that objects never leave. Absent: no walls.",
-        "from (-2, -2, 0) m to (2, 2, 3) m", default=None, codec=OneOf(Walls))  # fmt: skip
+        None,
+        "A box that objects never leave. Absent: no walls. Further lines move it as a whole: `drive` at a velocity or to and "
+        "fro, `key` through displacements from where it is, both as of [objects](#object); they add up.",
+        "from (-2, -2, 0) m to (2, 2, 3) m", default=None, many=True, also=("walls_drive", "walls_keys"),
+        codec=BoxAndMotion())  # fmt: skip
+    walls_drive: tuple[DriveVelocity | DriveOscillation, ...] = ()
+    walls_keys: tuple[ShiftKey, ...] = ()
 
 
 SCENE = WallsWords
@@ -52,7 +103,13 @@ def check(v: Any, top: Mapping, held: Mapping) -> None:
     """
     if (walls := top.get("walls")) is None:
         return
-    v.corners(v.out.first("walls"), "the space between the walls")
+    lines = v.out.settings.get("walls", ())
+    said = [(s, s.record()) for s in lines]
+    v.corners(next(s for s, one in said if isinstance(one, Walls)), "the space between the walls")
+    moves = next((s for s, one in said if not isinstance(one, Walls)), None)
+    if moves and held["control"] is not None and held["control"].contact_model is ContactModel.PAPER:
+        v.problem(moves.span(), "the walls of contact-model paper stand", "take contact-model paper out of control")
+    check_shift(v, "the box of the walls", [pair for pair in said if not isinstance(pair[1], Walls)])
     for s in held["solids"]:
         if not all(a < x < b for a, x, b in zip(walls.low, s.position, walls.high)):
             v.problem(
