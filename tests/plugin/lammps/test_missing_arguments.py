@@ -83,7 +83,8 @@ def test_what_is_missing_is_named(tmp_path, command, form, missing):
         (f"{BARRIER} thik", "unknown keyword thik; it knows thin"),
         (
             f"{CONTACT} plain",
-            "unknown keyword plain; it knows objects, plane, moving, stiffness, damping, pair, exclude, belt, among, except and bodies",
+            "unknown keyword plain; it knows objects, plane, moving, stiffness, damping, pair, exclude, belt, "
+            "among, except and bodies",
         ),
         ("fix a all mdanim/leapfrog lamda", "unknown keyword lamda; it knows lambda and drag"),
         (f"{LIQUID} wawe", "unknown keyword wawe; it knows volume, level, fill"),
