@@ -264,9 +264,8 @@ void FixMdanimContact::place_rigid(std::vector<Box> &boxes)
 // To where planes are in this step.
 void FixMdanimContact::move_planes()
 {
-  moving.each([this](int plane, const Vec3 &shift, const Vec3 &way) {
-    world_of_contact.settings.planes[plane].move_to(shift, way);
-  });
+  moving.each(
+      [this](int plane, const Vec3 &shift, const Vec3 &way) { world_of_contact.settings.planes[plane].move_to(shift, way); });
 }
 
 void FixMdanimContact::list()
