@@ -80,7 +80,11 @@ int side_of_birth(const Host &host, const Polyhedron::Corner &corner, const Turn
     if (d <= 0.0) return -1;
     if (d < depth) depth = d, found = side;
   }
-  return depth > deepest ? -1 : found;
+  if (found < 0 || depth > deepest) return -1;
+  // Beyond a blunt edge there may be a side through which the corner leads in: contacts go on below it.
+  found = host.shallowest(found, x);
+  depth = host.depth(found, x);
+  return depth > 0.0 ? found : -1;
 }
 
 // Whether it belongs to this side.

@@ -21,8 +21,9 @@ STEPS = 100_000
 RESIDUAL, WORST, RARE = 1e-3, 1e-2, 0.1
 """Error of energy that `accuracy balanced` stands for, and the largest one, in a tenth of all scenes at most: blows of edges and
 rims without dashpots, whose normals turn with the depth (test_random_blows of tests/plugin/rigid/test_known_motions.py)."""
-FEW = (2, 4, 6, 12, 151)
-"""Seeds of scenes that are run every day."""
+FEW = (2, 4, 6, 12, 151, 270)
+"""Seeds of scenes that are run every day. In the last one a corner comes below a side of a mesh and beyond a blunt edge of it at
+once, which took 6 % of all energy."""
 
 
 def lowest(surface, of: np.ndarray) -> float:
@@ -80,9 +81,9 @@ def campaign(seeds: Iterable[int], folder: Path) -> dict[str, int]:
     return Counter(check(seed, folder / str(seed)) for seed in seeds)
 
 
-def test_five_random_scenes(tmp_path):
-    """One that falls, two stacks that are struck, one without gravity, one with a liquid."""
-    assert campaign(FEW, tmp_path) == {"fall": 1, "stack": 2, "space": 1, "pool": 1}
+def test_six_random_scenes(tmp_path):
+    """One that falls, two stacks that are struck, two without gravity, one with a liquid."""
+    assert campaign(FEW, tmp_path) == {"fall": 1, "stack": 2, "space": 2, "pool": 1}
 
 
 @pytest.mark.soak
