@@ -186,3 +186,12 @@ def residual(text: str, time: float) -> float:
     change = {term: last[term] - first[term] for term in first}
     sources = change.pop("work", 0.0)
     return abs(sum(change.values()) - sources) / max(abs(sources), *map(abs, change.values()))
+
+
+def closed_rows(cases: dict) -> tuple[list[str], list[list]]:
+    """All cases that have a closed form, as a table."""
+    rows = []
+    for name, (case, most) in cases.items():
+        found, expected = case()
+        rows.append([name, f"{found:.4g}", f"{expected:.4g}", f"{100 * (found / expected - 1):+.2f} %", f"{100 * most:g} %"])
+    return ["case", "found", "closed form", "off by", "at most"], rows

@@ -16,6 +16,7 @@ from ..errors import Problem, SceneError
 from ..scene.formatting import number, say
 from ..scene.scene import Elasticity, HoldAll, HoldFaces, HoldWithin, SceneRecord, Shape, Solid
 from . import shapes
+from .added import weighed
 from .cells import TooThin, fill_cells
 from .contact_body import BodyFrame
 from .cover import with_covers
@@ -49,7 +50,7 @@ def build_models(
     models, problems = [], []
     for m, solid in enumerate(scene.solids):
         try:
-            model = kind_of(solid).make(solid, spacing[m], shared)
+            model = weighed(kind_of(solid).make(solid, spacing[m], shared), solid)
             if lets_go(solid):
                 model = _let_go(model)
             models.append(replace(model, driven=True) if m in driven else model)

@@ -351,9 +351,17 @@ def volume(shape: kinds.Shape) -> float:
     return LAWS[type(shape)].volume(shape)
 
 
-def mass(solid: kinds.Solid) -> float:
-    """Mass of a solid [kg], by its density where it has one. Raises mesh.MeshError as `volume` does."""
+def even_mass(solid: kinds.Solid) -> float:
+    """Mass of a solid of an even density [kg], by its density where it has one. Raises mesh.MeshError as `volume` does."""
     return solid.mass if solid.mass is not None else solid.density * volume(solid.shape)
+
+
+def mass(solid: kinds.Solid) -> float:
+    """The same with what features add (model/added.py)."""
+    from .added import added  # it needs shapes
+
+    more = added(solid)
+    return even_mass(solid) if more is None else even_mass(solid) + more.mass
 
 
 def mended(shape: kinds.Shape) -> str:

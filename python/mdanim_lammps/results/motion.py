@@ -12,7 +12,7 @@ from .. import features
 from ..bodies import all_held, kind_of
 from ..effects import acting
 from ..effects.balance import Balance, untold
-from ..model.inertia import tensor
+from ..model.added import tensor_of
 from ..model.spin import spin
 from ..scene.scene import Save
 
@@ -62,7 +62,7 @@ class _RigidOnes:
             if not kind_of(solid).deforms and not all_held(solid):
                 own = slice(m.first[n], m.first[n + 1])
                 start = trajectory.position(0)[own]
-                self._inertia[n] = tensor(solid.shape, float(m.object_mass[n]), solid.rotation)
+                self._inertia[n] = tensor_of(solid, float(m.object_mass[n]))
                 self._places[n] = own, start - np.average(start, axis=0, weights=m.mass[own])
 
     def kinetic(self, of_particles: np.ndarray, x: np.ndarray, velocity: np.ndarray, spins: np.ndarray) -> np.ndarray:

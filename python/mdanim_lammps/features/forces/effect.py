@@ -10,7 +10,7 @@ import numpy as np
 from ...effects.context import Verdict
 from ...effects.effect import Effect
 from ...model import shapes
-from ...model.inertia import tensor
+from ...model.added import tensor_of
 from ...reach import Throw
 from ...scene.formatting import in_full
 from ...scene.once import once_for
@@ -107,7 +107,7 @@ def throws(scene) -> dict[int, Throw]:
         mass, arm = shapes.mass(solid), shapes.radius(solid.shape)
         most = [(float(np.linalg.norm(one.vector)) / mass, one) for one in solid.force]
         if solid.torque:
-            least = float(np.linalg.eigvalsh(tensor(solid.shape, mass, solid.rotation))[0])
+            least = float(np.linalg.eigvalsh(tensor_of(solid))[0])
             most += [(float(np.linalg.norm(one.vector)) / least * arm, one) for one in solid.torque]
         speed = sum(a * _seconds(one, scene.control.time) for a, one in most)
         lasting = sum(a * (math.inf if one.end is None else _seconds(one, one.end)) for a, one in most if a)

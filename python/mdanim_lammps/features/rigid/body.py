@@ -8,11 +8,11 @@ from dataclasses import replace
 
 from ...bodies import BodyKind, all_held, beneath, kind_of, unguided
 from ...model import shapes
+from ...model.added import tensor_of
 from ...model.build import lattice_model, single_cell_model
 from ...model.cells import fill_cells
 from ...model.contact_body import BodyFrame
 from ...model.held import free_model
-from ...model.inertia import tensor
 from ...model.polyhedron import polyhedron
 from ...scene.scene import Box, Cone, Cylinder, Ellipsoid, Mesh, Sphere, Torus
 from .shapes import hidden, is_known, is_rigid, on_objects, only_balls_move
@@ -63,7 +63,7 @@ class RigidBody(BodyKind):
             model = free_model(solid, h, shared, hollow=is_hollow(solid.shape))
         else:
             model = lattice_model(solid, h, shared, loose=True)
-        return replace(model, inertia=tensor(solid.shape, shapes.mass(solid), solid.rotation))
+        return replace(model, inertia=tensor_of(solid))
 
 
 def is_hollow(shape) -> bool:
