@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What a scene records: columns, units, the force of contact by momentum, and windows of ``expect``."""
+"""Records of a scene: columns, units, the force of contact by momentum, and windows of ``expect``."""
 
 from __future__ import annotations
 

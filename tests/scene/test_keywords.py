@@ -95,9 +95,16 @@ def test_default_gravity_is_none():
 @pytest.mark.parametrize("k", [k for k in WORDS if k.rule is not Rule.ANY], ids=lambda k: f"{k.block}.{k.name}")
 def test_rule_of_each_keyword_is_kept(k):
     """A number that breaks the rule is refused in the words of the table."""
-    bad = {"shape": "sphere -1 m", "size": "(0, 5)", "wave": "-x amplitude -2 cm period 1 s", "current": "+y speed -2 m/s"}.get(
-        k.name, f"-{k.example}"
-    )
+    broken = {
+        "shape": "sphere -1 m",
+        "size": "(0, 5)",
+        "wave": "-x amplitude -2 cm period 1 s",
+        "current": "+y speed -2 m/s",
+        "arrows": "velocity scale -1",
+        "trail": "ball -1 s",
+        "caption": '"x" from -1 s',
+    }
+    bad = broken.get(k.name, f"-{k.example}")
     with pytest.raises(SceneError) as error:
         scene(k.block, **{k.name: bad})
     assert any(f"must be {k.rule.value}, found" in p.message for p in error.value.problems)

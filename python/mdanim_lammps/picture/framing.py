@@ -54,6 +54,33 @@ def part_around(view: View, size: tuple[int, int], points: np.ndarray, around: i
     return PicturePart(int(low[0]), int(low[1]), int(high[0]), int(high[1]))
 
 
+def seen_at(view: View, size: tuple[int, int], points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Where places [m], shape (P, 3), are seen in a picture of this size [pixels], counted from the lower left corner, shape
+    (P, 2); and which of them are before the eye, bool, shape (P,)."""
+    ahead, right, up = _axes(view)
+    out = points - view.eye
+    depth = out @ ahead
+    before = depth > 1e-3 * np.linalg.norm(view.look - view.eye)
+    half = 0.5 * size[1] / np.tan(np.radians(FIELD_OF_VIEW) / 2.0)
+    across = np.stack([out @ right, out @ up], axis=1) * half / np.where(before, depth, 1.0)[:, None]
+    return across + 0.5 * np.array(size), before
+
+
+def pixels_per_metre(view: View, size: tuple[int, int], place: np.ndarray) -> float:
+    """How long a metre across the line of sight is seen at a place [pixels]; 0 beside or behind the eye."""
+    depth = float((place - view.eye) @ _axes(view)[0])
+    return 0.5 * size[1] / np.tan(np.radians(FIELD_OF_VIEW) / 2.0) / depth if depth > 0.0 else 0.0
+
+
+def beside(view: View, aspect: float, share: float) -> View:
+    """A view whose middle is seen in the middle of what is left of a picture, a share of whose width at the right is covered;
+    ``aspect`` is width over height."""
+    _, right, _ = _axes(view)
+    distance = np.linalg.norm(view.look - view.eye)
+    way = share * distance * np.tan(np.radians(FIELD_OF_VIEW) / 2.0) * aspect * right
+    return View(view.eye + way, view.look + way, view.up)
+
+
 def corner_rays(view: View, size: tuple[int, int]) -> np.ndarray:
     """Directions in which the corners of a picture of this size are seen, shape (4, 3)."""
     ahead, right, up = _axes(view)

@@ -12,16 +12,20 @@ from . import shading
 from .backdrop import Backdrop
 from .behind import Behind
 from .camera import FIELD_OF_VIEW, Action, CameraPath, View, action_of, automatic_view
+from .curves import COVERED
 from .drawn import Additions, medium
 from .floor import REACH, FloorPlane
-from .framing import PicturePart, aim, part_around, whole
+from .framing import PicturePart, aim, beside, part_around, whole
+from .ghosts import Ghosts
 from .label import Label
 from .light import Light
 from .marks import MarkActors, Marks
+from .overlay import Overlay
 from .palette import background_colors, is_dark, vertex_colors
 from .pieces import MovingMesh, box_edges, have_own_textures, lit_actor
 from .scenery import scenery
 from .surfaces import shaded_mesh
+from .tones import Tones
 from .window import fewer_pixels, lay_over, off_screen_window, rgba, silent, upright
 
 FINER = {Quality.DRAFT: 1, Quality.FINAL: 2}
@@ -69,9 +73,19 @@ class Painter:
         _, walls, pool = scenery(trajectory.metadata)
         basin = (pool.low, pool.high) if pool else None
         aspect = self.size[0] / self.size[1]
-        self._still = None if self._path else automatic_view(self.action, aspect, walls, basin)
+        # An automatic camera leaves room for curves.
+        covered = COVERED if render.plot else 0.0
+        self._still = None
+        if not self._path:
+            self._still = beside(automatic_view(self.action, (1.0 - covered) * aspect, walls, basin), aspect, covered)
         self._mesh = shaded_mesh(trajectory.metadata, trajectory.position(0), self._pixel())
+        self._tones = Tones(trajectory, render.color_by) if render.color_by else None
         self._build(render, marks)
+        self._overlay = None
+        if render.tells:
+            dark = is_dark(background_colors(render.background)[0])
+            self._overlay = Overlay(trajectory, render, self._pixels, dark, self.action, self._tones, self._finer)
+            self._first = np.searchsorted(trajectory.metadata.skin.object_of_vertex, np.arange(len(trajectory.names)))
 
     def _pixel(self) -> np.ndarray:
         """Size of a pixel on each object where it comes nearest to the camera [m], shape (M,)."""
@@ -94,7 +108,11 @@ class Painter:
         vertices = self._mesh.vertices(position, gone)
         time = float(self.trajectory.times[index])
         points, normals = self._more.show(index)
+        if self._ghosts:
+            points, normals = (np.concatenate(pair) for pair in zip((points, normals), self._ghosts.show(index)))
         shown = self._mesh.normals(vertices, position, gone)
+        if self._tones:
+            self._surface.paint(np.concatenate([self._toned(index), self._surface_colors[len(vertices) :]]))
         self._surface.move(np.concatenate([vertices, points]), np.concatenate([shown, normals]))
         if self._tank:
             self._tank.show(index, position, vertices, self._mesh.triangle)
@@ -105,9 +123,22 @@ class Painter:
         for actor in self._actors:
             actor.GetShaderProperty().GetFragmentCustomUniforms().SetUniform3f("eye", list(view.eye))
         picture = self._all_in_one(view) if self._behind else self._over_backdrop(view, np.concatenate([vertices, points]))
+        if self._overlay:
+            self._overlay.lay_on(picture, view, index, *self._boxes_of_objects(position, gone))
         self._title.lay_on(picture, self.trajectory.metadata.title)
         self._stamp.lay_on(picture, f"t = {time:.2f} s")
         return fewer_pixels(upright(picture), self._finer)
+
+    def _toned(self, index: int) -> np.ndarray:
+        """Colours of the vertices by a quantity, uint8, shape (V, 3); what never moves keeps its own."""
+        values = self._mesh.carry @ self._tones.of_particles(index)
+        still = self.trajectory.metadata.still[self._mesh.object_of_vertex]
+        return np.where(still[:, None], self._surface_colors[: len(values)], self._tones.colors(values))
+
+    def _boxes_of_objects(self, position: np.ndarray, gone: np.ndarray | None) -> tuple[np.ndarray, np.ndarray]:
+        """Corners of the boxes around objects [m], each of shape (O, 3)."""
+        vertices = self.trajectory.metadata.skin.vertices(position, gone)
+        return np.minimum.reduceat(vertices, self._first), np.maximum.reduceat(vertices, self._first)
 
     def _over_backdrop(self, view: View, points: np.ndarray) -> np.ndarray:
         """Floor and background by themselves, and before them, where there is something, all else; ``points`` [m], shape (P, 3),
@@ -190,8 +221,14 @@ class Painter:
         (x, y, _), reach = self.action.centre, REACH * self.action.size
         self._more, own = Additions(self.trajectory, dark), len(self._mesh.carry)
         self._triangle = np.concatenate([self._mesh.triangle, own + self._more.triangle])
-        self._surface = MovingMesh(own + int(self._more.first[-1]), self._triangle)
-        self._surface.paint(np.concatenate([vertex_colors(metadata)[self._mesh.of_skin], self._more.color]))
+        colors = [vertex_colors(metadata)[self._mesh.of_skin], self._more.color]
+        self._ghosts = Ghosts(self.trajectory, self._mesh, colors[0], render.freeze) if render.freeze else None
+        if self._ghosts:
+            self._triangle = np.concatenate([self._triangle, own + int(self._more.first[-1]) + self._ghosts.triangle])
+            colors.append(self._ghosts.color)
+        self._surface_colors = np.concatenate(colors)
+        self._surface = MovingMesh(len(self._surface_colors), self._triangle)
+        self._surface.paint(self._surface_colors)
         self._actors = [lit_actor(self._surface.data, shading.FRAGMENT_SOLID, liquid=liquid, sky=sky)]
         self._actors[0].SetVisibility(not marks.springs)
         # Objects are closed, so their inner faces are never visible, and drawing these takes time.

@@ -25,7 +25,7 @@ from ..reach import Reach
 from ..scene.lammps_lines import check_trust, note
 from ..scene.lock import lock_text
 from ..scene.meshes import mesh_files
-from ..scene.scene import SceneRecord
+from ..scene.scene import Expect, SceneRecord
 
 
 @dataclass(frozen=True)
@@ -140,7 +140,7 @@ def _context(resolved: Resolved, models: Sequence[Model], spacing: Spacing, grid
 
 def _unmeasurable(resolved: Resolved) -> list[Problem]:
     """A problem for every quantity that is asked for and that of an effect that is off, or that frames do not tell."""
-    wanted = resolved.scene.asked
+    wanted = [of for of in resolved.scene.asked if isinstance(of, Expect) or not of.optional]
     off = [
         Problem(
             of.span,

@@ -4,21 +4,24 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from ..errors import Span
 from . import units
-from .evaluated import EvaluatedSetting
+from .evaluated import EvaluatedBlock, EvaluatedSetting
 from .formatting import number, with_article
 from .keywords import BLOCKS, did_you_mean
 from .quantities import GLOBALS, QUANTITIES, Asked, Check, Expect, QuantityName
 
 if TYPE_CHECKING:
-    from .scene import Control
+    from .scene import Control, Render
     from .validate import Validator
 
 ASKED = (Check, QuantityName)
 """Codecs of settings that are read here."""
+MOST_PANELS = 3
+"""Panels of curves in a picture."""
 
 
 def asked_for(v: Validator, control: Control | None) -> dict[str, tuple]:
@@ -45,7 +48,26 @@ def quantity(v: Validator, named: tuple, span: Span) -> Asked | None:
         return None
     if of.needs in BLOCKS and v.has_scene and not v.blocks(of.needs) and not v.out.excused(of.needs):
         v.problem(span, f"{subject}.{word} needs {with_article(of.needs)} block, and the scene has none")
-    return Asked(subject, word, argument, span)
+    return Asked(subject, word, argument, span=span)
+
+
+def check_render(v: Validator, block: EvaluatedBlock, render: Render) -> Render:
+    """Names of what pictures show, quantities of their curves, times of captions."""
+    for word, at in (("arrows", 1), ("trail", 0), ("label", 0)):
+        for s in block.settings.get(word, ()):
+            if s.values[at] is not None and s.values[at] not in v.named:
+                v.known_object(s.values[at], s.span(at), v.named)
+    for s in block.settings.get("caption", ()):
+        _, begin, end = s.values
+        if end is not None and end <= (begin or 0.0):
+            cause = f"the caption ends at {number(end, 6)} s and begins at {number(begin or 0.0, 6)} s"
+            v.problem(s.span(2), cause, "write the earlier time first")
+    plots = (quantity(v, s.values[0], s.span(0)) for s in block.settings.get("plot", ()))
+    plots = tuple(dict.fromkeys(filter(None, plots)))
+    if len(units_of := dict.fromkeys(of.unit for of in plots)) > MOST_PANELS:
+        cause = f"curves of {len(units_of)} units are asked for, and a picture has room for {MOST_PANELS} panels"
+        v.problem(block.settings["plot"][-1].span(), cause, "leave some out; record takes any number")
+    return replace(render, plot=plots)
 
 
 def _known_other(v: Validator, subject: str, word: str, other: str, span: Span, takes: str) -> bool:

@@ -24,7 +24,7 @@ class Slot:
     """A place for a value."""
 
     kind: str
-    """number, vector, text, choice, name, color, place, check or relation."""
+    """number, vector, text, choice, name, object, color, place, check or relation."""
     text: str
     """As shown to people: ``r``, ``(x, y, z)``."""
     unit: str = "1"
@@ -47,7 +47,7 @@ class OptionalPart:
     parts: tuple
 
 
-KINDS = {"color": "color", "MATERIAL": "name", "NAME.QUANTITY": "check", "RELATION": "relation"}
+KINDS = {"color": "color", "MATERIAL": "name", "NAME": "object", "NAME.QUANTITY": "check", "RELATION": "relation"}
 """Kinds of slots that have a reader of their own, by what they show."""
 
 

@@ -85,6 +85,8 @@ class Asked(_OfQuantity):
     """``position.z``, ``velocity.x``, ``draft``, ``strain.max``, ``residual``, ``max`` ..."""
     argument: Argument = None
     """The other object of a distance, the place of a height [m]; None of quantities that take none."""
+    optional: bool = field(default=False, compare=False)
+    """Whether it may be missing where it is not known."""
     span: Span | None = field(default=None, compare=False, repr=False)
 
 

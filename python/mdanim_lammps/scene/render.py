@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import Enum
 from pathlib import Path
@@ -14,7 +14,9 @@ from typing import TYPE_CHECKING, ClassVar
 from ..errors import Span
 from .formatting import number, vector
 from .limits import PIXELS, SHADOWS, SPEED
+from .quantities import Asked, QuantityName
 from .schema import COLOR, Codec, Keyword, OneOf, Rule, Vector, Worded, Words, of_features, setting, with_words
+from .shown import Arrows, Caption, ColorBy, NameTag, Trail
 
 LOWEST_LAMP = math.sin(math.radians(5.0))
 """Height of a lamp over its distance; shadows of a lower one are longer than any picture."""
@@ -122,7 +124,42 @@ class Render(Worded):
         "object. Absent: one view for all frames, chosen from the whole run so that what happens is seen large; what flies or "
         "falls far off, and what few objects do for a short time, may be left out.",
         "from (4, -4, 2) m look (0, 0, 0.5) m", default=(), many=True, codec=OneOf(Camera))  # fmt: skip
+    arrows: tuple[Arrows, ...] = setting(
+        None,
+        "Arrows at the centres of objects, with a legend that tells their unit: of those of NAME, or of all objects of which the "
+        "quantity is known. `scale` is their length in metres for one unit; absent: all arrows of one unit have one length that "
+        "shows well.",
+        "velocity of ball", Rule.POSITIVE, default=(), many=True, codec=OneOf(Arrows))  # fmt: skip
+    trail: tuple[Trail, ...] = setting(
+        None, "The way of an object's centre of mass, from the start or for the last T.", "ball 0.5 s", Rule.POSITIVE,
+        default=(), many=True, codec=OneOf(Trail))  # fmt: skip
+    label: tuple[NameTag, ...] = setting(
+        None, "Words above an object, which go with it.", 'ball "falls freely"', default=(), many=True,
+        codec=OneOf(NameTag))  # fmt: skip
+    plot: tuple[Asked, ...] = setting(
+        "<NAME.QUANTITY>",
+        "A curve over time that grows with the film; curves of one unit share a panel.",
+        "ball.speed", default=(), many=True, codec=QuantityName())  # fmt: skip
+    caption: tuple[Caption, ...] = setting(
+        None, "Words below the picture, from one time to another.", '"it lands" from 0.4 s to 1 s', Rule.NOT_NEGATIVE,
+        default=(), many=True, codec=OneOf(Caption))  # fmt: skip
+    freeze: float | None = setting(
+        "<T:s>", "What moves leaves a pale copy of itself behind, every T.", "0.1 s", Rule.POSITIVE, default=None)  # fmt: skip
+    """[s]"""
+    color_by: ColorBy | None = setting(
+        None,
+        "Colours tell the `speed` of the material [m/s], or its `strain`: the largest |r/r₀ - 1| of the springs of a particle.",
+        "strain", default=None, codec=Words(ColorBy))  # fmt: skip
     spans: Mapping[str, Span] = field(default_factory=dict, compare=False, repr=False)
+
+    def asked(self, names: Sequence[str]) -> tuple[Asked, ...]:
+        """All quantities that pictures of objects with these names show."""
+        return (*self.plot, *dict.fromkeys(of for one in self.arrows for of in one.asked(names)))
+
+    @property
+    def tells(self) -> bool:
+        """Whether pictures have anything laid over them."""
+        return bool(self.arrows or self.trail or self.label or self.plot or self.caption or self.color_by)
 
     if TYPE_CHECKING:
         __getattr__ = of_features

@@ -253,7 +253,7 @@ class SceneRecord:
     @property
     def asked(self) -> tuple[Asked | Expect, ...]:
         """All quantities that it asks for."""
-        return (*self.expects, *self.records)
+        return (*self.expects, *self.records, *self.render.asked([solid.name for solid in self.solids]))
 
     if TYPE_CHECKING:
         __getattr__ = of_features

@@ -214,6 +214,11 @@ class SettingReader(Reader):
             return Value(slot, t, t, text=str(t))
         if slot.kind == "check":
             return self.check(slot, keyword)
+        if slot.kind == "object":
+            if t.type != "NAME":
+                raise Fault(t, f"{keyword.name} needs the name of an object, found {t.found()}", example(keyword))
+            name = self.name()
+            return Value(slot, name.token, name.last, name=name)
         if slot.kind == "relation":
             if t not in RELATIONS:
                 raise Fault(t, f"'=' is missing in {keyword.name}, found {t.found()}", f"{example(keyword)}; or <, >, <=, >=")

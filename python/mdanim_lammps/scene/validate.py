@@ -15,7 +15,7 @@ from ..errors import Span
 from ..features import facets
 from . import keywords
 from . import scene as records
-from .asked import ASKED, asked_for
+from .asked import ASKED, asked_for, check_render
 from .evaluated import EvaluatedBlock, EvaluatedSetting, around
 from .formatting import number, say, whole
 from .keywords import BLOCKS, KEYWORDS, Block, did_you_mean, example, examples
@@ -346,6 +346,10 @@ class Validator:
             self.problem(s.span(1), cause, "write torus R r, the radius of the centre line first")
             return None
         return solid
+
+    def check_render(self, block: EvaluatedBlock, render: records.Render) -> records.Render:
+        """Names and quantities of what pictures show."""
+        return check_render(self, block, render)
 
     def cameras(self) -> None:
         """Cameras look at something; several are points of one path, each with a time of its own, in order."""

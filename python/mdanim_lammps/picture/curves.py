@@ -1,0 +1,153 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Panels of curves that grow with a film, one for each unit."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from ..scene.quantities import Asked
+from .layer import Color, InkLayer
+from .plot import own_style
+from .run_values import RunValues
+
+WIDTH, MARGIN, GAP = 0.36, 0.02, 0.02
+"""Width of a panel and its distance from the edges, in parts of the picture's width; from the next one, of its height."""
+COVERED = WIDTH + MARGIN
+"""Part of a picture's width that panels cover."""
+HEIGHTS = (0.36, 0.31, 0.265)
+"""Height of a panel where there is one, and where there are more, in parts of the picture's height."""
+CURVES: tuple[Color, ...] = (
+    (0.12, 0.47, 0.71), (0.84, 0.15, 0.16), (0.17, 0.55, 0.17), (0.58, 0.40, 0.74), (0.90, 0.50, 0.05), (0.45, 0.34, 0.29),
+)  # fmt: skip
+THIN, LETTER = 0.16, 0.62
+"""Width of the topmost curve, and of a letter on average, over the height of letters."""
+LUMINANCE, DARKEST = np.array([0.2126, 0.7152, 0.0722]), 0.42
+"""Shares of red, green and blue in how bright a colour is, and how bright curves are at most on bright paper."""
+ROOM = 0.08
+"""Room above and below curves, in parts of their span."""
+
+
+class Curves:
+    """Panels of curves in the upper right corner of a layer.
+
+    Args:
+        layer: where they are drawn.
+        plots: the quantities.
+        told: their values.
+        times: of the frames [s], shape (F,).
+        of_objects: colours of objects by their names.
+    """
+
+    def __init__(
+        self, layer: InkLayer, plots: Sequence[Asked], told: RunValues, times: np.ndarray, of_objects: Mapping[str, Color]
+    ):
+        self._layer, self._times, self._of_objects = layer, times, of_objects
+        panels: dict[str, list[tuple[Asked, np.ndarray, bool]]] = {}
+        for of in plots:
+            panels.setdefault(of.unit, []).append((of, told.series(of), told.is_mean(of)))
+        self._curves: list[tuple[Any, np.ndarray, bool, Color, float]] = []
+        with own_style():
+            for n, (unit, curves) in enumerate(panels.items()):
+                self._panel(n, HEIGHTS[min(len(panels), len(HEIGHTS)) - 1], unit, curves)
+
+    def _panel(self, n: int, share: float, unit: str, curves: list[tuple[Asked, np.ndarray, bool]]) -> None:
+        layer, (width, height) = self._layer, self._layer.size
+        letters = layer.letters
+        left, top = 1.0 - WIDTH - MARGIN, 1.0 - MARGIN * width / height - n * (share + GAP)
+        ground = layer.figure.add_axes((left, top - share, WIDTH, share), facecolor=(*layer.paper, 0.78))
+        ground.set_xticks([])
+        ground.set_yticks([])
+        for side in ground.spines.values():
+            side.set_color((*layer.ink, 0.25))
+        # Room for numbers at the left and below, for names above.
+        inner = (left + 4.4 * letters / width, top - share + 1.9 * letters / height)
+        size = (left + WIDTH - 0.9 * letters / width - inner[0], top - 1.9 * letters / height - inner[1])
+        axes = layer.figure.add_axes((*inner, *size), facecolor="none")
+        low, high = _span([values for _, values, _ in curves], whole=unit != "m")
+        axes.set_xlim(self._times[0], max(self._times[-1], self._times[0] + 1e-9))
+        axes.set_ylim(low, high)
+        axes.locator_params(axis="x", nbins=5)
+        axes.locator_params(axis="y", nbins=4)
+        lines = {"length": 0.3 * letters, "width": 0.08 * letters, "pad": 0.25 * letters}
+        axes.tick_params(labelsize=0.9 * letters, colors=layer.ink, **lines)
+        axes.xaxis.get_offset_text().set_fontsize(0.8 * letters)
+        axes.yaxis.get_offset_text().set_fontsize(0.8 * letters)
+        axes.grid(True, color=(*layer.ink, 0.15), linewidth=0.07 * letters)
+        for word, side in axes.spines.items():
+            side.set_color((*layer.ink, 0.6))
+            side.set_linewidth(0.09 * letters)
+            side.set_visible(word in ("left", "bottom"))
+        time = {"fontsize": 0.9 * letters, "color": layer.ink, "ha": "left", "va": "bottom"}
+        corner = 0.35 * letters / (WIDTH * width), 0.35 * letters / (share * height)
+        ground.text(*corner, "t [s]", transform=ground.transAxes, **time)
+        colors = self._tints(curves, n)
+        self._names(ground, [of for of, _, _ in curves], colors, unit, WIDTH * width)
+        for k, (color, (_, values, is_mean)) in enumerate(zip(colors, curves)):
+            # Those below are wider, so that curves on each other are all seen.
+            self._curves.append((axes, values, is_mean, color, THIN * (1.0 + 0.9 * (len(curves) - 1 - k))))
+
+    def _names(self, ground: Any, names: list[Asked], colors: list[Color], unit: str, width: float) -> None:
+        """The names of the curves in their colours, the unit behind the last one; all that they have in common stands once.
+        Letters are smaller where they would not fit into this width [pixels]."""
+        from matplotlib.offsetbox import AnchoredOffsetbox, HPacker, TextArea
+
+        common = len(names) > 1 and len({(of.quantity, of.argument) for of in names}) == 1
+        words = [of.subject if common else of.what for of in names]
+        plain = {"color": self._layer.ink, "fontweight": "bold"}
+        rows = [(f"{names[0].quantity}", plain)] if common else []
+        rows += [(word, {"color": color, "fontweight": "bold"}) for word, color in zip(words, colors)]
+        rows += [(f"[{unit}]", {"color": self._layer.ink})] if unit else []
+        letters = self._layer.letters
+        long = LETTER * letters * sum(len(word) + 1 for word, _ in rows)
+        size = letters * min(1.0, (width - letters) / long)
+        boxes = [TextArea(word, textprops=look | {"fontsize": size}) for word, look in rows]
+        packed = HPacker(children=boxes, pad=0, sep=0.7 * size)
+        ground.add_artist(AnchoredOffsetbox("upper left", child=packed, frameon=False, pad=0.0, borderpad=0.35))
+
+    def _tints(self, curves: list[tuple[Asked, np.ndarray, bool]], n: int) -> list[Color]:
+        """Colours of the curves of a panel: those of their objects where no two have the same, else some that differ."""
+        own = [self._of_objects.get(of.subject) for of, _, _ in curves]
+        if None not in own and len(set(own)) == len(own):
+            return [_legible(color, self._layer.paper) for color in own if color is not None]
+        return [CURVES[(n + k) % len(CURVES)] for k in range(len(curves))]
+
+    def show(self, frame: int) -> None:
+        """Add the curves up to a frame, with a point where they are now."""
+        from matplotlib.lines import Line2D
+
+        letters = self._layer.letters
+        for axes, values, is_mean, color, width in self._curves:
+            t, y = self._times[: frame + 1], values[: frame + 1]
+            if is_mean:  # the value of a frame holds since the frame before
+                t, y = np.repeat(t, 2)[1:-1], np.repeat(y[1:], 2)
+            pixels = axes.transData.transform(np.column_stack([t, y]))
+            known = np.isfinite(pixels).all(axis=1)
+            own = {"color": color, "solid_capstyle": "round", "zorder": 4.0}
+            self._layer.add(Line2D(pixels[known, 0], pixels[known, 1], linewidth=width * letters, **own))
+            if known.any():
+                x, y = pixels[known][-1]
+                self._layer.add(
+                    Line2D([x], [y], marker="o", markersize=(0.35 + width) * letters, markeredgewidth=0, linestyle="", **own)
+                )
+
+
+def _legible(color: Color, paper: Color) -> Color:
+    """A colour that stands out from the paper: darker where the paper is bright, brighter where it is dark."""
+    bright = float(np.array(color) @ LUMINANCE)
+    if float(np.array(paper) @ LUMINANCE) > 0.5:
+        return tuple(x * min(1.0, DARKEST / max(bright, 1e-9)) for x in color)
+    return tuple(x + (1.0 - x) * max(0.0, (1.0 - DARKEST - bright) / (1.0 - bright)) for x in color)
+
+
+def _span(series: Sequence[np.ndarray], whole: bool) -> tuple[float, float]:
+    """Least and largest value with some room; around one value a tenth of it. ``whole``: with 0."""
+    values = np.concatenate(series)
+    values = values[np.isfinite(values)]
+    low, high = (float(values.min()), float(values.max())) if len(values) else (0.0, 1.0)
+    if whole:
+        low, high = min(low, 0.0), max(high, 0.0)
+    room = ROOM * (high - low) if high - low > 1e-3 * max(abs(low), abs(high)) else 0.1 * max(abs(low), abs(high)) or 1.0
+    return low - room, high + room

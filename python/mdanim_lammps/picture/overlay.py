@@ -1,0 +1,207 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Everything that is laid over a picture to tell what happens: arrows with their legend, trails, labels, captions, curves."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..results.trajectory import Trajectory
+from ..scene.formatting import number
+from ..scene.naming import objects_by_name
+from ..scene.quantities import QUANTITIES
+from ..scene.render import Render
+from ..scene.shown import Arrows
+from .camera import Action, View
+from .curves import COVERED, Curves
+from .framing import pixels_per_metre, seen_at
+from .layer import Color, InkLayer
+from .palette import object_colors
+from .run_values import RunValues
+from .tones import Tones
+
+LETTERS, SMALLEST, LARGEST = 0.028, 11.0, 0.055
+"""Height of letters over that of a picture, the least [pixels], and the most of a small picture."""
+LEGEND = 4.5
+"""Length of an arrow of the legend over that of letters, at most."""
+USUAL, AMONG = 0.14, 0.95
+"""Length of an arrow over the size of the scene, that of the value that this share of all values does not exceed."""
+NOTHING = 1e-9
+"""Values below this share of the largest have no arrow."""
+COLORS: dict[str, Color] = {
+    "velocity": (0.11, 0.40, 0.75),
+    "force": (0.20, 0.20, 0.20),
+    "contact": (0.80, 0.12, 0.14),
+    "weight": (0.12, 0.52, 0.20),
+}
+"""Colours of arrows; the others have these in turn."""
+OTHERS: tuple[Color, ...] = ((0.49, 0.28, 0.68), (0.85, 0.45, 0.05), (0.00, 0.50, 0.52), (0.75, 0.25, 0.55))
+
+
+@dataclass(frozen=True)
+class _Vectors:
+    """Arrows of a line of the scene."""
+
+    word: str
+    color: Color
+    objects: tuple[int, ...]
+    values: np.ndarray
+    """Values of these objects at all frames, in SI units, shape (F, n, 3)."""
+    scale: float
+    """Length over value [m per unit]."""
+
+    @property
+    def unit(self) -> str:
+        return QUANTITIES["NAME", f"{self.word}.x"].unit
+
+
+class Overlay:
+    """What a scene has laid over its pictures.
+
+    Args:
+        trajectory: what is drawn.
+        render: the scene's ``render`` block.
+        size: of a picture as it is drawn, in pixels.
+        dark: whether the background is.
+        action: where things happen.
+        tones: colours that tell a quantity; None for none.
+
+    Raises:
+        UsageError: a quantity that the run has not recorded.
+        OutputError: its scene cannot be read here.
+    """
+
+    def __init__(
+        self,
+        trajectory: Trajectory,
+        render: Render,
+        size: tuple[int, int],
+        dark: bool,
+        action: Action,
+        tones: Tones | None,
+        finer: int,
+    ):
+        self._trajectory, self._render, self._size, self._action = trajectory, render, size, action
+        self._layer = InkLayer(size, max(LETTERS * size[1], min(SMALLEST * finer, LARGEST * size[1])), dark)
+        self._tones, told, names = tones, RunValues(trajectory), list(trajectory.names)
+        self._of_name = objects_by_name(names) if render.trail or render.label else {}
+        self._colors = object_colors(trajectory.metadata.colors, trajectory.metadata.still) / 255.0
+        self._vectors = _vectors(render.arrows, trajectory, told, action)
+        self._curves = (
+            Curves(self._layer, render.plot, told, trajectory.times, dict(zip(names, map(tuple, self._colors))))
+            if render.plot
+            else None
+        )
+
+    def lay_on(self, picture: np.ndarray, view: View, frame: int, low: np.ndarray, high: np.ndarray) -> None:
+        """Lay it over a picture of a frame, uint8 RGBA, shape (height, width, 4), first row below; ``low`` and ``high`` are
+        corners of the boxes around objects [m], shape (O, 3)."""
+        self._trails(view, frame)
+        self._arrows(view, frame)
+        self._labels(view, low, high)
+        self._captions(float(self._trajectory.times[frame]))
+        if self._curves:
+            self._curves.show(frame)
+        if self._tones:
+            self._bar()
+        self._layer.lay_on(picture)
+
+    def _trails(self, view: View, frame: int) -> None:
+        times = self._trajectory.times
+        for one in self._render.trail:
+            begin = -math.inf if one.time is None else times[frame] - one.time
+            shown = np.flatnonzero(times[: frame + 1] >= begin - 1e-12)
+            for m in self._of_name[one.name]:
+                points, ahead = seen_at(view, self._size, self._trajectory.centers[shown, m])
+                points = points[ahead]
+                if len(points) > 1:
+                    strength = np.linspace(0.25 if one.time is not None else 0.9, 0.9, len(points) - 1)
+                    self._layer.fading(points, tuple(0.8 * self._colors[m]), 0.2 * self._layer.letters, strength)
+
+    def _arrows(self, view: View, frame: int) -> None:
+        centers, width = self._trajectory.centers[frame], 0.32 * self._layer.letters
+        for one in self._vectors:
+            way = one.scale * one.values[frame]
+            begin, seen = seen_at(view, self._size, centers[list(one.objects)])
+            end, also = seen_at(view, self._size, centers[list(one.objects)] + np.nan_to_num(way))
+            for n in np.flatnonzero(seen & also & np.isfinite(way).all(axis=1)):
+                self._layer.arrow(begin[n], end[n], one.color, width)
+        self._legend(view, width)
+
+    def _legend(self, view: View, width: float) -> None:
+        """An arrow of a round value for each line, as long as it would be in the middle of the scene across the line of sight."""
+        letters, left = self._layer.letters, 1.2 * self._layer.letters
+        top = self._size[1] - 1.4 * letters
+        pixels = pixels_per_metre(view, self._size, self._action.centre)
+        values = [_round_value(LEGEND * letters / max(pixels * one.scale, 1e-300)) for one in self._vectors]
+        rows = [(one, value, value * one.scale * pixels) for one, value in zip(self._vectors, values)]
+        widest = max((length for _, _, length in rows), default=0.0)
+        for n, (one, value, length) in enumerate(rows):
+            y = top - n * 1.5 * letters
+            self._layer.arrow(np.array([left, y]), np.array([left + length, y]), one.color, width)
+            words = f"{one.word}  {number(value)} {one.unit}"
+            self._layer.words((left + widest + 0.7 * letters, y), words, color=one.color)
+
+    def _labels(self, view: View, low: np.ndarray, high: np.ndarray) -> None:
+        corner = np.array(np.unravel_index(np.arange(8), (2, 2, 2))).T
+        for one in self._render.label:
+            for m in self._of_name[one.name]:
+                points, ahead = seen_at(view, self._size, np.where(corner, high[m], low[m]))
+                if ahead.all():
+                    # Beside it: arrows often point up or down.
+                    at = (points[:, 0].max() + 0.4 * self._layer.letters, points[:, 1].mean())
+                    self._layer.words(at, one.text, fontweight="bold")
+
+    def _captions(self, time: float) -> None:
+        free = 1.0 - (COVERED if self._curves else 0.0)
+        hair = 1e-9 * float(self._trajectory.times[-1])
+        begun = (c for c in self._render.caption if (c.begin or 0.0) - hair <= time)
+        for n, one in enumerate(reversed([c for c in begun if c.end is None or time <= c.end + hair])):
+            at = (0.5 * free * self._size[0], (0.1 + 0.06 * n) * self._size[1])
+            self._layer.words(at, one.text, size=1.25, ha="center", fontweight="bold", zorder=6)
+
+    def _bar(self) -> None:
+        """The colours of a quantity, with the values at their ends."""
+        letters, tones = self._layer.letters, self._tones
+        size = (0.9 * letters, 9.0 * letters)
+        at = (1.2 * letters, 0.5 * self._size[1] - 0.5 * size[1])
+        self._layer.image(at, size, tones.bar())
+        x = at[0] + size[0] + 0.5 * letters
+        self._layer.words((x, at[1]), "0")
+        self._layer.words((x, at[1] + size[1]), f"{number(tones.most)} {tones.unit}".rstrip())
+        self._layer.words((at[0], at[1] + size[1] + 1.5 * letters), tones.name, fontweight="bold")
+
+
+def _vectors(lines: tuple[Arrows, ...], trajectory: Trajectory, told: RunValues, action: Action) -> list[_Vectors]:
+    """The arrows of all lines; those of one unit without a scale of their own have one in common."""
+    names, found, words = list(trajectory.names), [], dict.fromkeys(one.vector for one in lines)
+    others = iter(OTHERS * len(words))
+    colors = {word: COLORS.get(word) or next(others) for word in words}
+    for one in lines:
+        objects = one.objects(names)
+        values = np.stack([told.vector(names[m], one.vector) for m in objects], axis=1)
+        shown = np.isfinite(values).all(axis=2).any(axis=0)
+        if one.name is None:
+            shown &= ~trajectory.metadata.still
+        chosen = tuple(m for m, is_shown in zip(objects, shown) if is_shown)
+        found.append(_Vectors(one.vector, colors[one.vector], chosen, values[:, shown], one.scale or 0.0))
+    return [one if one.scale else replace(one, scale=_usual(one.unit, found, action)) for one in found]
+
+
+def _usual(unit: str, all_of_them: list[_Vectors], action: Action) -> float:
+    """Metres per unit that show all values of a unit well."""
+    sizes = [np.linalg.norm(one.values, axis=2).ravel() for one in all_of_them if one.unit == unit and not one.scale]
+    sizes = np.concatenate([np.zeros(0), *sizes])
+    sizes = sizes[np.isfinite(sizes)]
+    sizes = sizes[sizes > NOTHING * sizes.max(initial=0.0)]
+    return USUAL * action.size / float(np.quantile(sizes, AMONG)) if len(sizes) else 1.0
+
+
+def _round_value(value: float) -> float:
+    """The largest of 1, 2, 5 times a power of ten that is not above a value."""
+    if not value > 0.0:
+        return 1.0
+    power = 10.0 ** math.floor(math.log10(value))
+    return power * max(k for k in (1.0, 2.0, 5.0) if k * power <= value * (1 + 1e-12))

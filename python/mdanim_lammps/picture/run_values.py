@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Values of quantities that pictures tell, from the frames and the ledger of a run."""
+
+from __future__ import annotations
+
+from functools import cached_property
+
+import numpy as np
+
+from ..effects.measured import Measured, Of
+from ..errors import OutputError, UsageError
+from ..results.ledger import Ledger
+from ..results.quantities import quantity_of, series
+from ..results.trajectory import Trajectory
+from ..scene.quantities import Asked
+
+
+class RunValues:
+    """Quantities of a run at all of its frames.
+
+    Args:
+        trajectory: of the run; one that has only its start has no ledger, and no values that need one.
+    """
+
+    def __init__(self, trajectory: Trajectory):
+        self._trajectory = trajectory
+
+    def series(self, of: Of) -> np.ndarray:
+        """Values in SI units, shape (F,), NaN where there are none.
+
+        Raises UsageError for a quantity that the run has not recorded, OutputError where its scene cannot be read here.
+        """
+        return series(of, self._measured)
+
+    def is_mean(self, of: Of) -> bool:
+        """Whether the value of a frame is the mean since the frame before."""
+        return quantity_of(of).since
+
+    def vector(self, name: str, word: str) -> np.ndarray:
+        """The three components of a vector of an object, shape (F, 3)."""
+        return np.stack([self.series(Asked(name, f"{word}.{axis}")) for axis in "xyz"], axis=1)
+
+    @cached_property
+    def _measured(self) -> Measured:
+        t = self._trajectory
+        if t.scene is None:
+            raise OutputError(f"{t.path}: the scene of this run, or one of its meshes, cannot be read here")
+        grid = next((kept.grid for kept in t.metadata.kept.values() if hasattr(kept, "grid")), None)
+        return Measured(t.scene, t.names, grid, t.times, t.centers, t.center_velocities, np.nan, self._column, t)
+
+    def _column(self, name: str) -> np.ndarray:
+        """A column of the ledger."""
+        path = self._trajectory.path.parent / "ledger.csv"
+        if len(self._trajectory) == 1 and not path.exists():
+            return np.full(1, np.nan)
+        if name not in self._ledger.columns:
+            word, _, subject = name.rpartition(".")
+            raise UsageError(
+                f"the run has not recorded {word} of {subject}; write it in the scene, record {subject}.{word}, and run it again"
+            )
+        return self._ledger.array(name)[: len(self._trajectory)]
+
+    @cached_property
+    def _ledger(self) -> Ledger:
+        return Ledger.read(self._trajectory.path.parent / "ledger.csv", most=len(self._trajectory))

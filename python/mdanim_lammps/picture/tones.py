@@ -1,0 +1,72 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Colours that tell a quantity of the material."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from ..results.trajectory import Trajectory
+from ..results.trajectory_metadata import springs_gone
+from ..scene.shown import ColorBy
+from .plot import own_style
+
+SAMPLES, AMONG = 24, 0.995
+"""Frames that are looked at to find the largest value, and the share of all values that it is not below."""
+STEPS = 256
+
+
+class Tones:
+    """Colours of the vertices of surfaces by a quantity of particles, from 0 to the largest value of the run.
+
+    Args:
+        trajectory: what is drawn.
+        by: the quantity.
+    """
+
+    def __init__(self, trajectory: Trajectory, by: ColorBy):
+        import matplotlib
+
+        self._trajectory, self.name = trajectory, by.value
+        self.unit = {ColorBy.SPEED: "m/s", ColorBy.STRAIN: ""}[by]
+        with own_style():
+            self._colors = np.round(255.0 * matplotlib.colormaps["turbo"](np.linspace(0.04, 0.96, STEPS))[:, :3]).astype(np.uint8)
+        if by is ColorBy.STRAIN:
+            m, start = trajectory.metadata, trajectory.position(0)
+            self._bond = np.searchsorted(m.id, m.bond).reshape(-1, 2)
+            self._rest = self._lengths(start)
+        self._find = {ColorBy.SPEED: self._speed, ColorBy.STRAIN: self._strain}[by]
+        frames = np.unique(np.linspace(0, len(trajectory) - 1, SAMPLES).astype(int))
+        found = np.concatenate([np.zeros(1), *(np.quantile(self._find(int(n)), [AMONG, 1.0]) for n in frames)])
+        self.most = float(found.max()) or 1.0
+
+    def of_particles(self, frame: int) -> np.ndarray:
+        """Values at all stored particles in a frame, shape (N,)."""
+        return self._find(frame)
+
+    def colors(self, values: np.ndarray) -> np.ndarray:
+        """Colours of values, uint8, shape (V, 3)."""
+        return self._colors[np.clip(values / self.most * (STEPS - 1) + 0.5, 0, STEPS - 1).astype(int)]
+
+    def bar(self) -> Iterator[tuple[float, float, float]]:
+        """Colours from 0 to the largest value."""
+        return (tuple(color / 255.0) for color in self._colors[::4])
+
+    def _speed(self, frame: int) -> np.ndarray:
+        return np.linalg.norm(self._trajectory.velocity(frame), axis=1)
+
+    def _strain(self, frame: int) -> np.ndarray:
+        """Largest |r/r0 - 1| of the springs of each particle; r0 is the length in the first frame."""
+        t = self._trajectory
+        stretch = np.abs(self._lengths(t.position(frame)) / self._rest - 1.0)
+        gone = springs_gone(t.metadata, lambda name: t.field(name.rpartition("/")[2], frame))
+        if gone is not None:
+            stretch[gone] = 0.0
+        strain = np.zeros(len(t.metadata.id))
+        for end in self._bond.T:
+            np.maximum.at(strain, end, stretch)
+        return strain
+
+    def _lengths(self, position: np.ndarray) -> np.ndarray:
+        return np.linalg.norm(position[self._bond[:, 0]] - position[self._bond[:, 1]], axis=1)

@@ -1,0 +1,268 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Arrows, trails, labels, captions, curves, copies and colours in pictures of a run, against places known otherwise."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from mdanim_lammps import Scene, Trajectory, UsageError
+from mdanim_lammps.errors import SceneError
+from mdanim_lammps.picture.curves import COVERED, _span
+from mdanim_lammps.picture.framing import pixels_per_metre, seen_at
+from mdanim_lammps.picture.layer import InkLayer
+from mdanim_lammps.picture.overlay import _round_value
+from mdanim_lammps.picture.render import Painter
+from mdanim_lammps.picture.run_values import RunValues
+from mdanim_lammps.picture.tones import Tones
+from mdanim_lammps.scene.lock import lock_text
+from mdanim_lammps.scene.parse import parse_scene
+from mdanim_lammps.scene.quantities import Asked
+from mdanim_lammps.scene.render import Render
+from mdanim_lammps.scene.shown import Arrows, Caption, ColorBy, NameTag, Trail
+
+SIZE = (320, 180)
+TEXT = """
+gravity (0, 0, -9.81) m/s^2
+object ball { shape sphere 10 cm  position (0, 0, 1.5) m  mass 1 kg  elasticity rigid  velocity (2, 0, 0) m/s  color red }
+object cube { shape box (20, 20, 20) cm  position (1, 0, 1.5) m  mass 2 kg  elasticity 1 MPa  spin (0, 6, 0) rad/s }
+object post { shape box (10, 10, 100) cm  position (-1, 0, 0.5) m  mass 9 kg  elasticity 1 MPa  hold all }
+control { time 0.5 s  frames 20 fps  resolution 10 cm }
+"""
+CAMERA = "camera from (0.5, -6, 1) m look (0.5, 0, 1) m"
+ALL = """
+render {
+  arrows velocity of ball
+  arrows weight
+  arrows spin of cube scale 0.02
+  trail ball 0.2 s
+  label ball "falls"
+  plot ball.speed
+  plot cube.kinetic
+  plot cube.force.z
+  caption "now" from 0.1 s to 0.3 s
+  freeze 0.1 s
+  color-by speed
+}
+"""
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory):
+    """A flight beside a held post, with nothing laid over its pictures."""
+    return Scene.from_text(TEXT + f"render {{ {CAMERA} }}\n", "flight").run(tmp_path_factory.mktemp("flight") / "r")
+
+
+def pictures(run, frames=(6,), size=SIZE, **words):
+    """Frames of the run with these settings of ``render``, int, shape (height, width, 3), first row on top."""
+    render = replace(run.scene.record.render, **words)
+    with Painter(run.trajectory, render, size=size) as painter:
+        return [painter.frame(n).astype(int) for n in frames], painter.view(0.0)
+
+
+def changed(run, frame=6, size=SIZE, **words):
+    """Pixels that settings change, bool, first row below."""
+    ((plain,), view), ((other,), _) = pictures(run, (frame,), size), pictures(run, (frame,), size, **words)
+    return (np.abs(plain - other).max(axis=2) > 12)[::-1], view
+
+
+def test_an_arrow_goes_from_the_centre_along_the_velocity(run):
+    """From where the centre is seen to where centre + scale times velocity is seen, to three pixels."""
+    found, view = changed(run, arrows=(Arrows("velocity", "ball", 0.2),))
+    found[-30:] = False  # the legend
+    t, m = run.trajectory, 0
+    ends = np.array([t.centers[6, m], t.centers[6, m] + 0.2 * t.center_velocities[6, m]])
+    pixels, ahead = seen_at(view, SIZE, ends)
+    y, x = np.nonzero(found)
+    along = (pixels[1] - pixels[0]) / np.hypot(*(pixels[1] - pixels[0]))
+    way = (np.column_stack([x + 0.5, y + 0.5]) - pixels[0]) @ along
+    off = (np.column_stack([x + 0.5, y + 0.5]) - pixels[0]) @ [-along[1], along[0]]
+    assert ahead.all() and abs(way.min()) < 3 and abs(way.max() - np.hypot(*(pixels[1] - pixels[0]))) < 3
+    assert np.abs(off).max() < 8 and np.abs(off.mean()) < 0.5
+
+
+def test_places_are_seen_where_the_window_draws_them(run):
+    """The red ball's pixels have their middle where its centre is projected to."""
+    (picture,), view = pictures(run, (3,), (640, 360))
+    red = ((picture[..., 0] > 90) & (picture[..., 1] < 60) & (picture[..., 2] < 60))[::-1]
+    y, x = np.nonzero(red)
+    pixel, _ = seen_at(view, (640, 360), run.trajectory.centers[3, :1])
+    middle = np.array([x.min() + x.max() + 1, y.min() + y.max() + 1]) / 2
+    assert np.abs(middle - pixel[0]).max() < 1.5
+    metre = pixels_per_metre(view, (640, 360), run.trajectory.centers[3, 0])
+    assert x.max() + 1 - x.min() == pytest.approx(0.2 * metre, rel=0.08)
+
+
+def test_all_arrows_of_a_unit_have_one_length(run):
+    """Without a scale of their own; the longest is a seventh of the scene, and what is held has none."""
+    lines = (Arrows("weight"), Arrows("force", "cube"))
+    with Painter(run.trajectory, Render(arrows=lines), size=SIZE) as painter:
+        weight, force = painter._overlay._vectors
+        assert weight.scale == force.scale and weight.objects == (0, 1) and force.objects == (1,)
+        assert 2.0 * 9.81 * weight.scale == pytest.approx(0.14 * painter.action.size, rel=1e-3)
+        np.testing.assert_allclose(weight.values[:, 1], np.tile([0.0, 0.0, -2.0 * 9.81], (11, 1)))
+
+
+@pytest.mark.parametrize(("value", "shown"), [(0.0, 1.0), (1.0, 1.0), (1.99, 1.0), (2.0, 2.0), (49.0, 20.0), (0.0501, 0.05)])
+def test_values_of_the_legend_are_round(value, shown):
+    """1, 2 or 5 times a power of ten, not above the value."""
+    assert _round_value(value) == pytest.approx(shown)
+
+
+def test_curves_grow_with_the_film(run):
+    """A curve reaches as far into its panel as the frame into the run, at the height of its value."""
+    reach = []
+    for frame in (0, 5, 10):
+        plain = pictures(run, (frame,), (640, 360), plot=(Asked("ball", "position.z"),))[0][0]
+        panel = plain[:140, int(640 * (1 - COVERED)) + 50 :]
+        red = (panel[..., 0] > 150) & (panel[..., 1] < 60) & (panel[..., 2] < 60)
+        red[:25] = False  # its name
+        reach.append(np.flatnonzero(red.any(axis=0)).max())
+        last = np.flatnonzero(red[:, reach[-1] - 2])
+        low, high = _span([RunValues(run.trajectory).series(Asked("ball", "position.z"))], whole=False)
+    assert reach[1] - reach[0] == pytest.approx(reach[2] - reach[1], abs=2) and reach[1] - reach[0] > 70
+    assert low < 1.5 - 9.81 * 0.125 and high > 1.5 and last.mean() > 80  # it has fallen to the lower edge
+
+
+def test_the_automatic_camera_leaves_room_for_panels(run):
+    """Everything that moves is seen left of them, in every frame."""
+    t = run.trajectory
+    with Painter(t, Render(plot=(Asked("ball", "speed"),)), size=(640, 360)) as painter:
+        view = painter.view(0.0)
+    for frame in range(len(t)):
+        pixels, ahead = seen_at(view, (640, 360), t.metadata.skin.vertices(t.position(frame)))
+        assert ahead.all() and pixels[:, 0].max() < 640 * (1 - COVERED) and pixels.min() > 0 and pixels[:, 1].max() < 360
+
+
+def test_words_stand_where_and_when_they_should(run):
+    """A label beside its object, a caption in its time alone, a trail where the object was."""
+    label, view = changed(run, label=(NameTag("ball", "falls"),))
+    pixel, _ = seen_at(view, SIZE, run.trajectory.centers[6, :1])
+    y, x = np.nonzero(label)
+    assert x.min() > pixel[0, 0] and x.min() < pixel[0, 0] + 25 and abs((y.min() + y.max()) / 2 - pixel[0, 1]) < 6
+    caption = (Caption("now", 0.1, 0.3),)
+    frames = (0, 1, 2, 6, 7)
+    both = zip(pictures(run, frames)[0], pictures(run, frames, caption=caption)[0])
+    assert [bool((a != b).any()) for a, b in both] == [False, False, True, True, False]
+    trail, _ = changed(run, trail=(Trail("ball", 0.2),))
+    pixels, _ = seen_at(view, SIZE, run.trajectory.centers[2:7, 0])
+    y, x = np.nonzero(trail)
+    assert abs(x.min() - pixels[0, 0]) < 4 and abs(x.max() - pixels[-1, 0]) < 12 and abs(y.max() - pixels[0, 1]) < 4
+
+
+def test_copies_stay_where_things_were(run):
+    """A pale ball at each time before, none ahead and none of what is held."""
+    found, view = changed(run, freeze=0.1)
+    pixels, _ = seen_at(view, SIZE, run.trajectory.centers[:, 0])
+    seen = [bool(found[int(y), int(x)]) for x, y in pixels[:8]]
+    assert seen[0] and seen[2] and seen[4] and not seen[7]
+    post, _ = seen_at(view, SIZE, run.trajectory.centers[:1, 2])
+    assert not found[int(post[0, 1]), int(post[0, 0])]
+    with pytest.raises(UsageError, match="501 copies of everything would cover the picture; 200 are the most"):
+        Painter(run.trajectory, Render(freeze=0.001), size=SIZE)
+
+
+def test_colours_tell_speed_and_strain(run):
+    """From 0 to the largest value of the run; the ball's colour goes with its speed; what is held keeps its own."""
+    tones = Tones(run.trajectory, ColorBy.SPEED)
+    fastest = np.linalg.norm(run.trajectory.velocity(10), axis=1).max()
+    assert tones.most == pytest.approx(fastest) and tones.unit == "m/s"
+    assert len({tuple(tones.colors(np.array([x * fastest]))[0]) for x in (0.0, 0.25, 0.5, 0.75, 1.0, 2.0)}) == 5
+    (first, last), view = pictures(run, (1, 9), color_by=ColorBy.SPEED)
+    post, _ = seen_at(view, SIZE, run.trajectory.centers[:1, 2])
+    at = SIZE[1] - 1 - int(post[0, 1]), int(post[0, 0])
+    assert np.array_equal(first[at], last[at]) and np.array_equal(first[at], pictures(run, (1,))[0][0][at])
+    strain = Tones(run.trajectory, ColorBy.STRAIN)
+    assert strain.of_particles(0).max() == 0.0 and 0.0 < strain.most < 0.1
+
+
+@pytest.mark.parametrize("height", [360, 720])
+def test_letters_are_large_enough_to_read(run, height):
+    """Eleven pixels at least."""
+    with Painter(run.trajectory, Render(caption=(Caption("x"),)), size=(height * 16 // 9, height)) as painter:
+        assert painter._overlay._layer.letters >= 11.0
+
+
+def test_words_may_have_signs_of_mathematics():
+    """A dollar sign starts no formula, and characters of other scripts are drawn."""
+    layer, picture = InkLayer((200, 40), 11.0, dark=False), np.full((40, 200, 4), 255, np.uint8)
+    layer.words((5, 20), "5 $ and $x^2$ µ²°")
+    layer.lay_on(picture)
+    assert (picture[..., :3] < 100).any() and (picture[..., 3] == 255).all()
+
+
+def test_nothing_of_it_changes_a_run(run, tmp_path):
+    """The same frames to the bit with all of it; its movie and its stored scene can be made again."""
+    other = Scene.from_text(TEXT + ALL, "flight").run(tmp_path / "flight.out")
+    for frame in range(len(run.trajectory)):
+        np.testing.assert_array_equal(run.trajectory.position(frame), other.trajectory.position(frame))
+        np.testing.assert_array_equal(run.trajectory.velocity(frame), other.trajectory.velocity(frame))
+    assert {"kinetic.cube", "spin.x.cube"} <= set(other.ledger.columns) and not (other.folder / "records.csv").exists()
+    assert other.render(tmp_path / "m.mp4", size=(128, 72)).stat().st_size > 1000
+    text = lock_text(other.scene.record)
+    assert lock_text(parse_scene(text, "flight")) == text
+
+
+def test_a_run_of_before_shows_all_that_its_frames_tell(run):
+    """What needed every frame while it ran is refused, with the line that would have recorded it."""
+    pictures(run, arrows=(Arrows("contact"), Arrows("force"), Arrows("weight")), plot=(Asked("ball", "distance", "cube"),))
+    with pytest.raises(UsageError, match=r"the run has not recorded kinetic of cube; write it in the scene, record cube.kinetic"):
+        pictures(run, plot=(Asked("cube", "kinetic"),))
+
+
+def test_a_scene_is_drawn_before_its_run(tmp_path):
+    """Curves are empty, arrows that need a frame before are missing."""
+    Scene.from_text(TEXT + ALL, "flight").picture(tmp_path / "p.png", size=SIZE)
+    assert (tmp_path / "p.png").stat().st_size > 1000
+
+
+def test_on_a_dark_background_in_final_quality(run):
+    """Letters are light, and everything is drawn twice as large and then made smaller."""
+    render = dict(background="#000000", caption=(Caption("light"),))
+    (picture,), _ = pictures(run, **render)
+    words = picture[int(0.86 * SIZE[1]) : int(0.94 * SIZE[1]), 100:220]
+    assert words.max() > 220
+    with Trajectory(run.folder) as t:
+        from mdanim_lammps.scene.render import Quality
+
+        with Painter(t, Render(quality=Quality.FINAL, **render), size=SIZE) as painter:
+            assert painter.frame(3)[int(0.86 * SIZE[1]) : int(0.94 * SIZE[1]), 100:220].max() > 220
+
+
+@pytest.mark.parametrize(
+    ("line", "message", "hint"),
+    [
+        ("arrows speed", "'speed' is not one of the choices of arrows", "known here: contact, weight, velocity, spin, force"),
+        ("arrows velocity of bal", "no object is called bal", "did you mean 'ball'?"),
+        ("arrows velocity scale 0", "s of arrows must be > 0, found 0", ""),
+        ("trail", "nothing follows trail", ""),
+        ("trail bal", "no object is called bal", "did you mean 'ball'?"),
+        ("trail ball 2 m", "T of trail must be a time, found 2 m, a length", ""),
+        ('label "x"', "label needs the name of an object", 'label ball "falls freely"'),
+        ("label ball", "nothing follows ball", ""),
+        ("plot ball.sped", "sped is not a quantity of ball", "did you mean 'speed'?"),
+        ("plot post.draft", "post.draft needs a liquid block", ""),
+        ('caption "x" from 2 s to 1 s', "the caption ends at 1 s and begins at 2 s", "earlier time first"),
+        ("freeze 0 s", "freeze must be > 0, found 0", ""),
+        ("color-by heat", "'heat' is not one of the choices of color-by", ""),
+        ("plot ball.speed plot ball.position.z", "", ""),
+    ],
+)
+def test_what_cannot_be_shown_is_refused(line, message, hint):
+    """With its place, and a way out."""
+    text = TEXT + f"render {{ {line} }}\n"
+    if not message:
+        assert len(parse_scene(text).render.plot) == 2
+        return
+    with pytest.raises(SceneError) as error:
+        parse_scene(text)
+    (problem,) = error.value.problems
+    assert message in problem.message and hint in problem.hint and problem.span.line == 7
+
+
+def test_four_units_have_no_room():
+    """Three panels are the most."""
+    lines = "\n".join(f"plot ball.{word}" for word in ("speed", "position.z", "kinetic", "force"))
+    with pytest.raises(SceneError, match="curves of 4 units are asked for, and a picture has room for 3 panels"):
+        parse_scene(TEXT + f"render {{\n{lines}\n}}\n")
