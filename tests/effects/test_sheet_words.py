@@ -10,7 +10,7 @@ from mdanim_lammps.model.spacing import plan_spacing
 from mdanim_lammps.run.prepare import prepare
 from mdanim_lammps.scene.lock import lock_text
 from mdanim_lammps.scene.parse import parse_scene
-from mdanim_lammps.scene.scene import Sheet
+from mdanim_lammps.scene.scene import Cylinder, Sheet, Shell, Sphere
 
 CLOTH = """object cloth {{
   shape {shape}
@@ -41,10 +41,13 @@ def problem(text: str):
         (USUAL, Sheet((1.0, 0.8), 0.002)),
         (USUAL + " bending 0", Sheet((1.0, 0.8), 0.002, 0.0)),
         (USUAL + " bending 2.5", Sheet((1.0, 0.8), 0.002, 2.5)),
+        ("sphere 20 cm sheet thickness 1 mm", Shell(Sphere(0.2), 0.001)),
+        ("cylinder 20 cm 1 m sheet thickness 1 mm bending 0", Shell(Cylinder(0.2, 1.0), 0.001, 0.0)),
+        ("cylinder 20 cm 1 m", Cylinder(0.2, 1.0)),
     ],
 )
 def test_it_is_read_and_written_back(shape, record):
-    """Size, thickness and what scales bending."""
+    """Size, thickness and what scales bending, of flat ones and of surfaces of shapes."""
     scene = parse_scene(cloth(shape, "hold face -x  hold faces y"))
     assert scene.solids[0].shape == record
     assert parse_scene(lock_text(scene)) == scene
@@ -78,6 +81,9 @@ REFUSED = {
         "a liquid finds objects by their cells",
         "take the liquid out",
     ),
+    "shell too thick": (cloth("sphere 1 cm sheet thickness 8 mm"), "too thick for a sheet", "leave out sheet"),
+    "shell bending": (cloth("sphere 1 m sheet thickness 1 mm bending -1"), "bending must be 0 or more", "write bending 0"),
+    "shell without a file": (cloth('mesh "no.stl" sheet thickness 1 mm'), "is not there", "relative to this scene file"),
     "in a box": (BOX + cloth().replace("(0, 0, 1)", "(0, 0, 0.1)"), "cloth starts inside box", "move it"),
 }
 

@@ -14,6 +14,7 @@ from mdanim_lammps.scene.scene import (
     Rope,
     SceneRecord,
     Sheet,
+    Shell,
     Solid,
     Sphere,
     Torus,
@@ -36,6 +37,8 @@ ROPE = Rope((0.0, 0.0, 0.0), (1.0, 0.0, 0.0), 0.1, 1.0)
 """A line."""
 SHEET = Sheet((1.0, 0.8), 0.01)
 """A layer."""
+SHELL = Shell(Sphere(0.5), 0.01)
+"""A closed one."""
 
 
 def shape_id(shape) -> str:

@@ -30,8 +30,12 @@ def sheet(size: str, thickness: str, *more: str, name: str = "cloth") -> str:
 def pulled(size: tuple[float, float], h: float, axis: int, young: float = 1e6, thickness: float = 2e-3) -> tuple[float, float]:
     """Stiffness of a sheet between two opposite sides that are held, and free to slide along these, over E t times width by
     length; and its Poisson's ratio in the middle. From the matrix of its springs."""
-    woven = weave(Sheet(size, thickness), h)
-    place, particles = woven.place, len(woven.place)
+    return pulled_layer(weave(Sheet(size, thickness), h), size, axis, young, thickness)
+
+
+def pulled_layer(woven, size, axis: int, young: float = 1e6, thickness: float = 2e-3) -> tuple[float, float]:
+    """The same of a flat layer in the xy plane, a lattice or triangles."""
+    place, particles = woven.place[:, :2], len(woven.place)
     low, high = (woven.sides[side] for side in (("-x", "+x"), ("-y", "+y"))[axis])
     held = np.zeros(particles, bool)
     held[low] = held[high] = True
@@ -56,25 +60,54 @@ def pulled(size: tuple[float, float], h: float, axis: int, young: float = 1e6, t
 
 
 def stiffness(place: np.ndarray, pair: np.ndarray, value: np.ndarray):
-    """The matrix of springs [N/m], sparse, shape (2 N, 2 N), about particles in a plane [m], shape (N, 2)."""
+    """The matrix of springs [N/m], sparse, shape (D N, D N), about particles [m], shape (N, D)."""
     from scipy.sparse import csr_matrix
 
-    i, j = pair.T
+    (i, j), dimensions = pair.T, place.shape[1]
     way = place[j] - place[i]
     length = np.linalg.norm(way, axis=1)
     n = way / length[:, None]
     k, turned = value[:, 0], value[:, 0] * (value[:, 2] - value[:, 1]) / length
     along = n[:, :, None] * n[:, None, :]
-    block = k[:, None, None] * along + turned[:, None, None] * (np.eye(2) - along)
+    block = k[:, None, None] * along + turned[:, None, None] * (np.eye(dimensions) - along)
     rows, columns, values = [], [], []
     for a, b, sign in ((i, i, 1.0), (j, j, 1.0), (i, j, -1.0), (j, i, -1.0)):
-        for p in range(2):
-            for q in range(2):
-                rows.append(2 * a + p)
-                columns.append(2 * b + q)
+        for p in range(dimensions):
+            for q in range(dimensions):
+                rows.append(dimensions * a + p)
+                columns.append(dimensions * b + q)
                 values.append(sign * block[:, p, q])
-    size = 2 * len(place)
+    size = dimensions * len(place)
     return csr_matrix((np.concatenate(values), (np.concatenate(rows), np.concatenate(columns))), (size, size))
+
+
+def tip(woven, young: float = 1e6, thickness: float = 2e-3) -> float:
+    """How far the end of a flat strip along x yields across its plane, clamped by all within a link of its other end, over
+    P l^3/3 E I."""
+    from scipy.sparse.linalg import spsolve
+
+    place = woven.place
+    pair, value = woven.springs(young, thickness, 1.0, np.zeros(len(place), bool))
+    matrix = stiffness(place, pair, value)[2::3][:, 2::3]
+    x, width = place[:, 0], np.ptp(place[:, 1])
+    held, end = x < x.min() + 1.1 * woven.h, x > x.max() - 1e-9
+    bent = spsolve(matrix[~held][:, ~held].tocsc(), end[~held] / end.sum())
+    return float(bent[end[~held]].mean() * 3.0 * young * width * thickness**3 / 12.0 / (x.max() - x[held].max()) ** 3)
+
+
+def blown(woven, young: float = 1e6, thickness: float = 2e-3) -> float:
+    """How far a closed sheet around a sphere yields to a pressure inside, over p r^2 (1 - nu)/2 E t."""
+    from scipy.sparse.linalg import lsqr
+
+    place, triangle = woven.place, woven.triangle
+    pair, value = woven.springs(young, thickness, 1.0, np.zeros(len(place), bool))
+    a, b, c = (place[triangle[:, k]] for k in range(3))
+    force = np.zeros_like(place)
+    np.add.at(force, triangle, (np.cross(b - a, c - a) / 6.0)[:, None])
+    r = np.linalg.norm(place, axis=1)
+    moved = lsqr(stiffness(place, pair, value), force.ravel(), atol=1e-10, btol=1e-10, iter_lim=20000)[0].reshape(-1, 3)
+    out = float((moved * place).sum() / r.sum())
+    return out / (float(r.mean()) ** 2 * (1.0 - NU) / (2.0 * young * thickness))
 
 
 def modulus(size: tuple[float, float], h: float, angle: float) -> tuple[float, float]:

@@ -114,6 +114,11 @@ class BodyFrame:
     """X of its eight particles, the corners of a box [-], shape (8, 3); None where particles are at the corners of cells."""
 
     @property
+    def spans(self) -> int:
+        """Dimensions of a part of it that a joint holds on to."""
+        return self.dimensions
+
+    @property
     def bare(self) -> bool:
         """Whether its particles are its points of contact, and nothing is ever in it."""
         return self.dimensions < 3

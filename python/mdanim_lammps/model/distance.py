@@ -8,7 +8,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from ..scene.scene import Cone, Cylinder, Ellipsoid, Mesh, Rope, Shape, Sheet, Sphere, Torus
+from ..scene.scene import Cone, Cylinder, Ellipsoid, Mesh, Rope, Shape, Sheet, Shell, Sphere, Torus
 from . import mesh, mesh_distance, shapes
 from .nearest import blocks
 from .segments import to_segments
@@ -59,6 +59,11 @@ def _(shape: Sheet, points):
     half = 0.5 * np.array(shape.plate.size)
     out = np.abs(points) - half
     return -np.where((out > 0.0).any(axis=1), np.linalg.norm(np.maximum(out, 0.0), axis=1), out.max(axis=1))
+
+
+@distance.register
+def _(shape: Shell, points):
+    return shapes.depth(shape, points)
 
 
 @distance.register

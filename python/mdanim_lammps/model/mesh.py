@@ -7,6 +7,7 @@ pyvista (VTK) is needed only here and only for scenes that name a mesh; it is im
 from __future__ import annotations
 
 import math
+import os
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
@@ -56,40 +57,50 @@ class Triangles:
 
 def load(shape: Mesh) -> Triangles:
     """Read the file of a mesh shape once; raise MeshError where it is missing, unreadable or not closed."""
+    path, stamp = stamped(shape)
+    return _load(path, shape.scale, shape.mended, stamp.st_mtime_ns, stamp.st_size)
+
+
+def stamped(shape: Mesh) -> tuple[Path, os.stat_result]:
+    """The file of a mesh shape, with time and size of its last change. Raises MeshError."""
     path = Path(shape.path)
     if path.suffix.lower() not in SUFFIXES:
         raise MeshError(f"mesh {path.name}: unknown kind of file {path.suffix!r}", "use STL, OBJ or PLY")
     try:
-        stamp = path.stat()
+        return path, path.stat()
     except OSError as error:
         hint = "paths count from the folder of the scene file"
         raise MeshError(f"mesh {path}: {error.strerror}", hint) from None
-    return _load(path, shape.scale, shape.mended, stamp.st_mtime_ns, stamp.st_size)
 
 
 @lru_cache(maxsize=64)
 def _load(path: Path, scale: float, mend: bool, changed: int, size: int) -> Triangles:
-    points, triangles, color = _read(path)
+    points, triangles, color = read_file(path)
     read, mended = len(points), ""
     if mend:
         points, triangles, mended = solid(points, triangles, path.name)
     else:
         triangles = outward(points, triangles, path.name)
     volume, centre = volume_and_centre(points, triangles)
-    size = float(np.ptp(points, axis=0).max()) * scale
-    if not SIZES[0] <= size <= SIZES[1]:
-        raise MeshError(
-            f"mesh {path.name}: is {say(size, 'm')} long at scale {scale:g}; "
-            f"{say(SIZES[0], 'm')} to {say(SIZES[1], 'm')} can be modelled",
-            "'scale' is the length of a unit of the file; is an exponent wrong?",
-        )
+    check_size(points, scale, path.name)
     points = (points - centre) * scale
     color = color if len(points) == read else None
     volume *= scale**3
     return Triangles(points, triangles, volume, thickness(points, triangles, volume), centre * scale, color, mended)
 
 
-def _read(path: Path) -> tuple[np.ndarray, np.ndarray, np.ndarray | None]:
+def check_size(points: np.ndarray, scale: float, name: str) -> None:
+    """Raises MeshError where points of a file, shape (V, 3), at a scale are too far from or too near to each other."""
+    size = float(np.ptp(points, axis=0).max()) * scale
+    if not SIZES[0] <= size <= SIZES[1]:
+        raise MeshError(
+            f"mesh {name}: is {say(size, 'm')} long at scale {scale:g}; "
+            f"{say(SIZES[0], 'm')} to {say(SIZES[1], 'm')} can be modelled",
+            "'scale' is the length of a unit of the file; is an exponent wrong?",
+        )
+
+
+def read_file(path: Path) -> tuple[np.ndarray, np.ndarray, np.ndarray | None]:
     """Points in units of the file (V, 3), equal ones merged, triangles (T, 3), and colours of points (V, 3) if it has any."""
     import pyvista
 
@@ -148,11 +159,16 @@ def fill(mesh: Triangles, x: np.ndarray, y: np.ndarray, z: np.ndarray) -> np.nda
 
 def depth(mesh: Triangles, points: np.ndarray) -> np.ndarray:
     """Distance of points [m], shape (N, 3), to the surface [m], shape (N,); negative outside."""
+    return np.where(contains(mesh, points), 1.0, -1.0) * away(mesh, points)
+
+
+def away(mesh, points: np.ndarray) -> np.ndarray:
+    """Distance of points [m], shape (N, 3), to the surface of a mesh [m], shape (N,)."""
     import pyvista
 
     surface = pyvista.PolyData.from_regular_faces(mesh.points, mesh.triangles)
     cloud = pyvista.PolyData(np.asarray(points, float)).compute_implicit_distance(surface)
-    return np.where(contains(mesh, points), 1.0, -1.0) * abs(np.asarray(cloud["implicit_distance"]))
+    return abs(np.asarray(cloud["implicit_distance"]))
 
 
 # --- surface ------------------------------------------------------------------------------------------------

@@ -8,7 +8,6 @@ places that a new shape has.
 
 from __future__ import annotations
 
-import itertools
 from functools import lru_cache
 from math import ceil, hypot, pi
 from typing import Any, get_args
@@ -16,12 +15,9 @@ from typing import Any, get_args
 import numpy as np
 
 from ..scene import scene as kinds
-from . import mesh
+from . import mesh, shell
 from .rope import RopeLaw
-from .tessellate import ellipsoid, grid_box, revolve
-
-# Facets that keep a round silhouette smooth in a picture, however coarse the particles are.
-ROUND = 48
+from .tessellate import ROUND, ellipsoid, facets, grid_box, polyline, revolve
 
 
 class _Box:
@@ -126,7 +122,7 @@ class _Ellipsoid:
 
     @staticmethod
     def surface(s, size):
-        return ellipsoid(_radii(s), _facets(2 * pi * max(_radii(s)), size))
+        return ellipsoid(_radii(s), facets(2 * pi * max(_radii(s)), size))
 
     @staticmethod
     def radius(s):
@@ -176,8 +172,8 @@ class _Cylinder:
     @staticmethod
     def surface(s, size):
         r, h = s.radius, s.height
-        profile = _polyline([(0, -h / 2), (r, -h / 2), (r, h / 2), (0, h / 2)], size)
-        return revolve(profile, _facets(2 * pi * r, size))
+        profile = polyline([(0, -h / 2), (r, -h / 2), (r, h / 2), (0, h / 2)], size)
+        return revolve(profile, facets(2 * pi * r, size))
 
     @staticmethod
     def radius(s):
@@ -222,7 +218,7 @@ class _Cone:
     @staticmethod
     def surface(s, size):
         r, h = s.radius, s.height
-        return revolve(_polyline([(0, -h / 4), (r, -h / 4), (0, 3 * h / 4)], size), _facets(2 * pi * r, size))
+        return revolve(polyline([(0, -h / 4), (r, -h / 4), (0, 3 * h / 4)], size), facets(2 * pi * r, size))
 
     @staticmethod
     def radius(s):
@@ -264,10 +260,10 @@ class _Torus:
 
     @staticmethod
     def surface(s, size):
-        n = _facets(2 * pi * s.minor, size, least=24)
+        n = facets(2 * pi * s.minor, size, least=24)
         angle = 2 * pi * np.arange(n) / n
         profile = np.stack([s.major + s.minor * np.cos(angle), s.minor * np.sin(angle)], axis=1)
-        return revolve(profile, _facets(2 * pi * (s.major + s.minor), size), closed=True)
+        return revolve(profile, facets(2 * pi * (s.major + s.minor), size), closed=True)
 
     @staticmethod
     def radius(s):
@@ -320,6 +316,66 @@ class _Mesh:
         return mesh.load(s).area / h**2
 
 
+FINE = 16
+"""Facets along a shape that stand for its surface where that is a sheet."""
+
+
+@lru_cache(maxsize=256)
+def _of_shape(shape) -> shell.Skin:
+    low, high = extent(shape)
+    return shell.about_middle(*surface(shape, float((high - low).max()) / FINE), True)
+
+
+def skin(s: kinds.Shell) -> shell.Skin:
+    """The surface that is a sheet. Raises mesh.MeshError."""
+    return shell.of_file(s.shape) if isinstance(s.shape, kinds.Mesh) else _of_shape(s.shape)
+
+
+class _Shell:
+    """A surface of a thickness."""
+
+    rolls, end = False, "flat"
+
+    @staticmethod
+    def volume(s):
+        return (skin(s).area if isinstance(s.shape, kinds.Mesh) else area(s.shape)) * s.thickness
+
+    @staticmethod
+    def area(s):
+        return 2.0 * _Shell.volume(s) / s.thickness
+
+    @staticmethod
+    def thickness(s):
+        return s.thickness
+
+    @staticmethod
+    def moments(s):
+        return skin(s).moments
+
+    @staticmethod
+    def extent(s):
+        points, half = skin(s).points, 0.5 * s.thickness
+        return points.min(axis=0) - half, points.max(axis=0) + half
+
+    @staticmethod
+    def depth(s, x, y, z):
+        points = np.stack(np.broadcast_arrays(x, y, z), axis=-1)
+        away = mesh.away(skin(s), points.reshape(-1, 3))
+        return (0.5 * s.thickness - away).reshape(points.shape[:-1])
+
+    @staticmethod
+    def surface(s, size):
+        raise TypeError("the surface of a sheet is that of its particles")
+
+    @staticmethod
+    def radius(s):
+        return float(np.linalg.norm(skin(s).points, axis=1).max()) + 0.5 * s.thickness
+
+    @staticmethod
+    def vertices(s, h):
+        return _Shell.area(s) / h**2
+
+
 LAWS: dict[type, Any] = {
     kinds.Box: _Box,
     kinds.Sphere: _Sphere,
@@ -330,6 +386,7 @@ LAWS: dict[type, Any] = {
     kinds.Mesh: _Mesh,
     kinds.Rope: RopeLaw,
     kinds.Sheet: _Sheet,
+    kinds.Shell: _Shell,
 }
 FORMULAS = ("volume", "area", "thickness", "moments", "extent", "depth", "surface", "radius", "vertices", "rolls", "end")
 """Formulas that each has. ``rolls``: whether it rolls down a slope before it slides; ``end``: the part with which it may land
@@ -367,6 +424,11 @@ def mass(solid: kinds.Solid) -> float:
 def mended(shape: kinds.Shape) -> str:
     """Changes to the surface of a file, in words; "" where it is as it was, and of other shapes. Raises mesh.MeshError."""
     return mesh.load(shape).mended if isinstance(shape, kinds.Mesh) else ""
+
+
+def centre_in_file(shape: kinds.Mesh | kinds.Shell) -> np.ndarray:
+    """Centre of mass of a mesh, or of its surface as a sheet, as the file has it [m], shape (3,). Raises mesh.MeshError."""
+    return mesh.load(shape).centre if isinstance(shape, kinds.Mesh) else skin(shape).centre
 
 
 def area(shape: kinds.Shape) -> float:
@@ -439,18 +501,3 @@ def surface(shape: kinds.Shape, size: float) -> tuple[np.ndarray, np.ndarray]:
 def _around(radius: float, h: float, least: int = ROUND) -> int:
     """Vertices around a circle at a spacing of h [m]."""
     return max(least, ceil(2 * pi * radius / h))
-
-
-def _facets(length: float, size: float, least: int = ROUND) -> int:
-    """Facets around a circle of this length [m]; a multiple of 4, so that extremes are vertices."""
-    return 4 * ceil(max(least, length / size) / 4)
-
-
-def _polyline(corners, size: float) -> np.ndarray:
-    """Points (r, z) [m], shape (P, 2), along straight lines between corners, at most ``size`` apart."""
-    corners = np.asarray(corners, float)
-    parts = [
-        a + np.linspace(0, 1, max(1, ceil(np.linalg.norm(b - a) / size)), endpoint=False)[:, None] * (b - a)
-        for a, b in itertools.pairwise(corners)
-    ]
-    return np.concatenate([*parts, corners[-1:]])

@@ -22,7 +22,7 @@ def solid(points: np.ndarray, triangles: np.ndarray, name: str) -> tuple[np.ndar
     try:
         return points, outward(points, triangles, name), ""
     except MeshError:
-        triangles = _facing_one_way(points, _once(triangles))
+        triangles = facing_one_way(points, once(triangles))
     gaps = _gaps(triangles)
     told = f"{gaps} {'gaps are' if gaps > 1 else 'gap is'} closed" if gaps else "what is doubled or crosses is united"
     try:
@@ -40,13 +40,13 @@ def solid(points: np.ndarray, triangles: np.ndarray, name: str) -> tuple[np.ndar
         return points, outward(points, around, name), told
 
 
-def _once(triangles: np.ndarray) -> np.ndarray:
+def once(triangles: np.ndarray) -> np.ndarray:
     """The first of all triangles with the same corners."""
     first = np.unique(np.sort(triangles, axis=1), axis=0, return_index=True)[1]
     return triangles[np.sort(first)]
 
 
-def _facing_one_way(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
+def facing_one_way(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
     """The triangles of each part turned as its first one."""
     import pyvista
 

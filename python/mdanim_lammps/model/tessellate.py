@@ -3,9 +3,13 @@
 
 from __future__ import annotations
 
+import itertools
 from math import ceil, pi
 
 import numpy as np
+
+# Facets that keep a round silhouette smooth in a picture, however coarse the particles are.
+ROUND = 48
 
 
 def revolve(profile: np.ndarray, facets: int, closed: bool = False) -> tuple[np.ndarray, np.ndarray]:
@@ -68,3 +72,18 @@ def grid_box(size, step: float) -> tuple[np.ndarray, np.ndarray]:
             points.append(face)
     points, inverse = np.unique(np.concatenate(points), axis=0, return_inverse=True)
     return points, inverse.reshape(-1)[np.concatenate(triangles)].astype(np.int32)
+
+
+def facets(length: float, size: float, least: int = ROUND) -> int:
+    """Facets around a circle of this length [m]; a multiple of 4, so that extremes are vertices."""
+    return 4 * ceil(max(least, length / size) / 4)
+
+
+def polyline(corners, size: float) -> np.ndarray:
+    """Points (r, z) [m], shape (P, 2), along straight lines between corners, at most ``size`` apart."""
+    corners = np.asarray(corners, float)
+    parts = [
+        a + np.linspace(0, 1, max(1, ceil(np.linalg.norm(b - a) / size)), endpoint=False)[:, None] * (b - a)
+        for a, b in itertools.pairwise(corners)
+    ]
+    return np.concatenate([*parts, corners[-1:]])

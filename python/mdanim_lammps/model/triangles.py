@@ -54,6 +54,13 @@ def volume_and_centre(points: np.ndarray, triangles: np.ndarray) -> tuple[float,
     return float(volume), origin + (six[:, None] * (a + b + c)).sum(axis=0) / (24 * volume)
 
 
+def spread_of(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
+    """Integral of x x' over the triangles by their area [m^2], shape (3, 3)."""
+    area, corners = areas(points, triangles), points[triangles]
+    ends = np.concatenate([corners, corners.sum(axis=1, keepdims=True)], axis=1)
+    return np.einsum("t,tkd,tke->de", area, ends, ends) / (12.0 * area.sum())
+
+
 def connected(triangles: np.ndarray) -> np.ndarray:
     """The part of each triangle, its number, int, shape (T,): triangles hang together by edges that two of them have. Parts that
     touch in a corner are two."""

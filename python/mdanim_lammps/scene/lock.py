@@ -9,7 +9,8 @@ from pathlib import Path
 from typing import Any
 
 from .keywords import BLOCKS, KEYWORDS, Block
-from .scene import Mesh, SceneRecord
+from .scene import SceneRecord
+from .shapes import mesh_of, with_path
 
 LOCK = "scene.lock.txt"
 
@@ -40,7 +41,8 @@ def lock_text(scene: SceneRecord, meshes: Mapping[Path, str] | None = None) -> s
 def _with_mesh(record: Any, meshes: Mapping[Path, str]) -> Any:
     """The object with the name that its mesh has in the output folder."""
     shape = getattr(record, "shape", None)
-    return replace(record, shape=replace(shape, path=meshes[shape.path])) if isinstance(shape, Mesh) and meshes else record
+    mesh = mesh_of(shape)
+    return replace(record, shape=with_path(shape, meshes[mesh.path])) if mesh is not None and meshes else record
 
 
 def _block(block: Block, record: Any) -> list[str]:

@@ -9,7 +9,8 @@ from functools import lru_cache
 from pathlib import Path
 
 from .limits import MOST_BYTES_OF_MESH
-from .scene import Mesh, SceneRecord
+from .scene import SceneRecord
+from .shapes import mesh_of
 from .source import ordinary
 
 FOLDER = "meshes"
@@ -17,7 +18,7 @@ FOLDER = "meshes"
 
 def mesh_files(scene: SceneRecord) -> dict[Path, str]:
     """Every mesh file of a scene, and its name in an output folder: ``meshes/HASH.stl``. Raises OSError."""
-    paths = dict.fromkeys(s.shape.path for s in scene.solids if isinstance(s.shape, Mesh))
+    paths = dict.fromkeys(mesh.path for s in scene.solids if (mesh := mesh_of(s.shape)) is not None)
     return {path: content_name(path) for path in paths}
 
 

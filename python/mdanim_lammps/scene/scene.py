@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import Enum
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, get_args
+from typing import TYPE_CHECKING, Any
 
 from ..errors import Span
 from ..features import facets
@@ -29,9 +29,11 @@ from .shapes import (  # noqa: F401
     HoldFaces,
     HoldWithin,
     Mesh,
+    OneShape,
     Rope,
     Shape,
     Sheet,
+    Shell,
     Side,
     Sphere,
     SpringConstant,
@@ -79,8 +81,9 @@ class Solid:
         "file encloses, which may have gaps, doubled faces and parts that cross. Colours of the points of a PLY file are drawn "
         "where the object has no `color`. A rope lies between two points of the world, `thickness` is its diameter; with a "
         "`length` above their distance it hangs through along -z, with one below it is stretched. A chain is a rope that does "
-        "not resist bending.",
-        "sphere 10 cm", Rule.POSITIVE, codec=OneOf(*get_args(Shape)))  # fmt: skip
+        "not resist bending. With `sheet thickness` behind it the surface of a shape is a sheet, hollow inside; a mesh may then "
+        "be open.",
+        "sphere 10 cm", Rule.POSITIVE, codec=OneShape())  # fmt: skip
     position: Vector = setting("<(x, y, z):m>", "Centre of mass. Not of a rope, which has its ends.", "(0, 0, 1) m")
     """[m]"""
     rotation: tuple[Vector, Vector, Vector] = setting(

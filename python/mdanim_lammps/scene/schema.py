@@ -122,6 +122,10 @@ class OneOf(Codec):
         self.rows = [kind for kind in kinds for _ in kind.FORMS]
         self.form = " | ".join(form for kind in kinds for form in kind.FORMS)
 
+    def kind(self, choice: int, values: tuple) -> type:
+        """The class of the record that values become."""
+        return self.rows[choice]
+
     def read(self, k: Keyword, choice: int, values: tuple) -> Any:
         kind = self.rows[choice]
         if hasattr(kind, "read"):

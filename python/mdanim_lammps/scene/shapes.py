@@ -8,11 +8,11 @@ from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from enum import Enum
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import Any, ClassVar, get_args
 
 from .curve import Curve, hanging
 from .formatting import number
-from .schema import Vector
+from .schema import Keyword, OneOf, Vector
 
 # --- shapes: body frame, centre of mass at the origin, axes of revolution along z -------------------------
 
@@ -211,13 +211,12 @@ class Sheet:
     def read(cls, form: int, values: tuple) -> Sheet:
         """Raises ValueError(message, hint, number of the value)."""
         size, thickness, bending = values
-        if bending is not None and bending < 0.0:
-            raise ValueError(f"bending must be 0 or more, found {number(bending, 6)}", "write bending 0 for what bends freely", 2)
+        bending = bending_of(bending, 2)
         if min(size) < 2.0 * thickness:
             wide, thick = number(min(size), 6), number(thickness, 6)
             cause = f"the sheet is less than twice as wide as it is thick: {wide} m, {thick} m thick"
             raise ValueError(cause, "write a smaller thickness, or shape box (lx, ly, lz) for a body so thick", 0)
-        return cls(tuple(size), thickness, 1.0 if bending is None else bending)
+        return cls(tuple(size), thickness, bending)
 
     @property
     def plate(self) -> Box:
@@ -229,12 +228,85 @@ class Sheet:
         return 0, (self.size, self.thickness, None if self.bending == 1.0 else self.bending)
 
 
+@dataclass(frozen=True, slots=True)
+class Shell:
+    """The surface of a solid shape, or that of a mesh, which may be open, as a sheet; bending as that of a sheet."""
+
+    FORMS: ClassVar = ()
+    TAIL: ClassVar = "[sheet thickness <t:m> [bending <@f>]]"
+    """Behind a shape whose surface it is."""
+    ALSO: ClassVar = ()
+    BENDS: ClassVar = True
+
+    shape: Box | Sphere | Ellipsoid | Cylinder | Cone | Torus | Mesh
+    """A mesh is all that is in its file, closed or not."""
+    thickness: float
+    """[m]"""
+    bending: float = 1.0
+    """Flexural rigidity over that of a plate of this thickness."""
+
+
+SOLID = (Box, Sphere, Ellipsoid, Cylinder, Cone, Torus, Mesh)
+"""Shapes that fill a volume, whose surface may be a sheet."""
+
+
+class OneShape(OneOf):
+    """A shape; behind each that fills a volume may stand that its surface is a sheet."""
+
+    def __init__(self) -> None:
+        super().__init__(*get_args(Shape))
+        self.form = " | ".join(f"{form} {Shell.TAIL}" if kind in SOLID else form for kind in self.kinds for form in kind.FORMS)
+
+    def kind(self, choice: int, values: tuple) -> type:
+        """Its class."""
+        return Shell if self.rows[choice] in SOLID and values[-2] is not None else self.rows[choice]
+
+    def read(self, k: Keyword, choice: int, values: tuple) -> Any:
+        """Raises ValueError(message, hint, number of the value)."""
+        if self.rows[choice] not in SOLID:
+            return super().read(k, choice, values)
+        *own, thickness, bending = values
+        shape = super().read(k, choice, tuple(own))
+        if thickness is None:
+            return shape
+        return Shell(shape, thickness, bending_of(bending, len(values) - 1))
+
+    def write(self, k: Keyword, value: Any) -> tuple[int, tuple] | None:
+        """Form and values that are read as this."""
+        shape, tail = value, ()
+        if isinstance(value, Shell):
+            shape, tail = value.shape, (value.thickness, None if value.bending == 1.0 else value.bending)
+        elif isinstance(value, SOLID):
+            tail = None, None
+        if (found := super().write(k, shape)) is None:
+            return None
+        return found[0], (*found[1], *tail)
+
+
+def bending_of(given: float | None, at: int) -> float:
+    """Factor of a sheet's resistance to bending, the value of this number. Raises ValueError(message, hint, number of the value)."""
+    if given is not None and given < 0.0:
+        raise ValueError(f"bending must be 0 or more, found {number(given, 6)}", "write bending 0 for what bends freely", at)
+    return 1.0 if given is None else given
+
+
+def mesh_of(shape: Any) -> Mesh | None:
+    """The mesh that a shape is or whose surface it is; None of all else."""
+    shape = shape.shape if isinstance(shape, Shell) else shape
+    return shape if isinstance(shape, Mesh) else None
+
+
+def with_path(shape: Any, path: Any) -> Any:
+    """The shape with this file of its mesh."""
+    return replace(shape, shape=replace(shape.shape, path=path)) if isinstance(shape, Shell) else replace(shape, path=path)
+
+
 MOST_STRETCHED = 1.5
 """Distance of the ends of a rope over its length, at most."""
 LEAST_SPAN = 0.01
 """Horizontal distance of the ends of a rope that hangs through, over its length, at least."""
 
-Shape = Box | Sphere | Ellipsoid | Cylinder | Cone | Torus | Mesh | Rope | Sheet
+Shape = Box | Sphere | Ellipsoid | Cylinder | Cone | Torus | Mesh | Rope | Sheet | Shell
 
 
 # --- what is held, elasticity ---------------------------------------------------------------------------------

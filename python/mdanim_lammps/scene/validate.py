@@ -27,6 +27,7 @@ from .placement import Placement, beyond_limits
 from .render import SMOOTH_RATE, few_pictures
 from .scene import GLOBALS, Vector
 from .schema import OneOf
+from .shapes import mesh_of, with_path
 from .source import Problems, SceneFile
 
 
@@ -210,7 +211,7 @@ class Validator:
 
     def brought(self, block: EvaluatedBlock) -> dict[str, str]:
         """Settings of a block that follow from others, each with the other's word."""
-        rows = ((w, k.codec.rows[s.entry.choice]) for w, k in KEYWORDS[block.block].items()
+        rows = ((w, k.codec.kind(s.entry.choice, s.values)) for w, k in KEYWORDS[block.block].items()
                 if isinstance(k.codec, OneOf) and (s := block.first(w)) is not None)  # fmt: skip
         return {word: w for w, kind in rows for word in getattr(kind, "BRINGS", ())}
 
@@ -334,12 +335,13 @@ class Validator:
             if len(s.values) == 2:
                 self.corners(s, "the held box")
         s, shape = block.first("shape"), solid.shape
-        if isinstance(shape, records.Mesh):
-            path = beside(s.entry.source.folder, shape.path)
-            if refusal := refusal_of_mesh(path, str(shape.path)):
+        if (mesh := mesh_of(shape)) is not None:
+            path = beside(s.entry.source.folder, mesh.path)
+            if refusal := refusal_of_mesh(path, str(mesh.path)):
                 self.problem(s.span(0), *refusal)
                 return None
-            return replace(solid, shape=replace(shape, path=path))
+            return replace(solid, shape=with_path(shape, path))
+        shape = shape.shape if isinstance(shape, records.Shell) else shape
         if isinstance(shape, records.Torus) and shape.minor >= shape.major:
             r, big = say(shape.minor, "m", 6), say(shape.major, "m", 6)
             cause = f"the tube of a torus is thinner than the ring: r < R, found r = {r}, R = {big}"

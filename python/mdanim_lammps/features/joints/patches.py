@@ -70,7 +70,7 @@ def patch_of(system: System, m: int, point: np.ndarray, least: float = 0.0) -> P
     rows = np.arange(system.first[m], system.first[m + 1])
     place, mass = system.position[rows], system.mass[rows]
     away, h = np.linalg.norm(place - point, axis=1), float(system.spacing[m])
-    dimensions = system.frames[system.contact_kind[m]].dimensions
+    dimensions = system.frames[system.contact_kind[m]].spans
     if dimensions == 1:
         radius = float(np.sort(away)[1]) + 0.1 * h
         return _patch(rows, mass, place, away <= radius, radius)

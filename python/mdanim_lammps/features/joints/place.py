@@ -120,9 +120,9 @@ def _unlike(scene: SceneRecord, models: Sequence[Model], link: Link) -> Problem 
 
 def _span(model: Model, solid: Solid, at: np.ndarray) -> np.ndarray:
     """Directions that an object has at a point, orthonormal rows, shape (1..3, 3): of a rope that of its particles there."""
-    if model.frame.dimensions == 3:
+    if model.frame.spans == 3:
         return np.eye(3)
-    if model.frame.dimensions == 2:
+    if model.frame.spans == 2:
         return np.array(solid.rotation, float).T[:2]
     away = np.linalg.norm(model.position - at, axis=1)
     near = model.position[away <= np.sort(away)[1] + 0.1 * model.spacing]

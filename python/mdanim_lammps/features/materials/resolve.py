@@ -109,4 +109,4 @@ def _is_sheet(block: EvaluatedBlock) -> bool:
 
 def _kind(s: EvaluatedSetting) -> type:
     """The class of the record that a setting becomes."""
-    return s.entry.keyword.codec.rows[s.entry.choice]
+    return s.entry.keyword.codec.kind(s.entry.choice, s.values)

@@ -8,12 +8,12 @@ from typing import Any
 
 import numpy as np
 
-from ...model import mesh
+from ...model import mesh, shapes
 from ...scene.evaluated import EvaluatedBlock
 from ...scene.keywords import KEYWORDS
 from ...scene.meshes import beside, refusal_of_mesh
 from ...scene.rotation import IDENTITY
-from ...scene.shapes import Mesh
+from ...scene.shapes import mesh_of, with_path
 
 
 def explained() -> dict[str, str]:
@@ -31,16 +31,17 @@ def fill(v: Any) -> None:
         if origin is None or origin.values[0] != "file" or (shape := block.first("shape")) is None:
             continue
         form = _record(block, "shape")
-        if not isinstance(form, Mesh):
+        file = mesh_of(form)
+        if file is None:
             if form is not None:
                 v.problem(origin.span(), f"origin file is for a mesh or a solid{block.where}", "write position")
             block.broken.add("position")
             continue
-        path = beside(shape.entry.source.folder, form.path)
+        path = beside(shape.entry.source.folder, file.path)
         centre = np.zeros(3)
-        if refusal_of_mesh(path, str(form.path)) is None:  # else told where shapes are checked
+        if refusal_of_mesh(path, str(file.path)) is None:  # else told where shapes are checked
             with suppress(mesh.MeshError):  # told where bodies are made, as that of a mesh with a position
-                centre = mesh.load(Mesh(path, form.scale, form.mended)).centre
+                centre = shapes.centre_in_file(with_path(form, path))
         turn = np.array(_record(block, "orientation") or IDENTITY)
         at = np.array(block.first("position").values[0] if "position" in block.settings else (0.0, 0.0, 0.0))
         block.settings["position"] = [origin.following(KEYWORDS["object"]["position"], tuple((at + turn @ centre).tolist()))]

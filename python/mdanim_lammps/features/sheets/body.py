@@ -10,14 +10,16 @@ from functools import cached_property
 
 import numpy as np
 
+from ...model import shapes
 from ...model.bare import BareBody, BareFrame, bare_model
 from ...model.build import NothingHeld, caught_in_box
 from ...model.lattice import Cells
 from ...scene.formatting import say
-from ...scene.scene import Accuracy, HoldAll, HoldFaces, HoldWithin, Sheet
+from ...scene.scene import Accuracy, HoldAll, HoldFaces, HoldWithin, Sheet, Shell
 from .drawn import both_sides
+from .tiled import Tiled, tiled
 from .weave import Weave, weave
-from .words import finest, is_sheet
+from .words import finest, is_sheet, width
 
 PARTICLES = {Accuracy.PREVIEW: 400, Accuracy.BALANCED: 1200, Accuracy.REFERENCE: 4800}
 """Particles of a sheet without a ``resolution``, about."""
@@ -33,7 +35,7 @@ shows what it lies on."""
 
 
 class SheetBody(BareBody):
-    """An object with ``shape sheet``."""
+    """An object with ``shape sheet``, or with the surface of another shape as a sheet."""
 
     name = "sheet"
     order = 65
@@ -45,19 +47,21 @@ class SheetBody(BareBody):
         accuracy, given = scene.control.accuracy, scene.control.resolution
 
         def own(solid):
-            lx, ly = solid.shape.size
-            usual = min(math.sqrt(lx * ly / PARTICLES[accuracy]), min(lx, ly) / ACROSS[accuracy])
+            area, across = shapes.volume(solid.shape) / solid.shape.thickness, width(solid.shape)
+            usual = min(math.sqrt(area / PARTICLES[accuracy]), across / ACROSS[accuracy])
             return max(usual, finest(solid.shape), given or 0.0)
 
         return own
 
     def particles(self, scene, solid, lattice, h):
-        return len(weave(solid.shape, h).place)
+        if isinstance(solid.shape, Sheet):
+            return len(weave(solid.shape, h).place)
+        return shapes.volume(solid.shape) / (solid.shape.thickness * math.sqrt(0.75) * h**2)
 
     def make(self, solid, h, shared):
-        sheet, woven = solid.shape, weave(solid.shape, h)
+        sheet, woven = solid.shape, layer(solid.shape, h)
         arm = np.zeros((len(woven.place), 3))
-        arm[:, :2] = woven.place
+        arm[:, : woven.place.shape[1]] = woven.place
         arm = arm @ np.array(solid.rotation).T
         x = arm + solid.position
         held = held_particles(solid, woven, x)
@@ -71,11 +75,22 @@ class SheetFrame(BareFrame):
     """A layer of particles as contact sees it."""
 
     dimensions = 2
-    woven: Weave = field(kw_only=True)
+    woven: Weave | Tiled = field(kw_only=True)
+
+    @property
+    def spans(self) -> int:
+        """A curved one has directions across, too."""
+        return 2 if isinstance(self.woven, Weave) else 3
+
+    @property
+    def closed(self) -> bool:
+        """Whether it has no border, so that it encloses a volume."""
+        return isinstance(self.woven, Tiled) and self.woven.closed
 
     @cached_property
     def triangle(self) -> np.ndarray:
-        """Triangles of the layer between particles, counter-clockwise seen from +z of the object, int32, shape (T, 3)."""
+        """Triangles of the layer between particles, counter-clockwise seen from +z of a flat object, from outside of a closed
+        one, int32, shape (T, 3)."""
         return self.woven.triangle
 
     @cached_property
@@ -85,19 +100,24 @@ class SheetFrame(BareFrame):
         return area * self.woven.share, max(0.5 * self.shape.thickness, GAP * self.woven.h)
 
 
-def _shared(shared, sheet: Sheet, h: float):
+def layer(shape: Sheet | Shell, h: float) -> Weave | Tiled:
+    """Particles of a sheet with a spacing of about h [m]. Raises mesh.MeshError."""
+    return weave(shape, h) if isinstance(shape, Sheet) else tiled(shape, h)
+
+
+def _shared(shared, sheet: Sheet | Shell, h: float):
     """Parts that sheets of one size, thickness and spacing share: what contact sees, and both sides as they are drawn."""
-    woven = weave(sheet, h)
+    woven = layer(sheet, h)
     n, edge = len(woven.place), (woven.h * woven.apart * sheet.thickness) ** (1.0 / 3.0)
     low = -0.5 * edge * np.array([n, 1, 1])
-    surface = both_sides(woven.triangle, n)
+    surface = both_sides(woven.triangle, n, woven.creases)
     for array in (surface.triangle, surface.index, surface.weight):
         array.setflags(write=False)
     frame = SheetFrame(sheet, Cells(np.ones((1, 1, n), bool), low, -low), woven=woven)
     return frame, surface
 
 
-def held_particles(solid, woven: Weave, x: np.ndarray) -> np.ndarray:
+def held_particles(solid, woven: Weave | Tiled, x: np.ndarray) -> np.ndarray:
     """Particles at x [m], shape (N, 3), in any ``hold`` of a sheet, bool, shape (N,). Raises NothingHeld."""
     held = np.zeros(len(x), bool)
     for hold in solid.hold:

@@ -13,9 +13,11 @@ WING = 1.0 / 16.0
 """Weight of the corners around an edge in its middle (Dyn, Levin and Gregory 1990)."""
 
 
-def both_sides(triangle: np.ndarray, particles: int) -> Surface:
-    """The surface of a layer of triangles between particles, shape (T, 3): each side has vertices of its own."""
-    side, index, weight = _smooth(triangle, particles) if particles <= SMOOTHED else _plain(triangle, particles)
+def both_sides(triangle: np.ndarray, particles: int, creases: np.ndarray | None = None) -> Surface:
+    """The surface of a layer of triangles between particles, shape (T, 3): each side has vertices of its own. Edges of ``creases``,
+    shape (K, 2), stay sharp."""
+    sharp = set() if creases is None else set(map(tuple, np.sort(creases, axis=1).tolist()))
+    side, index, weight = _smooth(triangle, particles, sharp) if particles <= SMOOTHED else _plain(triangle, particles)
     count = len(index)
     both = np.concatenate([side, side[:, ::-1] + count]).astype(np.int32)
     return Surface(both, np.tile(index, (2, 1)).astype(np.int32), np.tile(weight, (2, 1)))
@@ -25,10 +27,10 @@ def _plain(triangle: np.ndarray, particles: int) -> tuple[np.ndarray, np.ndarray
     return triangle, np.arange(particles)[:, None], np.ones((particles, 1))
 
 
-def _smooth(triangle: np.ndarray, particles: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _smooth(triangle: np.ndarray, particles: int, sharp: set[tuple[int, int]]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Each triangle cut into four. The middle of an edge (a, b) between the corners c and d is (a + b)/2 + (c + d)/8, less a
     sixteenth of each of the four corners beyond the triangles' other edges; where there is none beyond, it is that of a
-    parallelogram. On a border it is 9 (a + b)/16 less a sixteenth of both neighbours along it."""
+    parallelogram, or a crease between. On a border it is 9 (a + b)/16 less a sixteenth of both neighbours along it."""
     half = triangle[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2).astype(np.int64)
     opposite = triangle[:, [2, 0, 1]].reshape(-1)
     low, high = half.min(axis=1), half.max(axis=1)
@@ -50,6 +52,8 @@ def _smooth(triangle: np.ndarray, particles: int) -> tuple[np.ndarray, np.ndarra
     for e, row in enumerate(weight):
         p, q = int(a[e]), int(b[e])
         corners = [int(c) for c in across[e] if c >= 0]
+        if len(corners) == 2 and (p, q) in sharp:
+            continue
         if len(corners) == 1:
             for one, other in ((p, q), (q, p)):
                 beyond = [n for n in beside[one] if n != other]
@@ -64,7 +68,7 @@ def _smooth(triangle: np.ndarray, particles: int) -> tuple[np.ndarray, np.ndarra
             add(row, c, 2.0 * WING)
             for end, other in ((p, q), (q, p)):
                 there = across[number[min(end, c) * particles + max(end, c)]]
-                beyond = [int(n) for n in there if n >= 0 and n != other]
+                beyond = [] if (min(end, c), max(end, c)) in sharp else [int(n) for n in there if n >= 0 and n != other]
                 for corner, w in ((beyond[0], 1.0),) if beyond else ((end, 1.0), (c, 1.0), (other, -1.0)):
                     add(row, corner, -WING * w)
     most = max(map(len, weight))

@@ -88,6 +88,9 @@ class Weave:
             found.append(both[:, ::-1] if j % 2 else both)
         return np.concatenate(found).astype(np.int32)
 
+    creases = None
+    """Edges at which it is creased: none."""
+
     @cached_property
     def sides(self) -> dict[str, np.ndarray]:
         """Particles on each side, by its name."""

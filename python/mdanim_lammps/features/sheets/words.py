@@ -8,17 +8,29 @@ from collections.abc import Mapping
 from typing import Any
 
 from ...scene.formatting import number, say
-from ...scene.shapes import HoldFaces, Sheet, Young
+from ...scene.shapes import HoldFaces, Mesh, Sheet, Shell, Young
 
 SWITCHES: dict[str, str] = {}
+
+THICKEST = 0.25
+"""Thickness of a sheet around a shape over the thinnest part of that, at most."""
 
 
 def is_sheet(solid: Any) -> bool:
     """Whether an object is a layer of particles."""
-    return isinstance(solid.shape, Sheet)
+    return isinstance(solid.shape, Sheet | Shell)
 
 
-def finest(sheet: Sheet) -> float:
+def width(shape: Sheet | Shell) -> float:
+    """How wide a sheet is across where it is narrowest [m]; of a mesh, whose file is not read for it, without limit."""
+    if isinstance(shape, Sheet):
+        return min(shape.size)
+    from ...model import shapes  # which need the records of scenes, of which this module is a part
+
+    return math.inf if isinstance(shape.shape, Mesh) else shapes.thickness(shape.shape)
+
+
+def finest(sheet: Sheet | Shell) -> float:
     """Least spacing of its particles [m]: of finer ones, springs that hold those which resist bending would have no length."""
     return sheet.thickness * math.sqrt(max(1.0, sheet.bending))
 
@@ -33,19 +45,25 @@ def check_object(v: Any, block: Any, solid: Any) -> Any:
         v.problem(
             spans["elasticity"], cause, "write elasticity 1 MPa, or whatever its material has, or shape box for a rigid plate"
         )
-    if any(side.value[1] == "z" for hold in solid.hold if isinstance(hold, HoldFaces) for side in hold.sides):
+    flat = isinstance(sheet, Sheet)
+    if not flat and sheet.thickness > THICKEST * width(sheet):
+        cause = f"{solid.name} is too thick for a sheet: {say(sheet.thickness, 'm', 6)}, it is {say(width(sheet), 'm', 6)} wide"
+        v.problem(spans["shape"], cause, "write a smaller thickness, or leave out sheet for what is solid")
+        return solid
+    if flat and any(side.value[1] == "z" for hold in solid.hold if isinstance(hold, HoldFaces) for side in hold.sides):
         cause = f"{solid.name} is a sheet in its xy plane, and its faces along z are all of it"
         v.problem(spans["hold"], cause, "write hold face -x, +x, -y or +y, hold all, or a box")
     if solid.restitution is not None:
         cause = f"{solid.name} is a sheet: restitution is of rigid and held objects"
         v.problem(spans["restitution"], cause, "leave it out; damping takes energy of its springs")
-    least, most = finest(sheet), 0.5 * min(sheet.size)
+    least, most = finest(sheet), 0.5 * width(sheet)
     if solid.resolution is not None and not least * (1.0 - 1e-9) <= solid.resolution <= most:
         cause = (
             f"particles of {solid.name} are at least {say(least, 'm', 6)} apart and there are two spacings or more across: "
             f"found {number(solid.resolution, 6)} m"
         )
-        way_out = f"write resolution {say(least, 'm', 6)} or more, up to {say(most, 'm', 6)}, or leave it out"
+        most_of = f", up to {say(most, 'm', 6)}" if most < math.inf else ""
+        way_out = f"write resolution {say(least, 'm', 6)} or more{most_of}, or leave it out"
         v.problem(spans["resolution"], cause, way_out)
     elif least > most:
         cause = f"{solid.name} with bending {number(sheet.bending, 6)} is too stiff for its size"
