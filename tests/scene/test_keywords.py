@@ -130,5 +130,5 @@ def test_forms_are_unambiguous():
 
 def test_syntax_is_the_form_without_its_marks():
     """Show a form as people write it."""
-    assert syntax(KEYWORDS["object"]["shape"]).startswith("box (lx, ly, lz) | sphere r | ellipsoid")
+    assert syntax(KEYWORDS["object"]["shape"]).startswith("box (lx, ly, lz) [sheet thickness t [bending f]] | sphere r [sheet")
     assert syntax(KEYWORDS["render"]["camera"]) == "[T] from (x, y, z) look (x, y, z)|NAME [up (x, y, z)]"

@@ -116,7 +116,8 @@ def write(parts: tuple, values: tuple, number: Callable[[float], str] = repr) ->
             return p.text
         if isinstance(p, OptionalPart):
             taken = [text(q) for q in p.parts] if any(isinstance(q, Slot) for q in pieces(p.parts)) else []
-            return None if None in taken else " ".join(filter(None, taken))
+            absent = any(t is None and not isinstance(q, OptionalPart) for q, t in zip(p.parts, taken))
+            return None if absent else " ".join(filter(None, taken))
         return _value(p, next(rest), number)
 
     return " ".join(filter(None, map(text, parts)))

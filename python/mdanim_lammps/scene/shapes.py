@@ -232,9 +232,9 @@ class Sheet:
 class Shell:
     """The surface of a solid shape, or that of a mesh, which may be open, as a sheet; bending as that of a sheet."""
 
-    FORMS: ClassVar = ()
+    FORMS: ClassVar = ("sheet",)
+    """Its word; it is written as another shape with TAIL behind."""
     TAIL: ClassVar = "[sheet thickness <t:m> [bending <@f>]]"
-    """Behind a shape whose surface it is."""
     ALSO: ClassVar = ()
     BENDS: ClassVar = True
 
@@ -254,7 +254,7 @@ class OneShape(OneOf):
     """A shape; behind each that fills a volume may stand that its surface is a sheet."""
 
     def __init__(self) -> None:
-        super().__init__(*get_args(Shape))
+        super().__init__(*(kind for kind in get_args(Shape) if kind is not Shell))
         self.form = " | ".join(f"{form} {Shell.TAIL}" if kind in SOLID else form for kind in self.kinds for form in kind.FORMS)
 
     def kind(self, choice: int, values: tuple) -> type:
@@ -284,7 +284,7 @@ class OneShape(OneOf):
 
 
 def bending_of(given: float | None, at: int) -> float:
-    """Factor of a sheet's resistance to bending, the value of this number. Raises ValueError(message, hint, number of the value)."""
+    """Factor of a sheet's resistance to bending, the value of this number. Raises ValueError(message, hint, its number)."""
     if given is not None and given < 0.0:
         raise ValueError(f"bending must be 0 or more, found {number(given, 6)}", "write bending 0 for what bends freely", at)
     return 1.0 if given is None else given

@@ -9,7 +9,7 @@ from typing import Any
 
 from ...scene.evaluated import EvaluatedBlock, EvaluatedSetting
 from ...scene.keywords import KEYWORDS, did_you_mean
-from ...scene.shapes import HoldAll, Sheet, Young
+from ...scene.shapes import HoldAll, Sheet, Shell, Young
 from ..drives.words import RELEASE
 from ..rigid.words import SENSELESS, Rigid
 from .table import MATERIALS, MEANT, Material
@@ -104,7 +104,7 @@ def _stiff(found: Settings) -> bool:
 
 def _is_sheet(block: EvaluatedBlock) -> bool:
     shape = block.first("shape")
-    return shape is not None and _kind(shape) is Sheet
+    return shape is not None and _kind(shape) in (Sheet, Shell)
 
 
 def _kind(s: EvaluatedSetting) -> type:

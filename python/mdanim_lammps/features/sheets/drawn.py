@@ -14,8 +14,8 @@ WING = 1.0 / 16.0
 
 
 def both_sides(triangle: np.ndarray, particles: int, creases: np.ndarray | None = None) -> Surface:
-    """The surface of a layer of triangles between particles, shape (T, 3): each side has vertices of its own. Edges of ``creases``,
-    shape (K, 2), stay sharp."""
+    """The surface of a layer of triangles between particles, shape (T, 3): each side has vertices of its own. Edges of
+    ``creases``, shape (K, 2), stay sharp."""
     sharp = set() if creases is None else set(map(tuple, np.sort(creases, axis=1).tolist()))
     side, index, weight = _smooth(triangle, particles, sharp) if particles <= SMOOTHED else _plain(triangle, particles)
     count = len(index)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""Triangles of a curved sheet and their springs (docs/physics-sheets.md): edges, whose constants are those with which the sheet is
-as stiff as its material in every direction around each particle, and springs that resist bending.
+"""Triangles of a curved sheet and their springs (docs/physics-sheets.md): edges, whose constants are those with which it is as
+stiff as its material in every direction around each particle, and springs that resist bending.
 
 A fan is a particle with the smooth part of the surface around it: its triangles, laid flat, up to borders and creases.
 """
