@@ -9,7 +9,7 @@ import pytest
 from mdanim_lammps.model import shapes
 from mdanim_lammps.model.distance import distance, grid_distance
 from mdanim_lammps.model.spread import spread
-from mdanim_lammps.scene.scene import Box, Cone, Cylinder, Ellipsoid, Mesh, Rope, Shape, Sheet, Sphere, Torus
+from mdanim_lammps.scene.scene import Box, Cone, Cylinder, Ellipsoid, Mesh, Rope, Shape, Sheet, Shell, Sphere, Torus
 from model_samples import MESHES, ROPE, SHAPES, SHEET, SHELL, assert_closed, enclosed_volume, shape_id
 
 every_shape = pytest.mark.parametrize("shape", SHAPES, ids=shape_id)
@@ -168,7 +168,7 @@ def test_every_kind_of_shape_has_all_that_is_asked_of_it(monkeypatch):
     """A kind without a formula is found when the package is imported, one without points or distances here."""
     kinds = get_args(Shape)
     distances = distance.registry.keys() | grid_distance.registry.keys()
-    assert spread.registry.keys() - {object} == set(kinds) - {Box, Rope, Sheet}  # these have their particles
+    assert spread.registry.keys() - {object} == set(kinds) - {Box, Rope, Sheet, Shell}  # these have their particles
     assert distances - {object} == set(kinds) - {Box}
     assert set(shapes.LAWS) == {type(shape) for shape in (*SHAPES, ROPE, SHEET, SHELL)} == set(kinds)
     lacking = type("lacking", (), {name: None for name in shapes.FORMULAS if name not in ("vertices", "rolls")})
