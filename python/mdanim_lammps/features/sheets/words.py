@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from ...scene.formatting import number, say
-from ...scene.shapes import HoldFaces, Mesh, Sheet, Shell, Young
+from ...scene.shapes import Box, Cone, Cylinder, Ellipsoid, HoldFaces, Sheet, Shell, Sphere, Torus, Young
 
 SWITCHES: dict[str, str] = {}
 
@@ -23,11 +23,16 @@ def is_sheet(solid: Any) -> bool:
 
 def width(shape: Sheet | Shell) -> float:
     """How wide a sheet is across where it is narrowest [m]; of a mesh, whose file is not read for it, without limit."""
-    if isinstance(shape, Sheet):
-        return min(shape.size)
-    from ...model import shapes  # which need the records of scenes, of which this module is a part
-
-    return math.inf if isinstance(shape.shape, Mesh) else shapes.thickness(shape.shape)
+    match shape if isinstance(shape, Sheet) else shape.shape:
+        case Sheet(size=size) | Box(size=size):
+            return min(size)
+        case Sphere(radius=r) | Torus(minor=r):
+            return 2.0 * r
+        case Ellipsoid(radii=radii):
+            return 2.0 * min(radii)
+        case Cylinder(radius=r, height=height) | Cone(radius=r, height=height):
+            return min(2.0 * r, height)
+    return math.inf
 
 
 def finest(sheet: Sheet | Shell) -> float:
