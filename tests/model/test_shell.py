@@ -20,7 +20,7 @@ CLOSED = [shape for shape in SHAPES if not isinstance(shape, Mesh)]
 
 
 def spacing(shape, particles: int = 400) -> float:
-    return math.sqrt(2.0 / math.sqrt(3.0) * shapes.skin(Shell(shape, 1e-3)).area / particles)
+    return math.sqrt(2.0 / math.sqrt(3.0) * shapes.shell_surface(Shell(shape, 1e-3)).area / particles)
 
 
 def random_rectangle(lx: float, ly: float, seed: int) -> tuple[np.ndarray, np.ndarray]:
@@ -65,7 +65,7 @@ def test_place_of_a_shell_is_the_middle_of_its_area():
 def test_triangles_are_even_and_close(shape):
     """Edges of about the spacing, as many particles as asked for, closed, creases and area kept."""
     h = spacing(shape)
-    skin = shapes.skin(Shell(shape, 1e-3))
+    skin = shapes.shell_surface(Shell(shape, 1e-3))
     made = tiled(Shell(shape, 1e-3), h)
     assert_closed(made.triangle)
     edge = made.edge

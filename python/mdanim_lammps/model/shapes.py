@@ -321,12 +321,12 @@ FINE = 16
 
 
 @lru_cache(maxsize=256)
-def _of_shape(shape) -> shell.Skin:
+def _of_shape(shape) -> shell.ShellSurface:
     low, high = extent(shape)
     return shell.about_middle(*surface(shape, float((high - low).max()) / FINE), True)
 
 
-def skin(s: kinds.Shell) -> shell.Skin:
+def shell_surface(s: kinds.Shell) -> shell.ShellSurface:
     """The surface that is a sheet. Raises mesh.MeshError."""
     return shell.of_file(s.shape) if isinstance(s.shape, kinds.Mesh) else _of_shape(s.shape)
 
@@ -338,29 +338,24 @@ class _Shell:
 
     @staticmethod
     def volume(s):
-        return (skin(s).area if isinstance(s.shape, kinds.Mesh) else area(s.shape)) * s.thickness
+        return (shell_surface(s).area if isinstance(s.shape, kinds.Mesh) else area(s.shape)) * s.thickness
 
     @staticmethod
     def area(s):
         return 2.0 * _Shell.volume(s) / s.thickness
 
-    @staticmethod
-    def thickness(s):
-        return s.thickness
-
-    @staticmethod
-    def moments(s):
-        return skin(s).moments
+    thickness = staticmethod(lambda s: s.thickness)
+    moments = staticmethod(lambda s: shell_surface(s).moments)
 
     @staticmethod
     def extent(s):
-        points, half = skin(s).points, 0.5 * s.thickness
+        points, half = shell_surface(s).points, 0.5 * s.thickness
         return points.min(axis=0) - half, points.max(axis=0) + half
 
     @staticmethod
     def depth(s, x, y, z):
         points = np.stack(np.broadcast_arrays(x, y, z), axis=-1)
-        away = mesh.away(skin(s), points.reshape(-1, 3))
+        away = mesh.away(shell_surface(s), points.reshape(-1, 3))
         return (0.5 * s.thickness - away).reshape(points.shape[:-1])
 
     @staticmethod
@@ -369,7 +364,7 @@ class _Shell:
 
     @staticmethod
     def radius(s):
-        return float(np.linalg.norm(skin(s).points, axis=1).max()) + 0.5 * s.thickness
+        return float(np.linalg.norm(shell_surface(s).points, axis=1).max()) + 0.5 * s.thickness
 
     @staticmethod
     def vertices(s, h):
@@ -428,7 +423,7 @@ def mended(shape: kinds.Shape) -> str:
 
 def centre_in_file(shape: kinds.Mesh | kinds.Shell) -> np.ndarray:
     """Centre of mass of a mesh, or of its surface as a sheet, as the file has it [m], shape (3,). Raises mesh.MeshError."""
-    return mesh.load(shape).centre if isinstance(shape, kinds.Mesh) else skin(shape).centre
+    return mesh.load(shape).centre if isinstance(shape, kinds.Mesh) else shell_surface(shape).centre
 
 
 def area(shape: kinds.Shape) -> float:

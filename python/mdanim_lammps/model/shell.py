@@ -16,7 +16,7 @@ from .triangles import areas, edges, spread_of
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Skin:
+class ShellSurface:
     """A surface in metres, the middle of its area at the origin."""
 
     points: np.ndarray
@@ -33,14 +33,14 @@ class Skin:
     """Whether it has no border."""
 
 
-def of_file(shape: Mesh) -> Skin:
+def of_file(shape: Mesh) -> ShellSurface:
     """The surface in the file of a mesh. Raises MeshError."""
     path, stamp = mesh.stamped(shape)
     return _of_file(path, shape.scale, shape.mended, stamp.st_mtime_ns, stamp.st_size)
 
 
 @lru_cache(maxsize=64)
-def _of_file(path, scale: float, mended: bool, changed: int, size: int) -> Skin:
+def _of_file(path, scale: float, mended: bool, changed: int, size: int) -> ShellSurface:
     if mended:
         raise MeshError(f"mesh {path.name}: a sheet has no inside to be mended", "write mesh in place of solid")
     points, triangles, _ = mesh.read_file(path)
@@ -62,9 +62,9 @@ def _of_file(path, scale: float, mended: bool, changed: int, size: int) -> Skin:
     return about_middle(points[used] * scale, number.reshape(-1, 3).astype(np.int32), closed)
 
 
-def about_middle(points: np.ndarray, triangles: np.ndarray, closed: bool) -> Skin:
+def about_middle(points: np.ndarray, triangles: np.ndarray, closed: bool) -> ShellSurface:
     """The surface of points [m], shape (V, 3), and triangles, shape (T, 3)."""
     area = areas(points, triangles)
     centre = area @ points[triangles].mean(axis=1) / area.sum()
     points = points - centre
-    return Skin(points, triangles, float(area.sum()), spread_of(points, triangles), centre, closed)
+    return ShellSurface(points, triangles, float(area.sum()), spread_of(points, triangles), centre, closed)

@@ -297,5 +297,5 @@ def _weights(angle: np.ndarray, wanted: float) -> np.ndarray:
 @lru_cache(maxsize=64)
 def tiled(shell: Shell, h: float) -> Tiled:
     """The triangles of a shell with edges of about h [m]. Raises mesh.MeshError."""
-    skin = shapes.skin(shell)
+    skin = shapes.shell_surface(shell)
     return Tiled(*remeshed(skin.points, skin.triangles, h), h, skin.closed)
