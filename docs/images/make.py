@@ -76,7 +76,7 @@ PICTURES = {
     "glide": 0.55,
     "fall": 0.5,
     "slope": 0.7,
-    "pendulum": 3.3,
+    "pendulum": 2.1,
     "catapult": 1.1,
     "swing": 7.8,
     "merry": 5.0,

@@ -164,11 +164,11 @@ def test_copies_stay_where_things_were(run):
 
 
 def test_colours_tell_speed_and_strain(run):
-    """From 0 to the largest value of the run; the ball's colour goes with its speed; what is held keeps its own."""
+    """From 0 to a value that few exceed; the ball's colour goes with its speed; what is held keeps its own."""
     tones = Tones(run.trajectory, ColorBy.SPEED)
     fastest = np.linalg.norm(run.trajectory.velocity(10), axis=1).max()
-    assert tones.most == pytest.approx(fastest) and tones.unit == "m/s"
-    assert len({tuple(tones.colors(np.array([x * fastest]))[0]) for x in (0.0, 0.25, 0.5, 0.75, 1.0, 2.0)}) == 5
+    assert tones.most == pytest.approx(fastest, rel=0.05) and tones.unit == "m/s"
+    assert len({tuple(tones.colors(np.array([x * fastest]))[0]) for x in (0.0, 0.25, 0.5, 0.75, 1.1, 2.0)}) == 5
     (first, last), view = pictures(run, (1, 9), color_by=ColorBy.SPEED)
     post, _ = seen_at(view, SIZE, run.trajectory.centers[:1, 2])
     at = SIZE[1] - 1 - int(post[0, 1]), int(post[0, 0])

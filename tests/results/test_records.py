@@ -30,10 +30,12 @@ MASS = {"low": 1.0, "high": 0.5, "stone": 2.0, "ball": 0.3, "light": 0.3, "lid":
 def test_contact_of_what_rests_is_its_weight(tmp_path):
     """In the mean of each frame once it has come to rest: elastic and rigid ones, on the ground, on each other, mixed."""
     text = RESTING + "".join(f"record {name}.contact.z\n" for name in MASS)
-    run = Scene.from_text(text, "resting").run(tmp_path / "r")
+    run = Scene.from_text(text + "record world.contact.z\nrecord world.contact.x\n", "resting").run(tmp_path / "r")
     for name, mass in MASS.items():
         np.testing.assert_allclose(run.records[f"{name}.contact.z"][-5:], mass * G, rtol=1e-3, err_msg=name)
         assert np.isnan(run.records[f"{name}.contact.z"][0])
+    np.testing.assert_allclose(run.records["world.contact.z"][-5:], -G * sum(MASS.values()), rtol=1e-3)
+    np.testing.assert_allclose(run.records["world.contact.x"][-5:], 0.0, atol=1e-3)
 
 
 FLIES = """
@@ -117,6 +119,7 @@ def test_records_change_no_bit_and_are_the_same_however_it_is_run(tmp_path):
     ("line", "message"),
     [
         ("record post.contact", "the force of contact on post is not known: it is held, and what holds it"),
+        ("record world.contact", "the force of contact on world is not known, nor that on door: its joint pulls at it"),
         ("record door.contact.x", "the force of contact on door is not known: its joint pulls at it"),
         ("expect door.contact.z < 3 N", "the force of contact on door is not known: its joint pulls at it"),
     ],

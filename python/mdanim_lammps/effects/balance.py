@@ -62,6 +62,13 @@ class Balance:
         found[:, list(self.untold)] = np.nan
         return found
 
+    @cached_property
+    def on_world(self) -> np.ndarray:
+        """Force of contact on ground, walls and all that is held together, mean since the frame before [N], shape (F, 3): the
+        reaction to that on all others; NaN in the first frame, and where it is `untold` of one of these."""
+        free = [m for m, solid in enumerate(self.scene.solids) if not solid.hold]
+        return -self.contact[:, free].sum(axis=1)
+
     def _over_time(self, momentum: np.ndarray) -> np.ndarray:
         found = np.full(momentum.shape, np.nan)
         found[1:] = np.diff(momentum, axis=0) / np.diff(self.times)[:, None, None]

@@ -170,7 +170,7 @@ class Overlay:
         self._layer.image(at, size, tones.bar())
         x = at[0] + size[0] + 0.5 * letters
         self._layer.words((x, at[1]), "0")
-        self._layer.words((x, at[1] + size[1]), f"{number(tones.most)} {tones.unit}".rstrip())
+        self._layer.words((x, at[1] + size[1]), f"≥ {number(tones.most)} {tones.unit}".rstrip())
         self._layer.words((at[0], at[1] + size[1] + 1.5 * letters), tones.name, fontweight="bold")
 
 

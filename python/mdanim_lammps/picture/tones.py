@@ -12,13 +12,13 @@ from ..results.trajectory_metadata import springs_gone
 from ..scene.shown import ColorBy
 from .plot import own_style
 
-SAMPLES, AMONG = 24, 0.995
-"""Frames that are looked at to find the largest value, and the share of all values that it is not below."""
+SAMPLES, AMONG = 24, 0.98
+"""Frames in which the value of the last colour is looked for: the largest that this share of a frame's values do not exceed."""
 STEPS = 256
 
 
 class Tones:
-    """Colours of the vertices of surfaces by a quantity of particles, from 0 to the largest value of the run.
+    """Colours of the vertices of surfaces by a quantity of particles, from 0 to one that few values exceed.
 
     Args:
         trajectory: what is drawn.
@@ -38,8 +38,7 @@ class Tones:
             self._rest = self._lengths(start)
         self._find = {ColorBy.SPEED: self._speed, ColorBy.STRAIN: self._strain}[by]
         frames = np.unique(np.linspace(0, len(trajectory) - 1, SAMPLES).astype(int))
-        found = np.concatenate([np.zeros(1), *(np.quantile(self._find(int(n)), [AMONG, 1.0]) for n in frames)])
-        self.most = float(found.max()) or 1.0
+        self.most = max((float(np.quantile(self._find(int(n)), AMONG)) for n in frames), default=0.0) or 1.0
 
     def of_particles(self, frame: int) -> np.ndarray:
         """Values at all stored particles in a frame, shape (N,)."""
@@ -50,7 +49,7 @@ class Tones:
         return self._colors[np.clip(values / self.most * (STEPS - 1) + 0.5, 0, STEPS - 1).astype(int)]
 
     def bar(self) -> Iterator[tuple[float, float, float]]:
-        """Colours from 0 to the largest value."""
+        """Colours from 0 to the last one."""
         return (tuple(color / 255.0) for color in self._colors[::4])
 
     def _speed(self, frame: int) -> np.ndarray:

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 
 import numpy as np
 
@@ -14,11 +14,17 @@ from ...effects.measured import Mean, Measurable, Measured, Of
 from ...errors import Problem
 from ...scene.scene import SceneRecord
 from ..motion.measure import balance
+from .words import WORLD
 
 
 def _force(m: Measured, of: Of) -> np.ndarray:
     """Force of all contact on an object, mean since the frame before [N], shape (F, 3)."""
     return balance(m).contact[:, m.solid(of.subject)]
+
+
+def _on_world(m: Measured, of: Of) -> np.ndarray:
+    """The same on ground, walls and all that is held together, shape (F, 3)."""
+    return balance(m).on_world
 
 
 def unmeasured(scene: SceneRecord, asked: Iterable[Of]) -> list[Problem]:
@@ -27,15 +33,25 @@ def unmeasured(scene: SceneRecord, asked: Iterable[Of]) -> list[Problem]:
     if not wanted:
         return []
     reasons, numbers = untold(scene, acting(features.effects(), scene)), {s.name: m for m, s in enumerate(scene.solids)}
-    return [
-        Problem(of.span, f"the force of contact on {of.subject} is not known: {reasons[m]}", "ask for that of what touches it")
-        for of in wanted
-        if (m := numbers[of.subject]) in reasons
-    ]
+    free = next((m for m in reasons if not scene.solids[m].hold), None)
+    found = []
+    for of in wanted:
+        m = free if of.subject == WORLD else numbers[of.subject]
+        if m in reasons:
+            on = "" if of.subject != WORLD else f", nor that on {scene.solids[m].name}"
+            cause = f"the force of contact on {of.subject} is not known{on}: {reasons[m]}"
+            found.append(Problem(of.span, cause, "ask for that on another object, one that moves freely"))
+    return found
+
+
+def _of(vector: Callable[[Measured, Of], np.ndarray]) -> dict[str, Mean]:
+    """Size and components of a force, by their words."""
+    found = {"contact": Mean(lambda m, of: np.linalg.norm(vector(m, of), axis=1))}
+    return found | {f"contact.{x}": Mean(lambda m, of, axis=axis: vector(m, of)[:, axis]) for axis, x in enumerate("xyz")}
 
 
 MEASURES = {
     ("penetration", "max"): Measurable(lambda m, of: np.full(len(m.times), m.penetration)),
-    ("NAME", "contact"): Mean(lambda m, of: np.linalg.norm(_force(m, of), axis=1)),
-    **{("NAME", f"contact.{letter}"): Mean(lambda m, of, axis=axis: _force(m, of)[:, axis]) for axis, letter in enumerate("xyz")},
+    **{("NAME", word): found for word, found in _of(_force).items()},
+    **{(WORLD, word): found for word, found in _of(_on_world).items()},
 }

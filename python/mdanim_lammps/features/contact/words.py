@@ -34,6 +34,9 @@ MOST_PAIRS = 10**5
 
 SWITCHES = {"contact": "two objects that can meet"}
 
+WORLD = "world"
+"""Subject of what never moves: ground, walls and all that is held."""
+
 QUANTITIES = {
     ("penetration", "max"): Observable("m", "deepest overlap of two objects", bound=True),
     ("NAME", "contact"): Observable("N", "magnitude of the force of contact"),
@@ -41,6 +44,11 @@ QUANTITIES = {
         ("NAME", f"contact.{axis}"): Observable(
             "N", f"force of contact with objects, ground and walls on an object, mean since the frame before, {axis}"
         )
+        for axis in "xyz"
+    },
+    (WORLD, "contact"): Observable("N", "magnitude of the force of contact on ground, walls and all that is held together"),
+    **{
+        (WORLD, f"contact.{axis}"): Observable("N", f"force of contact on ground, walls and all that is held together, {axis}")
         for axis in "xyz"
     },
 }
