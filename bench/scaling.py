@@ -13,8 +13,9 @@ tables      the tables of scaling.json, nothing is measured
 all         run, goals, supervisor and model
 
 ``--write`` puts tables into docs/beyond-one-host.md, and the picture into docs/; all but model and plot put what they measure
-into scaling.json. Options: ``--executors 1,2,4``, ``--rounds 3``, ``--frames 14`` (of the hail; four times as many of the
-crowd), ``--json FILE``, ``--plot FILE``.
+into scaling.json. Figures of another machine stand in a file of their own, such as scaling_16_cores.json: ``tables --json FILE
+--plot FILE --write`` writes them between marks that end as its name does. Options: ``--executors 1,2,4``, ``--rounds 3``,
+``--frames 14`` (of the hail; four times as many of the crowd), ``--json FILE``, ``--plot FILE``.
 
 Speed on executors is told in two ways: frames per second of wall time, from the end of frame 1 to the last, with all that is
 written; and frames per second of processor time of the executor that takes most, which other programs on the machine change less.
@@ -162,20 +163,20 @@ def ratio(runs: list[dict], base: list[dict], what: str) -> float:
     return statistics.median(r[what] / b[what] for r, b in zip(runs, base))
 
 
-def table(runs: dict, known: dict, cases) -> str:
+def table(runs: dict, known: dict) -> str:
     """Markdown."""
     lines = []
     for name, of in runs.items():
         k = known[name]
         lines += [
             f"{name}: {k['objects']} objects, {k['particles']} particles, {k['steps']} steps per frame, "
-            f"{of[cases[0]][0]['frames']} frames",
+            f"{of[0, ''][0]['frames']} frames",
             "",
             "| executors | frames/s, wall | times | frames/s of the busiest processor | times | moved | again | supervisor [s] |",
             "|---|---|---|---|---|---|---|---|",
         ]
-        base = of[cases[0]]
-        for case in cases:
+        base = of[0, ""]
+        for case in sorted(of):
             rest = ""
             if case[0]:
                 rest = " | ".join(
@@ -271,7 +272,7 @@ def told_of(options, *parts: str) -> dict[str, str]:
         text = f"`python bench/scaling.py {part}`"
         if part == "executors" and "runs" in data:
             runs = cases_of(data["runs"])
-            told[part] = f"{text}: {data['note']}.\n\n{table(runs, data['known'], list(next(iter(runs.values()))))}"
+            told[part] = f"{text}: {data['note']}.\n\n{table(runs, data['known'])}"
         elif part == "threads" and "threads" in data:
             told[part] = f"{text}: {data['threads']['note']}.\n\n{scaling_threads.table(data['threads'])}"
         elif part == "goals" and "goals" in data:
@@ -311,7 +312,7 @@ def goals(options) -> dict[str, str]:
 def goals_table(data: dict) -> str:
     """Markdown, with what is asked."""
     runs = cases_of(data["runs"])
-    lines = [table(runs, data["known"], list(next(iter(runs.values()))))]
+    lines = [table(runs, data["known"])]
     for name, of in runs.items():
         for case in list(of)[1:]:
             what, goal = GOALS[name]
@@ -417,7 +418,7 @@ def main() -> None:
         plot(options)
     if options.write:
         for part, text in told.items():
-            replace_between(PAGE, part, text)
+            replace_between(PAGE, part + options.json.stem.removeprefix("scaling"), text)
 
 
 if __name__ == "__main__":
