@@ -46,9 +46,9 @@ std::vector<Output> RigidTouching::outputs()
 
 std::vector<Keyword> RigidTouching::words()
 {
-  return {{"shapes", "FILE"}, {"contact", "OMEGA EPS"},           {"objects", ""},
-          {"drive", "FIXID"}, {"plane", "x|y|z lo|hi at"},        {"pair", "A B mu beta"},
-          {"exclude", "A B"}, {"moving", "x|y|z lo|hi at FIXID"}, {"belt", "A vx vy vz"}};
+  return {{"shapes", "FILE"},          {"contact", "OMEGA EPS"}, {"objects", ""},    {"drive", "FIXID"},
+          {"plane", "x|y|z lo|hi at"}, {"pair", "A B mu beta"},  {"exclude", "A B"}, {"moving", "x|y|z lo|hi at FIXID"},
+          {"belt", "A vx vy vz"},      {"rolling", "A B r"}};
 }
 
 static double number(LAMMPS *lmp, int iarg, char **arg, const char *what, double least, bool or_equal)
@@ -87,6 +87,7 @@ void RigidTouching::read_word(int iarg, char **arg)
     contact.settings.belts[utils::inumeric(FLERR, arg[iarg + 1], false, lmp)] = {along(2), along(3), along(4)};
   }
   if (is("pair")) read_pair(iarg, arg);
+  if (is("rolling")) contact.settings.rolling[read_two(iarg, arg)] = number(lmp, iarg + 3, arg, "the arm of rolling", 0.0, true);
   if (is("exclude")) contact.settings.excluded.insert(two_molecules(lmp, STYLE, iarg + 1, arg));
 }
 
@@ -107,7 +108,7 @@ void RigidTouching::read_plane(int iarg, char **arg)
 }
 
 // The second of a pair may be a plane: plane1 is the first one of the command.
-void RigidTouching::read_pair(int iarg, char **arg)
+std::pair<int, int> RigidTouching::read_two(int iarg, char **arg) const
 {
   int a = utils::inumeric(FLERR, arg[iarg + 1], false, lmp), b = 0;
   if (strncmp(arg[iarg + 2], "plane", 5) == 0) {
@@ -124,12 +125,17 @@ void RigidTouching::read_pair(int iarg, char **arg)
                     "{}: a pair is two different molecule IDs > 0, or one and plane1, plane2, ...; got {} and {}", STYLE,
                     arg[iarg + 1], arg[iarg + 2]);
   if (b > 0 && b < a) std::swap(a, b);
+  return {a, b};
+}
+
+void RigidTouching::read_pair(int iarg, char **arg)
+{
   const Material material{number(lmp, iarg + 3, arg, "mu of a pair", 0.0, true),
                           number(lmp, iarg + 4, arg, "beta of a pair", 0.0, true)};
   if (material.damping > Material::MOST_DAMPING)
     lmp->error->all(FLERR, iarg + 4, "{}: beta of a pair must be at most {}, got {}", STYLE, Material::MOST_DAMPING,
                     arg[iarg + 4]);
-  contact.settings.pairs[{a, b}] = material;
+  contact.settings.pairs[read_two(iarg, arg)] = material;
 }
 
 void RigidTouching::check() const
@@ -201,6 +207,9 @@ void RigidTouching::take(const std::string &fix, const ObjectTable &objects, con
   for (const auto &[ids, law] : contact.settings.pairs)
     for (const int id : {ids.first, ids.second})
       if (id > 0 && !shapes.count(id)) lmp->error->all(FLERR, "{}: pair names molecule {}, which has no shape", fix, id);
+  for (const auto &[ids, arm] : contact.settings.rolling)
+    for (const int id : {ids.first, ids.second})
+      if (id > 0 && !shapes.count(id)) lmp->error->all(FLERR, "{}: rolling names molecule {}, which has no shape", fix, id);
   for (const auto &[id, velocity] : contact.settings.belts)
     if (!shapes.count(id)) lmp->error->all(FLERR, "{}: belt names molecule {}, which has no shape", fix, id);
   for (const auto &[a, b] : contact.settings.excluded)

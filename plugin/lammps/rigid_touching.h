@@ -17,6 +17,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace LAMMPS_NS {
@@ -96,6 +97,7 @@ class RigidTouching {
   void move_planes();
   void count_work(bool moves);
   void read_plane(int iarg, char **arg);
+  std::pair<int, int> read_two(int iarg, char **arg) const;
   void read_pair(int iarg, char **arg);
 
   LAMMPS_NS::LAMMPS *lmp;

@@ -57,8 +57,10 @@ void RigidContact::place_driven(int n, const Vec3 &centre, const Matrix3 &turn, 
 // A pair may have friction and damping of its own.
 TouchLaw RigidContact::law_with(double yields, Material material, std::pair<int, int> ids) const
 {
+  const auto rolling = settings.rolling.find(ids);
+  const double arm = rolling != settings.rolling.end() ? rolling->second : material.rolling;
   if (const auto own = settings.pairs.find(ids); own != settings.pairs.end()) material = own->second;
-  return {settings.frequency * settings.frequency / yields, material.friction, material.damping};
+  return {settings.frequency * settings.frequency / yields, material.friction, material.damping, arm};
 }
 
 TouchLaw RigidContact::law_of(const Solid &a, const Solid &b) const
@@ -66,7 +68,7 @@ TouchLaw RigidContact::law_of(const Solid &a, const Solid &b) const
   const Material &one = a.material, &other = b.material;
   double damping = std::max(one.damping, other.damping);
   if (one.gives_way != other.gives_way) damping = one.gives_way ? other.damping : one.damping;
-  const Material usual{std::sqrt(one.friction * other.friction), damping};
+  const Material usual{std::sqrt(one.friction * other.friction), damping, false, std::max(one.rolling, other.rolling)};
   return law_with(a.yields + b.yields, usual, {a.id, b.id});
 }
 

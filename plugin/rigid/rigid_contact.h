@@ -25,8 +25,9 @@ struct RigidContactSettings {
   std::vector<SolidPlane> planes;
   // Friction and damping of pairs, by ids, the lower one first; of a body and plane k the second is -1 - k.
   std::map<std::pair<int, int>, Material> pairs;
-  std::set<std::pair<int, int>> excluded;    // ids of pairs that never touch, the lower one first
-  std::map<int, Vec3> belts;                 // velocities at which surfaces run over bodies, by their ids
+  std::map<std::pair<int, int>, double> rolling;    // the same of what resists rolling, the arm of its torque
+  std::set<std::pair<int, int>> excluded;           // ids of pairs that never touch, the lower one first
+  std::map<int, Vec3> belts;                        // velocities at which surfaces run over bodies, by their ids
 };
 
 // How deep two bodies are in each other: the depth of the deepest contact that begins without a force at the setup of a run; 0

@@ -112,6 +112,10 @@ std::map<int, GivenShape> read_shapes(const std::string &name, const std::string
     std::string held = words.word("free, held or driven");
     one.material.gives_way = held == "usual";
     if (one.material.gives_way) held = words.word("free, held or driven");
+    if (held == "rolling") {
+      one.material.rolling = words.at_least_zero("the arm of rolling");
+      held = words.word("free, held or driven");
+    }
     if (held != "free" && held != "held" && held != "driven") words.fail("a body is free, held or driven, got " + held);
     one.held = held != "free";
     one.driven = held == "driven";

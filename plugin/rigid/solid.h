@@ -15,6 +15,7 @@ struct Material {
   static constexpr double MOST_DAMPING = 1.0;    // at 2 and steps of 0.35/Omega a dashpot makes energy
   double friction = 0.0, damping = 0.0;          // mu, and beta, the part of critical damping
   bool gives_way = false;                        // whether beta of another body that does not do so counts alone
+  double rolling = 0.0;                          // arm of the torque that resists rolling [m]
 };
 
 struct Solid {

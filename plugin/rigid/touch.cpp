@@ -2,6 +2,7 @@
 
 #include "rigid/touch.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace mdanim {
@@ -26,7 +27,7 @@ Vec3 TouchStep::relative_velocity(const Solid &a, const Solid *b, const Vec3 &x)
 void TouchStep::end(Touch &touch, double depth) const
 {
   account.let_go -= touch.owed;
-  account.heat += touch.memory.stick_energy;
+  account.heat += touch.memory.stick_energy + touch.rolling.stick_energy;
   account.damped += last_damping_work(touch.memory, std::min(depth, touch.memory.depth));
 }
 
@@ -126,7 +127,7 @@ void TouchStep::apply(Solid &a, Solid *b, const Vec3 &x, const Vec3 &f) const
 void TouchStep::book(Solid &a, Solid *b, Touch &touch, double part, const ContactForce<double> &force) const
 {
   // `more` has done a half of its work.
-  touch.energy = part * force.surface_energy + touch.memory.stick_energy - touch.owed +
+  touch.energy = part * force.surface_energy + touch.memory.stick_energy + touch.rolling.stick_energy - touch.owed +
                  0.5 * touch.more * (touch.memory.depth - touch.earlier);
   account.heat += force.heat;
   account.damped += force.damped;
@@ -228,8 +229,40 @@ void TouchStep::press_between(Touch &touch, const TouchLaw &its_law, Solid &a, S
     touch.anchor = b ? b->in_body(left) : left;
     force += push.pull + push.drag;
   }
+  if (its_law.rolling > 0.0) resist_rolling(touch, its_law, a, b, at.n, at.part, push);
   apply(a, b, at.x, force);
   book(a, b, touch, at.part, push);
+}
+
+// Friction of the angle by which one rolled over the other, across n: of a moment of inertia I = 1/(1/I_a + 1/I_b) by their least
+// ones, its spring has the frequency sqrt(ROLLS) Omega and holds up to the arm times the force of the contact.
+void TouchStep::resist_rolling(Touch &touch, const TouchLaw &law, Solid &a, Solid *b, const Vec3 &n, double part,
+                               ContactForce<double> &push) const
+{
+  constexpr double ROLLS = 0.1;                               // so it counts little in the bound
+  const double damping = touch.damping / std::sqrt(ROLLS);    // the same share of critical damping
+  const auto turns = [](const Solid &one) { return std::max({one.over.x, one.over.y, one.over.z}); };
+  const double over = turns(a) + (b ? turns(*b) : 0.0), yields = a.yields + (b ? b->yields : 0.0);
+  const double k = ROLLS * touch.stiffness * yields / over;
+  Vec3 angle = b ? b->in_space(touch.rolled) : touch.rolled;
+  angle += dt * (b ? a.spin - b->spin : a.spin);
+  angle -= dot(angle, n) * n;
+  ContactForce<double> torque;
+  torque.press = push.press;
+  const ContactLaw spring{k / ContactLaw::STICK, onset, law.rolling, damping};
+  contact_friction<double>(spring, 1.0, part, angle, n, dt, touch.rolling, torque);
+  const Vec3 left = torque.kept * angle, resists = torque.pull + torque.drag;
+  touch.rolled = b ? b->in_body(left) : left;
+  a.torque += resists;
+  if (b) b->torque -= resists;
+  const auto add_to_sums = [&](Solid &one) {
+    one.stiffness_sum += (b ? 2.0 : 1.0) * k * turns(one);
+    one.damping_sum += (b ? 2.0 : 1.0) * k * damping * turns(one);
+  };
+  add_to_sums(a);
+  if (b) add_to_sums(*b);
+  push.heat += torque.heat;
+  push.damped += torque.damped;
 }
 
 }    // namespace mdanim

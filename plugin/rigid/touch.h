@@ -32,6 +32,9 @@ struct Touch {
   double parted = 0.0;      // 1 in the step after the bodies have parted, the last one that it is there
   double counted = 0.0;     // part of it that counted in the last step, of points that are nearest on a mesh
   double energy = 0.0;      // now, with that of sticking [J]
+  // Resistance to rolling: its spring, dashpot and stick energy, of angles and torques in place of ways and forces.
+  ContactMemory<double> rolling;
+  Vec3 rolled;    // angle from its anchor, in the host's frame [rad]
 };
 
 // Takes out contacts of bodies that had parted in the step before.
@@ -49,7 +52,7 @@ template <class List> auto find_touch(List &list, Touch::TouchKind kind, int fir
 
 // Stiffness, friction and damping of all contacts of a pair.
 struct TouchLaw {
-  double stiffness = 0.0, friction = 0.0, damping = 0.0;
+  double stiffness = 0.0, friction = 0.0, damping = 0.0, rolling = 0.0;
 };
 
 struct TouchAccount {
@@ -100,7 +103,7 @@ class TouchStep {
   // The same of one whose place is not known any more.
   void let_go(Touch &touch) const
   {
-    account.let_go += touch.energy - touch.memory.stick_energy;
+    account.let_go += touch.energy - touch.memory.stick_energy - touch.rolling.stick_energy;
     end(touch, touch.memory.depth);
   }
 
@@ -151,6 +154,9 @@ class TouchStep {
 
  private:
   static constexpr double STICK_DAMPING = 0.5;
+  // The torque that resists rolling, up to the arm `rolling` of the law times the force of the contact.
+  void resist_rolling(Touch &touch, const TouchLaw &law, Solid &a, Solid *b, const Vec3 &n, double part,
+                      ContactForce<double> &push) const;
   double follow(Touch &touch, double depth, double k) const;
   double dt, onset;
   TouchAccount &account;

@@ -162,7 +162,7 @@ void touch_rim(const TouchStep &step, std::vector<Touch> &touches, Touch::TouchK
                return one.kind == kind && one.side == side && one.first >= number && one.first < number + RIM_POINTS;
              });
   if (is_far && !is_known) return;
-  const TouchLaw share{SHARE * law.stiffness, law.friction, law.damping};
+  const TouchLaw share{SHARE * law.stiffness, law.friction, law.damping, law.rolling};
   for (int k = 0; k < RIM_POINTS; ++k) {
     const auto is_this = [&](const Touch &one) { return one.kind == kind && one.first == number + k && one.side == side; };
     auto found = is_known ? std::find_if(touches.begin(), touches.end(), is_this) : touches.end();

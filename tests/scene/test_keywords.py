@@ -38,7 +38,7 @@ def scene(block: str, **settings: str):
         blocks |= {"air": {}}
     if block == "contact" or any(settings.get(word, "0") != "0" for word in OF_SURFACES):
         blocks["control"]["contact-model"] = "surface"
-    if "restitution" in settings:  # of rigid objects
+    if {"restitution", "rolling"} & set(settings):  # of rigid objects
         for name in {"object", "floor"} & set(blocks):
             blocks[name]["elasticity"] = "rigid"
     if "origin" in settings:

@@ -86,6 +86,10 @@ class ContactPair:
         "<e>", "Restitution of their blows, in place of damping, where both are rigid or held. Absent: the lower one of the two.",
         "0.5", Rule.NOT_NEGATIVE, default=None, limit=RESTITUTION)  # fmt: skip
     """e [-]; None is that of the two objects."""
+    rolling: float | None = setting(
+        "<r:m>", "Arm of what resists their rolling, where both are rigid or held. Absent: the larger one of the two.",
+        "0.5 mm", Rule.NOT_NEGATIVE, default=None)  # fmt: skip
+    """r [m]; None is that of the two objects."""
     spans: Mapping[str, Span] = field(default_factory=dict, compare=False, repr=False)
     """Where each keyword's value stands; ``spans["contact"]`` is that of the names."""
 
@@ -105,6 +109,12 @@ class FrictionWords:
         "ones, ground and walls; the lower one of two counts. Absent: that of `control`.",
         "0.8", Rule.NOT_NEGATIVE, default=None, limit=RESTITUTION, after="friction", shared=True)  # fmt: skip
     """e [-]; None is that of the scene."""
+    rolling: float | None = setting(
+        "<r:m>",
+        "Rolling resistance of a rigid or held object: the arm of the torque that resists, over the force of the contact. What "
+        "is round begins to roll on slopes steeper than r/R. The larger one of two counts. Absent: none.",
+        "1 mm", Rule.NOT_NEGATIVE, default=None, after="restitution", shared=True)  # fmt: skip
+    """r [m]; None is 0."""
 
 
 OBJECT = FrictionWords
@@ -181,6 +191,7 @@ def check(v: Any, top: Mapping, held: Mapping) -> None:
             own.spans["resolution"], cause, "write resolution in control, or take contact-model paper out", key="own-spacing"
         )
     _check_restitution(v, held)
+    _check_rolling(v, held)
     blocks, words = v.blocks("contact"), {"friction": control.friction, "contact-damping": control.contact_damping}
     asked = [("a contact block", b.head) for b in blocks]
     asked += [("friction", s.spans["friction"]) for s in held["solids"] if s.friction]
@@ -223,6 +234,20 @@ def _check_restitution(v: Any, held: Mapping) -> None:
         v.problem(control.spans["restitution"], cause, "set damping in the objects, or write elasticity rigid in them")
 
 
+def _check_rolling(v: Any, held: Mapping) -> None:
+    """Rolling resistance acts between what is rigid or held."""
+    hard = {s.name for s in held["solids"] if _is_rigid(s) or all_held(s)}
+    by_name = objects_by_name(s.name for s in held["solids"])
+    asked = [(s.rolling, s.spans, [s.name]) for s in held["solids"]]
+    for contact in held["contacts"]:
+        named = [held["solids"][i].name for name in (contact.first, contact.second) for i in by_name.get(name, ())]
+        asked.append((contact.rolling, contact.spans, named))
+    for rolling, spans, named in asked:
+        if rolling is not None and (soft := next((name for name in named if name not in hard), None)):
+            cause = f"{soft} is elastic: it loses energy by its own damping where it rolls"
+            v.problem(spans["rolling"], cause, "set damping in it, or write elasticity rigid")
+
+
 def _is_rigid(solid: Any) -> bool:
     return getattr(solid.elasticity, "modulus", 0.0) == math.inf
 
@@ -230,7 +255,12 @@ def _is_rigid(solid: Any) -> bool:
 def check_contact(v: Any, block: Any, contact: ContactPair) -> ContactPair | None:
     """Two things that can touch, no pair of them twice, and something to say about them."""
     place, paired = block.head, v.memory.setdefault("contact", {})
-    own = {"friction": contact.friction, "contact-damping": contact.contact_damping, "restitution": contact.restitution}
+    own = {
+        "friction": contact.friction,
+        "contact-damping": contact.contact_damping,
+        "restitution": contact.restitution,
+        "rolling": contact.rolling,
+    }
     if all(value is None for value in own.values()) and not block.excused(*own):
         cause = f"contact {block.name} says nothing{block.where}"
         v.problem(place, cause, "write friction 0.1 or contact-damping 0 in it, or leave it out")

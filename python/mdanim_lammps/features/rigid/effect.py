@@ -104,20 +104,23 @@ class RigidMotion(Effect):
         return np.where(own[context.system.object], (touching.omega(context) / touching.STEP) ** 2, 0.0)
 
     def warnings(self, context):
-        """Restitutions that do not act, because the shape of an object touches at its surface."""
+        """Restitutions and rolling resistances that do not act, because the shape of an object touches at its surface."""
         found = {}
         for where, chosen in (("other objects", touching.meets_objects(context)), ("planes", touching.meets_planes(context))):
             for solid, acts, rigid in zip(context.scene.solids, chosen.tolist(), context.system.rigid.tolist()):
-                if solid.restitution is not None and rigid and not acts and touching.may_meet(context, where):
-                    found.setdefault(id(solid), (solid, []))[1].append(where)
+                for word in ("restitution", "rolling"):
+                    if getattr(solid, word) is not None and rigid and not acts and touching.may_meet(context, where):
+                        found.setdefault((id(solid), word), (solid, []))[1].append(where)
         return [
             Problem(
-                solid.spans["restitution"],
-                f"restitution of {solid.name} does not act on {' and '.join(where)}: such shapes touch there at their surfaces",
-                "write contact-damping in control, or make it of convex shapes",
+                solid.spans[word],
+                f"{word} of {solid.name} does not act on {' and '.join(where)}: such shapes touch there at their surfaces",
+                "write contact-damping in control, or make it of convex shapes"
+                if word == "restitution"
+                else "leave it out, or make it of convex shapes",
                 severity="warning",
             )
-            for solid, where in found.values()
+            for (_, word), (solid, where) in found.items()
         ]
 
     def energy(self, readings):

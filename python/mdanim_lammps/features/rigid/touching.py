@@ -8,7 +8,7 @@ not know touch by fix mdanim/contact.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -27,6 +27,7 @@ from ..contact.pairs import belts, damping, frictions
 from ..contact.planes import word_of
 from ..contact.restitution import damping_for
 from ..contact.rigid_surfaces import frequency
+from ..contact.words import ContactPair
 from .shapes import hidden, in_file, is_known, is_rigid, on_objects, on_planes, only_balls_move
 
 ONSET = 0.005
@@ -173,6 +174,7 @@ def words(context: Context, part: Part, shapes: str) -> str:
     if part.objects:
         found += [f"exclude {i + 1} {j + 1}" for i, j in context.passing if part.shapes[i] and part.shapes[j]]
         found += [f"pair {i + 1} {j + 1} {mu!r} {beta!r}" for (i, j), (mu, beta) in _pair_laws(context, part).items()]
+        found += [f"rolling {i + 1} {j + 1} {c.rolling!r}" for c, i, j in _pairs(context, part) if c.rolling is not None]
     own, usual = _of(context, frictions(scene)), dampings(context)
     free = np.flatnonzero(part.shapes & part.bodies).tolist()
     for k, plane in enumerate(planes, 1):
@@ -182,6 +184,7 @@ def words(context: Context, part: Part, shapes: str) -> str:
             law = there[m], _damping(context, there[m], blows[m])
             if law != (own[m], usual[m]):
                 found.append(f"pair {m + 1} plane{k} {law[0]!r} {law[1]!r}")
+        found += [f"rolling {m + 1} plane{k} {r!r}" for m, r in _rolling_at(context, plane.effect).items() if m in free]
     return " ".join(found)
 
 
@@ -196,6 +199,7 @@ def shapes_text(context: Context, part: Part) -> str:
         place, shape = in_file(solids[m], covered.get(solids[m].name, ()))
         pose = [*place, *quaternion(np.array(solids[m].rotation))]
         kind = "free" if part.bodies[m] else "driven" if driven[m] else "held"
+        kind = f"rolling {solids[m].rolling!r} {kind}" if solids[m].rolling else kind
         kind = f"usual {kind}" if given and blows[m] is None else kind  # where one of two has a restitution, it counts alone
         lines.append(f"{m + 1} {in_full([own[m], shares[m]])} {kind} {in_full(pose)} {shape}\n")
     return "".join(lines)
@@ -250,21 +254,33 @@ def dampings(context: Context) -> list[float]:
     return [_damping(context, mu, e) for mu, e in zip(_of(context, frictions(context.scene)), _restitutions(context))]
 
 
-def _pair_laws(context: Context, part: Part) -> dict[tuple[int, int], tuple[float, float]]:
-    """Friction and damping of pairs that contact blocks name."""
-    scene, names = context.scene, context.system.names
-    own, blows = _of(context, frictions(scene)), _restitutions(context)
-    found = {}
-    by_name = objects_by_name(names) if scene.contacts else {}
-    for contact in scene.contacts:
+def _pairs(context: Context, part: Part) -> Iterator[tuple[ContactPair, int, int]]:
+    """Pairs i < j of solids of a part that contact blocks name, with the block."""
+    by_name = objects_by_name(context.system.names) if context.scene.contacts else {}
+    for contact in context.scene.contacts:
         for i, j in pairs_of(by_name.get(contact.first, ()), by_name.get(contact.second, ())):
             if part.shapes[i] and part.shapes[j]:
-                mu = math.sqrt(own[i] * own[j]) if contact.friction is None else float(contact.friction)
-                given = [e for e in (blows[i], blows[j]) if e is not None]
-                e = min(given, default=None) if contact.restitution is None else contact.restitution
-                beta = contact.contact_damping
-                found[i, j] = mu, _damping(context, mu, e) if beta is None else float(beta)
+                yield contact, i, j
+
+
+def _pair_laws(context: Context, part: Part) -> dict[tuple[int, int], tuple[float, float]]:
+    """Friction and damping of pairs that contact blocks name."""
+    own, blows = _of(context, frictions(context.scene)), _restitutions(context)
+    found = {}
+    for contact, i, j in _pairs(context, part):
+        mu = math.sqrt(own[i] * own[j]) if contact.friction is None else float(contact.friction)
+        given = [e for e in (blows[i], blows[j]) if e is not None]
+        e = min(given, default=None) if contact.restitution is None else contact.restitution
+        beta = contact.contact_damping
+        found[i, j] = mu, _damping(context, mu, e) if beta is None else float(beta)
     return found
+
+
+def _rolling_at(context: Context, plane: str) -> dict[int, float]:
+    """Arms of what resists rolling at a plane, where contact blocks say so [m]."""
+    by_name, blocks = objects_by_name(context.system.names), context.scene.contacts
+    told = [c for c in blocks if c.rolling is not None and plane in (c.first, c.second)]
+    return {m: float(c.rolling) for c in told for m in (*by_name.get(c.first, ()), *by_name.get(c.second, ()))}
 
 
 def quaternion(turn: np.ndarray) -> list[float]:
