@@ -1,15 +1,23 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// fix mdanim/tear: one loop over the bonds of particles. A bond is stored at both ends, which decide alike.
+// fix mdanim/tear: one loop over the bonds that may break, which are listed when LAMMPS makes its lists. A bond is stored at both
+// ends, which decide alike.
 
 #include "lammps/fix_mdanim_tear.h"
 
 #include "lammps/bond_mdanim_harmonic.h"
 #include "lammps/keywords.h"
+#include "lammps/object_table.h"
+#include "lammps/particle_value.h"
+#include "lammps/rank_gather.h"
+#include "lammps/shared_file.h"
 #include "numbers/stopwatch.h"
 
 #include "atom.h"
+#include "comm.h"
 #include "error.h"
+#include "fmt/format.h"
 #include "force.h"
+#include "modify.h"
 #include "update.h"
 #include "utils.h"
 
@@ -17,57 +25,62 @@
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
-#include <iterator>
+#include <stdexcept>
 
 using namespace LAMMPS_NS;
 using namespace FixConst;
 using namespace mdanim;
 
 static const char *const STYLE = "fix mdanim/tear";
-static constexpr int REST = 3;    // values of a Remainder
 
-// fix ID group mdanim/tear limit d2_NAME second d2_NAME stored d2_NAME rest d2_NAME torn d2_NAME
+// fix ID group mdanim/tear torn NAME objects FILE
 FixMdanimTear::FixMdanimTear(LAMMPS *lmp, int narg, char **arg) : FixBase(lmp, narg, arg)
 {
-  need_words(lmp, STYLE, "fix ID group mdanim/tear", "limit d2_NAME second d2_NAME stored d2_NAME rest d2_NAME torn d2_NAME",
-             narg - 3);
-  const struct {
-    const char *word;
-    std::string *name;
-    int each;
-  } words[] = {{"limit", &limit, 1}, {"second", &second, 1}, {"stored", &stored, 1}, {"rest", &rest, REST}, {"torn", &torn, 1}};
-  for (int iarg = 3; iarg < narg; iarg += 2) {
-    const auto *const found =
-        std::find_if(std::begin(words), std::end(words), [&](const auto &one) { return strcmp(arg[iarg], one.word) == 0; });
-    if (found == std::end(words))
-      error->all(FLERR, iarg, "{}: unknown keyword {}; limit, second, stored, rest and torn are known", STYLE, arg[iarg]);
-    if (iarg + 1 >= narg || !utils::strmatch(arg[iarg + 1], "^d2_"))
-      error->all(FLERR, iarg, "{}: {} must be followed by a per-particle property d2_NAME", STYLE, arg[iarg]);
-    *found->name = arg[iarg + 1] + 3;
-    rows(*found->name, found->each);
-  }
-  for (const auto &one : words)
-    if (one.name->empty()) error->all(FLERR, "{}: the keyword {} is missing; write {} d2_NAME", STYLE, one.word, one.word);
-  need(OPEN_BOX | ATOM_MAP);
+  need(OPEN_BOX | OBJECTS | ATOM_MAP);
+  if (!atom->molecule_flag) error->all(FLERR, "{}: {}", STYLE, NO_OBJECTS);
+  need_words(lmp, STYLE, "fix ID group mdanim/tear", "torn NAME objects FILE", narg - 3);
+  const auto name_of_property = [&](int at, char **words) { torn = words[at + 1]; };
+  const auto read = [&](int at, char **words) {
+    try {
+      rules = read_tear_rules(words[at + 1], read_shared_file(this->lmp, STYLE, "objects", words[at + 1]));
+    } catch (const std::runtime_error &wrong) {
+      error->all(FLERR, "{}: {}", STYLE, wrong.what());
+    }
+  };
+  const std::vector<Keyword> known = {{"torn", "NAME", "", name_of_property}, {"objects", "FILE", "", read}};
+  for (int iarg = 3; iarg < narg;) iarg += take_keyword(lmp, STYLE, known, iarg, narg, arg);
+  if (torn.empty()) error->all(FLERR, "{}: the keyword torn is missing; write torn NAME", STYLE);
+  if (rules.empty()) error->all(FLERR, "{}: nothing may break; write objects FILE with a line object MOLECULE STRAIN", STYLE);
+  find_bits();
+  comm->ghost_velocity = 1;    // the account sees what both ends of a spring did
   tell({{"energy", true, [this] { return sum(lost); }}, clock()});
 }
 
-int FixMdanimTear::setmask() { return PRE_FORCE | POST_FORCE; }
-
-// A property with room for some values of each bond of a particle.
-double **FixMdanimTear::rows(const std::string &name, int each) const
+const FixMdanimTear *FixMdanimTear::of(LAMMPS *lmp)
 {
-  int is_double = 0, columns = 0;
-  const int index = atom->find_custom(name.c_str(), is_double, columns), needed = each * atom->bond_per_atom;
-  if (index < 0 || !is_double || columns < needed)
-    error->all(FLERR,
-               "{}: there is no per-particle property d2_{} with {} columns; make it with 'fix ID all property/atom d2_{} {}'",
-               STYLE, name, needed, name, needed);
-  return atom->darray[index];
+  for (Fix *fix : lmp->modify->get_fix_list())
+    if (const auto *one = dynamic_cast<const FixMdanimTear *>(fix)) return one;
+  return nullptr;
 }
 
-FixMdanimTear::BondValues FixMdanimTear::values() const
-{ return {rows(limit), rows(second), rows(stored), rows(rest, REST), rows(torn)}; }
+int FixMdanimTear::setmask() { return POST_NEIGHBOR | PRE_FORCE | POST_FORCE | FINAL_INTEGRATE; }
+
+// The property, with a bit for each bond that a particle has room for.
+void FixMdanimTear::find_bits()
+{
+  int is_double = 0, columns = 0;
+  const int needed = (atom->bond_per_atom + WORD - 1) / WORD;
+  property = atom->find_custom(torn.c_str(), is_double, columns);
+  has_one = columns == 0;
+  const std::string wanted = needed > 1 ? fmt::format("i2_{} {}", torn, needed) : "i_" + torn;
+  if (property < 0 || is_double || std::max(columns, 1) < needed)
+    error->all(FLERR, "{}: there is no per-particle property {} of whole numbers; make it with 'fix ID all property/atom {}'",
+               STYLE, wanted, wanted);
+}
+
+int *FixMdanimTear::one_number() const { return atom->ivector[property]; }
+
+int **FixMdanimTear::numbers() const { return atom->iarray[property]; }
 
 void FixMdanimTear::init()
 {
@@ -75,126 +88,253 @@ void FixMdanimTear::init()
   springs = dynamic_cast<BondMdanimHarmonic *>(force->bond);
   if (!springs || springs->are_given())
     error->all(FLERR, "{}: needs bond_style mdanim/harmonic, with bonds that particles have themselves", name());
+  find_bits();
   springs->partial_flag = 1;    // LAMMPS then does not look for the partners of bonds that are gone
+  find_objects();
+}
+
+// --- objects ---
+
+int FixMdanimTear::number(int i) const
+{
+  const auto found = rules.find(static_cast<int>(atom->molecule[i]));
+  return found == rules.end() ? -1 : static_cast<int>(std::distance(rules.begin(), found));
+}
+
+void FixMdanimTear::find_objects()
+{
+  lowest.assign(rules.size(), MAXTAGINT);
+  for (int i = 0; i < atom->nlocal; ++i)
+    if (const int n = number(i); n >= 0) lowest[n] = std::min(lowest[n], atom->tag[i]);
+  MPI_Allreduce(MPI_IN_PLACE, lowest.data(), static_cast<int>(lowest.size()), MPI_LMP_TAGINT, MPI_MIN, world);
+  int n = 0;
+  for (const auto &[molecule, rule] : rules)
+    if (lowest[n++] == MAXTAGINT) error->all(FLERR, "{}: there is no object {} (molecule ID)", name(), molecule);
+}
+
+bool FixMdanimTear::is_here(int i) const { return i >= 0 && i < atom->nlocal; }
+
+int FixMdanimTear::slot_of(int i, tagint partner) const
+{
+  const tagint *const of = atom->bond_atom[i], *const end = of + atom->num_bond[i], *const found = std::find(of, end, partner);
+  return found == end ? -1 : static_cast<int>(found - of);
+}
+
+// The property comes from records, or from a run before: bonds follow it.
+void FixMdanimTear::take_state()
+{
+  std::vector<GoneLink> here;
+  for (int i = 0; i < atom->nlocal; ++i) {
+    const int n = number(i);
+    if (n < 0) continue;
+    const TearRules &of = std::next(rules.begin(), n)->second;
+    for (int b = 0; b < atom->num_bond[i]; ++b) {
+      int &type = atom->bond_type[i][b];
+      type = is_gone(i, b) ? -std::abs(type) : std::abs(type);
+      const int low = static_cast<int>(atom->tag[i] - lowest[n]), high = static_cast<int>(atom->bond_atom[i][b] - lowest[n]);
+      if (type < 0 && low < high && !of.over(low, high)) here.push_back({static_cast<int>(atom->molecule[i]), low, high});
+    }
+  }
+  gone_links.clear();
+  tell_all(std::move(here));
+  springs->change_bonds();
+}
+
+void FixMdanimTear::setup_post_neighbor()
+{
+  find_objects();
+  take_state();
+  watch();
+}
+
+void FixMdanimTear::post_neighbor() { watch(); }
+
+// Adds links that are gone to those that all ranks know.
+void FixMdanimTear::tell_all(std::vector<GoneLink> here)
+{
+  std::vector<GoneLink> all = gather(world, here);
+  std::sort(all.begin(), all.end());
+  gone_links.insert(gone_links.end(), all.begin(), all.end());
+}
+
+// --- what may break ---
+
+void FixMdanimTear::watch()
+{
+  const Lap lap(seconds);
+  watched.clear();
+  spanning.clear();
+  for (int i = 0; i < atom->nlocal; ++i)
+    if (const int n = number(i); n >= 0) watch_bonds(i, std::next(rules.begin(), n)->second, lowest[n]);
+  int n = 0;
+  for (const auto &[molecule, rule] : rules) span(rule, lowest[n++]);
+  any_remains = std::any_of(spanning.begin(), spanning.end(), [](const Spanning &one) { return one.gone[0] || one.gone[1]; });
+}
+
+void FixMdanimTear::watch_bonds(int i, const TearRules &of, tagint first)
+{
+  for (int b = 0; b < atom->num_bond[i]; ++b) {
+    const tagint other = atom->bond_atom[i][b];
+    const int j = atom->map(other), type = atom->bond_type[i][b];
+    if (type <= 0) continue;
+    if (j < 0) springs->lost_partner(i, static_cast<int>(other));
+    if (is_here(j) && other < atom->tag[i]) continue;    // it is among those of its lower end
+    const int low = static_cast<int>(std::min(atom->tag[i], other) - first);
+    const int high = static_cast<int>(std::max(atom->tag[i], other) - first);
+    if (of.over(low, high)) continue;    // goes with its links
+    const TearLink *const link = of.link(low, high);
+    const double limit = link ? link->limit : (1.0 + of.strain) * springs->springs()[type].r0;
+    watched.push_back({i, b, j, limit, atom->tag[i] < other});
+  }
+}
+
+void FixMdanimTear::span(const TearRules &of, tagint first)
+{
+  for (const TearOver &over : of.overs) {
+    const tagint tag[3] = {first + over.low, first + over.middle, first + over.high};
+    Spanning one{&over, {atom->map(tag[0]), atom->map(tag[1]), atom->map(tag[2])}, {-1, -1}, {}};
+    const auto &[a, m, b] = one.at;
+    if (!is_here(a) && !is_here(m) && !is_here(b)) continue;
+    for (int k = 0; k < 3; ++k)
+      if (one.at[k] < 0) springs->lost_partner(is_here(a) ? a : is_here(b) ? b : m, static_cast<int>(tag[k]));
+    if (is_here(a)) one.slot[0] = slot_of(a, tag[2]);
+    if (is_here(b)) one.slot[1] = slot_of(b, tag[0]);
+    if ((is_here(a) && one.slot[0] < 0) || (is_here(b) && one.slot[1] < 0))
+      error->one(FLERR, "{}: particles {} and {} have no bond over two links, which its objects tell of", name(), tag[0], tag[2]);
+    // Each end knows its own link, and the spring itself; the middle knows both links.
+    const auto gone = [&](int end, int middle, tagint of_end, tagint of_middle) {
+      return is_here(end) ? is_gone(end, slot_of(end, of_middle)) : is_here(middle) && is_gone(middle, slot_of(middle, of_end));
+    };
+    one.gone[0] = gone(a, m, tag[0], tag[1]);
+    one.gone[1] = gone(b, m, tag[2], tag[1]);
+    const bool itself = (is_here(a) && is_gone(a, one.slot[0])) || (is_here(b) && is_gone(b, one.slot[1]));
+    if (itself && !is_here(m)) {
+      if (!is_here(b) && !one.gone[0]) one.gone[1] = true;
+      if (!is_here(a) && !one.gone[1]) one.gone[0] = true;
+    }
+    spanning.push_back(one);
+  }
 }
 
 // --- what breaks ---
 
-// Place of a particle near particle i.
-Vec3 FixMdanimTear::place(int i, tagint of) const
+void FixMdanimTear::let_go(int i, int slot)
 {
-  const int j = atom->map(of);
-  if (j < 0) springs->lost_partner(i, static_cast<int>(of));
-  return vec3(atom->x[j]);
+  bits(i)[slot / WORD] |= 1 << (slot % WORD);
+  atom->bond_type[i][slot] = -std::abs(atom->bond_type[i][slot]);
 }
 
-Vec3 FixMdanimTear::apart(int i, int b) const { return vec3(atom->x[i]) - place(i, atom->bond_atom[i][b]); }
-
-// Whether bond b of particle i breaks here: by its own length; or where it has a second limit, by the lengths from its lower end
-// to the particle with the next tag, and from there to its upper one. Differences of the same places at either end: the same
-// bits.
-bool FixMdanimTear::breaks(int i, int b, const BondValues &now) const
+// Takes a spring between two particles into the account of this rank's ends: 1 of one that is gone, -1 of one that is there
+// instead.
+void FixMdanimTear::release(int i, int j, const LoadFree &spring, double sign)
 {
-  if (now.limit[i][b] == 0.0 || now.torn[i][b] != 0.0) return false;
-  const tagint own = atom->tag[i], other = atom->bond_atom[i][b];
-  const tagint low = std::min(own, other), high = std::max(own, other);
-  if (now.second[i][b] == 0.0) return is_too_long(place(i, low) - place(i, high), now.limit[i][b]);
-  const Vec3 middle = place(i, low + 1);
-  return is_too_long(place(i, low) - middle, now.limit[i][b]) || is_too_long(middle - place(i, high), now.second[i][b]);
+  const auto end = [&](int one, int other) {
+    if (!is_here(one)) return;
+    const Vec3 way = update->dt * vec3(atom->v[one]), apart = vec3(atom->x[one]) - vec3(atom->x[other]);
+    const Vec3 before = apart - (way - update->dt * vec3(atom->v[other]));
+    lost += sign * lost_with(spring, apart, before, way);
+    released[one] += sign * force_of(spring.spring, apart);
+  };
+  end(i, j);
+  end(j, i);
 }
 
-// The property torn comes from records, or from a run before: bonds follow it.
-void FixMdanimTear::setup_pre_force(int)
+// The same of a spring over two links, or of what remains of it.
+void FixMdanimTear::release(const Spanning &one, double sign)
 {
-  const BondValues now = values();
-  for (int i = 0; i < atom->nlocal; ++i) {
-    if (!(atom->mask[i] & groupbit)) continue;
-    for (int b = 0; b < atom->num_bond[i]; ++b) {
-      int &type = atom->bond_type[i][b];
-      type = now.torn[i][b] != 0.0 ? -std::abs(type) : std::abs(type);
-    }
-  }
-  springs->change_bonds();
+  const auto &[a, m, b] = one.at;
+  if (one.gone[0] && one.gone[1]) return;
+  if (one.gone[0])
+    release(m, b, remainder_of(one.spring(), one.over->length[1]), sign);
+  else if (one.gone[1])
+    release(a, m, remainder_of(one.spring(), one.over->length[0]), sign);
+  else
+    release(a, b, one.spring(), sign);
+}
+
+LoadFree FixMdanimTear::load_free(const Watched &one) const
+{
+  const Spring &spring = springs->springs()[std::abs(atom->bond_type[one.i][one.slot])];
+  const int n = number(one.i);
+  const TearRules &of = std::next(rules.begin(), n)->second;
+  const tagint tag = atom->tag[one.i], other = atom->tag[one.j];
+  const TearLink *const link =
+      of.link(static_cast<int>(std::min(tag, other) - lowest[n]), static_cast<int>(std::max(tag, other) - lowest[n]));
+  return {{spring.K, spring.r0, 0.0}, link ? link->length : spring.r0};
 }
 
 void FixMdanimTear::pre_force(int)
 {
   const Lap lap(seconds);
-  const BondValues now = values();
-  bool any = false;
-  for (int i = 0; i < atom->nlocal; ++i) {
-    if (!(atom->mask[i] & groupbit)) continue;
-    breaking.clear();
-    for (int b = 0; b < atom->num_bond[i]; ++b)
-      if (breaks(i, b, now)) breaking.push_back(b);
-    if (breaking.empty()) continue;
-    lost += account(i, now);
-    for (const int b : breaking) {
-      now.torn[i][b] = 1.0;
-      atom->bond_type[i][b] *= -1;
+  const auto apart = [this](int i, int j) { return vec3(atom->x[i]) - vec3(atom->x[j]); };
+  std::vector<GoneLink> here;
+  int any = 0;
+  std::size_t left = 0;
+  for (std::size_t n = 0; n < watched.size(); ++n) {
+    const Watched one = watched[n];
+    if (!is_too_long(apart(one.i, one.j), one.limit)) {
+      if (left < n) watched[left] = one;
+      ++left;
+      continue;
     }
-    lost -= account(i, now);
-    any = true;
+    any = 1;
+    release(one.i, one.j, load_free(one), 1.0);
+    let_go(one.i, one.slot);
+    if (is_here(one.j)) let_go(one.j, slot_of(one.j, atom->tag[one.i]));
+    const tagint first = lowest[number(one.i)], tag = atom->tag[one.i], other = atom->tag[one.j];
+    if (one.counts)
+      here.push_back({static_cast<int>(atom->molecule[one.i]), static_cast<int>(tag - first), static_cast<int>(other - first)});
   }
-  if (any) springs->change_bonds();
+  watched.resize(left);
+  if (comm->nprocs > 1) MPI_Allreduce(MPI_IN_PLACE, &any, 1, MPI_INT, MPI_MAX, world);
+  if (!any) return;
+
+  for (Spanning &one : spanning) {
+    const bool first = one.gone[0] || is_too_long(apart(one.at[0], one.at[1]), one.over->limit[0]);
+    const bool second = one.gone[1] || is_too_long(apart(one.at[1], one.at[2]), one.over->limit[1]);
+    if (first == one.gone[0] && second == one.gone[1]) continue;
+    release(one, 1.0);
+    if (!one.gone[0] && !one.gone[1]) {
+      if (one.slot[0] >= 0) let_go(one.at[0], one.slot[0]);
+      if (one.slot[1] >= 0) let_go(one.at[2], one.slot[1]);
+    }
+    one.gone[0] = first, one.gone[1] = second;
+    release(one, -1.0);
+    any_remains = true;
+  }
+  tell_all(std::move(here));
+  springs->change_bonds();
 }
 
-// Part of particle i in V + F/2 . dt v of all its springs and what remains of others.
-double FixMdanimTear::account(int i, const BondValues &now) const
+// All forces of the step are there.
+void FixMdanimTear::final_integrate()
 {
-  const Vec3 way = update->dt * vec3(atom->v[i]);
-  double all = 0.0;
-  for (int b = 0; b < atom->num_bond[i]; ++b) {
-    if (now.torn[i][b] != 0.0) continue;
-    const Vec3 to = apart(i, b);
-    all += lost_with(springs->springs()[atom->bond_type[i][b]], now.stored[i][b], to, way);
-    if (const int many = remaining(i, b, now)) {
-      const Remainder left = remainder(i, b, now);
-      all += many * lost_with(left.spring(), left.stored, to, way);
-    }
+  for (const auto &[i, less] : released) {
+    if (!(atom->mask[i] & groupbit)) continue;
+    const double inertia = mass_of(atom->rmass, atom->mass, atom->type, i) / force->ftm2v;
+    lost += lost_with_kick(vec3(atom->f[i]), less, inertia, update->dt);
   }
-  return all;
+  released.clear();
 }
 
 // --- what remains ---
 
-Remainder FixMdanimTear::remainder(int i, int b, const BondValues &now)
-{
-  const double *const value = now.rest[i] + REST * b;
-  return {value[0], value[1], value[2]};
-}
-
-// How many springs over link b of particle i and a link that is gone there were: one where the next link on this side is gone,
-// one where that on the other side is, with which a spring of i over both has let go.
-int FixMdanimTear::remaining(int i, int b, const BondValues &now) const
-{
-  if (now.torn[i][b] != 0.0 || remainder(i, b, now).k == 0.0) return 0;
-  const tagint own = atom->tag[i], other = atom->bond_atom[i][b], behind = 2 * own - other, beyond = 2 * other - own;
-  int many = 0;
-  for (int k = 0; k < atom->num_bond[i]; ++k) {
-    const tagint to = atom->bond_atom[i][k];
-    if (now.torn[i][k] != 0.0 && (to == behind || to == beyond)) ++many;
-  }
-  return many;
-}
-
 template <class Visit> void FixMdanimTear::each_remainder(Visit visit) const
 {
-  const BondValues now = values();
-  for (int i = 0; i < atom->nlocal; ++i) {
-    if (!(atom->mask[i] & groupbit)) continue;
-    const double *const gone = now.torn[i];
-    if (std::none_of(gone, gone + atom->num_bond[i], [](double one) { return one != 0.0; })) continue;
-    for (int b = 0; b < atom->num_bond[i]; ++b)
-      if (const int many = remaining(i, b, now)) visit(i, b, many, remainder(i, b, now));
+  if (!any_remains) return;
+  for (const Spanning &one : spanning) {
+    if (one.gone[0] == one.gone[1]) continue;
+    const int link = one.gone[0] ? 1 : 0, i = one.at[link], j = one.at[link + 1];
+    const LoadFree left = remainder_of(one.spring(), one.over->length[link]);
+    const Vec3 apart = vec3(atom->x[i]) - vec3(atom->x[j]);
+    if (is_here(i)) visit(i, apart, left);
+    if (is_here(j)) visit(j, -1.0 * apart, left);
   }
 }
 
 void FixMdanimTear::pull() const
 {
-  each_remainder([this](int i, int b, int many, const Remainder &left) {
-    add_to(atom->f[i], static_cast<double>(many) * force_of(left.spring(), apart(i, b)));
-  });
+  each_remainder([this](int i, const Vec3 &apart, const LoadFree &left) { add_to(atom->f[i], force_of(left.spring, apart)); });
 }
 
 void FixMdanimTear::post_force(int)
@@ -203,13 +343,18 @@ void FixMdanimTear::post_force(int)
   pull();
 }
 
-// Energy of what remains; half of it at either end.
+// Energy of what remains, beyond that without load; half of it at either end.
 double FixMdanimTear::compute_scalar()
 {
   double here = 0.0;
-  each_remainder([&](int i, int b, int many, const Remainder &left) {
-    const Vec3 to = apart(i, b);
-    here += 0.5 * many * left.energy(std::sqrt(dot(to, to)));
-  });
+  each_remainder([&](int, const Vec3 &apart, const LoadFree &left) { here += 0.5 * left.energy(std::sqrt(dot(apart, apart))); });
   return sum(here);
+}
+
+double FixMdanimTear::memory_usage()
+{
+  std::size_t found =
+      watched.capacity() * sizeof(Watched) + spanning.capacity() * sizeof(Spanning) + gone_links.capacity() * sizeof(GoneLink);
+  for (const auto &[molecule, rule] : rules) found += rule.bytes();
+  return static_cast<double>(found);
 }

@@ -19,6 +19,8 @@ from .state import Records, StateRecords
 if TYPE_CHECKING:
     from .plan import Plan
 
+BITS = 31
+"""Springs whose values, yes or no, are the bits of one whole number, the first the lowest."""
 PREFIX = "column "
 """Begins the name of the records of a column; no fix has a space in its ID."""
 
@@ -69,6 +71,8 @@ class Property(NamedTuple):
 
 def property_of(field: Field, slots: int) -> Property:
     """The property of a column; ``slots`` are the springs that a particle has room for."""
+    if _is_bits(field):
+        return Property(f"i_{field.name}", 0) if slots <= BITS else Property(f"i2_{field.name}", -(-slots // BITS))
     kind = "i" if np.dtype(field.dtype).kind == "i" else "d"
     width = int(np.prod(field.shape, dtype=int)) * (slots if field.per == "bond" else 1)
     return (
@@ -76,6 +80,25 @@ def property_of(field: Field, slots: int) -> Property:
         if field.per != "bond" and not field.shape
         else Property(f"{kind}2_{field.name}", width)
     )
+
+
+def _is_bits(field: Field) -> bool:
+    return field.per == "bond" and field.dtype == "uint8" and not field.shape
+
+
+def _to_bits(rows: np.ndarray) -> np.ndarray:
+    """Whole numbers of particles, shape (N, width), from 0 or 1 of their springs, shape (N, slots)."""
+    width = -(-rows.shape[1] // BITS)
+    found = np.zeros((len(rows), width), np.int32)
+    for slot in range(rows.shape[1]):
+        found[:, slot // BITS] |= rows[:, slot].astype(np.int32) << (slot % BITS)
+    return found
+
+
+def _from_bits(numbers: np.ndarray, slots: int) -> np.ndarray:
+    """The reverse of `_to_bits`."""
+    slot = np.arange(slots)
+    return (numbers.reshape(len(numbers), -1)[:, slot // BITS] >> (slot % BITS) & 1).astype(np.uint8)
 
 
 def wide_columns(plan: Plan) -> list[str]:
@@ -92,9 +115,9 @@ def spread(plan: Plan, name: str, values: np.ndarray | None = None) -> np.ndarra
     elif field.per == "bond":
         rows = np.full((system.particles, plan.slots, *field.shape), field.default, field.dtype)
         rows[plan.bonds[:, 0], plan.places.low] = rows[plan.bonds[:, 1], plan.places.high] = values
-        values = rows
+        values = _to_bits(rows) if _is_bits(field) else rows
     width = property_of(field, plan.slots).width
-    return values.reshape(len(values), width) if width else values
+    return values.reshape(len(values), width) if width else values.reshape(len(values))
 
 
 def gathered(plan: Plan, name: str, rows: np.ndarray) -> np.ndarray:
@@ -103,6 +126,7 @@ def gathered(plan: Plan, name: str, rows: np.ndarray) -> np.ndarray:
     if field.per == "object":
         rows = rows[plan.system.first[:-1]]
     elif field.per == "bond":
+        rows = _from_bits(rows, plan.slots) if _is_bits(field) else rows
         rows = rows.reshape(len(rows), plan.slots, -1)[plan.bonds[:, 0], plan.places.low]
     return np.array(rows).reshape(len(rows), *field.shape)
 

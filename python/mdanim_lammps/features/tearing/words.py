@@ -3,14 +3,16 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Mapping
 from typing import Any
 
-from ...scene.formatting import with_article
+from ...scene.holding import all_held
 from ...scene.limits import Limit
 from ...scene.schema import Observable, Rule, setting
-from ...scene.shapes import HoldAll, Rope
+from ...scene.shapes import Rope, Sheet
 
-SWITCHES = {"tearing": "a rope's `tear-strain e`"}
+SWITCHES = {"tearing": "an object's `tear-strain e`"}
 
 QUANTITIES = {
     ("NAME", "torn"): Observable("1", "share of its springs that are gone, from 0 to 1", "tearing"),
@@ -27,8 +29,8 @@ class TearWords:
 
     tear_strain: float | None = setting(
         "<e>",
-        "Of a rope or chain: where it is stretched by more than this share of its length, it tears. Its weakest link, which the "
-        "`seed` of `control` chooses, bears so much, the others a quarter more. Absent: it never tears.",
+        "Of what deforms: where it is stretched by more than this share of its length, it tears. Of a rope the weakest link, which "
+        "the `seed` of `control` chooses, bears so much, the others a quarter more. Absent: it never tears.",
         "0.1", Rule.POSITIVE, default=None, limit=TEAR_STRAIN, after="damping", shared=True)  # fmt: skip
     """[-]; None for never."""
 
@@ -38,24 +40,37 @@ OBJECT = TearWords
 
 def tears(solid: Any) -> bool:
     """Whether springs of an object may break."""
-    return solid.tear_strain is not None and not any(isinstance(hold, HoldAll) for hold in solid.hold)
+    return solid.tear_strain is not None and not all_held(solid)
+
+
+def fills(solid: Any) -> bool:
+    """Whether an object fills a volume with cells."""
+    return not isinstance(solid.shape, (Rope, Sheet))
 
 
 def check_object(v: Any, block: Any, solid: Any) -> Any:
-    """Only ropes tear, and none that is torn to begin with."""
+    """What is rigid does not tear, and no rope is torn to begin with."""
     if solid.tear_strain is None:
         return solid
     span, rope = solid.spans["tear-strain"], solid.shape
-    if not isinstance(rope, Rope):
-        kind = with_article(type(rope).FORMS[0].split()[0])
-        cause = f"{solid.name} is {kind}, and only ropes and chains tear"
-        v.problem(span, cause, "leave it out, or build the object of parts that joints with breaks hold together")
-    elif (stretched := rope.curve.length / rope.length - 1.0) > solid.tear_strain:
+    if getattr(solid.elasticity, "modulus", 0.0) == math.inf:
+        cause = f"{solid.name} is rigid: it has no springs that could break"
+        v.problem(span, cause, "write its elasticity, as in elasticity 1 MPa, or take tear-strain out")
+    elif isinstance(rope, Rope) and (stretched := rope.curve.length / rope.length - 1.0) > solid.tear_strain:
         cause = (
             f"{solid.name} is stretched by {100 * stretched:.3g} % from the start, and tears at {100 * solid.tear_strain:.3g} %"
         )
         v.problem(span, cause, "write a larger tear-strain, or a length nearer to the distance of its ends")
     return solid
+
+
+def check(v: Any, top: Mapping, held: Mapping) -> None:
+    """A liquid finds objects by their cells, of which those that are torn do not tell where the object is."""
+    if held.get("liquid") is None:
+        return
+    for solid in [s for s in held["solids"] if tears(s) and fills(s)][:1]:
+        cause = f"{solid.name} may tear, and a liquid finds objects by their cells, which are then torn"
+        v.problem(solid.spans["tear-strain"], cause, "take the liquid out, or tear-strain", key="tear-liquid")
 
 
 CHECKS = {"object": check_object}

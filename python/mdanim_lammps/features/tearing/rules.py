@@ -1,0 +1,85 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""What breaks in an object, and when, as ``fix mdanim/tear`` reads it (docs/fix_mdanim_tear.md)."""
+
+from __future__ import annotations
+
+import random
+from typing import Any
+
+import numpy as np
+
+from ...model.system import System
+from ...scene.shapes import Rope
+
+MORE = 1.25
+"""Strain that the links of a rope bear over that of the weakest one. Links that were all alike broke together: a cord of 100 links
+from which a ball fell came apart in 52 pieces."""
+SAME = 1e-9
+"""Difference of lengths that are alike, over one of them."""
+
+
+def springs_of(system: System, solid: int) -> slice:
+    """Springs of an object among those of a system."""
+    return slice(*np.searchsorted(system.spring[:, 0], system.first[solid : solid + 2]))
+
+
+def over_two(system: System, own: slice) -> np.ndarray:
+    """Which of these springs push in the body without load: those over two links, which resist bending; bool, shape (S,)."""
+    return system.rest[own] > system.unloaded[own] * (1.0 + SAME)
+
+
+def middles(pair: np.ndarray, length: np.ndarray, over: np.ndarray) -> np.ndarray:
+    """The particle between the two links that each spring over two links lies over, int64, shape (K,).
+
+    Args:
+        pair: particles of springs, i < j, sorted, shape (S, 2).
+        length: without load [m], shape (S,): that of a spring over two links is the sum of theirs.
+        over: which springs these are, bool, shape (S,).
+    """
+    link, count = pair[~over].astype(np.int64), int(pair.max(initial=-1)) + 1
+    low, high = link.T
+    ends, others = np.concatenate([low, high]), np.concatenate([high, low])
+    of_link = np.tile(np.arange(len(link)), 2)
+    order = np.lexsort((others, ends))
+    ends, others, of_link = ends[order], others[order], of_link[order]
+    first = np.searchsorted(ends, np.arange(count + 1))
+    key, size = low * count + high, length[~over]
+    a, b = pair[over].astype(np.int64).T
+    found, best = np.full(len(a), -1, np.int64), np.full(len(a), np.inf)
+    for k in range(int(np.diff(first).max(initial=0))):
+        at = np.minimum(first[a] + k, len(others) - 1)
+        middle = others[at]
+        wanted = np.minimum(middle, b) * count + np.maximum(middle, b)
+        place = np.minimum(np.searchsorted(key, wanted), len(key) - 1)
+        off = np.abs(size[of_link[at]] + size[place] - length[over])
+        fits = (first[a] + k < first[a + 1]) & (key[place] == wanted) & (off < best)
+        found[fits], best[fits] = middle[fits], off[fits]
+    if (best > 1e-6 * length[over]).any():
+        raise ValueError("a spring pushes that does not lie over two links in a row")
+    return found
+
+
+def limits(solid: Any, seed: int, strain: float, length: np.ndarray) -> np.ndarray:
+    """Lengths at which links are gone [m], from those without load, shape (L,). All of them bear the ``strain``; but of a rope one
+    link, which the seed and the name of the rope choose, and the others MORE: as no rope is alike everywhere, it tears in one
+    place."""
+    if not isinstance(solid.shape, Rope):
+        return (1.0 + strain) * length
+    each = np.full(len(length), MORE * strain)
+    each[random.Random(f"{seed} {solid.name}").randrange(len(length))] = strain
+    return (1.0 + each) * length
+
+
+def rules_text(system: System, m: int, solid: Any, seed: int, strain: float) -> str:
+    """The lines of an object."""
+    own, lines = springs_of(system, m), [f"object {m + 1} {strain!r}\n"]
+    over, length = over_two(system, own), system.unloaded[own]
+    pair = system.spring[own] - system.first[m]
+    if over.any() or isinstance(solid.shape, Rope):
+        limit = limits(solid, seed, strain, length[~over])
+        rows = zip((pair[~over] + 1).tolist(), length[~over].tolist(), limit.tolist())
+        lines += [f"link {i} {j} {a!r} {b!r}\n" for (i, j), a, b in rows]
+        half, rest = 0.5 * system.stiffness[own][over], system.rest[own][over]
+        rows = zip((pair[over] + 1).tolist(), (middles(pair, length, over) + 1).tolist(), half.tolist(), rest.tolist())
+        lines += [f"over {i} {k} {j} {a!r} {b!r}\n" for (i, j), k, a, b in rows]
+    return "".join(lines)
