@@ -69,7 +69,7 @@ Verdict judge(const ContactBody &host, const SurfacePoint &point, double radius,
     below.value += radius;
     const double depth = below.value / h;    // in cells
     const Vec3 inward = spot.gradient(below.slope);
-    const double cosine = radius > 0.0 ? 1.0 : dot(facing.normal, inward) / std::sqrt(dot(inward, inward));
+    const double cosine = facing.all ? 1.0 : dot(facing.normal, inward) / std::sqrt(dot(inward, inward));
     // Smallest change before the side can begin a contact, in cells: the largest of these three.
     double apart = -depth;
     const double turned = PRESSED * (LEAST_COSINE - cosine);

@@ -22,10 +22,11 @@ struct Verdict {
   bool is_sure = true;    // no contact, although the place of the point is guessed
 };
 
-// The outward normal of a point, in space, and the edge of the cell that turns it [m].
+// The outward normal of a point, in space, and the edge of the cell that turns it [m]; or it faces every side.
 struct Facing {
   Vec3 normal;
   double cell = 0.0;
+  bool all = false;
 };
 
 // Ramps: half of a flat point counts one and a half cells inside of an edge, half of other points at the edge.

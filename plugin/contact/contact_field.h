@@ -55,6 +55,10 @@ class ContactField {
   // The part of a step that fields do one after the other.
   virtual void add_forces(ContactArrays &arrays, double dt, ContactAccount &account) = 0;
 
+  // The owner is torn: contacts of points that other particles carry than before go on or end. `before` is null where it was
+  // whole. Places are those of the last step; must be followed by forget() and list().
+  virtual void owner_tears(const TornBody *before, const ContactArrays &arrays, ContactAccount &account) = 0;
+
   virtual std::size_t touching() const = 0;    // number of contacts
   bool is_idle() const { return touching() == 0; }
   bool has_something() const { return !is_idle() || looks > 0; }      // whether there are forces to add, after look()

@@ -9,6 +9,36 @@
 
 namespace mdanim {
 
+TornBody::TornBody(const ContactBody &body, const std::vector<int> &ends)
+    : at_tear(body.slots(), 0), alone(body.points().size(), 0)
+{
+  for (const int slot : ends) at_tear[slot] = 1;
+  const auto heavier = [](const PointCarrier &a, const PointCarrier &b) { return a.weight < b.weight; };
+  for (std::size_t p = 0; p < alone.size(); ++p) {
+    const PointCarriers by = body.carriers_of(static_cast<int>(p));
+    const bool torn = std::any_of(by.first, by.last, [this](const PointCarrier &one) { return at_tear[one.slot] != 0; });
+    alone[p] = torn && !body.is_line();
+    first.push_back(static_cast<int>(carriers.size()));
+    if (alone[p])
+      carriers.push_back({std::max_element(by.first, by.middle, heavier)->slot, 1.0});
+    else
+      carriers.insert(carriers.end(), by.first, by.middle);
+    first.push_back(static_cast<int>(carriers.size()));
+    if (!alone[p]) carriers.insert(carriers.end(), by.middle, by.last);
+  }
+  first.push_back(static_cast<int>(carriers.size()));
+  carriers.push_back({0, 0.0});    // one more, as bodies have it
+}
+
+void ContactObject::find_host_slots()
+{
+  slot_of_host.clear();
+  if (!torn) return;
+  slot_of_host = slot;
+  for (std::size_t at = 0; at < slot_of_host.size(); ++at)
+    if (torn->is_at_tear(static_cast<int>(at))) slot_of_host[at] = -1;
+}
+
 // Volume of a cell, by the means of its edges; more than any where it is not here.
 static double volume_of_cell(const int *slots, int row, int layer, const PaddedVec3 *place)
 {
@@ -39,7 +69,7 @@ void ContactObject::find_crushed(const PaddedVec3 *place)
     for (int j = 0; j < body->count(1); ++j)
       for (int i = 0; i < body->count(0); ++i)
         if (body->is_filled(i, j, k)) {
-          const int *const slots = slot.data() + body->place(i, j, k);
+          const int *const slots = host_slots().data() + body->place(i, j, k);
           if (slots[0] >= 0) least = std::min(least, volume_of_cell(slots, body->row(), body->layer(), place) / (h * h * h));
         }
   is_crushed = least < LEAST;
@@ -124,7 +154,8 @@ OuterCells::OuterCells(const ContactObject &owner, const ContactArrays &arrays)
     for (int j = 0; j < body.count(1); ++j)
       for (int i = 0; i < body.count(0); ++i) {
         if (!body.is_outer(i, j, k)) continue;
-        const int low = owner.slot[body.place(i, j, k)], high = owner.slot[body.place(i + 1, j + 1, k + 1)];
+        const std::vector<int> &slots = owner.host_slots();
+        const int low = slots[body.place(i, j, k)], high = slots[body.place(i + 1, j + 1, k + 1)];
         if (low < 0 || high < 0) continue;
         cells.push_back({{i, j, k}, low, high});
         middle.push_back(0.5 * (arrays.place()[low].value + arrays.place()[high].value));

@@ -22,6 +22,30 @@ namespace mdanim {
 struct ContactKernels;
 class LateOuterCells;
 
+// An object of which links are gone. A cell with a particle of such a link pushes at no point: what is left of the body around it
+// is not known. A point of such a cell that several particles carry goes with the one that carries most of it.
+class TornBody {
+ public:
+  // The ends of links that are gone, by places of particles (ContactBody::slot_of()).
+  TornBody(const ContactBody &body, const std::vector<int> &ends);
+
+  bool is_at_tear(int slot) const { return at_tear[slot] != 0; }
+  bool moved_to_particle(int point) const { return alone[point] != 0; }
+  PointCarriers carriers_of(int point) const
+  {
+    const int *const at = &first[2 * point];
+    return {&carriers[at[0]], &carriers[at[1]], &carriers[at[2]]};
+  }
+  BodyCarriers all_carriers() const { return {carriers.data(), first.data()}; }
+  std::size_t bytes() const
+  { return at_tear.capacity() + alone.capacity() + carriers.capacity() * sizeof(PointCarrier) + first.capacity() * sizeof(int); }
+
+ private:
+  std::vector<char> at_tear, alone;    // by places of particles, and by points
+  std::vector<PointCarrier> carriers;
+  std::vector<int> first;
+};
+
 // All particles where they are now, or where they were in the step before.
 struct Moment {
   const PaddedVec3 *place;    // by slots
@@ -43,17 +67,26 @@ struct ContactObject {
   std::shared_ptr<LateOuterCells> outer{};    // empty until first asked for after lists were made
   Spot<double> rigid{}, rigid_before{};       // of a rigid body: x(X) at X = 0, and its gradient; those of the step before
   bool takes_force = true;                    // whether forces on its particles matter
-  Vec3 way{};                 // displacement of its first particle, or of the middle of a rigid body, in this step
-  double stir = 0.0;          // the largest displacement of a point relative to that in this step
-  bool is_pushed = false;     // by contacts, in the last step
-  bool is_crushed = false;    // some cell is: a place in space may then be in several cells
-  bool is_calm = false;       // no cell is soon, unless the object is pushed
-  double unchecked = 0.0;     // how far its points may go until that is found anew [m]
+  Vec3 way{};                                // displacement of its first particle, or of the middle of a rigid body, in this step
+  double stir = 0.0;                         // the largest displacement of a point relative to that in this step
+  bool is_pushed = false;                    // by contacts, in the last step
+  bool is_crushed = false;                   // some cell is: a place in space may then be in several cells
+  bool is_calm = false;                      // no cell is soon, unless the object is pushed
+  double unchecked = 0.0;                    // how far its points may go until that is found anew [m]
+  std::shared_ptr<const TornBody> torn{};    // null where it is whole
+  std::vector<int> slot_of_host{};           // of a torn object: `slot` without particles at tears
 
   // To be called when it has moved.
   void find_crushed(const PaddedVec3 *place);
 
   bool is_rigid() const { return body->frame().has_value(); }
+  // The same as `slot`, for its cells as they push at points of others.
+  const std::vector<int> &host_slots() const { return torn ? slot_of_host : slot; }
+  void find_host_slots();
+  PointCarriers carriers_of(int point) const { return torn ? torn->carriers_of(point) : body->carriers_of(point); }
+  BodyCarriers all_carriers() const { return torn ? torn->all_carriers() : body->all_carriers(); }
+  // Whether the surface around a point has no normal: its cell is torn.
+  bool faces_all(int point) const { return body->is_line() || (torn && torn->moved_to_particle(point)); }
   const Spot<double> &rigid_at(const Moment &at) const { return at.is_before ? rigid_before : rigid; }
   // Corners of the box around a rigid body.
   std::array<Vec3, 8> corners() const
@@ -69,28 +102,25 @@ struct ContactObject {
   bool has_point(int point) const
   {
     if (is_rigid()) return slot[0] >= 0;
-    const PointCarriers by = body->carriers_of(point);
+    const PointCarriers by = carriers_of(point);
     return std::all_of(by.first, by.last, [this](const PointCarrier &one) { return slot[one.slot] >= 0; });
   }
-  Vec3 place_of(int point, const PaddedVec3 *at) const
-  {
-    const PointCarriers by = body->carriers_of(point);
-    return weighted_sum(by.first, by.middle, at);
-  }
+  Vec3 place_by(const PointCarriers &by, const PaddedVec3 *at) const { return weighted_sum(by.first, by.middle, at); }
+  Vec3 place_of(int point, const PaddedVec3 *at) const { return place_by(carriers_of(point), at); }
   // From the point to the centre of its area.
   Vec3 shift_of(int point, const PaddedVec3 *at) const
   {
-    const PointCarriers by = body->carriers_of(point);
+    const PointCarriers by = carriers_of(point);
     return by.middle == by.last ? Vec3{} : weighted_sum(by.middle, by.last, at) - weighted_sum(by.first, by.middle, at);
   }
   void push_point(int point, const Vec3 &force, PaddedVec3 *on) const
   {
-    const PointCarriers by = body->carriers_of(point);
+    const PointCarriers by = carriers_of(point);
     push(by.first, by.middle, force, on);
   }
   void push_centre(int point, const Vec3 &force, PaddedVec3 *on) const
   {
-    const PointCarriers by = body->carriers_of(point);
+    const PointCarriers by = carriers_of(point);
     by.middle < by.last ? push(by.middle, by.last, force, on) : push(by.first, by.middle, force, on);
   }
   // Whether contacts of `other`, an object of the same id, have the same points.

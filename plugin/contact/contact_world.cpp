@@ -214,6 +214,7 @@ void ContactWorld::list(const std::vector<ContactParticle> &particles, const Coo
       if (was_here) changes.push_back(arrays.place()[from].value - arrays.place_before()[from].value);
     }
     one.last_slot = static_cast<int>(from);
+    one.find_host_slots();
     one.is_calm = false, one.unchecked = -1.0;    // its cells that are here may be others
     if (one.is_rigid()) continue;                 // it has been placed
     Deviation motion{changes.empty() ? Vec3{} : changes.front()};
@@ -223,7 +224,31 @@ void ContactWorld::list(const std::vector<ContactParticle> &particles, const Coo
   }
   list_fields();
   find_points();
+  for (const int n : torn_now)    // points that are below a plane since another particle carries them
+    for (const FieldSums::Active &one : sums.all())
+      if (one.a == n && one.field->normal()) one.field->settle(arrays);
+  torn_now.clear();
   listed = has_before = true;
+}
+
+void ContactWorld::tear(const TornEnds &ends, bool in_run)
+{
+  for (const auto &[id, nodes] : ends) {
+    const auto found = number_of.find(id);
+    if (found == number_of.end() || all[found->second].is_rigid() || all[found->second].body->is_line()) continue;
+    ContactObject &one = all[found->second];
+    std::vector<int> slots;
+    for (const int node : nodes) slots.push_back(one.body->slot_of(node));
+    const std::shared_ptr<const TornBody> before = one.torn;
+    one.torn = std::make_shared<const TornBody>(*one.body, slots);
+    if (!in_run) continue;
+    for (auto &[key, field] : fields) {
+      const bool owns = owner_of(key) == found->second;
+      if (owns) field->owner_tears(before.get(), arrays, account);
+      if (owns || host_of(key) == found->second) field->forget();
+    }
+    torn_now.push_back(found->second);
+  }
 }
 
 // --- steps ---

@@ -51,6 +51,11 @@ class ContactWorld {
   // Forgets lists and all points except those in contact: to be called before list() at the setup of a run.
   void forget();
 
+  // Sets links of objects that are gone: the numbers of particles at their ends, by ids of objects. In a run contacts of points
+  // that other particles carry now go on or end, and list() must follow; at its setup they already have.
+  using TornEnds = std::map<int, std::vector<int>>;
+  void tear(const TornEnds &ends, bool in_run);
+
   // Sets kernels and threads. Null: contacts one at a time, with the same bits. The number of threads changes no bit either.
   void use(const ContactKernels *kernels, const Threads &now)
   {
@@ -102,6 +107,7 @@ class ContactWorld {
 
   std::vector<ContactObject> all;
   std::vector<char> movable;
+  std::vector<int> torn_now;                  // objects, until there are lists
   std::map<int, int> number_of;               // of ids
   bool listed = false, has_before = false;    // lists are there; they have been made since the last step, and know its places
   Fields fields;

@@ -63,7 +63,7 @@ bool LatticeField::is_surely_apart(std::size_t q, const Vec3 &x, const Moment &a
       verdict.slack = slack;
       return true;
     }
-    if (!has_facing && !find_facing(point, at, facing)) return false;
+    if (!has_facing && !find_facing(q, at, facing)) return false;
     has_facing = true;
     verdict = judge(body, point, radius, X, X_centre, spot, facing, off);
     if (verdict.is_sure) return true;
@@ -89,7 +89,7 @@ Verdict LatticeField::sight(std::size_t q, const Moment &at, const ContactArrays
   Facing facing;
   if (!start(x, at, arrays, track, track.cell, verdict)) return verdict;
   track.X = middle_of(track.cell);
-  if (!PointSearch(*host, at).find(track, x, is_smooth(body, point.kind), spot, X) || !find_facing(point, at, facing)) {
+  if (!PointSearch(*host, at).find(track, x, is_smooth(body, point.kind), spot, X) || !find_facing(q, at, facing)) {
     track = {};
     return lost();
   }

@@ -29,7 +29,7 @@ PushTask ObjectField::task(PointKind kind, const ContactArrays &arrays, double d
   return {law,
           dt,
           body.lattice(),
-          host->slot.data(),
+          host->host_slots().data(),
           arrays.place(),
           2.0 * body.spacing() + longest,
           ramps_of(body, kind),
@@ -41,16 +41,18 @@ PushTask ObjectField::task(PointKind kind, const ContactArrays &arrays, double d
 }
 
 PointsTask ObjectField::points_task(const ContactArrays &arrays) const
-{ return {owner->body->all_carriers(), owner->body->areas(), owner->slot.data(), arrays.place()}; }
+{ return {owner->all_carriers(), owner->body->areas(), owner->slot.data(), arrays.place()}; }
 
 PointNow ObjectField::point_now(std::size_t q, const ContactArrays &arrays) const
 { return {owner->place_of(near[q], arrays.place()), owner->shift_of(near[q], arrays.place()), surface_point(q).area}; }
 
-bool ObjectField::find_facing(const SurfacePoint &point, const Moment &at, Facing &facing) const
+bool ObjectField::find_facing(std::size_t q, const Moment &at, Facing &facing) const
 {
+  const SurfacePoint &point = surface_point(q);
   const ContactBody &body = *owner->body;
   facing.cell = body.spacing();
-  if (body.is_line()) return true;    // no side of its points is the outer one
+  facing.all = owner->faces_all(near[q]);
+  if (facing.all) return true;    // no side of its points is the outer one
   Spot<double> spot;
   if (!body.frame()) {
     const std::array<int, 3> cell = {point.cell[0], point.cell[1], point.cell[2]};
@@ -95,6 +97,19 @@ void ObjectField::count(const FieldContact &contact, const PushedContact<double>
   account.work += found.work;
   account.deepest = std::max(account.deepest, contact.state.memory.depth);
   ++account.touching;
+}
+
+// Ends contacts of points that another particle carries than before: the host may be elsewhere around it.
+void ObjectField::owner_tears(const TornBody *before, const ContactArrays &, ContactAccount &account)
+{
+  const auto moved = [&](const FieldContact &one) {
+    const bool now = owner->torn->moved_to_particle(one.point) && !(before && before->moved_to_particle(one.point));
+    if (!now) return false;
+    account.heat += one.state.memory.stick_energy;
+    account.let_go += one.last.energy - 0.5 * dot(one.last.force, one.last.moved);
+    return true;
+  };
+  contacts.erase(std::remove_if(contacts.begin(), contacts.end(), moved), contacts.end());
 }
 
 // Turns a contact that is over into a point to be looked at.

@@ -20,6 +20,7 @@ class ObjectField : public FieldOf<FieldContact, PointTrack> {
   void work_ahead(const ContactArrays &arrays, double dt) override;
   void add_forces(ContactArrays &arrays, double dt, ContactAccount &account) override;
   int cost() const override;
+  void owner_tears(const TornBody *before, const ContactArrays &arrays, ContactAccount &account) override;
   std::size_t bytes() const override
   { return bytes_of_rows() + now.capacity() * sizeof(PointNow) + ahead.capacity() * sizeof(PushedBlock); }
 
@@ -35,7 +36,7 @@ class ObjectField : public FieldOf<FieldContact, PointTrack> {
   void begin_step(const ContactArrays &arrays) override;
   const SurfacePoint &surface_point(std::size_t q) const { return owner->body->points()[near[q]]; }
   // False where not all of its particles are here.
-  bool find_facing(const SurfacePoint &point, const Moment &at, Facing &facing) const;
+  bool find_facing(std::size_t q, const Moment &at, Facing &facing) const;
   // Begins a contact at X as a look found it; `was_open` are the sides that were open in the step before.
   void begin_contact(std::size_t q, const Verdict &verdict, const Vec3 &X, const std::array<int, 3> &cell, std::uint8_t was_open);
   // Adds forces to the point.

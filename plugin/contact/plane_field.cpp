@@ -35,6 +35,22 @@ bool PlaneField::look_at(std::size_t q, const ContactArrays &arrays, bool may_be
   return true;
 }
 
+// A contact goes on with the force that it had.
+void PlaneField::owner_tears(const TornBody *before, const ContactArrays &arrays, ContactAccount &)
+{
+  for (PlaneContact &one : contacts) {
+    const PointCarriers by = before ? before->carriers_of(one.point) : owner->body->carriers_of(one.point);
+    const PointCarriers now = owner->carriers_of(one.point);
+    const auto is_here = [this](const PointCarrier &carrier) { return owner->slot[carrier.slot] >= 0; };
+    if (!std::all_of(by.first, by.middle, is_here) || !std::all_of(now.first, now.middle, is_here)) continue;
+    const Vec3 from = owner->place_by(by, arrays.place()), to = owner->place_by(now, arrays.place());
+    const double deeper = depth_at(to) - depth_at(from);
+    one.memory.depth += deeper;
+    one.memory.offset += deeper;
+    one.anchor += to - from;
+  }
+}
+
 int PlaneField::cost() const
 {
   constexpr std::size_t CONTACT = 30;

@@ -36,6 +36,7 @@ class PlaneField : public FieldOf<PlaneContact, std::uint8_t> {
   void add_forces(ContactArrays &arrays, double dt, ContactAccount &account) override;
   int cost() const override;
   const ContactPlane *at_plane() const override { return &plane; }
+  void owner_tears(const TornBody *before, const ContactArrays &arrays, ContactAccount &account) override;
   Vec3 force_on_plane() const override { return on_plane; }
   // The force on a plane that moves, for the work of the next step.
   Vec3 kept_force() const { return before.value_or(Vec3{}); }

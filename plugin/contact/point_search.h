@@ -25,7 +25,7 @@ constexpr double PRESSED = 0.5;    // cells are assumed to be pressed to half at
 // A host with its particles where they are now.
 class PointSearch {
  public:
-  PointSearch(const ContactObject &host, const Moment &when) : at{*host.body, host.slot.data(), when.place} {}
+  PointSearch(const ContactObject &host, const Moment &when) : at{*host.body, host.host_slots().data(), when.place} {}
 
   // The nearest of the cells on the surface among one of them and those around it. `away`: how far its middle is from x [m].
   std::array<int, 3> outer_around(const Vec3 &x, const std::array<int, 3> &cell, double &away) const;

@@ -56,7 +56,7 @@ Verdict RigidField::sight(std::size_t q, const Moment &at, Vec3 &X) const
   verdict.slack = slack_of_far(body, point, radius, X, X_centre, frame, 0.0);
   if (verdict.slack > 0.0) return verdict;
   Facing facing;
-  if (find_facing(point, at, facing)) return judge(body, point, radius, X, X_centre, frame, facing, 0.0);
+  if (find_facing(q, at, facing)) return judge(body, point, radius, X, X_centre, frame, facing, 0.0);
   verdict.open = EVERY_SIDE;    // not all of its particles are here
   verdict.slack = 0.0;
   return verdict;

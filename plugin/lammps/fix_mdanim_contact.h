@@ -63,6 +63,7 @@ class FixMdanimContact : public mdanim::FixBase, public mdanim::PassParticipant,
   void need_lists() const;
   void place_rigid(std::vector<mdanim::Box> &boxes);
   void list();
+  void take_tears(bool in_run);
   mdanim::Coordinates places_now();
   template <class Add> void give_forces(const Add &add) const;
   void push(double dt);
@@ -79,8 +80,10 @@ class FixMdanimContact : public mdanim::FixBase, public mdanim::PassParticipant,
   mdanim::ContactWorld world_of_contact;
   mdanim::MovingPlanes moving;
 
-  mdanim::ObjectTable objects;    // at the setup; their particles when lists were made
-  std::vector<tagint> lowest;     // tags of objects
+  const class FixMdanimTear *tears = nullptr;    // null where nothing tears
+  std::size_t known_tears = 0;                   // of its links
+  mdanim::ObjectTable objects;                   // at the setup; their particles when lists were made
+  std::vector<tagint> lowest;                    // tags of objects
   std::vector<int> mine;          // local particles that take part in contacts, in the order of the world of contact
   mdanim::SharedPlaces shared;    // places of these particles, on all ranks
   mdanim::Positions my_places;
