@@ -60,15 +60,40 @@ AirSkin::Areas AirSkin::areas_of_frame(const AirScratch &with) const
   return {cross(y, z), cross(z, x), cross(x, y)};
 }
 
+// Whether a particle carries one of these points.
+template <std::size_t N> bool AirSkin::needs(const std::array<int, N> &of, int particle) const
+{
+  return std::any_of(of.begin(), of.end(), [&](int p) {
+    return std::any_of(node.begin() + first[p], node.begin() + first[p + 1], [&](int one) { return needed[one] == particle; });
+  });
+}
+
+void AirSkin::open(int low, int high, Holes &holes) const
+{
+  holes.triangle.resize(triangles.size(), 0);
+  holes.cylinder.resize(cylinders.size(), 0);
+  for (std::size_t n = 0; n < triangles.size(); ++n)
+    if (needs(triangles[n], low) && needs(triangles[n], high)) holes.triangle[n] = 1;
+  for (std::size_t n = 0; n < cylinders.size(); ++n)
+    if (const std::array<int, 2> ends = {cylinders[n].from, cylinders[n].to}; needs(ends, low) && needs(ends, high))
+      holes.cylinder[n] = 1;
+}
+
+static bool is_hole(const std::vector<char> &holes, std::size_t n) { return !holes.empty() && holes[n]; }
+
 // Part of the surface of each point.
-void AirSkin::find_areas(const Areas &areas, AirScratch &with) const
+void AirSkin::find_areas(const Areas &areas, const Holes &holes, AirScratch &with) const
 {
   with.area.assign(points(), 0.0);
-  for (const Points &t : triangles) {
+  for (std::size_t n = 0; n < triangles.size(); ++n) {
+    if (is_hole(holes.triangle, n)) continue;
+    const Points &t = triangles[n];
     const double third = length(area_of(t, with)) / 3.0;
     for (const int p : t) with.area[p] += third;
   }
-  for (const Cylinder &one : cylinders) {
+  for (std::size_t n = 0; n < cylinders.size(); ++n) {
+    if (is_hole(holes.cylinder, n)) continue;
+    const Cylinder &one = cylinders[n];
     const double way = length(with.place[one.to] - with.place[one.from]);
     if (way > one.most) continue;
     const double half = 0.5 * one.diameter * way;
@@ -102,17 +127,22 @@ bool AirSkin::may_be_lowered(const AirLaw &law, const AirScratch &with) const
   return law.half * std::sqrt(fastest) * law.dt * largest_weight * all > AirLaw::MOST * lightest;
 }
 
-template <class Push> void AirSkin::each_force(const AirLaw &law, double above, const AirScratch &with, const Push &push) const
+template <class Push>
+void AirSkin::each_force(const AirLaw &law, double above, const Holes &holes, const AirScratch &with, const Push &push) const
 {
   const std::vector<Vec3> &x = with.place, &v = with.velocity;
   const std::vector<double> &load = with.load;
-  for (const Points &t : triangles) {
+  for (std::size_t n = 0; n < triangles.size(); ++n) {
+    if (is_hole(holes.triangle, n)) continue;
+    const Points &t = triangles[n];
     const auto [a, b, c] = t;
     if ((x[a].z + x[b].z + x[c].z) / 3.0 < above) continue;
     const Vec3 velocity = (1.0 / 3.0) * (v[a] + v[b] + v[c]);
     push(law.on_surface(area_of(t, with), velocity, sides, std::max({load[a], load[b], load[c]})), t, 1.0 / 3.0);
   }
-  for (const Cylinder &one : cylinders) {
+  for (std::size_t n = 0; n < cylinders.size(); ++n) {
+    if (is_hole(holes.cylinder, n)) continue;
+    const Cylinder &one = cylinders[n];
     const std::array<int, 2> ends = {one.from, one.to};
     if (0.5 * (x[one.from].z + x[one.to].z) < above || length(x[one.to] - x[one.from]) > one.most) continue;
     const Vec3 velocity = 0.5 * (v[one.from] + v[one.to]);
@@ -126,10 +156,10 @@ template <class Push> void AirSkin::each_force(const AirLaw &law, double above, 
       push(law.on_surface(areas.of(one.part), v[one.at], sides, load[one.at]), std::array<int, 1>{one.at}, 1.0);
 }
 
-Vec3 AirSkin::push(const AirLaw &law, double above, AirScratch &with) const
+Vec3 AirSkin::push(const AirLaw &law, double above, const Holes &holes, AirScratch &with) const
 {
   find_points(with);
-  find_areas(areas_of_frame(with), with);
+  find_areas(areas_of_frame(with), holes, with);
   if (may_be_lowered(law, with))
     find_loads(with);
   else
@@ -137,7 +167,7 @@ Vec3 AirSkin::push(const AirLaw &law, double above, AirScratch &with) const
   with.push.assign(points(), {});
   with.force.assign(needed.size(), {});
   Vec3 sum;
-  each_force(law, above, with, [&](const Vec3 &force, const auto &at, double part) {
+  each_force(law, above, holes, with, [&](const Vec3 &force, const auto &at, double part) {
     sum += force;
     for (const int p : at) with.push[p] += part * force;
   });

@@ -64,8 +64,14 @@ class AirSkin {
   const std::vector<int> &nodes() const { return needed; }
   std::size_t bytes() const;
 
+  // Triangles and cylinders that air goes through; none at first.
+  struct Holes {
+    std::vector<char> triangle, cylinder;
+  };
+  // Adds those that the link between these particles held together, which is gone.
+  void open(int low, int high, Holes &holes) const;
   // Forces on nodes, by their places, velocities and masses. Returns the sum of all.
-  Vec3 push(const AirLaw &law, double above, AirScratch &with) const;
+  Vec3 push(const AirLaw &law, double above, const Holes &holes, AirScratch &with) const;
 
  private:
   // The matrix from the part of a panel to its area.
@@ -74,13 +80,15 @@ class AirSkin {
     Vec3 of(const Vec3 &part) const { return part.x * x + part.y * y + part.z * z; }
   };
   void find_points(AirScratch &with) const;
-  void find_areas(const Areas &areas, AirScratch &with) const;
+  template <std::size_t N> bool needs(const std::array<int, N> &of, int particle) const;
+  void find_areas(const Areas &areas, const Holes &holes, AirScratch &with) const;
   bool may_be_lowered(const AirLaw &law, const AirScratch &with) const;
   void find_loads(AirScratch &with) const;
   Areas areas_of_frame(const AirScratch &with) const;
   static Vec3 area_of(const Points &t, const AirScratch &with);
   // Calls push(force, points that share it, part of each).
-  template <class Push> void each_force(const AirLaw &law, double above, const AirScratch &with, const Push &push) const;
+  template <class Push>
+  void each_force(const AirLaw &law, double above, const Holes &holes, const AirScratch &with, const Push &push) const;
 
   AirSides sides;
   std::vector<std::size_t> first{0};    // weights of each point, and the end

@@ -55,8 +55,8 @@ class ContactField {
   // The part of a step that fields do one after the other.
   virtual void add_forces(ContactArrays &arrays, double dt, ContactAccount &account) = 0;
 
-  // The owner is torn: contacts of points that other particles carry than before go on or end. `before` is null where it was
-  // whole. Places are those of the last step; must be followed by forget() and list().
+  // The owner is torn: contacts of points that are replaced end. `before` is null where it was whole. Places are those of this
+  // step and the last one. Must be followed by forget() and list().
   virtual void owner_tears(const TornBody *before, const ContactArrays &arrays, ContactAccount &account) = 0;
 
   virtual std::size_t touching() const = 0;    // number of contacts

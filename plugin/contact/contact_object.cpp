@@ -10,24 +10,65 @@
 namespace mdanim {
 
 TornBody::TornBody(const ContactBody &body, const std::vector<int> &ends)
-    : at_tear(body.slots(), 0), alone(body.points().size(), 0)
+    : at_tear(body.slots(), 0), replaced(body.points().size(), 0), area(body.areas(), body.areas() + body.points().size())
 {
   for (const int slot : ends) at_tear[slot] = 1;
-  const auto heavier = [](const PointCarrier &a, const PointCarrier &b) { return a.weight < b.weight; };
-  for (std::size_t p = 0; p < alone.size(); ++p) {
+  for (std::size_t p = 0; p < replaced.size(); ++p) {
     const PointCarriers by = body.carriers_of(static_cast<int>(p));
-    const bool torn = std::any_of(by.first, by.last, [this](const PointCarrier &one) { return at_tear[one.slot] != 0; });
-    alone[p] = torn && !body.is_line();
+    replaced[p] = std::any_of(by.first, by.last, [this](const PointCarrier &one) { return at_tear[one.slot] != 0; });
+  }
+  const std::vector<int> own = own_particles(body);
+  for (std::size_t p = 0; p < replaced.size(); ++p) {
+    const PointCarriers by = body.carriers_of(static_cast<int>(p));
     first.push_back(static_cast<int>(carriers.size()));
-    if (alone[p])
-      carriers.push_back({std::max_element(by.first, by.middle, heavier)->slot, 1.0});
-    else
+    if (!replaced[p])
       carriers.insert(carriers.end(), by.first, by.middle);
+    else if (own[p] >= 0)
+      carriers.push_back({own[p], 1.0});
     first.push_back(static_cast<int>(carriers.size()));
-    if (!alone[p]) carriers.insert(carriers.end(), by.middle, by.last);
+    if (!replaced[p]) carriers.insert(carriers.end(), by.middle, by.last);
   }
   first.push_back(static_cast<int>(carriers.size()));
   carriers.push_back({0, 0.0});    // one more, as bodies have it
+}
+
+// The particle of each point that is replaced, -1 for none, those first that carry most of a point; and the areas of these.
+std::vector<int> TornBody::own_particles(const ContactBody &body)
+{
+  struct Carried {
+    double weight;
+    int point, slot;
+  };
+  std::vector<Carried> all;
+  std::vector<double> of_particle(at_tear.size(), 0.0);
+  for (int p = 0; p < static_cast<int>(replaced.size()); ++p) {
+    if (!replaced[p]) continue;
+    const PointCarriers by = body.carriers_of(p);
+    double sum = 0.0;
+    for (const PointCarrier *one = by.first; one < by.middle; ++one) sum += std::fabs(one->weight);
+    for (const PointCarrier *one = by.first; one < by.middle; ++one) {
+      all.push_back({std::fabs(one->weight), p, one->slot});
+      of_particle[one->slot] += body.areas()[p] * std::fabs(one->weight) * sum;
+    }
+  }
+  std::stable_sort(all.begin(), all.end(), [](const Carried &a, const Carried &b) { return a.weight > b.weight; });
+  std::vector<int> found(replaced.size(), -1);
+  std::vector<char> has_one(at_tear.size(), 0);
+  for (const Carried &one : all) {
+    if (found[one.point] >= 0 || has_one[one.slot]) continue;
+    found[one.point] = one.slot;
+    has_one[one.slot] = 1;
+    area[one.point] = of_particle[one.slot];
+  }
+  return found;
+}
+
+bool ContactObject::has_changed(int point, const TornBody *before) const
+{
+  if (!torn->is_replaced(point)) return false;
+  if (!before || !before->is_replaced(point) || before->areas()[point] != torn->areas()[point]) return true;
+  const PointCarriers was = before->carriers_of(point), now = torn->carriers_of(point);
+  return was.middle - was.first != now.middle - now.first || (now.first < now.middle && was.first->slot != now.first->slot);
 }
 
 void ContactObject::find_host_slots()
@@ -117,13 +158,27 @@ static Box box_of(const PointCell &cell, const ContactObject &owner, const Padde
   return box;
 }
 
+// Points of a torn object may be far from the rest of their cells.
+static Box box_of_points(const PointCell &cell, const ContactObject &owner, const PaddedVec3 *place, bool &is_there)
+{
+  Box box;
+  for (int n = cell.first; n < cell.last; ++n) {
+    const int point = owner.body->points_by_cell()[n];
+    if (!owner.has_point(point)) continue;
+    const Vec3 x = owner.place_of(point, place);
+    box.include(&x.x);
+  }
+  is_there = !box.empty();
+  return box;
+}
+
 PointFinder::PointFinder(const ContactObject &owner, const ContactArrays &arrays) : owner(owner), arrays(arrays)
 {
   const std::vector<PointCell> &all = owner.body->point_cells();
   cells.reserve(all.size());
   for (int c = 0; c < static_cast<int>(all.size()); ++c) {
     bool is_there = false;
-    const Box box = box_of(all[c], owner, arrays.place(), is_there);
+    const Box box = (owner.torn ? box_of_points : box_of)(all[c], owner, arrays.place(), is_there);
     if (is_there) cells.emplace_back(c, box);
   }
 }

@@ -22,28 +22,37 @@ namespace mdanim {
 struct ContactKernels;
 class LateOuterCells;
 
-// An object of which links are gone. A cell with a particle of such a link pushes at no point: what is left of the body around it
-// is not known. A point of such a cell that several particles carry goes with the one that carries most of it.
+// An object of which links are gone. A cell with a particle of such a link pushes at no point of others: what is left of the body
+// around it is not known. Points that such a particle carries, with others or alone, are replaced: each of their particles gets
+// one of them for its own, with the area that it carried, so that contact is as stiff as before for each particle at most; points
+// that are left over are none.
 class TornBody {
  public:
   // The ends of links that are gone, by places of particles (ContactBody::slot_of()).
   TornBody(const ContactBody &body, const std::vector<int> &ends);
 
   bool is_at_tear(int slot) const { return at_tear[slot] != 0; }
-  bool moved_to_particle(int point) const { return alone[point] != 0; }
+  bool is_replaced(int point) const { return replaced[point] != 0; }
   PointCarriers carriers_of(int point) const
   {
     const int *const at = &first[2 * point];
     return {&carriers[at[0]], &carriers[at[1]], &carriers[at[2]]};
   }
   BodyCarriers all_carriers() const { return {carriers.data(), first.data()}; }
+  const double *areas() const { return area.data(); }
   std::size_t bytes() const
-  { return at_tear.capacity() + alone.capacity() + carriers.capacity() * sizeof(PointCarrier) + first.capacity() * sizeof(int); }
+  {
+    return at_tear.capacity() + replaced.capacity() + carriers.capacity() * sizeof(PointCarrier) +
+           first.capacity() * sizeof(int) + area.capacity() * sizeof(double);
+  }
 
  private:
-  std::vector<char> at_tear, alone;    // by places of particles, and by points
+  std::vector<int> own_particles(const ContactBody &body);
+
+  std::vector<char> at_tear, replaced;    // by places of particles, and by points
   std::vector<PointCarrier> carriers;
   std::vector<int> first;
+  std::vector<double> area;
 };
 
 // All particles where they are now, or where they were in the step before.
@@ -85,8 +94,11 @@ struct ContactObject {
   void find_host_slots();
   PointCarriers carriers_of(int point) const { return torn ? torn->carriers_of(point) : body->carriers_of(point); }
   BodyCarriers all_carriers() const { return torn ? torn->all_carriers() : body->all_carriers(); }
+  // Whether a point is carried otherwise, or stands for another area, than by `before`, null where the object was whole.
+  bool has_changed(int point, const TornBody *before) const;
+  const double *areas() const { return torn ? torn->areas() : body->areas(); }
   // Whether the surface around a point has no normal: its cell is torn.
-  bool faces_all(int point) const { return body->is_line() || (torn && torn->moved_to_particle(point)); }
+  bool faces_all(int point) const { return body->is_line() || (torn && torn->is_replaced(point)); }
   const Spot<double> &rigid_at(const Moment &at) const { return at.is_before ? rigid_before : rigid; }
   // Corners of the box around a rigid body.
   std::array<Vec3, 8> corners() const
@@ -103,7 +115,8 @@ struct ContactObject {
   {
     if (is_rigid()) return slot[0] >= 0;
     const PointCarriers by = carriers_of(point);
-    return std::all_of(by.first, by.last, [this](const PointCarrier &one) { return slot[one.slot] >= 0; });
+    return by.first < by.middle &&
+           std::all_of(by.first, by.last, [this](const PointCarrier &one) { return slot[one.slot] >= 0; });
   }
   Vec3 place_by(const PointCarriers &by, const PaddedVec3 *at) const { return weighted_sum(by.first, by.middle, at); }
   Vec3 place_of(int point, const PaddedVec3 *at) const { return place_by(carriers_of(point), at); }
@@ -185,6 +198,7 @@ class ContactArrays {
   void renew(std::size_t particles)
   {
     place_rows.swap(old_rows);
+    rows_before.swap(old_rows_before);
     place_rows.resize(particles + 1);
     rows_before.resize(particles + 1);
     force_rows.resize(particles);
@@ -195,17 +209,25 @@ class ContactArrays {
   void clear_forces(int from, int to) { std::fill(force_rows.begin() + from, force_rows.begin() + to, PaddedVec3{}); }
   PaddedVec3 *place() { return place_rows.data() + 1; }    // slot -1, of a particle that is not here, may be read
   const PaddedVec3 *place() const { return place_rows.data() + 1; }
-  PaddedVec3 *place_before() { return rows_before.data() + 1; }                   // in the step before
-  const PaddedVec3 *place_of_old_slots() const { return old_rows.data() + 1; }    // the places before renew() was called
+  PaddedVec3 *place_before() { return rows_before.data() + 1; }    // in the step before
+  const PaddedVec3 *place_before() const { return rows_before.data() + 1; }
+  // The places before renew() was called, and those of the step before.
+  const PaddedVec3 *place_of_old_slots() const { return old_rows.data() + 1; }
+  const PaddedVec3 *place_before_of_old_slots() const { return old_rows_before.data() + 1; }
   Moment now() const { return {place(), false}; }
   Moment before() const { return {rows_before.data() + 1, true}; }
   PaddedVec3 *force() { return force_rows.data(); }
   const PaddedVec3 *force() const { return force_rows.data(); }
   std::size_t bytes() const
-  { return (place_rows.capacity() + rows_before.capacity() + old_rows.capacity() + force_rows.capacity()) * sizeof(PaddedVec3); }
+  {
+    return (place_rows.capacity() + rows_before.capacity() + old_rows.capacity() + old_rows_before.capacity() +
+            force_rows.capacity()) *
+           sizeof(PaddedVec3);
+  }
 
  private:
-  std::vector<PaddedVec3> place_rows = std::vector<PaddedVec3>(1), rows_before = place_rows, old_rows, force_rows;
+  std::vector<PaddedVec3> place_rows = std::vector<PaddedVec3>(1), rows_before = place_rows, old_rows, old_rows_before,
+                          force_rows;
 };
 
 // The points of an object whose particles are here, by the places that the cells that carry them had when lists were made.

@@ -197,6 +197,7 @@ void ContactWorld::list(const std::vector<ContactParticle> &particles, const Coo
   for (ContactObject &one : all) clear_forces(one);
   arrays.renew(particles.size());
   for (std::size_t slot = 0; slot < particles.size(); ++slot) arrays.place()[slot].value = place(places, slot);
+  const PaddedVec3 *const last = has_before ? arrays.place_before_of_old_slots() : arrays.place_of_old_slots();
   std::size_t from = 0;
   std::vector<Vec3> changes;
   for (int n = 0; n < objects(); ++n) {
@@ -210,7 +211,7 @@ void ContactWorld::list(const std::vector<ContactParticle> &particles, const Coo
       const int at = one.body->slot_of(particles[from].node);
       one.slot[at] = static_cast<int>(from);
       const bool was_here = !slot_before.empty() && slot_before[at] >= 0;
-      arrays.place_before()[from] = was_here ? arrays.place_of_old_slots()[slot_before[at]] : arrays.place()[from];
+      arrays.place_before()[from] = was_here ? last[slot_before[at]] : arrays.place()[from];
       if (was_here) changes.push_back(arrays.place()[from].value - arrays.place_before()[from].value);
     }
     one.last_slot = static_cast<int>(from);
@@ -231,8 +232,12 @@ void ContactWorld::list(const std::vector<ContactParticle> &particles, const Coo
   listed = has_before = true;
 }
 
-void ContactWorld::tear(const TornEnds &ends, bool in_run)
+void ContactWorld::tear(const TornEnds &ends, const Coordinates *places)
 {
+  if (places && !has_before) {
+    move_to(*places);
+    has_before = true;
+  }
   for (const auto &[id, nodes] : ends) {
     const auto found = number_of.find(id);
     if (found == number_of.end() || all[found->second].is_rigid() || all[found->second].body->is_line()) continue;
@@ -241,7 +246,7 @@ void ContactWorld::tear(const TornEnds &ends, bool in_run)
     for (const int node : nodes) slots.push_back(one.body->slot_of(node));
     const std::shared_ptr<const TornBody> before = one.torn;
     one.torn = std::make_shared<const TornBody>(*one.body, slots);
-    if (!in_run) continue;
+    if (!places) continue;
     for (auto &[key, field] : fields) {
       const bool owns = owner_of(key) == found->second;
       if (owns) field->owner_tears(before.get(), arrays, account);

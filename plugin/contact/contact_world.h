@@ -51,10 +51,10 @@ class ContactWorld {
   // Forgets lists and all points except those in contact: to be called before list() at the setup of a run.
   void forget();
 
-  // Sets links of objects that are gone: the numbers of particles at their ends, by ids of objects. In a run contacts of points
-  // that other particles carry now go on or end, and list() must follow; at its setup they already have.
+  // Sets links of objects that are gone: the numbers of particles at their ends, by ids of objects. In a run, with all particles
+  // at these places, contacts of points that are replaced end, and list() must follow; at its setup, null, they have ended.
   using TornEnds = std::map<int, std::vector<int>>;
-  void tear(const TornEnds &ends, bool in_run);
+  void tear(const TornEnds &ends, const Coordinates *places);
 
   // Sets kernels and threads. Null: contacts one at a time, with the same bits. The number of threads changes no bit either.
   void use(const ContactKernels *kernels, const Threads &now)

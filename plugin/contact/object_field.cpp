@@ -41,10 +41,10 @@ PushTask ObjectField::task(PointKind kind, const ContactArrays &arrays, double d
 }
 
 PointsTask ObjectField::points_task(const ContactArrays &arrays) const
-{ return {owner->all_carriers(), owner->body->areas(), owner->slot.data(), arrays.place()}; }
+{ return {owner->all_carriers(), owner->areas(), owner->slot.data(), arrays.place()}; }
 
 PointNow ObjectField::point_now(std::size_t q, const ContactArrays &arrays) const
-{ return {owner->place_of(near[q], arrays.place()), owner->shift_of(near[q], arrays.place()), surface_point(q).area}; }
+{ return {owner->place_of(near[q], arrays.place()), owner->shift_of(near[q], arrays.place()), owner->areas()[near[q]]}; }
 
 bool ObjectField::find_facing(std::size_t q, const Moment &at, Facing &facing) const
 {
@@ -99,12 +99,11 @@ void ObjectField::count(const FieldContact &contact, const PushedContact<double>
   ++account.touching;
 }
 
-// Ends contacts of points that another particle carries than before: the host may be elsewhere around it.
+// Ends contacts of points that are replaced.
 void ObjectField::owner_tears(const TornBody *before, const ContactArrays &, ContactAccount &account)
 {
   const auto moved = [&](const FieldContact &one) {
-    const bool now = owner->torn->moved_to_particle(one.point) && !(before && before->moved_to_particle(one.point));
-    if (!now) return false;
+    if (!owner->has_changed(one.point, before)) return false;
     account.heat += one.state.memory.stick_energy;
     account.let_go += one.last.energy - 0.5 * dot(one.last.force, one.last.moved);
     return true;

@@ -35,20 +35,23 @@ bool PlaneField::look_at(std::size_t q, const ContactArrays &arrays, bool may_be
   return true;
 }
 
-// A contact goes on with the force that it had.
-void PlaneField::owner_tears(const TornBody *before, const ContactArrays &arrays, ContactAccount &)
+// Ends contacts of points that are replaced.
+void PlaneField::owner_tears(const TornBody *before, const ContactArrays &arrays, ContactAccount &account)
 {
-  for (PlaneContact &one : contacts) {
+  const auto ends = [&](PlaneContact &one) {
+    if (!owner->has_changed(one.point, before)) return false;
     const PointCarriers by = before ? before->carriers_of(one.point) : owner->body->carriers_of(one.point);
-    const PointCarriers now = owner->carriers_of(one.point);
-    const auto is_here = [this](const PointCarrier &carrier) { return owner->slot[carrier.slot] >= 0; };
-    if (!std::all_of(by.first, by.middle, is_here) || !std::all_of(now.first, now.middle, is_here)) continue;
-    const Vec3 from = owner->place_by(by, arrays.place()), to = owner->place_by(now, arrays.place());
-    const double deeper = depth_at(to) - depth_at(from);
-    one.memory.depth += deeper;
-    one.memory.offset += deeper;
-    one.anchor += to - from;
-  }
+    const double area = before ? before->areas()[one.point] : owner->body->areas()[one.point];
+    const Vec3 moved = owner->place_by(by, arrays.place()) - owner->place_by(by, arrays.place_before());
+    const ContactForce<double> last = contact_pressure(law, area, 1.0, one.memory.depth, 0.0, one.memory);
+    // Its last forces still did work in half of this step, as leap-frog counts it.
+    const double deeper = -dot(plane.normal(), moved);
+    account.heat += one.memory.stick_energy - 0.5 * dot(one.memory.pull + one.memory.drag, moved);
+    account.damped += last_damping_work(one.memory, one.memory.depth + deeper);
+    account.let_go += last.surface_energy + 0.5 * last.press * deeper;
+    return true;
+  };
+  contacts.erase(std::remove_if(contacts.begin(), contacts.end(), ends), contacts.end());
 }
 
 int PlaneField::cost() const
@@ -70,7 +73,7 @@ PlaneField::OnPoint PlaneField::push(PlaneContact &contact, std::size_t q, const
   const Vec3 x = owner->place_of(near[q], arrays.place());
   const double depth = depth_at(x);
   if (depth <= 0.0) return {{}, depth, 0.0, 0.0, 0.0};
-  const double area = owner->body->points()[near[q]].area;
+  const double area = owner->areas()[near[q]];
   ContactForce<double> force = contact_pressure(law, area, 1.0, depth, dt, contact.memory);
   if (law.friction > 0.0) {
     const Vec3 there = x - plane.shift;    // anchors go with the plane

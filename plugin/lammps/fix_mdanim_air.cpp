@@ -3,6 +3,7 @@
 
 #include "lammps/fix_mdanim_air.h"
 
+#include "lammps/fix_mdanim_tear.h"
 #include "lammps/keywords.h"
 #include "lammps/object_table.h"
 #include "lammps/shared_file.h"
@@ -69,7 +70,7 @@ FixMdanimAir::FixMdanimAir(LAMMPS *lmp, int narg, char **arg) : FixBase(lmp, nar
   if (skins.empty()) error->all(FLERR, "{}: there is no surface to push at; write skins FILE with a line object first", STYLE);
   for (auto &[molecule, skin] : skins) {
     nodes.append(molecule, skin->nodes());
-    objects.push_back({std::move(skin), {}});
+    objects.push_back({std::move(skin), {}, {}});
   }
   size_array_rows = static_cast<int>(objects.size());
 }
@@ -97,6 +98,9 @@ void FixMdanimAir::init()
 {
   FixBase::init();
   nodes.find(name());
+  tears = FixMdanimTear::of(lmp);
+  known_tears = 0;
+  for (AirObject &one : objects) one.holes = {};
 }
 
 // --- forces ---
@@ -104,12 +108,24 @@ void FixMdanimAir::init()
 // Simulated time by the step alone, as all that changes with time has it.
 Vec3 FixMdanimAir::wind() const { return path.at(static_cast<double>(update->ntimestep) * update->dt); }
 
+// Takes away what links held together that are gone since the last time.
+void FixMdanimAir::open_holes()
+{
+  if (!tears) return;
+  for (; known_tears < tears->gone().size(); ++known_tears) {
+    const GoneLink &link = tears->gone()[known_tears];
+    for (int n = 0; n < nodes.count(); ++n)
+      if (nodes.molecule(n) == link.object) objects[n].skin->open(link.low, link.high, objects[n].holes);
+  }
+}
+
 // Velocities are those of half a step before: what has moved the particles here.
 void FixMdanimAir::find_pushes()
 {
   wind_now = wind();
   const AirLaw law{wind_now, 0.5 * density * coefficient, update->dt};
   const double units = 1.0 / force->ftm2v;
+  open_holes();
   nodes.share();
   pushes.clear();
   for (int n = 0; n < nodes.count(); ++n) {
@@ -125,7 +141,7 @@ void FixMdanimAir::find_pushes()
       scratch.v[k] = nodes.speed(first + k);
       scratch.mass[k] = nodes.mass(first + k);
     }
-    one.force = units * one.skin->push(law, above, scratch);
+    one.force = units * one.skin->push(law, above, one.holes, scratch);
     for (std::size_t k = 0; k < count; ++k)
       if (const int i = nodes.target(first + k); i != ObjectNodes::ELSEWHERE) pushes.push_back({i, units * scratch.force[k]});
   }

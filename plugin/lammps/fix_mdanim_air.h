@@ -42,6 +42,7 @@ class FixMdanimAir : public mdanim::FixBase, public mdanim::Stateful {
   struct AirObject {
     std::shared_ptr<const mdanim::AirSkin> skin;
     mdanim::Vec3 force;    // on all of it
+    mdanim::AirSkin::Holes holes;
   };
   struct GivenForce {
     int i;    // local particle
@@ -51,6 +52,7 @@ class FixMdanimAir : public mdanim::FixBase, public mdanim::Stateful {
   void read_path(int narg, char **arg, int &iarg);
   void locate() { nodes.locate(name(), groupbit); }
   void find_pushes();
+  void open_holes();
   void push() const;
   void count();    // the work of half a step
   mdanim::Vec3 wind() const;
@@ -61,6 +63,8 @@ class FixMdanimAir : public mdanim::FixBase, public mdanim::Stateful {
   double above;               // only there
   std::vector<AirObject> objects;
   mdanim::ObjectNodes nodes;
+  const class FixMdanimTear *tears = nullptr;    // null where nothing tears
+  std::size_t known_tears = 0;                   // of its links
   mdanim::AirScratch scratch;
   std::vector<GivenForce> pushes;                   // of this step
   std::map<tagint, mdanim::Vec3> acted;             // forces of a state, until the setup of a run

@@ -253,8 +253,13 @@ void FixMdanimContact::take_tears(bool in_run)
     if (const auto found = ends.find(one.object); found != ends.end())
       found->second.insert(found->second.end(), {one.low, one.high});
   known_tears = tears->gone().size();
-  world_of_contact.tear(ends, in_run);
-  if (in_run) list();
+  if (!in_run) {
+    world_of_contact.tear(ends, nullptr);
+    return;
+  }
+  const Coordinates now = places_now();
+  world_of_contact.tear(ends, &now);
+  list();
 }
 
 void FixMdanimContact::post_neighbor() { list(); }

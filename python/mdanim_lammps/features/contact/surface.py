@@ -20,6 +20,7 @@ from ...model.system import System
 from ...reach import by, thrower_of
 from ...scene.formatting import at_least, say
 from ...scene.scene import Box, SceneRecord
+from ..tearing.words import tears
 from .barrier import GAP, ObjectContact, barrier, barrier_rate, excluded
 from .forms import particle_stiffness
 from .pairs import USUAL_DAMPING, any_friction, belts, damping, frictions, largest_of_partners, pair_rules, runs
@@ -349,7 +350,7 @@ class SurfacePlanes(Planes):
         return self.law.dashpots(context, self.stiffness(context))
 
     def losses(self, scene):
-        return self.law.losses(scene)
+        return (*self.law.losses(scene), *((LET_GO,) if any(map(tears, scene.solids)) else ()))  # contact of what is torn ends
 
     def sources(self, scene):
         return (WORK,) if any(p.motion for p in self.planes(scene)) else ()
