@@ -227,7 +227,7 @@ void ContactWorld::list(const std::vector<ContactParticle> &particles, const Coo
   find_points();
   for (const int n : torn_now)    // points that are below a plane since another particle carries them
     for (const FieldSums::Active &one : sums.all())
-      if (one.a == n && one.field->normal()) one.field->settle(arrays);
+      if (one.a == n && one.field->at_plane()) one.field->settle(arrays);
   torn_now.clear();
   listed = has_before = true;
 }
