@@ -188,6 +188,8 @@ void FixMdanimTear::watch_bonds(int i, const TearRules &of, tagint first)
   }
 }
 
+// Lists springs over two links of which an end or the middle is here, unless both links are gone. Particles beyond a link that is
+// gone may be anywhere.
 void FixMdanimTear::span(const TearRules &of, tagint first)
 {
   for (const TearOver &over : of.overs) {
@@ -195,25 +197,33 @@ void FixMdanimTear::span(const TearRules &of, tagint first)
     Spanning one{&over, {atom->map(tag[0]), atom->map(tag[1]), atom->map(tag[2])}, {-1, -1}, {}};
     const auto &[a, m, b] = one.at;
     if (!is_here(a) && !is_here(m) && !is_here(b)) continue;
-    for (int k = 0; k < 3; ++k)
-      if (one.at[k] < 0) springs->lost_partner(is_here(a) ? a : is_here(b) ? b : m, static_cast<int>(tag[k]));
     if (is_here(a)) one.slot[0] = slot_of(a, tag[2]);
     if (is_here(b)) one.slot[1] = slot_of(b, tag[0]);
     if ((is_here(a) && one.slot[0] < 0) || (is_here(b) && one.slot[1] < 0))
       error->one(FLERR, "{}: particles {} and {} have no bond over two links, which its objects tell of", name(), tag[0], tag[2]);
-    // Each end knows its own link, and the spring itself; the middle knows both links.
-    const auto gone = [&](int end, int middle, tagint of_end, tagint of_middle) {
-      return is_here(end) ? is_gone(end, slot_of(end, of_middle)) : is_here(middle) && is_gone(middle, slot_of(middle, of_end));
-    };
-    one.gone[0] = gone(a, m, tag[0], tag[1]);
-    one.gone[1] = gone(b, m, tag[2], tag[1]);
-    const bool itself = (is_here(a) && is_gone(a, one.slot[0])) || (is_here(b) && is_gone(b, one.slot[1]));
-    if (itself && !is_here(m)) {
-      if (!is_here(b) && !one.gone[0]) one.gone[1] = true;
-      if (!is_here(a) && !one.gone[1]) one.gone[0] = true;
-    }
+    find_gone(one, tag);
+    if (one.gone[0] && one.gone[1]) continue;
+    const int from = one.gone[0] ? 1 : 0, to = one.gone[1] ? 1 : 2;    // the particles that it pulls at
+    if (std::none_of(one.at + from, one.at + to + 1, [this](int i) { return is_here(i); })) continue;
+    for (int k = from; k <= to; ++k)
+      if (one.at[k] < 0) springs->lost_partner(is_here(a) ? a : is_here(b) ? b : m, static_cast<int>(tag[k]));
     spanning.push_back(one);
   }
+}
+
+// Which of its links are gone: each end knows its own link, and the spring itself; the middle knows both links.
+void FixMdanimTear::find_gone(Spanning &one, const tagint (&tag)[3]) const
+{
+  const int m = one.at[1];
+  bool known[2], itself = false;
+  for (int k = 0; k < 2; ++k) {
+    const int end = one.at[2 * k];
+    known[k] = is_here(end) || is_here(m);
+    if (known[k]) one.gone[k] = is_here(end) ? is_gone(end, slot_of(end, tag[1])) : is_gone(m, slot_of(m, tag[2 * k]));
+    if (is_here(end)) itself = is_gone(end, one.slot[k]);
+  }
+  for (int k = 0; k < 2; ++k)
+    if (!known[k]) one.gone[k] = itself && !one.gone[1 - k];
 }
 
 // --- what breaks ---

@@ -70,6 +70,7 @@ class FixMdanimTear : public mdanim::FixBase {
   void watch();
   void watch_bonds(int i, const mdanim::TearRules &rules, tagint lowest);
   void span(const mdanim::TearRules &rules, tagint lowest);
+  void find_gone(Spanning &one, const tagint (&tag)[3]) const;
   int number(int i) const;    // of the object of a particle among those of the rules; -1 for none
   void find_bits();
   int *bits(int i) const { return has_one ? one_number() + i : numbers()[i]; }

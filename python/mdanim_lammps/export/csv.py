@@ -64,12 +64,12 @@ def system_of(trajectory: Trajectory) -> System | None:
 
 
 def elastic(system: System, position: np.ndarray, gone: np.ndarray | None = None) -> np.ndarray:
-    """Energy of the springs of each object [J], shape (O,), for positions of all particles [m], shape (N, 3), of which some have
-    lost the spring to the next one; NaN for objects that are torn, whose springs are no longer those of the scene."""
+    """Energy of the springs of each object [J], shape (O,), for positions of all particles [m], shape (N, 3), and the ends
+    of springs that are gone, shape (G, 2); NaN for objects that are torn, whose springs are no longer those of the scene."""
     i, j = system.spring.T
     stretch = np.linalg.norm(position[i] - position[j], axis=1) - system.rest
     energy = 0.5 * system.stiffness * stretch**2 - system.preload_energy
     found = np.bincount(system.object[i], energy, len(system.names))
     if gone is not None:
-        found[np.unique(system.object[gone])] = np.nan
+        found[np.unique(system.object[gone[:, 0]])] = np.nan
     return found

@@ -44,6 +44,8 @@ class Surface:
     tube: np.ndarray | None = None
     """Ways from the sums of particle positions to the vertices of a tube around a chain of particles, as `tube.Tubes` takes them,
     shape (V, 4); None of all else."""
+    patch: np.ndarray | None = None
+    """Of what may tear, the patch of each vertex (`patches.py`), int32, shape (V,); None of all else."""
 
     def vertices(self, position: np.ndarray) -> np.ndarray:
         """Vertex positions [m], shape (V, 3), for particle positions [m], shape (N, 3)."""
@@ -126,6 +128,8 @@ class Model(Particles):
     """Particles that are held until they are let go, bool, shape (N,); None for none. Otherwise they are as all that move."""
     driven: bool = False
     """Whether some effect moves its held particles."""
+    tears: bool = False
+    """Whether its springs may break: it is then drawn by patches (`patches.py`)."""
     inertia: np.ndarray | None = None
     """Tensor of inertia about the centre of mass, world frame, at the start [kg m^2], shape (3, 3), of a body that moves as a
     whole; None of a body that deforms, or is held."""

@@ -35,8 +35,11 @@ class Tubes:
         self.count = first
 
     def torn(self, position: np.ndarray, gone: np.ndarray) -> Iterator[tuple[slice, np.ndarray]]:
-        """Vertices of tubes that are torn [m], shape (n, 3), with their rows, for particle positions [m], shape (N, 3), and which
-        of them have lost the link to the next one, bool, shape (N,)."""
+        """Vertices of tubes that are torn [m], shape (n, 3), with their rows, for particle positions [m], shape (N, 3), and the
+        ends of springs that are gone, shape (G, 2)."""
+        low, high = gone.T
+        gone = np.zeros(len(position), bool)
+        gone[low[high == low + 1]] = True
         for particles, place, ring, way, rows in self._parts:
             if gone[particles][:-1].any():
                 yield rows, in_pieces(position[particles], gone[particles][:-1], place, ring, way)

@@ -89,23 +89,34 @@ class Action:
         return (self.bounds[0] + self.bounds[1]) / 2
 
 
+CRUMBS = 0.05
+"""Part of the particles of what is torn that may fly off on each side."""
+
+
 def action_of(trajectory: Trajectory, samples: int = 40) -> Action:
     """Bounds of all objects in all frames. Raises OutputError where a position is NaN or infinite.
 
     Centres are taken from every frame, extents about them from ``samples`` frames, so that a long trajectory
     need not be read whole. Left out is what would make everything else tiny: an object, where there is no
     ground, from when it has fallen out of the scene; of a crowd the outermost twentieth on each side and what
-    lies farther from the start than four times its size; of few objects what lies ten times farther still.
+    lies farther from the start than four times its size; of few objects what lies ten times farther still; of
+    what is torn the outermost twentieth of its particles on each side.
     """
-    metadata, centers = trajectory.metadata, trajectory.centers
+    metadata, centers = trajectory.metadata, np.array(trajectory.centers)
     frames = np.unique(np.linspace(0, len(trajectory) - 1, samples).astype(int))
     first = np.searchsorted(metadata.skin.object_of_vertex, np.arange(len(metadata.names)))
     below = np.zeros(centers.shape[1:])
     above = np.zeros(centers.shape[1:])
     for frame in frames:
-        vertices = metadata.skin.vertices(trajectory.position(frame))
-        np.minimum(below, np.minimum.reduceat(vertices, first) - centers[frame], out=below)
-        np.maximum(above, np.maximum.reduceat(vertices, first) - centers[frame], out=above)
+        position, torn = trajectory.position(frame), trajectory.gone(frame)
+        vertices = metadata.skin.vertices(position, torn)
+        least, most = (f.reduceat(vertices, first) for f in (np.minimum, np.maximum))
+        for m in () if torn is None else np.unique(metadata.object_of[torn[:, 0]]):
+            own = position[metadata.first[m] : metadata.first[m + 1]]
+            least[m], most[m] = np.quantile(own, [CRUMBS, 1.0 - CRUMBS], axis=0)
+            centers[frame, m] = 0.5 * (least[m] + most[m])
+        np.minimum(below, least - centers[frame], out=below)
+        np.maximum(above, most - centers[frame], out=above)
     check_places(trajectory.path, centers, below, above)
     # A stretch is one frame, unless that makes more boxes than are worth looking at.
     stretches = np.array_split(np.arange(len(centers)), min(len(centers), max(1, _BOXES // len(metadata.names))))

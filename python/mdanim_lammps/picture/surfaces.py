@@ -43,8 +43,8 @@ class ShadedMesh:
     """Weights of these in two tangents at each of the coarse ones, shape (C, S) each."""
 
     def vertices(self, position: np.ndarray, gone: np.ndarray | None = None) -> np.ndarray:
-        """Vertex positions [m], shape (V, 3), for stored particle positions [m], shape (N, 3), of which some have lost the link
-        to the next one (Trajectory.gone)."""
+        """Vertex positions [m], shape (V, 3), for stored particle positions [m], shape (N, 3), and the ends of springs that are
+        gone (Trajectory.gone)."""
         return self.carry.places(position, gone)
 
     def normals(self, vertices: np.ndarray, position: np.ndarray, gone: np.ndarray | None = None) -> np.ndarray:
@@ -79,7 +79,8 @@ def shaded_mesh(metadata: TrajectoryMetadata, rest: np.ndarray, pixel: np.ndarra
     fewer = np.zeros(0, dtype=np.int64)
     if pixel is not None and corner.size:
         # Colours of vertices stay as fine as they are.
-        pixel = np.where(np.bincount(skin.object_of_vertex, skin.painted, len(pixel)) > 0, 0.0, pixel)
+        kept = skin.painted | skin.patched
+        pixel = np.where(np.bincount(skin.object_of_vertex, kept, len(pixel)) > 0, 0.0, pixel)
         triangle, corner, fewer = _fewer(vertices, triangle, corner, skin.object_of_vertex, pixel)
     count = int(corner.max()) + 1 if corner.size else 0
     # Any corner that became the new vertex tells which old vertex it was.

@@ -20,7 +20,7 @@ from ..scene.scene import Save, SceneRecord
 from .frame_reader import EVERYTHING, FrameReader
 from .html import html_table
 from .trajectory_file import NOT_WRITTEN, find_trajectory, frame_shapes, open_trajectory, read_metadata, row_checksum
-from .trajectory_metadata import links_gone
+from .trajectory_metadata import ends_gone
 from .untrusted import check_frames, check_hdf5, check_metadata, check_steps
 
 if TYPE_CHECKING:
@@ -186,8 +186,8 @@ class Trajectory(*TRACKS):  # type: ignore[misc]  # features are found when the 
         return found
 
     def gone(self, frame: int) -> np.ndarray | None:
-        """Which stored particles have lost the spring to the next one, bool, shape (N,); None where none may."""
-        return links_gone(self.metadata, lambda name: self._read(name, frame))
+        """Ends of the springs that are gone, as numbers of stored particles, int64, shape (G, 2); None where none may be."""
+        return ends_gone(self.metadata, lambda name: self._read(name, frame))
 
     def surface(self, frame: int) -> pyvista.PolyData:
         """Surfaces of all objects in one frame [m], as one mesh.

@@ -353,6 +353,9 @@ def _write_metadata(group: h5py.Group, metadata: TrajectoryMetadata, dt: float, 
     if tubes := [s.tube.ravel() for s in metadata.surfaces if s.tube is not None]:
         _table(surfaces, "tubed", np.array([s.tube is not None for s in metadata.surfaces], dtype=np.uint8))
         _table(surfaces, "tube", np.concatenate(tubes), packed=True)
+    if patches := [s.patch for s in metadata.surfaces if s.patch is not None]:
+        _table(surfaces, "patched", np.array([s.patch is not None for s in metadata.surfaces], dtype=np.uint8))
+        _table(surfaces, "patch", np.concatenate(patches), packed=True)
 
 
 def read_metadata(file: h5py.File) -> TrajectoryMetadata:
@@ -392,7 +395,10 @@ def _read_surfaces(group: Mapping[str, h5py.Dataset]) -> tuple[Surface, ...]:
     colors = group["color"][:].reshape(-1, 3) if "painted" in group else np.zeros((0, 3), dtype=np.uint8)
     tubed = group["tubed"][:].astype(bool) if "tubed" in group else np.zeros(len(shapes), dtype=bool)
     tubes = group["tube"][:].reshape(-1, 4) if "tubed" in group else np.zeros((0, 4))
-    counts = np.stack([3 * shapes[:, 0], shapes[:, 1] * shapes[:, 2], shapes[:, 1] * painted, shapes[:, 1] * tubed], axis=1)
+    patched = group["patched"][:].astype(bool) if "patched" in group else np.zeros(len(shapes), dtype=bool)
+    patches = group["patch"][:] if "patched" in group else np.zeros(0, dtype=np.int32)
+    each = [3 * shapes[:, 0], shapes[:, 1] * shapes[:, 2], *(shapes[:, 1] * some for some in (painted, tubed, patched))]
+    counts = np.stack(each, axis=1)
     return tuple(
         Surface(
             triangle=flat["triangle"][t - 3 * triangles : t].reshape(-1, 3),
@@ -400,9 +406,10 @@ def _read_surfaces(group: Mapping[str, h5py.Dataset]) -> tuple[Surface, ...]:
             weight=flat["weight"][v - vertices * corners : v].reshape(-1, corners),
             color=colors[c - vertices : c] if has else None,
             tube=tubes[r - vertices : r] if round_ else None,
+            patch=patches[p - vertices : p] if tears else None,
         )
-        for (triangles, vertices, corners), (t, v, c, r), has, round_ in zip(
-            shapes, np.cumsum(counts, axis=0), painted, tubed, strict=True
+        for (triangles, vertices, corners), (t, v, c, r, p), has, round_, tears in zip(
+            shapes, np.cumsum(counts, axis=0), painted, tubed, patched, strict=True
         )
     )
 

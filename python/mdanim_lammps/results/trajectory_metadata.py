@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 
@@ -13,6 +14,7 @@ from ..effects.fields import GONE, OF_OBJECTS, Field
 from ..effects.kept import KeptRecord, records_of
 from ..model.grid import Grid
 from ..model.model import Layer, Model, Surface
+from ..model.patches import Patches, with_patches
 from ..model.tube import Tubes
 from ..scene.scene import Save, SceneRecord
 from .weights import Carry, Weights
@@ -87,12 +89,14 @@ class Skin:
     """int32, shape (V,)."""
     painted: np.ndarray
     """Vertices that have a colour of their own, bool, shape (V,)."""
+    patched: np.ndarray
+    """Vertices of objects that may tear, bool, shape (V,)."""
     paint: np.ndarray
     """These colours, uint8 RGB, shape (painted.sum(), 3)."""
 
     def vertices(self, position: np.ndarray, gone: np.ndarray | None = None) -> np.ndarray:
-        """Vertex positions [m], shape (V, 3), for stored particle positions [m], shape (N, 3), of which some have lost the link
-        to the next one (`links_gone`)."""
+        """Vertex positions [m], shape (V, 3), for stored particle positions [m], shape (N, 3), and the ends of springs that are
+        gone (`ends_gone`)."""
         return self.carry.places(position, gone)
 
 
@@ -102,16 +106,11 @@ def springs_gone(metadata: TrajectoryMetadata, value: Callable[[str], np.ndarray
     return None if of is None else np.asarray(value(of.table)) > 0.0
 
 
-def links_gone(metadata: TrajectoryMetadata, value: Callable[[str], np.ndarray]) -> np.ndarray | None:
-    """Which stored particles have lost the spring to the next one in a frame, bool, shape (N,); None where no spring may be gone.
+def ends_gone(metadata: TrajectoryMetadata, value: Callable[[str], np.ndarray]) -> np.ndarray | None:
+    """Ends of the springs that are gone in a frame, as numbers of stored particles, int64, shape (G, 2); None where none may be.
     ``value`` reads a table of the frame by its name."""
     gone = springs_gone(metadata, value)
-    if gone is None:
-        return None
-    first, second = np.searchsorted(metadata.id, metadata.bond).T
-    found = np.zeros(len(metadata.id), bool)
-    found[first[gone & (second == first + 1)]] = True
-    return found
+    return None if gone is None else np.searchsorted(metadata.id, metadata.bond[gone]).reshape(-1, 2)
 
 
 def stored_particles(model: Model, save: Save) -> np.ndarray:
@@ -122,7 +121,8 @@ def stored_particles(model: Model, save: Save) -> np.ndarray:
     if save is Save.ALL:
         return np.ones(len(model.position), dtype=bool)
     stored = np.asarray(model.layer) >= Layer.BOUNDARY
-    stored[model.surface.index[model.surface.weight != 0.0]] = True
+    surface = _surface_of(model)
+    stored[surface.index[surface.weight != 0.0]] = True
     return stored
 
 
@@ -196,7 +196,7 @@ def distinct_surfaces(models: Sequence[Model], stored: Sequence[np.ndarray]) -> 
     surfaces: list[Surface] = []
     used = []
     for model, kept in zip(models, stored):
-        surface = _within(model.surface, kept)
+        surface = _within(_surface_of(model), kept)
         kind = kinds.setdefault(_fingerprint(surface), len(surfaces))
         if kind == len(surfaces):
             surfaces.append(surface)
@@ -219,26 +219,31 @@ def merge_surfaces(metadata: TrajectoryMetadata) -> Skin:
     objects = np.arange(len(used), dtype=np.int32)
     triangle = [surface.triangle + first for surface, first in zip(used, first_vertex)]
     return Skin(
-        carry=_with_tubes(Weights.of(vertex[kept], particle[kept], weight[kept]), used, metadata.first, first_vertex),
+        carry=_carry(Weights.of(vertex[kept], particle[kept], weight[kept]), used, metadata.first, first_vertex),
         triangle=np.concatenate([np.zeros((0, 3), np.int32), *triangle]).astype(np.int32),
         object_of_triangle=np.repeat(objects, triangles),
         object_of_vertex=np.repeat(objects, vertices),
         painted=np.repeat([surface.color is not None for surface in used], vertices),
+        patched=np.repeat([surface.patch is not None for surface in used], vertices).astype(bool),
         paint=np.concatenate([np.zeros((0, 3), np.uint8), *(s.color for s in used if s.color is not None)]),
     )
 
 
-def _with_tubes(carry: Weights, used: Sequence[Surface], first: np.ndarray, first_vertex: np.ndarray) -> Weights:
-    """The same weights with what stands around lines of particles, where there are any."""
+def _carry(carry: Weights, used: Sequence[Surface], first: np.ndarray, first_vertex: np.ndarray) -> Weights:
+    """The same weights with what stands around lines of particles, and patches of what may tear, where there are any."""
     lines = [n for n, surface in enumerate(used) if surface.tube is not None]
-    if not lines:
+    patched = [n for n, surface in enumerate(used) if surface.patch is not None]
+    if not lines and not patched:
         return carry
-    chains = [(slice(int(first[n]), int(first[n + 1])), np.asarray(used[n].tube)) for n in lines]
+    particles = [slice(int(a), int(b)) for a, b in pairwise(first)]
+    chains = [(particles[n], np.asarray(used[n].tube)) for n in lines]
     around, row = np.full(len(carry), -1, np.int64), 0
     for n, (_, vertex) in zip(lines, chains):
         around[first_vertex[n] : first_vertex[n] + len(vertex)] = np.arange(row, row + len(vertex))
         row += len(vertex)
-    return Carry(carry.weight, carry.index, carry.first, Tubes(chains), around)
+    patches = Patches([(particles[n], int(first_vertex[n]), used[n]) for n in patched])
+    rows = np.arange(len(carry))
+    return Carry(carry.weight, carry.index, carry.first, Tubes(chains), around, patches, rows, len(rows))
 
 
 def _within(surface: Surface, kept: np.ndarray) -> Surface:
@@ -251,14 +256,19 @@ def _within(surface: Surface, kept: np.ndarray) -> Surface:
         weight=np.ascontiguousarray(surface.weight, dtype=np.float64),
         color=surface.color,
         tube=surface.tube,
+        patch=surface.patch,
     )
+
+
+def _surface_of(model: Model) -> Surface:
+    return with_patches(model) if model.tears else model.surface
 
 
 def _fingerprint(surface: Surface) -> bytes:
     import hashlib
 
     digest = hashlib.blake2b(digest_size=16)
-    more = [np.ascontiguousarray(array) for array in (surface.color, surface.tube) if array is not None]
+    more = [np.ascontiguousarray(array) for array in (surface.color, surface.tube, surface.patch) if array is not None]
     for array in (surface.triangle, surface.index, surface.weight, *more):
         digest.update(str(array.shape).encode())
         digest.update(array)

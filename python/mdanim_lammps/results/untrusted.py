@@ -137,6 +137,9 @@ def check_metadata(path: Path, m: TrajectoryMetadata) -> None:
         must(np.isfinite(surface.weight).all(), "a weight of a surface is NaN or infinite")
         color = surface.color
         must(color is None or (color.shape == (vertices, 3) and color.dtype == np.uint8), "a vertex has no colour")
+        if (patch := surface.patch) is not None:
+            must(patch.shape == (vertices,) and patch.dtype.kind == "i", "a surface lacks patches")
+            must(vertices > 0 and patch.min() >= -1 and patch.max() < vertices, "a surface has a patch that is not there")
         if (tube := surface.tube) is not None:
             must(size > 1 and tube.shape == (vertices, 4) and tube.dtype.kind == "f", "a tube lacks vertices")
             must(np.isfinite(tube).all() and ((tube[:, 0] >= 0) & (tube[:, 0] <= size - 1)).all(), "a tube is beyond its line")

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..model.patches import Patches
 from ..model.tube import Tubes
 
 
@@ -31,8 +32,8 @@ class Weights:
         return len(self.first)
 
     def places(self, position: np.ndarray, gone: np.ndarray | None = None) -> np.ndarray:
-        """Places [m], shape (V, 3), that hang on particles at these positions [m], shape (N, 3), of which some have lost the
-        link to the next one, bool, shape (N,)."""
+        """Places [m], shape (V, 3), that hang on particles at these positions [m], shape (N, 3); ``gone`` are the ends of springs
+        that are gone, shape (G, 2), None where none may be."""
         return self @ np.asarray(position, dtype=np.float64)
 
     def __matmul__(self, value: np.ndarray) -> np.ndarray:
@@ -55,23 +56,34 @@ class Weights:
 
 @dataclass(frozen=True)
 class Carry(Weights):
-    """Weights of particles in vertices, some of which stand around a line of particles."""
+    """Weights of particles in vertices, some of which stand around a line of particles, or are not drawn while all is whole."""
 
     tubes: Tubes
     """The tubes of these vertices."""
     around: np.ndarray
     """Row of each vertex among those of the tubes, -1 for none, int64, shape (V,)."""
+    patches: Patches
+    """Of all rows before some were chosen."""
+    row: np.ndarray
+    """Which of these each is, int64, shape (V,)."""
+    rows: int
+    """How many they were."""
 
     def places(self, position: np.ndarray, gone: np.ndarray | None = None) -> np.ndarray:
         position = np.asarray(position, dtype=np.float64)
+        gone = np.zeros((0, 2), np.int64) if gone is None else gone
         found = self @ position
         here = self.around >= 0
         found[here] += self.tubes.around(position)[self.around[here]]
-        for rows, vertices in () if gone is None else self.tubes.torn(position, gone):
+        for rows, vertices in self.tubes.torn(position, gone):
             torn = here & (self.around >= rows.start) & (self.around < rows.stop)
             found[torn] = vertices[self.around[torn] - rows.start]
+        drawn, place = np.ones(self.rows, bool), np.zeros((self.rows, 3))
+        self.patches.hide(position, gone, place, drawn)
+        away = ~drawn[self.row]
+        found[away] = place[self.row[away]]
         return found
 
     def __getitem__(self, row: np.ndarray) -> Carry:
         some = super().__getitem__(row)
-        return Carry(some.weight, some.index, some.first, self.tubes, self.around[row])
+        return Carry(some.weight, some.index, some.first, self.tubes, self.around[row], self.patches, self.row[row], self.rows)

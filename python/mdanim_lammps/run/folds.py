@@ -16,6 +16,9 @@ APART = 3.0
 FEW, PART = 3, 0.01
 """Particles, and part of all of the body, that may be where others are: skins that graze each other."""
 
+NONE = np.zeros(0, np.int64)
+"""No objects."""
+
 
 class Folds:
     """Looks for particles of one body that lie among others of it that were far away at the start, one of the two inside.
@@ -29,11 +32,11 @@ class Folds:
         self.may = kind[system.contact_kind] & ~system.still
         """Bodies that may fold, bool, shape (M,)."""
 
-    def find(self, objects: np.ndarray, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def find(self, objects: np.ndarray, x: np.ndarray, torn: np.ndarray = NONE) -> tuple[np.ndarray, np.ndarray]:
         """How many particles of each of these objects, ascending, shape (m,), lie so, int64, shape (m,), and their mean place
-        [m], shape (m, 3); x is [m], shape (N, 3)."""
+        [m], shape (m, 3); x is [m], shape (N, 3). Nothing is told of those that are ``torn``, whose pieces touch anywhere."""
         count, place = np.zeros(len(objects), np.int64), np.zeros((len(objects), 3))
-        for n in np.flatnonzero(self.may[objects]).tolist():
+        for n in np.flatnonzero(self.may[objects] & ~np.isin(objects, torn)).tolist():
             mine = slice(*self.system.first[objects[n] : objects[n] + 2])
             here, h = x[mine], float(self.system.spacing[objects[n]])
             bins = np.floor((here - here.min(0)) / (BIN * h)).astype(np.int64)

@@ -9,12 +9,13 @@ from types import MappingProxyType
 
 import numpy as np
 
-from ..effects.fields import Fields
+from ..effects.fields import GONE, Fields
 from ..effects.measured import Glance
 from ..engine.geometry import INVERTED, NOT_FINITE, Geometry
 from ..engine.plan import Plan
 from ..model.model import Model
-from ..model.system import centers
+from ..model.patches import Members
+from ..model.system import System, centers
 from ..results.quantities import recorded
 from .folds import Folds
 
@@ -53,6 +54,24 @@ def recorded_models(models: Sequence[Model], plan: Plan) -> tuple[Model, ...]:
     return tuple(model for model in models if model.name in wanted)
 
 
+class Torn:
+    """What tells nothing of a body any more: cells and objects of which springs are gone."""
+
+    def __init__(self, system: System, gone: np.ndarray):
+        self._system, self._ends = system, system.spring[gone]
+        self.apart = np.unique(system.object[self._ends[:, 0]])
+        """Objects that are torn, ascending, int64, shape (m,)."""
+
+    def cells(self) -> np.ndarray:
+        """Cells of the system with a spring that is gone, bool, shape (C,)."""
+        corner = self._system.hexahedron
+        found = np.zeros(len(corner), bool)
+        own = np.flatnonzero(np.isin(self._system.object[corner[:, 0]], self.apart))
+        if len(own):
+            found[own] = Members(corner[own].reshape(-1), np.repeat(np.arange(len(own)), 8)).broken(self._ends)
+        return found
+
+
 class Observer:
     """Looks at the particles of some objects of a plan.
 
@@ -84,22 +103,25 @@ class Observer:
             fields: what effects tell of the frame; nothing where these objects are out of their reach.
         """
         found, reach = self.geometry.glance(x, v, objects)
-        sound = found != NOT_FINITE
+        sound, torn = found != NOT_FINITE, self._torn(fields)
         return Observation(
             objects,
             *self._centers(objects, x, v),
             reach,
             self.geometry.largest_components(v, objects),
             None if sound else self._not_finite(objects, x, v),
-            np.flatnonzero(self.geometry.inverted(x, objects)) if found == INVERTED else np.zeros(0, np.int64),
-            self.geometry.sunk(x, near) if self.apart and sound else None,
-            *self.folds.find(objects, x if sound else self.system.position),
+            np.flatnonzero(self.geometry.inverted(x, objects) & ~torn.cells()) if found == INVERTED else np.zeros(0, np.int64),
+            self.geometry.sunk(x, np.setdiff1d(near, torn.apart)) if self.apart and sound else None,
+            *self.folds.find(objects, x if sound else self.system.position, torn.apart),
             {
                 column: look(Glance(self.context, m, model, x, v, fields))
                 for m, look, model, column in self.recorded
                 if sound and m in objects
             },
         )
+
+    def _torn(self, fields: Fields) -> Torn:
+        return Torn(self.system, np.flatnonzero(fields[GONE]) if GONE in fields else np.zeros(0, np.int64))
 
     def _centers(self, objects: np.ndarray, *vectors: np.ndarray) -> list[np.ndarray]:
         places = self.system.stretches(objects)

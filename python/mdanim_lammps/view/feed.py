@@ -35,7 +35,7 @@ from ..picture.rays import direction
 from ..picture.scenery import scenery
 from ..picture.surfaces import shaded_mesh
 from ..results.trajectory import Trajectory
-from ..results.trajectory_metadata import links_gone, springs_gone
+from ..results.trajectory_metadata import ends_gone, springs_gone
 from ..results.untrusted import check_places
 from ..scene.render import Floor, Render
 
@@ -101,13 +101,13 @@ class Feed:
         self.frames.close()
 
     def vertices(self, position: np.ndarray, gone: np.ndarray | None = None) -> np.ndarray:
-        """Vertices of all surfaces [m], shape (V, 3), for stored particles [m], shape (N, 3), of which some have lost the link
-        to the next one."""
+        """Vertices of all surfaces [m], shape (V, 3), for stored particles [m], shape (N, 3), and the ends of springs that are
+        gone (`gone`)."""
         return self._carry.places(position, gone)
 
     def gone(self, n: int) -> np.ndarray | None:
-        """Which stored particles have lost the link to the next one in a frame, as Trajectory.gone."""
-        return links_gone(self.metadata, lambda name: self.frames.value(name, n))
+        """Ends of the springs that are gone in a frame, as Trajectory.gone."""
+        return ends_gone(self.metadata, lambda name: self.frames.value(name, n))
 
     # --- the scene ----------------------------------------------------------------------------------------------
 
@@ -239,7 +239,7 @@ class Feed:
             return None
         grid, (smooth, raw, _) = self.scenery.liquid.grid, self._liquid(n)
         read = lambda k: (*without_puddles(grid, *self._liquid(k)[:2]), self.drops(k))
-        vertices = self.vertices(self.frames.value("position", n))
+        vertices = self.vertices(self.frames.value("position", n), self.gone(n))
         smooth, cut = one_sheet(grid, *without_puddles(grid, smooth, raw), vertices, self.triangle)
         low, high = self.scenery.liquid.low[2], self.scenery.liquid.high[2]
         height = np.rint(np.clip((smooth - low) / (high - low), 0.0, 1.0) * STEPS).astype("<u2")

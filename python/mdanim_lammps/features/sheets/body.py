@@ -5,7 +5,7 @@ resists bending."""
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -16,6 +16,7 @@ from ...model.build import NothingHeld, caught_in_box
 from ...model.lattice import Cells
 from ...scene.formatting import say
 from ...scene.scene import Accuracy, HoldAll, HoldFaces, HoldWithin, Sheet, Shell
+from ..tearing.words import tears
 from .drawn import both_sides
 from .tiled import Tiled, tiled
 from .weave import Weave, weave
@@ -67,7 +68,8 @@ class SheetBody(BareBody):
         held = held_particles(solid, woven, x)
         of_sheet = woven.springs(solid.elasticity.modulus, sheet.thickness, sheet.bending, held & ~held.all())
         cell = (woven.h, woven.apart, sheet.thickness)
-        return bare_model(solid, x, arm, woven.share, held, of_sheet, shared.once(_shared, sheet, h), cell)
+        model = bare_model(solid, x, arm, woven.share, held, of_sheet, shared.once(_shared, sheet, h), cell)
+        return replace(model, tears=tears(solid))
 
 
 @dataclass(frozen=True, eq=False)

@@ -3,8 +3,11 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from ...bodies import BodyKind
 from ...model.build import lattice_model
+from ..tearing.words import tears
 
 
 class LatticeBody(BodyKind):
@@ -17,7 +20,7 @@ class LatticeBody(BodyKind):
         return True
 
     def make(self, solid, h, shared):
-        return lattice_model(solid, h, shared)
+        return replace(lattice_model(solid, h, shared), tears=tears(solid))
 
 
 KINDS = (LatticeBody(),)

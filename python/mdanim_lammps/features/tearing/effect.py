@@ -43,8 +43,8 @@ class Tearing(Effect):
         return {TORN: np.zeros(len(context.system.spring), np.uint8)}
 
     def rate(self, context):
-        """2 lambda_max/m of what springs over two links leave along one of them, at its far end, beyond their own: k2 (L1 + L2)/L1
-        - k2 with L1 > (L1 + L2)/3, counted as 2 k2."""
+        """2 lambda_max/m of what springs over two links leave along one of them, at its far end, beyond their own:
+        k2 (L1 + L2)/L1 - k2 with L1 > (L1 + L2)/3, counted as 2 k2."""
         system = context.system
         more = np.zeros(len(system.spring))
         for m, solid in enumerate(context.solids):

@@ -12,8 +12,8 @@ from ...model.system import System
 from ...scene.shapes import Rope
 
 MORE = 1.25
-"""Strain that the links of a rope bear over that of the weakest one. Links that were all alike broke together: a cord of 100 links
-from which a ball fell came apart in 52 pieces."""
+"""Strain that the links of a rope bear over that of the weakest one. Links that were all alike broke together: a cord of 100
+links from which a ball fell came apart in 52 pieces."""
 SAME = 1e-9
 """Difference of lengths that are alike, over one of them."""
 
@@ -60,8 +60,8 @@ def middles(pair: np.ndarray, length: np.ndarray, over: np.ndarray) -> np.ndarra
 
 
 def limits(solid: Any, seed: int, strain: float, length: np.ndarray) -> np.ndarray:
-    """Lengths at which links are gone [m], from those without load, shape (L,). All of them bear the ``strain``; but of a rope one
-    link, which the seed and the name of the rope choose, and the others MORE: as no rope is alike everywhere, it tears in one
+    """Lengths at which links are gone [m], from those without load, shape (L,). All of them bear the ``strain``; but of a rope
+    one link, which the seed and the name of the rope choose, and the others MORE: as no rope is alike everywhere, it tears in one
     place."""
     if not isinstance(solid.shape, Rope):
         return (1.0 + strain) * length

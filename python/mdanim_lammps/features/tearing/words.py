@@ -29,8 +29,8 @@ class TearWords:
 
     tear_strain: float | None = setting(
         "<e>",
-        "Of what deforms: where it is stretched by more than this share of its length, it tears. Of a rope the weakest link, which "
-        "the `seed` of `control` chooses, bears so much, the others a quarter more. Absent: it never tears.",
+        "Of what deforms: where it is stretched by more than this share of its length, it tears. Of a rope the weakest link, "
+        "which the `seed` of `control` chooses, bears so much, the others a quarter more. Absent: it never tears.",
         "0.1", Rule.POSITIVE, default=None, limit=TEAR_STRAIN, after="damping", shared=True)  # fmt: skip
     """[-]; None for never."""
 
