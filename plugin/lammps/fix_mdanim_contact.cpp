@@ -6,7 +6,6 @@
 #include "lammps/fix_mdanim_contact.h"
 
 #include "contact/bodies_file.h"
-#include "lammps/fix_mdanim_tear.h"
 #include "lammps/keywords.h"
 #include "lammps/object_survey.h"
 #include "lammps/shared_file.h"
@@ -144,7 +143,7 @@ void FixMdanimContact::init()
   FixBase::init();
   need_molecules_of_pairs();
   moving.init(name());
-  tears = FixMdanimTear::of(lmp);
+  torn.init(lmp);
   threads_now = Threads();
   world_of_contact.use(nullptr, threads_now);    // until passes give those of their instructions
 }
@@ -237,28 +236,8 @@ void FixMdanimContact::setup_post_neighbor()
       error->all(FLERR, "{}: {}", name(), problem.what());
     }
   }
-  known_tears = 0;
-  take_tears(false);
+  torn.tell_all(world_of_contact);
   world_of_contact.forget();
-  list();
-}
-
-// Tells the world of contact which particles of objects are at links that are gone, where there are more than before.
-void FixMdanimContact::take_tears(bool in_run)
-{
-  if (!tears || tears->gone().size() == known_tears) return;
-  ContactWorld::TornEnds ends;
-  for (std::size_t n = known_tears; n < tears->gone().size(); ++n) ends[tears->gone()[n].object];
-  for (const GoneLink &one : tears->gone())
-    if (const auto found = ends.find(one.object); found != ends.end())
-      found->second.insert(found->second.end(), {one.low, one.high});
-  known_tears = tears->gone().size();
-  if (!in_run) {
-    world_of_contact.tear(ends, nullptr);
-    return;
-  }
-  const Coordinates now = places_now();
-  world_of_contact.tear(ends, &now);
   list();
 }
 
@@ -319,10 +298,7 @@ void FixMdanimContact::list()
   if (!std::is_sorted(needed.begin(), needed.end())) std::sort(needed.begin(), needed.end());
   std::vector<ContactParticle> particles;
   mine.clear();
-  for (const auto &[particle, i] : needed) {
-    particles.push_back(particle);
-    mine.push_back(i);
-  }
+  for (const auto &[particle, i] : needed) particles.push_back(particle), mine.push_back(i);
 
   const std::vector<ContactParticle> ascending = shared.share(particles);
   for (const ContactParticle &one : ascending)
@@ -365,7 +341,7 @@ template <class Add> void FixMdanimContact::give_forces(const Add &add) const
 void FixMdanimContact::push(double dt)
 {
   const Lap lap(seconds);
-  take_tears(dt > 0.0);
+  if (torn.tell(world_of_contact, [this] { return places_now(); })) list();
   need_lists();
   move_planes();
   world_of_contact.step(places_now(), dt);

@@ -10,6 +10,7 @@
 #include "lammps/object_table.h"
 #include "lammps/shared_places.h"
 #include "lammps/stateful.h"
+#include "lammps/torn_ends.h"
 #include "passes/pass_participant.h"
 #include "simd/kernels.h"
 
@@ -63,7 +64,6 @@ class FixMdanimContact : public mdanim::FixBase, public mdanim::PassParticipant,
   void need_lists() const;
   void place_rigid(std::vector<mdanim::Box> &boxes);
   void list();
-  void take_tears(bool in_run);
   mdanim::Coordinates places_now();
   template <class Add> void give_forces(const Add &add) const;
   void push(double dt);
@@ -80,10 +80,9 @@ class FixMdanimContact : public mdanim::FixBase, public mdanim::PassParticipant,
   mdanim::ContactWorld world_of_contact;
   mdanim::MovingPlanes moving;
 
-  const class FixMdanimTear *tears = nullptr;    // null where nothing tears
-  std::size_t known_tears = 0;                   // of its links
-  mdanim::ObjectTable objects;                   // at the setup; their particles when lists were made
-  std::vector<tagint> lowest;                    // tags of objects
+  mdanim::TornEnds torn;
+  mdanim::ObjectTable objects;    // at the setup; their particles when lists were made
+  std::vector<tagint> lowest;     // tags of objects
   std::vector<int> mine;          // local particles that take part in contacts, in the order of the world of contact
   mdanim::SharedPlaces shared;    // places of these particles, on all ranks
   mdanim::Positions my_places;

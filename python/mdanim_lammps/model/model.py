@@ -45,7 +45,7 @@ class Surface:
     """Ways from the sums of particle positions to the vertices of a tube around a chain of particles, as `tube.Tubes` takes them,
     shape (V, 4); None of all else."""
     patch: np.ndarray | None = None
-    """Of what may tear, the patch of each vertex (`patches.py`), int32, shape (V,); None of all else."""
+    """Patch of each vertex of what may tear (`patches.py`), int32, shape (V,); None of all else."""
 
     def vertices(self, position: np.ndarray) -> np.ndarray:
         """Vertex positions [m], shape (V, 3), for particle positions [m], shape (N, 3)."""

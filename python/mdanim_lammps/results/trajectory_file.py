@@ -347,15 +347,10 @@ def _write_metadata(group: h5py.Group, metadata: TrajectoryMetadata, dt: float, 
         none = np.zeros(0, np.int32 if name != "weight" else np.float64)
         flat = np.concatenate([none, *(getattr(s, name).ravel() for s in metadata.surfaces)])
         _table(surfaces, name, flat, packed=True)
-    if painted := [s.color.ravel() for s in metadata.surfaces if s.color is not None]:
-        _table(surfaces, "painted", np.array([s.color is not None for s in metadata.surfaces], dtype=np.uint8))
-        _table(surfaces, "color", np.concatenate(painted), packed=True)
-    if tubes := [s.tube.ravel() for s in metadata.surfaces if s.tube is not None]:
-        _table(surfaces, "tubed", np.array([s.tube is not None for s in metadata.surfaces], dtype=np.uint8))
-        _table(surfaces, "tube", np.concatenate(tubes), packed=True)
-    if patches := [s.patch for s in metadata.surfaces if s.patch is not None]:
-        _table(surfaces, "patched", np.array([s.patch is not None for s in metadata.surfaces], dtype=np.uint8))
-        _table(surfaces, "patch", np.concatenate(patches), packed=True)
+    for has, name in (("painted", "color"), ("tubed", "tube"), ("patched", "patch")):
+        if some := [getattr(s, name).ravel() for s in metadata.surfaces if getattr(s, name) is not None]:
+            _table(surfaces, has, np.array([getattr(s, name) is not None for s in metadata.surfaces], dtype=np.uint8))
+            _table(surfaces, name, np.concatenate(some), packed=True)
 
 
 def read_metadata(file: h5py.File) -> TrajectoryMetadata:
@@ -397,8 +392,8 @@ def _read_surfaces(group: Mapping[str, h5py.Dataset]) -> tuple[Surface, ...]:
     tubes = group["tube"][:].reshape(-1, 4) if "tubed" in group else np.zeros((0, 4))
     patched = group["patched"][:].astype(bool) if "patched" in group else np.zeros(len(shapes), dtype=bool)
     patches = group["patch"][:] if "patched" in group else np.zeros(0, dtype=np.int32)
-    each = [3 * shapes[:, 0], shapes[:, 1] * shapes[:, 2], *(shapes[:, 1] * some for some in (painted, tubed, patched))]
-    counts = np.stack(each, axis=1)
+    some = [shapes[:, 1] * has for has in (painted, tubed, patched)]
+    counts = np.stack([3 * shapes[:, 0], shapes[:, 1] * shapes[:, 2], *some], axis=1)
     return tuple(
         Surface(
             triangle=flat["triangle"][t - 3 * triangles : t].reshape(-1, 3),

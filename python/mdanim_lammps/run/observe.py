@@ -55,7 +55,7 @@ def recorded_models(models: Sequence[Model], plan: Plan) -> tuple[Model, ...]:
 
 
 class Torn:
-    """What tells nothing of a body any more: cells and objects of which springs are gone."""
+    """Cells and objects of which springs are gone: they tell nothing of a body any more."""
 
     def __init__(self, system: System, gone: np.ndarray):
         self._system, self._ends = system, system.spring[gone]

@@ -47,8 +47,7 @@ SLOW = 0.3
 SLOW_NEEDLE = 0.1
 """The same for a body that is one cell across along two axes."""
 UNGUARDED, NEEDLE = 0.35, 0.2
-"""Closing speed over the wave speed from which something passes what is one cell thin and no barrier (`guards`), and what is one
-cell across along two axes (bench/contact.py)."""
+"""Closing speed over the wave speed that passes what is one cell thin, or across along two axes (`guards`, bench/contact.py)."""
 HEAT, DAMPED, LET_GO, WORK = "friction_heat", "contact_damping_loss", "let_go", "work"
 """Columns of the ledger; the last is what surfaces and planes that move bring in."""
 TAKEN = {HEAT: "friction_heat", DAMPED: "damping_loss", LET_GO: "let_go", WORK: "work"}

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What breaks in an object, and when, as ``fix mdanim/tear`` reads it (docs/fix_mdanim_tear.md)."""
+"""Springs of an object that break, and when, as ``fix mdanim/tear`` reads it (docs/fix_mdanim_tear.md)."""
 
 from __future__ import annotations
 

@@ -10,7 +10,7 @@ from typing import Any
 from ...scene.holding import all_held
 from ...scene.limits import Limit
 from ...scene.schema import Observable, Rule, setting
-from ...scene.shapes import Rope, Sheet
+from ...scene.shapes import Rope, Sheet, Shell
 
 SWITCHES = {"tearing": "an object's `tear-strain e`"}
 
@@ -45,17 +45,20 @@ def tears(solid: Any) -> bool:
 
 def fills(solid: Any) -> bool:
     """Whether an object fills a volume with cells."""
-    return not isinstance(solid.shape, (Rope, Sheet))
+    return not isinstance(solid.shape, (Rope, Sheet, Shell))
 
 
 def check_object(v: Any, block: Any, solid: Any) -> Any:
-    """What is rigid does not tear, and no rope is torn to begin with."""
+    """No rigid object and no curved sheet tears, and no rope is torn to begin with."""
     if solid.tear_strain is None:
         return solid
     span, rope = solid.spans["tear-strain"], solid.shape
     if getattr(solid.elasticity, "modulus", 0.0) == math.inf:
         cause = f"{solid.name} is rigid: it has no springs that could break"
         v.problem(span, cause, "write its elasticity, as in elasticity 1 MPa, or take tear-strain out")
+    elif isinstance(rope, Shell):
+        cause = f"{solid.name} is a curved sheet, which does not tear yet"
+        v.problem(span, cause, "take tear-strain out, or write shape sheet (lx, ly) m for a flat one")
     elif isinstance(rope, Rope) and (stretched := rope.curve.length / rope.length - 1.0) > solid.tear_strain:
         cause = (
             f"{solid.name} is stretched by {100 * stretched:.3g} % from the start, and tears at {100 * solid.tear_strain:.3g} %"
