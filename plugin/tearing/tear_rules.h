@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// What breaks in objects, and when, as a text gives it.
+// Springs of objects that break, and when, as a text gives it.
 
 #pragma once
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What tears, against closed forms: what remains is a rope, a sheet or a solid, where and when it tears, and the energy that is
+"""Bodies that tear, against closed forms: what remains is a rope, a sheet or a solid, where and when it tears, and the energy that is
 gone."""
 
 import math
