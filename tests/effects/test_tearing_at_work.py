@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""Bodies that tear, against closed forms: what remains is a rope, a sheet or a solid, where and when it tears, and the energy that is
-gone."""
+"""Bodies that tear, against closed forms: what remains is free of stress; where and when they tear; the energy that is gone."""
 
 import math
 
