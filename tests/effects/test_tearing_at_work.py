@@ -235,8 +235,6 @@ def test_sheets_and_solids_tear(prepared, tmp_path, body):
 def test_a_liquid_beside_what_tears_is_refused():
     """It finds solids by their cells."""
     text = "object a { shape box (1, 1, 1) m position (0, 0, 1) m density 1 elasticity 1 MPa tear-strain 0.1 }\n"
+    pool = "gravity (0, 0, -9.81)\nliquid w { basin from (-2, -2, 0) to (2, 2, 3) density 1000 level 0.4 }\n"
     with pytest.raises(SceneError, match="may tear, and a liquid finds objects by their cells"):
-        parse_scene(
-            text
-            + "gravity (0, 0, -9.81)\nliquid w { basin from (-2, -2, 0) to (2, 2, 3) density 1000 level 0.4 }\ncontrol { time 1 s }\n"
-        )
+        parse_scene(text + pool + "control { time 1 s }\n")
