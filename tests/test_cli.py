@@ -123,6 +123,8 @@ def test_compare_and_render_use_an_output_folder(scene):
     assert run("compare", folder, folder).stdout.startswith("equal")
     assert run(path, "--no-movie", "-q", "-o", path.parent / "b.out").returncode == 0
     assert run("compare", folder, path.parent / "b.out").returncode == 0
+    assert run("compare", folder, path.parent / "b.out", "--movie", "--size", 320, 90, "-q", cwd=path.parent).returncode == 0
+    assert (path.parent / "compare.mp4").stat().st_size > 500
 
 
 @pytest.mark.parametrize(
@@ -173,6 +175,7 @@ def test_compare_and_render_use_an_output_folder(scene):
         pytest.param(["sub/deep.txt", "-o", "sub"], 7, ["-o sub: the output folder holds the scene"], id="over the scene"),
         pytest.param(["movie.txt"], 3, ['movie "/etc/x.mp4"', "lies outside of the output folder"], id="a movie elsewhere"),
         pytest.param(["avi.txt"], 3, ['movie "x.avi"', "written as .mp4"], id="another kind of movie"),
+        pytest.param(["compare", "a", "b", "--size", "64", "36"], 2, ["write --movie"], id="size without a movie"),
         pytest.param(["run", "bad.txt"], 3, ["bad.txt:7:14: error"], id="run as a word"),
     ],
 )

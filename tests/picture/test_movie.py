@@ -200,7 +200,7 @@ def test_a_script_without_a_guard_may_draw(short, tmp_path):
 @pytest.mark.parametrize("fps", [0.0004, 1e-5, 29.97, 30.0])
 def test_slow_movies_have_a_rate(fps):
     """No rate is rounded to 0, nor by more than a thousandth."""
-    assert float(movie._rate(fps)) == pytest.approx(fps, rel=1e-3)
+    assert float(movie.movie_rate(fps)) == pytest.approx(fps, rel=1e-3)
 
 
 def test_no_frames_no_movie(tmp_path):

@@ -165,7 +165,7 @@ def test_copies_stay_where_things_were(run):
 
 def test_colours_tell_speed_and_strain(run):
     """From 0 to a value that few exceed; the ball's colour goes with its speed; what is held keeps its own."""
-    tones = Tones(run.trajectory, ColorBy.SPEED)
+    tones = Tones((run.trajectory, None), ColorBy.SPEED)
     fastest = np.linalg.norm(run.trajectory.velocity(10), axis=1).max()
     assert tones.most == pytest.approx(fastest, rel=0.05) and tones.unit == "m/s"
     assert len({tuple(tones.colors(np.array([x * fastest]))[0]) for x in (0.0, 0.25, 0.5, 0.75, 1.1, 2.0)}) == 5
@@ -173,7 +173,7 @@ def test_colours_tell_speed_and_strain(run):
     post, _ = seen_at(view, SIZE, run.trajectory.centers[:1, 2])
     at = SIZE[1] - 1 - int(post[0, 1]), int(post[0, 0])
     assert np.array_equal(first[at], last[at]) and np.array_equal(first[at], pictures(run, (1,))[0][0][at])
-    strain = Tones(run.trajectory, ColorBy.STRAIN)
+    strain = Tones((run.trajectory, None), ColorBy.STRAIN)
     assert strain.of_particles(0).max() == 0.0 and 0.0 < strain.most < 0.1
 
 
@@ -205,7 +205,7 @@ def test_nothing_of_it_changes_a_run(run, tmp_path):
 
 
 def test_a_run_of_before_shows_all_that_its_frames_tell(run):
-    """What needed every frame while it ran is refused, with the line that would have recorded it."""
+    """A quantity that needed every frame while it ran is refused, with the line that would have recorded it."""
     pictures(run, arrows=(Arrows("contact"), Arrows("force"), Arrows("weight")), plot=(Asked("ball", "distance", "cube"),))
     with pytest.raises(UsageError, match=r"the run has not recorded kinetic of cube; write it in the scene, record cube.kinetic"):
         pictures(run, plot=(Asked("cube", "kinetic"),))

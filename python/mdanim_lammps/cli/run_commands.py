@@ -227,8 +227,18 @@ def timeline(folder: Path, /, *, output: OutFile = OutFile()) -> None:
     print(f"trace    {path}   open it in https://ui.perfetto.dev")
 
 
-def compare(a: Path, b: Path, /) -> None:
-    """Find where two runs differ: first frame and object, in metres. Ends with 6 when they differ.
+def compare(
+    a: Path,
+    b: Path,
+    /,
+    *,
+    movie: bool = False,
+    scene: Path | None = None,
+    look: Look = Look(),
+    output: OutFile = OutFile(),
+    quiet: Quiet = False,
+) -> None:
+    """Find where two runs differ: first frame and object, in metres. Ends with 6 when they differ. Or show both side by side.
 
     Parameters
     ----------
@@ -236,13 +246,36 @@ def compare(a: Path, b: Path, /) -> None:
         An output folder.
     b
         Another.
+    movie
+        Draw both beside each other instead, with one camera and one clock, as compare.mp4 in the current folder; as the first
+        scene says.
+    scene
+        Take the render block of this file for the movie; it need hold nothing else.
     """
+    if movie:
+        _side_by_side(a, b, scene, look, output, quiet)
+        return
+    if scene or look != Look() or output != OutFile():
+        raise UsageError("compare: --scene, --size, --quality, --out and --force are those of the movie; write --movie")
     from ..results.compare import compare as compare_runs
 
     difference = compare_runs(a, b)
     print(difference)
     if not difference.equal:
         raise SystemExit(ExitCode.DIVERGED)
+
+
+def _side_by_side(a: Path, b: Path, scene: Path | None, look: Look, output: OutFile, quiet: bool) -> None:
+    from ..picture.side import render_side_by_side
+    from ..scene.parse import load_render
+
+    look.check()
+    stored, _ = (adopt(folder, quiet=quiet) for folder in (a, b))
+    record = stored if scene is None else replace(stored, render=load_render(scene, [solid.name for solid in stored.solids]))
+    path = output.place(Path("compare.mp4"))
+    draw_movie(a, look.of(record), path, quiet=quiet, draw=partial(render_side_by_side, a, b), size=look.size)
+    if not quiet:
+        print(f"movie    {path}")
 
 
 COMMANDS = (resume, render, view, report, export, timeline, compare)

@@ -10,6 +10,7 @@ import sys
 import time
 from collections.abc import Callable
 from dataclasses import asdict
+from functools import partial
 from pathlib import Path
 
 from ..errors import DivergedError, ExitCode, UsageError
@@ -145,15 +146,14 @@ def adopt(folder: Path, *, quiet: bool):
     return scene
 
 
-def draw_movie(folder: Path, scene, path: Path, *, quiet: bool, **options) -> None:
+def draw_movie(folder: Path, scene, path: Path, *, quiet: bool, draw: Callable | None = None, **options) -> None:
     from ..picture.movie import render_movie
     from ..report import movie_line
 
     start = time.perf_counter()
     try:
         with progress_bar("movie", quiet=quiet) as bar:
-            render_movie(
-                folder,
+            (draw or partial(render_movie, folder))(
                 scene.render,
                 path,
                 **options,

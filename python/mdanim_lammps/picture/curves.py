@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -26,8 +27,29 @@ THIN, LETTER = 0.16, 0.62
 """Width of the topmost curve, and of a letter on average, over the height of letters."""
 LUMINANCE, DARKEST = np.array([0.2126, 0.7152, 0.0722]), 0.42
 """Shares of red, green and blue in how bright a colour is, and how bright curves are at most on bright paper."""
+PALE = 0.35
+"""Opacity of the curves of a run beside the one that is drawn."""
 ROOM = 0.08
 """Room above and below curves, in parts of their span."""
+
+
+@dataclass(frozen=True)
+class _Curve:
+    """A quantity over time."""
+
+    of: Asked
+    times: np.ndarray
+    """Of the frames [s], shape (F,)."""
+    values: np.ndarray
+    """shape (F,)."""
+    is_mean: bool
+    """Whether a value holds since the frame before."""
+
+    def until(self, time: float) -> tuple[np.ndarray, np.ndarray]:
+        """Its points up to a time [s]."""
+        count = int(np.searchsorted(self.times, time * (1 + 1e-9), side="right"))
+        t, y = self.times[:count], self.values[:count]
+        return (np.repeat(t, 2)[1:-1], np.repeat(y[1:], 2)) if self.is_mean else (t, y)
 
 
 class Curves:
@@ -36,24 +58,22 @@ class Curves:
     Args:
         layer: where they are drawn.
         plots: the quantities.
-        told: their values.
-        times: of the frames [s], shape (F,).
+        runs: their values in the run that is drawn, and in a run beside it, whose curves are pale.
         of_objects: colours of objects by their names.
     """
 
-    def __init__(
-        self, layer: InkLayer, plots: Sequence[Asked], told: RunValues, times: np.ndarray, of_objects: Mapping[str, Color]
-    ):
-        self._layer, self._times, self._of_objects = layer, times, of_objects
-        panels: dict[str, list[tuple[Asked, np.ndarray, bool]]] = {}
+    def __init__(self, layer: InkLayer, plots: Sequence[Asked], runs: Sequence[RunValues], of_objects: Mapping[str, Color]):
+        self._layer, self._of_objects = layer, of_objects
+        panels: dict[str, list[list[_Curve]]] = {}
         for of in plots:
-            panels.setdefault(of.unit, []).append((of, told.series(of), told.is_mean(of)))
-        self._curves: list[tuple[Any, np.ndarray, bool, Color, float]] = []
+            curves = [_Curve(of, run.times, run.series(of), run.is_mean(of)) for run in runs]
+            panels.setdefault(of.unit, []).append(curves)
+        self._curves: list[tuple[Any, _Curve, Color, float, bool]] = []
         with own_style():
             for n, (unit, curves) in enumerate(panels.items()):
                 self._panel(n, HEIGHTS[min(len(panels), len(HEIGHTS)) - 1], unit, curves)
 
-    def _panel(self, n: int, share: float, unit: str, curves: list[tuple[Asked, np.ndarray, bool]]) -> None:
+    def _panel(self, n: int, share: float, unit: str, curves: list[list[_Curve]]) -> None:
         layer, (width, height) = self._layer, self._layer.size
         letters = layer.letters
         left, top = 1.0 - WIDTH - MARGIN, 1.0 - MARGIN * width / height - n * (share + GAP)
@@ -66,8 +86,9 @@ class Curves:
         inner = (left + 4.4 * letters / width, top - share + 1.9 * letters / height)
         size = (left + WIDTH - 0.9 * letters / width - inner[0], top - 1.9 * letters / height - inner[1])
         axes = layer.figure.add_axes((*inner, *size), facecolor="none")
-        low, high = _span([values for _, values, _ in curves], whole=unit != "m")
-        axes.set_xlim(self._times[0], max(self._times[-1], self._times[0] + 1e-9))
+        low, high = _span([one.values for both in curves for one in both], whole=unit != "m")
+        end = max(float(one.times[-1]) for both in curves for one in both)
+        axes.set_xlim(0.0, max(end, 1e-9))
         axes.set_ylim(low, high)
         axes.locator_params(axis="x", nbins=5)
         axes.locator_params(axis="y", nbins=4)
@@ -83,11 +104,13 @@ class Curves:
         time = {"fontsize": 0.9 * letters, "color": layer.ink, "ha": "left", "va": "bottom"}
         corner = 0.35 * letters / (WIDTH * width), 0.35 * letters / (share * height)
         ground.text(*corner, "t [s]", transform=ground.transAxes, **time)
-        colors = self._tints(curves, n)
-        self._names(ground, [of for of, _, _ in curves], colors, unit, WIDTH * width)
-        for k, (color, (_, values, is_mean)) in enumerate(zip(colors, curves)):
-            # Those below are wider, so that curves on each other are all seen.
-            self._curves.append((axes, values, is_mean, color, THIN * (1.0 + 0.9 * (len(curves) - 1 - k))))
+        names = [both[0].of for both in curves]
+        colors = self._tints(names, n)
+        self._names(ground, names, colors, unit, WIDTH * width)
+        for k, (color, both) in enumerate(zip(colors, curves)):
+            # Curves below are wider, so that all are seen where they lie on each other.
+            width = THIN * (1.0 + 0.9 * (len(curves) - 1 - k))
+            self._curves += [(axes, one, color, width, beside) for beside, one in enumerate(both)]
 
     def _names(self, ground: Any, names: list[Asked], colors: list[Color], unit: str, width: float) -> None:
         """The names of the curves in their colours, the unit behind the last one; all that they have in common stands once.
@@ -107,31 +130,26 @@ class Curves:
         packed = HPacker(children=boxes, pad=0, sep=0.7 * size)
         ground.add_artist(AnchoredOffsetbox("upper left", child=packed, frameon=False, pad=0.0, borderpad=0.35))
 
-    def _tints(self, curves: list[tuple[Asked, np.ndarray, bool]], n: int) -> list[Color]:
+    def _tints(self, names: list[Asked], n: int) -> list[Color]:
         """Colours of the curves of a panel: those of their objects where no two have the same, else some that differ."""
-        own = [self._of_objects.get(of.subject) for of, _, _ in curves]
+        own = [self._of_objects.get(of.subject) for of in names]
         if None not in own and len(set(own)) == len(own):
             return [_legible(color, self._layer.paper) for color in own if color is not None]
-        return [CURVES[(n + k) % len(CURVES)] for k in range(len(curves))]
+        return [CURVES[(n + k) % len(CURVES)] for k in range(len(names))]
 
-    def show(self, frame: int) -> None:
-        """Add the curves up to a frame, with a point where they are now."""
+    def show(self, time: float) -> None:
+        """Add the curves up to a time [s], with a point where they are then."""
         from matplotlib.lines import Line2D
 
         letters = self._layer.letters
-        for axes, values, is_mean, color, width in self._curves:
-            t, y = self._times[: frame + 1], values[: frame + 1]
-            if is_mean:  # the value of a frame holds since the frame before
-                t, y = np.repeat(t, 2)[1:-1], np.repeat(y[1:], 2)
-            pixels = axes.transData.transform(np.column_stack([t, y]))
-            known = np.isfinite(pixels).all(axis=1)
-            own = {"color": color, "solid_capstyle": "round", "zorder": 4.0}
-            self._layer.add(Line2D(pixels[known, 0], pixels[known, 1], linewidth=width * letters, **own))
-            if known.any():
-                x, y = pixels[known][-1]
-                self._layer.add(
-                    Line2D([x], [y], marker="o", markersize=(0.35 + width) * letters, markeredgewidth=0, linestyle="", **own)
-                )
+        for axes, curve, color, width, beside in self._curves:
+            pixels = axes.transData.transform(np.column_stack(curve.until(time)))
+            pixels = pixels[np.isfinite(pixels).all(axis=1)]
+            look = {"color": color, "alpha": PALE if beside else 1.0, "zorder": 3.9 if beside else 4.0}
+            self._layer.add(Line2D(*pixels.T, linewidth=width * letters, solid_capstyle="round", **look))
+            if len(pixels) and not beside:
+                size = (0.35 + width) * letters
+                self._layer.add(Line2D(*pixels[-1:].T, marker="o", markersize=size, markeredgewidth=0, linestyle="", **look))
 
 
 def _legible(color: Color, paper: Color) -> Color:

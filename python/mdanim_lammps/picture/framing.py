@@ -72,7 +72,7 @@ def pixels_per_metre(view: View, size: tuple[int, int], place: np.ndarray) -> fl
     return 0.5 * size[1] / np.tan(np.radians(FIELD_OF_VIEW) / 2.0) / depth if depth > 0.0 else 0.0
 
 
-def beside(view: View, aspect: float, share: float) -> View:
+def left_of_panels(view: View, aspect: float, share: float) -> View:
     """A view whose middle is seen in the middle of what is left of a picture, a share of whose width at the right is covered;
     ``aspect`` is width over height."""
     _, right, _ = _axes(view)

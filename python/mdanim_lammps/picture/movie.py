@@ -116,7 +116,7 @@ def render_movie(
     processes = processes or processes_for(len(shown))
     # A library that finds no memory ends its process: not this one, where that is likely.
     pictures = _draw_here if processes == 1 and not limited() else _draw_apart
-    with _encoder(Path(path), size, rate, len(shown)) as encode:
+    with encoder(Path(path), size, rate, len(shown)) as encode:
         for done, picture in enumerate(pictures(trajectory, render, size, shown, processes), start=1):
             encode(picture)
             if frames is not None:
@@ -146,20 +146,20 @@ def movie_frames(trajectory: Trajectory, fps: float | None = None, speed: float 
     if not len(times):
         raise OutputError(f"{trajectory.path}: holds no frame, nothing can be drawn; resume the run first")
     if len(times) == 1:
-        return np.zeros(1, dtype=int), _rate(fps or 30.0)
+        return np.zeros(1, dtype=int), movie_rate(fps or 30.0)
     seconds = (times[-1] - times[0]) / speed
     own = (len(times) - 1) / seconds
     if fps is None and (speed == 1.0 or own <= FASTEST):
-        return np.arange(len(times)), _rate(own)
+        return np.arange(len(times)), movie_rate(own)
     fps = fps or FASTEST
     if seconds * fps > MOST_PICTURES:
         raise UsageError(f"{fps:g} pictures per second for {seconds:g} s are too many; the limit is {MOST_PICTURES:,}")
     # A picture that falls on the last frame but for rounding is shown.
     wanted = np.arange(int(seconds * fps + 1e-6) + 1) / fps
-    return np.clip(np.rint(wanted * own), 0, len(times) - 1).astype(int), _rate(fps)
+    return np.clip(np.rint(wanted * own), 0, len(times) - 1).astype(int), movie_rate(fps)
 
 
-def _rate(fps: float) -> Fraction:
+def movie_rate(fps: float) -> Fraction:
     """A rate that movies can have; slow ones have the denominators that they need."""
     return Fraction(fps).limit_denominator(max(1001, round(1000.0 / fps)))
 
@@ -219,7 +219,7 @@ def _draw_in_worker(frame: int) -> np.ndarray:
 
 
 @contextmanager
-def _encoder(path: Path, size: tuple[int, int], rate: Fraction, pictures: int) -> Iterator[Callable[[np.ndarray], None]]:
+def encoder(path: Path, size: tuple[int, int], rate: Fraction, pictures: int) -> Iterator[Callable[[np.ndarray], None]]:
     """Send pictures to ffmpeg; the movie gets its name at the end, an error leaves nothing behind."""
     try:
         import imageio_ffmpeg

@@ -58,10 +58,10 @@ class _Vectors:
 
 
 class Overlay:
-    """What a scene has laid over its pictures.
+    """Layer of everything that a scene has laid over its pictures.
 
     Args:
-        trajectory: what is drawn.
+        runs: what is drawn, and a run beside it, whose values are on the same axes and scales, or None.
         render: the scene's ``render`` block.
         size: of a picture as it is drawn, in pixels.
         dark: whether the background is.
@@ -75,7 +75,7 @@ class Overlay:
 
     def __init__(
         self,
-        trajectory: Trajectory,
+        runs: tuple[Trajectory, Trajectory | None],
         render: Render,
         size: tuple[int, int],
         dark: bool,
@@ -83,17 +83,18 @@ class Overlay:
         tones: Tones | None,
         finer: int,
     ):
-        self._trajectory, self._render, self._size, self._action = trajectory, render, size, action
+        self._trajectory = trajectory = runs[0]
+        self._render, self._size, self._action = render, size, action
         self._layer = InkLayer(size, max(LETTERS * size[1], min(SMALLEST * finer, LARGEST * size[1])), dark)
-        self._tones, told, names = tones, RunValues(trajectory), list(trajectory.names)
+        self._tones, names = tones, list(trajectory.names)
         self._of_name = objects_by_name(names) if render.trail or render.label else {}
         self._colors = object_colors(trajectory.metadata.colors, trajectory.metadata.still) / 255.0
-        self._vectors = _vectors(render.arrows, trajectory, told, action)
-        self._curves = (
-            Curves(self._layer, render.plot, told, trajectory.times, dict(zip(names, map(tuple, self._colors))))
-            if render.plot
-            else None
-        )
+        lines = [_vectors(render.arrows, run) for run in runs if run is not None]
+        every = [one for found in lines for one in found]
+        self._vectors = [one if one.scale else replace(one, scale=_usual(one.unit, every, action)) for one in lines[0]]
+        of_objects = dict(zip(names, map(tuple, self._colors)))
+        told = [RunValues(run) for run in runs if run is not None]
+        self._curves = Curves(self._layer, render.plot, told, of_objects) if render.plot else None
 
     def lay_on(self, picture: np.ndarray, view: View, frame: int, low: np.ndarray, high: np.ndarray) -> None:
         """Lay it over a picture of a frame, uint8 RGBA, shape (height, width, 4), first row below; ``low`` and ``high`` are
@@ -103,7 +104,7 @@ class Overlay:
         self._labels(view, low, high)
         self._captions(float(self._trajectory.times[frame]))
         if self._curves:
-            self._curves.show(frame)
+            self._curves.show(float(self._trajectory.times[frame]))
         if self._tones:
             self._bar()
         self._layer.lay_on(picture)
@@ -174,8 +175,9 @@ class Overlay:
         self._layer.words((at[0], at[1] + size[1] + 1.5 * letters), tones.name, fontweight="bold")
 
 
-def _vectors(lines: tuple[Arrows, ...], trajectory: Trajectory, told: RunValues, action: Action) -> list[_Vectors]:
-    """The arrows of all lines; those of one unit without a scale of their own have one in common."""
+def _vectors(lines: tuple[Arrows, ...], trajectory: Trajectory) -> list[_Vectors]:
+    """The arrows of all lines; those without a scale of their own still have none."""
+    told = RunValues(trajectory)
     names, found, words = list(trajectory.names), [], dict.fromkeys(one.vector for one in lines)
     others = iter(OTHERS * len(words))
     colors = {word: COLORS.get(word) or next(others) for word in words}
@@ -187,7 +189,7 @@ def _vectors(lines: tuple[Arrows, ...], trajectory: Trajectory, told: RunValues,
             shown &= ~trajectory.metadata.still
         chosen = tuple(m for m, is_shown in zip(objects, shown) if is_shown)
         found.append(_Vectors(one.vector, colors[one.vector], chosen, values[:, shown], one.scale or 0.0))
-    return [one if one.scale else replace(one, scale=_usual(one.unit, found, action)) for one in found]
+    return found
 
 
 def _usual(unit: str, all_of_them: list[_Vectors], action: Action) -> float:

@@ -15,7 +15,7 @@ from .camera import FIELD_OF_VIEW, Action, CameraPath, View, action_of, automati
 from .curves import COVERED
 from .drawn import Additions, medium
 from .floor import REACH, FloorPlane
-from .framing import PicturePart, aim, beside, part_around, whole
+from .framing import PicturePart, aim, left_of_panels, part_around, whole
 from .ghosts import Ghosts
 from .label import Label
 from .light import Light
@@ -45,6 +45,9 @@ class Painter:
         size: width and height in pixels; None takes that of ``render``.
         action: bounds over all frames, if known already; None finds them.
         marks: what is shown beside the surfaces.
+        seen: what an automatic camera sees, where that is not the action of this run alone.
+        beside: a run that is shown beside this one, in the same colours, on the same axes and with arrows of the same scale.
+        name: words in place of the title.
 
     Raises:
         SetupError: this host cannot draw off screen.
@@ -59,8 +62,11 @@ class Painter:
         size: tuple[int, int] | None = None,
         action: Action | None = None,
         marks: Marks = Marks(),
+        seen: Action | None = None,
+        beside: Trajectory | None = None,
+        name: str = "",
     ):
-        self.trajectory = trajectory
+        self.trajectory, self._name = trajectory, name or trajectory.metadata.title
         self.size = tuple(size or render.size)
         self._finer = FINER[render.quality]
         if self._finer > 1 and max(self.size) * self._finer > MOST_PIXELS:
@@ -77,14 +83,16 @@ class Painter:
         covered = COVERED if render.plot else 0.0
         self._still = None
         if not self._path:
-            self._still = beside(automatic_view(self.action, (1.0 - covered) * aspect, walls, basin), aspect, covered)
+            still = automatic_view(seen or self.action, (1.0 - covered) * aspect, walls, basin)
+            self._still = left_of_panels(still, aspect, covered)
         self._mesh = shaded_mesh(trajectory.metadata, trajectory.position(0), self._pixel())
-        self._tones = Tones(trajectory, render.color_by) if render.color_by else None
+        self._tones = Tones((trajectory, beside), render.color_by) if render.color_by else None
         self._build(render, marks)
         self._overlay = None
         if render.tells:
             dark = is_dark(background_colors(render.background)[0])
-            self._overlay = Overlay(trajectory, render, self._pixels, dark, self.action, self._tones, self._finer)
+            runs = trajectory, beside
+            self._overlay = Overlay(runs, render, self._pixels, dark, seen or self.action, self._tones, self._finer)
             self._first = np.searchsorted(trajectory.metadata.skin.object_of_vertex, np.arange(len(trajectory.names)))
 
     def _pixel(self) -> np.ndarray:
@@ -125,7 +133,7 @@ class Painter:
         picture = self._all_in_one(view) if self._behind else self._over_backdrop(view, np.concatenate([vertices, points]))
         if self._overlay:
             self._overlay.lay_on(picture, view, index, *self._boxes_of_objects(position, gone))
-        self._title.lay_on(picture, self.trajectory.metadata.title)
+        self._title.lay_on(picture, self._name)
         self._stamp.lay_on(picture, f"t = {time:.2f} s")
         return fewer_pixels(upright(picture), self._finer)
 

@@ -12,7 +12,7 @@ from ..errors import OutputError, UsageError
 from ..results.ledger import Ledger
 from ..results.quantities import quantity_of, series
 from ..results.trajectory import Trajectory
-from ..scene.quantities import Asked
+from ..scene.quantities import GLOBALS, Asked
 
 
 class RunValues:
@@ -23,13 +23,18 @@ class RunValues:
     """
 
     def __init__(self, trajectory: Trajectory):
-        self._trajectory = trajectory
+        self._trajectory, self.times = trajectory, trajectory.times
 
     def series(self, of: Of) -> np.ndarray:
         """Values in SI units, shape (F,), NaN where there are none.
 
-        Raises UsageError for a quantity that the run has not recorded, OutputError where its scene cannot be read here.
+        Raises UsageError for a quantity that the run has not recorded, or of an object that it does not have, OutputError where
+        its scene cannot be read here.
         """
+        other = [of.argument] if of.kind.takes == "object" else []
+        for name in ([] if of.subject in GLOBALS else [of.subject]) + other:
+            if name not in self._trajectory.names:
+                raise UsageError(f"{self._trajectory.path} has no object {name}, and {of.what} is to be shown")
         return series(of, self._measured)
 
     def is_mean(self, of: Of) -> bool:

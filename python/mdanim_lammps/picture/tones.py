@@ -21,13 +21,14 @@ class Tones:
     """Colours of the vertices of surfaces by a quantity of particles, from 0 to one that few values exceed.
 
     Args:
-        trajectory: what is drawn.
+        runs: what is drawn, and a run beside it or None.
         by: the quantity.
     """
 
-    def __init__(self, trajectory: Trajectory, by: ColorBy):
+    def __init__(self, runs: tuple[Trajectory, Trajectory | None], by: ColorBy):
         import matplotlib
 
+        trajectory, beside = runs
         self._trajectory, self.name = trajectory, by.value
         self.unit = {ColorBy.SPEED: "m/s", ColorBy.STRAIN: ""}[by]
         with own_style():
@@ -39,6 +40,8 @@ class Tones:
         self._find = {ColorBy.SPEED: self._speed, ColorBy.STRAIN: self._strain}[by]
         frames = np.unique(np.linspace(0, len(trajectory) - 1, SAMPLES).astype(int))
         self.most = max((float(np.quantile(self._find(int(n)), AMONG)) for n in frames), default=0.0) or 1.0
+        if beside is not None:
+            self.most = max(self.most, Tones((beside, None), by).most)
 
     def of_particles(self, frame: int) -> np.ndarray:
         """Values at all stored particles in a frame, shape (N,)."""
