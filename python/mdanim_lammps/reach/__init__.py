@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """Where solids can be, until when, and how fast."""
 
-from .acting import Acting, Bodies, Drive, Leash, Motion, Throw, by, thrower_of
+from .acting import Acting, Bodies, Drive, Leash, Motion, Throw, by, thrower_of, thrown_within
 from .reach import Reach, largest_of_others, wave_speed
 
 __all__ = [
@@ -15,5 +15,6 @@ __all__ = [
     "by",
     "largest_of_others",
     "thrower_of",
+    "thrown_within",
     "wave_speed",
 ]

@@ -134,11 +134,13 @@ class Reach:
         """Largest speed that each solid may reach by its start and its fall [m/s], shape (M,)."""
         return self.speed_after(self.fall)
 
-    def speed_after(self, fall: np.ndarray) -> np.ndarray:
-        """The start's speed, with that of a fall [m], shape (M,), and at which it is driven."""
+    def speed_after(self, fall: np.ndarray, thrown: np.ndarray | None = None) -> np.ndarray:
+        """The start's speed, with that of a fall [m], shape (M,), at which it is driven, and what pushes give, as `closing` has
+        them."""
         start = np.maximum.reduceat((self.system.velocity**2).sum(1), self.system.first[:-1])
         fallen = np.sqrt(np.maximum(0.0, start + 2.0 * self.g * fall)) + self.acting.swing
-        return np.where(self.free, fallen + self.acting.given + self.acting.thrown_at, 0.0) + self.acting.driven_at
+        given = self.acting.given + (self.acting.thrown_at if thrown is None else thrown)
+        return np.where(self.free, fallen + given, 0.0) + self.acting.driven_at
 
     @cached_property
     def thrown_across(self) -> np.ndarray:

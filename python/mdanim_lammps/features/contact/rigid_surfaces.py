@@ -19,6 +19,7 @@ from ...model.boxes import overlaps_in_plan
 from ...model.contact_body import FINE, ContactBody
 from ...model.inertia import mobility
 from ...model.system import System
+from ...reach import thrown_within
 from ...scene.once import once_for
 
 DEPTH = 0.02
@@ -38,7 +39,9 @@ class Frequency:
     thin: float
     """Thinnest part of all rigid bodies that move [m]."""
     speed: float
-    """Closing speed of the fastest blow [m/s]."""
+    """Closing speed of the fastest blow [m/s]; what pushes objects counts on their way to others and to planes."""
+    late: float
+    """The same with all that pushes may give until the end [m/s]."""
     load: float
     """Largest weight that a body bears, over its own, and one more for its own [-]."""
 
@@ -52,17 +55,30 @@ def frequency(context: Context) -> Frequency:
     reach, system = context.reach, context.reach.system
     free = np.flatnonzero(system.rigid)
     thin = min(shapes.thickness(shape) for shape in {context.scene.solids[m].shape for m in free.tolist()})
-    speed = float(struck_at(context, system)[free].max())
+    late = float(struck_at(context, system)[free].max())
+    speed = float(struck_at(context, system, _thrown_across(context, system))[free].max()) if reach.acting.throws else late
     load = float(loads(system, free).max())
     slowest = 2.0 * math.pi * context.scene.control.frames * DEPTH * thin  # of what hardly moves
     omega = float(max(speed, 2.0 * math.sqrt(load * reach.g * thin), slowest)) / (DEPTH * thin)
-    return Frequency(float(omega), float(thin), speed, load)
+    return Frequency(float(omega), float(thin), speed, late, load)
 
 
-def struck_at(context: Context, system: System) -> np.ndarray:
-    """Speed of the fastest blow that each solid may give or get [m/s], shape (M,)."""
+def struck_at(context: Context, system: System, thrown: np.ndarray | None = None) -> np.ndarray:
+    """Speed of the fastest blow that each solid may give or get [m/s], shape (M,); ``thrown`` as in `Reach.closing`."""
     reach = context.reach
-    return np.maximum(np.maximum(reach.speed, reach.closing(reach.fall)), _toppled(context, system))
+    fastest = np.maximum(reach.speed_after(reach.fall, thrown), reach.closing(reach.fall, thrown))
+    return np.maximum(fastest, _toppled(context, system))
+
+
+def _thrown_across(context: Context, system: System) -> np.ndarray:
+    """Speed that pushes give to each solid on its way to the farthest other one or the farthest plane as they are at the start
+    [m/s], shape (M,): how hard contacts are, and so a motion, depends not on how long a scene goes on."""
+    low, high = system.bounds(system.position)
+    way = np.zeros(len(low))
+    for plane in (p for effect in context.resolved.effects for p in effect.planes(context.scene)):
+        edge = low if plane.sign > 0 else high
+        way = np.maximum(way, plane.sign * (edge[:, plane.axis] - plane.at))
+    return np.maximum(context.reach.thrown_across, thrown_within(context.reach.acting, way))
 
 
 def _toppled(context: Context, system: System) -> np.ndarray:

@@ -140,7 +140,7 @@ def depths(envelope: Envelope) -> list[Margin]:
     free = np.flatnonzero(context.system.rigid).tolist()
     thinnest = min(free, key=lambda m: thickness(solids[m].shape))
     place = context.scene.control.spans.get("contact-stiffness") or envelope.place(thinnest, "shape")
-    blow = found.speed / frequency_of
+    blow = found.late / frequency_of
     rest = math.sqrt(2.0 * ONSET * found.thin * found.load * context.reach.g) / frequency_of
     return [
         Margin(
@@ -156,7 +156,7 @@ def depths(envelope: Envelope) -> list[Margin]:
             hint="write contact-stiffness 1 in control",
         )
         for name, value, part, what in (
-            ("blow depth", blow, DEEP, f"the fastest blow, {say(found.speed, 'm/s')}, goes"),
+            ("blow depth", blow, DEEP, f"the fastest blow, {say(found.late, 'm/s')}, goes"),
             ("rest depth", rest, SUNK, "what bears most sinks in at rest by"),
         )
     ]
