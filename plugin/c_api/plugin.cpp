@@ -10,6 +10,7 @@
 #include "lammps/fix_mdanim_barrier.h"
 #include "lammps/fix_mdanim_contact.h"
 #include "lammps/fix_mdanim_drive.h"
+#include "lammps/fix_mdanim_folds.h"
 #include "lammps/fix_mdanim_force.h"
 #include "lammps/fix_mdanim_gravity.h"
 #include "lammps/fix_mdanim_inflate.h"
@@ -134,6 +135,7 @@ MDANIM_EXPORT void lammpsplugin_init(void *handle_of_lammps, void *handle, void 
       style<FixMdanimBarrier>("fix", "mdanim/barrier", "a barrier between objects"),
       style<FixMdanimContact>("fix", "mdanim/contact", "objects and planes touch, with friction"),
       style<FixMdanimDrive>("fix", "mdanim/drive", "what is held goes where functions of time say"),
+      style<FixMdanimFolds>("fix", "mdanim/folds", "layers touch each other and themselves"),
       style<FixMdanimForce>("fix", "mdanim/force", "forces and torques on objects as a whole"),
       style<FixMdanimLiquid>("fix", "mdanim/liquid", "liquid that solids float and sink in"),
       style<FixMdanimRigid>("fix", "mdanim/rigid", "objects that do not deform"),

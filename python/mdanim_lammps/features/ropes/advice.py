@@ -9,6 +9,7 @@ from ...effects.envelope import Envelope
 from ...errors import Problem
 from ...model import shapes
 from ...scene.formatting import say
+from ..folds.layers import folds
 from .words import is_rope, kind
 
 FINE = 0.5
@@ -26,12 +27,20 @@ def notes(envelope: Envelope) -> list[Problem]:
 
 def _each_other(envelope: Envelope, ropes: np.ndarray) -> list[Problem]:
     """Two ropes, or parts of one, do not touch."""
+    ropes = np.array([m for m in ropes.tolist() if not folds(envelope.scene.solids[m])], int)
     if len(ropes) < 2:
         return []
     names = envelope.system.names
     more = f" and {len(ropes) - 2} more" if len(ropes) > 2 else ""
     cause = f"{names[ropes[0]]}, {names[ropes[1]]}{more} do not touch each other: ropes touch what is not a rope, and planes"
-    return [Problem(envelope.place(int(ropes[1]), "shape"), cause, "keep them apart where that would show", severity="note")]
+    return [
+        Problem(
+            envelope.place(int(ropes[1]), "shape"),
+            cause,
+            "keep them apart where that would show, or write touches-itself yes in both",
+            severity="note",
+        )
+    ]
 
 
 def _long_links(envelope: Envelope, ropes: np.ndarray) -> list[Problem]:

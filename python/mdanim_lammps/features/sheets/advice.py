@@ -8,6 +8,7 @@ import numpy as np
 from ...effects.envelope import Envelope
 from ...errors import Problem
 from ...scene.formatting import say
+from ..folds.layers import as_layers, folds
 from ..ropes.advice import coarsest, slips
 from .words import finest, is_sheet
 
@@ -23,19 +24,21 @@ def notes(envelope: Envelope) -> list[Problem]:
 
 
 def _themselves(envelope: Envelope, sheets: np.ndarray) -> list[Problem]:
-    """A sheet touches neither itself nor another one, nor a rope: a warning where two of them may meet."""
-    system = envelope.system
+    """A sheet without ``touches-itself`` touches neither itself nor a rope: a warning where it may meet one."""
+    system, solids = envelope.system, envelope.scene.solids
     for first in sheets.tolist():
-        if others := _met(envelope, first):
+        if others := [k for k in _met(envelope, first) if not as_layers(solids[first], solids[k])]:
             more = f" and {len(others) - 1} more" if len(others) > 1 else ""
             both = f"{system.names[first]} may meet {system.names[others[0]]}{more}"
-            cause = f"{both}, and passes through: sheets and ropes do not touch each other"
-            way_out = "keep them apart, or write shape box for what the sheet is to lie on"
+            cause = f"{both}, and passes through: sheets and ropes touch each other where both have touches-itself"
+            way_out = "keep them apart, or write touches-itself yes in both"
             return [Problem(envelope.place(first, "shape"), cause, way_out, severity="warning")]
-    first = int(sheets[0])
-    cause = f"{system.names[first]} does not touch itself: folds of it pass through each other"
-    way_out = "let it lie on or hang from what is not a sheet or a rope, so that it does not fold"
-    return [Problem(envelope.place(first, "shape"), cause, way_out, severity="note")]
+    loose = [m for m in sheets.tolist() if not folds(solids[m])]
+    if not loose:
+        return []
+    cause = f"{system.names[loose[0]]} does not touch itself: folds of it pass through each other"
+    way_out = "write touches-itself yes in it, which takes time, where it folds"
+    return [Problem(envelope.place(loose[0], "shape"), cause, way_out, severity="note")]
 
 
 def _met(envelope: Envelope, m: int) -> list[int]:

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: GPL-2.0-only
+
+#include "folds/fold_contact.h"
+
+#include "geometry/box_tree.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace mdanim {
+
+FoldContact::FoldContact(const FoldObject &own, const FoldObject &other, const FoldLaw &law, double apart, bool itself)
+    : own(&own), other(&other), rule(law), apart(itself ? apart : 0.0), lines(!own.segments.empty() && !other.segments.empty())
+{
+  identity.resize(own.particles.size());
+  for (std::size_t n = 0; n < identity.size(); ++n) identity[n] = static_cast<int>(n);
+  first.assign(features() + 1, 0);
+}
+
+double FoldContact::weight(int f) const
+{
+  const int *const a = feature(f);
+  return lines ? 0.5 * (own->weight[a[0]] + own->weight[a[1]]) : own->weight[a[0]];
+}
+
+NearestPoints FoldContact::foot(const Vec3 *x, int f, const Vec3 *y, int e) const
+{
+  const int *const a = feature(f), *const b = element(e);
+  if (lines) return feet_of_segments(x[a[0]], x[a[1]], y[b[0]], y[b[1]]);
+  if (other->triangles.empty()) return foot_on_segment(x[a[0]], y[b[0]], y[b[1]]);
+  return foot_on_triangle(x[a[0]], y[b[0]], y[b[1]], y[b[2]]);
+}
+
+static Vec3 at_foot(const Vec3 *x, const int *corners, const double *weight, int count)
+{
+  Vec3 sum = weight[0] * x[corners[0]];
+  for (int k = 1; k < count; ++k) sum += weight[k] * x[corners[k]];
+  return sum;
+}
+
+// From the foot on the element to that on the feature.
+Vec3 FoldContact::way(const Vec3 *x, int f, const Vec3 *y, int e, const NearestPoints &at) const
+{ return at_foot(x, feature(f), at.own, corners_of_feature()) - at_foot(y, element(e), at.other, corners_of_element()); }
+
+// Whether two parts of one object are so far from each other without load that they may touch.
+bool FoldContact::is_apart(int f, int e) const
+{
+  if (apart == 0.0) return true;
+  const int *const a = feature(f), *const b = element(e);
+  for (int k = 0; k < corners_of_element(); ++k) {    // most of what is near is a neighbour
+    const Vec3 corner = other->rest[b[k]] - own->rest[a[0]];
+    if (dot(corner, corner) < apart * apart) return false;
+  }
+  const Vec3 way = this->way(own->rest.data(), f, other->rest.data(), e, foot(own->rest.data(), f, other->rest.data(), e));
+  return dot(way, way) >= apart * apart;
+}
+
+static Box box_of(const Vec3 *x, const int *corners, int count)
+{
+  Box box;
+  for (int k = 0; k < count; ++k) box.include(&x[corners[k]].x);
+  return box;
+}
+
+void FoldContact::list(const Vec3 *x, const Vec3 *y, double skin)
+{
+  const double far = rule.reach + skin;
+  Box mine, all;
+  std::vector<Box> boxes(count());
+  for (std::size_t n = 0; n < own->particles.size(); ++n) mine.include(&x[n].x);
+  for (std::size_t n = 0; n < boxes.size(); ++n) {
+    boxes[n] = box_of(y, element(static_cast<int>(n)), corners_of_element()).grown(far);
+    all.unite(boxes[n]);
+  }
+  elements.clear();
+  std::fill(first.begin(), first.end(), 0);
+  if (!meet(mine, all, 0.0)) return;
+  const BoxTree tree(boxes);
+  for (int f = 0; f < features(); ++f) {
+    first[f] = static_cast<int>(elements.size());
+    tree.meeting(box_of(x, feature(f), corners_of_feature()), [&](int e) {
+      if (!is_apart(f, e)) return;
+      const Vec3 there = way(x, f, y, e, foot(x, f, y, e));
+      if (dot(there, there) < far * far) elements.push_back(e);
+    });
+    std::sort(elements.begin() + first[f], elements.end());
+  }
+  first[features()] = static_cast<int>(elements.size());
+}
+
+double FoldContact::push(const FoldNodes &mine, const FoldNodes &theirs, double dt) const
+{
+  double energy = 0.0;
+  if (elements.empty()) return energy;
+  for (int f = 0; f < features(); ++f) {
+    double least = rule.reach * rule.reach;
+    int nearest = -1;
+    NearestPoints there;
+    for (int n = first[f]; n < first[f + 1]; ++n) {
+      const NearestPoints at = foot(mine.x, f, theirs.x, elements[n]);
+      const Vec3 gap = way(mine.x, f, theirs.x, elements[n], at);
+      const double square = dot(gap, gap);
+      if (square >= least) continue;
+      least = square;
+      nearest = elements[n];
+      there = at;
+    }
+    if (nearest < 0) continue;
+    const double distance = std::sqrt(least);
+    energy += weight(f) * rule.push(distance).energy;
+    if (distance > 0.0) act(mine, theirs, f, nearest, there, distance, dt);
+  }
+  return energy;
+}
+
+void FoldContact::act(const FoldNodes &mine, const FoldNodes &theirs, int f, int e, const NearestPoints &at, double distance,
+                      double dt) const
+{
+  const int *const a = feature(f), *const b = element(e);
+  const int na = corners_of_feature(), nb = corners_of_element();
+  const Vec3 n = (1.0 / distance) * way(mine.x, f, theirs.x, e, at);
+  const double push = weight(f) * rule.push(distance).force;
+  const auto add = [&](Vec3 *on_own, Vec3 *on_other, const Vec3 &force) {
+    for (int k = 0; k < na; ++k) on_own[a[k]] += at.own[k] * force;
+    for (int k = 0; k < nb; ++k) on_other[b[k]] -= at.other[k] * force;
+  };
+  add(mine.push, theirs.push, push * n);
+  if (rule.friction == 0.0 && rule.damping == 0.0) return;
+  double light = 0.0;    // 1/m of what moves along the line
+  for (int k = 0; k < na; ++k) light += at.own[k] * at.own[k] / mine.mass[a[k]];
+  for (int k = 0; k < nb; ++k) light += at.other[k] * at.other[k] / theirs.mass[b[k]];
+  const Vec3 v = at_foot(mine.v, a, at.own, na) - at_foot(theirs.v, b, at.other, nb);
+  const double along = dot(v, n), mass = 1.0 / light;
+  const double dashpot = rule.damping > 0.0 ? rule.dashpot(distance, push, along, mass, dt) : 0.0;
+  if (dashpot != 0.0) add(mine.damp, theirs.damp, dashpot * n);
+  const Vec3 across = v - along * n;
+  const double rub = rule.friction > 0.0 ? rule.rub(push + dashpot, length(across), mass, dt) : 0.0;
+  if (rub != 0.0) add(mine.rub, theirs.rub, rub * across);
+}
+
+}    // namespace mdanim

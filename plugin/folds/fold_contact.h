@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// Contact of one object's features with the elements of another one, or of its own: each feature is pushed by the nearest
+// element.
+//
+// The least distance is a continuous function of all places, so the energy is one, too, whatever is the nearest; and which
+// elements are looked at never changes a bit, because all that may be within reach are.
+
+#pragma once
+
+#include "folds/fold_object.h"
+
+#include <cstddef>
+#include <vector>
+
+namespace mdanim {
+
+// Particles of an object in a step.
+struct FoldNodes {
+  const Vec3 *x, *v;
+  const double *mass;
+  Vec3 *push, *rub, *damp;    // forces on them: of the potential, of friction and of dashpots
+};
+
+// One way of a pair: features of one object against elements of the other one. Features are particles, and against segments those
+// of an object of segments are its segments.
+class FoldContact {
+ public:
+  FoldContact(const FoldObject &own, const FoldObject &other, const FoldLaw &law, double apart, bool itself);
+
+  // Looks for what may come within reach while no particle moves by more than half of the skin.
+  void list(const Vec3 *own, const Vec3 *other, double skin);
+  // Adds forces, and returns the energy.
+  double push(const FoldNodes &own, const FoldNodes &other, double dt) const;
+  bool is_near() const { return !elements.empty(); }
+  std::size_t bytes() const { return (first.capacity() + elements.capacity()) * sizeof(int); }
+
+ private:
+  int features() const { return static_cast<int>(lines ? own->segments.size() : own->particles.size()); }
+  int corners_of_feature() const { return lines ? 2 : 1; }
+  int corners_of_element() const { return other->triangles.empty() ? 2 : 3; }
+  const int *feature(int n) const { return lines ? own->segments[n].data() : &identity[n]; }
+  const int *element(int n) const { return other->triangles.empty() ? other->segments[n].data() : other->triangles[n].data(); }
+  int count() const { return static_cast<int>(other->triangles.empty() ? other->segments.size() : other->triangles.size()); }
+  double weight(int f) const;
+  NearestPoints foot(const Vec3 *x, int f, const Vec3 *y, int e) const;
+  Vec3 way(const Vec3 *x, int f, const Vec3 *y, int e, const NearestPoints &at) const;
+  bool is_apart(int f, int e) const;
+  void act(const FoldNodes &own, const FoldNodes &other, int f, int e, const NearestPoints &at, double distance, double dt) const;
+
+  const FoldObject *own, *other;
+  FoldLaw rule;
+  double apart;    // 0 of two objects
+  bool lines;
+  std::vector<int> identity;
+  std::vector<int> first, elements;    // elements near each feature, ascending
+};
+
+}    // namespace mdanim

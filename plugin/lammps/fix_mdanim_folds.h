@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// fix mdanim/folds: sheets, ropes and surfaces that touch each other and themselves.
+
+#pragma once
+
+#include "folds/fold_contact.h"
+#include "lammps/fix_base.h"
+#include "lammps/object_nodes.h"
+#include "lammps/stateful.h"
+
+#include <map>
+#include <optional>
+#include <vector>
+
+namespace LAMMPS_NS {
+
+// Every rank computes the contacts of all objects, from places and velocities that ranks share, and pushes its own particles of
+// the group. Its state are the forces of friction and of dashpots in the last step, which follow from velocities of half a step
+// before.
+class FixMdanimFolds : public mdanim::FixBase, public mdanim::Stateful {
+ public:
+  FixMdanimFolds(class LAMMPS *, int, char **);
+
+  int setmask() override;
+  void init() override;
+  void setup_pre_neighbor() override { locate(); }
+  void pre_neighbor() override { locate(); }
+  void setup(int) override;
+  void post_integrate() override;
+  void post_force(int) override;
+  double compute_scalar() override { return energy; }
+  double memory_usage() override;
+  void write_restart(FILE *) override;
+  void restart(char *) override;
+
+  mdanim::StateRecords pack() const override;
+  void unpack(const mdanim::StateRecords &) override;
+
+ private:
+  // One way of a pair, by numbers of objects.
+  struct FoldWay {
+    int first, second;
+    mdanim::FoldContact contact;
+  };
+  // What is lost on the way from a particle's motion.
+  struct Lost {
+    mdanim::Vec3 rub, damp;
+  };
+  struct FoldForce {
+    int i;    // local particle
+    mdanim::Vec3 push;
+    Lost lost;
+  };
+
+  void make_ways();
+  void locate() { nodes.locate(name(), groupbit); }
+  void find_pushes();
+  void list_again();
+  void push() const;
+  void count();    // the losses of half a step
+
+  mdanim::FoldTable table;
+  mdanim::ObjectNodes nodes;
+  std::vector<FoldWay> ways;
+  double skin = 0.0;
+  std::vector<mdanim::Vec3> x, v, listed, pushed, rubbed, damped;    // of nodes
+  std::vector<double> mass;
+  std::vector<FoldForce> pushes;                    // of this step
+  std::map<tagint, Lost> acted;                     // forces of a state, until the setup of a run
+  std::optional<mdanim::StateRecords> restarted;    // of a restart file, until a run begins
+  double energy = 0.0;
+  double heat = 0.0, loss = 0.0;    // on this rank
+  double lists = 0.0;               // how often they were made
+};
+
+}    // namespace LAMMPS_NS

@@ -1,0 +1,84 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Contact of layers, by ``fix mdanim/folds``."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...effects.context import Verdict
+from ...effects.effect import Effect
+from .layers import layers, may_meet, pairs, touching
+
+TABLE = "folds"
+ENERGY, HEAT, DAMPED = "contact", "friction_heat", "contact_damping_loss"
+"""Columns of the ledger."""
+SIDES = 2.0
+"""Layers that a particle may touch at once."""
+
+
+class LayersTouch(Effect):
+    """The nearest points of a particle and of the triangles of another layer, or of two links, push each other with
+    F = k g'(reach - d) at the distance d; friction and a dashpot (docs/physics-folds.md).
+    """
+
+    styles = (("fix", "mdanim/folds"),)
+    name = fix = "folds"
+    ledger = ENERGY
+    touches = True
+    order = 55
+    if_off = "layers pass through each other"
+
+    def called_for(self, scene, reach):
+        for i, j in touching(scene):
+            one, other = scene.solids[i], scene.solids[j]
+            if i == j:
+                return Verdict(self.name, True, f"{one.name} touches itself", one.spans.get("touches-itself"))
+            if may_meet(reach.region, i, j):
+                return Verdict(self.name, True, f"{one.name} may meet {other.name}", other.spans.get("shape"))
+        return Verdict(self.name, False, "no sheets may meet, and nothing has touches-itself")
+
+    def acts_on(self, context):
+        return bool(pairs(context))
+
+    def joins(self, scene):
+        return [(i, j) for i, j in touching(scene) if i != j]
+
+    def commands(self, context):
+        return [f"fix {self.fix} {context.pushed} mdanim/folds table:{TABLE}"]
+
+    def tables(self, context):
+        lines = [
+            "# Layers that touch, written by mdanim-lammps: objects, and pairs with reach, stiffness, friction and damping\n"
+        ]
+        for m, layer in layers(context).items():
+            lines += [f"object {m + 1}\n", layer.text()]
+        for pair in pairs(context):
+            apart = f" {pair.apart!r}" if pair.first == pair.second else ""
+            values = f"{pair.reach!r} {pair.stiffness!r} {pair.friction!r} {pair.damping!r}"
+            lines.append(f"pair {pair.first + 1} {pair.second + 1} {values}{apart}\n")
+        return {TABLE: "".join(lines)}
+
+    def rate(self, context):
+        """2 SIDES k (1 + s) w/m of a particle: the point itself, with nodes of weights 2 in all, and the s points that it bears
+        of the other layer, which are the more the finer that is."""
+        system, found = context.system, np.zeros(context.system.particles)
+        for pair in pairs(context):
+            ends = (pair.first, pair.second)
+            for own, other in {ends, ends[::-1]}:
+                one, far = layers(context)[own], layers(context)[other]
+                borne = max(1.0, (one.spacing / far.spacing) ** (one.element.shape[1] - 1))
+                rows = system.first[own] + one.particle
+                found[rows] += 2.0 * SIDES * pair.stiffness * (1.0 + borne) * one.weight / system.mass[rows]
+        return found
+
+    def energy(self, readings):
+        return readings.fix_scalar(self.fix)
+
+    def losses(self, scene):
+        return (HEAT, DAMPED)
+
+    def lost(self, readings):
+        return {term: readings.fix_value(self.fix, term) for term in self.losses(readings.context.scene)}
+
+
+EFFECTS = (LayersTouch(),)

@@ -1,0 +1,73 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Layers on layers give the same bits in all forms of the distribution, and by plain `lmp`."""
+
+import numpy as np
+import pytest
+from distribution_lab import SEQUENTIAL, TEAMS, THREADS, film_of, film_of_lammps, matrix, readied, ways
+from mdanim_lammps.results.checkpoint import Checkpoint
+from mdanim_lammps.results.compare import compare
+from mdanim_lammps.results.trajectory import Trajectory
+
+pytestmark = pytest.mark.mpi
+
+SCENE = """
+gravity (0, 0, -9.81) m/s^2
+ground z 0 m
+object lower {
+  shape sheet (0.4, 0.4) m thickness 4 mm  position (0, 0, 0.02) m  resolution 4 cm
+  density 500  elasticity 500 kPa  damping 0.1  friction 0.3  touches-itself yes
+}
+object upper {
+  shape sheet (0.4, 0.3) m thickness 4 mm  position (0.05, 0.02, 0.05) m  resolution 4 cm  velocity (0.5, 0, 0) m/s
+  density 500  elasticity 500 kPa  damping 0.1  friction 0.3
+}
+object cord {
+  shape rope from (-0.2, 0.05, 0.09) m to (0.2, 0.02, 0.1) m thickness 1 cm  density 500  elasticity 500 kPa
+  damping 0.1  friction 0.3  touches-itself yes
+}
+object crate { shape box (10, 10, 10) cm  position (0.8, 0, 0.06) m  density 300  elasticity 200 kPa  friction 0.4 }
+control { time 0.3 s }
+"""
+
+CASES = (
+    matrix((2,), ["central"], name="all move ", rotate=True)
+    | matrix((3,), ["peers"])
+    | TEAMS
+    | THREADS
+    | {
+        "stopped": SEQUENTIAL | {"stop": 4},
+        "stopped and gone on with": {"executors": 2, "control": "central", "resume": True, "in": "stopped"},
+    }
+)  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def found(tmp_path_factory):
+    """The folder of each form, all made in one start of MPI."""
+    path = tmp_path_factory.mktemp("folds") / "scene.txt"
+    path.write_text(SCENE)
+    return ways(path, CASES, timeout=120.0)
+
+
+@pytest.mark.parametrize("way", CASES)
+def test_all_forms_give_the_same(found, way):
+    """Frames and the state, with the forces of friction."""
+    assert compare(found["sequential"], found[way]).equal
+    alone, other = (Checkpoint.read(found[name] / "checkpoint") for name in ("sequential", way))
+    assert alone.records == other.records and np.array_equal(alone.x, other.x)
+
+
+def test_something_happens(found):
+    """The upper sheet lies on the lower one and has lost speed by friction."""
+    with Trajectory(found["sequential"]) as trajectory:
+        last, rows = trajectory.position(len(trajectory) - 1), trajectory.metadata.object_of
+    assert last[rows == 1, 2].mean() > last[rows == 0, 2].mean() + 0.004
+    assert last[rows == 1, 0].mean() < 0.05 + 0.5 * 0.3 - 0.02
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_lammps_alone_makes_the_same_frames(found, tmp_path, ranks):
+    """The script that `build` writes, with its table of layers."""
+    _, folder = readied(tmp_path, SCENE)
+    film = film_of(found["sequential"])
+    assert np.array_equal(film_of_lammps(folder, film.shape[1], ranks=ranks), film)
