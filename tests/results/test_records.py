@@ -8,9 +8,11 @@ import csv
 import numpy as np
 import pytest
 from mdanim_lammps import Interrupted, OutputError, Run, Scene
+from mdanim_lammps.effects.measured import Measured
 from mdanim_lammps.errors import SceneError
 from mdanim_lammps.results.records import Records
 from mdanim_lammps.scene.parse import parse_scene
+from mdanim_lammps.scene.quantities import Asked
 
 G = 9.81
 RESTING = """
@@ -47,6 +49,17 @@ object ball { shape sphere 5 cm  position (0, 0, 5) m  mass 1 kg  elasticity 1 M
 object cube { shape box (5, 5, 5) cm  position (1, 0, 5) m  mass 1 kg  elasticity rigid  drag 0.5 N*s/m  force (0, 3, 0) N }
 control { time 0.6 s  frames 20 fps  resolution 5 cm }
 """
+
+
+def test_potential_energy_of_a_fall(free_fall):
+    """m g h less than at the start, m v^2/2 more."""
+    from mdanim_lammps.results.quantities import series
+
+    t = free_fall.trajectory
+    measured = Measured(free_fall.scene.record, t.names, None, t.times, t.centers, t.center_velocities, 0.0, None, t)
+    potential, speed = (series(Asked("other", word), measured) for word in ("potential", "speed"))
+    np.testing.assert_allclose(potential, -0.5 * t.metadata.object_mass[0] * speed**2, atol=1e-9)
+    assert potential[0] == 0.0 and potential[-1] < -1.0
 
 
 def test_nothing_touches_what_flies(tmp_path):
@@ -157,7 +170,6 @@ BALL = "object ball { shape sphere 10 cm position (0, 0, 1) m mass 1 kg elastici
 )
 def test_expect_of_many_frames(free_fall, line, found, met):
     """Least, largest and mean values, and the worst one of a window, in a fall."""
-    from mdanim_lammps.effects.measured import Measured
     from mdanim_lammps.results.expect import evaluate
 
     (expect,) = parse_scene(BALL.replace("ball", "other") + f"expect {line}\n").expects
@@ -191,6 +203,9 @@ control { time 0.3 s  frames 20 fps  resolution 5 cm }
         ("record bal.speed", "no object is called bal", "did you mean 'ball'?"),
         ("record ball", "record ball names no quantity", "e.g. ball.position.z"),
         ("record ball.distance", "distance needs another object in brackets", "write distance(cube)"),
+        ("record ball.speed, ball.spin", "',' cannot follow here; record is complete", "write record again for the next"),
+        ("expect ball.speed = 2 m/s within 2 %", "'within' cannot follow here", "a tolerance is written as +-"),
+        ("expect ball.speed max < 3 m/s", "'=' is missing in expect, found 'max'", "expect max ball.speed"),
         ("record ball.speed = 3 m/s", "'=' cannot follow here; record is complete", ""),
     ],
 )

@@ -39,7 +39,7 @@ class _Curve:
 
     of: Asked
     times: np.ndarray
-    """Of the frames [s], shape (F,)."""
+    """Times of the frames [s], shape (F,)."""
     values: np.ndarray
     """shape (F,)."""
     is_mean: bool

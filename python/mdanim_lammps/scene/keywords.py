@@ -15,6 +15,7 @@ from typing import get_args
 from ..features import facets
 from .forms import Word, alternatives
 from .placement import Placement
+from .quantities import OVER
 from .scene import Command, Control, Render, SceneRecord, Solid, Switch
 from .schema import Block, Keyword, Words, keywords, syntax
 from .shapes import Shape
@@ -115,7 +116,12 @@ NOT_SUPPORTED = {
 }
 """Words that people look for, which the language does not have, and what to write instead."""
 
-MISPLACED = {at: way_out for words in facets("words") for at, way_out in getattr(words, "MISPLACED", {}).items()}
+MISPLACED = {
+    "expect within": "a tolerance is written as +-, e.g. = 2 m/s +- 2 %",
+    **{f"expect {over}": f"it stands first, e.g. expect {over} ball.speed < 3 m/s" for over in OVER},
+    **{f"{word} ,": f"one quantity in a line: write {word} again for the next" for word in ("record", "plot")},
+    **{at: way_out for words in facets("words") for at, way_out in getattr(words, "MISPLACED", {}).items()},
+}
 """A setting with a word that people write behind it, and what to write instead."""
 
 SYNONYMS = {word: kind.FORMS[0].split()[0] for kind in get_args(Shape) for word in kind.ALSO}

@@ -9,7 +9,19 @@ from functools import cache
 from itertools import count
 
 from .forms import OptionalPart, Slot, Word, alternatives, literals, pieces
-from .keywords import KEYWORDS, NOT_SUPPORTED, STATEMENTS, belongs, did_you_mean, example, example_of, misplaced, nearest, owner
+from .keywords import (
+    KEYWORDS,
+    MISPLACED,
+    NOT_SUPPORTED,
+    STATEMENTS,
+    belongs,
+    did_you_mean,
+    example,
+    example_of,
+    misplaced,
+    nearest,
+    owner,
+)
 from .limits import DEEPEST_GROUP
 from .quantities import GLOBALS, QUANTITIES, RELATIONS
 from .reader import ODD, Reader
@@ -221,7 +233,8 @@ class SettingReader(Reader):
             return Value(slot, name.token, name.last, name=name)
         if slot.kind == "relation":
             if t not in RELATIONS:
-                raise Fault(t, f"'=' is missing in {keyword.name}, found {t.found()}", f"{example(keyword)}; or <, >, <=, >=")
+                hint = MISPLACED.get(f"{keyword.name} {t}", f"{example(keyword)}; or <, >, <=, >=")
+                raise Fault(t, f"'=' is missing in {keyword.name}, found {t.found()}", hint)
             self.take()
             return Value(slot, t, t, text=RELATIONS[str(t)])
         if slot.kind == "place" and t.type == "NAME":
@@ -306,4 +319,5 @@ class SettingReader(Reader):
             hint = belongs(home, str(t)) if home else did_you_mean(str(t), settings) or "one setting per line"
         elif t.type == "LBRACE":
             hint = f"{what} is a setting, not a block"
+        hint = MISPLACED.get(f"{what} {t}", hint)
         raise Fault(t, f"{t.found()} cannot follow here; {what} is complete", hint)

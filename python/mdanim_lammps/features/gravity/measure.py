@@ -16,7 +16,14 @@ def _weight(m: Measured, of: Of) -> np.ndarray:
     return mass * np.array([vector_at(path, float(t)) for t in m.times])
 
 
+def _potential(m: Measured, of: Of) -> np.ndarray:
+    """Energy that moving from the start to here takes, with the weight as it is now [J], shape (F,)."""
+    place = m.center[:, m.solid(of.subject)]
+    return -np.einsum("fd,fd->f", _weight(m, of), place - place[0])
+
+
 MEASURES = {
+    ("NAME", "potential"): Measurable(_potential),
     ("NAME", "weight"): Measurable(lambda m, of: np.linalg.norm(_weight(m, of), axis=1)),
     **{
         ("NAME", f"weight.{letter}"): Measurable(lambda m, of, axis=axis: _weight(m, of)[:, axis])

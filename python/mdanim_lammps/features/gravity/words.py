@@ -10,6 +10,7 @@ SWITCHES = {"gravity": "a gravity vector that is not zero"}
 
 QUANTITIES = {
     ("NAME", "weight"): Observable("N", "magnitude of the weight of an object"),
+    ("NAME", "potential"): Observable("J", "potential energy of an object in gravity, 0 at the start"),
     **{("NAME", f"weight.{axis}"): Observable("N", f"weight of an object, mass times gravity, {axis}") for axis in "xyz"},
 }
 
