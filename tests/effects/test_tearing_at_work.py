@@ -238,3 +238,34 @@ def test_a_liquid_beside_what_tears_is_refused():
     pool = "gravity (0, 0, -9.81)\nliquid w { basin from (-2, -2, 0) to (2, 2, 3) density 1000 level 0.4 }\n"
     with pytest.raises(SceneError, match="may tear, and a liquid finds objects by their cells"):
         parse_scene(text + pool + "control { time 1 s }\n")
+
+
+SLIT = """object a {{
+  shape sheet (0.6, 0.3) m thickness 4 mm  position (0, 0, 1) m  density 1000  elasticity 1 MPa  damping 0.5
+  resolution {h} m  hold faces y  toughness {tough} J/m^2
+}}
+control {{ time 0.15 s }}
+"""
+
+
+@pytest.mark.parametrize("h", [0.02, 0.01])
+@pytest.mark.parametrize(("part", "runs"), [(0.9, False), (0.95, True)])
+def test_a_slit_runs_at_the_toughness(prepared, h, part, runs):
+    """A strip with a slit whose sides are apart by ``part`` of what G = E (u/H)^2 H/2 (1 - nu^2) asks for: for both spacings the
+    tear goes on from the end of the slit, and along it, between 0.9 and 0.95 of u, 0.81 and 0.90 of G."""
+    tough, height, slit = 20.0, 0.3, -0.1
+    ready = prepared(SLIT.format(h=h, tough=tough))
+    system, (i, j) = ready.system, ready.system.spring.T
+    y, along = system.position[:, 1], 0.5 * (system.position[i, 0] + system.position[j, 0])
+    rows = np.unique(y.round(9))
+    level = rows[np.searchsorted(rows, 1e-9) - 1 :][:2].mean()
+    cut = ((y[i] - level) * (y[j] - level) < 0.0) & (along < slit)
+    ready.plan.columns["torn"][cut] = 1
+    with Instance(ready.plan) as instance:
+        instance.array("x")[:, 1] = y * (1.0 + part * math.sqrt(2.0 * tough * (1.0 - 1.0 / 9.0) / (1e6 * height)))
+        instance.setup()
+        instance.run(ready.certificate.steps)
+        more = (instance.column("torn") > 0) & ~cut
+    assert np.abs(0.5 * (y[i] + y[j]) - level)[more].max(initial=0.0) < 1.5 * system.spacing[0]
+    reach = along[more].max(initial=slit)
+    assert reach > 0.1 if runs else reach < 0.0

@@ -10,7 +10,7 @@ from ...effects.effect import Effect
 from ...effects.fields import column
 from ..springs.effect import spring_norm
 from .gone import EFFECT, FIX, NAME, acts
-from .rules import over_two, rules_text, springs_of
+from .rules import over_two, rules_text, springs_of, strain_of
 from .words import tears
 
 TORN = column(NAME, "1", per="bond", dtype="uint8", state=True)
@@ -33,8 +33,9 @@ class Tearing(Effect):
     def called_for(self, scene, reach):
         for solid in scene.solids:
             if tears(solid):
-                return Verdict(self.name, True, f"{solid.name} has a tear-strain", solid.spans.get("tear-strain"))
-        return Verdict(self.name, False, "no object has a tear-strain")
+                word = "toughness" if solid.tear_strain is None else "tear-strain"
+                return Verdict(self.name, True, f"{solid.name} has a {word}", solid.spans.get(word))
+        return Verdict(self.name, False, "no object has a tear-strain or a toughness")
 
     def acts_on(self, context):
         return acts(context)
@@ -56,7 +57,9 @@ class Tearing(Effect):
     def tables(self, context):
         seed, system = context.scene.control.seed, context.system
         lines = ["# What breaks, written by mdanim-lammps: object MOLECULE STRAIN, links and springs over two of them\n"]
-        lines += [rules_text(system, m, one, seed, one.tear_strain) for m, one in enumerate(context.solids) if tears(one)]
+        lines += [
+            rules_text(system, m, one, seed, strain_of(system, m, one)) for m, one in enumerate(context.solids) if tears(one)
+        ]
         return {RULES: "".join(lines)}
 
     def commands(self, context):

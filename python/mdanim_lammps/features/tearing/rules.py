@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 import random
 from typing import Any
 
@@ -16,6 +17,19 @@ MORE = 1.25
 links from which a ball fell came apart in 52 pieces."""
 SAME = 1e-9
 """Difference of lengths that are alike, over one of them."""
+
+
+TOUGH, OF_ROPE = 0.36, 2.0
+"""e^2 E h/G of sheets and solids, 0.31 to 0.44 (bench/tearing.py), and of a link of a rope."""
+
+
+def strain_of(system: System, m: int, solid: Any) -> float:
+    """The strain that springs of an object bear [-]."""
+    if solid.tear_strain is not None:
+        return solid.tear_strain
+    own, rope = springs_of(system, m), isinstance(solid.shape, Rope)
+    h = float(system.unloaded[own][~over_two(system, own)].mean()) if rope else float(system.spacing[m])
+    return math.sqrt((OF_ROPE if rope else TOUGH) * solid.toughness / (float(system.young[m]) * h))
 
 
 def springs_of(system: System, solid: int) -> slice:

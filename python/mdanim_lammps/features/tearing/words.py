@@ -33,6 +33,11 @@ class TearWords:
         "which the `seed` of `control` chooses, bears so much, the others a quarter more. Absent: it never tears.",
         "0.1", Rule.POSITIVE, default=None, limit=TEAR_STRAIN, after="damping", shared=True)  # fmt: skip
     """[-]; None for never."""
+    toughness: float | None = setting(
+        "<G:N/m>",
+        "In place of tear-strain: the energy that a tear takes for each area that it opens, whatever the spacing of particles.",
+        "50 J/m^2", Rule.POSITIVE, default=None, after="tear-strain", shared=True)  # fmt: skip
+    """[J/m^2]; None where a strain is given, or for never."""
 
 
 OBJECT = TearWords
@@ -40,7 +45,9 @@ OBJECT = TearWords
 
 def tears(solid: Any) -> bool:
     """Whether springs of an object may break."""
-    return solid.tear_strain is not None and not all_held(solid)
+    if solid.tear_strain is None and solid.toughness is None:
+        return False
+    return not all_held(solid)
 
 
 def fills(solid: Any) -> bool:
@@ -50,16 +57,24 @@ def fills(solid: Any) -> bool:
 
 def check_object(v: Any, block: Any, solid: Any) -> Any:
     """No rigid object and no curved sheet tears, and no rope is torn to begin with."""
-    if solid.tear_strain is None:
+    word = "toughness" if solid.tear_strain is None else "tear-strain"
+    if word not in solid.spans:
         return solid
-    span, rope = solid.spans["tear-strain"], solid.shape
+    span, rope = solid.spans[word], solid.shape
+    if "toughness" in solid.spans and word == "tear-strain":
+        cause = f"{solid.name} has a tear-strain, which then follows from its toughness"
+        v.problem(solid.spans["toughness"], cause, "write one of the two")
     if getattr(solid.elasticity, "modulus", 0.0) == math.inf:
         cause = f"{solid.name} is rigid: it has no springs that could break"
-        v.problem(span, cause, "write its elasticity, as in elasticity 1 MPa, or take tear-strain out")
+        v.problem(span, cause, f"write its elasticity, as in elasticity 1 MPa, or take {word} out")
     elif isinstance(rope, Shell):
         cause = f"{solid.name} is a curved sheet, which does not tear yet"
-        v.problem(span, cause, "take tear-strain out, or write shape sheet (lx, ly) m for a flat one")
-    elif isinstance(rope, Rope) and (stretched := rope.curve.length / rope.length - 1.0) > solid.tear_strain:
+        v.problem(span, cause, f"take {word} out, or write shape sheet (lx, ly) m for a flat one")
+    elif (
+        isinstance(rope, Rope)
+        and word == "tear-strain"
+        and (stretched := rope.curve.length / rope.length - 1.0) > solid.tear_strain
+    ):
         cause = (
             f"{solid.name} is stretched by {100 * stretched:.3g} % from the start, and tears at {100 * solid.tear_strain:.3g} %"
         )
@@ -73,7 +88,8 @@ def check(v: Any, top: Mapping, held: Mapping) -> None:
         return
     for solid in [s for s in held["solids"] if tears(s) and fills(s)][:1]:
         cause = f"{solid.name} may tear, and a liquid finds objects by their cells, which are then torn"
-        v.problem(solid.spans["tear-strain"], cause, "take the liquid out, or tear-strain", key="tear-liquid")
+        at = solid.spans["tear-strain" if "tear-strain" in solid.spans else "toughness"]
+        v.problem(at, cause, "take the liquid out, or the tearing", key="tear-liquid")
 
 
 CHECKS = {"object": check_object}
