@@ -89,7 +89,7 @@ NOT_SUPPORTED = {
     "motion": "give the object a velocity or a spin at the start; what is held moves by drive and key",
     "move": "give the object a velocity or a spin at the start; what is held moves by drive and key",
     "break": "solids do not break; build it of parts that lie on each other",
-    "tear": "write tear-strain 0.1 in a rope or chain; solids do not tear",
+    "tear": "write tear-strain 0.1 in a rope, a sheet or an elastic object",
     "balloon": "nothing is filled with gas; a ball of low density and elasticity comes near it",
     "glue": "write joint weld A B { }",
     "push": "write force (0.2, 0, 0) N from 1 s to 2 s in the object",
