@@ -85,6 +85,8 @@ PICTURES = {
     "flag": 0.5,
     "tumblers": 1.0,
     "buoys": 4.0,
+    "balls": 0.4,
+    "mattress": 0.27,
 }
 """Scene and the moment to show [s]."""
 STEPS = {"falls": 0.0, "stands": 1.0, "pushed": 0.27, "rolls": 0.5, "splashes": 0.4, "show": 0.3}

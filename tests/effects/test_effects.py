@@ -55,7 +55,8 @@ air { }
 EVERY = with_every_effect(FULL)
 """The same with the words of all further effects, whose lines are those where they stand."""
 ROPE = "object w { shape rope from (0.8, 0, 1) to (0.8, 0, 1.8) thickness 0.01 mass 1 elasticity 1e6\ntear-strain 0.1 }\n"
-BESIDE = {"tearing": re.sub(r"liquid w \{[^}]*\}\n", ROPE, FULL)}
+BAG = "object w { shape sphere 0.1 sheet thickness 0.01 position (0.8, 0, 1) mass 1 elasticity 1e6\ninflate 1e3 }\n"
+BESIDE = {name: re.sub(r"liquid w \{[^}]*\}\n", text, FULL) for name, text in (("tearing", ROPE), ("inflate", BAG))}
 """Scenes for effects of objects that a liquid refuses beside it."""
 BARE = "object a {\n shape sphere 0.1\n position (0, 0, 0)\n mass 1\n elasticity 1e5\n}\ncontrol { time 1 }\n"
 LINES = {

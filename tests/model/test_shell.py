@@ -81,6 +81,15 @@ def test_triangles_are_even_and_close(shape):
     assert kept == pytest.approx(lines, rel=0.01)
 
 
+@pytest.mark.parametrize("shape", [Sphere(0.1), Torus(0.1, 0.04)], ids=shape_id)
+def test_few_triangles_of_what_is_smooth_have_no_creases(shape):
+    """A coarser surface that is bent sharply between two triangles was taken for one with creases, and the nearest of none
+    searched."""
+    found = tiled(Shell(shape, 1e-3), 0.05)
+    _, uses = np.unique(np.sort(edges(found.triangle), axis=1), axis=0, return_counts=True)
+    assert (uses == 2).all() and not len(found.creases)
+
+
 def test_an_own_triangulation_of_that_size_stays():
     """Triangles of about the spacing are particles as they are."""
     made = tiled(Shell(Sphere(0.5), 1e-3), 0.1)

@@ -46,6 +46,9 @@ def scene(block: str, **settings: str):
     if {"tear-strain", "toughness"} & set(settings):
         blocks["object"]["shape"] = "rope from (0, 0, 0) m to (1, 0, 0) m thickness 1 cm"
         del blocks["object"]["position"], blocks["liquid"]
+    if "inflate" in settings:
+        blocks["object"]["shape"] = "sphere 10 cm sheet thickness 1 mm"
+        del blocks["liquid"]
     if block == "joint" and "restitution" in settings:
         blocks["joint"]["limits"] = "-30 deg to 60 deg"
     if "(floor)" in settings.get("expect", ""):

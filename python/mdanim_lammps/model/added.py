@@ -26,7 +26,7 @@ from .model import Model
 SAMPLES = np.array(list(product((-0.375, -0.125, 0.125, 0.375), repeat=3)))
 """Places around a particle at which densities are asked for, over the edges of a cell, shape (64, 3)."""
 ITERATIONS, HALVINGS, ENOUGH = 60, 40, 1e-13
-"""Of Newton's method: most steps, most halvings of one, and the error of moments at which it ends."""
+"""Most steps of Newton's method, most halvings of one, and the error of moments at which it ends."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -49,7 +49,7 @@ def _givers() -> tuple[Callable[[Any], Added | None], ...]:
 
 
 def added(solid: Any) -> Added | None:
-    """What features add to a solid; None for nothing. Raises mesh.MeshError."""
+    """The sum of all that features add to a solid; None for nothing. Raises mesh.MeshError."""
     found = [one for give in _givers() if (one := give(solid)) is not None]
     if len(found) < 2:
         return found[0] if found else None

@@ -42,7 +42,7 @@ def moments_in_box(
         four, sign = _kept(four, sign, high[axis] - four[:, :, axis])
     volume = sign * np.abs(np.linalg.det(four[:, 1:] - four[:, :1])) / 6.0
     middle = four.mean(axis=1)
-    # Of a tetrahedron: V/20 (sum of x x' of its corners + 16 times that of its middle).
+    # A tetrahedron has V/20 (sum of x x' of its corners + 16 times that of its middle).
     second = (np.einsum("t,tki,tkj->ij", volume, four, four) + 16.0 * np.einsum("t,ti,tj->ij", volume, middle, middle)) / 20.0
     return float(volume.sum()), volume @ middle, second
 

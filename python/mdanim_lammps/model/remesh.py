@@ -37,8 +37,8 @@ def remeshed(points: np.ndarray, triangles: np.ndarray, size: float) -> tuple[np
     even = length.min() >= EVEN[0] * size and length.max() <= EVEN[1] * size
     if even and MEAN[0] * size <= length.mean() <= MEAN[1] * size:
         return points, triangles, creases(points, triangles)
-    net = _Net(*_coarser(points, triangles, size))
     target = _Target(points, triangles)
+    net = _Net(*_coarser(points, triangles, size), smooth=target.is_smooth)
     for _ in range(ROUNDS):
         net.cut(LONG * size)
         net.collapse(SHORT * size, LONG * size)
@@ -83,6 +83,8 @@ class _Target:
         self._surface = pyvista.PolyData.from_regular_faces(points, triangles)
         line = creases(points, triangles)
         self._a, self._b = points[line[:, 0]], points[line[:, 1]]
+        self.is_smooth = not len(line)
+        """Whether it has neither: what is bent sharply in a coarser one is not a crease of it."""
 
     def on_surface(self, x: np.ndarray) -> np.ndarray:
         """The nearest points of the surface, shape (N, 3)."""
@@ -103,7 +105,7 @@ class _Target:
 class _Net:
     """Triangles that change."""
 
-    def __init__(self, points: np.ndarray, triangles: np.ndarray):
+    def __init__(self, points: np.ndarray, triangles: np.ndarray, smooth: bool = False):
         self.x = list(map(tuple, points.tolist()))
         self.triangle: dict[int, tuple[int, int, int]] = dict(enumerate(map(tuple, triangles.tolist())))
         self.of: defaultdict[int, set[int]] = defaultdict(set)
@@ -114,7 +116,7 @@ class _Net:
         self.next = len(self.triangle)
         self.line: defaultdict[int, set[int]] = defaultdict(set)
         """The other ends of the borders and creases at each corner."""
-        for a, b in creases(points, triangles).tolist():
+        for a, b in [] if smooth else creases(points, triangles).tolist():
             self.line[a].add(b)
             self.line[b].add(a)
         self.fixed = {c for c, ends in self.line.items() if self._is_corner(c, ends)}

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What ballast adds to the mass of a solid."""
+"""Mass and moments that ballast adds to a solid."""
 
 from __future__ import annotations
 

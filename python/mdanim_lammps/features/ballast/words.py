@@ -16,7 +16,7 @@ SWITCHES: dict[str, str] = {}
 
 @dataclass(frozen=True, slots=True)
 class Ballast:
-    """What is in this box (world frame, at the start) has another density."""
+    """Another density in this box (world frame, at the start)."""
 
     FORMS: ClassVar = ("<rho:kg/m^3> within box <(x0, y0, z0):m> to <(x1, y1, z1):m>",)
 

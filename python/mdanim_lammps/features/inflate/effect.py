@@ -1,0 +1,235 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Gas in closed sheets, by ``fix mdanim/inflate``."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from ...bodies import all_held
+from ...effects.context import Context, Verdict
+from ...effects.effect import Effect
+from ...effects.fields import Field
+from ...errors import Problem
+from ...model import shapes
+from ...model.triangles import edges
+from ...reach import Throw
+from ...scene.formatting import number, say
+from ...scene.once import once_for
+from ...scene.shapes import Sphere
+from .words import Inflate
+
+VOLUME, PRESSURE = "gas_volume", "gas_pressure"
+BAGS = "bags"
+"""Table of surfaces."""
+FAR, MOST_GROWN = 1.3, 4.0
+"""Growth of a ball above which a warning is given, and up to which its sheet is asked."""
+MOST_LEFT = 0.5
+"""Part of the pressure below which a note tells what is left of it."""
+NU = 1.0 / 3.0
+"""Poisson's ratio of sheets."""
+
+
+class Gas(Effect):
+    """p = (p1 + p0) V1/V - p0 on each triangle of a closed sheet, V its volume, p1 and V1 those at the start: the gradient of
+    U(V) = p0 (V - V*) - C ln(V/V*), C = (p1 + p0) V1, V* = C/p0 (docs/physics-inflate.md).
+    """
+
+    styles = (("fix", "mdanim/inflate"),)
+    name = fix = "inflate"
+    order = 86
+    ledger = "gas"
+    if_off = "what is inflated is hollow, and falls in"
+
+    def called_for(self, scene, reach):
+        found = [solid for solid in scene.solids if solid.inflate is not None]
+        if not found:
+            return Verdict(self.name, False, "no object is inflated")
+        span = found[0].spans.get("inflate")
+        if all(map(all_held, found)):
+            return Verdict(self.name, False, "what is inflated is held as a whole", span)
+        return Verdict(self.name, True, f"gas in {found[0].name} at {say(found[0].inflate.pressure, 'Pa')}", span)
+
+    def acts_on(self, context):
+        return bool(_inflated(context))
+
+    def throws(self, scene):
+        return _throws(scene)
+
+    # --- what it brings into a run ------------------------------------------------------------------------------------
+
+    def commands(self, context):
+        return [f"fix {self.fix} {context.pushed} mdanim/inflate bags table:{BAGS}"]
+
+    def tables(self, context):
+        first: dict[int, int] = {}
+        lines = ["# Closed surfaces with gas, written by mdanim-lammps: object MOLECULE P V P0, or like another one\n"]
+        of = _solids(context)
+        for m in _inflated(context):
+            model, solid = of[m]
+            triangle = model.frame.triangle
+            gas = solid.inflate
+            head = f"object {m + 1} {gas.pressure!r} {_volume(context, m)!r} {gas.outside!r}"
+            if id(triangle) in first:
+                lines.append(f"{head} like {first[id(triangle)]}\n")
+                continue
+            first[id(triangle)] = m + 1
+            lines += [f"{head}\n", *(f"triangle {a} {b} {c}\n" for a, b, c in (triangle + 1).tolist())]
+        return {BAGS: "".join(lines)}
+
+    def rate(self, context):
+        """Two parts: that of the gas as a spring, (p + p0)/V g g' with the gradient g of the volume, of which the share in any
+        particle's bound is (p + p0)/V sum g_i^2/m_i; and p times the change of areas: p |c - d|/6 between the ends of an edge
+        with the corners c and d beside it."""
+        found, of = np.zeros(context.system.particles), _solids(context)
+        for m in _inflated(context):
+            model, solid = of[m]
+            gas, x, triangle = solid.inflate, model.position, model.frame.triangle
+            own = slice(context.system.first[m], context.system.first[m + 1])
+            mass = context.system.mass[own]
+            area = np.zeros((len(x), 3))
+            normal = np.cross(x[triangle[:, 1]] - x[triangle[:, 0]], x[triangle[:, 2]] - x[triangle[:, 0]]) / 6.0
+            beside = np.zeros(len(x))
+            for k in range(3):
+                np.add.at(area, triangle[:, k], normal)
+                a, b, c = (triangle[:, (k + n) % 3] for n in range(3))
+                # Both triangles of an edge have a part of it, towards its middle.
+                part = np.linalg.norm(x[c] - 0.5 * (x[a] + x[b]), axis=1) / 6.0
+                np.add.at(beside, a, part)
+                np.add.at(beside, b, part)
+            whole = float(((area**2).sum(axis=1) / mass).sum())
+            found[own] = (gas.pressure + gas.outside) / _volume(context, m) * whole + gas.pressure * beside / mass
+        return found
+
+    # --- accounts and frames ------------------------------------------------------------------------------------------
+
+    def energy(self, readings):
+        return readings.fix_scalar(self.fix)
+
+    def fields(self, scene):
+        count = (len(scene.solids),)
+        return Field(VOLUME, "m^3", per="object", counts=count), Field(PRESSURE, "Pa", per="object", counts=count)
+
+    def tell(self, readings):
+        inflated = _inflated(readings.context)
+        found = np.zeros((len(readings.system.names), 2))
+        found[inflated] = readings.fix_rows(self.fix, len(inflated), 2)
+        return {VOLUME: found[:, 0], PRESSURE: found[:, 1]}
+
+    # --- advice -------------------------------------------------------------------------------------------------------
+
+    def problems(self, resolved, models, grid):
+        """Sheets that are open, or encloses nothing."""
+        found = []
+        for model, solid in zip(models, resolved.scene.solids):
+            if solid.inflate is None or all_held(solid):
+                continue
+            if many := _open_edges(model):
+                cause = f"the surface of {solid.name} is open at {many} edges, and gas would go out"
+                found.append(Problem(solid.spans.get("inflate"), cause, "close it in a mesh editor, or leave inflate out"))
+        return found
+
+    def warnings(self, context):
+        """What swells far, or without end, as a ball of its volume and surface would."""
+        found, of = [], _solids(context)
+        for m in _inflated(context):
+            _, solid = of[m]
+            if (grown := _grown(solid, _volume(context, m))) > FAR:
+                size = f"to {number(grown, 2)} times its size" if math.isfinite(grown) else "without end"
+                cause = f"{solid.name} swells {size}, as a ball of its volume and surface would"
+                way = "write a lower pressure, a thicker sheet or more elasticity"
+                found.append(Problem(solid.spans.get("inflate"), cause, way, severity="warning"))
+        return found
+
+    def notes(self, envelope):
+        """The pressure that is left in balls, where most of it goes."""
+        found, of = [], _solids(envelope.context)
+        for m in _inflated(envelope.context):
+            _, solid = of[m]
+            gas, grown = solid.inflate, _grown(solid, _volume(envelope.context, m))
+            left = (gas.pressure + gas.outside) / grown**3 - gas.outside
+            if isinstance(solid.shape.shape, Sphere) and grown <= FAR and left < MOST_LEFT * gas.pressure:
+                cause = f"{solid.name} swells to {number(grown, 4)} times its size, and {say(left, 'Pa', 2)} of "
+                cause += f"{say(gas.pressure, 'Pa')} are left"
+                found.append(Problem(solid.spans.get("inflate"), cause, severity="note"))
+        return found
+
+
+def _grown(solid: Any, volume: float) -> float:
+    """By how much a ball of this volume [m^3] and surface swells until its sheet bears the gas [-]: the least s > 1 with
+    2 E t (s - 1)/((1 - nu) s^2 r) = (p + p0)/s^3 - p0; infinite for none up to MOST_GROWN."""
+    gas, r = solid.inflate, 3.0 * volume / (0.5 * shapes.area(solid.shape))
+    s = np.linspace(1.0, MOST_GROWN, 4001)
+    bears = 2.0 * solid.elasticity.modulus * solid.shape.thickness / ((1.0 - NU) * r) * (s - 1.0) / s**2
+    enough = np.flatnonzero(bears >= (gas.pressure + gas.outside) / s**3 - gas.outside)
+    return float(s[enough[0]]) if len(enough) else math.inf
+
+
+@once_for(lambda scene: scene)
+def _throws(scene: Any) -> dict[int, Throw]:
+    """The speed that the gas gives a sheet that bears nothing, and the acceleration p/(rho t) by it."""
+    found = {}
+    for m, solid in enumerate(scene.solids):
+        if solid.inflate is None or all_held(solid):
+            continue
+        gas, mass = solid.inflate, shapes.mass(solid)
+        low, high = shapes.extent(solid.shape)
+        volume = float(np.prod(high - low))
+        speed = math.sqrt(2.0 * _stored(gas, volume) / mass)
+        acceleration = gas.pressure * 0.5 * shapes.area(solid.shape) / mass
+        found[m] = Throw(
+            speed,
+            acceleration,
+            speed,
+            acceleration,
+            f"the gas in {solid.name}",
+            "write a lower pressure",
+            solid.spans.get("inflate"),
+        )
+    return found
+
+
+def _stored(gas: Inflate, volume: float) -> float:
+    """What the gas can give [J]: all of it where there is something outside, else until it has twice its volume."""
+    amount = (gas.pressure + gas.outside) * volume
+    if gas.outside == 0.0:
+        return amount * math.log(2.0)
+    rest = amount / gas.outside
+    return gas.outside * (volume - rest) - amount * math.log(volume / rest)
+
+
+@once_for(lambda context: context.system)
+def _solids(context: Context) -> list[tuple[Any, Any]]:
+    """Models and objects, in the order of the system."""
+    of = {model.name: (model, solid) for model, solid in zip(context.models, context.scene.solids)}
+    return [of[name] for name in context.system.names]
+
+
+@once_for(lambda context: context.system)
+def _inflated(context: Context) -> list[int]:
+    """Numbers of the objects of a context with gas that can move."""
+    of = _solids(context)
+    return [m for m in np.flatnonzero(~context.system.still).tolist() if of[m][1].inflate is not None]
+
+
+def _volume(context: Context, m: int) -> float:
+    """Volume of an object at the start [m^3]."""
+    model, _ = _solids(context)[m]
+    return volume_in(model.position, model.frame.triangle)
+
+
+def volume_in(x: np.ndarray, triangle: np.ndarray) -> float:
+    """Volume that triangles of points x [m], shape (N, 3), enclose [m^3]."""
+    a, b, c = (x[triangle[:, k]] - x[0] for k in range(3))
+    return float(np.einsum("ij,ij->", a, np.cross(b, c)) / 6.0)
+
+
+def _open_edges(model: Any) -> int:
+    """Edges with a triangle on one side only."""
+    _, uses = np.unique(np.sort(edges(model.frame.triangle), axis=1), axis=0, return_counts=True)
+    return int(np.count_nonzero(uses != 2))
+
+
+EFFECTS = (Gas(),)

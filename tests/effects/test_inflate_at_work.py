@@ -1,0 +1,115 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Inflated sheets: closed forms, the gas law when they are pressed, books, and what is refused."""
+
+import inflate_cases
+import numpy as np
+import pytest
+from air_cases import made, residual
+from inflate_cases import CASES, OUTSIDE
+from mdanim_lammps.engine.instance import Instance
+from mdanim_lammps.errors import SceneError
+from mdanim_lammps.scene.lock import lock_text
+from mdanim_lammps.scene.parse import parse_scene
+
+SLOW = {"ball swells, 20 cm, 1 mm of 3 MPa, 1 kPa", "ball swells, 1 m, 2 mm of 20 MPa, nothing outside"}
+DOWN = "gravity (0, 0, -9.81) m/s^2\n"
+BALL = "object ball { shape sphere 10 cm sheet thickness 1 mm  position (0, 0, 0.101) m  material rubber  resolution 2.5 cm"
+
+
+@pytest.mark.parametrize("name", [pytest.param(n, marks=[pytest.mark.soak] if n in SLOW else []) for n in CASES])
+def test_it_agrees_with_the_closed_form(name):
+    """At the defaults of the language."""
+    case, most = CASES[name]
+    found, expected = case()
+    assert found == pytest.approx(expected, rel=most)
+
+
+def test_a_ball_that_a_block_presses():
+    """Isothermal: (p + p0) V stays, and p rises where the block is heavy; the ledger closes."""
+    block = "object block { shape box (30, 30, 10) cm  position (0, 0, 0.27) m  density 600  elasticity rigid }\n"
+    text = f"{DOWN}ground z 0\n{BALL} inflate 3 kPa }}\n{block}"
+    ready = made(text, 0.3)
+    steps = round(0.02 / ready.certificate.timestep)
+    rows = []
+    with Instance(ready.plan) as instance:
+        instance.setup()
+        for _ in range(15):
+            rows.append(instance.fix_rows("inflate", 1, 2)[0])
+            instance.run(steps)
+    volume, pressure = np.array(rows).T
+    np.testing.assert_allclose((pressure + OUTSIDE) * volume, (3000.0 + OUTSIDE) * volume[0], rtol=1e-12)
+    assert pressure.max() > 1.2 * np.median(pressure[:3])
+
+
+def test_the_ledger_closes():
+    """A ball that swells, falls and bounces off the ground."""
+    assert residual(f"{DOWN}ground z 0\n{BALL.replace('0.101', '0.2')} inflate 2 kPa }}\n", 0.3) < 1e-3
+
+
+def test_a_box_and_a_cylinder_swell_alike_and_do_not_move():
+    """Forces of the gas have neither a sum nor a torque, whatever the shape."""
+    for shape in ("box (20, 12, 8) cm", "cylinder 6 cm 20 cm", "torus 10 cm 4 cm"):
+        body = f"shape {shape} sheet thickness 1 mm  position (0, 0, 0) m  density 1000  elasticity 3 MPa  resolution 2.5 cm"
+        ready = made(f"object bag {{ {body}  inflate 1 kPa }}\n", 0.02)
+        with Instance(ready.plan) as instance:
+            instance.setup()
+            force, x = instance.array("f").copy(), ready.system.position
+            before = instance.fix_rows("inflate", 1, 2)[0]
+            instance.run(round(0.01 / ready.certificate.timestep))
+            after = instance.fix_rows("inflate", 1, 2)[0]
+            v = instance.array("v").copy()
+        scale = np.abs(force).sum()
+        assert np.abs(force.sum(axis=0)).max() < 1e-12 * scale and np.abs(np.cross(x, force).sum(axis=0)).max() < 1e-12 * scale
+        assert before[1] == pytest.approx(1000.0) and after[0] > before[0] and after[1] < before[1]
+        momentum = np.abs(ready.system.mass @ v).max()
+        assert momentum < 1e-9 * (ready.system.mass @ np.abs(v)).max()
+
+
+def one(body: str):
+    return parse_scene(f"object a {{ {body} }}\ncontrol {{ time 1 s }}\n").solids[0]
+
+
+CONTROL = "control { time 0.1 s }\n"
+SHELL = "shape sphere 10 cm sheet thickness 1 mm position (0, 0, 1) m material rubber"
+SOLID = "shape sphere 10 cm position (0, 0, 1) m material rubber"
+FLAT = "shape sheet (1, 1) m thickness 1 mm position (0, 0, 1) m material rubber"
+MISTAKES = [
+    (f"{SOLID} inflate 2 kPa", "has no room for gas"),
+    (f"{FLAT} inflate 2 kPa", "has no room for gas"),
+    (f"{SHELL} inflate -2 kPa", "pressure above that outside"),
+    (f"{SHELL} inflate 2 kPa outside -1 Pa", "a pressure outside of -1 Pa"),
+    (f"{SHELL} inflate 0 kPa outside 0 Pa", "there is no gas"),
+]
+
+
+@pytest.mark.parametrize(("body", "cause"), MISTAKES, ids=[cause for _, cause in MISTAKES])
+def test_mistakes(body, cause):
+    """Each at its place, with a way out."""
+    with pytest.raises(SceneError) as error:
+        one(body)
+    (problem,) = error.value.problems
+    assert cause in problem.message and problem.hint and problem.span.line == 1
+
+
+def test_words_and_lock():
+    """The pressure outside is that of air where it is not said."""
+    assert (one(f"{SHELL} inflate 2 kPa").inflate.pressure, one(f"{SHELL} inflate 2 kPa").inflate.outside) == (2000.0, OUTSIDE)
+    assert one(f"{SHELL} inflate 2 kPa outside 0 Pa").inflate.outside == 0.0
+    scene = parse_scene(f"object a {{ {SHELL} inflate 2 kPa outside 1 Pa }}\ncontrol {{ time 1 s }}\n")
+    assert parse_scene(lock_text(scene), scene.name) == scene
+
+
+def test_open_meshes_are_refused_and_thin_balloons_are_told(prepared, tmp_path):
+    """Gas would go out of a bag with a hole; a sheet that is too thin swells without end."""
+    (tmp_path / "bag.stl").write_text(inflate_cases.open_box())
+    with pytest.raises(SceneError, match=r"the surface of bag is open at \d+ edges"):
+        prepared(
+            f'object bag {{ shape mesh "{tmp_path}/bag.stl" sheet thickness 1 mm  position (0, 0, 0) m  material rubber'
+            "  inflate 1 kPa }\ncontrol { time 0.1 s }\n"
+        )
+    told = [prepared(f"object a {{ {SHELL} resolution 3 cm inflate {p} kPa }}\n{CONTROL}") for p in (1, 9, 150)]
+    calm, soft, thin = ([w.message for e in r.context.resolved.effects for w in e.warnings(r.context)] for r in told)
+    assert not any("swells" in text for text in (*calm, *soft))
+    assert any("a swells to 1.3 times its size, as a ball" in text for text in thin), thin
+    left = [note.message for note in told[1].certificate.notes]
+    assert any("a swells to 1.024 times its size, and 1.4 kPa of 9 kPa are left" in text for text in left), left
