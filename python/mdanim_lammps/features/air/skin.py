@@ -156,9 +156,11 @@ def _refined(place: np.ndarray, triangle: np.ndarray) -> tuple[np.ndarray, np.nd
         done.append(triangle[~long])
         # Corners from the longest edge on: a, b its ends, c opposite to it.
         a, b, c = (triangle[long][np.arange(long.sum()), (longest[long] + k) % 3] for k in range(3))
-        pair, middle = np.unique(np.sort(np.stack([a, b], axis=1), axis=1), axis=0, return_inverse=True)
-        middle = len(place) + middle.reshape(-1)
-        place = np.concatenate([place, 0.5 * (place[pair[:, 0]] + place[pair[:, 1]])])
+        # Numbers in place of rows: sorted in the same order, in a quarter of the time.
+        pair, middle = np.unique(np.minimum(a, b) * np.int64(len(place)) + np.maximum(a, b), return_inverse=True)
+        first, second = np.divmod(pair, len(place))
+        middle = len(place) + middle
+        place = np.concatenate([place, 0.5 * (place[first] + place[second])])
         triangle = np.concatenate([np.stack([a, middle, c], axis=1), np.stack([middle, b, c], axis=1)])
     return place, np.concatenate(done)
 
@@ -181,8 +183,7 @@ def _panels(place: np.ndarray, triangle: np.ndarray, solid: Any) -> tuple[np.nda
     side = np.abs(normal).argmax(axis=1)
     on_cube = normal / np.take_along_axis(np.abs(normal), side[:, None], axis=1)
     bins = np.floor(0.5 * BINS * (1.0 + on_cube) * (1.0 - 1e-9)).astype(int)
-    key = np.column_stack([half, side, bins])
-    number = np.unique(key, axis=0, return_inverse=True)[1].reshape(-1)
+    number = np.unique(_in_one(np.column_stack([half, side, bins])), return_inverse=True)[1]
     count = int(number.max()) + 1
 
     def summed(values: np.ndarray) -> np.ndarray:
@@ -199,3 +200,11 @@ def _panels(place: np.ndarray, triangle: np.ndarray, solid: Any) -> tuple[np.nda
     wide = _sizes(long) > WIDE * float(np.linalg.norm(np.ptp(place, axis=0)))
     four = [centre[wide] + a * long[wide] + b * across[wide] for a in (-1.0, 1.0) for b in (-1.0, 1.0)]
     return np.concatenate([centre[~wide], *four]), np.concatenate([whole[~wide], *([0.25 * whole[wide]] * 4)])
+
+
+def _in_one(rows: np.ndarray) -> np.ndarray:
+    """A number for each row of small whole numbers, int64, shape (n,), in the order of rows."""
+    number = np.zeros(len(rows), np.int64)
+    for column in rows.T:
+        number = number * (int(column.max()) + 1) + column
+    return number
