@@ -184,7 +184,7 @@ void FixMdanimTear::watch_bonds(int i, const TearRules &of, tagint first)
     if (of.over(low, high)) continue;    // goes with its links
     const TearLink *const link = of.link(low, high);
     const double limit = link ? link->limit : (1.0 + of.strain) * springs->springs()[type].r0;
-    watched.push_back({i, b, j, limit, atom->tag[i] < other});
+    watched.push_back({i, j, limit * limit});
   }
 }
 
@@ -264,7 +264,7 @@ void FixMdanimTear::release(const Spanning &one, double sign)
 
 LoadFree FixMdanimTear::load_free(const Watched &one) const
 {
-  const Spring &spring = springs->springs()[std::abs(atom->bond_type[one.i][one.slot])];
+  const Spring &spring = springs->springs()[std::abs(atom->bond_type[one.i][slot_of(one.i, atom->tag[one.j])])];
   const int n = number(one.i);
   const TearRules &of = std::next(rules.begin(), n)->second;
   const tagint tag = atom->tag[one.i], other = atom->tag[one.j];
@@ -273,29 +273,35 @@ LoadFree FixMdanimTear::load_free(const Watched &one) const
   return {{spring.K, spring.r0, 0.0}, link ? link->length : spring.r0};
 }
 
+void FixMdanimTear::break_link(const Watched &one, std::vector<GoneLink> &here)
+{
+  const tagint tag = atom->tag[one.i], other = atom->tag[one.j], first = lowest[number(one.i)];
+  release(one.i, one.j, load_free(one), 1.0);
+  let_go(one.i, slot_of(one.i, other));
+  if (is_here(one.j)) let_go(one.j, slot_of(one.j, tag));
+  if (tag < other)    // else the rank of the other end tells of it
+    here.push_back({static_cast<int>(atom->molecule[one.i]), static_cast<int>(tag - first), static_cast<int>(other - first)});
+}
+
 void FixMdanimTear::pre_force(int)
 {
   const Lap lap(seconds);
   const auto apart = [this](int i, int j) { return vec3(atom->x[i]) - vec3(atom->x[j]); };
+  const auto is_whole = [x = atom->x[0]](const Watched &one) {
+    const Vec3 along = vec3(x + 3 * one.i) - vec3(x + 3 * one.j);
+    return !(dot(along, along) > one.square);
+  };
   std::vector<GoneLink> here;
-  int any = 0;
-  std::size_t left = 0;
-  for (std::size_t n = 0; n < watched.size(); ++n) {
-    const Watched one = watched[n];
-    if (!is_too_long(apart(one.i, one.j), one.limit)) {
-      if (left < n) watched[left] = one;
-      ++left;
-      continue;
-    }
-    any = 1;
-    release(one.i, one.j, load_free(one), 1.0);
-    let_go(one.i, one.slot);
-    if (is_here(one.j)) let_go(one.j, slot_of(one.j, atom->tag[one.i]));
-    const tagint first = lowest[number(one.i)], tag = atom->tag[one.i], other = atom->tag[one.j];
-    if (one.counts)
-      here.push_back({static_cast<int>(atom->molecule[one.i]), static_cast<int>(tag - first), static_cast<int>(other - first)});
+  const auto first_gone = std::find_if_not(watched.begin(), watched.end(), is_whole);
+  auto left = first_gone;
+  for (auto at = first_gone; at != watched.end(); ++at) {
+    if (is_whole(*at))
+      *left++ = *at;
+    else
+      break_link(*at, here);
   }
-  watched.resize(left);
+  int any = left != watched.end();
+  watched.erase(left, watched.end());
   if (comm->nprocs > 1) MPI_Allreduce(MPI_IN_PLACE, &any, 1, MPI_INT, MPI_MAX, world);
   if (!any) return;
 

@@ -49,11 +49,10 @@ class FixMdanimTear : public mdanim::FixBase {
   static const FixMdanimTear *of(LAMMPS *lmp);
 
  private:
-  // A bond of a local particle to one here that may break.
+  // A bond of a local particle to one here that may break, and the square of its length from which on it does.
   struct Watched {
-    int i, slot, j;
-    double limit;
-    bool counts;    // the lower end is a local particle, or both are
+    int i, j;
+    double square;
   };
   // A spring over two links with an end or the middle here: indices, the slot of the spring at both ends, and which of its links
   // are gone.
@@ -76,6 +75,7 @@ class FixMdanimTear : public mdanim::FixBase {
   int *bits(int i) const { return has_one ? one_number() + i : numbers()[i]; }
   bool is_gone(int i, int slot) const { return bits(i)[slot / WORD] >> (slot % WORD) & 1; }
   void let_go(int i, int slot);
+  void break_link(const Watched &one, std::vector<GoneLink> &here);
   int slot_of(int i, tagint partner) const;
   bool is_here(int i) const;
   void release(int i, int j, const mdanim::LoadFree &spring, double sign);

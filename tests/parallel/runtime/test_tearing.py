@@ -25,11 +25,11 @@ object loose {
   velocity (0, 0, 1) m/s  hold start  tear-strain 0.1
 }
 object paper {
-  shape sheet (0.5, 0.3) m thickness 2 mm  position (0, 0, 0.45) m  resolution 3 cm  density 500  elasticity 1 MPa  damping 0.1
+  shape sheet (0.5, 0.3) m thickness 2 mm  position (0, 0, 0.45) m  resolution 5 cm  density 500  elasticity 1 MPa  damping 0.1
   hold faces x  tear-strain 0.05
 }
 object jelly {
-  shape box (30, 20, 8) cm  position (0, 0, 0.1) m  resolution 4 cm  density 1000  elasticity 100 kPa  damping 0.1
+  shape box (30, 20, 10) cm  position (0, 0, 0.1) m  resolution 5 cm  density 1000  elasticity 100 kPa  damping 0.1
   hold faces x  tear-strain 0.1
 }
 object stone { shape box (12, 20, 10) cm  position (0, 0, 0.74) m  velocity (0, 0, -4) m/s  density 2500  elasticity rigid }
