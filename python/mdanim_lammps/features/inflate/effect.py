@@ -121,7 +121,7 @@ class Gas(Effect):
     # --- advice -------------------------------------------------------------------------------------------------------
 
     def problems(self, resolved, models, grid):
-        """Sheets that are open, or encloses nothing."""
+        """Sheets that are open."""
         found = []
         for model, solid in zip(models, resolved.scene.solids):
             if solid.inflate is None or all_held(solid):
@@ -132,7 +132,7 @@ class Gas(Effect):
         return found
 
     def warnings(self, context):
-        """What swells far, or without end, as a ball of its volume and surface would."""
+        """Objects that swell far, or without end, as a ball of their volume and surface would."""
         found, of = [], _solids(context)
         for m in _inflated(context):
             _, solid = of[m]
@@ -192,7 +192,7 @@ def _throws(scene: Any) -> dict[int, Throw]:
 
 
 def _stored(gas: Inflate, volume: float) -> float:
-    """What the gas can give [J]: all of it where there is something outside, else until it has twice its volume."""
+    """Energy that the gas can give [J]: all of it where there is something outside, else until it has twice its volume."""
     amount = (gas.pressure + gas.outside) * volume
     if gas.outside == 0.0:
         return amount * math.log(2.0)
