@@ -55,6 +55,18 @@ bool FoldContact::is_apart(int f, int e) const
   return dot(way, way) >= apart * apart;
 }
 
+void FoldContact::open(const FoldObject &object, int low, int high, std::vector<char> &gone)
+{
+  const auto has = [&](const auto &corners) {
+    int found = 0;
+    for (const int k : corners) found += object.particles[k] == low || object.particles[k] == high;
+    return found == 2;
+  };
+  gone.resize(std::max(object.triangles.size(), object.segments.size()), 0);
+  for (std::size_t n = 0; n < gone.size(); ++n)
+    gone[n] = gone[n] || (object.triangles.empty() ? has(object.segments[n]) : has(object.triangles[n]));
+}
+
 static Box box_of(const Vec3 *x, const int *corners, int count)
 {
   Box box;
@@ -78,8 +90,9 @@ void FoldContact::list(const Vec3 *x, const Vec3 *y, double skin)
   const BoxTree tree(boxes);
   for (int f = 0; f < features(); ++f) {
     first[f] = static_cast<int>(elements.size());
+    if (!feature_gone.empty() && feature_gone[f]) continue;
     tree.meeting(box_of(x, feature(f), corners_of_feature()), [&](int e) {
-      if (!is_apart(f, e)) return;
+      if ((!element_gone.empty() && element_gone[e]) || !is_apart(f, e)) return;
       const Vec3 there = way(x, f, y, e, foot(x, f, y, e));
       if (dot(there, there) < far * far) elements.push_back(e);
     });

@@ -27,6 +27,12 @@ class FoldContact {
  public:
   FoldContact(const FoldObject &own, const FoldObject &other, const FoldLaw &law, double apart, bool itself);
 
+  // Takes away the elements, and features, of which this is a link that is gone: particles of the object as in its table.
+  void open_element(int low, int high) { open(*other, low, high, element_gone); }
+  void open_feature(int low, int high)
+  {
+    if (lines) open(*own, low, high, feature_gone);
+  }
   // Looks for what may come within reach while no particle moves by more than half of the skin.
   void list(const Vec3 *own, const Vec3 *other, double skin);
   // Adds forces, and returns the energy.
@@ -51,8 +57,11 @@ class FoldContact {
   FoldLaw rule;
   double apart;    // 0 of two objects
   bool lines;
+  static void open(const FoldObject &object, int low, int high, std::vector<char> &gone);
+
   std::vector<int> identity;
-  std::vector<int> first, elements;    // elements near each feature, ascending
+  std::vector<char> element_gone, feature_gone;    // empty before the first
+  std::vector<int> first, elements;                // elements near each feature, ascending
 };
 
 }    // namespace mdanim

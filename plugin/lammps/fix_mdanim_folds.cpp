@@ -10,6 +10,7 @@
 #include "records/byte_reader.h"
 
 #include "atom.h"
+#include "comm.h"
 #include "error.h"
 #include "force.h"
 #include "update.h"
@@ -45,16 +46,15 @@ FixMdanimFolds::FixMdanimFolds(LAMMPS *lmp, int narg, char **arg) : FixBase(lmp,
     error->all(FLERR, "{}: {}", STYLE, wrong.what());
   }
   if (table.pairs.empty()) error->all(FLERR, "{}: nothing touches; write a line pair in {}", STYLE, arg[3]);
-  make_ways();
+  for (const auto &[molecule, object] : table.objects) nodes.append(molecule, object.particles);
 }
 
+// All contacts, without what is torn.
 void FixMdanimFolds::make_ways()
 {
   std::map<int, int> number;
-  for (const auto &[molecule, object] : table.objects) {
-    number[molecule] = nodes.count();
-    nodes.append(molecule, object.particles);
-  }
+  for (int n = 0; n < nodes.count(); ++n) number[nodes.molecule(n)] = n;
+  ways.clear();
   for (const FoldPair &pair : table.pairs) {
     skin = std::max(skin, SKIN * pair.law.reach);
     const FoldObject &a = table.objects.at(pair.first), &b = table.objects.at(pair.second);
@@ -72,6 +72,9 @@ void FixMdanimFolds::init()
   FixBase::init();
   nodes.find(name());
   listed.clear();
+  tears = FixMdanimTear::of(lmp);
+  known_tears = 0;
+  make_ways();
 }
 
 // --- forces ---
@@ -89,7 +92,6 @@ void FixMdanimFolds::find_pushes()
   const double units = 1.0 / force->ftm2v;
   nodes.share();
   const std::size_t count = nodes.count() ? nodes.end(nodes.count() - 1) : 0;
-  for (std::vector<Vec3> *all : {&pushed, &rubbed, &damped}) all->assign(count, Vec3{});
   x.resize(count);
   v.resize(count);
   mass.resize(count);
@@ -105,17 +107,45 @@ void FixMdanimFolds::find_pushes()
   }
   if (!known || !(farthest <= 0.25 * skin * skin)) list_again();
 
-  energy = 0.0;
-  const auto of = [this](int n) {
-    const std::size_t from = nodes.first(n);
-    return FoldNodes{&x[from], &v[from], &mass[from], &pushed[from], &rubbed[from], &damped[from]};
-  };
-  for (const FoldWay &way : ways)
-    if (nodes.acts(way.first) || nodes.acts(way.second)) energy += way.contact.push(of(way.first), of(way.second), update->dt);
+  if (tears && known_tears < tears->gone().size()) {    // what a torn element has stored is lost
+    const double before = known ? push_all() : 0.0;
+    open_torn();
+    list_again();
+    energy = push_all();
+    if (known && comm->me == 0) loss += before - energy;
+  } else {
+    energy = push_all();
+  }
 
   pushes.clear();
   for (std::size_t k = 0; k < count; ++k)
     if (const int i = nodes.target(k); i != ObjectNodes::ELSEWHERE) pushes.push_back({i, pushed[k], {rubbed[k], damped[k]}});
+}
+
+// The links that are gone since the last time.
+void FixMdanimFolds::open_torn()
+{
+  for (; known_tears < tears->gone().size(); ++known_tears) {
+    const GoneLink &link = tears->gone()[known_tears];
+    for (FoldWay &way : ways) {
+      if (nodes.molecule(way.second) == link.object) way.contact.open_element(link.low, link.high);
+      if (nodes.molecule(way.first) == link.object) way.contact.open_feature(link.low, link.high);
+    }
+  }
+}
+
+// Forces of all contacts on nodes, and their energy.
+double FixMdanimFolds::push_all()
+{
+  for (std::vector<Vec3> *all : {&pushed, &rubbed, &damped}) all->assign(x.size(), Vec3{});
+  const auto of = [this](int n) {
+    const std::size_t from = nodes.first(n);
+    return FoldNodes{&x[from], &v[from], &mass[from], &pushed[from], &rubbed[from], &damped[from]};
+  };
+  double found = 0.0;
+  for (const FoldWay &way : ways)
+    if (nodes.acts(way.first) || nodes.acts(way.second)) found += way.contact.push(of(way.first), of(way.second), update->dt);
+  return found;
 }
 
 void FixMdanimFolds::push() const

@@ -5,6 +5,7 @@
 
 #include "folds/fold_contact.h"
 #include "lammps/fix_base.h"
+#include "lammps/fix_mdanim_tear.h"
 #include "lammps/object_nodes.h"
 #include "lammps/stateful.h"
 
@@ -55,6 +56,8 @@ class FixMdanimFolds : public mdanim::FixBase, public mdanim::Stateful {
   void make_ways();
   void locate() { nodes.locate(name(), groupbit); }
   void find_pushes();
+  double push_all();
+  void open_torn();
   void list_again();
   void push() const;
   void count();    // the losses of half a step
@@ -63,6 +66,8 @@ class FixMdanimFolds : public mdanim::FixBase, public mdanim::Stateful {
   mdanim::ObjectNodes nodes;
   std::vector<FoldWay> ways;
   double skin = 0.0;
+  const FixMdanimTear *tears = nullptr;                              // null where nothing tears
+  std::size_t known_tears = 0;                                       // of its links
   std::vector<mdanim::Vec3> x, v, listed, pushed, rubbed, damped;    // of nodes
   std::vector<double> mass;
   std::vector<FoldForce> pushes;                    // of this step
