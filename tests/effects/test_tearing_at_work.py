@@ -220,6 +220,13 @@ def test_sheets_and_solids_tear(prepared, tmp_path, body):
         first = int(np.flatnonzero(area == 0.0)[0])
         assert (area[:first] > 0.0).all() and not area[first:].any()  # at first the whole surface alone
         assert not left[:first].any() and left[first:].any()  # then patches alone
+        cut = Cut(trajectory, (), 1, slice(None))  # what all exports take: the same triangles in all frames
+        for frame, drawn in ((0, (area > 0.0).sum()), (last, (left > 0.0).sum())):
+            corner = cut.surfaces(frame)[0][0][cut.bodies[0].triangle]
+            size = np.linalg.norm(np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]), axis=1)
+            assert len(size) == len(area) and (size > 0.0).sum() == drawn
+        told = trajectory.universe().trajectory[last].data["fields/torn"]
+        assert told.sum() == len(trajectory.gone(last)) and len(told) == len(trajectory.metadata.bond)
         surface = trajectory.metadata.surfaces[trajectory.metadata.surface_of[0]]
         own = trajectory.gone(last) - trajectory.metadata.first[0]
         broken = {frozenset(pair) for pair in own.tolist()}
