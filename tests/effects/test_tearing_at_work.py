@@ -225,7 +225,7 @@ def test_sheets_and_solids_tear(prepared, tmp_path, body):
             corner = cut.surfaces(frame)[0][0][cut.bodies[0].triangle]
             size = np.linalg.norm(np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]), axis=1)
             assert len(size) == len(area) and (size > 0.0).sum() == drawn
-        told = trajectory.universe().trajectory[last].data["fields/torn"]
+        told = trajectory.universe.trajectory[last].data["fields/torn"]
         assert told.sum() == len(trajectory.gone(last)) and len(told) == len(trajectory.metadata.bond)
         surface = trajectory.metadata.surfaces[trajectory.metadata.surface_of[0]]
         own = trajectory.gone(last) - trajectory.metadata.first[0]
