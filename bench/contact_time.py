@@ -2,8 +2,8 @@
 """Time of contact in scenes where objects lie on each other: ``python bench/contact_time.py [rounds [scene ...]]``.
 
 Each scene runs to its middle, then rounds of steps from there on take turns: processor time of a step on one thread, looks at
-points that touch nothing, and points in contact. With two builds: run it by turns, ``LAMMPS_PLUGIN_PATH`` names the folder of
-another plugin.
+points that touch nothing, and points in contact. With two builds: run it by turns, ``PYTHONPATH`` names the folder of another
+copy of the package, in which its plugin is.
 """
 
 from __future__ import annotations

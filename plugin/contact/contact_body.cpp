@@ -75,6 +75,10 @@ ContactBody::ContactBody(const ContactBodyArrays &given)
                        given.area[p],
                        static_cast<PointKind>(given.kind[p])});
     area.push_back(given.area[p]);
+    const Vec3 &normal_now = surface.back().normal;
+    const int (&own)[3] = surface.back().cell;
+    facing.push_back(
+        {{normal_now.x * edges[0], normal_now.y * edges[1], normal_now.z * edges[2]}, place(own[0], own[1], own[2])});
     has_fine |= surface.back().kind == PointKind::FINE;
   }
   take_open_parts(given);
@@ -294,8 +298,9 @@ std::size_t ContactBody::bytes() const
 {
   return place_of_node.capacity() * sizeof(int) + filled.capacity() + surface.capacity() * sizeof(SurfacePoint) +
          depth_grid.capacity() * sizeof(double) + open_parts.capacity() * sizeof(OpenPart) + area.capacity() * sizeof(double) +
-         point_carriers.capacity() * sizeof(PointCarrier) + first_carrier.capacity() * sizeof(int) +
-         carriers.capacity() * sizeof(PointCell) + by_cell.capacity() * sizeof(int) + is_carrier.capacity();
+         facing.capacity() * sizeof(PointFacing) + point_carriers.capacity() * sizeof(PointCarrier) +
+         first_carrier.capacity() * sizeof(int) + carriers.capacity() * sizeof(PointCell) + by_cell.capacity() * sizeof(int) +
+         is_carrier.capacity();
 }
 
 }    // namespace mdanim

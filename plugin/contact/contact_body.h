@@ -86,11 +86,10 @@ class ContactBody {
   double edge(int axis) const { return edges[axis]; }
   double spacing() const { return mean_edge; }    // cube root of a cell's volume [m]
   // How much a cell is pressed: 1 where it is not, else at least half of the smallest stretch.
-  double pressed(const Spot<double> &spot) const
-  {
-    const double square = dot(spot.K[0], spot.K[0]) + dot(spot.K[1], spot.K[1]) + dot(spot.K[2], spot.K[2]);
-    return square > steep ? std::sqrt(steep / square) : 1.0;
-  }
+  double pressed(const Spot<double> &spot) const { return mdanim::pressed(steep, spot); }
+  double steepness() const { return steep; }    // square of the gradient of X where the body is undeformed [1/m^2]
+  // Whether other held bodies cover parts of its sides.
+  bool has_covers() const { return !open_parts.empty(); }
   int particles() const { return number; }
   // Inline, so that code that asks for one of its fields does not fill the others.
   Lattice lattice() const
@@ -107,6 +106,7 @@ class ContactBody {
   }
   BodyCarriers all_carriers() const { return {point_carriers.data(), first_carrier.data()}; }
   const double *areas() const { return area.data(); }    // of points
+  const PointFacing *facings() const { return facing.data(); }
   const std::vector<PointCell> &point_cells() const { return carriers; }
   const std::vector<int> &points_by_cell() const { return by_cell; }
   // The first and the end of the points of a cell that act on a plane or a cuboid, or on a shape that is not flat. Points of a
@@ -163,6 +163,7 @@ class ContactBody {
   std::vector<std::uint8_t> filled;
   std::vector<SurfacePoint> surface;
   std::vector<double> area;                    // of points, also here: kernels read no SurfacePoint
+  std::vector<PointFacing> facing;             // the same
   std::vector<PointCarrier> point_carriers;    // of all points, one after the other, and one more
   std::vector<int> first_carrier;              // of each point, then of the centre of its area; at the end, the number of all
   std::vector<PointCell> carriers;

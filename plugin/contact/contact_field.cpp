@@ -17,7 +17,10 @@ void ContactField::look(const ContactArrays &arrays, double dt, double now)
   if (host->is_crushed)
     for (std::size_t q = 0; q < near.size(); ++q)
       if (wake[q] < NEVER && distrusts(q)) wake.set(q, AT_ONCE);
-  if (dt > 0.0) wake.look_below(budget, [this](std::size_t q) { fetch(q); }, [&](std::size_t q) { look_at(q, arrays, true); });
+  if (dt > 0.0)
+    wake.look_below(
+        budget, [this](std::size_t q) { fetch(q); },
+        [&](const std::vector<std::size_t> &points) { look_at_all(points, arrays); });
   begin_step(arrays);
 }
 

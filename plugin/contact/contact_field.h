@@ -76,6 +76,11 @@ class ContactField {
   virtual double approach() const = 0;
   // Looks at a point without a contact: whether a contact begins; otherwise sets when to look again.
   virtual bool look_at(std::size_t q, const ContactArrays &arrays, bool may_begin) = 0;
+  // The same for several points; contacts may begin.
+  virtual void look_at_all(const std::vector<std::size_t> &points, const ContactArrays &arrays)
+  {
+    for (const std::size_t q : points) look_at(q, arrays, true);
+  }
   // Has what is known of a point brought into the cache.
   virtual void fetch(std::size_t q) const = 0;
   // Whether a point is due in each step while its host is crushed, because looks do not tell when to look again.

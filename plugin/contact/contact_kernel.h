@@ -4,9 +4,11 @@
 
 #pragma once
 
+#include "contact/contact_judge.h"
 #include "contact/contact_push.h"
 #include "contact/field_contact.h"
 #include "contact/padded_vec3.h"
+#include "contact/plane_contact.h"
 #include "contact/point_carriers.h"
 #include "contact/rigid_map.h"
 
@@ -55,12 +57,44 @@ struct PushedBlock {
   PaddedVec3 on_node[27][CONTACT_LANES];
 };
 
-// The object whose points are in contact.
-struct PointsTask {
-  BodyCarriers carriers;
-  const double *area;         // of each point
-  const int *slot;            // numbers of its particles, by those of carriers
-  const PaddedVec3 *place;    // as that of Placed
+// Looks at points without a contact that few steps of Newton's method find from where they were.
+struct LookTask {
+  Lattice host;
+  const int *slot;    // as those of PushTask
+  const PaddedVec3 *place;
+  double steep;    // as that of pressed(), of the host
+  Ramps ramps;
+  bool is_smooth;    // the map
+  PointsTask points;
+  const PointFacing *facing;    // of each point
+  double radius;                // of the surface around each point [m]; such points have no normals
+  int row, layer;               // of the grid of the object whose points these are
+  double spacing, own_steep;
+  const Spot<double> *rigid;    // X = 0 of that object if it does not deform, else null
+};
+
+// A point and X of it, in a cell, where it was found last.
+struct PointBefore {
+  int point, cell[3];
+  PaddedVec3 X;
+};
+
+struct LookedBlock {
+  int sure;                       // one bit for each lane: no contact begins
+  double slack[CONTACT_LANES];    // motions that cannot yet begin a contact [m]
+  PaddedVec3 x[CONTACT_LANES], X[CONTACT_LANES];
+  int cell[CONTACT_LANES][3];
+};
+
+// Contacts with a plane across an axis; `sign` is 1 where objects belong above it.
+struct PlaneTask {
+  ContactLaw law;
+  double dt;
+  int axis;
+  double sign, at;    // where it is at the start [m]
+  Vec3 shift;         // its displacement since then [m]
+  double radius;      // of the surface around each point [m]
+  PointsTask points;
 };
 
 struct ContactKernels {
@@ -68,6 +102,10 @@ struct ContactKernels {
   void (*find_points)(const PointsTask &, const FieldContact *first, int n, PointNow *now);
   // Computes the first `n` of the contacts from `first` on, all of points of one kind; those in `hard` stay as they are.
   void (*push)(const PushTask &, FieldContact *first, const PointNow *now, int n, PushedBlock &pushed);
+  // Computes `n` contacts from `first` on.
+  void (*push_at_plane)(const PlaneTask &, PlaneContact *first, int n, PlanePush<double> *pushed);
+  // Looks at the first `n` of the points from `first` on.
+  void (*look)(const LookTask &, const PointBefore *first, int n, LookedBlock &looked);
   // Adds the forces of lanes from `first` to `end` - 1 on the host's nodes.
   void (*add_to_nodes)(const PushedBlock &pushed, int first, int end, PaddedVec3 *on);
   // Adds the forces of these lanes on the particles that carry their points; `contacts` are those of the block.

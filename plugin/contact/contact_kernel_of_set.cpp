@@ -1,76 +1,11 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // Contacts, four at a time, for one set of instructions (simd/of_set.h).
 
-#include "contact/contact_kernel.h"
+#include "contact/contact_lanes.h"
 #include "simd/of_set.h"
-#include "simd/vectors.h"
 
 namespace mdanim {
 namespace {
-
-constexpr int LANES = CONTACT_LANES;
-static_assert(LANES == 4, "a row is gathered from four");
-constexpr int ALL = (1 << LANES) - 1;
-
-// number(lane) of each lane, as one vector.
-template <class Number> MDANIM_ALWAYS_INLINE Four gather(const Number &number)
-{
-  Four all;
-#pragma GCC unroll 8
-  for (int lane = 0; lane < LANES; ++lane) all[lane] = number(lane);
-  return all;
-}
-
-// The same for rows, or for three numbers followed by one more.
-template <class OfLane> MDANIM_ALWAYS_INLINE Vec<Four> gather_rows(const OfLane &row)
-{
-  Four column[4];
-  load_columns(row, column);
-  return {column[0], column[1], column[2]};
-}
-
-// Records of doubles, one for each lane, as one record of vectors, and back.
-template <class Vectors, class OfLane> MDANIM_ALWAYS_INLINE void gather_record(const OfLane &record, Vectors &vectors)
-{
-  constexpr int N = sizeof(Vectors) / sizeof(Four);
-  static_assert(sizeof(*record(0)) == N * sizeof(double), "they have the same members");
-  load_columns([&](int lane) { return reinterpret_cast<const double *>(record(lane)); }, reinterpret_cast<Four(&)[N]>(vectors));
-}
-
-template <class Vectors, class OfLane> MDANIM_ALWAYS_INLINE void scatter_record(const Vectors &vectors, const OfLane &record)
-{
-  constexpr int N = sizeof(Vectors) / sizeof(Four);
-  static_assert(sizeof(*record(0)) == N * sizeof(double), "they have the same members");
-  store_columns(reinterpret_cast<const Four(&)[N]>(vectors), [&](int lane) { return reinterpret_cast<double *>(record(lane)); });
-}
-
-// Nodes of the smooth map, or of a depth, around X along an axis: the middle ones as numbers, and in lanes.
-MDANIM_ALWAYS_INLINE Four middle_nodes(const Four &x, int cells, int (&middle)[LANES])
-{
-  typedef int Numbers __attribute__((vector_size(LANES * sizeof(int))));
-  const Numbers nearest = __builtin_convertvector(x + 0.5, Numbers), most = Numbers{} + (cells - 1), one = Numbers{} + 1;
-  const Numbers below = nearest < most ? nearest : most, inside = below > one ? below : one;    // as middle_node() does
-  store(middle, inside);
-  return __builtin_convertvector(inside, Four);
-}
-
-MDANIM_ALWAYS_INLINE Depth<Four> depth_by_splines(const Lattice &host, const Vec<Four> &X)
-{
-  const long row = depth_row(host, 0), layer = row * depth_row(host, 1);
-  const double *first[LANES];
-  for (const double *&own : first) own = host.depth;
-  Weights<Four> weights;
-#pragma GCC unroll 3
-  for (int d = 0; d < 3; ++d) {
-    const Four x = component(X, d) + static_cast<double>(DEPTH_MARGIN);
-    int middle[LANES];
-    depth_weights(x, middle_nodes(x, depth_row(host, d) - 1, middle), weights[d]);
-#pragma GCC unroll 8
-    for (int lane = 0; lane < LANES; ++lane) first[lane] += (middle[lane] - 1) * (d == 0 ? 1 : d == 1 ? row : layer);
-  }
-  return depth_by_splines(weights,
-                          [&](int j, int k) { return gather_rows([&](int lane) { return first[lane] + row * j + layer * k; }); });
-}
 
 // Places of the points of contacts in the host: about X = `guess`, from which they are `off`, everything is linear.
 struct Followed {
@@ -277,17 +212,6 @@ void add_to_nodes(const PushedBlock &pushed, int first, int end, PaddedVec3 *on)
   }
 }
 
-MDANIM_ALWAYS_INLINE Four weighted_sum(const PointsTask &task, int one, int last)
-{
-  const auto term = [&](int n) {
-    const PointCarrier &carrier = task.carriers.all[n];
-    return carrier.weight * load<Four>(&task.place[task.slot[carrier.slot]].value.x);
-  };
-  Four sum = term(one);
-  while (++one < last) sum += term(one);
-  return sum;
-}
-
 void find_points(const PointsTask &task, const FieldContact *first, int n, PointNow *now)
 {
   for (int c = 0; c < n; ++c) {
@@ -336,7 +260,12 @@ void push(const PushTask &task, FieldContact *first, const PointNow *now, int n,
 
 }    // namespace
 
+void MDANIM_OF_SET(push_at_plane)(const PlaneTask &task, PlaneContact *first, int n,
+                                  PlanePush<double> *pushed);    // contact_plane_of_set.cpp
+void MDANIM_OF_SET(look_at_points)(const LookTask &task, const PointBefore *first, int n,
+                                   LookedBlock &looked);    // contact_look_of_set.cpp
 extern const ContactKernels MDANIM_OF_SET(contact_kernels);
-const ContactKernels MDANIM_OF_SET(contact_kernels) = {find_points, push, add_to_nodes, add_to_points};
+const ContactKernels MDANIM_OF_SET(contact_kernels) = {
+    find_points, push, MDANIM_OF_SET(push_at_plane), MDANIM_OF_SET(look_at_points), add_to_nodes, add_to_points};
 
 }    // namespace mdanim

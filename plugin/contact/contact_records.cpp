@@ -81,7 +81,7 @@ std::vector<std::vector<PlaneContact>> read_planes(ByteReader &reader, const Con
     if (!has_point(owner, row.point) || row.plane < 0 || row.plane >= static_cast<int>(planes))
       reader.fail("has points or planes that there are not");
     if (std::pair{row.plane, row.point} <= before) reader.fail("has points that do not ascend");
-    if (!has_numbers(row, offsetof(PlaneContact, anchor))) reader.fail("has a value that is not a number");
+    if (!has_numbers(row, offsetof(PlaneContact, state))) reader.fail("has a value that is not a number");
     before = {row.plane, row.point};
     of_plane[row.plane].push_back(row);
   }

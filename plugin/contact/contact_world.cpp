@@ -4,6 +4,7 @@
 #include "contact/contact_world.h"
 
 #include "contact/lattice_field.h"
+#include "contact/mean_motion.h"
 #include "contact/plane_field.h"
 #include "contact/rigid_field.h"
 
@@ -131,30 +132,19 @@ static Vec3 place(const Coordinates &places, std::size_t slot) { return {places[
 
 namespace {
 
-// The largest displacement of any of many particles relative to `way`, the displacement of the first. The displacement half-way
-// between the first and the last would give fewer looks, but then parts of a crowd had other bits than the whole: a look came too
-// late.
-struct Deviation {
-  Vec3 way;
-  double square = 0.0;
-
-  void include(const Vec3 &change)
-  {
-    const Vec3 off = change - way;
-    square = std::max(square, dot(off, off));
-  }
-  void tell(ContactObject &one) const { one.way = way, one.stir = one.body->leverage() * std::sqrt(square); }
-};
-
 // Moves a rigid object: no point of the box around it goes farther, beside its middle, than a corner of the box.
 void move_rigid(ContactObject &one, const Spot<double> &to)
 {
   const std::array<Vec3, 8> before = one.corners();
   one.rigid = to;
   const std::array<Vec3, 8> now = one.corners();
-  Deviation motion{0.5 * ((now[0] - before[0]) + (now[7] - before[7]))};
-  for (int c = 0; c < 8; ++c) motion.include(now[c] - before[c]);
-  one.way = motion.way, one.stir = std::sqrt(motion.square);
+  double square = 0.0;
+  one.way = 0.5 * ((now[0] - before[0]) + (now[7] - before[7]));
+  for (int c = 0; c < 8; ++c) {
+    const Vec3 off = (now[c] - before[c]) - one.way;
+    square = std::max(square, dot(off, off));
+  }
+  one.stir = std::sqrt(square);
 }
 
 // The place of a rigid object whose particles are here.
@@ -218,9 +208,7 @@ void ContactWorld::list(const std::vector<ContactParticle> &particles, const Coo
     one.find_host_slots();
     one.is_calm = false, one.unchecked = -1.0;    // its cells that are here may be others
     if (one.is_rigid()) continue;                 // it has been placed
-    Deviation motion{changes.empty() ? Vec3{} : changes.front()};
-    for (const Vec3 &change : changes) motion.include(change);
-    motion.tell(one);
+    MeanMotion(changes).tell(one);
     one.find_crushed(arrays.place());
   }
   list_fields();
@@ -276,10 +264,12 @@ void ContactWorld::move_to(const Coordinates &places)
         clear_forces(one);
         continue;
       }
-      Deviation motion{place(places, one.first_slot) - last[one.first_slot].value};
+      MeanMotion motion;
+      for (int s = one.first_slot; s < one.last_slot; ++s) motion.add(place(places, s) - last[s].value);
+      motion.take_mean();
       for (int s = one.first_slot; s < one.last_slot; ++s) {
         const Vec3 x = place(places, s);
-        motion.include(x - last[s].value);
+        motion.compare(x - last[s].value);
         now[s].value = x;
       }
       motion.tell(one);

@@ -24,7 +24,12 @@ class LatticeField : public ObjectField {
              Verdict &verdict) const;
   bool is_surely_apart(std::size_t q, const Vec3 &x, const Moment &at, PointTrack &track, Verdict &verdict) const;
   Verdict sight(std::size_t q, const Moment &at, const ContactArrays &arrays, PointTrack &track, Vec3 &X) const;
+  bool is_near(std::size_t q, const Moment &at, const ContactArrays &arrays, Verdict &verdict);
+  LookTask look_task(bool is_smooth, const ContactArrays &arrays) const;
+  bool look_closely(std::size_t q, const ContactArrays &arrays, bool may_begin);
+  void put_off(std::size_t q, double slack);
   bool look_at(std::size_t q, const ContactArrays &arrays, bool may_begin) override;
+  void look_at_all(const std::vector<std::size_t> &points, const ContactArrays &arrays) override;
   Fate push(FieldContact &contact, std::size_t q, const PushTask &task, const PointNow &now, ContactArrays &arrays,
             ContactAccount &account) const override;
 };

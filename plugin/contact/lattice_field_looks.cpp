@@ -13,7 +13,6 @@ namespace mdanim {
 
 static constexpr double JUMP = 0.25;    // cells that X may jump between cells of a round host
 static constexpr int MOST_GUESSES = 3;
-static constexpr double NEAR_PLACE = 0.1;    // cells that a guess may be away from the last one
 static constexpr std::array<int, 3> NOWHERE = {-1, -1, -1};
 
 static Vec3 middle_of(const std::array<int, 3> &cell) { return {cell[0] + 0.5, cell[1] + 0.5, cell[2] + 0.5}; }
@@ -26,17 +25,17 @@ bool LatticeField::start(const Vec3 &x, const Moment &at, const ContactArrays &a
   const ContactBody &body = *host->body;
   const double reach = NEAREST * body.spacing() + owner->body->radius();
   double away = NEVER;
-  if (track.start != NOWHERE && budget < track.trusted) cell = PointSearch(*host, at).outer_around(x, track.start, away);
+  if (track.start[0] >= 0 && budget < track.trusted) cell = PointSearch(*host, at).outer_around(x, track.start, away);
   if (!(away < NEVER)) {
     const OuterCells::NearestCell found = host->outer->of(*host, arrays).nearest(x, at.place);
     cell = track.start = found.cell;
-    away = cell == NOWHERE ? 0.5 * OuterCells::SEARCHED * body.spacing() : found.away;
+    away = cell[0] < 0 ? 0.5 * OuterCells::SEARCHED * body.spacing() : found.away;
     track.trusted = budget + 0.5 * (found.others - found.away);    // each of the two distances changes by this much at most
   }
-  if (cell != NOWHERE && away <= reach) return true;
+  if (cell[0] >= 0 && away <= reach) return true;
   verdict = {};
   verdict.slack = std::max(0.0, away - reach);
-  track.cell = NOWHERE, track.room = NEVER;
+  track.cell = NOWHERE, track.certain = NEVER;
   return false;
 }
 
@@ -55,7 +54,7 @@ bool LatticeField::is_surely_apart(std::size_t q, const Vec3 &x, const Moment &a
   bool has_facing = false;
   double off = 1.0;
   for (int step = 0; step < MOST_GUESSES && off > SAME_PLACE && off < NEVER; ++step) {
-    search.guess(track, x, by_splines, spot, X, off);
+    search.guess(track, x, budget, by_splines, spot, X, off);
     if (!(off < NEAR_PLACE)) continue;
     const Vec3 X_centre = X + spot.to_material(shift);
     if (const double slack = slack_of_far(body, point, radius, X, X_centre, spot, off); slack > 0.0) {
@@ -89,7 +88,7 @@ Verdict LatticeField::sight(std::size_t q, const Moment &at, const ContactArrays
   Facing facing;
   if (!start(x, at, arrays, track, track.cell, verdict)) return verdict;
   track.X = middle_of(track.cell);
-  if (!PointSearch(*host, at).find(track, x, is_smooth(body, point.kind), spot, X) || !find_facing(q, at, facing)) {
+  if (!PointSearch(*host, at).find(track, x, budget, is_smooth(body, point.kind), spot, X) || !find_facing(q, at, facing)) {
     track = {};
     return lost();
   }
@@ -97,29 +96,112 @@ Verdict LatticeField::sight(std::size_t q, const Moment &at, const ContactArrays
   return judge(body, point, owner->body->radius(), X, X_centre, spot, facing, 0.0);
 }
 
-bool LatticeField::look_at(std::size_t q, const ContactArrays &arrays, bool may_begin)
+// Whether a point may be so near to the host that its place in it matters; if not, the verdict.
+bool LatticeField::is_near(std::size_t q, const Moment &at, const ContactArrays &arrays, Verdict &verdict)
 {
-  ++looks;
+  PointTrack &track = known[q];
+  const bool is_trusted = track.cell[0] >= 0 && (host->body->is_cuboid() || budget < track.trusted) && !host->is_crushed;
+  if (is_trusted) return true;
+  std::array<int, 3> cell;
+  if (!start(owner->place_of(near[q], at.place), at, arrays, track, cell, verdict)) return false;
+  if (track.cell[0] < 0) track.cell = cell, track.X = middle_of(cell), track.certain = AT_ONCE;
+  return true;
+}
+
+// Until there may have been a motion that begins a contact. In another cell the depth may be different.
+void LatticeField::put_off(std::size_t q, double slack)
+{
+  const double room = known[q].certain - budget;
+  wake.set(q, budget + std::max(0.0, std::min(slack, std::max(room, slack - PRESSED * JUMP * host->body->spacing()))));
+}
+
+bool LatticeField::look_closely(std::size_t q, const ContactArrays &arrays, bool may_begin)
+{
   PointTrack &track = known[q];
   const Moment now = arrays.now();
-  const Vec3 x = owner->place_of(near[q], now.place);
   Verdict verdict;
   Vec3 X;
-  std::array<int, 3> cell;
-  const bool is_trusted = track.cell != NOWHERE && (host->body->is_cuboid() || budget < track.trusted) && !host->is_crushed;
-  const bool is_near = is_trusted || start(x, now, arrays, track, cell, verdict);
-  if (is_near && track.cell == NOWHERE) track.cell = cell, track.X = middle_of(cell);
-  if (is_near && (host->is_crushed || !is_surely_apart(q, x, now, track, verdict))) verdict = sight(q, now, arrays, track, X);
+  if (host->is_crushed || !is_surely_apart(q, owner->place_of(near[q], now.place), now, track, verdict))
+    verdict = sight(q, now, arrays, track, X);
   if (!may_begin || verdict.side < 0) {
-    // In another cell the depth may be different.
-    const double slack = std::min(verdict.slack, std::max(track.room, verdict.slack - PRESSED * JUMP * host->body->spacing()));
-    wake.set(q, budget + std::max(0.0, slack));
+    put_off(q, verdict.slack);
     return false;
   }
   PointTrack before;
   Vec3 X_before;
   begin_contact(q, verdict, X, track.cell, sight(q, arrays.before(), arrays, before, X_before).open);
   return true;
+}
+
+bool LatticeField::look_at(std::size_t q, const ContactArrays &arrays, bool may_begin)
+{
+  ++looks;
+  Verdict verdict;
+  if (is_near(q, arrays.now(), arrays, verdict)) return look_closely(q, arrays, may_begin);
+  put_off(q, verdict.slack);
+  return false;
+}
+
+LookTask LatticeField::look_task(bool is_smooth, const ContactArrays &arrays) const
+{
+  const ContactBody &body = *host->body, &own = *owner->body;
+  return {body.lattice(),
+          host->host_slots().data(),
+          arrays.place(),
+          body.steepness(),
+          ramps_of(body, is_smooth ? PointKind::SHARP : PointKind::FLAT),
+          is_smooth,
+          owner->points_at(arrays.place()),
+          own.is_line() ? nullptr : own.facings(),
+          own.radius(),
+          own.row(),
+          own.layer(),
+          own.spacing(),
+          own.steepness(),
+          own.frame() ? &owner->rigid : nullptr};
+}
+
+// Several at once tell most of them apart from the host; others are looked at one by one.
+void LatticeField::look_at_all(const std::vector<std::size_t> &points, const ContactArrays &arrays)
+{
+  if (!arrays.kernels || host->is_crushed || host->body->has_covers() || owner->torn) return FieldOf::look_at_all(points, arrays);
+  const Moment now = arrays.now();
+  for (const bool by_splines : {false, true}) {
+    const LookTask task = look_task(by_splines, arrays);
+    PointBefore before[CONTACT_LANES];
+    std::size_t of[CONTACT_LANES];
+    int n = 0;
+    const auto look = [&] {
+      LookedBlock looked;
+      arrays.kernels->look(task, before, n, looked);
+      for (int lane = 0; lane < n; ++lane) {
+        PointTrack &track = known[of[lane]];
+        PointTrack there = track;
+        there.move_to({looked.cell[lane][0], looked.cell[lane][1], looked.cell[lane][2]}, looked.X[lane].value);
+        if (looked.sure >> lane & 1 && PointSearch(*host, now).confirm_cell(there, looked.x[lane].value, budget)) {
+          track = there;
+          put_off(of[lane], looked.slack[lane]);
+        } else {
+          look_closely(of[lane], arrays, true);
+        }
+      }
+      n = 0;
+    };
+    for (const std::size_t q : points) {
+      if (is_smooth(*host->body, surface_point(q).kind) != by_splines) continue;
+      ++looks;
+      Verdict verdict;
+      if (!is_near(q, now, arrays, verdict)) {
+        put_off(q, verdict.slack);
+        continue;
+      }
+      const PointTrack &track = known[q];
+      before[n] = {near[q], {track.cell[0], track.cell[1], track.cell[2]}, {track.X}};
+      of[n++] = q;
+      if (n == CONTACT_LANES) look();
+    }
+    if (n > 0) look();
+  }
 }
 
 }    // namespace mdanim

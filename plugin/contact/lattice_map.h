@@ -121,6 +121,14 @@ template <class Real> struct Spot {
   }
 };
 
+// How much a cell is pressed: 1 where it is not, else at least half of the smallest stretch. `steep` is the square of the
+// gradient of X where the cell is undeformed [1/m^2].
+template <class Real> MDANIM_ALWAYS_INLINE Real pressed(double steep, const Spot<Real> &spot)
+{
+  const Real square = dot(spot.K[0], spot.K[0]) + dot(spot.K[1], spot.K[1]) + dot(spot.K[2], spot.K[2]);
+  return pick(square > steep, root(steep / square), constant<Real>(1.0));
+}
+
 template <bool SMOOTH, class Real> MDANIM_ALWAYS_INLINE bool uses(const AxisWeights<Real> &axis, int n)
 { return SMOOTH ? n == 1 || (n == 0 ? axis.uses_first : axis.uses_last) : n < 2; }
 

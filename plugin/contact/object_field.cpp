@@ -40,9 +40,6 @@ PushTask ObjectField::task(PointKind kind, const ContactArrays &arrays, double d
           owner->body->radius()};
 }
 
-PointsTask ObjectField::points_task(const ContactArrays &arrays) const
-{ return {owner->all_carriers(), owner->areas(), owner->slot.data(), arrays.place()}; }
-
 PointNow ObjectField::point_now(std::size_t q, const ContactArrays &arrays) const
 { return {owner->place_of(near[q], arrays.place()), owner->shift_of(near[q], arrays.place()), owner->areas()[near[q]]}; }
 
@@ -60,8 +57,7 @@ bool ObjectField::find_facing(std::size_t q, const Moment &at, Facing &facing) c
     if (!evaluate(own, trilinear({cell[0] + 0.5, cell[1] + 0.5, cell[2] + 0.5}, cell, body), spot)) return false;
     facing.cell *= body.pressed(spot);
   }
-  const Vec3 by_cells = {point.normal.x * body.edge(0), point.normal.y * body.edge(1), point.normal.z * body.edge(2)};
-  const Vec3 normal = (body.frame() ? owner->rigid_at(at) : spot).gradient(by_cells);
+  const Vec3 normal = (body.frame() ? owner->rigid_at(at) : spot).gradient(body.facings()[near[q]].by_cells);
   const double length = std::sqrt(dot(normal, normal));
   if (!(length > 0.0)) return false;
   facing.normal = (1.0 / length) * normal;
@@ -122,6 +118,7 @@ void ObjectField::end(const FieldContact &contact, std::size_t q, Fate fate, con
   } else {
     known[q].cell = {contact.cell[0], contact.cell[1], contact.cell[2]};
     known[q].X = contact.state.X;
+    known[q].certain = AT_ONCE;
   }
   look_at(q, arrays, false);
 }
@@ -131,7 +128,7 @@ void ObjectField::begin_step(const ContactArrays &arrays)
   known_ahead = 0;
   now.resize(contacts.size());
   if (arrays.kernels)
-    arrays.kernels->find_points(points_task(arrays), contacts.data(), static_cast<int>(contacts.size()), now.data());
+    arrays.kernels->find_points(owner->points_at(arrays.place()), contacts.data(), static_cast<int>(contacts.size()), now.data());
   else
     for (std::size_t c = 0; c < contacts.size(); ++c) now[c] = point_now(of_contact[c], arrays);
 }
@@ -183,7 +180,7 @@ void ObjectField::push_run(std::size_t first, std::size_t end, std::size_t &left
 {
   PushedBlock scratch;
   const PushedBlock *pushed = &scratch;
-  const PointsTask points = points_task(arrays);
+  const PointsTask points = owner->points_at(arrays.place());
   const auto add = [&](std::size_t of_block, int from, int to) {
     arrays.kernels->add_to_nodes(*pushed, from, to, arrays.force());
     arrays.kernels->add_to_points(points, &contacts[of_block], *pushed, from, to, arrays.force());

@@ -46,7 +46,6 @@ class ObjectField : public FieldOf<FieldContact, PointTrack> {
 
  private:
   PushTask task(PointKind kind, const ContactArrays &arrays, double dt) const;
-  PointsTask points_task(const ContactArrays &arrays) const;
   PointNow point_now(std::size_t q, const ContactArrays &arrays) const;
   void push_run(std::size_t first, std::size_t end, std::size_t &left, std::size_t &block, const PushTask &task,
                 ContactArrays &arrays, ContactAccount &account);

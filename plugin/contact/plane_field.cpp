@@ -3,6 +3,8 @@
 
 #include "contact/plane_field.h"
 
+#include "contact/contact_kernel.h"
+
 #include <algorithm>
 
 namespace mdanim {
@@ -28,9 +30,9 @@ bool PlaneField::look_at(std::size_t q, const ContactArrays &arrays, bool may_be
   PlaneContact contact{};
   contact.point = near[q];
   contact.plane = number;
-  contact.anchor = x - plane.shift;
-  contact.memory.depth = depth;
-  contact.memory.offset = was_below ? depth : 0.0;
+  contact.state.anchor = x - plane.shift;
+  contact.state.memory.depth = depth;
+  contact.state.memory.offset = was_below ? depth : 0.0;
   begin(q, contact);
   return true;
 }
@@ -43,11 +45,11 @@ void PlaneField::owner_tears(const TornBody *before, const ContactArrays &arrays
     const PointCarriers by = before ? before->carriers_of(one.point) : owner->body->carriers_of(one.point);
     const double area = before ? before->areas()[one.point] : owner->body->areas()[one.point];
     const Vec3 moved = owner->place_by(by, arrays.place()) - owner->place_by(by, arrays.place_before());
-    const ContactForce<double> last = contact_pressure(law, area, 1.0, one.memory.depth, 0.0, one.memory);
+    const ContactForce<double> last = contact_pressure(law, area, 1.0, one.state.memory.depth, 0.0, one.state.memory);
     // Its last forces still did work in half of this step, as leap-frog counts it.
     const double deeper = -dot(plane.normal(), moved);
-    account.heat += one.memory.stick_energy - 0.5 * dot(one.memory.pull + one.memory.drag, moved);
-    account.damped += last_damping_work(one.memory, one.memory.depth + deeper);
+    account.heat += one.state.memory.stick_energy - 0.5 * dot(one.state.memory.pull + one.state.memory.drag, moved);
+    account.damped += last_damping_work(one.state.memory, one.state.memory.depth + deeper);
     account.let_go += last.surface_energy + 0.5 * last.press * deeper;
     return true;
   };
@@ -66,42 +68,44 @@ void PlaneField::begin_step(const ContactArrays &)
   ahead.clear();
 }
 
-// Results of a contact in a step; a contact that is over stays as it is.
-PlaneField::OnPoint PlaneField::push(PlaneContact &contact, std::size_t q, const ContactArrays &arrays, double dt) const
+// One contact; one that is over stays as it is.
+PlanePush<double> PlaneField::push(PlaneContact &contact, std::size_t q, const ContactArrays &arrays, double dt) const
 {
-  const Vec3 downward = -1.0 * plane.normal();    // gradient of the depth
   const Vec3 x = owner->place_of(near[q], arrays.place());
   const double depth = depth_at(x);
-  if (depth <= 0.0) return {{}, depth, 0.0, 0.0, 0.0};
-  const double area = owner->areas()[near[q]];
-  ContactForce<double> force = contact_pressure(law, area, 1.0, depth, dt, contact.memory);
-  if (law.friction > 0.0) {
-    const Vec3 there = x - plane.shift;    // anchors go with the plane
-    Vec3 away = there - contact.anchor;
-    away -= dot(away, downward) * downward;
-    contact_friction(law, area, 1.0, away, downward, dt, contact.memory, force);
-    contact.anchor = there - force.kept * away;
-  }
-  return {-force.press * downward + force.pull + force.drag, depth, force.surface_energy, force.heat, force.damped};
+  PlanePush<double> over;
+  over.depth = depth;
+  if (depth <= 0.0) return over;
+  return push_at_plane(law, dt, owner->areas()[near[q]], -1.0 * plane.normal(), x - plane.shift, depth, contact.state);
 }
 
-void PlaneField::work_ahead(const ContactArrays &arrays, double dt)
+void PlaneField::push_all(const ContactArrays &arrays, double dt)
 {
-  for (std::size_t c = 0; c < contacts.size(); ++c) ahead.push_back(push(contacts[c], of_contact[c], arrays, dt));
+  ahead.resize(contacts.size());
+  if (arrays.kernels)
+    arrays.kernels->push_at_plane(
+        {law, dt, plane.axis, plane.sign, plane.at, plane.shift, owner->body->radius(), owner->points_at(arrays.place())},
+        contacts.data(), static_cast<int>(contacts.size()), ahead.data());
+  else
+    for (std::size_t c = 0; c < contacts.size(); ++c) ahead[c] = push(contacts[c], of_contact[c], arrays, dt);
 }
+
+void PlaneField::work_ahead(const ContactArrays &arrays, double dt) { push_all(arrays, dt); }
 
 void PlaneField::add_forces(ContactArrays &arrays, double dt, ContactAccount &account)
 {
-  const bool moves = dt > 0.0, is_known = !ahead.empty();
+  const bool moves = dt > 0.0;
+  if (moves && ahead.empty()) push_all(arrays, dt);
   std::size_t left = 0;
   for (std::size_t c = 0; c < contacts.size(); ++c) {
-    PlaneContact contact = contacts[c];
+    PlaneContact copy = contacts[c];    // in which nothing changes at a setup
+    PlaneContact &contact = moves ? contacts[c] : copy;
     const std::size_t q = of_contact[c];
-    const OnPoint found = is_known ? ahead[c] : push(contact, q, arrays, dt);
+    const PlanePush<double> found = moves ? ahead[c] : push(contact, q, arrays, dt);
     if (found.depth <= 0.0) {
       if (!moves) continue;
-      account.heat += contact.memory.stick_energy;
-      account.damped += last_damping_work(contact.memory, found.depth);
+      account.heat += contact.state.memory.stick_energy;
+      account.damped += last_damping_work(contact.state.memory, found.depth);
       known[q] = 0;
       wake.set(q, budget - found.depth);
       continue;
@@ -109,14 +113,12 @@ void PlaneField::add_forces(ContactArrays &arrays, double dt, ContactAccount &ac
     owner->push_point(near[q], found.force, arrays.force());
     on_plane -= found.force;
     account.energy += found.energy;
-    account.stick_energy += contact.memory.stick_energy;
+    account.stick_energy += contact.state.memory.stick_energy;
     account.heat += found.heat;
     account.damped += found.damped;
     account.deepest = std::max(account.deepest, found.depth);
     ++account.touching;
-    if (!moves) continue;
-    contacts[c] = contact;
-    keep(c, left);
+    if (moves) keep(c, left);
   }
   if (moves) keep_first(left);
   if (!plane.moves) return;

@@ -6,18 +6,13 @@
 
 #include "contact/contact_field.h"
 #include "contact/contact_plane.h"
+#include "contact/plane_contact.h"
 
 #include <cstdint>
 #include <optional>
 #include <vector>
 
 namespace mdanim {
-
-struct PlaneContact {
-  std::int32_t point, plane;
-  Vec3 anchor;    // [m]
-  ContactMemory<double> memory;
-};
 
 // Known of a point: whether it was below when it was looked at last.
 class PlaneField : public FieldOf<PlaneContact, std::uint8_t> {
@@ -41,23 +36,20 @@ class PlaneField : public FieldOf<PlaneContact, std::uint8_t> {
   // The force on a plane that moves, for the work of the next step.
   Vec3 kept_force() const { return before.value_or(Vec3{}); }
   void restore_force(const Vec3 &force) { before = force; }
-  std::size_t bytes() const override { return bytes_of_rows() + ahead.capacity() * sizeof(OnPoint); }
+  std::size_t bytes() const override { return bytes_of_rows() + ahead.capacity() * sizeof(PlanePush<double>); }
 
  private:
-  struct OnPoint {
-    Vec3 force;
-    double depth, energy, heat, damped;
-  };
   double depth_at(const Vec3 &x) const { return plane.depth(x) + owner->body->radius(); }
   double approach() const override { return nearer(*owner, plane.normal(), plane.way); }
   bool look_at(std::size_t q, const ContactArrays &arrays, bool may_begin) override;
   bool distrusts(std::size_t) const override { return false; }
   void begin_step(const ContactArrays &arrays) override;
-  OnPoint push(PlaneContact &contact, std::size_t q, const ContactArrays &arrays, double dt) const;
+  PlanePush<double> push(PlaneContact &contact, std::size_t q, const ContactArrays &arrays, double dt) const;
+  void push_all(const ContactArrays &arrays, double dt);
 
   int number;
   const ContactPlane &plane;
-  std::vector<OnPoint> ahead;
+  std::vector<PlanePush<double>> ahead;    // of contacts in this step
   Vec3 on_plane;
   std::optional<Vec3> before;    // force on a plane that moves in the step before; none at the start
 };

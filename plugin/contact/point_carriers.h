@@ -3,6 +3,8 @@
 
 #pragma once
 
+#include "contact/padded_vec3.h"
+
 namespace mdanim {
 
 // A particle that carries a point: its number by ContactBody::slot_of(), and its weight.
@@ -20,6 +22,21 @@ struct PointCarriers {
 struct BodyCarriers {
   const PointCarrier *all;
   const int *first;    // of each point, then of the centre of its area; at the end, the number of all
+};
+
+// The outward normal of a point, by the edges of the cell that carries it [m], and the place of that cell's low corner in the
+// grid.
+struct PointFacing {
+  Vec3 by_cells;
+  int place;
+};
+
+// The points of an object where its particles are.
+struct PointsTask {
+  BodyCarriers carriers;
+  const double *area;         // of each point
+  const int *slot;            // numbers of its particles, by those of carriers
+  const PaddedVec3 *place;    // as that of Placed
 };
 
 }    // namespace mdanim

@@ -78,13 +78,23 @@ std::array<int, 3> PointSearch::cell_nearest(const Vec3 &x, std::array<int, 3> c
   }
 }
 
-void PointSearch::guess(PointTrack &known, const Vec3 &x, bool by_splines, Spot<double> &spot, Vec3 &X, double &off) const
+bool PointSearch::confirm_cell(PointTrack &known, const Vec3 &x, double budget) const
 {
-  constexpr double HEALTHY = 0.7, NEARBY = 3.0;    // volume over that of a cell; cells from the middle of one
+  double room = NEVER;
+  if (budget < known.certain) return true;
+  if (!at.body.is_cuboid() && !is_cell_of(x, known.cell, known.start, room)) return false;
+  known.certain = budget + room;
+  return true;
+}
+
+void PointSearch::guess(PointTrack &known, const Vec3 &x, double budget, bool by_splines, Spot<double> &spot, Vec3 &X,
+                        double &off) const
+{
+  constexpr double NEARBY = 3.0;    // cells from the middle of one
   const double h = at.body.spacing();
   off = NEVER;
   if (!evaluate(at, by_splines ? smooth(known.X, at.body) : trilinear(known.X, known.cell, at.body), spot)) return;
-  if (!(spot.det > HEALTHY * h * h * h)) return;
+  if (!(spot.det > WHOLE_CELL * h * h * h)) return;
   const Vec3 change = spot.to_material(x - spot.x);
   X = known.X + change;
   const double square = dot(change, change);
@@ -95,29 +105,30 @@ void PointSearch::guess(PointTrack &known, const Vec3 &x, bool by_splines, Spot<
     cell = cell_of(X);
   else
     is_there = !MaterialSearch(at).step_to_neighbour(cell, X, LEFT);
-  double room = NEVER;
-  if (!at.body.is_cuboid() && !is_cell_of(x, cell, known.start, room)) return;
   const Vec3 away = X - Vec3{cell[0] + 0.5, cell[1] + 0.5, cell[2] + 0.5};
   if (dot(away, away) > NEARBY * NEARBY) return;
-  known.cell = cell, known.X = X, known.room = room;
+  PointTrack there = known;
+  there.move_to(cell, X);
+  if (!confirm_cell(there, x, budget)) return;
+  known = there;
   off = is_there ? std::sqrt(square) : 1.0;
 }
 
-bool PointSearch::find(PointTrack &known, const Vec3 &x, bool by_splines, Spot<double> &spot, Vec3 &X) const
+bool PointSearch::find(PointTrack &known, const Vec3 &x, double budget, bool by_splines, Spot<double> &spot, Vec3 &X) const
 {
   const MaterialSearch search(at);
   std::array<int, 3> cell = known.cell;
-  known.room = NEVER;
+  double room = NEVER;
   if (at.body.is_cuboid()) {
     X = known.X;
     if (!search.solve(x, cell, X)) return false;
     cell = cell_of(X);
   } else {
-    cell = cell_nearest(x, cell, known.room);
+    cell = cell_nearest(x, cell, room);
   }
   X = {cell[0] + 0.5, cell[1] + 0.5, cell[2] + 0.5};
   if (!search.solve(x, cell, X, false)) return false;
-  known.cell = cell, known.X = X;
+  known.cell = cell, known.X = X, known.certain = budget + room;
   if (by_splines) return search.solve_smooth(x, X) && evaluate(at, smooth(X, at.body), spot);
   return evaluate(at, trilinear(X, cell, at.body), spot);
 }

@@ -3,11 +3,13 @@
 
 #pragma once
 
+#include "contact/contact_judge.h"
 #include "contact/contact_object.h"
 #include "contact/material_map.h"
 
 #include <array>
 #include <cstdint>
+#include <limits>
 
 namespace mdanim {
 
@@ -17,10 +19,14 @@ struct alignas(64) PointTrack {
   std::array<int, 3> start = cell;           // this cell on the surface or one around it is the nearest one
   double trusted = 0.0;                      // up to this budget
   Vec3 X;
-  double room = 0.0;    // a motion that leaves it in this cell [m]
-};
+  double certain = -std::numeric_limits<double>::infinity();    // up to this budget it is in this cell
 
-constexpr double PRESSED = 0.5;    // cells are assumed to be pressed to half at most: motion in space over that in X
+  void move_to(const std::array<int, 3> &to, const Vec3 &place)
+  {
+    if (to != cell) certain = -std::numeric_limits<double>::infinity();
+    cell = to, X = place;
+  }
+};
 
 // A host with its particles where they are now.
 class PointSearch {
@@ -31,10 +37,12 @@ class PointSearch {
   std::array<int, 3> outer_around(const Vec3 &x, const std::array<int, 3> &cell, double &away) const;
   // X of a point at x by one step of Newton's method from where it was found last. `off`: its distance from there in cells; 1 and
   // more where the step tells nothing. It takes a small part of the work of find(). `by_splines`: by the smooth map.
-  void guess(PointTrack &known, const Vec3 &x, bool by_splines, Spot<double> &spot, Vec3 &X, double &off) const;
+  void guess(PointTrack &known, const Vec3 &x, double budget, bool by_splines, Spot<double> &spot, Vec3 &X, double &off) const;
+  // Whether the cell that a point at x was found in is the one that a search would find; otherwise nothing changes.
+  bool confirm_cell(PointTrack &known, const Vec3 &x, double budget) const;
   // X of a point at x from a cell near by; the last search begins in the middle of the cell that X lies in. False where it cannot
   // be found.
-  bool find(PointTrack &known, const Vec3 &x, bool by_splines, Spot<double> &spot, Vec3 &X) const;
+  bool find(PointTrack &known, const Vec3 &x, double budget, bool by_splines, Spot<double> &spot, Vec3 &X) const;
 
  private:
   std::array<int, 3> cell_of(const Vec3 &X) const;

@@ -31,8 +31,8 @@ class Wakes {
     least_of[q / BLOCK] = std::min(least_of[q / BLOCK], at);
     least = std::min(least, at);
   }
-  // Calls look(q), which sets the value of point q anew, for every point whose value a budget exceeds, in ascending order; before
-  // all that, fetch(q) for each of them, so that waits for memory overlap.
+  // Calls look(points), which sets the values of these points anew, with all points whose value a budget exceeds, ascending;
+  // before that, fetch(q) for each of them, so that waits for memory overlap.
   template <class Fetch, class Look> void look_below(double budget, const Fetch &fetch, const Look &look)
   {
     if (!(least < budget)) return;
@@ -48,7 +48,7 @@ class Wakes {
     for (const std::size_t block : due_blocks)
       for (std::size_t q = block * BLOCK; q < end_of(block); ++q)
         if (wake[q] < budget) fetch(q), due.push_back(q);
-    for (const std::size_t q : due) look(q);
+    look(due);
     for (const std::size_t block : due_blocks) {
       least_of[block] = *std::min_element(wake.begin() + block * BLOCK, wake.begin() + end_of(block));
       least_left = std::min(least_left, least_of[block]);
