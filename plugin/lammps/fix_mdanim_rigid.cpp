@@ -24,7 +24,7 @@ using namespace LAMMPS_NS;
 using namespace FixConst;
 using namespace mdanim;
 
-static constexpr int COLUMNS = 13;    // of compute_array()
+static constexpr int COLUMNS = 14;    // of compute_array()
 
 static std::map<int, Inertia> moments_of(LAMMPS *lmp, const char *file)
 {
@@ -37,9 +37,10 @@ static std::map<int, Inertia> moments_of(LAMMPS *lmp, const char *file)
   return {};
 }
 
-// fix ID group mdanim/rigid [inertia FILE] [lambda L] [shapes FILE contact OMEGA EPS], and words of RigidTouching
+// fix ID group mdanim/rigid [inertia FILE] [lambda L] [glue FILE] [shapes FILE contact OMEGA EPS], and words of RigidTouching
 FixMdanimRigid::FixMdanimRigid(LAMMPS *lmp, int narg, char **arg)
-    : FixBase(lmp, narg, arg), particles(lmp, *this), touching(lmp), guided(particles, touching, bodies)
+    : FixBase(lmp, narg, arg), particles(lmp, *this), touching(lmp), guided(particles, touching, bodies),
+      glue(particles, touching, bodies)
 {
   time_integrate = 1;
   rigid_flag = 1;
@@ -54,7 +55,7 @@ FixMdanimRigid::FixMdanimRigid(LAMMPS *lmp, int narg, char **arg)
   look_up({}, {&lambda});
   tell_numbers();
 
-  std::vector<Keyword> known = {{"inertia", "FILE"}, {"lambda", "L|d_NAME"}};
+  std::vector<Keyword> known = {{"inertia", "FILE"}, {"lambda", "L|d_NAME"}, {"glue", "FILE"}};
   for (Keyword &word : RigidTouching::words()) known.push_back(std::move(word));
   for (int iarg = 3, words = 0; iarg < narg; iarg += words) {
     words = words_of_keyword(lmp, "fix mdanim/rigid", known, iarg, narg, arg);
@@ -63,6 +64,13 @@ FixMdanimRigid::FixMdanimRigid(LAMMPS *lmp, int narg, char **arg)
     } else if (strcmp(arg[iarg], "lambda") == 0) {
       lambda = ParticleValue(lmp, "fix mdanim/rigid: lambda", iarg + 1, arg[iarg + 1]);
       has_drag = true;
+    } else if (strcmp(arg[iarg], "glue") == 0) {
+      const std::string text = read_shared_file(lmp, "fix mdanim/rigid", "glue", arg[iarg + 1]);
+      try {
+        glue.read(arg[iarg + 1], text);
+      } catch (const std::exception &problem) {
+        error->all(FLERR, iarg + 1, "fix mdanim/rigid: {}", problem.what());
+      }
     } else {
       touching.read_word(iarg, arg);
     }
@@ -83,9 +91,9 @@ void FixMdanimRigid::tell_numbers()
       if (present[n] > 0) all += energy_of(n);
     return force->mvv2e * all;
   };
-  const auto kinetic = [this, total] {
+  const auto energy_of_motion = [this] {
     if (!collected) collect();
-    return total([this](std::size_t n) { return bodies[n].kinetic(half_dt, drag[n]); });
+    return force->mvv2e * glue.kinetic(half_dt, drag);
   };
   std::vector<mdanim::Output> outputs = {
       {"bodies", true, [this] { return static_cast<double>(bodies.size()); }},
@@ -94,7 +102,8 @@ void FixMdanimRigid::tell_numbers()
       clock(),
       {"drag_loss", true, [this] { return force->mvv2e * drag_loss; }}};
   for (mdanim::Output &output : touching.outputs()) outputs.push_back(std::move(output));
-  outputs.push_back({"kinetic", true, kinetic});
+  outputs.push_back({"kinetic", true, energy_of_motion});
+  for (mdanim::Output &output : glue.outputs(force->mvv2e)) outputs.push_back(std::move(output));
   tell(std::move(outputs));
 }
 
@@ -105,7 +114,10 @@ void FixMdanimRigid::init()
   FixBase::init();
   reset_dt();
   touching.init(name());
-  if (particles.find_objects(largest(has_new_particles) > 0.0)) bodies.clear();
+  if (particles.find_objects(largest(has_new_particles) > 0.0)) {
+    bodies.clear();
+    glue.forget();
+  }
   has_new_particles = false;
   for (const auto &[molecule, inertia] : given)
     if (particles.objects().number_of(molecule) == ObjectTable::NONE)
@@ -183,18 +195,20 @@ void FixMdanimRigid::collect()
     const double *const own = lambda.values(lmp);
     drag = particles.sum_of([&](int i) { return own ? own[i] : lambda.number; });
   }
+  glue.glued.gather(bodies, drag);
   collected = true;
 }
 
 void FixMdanimRigid::kick(bool first)
 {
   for (std::size_t n = 0; n < bodies.size(); ++n)
-    if (bodies[n].aside || bodies[n].guided)
+    if (bodies[n].aside || bodies[n].guided || glue.glued.holds(n))
       continue;
     else if (drag[n] == 0.0)
       bodies[n].kick(half_dt);
     else
       drag_loss += bodies[n].kick_with_drag(half_dt, drag[n], first);
+  drag_loss += glue.glued.kick(bodies, half_dt, first);
 }
 
 void FixMdanimRigid::initial_integrate(int)
@@ -203,8 +217,9 @@ void FixMdanimRigid::initial_integrate(int)
   if (!collected) collect();
   guided.find(half_dt, drag);
   kick(true);
-  for (RigidBody &body : bodies)
-    if (!body.guided && !body.aside) body.drift(update->dt);
+  for (std::size_t n = 0; n < bodies.size(); ++n)
+    if (!bodies[n].guided && !bodies[n].aside && !glue.glued.holds(n)) bodies[n].drift(update->dt);
+  glue.glued.drift(bodies, update->dt);
   guided.move(update->dt);
   particles.put(bodies, true);
 }
@@ -216,6 +231,7 @@ void FixMdanimRigid::final_integrate()
   collect();
   kick(false);
   guided.set_whole_motion(update->dt);
+  if (glue.glued.is_on()) glue.break_some(force->ftm2v, half_dt, drag, [this] { collect(); });
   particles.put(bodies, false);
 }
 
@@ -229,15 +245,17 @@ double FixMdanimRigid::compute_scalar()
   double more = 0.0;
   for (std::size_t n = 0; n < bodies.size(); ++n) more += bodies[n].translation() + bodies[n].rotation() - of_particles[n];
   const TouchAccount &account = touching.contact.account;
-  return force->mvv2e * (more + account.energy + account.heat + account.damped + account.let_go + drag_loss - touching.taken());
+  return force->mvv2e * (more + account.energy + account.heat + account.damped + account.let_go + drag_loss + glue.torn_energy() -
+                         touching.taken());
 }
 
 double FixMdanimRigid::compute_array(int row, int column)
 {
   const RigidBody &body = bodies[row];
-  const double numbers[COLUMNS] = {body.centre.x,   body.centre.y, body.centre.z, body.velocity.x, body.velocity.y,
-                                   body.velocity.z, body.q.w,      body.q.x,      body.q.y,        body.q.z,
-                                   body.spin.x,     body.spin.y,   body.spin.z};
+  const double whole = static_cast<double>(particles.objects().id(glue.glued.first_of(row)));
+  const double numbers[COLUMNS] = {body.centre.x, body.centre.y, body.centre.z, body.velocity.x, body.velocity.y, body.velocity.z,
+                                   body.q.w,      body.q.x,      body.q.y,      body.q.z,        body.spin.x,     body.spin.y,
+                                   body.spin.z,   whole};
   return numbers[column];
 }
 

@@ -5,6 +5,8 @@
 
 #include "error.h"
 
+#include <stdexcept>
+
 using namespace LAMMPS_NS;
 using namespace mdanim;
 
@@ -42,6 +44,11 @@ void FixMdanimRigid::make()
   set_velocities(found);
   particles.put(bodies, true);
   touching.make(name(), objects, bodies);
+  try {
+    glue.join();
+  } catch (const std::runtime_error &problem) {
+    error->all(FLERR, "{}: {}", name(), problem.what());
+  }
 }
 
 // R diag(moments) R^T v.
@@ -91,6 +98,7 @@ void FixMdanimRigid::follow_changes()
     make();
   } else if (largest(changes.pushed) > 0.0) {
     set_velocities(particles.weigh());
+    glue.glued.take_motion(bodies);
     particles.put(bodies, false);
     touching.is_current = false;
   }

@@ -72,9 +72,11 @@ StateRecords FixMdanimRigid::pack() const
       kept.turning_push = touching.push(number).torque;
       kept.pose = touching.pose(number);
       head.put(kept);
+      glue.glued.put(number, head);
       if (touching.solid(number) != RigidTouching::NO_SHAPE) touching.contact.put_at_planes(touching.solid(number), head);
     } else {
       head.put(kept);
+      glue.glued.put(number, head);
     }
     rows.begin(static_cast<int>(particles.objects().id(number)), head.take());
   }
@@ -96,7 +98,10 @@ void FixMdanimRigid::unpack(const StateRecords &all)
   StateRecords records;    // of bodies and pairs
   for (const auto &[key, bytes] : all)
     if (key.b != 0 || !touching.is_driven(key.a)) records[key] = bytes;
-  if (particles.find_objects()) bodies.clear();
+  if (particles.find_objects()) {
+    bodies.clear();
+    glue.forget();
+  }
   locate();
   const ObjectTable &objects = particles.objects();
   ParticleRows::Heads heads;
@@ -125,8 +130,10 @@ void FixMdanimRigid::unpack(const StateRecords &all)
 
   const std::vector<RigidBody> bodies_before = bodies;
   const RigidTouching touching_before = touching;
+  const GluedBodies glued_before = glue.glued;
   try {
     if (!is_whole) make();    // those without a record as at the beginning
+    glue.take();
     bodies.resize(objects.size());
     std::vector<Pose> poses;
     for (int n = 0; n < objects.size(); ++n) {
@@ -137,7 +144,14 @@ void FixMdanimRigid::unpack(const StateRecords &all)
       body.velocity = kept[n].velocity, body.q = kept[n].q, body.L = kept[n].L;
       body.refresh();
     }
+    std::vector<char> has;
+    for (int n = 0; n < objects.size(); ++n) {
+      has.push_back(rest[n].has_value());
+      if (rest[n]) glue.glued.read(n, *rest[n]);
+    }
+    glue.glued.rebuild(has);
     touching.take(name(), objects, bodies, std::move(poses));
+    glue.tell_contact();
     touching.read_contacts(records, STATE_VERSION, rest);
     touching.read_driven(STATE_VERSION, all);
     for (int n = 0; n < objects.size(); ++n)
@@ -145,6 +159,7 @@ void FixMdanimRigid::unpack(const StateRecords &all)
   } catch (const std::runtime_error &) {
     bodies = bodies_before;
     touching = touching_before;
+    glue.glued = glued_before;
     throw;
   }
   touching.is_current = is_whole;

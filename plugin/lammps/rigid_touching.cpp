@@ -219,6 +219,46 @@ void RigidTouching::take(const std::string &fix, const ObjectTable &objects, con
   place_all(bodies);
 }
 
+void RigidTouching::glue(const GluedBodies &glued, const std::vector<int> &pieces)
+{
+  for (const int n : pieces) {
+    const int number = is_on() ? solid_of[n] : NO_SHAPE;
+    if (number == NO_SHAPE) continue;
+    const SolidShape &shape = contact.solid(number).shape;
+    std::vector<char> faces(shape.kind() == SolidShape::POLYHEDRON ? shape.sides() : 0, 0);
+    for (const int f : glued.faces_of(n)) {
+      const GlueFace &face = glued.all_faces()[f];
+      const std::size_t side = static_cast<std::size_t>(face.a == n ? face.side_a : face.side_b);
+      if (side < faces.size() && faces[side] != 2) faces[side] = glued.is_broken(f) ? 2 : 1;
+    }
+    Carrier carrier;
+    if (glued.holds(n)) {
+      const Matrix3 turn = matrix(glued.pose(n).q);
+      const RigidBody &whole = glued.whole(n).body;
+      carrier = {-1.0 * transposed_times(turn, glued.pose(n).place), transposed(turn), 1.0 / whole.mass, whole.over};
+    }
+    contact.glue(number, glued.holds(n) ? glued.first_of(n) : Solid::ALONE, carrier, faces);
+  }
+}
+
+double RigidTouching::unglue(const GluedBodies &glued, const std::vector<int> &pieces)
+{
+  if (!is_on()) return 0.0;
+  std::map<int, double> yielded;
+  for (const int n : pieces)
+    if (solid_of[n] != NO_SHAPE) yielded[solid_of[n]] = contact.solid(solid_of[n]).yields;
+  glue(glued, pieces);
+  const double gone = contact.change(yielded);
+  take_pushes();
+  return gone;
+}
+
+void RigidTouching::take_pushes()
+{
+  for (std::size_t n = 0; n < solid_of.size(); ++n)
+    if (solid_of[n] != NO_SHAPE) pushes[n] = {contact.solid(solid_of[n]).force, contact.solid(solid_of[n]).torque};
+}
+
 void RigidTouching::place_all(const std::vector<RigidBody> &bodies)
 {
   for (std::size_t n = 0; n < bodies.size(); ++n)
@@ -270,8 +310,7 @@ void RigidTouching::step(const std::vector<RigidBody> &bodies, double dt)
   move_planes();
   contact.step(dt);
   count_work(dt > 0.0);
-  for (std::size_t n = 0; n < bodies.size(); ++n)
-    if (solid_of[n] != NO_SHAPE) pushes[n] = {contact.solid(solid_of[n]).force, contact.solid(solid_of[n]).torque};
+  take_pushes();
   is_current = true;
 }
 

@@ -10,6 +10,7 @@
 #include "records/byte_reader.h"
 #include "records/state_records.h"
 #include "rigid/body.h"
+#include "rigid/glued_bodies.h"
 #include "rigid/rigid_contact.h"
 #include "rigid/shapes_file.h"
 
@@ -53,6 +54,11 @@ class RigidTouching {
             std::vector<Pose> in_bodies);
   const Pose &pose(int body) const { return poses[body]; }
 
+  // Tells contact how some pieces are glued now.
+  void glue(const GluedBodies &glued, const std::vector<int> &pieces);
+  // The same of pieces that came apart, at the end of a step, after which pushes are others (RigidContact::change).
+  double unglue(const GluedBodies &glued, const std::vector<int> &pieces);
+
   // Finds forces dt after the last step; dt = 0 at the setup of a run.
   void step(const std::vector<RigidBody> &bodies, double dt);
   struct Push {
@@ -95,6 +101,7 @@ class RigidTouching {
   void place_all(const std::vector<RigidBody> &bodies);
   void place_driven();
   void move_planes();
+  void take_pushes();
   void count_work(bool moves);
   void read_plane(int iarg, char **arg);
   std::pair<int, int> read_two(int iarg, char **arg) const;

@@ -13,6 +13,7 @@ namespace mdanim {
 
 struct Curve {
   bool is_circle = false, is_egg = false;
+  bool covered = false;    // touches nothing now
   Vec3 middle, along;      // along a line; the axis of a circle, out of its flat face. Of length 1
   Vec3 any;                // of a circle: some direction from its middle to it, of length 1
   double size = 0.0;       // half of the length of a surface about a line; radius of a circle

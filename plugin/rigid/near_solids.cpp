@@ -40,7 +40,7 @@ static bool are_near(const Solid &a, const Solid &b, double ways)
 {
   const Vec3 between = a.centre - b.centre;
   const double reach = a.shape.bound() + b.shape.bound() + ways;
-  return !(a.held && b.held) && dot(between, between) < reach * reach;
+  return !(a.held && b.held) && !(a.whole != Solid::ALONE && a.whole == b.whole) && dot(between, between) < reach * reach;
 }
 
 // Pairs in contact stay: the ramps about edges act beyond the spheres.

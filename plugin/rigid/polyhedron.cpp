@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <stdexcept>
 #include <string>
@@ -124,6 +125,19 @@ void Polyhedron::cover(int face)
   all_faces[face].covered = true;
   for (Edge &edge : all_edges) edge.covered = edge.covered || edge.faces[0] == face || edge.faces[1] == face;
   for (const int corner : all_faces[face].corners) all_corners[corner].covered = true;
+}
+
+void Polyhedron::cover(const std::vector<char> &faces)
+{
+  const auto closes = [&](const auto &of) {
+    const auto has = [&](char wanted) {
+      return std::any_of(std::begin(of), std::end(of), [&](int f) { return faces[f] == wanted; });
+    };
+    return has(1) && !has(2);
+  };
+  for (std::size_t f = 0; f < all_faces.size(); ++f) all_faces[f].covered = faces[f] == 1;
+  for (Edge &edge : all_edges) edge.covered = closes(edge.faces);
+  for (Corner &corner : all_corners) corner.covered = closes(corner.faces);
 }
 
 double Polyhedron::outside(const Vec3 &x) const

@@ -49,6 +49,9 @@ class Polyhedron {
   static Polyhedron box(const Vec3 &half);
 
   void cover(int face);
+  // Covers faces anew: those with 1, of which others are behind, are closed, and so are edges and corners of theirs that no face
+  // with 2 has, which is open again. The other faces have 0.
+  void cover(const std::vector<char> &faces);
 
   const std::vector<Corner> &corners() const { return all_corners; }
   const std::vector<Edge> &edges() const { return all_edges; }

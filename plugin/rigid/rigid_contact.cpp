@@ -111,7 +111,7 @@ void RigidContact::touch_pair(const TouchStep &step, SolidPair &pair)
 {
   Solid &a = solids[pair.a], &b = solids[pair.b];
   forget_parted(pair.touches);
-  if (a.aside || b.aside) return;
+  if (a.aside || b.aside || (a.whole != Solid::ALONE && a.whole == b.whole)) return;
   const double way = a.stir + b.stir;
   pair.asleep -= way;
   pair.known_for -= way;
@@ -153,9 +153,14 @@ void RigidContact::step(double dt)
         forget_parted(at_plane[k][n]);
         touch_plane(step, at_plane[k][n], solids[n], static_cast<int>(k));
       }
+  for (Solid &one : solids) one.force_at_planes = one.force, one.torque_at_planes = one.torque;
   if (settings.objects) {
     near.update(solids, settings.excluded);
-    for (SolidPair &pair : near.pairs) touch_pair(step, pair);
+    for (SolidPair &pair : near.pairs)
+      if (solids[pair.a].whole != Solid::ALONE || solids[pair.b].whole != Solid::ALONE)
+        touch_counted(step, pair);
+      else
+        touch_pair(step, pair);
   }
   find_energy();
   for (const Solid &one : solids) {
@@ -176,6 +181,97 @@ bool RigidContact::lay_aside(int n, bool aside)
     pair.forget();    // its ways were not counted
   }
   return true;
+}
+
+void RigidContact::glue(int n, int whole, const Carrier &carrier, const std::vector<char> &faces)
+{
+  Solid &one = solids[n];
+  one.whole = whole;
+  one.carrier = carrier;
+  one.find_yields();
+  if (!faces.empty()) one.shape.cover(faces);
+}
+
+// How a dashpot is damped depends on stiffness times mobility, and stays. What is remembered of the step before was of the harder
+// contact.
+static void soften(std::vector<Touch> &touches, double part)
+{
+  for (Touch &touch : touches) {
+    touch.stiffness *= part;
+    touch.yields /= part;
+    touch.owed *= part;
+    touch.memory.stick *= part;
+    touch.memory.stick_energy *= part;
+    touch.memory.pull = part * touch.memory.pull;
+    touch.press *= part;
+    touch.memory.damping = touch.more = 0.0;
+    touch.memory.drag = Vec3();
+  }
+}
+
+static double energy_of(const std::vector<Touch> &touches)
+{
+  double all = 0.0;
+  for (const Touch &touch : touches) all += touch.energy;
+  return all;
+}
+
+double RigidContact::change(const std::map<int, double> &yielded)
+{
+  const auto part = [](double was, double is) { return std::min(1.0, was / is); };
+  const auto was = [&](int n) {
+    const auto found = yielded.find(n);
+    return found == yielded.end() ? solids[n].yields : found->second;
+  };
+  const double booked = account.heat + account.damped + account.let_go;
+  const TouchStep step(0.0, settings.onset, account);
+  double gone = 0.0;
+  for (const auto &[n, yielded_before] : yielded) {
+    Solid &one = solids[n];
+    one.force -= one.force_at_planes;
+    one.torque -= one.torque_at_planes;
+    const Vec3 force = one.force, torque = one.torque;
+    for (std::size_t k = 0; k < settings.planes.size(); ++k) {
+      std::vector<Touch> &touches = at_plane[k][n];
+      gone += energy_of(touches);
+      soften(touches, part(yielded_before, one.yields));
+      forget_parted(touches);
+      touch_plane(step, touches, one, static_cast<int>(k));
+      gone -= energy_of(touches);
+    }
+    one.force_at_planes = one.force - force;
+    one.torque_at_planes = one.torque - torque;
+  }
+  if (settings.objects) {
+    near.forget();    // pieces are near others that they were not before
+    near.update(solids, settings.excluded);
+    for (SolidPair &pair : near.pairs) {
+      if (!yielded.count(pair.a) && !yielded.count(pair.b)) continue;
+      Solid &a = solids[pair.a], &b = solids[pair.b];
+      a.force -= pair.force;
+      b.force += pair.force;
+      a.torque -= pair.torque_a;
+      b.torque -= pair.torque_b;
+      gone += energy_of(pair.touches);
+      soften(pair.touches, part(was(pair.a) + was(pair.b), a.yields + b.yields));
+      pair.forget();
+      touch_counted(step, pair);
+      gone -= energy_of(pair.touches);
+    }
+  }
+  find_energy();
+  return gone - (account.heat + account.damped + account.let_go - booked);
+}
+
+// Keeps what the pair gives to bodies that may come apart.
+void RigidContact::touch_counted(const TouchStep &step, SolidPair &pair)
+{
+  Solid &a = solids[pair.a], &b = solids[pair.b];
+  const Vec3 force = a.force, torque_a = a.torque, torque_b = b.torque;
+  touch_pair(step, pair);
+  pair.force = a.force - force;
+  pair.torque_a = a.torque - torque_a;
+  pair.torque_b = b.torque - torque_b;
 }
 
 void RigidContact::find_energy()

@@ -53,6 +53,12 @@ class RigidContact {
   void place_driven(int n, const Vec3 &centre, const Matrix3 &turn, const Vec3 &velocity, const Vec3 &spin);
   // A body that is laid aside touches nothing, and its contacts end. Returns whether this is new.
   bool lay_aside(int n, bool aside);
+  // Says which body a piece is glued into; `faces`: those of its shape that glue covers (see Polyhedron::cover), or none.
+  void glue(int n, int whole, const Carrier &carrier, const std::vector<char> &faces);
+  // To be called after it, at the end of a step: contacts of bodies that yield more than before, by their numbers and with what
+  // they yielded, get softer, and those that touch from then on do so without a force. Forces on these, and on all that they
+  // touch, are found again. Returns the energy that contacts lose.
+  double change(const std::map<int, double> &yielded);
   // Finds the energy of contacts, and how many there are, from what they remember.
   void find_energy();
   // Finds the forces on bodies, dt after the last step; dt = 0 at the setup of a run.
@@ -76,6 +82,7 @@ class RigidContact {
   TouchLaw law_with(double yields, Material material, std::pair<int, int> ids) const;
   void touch_pair(const TouchStep &step, SolidPair &pair);
   void touch_plane(const TouchStep &step, std::vector<Touch> &touches, Solid &one, int plane);
+  void touch_counted(const TouchStep &step, SolidPair &pair);
 
   std::vector<Solid> solids;
   NearSolids near;

@@ -109,6 +109,13 @@ const char *SolidShape::name() const
   return NAMES[its_kind];
 }
 
+// A polyhedron without sides that were covered when it was made has its edges as curves.
+void SolidShape::cover(const std::vector<char> &faces)
+{
+  its_polyhedron.cover(faces);
+  for (std::size_t e = 0; e < its_curves.size(); ++e) its_curves[e].covered = its_polyhedron.edges()[e].covered;
+}
+
 // A sharp circle has its axis out of its flat face. The radius about the axis of a cone is that of a ball inside.
 void SolidShape::find_curves()
 {

@@ -38,6 +38,8 @@ class SolidShape {
 
   // Whether both have the same bits.
   bool is_same(const SolidShape &other) const;
+  // Covers faces of a polyhedron anew (see there).
+  void cover(const std::vector<char> &faces);
   // The same shape in the frame of its body.
   SolidShape placed(const Pose &pose) const;
 

@@ -18,7 +18,16 @@ struct Material {
   double rolling = 0.0;                          // arm of the torque that resists rolling [m]
 };
 
+// The rigid body that a piece is glued into, in the frame of the piece: its centre, its axes, 1/m and 1/I about these.
+struct Carrier {
+  Vec3 centre;
+  Matrix3 turn;
+  double over_mass = 0.0;
+  Vec3 over;
+};
+
 struct Solid {
+  static constexpr int ALONE = -1;
   int id = 0;
   bool held = false;
   bool driven = false;    // held, and moves
@@ -29,6 +38,8 @@ struct Solid {
   Vec3 over;
   double yields = 0.0;        // largest lambda along normals at its features (see find_yields)
   double yields_any = 0.0;    // along any direction
+  int whole = ALONE;          // number of the body that it is glued into; its pieces do not touch each other
+  Carrier carrier;            // the same body
 
   Vec3 belt;    // velocity at which its surface runs over it
 
@@ -39,6 +50,7 @@ struct Solid {
   double stir = 0.0;            // farthest way of a point of it in this step
 
   Vec3 force, torque;
+  Vec3 force_at_planes, torque_at_planes;           // the part of them that planes give
   double stiffness_sum = 0.0, damping_sum = 0.0;    // S and D of the bound on the step
   int touching = 0;
 
@@ -47,7 +59,17 @@ struct Solid {
   Vec3 in_body(const Vec3 &a) const { return transposed_times(turn, a); }
   Vec3 velocity_at(const Vec3 &x) const { return velocity + cross(spin, x - centre); }
   // lambda = 1/m + (r x n) I^-1 (r x n): acceleration along n of the point x over a force along n that acts there.
-  double yields_at(const Vec3 &x, const Vec3 &n) const { return held ? 0.0 : yields_by(in_body(cross(x - centre, n))); }
+  double yields_at(const Vec3 &x, const Vec3 &n) const
+  {
+    if (whole != ALONE) return yields_in_whole(in_body(x - centre), in_body(n));
+    return held ? 0.0 : yields_by(in_body(cross(x - centre, n)));
+  }
+  // The same of a point and a normal in the frame of a piece.
+  double yields_in_whole(const Vec3 &own, const Vec3 &n) const
+  {
+    const Vec3 t = transposed_times(carrier.turn, cross(own - carrier.centre, n)), &over_I = carrier.over;
+    return carrier.over_mass + (t.x * t.x * over_I.x + t.y * t.y * over_I.y + t.z * t.z * over_I.z);
+  }
   // The same of the lever t = r x n, in the frame of the body.
   double yields_by(const Vec3 &t) const { return over_mass + (t.x * t.x * over.x + t.y * t.y * over.y + t.z * t.z * over.z); }
 
@@ -71,8 +93,8 @@ struct Solid {
   // Takes what another one yields, if it is the same body.
   bool take_yields(const Solid &known)
   {
-    const bool is_same = held == known.held && over_mass == known.over_mass && over.x == known.over.x && over.y == known.over.y &&
-                         over.z == known.over.z && shape.is_same(known.shape);
+    const bool is_same = held == known.held && known.whole == ALONE && over_mass == known.over_mass && over.x == known.over.x &&
+                         over.y == known.over.y && over.z == known.over.z && shape.is_same(known.shape);
     if (is_same) yields = known.yields, yields_any = known.yields_any;
     return is_same;
   }
@@ -98,9 +120,11 @@ inline void Solid::find_yields()
   if (held) return;
   Vec3 last{HUGE_VAL, 0.0, 0.0};    // a corner comes once with each of its faces
   shape.each_feature([&](const Vec3 &at, const Vec3 &n) {
-    yields = std::max(yields, yields_by(cross(at, n)));
+    yields = std::max(yields, whole == ALONE ? yields_by(cross(at, n)) : yields_in_whole(at, n));
     if (at.x == last.x && at.y == last.y && at.z == last.z) return;
-    yields_any = std::max(yields_any, largest_yield(over_mass, over, at));
+    yields_any = std::max(yields_any, whole == ALONE ? largest_yield(over_mass, over, at)
+                                                     : largest_yield(carrier.over_mass, carrier.over,
+                                                                     transposed_times(carrier.turn, at - carrier.centre)));
     last = at;
   });
 }

@@ -428,6 +428,8 @@ std::vector<int> curves_near(const Solid &one, const Solid &other, double more, 
 {
   std::vector<int> found(one.shape.curves().size());
   std::iota(found.begin(), found.end(), 0);
+  const auto is_covered = [&](int number) { return one.shape.curves()[number].covered; };
+  found.erase(std::remove_if(found.begin(), found.end(), is_covered), found.end());
   if (one.shape.kind() != SolidShape::MESH) return found;
   found = one.shape.mesh().edges_near(box_around(one, other, more));
   for (const Touch &touch : touches)

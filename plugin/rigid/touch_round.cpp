@@ -131,7 +131,8 @@ void touch_plane(const TouchStep &step, std::vector<Touch> &touches, Solid &one,
   switch (shape.kind()) {
     case SolidShape::POLYHEDRON:
     case SolidShape::MESH:
-      for (std::size_t q = 0; q < shape.corners().size(); ++q) on.corner(static_cast<int>(q), one.place(shape.corners()[q].at));
+      for (std::size_t q = 0; q < shape.corners().size(); ++q)
+        if (!shape.corners()[q].covered) on.corner(static_cast<int>(q), one.place(shape.corners()[q].at));
       break;
     case SolidShape::BALL:
       on.moving(0, middle - shape.radius() * plane.n);

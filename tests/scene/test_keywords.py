@@ -43,6 +43,9 @@ def scene(block: str, **settings: str):
             blocks[name]["elasticity"] = "rigid"
     if "origin" in settings:
         blocks["object"]["shape"] = f'mesh "{DUCK}"'
+    if "pieces" in settings:
+        blocks["object"] |= {"elasticity": "rigid", "strength": "1 MPa"}
+        del blocks["liquid"]
     if {"tear-strain", "toughness"} & set(settings):
         blocks["object"]["shape"] = "rope from (0, 0, 0) m to (1, 0, 0) m thickness 1 cm"
         del blocks["object"]["position"], blocks["liquid"]

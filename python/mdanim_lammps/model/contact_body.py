@@ -11,7 +11,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from ..scene.scene import Box, Ellipsoid, Shape, Sphere
+from ..scene.scene import Box, Ellipsoid, PieceShape, Shape, Sphere
 from .distance import grid_distance
 from .embed import nearest_cell
 from .lattice import Cells, any_corner, cells_around
@@ -156,7 +156,10 @@ def make_contact_body(shape: Shape, cells: Cells, open_parts: np.ndarray | None 
     less has fine points.
     """
     open_parts = np.zeros((0, 5)) if open_parts is None else open_parts
-    points = _cuboid(cells, open_parts) if isinstance(shape, Box) else _dense(shape, cells)
+    boxed = isinstance(shape, Box) or (
+        isinstance(shape, PieceShape) and cells.filled.size == 1
+    )  # a piece whose points nothing reads
+    points = _cuboid(cells, open_parts) if boxed else _dense(shape, cells)
     points = {name: np.ascontiguousarray(field) for name, field in points.items()}  # row by row, as C functions read them
     body = ContactBody(
         count=cells.count.astype(np.int32),
@@ -164,7 +167,7 @@ def make_contact_body(shape: Shape, cells: Cells, open_parts: np.ndarray | None 
         node=np.flatnonzero(cells_around(cells.filled)).astype(np.int32),
         filled=cells.filled.astype(np.uint8).ravel(),
         **points,
-        depth=None if isinstance(shape, Box) else _depth(shape, cells),
+        depth=None if boxed else _depth(shape, cells),
         open=open_parts,
     )
     for field in fields(body):

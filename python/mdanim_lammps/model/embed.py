@@ -4,10 +4,11 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from math import inf
 
 import numpy as np
 
-from ..scene.scene import Box, Mesh, Shape
+from ..scene.scene import Box, Mesh, PieceShape, Shape
 from . import mesh, shapes
 from .lattice import CORNERS, Lattice
 from .model import Surface
@@ -21,7 +22,8 @@ def make_surface(shape: Shape, lattice: Lattice) -> Surface:
     """Draw a cuboid by its boundary particles, any other shape by its true surface, embedded in the cells."""
     if isinstance(shape, Box):
         return _faces(lattice)
-    points, triangles = shapes.surface(shape, float(lattice.cells.edge.min()))
+    bare = isinstance(shape, PieceShape) and lattice.cells.filled.size == 1
+    points, triangles = shapes.surface(shape, inf if bare else float(lattice.cells.edge.min()))
     color = mesh.colors_at(mesh.load(shape), points) if isinstance(shape, Mesh) else None
     return replace(_embedded(points, triangles, lattice), color=color)
 

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from ..scene.scene import Box, Mesh, Shape, Solid, Sphere
+from ..scene.scene import Box, Mesh, PieceShape, Shape, Solid, Sphere
 from . import shapes
 from .cells import fill_cells
 from .contact_body import BodyFrame
@@ -59,13 +59,16 @@ def free_model(solid: Solid, h: float, shared: Any, hollow: bool = False) -> Mod
     """The same of an object that moves and does not deform, with the corners of a box along its own axes; their centre of mass is
     that of the object. Of one that is ``hollow`` the box is not a cell: it may surround others.
 
+    A piece whose contact is found elsewhere has a surface of one cell, and counts as resolved with h.
+
     Raises cells.TooThin, mesh.MeshError.
     """
-    placed = shared.once(_placed, solid.shape, h, UPRIGHT)
+    bare = shared.by_features and isinstance(solid.shape, PieceShape)
+    placed = shared.once(_placed, solid.shape, math.inf if bare else h, UPRIGHT)
     arm, mass = placed.corner @ np.array(solid.rotation).T, shapes.mass(solid) * placed.share
-    return corner_model(
-        solid, placed.frame.cells.edge, arm, mass, placed.surface, placed.frame, free=CELL[:0] if hollow else CELL
-    )
+    edge = placed.frame.cells.edge
+    cell = one_cell_as(edge, h) if bare else edge
+    return corner_model(solid, cell, arm, mass, placed.surface, placed.frame, free=CELL[:0] if hollow else CELL)
 
 
 def one_cell_as(edge: np.ndarray, h: float) -> np.ndarray:

@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 
 from ..scene.formatting import say
-from ..scene.scene import Mesh
+from ..scene.scene import Mesh, PieceShape
 from .crossings import crossings
 from .mesh_formats import UnreadableMesh
 from .mesh_reader import read_polygons
@@ -56,7 +56,11 @@ class Triangles:
 
 
 def load(shape: Mesh) -> Triangles:
-    """Read the file of a mesh shape once; raise MeshError where it is missing, unreadable or not closed."""
+    """Read the file of a mesh shape once, or cut a piece; raise MeshError where it is missing, unreadable or not closed."""
+    if isinstance(shape, PieceShape):
+        from .cut import piece  # it needs the shapes that are cut
+
+        return piece(shape).surface
     path, stamp = stamped(shape)
     return _load(path, shape.scale, shape.mended, stamp.st_mtime_ns, stamp.st_size)
 

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from ..scene.scene import Mesh
+from ..scene.scene import Mesh, PieceShape
 from . import mesh
 
 MOST_CORNERS = 60
@@ -37,10 +37,18 @@ class Polyhedron:
     """Corners of each face, counter-clockwise seen from outside; no two faces are in one plane."""
 
 
-@lru_cache(maxsize=256)
 def polyhedron(shape: Mesh) -> Polyhedron | None:
     """The corners and faces of a mesh; None where it is not convex, has more than MOST_CORNERS, or has edges or faces too small
     for `fix mdanim/rigid`. Raises mesh.MeshError."""
+    if isinstance(shape, PieceShape):
+        from .cut import piece
+
+        return piece(shape).polyhedron
+    return _of_file(shape)
+
+
+@lru_cache(maxsize=256)
+def _of_file(shape: Mesh) -> Polyhedron | None:
     whole, body = _around_all(shape), mesh.load(shape)
     if len(whole.vertices) > 4 * MOST_CORNERS or whole.volume - body.volume > _near(body.points) * whole.area:
         return None
@@ -67,7 +75,7 @@ def hull(shape: Mesh) -> Polyhedron | None:
     body = _merged(found, near)
     if body is None or len(body.corner) > MOST_ON_PLANES or max(map(len, body.faces)) > MOST_CORNERS:
         return None
-    return body if _is_clean(body, near) else None
+    return body if is_clean(body, near) else None
 
 
 @lru_cache(maxsize=8)
@@ -154,7 +162,7 @@ def _around(points: np.ndarray, corners: np.ndarray, normal: np.ndarray) -> np.n
     return corners[ConvexHull(flat).vertices]  # counter-clockwise in the plane
 
 
-def _is_clean(body: Polyhedron, near: float) -> bool:
+def is_clean(body: Polyhedron, near: float) -> bool:
     """Whether the fix takes a body: each edge has two faces, at an angle; faces are flat and have an area; no corner is before
     one; three edges meet in each corner, and no two corners are near."""
     if len(_apart(body.corner, near)) < len(body.corner):

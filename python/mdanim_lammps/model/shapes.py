@@ -379,6 +379,7 @@ LAWS: dict[type, Any] = {
     kinds.Cone: _Cone,
     kinds.Torus: _Torus,
     kinds.Mesh: _Mesh,
+    kinds.PieceShape: _Mesh,
     kinds.Rope: RopeLaw,
     kinds.Sheet: _Sheet,
     kinds.Shell: _Shell,

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..bodies import kind_of
 from ..features import facets
-from ..scene.scene import Box, Mesh, SceneRecord, Shape
+from ..scene.scene import Box, Mesh, PieceShape, SceneRecord, Shape
 from . import shapes
 from .contact_body import DENSITY
 from .limits import bounding_cells
@@ -50,14 +50,14 @@ def _touches(scene: SceneRecord) -> bool:
 
 
 def _bytes(shape: Shape, h: float, touches: bool) -> float:
-    if isinstance(shape, Box):
+    if isinstance(shape, Box | PieceShape):
         return 0.0
     samples = SAMPLES * _points(shape, h) if isinstance(shape, Mesh) else 0.0
     return VERTEX_BYTES * shapes.vertices(shape, h) + touches * (POINT_BYTES * _points(shape, h) + SAMPLE_BYTES * samples)
 
 
 def _seconds(shape: Shape, h: float, touches: bool) -> float:
-    if isinstance(shape, Box):
+    if isinstance(shape, Box | PieceShape):
         return 0.0
     cells, points, mesh = bounding_cells(shape, h), _points(shape, h), isinstance(shape, Mesh)
     if mesh:

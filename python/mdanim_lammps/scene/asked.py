@@ -37,6 +37,8 @@ def quantity(v: Validator, named: tuple, span: Span) -> Asked | None:
     if subject not in GLOBALS:
         subject = v.own_names.get(subject, subject)
     kind = subject if subject in GLOBALS else "NAME"
+    if kind == "NAME" and subject in v.named and subject not in v.names and ("NAMES", word) in QUANTITIES:
+        kind = "NAMES"
     known = [q for k, q in QUANTITIES if k == kind]
     if kind == "NAME" and not v.known_object(subject, span, (*v.own_names, *GLOBALS)):
         return None
@@ -48,7 +50,7 @@ def quantity(v: Validator, named: tuple, span: Span) -> Asked | None:
         return None
     if of.needs in BLOCKS and v.has_scene and not v.blocks(of.needs) and not v.out.excused(of.needs):
         v.problem(span, f"{subject}.{word} needs {with_article(of.needs)} block, and the scene has none")
-    return Asked(subject, word, argument, span=span)
+    return Asked(subject, word, argument, span=span, of=kind)
 
 
 def check_render(v: Validator, block: EvaluatedBlock, render: Render) -> Render:
@@ -110,7 +112,7 @@ def _expect(v: Validator, s: EvaluatedSetting, control: Control | None) -> Expec
     if part:
         numbers[1] *= abs(numbers[0]) / 100.0
     time = at if end is None else end
-    return Expect(of.subject, of.quantity, *numbers, time, relation, of.argument, over or "", begin, s.span())
+    return Expect(of.subject, of.quantity, *numbers, time, relation, of.argument, over or "", begin, s.span(), of.of)
 
 
 def _times(v: Validator, s: EvaluatedSetting, control: Control | None) -> bool:

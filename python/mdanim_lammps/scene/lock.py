@@ -3,14 +3,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from .keywords import BLOCKS, KEYWORDS, Block
 from .scene import SceneRecord
-from .shapes import mesh_of, with_path
+from .shapes import PieceShape, mesh_of, with_path
 
 LOCK = "scene.lock.txt"
 
@@ -30,12 +30,24 @@ def lock_text(scene: SceneRecord, meshes: Mapping[Path, str] | None = None) -> s
     ]
     for block in (block for block in reversed(BLOCKS.values()) if block.field):
         held = getattr(scene, block.field)
-        for record in held if block.many else (held,):
+        for record in _as_written(held) if block.many else (held,):
             lines += _block(block, _with_mesh(record, meshes or {}))
     if scene.lammps:
         lines += ["", "lammps {", *(f"  {line}" for command in scene.lammps for line in command.text.split("\n")), "}"]
     checks = [f"{name} {text}" for name, texts in settings.items() if KEYWORDS[""][name].many for text in texts]
     return "\n".join([*lines, *(["", *checks] if checks else [])]) + "\n"
+
+
+def _as_written(records: Iterable[Any]) -> Iterator[Any]:
+    """Records, of the pieces of an object the object itself, once."""
+    last = None
+    for record in records:
+        shape = getattr(record, "shape", None)
+        if not isinstance(shape, PieceShape):
+            yield record
+        elif shape.whole is not last:
+            last = shape.whole
+            yield last
 
 
 def _with_mesh(record: Any, meshes: Mapping[Path, str]) -> Any:

@@ -18,9 +18,9 @@ QUANTITIES: dict[tuple[str, str], Observable] = {
     ("energy", "residual"): Observable("1", "relative error of the energy ledger", bound=True),
     **{of: quantity for of, quantity in _OF_FEATURES.items() if of[0] != "NAME"},
 }
-"""The one catalogue of quantities, by subject and word; NAME stands for any object."""
+"""The one catalogue of quantities, by subject and word; NAME stands for any object, NAMES for several of one name."""
 
-GLOBALS = tuple(dict.fromkeys(subject for subject, _ in QUANTITIES if subject != "NAME"))
+GLOBALS = tuple(dict.fromkeys(subject for subject, _ in QUANTITIES if subject not in ("NAME", "NAMES")))
 """Subjects of quantities that are not objects."""
 
 VECTORS = tuple(
@@ -45,6 +45,7 @@ class _OfQuantity:
     subject: str
     quantity: str
     argument: Argument
+    of: str
 
     @property
     def what(self) -> str:
@@ -61,7 +62,7 @@ class _OfQuantity:
     @property
     def key(self) -> tuple[str, str]:
         """Its place among QUANTITIES."""
-        return (self.subject if self.subject in GLOBALS else "NAME", self.quantity)
+        return (self.subject if self.subject in GLOBALS else self.of, self.quantity)
 
     @property
     def kind(self) -> Observable:
@@ -88,6 +89,8 @@ class Asked(_OfQuantity):
     optional: bool = field(default=False, compare=False)
     """Whether it may be missing where it is not known."""
     span: Span | None = field(default=None, compare=False, repr=False)
+    of: str = field(default="NAME", compare=False, repr=False)
+    """Kind of its subject as in QUANTITIES: NAME for an object, NAMES for several of one name, itself for others."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,6 +115,7 @@ class Expect(_OfQuantity):
     begin: float | None = None
     """Begin of a window that ends at ``time`` [s]; None without one."""
     span: Span | None = field(default=None, compare=False, repr=False)
+    of: str = field(default="NAME", compare=False, repr=False)
 
     @property
     def said(self) -> str:

@@ -19,6 +19,7 @@ from .rotation import IDENTITY, departure, rotation_about, rotation_euler
 from .schema import COLOR, Codec, Keyword, OneOf, Rule, Vector, Worded, Words, of_features, setting, with_words
 from .shapes import (  # noqa: F401
     Box,
+    Bricks,
     Cone,
     Cylinder,
     Elasticity,
@@ -30,6 +31,7 @@ from .shapes import (  # noqa: F401
     HoldWithin,
     Mesh,
     OneShape,
+    PieceShape,
     Rope,
     Shape,
     Sheet,
@@ -38,6 +40,7 @@ from .shapes import (  # noqa: F401
     Sphere,
     SpringConstant,
     Torus,
+    VoronoiCells,
     Young,
 )
 

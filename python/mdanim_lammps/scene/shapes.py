@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from enum import Enum
 from pathlib import Path
 from typing import Any, ClassVar, get_args
@@ -112,6 +112,57 @@ class Mesh:
     def write(self) -> tuple[int, tuple]:
         """Form and values that are read as this."""
         return int(self.mended), (self.path, self.scale)
+
+
+@dataclass(frozen=True, slots=True)
+class VoronoiCells:
+    """Cut into the Voronoi cells of points at random."""
+
+    FORMS: ClassVar = ("<n>",)
+
+    number: int
+
+    @classmethod
+    def read(cls, form: int, values: tuple) -> VoronoiCells:
+        """Raises ValueError(message, hint, number of the value)."""
+        (number,) = values
+        if number < 2:
+            raise ValueError("an object is cut into 2 pieces or more, found 1", "write pieces 20, or leave pieces out", 0)
+        return cls(int(number))
+
+
+@dataclass(frozen=True, slots=True)
+class Bricks:
+    """Cut into bricks of about this size, in rows of which every other one is shifted by half a brick."""
+
+    FORMS: ClassVar = ("bricks <@(lx, ly, lz):m>",)
+
+    size: Vector
+    """[m]"""
+
+    @classmethod
+    def read(cls, form: int, values: tuple) -> Bricks:
+        """Raises ValueError(message, hint, number of the value)."""
+        (size,) = values
+        if min(size) <= 0.0:
+            raise ValueError("the edges of a brick must be > 0", "e.g. pieces bricks (24, 11, 7) cm", 0)
+        return cls(tuple(size))
+
+
+@dataclass(frozen=True, slots=True)
+class PieceShape(Mesh):
+    """A piece of another shape, as a mesh that no file has (model/cut.py)."""
+
+    path: Path = Path()
+    of: Any = None
+    """The whole shape."""
+    how: VoronoiCells | Bricks | None = None
+    seed: str = ""
+    """Random numbers follow from it."""
+    number: int = 0
+    """Which piece, from 0."""
+    whole: Any = field(default=None, compare=False, repr=False)
+    """The object that it is a piece of, as the scene has it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -292,7 +343,7 @@ def bending_of(given: float | None, at: int) -> float:
 
 def mesh_of(shape: Any) -> Mesh | None:
     """The mesh that a shape is or whose surface it is; None of all else."""
-    shape = shape.shape if isinstance(shape, Shell) else shape
+    shape = shape.shape if isinstance(shape, Shell) else shape.of if isinstance(shape, PieceShape) else shape
     return shape if isinstance(shape, Mesh) else None
 
 

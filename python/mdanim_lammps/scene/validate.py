@@ -131,6 +131,7 @@ class Validator:
         if kind.record is None:
             return self.settings(found[0]) if found else {}
         made = tuple(r for r in (self.record(kind, b) for b in (found if kind.many else found[:1])) if r is not None)
+        made = _divided(self, kind, made)
         return made if kind.many else made[0] if made else None
 
     def record(self, kind: Block, block: EvaluatedBlock) -> Any:
@@ -420,3 +421,10 @@ def _known_in(v: Validator, name: str, span: Span, block: Block) -> bool:
     else:
         v.known_object(name, span, (*(n for n in islice(v.named, 2000) if n not in v.names), *block.instead))
     return False
+
+
+def _divided(v: Validator, kind: Block, made: tuple) -> tuple:
+    """The records that those of a kind of block stand for."""
+    for divide in (facet.DIVIDES[kind.name] for facet in facets("divide") if kind.name in facet.DIVIDES):
+        made = tuple(part for record in made for part in divide(v, record))
+    return made

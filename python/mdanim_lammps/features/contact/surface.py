@@ -338,15 +338,18 @@ class SurfacePlanes(Planes):
 
     def rate(self, context):
         """a_i = kappa w_i / m_i with w_i as in `SurfaceContact.rate`: the plane does not move, so there is no factor 2."""
-        system = context.system
-        rate = self.stiffness(context)[system.object] * _of_bodies(context, own_area(system) / system.mass)
+        system, kappa = context.system, self.stiffness(context)
+        if not kappa.any():  # nothing reads points of surfaces, which may take long to find
+            return np.zeros(len(system.object))
+        rate = kappa[system.object] * _of_bodies(context, own_area(system) / system.mass)
         return np.where(system.held, 0.0, rate)
 
     def own_rate(self, context):
         return self.rate(context)
 
     def drag_rate(self, context):
-        return self.law.dashpots(context, self.stiffness(context))
+        kappa = self.stiffness(context)
+        return self.law.dashpots(context, kappa) if kappa.any() else None
 
     def losses(self, scene):
         return (*self.law.losses(scene), *((LET_GO,) if any(map(tears, scene.solids)) else ()))  # contact of what is torn ends
@@ -366,7 +369,7 @@ class SurfacePlanes(Planes):
         share = np.where(are_dense(system), np.where(system.bare, 2.0 * resolved(system), ALONE), 1.0)
         for own, _ in settled(context, planes=True):
             share = np.where(own, 0.0, share)
-        return surface_stiffness(context, moduli(context), share)
+        return surface_stiffness(context, moduli(context), share) if share.any() else share
 
 
 def touching_planes(sides: Sides) -> Planes:

@@ -91,6 +91,8 @@ def _suited(block: EvaluatedBlock, found: Settings) -> Settings:
     rigid = elasticity is not None and _kind(elasticity) is Rigid
     stays = held and block.first(RELEASE) is None
     left_out = set(SENSELESS) if rigid else set() if stays and not bends else {"restitution"}
+    if block.first("pieces") is None:
+        left_out |= {"strength"}
     return {word: s for word, s in found.items() if word not in left_out}
 
 

@@ -14,7 +14,8 @@ from ...model.cells import fill_cells
 from ...model.contact_body import BodyFrame
 from ...model.held import free_model
 from ...model.polyhedron import polyhedron
-from ...scene.scene import Box, Cone, Cylinder, Ellipsoid, Mesh, Sphere, Torus
+from ...scene.once import once_for
+from ...scene.scene import Box, Cone, Cylinder, Ellipsoid, Mesh, PieceShape, Sphere, Torus
 from .shapes import hidden, is_known, is_rigid, on_objects, only_balls_move
 
 ACROSS, ROUND = 2, 4
@@ -52,6 +53,9 @@ class RigidBody(BodyKind):
     def has_spacing(self, scene):
         return not by_features(scene)
 
+    def particles(self, scene, solid, lattice, h):
+        return 8 if isinstance(solid.shape, PieceShape) and by_features(scene) else lattice
+
     def make(self, solid, h, shared):
         boxed = isinstance(solid.shape, Box | Sphere)  # the box around them has their middle
         if boxed and shared.by_features:
@@ -82,6 +86,7 @@ def _across(solid) -> int:
     return ACROSS if isinstance(solid.shape, Box | Sphere | Mesh) and on_objects(solid.shape) else ROUND
 
 
+@once_for(lambda scene: scene)
 def by_features(scene) -> bool:
     """Whether rigid objects move, and all contacts are of shapes that know each other by their features, so that nothing reads
     points of their surfaces, nor particles inside. Beside held cuboids that cover sides of each other in part, balls alone touch

@@ -1,0 +1,97 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Objects in pieces: ``python bench/pieces.py heights|cost|many`` prints the tables of docs/physics-pieces.md.
+
+``heights``: from which height a plate breaks, by strength, accuracy and pieces; ``cost``: processor time of a step before and
+after; ``many``: ten thousand pieces.
+"""
+
+from __future__ import annotations
+
+import sys
+import time
+
+import numpy as np
+from mdanim_lammps.engine.instance import Instance
+from mdanim_lammps.run.prepare import prepare
+from mdanim_lammps.scene.parse import parse_scene
+
+PLATE = """object plate {{ shape box (30, 30, 1) cm  position (0, 0, {height!r}) m  orientation axis (1, 0.3, 0) angle 20 deg
+  elasticity rigid  density 2500  friction 0.4  pieces {pieces}  strength {strength} MPa }}
+gravity (0, 0, -9.81) m/s^2
+ground z 0 m
+control {{ time {time!r} s  frames 10 fps  accuracy {accuracy} }}
+"""
+LOWEST, HIGHEST, HALVINGS = 0.1, 6.4, 6
+WALL = """object wall {{ shape box ({wide}, 0.2, {high}) m  position (0, 0, {middle}) m  elasticity rigid  density 1900
+  friction 0.6  pieces bricks (20, 20, 10) cm  strength 0.3 MPa }}
+object ball {{ shape sphere 50 cm  position (0, -0.8, {at}) m  velocity (0, 8, 0) m/s
+  elasticity rigid  density 7800  friction 0.6 }}
+gravity (0, 0, -9.81) m/s^2
+ground z 0 m
+control {{ time {time} s  frames 100 fps }}
+"""
+
+
+def broken(text: str) -> tuple[int, float]:
+    """Faces that broke in a run, and processor seconds of a step."""
+    ready = prepare(parse_scene(text, "scene.txt"))
+    with Instance(ready.plan) as instance:
+        instance.setup()
+        start = time.process_time()
+        instance.run(ready.certificate.steps)
+        return int(instance.fix_value("rigid", "broken_faces")), (time.process_time() - start) / ready.certificate.steps
+
+
+def breaks(height: float, **more) -> bool:
+    """Whether the plate breaks when it falls from a height [m]."""
+    fall = float(np.sqrt(2.0 * height / 9.81)) + 0.1
+    return broken(PLATE.format(**{"pieces": 20, "accuracy": "balanced", "time": fall, "height": height} | more))[0] > 0
+
+
+def height(**more) -> float:
+    """The height from which the plate breaks [m]."""
+    low, high = LOWEST, HIGHEST
+    for _ in range(HALVINGS):
+        middle = (low * high) ** 0.5
+        low, high = (low, middle) if breaks(middle, **more) else (middle, high)
+    return (low * high) ** 0.5
+
+
+def heights() -> None:
+    """A table of heights."""
+    print("| strength [MPa] | balanced [m] | half the time step | 40 pieces |\n|---|---|---|---|")
+    for strength in (200, 400, 800):
+        found = [height(strength=strength, **more) for more in ({}, {"accuracy": "reference"}, {"pieces": 40})]
+        print(f"| {strength} | " + " | ".join(f"{h:.2f}" for h in found) + " |", flush=True)
+
+
+def cost() -> None:
+    """Processor time of a step of a plate that lies still, by its pieces."""
+    print("| pieces | glued [us] | apart [us] |\n|---|---|---|")
+    for pieces in (2, 20, 200):
+        row = []
+        for strength in (1e6, 1e-3):
+            text = PLATE.format(pieces=pieces, strength=strength, height=0.4, time=0.5, accuracy="balanced")
+            row.append(1e6 * broken(text)[1])
+        print(f"| {pieces} | {row[0]:.0f} | {row[1]:.0f} |", flush=True)
+
+
+def many() -> None:
+    """A wall of 10 000 bricks that a ball breaks: seconds to read, to model, and of a step."""
+    start = time.process_time()
+    scene = parse_scene(WALL.format(wide=20.0, high=10.0, middle=5.0, at=4.0, time=0.06), "scene.txt")
+    read = time.process_time() - start
+    ready = prepare(scene)
+    made = time.process_time() - start - read
+    with Instance(ready.plan) as instance:
+        instance.setup()
+        start, steps = time.process_time(), 400
+        instance.run(steps)
+        a_step = (time.process_time() - start) / steps
+        print(f"{len(scene.solids) - 1} bricks: read {read:.1f} s, modelled {made:.1f} s, a step {1e3 * a_step:.1f} ms, "
+              f"{instance.fix_value('rigid', 'broken_faces'):.0f} faces broken")  # fmt: skip
+
+
+if __name__ == "__main__":
+    for what in sys.argv[1:] or ["heights", "cost", "many"]:
+        {"heights": heights, "cost": cost, "many": many}[what]()

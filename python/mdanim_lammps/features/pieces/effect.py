@@ -1,0 +1,68 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Glue between the pieces of rigid objects, by ``fix mdanim/rigid``."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...effects.context import Verdict
+from ...effects.effect import Effect
+from ...effects.fields import Field
+from ...scene.scene import PieceShape
+from ..rigid.touching import FIXES
+from .glue import EFFECT, is_glued, wholes
+
+TORN = "torn"
+"""Column of the ledger: energy that was lost where glue broke."""
+WHOLE = "whole"
+"""Field of objects: number of the first piece that one hangs together with, from 1; 0 of what is none."""
+
+
+class Glue(Effect):
+    """Pieces move as one rigid body until the stress in a face is above its strength (docs/physics-pieces.md)."""
+
+    styles = (("fix", "mdanim/rigid"),)
+    name = EFFECT
+    order = 6
+    needs = ("rigid",)
+    if_off = "objects with pieces fall apart from the start"
+
+    def called_for(self, scene, reach):
+        for solid in scene.solids:
+            if isinstance(solid.shape, PieceShape):
+                return Verdict(self.name, True, f"{solid.shape.whole.name} has pieces", solid.spans.get("pieces"))
+        return Verdict(self.name, False, "no object has pieces")
+
+    def joins(self, scene):
+        return tuple((m, m + 1) for first, end in wholes(scene) for m in range(first, end - 1))
+
+    def acts_on(self, context):
+        return is_glued(context)
+
+    def losses(self, scene):
+        return (TORN,)
+
+    def lost(self, readings):
+        return {TORN: readings.fix_value(FIXES[0], TORN)}
+
+    def fields(self, scene):
+        return (whole_field(scene),)
+
+    def tell(self, readings):
+        system, solids = readings.system, readings.context.solids
+        number = {solid.name: m + 1.0 for m, solid in enumerate(readings.context.scene.solids)}
+        bodies = np.flatnonzero(system.rigid)
+        first = readings.fix_rows(FIXES[0], len(bodies), 14)[:, 13].astype(int) - 1
+        found = np.zeros(len(system.names))  # others than pieces may be elsewhere, where nothing tells of them
+        for m, other in zip(bodies.tolist(), first.tolist()):
+            if isinstance(solids[m].shape, PieceShape):
+                found[m] = number[solids[other].name]
+        return {WHOLE: found}
+
+
+def whole_field(scene) -> Field:
+    """The field of a scene that says which objects hang together."""
+    return Field(WHOLE, "1", per="object", counts=(len(scene.solids),), whole=True)
+
+
+EFFECTS = (Glue(),)

@@ -1,0 +1,347 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Shapes that are cut into pieces: Voronoi cells, or bricks, and the faces between them (docs/physics-pieces.md).
+
+The points of the cells are chosen at random in the shape and moved to the middles of their cells a few times (Lloyd), so that no
+piece is a splinter. Random numbers are those of a counter (Philox); its key is the seed of the scene and the name of the object.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import math
+from dataclasses import dataclass
+from functools import lru_cache
+from itertools import pairwise
+
+import numpy as np
+
+from ..scene.scene import Box, Bricks, Cone, Cylinder, Ellipsoid, Mesh, PieceShape, Shape, Sphere, Torus, VoronoiCells
+from . import mesh, shapes
+from .mesh import MeshError, Triangles
+from .polyhedron import Polyhedron, is_clean
+from .triangles import volume_and_centre
+
+ROUNDS = 3
+"""How often the points are moved to the middles of their cells."""
+SAMPLES = 100
+"""Places in the shape for each piece, by which the middles are found."""
+NEAREST = 24
+"""Other points by which a cell is cut at first."""
+AROUND = 32
+"""Sides of a round shape that is cut, around its axis: pieces have flat faces."""
+ONE_PLACE = 1.1e-6
+"""Distance over the size of a piece below which two of its corners are one."""
+LEAST_FACE = 3e-8
+"""Area of a face over the square of the size of a piece below which its plane is left out: the piece is larger by a crumb."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Piece:
+    """One piece of a shape."""
+
+    surface: Triangles
+    """Its ``centre`` is in the frame of the whole."""
+    polyhedron: Polyhedron | None
+    """None where it is not convex, or has too small faces."""
+    beyond: tuple[int, ...]
+    """The piece on the other side of each face of the polyhedron; below 0 for none."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class CommonFace:
+    """Where two pieces were one."""
+
+    a: int
+    b: int
+    """Pieces, a < b."""
+    side_a: int
+    side_b: int
+    """Numbers of the face in their polyhedra; -1 where they have none."""
+    at: np.ndarray
+    """Its middle in the frame of the whole [m], shape (3,)."""
+    axes: np.ndarray
+    """Its normal from a to b, and the two main axes across, shape (3, 3)."""
+    area: float
+    """[m^2]"""
+    second: tuple[float, float]
+    """Second moments of area about both axes [m^4]."""
+    section: tuple[float, float, float]
+    """Section moduli about both axes, and about the normal [m^3]."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Division:
+    """A shape in pieces."""
+
+    pieces: tuple[Piece, ...]
+    faces: tuple[CommonFace, ...]
+    volume: float
+    """Sum over the pieces [m^3]."""
+
+
+def piece(shape: PieceShape) -> Piece:
+    """The piece that a shape is. Raises mesh.MeshError."""
+    return division(shape.of, shape.how, shape.seed).pieces[shape.number]
+
+
+def count(shape: Shape, how: VoronoiCells | Bricks) -> int:
+    """The number of pieces."""
+    return how.number if isinstance(how, VoronoiCells) else sum(len(row) - 1 for row in _rows(shape, how))
+
+
+@lru_cache(maxsize=256)
+def division(shape: Shape, how: VoronoiCells | Bricks, seed: str) -> Division:
+    """A shape in pieces. Raises mesh.MeshError where it cannot be cut."""
+    cells = _bricks(shape, how) if isinstance(how, Bricks) else _voronoi(shape, how.number, seed)
+    pieces = tuple(_piece(corner, faces) for corner, faces in cells)
+    return Division(pieces, tuple(_common_faces(pieces)), float(sum(p.surface.volume for p in pieces)))
+
+
+# --- cells of points ---------------------------------------------------------------------------------------------------
+
+
+def _voronoi(shape: Shape, number: int, seed: str) -> list[tuple[np.ndarray, dict[int, list[int]]]]:
+    """Corners of each cell [m] and its faces, by the piece beyond, below 0 for faces of the shape."""
+    from scipy.spatial import cKDTree
+
+    planes = convex_planes(shape)
+    key = np.frombuffer(hashlib.sha256(seed.encode()).digest()[:16], np.uint64)
+    rng = np.random.Generator(np.random.Philox(key=key))
+    point = _inside(shape, planes, number, rng)
+    sample = _inside(shape, planes, SAMPLES * number, rng)
+    for _ in range(ROUNDS):
+        owner = cKDTree(point).query(sample)[1]
+        own = np.bincount(owner, minlength=number)
+        total = np.stack([np.bincount(owner, sample[:, k], number) for k in range(3)], axis=1)
+        point = np.where(own[:, None] > 0, total / np.maximum(own, 1)[:, None], point)
+    tree = cKDTree(point)
+    return [_cell(point, tree, n, planes) for n in range(number)]
+
+
+def _inside(shape: Shape, planes: np.ndarray, number: int, rng: np.random.Generator) -> np.ndarray:
+    """Points at random within planes [m], shape (number, 3)."""
+    low, high = shapes.extent(shape)
+    found, have = [], 0
+    while have < number:
+        some = low + (high - low) * rng.random((2 * number + 100, 3))
+        some = some[(some @ planes[:, :3].T < planes[:, 3]).all(axis=1)]
+        found.append(some)
+        have += len(some)
+    return np.concatenate(found)[:number]
+
+
+def _cell(point: np.ndarray, tree, n: int, planes: np.ndarray) -> tuple[np.ndarray, dict[int, list[int]]]:
+    """The cell of a point: no point farther away than twice its farthest corner cuts it."""
+    nearest = NEAREST
+    while True:
+        asked = min(nearest + 1, len(point))
+        far, others = tree.query(point[n], asked)
+        others = others[others != n]
+        normal = point[others] - point[n]
+        length = np.linalg.norm(normal, axis=1)
+        normal = normal / length[:, None]
+        between = np.column_stack([normal, np.einsum("kd,kd->k", normal, 0.5 * (point[others] + point[n]))])
+        corner, faces = clipped(np.concatenate([planes, between]), point[n])
+        if asked == len(point) or 2.0 * np.linalg.norm(corner - point[n], axis=1).max() < far[-1]:
+            break
+        nearest *= 2
+    named = {k - len(planes): loop for k, loop in faces.items()}
+    return corner, {int(others[k]) if k >= 0 else k: loop for k, loop in named.items()}
+
+
+def clipped(planes: np.ndarray, inside: np.ndarray) -> tuple[np.ndarray, dict[int, list[int]]]:
+    """Corners of what is within planes n.x <= d, rows (n, d) [m], shape (C, 3), and its faces by the numbers of planes: corners
+    counter-clockwise from outside; ``inside`` is within. Planes of the smallest faces are left out."""
+    from scipy.spatial import HalfspaceIntersection
+
+    kept = np.arange(len(planes))
+    while True:
+        normal, off = planes[kept, :3], planes[kept, 3] - planes[kept, :3] @ inside
+        size = float(np.median(off))
+        found = HalfspaceIntersection(np.column_stack([normal, -off / size]), np.zeros(3)).intersections
+        corner = _merged(size * found[np.isfinite(found).all(axis=1)])
+        size = float(np.linalg.norm(np.ptp(corner, axis=0)))
+        on = np.abs(corner @ normal.T - off) <= ONE_PLACE * size
+        meet = np.flatnonzero(on.sum(axis=0) >= 3).tolist()
+        loops = {k: _around(corner[on[:, k]], normal[k], np.flatnonzero(on[:, k])) for k in meet}
+        small = [k for k, (_, area) in loops.items() if area <= LEAST_FACE * size**2]
+        if not small:
+            return corner + inside, {int(kept[k]): loop for k, (loop, _) in loops.items()}
+        kept = np.delete(kept, small)
+
+
+def _merged(points: np.ndarray) -> np.ndarray:
+    """Points without those that are one with an earlier one."""
+    near = ONE_PLACE * float(np.linalg.norm(np.ptp(points, axis=0)))
+    apart = np.linalg.norm(points[:, None] - points[None], axis=2) > near
+    return points[[k for k in range(len(points)) if apart[k, :k].all()]]
+
+
+def _around(corner: np.ndarray, normal: np.ndarray, numbers: np.ndarray) -> tuple[list[int], float]:
+    """Numbers of the corners of a flat face in order around its normal, and its area."""
+    first = np.cross(normal, np.eye(3)[np.abs(normal).argmin()])
+    first /= np.linalg.norm(first)
+    second = np.cross(normal, first)
+    flat = np.stack([corner @ first, corner @ second], axis=1)
+    away = flat - flat.mean(axis=0)
+    order = np.argsort(np.arctan2(away[:, 1], away[:, 0]), kind="stable")
+    x, y = flat[order].T
+    return numbers[order].tolist(), 0.5 * float(abs(x @ np.roll(y, -1) - y @ np.roll(x, -1)))
+
+
+def convex_planes(shape: Shape) -> np.ndarray:
+    """Planes n.x <= d that a convex shape is within, rows (n, d) [m], shape (K, 4). Round shapes get flat sides, and the volume
+    that they have. Raises MeshError where it is not convex."""
+    from scipy.spatial import ConvexHull
+
+    corner = _corners(shape)
+    hull = ConvexHull(corner)
+    planes = np.column_stack([hull.equations[:, :3], -hull.equations[:, 3]])
+    _, first = np.unique(np.round(planes / [1.0, 1.0, 1.0, np.abs(corner).max()], 6), axis=0, return_index=True)
+    return planes[np.sort(first)]
+
+
+def _corners(shape: Shape) -> np.ndarray:
+    """Corners of a convex shape, of a round one of a polyhedron with its volume [m], shape (N, 3)."""
+    from scipy.spatial import ConvexHull
+
+    if isinstance(shape, Box):
+        return 0.5 * np.array(shape.size) * np.array([(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
+    if isinstance(shape, Torus):
+        raise MeshError("a torus is not convex", "cut a box, a sphere, an ellipsoid, a cylinder, a cone or a mesh")
+    if isinstance(shape, Mesh):
+        body = mesh.load(shape)
+        if ConvexHull(body.points).volume > (1.0 + 1e-6) * body.volume:
+            raise MeshError("the mesh is not convex", "cut convex parts of it, each an object, and weld them")
+        return body.points
+    angle = 2.0 * np.pi * np.arange(AROUND) / AROUND
+    ring = np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    if isinstance(shape, Cylinder | Cone):
+        ring = ring * shape.radius * math.sqrt(2.0 * np.pi / AROUND / math.sin(2.0 * np.pi / AROUND))
+        low = np.column_stack([ring, np.full(AROUND, -0.5 * shape.height)])
+        if isinstance(shape, Cylinder):
+            return np.concatenate([low, low * (1.0, 1.0, -1.0)])
+        low[:, 2] = -0.25 * shape.height
+        return np.concatenate([low, [(0.0, 0.0, 0.75 * shape.height)]])
+    if isinstance(shape, Sphere | Ellipsoid):
+        half = np.pi * np.arange(1, AROUND // 2) / (AROUND // 2)
+        points = np.concatenate([
+            *(np.column_stack([math.sin(a) * ring, np.full(AROUND, math.cos(a))]) for a in half.tolist()),
+            [(0.0, 0.0, 1.0), (0.0, 0.0, -1.0)],
+        ])  # fmt: skip
+        points *= (4.0 / 3.0 * np.pi / ConvexHull(points).volume) ** (1.0 / 3.0)
+        return points * (shape.radii if isinstance(shape, Ellipsoid) else shape.radius)
+    raise TypeError(f"{shape!r} cannot be cut")
+
+
+# --- bricks ------------------------------------------------------------------------------------------------------------
+
+
+def _rows(shape: Shape, how: Bricks) -> list[np.ndarray]:
+    """Where the bricks of each row end along x [m], from the lowest row on, each repeated for all rows along y."""
+    if not isinstance(shape, Box):
+        raise MeshError("only a box is made of bricks", "write shape box (lx, ly, lz), or pieces 20")
+    along, deep, high = (max(1, round(whole / one)) for whole, one in zip(shape.size, how.size))
+    whole = np.linspace(-0.5, 0.5, along + 1) * shape.size[0]
+    half = np.concatenate([whole[:1], 0.5 * (whole[1:] + whole[:-1]), whole[-1:]])
+    return [half if row % 2 else whole for row in range(high) for _ in range(deep)]
+
+
+def _bricks(shape: Shape, how: Bricks) -> list[tuple[np.ndarray, dict[int, list[int]]]]:
+    """Corners and faces of bricks as `_voronoi` has them; a face may have several bricks beyond, of which none is named."""
+    ends = _rows(shape, how)
+    counts = [max(1, round(shape.size[k] / how.size[k])) for k in (1, 2)]
+    y, z = (np.linspace(-0.5, 0.5, n + 1) * size for n, size in zip(counts, shape.size[1:]))
+    found = []
+    for number, x in enumerate(ends):
+        row, layer = divmod(number, counts[0])
+        for left, right in pairwise(x):
+            corner = [(a, b, c) for c in z[row : row + 2] for b in y[layer : layer + 2] for a in (left, right)]
+            found.append((np.array(corner), dict(enumerate(BRICK, -len(BRICK)))))
+    return found
+
+
+BRICK = ([0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6])
+"""Corners of the sides -x, +x, -y, +y, -z, +z."""
+
+
+# --- pieces ------------------------------------------------------------------------------------------------------------
+
+
+def _piece(corner: np.ndarray, faces: dict[int, list[int]]) -> Piece:
+    triangles = np.array([(f[0], f[k], f[k + 1]) for f in faces.values() for k in range(1, len(f) - 1)], np.int32)
+    volume, centre = volume_and_centre(corner, triangles)
+    own = corner - centre
+    solid = Polyhedron(own, tuple(map(tuple, faces.values())))
+    deep = []
+    for face in solid.faces:
+        a, b, c = own[list(face[:3])]
+        normal = np.cross(b - a, c - a)
+        deep.append(float(((a - own) @ normal).max() / np.linalg.norm(normal)))
+    surface = Triangles(own, triangles, volume, min(deep), centre)
+    size = float(np.linalg.norm(np.ptp(own, axis=0)))
+    return Piece(surface, solid if is_clean(solid, 1e-6 * size) else None, tuple(faces))
+
+
+def _common_faces(pieces: tuple[Piece, ...]) -> list[CommonFace]:
+    """Faces of Voronoi cells that have a piece beyond, each once; of bricks where two of them meet."""
+    found = []
+    numbers = {(n, other): side for n, p in enumerate(pieces) for side, other in enumerate(p.beyond) if other >= 0}
+    for (a, b), side in numbers.items():
+        if a < b and (b, a) in numbers:
+            own = pieces[a]
+            loop = own.polyhedron.faces[side] if own.polyhedron else ()
+            if loop:
+                found.append(_common(a, b, side, numbers[b, a], own.surface.points[list(loop)] + own.surface.centre))
+    return found or _between_bricks(pieces)
+
+
+def _between_bricks(pieces: tuple[Piece, ...]) -> list[CommonFace]:
+    from .boxes import box_pairs
+
+    low = np.array([p.surface.points.min(axis=0) + p.surface.centre for p in pieces])
+    high = np.array([p.surface.points.max(axis=0) + p.surface.centre for p in pieces])
+    near = 1e-6 * float(np.min(high - low))
+    found = []
+    for first, second in box_pairs(low - near, high + near):
+        for a, b in zip(np.minimum(first, second).tolist(), np.maximum(first, second).tolist()):
+            start, end = np.maximum(low[a], low[b]), np.minimum(high[a], high[b])
+            flat = end - start <= 2.0 * near
+            if flat.sum() != 1:
+                continue
+            axis = int(flat.argmax())
+            up = low[b, axis] > low[a, axis]
+            u, v = (axis + 1) % 3, (axis + 2) % 3
+            loop = np.tile(0.5 * (start + end), (4, 1))
+            loop[:, u], loop[:, v] = start[u], start[v]
+            loop[[1, 2], u], loop[[2, 3], v] = end[u], end[v]
+            found.append(_common(a, b, 2 * axis + up, 2 * axis + (not up), loop if up else loop[::-1]))
+    return sorted(found, key=lambda face: (face.a, face.b))
+
+
+def _common(a: int, b: int, side_a: int, side_b: int, loop: np.ndarray) -> CommonFace:
+    """A face by its corners around the normal from a to b, shape (C, 3) [m]."""
+    start = loop.mean(axis=0)
+    first, second = loop - start, np.roll(loop, -1, axis=0) - start
+    twice = np.cross(first, second)
+    normal = twice.sum(axis=0)
+    normal /= np.linalg.norm(normal)
+    weight = 0.5 * twice @ normal
+    area = float(weight.sum())
+    at = start + (weight[:, None] * (first + second)).sum(axis=0) / (3.0 * area)
+    across = np.cross(normal, np.eye(3)[np.abs(normal).argmin()])
+    across /= np.linalg.norm(across)
+    flat = np.stack([across, np.cross(normal, across)])
+    p, q = (first + start - at) @ flat.T, (second + start - at) @ flat.T
+    spread = sum(np.einsum("k,ki,kj->ij", weight / 12.0, u, v) for u, v in ((p, p), (q, q), (p + q, p + q)))
+    _, main = np.linalg.eigh(spread)
+    axes = main.T @ flat
+    axes[1] = np.cross(normal, axes[0])
+    own = (loop - at) @ axes.T
+    moments = np.einsum("ki,ij,kj->k", main.T, spread, main.T)
+    second_moments = float(moments[1]), float(moments[0])  # about an axis: of the distance from it
+    far = np.abs(own).max(axis=0)
+    section = second_moments[0] / far[1], second_moments[1] / far[0], sum(second_moments) / np.linalg.norm(own, axis=1).max()
+    return CommonFace(
+        a, b, int(side_a), int(side_b), at, np.vstack([normal, axes]), area, second_moments, tuple(map(float, section))
+    )

@@ -1,0 +1,71 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Objects that break give the same bits in all forms of the distribution, gone on with, and by plain `lmp`."""
+
+import numpy as np
+import pytest
+from distribution_lab import SEQUENTIAL, TEAMS, film_of, film_of_lammps, matrix, readied, ways
+from mdanim_lammps.results.checkpoint import Checkpoint
+from mdanim_lammps.results.compare import compare
+from mdanim_lammps.results.ledger import Ledger
+from mdanim_lammps.results.trajectory import Trajectory
+
+pytestmark = pytest.mark.mpi
+
+SCENE = """
+gravity (0, 0, -9.81) m/s^2
+ground z 0 m
+repeat i in 1 .. 2 {
+  object plate[i] {
+    shape box (30, 30, 1) cm  position (0.5*i, 0, 0.2*i) m  orientation axis (1, 0.3, 0) angle 20 deg
+    density 2500  elasticity rigid  friction 0.4  pieces 8  strength 40 MPa
+  }
+}
+object stone { shape box (10, 10, 10) cm  position (1, 0, 0.7) m  velocity (0, 0, -3) m/s
+  density 2500  elasticity rigid  friction 0.4 }
+object ball { shape sphere 5 cm  position (-1, 0, 0.1) m  velocity (1, 0, 0) m/s  density 300  elasticity rigid  friction 0.4 }
+control { time 0.3 s }
+expect plate.pieces > 2
+"""
+
+CASES = (
+    matrix((2,), ["central"], name="all move ", rotate=True)
+    | matrix((3,), ["peers"])
+    | TEAMS
+    | {
+        "stopped": SEQUENTIAL | {"stop": 6},
+        "stopped and gone on with": {"executors": 2, "control": "central", "resume": True, "in": "stopped"},
+    }
+)
+
+
+@pytest.fixture(scope="module")
+def found(tmp_path_factory):
+    """The folder of each form, all made in one start of MPI."""
+    path = tmp_path_factory.mktemp("pieces") / "scene.txt"
+    path.write_text(SCENE)
+    return ways(path, CASES, timeout=120.0)
+
+
+@pytest.mark.parametrize("way", CASES)
+def test_all_forms_give_the_same(found, way):
+    """Frames, with what hangs together in each, the state, and the energy that is lost but for rounding."""
+    assert compare(found["sequential"], found[way]).equal
+    alone, other = (Checkpoint.read(found[name] / "checkpoint") for name in ("sequential", way))
+    assert alone.records == other.records and np.array_equal(alone.x, other.x)
+    torn = [Ledger.read(found[name] / "ledger.csv").array("torn") for name in ("sequential", way)]
+    assert torn[0][-1] > 0.0 and torn[1] == pytest.approx(torn[0], rel=1e-9, abs=1e-12)
+
+
+def test_plates_break(found):
+    """One before the run was stopped, one after."""
+    with Trajectory(found["sequential"]) as trajectory:
+        parts = [len(set(trajectory.field("whole", frame).tolist())) for frame in range(len(trajectory))]
+    assert parts[0] == 3 and 3 < parts[6] < parts[-1]
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_lammps_alone_makes_the_same_frames(found, tmp_path, ranks):
+    """The script that `build` writes."""
+    _, folder = readied(tmp_path, SCENE)
+    film = film_of(found["sequential"])
+    assert np.array_equal(film_of_lammps(folder, film.shape[1], ranks=ranks), film)

@@ -1,0 +1,114 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Pieces that are glued together in fix mdanim/rigid: they move as one body, and break where a closed form says so."""
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+import rigid_lab as lab
+
+DENSITY, EDGE = 600.0, 0.1
+
+
+def bar(pieces, spin=(0, 0, 0), v=(0, 0, 0), at=(0, 0, 0), q=(1, 0, 0, 0)):
+    """Cubes in a row along the first axis, which move as one body."""
+    turn, found = lab.matrix(np.asarray(q, float)), []
+    for n in range(pieces):
+        arm = turn @ ((n - (pieces - 1) / 2) * EDGE, 0.0, 0.0)
+        place = {"at": np.add(at, arm), "q": q, "v": np.asarray(v) + np.cross(spin, arm), "spin": spin}
+        found.append(lab.box((EDGE,) * 3, DENSITY, **place))
+    return found
+
+
+def glue_file(folder, bodies, strength):
+    """Glues each cube to the next one; the sides -x and +x of a box are the first two."""
+    second, section = EDGE**4 / 12, EDGE**3 / 6
+    lines = []
+    for n, (a, b) in enumerate(pairwise(bodies), 1):
+        turn, middle = lab.matrix(a.q), (a.at + b.at) / 2
+        numbers = [strength, EDGE**2, second, second, section, section, 2 * section, *middle, *turn[:, 0], *turn[:, 1]]
+        lines.append(f"{n} {n + 1} 1 0 " + " ".join(repr(float(x)) for x in numbers))
+    (folder / "glue").write_text("\n".join(lines) + "\n")
+    return f"glue {folder}/glue"
+
+
+def world(folder, bodies, strength, **more):
+    """An instance with these cubes."""
+    more = {"planes": [], "gravity": (0, 0, 0), "frequency": 2e3} | more
+    return lab.World(folder, bodies, words=glue_file(folder, bodies, strength), **more)
+
+
+def motion(rows, bodies):
+    """Centre of mass, its velocity, and angular momentum about it."""
+    mass = np.array([b.mass for b in bodies])
+    centre, velocity = (mass @ rows[:, k : k + 3] / mass.sum() for k in (0, 3))
+    arm = rows[:, :3] - centre
+    own = np.array([b.moments[0] for b in bodies])  # of cubes
+    return centre, velocity, (mass[:, None] * np.cross(arm, rows[:, 3:6]) + own[:, None] * rows[:, 10:13]).sum(axis=0)
+
+
+@pytest.mark.parametrize("pieces", [2, 5])
+def test_it_tumbles_and_bounces_as_one_body(tmp_path, pieces):
+    """As a box of this size: in flight, at corners and edges on the ground, and at rest."""
+    start = {"at": (0, 0, 0.5), "q": lab.about((1, 2, 0.5), 0.4), "v": (0.5, 0, -1), "spin": (1, 4, 3)}
+    whole = lab.box((pieces * EDGE, EDGE, EDGE), DENSITY, **start)
+    found = []
+    for name, bodies in (("one", [whole]), ("many", bar(pieces, **start))):
+        (folder := tmp_path / name).mkdir()
+        options = {"planes": ["plane z lo 0.0"], "gravity": (0, 0, -9.81), "frequency": lab.frequency_of(4.0, EDGE), "thin": EDGE}
+        make = lab.World(folder, bodies, **options) if name == "one" else world(folder, bodies, 1e12, **options)
+        with make as one:
+            for time in (0.2, 0.2, 0.6):
+                one.run(round(time / one.dt))
+                rows = one.rows()
+                centre, velocity = (rows[0, :3], rows[0, 3:6]) if name == "one" else motion(rows, bodies)[:2]
+                found.append((centre, velocity, one.number("contact")))
+            assert one.number("deepest") > 0.0
+            if name == "many":
+                assert one.number("broken_faces") == 0.0
+    for single, glued in zip(found[:3], found[3:]):
+        for a, b in zip(single, glued):
+            assert b == pytest.approx(a, abs=1e-7)
+
+
+@pytest.mark.parametrize(("over", "breaks"), [(0.99, False), (1.01, True)])
+def test_a_bar_that_spins_breaks_in_its_middle(tmp_path, over, breaks):
+    """Where the tension rho w^2 L^2/8 is above the strength."""
+    pieces, spin = 6, 40.0
+    tension = DENSITY * spin**2 * (pieces * EDGE) ** 2 / 8
+    bodies = bar(pieces, spin=(0, 0, spin))
+    with world(tmp_path, bodies, tension / over) as one:
+        before = motion(one.rows(), bodies)
+        energy = one.number("translation") + one.number("rotation")
+        one.run(200)
+        rows = one.rows()
+        assert one.number("broken_faces") == breaks
+        whole = [one.lmp.extract_fix("r", 0, 2, n, 13) for n in range(pieces)]
+        assert whole == ([1, 1, 1, 4, 4, 4] if breaks else [1] * 6)
+        for a, b in zip(before, motion(rows, bodies)):
+            assert b == pytest.approx(a, abs=1e-11)
+        assert one.number("translation") + one.number("rotation") == pytest.approx(energy, rel=1e-12)
+        assert abs(one.number("torn")) < 1e-12 * energy
+
+
+@pytest.mark.parametrize(("over", "breaks"), [(0.99, False), (1.01, True)])
+def test_a_bar_that_is_pushed_at_its_end_breaks_by_bending(tmp_path, over, breaks):
+    """By F, and what accelerates the last cube: F d - m a d/2 - I alpha about its inner side."""
+    pieces, force, bodies = 3, 100.0, bar(3)
+    mass, own, length = bodies[0].mass, bodies[0].moments[0], pieces * EDGE
+    turning = force * length / 2 / (pieces * mass * (length**2 + EDGE**2) / 12)
+    across = force / (pieces * mass) + turning * EDGE
+    moment = force * EDGE - mass * across * EDGE / 2 - own * turning
+    push = ["group end id 18 20 22 24", f"fix push end addforce 0.0 0.0 {force / 4!r}"]  # particles in the last side
+    with world(tmp_path, bodies, moment / (EDGE**3 / 6) / over, commands=push) as one:
+        one.run(2)
+        assert one.number("broken_faces") == breaks
+
+
+def test_files_with_mistakes_are_refused(tmp_path):
+    """With the line."""
+    bodies = bar(2)
+    (tmp_path / "glue").write_text("2 1 1 0 1.0\n")
+    make = lab.World(tmp_path, bodies, words=f"glue {tmp_path}/glue", planes=[], gravity=(0, 0, 0), frequency=1e3)
+    with pytest.raises(Exception, match=r"line 1 of .*the molecule ID with the lower number stands first"), make:
+        pass
