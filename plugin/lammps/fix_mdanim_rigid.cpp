@@ -40,7 +40,7 @@ static std::map<int, Inertia> moments_of(LAMMPS *lmp, const char *file)
 // fix ID group mdanim/rigid [inertia FILE] [lambda L] [glue FILE] [shapes FILE contact OMEGA EPS], and words of RigidTouching
 FixMdanimRigid::FixMdanimRigid(LAMMPS *lmp, int narg, char **arg)
     : FixBase(lmp, narg, arg), particles(lmp, *this), touching(lmp), guided(particles, touching, bodies),
-      glue(particles, touching, bodies)
+      glue(lmp, particles, touching, bodies)
 {
   time_integrate = 1;
   rigid_flag = 1;
@@ -65,12 +65,7 @@ FixMdanimRigid::FixMdanimRigid(LAMMPS *lmp, int narg, char **arg)
       lambda = ParticleValue(lmp, "fix mdanim/rigid: lambda", iarg + 1, arg[iarg + 1]);
       has_drag = true;
     } else if (strcmp(arg[iarg], "glue") == 0) {
-      const std::string text = read_shared_file(lmp, "fix mdanim/rigid", "glue", arg[iarg + 1]);
-      try {
-        glue.read(arg[iarg + 1], text);
-      } catch (const std::exception &problem) {
-        error->all(FLERR, iarg + 1, "fix mdanim/rigid: {}", problem.what());
-      }
+      glue.read_file(arg[iarg + 1]);
     } else {
       touching.read_word(iarg, arg);
     }
@@ -91,10 +86,6 @@ void FixMdanimRigid::tell_numbers()
       if (present[n] > 0) all += energy_of(n);
     return force->mvv2e * all;
   };
-  const auto energy_of_motion = [this] {
-    if (!collected) collect();
-    return force->mvv2e * glue.kinetic(half_dt, drag);
-  };
   std::vector<mdanim::Output> outputs = {
       {"bodies", true, [this] { return static_cast<double>(bodies.size()); }},
       {"translation", true, [this, total] { return total([this](std::size_t n) { return bodies[n].translation(); }); }},
@@ -102,8 +93,8 @@ void FixMdanimRigid::tell_numbers()
       clock(),
       {"drag_loss", true, [this] { return force->mvv2e * drag_loss; }}};
   for (mdanim::Output &output : touching.outputs()) outputs.push_back(std::move(output));
-  outputs.push_back({"kinetic", true, energy_of_motion});
-  for (mdanim::Output &output : glue.outputs(force->mvv2e)) outputs.push_back(std::move(output));
+  const auto forces = [this] { return collected || (collect(), true); };
+  for (mdanim::Output &output : glue.outputs(forces, half_dt, drag)) outputs.push_back(std::move(output));
   tell(std::move(outputs));
 }
 
@@ -114,10 +105,7 @@ void FixMdanimRigid::init()
   FixBase::init();
   reset_dt();
   touching.init(name());
-  if (particles.find_objects(largest(has_new_particles) > 0.0)) {
-    bodies.clear();
-    glue.forget();
-  }
+  if (particles.find_objects(largest(has_new_particles) > 0.0)) glue.forget_bodies();
   has_new_particles = false;
   for (const auto &[molecule, inertia] : given)
     if (particles.objects().number_of(molecule) == ObjectTable::NONE)
@@ -199,27 +187,13 @@ void FixMdanimRigid::collect()
   collected = true;
 }
 
-void FixMdanimRigid::kick(bool first)
-{
-  for (std::size_t n = 0; n < bodies.size(); ++n)
-    if (bodies[n].aside || bodies[n].guided || glue.glued.holds(n))
-      continue;
-    else if (drag[n] == 0.0)
-      bodies[n].kick(half_dt);
-    else
-      drag_loss += bodies[n].kick_with_drag(half_dt, drag[n], first);
-  drag_loss += glue.glued.kick(bodies, half_dt, first);
-}
-
 void FixMdanimRigid::initial_integrate(int)
 {
   const Lap lap(seconds);
   if (!collected) collect();
   guided.find(half_dt, drag);
-  kick(true);
-  for (std::size_t n = 0; n < bodies.size(); ++n)
-    if (!bodies[n].guided && !bodies[n].aside && !glue.glued.holds(n)) bodies[n].drift(update->dt);
-  glue.glued.drift(bodies, update->dt);
+  glue.kick(half_dt, drag, true, drag_loss);
+  glue.drift(update->dt);
   guided.move(update->dt);
   particles.put(bodies, true);
 }
@@ -229,9 +203,9 @@ void FixMdanimRigid::final_integrate()
   const Lap lap(seconds);
   guided.touch(update->dt);
   collect();
-  kick(false);
+  glue.kick(half_dt, drag, false, drag_loss);
   guided.set_whole_motion(update->dt);
-  if (glue.glued.is_on()) glue.break_some(force->ftm2v, half_dt, drag, [this] { collect(); });
+  glue.break_some(half_dt, drag, [this] { collect(); });
   particles.put(bodies, false);
 }
 
@@ -242,20 +216,22 @@ void FixMdanimRigid::final_integrate()
 double FixMdanimRigid::compute_scalar()
 {
   const std::vector<double> of_particles = particles.kinetic();
-  double more = 0.0;
+  double more = glue.torn_energy();
   for (std::size_t n = 0; n < bodies.size(); ++n) more += bodies[n].translation() + bodies[n].rotation() - of_particles[n];
   const TouchAccount &account = touching.contact.account;
-  return force->mvv2e * (more + account.energy + account.heat + account.damped + account.let_go + drag_loss + glue.torn_energy() -
-                         touching.taken());
+  return force->mvv2e * (more + account.energy + account.heat + account.damped + account.let_go + drag_loss - touching.taken());
 }
 
 double FixMdanimRigid::compute_array(int row, int column)
 {
   const RigidBody &body = bodies[row];
-  const double whole = static_cast<double>(particles.objects().id(glue.glued.first_of(row)));
-  const double numbers[COLUMNS] = {body.centre.x, body.centre.y, body.centre.z, body.velocity.x, body.velocity.y, body.velocity.z,
-                                   body.q.w,      body.q.x,      body.q.y,      body.q.z,        body.spin.x,     body.spin.y,
-                                   body.spin.z,   whole};
+  const double numbers[COLUMNS] = {body.centre.x,   body.centre.y,
+                                   body.centre.z,   body.velocity.x,
+                                   body.velocity.y, body.velocity.z,
+                                   body.q.w,        body.q.x,
+                                   body.q.y,        body.q.z,
+                                   body.spin.x,     body.spin.y,
+                                   body.spin.z,     glue.molecule_of_whole(row)};
   return numbers[column];
 }
 

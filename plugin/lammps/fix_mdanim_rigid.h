@@ -61,7 +61,6 @@ class FixMdanimRigid : public mdanim::FixBase, public mdanim::Stateful {
   void set_velocities(const std::vector<mdanim::RigidParticles::MassProperties> &found);
   void follow_changes();
   void collect();
-  void kick(bool first);
 
   std::map<int, mdanim::Inertia> given;    // by molecule IDs, from a file
   mdanim::ParticleValue lambda;

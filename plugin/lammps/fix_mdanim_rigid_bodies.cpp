@@ -5,8 +5,6 @@
 
 #include "error.h"
 
-#include <stdexcept>
-
 using namespace LAMMPS_NS;
 using namespace mdanim;
 
@@ -44,11 +42,7 @@ void FixMdanimRigid::make()
   set_velocities(found);
   particles.put(bodies, true);
   touching.make(name(), objects, bodies);
-  try {
-    glue.join();
-  } catch (const std::runtime_error &problem) {
-    error->all(FLERR, "{}: {}", name(), problem.what());
-  }
+  glue.join(name());
 }
 
 // R diag(moments) R^T v.

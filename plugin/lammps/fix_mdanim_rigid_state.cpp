@@ -67,17 +67,13 @@ StateRecords FixMdanimRigid::pack() const
     const int number = static_cast<int>(n);
     KeptBody kept{body.mass, body.moments, body.centre, body.velocity, body.q, body.L, {}, {}, {}};
     ByteWriter head;
-    if (touching.is_on()) {
-      kept.push = touching.push(number).force;
-      kept.turning_push = touching.push(number).torque;
-      kept.pose = touching.pose(number);
-      head.put(kept);
-      glue.glued.put(number, head);
-      if (touching.solid(number) != RigidTouching::NO_SHAPE) touching.contact.put_at_planes(touching.solid(number), head);
-    } else {
-      head.put(kept);
-      glue.glued.put(number, head);
-    }
+    const bool touches = touching.is_on();
+    if (touches) kept.push = touching.push(number).force, kept.turning_push = touching.push(number).torque;
+    if (touches) kept.pose = touching.pose(number);
+    head.put(kept);
+    glue.glued.put(number, head);
+    if (touches && touching.solid(number) != RigidTouching::NO_SHAPE)
+      touching.contact.put_at_planes(touching.solid(number), head);
     rows.begin(static_cast<int>(particles.objects().id(number)), head.take());
   }
   for (int i = 0; i < atom->nlocal; ++i) {
@@ -98,10 +94,7 @@ void FixMdanimRigid::unpack(const StateRecords &all)
   StateRecords records;    // of bodies and pairs
   for (const auto &[key, bytes] : all)
     if (key.b != 0 || !touching.is_driven(key.a)) records[key] = bytes;
-  if (particles.find_objects()) {
-    bodies.clear();
-    glue.forget();
-  }
+  if (particles.find_objects()) glue.forget_bodies();
   locate();
   const ObjectTable &objects = particles.objects();
   ParticleRows::Heads heads;
@@ -133,7 +126,6 @@ void FixMdanimRigid::unpack(const StateRecords &all)
   const GluedBodies glued_before = glue.glued;
   try {
     if (!is_whole) make();    // those without a record as at the beginning
-    glue.take();
     bodies.resize(objects.size());
     std::vector<Pose> poses;
     for (int n = 0; n < objects.size(); ++n) {
@@ -144,14 +136,8 @@ void FixMdanimRigid::unpack(const StateRecords &all)
       body.velocity = kept[n].velocity, body.q = kept[n].q, body.L = kept[n].L;
       body.refresh();
     }
-    std::vector<char> has;
-    for (int n = 0; n < objects.size(); ++n) {
-      has.push_back(rest[n].has_value());
-      if (rest[n]) glue.glued.read(n, *rest[n]);
-    }
-    glue.glued.rebuild(has);
     touching.take(name(), objects, bodies, std::move(poses));
-    glue.tell_contact();
+    glue.unpack(name(), rest);
     touching.read_contacts(records, STATE_VERSION, rest);
     touching.read_driven(STATE_VERSION, all);
     for (int n = 0; n < objects.size(); ++n)

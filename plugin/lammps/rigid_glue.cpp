@@ -2,21 +2,50 @@
 
 #include "lammps/rigid_glue.h"
 
+#include "lammps/shared_file.h"
+
+#include "error.h"
+#include "force.h"
+#include "lammps.h"
+
 #include <stdexcept>
 #include <utility>
 
 namespace mdanim {
 
-std::vector<Output> RigidGlue::outputs(const double &mvv2e)
+std::vector<Output> RigidGlue::outputs(const std::function<bool()> &collect, const double &half_dt,
+                                       const std::vector<double> &drag)
 {
-  return {{"torn", true, [&, this] { return mvv2e * torn; }},
+  const double &mvv2e = lmp->force->mvv2e;
+  const auto energy_of_motion = [&, collect, this] {
+    collect();
+    return mvv2e * kinetic(half_dt, drag);
+  };
+  return {{"kinetic", true, energy_of_motion},
+          {"torn", true, [&mvv2e, this] { return mvv2e * torn; }},
           {"broken_faces", true, [this] { return static_cast<double>(glued.broken_faces()); }},
           {"stress_share", false, [this] { return glued.largest_share(); }}};
 }
 
-void RigidGlue::take()
+void RigidGlue::read_file(const char *file)
 {
-  if (faces.empty() || glued.is_on()) return;
+  const std::string text = read_shared_file(lmp, "fix mdanim/rigid", "glue", file);
+  try {
+    faces = read_glue(file, text);
+  } catch (const std::exception &problem) {
+    lmp->error->all(FLERR, "fix mdanim/rigid: {}", problem.what());
+  }
+}
+
+void RigidGlue::forget_bodies()
+{
+  bodies.clear();
+  glued = GluedBodies();
+}
+
+// Numbers the bodies of faces.
+void RigidGlue::take(const std::string &fix)
+{
   const ObjectTable &objects = particles.objects();
   std::vector<GlueFace> numbered = faces;
   for (GlueFace &face : numbered)
@@ -24,19 +53,51 @@ void RigidGlue::take()
       const int molecule = *end;
       *end = objects.number_of(molecule);
       if (*end == ObjectTable::NONE)
-        throw std::runtime_error("glue names molecule " + std::to_string(molecule) + ", which has no particle in its group");
+        lmp->error->all(FLERR, "{}: glue names molecule {}, which has no particle in its group", fix, molecule);
     }
   glued.take(std::move(numbered), static_cast<std::size_t>(objects.size()));
 }
 
-void RigidGlue::join()
+void RigidGlue::join(const std::string &fix)
 {
   if (faces.empty()) return;
-  forget();
-  take();
+  glued = GluedBodies();
+  take(fix);
   glued.join(bodies);
   glued.take_motion(bodies);
   tell_contact();
+}
+
+void RigidGlue::unpack(const std::string &fix, std::vector<std::optional<ByteReader>> &rest)
+{
+  if (faces.empty()) return;
+  if (!glued.is_on()) take(fix);
+  std::vector<char> has;
+  for (std::size_t n = 0; n < rest.size(); ++n) {
+    has.push_back(rest[n].has_value());
+    if (rest[n]) glued.read(static_cast<int>(n), *rest[n]);
+  }
+  glued.rebuild(has);
+  tell_contact();
+}
+
+void RigidGlue::kick(double half_dt, const std::vector<double> &drag, bool first, double &drag_loss)
+{
+  for (std::size_t n = 0; n < bodies.size(); ++n)
+    if (bodies[n].aside || bodies[n].guided || glued.holds(n))
+      continue;
+    else if (drag[n] == 0.0)
+      bodies[n].kick(half_dt);
+    else
+      drag_loss += bodies[n].kick_with_drag(half_dt, drag[n], first);
+  drag_loss += glued.kick(bodies, half_dt, first);
+}
+
+void RigidGlue::drift(double dt)
+{
+  for (std::size_t n = 0; n < bodies.size(); ++n)
+    if (!bodies[n].guided && !bodies[n].aside && !glued.holds(n)) bodies[n].drift(dt);
+  glued.drift(bodies, dt);
 }
 
 void RigidGlue::tell_contact()
@@ -62,9 +123,9 @@ double RigidGlue::kinetic(double half_dt, const std::vector<double> &drag) const
   return all;
 }
 
-std::vector<int> RigidGlue::judge(double to_acceleration, double half_dt)
+std::vector<int> RigidGlue::judge(double half_dt)
 {
-  std::vector<int> apart = glued.judge(bodies, to_acceleration, half_dt, torn);
+  std::vector<int> apart = glued.judge(bodies, lmp->force->ftm2v, half_dt, torn);
   if (apart.empty()) return apart;
   for (const int n : apart)
     if (touching.is_on() && touching.solid(n) != RigidTouching::NO_SHAPE) touching.contact.place(touching.solid(n), bodies[n]);

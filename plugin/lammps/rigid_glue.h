@@ -6,8 +6,11 @@
 #include "lammps/object_table.h"
 #include "lammps/rigid_particles.h"
 #include "lammps/rigid_touching.h"
+#include "records/byte_reader.h"
 #include "rigid/glued_bodies.h"
 
+#include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,41 +18,47 @@ namespace mdanim {
 
 class RigidGlue {
  public:
-  RigidGlue(const RigidParticles &particles, RigidTouching &touching, std::vector<RigidBody> &bodies)
-      : particles(particles), touching(touching), bodies(bodies)
+  RigidGlue(LAMMPS_NS::LAMMPS *lmp, const RigidParticles &particles, RigidTouching &touching, std::vector<RigidBody> &bodies)
+      : lmp(lmp), particles(particles), touching(touching), bodies(bodies)
   {
   }
 
   GluedBodies glued;
 
-  // Reads the file of faces. Throws std::runtime_error.
-  void read(const char *file, const std::string &text) { faces = read_glue(file, text); }
-  std::vector<Output> outputs(const double &mvv2e);
+  void read_file(const char *file);
+  // `collect` finds the forces of this step, if they are not there.
+  std::vector<Output> outputs(const std::function<bool()> &collect, const double &half_dt, const std::vector<double> &drag);
   double torn_energy() const { return torn; }    // in units of mass times velocity squared
-  void forget() { glued = GluedBodies(); }
-  // Numbers the bodies of faces, once. Throws std::runtime_error.
-  void take();
-  // The same, and pieces as they are now move as one body, where glue holds them together.
-  void join();
-  // Tells contact how pieces are glued.
-  void tell_contact();
+  // The lowest molecule ID of all that a body is glued together with.
+  double molecule_of_whole(int body) const { return static_cast<double>(particles.objects().id(glued.first_of(body))); }
+  void forget_bodies();
+  // Pieces as they are now move as one body, where glue holds them together. `fix` begins messages.
+  void join(const std::string &fix);
+  // After contact has taken the bodies of records: what is left of those has the glue next.
+  void unpack(const std::string &fix, std::vector<std::optional<ByteReader>> &rest);
+  // Half a step of forces on all bodies that are not guided, and a step of their motion; what drag takes is added.
+  void kick(double half_dt, const std::vector<double> &drag, bool first, double &drag_loss);
+  void drift(double dt);
   // Kinetic energy of bodies, and of wholes in place of the pieces that are glued into them.
   double kinetic(double half_dt, const std::vector<double> &drag) const;
   // At the end of a step, with the velocities of whole steps: breaks glue. `collect` finds the forces of the next one, which are
   // those of the pieces.
-  template <class Collect>
-  void break_some(double to_acceleration, double half_dt, const std::vector<double> &drag, const Collect &collect)
+  template <class Collect> void break_some(double half_dt, const std::vector<double> &drag, const Collect &collect)
   {
-    const std::vector<int> apart = judge(to_acceleration, half_dt);
+    if (!glued.is_on()) return;
+    const std::vector<int> apart = judge(half_dt);
     if (apart.empty()) return;
     collect();
     for (const int n : apart) torn -= kinetic_of(n, half_dt, drag);
   }
 
  private:
-  std::vector<int> judge(double to_acceleration, double half_dt);
+  void take(const std::string &fix);
+  void tell_contact();
+  std::vector<int> judge(double half_dt);
   double kinetic_of(int body, double half_dt, const std::vector<double> &drag) const;
 
+  LAMMPS_NS::LAMMPS *lmp;
   const RigidParticles &particles;
   RigidTouching &touching;
   std::vector<RigidBody> &bodies;

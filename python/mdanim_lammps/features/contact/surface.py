@@ -339,17 +339,14 @@ class SurfacePlanes(Planes):
     def rate(self, context):
         """a_i = kappa w_i / m_i with w_i as in `SurfaceContact.rate`: the plane does not move, so there is no factor 2."""
         system, kappa = context.system, self.stiffness(context)
-        if not kappa.any():  # nothing reads points of surfaces, which may take long to find
-            return np.zeros(len(system.object))
-        rate = kappa[system.object] * _of_bodies(context, own_area(system) / system.mass)
-        return np.where(system.held, 0.0, rate)
+        areas = _of_bodies(context, own_area(system) / system.mass) if kappa.any() else 0.0  # they may take long to find
+        return np.where(system.held, 0.0, kappa[system.object] * areas)
 
     def own_rate(self, context):
         return self.rate(context)
 
     def drag_rate(self, context):
-        kappa = self.stiffness(context)
-        return self.law.dashpots(context, kappa) if kappa.any() else None
+        return self.law.dashpots(context, self.stiffness(context))
 
     def losses(self, scene):
         return (*self.law.losses(scene), *((LET_GO,) if any(map(tears, scene.solids)) else ()))  # contact of what is torn ends
