@@ -14,9 +14,12 @@ from typing import NamedTuple
 CHOSEN = "chosen"
 """Source of figures for which no range is cited: they are a choice of this program."""
 
+UNSEEN = " (figures from memory, not compared with the text)"
+"""Remark on sources whose text was not at hand."""
+
 SOURCES = {
     "A": "M. F. Ashby, Materials Selection in Mechanical Design, 4th ed., 2011, appendix A; the same ranges are in the "
-         "Materials Data Book, Cambridge University Engineering Department, 2003, part II",
+         "Materials Data Book, Cambridge University Engineering Department, 2003, part II" + UNSEEN,
     "B": "US Army Corps of Engineers, Settlement Analysis, EM 1110-1-1904, 1990: elastic moduli of soils, soft clay, 50 to "
          "200 tons per square foot",
     "C": "Journal of Textiles 2016, 4614168, table 5: six denims in Kawabata's tester, which stretch by 4.7 to 5.7 % under "
@@ -26,13 +29,14 @@ SOURCES = {
     "F": "The Engineering ToolBox, Friction coefficients of some common materials and combinations, sliding where given",
     "G": "J. M. Gere, Mechanics of Materials, 5th ed., 2001, appendix H",
     "H": "D. Halliday, R. Resnick and J. Walker, Fundamentals of Physics, 5th ed., 1997, table 13-1",
-    "I": "L. W. Gold, Engineering properties of fresh-water ice, Journal of Glaciology 19, 1977; density at 0 deg C",
+    "I": "L. W. Gold, Engineering properties of fresh-water ice, Journal of Glaciology 19, 1977; density at 0 deg C" + UNSEEN,
     "J": "H. Nielsen, B. U. Marr and S. Hvidt, Carbohydrate Polymers 45, 2001: G' of gels from 0.4 kPa on, E = 3 G'",
-    "K": "L. J. Gibson, K. E. Easterling and M. F. Ashby, The structure and mechanics of cork, Proc. R. Soc. A 377, 1981",
+    "K": "L. J. Gibson, K. E. Easterling and M. F. Ashby, The structure and mechanics of cork, "
+         "Proc. R. Soc. A 377, 1981" + UNSEEN,
     "L": "Z. Penava, D. Simic Penava and Z. Knezic, Fibres and Textiles in Eastern Europe 22(2), 2014, table 1: plain cotton "
          "cloth of 150.3 g/m^2 and 0.318 mm",
     "N": "I. Newton, Principia, scholium to the laws of motion (Motte, 1729): tightly wound wool 5/9, steel almost the same, "
-         "cork a little less, glass 15/16",
+         "cork a little less, glass 15/16" + UNSEEN,
     "O": "M. Winter, WebElements: gold",
     "P": "J. J. Petrovic, Mechanical properties of ice and snow, Journal of Materials Science 38, 2003",
     "R": "W. D. Callister, Materials Science and Engineering, 3rd ed., 1994: lead",
