@@ -96,7 +96,8 @@ void Buoyancy::look(const Basin &basin, const std::vector<int> &near)
     }
   });
   threads.parts(static_cast<long>(near.size()), PARTICLE, [&](long from, long to) {
-    for (long n = from; n < to; ++n) kept[near[n]] = look_at_particle(basin, n, x[near[n]]);
+    for (long n = from; n < to; ++n)
+      kept[near[n]] = atom->mask[near[n]] & standing ? InLiquid{} : look_at_particle(basin, n, x[near[n]]);
   });
 }
 
@@ -173,6 +174,7 @@ struct Buoyancy::Acting {
 
 __attribute__((always_inline)) inline Buoyancy::Wet Buoyancy::act_on(const Acting &now, const Basin &basin, int i)
 {
+  if (atom->mask[i] & standing) return {i, {}, 0.0};
   const double *const x = now.x[i];
   Basin::AtPlace at;
   if (now.kept) {

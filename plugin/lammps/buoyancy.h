@@ -66,7 +66,8 @@ class Buoyancy : protected LAMMPS_NS::Pointers {
            cells.bytes();
   }
   double seconds = 0.0;
-  int driven = 0;    // bit of the group of what no integrator moves: drag is a force on it
+  int standing = 0;    // bit of the group of what stands in a basin that moves: nothing acts on it, and it keeps no state
+  int driven = 0;      // bit of the group of what no integrator moves: drag is a force on it
 
   // Values of a particle, from look() to look(); they go with the particle.
   std::vector<InLiquid> kept;    // of all local particles, where the liquid acts on lattice cells

@@ -179,6 +179,8 @@ bool FixMdanimDrive::holds(int molecule) const
 
 bool FixMdanimDrive::shifts() const { return !of_objects && !motions.at(0).turns(); }
 
+DrivenPlace FixMdanimDrive::place_before(double ago) const { return motions.at(0).at(time(update->ntimestep) - ago); }
+
 // A particle of the group that is not laid aside.
 bool FixMdanimDrive::guides(int i)
 {

@@ -40,6 +40,8 @@ class FixMdanimDrive : public mdanim::FixBase {
   const Ways *ways_of(int molecule);
   // Whether there is one motion, a displacement alone, of all that it moves.
   bool shifts() const;
+  // Where this one was some time ago.
+  mdanim::DrivenPlace place_before(double ago) const;
   // Whether an object goes its way in this step; not from its release on, and where no motion is given for it.
   bool holds(int molecule) const;
   // Objects of which some particle is in the group, on any rank; all ranks ask together.

@@ -11,6 +11,7 @@
 #include "neighbor.h"
 #include "update.h"
 
+#include <algorithm>
 #include <stdexcept>
 
 using namespace LAMMPS_NS;
@@ -23,7 +24,7 @@ static const char *const LEFT_OUT = ", or leave it out of the group of this fix"
 
 FixMdanimLiquid::FixMdanimLiquid(LAMMPS *lmp, int narg, char **arg)
     : FixBase(lmp, narg, arg), sums(lmp), command(lmp, narg, arg), buoyancy(lmp, command.density),
-      solids(lmp, groupbit, buoyancy), near(lmp)
+      solids(lmp, groupbit, buoyancy), near(lmp), moving(lmp)
 {
   array_flag = 1;
   size_array_cols = 4;
@@ -33,8 +34,12 @@ FixMdanimLiquid::FixMdanimLiquid(LAMMPS *lmp, int narg, char **arg)
   need(THREE_DIMENSIONS | ORTHOGONAL_BOX | OPEN_BOX);
   look_up({&solids.still_group, &solids.driven_group}, {});
   tell_numbers();
-  command.read_keywords(free_keywords(), narg, arg);
+  std::vector<Keyword> known = free_keywords();
+  known.push_back({"moving", "FIXID", "", [this](int at, char **arg) { moving.add(0, arg[at + 1]); }});
+  command.read_keywords(known, narg, arg);
   basin = command.make_basin(sums, arg);
+  if (moving.any() && !basin->can_move())
+    error->all(FLERR, "{}: moving is for model waves; other liquids have no momentum, and would stay behind", name());
   size_array_rows = basin->columns();
   if (!basin->acts_on_cells()) return;
   maxexchange = sizeof(InLiquid) / sizeof(double);
@@ -70,8 +75,11 @@ void FixMdanimLiquid::init()
   if (makes_waves()) need(OBJECTS);
   if (solids.lattice_cells().given()) need(ATOM_MAP);
   FixBase::init();
+  moving.init(name());
   buoyancy.init(name());
   buoyancy.driven = solids.driven_group.bit();
+  solids.none_is_still = moving.any();
+  buoyancy.standing = moving.any() ? solids.still_group.bit() : 0;
   if (makes_waves() && !solids.lattice_cells().given())
     error->all(FLERR, "{}: model waves needs the lattice cells of solids; add cells i2_NAME, or write model surface", name());
   solids.init(command.model == LiquidCommand::Model::PAPER, name());
@@ -122,13 +130,17 @@ bool FixMdanimLiquid::is_due()
 // Square of the speed of the fastest solid near the liquid; -1 without any.
 double FixMdanimLiquid::fastest_near()
 {
-  if (near.none()) return -1.0;
+  // What stands in a basin that moves is as fast as the basin, wherever it is.
+  const double least = moving.any() ? dot(basin->velocity(), basin->velocity()) : -1.0;
+  if (near.none()) return least;
   const Lap lap(look_seconds);
-  return near.fastest(*basin);
+  return std::max(least, near.fastest(*basin));
 }
 
 void FixMdanimLiquid::update_liquid()
 {
+  const double since = basin->since_update();
+  if (moving.any() && since > 0.0) basin->accelerate((1.0 / since) * (basin->velocity() - moving.velocity(since)));
   buoyancy.give_impulses(*basin, near.all());
   in_basin([&] { basin->update(solids.bodies_near(*basin, near.all()), static_cast<std::uint64_t>(update->ntimestep)); });
   if (near.outgrown(*basin)) {
@@ -141,8 +153,15 @@ void FixMdanimLiquid::update_liquid()
 
 // --- solids in the liquid ---
 
+// To where the basin is in this step.
+void FixMdanimLiquid::move_basin()
+{
+  if (moving.any()) basin->move_to(moving.place(), moving.velocity(0.0));
+}
+
 void FixMdanimLiquid::setup_post_neighbor()
 {
+  move_basin();
   for (int i = 0; makes_waves() && i < atom->nlocal; ++i)
     if (atom->mask[i] & groupbit) need_object(this, lmp, i, LEFT_OUT);
   const long changed = basin->mark_still(solids.bodies(*basin, true));
@@ -166,7 +185,8 @@ void FixMdanimLiquid::post_neighbor()
 // No particle that is not near has friction from the liquid.
 void FixMdanimLiquid::find_near(double margin)
 {
-  if (!near.find(*basin, groupbit, solids.still_group.bit(), margin, lists_are_prompt())) return buoyancy.forget_cells();
+  if (!near.find(*basin, groupbit, moving.any() ? 0 : solids.still_group.bit(), margin, lists_are_prompt()))
+    return buoyancy.forget_cells();
   buoyancy.clear_friction(groupbit);
   for (const int i : near.all())
     if (makes_waves()) need_object(this, lmp, i, LEFT_OUT);
@@ -184,6 +204,7 @@ void FixMdanimLiquid::setup(int)
 void FixMdanimLiquid::post_force(int)
 {
   need_setup();
+  move_basin();
   if (is_due()) update_liquid();
   buoyancy.act(*basin, near.in_arrays(), true);
 }
@@ -264,7 +285,9 @@ void FixMdanimLiquid::tell_numbers()
         {"solid_impulse_y", false, along(&Basin::Impulses::solids, &Vec3::y)},
         {"came_x", false, along(&Basin::Impulses::came, &Vec3::x)},
         {"came_y", false, along(&Basin::Impulses::came, &Vec3::y)},
-        {"clock", false, [this] { return basin->clock(update->ntimestep, update->dt); }}});
+        {"clock", false, [this] { return basin->clock(update->ntimestep, update->dt); }},
+        {"way_x", false, [this] { return basin->way().x; }},
+        {"way_y", false, [this] { return basin->way().y; }}});
 }
 
 // A row per column of cells: x, y of its centre, z of the smooth surface, z of the topmost liquid (NaN where a body hides it).
@@ -273,9 +296,9 @@ double FixMdanimLiquid::compute_array(int row, int column)
   const Basin::Shape &shape = basin->shape;
   switch (column) {
     case 0:
-      return shape.low.x + (row % shape.nx + 0.5) * shape.cell.x;
+      return basin->low().x + (row % shape.nx + 0.5) * shape.cell.x;
     case 1:
-      return shape.low.y + (row / shape.nx + 0.5) * shape.cell.y;
+      return basin->low().y + (row / shape.nx + 0.5) * shape.cell.y;
     case 2:
       return basin->smooth_height(row);
     default:

@@ -6,6 +6,7 @@
 #include "lammps/buoyancy.h"
 #include "lammps/fix_base.h"
 #include "lammps/liquid_command.h"
+#include "lammps/moving_planes.h"
 #include "lammps/near_liquid.h"
 #include "lammps/solid_samples.h"
 #include "lammps/stateful.h"
@@ -76,6 +77,7 @@ class FixMdanimLiquid : public mdanim::FixBase,
   void use(const mdanim::Threads &now);
   void tell_numbers();
   void pour();
+  void move_basin();
   void need_setup() const;
   double fastest_near();
   template <class Work> void in_basin(Work &&work);
@@ -86,6 +88,7 @@ class FixMdanimLiquid : public mdanim::FixBase,
   mdanim::Buoyancy buoyancy;
   mdanim::SolidSamples solids;
   mdanim::NearLiquid near;
+  mdanim::MovingPlanes moving;    // of the basin
   std::unique_ptr<mdanim::Basin> basin;
 
   bool in_passes = false;              // whether passes move particles near the liquid

@@ -7,6 +7,7 @@
 #include "error.h"
 #include "lammps.h"
 #include "modify.h"
+#include "update.h"
 
 namespace mdanim {
 
@@ -19,6 +20,14 @@ void MovingPlanes::init(const std::string &fix)
       lmp->error->all(FLERR, "{}: fix {} gives no displacement of planes; {}", fix, one.id,
                       "write its motion in the command, without a turn");
   }
+}
+
+Vec3 MovingPlanes::velocity(double ago) const
+{
+  const LAMMPS_NS::FixMdanimDrive &drive = *all.front().drive;
+  const double dt = lmp->update->dt;
+  const DrivenPlace before = drive.place_before(ago + dt), behind = drive.place_before(ago - dt);
+  return (0.5 / dt) * ((behind.to - behind.from) - (before.to - before.from));
 }
 
 Vec3 MovingPlanes::shift(const Moving &one, int step) const

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// Planes that fixes mdanim/drive move.
+// Planes, and basins, that fixes mdanim/drive move.
 
 #pragma once
 
@@ -30,6 +30,9 @@ class MovingPlanes {
   {
     for (Moving &one : all) visit(one.plane, shift(one, 0), shift(one, 0) - shift(one, -1));
   }
+  // Displacement of the first one from the start; its velocity this time ago, by where it was a step before and behind.
+  Vec3 place() const { return shift(all.front(), 0); }
+  Vec3 velocity(double ago) const;
   // Lists have been made with planes where they are now.
   void listed()
   {

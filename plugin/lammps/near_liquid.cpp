@@ -65,7 +65,10 @@ double NearLiquid::fastest_of(const std::vector<int> &these, const Basin &basin)
   const double *const *x = atom->x, *const *v = atom->v;
   const double below = top_of_near(basin);
   for (const int i : these)
-    if (x[i][2] < below) fastest = std::max(fastest, dot(vec3(v[i]), vec3(v[i])));
+    if (x[i][2] < below) {
+      const Vec3 relative = vec3(v[i]) - basin.velocity();
+      fastest = std::max(fastest, dot(relative, relative));
+    }
   return fastest;
 }
 

@@ -61,7 +61,7 @@ void SolidSamples::init(bool by_the_paper, const std::string &name)
                fix, cells.name);
 }
 
-bool SolidSamples::is_still(int i) const { return (atom->mask[i] & still_group.bit()) != 0; }
+bool SolidSamples::is_still(int i) const { return !none_is_still && (atom->mask[i] & still_group.bit()) != 0; }
 
 Basin::AddBodies SolidSamples::bodies(const Basin &basin, bool still)
 {
@@ -90,7 +90,7 @@ Basin::AddBodies SolidSamples::bodies_near(const Basin &basin, const std::vector
 // number.
 int SolidSamples::row_at(const Basin &basin, double y) const
 {
-  const double row = (y - basin.shape.low.y) / basin.shape.cell.y;
+  const double row = (y - basin.low().y) / basin.shape.cell.y;
   return row > 0.0 ? static_cast<int>(std::min(row, basin.shape.ny - 1.0)) : 0;
 }
 
@@ -109,7 +109,7 @@ void SolidSamples::add_bodies(Occupancy &into, const Basin &basin, const std::ve
   constexpr double CELL = 150.0;    // [ns], approximately
   const double *const *x = atom->x;
   const bool smooth = basin.is_smooth();
-  const auto is_still = [this](int i) { return (atom->mask[i] & still_group.bit()) != 0; };
+  const auto is_still = [this](int i) { return this->is_still(i); };
   const auto row_of = [&](long n) {
     const int *const corner = with.cells[n].corner;
     return row_at(basin, 0.5 * (x[corner[0]][1] + x[corner[6]][1]));
@@ -141,6 +141,7 @@ void SolidSamples::add_mass(Occupancy &into, const Basin &basin, const std::vect
   const double *const soft = softness.given() ? softness.values(lmp) : nullptr;
   const double pressure = buoyancy.density() * buoyancy.weight(basin) * basin.shape.cell.z;    // of a cell of liquid
   const double base = basin.shape.cell.x * basin.shape.cell.y * basin.shape.cell.z;
+  const int unyielding = driven_group.bit() | (none_is_still ? still_group.bit() : 0);
   const double liquid = buoyancy.density() * basin.cell_volume();
   const auto row_of = [&](long n) { return row_at(basin, atom->x[these[n]][1]); };
   if (!these.empty()) into.begin_mass();
@@ -148,7 +149,7 @@ void SolidSamples::add_mass(Occupancy &into, const Basin &basin, const std::vect
              [&](long n, const RowSlabs::Rows &, int) {
                const int i = these[n];
                const Vec3 place = basin.in_cells(atom->x[i]);
-               const bool driven = (atom->mask[i] & driven_group.bit()) != 0;
+               const bool driven = (atom->mask[i] & unyielding) != 0;
                if (place.z <= below)
                  into.add_mass(place, (driven ? UNYIELDING : 1.0) * mass_of(atom->rmass, atom->mass, atom->type, i) / liquid,
                                soft && !driven ? soft[i] * pressure / base : 0.0, atom->v[i][2] / basin.speed_of_waves());

@@ -41,7 +41,8 @@ class SolidSamples : protected LAMMPS_NS::Pointers {
   std::size_t bytes() const { return slabs.bytes(); }
 
   NamedGroup still_group;
-  NamedGroup driven_group;    // what goes its way whatever the liquid does
+  NamedGroup driven_group;       // what goes its way whatever the liquid does
+  bool none_is_still = false;    // in a basin that moves: what stands in the world is driven there
 
  private:
   int row_at(const Basin &basin, double y) const;

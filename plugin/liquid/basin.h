@@ -155,14 +155,25 @@ class Basin {
   // Takes the sideways push on such a solid in each step since then, over the weight of liquid of volume 1.
   virtual void take_push(const Vec3 & /*volume_along*/) {}
 
+  // Whether the basin can be moved along x and y.
+  virtual bool can_move() const { return false; }
+  // To be called in each step of a basin that moves: where it is from its place at the start, and how fast it moves now.
+  void move_to(const Vec3 &place, const Vec3 &velocity) { shift = place, speed = velocity; }
+  const Vec3 &velocity() const { return speed; }
+  // To be called before an update: its mean acceleration [distance/time^2] since the last one, this time [time] ago.
+  virtual void accelerate(const Vec3 & /*mean*/) {}
+  double since_update() const { return wait.time(); }
+
+  const Vec3 &way() const { return shift; }
+  Vec3 low() const { return shape.low + shift; }    // its corner now
   Vec3 in_cells(const double *x) const
-  { return {(x[0] - shape.low.x) * per_cell.x, (x[1] - shape.low.y) * per_cell.y, (x[2] - shape.low.z) * per_cell.z}; }
+  { return {(x[0] - low().x) * per_cell.x, (x[1] - low().y) * per_cell.y, (x[2] - low().z) * per_cell.z}; }
   double height(double cells) const { return shape.low.z + cells * shape.cell.z; }    // [distance]
   // Whether x [distance] is over the basin's floor.
   bool over_floor(const double *x) const
   {
-    return x[0] >= shape.low.x && x[0] <= shape.low.x + shape.nx * shape.cell.x && x[1] >= shape.low.y &&
-           x[1] <= shape.low.y + shape.ny * shape.cell.y;
+    return x[0] >= low().x && x[0] <= low().x + shape.nx * shape.cell.x && x[1] >= low().y &&
+           x[1] <= low().y + shape.ny * shape.cell.y;
   }
   // Number of a cell.
   std::size_t cell_number(int x, int y, int z) const { return (static_cast<std::size_t>(z) * shape.ny + y) * shape.nx + x; }
@@ -219,6 +230,7 @@ class Basin {
 
   const RankSums &ranks;
   Threads threads;
+  Vec3 shift, speed;    // [distance], [distance/time]; functions of the step, not a state
   // state
   bool poured = false;
   double travel = 0.0;    // distance of the fastest particle near the liquid since the last update, in cells

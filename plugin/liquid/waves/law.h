@@ -24,6 +24,7 @@ struct WaveLaw {
   double slam = 100.0;                // greatest fall of a head below its surface, and rise above the basin
   double height = 1.0;                // of the basin
   double fastest = 16.0;              // velocity
+  double tilt[2] = {0.0, 0.0};        // acceleration of the basin, as a rise of heads from a column to the next along x and y
   double units_per_cell = 1 << 20;    // of content
 };
 
@@ -121,12 +122,12 @@ template <class Real> struct SpanSums {
     beside_full = pick(wet > Real{}, larger(beside_full, either), beside_full);
     inflow += inward;
   }
-  // Over an edge liquid falls: the side below it does not push back.
-  MDANIM_ALWAYS_INLINE void couple(const Real &head, const Real &other, const Real &edge, const Real &height)
+  // Over an edge liquid falls: the side below it does not push back. `tilt`: the rise from the other span to this one.
+  MDANIM_ALWAYS_INLINE void couple(const Real &head, const Real &other, const Real &edge, const Real &height, double tilt)
   {
     const auto below = head < edge;
     diagonal += pick(below, Real{}, height);
-    rhs -= pick(below, Real{}, height * (head - larger(other, edge)));
+    rhs -= pick(below, Real{}, height * ((head - larger(other, edge)) + constant<Real>(tilt)));
   }
 };
 
@@ -178,14 +179,15 @@ template <class Real> MDANIM_ALWAYS_INLINE Real whole(const Real &a)
   return (a + big) - big;
 }
 
-// (W8) Pressure moves the liquid; the flux is that of the upwind opening, in whole units.
+// (W8) Pressure moves the liquid, and the acceleration of the basin leaves it behind; the flux is that of the upwind opening, in
+// whole units.
 template <class Real, class Opening>
 MDANIM_ALWAYS_INLINE UpwindFlux<Real> pushed(const WaveLaw &law, const Real &u, const Real &wet, const Real &phi_a,
                                              const Real &phi_b, const Real &level_a, const Real &level_b, const Real &edge,
-                                             const Opening &opening)
+                                             double tilt, const Opening &opening)
 {
   const Real none = constant<Real>(0.0), most = constant<Real>(law.fastest);
-  const Real faster = u - constant<Real>(law.dt) * (larger(phi_b, edge) - larger(phi_a, edge));
+  const Real faster = u - constant<Real>(law.dt) * ((larger(phi_b, edge) - larger(phi_a, edge)) + constant<Real>(tilt));
   const Real held = smaller(larger(faster, none - most), most);
   const Real height = opening(pick(held > none, level_a, level_b));
   const auto flows = smaller(wet, height) > none;

@@ -57,6 +57,15 @@ WaveBasin::WaveBasin(const Shape &shape, double g, double calm, double spray, st
   drops.share = spray;
 }
 
+// A level liquid that goes along rises by -a/g along the acceleration.
+void WaveBasin::accelerate(const Vec3 &mean)
+{
+  waves.run.is_moved = true;
+  waves.run.resting = false;
+  waves.run.law.tilt[0] = mean.x * shape.cell.x / (g * shape.cell.z);
+  waves.run.law.tilt[1] = mean.y * shape.cell.y / (g * shape.cell.z);
+}
+
 // --- makers of waves ---
 
 void WaveBasin::add_wave(int side, double amplitude, double period, double depth)
@@ -170,6 +179,7 @@ void WaveBasin::go_on(double time, int parts, int n)
   makers.apply(waves, time);
   account.came += waves.take_came();
   gone += waves.update(time, 1.0 / (parts - n)) * unit_of_time;
+  account.came -= waves.take_left_behind();
   const Vec3 lost = waves.take_lost(), flying = drops.momentum();
   drops.update(waves, time, key_of(static_cast<std::uint64_t>(updates), n));
   account.basin += lost - (drops.momentum() - flying) - waves.take_came();
@@ -183,6 +193,7 @@ Basin::OnParts WaveBasin::on_parts(const Vec3 &middle) const
   OnParts on;
   if (!(middle.x >= 0.0 && middle.x <= shape.nx && middle.y >= 0.0 && middle.y <= shape.ny)) return on;
   const int x = std::min(static_cast<int>(middle.x), shape.nx - 1), y = std::min(static_cast<int>(middle.y), shape.ny - 1);
+  on.flow_x = speed.x, on.flow_y = speed.y;
   double head = heights.head(y * shape.nx + x);
   on.share = std::clamp(head, 0.0, 1.0);
   const int number = push.number_of(cell_number(x, y, std::clamp(static_cast<int>(middle.z), 0, shape.nz - 1)));
@@ -194,8 +205,8 @@ Basin::OnParts WaveBasin::on_parts(const Vec3 &middle) const
     on.beside = found.of[WavePush::OnCell::BESIDE];
     on.along_x = found.of[WavePush::OnCell::ALONG_X] * (shape.cell.z / shape.cell.x);
     on.along_y = found.of[WavePush::OnCell::ALONG_Y] * (shape.cell.z / shape.cell.y);
-    on.flow_x = found.of[WavePush::OnCell::FLOW_X] * shape.cell.x / unit_of_time;
-    on.flow_y = found.of[WavePush::OnCell::FLOW_Y] * shape.cell.y / unit_of_time;
+    on.flow_x += found.of[WavePush::OnCell::FLOW_X] * shape.cell.x / unit_of_time;
+    on.flow_y += found.of[WavePush::OnCell::FLOW_Y] * shape.cell.y / unit_of_time;
   }
   on.surface = 2.0 * head - middle.z + 0.5;
   return on;

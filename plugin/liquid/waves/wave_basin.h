@@ -49,6 +49,9 @@ class WaveBasin : public Basin {
     waves.use(threads);
   }
 
+  bool can_move() const override { return true; }
+  void accelerate(const Vec3 &mean) override;
+
   bool acts_on_cells() const override { return true; }
   OnParts on_parts(const Vec3 &middle) const override;
   double rising_at(const Vec3 &place) const override;
@@ -84,7 +87,7 @@ class WaveBasin : public Basin {
  private:
   double energy_now() const;
   Vec3 in_world(const Vec3 &momentum) const;
-  bool sleeps() const { return waves.at_rest() && makers.none() && drops.all().empty(); }
+  bool sleeps() const { return waves.at_rest() && !waves.run.is_moved && makers.none() && drops.all().empty(); }
   void give_impulses(double since, double asleep);
   void go_on(double time, int parts, int n);
   void find_heights();

@@ -26,7 +26,7 @@ void WaveStepper::general_surface(long i)
 void WaveStepper::general_opening(const LinkPlace &link)
 {
   const Ends e = columns.ends(link);
-  open_at<double>(arrays, law, {columns.arrays_of(link), link.at, e.a, e.b},
+  open_at<double>(arrays, law, {columns.arrays_of(link), link.d, link.at, e.a, e.b},
                   [&](double level) { return columns.opening(link, level); });
 }
 
@@ -95,7 +95,7 @@ void WaveStepper::general_advection(const LinkPlace &link)
 void WaveStepper::general_push(const LinkPlace &link)
 {
   const Ends e = columns.ends(link);
-  push_at<double>(arrays, law, {columns.arrays_of(link), link.at, e.a, e.b},
+  push_at<double>(arrays, law, {columns.arrays_of(link), link.d, link.at, e.a, e.b},
                   [&](double level) { return columns.opening(link, level); });
 }
 

@@ -19,10 +19,11 @@ struct WaveRun {
   int most_iterations = 200;
   double rest = 1.0 / 1024.0;    // differences of heads, and velocities, that count as none: those of a film
 
-  bool resting = false;      // nothing will move before a solid does
-  bool some_full = false;    // some span is
-  Vec3 lost, came;           // momentum, see Waves::take_lost()
-  struct Counts {            // for tests and benchmarks
+  bool resting = false;            // nothing will move before a solid does
+  bool is_moved = false;           // the basin moves, and liquid never comes to rest
+  bool some_full = false;          // some span is
+  Vec3 lost, came, left_behind;    // momentum, see Waves::take_lost()
+  struct Counts {                  // for tests and benchmarks
     long updates = 0, sub_updates = 0, solutions = 0, iterations = 0, limited = 0;
     Units displaced = 0;    // units displaced by spans that closed
   } counts;

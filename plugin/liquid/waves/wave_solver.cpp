@@ -111,7 +111,7 @@ void WaveSolver::general_assembly(long i)
   SpanSums<double> sums;
   columns.each_link_of(i, [&](const LinkPlace &link, long other, bool inward) {
     const WaveLinks &l = columns.arrays_of(link);
-    const double flux = l.height[link.at] * l.faster[link.at] * law.dt;
+    const double flux = l.height[link.at] * (l.faster[link.at] - law.dt * law.tilt[link.d]) * law.dt;
     sums.look(head, arrays.head[other], l.wet[link.at], full, arrays.full[other], inward ? flux : 0.0 - flux);
   });
   if (full > 0.0) {
@@ -124,9 +124,9 @@ void WaveSolver::general_assembly(long i)
     if (arrays.slope[i] < POROUS) sums.rhs = sums.inflow / (law.dt * law.dt);
   }
   arrays.beside_full[i] = sums.beside_full;
-  columns.each_link_of(i, [&](const LinkPlace &link, long other, bool) {
+  columns.each_link_of(i, [&](const LinkPlace &link, long other, bool inward) {
     const WaveLinks &l = columns.arrays_of(link);
-    sums.couple(head, arrays.head[other], l.edge[link.at], l.height[link.at]);
+    sums.couple(head, arrays.head[other], l.edge[link.at], l.height[link.at], inward ? law.tilt[link.d] : -law.tilt[link.d]);
   });
   const bool solved = sums.diagonal > 0.0;
   arrays.scale[i] = 1.0 / root(solved ? sums.diagonal : 1.0);

@@ -85,6 +85,7 @@ void WaveStepper::move_links()
   });
   loops.each_listed(columns.listed_links, [&](const LinkPlace &link) { general_push(link); });
   run.lost += law.dt * (walls.force() + law.calm * moving());
+  if (run.is_moved) run.left_behind += left_behind();
   if (const WaveLoops::RowRange tight = balance(); tight.first < tight.last) {
     limit(tight);
     balance();
@@ -106,6 +107,17 @@ Vec3 WaveStepper::moving() const
     columns.further_links_of(d, [&](const LinkPlace &link) { sum[d] += l.height[link.at] * l.faster[link.at]; });
   }
   return {sum[0], sum[1], 0.0};
+}
+
+// Momentum along x and y that liquid loses against a basin that gains speed.
+Vec3 WaveStepper::left_behind() const
+{
+  double wet[2] = {0.0, 0.0};
+  columns.each_link([&](const LinkPlace &link) {
+    const WaveLinks &l = columns.arrays_of(link);
+    if (l.wet[link.at] > 0.0) wet[link.d] += l.height[link.at];
+  });
+  return {law.dt * law.tilt[0] * wet[0], law.dt * law.tilt[1] * wet[1], 0.0};
 }
 
 // Sums the units into spans and out of them. Returns the rows from the first to the last in which some span must be limited.

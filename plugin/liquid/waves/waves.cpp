@@ -22,7 +22,7 @@ double Waves::update(double dt, double share)
 {
   if (run.resting) return dt;
   const double gone = stepper.update(dt, share);
-  if (stepper.hardly_flows()) cut.come_to_rest();
+  if (!run.is_moved && stepper.hardly_flows()) cut.come_to_rest();
   return gone;
 }
 

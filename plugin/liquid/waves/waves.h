@@ -63,6 +63,8 @@ class Waves {
   // give() and take().
   Vec3 take_lost() { return std::exchange(run.lost, Vec3{}); }
   Vec3 take_came() { return std::exchange(run.came, Vec3{}); }
+  // Momentum, as seen in the basin, that liquid has lost because the basin gained speed.
+  Vec3 take_left_behind() { return std::exchange(run.left_behind, Vec3{}); }
 
   // Everything that later updates depend on, as it is between updates.
   std::vector<std::uint8_t> state() const;

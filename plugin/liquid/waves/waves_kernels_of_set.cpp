@@ -104,7 +104,7 @@ template <class Vector> void open_links(const WaveArrays &a, const WaveLaw &law,
 {
   const long along = d == 0 ? 1 : a.stride;
   each<Vector>(a, first, end, [&](long i) MDANIM_INLINED {
-    const LinkAt at{a.links[d], i, i, i + along};
+    const LinkAt at{a.links[d], d, i, i, i + along};
     open_at<Vector>(a, law, at, opening<Vector>(at));
   });
 }
@@ -134,14 +134,14 @@ template <class Vector> void advect(const WaveArrays &a, const WaveLaw &law, int
   });
 }
 
-// Calls f(links, link, other span, whether flux along the link comes in) for the links of span i in the order in which they are
-// summed: from below and from the left, to the right and up.
+// Calls f(direction, link, other span, whether flux along the link comes in) for the links of span i in the order in which they
+// are summed: from below and from the left, to the right and up.
 template <class F> MDANIM_ALWAYS_INLINE void links_of(const WaveArrays &a, long i, const F &f)
 {
-  f(a.links[1], i - a.stride, i - a.stride, true);
-  f(a.links[0], i - 1, i - 1, true);
-  f(a.links[0], i, i + 1, false);
-  f(a.links[1], i, i + a.stride, false);
+  f(1, i - a.stride, i - a.stride, true);
+  f(0, i - 1, i - 1, true);
+  f(0, i, i + 1, false);
+  f(1, i, i + a.stride, false);
 }
 
 template <class Vector, bool SOME_FULL>
@@ -151,10 +151,12 @@ MDANIM_ALWAYS_INLINE void assemble(const WaveArrays &a, const WaveLaw &law, long
   each<Vector>(a, first, end, [&](long i) MDANIM_INLINED {
     const Vector head = load<Vector>(a.head + i), volume = load<Vector>(a.volume + i);
     SpanSums<Vector> sums;
-    links_of(a, i, [&](const WaveLinks &links, long link, long other, bool inward) MDANIM_INLINED {
+    links_of(a, i, [&](int d, long link, long other, bool inward) MDANIM_INLINED {
+      const WaveLinks &links = a.links[d];
       const Vector beside = load<Vector>(a.head + other), wet = load<Vector>(links.wet + link);
       if (SOME_FULL) {
-        const Vector flux = load<Vector>(links.height + link) * load<Vector>(links.faster + link) * constant<Vector>(law.dt);
+        const Vector faster = load<Vector>(links.faster + link) - constant<Vector>(law.dt * law.tilt[d]);
+        const Vector flux = load<Vector>(links.height + link) * faster * constant<Vector>(law.dt);
         sums.look(head, beside, wet, load<Vector>(a.full + i), load<Vector>(a.full + other), inward ? flux : none - flux);
       } else {
         sums.look(head, beside, wet);
@@ -167,8 +169,10 @@ MDANIM_ALWAYS_INLINE void assemble(const WaveArrays &a, const WaveLaw &law, long
       sums.rhs = pick(full, full_rhs(law, volume, load<Vector>(a.capacity + i), load<Vector>(a.coming + i), sums.inflow), none);
       store(a.beside_full + i, sums.beside_full);
     }
-    links_of(a, i, [&](const WaveLinks &links, long link, long other, bool) MDANIM_INLINED {
-      sums.couple(head, load<Vector>(a.head + other), load<Vector>(links.edge + link), load<Vector>(links.height + link));
+    links_of(a, i, [&](int d, long link, long other, bool inward) MDANIM_INLINED {
+      const WaveLinks &links = a.links[d];
+      sums.couple(head, load<Vector>(a.head + other), load<Vector>(links.edge + link), load<Vector>(links.height + link),
+                  inward ? law.tilt[d] : -law.tilt[d]);
     });
     const auto solved = sums.diagonal > none;
     const Vector one = constant<Vector>(1.0), scale = one / root(pick(solved, sums.diagonal, one));
@@ -205,9 +209,8 @@ template <class Vector> void guess(const WaveArrays &a, bool again, long first, 
 template <class Vector, class X> MDANIM_ALWAYS_INLINE Vector apply(const WaveArrays &a, long i, const X &x)
 {
   Vector sum = x(i);
-  links_of(a, i, [&](const WaveLinks &links, long link, long other, bool) MDANIM_INLINED {
-    sum -= load<Vector>(links.couple + link) * x(other);
-  });
+  links_of(a, i,
+           [&](int d, long link, long other, bool) MDANIM_INLINED { sum -= load<Vector>(a.links[d].couple + link) * x(other); });
   return sum;
 }
 
@@ -271,7 +274,7 @@ template <class Vector> void push(const WaveArrays &a, const WaveLaw &law, int d
   const WaveLinks &links = a.links[d];
   const long along = d == 0 ? 1 : a.stride;
   sum_rows_to<Vector>(links.moving, a, first, end, [&](long i) MDANIM_INLINED {
-    const LinkAt at{links, i, i, i + along};
+    const LinkAt at{links, d, i, i, i + along};
     push_at<Vector>(a, law, at, opening<Vector>(at));
     return load<Vector>(links.height + i) * load<Vector>(links.faster + i);
   });
@@ -297,8 +300,8 @@ template <class Vector> bool balance(const WaveArrays &a, const WaveLaw &law, lo
   const Vector per_cell = constant<Vector>(law.units_per_cell), spare = constant<Vector>(0.25 * law.units_per_cell);
   each<Vector>(a, first, end, [&](long i) MDANIM_INLINED {
     SpanFluxes<Vector> fluxes;
-    links_of(a, i, [&](const WaveLinks &links, long link, long, bool inward) MDANIM_INLINED {
-      const Vector units = load<Vector>(links.units + link);
+    links_of(a, i, [&](int d, long link, long, bool inward) MDANIM_INLINED {
+      const Vector units = load<Vector>(a.links[d].units + link);
       fluxes.add(inward ? units : Vector{} - units);
     });
     store(a.net + i, fluxes.in - fluxes.out);

@@ -12,6 +12,7 @@ namespace mdanim {
 // A link, and the spans that it joins.
 struct LinkAt {
   const WaveLinks &links;
+  int d;    // its direction
   long link, a, b;
 };
 
@@ -47,7 +48,7 @@ MDANIM_ALWAYS_INLINE void push_at(const WaveArrays &arrays, const WaveLaw &law, 
   const long i = at.link;
   const auto level = levels_at<Real>(arrays, law, at);
   const auto flow = pushed(law, load<Real>(links.faster + i), load<Real>(links.wet + i), load<Real>(arrays.phi + at.a),
-                           load<Real>(arrays.phi + at.b), level.a, level.b, level.edge, opening);
+                           load<Real>(arrays.phi + at.b), level.a, level.b, level.edge, law.tilt[at.d], opening);
   store(links.u + i, flow.u);
   store(links.units + i, flow.units);
 }

@@ -23,7 +23,7 @@ from .marks import MarkActors, Marks
 from .overlay import Overlay
 from .palette import background_colors, is_dark, vertex_colors
 from .pieces import MovingMesh, box_edges, have_own_textures, lit_actor
-from .scenery import scenery
+from .scenery import scenery, way_of_walls
 from .surfaces import shaded_mesh
 from .tones import Tones
 from .window import fewer_pixels, lay_over, off_screen_window, rgba, silent, upright
@@ -124,6 +124,8 @@ class Painter:
         self._surface.move(np.concatenate([vertices, points]), np.concatenate([shown, normals]))
         if self._tank:
             self._tank.show(index, position, vertices, self._mesh.triangle)
+        if self._walls and self._way_of_walls:
+            self._walls.SetPosition(*self._way_of_walls(time))
         self._marks.show(position)
         # Before the picture: only one window can be drawn into at a time.
         self._light.cast()
@@ -217,6 +219,7 @@ class Painter:
         self._renderer.SetUseOIT(False)
         metadata, dark, sky = self.trajectory.metadata, is_dark(low), render.quality is Quality.FINAL
         there = scenery(metadata)
+        self._walls, self._way_of_walls = None, way_of_walls(self.trajectory.scene)
         self._pixels = width, height = tuple(n * self._finer for n in self.size)
         # In final quality the surface of a medium looks up what is behind it, so that has to be drawn before.
         through = medium(self.trajectory, render)
@@ -252,7 +255,8 @@ class Painter:
         if self._floor:
             self._actors.append(self._floor.actor)
         if there.walls is not None:
-            self._renderer.AddActor(box_edges(*there.walls, 0.8 if dark else 0.35))
+            self._walls = box_edges(*there.walls, 0.8 if dark else 0.35)
+            self._renderer.AddActor(self._walls)
         if self._tank:
             for actor in self._tank.inner:
                 self._renderer.AddActor(actor)

@@ -3,11 +3,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import NamedTuple
 
+from .. import features
 from ..features.liquid.kept import Pool
 from ..results.trajectory_metadata import TrajectoryMetadata
-from ..scene.scene import Vector
+from ..scene.scene import SceneRecord, Vector
 
 
 class Scenery(NamedTuple):
@@ -24,3 +26,9 @@ def scenery(metadata: TrajectoryMetadata) -> Scenery:
     """The scenery of a trajectory."""
     ground, walls, liquid = (metadata.kept.get(name) for name in ("ground", "walls", "liquid"))
     return Scenery(ground and ground.ground, walls and walls.walls, liquid)
+
+
+def way_of_walls(scene: SceneRecord | None) -> Callable[[float], Vector] | None:
+    """Displacement of the box of the walls at a time [s], in [m]; None where it stands, or where the scene is not known."""
+    planes = (p for e in features.effects() for p in e.of(scene).planes(scene)) if scene is not None else ()
+    return next((p.motion.at for p in planes if p.effect == "walls" and p.motion), None)

@@ -49,7 +49,9 @@ class Tank:
         self._heights = Lookup(*pool.shape[:2], smooth=look == "smooth")
         vertices = self._form.mesh(np.full(pool.shape[1::-1], pool.low[2]))[0]
         self._mesh = MovingMesh(len(vertices), self._form.triangle)
-        self.plate = lit_actor(plane(self._low, self._high, pool.low[2]), shading.FRAGMENT_SOLID, liquid=True, sky=sky)
+        self._floor = plane(self._low, self._high, pool.low[2])
+        self._corners = np.array([self._floor.GetPoint(n) for n in range(self._floor.GetNumberOfPoints())])
+        self.plate = lit_actor(self._floor, shading.FRAGMENT_SOLID, liquid=True, sky=sky)
         """The tank's floor, opaque."""
         self.plate.GetProperty().SetColor((0.28, 0.33, 0.37) if dark else (0.74, 0.78, 0.81))
         self._foam = Foam(pool.grid, trajectory.dt * trajectory.steps_per_frame) if look == "smooth" else None
@@ -62,8 +64,8 @@ class Tank:
         self.skin = [*self.inner, *self.outer]
         """The liquid's own faces, and its drops."""
         glass = HAIR * np.linalg.norm(self._high - self._low) * np.array([1.0, 1.0, 0.0])
-        edges = box_edges(self._low - glass, self._high + glass, 0.85 if dark else 0.25, 0.55, 2.0)
-        self.actors = [*self.outer, edges]
+        self._edges = box_edges(self._low - glass, self._high + glass, 0.85 if dark else 0.25, 0.55, 2.0)
+        self.actors = [*self.outer, self._edges]
         """Translucent actors, in the order in which they are drawn, except the inner faces."""
         if look == "smooth":
             self._rim = MovingLine(len(self._form.rim), (1.0, 1.0, 1.0), 2.0)
@@ -131,6 +133,8 @@ class Tank:
             triangle: their corners, counter-clockwise seen from outside, shape (T, 3).
         """
         smooth, raw, drops = self._liquid(frame)
+        way = self._move(frame)
+        position, vertices = position - way, vertices - way  # in the frame of the basin, until all is drawn
         grid, ponds = self._trajectory.liquid.grid, None
         if self._look == "smooth":
             smooth, raw, ponds = parted(grid, smooth, raw, vertices, triangle)
@@ -138,17 +142,17 @@ class Tank:
         if self._look == "smooth":
             self._form.move_aside(points, overhang(grid, smooth, position))
         points[:, :2] += HAIR * ((self._low + self._high)[:2] / 2 - points[:, :2])
-        self._mesh.move(points, normals)
+        self._mesh.move(points + way, normals)
         if self._spray:
             rows = droplets(drops, max(grid.cell))
             balls = Drops(max(1, len(rows)), self._fine)
             round_ = balls.mesh(rows)
             self._spray.reshape(len(round_[0]), balls.triangle)
-            self._spray.move(*round_)
+            self._spray.move(round_[0] + way, round_[1])
         if self._look == "smooth":
             rim = points[self._form.rim]
             rim[:, :2] += np.sign((self._low + self._high)[:2] / 2 - rim[:, :2]) * self._rim_inside
-            self._rim.move(rim, self._rim_opacity(smooth, raw))
+            self._rim.move(rim + way, self._rim_opacity(smooth, raw))
             # There are no blocks where it is dry.
             self._dry.fill(dry_spots(grid, smooth, raw, vertices, triangle))
         # Things seen through a column without a value are seen through liquid all the same.
@@ -157,7 +161,7 @@ class Tank:
         if dry.any():
             # Under a hull there is liquid.
             top = np.where(dry, undersides(grid, position), top)
-        self._show_ponds(ponds)
+        self._show_ponds(ponds, way)
         level, bottom = (ponds.level, ponds.bottom) if ponds else (top, np.full(top.shape, np.inf))
         self._heights.fill(np.stack([top, level, np.minimum(bottom, self._high[2])], axis=-1))
         if self._foam:
@@ -170,12 +174,26 @@ class Tank:
             uniforms.SetUniformf("liquidTop", float(max(top.max(), level[bottom < level].max(initial=-np.inf))))
             uniforms.SetUniformf("liquidLow", float(top.min()))
 
-    def _show_ponds(self, ponds: Ponds | None) -> None:
+    def _move(self, frame: int) -> np.ndarray:
+        """Move the tank to a frame. Returns the displacement of a basin that moves [m], shape (3,)."""
+        way = self._trajectory.liquid_way(frame)
+        if self._trajectory.liquid.moves:
+            self._edges.SetPosition(*way)
+            for n, corner in enumerate(self._corners + way):
+                self._floor.GetPoints().SetPoint(n, corner)
+            self._floor.GetPoints().Modified()
+            for actor in self._through:
+                uniforms = actor.GetShaderProperty().GetFragmentCustomUniforms()
+                uniforms.SetUniform3f("basinLow", (self._low + way).tolist())
+                uniforms.SetUniform3f("basinHigh", (self._high + way).tolist())
+        return way
+
+    def _show_ponds(self, ponds: Ponds | None, way: np.ndarray) -> None:
         """Have a sheet for ponds, one without triangles if there are none."""
         if ponds:
             points, normals, triangle = self._form.pond(ponds.level, ponds.quads)
             self._pond.reshape(len(points), triangle)
-            self._pond.move(points, normals)
+            self._pond.move(points + way, normals)
             self._beside_ponds.fill(ponds.hidden)
         elif self._pond.data.GetNumberOfPolys():
             self._pond.reshape(1, np.zeros((0, 3)))

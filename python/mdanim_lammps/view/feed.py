@@ -24,7 +24,7 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import OutputError
-from ..features.liquid.kept import DROPS, HEIGHT, RAW
+from ..features.liquid.kept import DROPS, HEIGHT, RAW, WAY
 from ..picture.camera import FIELD_OF_VIEW, Action, CameraPath, action_of, automatic_view
 from ..picture.floor import grid_spacing
 from ..picture.foam import Foam
@@ -212,6 +212,7 @@ class Feed:
         """A frame. Raises OutputError where it is not there or damaged, IndexError."""
         frames = self.frames
         x, center, speed = (frames.value(name, n) for name in ("position", "center_of_mass", "center_of_mass_velocity"))
+        x, center = x - self._way(n), center - self._way(n)
         vertices = self.vertices(x, self.gone(n))
         check_places(frames.path, vertices, center, speed, frame=n)
         low, size = self._boxes(vertices)
@@ -239,7 +240,7 @@ class Feed:
             return None
         grid, (smooth, raw, _) = self.scenery.liquid.grid, self._liquid(n)
         read = lambda k: (*without_puddles(grid, *self._liquid(k)[:2]), self.drops(k))
-        vertices = self.vertices(self.frames.value("position", n), self.gone(n))
+        vertices = self.vertices(self.frames.value("position", n) - self._way(n), self.gone(n))
         smooth, cut = one_sheet(grid, *without_puddles(grid, smooth, raw), vertices, self.triangle)
         low, high = self.scenery.liquid.low[2], self.scenery.liquid.high[2]
         height = np.rint(np.clip((smooth - low) / (high - low), 0.0, 1.0) * STEPS).astype("<u2")
@@ -253,6 +254,11 @@ class Feed:
             return np.zeros((0, 4), np.float32)
         rows = self.frames.value(DROPS.table, n)
         return rows[rows[:, 3] > 0.0]
+
+    def _way(self, n: int) -> np.ndarray:
+        """Displacement of a basin that moves [m], shape (3,): the page shows all in its frame."""
+        liquid = self.scenery.liquid
+        return self.frames.value(WAY.table, n)[0] if liquid is not None and liquid.moves else np.zeros(3)
 
     def _liquid(self, n: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Smooth and raw heights, and drops, of a frame."""

@@ -92,8 +92,20 @@ object rope  { shape rope from (-20, -20, 1) cm to (10, -20, 1) cm thickness 2 c
 object ball  { shape sphere 6 cm         position (33, 10, 12) cm  density 900   elasticity rigid }
 control { time 0.08 s  frames 100 fps  resolution 4 cm  friction 0.4 }
 """
+SLOSHED = """
+gravity (0, 0, -9.81) m/s^2
+liquid water { basin from (-30, -20, 0) cm to (30, 20, 40) cm density 1000 kg/m^3 level 20 cm
+  drive oscillation (3, 0, 0) cm frequency 3 Hz  key 0.05 s by (0, 2, 0) cm }
+object duck { shape box (8, 8, 8) cm position (-20, 0, 21) cm density 500 elasticity 300 kPa }
+object cork { shape box (8, 8, 8) cm position (25, 10, 20) cm density 300 elasticity rigid }
+object post { shape box (8, 8, 40) cm position (0, 0, 10) cm density 300 elasticity 300 kPa hold all }
+object sunk { shape box (8, 8, 8) cm position (15, -10, 4.005) cm density 3000 elasticity rigid }
+object far { shape box (8, 8, 8) cm position (20, 0, 50) cm density 500 elasticity 300 kPa }
+control { time 0.08 s  frames 100 fps  resolution 4 cm  friction 0.4 }
+"""
 SCENES = {
-    "elastic": SCENE, "rigid": RIGID, "wet": WET, "pushed": PUSHED, "released": RELEASED, "shaken": SHAKEN
+    "elastic": SCENE, "rigid": RIGID, "wet": WET, "pushed": PUSHED, "released": RELEASED, "shaken": SHAKEN,
+    "sloshed": SLOSHED,
 }  # fmt: skip
 CASES = (
     matrix((2,), ["central"], name="all move ", rotate=True)

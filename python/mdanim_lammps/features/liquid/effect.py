@@ -17,6 +17,7 @@ from ...model.planes import Plane, box_sides
 from ...scene.formatting import number, say, whole
 from ..contact.planes import Sides
 from ..contact.surface import touching_planes
+from ..drives.shift import motion_of
 from . import frames
 from .balance import UNEVEN, full_basin, load_energy
 from .basin import check_basin, leaky_walls, liquid_level, open_hulls, plan_grid, too_large
@@ -82,8 +83,10 @@ class BasinSides(Sides):
     def planes(self, scene):
         if scene.liquid is None:
             return ()
-        floor = Plane(self.name, "the basin", 2, 1, scene.liquid.low[2], "below the floor of the basin")
-        return (*box_sides(self.name, scene.liquid, 2, "the basin"), floor)
+        motion = motion_of(self.name, *_motion(scene))
+        beyond = "below the floor of the basin"
+        floor = Plane(self.name, "the basin", 2, 1, scene.liquid.low[2], beyond, motion=motion)
+        return (*box_sides(self.name, scene.liquid, 2, "the basin", motion), floor)
 
     def region(self, scene):
         (x0, y0, z0), (x1, y1, _) = scene.liquid.low, scene.liquid.high
@@ -222,7 +225,7 @@ class LiquidAutomaton(Effect):
             f"volume {liquid.volume!r}" if liquid.volume is not None else f"level {liquid.level!r}",
             *(["fill fill"] if fill else []),
             f"gravity {-scene.gravity[2]!r}",
-            self.words(scene, "still standing driven driven" if moved(context) else "still held"),
+            self.words(scene, _held(context)),
             f"seed {scene.control.seed}",
         ]
         group = ["group held type 5:8", *(["group standing subtract held driven"] if moved(context) else [])]
@@ -304,6 +307,17 @@ def _light(scene, system) -> list[Problem]:
 def calm_time(scene) -> float:
     """Time in which waves die where the scene does not tell it [s]."""
     return CALM * math.sqrt((liquid_level(scene.liquid) - scene.liquid.low[2]) / -scene.gravity[2])
+
+
+def _held(context) -> str:
+    """Words about what is held, and about a basin that moves."""
+    words = "still standing driven driven" if moved(context) else "still held"
+    motion = motion_of(BasinSides.name, *_motion(context.scene))
+    return f"{words} moving {motion.fix}" if motion else words
+
+
+def _motion(scene):
+    return scene.liquid.drive, scene.liquid.keys, scene.control.time
 
 
 def _flows(liquid):

@@ -15,7 +15,7 @@ from ...errors import Problem, SetupError
 from ...model.grid import Grid
 from ...scene.formatting import exact, number, say
 from ...scene.scene import SceneRecord
-from .kept import DROPS, HEIGHT, MOST_DROPS, RAW
+from .kept import DROPS, HEIGHT, MOST_DROPS, RAW, WAY
 from .ledger import CELLS, CREST, DUE, MOMENTA
 from .ledger import WAVES as ENERGY
 from .record import LiquidModel
@@ -28,6 +28,8 @@ MOMENTUM, TO_BASIN = ("momentum_x", "momentum_y"), ("basin_impulse_x", "basin_im
 TO_SOLIDS, CAME = ("solid_impulse_x", "solid_impulse_y"), ("came_x", "came_y")
 """In the fix's vector, along x and y [N s]: the liquid's momentum; the impulses that it has given to its basin with all that is
 held, and to what moves; the momentum that came with liquid, less what went with it."""
+ALONG = ("way_x", "way_y")
+"""In the fix's vector: displacement of the basin from where it is at the start [m]."""
 CLOCK = "clock"
 """In the fix's vector: time that a liquid with momentum has gone through, or has slept at rest [s]."""
 OVERFLOW = 0.05
@@ -58,6 +60,7 @@ def fields(scene: SceneRecord) -> tuple[Field, ...]:
         HEIGHT,
         RAW,
         *(DROPS for _ in range(bool(scene.liquid.drops))),
+        *(WAY for _ in range(scene.liquid.moves)),
     )
 
 
@@ -73,6 +76,8 @@ def tell(readings: Readings) -> Fields:
     }
     if scene.liquid.drops:
         found[DROPS.name] = drops(readings)
+    if scene.liquid.moves:
+        found[WAY.name] = np.array([[*(readings.fix_value(FIX, n) for n in ALONG), 0.0]])
     if is_wavy(scene):
         found[TIME] = readings.fix_value(FIX, CLOCK)
         found |= dict(zip(MOMENTA, momenta(readings)))

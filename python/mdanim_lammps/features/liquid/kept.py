@@ -23,6 +23,8 @@ RAW = Field("liquid_raw", "m", per="column", dtype="float32", table="liquid/raw"
 """Top of the topmost liquid cell of each column: NaN where a solid hides it, minus infinity where one keeps the column dry."""
 DROPS = Field("liquid_drops", "m", per="row", dtype="float32", shape=(4,), table="liquid/drops")
 """Middle and radius of each drop; a radius of 0 is none."""
+WAY = Field("liquid_way", "m", per="row", shape=(3,), table="liquid/way")
+"""Displacement of a basin that moves from where it is at the start, one row."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,7 +32,7 @@ class Pool(KeptRecord):
     """The liquid, and the cells of the basin that holds it."""
 
     GROUP = "observables/liquid"
-    TABLES = (HEIGHT, RAW, DROPS)
+    TABLES = (HEIGHT, RAW, DROPS, WAY)
     UNLIKE = "liquids or basins"
 
     name: str
@@ -46,6 +48,8 @@ class Pool(KeptRecord):
     """``#rrggbb``, or empty where the renderer chooses."""
     most_drops: int = 0
     """Drops that a frame has room for."""
+    moves: bool = False
+    """Whether frames have the displacement of the basin."""
 
     @property
     def grid(self) -> Grid:
@@ -57,19 +61,20 @@ class Pool(KeptRecord):
         if grid is None or scene.liquid is None:
             return None
         liquid, drops = scene.liquid, MOST_DROPS if scene.liquid.drops else 0
-        return cls(liquid.name, grid.low, grid.high, grid.shape, liquid.density, liquid.color or "", drops)
+        return cls(liquid.name, grid.low, grid.high, grid.shape, liquid.density, liquid.color or "", drops, liquid.moves)
 
     @classmethod
     def read(cls, attributes, shapes):
         own = [attributes[word] for word in ("name", "low", "high", "shape", "density", "color")]
-        return cls(*own, shapes.get(DROPS.table, (0,))[0])
+        return cls(*own, shapes.get(DROPS.table, (0,))[0], WAY.table in shapes)
 
     def write(self):
         return {word: getattr(self, word) for word in ("name", "low", "high", "shape", "density", "color")}
 
     def fields(self):
         columns = [replace(field, counts=self.shape[1::-1]) for field in (HEIGHT, RAW)]
-        return (*columns, *(replace(DROPS, counts=(self.most_drops,)) for _ in range(bool(self.most_drops))))
+        drops = [replace(DROPS, counts=(self.most_drops,))] if self.most_drops else []
+        return (*columns, *drops, *([replace(WAY, counts=(1,))] if self.moves else []))
 
     def fault(self):
         low, high, shape = (np.array(corner) for corner in (self.low, self.high, self.shape))
@@ -121,6 +126,10 @@ class Track:
             return np.zeros((0, 4), np.float32)
         rows = self._of_liquid(DROPS, frame)
         return rows[rows[:, 3] > 0.0]
+
+    def liquid_way(self, frame: int) -> np.ndarray:
+        """Displacement of the basin from where it is at the start [m], shape (3,): the grid of the liquid is there."""
+        return self._of_liquid(WAY, frame)[0] if self.liquid is not None and self.liquid.moves else np.zeros(3)
 
     @cached_property
     def liquid_levels(self) -> np.ndarray:

@@ -7,7 +7,7 @@ import numpy as np
 
 from ...effects.measured import Glance, Measurable, Measured, Of, Recorded
 from ...model.grid import Grid
-from .kept import HEIGHT
+from .kept import HEIGHT, WAY
 from .ledger import CELLS, CREST, DUE, WAVES
 
 
@@ -18,7 +18,8 @@ def residual(m: Measured, of: Of) -> np.ndarray:
 
 
 def height(m: Measured, of: Of) -> np.ndarray:
-    """Height of the smooth surface at a place [m], linear between the middles of columns."""
+    """Height of the smooth surface at a place [m], linear between the middles of columns; in a basin that moves the place goes
+    along."""
     return np.array([height_at(of.argument, m.grid, m.trajectory.liquid_height(k)) for k in range(len(m.times))])
 
 
@@ -85,11 +86,16 @@ def immersed_depth(points: np.ndarray, grid: Grid, height: np.ndarray) -> float:
 
 
 def _draft(g: Glance) -> float:
-    return immersed_depth(g.model.surface.vertices(g.own), g.context.grid, _height(g))
+    return immersed_depth(g.model.surface.vertices(g.own) - _way(g), g.context.grid, _height(g))
 
 
 def _immersed(g: Glance) -> float:
-    return immersed_share(g.own[g.model.hexahedron], g.context.grid, _height(g))
+    return immersed_share(g.own[g.model.hexahedron] - _way(g), g.context.grid, _height(g))
+
+
+def _way(g: Glance) -> np.ndarray:
+    """Displacement of the basin [m], shape (3,)."""
+    return g.fields[WAY.name][0] if WAY.name in g.fields else np.zeros(3)
 
 
 def _height(g: Glance) -> np.ndarray:

@@ -18,7 +18,8 @@ def drawn(trajectory):
 
     @lru_cache(maxsize=1)
     def mesh(frame):
-        return sheet.mesh(trajectory.liquid_height(frame).astype(float))
+        vertices, normals = sheet.mesh(trajectory.liquid_height(frame).astype(float))
+        return vertices + trajectory.liquid_way(frame), normals
 
     color = tuple(map(float, rgb(pool.color or LIQUID)))
     return (

@@ -11,6 +11,7 @@ from typing import ClassVar
 from ...errors import Span
 from ...scene.limits import Limit
 from ...scene.schema import BOX, COLOR, OneOf, Rule, Vector, Worded, Words, setting
+from ..drives.words import DriveOscillation, DriveVelocity, ShiftKey
 
 DROPS = Limit("drops", 1.0, way_out="1 lets all of it fly")
 SWEEPS = Limit("sweeps", 4096, way_out="write sweeps auto, which takes 8 for each cell that the fastest solid travels")
@@ -137,6 +138,15 @@ class Liquid(Worded):
         "auto | <n>", "Sweeps of the automaton per update; not with `model waves`.",
         "4", Rule.COUNT, default=None, limit=SWEEPS)  # fmt: skip
     """Automaton sweeps per update; None is ``auto``."""
+    drive: tuple[DriveVelocity | DriveOscillation, ...] = setting(
+        None,
+        "With `model waves`: the basin moves as a whole along x and y, at a velocity or to and fro as of objects, and the liquid "
+        "in it sloshes. At the start the liquid is at rest in its basin. Several add up.",
+        "oscillation (2, 0, 0) cm frequency 0.8 Hz", default=(), many=True,
+        codec=OneOf(DriveVelocity, DriveOscillation))  # fmt: skip
+    keys: tuple[ShiftKey, ...] = setting(
+        None, "The same through displacements from where it is at the start; `drive` adds to it.",
+        "1 s by (0.5, 0, 0) m", default=(), name="key", many=True, codec=OneOf(ShiftKey))  # fmt: skip
     color: str | None = setting("<color>", f"Colour in pictures: {COLOR}", "deepskyblue", default=None)
     """``#rrggbb``; None lets the renderer choose."""
     spans: Mapping[str, Span] = field(default_factory=dict, compare=False, repr=False)
@@ -145,3 +155,8 @@ class Liquid(Worded):
     def fed(self) -> bool:
         """Whether liquid comes from outside or goes there."""
         return bool(self.wave or self.current or self.inflow or self.drain)
+
+    @property
+    def moves(self) -> bool:
+        """Whether the basin moves."""
+        return bool(self.drive or self.keys)

@@ -10,6 +10,8 @@ from typing import Any
 from ...scene.formatting import say, vector
 from ...scene.schema import Block, Observable, setting
 from ...scene.units import show
+from ..contact.words import ContactModel
+from ..drives.words import DriveOscillation, ShiftKey, check_shift
 from .record import Liquid
 
 SWITCHES = {
@@ -87,6 +89,9 @@ def width(scene) -> tuple[float, str] | None:
 def check(v: Any, top: Mapping, held: Mapping) -> None:
     """Check further needs of a scene with a liquid; ``held`` are the records of blocks."""
     gravity_fits(v, v.blocks("liquid"))
+    if held["liquid"] and held["liquid"].moves and held["control"] and held["control"].contact_model is ContactModel.PAPER:
+        span = held["liquid"].spans.get("drive") or held["liquid"].spans.get("key")
+        v.problem(span, "the basins of contact-model paper stand", "take contact-model paper out of control")
     ground_below(v, held["liquid"])
     within_basin(v, held["liquid"])
 
@@ -153,6 +158,7 @@ def check_liquid(v: Any, block: Any, liquid: Any) -> Any:
         cause += f"{say(bottom[2], 'm', 6)} to {say(top[2], 'm', 6)}"
         v.problem(block.first("level").span(0), cause, "the level is a height, not a depth")
     check_waves(liquid, block, v.problem)
+    check_motion(v, block, liquid)
     if liquid.model.value == "paper":
         v.problem(
             block.first("model").span(0),
@@ -161,6 +167,27 @@ def check_liquid(v: Any, block: Any, liquid: Any) -> Any:
             severity="warning",
         )
     return liquid
+
+
+def check_motion(v: Any, block: Any, liquid: Any) -> None:
+    """A basin moves along x and y, with a liquid that has momentum and to which nothing comes."""
+    said = [*zip(block.settings.get("drive", ()), liquid.drive), *zip(block.settings.get("key", ()), liquid.keys)]
+    if not said:
+        return
+    check_shift(v, f"the basin of {liquid.name}", said)
+    first = said[0][0]
+    for s, one in said:
+        up = (one.by if isinstance(one, ShiftKey) else one.way if isinstance(one, DriveOscillation) else one.velocity)[2]
+        if up:
+            cause = f"the basin of {liquid.name} moves up and down, which would change the weight of the liquid"
+            v.problem(s.span(), cause, "write 0 for z: a basin moves along x and y")
+    if liquid.model.value != "waves":
+        cause = f"the basin moves, and a liquid of model {liquid.model.value} has no momentum: it would stay level"
+        v.problem(first.span(), cause, "leave the model out, which is waves then")
+    for word in ("wave", "current", "inflow", "drain", "drops"):
+        if getattr(liquid, word):
+            cause = f"the basin moves, and {word} is of one that stands"
+            v.problem(block.first(word).span(), cause, f"leave {word} out, or what moves the basin")
 
 
 def check_waves(liquid: Any, block: Any, problem: Any) -> None:
