@@ -13,7 +13,7 @@ struct ContactPlane {
   double sign;    // 1: objects belong above, -1: below
   double at;      // at the start [m]
   bool moves = false;
-  // Of a plane that moves: displacement from the start, that since it was moved last, as lists are made within a step, and the
+  // Displacement of a plane that moves from the start, that since it was moved last, as lists are made within a step, and the
   // way of the step [m].
   Vec3 shift{}, way{}, of_step{};
 

@@ -69,6 +69,7 @@ FixMdanimContact::FixMdanimContact(LAMMPS *lmp, int narg, char **arg) : FixBase(
   const std::vector<Keyword> known = keywords();
   for (int iarg = 6; iarg < narg;) iarg += take_keyword(lmp, STYLE, known, iarg, narg, arg);
   force_reneighbor = moving.any();
+  next_reneighbor = -1;
   if (!settings.objects && settings.planes.empty())
     error->all(FLERR, "fix mdanim/contact: nothing can touch; write objects, or plane x|y|z lo|hi and its place");
 }

@@ -130,7 +130,7 @@ bool FixMdanimLiquid::is_due()
 // Square of the speed of the fastest solid near the liquid; -1 without any.
 double FixMdanimLiquid::fastest_near()
 {
-  // What stands in a basin that moves is as fast as the basin, wherever it is.
+  // A solid that stands in a basin that moves is as fast as the basin, wherever it is.
   const double least = moving.any() ? dot(basin->velocity(), basin->velocity()) : -1.0;
   if (near.none()) return least;
   const Lap lap(look_seconds);

@@ -101,8 +101,8 @@ END = "control { time 1 s resolution 2.5 cm }\n"
 
 
 def test_a_basin_at_a_constant_speed_is_as_one_that_stands(prepared):
-    """What floats in it at the same speed is where it is in one that stands, and so is the surface: no drag, lift or push depends
-    on the speed of the basin."""
+    """An object that floats in it at the same speed is where it is in one that stands, and so is the surface: no drag, lift or push
+    depends on the speed of the basin."""
     found = []
     for speed in (0.0, 0.3):
         motion = f"drive velocity ({speed}, 0, 0) m/s" if speed else ""
@@ -119,8 +119,8 @@ def test_a_basin_at_a_constant_speed_is_as_one_that_stands(prepared):
 
 
 def test_what_floats_goes_along_and_the_books_close(prepared):
-    """A basin on a path takes its liquid and what floats in it; the ledger closes, and the momentum, in the frame of the basin, as
-    in one that stands: within 8 per cent of what walls have given."""
+    """A basin on a path takes its liquid and what floats in it; the ledger closes. The momentum in the frame of the basin closes
+    within 8 per cent of what walls have given, as in one that stands."""
     ready = prepared((WATER.replace("MOTION", "key 1 s by (0.5, 0, 0) m") + FLOAT + BALL).replace("V,", "0,") + END)
     dt = ready.certificate.timestep
     with Instance(ready.plan) as instance:
@@ -140,7 +140,7 @@ def test_what_floats_goes_along_and_the_books_close(prepared):
 
 
 def test_a_held_post_stands_in_a_basin_that_passes(prepared):
-    """What is held in the world moves in the basin, and makes waves there; nothing of the liquid is lost."""
+    """An object that is held in the world moves in the basin, and makes waves there; nothing of the liquid is lost."""
     post = "object post { shape box (10, 10, 40) cm position (50, 20, 15) cm density 500 elasticity 1 MPa hold all }\n"
     ready = prepared(WATER.replace("MOTION", "drive oscillation (10, 0, 0) cm frequency 0.6 Hz") + post + END)
     with Instance(ready.plan) as instance:

@@ -57,13 +57,10 @@ WaveBasin::WaveBasin(const Shape &shape, double g, double calm, double spray, st
   drops.share = spray;
 }
 
-// A level liquid that goes along rises by -a/g along the acceleration.
 void WaveBasin::accelerate(const Vec3 &mean)
 {
-  waves.run.is_moved = true;
-  waves.run.resting = false;
-  waves.run.law.tilt[0] = mean.x * shape.cell.x / (g * shape.cell.z);
-  waves.run.law.tilt[1] = mean.y * shape.cell.y / (g * shape.cell.z);
+  const double per_g = 1.0 / (g * shape.cell.z);
+  waves.tilt(per_g * mean.x * shape.cell.x, per_g * mean.y * shape.cell.y);
 }
 
 // --- makers of waves ---

@@ -71,6 +71,12 @@ class Waves {
   // Sets the state. Throws std::runtime_error, and changes nothing, when it is damaged or not of such a basin.
   void set_state(const std::uint8_t *bytes, std::size_t size);
 
+  // Sets how the acceleration of a basin that moves acts: heads rise by this from a column to the next.
+  void tilt(double along_x, double along_y)
+  {
+    run.is_moved = true, run.resting = false;
+    run.law.tilt[0] = along_x, run.law.tilt[1] = along_y;
+  }
   bool at_rest() const { return run.resting; }                // nothing will move before a solid does
   void use(const Threads &now) { run.threads = now; }         // for updates; the bits are the same for any number of them
   void use(const WaveKernels &now) { run.kernels = &now; }    // those of any set of instructions give the same bits
