@@ -101,8 +101,8 @@ END = "control { time 1 s resolution 2.5 cm }\n"
 
 
 def test_a_basin_at_a_constant_speed_is_as_one_that_stands(prepared):
-    """An object that floats in it at the same speed is where it is in one that stands, and so is the surface: no drag, lift or push
-    depends on the speed of the basin."""
+    """An object that floats in it at the same speed is where it is in one that stands, and so is the surface: no drag, lift
+    or push depends on the speed of the basin."""
     found = []
     for speed in (0.0, 0.3):
         motion = f"drive velocity ({speed}, 0, 0) m/s" if speed else ""
