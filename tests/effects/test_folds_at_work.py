@@ -49,6 +49,23 @@ def test_two_sheets_lie_on_each_other(thickness):
     assert 0.8 * pair.reach < gap.min() and gap.max() < 1.05 * pair.reach
 
 
+@pytest.mark.parametrize(
+    ("block", "friction", "damping"),
+    [
+        ("", 0.4, 0.3),
+        ("contact upper lower { friction 0.1 }", 0.1, 0.3),
+        ("contact lower upper { friction 0 }", 0.0, 0.0),
+        ("contact lower upper { contact-damping 0.7 }", 0.4, 0.7),
+        ("contact upper other { friction 0.9 }", 0.4, 0.3),
+    ],
+)
+def test_a_contact_block_holds_for_layers(block, friction, damping):
+    """As it does for all other contact: the block counts in place of what follows from both objects."""
+    text = "".join(sheet(name, "(0.2, 0.2)", f"(0, 0, {z})") for name, z in (("lower", 0.03), ("upper", 0.08), ("other", 0.13)))
+    found = {(p.first, p.second): (p.friction, p.damping) for p in pairs(ready_of(DOWN + text + block + "\n").context)}
+    assert found[0, 1] == pytest.approx((friction, damping)) and len(found) == 3
+
+
 def nearest_parts(ready, x: np.ndarray) -> float:
     """Least distance of particles of the first object that are far from each other in the shape without load, over the reach."""
     (pair,) = pairs(ready.context)

@@ -22,6 +22,7 @@ def test_arms_that_swing_through_each_other_are_told(prepared, tmp_path):
     """Once, at the scene line, with time and place: below the clamp, in the middle. A stiffer bar bends and is not told of."""
     (warning,) = [w for w in simulate(prepared(bar()), tmp_path).warnings if "folds through itself" in w.message]
     assert warning.message.startswith("bar folds through itself, from t = 0.") and warning.line == 2
+    assert warning.hint.startswith("write touches-itself yes in it, or")
     (tmp_path / "stiff").mkdir()
     stiff = simulate(prepared(bar(young=200.0)), tmp_path / "stiff")
     assert not [w for w in stiff.warnings if "folds through itself" in w.message]

@@ -233,12 +233,17 @@ class Guard:
         step, place, most = self.folds[m]
         others = f" and {len(self.folds) - 1} more" if len(self.folds) > 1 else ""
         near = "(" + ", ".join(number(c, 3) for c in place.tolist()) + ") m"
+        spans, acts = scene.solids[m].spans, "contact acts between objects, not between parts of one"
+        ways = "write touches-itself yes in it, or a higher elasticity, a lower density, speed or height"
+        if scene.solids[m].touches_itself.value == "yes":
+            acts = "its parts touch each other, and came too fast for that, or are too near each other in its shape"
+            ways = "write a higher elasticity, a lower density, speed or height, or a finer resolution"
         return [
             Problem(
-                scene.solids[m].spans.get("elasticity"),
+                spans.get("elasticity"),
                 f"{self.ready.system.names[m]}{others} folds through itself, from t = {number(step * dt, 4)} s on near {near}: "
-                f"up to {most} of its particles lie among others of it; contact acts between objects, not between parts of one",
-                "write a higher elasticity, a lower density, speed or height, or several objects in place of one",
+                f"up to {most} of its particles lie among others of it; {acts}",
+                ways,
                 severity="warning",
             )
         ]

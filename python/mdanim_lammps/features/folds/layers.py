@@ -15,7 +15,7 @@ from ...model.model import Model
 from ...model.rope import section
 from ...scene.once import once_for
 from ...scene.scene import Rope, SceneRecord, Sheet, Shell
-from ..contact.pairs import damping, frictions
+from ..contact.pairs import damping, frictions, pair_rules
 from .words import Itself
 
 REACH = 1.0 / 3.0
@@ -162,10 +162,12 @@ def may_meet(swept: Any, i: int, j: int) -> bool:
 def _pairs(context: Context) -> Iterator[LayerPair]:
     scene, names = context.scene, context.system.names
     mu_of = dict(zip((s.name for s in scene.solids), frictions(scene)))
+    told = {(i, j): rule for i, j, *rule in pair_rules(scene, names)}
     for a, b in _numbers(context):
         one, other = layers(context)[a], layers(context)[b]
         h = max(one.spacing, other.spacing)
         reach = max(one.half + other.half, REACH * h)
         k = STIFF * scene.control.contact_stiffness * 2.0 * one.link * other.link / (one.link + other.link)
         mu = sqrt(mu_of[names[a]] * mu_of[names[b]])
-        yield LayerPair(a, b, reach, k, mu, damping(scene) if mu > 0.0 else 0.0, APART * h + 2.0 * reach if a == b else 0.0)
+        mu, beta = told.get((a, b), (mu, damping(scene) if mu > 0.0 else 0.0))
+        yield LayerPair(a, b, reach, k, mu, beta, APART * h + 2.0 * reach if a == b else 0.0)

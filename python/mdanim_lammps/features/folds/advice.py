@@ -1,0 +1,94 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Remarks of ``check`` on layers that may meet so fast that they pass through each other."""
+
+from __future__ import annotations
+
+from math import sqrt
+
+import numpy as np
+
+from ...effects.context import Context
+from ...effects.envelope import Envelope
+from ...errors import Problem
+from ...scene.formatting import number, say
+from ..contact.words import CONTACT_STIFFNESS
+from .layers import LayerPair, layers, pairs
+
+EFFECT = "folds"
+"""The effect that has layers touch."""
+ONSET = 0.2
+"""Part of the reach over which the push of a contact begins, as in plugin/folds/law.h."""
+DEPTH = 0.5 * (1.0 - 0.5 * ONSET) ** 2 + ONSET**2 / 24.0
+"""g(R)/R^2, the energy of a contact at the distance 0, over k R^2."""
+
+
+def passing_speeds(context: Context, pair: LayerPair) -> tuple[float, float]:
+    """Relative speeds from which on parts of two layers pass through each other [m/s], if neither yields before: a particle that
+    comes alone, m v^2/2 = w k g(R), the least of both; and all of two sheets that meet flat, where the mass per area is
+    mu = a b/(a + b) and both push: mu v^2/2 = k g(R) (W_A + W_B), with the sum W of weights per area. Else both are equal."""
+    system, found, heaviest = context.system, [], 0.0
+    for m in (pair.first, pair.second):
+        layer = layers(context)[m]
+        mass = system.mass[system.first[m] + layer.particle]
+        if not system.still[m]:
+            heaviest = max(heaviest, float((mass / layer.weight).max()))
+        if layer.element.shape[1] == 3 and layer.half > 0.0:
+            a, b, c = layer.rest[layer.element.T]
+            area = 0.5 * float(np.linalg.norm(np.cross(b - a, c - a), axis=1).sum())
+            found.append((0.0 if system.still[m] else area / float(mass.sum()), float(layer.weight.sum()) / area))
+    energy = 2.0 * DEPTH * pair.stiffness
+    alone = pair.reach * sqrt(energy / heaviest)
+    if len(found) < 2:
+        return alone, alone
+    (one, weight), (other, more) = found
+    return alone, max(alone, pair.reach * sqrt(energy * (weight + more) * (one + other)))
+
+
+def notes(envelope: Envelope) -> list[Problem]:
+    """The two layers, or the one, that come the most too fast for their contact: a warning if they pass flat, a note if only
+    single particles do."""
+    if not any(effect.name == EFFECT for effect in envelope.on):
+        return []
+    context, speed = envelope.context, _Meeting(envelope)
+    found = [(speed.of(pair), *passing_speeds(context, pair), pair) for pair in pairs(context)]
+    if not found:
+        return []
+    fastest, alone, flat, pair = max(found, key=lambda row: row[0] / row[1])
+    if fastest <= alone:
+        return []
+    one, other = (envelope.system.names[m] for m in (pair.first, pair.second))
+    both = f"parts of {one}" if pair.first == pair.second else f"{one} and {other}"
+    through = f"layers that meet flat pass through each other from {say(flat, 'm/s')} on, " if flat > alone else ""
+    cause = f"{both} may meet at {say(fastest, 'm/s')}: {through}single particles from {say(alone, 'm/s')} on"
+    over = fastest / alone
+    ways = [f"write a speed or a height for less than {say(alone, 'm/s')}"]
+    thick = 1.02 * pair.reach * over
+    if thick <= max(layers(context)[m].spacing for m in (pair.first, pair.second)):
+        ways.append(f"a thickness of {say(thick, 'm')}" + ("" if one == other else " for both"))
+    if (stiff := 1.02 * envelope.scene.control.contact_stiffness * over**2) <= CONTACT_STIFFNESS.most:
+        ways.append(f"contact-stiffness {number(stiff)} in control")
+    severity = "warning" if fastest > flat else "note"
+    comes = max(pair.first, pair.second, key=lambda m: (speed.speed[m], -m))
+    return [Problem(envelope.place(comes, "velocity", "position"), cause, ", or ".join(ways), severity=severity)]
+
+
+class _Meeting:
+    """How fast layers may meet, by heights and velocities at the start."""
+
+    def __init__(self, envelope: Envelope):
+        reach, system = envelope.reach, envelope.system
+        self.g, self.fall, self.speed = reach.g, np.maximum(0.0, reach.fall), reach.speed
+        self.low, self.high = system.bounds(system.velocity)
+        below, above = system.bounds(system.position)
+        self.tall = np.where(system.still, 0.0, (above - below)[:, 2])
+        self.free = reach.free
+        self.driven = reach.acting.driven_at + reach.acting.given + reach.acting.thrown_at
+
+    def of(self, pair: LayerPair) -> float:
+        """[m/s]; parts of one object meet where some of it has been stopped, and the rest falls by its own height, too."""
+        i, j = pair.first, pair.second
+        if i == j:
+            return sqrt(float(self.speed[i]) ** 2 + 2.0 * self.g * float(self.tall[i]))
+        apart = np.maximum(0.0, np.maximum(self.high[i] - self.low[j], self.high[j] - self.low[i]))
+        start = float(np.linalg.norm(apart)) + float(self.driven[i] + self.driven[j])
+        return sqrt(start**2 + 2.0 * self.g * max(float(self.fall[k]) if self.free[k] else 0.0 for k in (i, j)))
