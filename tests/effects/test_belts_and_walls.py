@@ -103,7 +103,7 @@ def test_a_rope_on_a_belt_is_carried(prepared):
 
 
 def test_the_surface_runs_in_the_direction_that_is_written(prepared):
-    """Of a belt that is turned, and of one that is moved besides, whose speeds add up."""
+    """Along the world of a belt that is turned; speeds of one that is moved besides add up."""
     turned = belt("(0.3, 0, 0)", 0.5, more="orientation axis (0, 0, 1) angle 30 deg")
     both = belt("(0.3, 0, 0)", 0.5, more="drive velocity (-0.1, 0, 0) m/s")
     for first, speed in ((turned, 0.3), (both, 0.2)):

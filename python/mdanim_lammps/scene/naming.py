@@ -8,8 +8,9 @@ from collections.abc import Iterable, Iterator, Sequence
 
 
 def objects_by_name(names: Iterable[str]) -> dict[str, list[int]]:
-    """Objects, from 0 and ascending, that a name stands for: one by its own name, all of a repeat by the name without index, all
-    of a group by its name. Without any index it stands for those of all places of the group: ``cart.wheel``.
+    """Objects, from 0 and ascending, that a name stands for: one by its own name, all of a repeat by the name without index, a
+    row of two nested repeats by the first index alone (``brick[3]`` of ``brick[3][4]``), all of a group by its name. Without any
+    index it stands for those of all places of the group: ``cart.wheel``.
 
     Some of the objects of a scene give the same as all of them; so a name that is both has all of these objects.
     """
@@ -27,9 +28,10 @@ def _names_of(name: str) -> Iterator[str]:
         return
     parts, told = name.split("."), {name}
     for n in range(1, len(parts) + 1):
-        whole = ".".join(parts[:n])
-        bare = ".".join(part.partition("[")[0] for part in parts[:n])
-        for other in (whole, whole.rpartition("[")[0] if whole.endswith("]") else whole, bare):
+        wholes = [".".join(parts[:n])]
+        while wholes[-1].endswith("]"):
+            wholes.append(wholes[-1].rpartition("[")[0])
+        for other in (*wholes, bare_name(wholes[0])):
             if other not in told:
                 told.add(other)
                 yield other

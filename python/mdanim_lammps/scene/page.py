@@ -91,7 +91,8 @@ include "rubber.txt"            # relative to this file
   that it has not itself. What these are stands in [materials](materials.md).
 - `repeat i in a .. b { }` repeats its statements for the whole numbers i from a to b; objects, `expect` and
   `camera` lines, `hold` and other repeats may stand inside.
-- An index is one number, which may be computed: of two repeats write `object box[100*r + c]`; `box[r, c]` is refused.
+- An index is a number, which may be computed. Of two repeats write `object box[r][c]`; `box[r]` then stands for a row, and `box`
+  for all. `box[r, c]` is refused.
 - `include "file"` reads another file in its place, inside a block as well: a file with `density`, `elasticity` and
   `damping` is a material. A file that includes itself, and more than 16 levels,
   are errors that show the chain of files.

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from functools import cache
 from itertools import count
 
+from .expressions import Node
 from .forms import OptionalPart, Slot, Word, alternatives, literals, pieces
 from .keywords import (
     KEYWORDS,
@@ -22,7 +23,7 @@ from .keywords import (
     nearest,
     owner,
 )
-from .limits import DEEPEST_GROUP
+from .limits import DEEPEST_GROUP, DEEPEST_REPEAT
 from .quantities import GLOBALS, QUANTITIES, RELATIONS
 from .reader import ODD, Reader
 from .schema import Keyword
@@ -66,13 +67,13 @@ def joined(parts: list[Name]) -> Name:
     """Parts of a name as one name."""
     whole = None
     for part in reversed(parts):
-        whole = Name(part.token, whole.last if whole else part.last, part.index, whole)
+        whole = Name(part.token, whole.last if whole else part.last, part.indices, whole)
     return whole
 
 
 def quantity_of(parts: list[Name]) -> int:
-    """Where the quantity begins in NAME.QUANTITY: the longest tail that is one; else all behind the first name and its index."""
-    least = next((n for n in range(len(parts), 1, -1) if parts[n - 1].index is not None), 1)
+    """Where the quantity begins in NAME.QUANTITY: the longest tail that is one; else all behind the first name and indices."""
+    least = next((n for n in range(len(parts), 1, -1) if parts[n - 1].indices), 1)
     known = {quantity for _, quantity in QUANTITIES}
     return next((n for n in range(least, len(parts)) if ".".join(p.token for p in parts[n:]) in known), least)
 
@@ -113,20 +114,23 @@ class SettingReader(Reader):
         return self.part_of_name()
 
     def part_of_name(self) -> Name:
-        """NAME or NAME[index]."""
+        """NAME, NAME[index], or one index for each of some nested repeats, NAME[index][index]."""
         token = last = self.take()
-        if self.peek.type != "LSQB":
-            return Name(token, last)
-        self.take()
-        index = self.expression(Slot("number", "index"), frozenset())
-        last = self.peek
-        if last.type == "COMMA":
-            hint = f"make one number of them, e.g. {token}[100*i + j]"
-            raise Fault(last, f"{token}[...] has one index, found {last.found()}", hint)
-        if last.type != "RSQB":
-            raise Fault(last, f"a ] is missing after the index of {token}, found {last.found()}", f"write {token}[1]")
-        self.take()
-        return Name(token, last, index)
+        indices: list[Node] = []
+        while self.peek.type == "LSQB":
+            opened = self.take()
+            if len(indices) == DEEPEST_REPEAT:
+                cause = f"{token} has more than {DEEPEST_REPEAT} indices"
+                raise Fault(opened, cause, f"repeats nest {DEEPEST_REPEAT} deep; make one number of two, e.g. 100*i + j")
+            indices.append(self.expression(Slot("number", "index"), frozenset()))
+            last = self.peek
+            if last.type == "COMMA":
+                hint = f"write {token}[i][j], or make one number of them, e.g. {token}[100*i + j]"
+                raise Fault(last, f"each bracket of {token} has one index, found {last.found()}", hint)
+            if last.type != "RSQB":
+                raise Fault(last, f"a ] is missing after the index of {token}, found {last.found()}", f"write {token}[1]")
+            self.take()
+        return Name(token, last, tuple(indices))
 
     def entry(self, word: Token, keyword: Keyword, repeats: int) -> SettingNode:
         if repeats and not keyword.many:

@@ -209,8 +209,8 @@ class Parser(SettingReader):
                 hint = f"e.g. {head} {' '.join(('ball', 'floor')[: len(kind.names)])} {{"
                 raise Fault(self.peek, f"a name is missing after {block}, found {self.peek.found()}", hint)
             names.append(name := self.name())
-            if (name.index is not None or name.inner is not None) and not kind.indexed:
-                cause = "have an index" if name.index is not None else "have a point in their name"
+            if (name.indices or name.inner is not None) and not kind.indexed:
+                cause = "have an index" if name.indices else "have a point in their name"
                 raise Fault(name.token, f"only objects {cause}, found {block} {name.token}...", last=name.last)
         if not names and self.peek.type == "NAME":
             raise Fault(self.peek, f"{block} has no name, found {self.peek.found()}", f"write {block} {{ ... }}")
@@ -238,7 +238,7 @@ class Parser(SettingReader):
             raise Fault(self.peek, f"the name of a group is missing after place, found {self.peek.found()}", "e.g. place cart {")
         of, name = self.peek, self.part_of_name()
         if self.peek == "as":
-            if name.index is not None:
+            if name.indices:
                 hint = f"write place {of} as {of}[1]"
                 raise Fault(of, f"a group has no index, found place {of}[...] as", hint, name.last)
             self.take()

@@ -14,11 +14,11 @@ from .tokens import Token
 
 @dataclass(slots=True, eq=False)
 class Name:
-    """``ball``, ``ball[index]``, or with the group that it is in, ``cart[index].ball``."""
+    """``ball``, ``ball[index]``, ``ball[index][index]``, or with the group that it is in, ``cart[index].ball``."""
 
     token: Token
     last: Token
-    index: Node | None = None
+    indices: tuple[Node, ...] = ()
     inner: Name | None = None
     """The part behind a point."""
 

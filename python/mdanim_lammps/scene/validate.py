@@ -22,7 +22,7 @@ from .keywords import BLOCKS, KEYWORDS, Block, did_you_mean, example, examples
 from .lammps_lines import commands
 from .limits import MOST_FRAMES
 from .meshes import beside, refusal_of_mesh
-from .naming import objects_by_name
+from .naming import bare_name, objects_by_name
 from .placement import Placement, beyond_limits
 from .render import SMOOTH_RATE, few_pictures
 from .scene import GLOBALS, Vector
@@ -243,10 +243,13 @@ class Validator:
         own = {kind.name for kind in BLOCKS.values() if kind.names and not kind.of_objects}
         for block in (b for b in self.out.blocks if b.block in own):  # as they stand in the scene
             if (key := (block.name, BLOCKS[block.block].of)) in first:
+                again = block.group is first[key].group  # by a repeat
+                bare = bare_name(block.name)
+                way_out = f"; give it the index of each repeat around it, as {bare}[i] or {bare}[i][j]" if again else ""
                 self.problem(
                     block.head,
                     f"the name {block.name} is given twice{block.where}",
-                    f"first given at {first[key].head}",
+                    f"first given at {first[key].head}{way_out}",
                     key=("name", id(block.group)),
                 )
             elif block.block == "object" and block.name in GLOBALS:

@@ -10,7 +10,7 @@ from ..errors import Span
 from . import units
 from .colors import color
 from .evaluated import EvaluatedBlock, EvaluatedSetting
-from .expressions import Env
+from .expressions import Env, Node
 from .formatting import number
 from .keywords import beginnings, example
 from .schema import Rule, limit_of, syntax
@@ -44,14 +44,16 @@ class Evaluator:
         self.problems.add(source.span(token, None, env.used_at), message + self.where(env), hint, severity)
 
     def name(self, name: Name, env: Env) -> str:
-        """``ball[12]``, ``cart[2].wheel``"""
+        """``ball[12]``, ``brick[3][4]``, ``cart[2].wheel``"""
         inner = f".{self.name(name.inner, env)}" if name.inner is not None else ""
-        if name.index is None:
-            return str(name.token) + inner
-        v = name.index.run(env)
+        return str(name.token) + "".join(f"[{self.index(node, env)}]" for node in name.indices) + inner
+
+    def index(self, node: Node, env: Env) -> int:
+        """The number in one bracket of a name."""
+        v = node.run(env)
         if type(v) is not float or v != v or abs(v) > 1e15 or abs(v - round(v)) > 1e-9:
-            raise Fault(name.index.first, f"an index is a whole number, found {units.show(v)}", last=name.index.last)
-        return f"{name.token}[{round(v)}]{inner}"
+            raise Fault(node.first, f"an index is a whole number, found {units.show(v)}", last=node.last)
+        return round(v)
 
     # -- settings
 
