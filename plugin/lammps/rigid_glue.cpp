@@ -123,14 +123,21 @@ double RigidGlue::kinetic(double half_dt, const std::vector<double> &drag) const
   return all;
 }
 
-std::vector<int> RigidGlue::judge(double half_dt)
+double RigidGlue::kinetic_of_all(double half_dt, const std::vector<double> &drag) const
 {
-  std::vector<int> apart = glued.judge(bodies, lmp->force->ftm2v, half_dt, torn);
-  if (apart.empty()) return apart;
+  double all = 0.0;
+  for (std::size_t n = 0; n < bodies.size(); ++n) all += kinetic_of(static_cast<int>(n), half_dt, drag);
+  return all;
+}
+
+bool RigidGlue::judge()
+{
+  const std::vector<int> apart = glued.judge(bodies, lmp->force->ftm2v);
+  if (apart.empty()) return false;
   for (const int n : apart)
     if (touching.is_on() && touching.solid(n) != RigidTouching::NO_SHAPE) touching.contact.place(touching.solid(n), bodies[n]);
   torn += touching.unglue(glued, apart);
-  return apart;
+  return true;
 }
 
 }    // namespace mdanim

@@ -46,17 +46,18 @@ class RigidGlue {
   template <class Collect> void break_some(double half_dt, const std::vector<double> &drag, const Collect &collect)
   {
     if (!glued.is_on()) return;
-    const std::vector<int> apart = judge(half_dt);
-    if (apart.empty()) return;
+    const double before = kinetic_of_all(half_dt, drag);
+    if (!judge()) return;
     collect();
-    for (const int n : apart) torn -= kinetic_of(n, half_dt, drag);
+    torn += before - kinetic_of_all(half_dt, drag);    // all that pieces touch has other forces too
   }
 
  private:
   void take(const std::string &fix);
   void tell_contact();
-  std::vector<int> judge(double half_dt);
+  bool judge();    // whether glue broke
   double kinetic_of(int body, double half_dt, const std::vector<double> &drag) const;
+  double kinetic_of_all(double half_dt, const std::vector<double> &drag) const;
 
   LAMMPS_NS::LAMMPS *lmp;
   const RigidParticles &particles;

@@ -219,7 +219,7 @@ bool GluedBodies::break_some(const Whole &whole, const std::vector<double> &shar
   return found;
 }
 
-std::vector<int> GluedBodies::judge(const std::vector<RigidBody> &bodies, double to_acceleration, double half_dt, double &kinetic)
+std::vector<int> GluedBodies::judge(const std::vector<RigidBody> &bodies, double to_acceleration)
 {
   std::vector<int> apart;
   std::vector<char> is_opened(wholes.size(), 0);
@@ -230,7 +230,6 @@ std::vector<int> GluedBodies::judge(const std::vector<RigidBody> &bodies, double
     for (const double one : share) most_share = std::max(most_share, one);
     if (!break_some(whole, share)) continue;
     is_opened[w] = 1;
-    kinetic += whole.body.kinetic(half_dt, whole.drag);
     apart.insert(apart.end(), whole.pieces.begin(), whole.pieces.end());
   }
   if (apart.empty()) return apart;

@@ -57,9 +57,8 @@ class GluedBodies {
   // After velocities of pieces were set.
   void take_motion(std::vector<RigidBody> &bodies);
 
-  // Breaks the glue whose stress is too large, and takes wholes apart. Returns the pieces of these, ascending, and adds their
-  // kinetic energy before.
-  std::vector<int> judge(const std::vector<RigidBody> &bodies, double to_acceleration, double half_dt, double &kinetic);
+  // Breaks the glue whose stress is too large, and takes wholes apart. Returns the pieces of these, ascending.
+  std::vector<int> judge(const std::vector<RigidBody> &bodies, double to_acceleration);
 
   // Part of the record of a body.
   void put(int body, ByteWriter &writer) const;

@@ -224,7 +224,7 @@ double RigidContact::change(const std::map<int, double> &yielded)
     return found == yielded.end() ? solids[n].yields : found->second;
   };
   const double booked = account.heat + account.damped + account.let_go;
-  const TouchStep step(0.0, settings.onset, account);
+  const TouchStep step = TouchStep::where_glue_breaks(settings.onset, account);
   double gone = 0.0;
   for (const auto &[n, yielded_before] : yielded) {
     Solid &one = solids[n];

@@ -81,8 +81,16 @@ class TouchStep {
  public:
   // dt = 0 at the setup of a run: there are no dashpots, and what overlaps by then does so without a force.
   TouchStep(double dt, double onset, TouchAccount &account) : dt(dt), onset(onset), account(account) {}
+  // The same within a run, where glue breaks: edges far below each other are those of faces that met, and do not touch.
+  static TouchStep where_glue_breaks(double onset, TouchAccount &account)
+  {
+    TouchStep step(0.0, onset, account);
+    step.deep = false;
+    return step;
+  }
 
   bool is_first() const { return dt == 0.0; }
+  bool may_be_deep() const { return is_first() && deep; }    // whether edges that overlap far touch
   double time_step() const { return dt; }
 
   // A contact that is born at x. `depth_before`: that of the step before, where it came through the surface; else it overlaps
@@ -159,6 +167,7 @@ class TouchStep {
                       ContactForce<double> &push) const;
   double follow(Touch &touch, double depth, double k) const;
   double dt, onset;
+  bool deep = true;
   TouchAccount &account;
 };
 

@@ -235,7 +235,8 @@ void touch_edges(const TouchStep &step, SolidPair &pair, Solid &a, Solid &b, con
                  part_angle = smooth_step(at.square - FADED, FADES, slope_angle), part = part_a * part_b * part_angle;
     const Vec3 on_a = one.middle + at.s * one.along, on_b = other.middle + at.r * other.along, x = 0.5 * (on_a + on_b);
     if (!is_known) {
-      if (at.cone < AT_BIRTH || at.depth <= 0.0 || part <= 0.0 || (at.depth > SHALLOW_BIRTH * thinner(a, b) && !step.is_first()))
+      if (at.cone < AT_BIRTH || at.depth <= 0.0 || part <= 0.0 ||
+          (at.depth > SHALLOW_BIRTH * thinner(a, b) && !step.may_be_deep()))
         continue;
       Touch touch = step.born(Touch::EDGES, law, a, &b, x, at.n);
       touch.first = i;

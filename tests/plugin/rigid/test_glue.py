@@ -32,10 +32,10 @@ def glue_file(folder, bodies, strength):
     return f"glue {folder}/glue"
 
 
-def world(folder, bodies, strength, **more):
-    """An instance with these cubes."""
+def world(folder, bodies, strength, beside=(), **more):
+    """An instance with these cubes, and other bodies beside them."""
     more = {"planes": [], "gravity": (0, 0, 0), "frequency": 2e3} | more
-    return lab.World(folder, bodies, words=glue_file(folder, bodies, strength), **more)
+    return lab.World(folder, [*bodies, *beside], words=glue_file(folder, bodies, strength), **more)
 
 
 def motion(rows, bodies):
@@ -103,6 +103,37 @@ def test_a_bar_that_is_pushed_at_its_end_breaks_by_bending(tmp_path, over, break
     with world(tmp_path, bodies, moment / (EDGE**3 / 6) / over, commands=push) as one:
         one.run(2)
         assert one.number("broken_faces") == breaks
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.6])
+@pytest.mark.parametrize("strength", [2e4, 5e5])
+def test_energies_add_up_where_a_ball_breaks_a_bar(tmp_path, strength, friction):
+    """The force on the ball changes too where the bar breaks, and with it the energy of its motion by half of a kick."""
+    bodies = [b.put(mu=friction, beta=0.4) for b in bar(4)]
+    ball = lab.ball(0.1, 4e3, at=(0.01, 0.02, 0.1501), v=(0.5, 0, -5), mu=friction, beta=0.4)
+    with world(tmp_path, bodies, strength, beside=[ball], frequency=lab.frequency_of(5.0, EDGE), thin=EDGE) as one:
+        columns = ("kinetic", "contact", "friction_heat", "damping_loss", "let_go", "torn")
+        before = sum(map(one.number, columns))
+        one.run(60)
+        assert one.number("broken_faces") > 0.0
+        assert abs(one.number("torn")) > 1e-3 * before
+        assert sum(map(one.number, columns)) == pytest.approx(before, rel=5e-5)  # of contacts at this step: 2e-5
+
+
+def test_edges_across_a_brick_do_not_touch_where_glue_breaks(tmp_path):
+    """Two bricks, one aside and 1 nm in the other: two corners of each touch, and edges where the sides end."""
+    low, high = (
+        lab.box((0.2, 0.12, 0.1), DENSITY, at=(0.1 * k, 0.0, k * (0.1 - 1e-9)), v=(0, 0, 0), spin=(0, 0, 0.1)) for k in (0, 1)
+    )
+    second, section = (0.1 * 0.12**3 / 12, 0.12 * 0.1**3 / 12), (0.1 * 0.12**2 / 6, 0.12 * 0.1**2 / 6)
+    numbers = [1e-6, 0.012, *second, *section, sum(section), 0.05, 0, 0.05, 0, 0, 1, 1, 0, 0]
+    (tmp_path / "glue").write_text("1 2 5 4 " + " ".join(map(repr, numbers)) + "\n")
+    words, none = f"glue {tmp_path}/glue", {"planes": [], "gravity": (0, 0, 0)}
+    with lab.World(tmp_path, [low, high], words=words, frequency=2e3, thin=EDGE, **none) as one:
+        one.run(1)
+        assert one.number("broken_faces") == 1.0
+        one.run(1)
+        assert one.number("touching") == 6.0  # and two edges across each other where the faces end
 
 
 def test_files_with_mistakes_are_refused(tmp_path):
