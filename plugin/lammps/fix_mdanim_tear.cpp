@@ -255,11 +255,11 @@ void FixMdanimTear::release(const Spanning &one, double sign)
   const auto &[a, m, b] = one.at;
   if (one.gone[0] && one.gone[1]) return;
   if (one.gone[0])
-    release(m, b, remainder_of(one.spring(), one.over->length[1]), sign);
+    release(m, b, one.over->remainder(1), sign);
   else if (one.gone[1])
-    release(a, m, remainder_of(one.spring(), one.over->length[0]), sign);
+    release(a, m, one.over->remainder(0), sign);
   else
-    release(a, b, one.spring(), sign);
+    release(a, b, one.over->whole(), sign);
 }
 
 LoadFree FixMdanimTear::load_free(const Watched &one) const
@@ -341,7 +341,7 @@ template <class Visit> void FixMdanimTear::each_remainder(Visit visit) const
   for (const Spanning &one : spanning) {
     if (one.gone[0] == one.gone[1]) continue;
     const int link = one.gone[0] ? 1 : 0, i = one.at[link], j = one.at[link + 1];
-    const LoadFree left = remainder_of(one.spring(), one.over->length[link]);
+    const LoadFree left = one.over->remainder(link);
     const Vec3 apart = vec3(atom->x[i]) - vec3(atom->x[j]);
     if (is_here(i)) visit(i, apart, left);
     if (is_here(j)) visit(j, -1.0 * apart, left);

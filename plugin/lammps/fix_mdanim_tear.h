@@ -60,7 +60,6 @@ class FixMdanimTear : public mdanim::FixBase {
     const mdanim::TearOver *over;
     int at[3], slot[2];
     bool gone[2];
-    mdanim::LoadFree spring() const { return {over->spring, over->length[0] + over->length[1]}; }
   };
   static constexpr int WORD = 31;    // bits of a number
 

@@ -7,7 +7,8 @@
 //
 // A spring over two links of lengths L1 and L2, k2 and R0, lets go with either of them. A remainder of it stays along the other
 // one, L1 for example, a spring of k2 (L1 + L2)/L1 and R0 L1/(L1 + L2): both remainders in a row are the spring itself. So each
-// piece of a rope or a sheet is one, and free of stress where it is without load.
+// piece of a rope or a flat sheet is one, and free of stress where it is without load. Where the links are not in a row, as in
+// curved sheets, the spring is shorter, L < L1 + L2, and R0 + L1 + L2 - L takes the place of R0: the push k2 (R0 - L) stays.
 //
 // V and F^n are those of the springs that there are from step n on, V' and F' of those before, and D^n = F'^n - F^n. Leap-frog
 // conserves to fourth order
@@ -37,11 +38,11 @@ struct LoadFree {
   double energy(double r) const { return mdanim::energy(spring, r) - stored(); }
 };
 
-// The remainder along a link of the length `link` of a spring over it and another one.
-inline LoadFree remainder_of(const LoadFree &over, double link)
+// The remainder along a link of the length `link` of a spring over it and another one, together `both` long.
+inline LoadFree remainder_of(const LoadFree &over, double link, double both)
 {
-  const double part = link / over.length;
-  return {{over.spring.K / part, over.spring.r0 * part, 0.0}, link};
+  const double part = link / both, rest = over.spring.r0 + (both - over.length);
+  return {{over.spring.K / part, rest * part, 0.0}, link};
 }
 
 // F_i of a spring to a particle from which i is `apart`, without its dashpot.

@@ -45,13 +45,14 @@ void read_over(LineWords &words, TearRules &rules)
 {
   const int low = read_particle(words), middle = read_particle(words), high = read_particle(words);
   if (low >= high) words.fail("the lower end of a spring comes first");
-  TearOver one{low, middle, high, {words.positive("K"), words.at_least_zero("r0"), 0.0}, {}, {}};
+  TearOver one{low, middle, high, {words.positive("K"), words.at_least_zero("r0"), 0.0}, {}, {}, 0.0};
   for (int k = 0; k < 2; ++k) {
     const int end = k == 0 ? low : high;
     const TearLink *const link = rules.link(std::min(end, middle), std::max(end, middle));
     if (!link) words.fail("a spring lies over two links, whose lines come before it");
     one.length[k] = link->length, one.limit[k] = link->limit;
   }
+  one.own = words.is_at_end() ? one.length[0] + one.length[1] : words.positive("the length of a spring without load");
   append(rules.overs, one, words);
 }
 

@@ -24,6 +24,10 @@ struct TearOver {
   int low, middle, high;
   Spring spring;
   double length[2], limit[2];    // of the links, the lower one first
+  double own;                    // its own length without load: that of both, unless they are not in a row
+
+  LoadFree whole() const { return {spring, own}; }
+  LoadFree remainder(int link) const { return remainder_of(whole(), length[link], length[0] + length[1]); }
 };
 
 // An object whose springs may break.

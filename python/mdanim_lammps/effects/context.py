@@ -76,6 +76,12 @@ class Context:
         return tuple(by_name[name] for name in self.system.names)
 
     @cached_property
+    def system_models(self) -> tuple[Model, ...]:
+        """The models of the system, in its order."""
+        by_name = {model.name: model for model in self.models}
+        return tuple(by_name[name] for name in self.system.names)
+
+    @cached_property
     def damping_ratio(self) -> np.ndarray:
         """`Effect.damping_ratio` of all effects that are on together [-], shape (M,)."""
         told = (ratio for e in self.resolved.effects if (ratio := e.damping_ratio(self)) is not None)

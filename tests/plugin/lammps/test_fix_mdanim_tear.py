@@ -167,6 +167,11 @@ def test_a_run_cut_in_two_is_the_same(tmp_path, case):
         ("object 1 0.1\nlink 2 1 1 1.1\n", "torn torn objects FILE", "the lower end of a spring comes first"),
         ("object 1 0.1\nlink 2 3 1 1.1\nlink 1 2 1 1.1\n", "torn torn objects FILE", "springs ascend"),
         ("object 1 0.1\nover 1 2 3 0.5 2\n", "torn torn objects FILE", "a spring lies over two links"),
+        (
+            "object 1 0.1\nlink 1 2 1 1.1\nlink 2 3 1 1.1\nover 1 2 3 0.5 2 0\n",
+            "torn torn objects FILE",
+            "the length of a spring without load must be above 0",
+        ),
         ("object 1 0.1\ncut 1\n", "torn torn objects FILE", "a line begins with object, link or over, got cut"),
         ("object 1 0.1 0.2\n", "torn torn objects FILE", "there is more than belongs to it"),
     ],

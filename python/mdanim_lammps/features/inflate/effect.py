@@ -19,9 +19,12 @@ from ...reach import Throw
 from ...scene.formatting import number, say
 from ...scene.once import once_for
 from ...scene.shapes import Sphere
+from ..tearing.words import tears
 from .words import Inflate
 
 VOLUME, PRESSURE = "gas_volume", "gas_pressure"
+LOST = "gas_loss"
+"""Column of the ledger: energy of gas that went out where a sheet tore."""
 BAGS = "bags"
 """Table of surfaces."""
 FAR, MOST_GROWN = 1.3, 4.0
@@ -34,7 +37,7 @@ NU = 1.0 / 3.0
 
 class Gas(Effect):
     """p = (p1 + p0) V1/V - p0 on each triangle of a closed sheet, V its volume, p1 and V1 those at the start: the gradient of
-    U(V) = p0 (V - V*) - C ln(V/V*), C = (p1 + p0) V1, V* = C/p0 (docs/physics-inflate.md).
+    U(V) = p0 (V - V*) - C ln(V/V*), C = (p1 + p0) V1, V* = C/p0 (docs/physics-inflate.md); nothing once the sheet has torn.
     """
 
     styles = (("fix", "mdanim/inflate"),)
@@ -107,6 +110,12 @@ class Gas(Effect):
 
     def energy(self, readings):
         return readings.fix_scalar(self.fix)
+
+    def losses(self, scene):
+        return (LOST,) if any(solid.inflate is not None and tears(solid) for solid in scene.solids) else ()
+
+    def lost(self, readings):
+        return {term: readings.fix_value(self.fix, "energy") for term in self.losses(readings.context.scene)}
 
     def fields(self, scene):
         count = (len(scene.solids),)

@@ -17,7 +17,10 @@ QUANTITIES = {
     ("NAME", "volume"): Observable("m^3", "volume that the surface of an inflated object encloses", "inflate"),
 }
 
-LEDGER = {"gas": "what the gas in inflated objects can still give, until its pressure is that outside [J]"}
+LEDGER = {
+    "gas": "what the gas in inflated objects can still give, until its pressure is that outside [J]",
+    "gas_loss": "what it could still give when their sheets tore",
+}
 """Columns of the ledger."""
 
 OUTSIDE = 101325.0

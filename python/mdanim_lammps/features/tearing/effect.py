@@ -10,7 +10,7 @@ from ...effects.effect import Effect
 from ...effects.fields import column
 from ..springs.effect import spring_norm
 from .gone import EFFECT, FIX, NAME, acts
-from .rules import over_two, rules_text, springs_of, strain_of
+from .rules import beyond, over_two_of, rules_text, springs_of, strain_of
 from .words import tears
 
 TORN = column(NAME, "1", per="bond", dtype="uint8", state=True)
@@ -45,20 +45,22 @@ class Tearing(Effect):
 
     def rate(self, context):
         """2 lambda_max/m of what springs over two links leave along one of them, at its far end, beyond their own:
-        k2 (L1 + L2)/L1 - k2 with L1 > (L1 + L2)/3, counted as 2 k2."""
+        k2 (L1 + L2)/L1 - k2 with L1 > (L1 + L2)/3, counted as 2 k2; of curved sheets with their shortest L1."""
         system = context.system
         more = np.zeros(len(system.spring))
-        for m, solid in enumerate(context.solids):
+        for m, (model, solid) in enumerate(zip(context.system_models, context.solids)):
             if tears(solid):
-                own = springs_of(system, m)
-                more[own] = 2.0 * system.stiffness[own] * over_two(system, own)
+                own, over = springs_of(system, m), over_two_of(system, m, model)
+                more[own] = beyond(system, m, over) * system.stiffness[own] * over
         return 2.0 * spring_norm(system, more) / system.mass if more.any() else np.zeros(system.particles)
 
     def tables(self, context):
         seed, system = context.scene.control.seed, context.system
         lines = ["# What breaks, written by mdanim-lammps: object MOLECULE STRAIN, links and springs over two of them\n"]
         lines += [
-            rules_text(system, m, one, seed, strain_of(system, m, one)) for m, one in enumerate(context.solids) if tears(one)
+            rules_text(system, m, model, one, seed, strain_of(system, m, one))
+            for m, (model, one) in enumerate(zip(context.system_models, context.solids))
+            if tears(one)
         ]
         return {RULES: "".join(lines)}
 

@@ -9,7 +9,9 @@ from typing import Any
 
 import numpy as np
 
+from ...model.model import Model
 from ...model.system import System
+from ...model.triangles import edges
 from ...scene.shapes import Rope
 
 MORE = 1.25
@@ -42,12 +44,26 @@ def over_two(system: System, own: slice) -> np.ndarray:
     return system.rest[own] > system.unloaded[own] * (1.0 + SAME)
 
 
+def over_two_of(system: System, m: int, model: Model) -> np.ndarray:
+    """The same of an object: of a layer, springs that are not edges of its triangles."""
+    own = springs_of(system, m)
+    if model.frame.dimensions != 2:
+        return over_two(system, own)
+    n = int(system.first[m + 1] - system.first[m])
+    (low, high), (i, j) = (
+        np.sort(edges(model.frame.triangle), axis=1).astype(np.int64).T,
+        (system.spring[own] - system.first[m]).T,
+    )
+    return ~np.isin(i * np.int64(n) + j, low * n + high)
+
+
 def middles(pair: np.ndarray, length: np.ndarray, over: np.ndarray) -> np.ndarray:
-    """The particle between the two links that each spring over two links lies over, int64, shape (K,).
+    """The particle between the two links that each spring over two links lies over, int64, shape (K,): of curved sheets, where
+    they are most nearly in a row.
 
     Args:
         pair: particles of springs, i < j, sorted, shape (S, 2).
-        length: without load [m], shape (S,): that of a spring over two links is the sum of theirs.
+        length: without load [m], shape (S,): that of a spring over two links is the sum of theirs, or less.
         over: which springs these are, bool, shape (S,).
     """
     link, count = pair[~over].astype(np.int64), int(pair.max(initial=-1)) + 1
@@ -68,9 +84,26 @@ def middles(pair: np.ndarray, length: np.ndarray, over: np.ndarray) -> np.ndarra
         off = np.abs(size[of_link[at]] + size[place] - length[over])
         fits = (first[a] + k < first[a + 1]) & (key[place] == wanted) & (off < best)
         found[fits], best[fits] = middle[fits], off[fits]
-    if (best > 1e-6 * length[over]).any():
-        raise ValueError("a spring pushes that does not lie over two links in a row")
+    if np.isinf(best).any():
+        raise ValueError("a spring pushes that does not lie over two links")
     return found
+
+
+def lengths(pair: np.ndarray, length: np.ndarray, over: np.ndarray, middle: np.ndarray) -> np.ndarray:
+    """Lengths without load of both links that springs lie over [m], shape (K, 2), from the same and ``middles``."""
+    link, count = pair[~over].astype(np.int64), int(pair.max(initial=-1)) + 1
+    ends = np.sort(np.stack([pair[over], np.stack([middle, middle], axis=1)], axis=2), axis=2).astype(np.int64)
+    return length[~over][np.searchsorted(link[:, 0] * count + link[:, 1], ends[..., 0] * count + ends[..., 1])]
+
+
+def beyond(system: System, m: int, over: np.ndarray) -> float:
+    """The most that a remainder of springs over two links is stiffer than these, over their constant, at least 2 [-]."""
+    own = springs_of(system, m)
+    if not over.any():
+        return 2.0
+    pair, length = system.spring[own] - system.first[m], system.unloaded[own]
+    both = lengths(pair, length, over, middles(pair, length, over))
+    return max(2.0, float((both.sum(axis=1) / both.min(axis=1)).max()) - 1.0)
 
 
 def limits(solid: Any, seed: int, strain: float, length: np.ndarray) -> np.ndarray:
@@ -84,16 +117,24 @@ def limits(solid: Any, seed: int, strain: float, length: np.ndarray) -> np.ndarr
     return (1.0 + each) * length
 
 
-def rules_text(system: System, m: int, solid: Any, seed: int, strain: float) -> str:
+def rules_text(system: System, m: int, model: Model, solid: Any, seed: int, strain: float) -> str:
     """The lines of an object."""
     own, lines = springs_of(system, m), [f"object {m + 1} {strain!r}\n"]
-    over, length = over_two(system, own), system.unloaded[own]
+    over, length = over_two_of(system, m, model), system.unloaded[own]
     pair = system.spring[own] - system.first[m]
     if over.any() or isinstance(solid.shape, Rope):
         limit = limits(solid, seed, strain, length[~over])
         rows = zip((pair[~over] + 1).tolist(), length[~over].tolist(), limit.tolist())
         lines += [f"link {i} {j} {a!r} {b!r}\n" for (i, j), a, b in rows]
-        half, rest = 0.5 * system.stiffness[own][over], system.rest[own][over]
-        rows = zip((pair[over] + 1).tolist(), (middles(pair, length, over) + 1).tolist(), half.tolist(), rest.tolist())
-        lines += [f"over {i} {k} {j} {a!r} {b!r}\n" for (i, j), k, a, b in rows]
+        lines += over_lines(pair, length, over, 0.5 * system.stiffness[own], system.rest[own])
     return "".join(lines)
+
+
+def over_lines(pair: np.ndarray, length: np.ndarray, over: np.ndarray, half: np.ndarray, rest: np.ndarray) -> list[str]:
+    """The lines of springs over two links; those whose links are not in a row end with their own length."""
+    middle = middles(pair, length, over)
+    both = lengths(pair, length, over, middle).sum(axis=1)
+    bent = both > length[over] * (1.0 + SAME)
+    rows = zip((pair[over] + 1).tolist(), (middle + 1).tolist(), half[over].tolist(), rest[over].tolist())
+    ends = [f" {own!r}" if is_bent else "" for own, is_bent in zip(length[over].tolist(), bent.tolist())]
+    return [f"over {i} {k} {j} {a!r} {b!r}{end}\n" for ((i, j), k, a, b), end in zip(rows, ends)]

@@ -56,7 +56,7 @@ def fills(solid: Any) -> bool:
 
 
 def check_object(v: Any, block: Any, solid: Any) -> Any:
-    """No rigid object and no curved sheet tears, and no rope is torn to begin with."""
+    """No rigid object tears, and no rope is torn to begin with."""
     word = "toughness" if solid.tear_strain is None else "tear-strain"
     if word not in solid.spans:
         return solid
@@ -67,9 +67,6 @@ def check_object(v: Any, block: Any, solid: Any) -> Any:
     if getattr(solid.elasticity, "modulus", 0.0) == math.inf:
         cause = f"{solid.name} is rigid: it has no springs that could break"
         v.problem(span, cause, f"write its elasticity, as in elasticity 1 MPa, or take {word} out")
-    elif isinstance(rope, Shell):
-        cause = f"{solid.name} is a curved sheet, which does not tear yet"
-        v.problem(span, cause, f"take {word} out, or write shape sheet (lx, ly) m for a flat one")
     elif (
         isinstance(rope, Rope)
         and word == "tear-strain"
