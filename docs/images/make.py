@@ -67,6 +67,7 @@ PICTURES = {
     "rack": 0.8,
     "coil": 0.54,
     "hollow": 0.4,
+    "hats": 0.4,
     "trampoline": 1.2,
     "bridge": 2.0,
     "pendulums": 1.4,

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """Make the meshes of the scenes: duck.ply, a plump bath duck of smoothly joined ellipsoids, contoured and thinned out;
 boat.stl, an open hull, and bottle.stl, of rings of points; stone.stl, a wedge of an arch;
-barge.stl, a box without a lid; pipe.stl, a spiral pipe, and bowl.stl.
+barge.stl, a box without a lid; pipe.stl, a spiral pipe, and bowl.stl; hat.stl and lampshade.stl, open surfaces for sheets.
 
 Run ``python make_meshes.py`` in this folder; needs only what mdanim-lammps needs. Units are centimetres.
 """
@@ -163,6 +163,38 @@ def bowl() -> pyvista.PolyData:
     return pyvista.PolyData.from_regular_faces(points, triangles)
 
 
+HAT = ((20, 0), (16, 0.5), (12, 1), (11, 4), (10.5, 8), (9, 11), (6, 12.5), (3, 13), (0, 13.1))
+LAMPSHADE = ((15, 0), (14, 5), (12, 10), (10, 15), (8, 20))
+"""Radius and height of their outlines [cm], from the border up."""
+
+
+def hat() -> pyvista.PolyData:
+    """A hat with a brim as a triangle mesh with one border [cm]."""
+    return _turned(HAT)
+
+
+def lampshade() -> pyvista.PolyData:
+    """A lampshade, open above and below [cm]."""
+    return _turned(LAMPSHADE)
+
+
+def _turned(outline: tuple[tuple[float, float], ...], count: int = 32) -> pyvista.PolyData:
+    """An open surface around the axis z, outward; an outline may end on the axis."""
+    turn = np.arange(count) * (2.0 * np.pi / count)
+    rings = [r for r in outline if r[0] > 0]
+    points = [(r * np.cos(a), r * np.sin(a), z) for r, z in rings for a in turn]
+    faces = []
+    for low in range(0, (len(rings) - 1) * count, count):
+        for n in range(count):
+            a, b = low + n, low + (n + 1) % count
+            faces += [(a, b, b + count), (a, b + count, a + count)]
+    if outline[-1][0] == 0:
+        last = len(points) - count
+        points.append((0.0, 0.0, outline[-1][1]))
+        faces += [(last + n, last + (n + 1) % count, last + count) for n in range(count)]
+    return pyvista.PolyData.from_regular_faces(np.array(points), faces)
+
+
 def _of_faces(points: np.ndarray, faces: list[tuple[int, ...]]) -> pyvista.PolyData:
     """A triangle mesh of faces of four corners."""
     return pyvista.PolyData.from_regular_faces(points, [(a, b, c) for a, b, c, _ in faces] + [(a, c, d) for a, _, c, d in faces])
@@ -176,7 +208,7 @@ def _distance(points: np.ndarray, centre: np.ndarray, half: np.ndarray) -> np.nd
 
 
 if __name__ == "__main__":
-    for make in (duck, boat, bottle, stone, barge, pipe, bowl):
+    for make in (duck, boat, bottle, stone, barge, pipe, bowl, hat, lampshade):
         mesh = make()
         colored = "RGB" in mesh.point_data
         path = Path(__file__).with_name(make.__name__ + (".ply" if colored else ".stl"))

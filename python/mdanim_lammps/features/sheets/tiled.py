@@ -15,9 +15,11 @@ from typing import Any
 import numpy as np
 
 from ...model import shapes
+from ...model.orientation import MeshError
 from ...model.remesh import remeshed
 from ...model.rods import SOFT
 from ...model.triangles import areas, edges
+from ...scene.formatting import say
 from ...scene.scene import Shell
 
 LEAST = 0.1
@@ -36,6 +38,9 @@ STRAIGHT = 1e-6
 """Part of an edge up to which a straight line across a fan ends in one of its ends."""
 EVEN = 0.05
 """Weight of an uneven share of rigidity among lines through a particle, beside one of its tensor."""
+FLAT, NEAR = 0.004, 0.02
+"""Area of a triangle over h^2 and distance of particles over h below which the surface has been folded up, as edges are too long
+for it: triangles of even edges have 0.43 and 1, the worst of those made from surfaces that bear their edges about a third."""
 LAME = 0.375
 """Both constants of Lame of a layer over E t, with Poisson's ratio 1/3."""
 
@@ -296,6 +301,20 @@ def _weights(angle: np.ndarray, wanted: float) -> np.ndarray:
 
 @lru_cache(maxsize=64)
 def tiled(shell: Shell, h: float) -> Tiled:
-    """The triangles of a shell with edges of about h [m]. Raises mesh.MeshError."""
+    """The triangles of a shell with edges of about h [m]. Raises mesh.MeshError, also where such edges are too long for it."""
     skin = shapes.shell_surface(shell)
-    return Tiled(*remeshed(skin.points, skin.triangles, h), h, skin.closed)
+    found = Tiled(*remeshed(skin.points, skin.triangles, h), h, skin.closed)
+    if _is_folded(found):
+        cause = f"the surface has no triangles with edges of about {say(h, 'm')}: they are too long for its turns and borders"
+        raise MeshError(cause, f"write a finer resolution, such as {say(0.5 * h, 'm')}")
+    return found
+
+
+def _is_folded(layer: Tiled) -> bool:
+    """Whether triangles have all but no area, or particles are in one place."""
+    from scipy.spatial import cKDTree
+
+    if not len(layer.triangle):
+        return True
+    nearest = cKDTree(layer.place).query(layer.place, k=2)[0][:, 1].min()
+    return areas(layer.place, layer.triangle).min() < FLAT * layer.h**2 or nearest < NEAR * layer.h
