@@ -31,7 +31,10 @@ struct SystemArrays {
   const double *mass;            // (N)
   const unsigned char *still;    // whether an object never moves, (M)
   long long pairs;
-  const int *passing;    // pairs of objects that may be in each other, the lower one first, ascending, (pairs, 2)
+  const int *passing;        // pairs of objects that may be in each other, the lower one first, ascending, (pairs, 2)
+  const long long *faces;    // rows of `face`, begin and end, that bound an object of one cell inside of it, (M, 2)
+  const double
+      *face;    // outward normals n and levels c, n s <= c inside; s from -1/2 to 1/2 along the edges of the cell, (F, 4)
 };
 
 // The same objects with their present positions.
@@ -106,11 +109,25 @@ long long sunk(const Objects &o, int a, int b, const Box &both)
   return count;
 }
 
+// Whether a point in a cell of an object lies behind all of the object's faces, if it has any.
+bool behind_faces(const Objects &o, int m, long long c, const Vec3 &point)
+{
+  const long long begin = o.faces[2 * m], end = o.faces[2 * m + 1];
+  if (begin == end) return true;
+  const Vec3 d = point - o.middle(c);
+  const Edges e = edges(o.corner + 8 * c, o.x);    // four times as long
+  const Vec3 vw = cross(e.v, e.w), wu = cross(e.w, e.u), uv = cross(e.u, e.v);
+  const Vec3 s = (4.0 / dot(e.u, vw)) * Vec3{dot(d, vw), dot(d, wu), dot(d, uv)};
+  for (long long k = begin; k < end; ++k)
+    if (dot(vec3(o.face + 4 * k), s) > o.face[4 * k + 3]) return false;
+  return true;
+}
+
 bool holds(const Objects &o, int m, const Vec3 &point)
 {
   for (long long c = o.first_cell[m]; c < o.first_cell[m + 1]; ++c) {
     const Vec3 d = point - o.middle(c);
-    if (dot(d, d) <= o.spacing[m] * o.spacing[m] && in_cell(o, c, point)) return true;
+    if (dot(d, d) <= o.spacing[m] * o.spacing[m] && in_cell(o, c, point) && behind_faces(o, m, c, point)) return true;
   }
   return false;
 }

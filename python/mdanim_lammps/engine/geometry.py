@@ -10,6 +10,7 @@ from functools import cached_property, lru_cache
 
 import numpy as np
 
+from ..model.faces import faces_of_solids
 from ..model.system import System, side_by_side
 from .plugin import open_library
 
@@ -28,6 +29,8 @@ class _Model(ctypes.Structure):
         ),
         ("pairs", ctypes.c_longlong),
         ("passing", ctypes.c_void_p),
+        ("faces", ctypes.c_void_p),
+        ("face", ctypes.c_void_p),
     ]
 
 
@@ -79,8 +82,8 @@ class Geometry:
         """Two solids of which the first is inside the second, deeper than contact ever lets it; None where there are none.
 
         Boundary particles of the first are below the outermost layer of cells of the second, but not those that stand out of the
-        first one's drawn surface; or the centre of the first is in the body of both. Solids that are held entirely may be in each
-        other. Raises MemoryError.
+        first one's drawn surface; or the centre of the first is in the body of both, which of a rigid one with a single cell is
+        its shape (model/faces.py). Solids that are held entirely may be in each other. Raises MemoryError.
         """
         library, model, _ = self._own
         count, which = self._which(solids)
@@ -105,6 +108,7 @@ class Geometry:
     def _own(self) -> tuple[ctypes.CDLL, object, dict[str, np.ndarray]]:
         """The plugin, the system as it takes it, and the arrays of that."""
         system = self.system
+        rows, face = faces_of_solids(system, self.first_cell)
         drawn = np.concatenate([system.frames[kind].drawn for kind in system.contact_kind.tolist()])
         arrays = {
             name: np.ascontiguousarray(array, kind)
@@ -118,6 +122,8 @@ class Geometry:
                 ("mass", system.mass, np.float64),
                 ("still", system.still, np.uint8),
                 ("passing", np.array(self.passing).reshape(-1, 2), np.int32),
+                ("faces", rows, np.int64),
+                ("face", face, np.float64),
             )
         }
         addresses = {name: _address(array) for name, array in arrays.items()}

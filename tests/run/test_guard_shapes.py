@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""The guard tells rigid objects that lie on each other from those that are in each other, whatever the boxes around them say."""
+
+import numpy as np
+import pytest
+import rigid_meshes
+from mdanim_lammps import Trajectory
+from mdanim_lammps.engine.geometry import Geometry
+from mdanim_lammps.run.loop import simulate
+
+SCENE = """gravity (0, 0, -9.81) m/s^2
+object a {{ shape {a}  position (0, 0, 0) m  density 1000  elasticity rigid {turn_a} }}
+object b {{ shape {b}  position ({x!r}, {y!r}, {z!r}) m  density 1000  elasticity rigid {turn_b} }}
+control {{ time 0.1 s }}
+"""
+CORNER = np.array([1.0, 1.0, 1.0]) / 3**0.5
+SIDE = np.array([1.0, 1.0, 0.0]) / 2**0.5
+TO_CORNER = "orientation axis (-1, 1, 0) angle 54.735610317245346 deg"
+TO_SIDE = "orientation axis (0, 0, 1) angle 45 deg"
+
+
+@pytest.fixture
+def wedge(tmp_path):
+    """Half of a cube of 10 cm, cut along a diagonal of its sides; its centre is a third of an edge from both square sides."""
+    points, triangles = rigid_meshes.profile([(0, 0), (0.1, 0), (0, 0.1)], 0.1)
+    lines = [*(f"v {x} {y} {z}" for x, y, z in points.tolist()), *(f"f {a} {b} {c}" for a, b, c in (triangles + 1).tolist())]
+    (tmp_path / "wedge.obj").write_text("\n".join(lines) + "\n")
+    return f'mesh "{tmp_path}/wedge.obj" scale 1'
+
+
+def look(prepared, a, b, at, moved, turn_a="", turn_b=""):
+    """Objects that the guard finds in each other: as they are, and with the second one moved."""
+    x, y, z = map(float, at)
+    ready = prepared(SCENE.format(a=a, b=b, x=x, y=y, z=z, turn_a=turn_a, turn_b=turn_b))
+    assert len(ready.system.position) == 16 and len(ready.system.hexahedron) == 2
+    x, geometry = ready.system.position.copy(), Geometry(ready.system)
+    found = geometry.sunk(x)
+    x[8:] += moved
+    return found, geometry.sunk(x)
+
+
+@pytest.mark.parametrize(
+    ("a", "b", "way", "apart", "turn_a", "turn_b"),
+    [
+        pytest.param("sphere 10 cm", "box (4, 4, 1) cm", CORNER, 0.105, "", TO_CORNER, id="a plate at a ball"),
+        pytest.param("ellipsoid (10, 11, 12) cm", "ellipsoid (4, 4, 1) cm", CORNER, 0.121, "", TO_CORNER, id="ellipsoids"),
+        pytest.param("cylinder 10 cm 10 cm", "box (1, 4, 4) cm", SIDE, 0.105, "", TO_SIDE, id="a plate at a cylinder"),
+    ],
+)
+def test_what_touches_a_round_side_is_not_in_it(prepared, a, b, way, apart, turn_a, turn_b):
+    """Objects that touch where the box around one has a corner: found only once one is moved to the middle of the other."""
+    at = way * apart
+    before, after = look(prepared, a, b, at, -0.9 * at, turn_a, turn_b)
+    assert before is None and set(after or ()) == {0, 1}
+
+
+def test_wedges_on_each_other(prepared, wedge):
+    """Their centres are a third of an edge apart in the cube that both fill; each is in the box around the other."""
+    at = np.array([0.1 / 3, 0.0, 0.1 / 3]) * 1.001
+    before, after = look(prepared, wedge, wedge, at, -0.6 * at, turn_b="orientation axis (0, 1, 0) angle 180 deg")
+    assert before is None and set(after or ()) == {0, 1}
+
+
+def test_wedges_stay_on_each_other(prepared, wedge, tmp_path):
+    """They lie on the ground as a block, and the guard says nothing."""
+    text = f"""gravity (0, 0, -9.81) m/s^2
+    ground z 0 m
+    object a {{ shape {wedge}  density 300  elasticity rigid  position (0, 0, 0.0334) m  friction 0.5 }}
+    object b {{ shape {wedge}  density 300  elasticity rigid  position (0.034, 0, 0.068) m
+      orientation axis (0, 1, 0) angle 180 deg  friction 0.5 }}
+    control {{ time 0.1 s }}
+    """
+    (tmp_path / "r.out").mkdir()
+    simulate(prepared(text), tmp_path / "r.out")
+    with Trajectory(tmp_path / "r.out" / "trajectory.h5") as trajectory:
+        assert trajectory.centers[-1, 1, 2] == pytest.approx(0.2 / 3, abs=1e-3) and trajectory.times[-1] == pytest.approx(0.1)
+
+
+@pytest.mark.parametrize(("size", "pieces"), [((20, 10, 10), 4), ((20, 10, 10), 5), ((10, 10, 20), 4)])
+def test_pieces_are_not_in_each_other(prepared, size, pieces):
+    """Long boxes of few pieces, whose neighbours have their centres in the boxes around each other."""
+    text = f"""gravity (0, 0, -9.81) m/s^2
+    ground z 0 m
+    object v {{ shape box {size} cm  density 300  elasticity rigid  position (0, 0, 0.2) m  pieces {pieces}  strength 50 MPa }}
+    control {{ time 0.1 s }}
+    """
+    system = prepared(text).system
+    assert len(system.hexahedron) == pieces and Geometry(system).sunk(system.position) is None
