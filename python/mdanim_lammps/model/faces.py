@@ -13,7 +13,7 @@ from .spread import spread
 from .system import System
 
 ACROSS = 12
-"""Points on a round surface along its thinnest part: the sides of their hull are 0.8 % of the radius of a ball below its surface at
+"""Points on a round surface across its thinnest part: sides of their hull are 0.8 % of the radius of a ball below its surface at
 most, and what is deeper in it than that is found."""
 
 
