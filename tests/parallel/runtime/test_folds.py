@@ -71,3 +71,46 @@ def test_lammps_alone_makes_the_same_frames(found, tmp_path, ranks):
     _, folder = readied(tmp_path, SCENE)
     film = film_of(found["sequential"])
     assert np.array_equal(film_of_lammps(folder, film.shape[1], ranks=ranks), film)
+
+
+TORN = """
+gravity (0, 0, -9.81) m/s^2
+object lower {
+  shape sheet (0.4, 0.3) m thickness 4 mm  position (0, 0, 0) m  resolution 4 cm
+  density 500  elasticity 500 kPa  damping 0.1  friction 0.3  touches-itself yes  hold faces x  tear-strain 0.03
+}
+object upper {
+  shape sheet (0.2, 0.2) m thickness 4 mm  position (0.01, 0.02, 0.02) m  resolution 4 cm  velocity (0, 0, -4) m/s
+  density 2000  elasticity 500 kPa  damping 0.1  friction 0.3
+}
+control { time 0.12 s  frames 50 fps }
+"""
+
+
+@pytest.fixture(scope="module")
+def torn(tmp_path_factory):
+    """The same of a sheet that tears under another one."""
+    path = tmp_path_factory.mktemp("torn") / "scene.txt"
+    path.write_text(TORN)
+    return ways(path, TORN_CASES, timeout=120.0)
+
+
+TORN_CASES = matrix((2,), ["central"], rotate=True) | {
+    "stopped": SEQUENTIAL | {"stop": 4},
+    "gone on with": {"executors": 2, "control": "peers", "resume": True, "in": "stopped"},
+}
+
+
+@pytest.mark.parametrize("way", TORN_CASES)
+def test_layers_that_tear_give_the_same(torn, way):
+    """Some links are gone before the run is stopped, others later, and the other sheet lies on them."""
+    assert compare(torn["sequential"], torn[way]).equal
+    alone, other = (Checkpoint.read(torn[name] / "checkpoint") for name in ("sequential", way))
+    assert np.array_equal(alone.x, other.x)
+
+
+def test_it_tears(torn):
+    """Some links before the run is stopped, others later; the other sheet is on it."""
+    with Trajectory(torn["sequential"]) as trajectory:
+        gone = [len(trajectory.gone(frame)) for frame in range(len(trajectory))]
+    assert gone[0] == 0 and 0 < gone[3] < gone[-1]

@@ -136,7 +136,7 @@ def layers(context: Context) -> dict[int, FoldLayer]:
 
 @once_for(lambda context: context.system)
 def pairs(context: Context) -> tuple[LayerPair, ...]:
-    """What touches what in a context."""
+    """Pairs of a context that touch."""
     return tuple(_pairs(context))
 
 

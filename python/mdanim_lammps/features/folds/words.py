@@ -32,7 +32,7 @@ OBJECT = FoldWords
 
 
 def check_object(v: Any, block: Any, solid: Any) -> Any:
-    """What does not deform has no folds."""
+    """An object that does not deform has no folds."""
     if solid.touches_itself is not Itself.YES:
         return solid
     rigid = not hasattr(solid.elasticity, "modulus") or type(solid.elasticity).__name__ == "Rigid"
