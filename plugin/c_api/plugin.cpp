@@ -20,6 +20,7 @@
 #include "lammps/fix_mdanim_rigid.h"
 #include "lammps/fix_mdanim_tear.h"
 #include "lammps/fix_mdanim_wall.h"
+#include "lammps/fix_mdanim_yield.h"
 #include "lammps/verlet_mdanim.h"
 
 #include "atom.h"
@@ -140,6 +141,7 @@ MDANIM_EXPORT void lammpsplugin_init(void *handle_of_lammps, void *handle, void 
       style<FixMdanimLiquid>("fix", "mdanim/liquid", "liquid that solids float and sink in"),
       style<FixMdanimRigid>("fix", "mdanim/rigid", "objects that do not deform"),
       style<FixMdanimTear>("fix", "mdanim/tear", "springs that break where they are stretched too far"),
+      style<FixMdanimYield>("fix", "mdanim/yield", "springs whose rest length follows where they bear too much"),
       style<FixMdanimWall>("fix", "mdanim/wall", "walls that withstand any impact"),
       style<VerletMdanim>("run", "verlet/mdanim", "verlet with springs, gravity and leap-frog in one pass"),
   };

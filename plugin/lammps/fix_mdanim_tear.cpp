@@ -5,9 +5,9 @@
 #include "lammps/fix_mdanim_tear.h"
 
 #include "lammps/bond_mdanim_harmonic.h"
+#include "lammps/fix_mdanim_yield.h"
 #include "lammps/keywords.h"
 #include "lammps/object_table.h"
-#include "lammps/particle_value.h"
 #include "lammps/rank_gather.h"
 #include "lammps/shared_file.h"
 #include "numbers/stopwatch.h"
@@ -34,7 +34,7 @@ using namespace mdanim;
 static const char *const STYLE = "fix mdanim/tear";
 
 // fix ID group mdanim/tear torn NAME objects FILE
-FixMdanimTear::FixMdanimTear(LAMMPS *lmp, int narg, char **arg) : FixBase(lmp, narg, arg)
+FixMdanimTear::FixMdanimTear(LAMMPS *lmp, int narg, char **arg) : FixBase(lmp, narg, arg), losses(lmp)
 {
   need(OPEN_BOX | OBJECTS | ATOM_MAP);
   if (!atom->molecule_flag) error->all(FLERR, "{}: {}", STYLE, NO_OBJECTS);
@@ -53,7 +53,7 @@ FixMdanimTear::FixMdanimTear(LAMMPS *lmp, int narg, char **arg) : FixBase(lmp, n
   if (rules.empty()) error->all(FLERR, "{}: nothing may break; write objects FILE with a line object MOLECULE STRAIN", STYLE);
   find_bits();
   comm->ghost_velocity = 1;    // the account sees what both ends of a spring did
-  tell({{"energy", true, [this] { return sum(lost); }}, clock()});
+  tell({{"energy", true, [this] { return sum(losses.total()); }}, clock()});
 }
 
 const FixMdanimTear *FixMdanimTear::of(LAMMPS *lmp)
@@ -89,6 +89,7 @@ void FixMdanimTear::init()
   if (!springs || springs->are_given())
     error->all(FLERR, "{}: needs bond_style mdanim/harmonic, with bonds that particles have themselves", name());
   find_bits();
+  yields = FixMdanimYield::of(lmp);
   springs->partial_flag = 1;    // LAMMPS then does not look for the partners of bonds that are gone
   find_objects();
 }
@@ -234,19 +235,11 @@ void FixMdanimTear::let_go(int i, int slot)
   atom->bond_type[i][slot] = -std::abs(atom->bond_type[i][slot]);
 }
 
-// Takes a spring between two particles into the account of this rank's ends: 1 of one that is gone, -1 of one that is there
-// instead.
+// Takes a spring between two particles into the account: 1 of one that is gone, -1 of one that is there instead.
 void FixMdanimTear::release(int i, int j, const LoadFree &spring, double sign)
 {
-  const auto end = [&](int one, int other) {
-    if (!is_here(one)) return;
-    const Vec3 way = update->dt * vec3(atom->v[one]), apart = vec3(atom->x[one]) - vec3(atom->x[other]);
-    const Vec3 before = apart - (way - update->dt * vec3(atom->v[other]));
-    lost += sign * lost_with(spring, apart, before, way);
-    released[one] += sign * force_of(spring.spring, apart);
-  };
-  end(i, j);
-  end(j, i);
+  losses.count(i, j, spring, sign);
+  losses.count(j, i, spring, sign);
 }
 
 // The same of a spring over two links, or of what remains of it.
@@ -270,7 +263,8 @@ LoadFree FixMdanimTear::load_free(const Watched &one) const
   const tagint tag = atom->tag[one.i], other = atom->tag[one.j];
   const TearLink *const link =
       of.link(static_cast<int>(std::min(tag, other) - lowest[n]), static_cast<int>(std::max(tag, other) - lowest[n]));
-  return {{spring.K, spring.r0, 0.0}, link ? link->length : spring.r0};
+  const double more = yields ? yields->more(one.i, one.slot) : 0.0;
+  return {{spring.K, spring.r0 + more, 0.0}, (link ? link->length : spring.r0) + more};
 }
 
 void FixMdanimTear::break_link(const Watched &one, std::vector<GoneLink> &here)
@@ -323,15 +317,7 @@ void FixMdanimTear::pre_force(int)
 }
 
 // All forces of the step are there.
-void FixMdanimTear::final_integrate()
-{
-  for (const auto &[i, less] : released) {
-    if (!(atom->mask[i] & groupbit)) continue;
-    const double inertia = mass_of(atom->rmass, atom->mass, atom->type, i) / force->ftm2v;
-    lost += lost_with_kick(vec3(atom->f[i]), less, inertia, update->dt);
-  }
-  released.clear();
-}
+void FixMdanimTear::final_integrate() { losses.close(groupbit); }
 
 // --- what remains ---
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "lammps/fix_base.h"
+#include "lammps/spring_losses.h"
 #include "numbers/vec3.h"
 #include "tearing/law.h"
 #include "tearing/tear_rules.h"
@@ -16,6 +17,7 @@
 namespace LAMMPS_NS {
 
 class BondMdanimHarmonic;
+class FixMdanimYield;
 
 // A link that is gone: the molecule ID of its object, and its ends, counted from the lowest tag of the object, 0.
 struct GoneLink {
@@ -93,12 +95,12 @@ class FixMdanimTear : public mdanim::FixBase {
   std::map<int, mdanim::TearRules> rules;
   std::vector<tagint> lowest;    // tags of objects, in the order of the rules
   BondMdanimHarmonic *springs = nullptr;
+  const FixMdanimYield *yields = nullptr;    // null where no spring yields
   std::vector<Watched> watched;
   std::vector<Spanning> spanning;
   bool any_remains = false;    // of springs over two links
   std::vector<GoneLink> gone_links;
-  std::map<int, mdanim::Vec3> released;    // forces of springs that broke in this step on local particles
-  double lost = 0.0;                       // energy, on this rank
+  mdanim::SpringLosses losses;
 };
 
 }    // namespace LAMMPS_NS

@@ -12,6 +12,8 @@ import numpy as np
 
 GONE = "torn"
 """Name of the field of springs that has 1 for one that is gone: pictures leave out what it held together."""
+GROWN = "grown"
+"""Name of the field of springs that has by how much their rest lengths have changed for good [m]."""
 PER = ("particle", "bond", "object", "pair", "cell", "column", "row", "run")
 """Things that a field has one value for each of: ``run`` has one number in all, ``row`` is a row of a table of any length."""
 

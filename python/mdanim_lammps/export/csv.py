@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
+from ..effects.fields import GROWN
 from ..errors import MdanimError
 from ..model.build import build_models
 from ..model.spacing import plan_spacing
@@ -39,7 +40,8 @@ def write(cut: Cut, folder: Path, stem: str, on_frame: Callable[[int], None]) ->
         for done, frame in enumerate(cut.frames.tolist(), 1):
             numbers = table.numbers(frame)
             if system:
-                numbers = np.column_stack([numbers, elastic(system, t.position(frame), t.gone(frame))[cut.objects]])
+                energy = elastic(system, t.position(frame), t.gone(frame), grown_in(t, frame))
+                numbers = np.column_stack([numbers, energy[cut.objects]])
             numbers = np.column_stack([numbers, *cut.of_objects(frame).values()])
             time = float(t.times[frame])
             rows = (["" if number != number else number for number in row] for row in numbers.tolist())
@@ -63,11 +65,19 @@ def system_of(trajectory: Trajectory) -> System | None:
         return None
 
 
-def elastic(system: System, position: np.ndarray, gone: np.ndarray | None = None) -> np.ndarray:
-    """Energy of the springs of each object [J], shape (O,), for positions of all particles [m], shape (N, 3), and the ends
-    of springs that are gone, shape (G, 2); NaN for objects that are torn, whose springs are no longer those of the scene."""
+def grown_in(trajectory: Trajectory, frame: int) -> np.ndarray | float:
+    """By how much the rest lengths of springs have changed for good in a frame [m], shape (S,); 0 where none may."""
+    return trajectory.field(GROWN, frame) if GROWN in [field.name for field in trajectory.metadata.fields] else 0.0
+
+
+def elastic(
+    system: System, position: np.ndarray, gone: np.ndarray | None = None, grown: np.ndarray | float = 0.0
+) -> np.ndarray:
+    """Energy of the springs of each object [J], shape (O,), for positions of all particles [m], shape (N, 3), the ends of
+    springs that are gone, shape (G, 2), and `grown_in`; NaN for objects that are torn, whose springs are no longer those of the
+    scene."""
     i, j = system.spring.T
-    stretch = np.linalg.norm(position[i] - position[j], axis=1) - system.rest
+    stretch = np.linalg.norm(position[i] - position[j], axis=1) - system.rest - grown
     energy = 0.5 * system.stiffness * stretch**2 - system.preload_energy
     found = np.bincount(system.object[i], energy, len(system.names))
     if gone is not None:

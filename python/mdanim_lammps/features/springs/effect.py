@@ -9,6 +9,7 @@ from ...bodies import all_held, kind_of
 from ...effects.context import Context, Verdict
 from ...effects.effect import Effect
 from ..tearing.gone import change_of_energy
+from ..yielding.grown import energy_of_growth
 from .strength import strength, turning
 
 DASHPOTS = 0.44
@@ -77,7 +78,7 @@ class Springs(Effect):
 
     def energy(self, readings):
         stored = float(readings.system.preload_energy.sum())
-        return readings.elastic_energy() - stored + change_of_energy(readings)
+        return readings.elastic_energy() - stored + change_of_energy(readings) + energy_of_growth(readings)
 
     def clocks(self, readings):
         return {"springs": readings.bond_seconds() / (1.0 + time_of_dashpots(readings.context))}

@@ -8,6 +8,7 @@ import numpy as np
 from ...effects.measured import Glance, Measured, Recorded
 from ...model.system import System
 from ..tearing.gone import gone_of
+from ..yielding.grown import grown_of
 
 
 def kept(system: System, solid: int, gone: np.ndarray | None) -> np.ndarray:
@@ -32,8 +33,9 @@ def _lengths(system: System, springs: np.ndarray, position: np.ndarray) -> np.nd
 
 def _elastic(g: Glance) -> float:
     system = g.context.system
-    own = kept(system, g.solid, gone_of(system, g.solid, g.fields))
-    stretch = _lengths(system, own, g.position) - system.rest[own]
+    gone = gone_of(system, g.solid, g.fields)
+    own = kept(system, g.solid, gone)
+    stretch = _lengths(system, own, g.position) - system.rest[own] - grown_of(system, g.solid, g.fields)[~gone]
     return float((0.5 * system.stiffness[own] * stretch**2 - system.preload_energy[own]).sum())
 
 

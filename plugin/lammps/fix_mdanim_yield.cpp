@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// fix mdanim/yield: one loop over the bonds that may yield, which are listed when LAMMPS makes its lists. A bond is stored
+// at both ends, which find the same.
+
+#include "lammps/fix_mdanim_yield.h"
+
+#include "lammps/bond_mdanim_harmonic.h"
+#include "lammps/keywords.h"
+#include "numbers/real.h"
+#include "numbers/stopwatch.h"
+
+#include "atom.h"
+#include "comm.h"
+#include "error.h"
+#include "force.h"
+#include "modify.h"
+
+using namespace LAMMPS_NS;
+using namespace FixConst;
+using namespace mdanim;
+
+static const char *const STYLE = "fix mdanim/yield";
+
+// fix ID group mdanim/yield grown NAME bears NAME
+FixMdanimYield::FixMdanimYield(LAMMPS *lmp, int narg, char **arg) : FixBase(lmp, narg, arg), losses(lmp)
+{
+  need(OPEN_BOX | ATOM_MAP);
+  need_words(lmp, STYLE, "fix ID group mdanim/yield", "grown NAME bears NAME", narg - 3);
+  const auto into = [](std::string &name) { return [&name](int at, char **words) { name = words[at + 1]; }; };
+  const std::vector<Keyword> known = {{"grown", "NAME", "", into(grown)}, {"bears", "NAME", "", into(bears)}};
+  for (int iarg = 3; iarg < narg;) iarg += take_keyword(lmp, STYLE, known, iarg, narg, arg);
+  if (grown.empty()) error->all(FLERR, "{}: the keyword grown is missing; write grown NAME", STYLE);
+  if (bears.empty()) error->all(FLERR, "{}: the keyword bears is missing; write bears NAME", STYLE);
+  of_growths = find(grown);
+  of_most = find(bears);
+  comm->ghost_velocity = 1;    // the account sees what both ends of a spring did
+  tell({{"energy", true, [this] { return sum(losses.total()); }}, clock()});
+}
+
+const FixMdanimYield *FixMdanimYield::of(LAMMPS *lmp)
+{
+  for (Fix *fix : lmp->modify->get_fix_list())
+    if (const auto *one = dynamic_cast<const FixMdanimYield *>(fix)) return one;
+  return nullptr;
+}
+
+int FixMdanimYield::setmask() { return POST_NEIGHBOR | PRE_FORCE | POST_FORCE | FINAL_INTEGRATE; }
+
+// A property with a number for each bond that a particle has room for.
+int FixMdanimYield::find(const std::string &property) const
+{
+  int is_double = 0, columns = 0;
+  const int found = atom->find_custom(property.c_str(), is_double, columns), needed = atom->bond_per_atom;
+  if (found < 0 || !is_double || columns < needed)
+    error->all(FLERR, "{}: there is no per-particle property d2_{} {}; make it with 'fix ID all property/atom d2_{} {}'", STYLE,
+               property, needed, property, needed);
+  return found;
+}
+
+double **FixMdanimYield::growths() const { return atom->darray[of_growths]; }
+
+void FixMdanimYield::init()
+{
+  FixBase::init();
+  springs = dynamic_cast<BondMdanimHarmonic *>(force->bond);
+  if (!springs || springs->are_given())
+    error->all(FLERR, "{}: needs bond_style mdanim/harmonic, with bonds that particles have themselves", name());
+  of_growths = find(grown);
+  of_most = find(bears);
+}
+
+// A bond yields where an end is in the group; then both ends follow.
+void FixMdanimYield::watch()
+{
+  const Lap lap(seconds);
+  watched.clear();
+  double *const *const most = atom->darray[of_most];
+  for (int i = 0; i < atom->nlocal; ++i)
+    for (int b = 0; b < atom->num_bond[i]; ++b) {
+      const int type = atom->bond_type[i][b], j = atom->map(atom->bond_atom[i][b]);
+      if (!(most[i][b] > 0.0) || type <= 0) continue;
+      if (j < 0) springs->lost_partner(i, static_cast<int>(atom->bond_atom[i][b]));
+      if (!((atom->mask[i] | atom->mask[j]) & groupbit)) continue;
+      const Spring &spring = springs->springs()[type];
+      watched.push_back({i, b, j, spring.K, spring.r0, most[i][b], 0.0});
+    }
+}
+
+bool FixMdanimYield::is_gone(const Watched &one) const { return atom->bond_type[one.i][one.slot] <= 0; }
+
+double FixMdanimYield::length(const Watched &one) const
+{ return root(floored_square(vec3(atom->x[one.i]) - vec3(atom->x[one.j]))); }
+
+// No time passes: nothing yields.
+void FixMdanimYield::setup(int vflag)
+{
+  for (Watched &one : watched) one.factor = growth_factor(one.K, more(one.i, one.slot), length(one));
+  post_force(vflag);
+}
+
+void FixMdanimYield::pre_force(int)
+{
+  const Lap lap(seconds);
+  for (Watched &one : watched) {
+    if (is_gone(one)) continue;
+    const double r = length(one), before = more(one.i, one.slot), now = mdanim::grown(one.r0, r - one.r0, before, one.most);
+    if (now != before) {
+      losses.count(one.i, one.j, grown_spring(one.K, one.r0, before), 1.0);
+      losses.count(one.i, one.j, grown_spring(one.K, one.r0, now), -1.0);
+      growths()[one.i][one.slot] = now;
+    }
+    one.factor = growth_factor(one.K, now, r);
+  }
+}
+
+void FixMdanimYield::post_force(int)
+{
+  const Lap lap(seconds);
+  for (const Watched &one : watched)
+    if (one.factor != 0.0 && !is_gone(one))
+      add_to(atom->f[one.i], one.factor * (vec3(atom->x[one.i]) - vec3(atom->x[one.j])));
+}
+
+// All forces of the step are there.
+void FixMdanimYield::final_integrate() { losses.close(groupbit); }
+
+// Half of the energy of a bond at either end.
+double FixMdanimYield::compute_scalar()
+{
+  double here = 0.0;
+  for (const Watched &one : watched)
+    if (const double growth = more(one.i, one.slot); growth != 0.0 && !is_gone(one))
+      here += 0.5 * growth_energy(one.K, growth, length(one) - one.r0);
+  return sum(here);
+}
+
+double FixMdanimYield::memory_usage() { return static_cast<double>(watched.capacity() * sizeof(Watched)); }

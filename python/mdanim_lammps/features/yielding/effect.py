@@ -1,0 +1,94 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Springs that yield, by ``fix mdanim/yield`` (docs/physics-yielding.md)."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...effects.context import Context, Verdict
+from ...effects.effect import Effect
+from ...effects.fields import column
+from ...model.springs import dashpots
+from ..springs.effect import spring_norm
+from .grown import EFFECT, FIX, NAME, acts
+from .words import yields
+
+GROWN = column(NAME, "m", per="bond", state=True)
+"""Growth of the rest length of a spring."""
+BEARS = column("bears", "m", per="bond")
+"""Stretch that a spring bears, either way; 0 for one that never yields."""
+POISSON = 0.25
+"""Poisson's ratio of lattices (docs/physics-solids.md)."""
+LOST = "yielding"
+"""Column of the ledger: work of springs that yield."""
+
+
+class Yielding(Effect):
+    """F = -k (r - L - p), p = r - L -+ b where +-(r - L - p) > b (docs/physics-yielding.md)."""
+
+    styles = (("fix", "mdanim/yield"),)
+    name, fix = EFFECT, FIX
+    order = 12
+    needs = ("springs",)
+    if_off = "nothing stays bent"
+
+    def called_for(self, scene, reach):
+        for solid in scene.solids:
+            if yields(solid):
+                return Verdict(self.name, True, f"{solid.name} has a yield-strain", solid.spans.get("yield-strain"))
+        return Verdict(self.name, False, "no object has a yield-strain")
+
+    def acts_on(self, context):
+        return acts(context)
+
+    def columns(self, context):
+        return {GROWN: np.zeros(len(context.system.spring)), BEARS: borne(context)}
+
+    def rate(self, context):
+        return turned(context, context.system.stiffness)
+
+    def drag_rate(self, context):
+        ratio = context.damping_ratio
+        return turned(context, dashpots(context.system, ratio)) if ratio.any() else None
+
+    def commands(self, context):
+        return [f"fix {self.fix} mobile mdanim/yield grown {GROWN.name} bears {BEARS.name}"]
+
+    def losses(self, scene):
+        return (LOST,)
+
+    def lost(self, readings):
+        return {LOST: readings.fix_value(self.fix, "energy")}
+
+    def clocks(self, readings):
+        return {self.name: readings.fix_seconds(self.fix)}
+
+
+def borne(context: Context) -> np.ndarray:
+    """Stretch that springs bear [m], shape (S,): that which they have in a body that is pulled along one of its own axes until it
+    is longer by e, of the three the largest. So all of them yield together, and a bar bears E e."""
+    system, found = context.system, np.zeros(len(context.system.spring))
+    for m, solid in enumerate(context.solids):
+        if yields(solid):
+            own = slice(*np.searchsorted(system.spring[:, 0], system.first[m : m + 2]))
+            i, j = system.spring[own].T
+            along = (system.position[i] - system.position[j]) @ np.array(solid.rotation)
+            square = (along**2).max(axis=1) / (along**2).sum(axis=1)
+            found[own] = solid.yield_strain * ((1.0 + POISSON) * square - POISSON) * system.rest[own]
+    return found
+
+
+def turned(context: Context, weight: np.ndarray) -> np.ndarray:
+    """Share in a bound by which it holds for a body that yields however it is bent, shape (N,), unit of ``weight`` over kg.
+
+    Directions of springs are no longer those of the start: sum w n n^T of a particle is at most sum w in any direction, and the
+    part of a spring across its own, (1 - r0/r) w, is never above w. So the share is 2 (sum w - lambda_max(sum w n n^T))/m.
+    """
+    system = context.system
+    own = np.array([yields(solid) for solid in context.solids], bool)[system.object[system.spring[:, 0]]]
+    weight, (i, j) = np.where(own, weight, 0.0), system.spring.T
+    whole = np.bincount(i, weight, system.particles) + np.bincount(j, weight, system.particles)
+    return 2.0 * (whole - spring_norm(system, weight)) / system.mass
+
+
+EFFECTS = (Yielding(),)

@@ -1,0 +1,19 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Quantities of yielding that ``expect`` can ask for."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...effects.measured import Glance, Measured, Recorded
+from .grown import grown_of
+
+
+def share(g: Glance) -> float:
+    """Largest growth of a rest length of an object, either way, over the first one [-]."""
+    system = g.context.system
+    low, high = np.searchsorted(system.spring[:, 0], system.first[g.solid : g.solid + 2])
+    return float(np.abs(grown_of(system, g.solid, g.fields) / system.rest[low:high]).max(initial=0.0))
+
+
+MEASURES = {("NAME", "yielded"): Recorded("yielded", share, Measured.largest)}

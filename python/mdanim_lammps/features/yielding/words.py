@@ -1,0 +1,59 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Words of a scene that belong to this feature."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from ...scene.holding import all_held
+from ...scene.limits import Limit
+from ...scene.schema import Observable, Rule, setting
+from ...scene.shapes import Rope, Sheet, Shell
+
+SWITCHES = {"yielding": "an object's `yield-strain e`"}
+
+QUANTITIES = {("NAME", "yielded"): Observable("1", "largest change of a rest length for good, over that at the start", "yielding")}
+
+LEDGER = {"yielding": "work of springs that yield"}
+
+YIELD_STRAIN = Limit("yield-strain", 10.0, 1e-6, "0.02 for clay, 0.002 for a metal")
+
+
+class YieldWords:
+    """Settings of an object."""
+
+    yield_strain: float | None = setting(
+        "<e>",
+        "Of an elastic solid: a spring that is longer or shorter than its rest length by more than this share of the first one "
+        "stays so, and bears no more. Absent: it always springs back.",
+        "0.02", Rule.POSITIVE, default=None, limit=YIELD_STRAIN, after="toughness", shared=True)  # fmt: skip
+    """[-]; None for never."""
+
+
+OBJECT = YieldWords
+
+
+def yields(solid: Any) -> bool:
+    """Whether springs of an object may yield."""
+    return solid.yield_strain is not None and not all_held(solid)
+
+
+def check_object(v: Any, block: Any, solid: Any) -> Any:
+    """Only elastic solids that can move yield."""
+    if solid.yield_strain is None or "yield-strain" not in solid.spans:
+        return solid
+    span = solid.spans["yield-strain"]
+    if isinstance(solid.shape, (Rope, Sheet, Shell)):
+        kind = "a rope" if isinstance(solid.shape, Rope) else "a sheet"
+        cause = f"{solid.name} is {kind}, which does not stay bent yet: only solids yield"
+        v.problem(span, cause, "take yield-strain out, or write a solid shape, as in shape box (30, 2, 1) cm")
+    elif getattr(solid.elasticity, "modulus", 0.0) == math.inf:
+        cause = f"{solid.name} is rigid: it has no springs that could yield"
+        v.problem(span, cause, "write its elasticity, as in elasticity 1 MPa, or take yield-strain out")
+    elif all_held(solid):
+        v.problem(span, f"{solid.name} is held as a whole: it keeps its form", "take yield-strain out, or hold less of it")
+    return solid
+
+
+CHECKS = {"object": check_object}

@@ -1,0 +1,85 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Solids that yield, some of which tear too, give the same bits in all forms of the distribution, gone on with, and by plain
+`lmp`."""
+
+import numpy as np
+import pytest
+from distribution_lab import SEQUENTIAL, TEAMS, film_of, film_of_lammps, matrix, readied, ways
+from mdanim_lammps.results.checkpoint import Checkpoint
+from mdanim_lammps.results.compare import compare
+from mdanim_lammps.results.ledger import Ledger
+from mdanim_lammps.results.trajectory import Trajectory
+
+pytestmark = pytest.mark.mpi
+
+SCENE = """
+gravity (0, 0, -9.81) m/s^2
+ground z 0 m
+repeat i in 1 .. 3 {
+  object lump[i] {
+    shape box (8, 8, 8) cm  position (0.2*i - 0.6, 0, 0.08 + 0.03*i) m  orientation axis (1, 1, 0) angle 40*i deg  resolution 3 cm
+    density 1500  elasticity 2 MPa  damping 0.2  friction 0.4  yield-strain 0.01*i  velocity (0.3, 0, -2) m/s
+  }
+}
+object beam {
+  shape box (30, 6, 6) cm  position (0, 0.3, 0.1) m  resolution 3 cm  density 1000  elasticity 200 kPa  damping 0.1
+  hold faces x  yield-strain 0.02  tear-strain 0.25
+}
+object stone { shape box (8, 8, 8) cm  position (0, 0.3, 0.2) m  velocity (0, 0, -4) m/s  density 2500  elasticity rigid }
+object crate { shape box (10, 10, 10) cm  position (0.5, 0.4, 0.06) m  density 300  elasticity 200 kPa  friction 0.4 }
+control { time 0.2 s }
+"""
+YIELDS = 4
+"""Objects that may yield, the first ones."""
+
+CASES = (
+    matrix((2,), ["central"], name="all move ", rotate=True)
+    | matrix((3,), ["peers"])
+    | TEAMS
+    | {
+        "stopped": SEQUENTIAL | {"stop": 3},
+        "stopped and gone on with": {"executors": 2, "control": "central", "resume": True, "in": "stopped"},
+    }
+)
+
+
+@pytest.fixture(scope="module")
+def found(tmp_path_factory):
+    """The folder of each form, all made in one start of MPI."""
+    path = tmp_path_factory.mktemp("yielding") / "scene.txt"
+    path.write_text(SCENE)
+    return ways(path, CASES, timeout=120.0)
+
+
+@pytest.mark.parametrize("way", CASES)
+def test_all_forms_give_the_same(found, way):
+    """Frames, with the growth in each, the state, and the work but for rounding."""
+    assert compare(found["sequential"], found[way]).equal
+    alone, other = (Checkpoint.read(found[name] / "checkpoint") for name in ("sequential", way))
+    assert "column grown" in alone.records
+    for column, first in (("column grown", 1), ("column torn", YIELDS)):  # the last of those that yield tears
+        state = [of.records.pop(column) for of in (alone, other)]
+        changed = [one.where((one.keys[:, 0] >= first) & (one.keys[:, 0] <= YIELDS)) for one in state]  # others may be without
+        assert changed[0] == changed[1]
+    assert alone.records == other.records and np.array_equal(alone.x, other.x)
+    work = [Ledger.read(found[name] / "ledger.csv").array("yielding") for name in ("sequential", way)]
+    assert work[0][-1] > 0.0 and work[1] == pytest.approx(work[0], rel=1e-9, abs=1e-12)
+
+
+def test_all_yield(found):
+    """Some before the run was stopped, some after; the beam tears, too."""
+    with Trajectory(found["sequential"]) as trajectory:
+        grown = [np.abs(trajectory.field("grown", frame)) for frame in range(len(trajectory))]
+        torn = trajectory.field("torn", len(trajectory) - 1).sum()
+        ends = np.searchsorted(trajectory.metadata.id, trajectory.metadata.bond[grown[-1] > 0.0, 0])
+        of = np.searchsorted(trajectory.metadata.first, ends, side="right") - 1
+    assert grown[0].sum() == 0.0 and 0.0 < grown[2].sum() < grown[-1].sum()
+    assert set(of.tolist()) == set(range(YIELDS)) and torn > 0.0
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_lammps_alone_makes_the_same_frames(found, tmp_path, ranks):
+    """The script that `build` writes."""
+    _, folder = readied(tmp_path, SCENE)
+    film = film_of(found["sequential"])
+    assert np.array_equal(film_of_lammps(folder, film.shape[1], ranks=ranks), film)

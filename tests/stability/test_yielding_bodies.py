@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Random solids that yield and fall, or are hit: none diverges, and their energies add up."""
+
+import random
+
+import numpy as np
+import pytest
+from mdanim_lammps.engine.instance import Instance
+from mdanim_lammps.errors import SceneError
+from mdanim_lammps.run.energy import energies
+from mdanim_lammps.run.prepare import prepare
+from mdanim_lammps.scene.parse import parse_scene
+
+RESIDUAL = 2e-3
+"""Change of all energies over the largest change of any."""
+LOOKS, LONG = 10, 30_000
+
+
+def scene(seed: int) -> str:
+    """A solid that falls on its corner, lies on a ground or is held, and a ball or a box that flies into it."""
+    chance = random.Random(seed)
+    e, young, damping = 10 ** chance.uniform(-2.3, -0.7), 10 ** chance.uniform(2.3, 3.5), chance.choice([0.05, 0.2, 0.5])
+    kind, hold = chance.choice([("box (20, 16, 12) cm", "hold face -x"), ("box (20, 16, 12) cm", ""), ("sphere 8 cm", "")])
+    thing = chance.choice(["sphere 5 cm", "box (8, 10, 6) cm"])
+    soft = chance.choice(["rigid", "300 kPa  damping 0.2  resolution 3 cm", f"300 kPa  damping 0.2  yield-strain {e:.4f}"])
+    tears = chance.choice(["", "", "tear-strain 0.4"])
+    return "\n".join(
+        [
+            "gravity (0, 0, -9.81) m/s^2\nground z 0 m",
+            f"object target {{ shape {kind}  position (0, 0, 0.3) m  density 1500",
+            f"  orientation axis (1, 1, 0) angle {chance.uniform(0.0, 90.0):.1f} deg  {hold}  elasticity {young:.1f} kPa  resolution 4 cm",
+            f"  damping {damping}  yield-strain {e:.4f}  {tears} }}",
+            f"object thing {{ shape {thing}  position ({chance.uniform(-0.05, 0.05):.3f}, 0, 0.55) m",
+            f"  velocity (0, 0, {-chance.uniform(1.0, 4.0):.2f}) m/s  density {chance.uniform(500.0, 2000.0):.0f}",
+            f"  elasticity {soft} }}",
+            f"control {{ time 0.3 s  seed {seed}  friction {chance.choice([0, 0.4])} }}\n",
+        ]
+    )
+
+
+
+
+def found(seed: int) -> tuple[float, float] | None:
+    """Largest change of a rest length over the stretch that it bears, and the residual of energy; None of a scene that is refused
+    or takes too long."""
+    try:
+        ready = prepare(parse_scene(scene(seed)))
+    except SceneError:
+        return None
+    if (steps := ready.certificate.steps) > LONG:
+        return None
+    told = []
+    with Instance(ready.plan) as instance:
+        instance.setup()
+        for _ in range(LOOKS + 1):
+            told.append(energies(instance, ready.system.center_of_mass(instance.array("x"))))
+            instance.run(max(1, steps // LOOKS))
+        assert np.isfinite(instance.array("x")).all(), seed
+        grown = float(np.abs(instance.column("grown")).max())
+    swing = max(np.ptp([one[name] for one in told]) for name in told[0])
+    return grown, float(np.ptp([sum(one.values()) for one in told]) / swing)
