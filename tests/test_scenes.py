@@ -24,6 +24,7 @@ LONG = {
     "boat": (1.8, True),
     "bottle": (1.0, False),
     "bowling": (0.25, False),
+    "clay": (0.28, False),
     "cloth": (0.3, True),
     "hammock": (0.2, True),
     "paddle": (1.1, True),

@@ -86,22 +86,22 @@ void FixMdanimYield::watch()
     }
 }
 
-bool FixMdanimYield::is_gone(const Watched &one) const { return atom->bond_type[one.i][one.slot] <= 0; }
+bool FixMdanimYield::is_gone(const YieldBond &one) const { return atom->bond_type[one.i][one.slot] <= 0; }
 
-double FixMdanimYield::length(const Watched &one) const
+double FixMdanimYield::length(const YieldBond &one) const
 { return root(floored_square(vec3(atom->x[one.i]) - vec3(atom->x[one.j]))); }
 
 // No time passes: nothing yields.
 void FixMdanimYield::setup(int vflag)
 {
-  for (Watched &one : watched) one.factor = growth_factor(one.K, more(one.i, one.slot), length(one));
+  for (YieldBond &one : watched) one.factor = growth_factor(one.K, more(one.i, one.slot), length(one));
   post_force(vflag);
 }
 
 void FixMdanimYield::pre_force(int)
 {
   const Lap lap(seconds);
-  for (Watched &one : watched) {
+  for (YieldBond &one : watched) {
     if (is_gone(one)) continue;
     const double r = length(one), before = more(one.i, one.slot), now = mdanim::grown(one.r0, r - one.r0, before, one.most);
     if (now != before) {
@@ -116,9 +116,8 @@ void FixMdanimYield::pre_force(int)
 void FixMdanimYield::post_force(int)
 {
   const Lap lap(seconds);
-  for (const Watched &one : watched)
-    if (one.factor != 0.0 && !is_gone(one))
-      add_to(atom->f[one.i], one.factor * (vec3(atom->x[one.i]) - vec3(atom->x[one.j])));
+  for (const YieldBond &one : watched)
+    if (one.factor != 0.0 && !is_gone(one)) add_to(atom->f[one.i], one.factor * (vec3(atom->x[one.i]) - vec3(atom->x[one.j])));
 }
 
 // All forces of the step are there.
@@ -128,10 +127,10 @@ void FixMdanimYield::final_integrate() { losses.close(groupbit); }
 double FixMdanimYield::compute_scalar()
 {
   double here = 0.0;
-  for (const Watched &one : watched)
+  for (const YieldBond &one : watched)
     if (const double growth = more(one.i, one.slot); growth != 0.0 && !is_gone(one))
       here += 0.5 * growth_energy(one.K, growth, length(one) - one.r0);
   return sum(here);
 }
 
-double FixMdanimYield::memory_usage() { return static_cast<double>(watched.capacity() * sizeof(Watched)); }
+double FixMdanimYield::memory_usage() { return static_cast<double>(watched.capacity() * sizeof(YieldBond)); }

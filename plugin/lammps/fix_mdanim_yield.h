@@ -17,8 +17,8 @@ class BondMdanimHarmonic;
 // Looks at springs that may yield before the forces of each step (tearing/yield_law.h), and adds to the forces of the bond style,
 // which has one rest length for each type, what the growth of each changes. The property `bears` has the stretch that each bond
 // of a particle bears, 0 of one that never yields; `grown`, the growth of each, is the state: it is that of the particles'
-// records, and a run begins with it. Each end of a bond keeps its own copy and finds the same. The scalar is the energy of springs
-// beyond that of the bond style.
+// records, and a run begins with it. Each end of a bond keeps its own copy and finds the same. The scalar is the energy of
+// springs beyond that of the bond style.
 class FixMdanimYield : public mdanim::FixBase {
  public:
   FixMdanimYield(class LAMMPS *, int, char **);
@@ -41,7 +41,7 @@ class FixMdanimYield : public mdanim::FixBase {
 
  private:
   // A bond of a local particle, in rows of the particles, as they have them; `factor` is what its growth adds to F_i/r_ij.
-  struct Watched {
+  struct YieldBond {
     int i, slot, j;
     double K, r0, most, factor;
   };
@@ -49,13 +49,13 @@ class FixMdanimYield : public mdanim::FixBase {
   int find(const std::string &property) const;
   double **growths() const;
   void watch();
-  double length(const Watched &one) const;
-  bool is_gone(const Watched &one) const;
+  double length(const YieldBond &one) const;
+  bool is_gone(const YieldBond &one) const;
 
-  std::string grown, bears;            // names of properties
+  std::string grown, bears;             // names of properties
   int of_growths = -1, of_most = -1;    // their places among LAMMPS's
   BondMdanimHarmonic *springs = nullptr;
-  std::vector<Watched> watched;
+  std::vector<YieldBond> watched;
   mdanim::SpringLosses losses;
 };
 

@@ -3,8 +3,8 @@
 //
 // L is the rest length of the spring at the start, p what it has grown by for good, and k the same for ever:
 //   F = -k (r - L - p),   and before the forces of each step   p = r - L -+ b   where   +-(r - L - p) > b,
-// ideal plasticity, but p is at least -L/2: a spring that was pushed to half of its length is elastic from there on, as nothing is
-// pressed to no volume. Both ends find the same p, from r^2 alone.
+// ideal plasticity, but p is at least -L/2: a spring that was pushed to half of its length is elastic from there on, as nothing
+// is pressed to no volume. Both ends find the same p, from r^2 alone.
 //
 // The energy that is gone is that of a spring of the rest length before, which is there no longer, less that of the new one
 // (law.h).
@@ -20,8 +20,8 @@ namespace mdanim {
 
 constexpr double SHRINKS = 0.5;    // at most, of its first rest length
 
-// Growth of a spring of the first rest length r0 that is longer than it by `stretch`: that before, or another one where it bears no
-// more than a stretch `most`.
+// Growth of a spring of the first rest length r0 that is longer than it by `stretch`: that before, or another one where it bears
+// no more than a stretch `most`.
 inline double grown(double r0, double stretch, double before, double most)
 {
   if (std::abs(stretch - before) <= most) return before;

@@ -57,9 +57,12 @@ EVERY = with_every_effect(FULL)
 ROPE = "object w { shape rope from (0.8, 0, 1) to (0.8, 0, 1.8) thickness 0.01 mass 1 elasticity 1e6\ntear-strain 0.1 }\n"
 BAG = "object w { shape sphere 0.1 sheet thickness 0.01 position (0.8, 0, 1) mass 1 elasticity 1e6\ninflate 1e3 }\n"
 PLATE = "object w { shape box (0.1, 0.1, 0.1) position (0.8, 0, 1) mass 1 elasticity rigid strength 1e6\npieces 3 }\n"
-BESIDE = {name: re.sub(r"liquid w \{[^}]*\}\n", text, FULL) for name, text in (("tearing", ROPE), ("inflate", BAG))}
+LUMP = "object w { shape sphere 0.1 position (0.8, 0, 1) mass 1 elasticity 1e6\nyield-strain 0.1 }\n"
+BESIDE = {
+    name: re.sub(r"liquid w \{[^}]*\}\n", text, FULL) for name, text in (("tearing", ROPE), ("inflate", BAG), ("yielding", LUMP))
+}
 BESIDE["pieces"] = re.sub(r"air \{[^}]*\}\n", "", re.sub(r"liquid w \{[^}]*\}\n", PLATE, FULL))
-"""Scenes for effects of objects that a liquid refuses beside it."""
+"""Scenes for effects that are not in EVERY."""
 BARE = "object a {\n shape sphere 0.1\n position (0, 0, 0)\n mass 1\n elasticity 1e5\n}\ncontrol { time 1 }\n"
 LINES = {
     "springs": 8,
@@ -78,6 +81,7 @@ LINES = {
     "joint": 32,
     "air": 33,
     "tearing": 19,
+    "yielding": 19,
     "pieces": 19,
 }
 

@@ -30,7 +30,12 @@ expect bar.yielded > 0
 
 @pytest.mark.parametrize(
     ("wide", "young", "e", "down", "more"),
-    [(8, 1000, 0.02, 0.0135, ""), (6, 2000, 0.01, 0.0075, ""), (8, 1000, 0.02, 0.0135, "resolution 2 cm"), (8, 500, 0.03, 0.02, "")],
+    [
+        (8, 1000, 0.02, 0.0135, ""),
+        (6, 2000, 0.01, 0.0075, ""),
+        (8, 1000, 0.02, 0.0135, "resolution 2 cm"),
+        (8, 500, 0.03, 0.02, ""),
+    ],
 )
 def test_what_stays_of_a_push(prepared, tmp_path, wide, young, e, down, more):
     """A bar that is pushed together by s > e stays shorter by s - e, within 2 % of s, and takes E A e for each length of it; but
@@ -60,8 +65,8 @@ def test_a_bar_that_is_pulled_stays_at_twice_the_strain(prepared):
     """A bar that is longer by 3 e and thinner by e/4 all at once, as one is that is pulled along a lattice axis, comes to rest at
     2 e, free of stress."""
     e = 0.02
-    text = f"object bar {{ shape box (20, 10, 10) cm  position (0, 0, 1) m  density 1000  elasticity 1 MPa  damping 1  yield-strain {e} }}"
-    ready = prepared(text + "\ncontrol { time 0.2 s }\n")
+    text = "object bar { shape box (20, 10, 10) cm  position (0, 0, 1) m  density 1000  elasticity 1 MPa  damping 1"
+    ready = prepared(f"{text}  yield-strain {e} }}\ncontrol {{ time 0.2 s }}\n")
     start = ready.system.position
     x = start.mean(0) + (start - start.mean(0)) * np.array([1.0 + 3.0 * e, 1.0 - 0.25 * e, 1.0 - 0.25 * e])
     with Instance(ready.plan) as instance:
@@ -125,7 +130,12 @@ SOLID = "object a { shape box (1, 1, 1) m position (0, 0, 1) m density 1 "
 ROPE = "object a { shape rope from (0, 0, 1) m to (1, 0, 1) m thickness 1 cm density 1 elasticity 1 MPa "
 SHEET = "object a { shape sheet (1, 1) m thickness 1 mm position (0, 0, 1) m density 1 elasticity 1 MPa "
 MISTAKES = [
-    (SOLID + "elasticity rigid yield-strain 0.1 }", "yield-strain", "a is rigid: it has no springs that could yield", "elasticity 1 MPa"),
+    (
+        SOLID + "elasticity rigid yield-strain 0.1 }",
+        "yield-strain",
+        "a is rigid: it has no springs that could yield",
+        "elasticity 1 MPa",
+    ),
     (SOLID + "elasticity 1 MPa hold all yield-strain 0.1 }", "yield-strain", "a is held as a whole", "hold less"),
     (SOLID + "elasticity 1 MPa yield-strain 0 }", "0 }", "yield-strain must be > 0", ""),
     (SOLID + "elasticity 1 MPa yield-strain -1 }", "-1 }", "yield-strain must be > 0", ""),
@@ -143,4 +153,6 @@ def test_mistakes(text, at, words, way_out):
         parse_scene(text + "\ncontrol { time 1 s }\n")
     (problem,) = error.value.problems
     assert words in problem.message and way_out in problem.hint, str(problem)
-    assert (problem.line, problem.column) in ((1, text.index(at) + 1), (1, text.index(at) + 1 + len("yield-strain "))), str(problem)
+    assert (problem.line, problem.column) in ((1, text.index(at) + 1), (1, text.index(at) + 1 + len("yield-strain "))), str(
+        problem
+    )

@@ -8,12 +8,12 @@ import re
 from mdanim_lammps.features import facets
 from mdanim_lammps.scene.keywords import KEYWORDS
 
-ELSEWHERE = {"air", "drives", "inflate", "joint", "pieces", "rigid", "tearing"}
+ELSEWHERE = {"air", "drives", "inflate", "joint", "pieces", "rigid", "tearing", "yielding"}
 """Effects that cannot be on beside all others: the contact of the paper and the drag of a liquid refuse rigid objects
 (tests/effects/test_rigid_at_work.py), what is driven needs a hold (tests/effects/test_drives_at_work.py), a joint and air need
 a block (tests/effects/test_joints_at_work.py, test_air_at_work.py), tearing a rope (tests/effects/test_tearing_at_work.py), gas a
 closed sheet (tests/effects/test_inflate_at_work.py), pieces a rigid object without liquid or air
-(tests/effects/test_pieces_at_work.py)."""
+(tests/effects/test_pieces_at_work.py); where springs yield there are no passes (test_yielding_at_work.py)."""
 
 
 def with_every_effect(text: str) -> str:

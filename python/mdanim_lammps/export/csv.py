@@ -70,9 +70,7 @@ def grown_in(trajectory: Trajectory, frame: int) -> np.ndarray | float:
     return trajectory.field(GROWN, frame) if GROWN in [field.name for field in trajectory.metadata.fields] else 0.0
 
 
-def elastic(
-    system: System, position: np.ndarray, gone: np.ndarray | None = None, grown: np.ndarray | float = 0.0
-) -> np.ndarray:
+def elastic(system: System, position: np.ndarray, gone: np.ndarray | None = None, grown: np.ndarray | float = 0.0) -> np.ndarray:
     """Energy of the springs of each object [J], shape (O,), for positions of all particles [m], shape (N, 3), the ends of
     springs that are gone, shape (G, 2), and `grown_in`; NaN for objects that are torn, whose springs are no longer those of the
     scene."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""fix mdanim/yield: by how much springs grow in which step, against a naive form in numpy; energies, ranks, runs, and refusals."""
+"""fix mdanim/yield: by how much springs grow in which step, against a naive form in numpy; energies, ranks, refusals."""
 
 from dataclasses import replace
 

@@ -7,8 +7,11 @@ import numpy as np
 
 from ...effects.context import Context, Verdict
 from ...effects.effect import Effect
+from ...effects.envelope import Envelope
 from ...effects.fields import column
+from ...effects.margin import Margin
 from ...model.springs import dashpots
+from ...scene.formatting import at_least, number, say
 from ..springs.effect import spring_norm
 from .grown import EFFECT, FIX, NAME, acts
 from .words import yields
@@ -17,6 +20,8 @@ GROWN = column(NAME, "m", per="bond", state=True)
 """Growth of the rest length of a spring."""
 BEARS = column("bears", "m", per="bond")
 """Stretch that a spring bears, either way; 0 for one that never yields."""
+CRUSHED = 0.15
+"""Energy of motion of each volume over E e above which cells at the spot of a blow may be crushed (docs/physics-yielding.md)."""
 POISSON = 0.25
 """Poisson's ratio of lattices (docs/physics-solids.md)."""
 LOST = "yielding"
@@ -50,6 +55,9 @@ class Yielding(Effect):
     def drag_rate(self, context):
         ratio = context.damping_ratio
         return turned(context, dashpots(context.system, ratio)) if ratio.any() else None
+
+    def margins(self, envelope):
+        return blow(envelope)
 
     def commands(self, context):
         return [f"fix {self.fix} mobile mdanim/yield grown {GROWN.name} bears {BEARS.name}"]
@@ -89,6 +97,33 @@ def turned(context: Context, weight: np.ndarray) -> np.ndarray:
     weight, (i, j) = np.where(own, weight, 0.0), system.spring.T
     whole = np.bincount(i, weight, system.particles) + np.bincount(j, weight, system.particles)
     return 2.0 * (whole - spring_norm(system, weight)) / system.mass
+
+
+def blow(env: Envelope) -> list[Margin]:
+    """The energy of motion of each volume beside E e, which is what each volume takes that is pressed to nothing."""
+    own = np.array([yields(solid) for solid in env.scene.solids], bool) & env.reach.moving
+    if not own.any() or (len(own) == 1 and not env.planes):
+        return []
+    system = env.system
+    bears = system.young * np.array([solid.yield_strain or np.inf for solid in env.scene.solids])
+    ratio = np.where(own, 0.5 * system.density * env.reach.speed**2 / bears, 0.0)
+    m = int(ratio.argmax())
+    enough = at_least(env.scene.solids[m].yield_strain * float(ratio[m]) / CRUSHED) if ratio[m] else 0.0
+    speed, stress = say(env.reach.speed[m], "m/s", 2), say(bears[m], "Pa", 2)
+    return [
+        Margin(
+            "yielding",
+            system.names[m],
+            float(ratio[m]),
+            CRUSHED,
+            "",
+            f"{system.names[m]} may hit at {speed}, with {ratio[m]:.2g} of the stress {stress} at which it yields by volume; "
+            f"above about {CRUSHED:g} cells where it lands may be crushed",
+            env.place(m, "yield-strain"),
+            "warning" if ratio[m] > CRUSHED else "ok",
+            hint=f"write yield-strain {number(enough)} or more, a larger elasticity, or a lower height or speed",
+        )
+    ]
 
 
 EFFECTS = (Yielding(),)

@@ -13,7 +13,13 @@ from ...scene.shapes import Rope, Sheet, Shell
 
 SWITCHES = {"yielding": "an object's `yield-strain e`"}
 
-QUANTITIES = {("NAME", "yielded"): Observable("1", "largest change of a rest length for good, over that at the start", "yielding")}
+QUANTITIES = {
+    ("NAME", "yielded"): Observable("1", "largest change of a rest length for good, over that at the start", "yielding")
+}
+
+MARGINS = {
+    "yielding": "energy of motion of each volume over the stress at which an object yields; above about 0.15 cells are crushed"
+}
 
 LEDGER = {"yielding": "work of springs that yield"}
 
