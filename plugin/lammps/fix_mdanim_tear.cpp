@@ -257,13 +257,13 @@ void FixMdanimTear::release(const Spanning &one, double sign)
 
 LoadFree FixMdanimTear::load_free(const Watched &one) const
 {
-  const Spring &spring = springs->springs()[std::abs(atom->bond_type[one.i][slot_of(one.i, atom->tag[one.j])])];
-  const int n = number(one.i);
+  const int slot = slot_of(one.i, atom->tag[one.j]), n = number(one.i);
+  const Spring &spring = springs->springs()[std::abs(atom->bond_type[one.i][slot])];
   const TearRules &of = std::next(rules.begin(), n)->second;
   const tagint tag = atom->tag[one.i], other = atom->tag[one.j];
   const TearLink *const link =
       of.link(static_cast<int>(std::min(tag, other) - lowest[n]), static_cast<int>(std::max(tag, other) - lowest[n]));
-  const double more = yields ? yields->more(one.i, one.slot) : 0.0;
+  const double more = yields ? yields->more(one.i, slot) : 0.0;
   return {{spring.K, spring.r0 + more, 0.0}, (link ? link->length : spring.r0) + more};
 }
 
