@@ -74,6 +74,8 @@ PICTURES = {
     "crank": 0.3,
     "seesaw": 0.7,
     "buggy": 1.9,
+    "van": 1.6,
+    "basin": 3.3,
     "wrecking": 1.2,
     "windmill": 3.9,
     "parachute": 1.1,
