@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What connects and moves objects against closed forms, in one table: ``python bench/links.py [--write] [WORD ...]``.
+"""Joints, ropes, drives and air against closed forms, in one table: ``python bench/links.py [--write] [WORD ...]``.
 
 Cases are those of joint_scenes.py and forces.py, and of rope_cases.py, drive_cases.py and air_cases.py in tests/lab. With words
 only rows whose name has one of them; ``--write`` puts the whole table into docs/physics-joints.md. The exit code is 1 where a row
@@ -33,14 +33,14 @@ class Row:
     case: str
     form: str
     measure: Callable[[], tuple[float, float]]
-    """What is found, and the closed form."""
+    """The figure that is found, and the closed form."""
     within: float
     unit: str = ""
     scale: float = 0.0
     """By what the error is divided; 0: the closed form."""
 
     def cells(self) -> tuple[list[str], bool]:
-        """Of the table, and whether the row is within."""
+        """Cells of the table, and whether the row is within."""
         found, wanted = self.measure()
         off = (found - wanted) / (self.scale or wanted)
         close = abs(off) <= self.within

@@ -42,7 +42,7 @@ COMPLETE = "is complete"
 
 @pytest.fixture(scope="module", params=[LIQUID, LINKS], ids=["liquid", "links"])
 def whole(tmp_path_factory, request) -> tuple[Path, float]:
-    """The folder of a run that nothing disturbs, and what it took [s]. Joints have a motor, stops, friction and one that breaks."""
+    """The folder of a run that nothing disturbs, and what it took [s]."""
     folder = tmp_path_factory.mktemp("whole")
     (folder / "film.txt").write_text(request.param)
     start = time.monotonic()
