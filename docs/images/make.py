@@ -95,6 +95,8 @@ PICTURES = {
     "mattress": 0.27,
     "pop": 0.2,
     "paper": 0.3,
+    "wall": 0.36,
+    "shatter": 0.5,
 }
 """Scene and the moment to show [s]."""
 STEPS = {"falls": 0.0, "stands": 1.0, "pushed": 0.27, "rolls": 0.5, "splashes": 0.4, "show": 0.3}
