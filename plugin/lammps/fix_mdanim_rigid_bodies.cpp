@@ -40,9 +40,10 @@ void FixMdanimRigid::make()
   }
   particles.fix_places(bodies);
   set_velocities(found);
-  particles.put(bodies, true);
   touching.make(name(), objects, bodies);
   glue.join(name());
+  // Last: glue changes velocities by roundings, and `changes` compares particles with what was put.
+  particles.put(bodies, true);
 }
 
 // R diag(moments) R^T v.
