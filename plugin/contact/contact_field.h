@@ -71,6 +71,7 @@ class ContactField {
  protected:
   static constexpr double NEVER = Wakes::NEVER;
   static constexpr double AT_ONCE = -NEVER;    // budgets at planes fall below 0
+  static constexpr double ROUNDING = 1e-9;     // cells that a budget may be wrong by, and more
 
   // Upper bound of how much points and host have come nearer since the last step [m].
   virtual double approach() const = 0;
@@ -122,6 +123,7 @@ template <class Contact, class Known> class FieldOf : public ContactField {
     const Wakes wake_before = std::move(wake);
     const double now = budget + approach();
     forget();
+    wake.set_early(ROUNDING * owner->body->spacing());
     budget = now;
     std::size_t before = 0, contact = 0;
     for (const int p : with.points.inside(zone, on_flat, contacts)) {

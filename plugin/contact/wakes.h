@@ -16,6 +16,8 @@ class Wakes {
   static constexpr double NEVER = std::numeric_limits<double>::infinity();
 
   void clear() { wake.clear(), least_of.clear(), least = NEVER; }
+  // Values are less by this than what is set: budgets are sums that are rounded, and an early look changes nothing.
+  void set_early(double by) { early = by; }
   void push_back(double at)
   {
     if (wake.size() % BLOCK == 0) least_of.push_back(NEVER);
@@ -27,6 +29,7 @@ class Wakes {
   double operator[](std::size_t q) const { return wake[q]; }
   void set(std::size_t q, double at)
   {
+    at -= early;
     wake[q] = at;
     least_of[q / BLOCK] = std::min(least_of[q / BLOCK], at);
     least = std::min(least, at);
@@ -63,6 +66,7 @@ class Wakes {
 
   std::vector<double> wake, least_of;          // value of each point; for each block of points the least of them, or less
   double least = NEVER;                        // least of all values, or less
+  double early = 0.0;
   std::vector<std::size_t> due_blocks, due;    // while points are looked at
 };
 
