@@ -64,8 +64,8 @@ class Wakes {
   static constexpr std::size_t BLOCK = 8;
   std::size_t end_of(std::size_t block) const { return std::min(wake.size(), (block + 1) * BLOCK); }
 
-  std::vector<double> wake, least_of;          // value of each point; for each block of points the least of them, or less
-  double least = NEVER;                        // least of all values, or less
+  std::vector<double> wake, least_of;    // value of each point; for each block of points the least of them, or less
+  double least = NEVER;                  // least of all values, or less
   double early = 0.0;
   std::vector<std::size_t> due_blocks, due;    // while points are looked at
 };
