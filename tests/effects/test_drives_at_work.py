@@ -338,6 +338,17 @@ def test_refusals(text, told, way_out):
     assert re.match(r".*:2:\d+", str(problem.span))
 
 
+def test_a_drive_without_hold_is_told_with_all_else():
+    """In the same pass as what is wrong elsewhere in the text."""
+    loose = plate("drive velocity (1, 0, 0) m/s").replace("hold all", "")
+    wrong = "object it { shape sphere 4 cm position (0, 0, 1) m density -1 elasticity 1 MPa }\n"
+    with pytest.raises(SceneError) as e:
+        parse_scene(loose + loose.replace("plate", "other").replace("drive velocity (1, 0, 0) m/s", "release 1 s") + wrong)
+    told = [problem.message for problem in e.value.problems]
+    assert sum("is held, so nothing of it can be driven or released" in message for message in told) == 2
+    assert any("density" in message for message in told)
+
+
 @pytest.mark.parametrize(("drive", "most"), [
     ("drive oscillation (0, 0, 1) mm frequency 1000 Hz", 1.0 / 40e3),
     ("drive turn (0, 600, 800) rad/s", 2 * math.pi / 1000.0 / 40.0),

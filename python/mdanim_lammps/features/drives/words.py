@@ -166,6 +166,10 @@ def check_object(v: Any, block: Any, solid: Any) -> Any:
             cause = f"{solid.name} turns about {both}{block.where}; turns are about one point"
             v.problem(s.span(), cause, "write the same point behind about, or add a drive velocity or oscillation")
     _check_surface(v, block, solid)
+    said = next((s for word in ("drive", "key", RELEASE) if (s := block.first(word)) is not None), None)
+    if said is not None and not solid.hold and not block.excused("hold"):
+        cause = f"nothing of {solid.name} is held, so nothing of it can be driven or released{block.where}"
+        v.problem(said.span(), cause, "write hold all, or hold face -x for a part of it")
     for s, one in zip(drives, solid.drive):
         if isinstance(one, DriveOscillation) and not one.frequency > 0.0:
             _no_frequency(v, s, one)
