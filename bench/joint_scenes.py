@@ -25,7 +25,7 @@ from scipy.special import ellipk
 G = 9.81
 CRANK = Path(__file__).parents[1] / "scenes" / "crank.txt"
 STROKE = 0.4
-"""Of the piston in it [m]."""
+"""Stroke of its piston [m]."""
 DOWN = "gravity (0, 0, -9.81) m/s^2\n"
 ROD = (
     DOWN

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// What keeps layers apart: the nearest points of two features, and the push between them.
+// Layers are kept apart by a push between the nearest points of two features.
 
 #pragma once
 

@@ -43,7 +43,7 @@ class FixMdanimFolds : public mdanim::FixBase, public mdanim::Stateful {
     int first, second;
     mdanim::FoldContact contact;
   };
-  // What is lost on the way from a particle's motion.
+  // Losses of energy on the way, taken from a particle's motion.
   struct Lost {
     mdanim::Vec3 rub, damp;
   };

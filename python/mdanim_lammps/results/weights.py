@@ -63,7 +63,7 @@ class Carry(Weights):
     around: np.ndarray
     """Row of each vertex among those of the tubes, -1 for none, int64, shape (V,)."""
     patches: Patches
-    """Those of all rows, before some were chosen."""
+    """Patches of all rows, before some were chosen."""
     row: np.ndarray
     """Which of these each is, int64, shape (V,)."""
     rows: int

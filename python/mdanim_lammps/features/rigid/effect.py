@@ -156,7 +156,7 @@ class RigidMotion(Effect):
         most = float(ledger(PROOF).max()) if _may_touch(context.scene) else 0.0
         if most <= AT_REST:
             return []
-        factor = number(math.sqrt(AT_REST / most), 2)
+        factor = number(min(0.9, math.sqrt(AT_REST / most)), 2)
         return [
             Problem(
                 None,
