@@ -266,3 +266,18 @@ def test_four_units_have_no_room():
     lines = "\n".join(f"plot ball.{word}" for word in ("speed", "position.z", "kinetic", "force"))
     with pytest.raises(SceneError, match="curves of 4 units are asked for, and a picture has room for 3 panels"):
         parse_scene(TEXT + f"render {{\n{lines}\n}}\n")
+
+
+def test_curves_of_what_several_objects_have(tmp_path):
+    """The number of parts of an object with pieces, which no single object of the run has the name of."""
+    text = """
+    object v { shape box (10, 10, 10) cm  density 300  elasticity rigid  position (0, 0, 0.2) m  pieces 6  strength 1 kPa }
+    control { time 0.1 s }
+    render { plot v.pieces }
+    """
+    found = Scene.from_text(text, "v").run(tmp_path / "v.out")
+    values = RunValues(found.trajectory)
+    (of,) = found.trajectory.scene.render.plot
+    assert values.series(of).tolist() == [1.0] * len(found.trajectory)
+    with pytest.raises(UsageError, match="has no object w"):
+        values.series(replace(of, subject="w"))

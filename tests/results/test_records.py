@@ -152,6 +152,36 @@ control { time 0.1 s }
     assert problem.message.startswith(message) and problem.span.line == 7
 
 
+VASE = """
+gravity (0, 0, -9.81) m/s^2
+ground z 0 m
+object vase { shape box (10, 10, 20) cm  position (0, 0, 10) cm  density 2500  elasticity rigid  pieces 4  strength 50 MPa }
+control { time 0.2 s }
+"""
+
+
+def test_glue_is_not_contact(tmp_path):
+    """Forces of glue between pieces are not told from contact, and add nothing to the force on the world."""
+    with pytest.raises(SceneError) as error:
+        _ = Scene.from_text(VASE + "record vase.piece[1].contact.z\n").certificate
+    (problem,) = error.value.problems
+    assert problem.message.startswith("the force of contact on vase.piece[1] is not known: glue holds its pieces together")
+    found = Scene.from_text(VASE + "record world.contact.z\n").run(tmp_path / "vase").records["world.contact.z"]
+    weight = 2500 * 0.1 * 0.1 * 0.2 * G
+    assert found[1:].mean() == pytest.approx(-weight, rel=0.02)  # it swings on the ground at about 1 mm/s, of g t = 2 m/s
+
+
+def test_an_arrow_that_is_not_known_has_one_problem():
+    """At its line, once for its three components."""
+    text = (
+        RESTING.replace("object light {", "object light { hold all ") + "render { plot ball.speed\n arrows contact of light }\n"
+    )
+    with pytest.raises(SceneError) as error:
+        _ = Scene.from_text(text).certificate
+    (problem,) = error.value.problems
+    assert problem.message.startswith("the force of contact on light is not known") and problem.span.line == 12
+
+
 # --- expect over many frames ------------------------------------------------------------------------------------------
 
 BALL = "object ball { shape sphere 10 cm position (0, 0, 1) m mass 1 kg elasticity 150 kPa }\ncontrol { time 1 s }\n"

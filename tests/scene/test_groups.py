@@ -242,3 +242,18 @@ def test_groups_deep_in_each_other():
     assert list(solids(base + text + "place g7 { }\n")) == [".".join(f"g{k}" for k in range(7, -1, -1)) + ".a"]
     (problem,) = problems(base + text + "place g8 { }\n")
     assert "more than 8 levels deep" in problem.message
+
+
+def test_ballast_in_a_turned_group():
+    """A box of ballast is moved and turned by right angles; another angle is refused at its own line."""
+    text = """group g {
+      object a {
+        shape box (20, 10, 10) cm  position (0, 0, 0.05) m  density 300  elasticity rigid
+        ballast 3000 kg/m^3 within box (0, -1, -1) m to (1, 1, 1) m
+      } }
+    place g { position (2, 0, 0.05) m  orientation axis (0, 0, 1) angle """
+    (box,) = solids(text + "90 deg }\n")["g.a"].ballast
+    assert box.low == pytest.approx((1, 0, -0.95), abs=1e-15) and box.high == pytest.approx((3, 1, 1.05), abs=1e-15)
+    (problem,) = problems(text + "30 deg }\n")
+    assert problem.message.startswith("a box of ballast lies along the axes of the world, and its group is turned")
+    assert "hold" not in problem.hint and problem.span.line == 4

@@ -53,13 +53,17 @@ class Balance:
     def contact(self) -> np.ndarray:
         """Force of contact with objects, ground and walls on each object, mean since the frame before [N], shape (F, M, 3);
         NaN in the first frame, and for objects of which it is `untold`."""
+        return self._known(self.untold)
+
+    @cached_property
+    def _rest(self) -> np.ndarray:
+        """The same with forces that are not told from it, shape (F, M, 3)."""
         momentum = self.mass[:, None] * self.velocity
         for effect in self.effects:
             given = effect.impulses(self.scene, self.mass, self.times, self.center)
             momentum = momentum if given is None else momentum - given
         found = self._over_time(momentum)
         found[:, self._alone] = -np.delete(found, self._alone, axis=1).sum(axis=1, keepdims=True)
-        found[:, list(self.untold)] = np.nan
         return found
 
     @cached_property
@@ -67,7 +71,13 @@ class Balance:
         """Force of contact on ground, walls and all that is held together, mean since the frame before [N], shape (F, 3): the
         reaction to that on all others; NaN in the first frame, and where it is `untold` of one of these."""
         free = [m for m, solid in enumerate(self.scene.solids) if not solid.hold]
-        return -self.contact[:, free].sum(axis=1)
+        return -self._known(untold(self.scene, self.effects, in_sum=True))[:, free].sum(axis=1)
+
+    def _known(self, reasons: dict[int, str]) -> np.ndarray:
+        """Forces of contact, shape (F, M, 3), NaN for objects with such a reason."""
+        found = self._rest.copy()
+        found[:, list(reasons)] = np.nan
+        return found
 
     def _over_time(self, momentum: np.ndarray) -> np.ndarray:
         found = np.full(momentum.shape, np.nan)
@@ -78,12 +88,15 @@ class Balance:
 HELD = "it is held, and what holds it is not told from contact"
 
 
-def untold(scene: SceneRecord, effects: Sequence[Any]) -> dict[int, str]:
-    """Reasons why frames do not tell the force of contact on an object, by its number, ascending."""
+def untold(scene: SceneRecord, effects: Sequence[Any], *, in_sum: bool = False) -> dict[int, str]:
+    """Reasons why frames do not tell the force of contact on an object, by its number, ascending; with ``in_sum`` why they do not
+    tell its part of the sum over all objects, to which forces between some of these add nothing."""
     held = [m for m, solid in enumerate(scene.solids) if solid.hold]
-    found = dict.fromkeys(held, HELD)
+    found, mutual = dict.fromkeys(held, HELD), dict[int, str]()
     for effect in effects:
-        found |= {m: why for m, why in effect.untold(scene).items() if m not in found}
+        inner = effect.mutual(scene)
+        for m, why in effect.untold(scene).items():
+            (mutual if m in inner else found).setdefault(m, why)
     if len(held) == len(found) == 1 and len(scene.solids) > 1 and not Acting(scene, effects).planes:
-        return {}
-    return dict(sorted(found.items()))
+        found = {}
+    return dict(sorted((found if in_sum else mutual | found).items()))

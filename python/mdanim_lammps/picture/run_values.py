@@ -12,6 +12,7 @@ from ..errors import OutputError, UsageError
 from ..results.ledger import Ledger
 from ..results.quantities import quantity_of, series
 from ..results.trajectory import Trajectory
+from ..scene.naming import objects_by_name
 from ..scene.quantities import GLOBALS, Asked
 
 
@@ -33,9 +34,13 @@ class RunValues:
         """
         other = [of.argument] if of.kind.takes == "object" else []
         for name in ([] if of.subject in GLOBALS else [of.subject]) + other:
-            if name not in self._trajectory.names:
+            if name not in (self._by_name if of.of == "NAMES" else self._trajectory.names):
                 raise UsageError(f"{self._trajectory.path} has no object {name}, and {of.what} is to be shown")
         return series(of, self._measured)
+
+    @cached_property
+    def _by_name(self) -> dict[str, list[int]]:
+        return objects_by_name(self._trajectory.names)
 
     def is_mean(self, of: Of) -> bool:
         """Whether the value of a frame is the mean since the frame before."""

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Protocol
@@ -146,6 +146,10 @@ class Motion:
     def untold(self, scene: SceneRecord) -> Mapping[int, str]:
         """Solids, by number, of which frames do not tell its forces from those of contact, each with the reason."""
         return {}
+
+    def mutual(self, scene: SceneRecord) -> Collection[int]:
+        """Solids among those of `untold`, by number, on which its forces add up to zero."""
+        return ()
 
     def joins(self, scene: SceneRecord) -> Iterable[tuple[int, int]]:
         """Pairs of solids, by number, that it couples wherever they are: one process simulates both."""

@@ -69,7 +69,8 @@ def check_render(v: Validator, block: EvaluatedBlock, render: Render) -> Render:
     if len(units_of := dict.fromkeys(of.unit for of in plots)) > MOST_PANELS:
         cause = f"curves of {len(units_of)} units are asked for, and a picture has room for {MOST_PANELS} panels"
         v.problem(block.settings["plot"][-1].span(), cause, "leave some out; record takes any number")
-    return replace(render, plot=plots)
+    arrows = (replace(one, span=s.span()) for one, s in zip(render.arrows, block.settings.get("arrows", ())))
+    return replace(render, plot=plots, arrows=tuple(arrows))
 
 
 def _known_other(v: Validator, subject: str, word: str, other: str, span: Span, takes: str) -> bool:

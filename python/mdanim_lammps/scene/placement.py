@@ -79,12 +79,18 @@ class Placement:
         """Particles that are held, of an object in the group: a box is moved along, faces are those of the object."""
         if not isinstance(hold, HoldWithin):
             return hold
-        if any(RIGHT < abs(x) < 1.0 - RIGHT for row in self.rotation for x in row):
+        if (box := self.box(hold.low, hold.high)) is None:
             way_out = "write hold face or hold all, or turn the group by 90 deg or 180 deg"
             raise ValueError("a held box lies along the axes of the world, and its group is turned", way_out, "hold")
+        return HoldWithin(*box)
+
+    def box(self, low: Vector, high: Vector) -> tuple[Vector, Vector] | None:
+        """Corners of a box in the surroundings; None where it is turned by other than right angles."""
+        if any(RIGHT < abs(x) < 1.0 - RIGHT for row in self.rotation for x in row):
+            return None
         right = tuple(tuple(float(round(x)) for x in row) for row in self.rotation)
-        a, b = (_sum(self.position, turned(right, corner)) for corner in (hold.low, hold.high))
-        return HoldWithin(tuple(map(min, a, b)), tuple(map(max, a, b)))
+        a, b = (_sum(self.position, turned(right, corner)) for corner in (low, high))
+        return tuple(map(min, a, b)), tuple(map(max, a, b))
 
 
 def beyond_limits(what: Solid | Placement) -> tuple[str, str] | None:

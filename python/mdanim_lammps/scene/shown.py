@@ -4,10 +4,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import Enum
 from typing import ClassVar
 
+from ..errors import Span
 from .naming import objects_by_name
 from .quantities import QUANTITIES, VECTORS, Asked
 
@@ -33,6 +34,7 @@ class Arrows:
     """An object, or all objects of a repeat; None for all."""
     scale: float | None = None
     """Length of an arrow over the value, in SI units; None for one that is chosen."""
+    span: Span | None = field(default=None, compare=False, repr=False)
 
     def objects(self, names: Sequence[str]) -> list[int]:
         """Numbers of the objects that have one."""
@@ -41,7 +43,8 @@ class Arrows:
     def asked(self, names: Sequence[str]) -> Iterator[Asked]:
         """The quantities that it shows: of what is not named, where they are known."""
         for m in self.objects(names):
-            yield from (Asked(names[m], f"{self.vector}.{axis}", optional=self.name is None) for axis in "xyz")
+            for axis in "xyz":
+                yield Asked(names[m], f"{self.vector}.{axis}", optional=self.name is None, span=self.span)
 
 
 @dataclass(frozen=True, slots=True)

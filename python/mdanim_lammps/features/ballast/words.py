@@ -9,7 +9,6 @@ from typing import Any, ClassVar
 from ...scene.formatting import say
 from ...scene.holding import all_held
 from ...scene.schema import OneOf, Vector, setting
-from ...scene.shapes import HoldWithin
 
 SWITCHES: dict[str, str] = {}
 
@@ -36,9 +35,12 @@ class Ballast:
         return cls(density, tuple(map(min, a, b)), tuple(map(max, a, b)))
 
     def moved(self, place: Any) -> Ballast:
-        """The same of an object in a group that is placed."""
-        box = place.held(HoldWithin(self.low, self.high))
-        return replace(self, low=box.low, high=box.high)
+        """The same of an object in a group that is placed. Raises ValueError(cause, way out, word) where that is turned by other
+        than right angles."""
+        if (box := place.box(self.low, self.high)) is None:
+            cause = "a box of ballast lies along the axes of the world, and its group is turned"
+            raise ValueError(cause, "turn the group by 90 deg or 180 deg, or place the object without a group", "ballast")
+        return replace(self, low=box[0], high=box[1])
 
     def meets(self, other: Ballast) -> bool:
         """Whether both boxes share a volume."""

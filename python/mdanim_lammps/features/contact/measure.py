@@ -32,16 +32,17 @@ def unmeasured(scene: SceneRecord, asked: Iterable[Of]) -> list[Problem]:
     wanted = [of for of in asked if of.quantity.partition(".")[0] == "contact"]
     if not wanted:
         return []
-    reasons, numbers = untold(scene, acting(features.effects(), scene)), {s.name: m for m, s in enumerate(scene.solids)}
-    free = next((m for m in reasons if not scene.solids[m].hold), None)
+    effects, numbers = acting(features.effects(), scene), {s.name: m for m, s in enumerate(scene.solids)}
+    own, in_sum = untold(scene, effects), untold(scene, effects, in_sum=True)
+    free = next((m for m in in_sum if not scene.solids[m].hold), None)
     found = []
     for of in wanted:
-        m = free if of.subject == WORLD else numbers[of.subject]
+        m, reasons = (free, in_sum) if of.subject == WORLD else (numbers[of.subject], own)
         if m in reasons:
             on = "" if of.subject != WORLD else f", nor that on {scene.solids[m].name}"
             cause = f"the force of contact on {of.subject} is not known{on}: {reasons[m]}"
             found.append(Problem(of.span, cause, "ask for that on another object, one that moves freely"))
-    return found
+    return list(dict.fromkeys(found))  # the components of an arrow have one problem
 
 
 def _of(vector: Callable[[Measured, Of], np.ndarray]) -> dict[str, Mean]:

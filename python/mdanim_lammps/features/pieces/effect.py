@@ -36,6 +36,12 @@ class Glue(Effect):
     def joins(self, scene):
         return tuple((m, m + 1) for first, end in wholes(scene) for m in range(first, end - 1))
 
+    def untold(self, scene):
+        return dict.fromkeys(self.mutual(scene), "glue holds its pieces together, and frames do not tell that from contact")
+
+    def mutual(self, scene):
+        return {m for begin, end in wholes(scene) for m in range(begin, end)}
+
     def acts_on(self, context):
         return is_glued(context)
 
