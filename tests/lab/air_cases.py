@@ -81,6 +81,16 @@ def ball_in_wind(radius: float, density: float, elasticity: str, wind: float, pa
     return float(mean(ready, v)[0]), wind * part / (1.0 + part)
 
 
+def closed_sheet(radius: float, thick: float, wind: float, inside: str = "") -> tuple[float, float]:
+    """Force of wind on a ball that is a closed sheet, at the start, which air pushes at from outside alone, as at a solid one:
+    C rho pi r^2 w^2/4 [N]."""
+    skin = f"shape sphere {radius} m sheet thickness {thick} m  position (0, 0, 0) m  density 900  elasticity 1 MPa  {inside}"
+    ready = made(f"air {{ wind ({wind}, 0, 0) m/s }}\nobject skin {{ {skin} }}\n", 0.1)
+    with Instance(ready.plan) as instance:
+        instance.setup()
+        return float(instance.fix_rows("air", 1, 3)[0, 0]), C * RHO * math.pi * (radius * wind) ** 2 / 4.0
+
+
 def turning_plate(elasticity: str, part: float = 2.0, thick: float = 0.01) -> tuple[float, float]:
     """Angular velocity of a plate that turns about a line in its middle: w/(1 + c w t), c = rho C b a^4/64 I, after `part` of
     1/(c w) [rad/s]."""
@@ -164,6 +174,8 @@ CASES: dict[str, tuple[Case, float]] = {
     "ball in wind, rigid, 5 m/s": (lambda: ball_in_wind(0.1, 10.0, "rigid", 5.0, 3.0), 0.01),
     "ball in wind, rigid, 30 m/s": (lambda: ball_in_wind(0.02, 50.0, "rigid", 30.0, 10.0), 0.01),
     "ball in wind, 100 kPa, 10 m/s": (lambda: ball_in_wind(0.1, 5.0, "100 kPa", 10.0, 1.0), 0.02),
+    "closed sheet in wind, 10 cm, 5 m/s": (lambda: closed_sheet(0.1, 0.001, 5.0), 0.02),
+    "closed sheet in wind, 30 cm, 10 m/s, inflated": (lambda: closed_sheet(0.3, 0.002, 10.0, "inflate 1 kPa"), 0.02),
     "plate that turns, rigid": (lambda: turning_plate("rigid"), 0.01),
     "plate that turns, 1 MPa": (lambda: turning_plate("1 MPa", 0.5, 0.05), 0.02),
     "windmill, 4 m/s": (lambda: autorotation(4.0), 0.01),

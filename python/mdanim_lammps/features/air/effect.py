@@ -32,8 +32,8 @@ IN_A_STEP = 0.01
 
 class Air(Effect):
     """Pressure on each triangle of the drawn surface, F = rho/2 C A |u| u n with the velocity u = n (w - v) of the air along the
-    normal: at the outer side of solids where the air comes to it, at both sides of sheets; links of ropes as cylinders
-    (docs/physics-air.md).
+    normal: at the outer side of solids and closed sheets where the air comes to it, at both sides of other sheets; links
+    of ropes as cylinders (docs/physics-air.md).
     """
 
     styles = (("fix", "mdanim/air"),)

@@ -80,8 +80,8 @@ class AirSkin:
 
 
 def skin_of(model: Model, solid: Any) -> AirSkin:
-    """The surface of an object: links of a rope, triangles of a sheet from both sides and of a solid that deforms from outside,
-    panels or a ball of what does not deform."""
+    """The surface of an object: links of a rope, triangles of a sheet from both sides, of a closed one and of a solid that
+    deforms from outside, panels or a ball of what does not deform."""
     surface, n = model.surface, len(model.position)
     if model.frame.dimensions == 1:
         links = np.stack([np.arange(n - 1), np.arange(1, n)], axis=1)
@@ -95,7 +95,7 @@ def skin_of(model: Model, solid: Any) -> AirSkin:
     if model.frame.dimensions == 2:
         triangle = model.frame.triangle
         sheet = AirPart("triangle", triangle, np.zeros((len(triangle), 0)), areas(model.position, triangle))
-        return AirSkin(np.arange(n)[:, None], np.ones((n, 1)), (sheet,), both=True)
+        return AirSkin(np.arange(n)[:, None], np.ones((n, 1)), (sheet,), both=not model.frame.closed)
     corner = np.unique(surface.index)
     if len(corner) <= CORNERS and (model.inertia is not None or model.held.all()):
         return _of_one_piece(model, solid, corner)
