@@ -19,12 +19,17 @@ TO_CORNER = "orientation axis (-1, 1, 0) angle 54.735610317245346 deg"
 TO_SIDE = "orientation axis (0, 0, 1) angle 45 deg"
 
 
+def write(path, points, triangles):
+    """A mesh as a file."""
+    lines = [*(f"v {x} {y} {z}" for x, y, z in points.tolist()), *(f"f {a} {b} {c}" for a, b, c in (triangles + 1).tolist())]
+    path.write_text("\n".join(lines) + "\n")
+
+
 @pytest.fixture
 def wedge(tmp_path):
     """Half of a cube of 10 cm, cut along a diagonal of its sides; its centre is a third of an edge from both square sides."""
     points, triangles = rigid_meshes.profile([(0, 0), (0.1, 0), (0, 0.1)], 0.1)
-    lines = [*(f"v {x} {y} {z}" for x, y, z in points.tolist()), *(f"f {a} {b} {c}" for a, b, c in (triangles + 1).tolist())]
-    (tmp_path / "wedge.obj").write_text("\n".join(lines) + "\n")
+    write(tmp_path / "wedge.obj", points, triangles)
     return f'mesh "{tmp_path}/wedge.obj" scale 1'
 
 
@@ -86,3 +91,19 @@ def test_pieces_are_not_in_each_other(prepared, size, pieces):
     """
     system = prepared(text).system
     assert len(system.hexahedron) == pieces and Geometry(system).sunk(system.position) is None
+
+
+def test_a_concave_mesh_of_one_cell(prepared, tmp_path):
+    """Its cell is all that is known of where it is: nothing is in it that is beside it, and all that is in its middle."""
+    points, triangles = rigid_meshes.profile([(0, 0), (0.1, 0), (0.1, 0.1), (0.05, 0.097), (0, 0.1)], 0.1)
+    write(tmp_path / "dent.obj", points, triangles)
+    text = f"""object a {{ shape mesh "{tmp_path}/dent.obj" scale 1  position (0, 0, 0) m  density 300
+      elasticity rigid  resolution 9.7 cm }}
+    object b {{ shape box (10, 10, 10) cm  position (0.2, 0, 0) m  density 300  elasticity 1 MPa  resolution 5 cm }}
+    control {{ time 0.1 s }}
+    """
+    system = prepared(text).system
+    x, geometry = system.position.copy(), Geometry(system)
+    assert np.diff(geometry.first_cell)[0] == 1 and geometry.sunk(x) is None
+    x[system.first[1] :] -= (0.2, 0, 0)
+    assert set(geometry.sunk(x) or ()) == {0, 1}

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..scene.scene import Box, Mesh
+from ..scene.scene import Box, Mesh, Shape, Torus
 from .contact_body import BodyFrame
 from .polyhedron import polyhedron
 from .shapes import thickness
@@ -19,7 +19,8 @@ most, and what is deeper in it than that is found."""
 
 def faces_of_solids(system: System, first_cell: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Rows of faces that each solid has, begin and end, int64, shape (M, 2), and the faces, shape (F, 4), as `faces_in_cell` has
-    them. Solids of one shape have the same rows; cuboids, which fill their cell, and solids of other than one cell have none.
+    them. Solids of one shape have the same rows; cuboids, which fill their cell, concave bodies and solids of other than one cell
+    have none.
 
     ``first_cell`` is the first cell of each solid, and C at the end, shape (M + 1,).
     """
@@ -27,7 +28,7 @@ def faces_of_solids(system: System, first_cell: np.ndarray) -> tuple[np.ndarray,
     known: dict[int, tuple[int, int]] = {}
     for m in np.flatnonzero(system.rigid & (np.diff(first_cell) == 1)).tolist():
         kind = int(system.contact_kind[m])
-        if isinstance(system.frames[kind].shape, Box):
+        if not _has_faces(system.frames[kind].shape):
             continue
         if kind not in known:
             found.append(faces_in_cell(system.frames[kind]))
@@ -35,6 +36,11 @@ def faces_of_solids(system: System, first_cell: np.ndarray) -> tuple[np.ndarray,
             count += len(found[-1])
         rows[m] = known[kind]
     return rows, np.concatenate(found)
+
+
+def _has_faces(shape: Shape) -> bool:
+    """Whether a shape is convex, and does not fill its cell."""
+    return polyhedron(shape) is not None if isinstance(shape, Mesh) else not isinstance(shape, Box | Torus)
 
 
 def faces_in_cell(frame: BodyFrame) -> np.ndarray:
