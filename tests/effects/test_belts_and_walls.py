@@ -252,3 +252,30 @@ def test_the_contact_of_the_paper_has_neither(text):
         prepare(parse_scene(text.replace("elasticity rigid", "elasticity 1 MPa") + "control { time 1 s contact-model paper }\n"))
     (problem,) = e.value.problems
     assert "contact-model paper" in problem.message and "take contact-model paper out" in problem.hint
+
+
+BASIN = """
+gravity (0, 0, -9.81) m/s^2
+liquid water {{ basin from (-50, -30, 0) cm to (50, 30, 40) cm  level 15 cm  density 1000 {more} }}
+object duck {{ shape box (10, 10, 10) cm  position (0, 0, 20) cm  density 300  elasticity rigid }}
+control {{ time 1 s  resolution 5 cm }}
+"""
+SLOSH = "drive oscillation (2, 0, 0) cm frequency 0.8 Hz"
+
+
+@pytest.mark.parametrize(("walls", "more", "way_out"), [
+    ("from (-50, -30, 0) cm to (50, 30, 80) cm\nwalls " + SLOSH, "",
+     "write drive oscillation (0.02, 0, 0) m frequency 0.8 Hz in water, too"),
+    ("from (-50, -30, 0) cm to (50, 30, 80) cm\nwalls key 0.5 s by (10, 0, 0) cm", "",
+     "write key 0.5 s by (0.1, 0, 0) m in water"),
+    ("from (-50, -30, 0) cm to (50, 30, 80) cm\nwalls drive velocity (0, 0, 1) cm/s", "", "take the motion along z out"),
+    ("from (-60, -30, 0) cm to (60, 30, 80) cm\nwalls " + SLOSH, "", None),
+    ("from (-50, -30, 0) cm to (50, 30, 80) cm\nwalls " + SLOSH, SLOSH, None),
+])  # fmt: skip
+def test_walls_that_run_through_a_basin_that_stands_are_told(walls, more, way_out):
+    """With the line that has the basin go along, not where they stay outside of it, or it moves."""
+    ready = prepare(parse_scene(f"walls {walls}\n" + BASIN.format(more=more)))
+    told = [p for p in ready.certificate.notes if p.severity == "warning" and "whose basin stands" in p.message]
+    assert len(told) == (way_out is not None)
+    if way_out:
+        assert way_out in told[0].hint and told[0].span.line <= 2

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """Inflated sheets: closed forms, the gas law when they are pressed, books, and what is refused."""
 
+import re
+
 import inflate_cases
 import numpy as np
 import pytest
@@ -11,6 +13,7 @@ from mdanim_lammps.errors import SceneError
 from mdanim_lammps.run.energy import energies
 from mdanim_lammps.scene.lock import lock_text
 from mdanim_lammps.scene.parse import parse_scene
+from scipy.optimize import brentq
 
 SLOW = {"ball swells, 20 cm, 1 mm of 3 MPa, 1 kPa", "ball swells, 1 m, 2 mm of 20 MPa, nothing outside"}
 DOWN = "gravity (0, 0, -9.81) m/s^2\n"
@@ -144,3 +147,17 @@ def test_open_meshes_are_refused_and_thin_balloons_are_told(prepared, tmp_path):
     assert any("a swells to 1.3 times its size, as a ball" in text for text in thin), thin
     left = [note.message for note in told[1].certificate.notes]
     assert any("a swells to 1.024 times its size, and 1.4 kPa of 9 kPa are left" in text for text in left), left
+
+
+@pytest.mark.parametrize(("r", "t", "p", "h"), [(0.15, 1e-3, 5e3, 0.03), (0.1, 5e-4, 9e3, 0.03), (0.3, 1e-3, 2e3, 0.05)])
+def test_the_pressure_that_is_left_is_that_of_the_closed_form(prepared, r, t, p, h):
+    """p left = 2 E t (s - 1)/((1 - nu) s^2 r), within 5 %: 2 for the corners of the ball, 3 for two digits."""
+    ready = prepared(
+        f"object a {{ shape sphere {r} m sheet thickness {t} m  position (0, 0, 0) m  material rubber  inflate {p} Pa }}\n"
+        f"control {{ time 0.1 s  resolution {h} m }}\n"
+    )
+    stiff = 2.0 * ready.scene.solids[0].elasticity.modulus * t / ((1.0 - inflate_cases.NU) * r)
+    s = brentq(lambda s: stiff * (s - 1.0) / s**2 - (p + OUTSIDE) / s**3 + OUTSIDE, 1.0, 1.9)
+    (note,) = (note.message for note in ready.certificate.notes if "are left" in note.message)
+    number, unit = re.search(r"and ([0-9.]+) (k?Pa) of", note).groups()
+    assert float(number) * (1e3 if unit == "kPa" else 1.0) == pytest.approx(stiff * (s - 1.0) / s**2, rel=0.05)

@@ -313,3 +313,19 @@ def test_a_slit_runs_at_the_toughness(prepared, h, part, runs):
     assert np.abs(0.5 * (y[i] + y[j]) - level)[more].max(initial=0.0) < 1.5 * system.spacing[0]
     reach = along[more].max(initial=slit)
     assert reach > 0.1 if runs else reach < 0.0
+
+
+@pytest.mark.parametrize(
+    ("strain", "x", "told"), [("tear-strain 0.3", 0, True), ("", 0, False), ("tear-strain 0.3", 2000, False)]
+)
+def test_what_lies_on_a_solid_that_tears_is_told_to_sink_in(prepared, strain, x, told):
+    """Not where nothing tears, nor where nothing comes."""
+    ready = prepared(
+        "gravity (0, 0, -9.81) m/s^2\nground z 0 m\n"
+        f"object jelly {{ material jelly  shape box (20, 20, 10) cm  position (0, 0, 5) cm  resolution 4 cm  {strain} }}\n"
+        f"object ball {{ material steel  shape sphere 3 cm  position ({x}, 0, 60) cm }}\ncontrol {{ time 0.5 s }}\n"
+    )
+    found = [note for note in ready.certificate.notes if "sinks in" in note.message]
+    assert len(found) == told
+    if told:
+        assert "jelly may meet ball" in found[0].message and "larger tear-strain" in found[0].hint and found[0].span.line == 3

@@ -43,7 +43,9 @@ def quantity(v: Validator, named: tuple, span: Span) -> Asked | None:
     if kind == "NAME" and not v.known_object(subject, span, (*v.own_names, *GLOBALS)):
         return None
     if (kind, word) not in QUANTITIES:
-        v.problem(span, f"{word} is not a quantity of {subject}", did_you_mean(word, known))
+        part = next((q for q in (f"position.{word}", *known) if q in known and q.endswith(f".{word}")), None)
+        meant = did_you_mean(word, known) if part is None else f"did you mean '{part}'?"
+        v.problem(span, f"{word} is not a quantity of {subject}", meant)
         return None
     of = QUANTITIES[kind, word]
     if of.takes in ("object", "joined") and not _known_other(v, subject, word, argument, span, of.takes):

@@ -320,7 +320,7 @@ class SettingReader(Reader):
             hint = "this ) closes nothing"
         elif t.type == "NAME":
             home = owner(settings, str(t)) if isinstance(settings, Mapping) else None
-            hint = belongs(home, str(t)) if home else did_you_mean(str(t), settings) or "one setting per line"
+            hint = belongs(home, str(t)) if home else did_you_mean(str(t), settings) or f"no setting here is called {t}"
         elif t.type == "LBRACE":
             hint = f"{what} is a setting, not a block"
         hint = MISPLACED.get(f"{what} {t}", hint)

@@ -7,6 +7,7 @@ import math
 from typing import Any
 
 import numpy as np
+from scipy.optimize import brentq
 
 from ...bodies import all_held
 from ...effects.context import Context, Verdict
@@ -145,7 +146,7 @@ class Gas(Effect):
         found, of = [], _solids(context)
         for m in _inflated(context):
             _, solid = of[m]
-            if (grown := _grown(solid, _volume(context, m))) > FAR:
+            if (grown := _grown(context, m)) > FAR:
                 size = f"to {number(grown, 2)} times its size" if math.isfinite(grown) else "without end"
                 cause = f"{solid.name} swells {size}, as a ball of its volume and surface would"
                 way = "write a lower pressure, a thicker sheet or more elasticity"
@@ -157,7 +158,7 @@ class Gas(Effect):
         found, of = [], _solids(envelope.context)
         for m in _inflated(envelope.context):
             _, solid = of[m]
-            gas, grown = solid.inflate, _grown(solid, _volume(envelope.context, m))
+            gas, grown = solid.inflate, _grown(envelope.context, m)
             left = (gas.pressure + gas.outside) / grown**3 - gas.outside
             if isinstance(solid.shape.shape, Sphere) and grown <= FAR and left < MOST_LEFT * gas.pressure:
                 cause = f"{solid.name} swells to {number(grown, 4)} times its size, and {say(left, 'Pa', 2)} of "
@@ -166,14 +167,25 @@ class Gas(Effect):
         return found
 
 
-def _grown(solid: Any, volume: float) -> float:
-    """By how much a ball of this volume [m^3] and surface swells until its sheet bears the gas [-]: the least s > 1 with
+def _grown(context: Context, m: int) -> float:
+    """By how much a ball of the volume and surface of an object swells until its sheet bears the gas [-]: the least s > 1 with
     2 E t (s - 1)/((1 - nu) s^2 r) = (p + p0)/s^3 - p0; infinite for none up to MOST_GROWN."""
-    gas, r = solid.inflate, 3.0 * volume / (0.5 * shapes.area(solid.shape))
+    model, solid = _solids(context)[m]
+    gas = solid.inflate
+    a, b, c = (model.position[model.frame.triangle[:, k]] for k in range(3))
+    area = 0.5 * float(np.linalg.norm(np.cross(b - a, c - a), axis=1).sum())
+    r = 3.0 * _volume(context, m) / area
+    stiff = 2.0 * solid.elasticity.modulus * solid.shape.thickness / ((1.0 - NU) * r)
+
+    def spare(s):
+        return stiff * (s - 1.0) / s**2 - (gas.pressure + gas.outside) / s**3 + gas.outside
+
     s = np.linspace(1.0, MOST_GROWN, 4001)
-    bears = 2.0 * solid.elasticity.modulus * solid.shape.thickness / ((1.0 - NU) * r) * (s - 1.0) / s**2
-    enough = np.flatnonzero(bears >= (gas.pressure + gas.outside) / s**3 - gas.outside)
-    return float(s[enough[0]]) if len(enough) else math.inf
+    enough = np.flatnonzero(spare(s) >= 0.0)
+    if not len(enough):
+        return math.inf
+    # A pressure that is left is the small difference of two large ones: it needs s far more exactly than these steps.
+    return float(brentq(spare, s[enough[0] - 1], s[enough[0]])) if enough[0] else 1.0
 
 
 @once_for(lambda scene: scene)

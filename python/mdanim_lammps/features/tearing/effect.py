@@ -8,10 +8,11 @@ import numpy as np
 from ...effects.context import Verdict
 from ...effects.effect import Effect
 from ...effects.fields import column
+from ...errors import Problem
 from ..springs.effect import spring_norm
 from .gone import EFFECT, FIX, NAME, acts
 from .rules import beyond, over_two_of, rules_text, springs_of, strain_of
-from .words import tears
+from .words import fills, tears
 
 TORN = column(NAME, "1", per="bond", dtype="uint8", state=True)
 """1 for a spring that is gone."""
@@ -66,6 +67,23 @@ class Tearing(Effect):
 
     def commands(self, context):
         return [f"fix {self.fix} mobile mdanim/tear torn {TORN.name} objects table:{RULES}"]
+
+    def notes(self, envelope):
+        """Solids whose cells no longer push at others once they are torn."""
+        swept, system = envelope.reach.region, envelope.system
+        for m, solid in enumerate(envelope.context.solids):
+            if not (tears(solid) and fills(solid)):
+                continue
+            near = ((swept.low[m] < swept.high) & (swept.low < swept.high[m])).all(axis=1)
+            others = [k for k in np.flatnonzero(near).tolist() if k != m and (min(k, m), max(k, m)) not in swept.passing]
+            if not others:
+                continue
+            word = "toughness" if solid.tear_strain is None else "tear-strain"
+            it, more = system.names[others[0]], f" and {len(others) - 1} more" if others[1:] else ""
+            cause = f"{solid.name} may meet {it}{more}: where it is torn it bears nothing, and what lies on it sinks in"
+            way = f"write a larger {word} in {solid.name} if it is to bear {it}"
+            return [Problem(solid.spans.get(word), cause, way, severity="note")]
+        return []
 
     def losses(self, scene):
         return (LOST,)
