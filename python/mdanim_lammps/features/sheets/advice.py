@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""Remarks of ``check`` on sheets: what they pass through."""
+"""Remarks of ``check`` on sheets: what they pass through, and what they do not bear."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from ...errors import Problem
 from ...scene.formatting import say
 from ..folds.layers import as_layers, folds
 from ..ropes.advice import coarsest, slips
+from .bearing import pressed_through
 from .words import finest, is_sheet
 
 
@@ -20,7 +21,10 @@ def notes(envelope: Envelope) -> list[Problem]:
     if not len(moving):
         return []
     touches = any(effect.touches for effect in envelope.on)
-    return [*_themselves(envelope, moving), *(_coarse(envelope, sheets) if touches else [])]
+    return [
+        *_themselves(envelope, moving),
+        *([*_coarse(envelope, sheets), *pressed_through(envelope, moving)] if touches else []),
+    ]
 
 
 def _themselves(envelope: Envelope, sheets: np.ndarray) -> list[Problem]:
