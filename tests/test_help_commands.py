@@ -107,7 +107,7 @@ def test_typos_are_guessed():
             assert edits(typo, word) <= 1
 
 
-@pytest.mark.parametrize("word", ["domino", "unicorn", "kettle", "water", "marmalade", "roughness", "butter"])
+@pytest.mark.parametrize("word", ["domino", "unicorn", "kettle", "water", "marmalade", "butter"])
 def test_no_guess_that_is_far_off(word):
     """A word that the language does not have, and of which no word is a typo."""
     assert did_you_mean(word, words()) == ""

@@ -40,8 +40,6 @@ class Frequency:
     """Thinnest part of all rigid bodies that move [m]."""
     speed: float
     """Closing speed of the fastest blow [m/s]; what pushes objects counts on their way to others and to planes."""
-    late: float
-    """The same with all that pushes may give until the end [m/s]."""
     load: float
     """Largest weight that a body bears, over its own, and one more for its own [-]."""
 
@@ -55,12 +53,12 @@ def frequency(context: Context) -> Frequency:
     reach, system = context.reach, context.reach.system
     free = np.flatnonzero(system.rigid)
     thin = min(shapes.thickness(shape) for shape in {context.scene.solids[m].shape for m in free.tolist()})
-    late = float(struck_at(context, system)[free].max())
-    speed = float(struck_at(context, system, _thrown_across(context, system))[free].max()) if reach.acting.throws else late
+    thrown = _thrown_across(context, system) if reach.acting.throws else None
+    speed = float(struck_at(context, system, thrown)[free].max())
     load = float(loads(system, free).max())
     slowest = 2.0 * math.pi * context.scene.control.frames * DEPTH * thin  # of what hardly moves
     omega = float(max(speed, 2.0 * math.sqrt(load * reach.g * thin), slowest)) / (DEPTH * thin)
-    return Frequency(float(omega), float(thin), speed, late, load)
+    return Frequency(float(omega), float(thin), speed, load)
 
 
 def struck_at(context: Context, system: System, thrown: np.ndarray | None = None) -> np.ndarray:

@@ -140,7 +140,8 @@ def depths(envelope: Envelope) -> list[Margin]:
     free = np.flatnonzero(context.system.rigid).tolist()
     thinnest = min(free, key=lambda m: thickness(solids[m].shape))
     place = context.scene.control.spans.get("contact-stiffness") or envelope.place(thinnest, "shape")
-    blow = found.late / frequency_of
+    blow = found.speed / frequency_of
+    stiffness = context.scene.control.contact_stiffness
     rest = math.sqrt(2.0 * ONSET * found.thin * found.load * context.reach.g) / frequency_of
     return [
         Margin(
@@ -153,10 +154,10 @@ def depths(envelope: Envelope) -> list[Margin]:
             f"{say(found.thin, 'm')} of {solids[thinnest].name}",
             place,
             "warning" if value > part * found.thin * (1.0 + 1e-9) else "ok",
-            hint="write contact-stiffness 1 in control",
+            hint=f"write contact-stiffness {number(stiffness * max(1.0, value / (part * found.thin)) ** 2 * 1.05, 2)} in control",
         )
         for name, value, part, what in (
-            ("blow depth", blow, DEEP, f"the fastest blow, {say(found.late, 'm/s')}, goes"),
+            ("blow depth", blow, DEEP, f"the fastest blow, {say(found.speed, 'm/s')}, goes"),
             ("rest depth", rest, SUNK, "what bears most sinks in at rest by"),
         )
     ]
