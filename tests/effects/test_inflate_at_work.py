@@ -161,3 +161,16 @@ def test_the_pressure_that_is_left_is_that_of_the_closed_form(prepared, r, t, p,
     (note,) = (note.message for note in ready.certificate.notes if "are left" in note.message)
     number, unit = re.search(r"and ([0-9.]+) (k?Pa) of", note).groups()
     assert float(number) * (1e3 if unit == "kPa" else 1.0) == pytest.approx(stiff * (s - 1.0) / s**2, rel=0.05)
+
+
+@pytest.mark.parametrize(("size", "sheet", "told"), [
+    ("(60, 40, 10) cm", "sheet thickness 1 mm  material rubber  inflate 2 kPa", True),
+    ("(30, 30, 30) cm", "sheet thickness 1 mm  material rubber  inflate 2 kPa", True),
+    ("(30, 30, 30) cm", "sheet thickness 5 mm  density 1000  elasticity 1 GPa  inflate 90 kPa", False),
+])  # fmt: skip
+def test_boxes_that_bulge_are_told(prepared, size, sheet, told):
+    """Flat sides bear nothing until they bulge; of a pressure of two hundredths of that outside nearly all is lost."""
+    ready = prepared(
+        f"object a {{ shape box {size} {sheet}  position (0, 0, 0) m }}\ncontrol {{ time 0.1 s  resolution 5 cm }}\n"
+    )
+    assert any("flat sides of a bulge" in note.message for note in ready.certificate.notes) == told

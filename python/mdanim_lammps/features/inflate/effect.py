@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+from itertools import combinations
 from typing import Any
 
 import numpy as np
@@ -19,7 +20,7 @@ from ...model.triangles import edges
 from ...reach import Throw
 from ...scene.formatting import number, say
 from ...scene.once import once_for
-from ...scene.shapes import Sphere
+from ...scene.shapes import Box, Sphere
 from ..tearing.words import tears
 from .words import Inflate
 
@@ -154,10 +155,15 @@ class Gas(Effect):
         return found
 
     def notes(self, envelope):
-        """The pressure that is left in balls, where most of it goes."""
+        """The pressure that is left in balls, where most of it goes; boxes of which it is as little."""
         found, of = [], _solids(envelope.context)
         for m in _inflated(envelope.context):
             _, solid = of[m]
+            if isinstance(solid.shape.shape, Box) and _left_in_box(solid) < MOST_LEFT * solid.inflate.pressure:
+                cause = f"the flat sides of {solid.name} bulge, which takes most of {say(solid.inflate.pressure, 'Pa')}"
+                way = "write a higher pressure, or a thicker sheet or more elasticity, which bulge less"
+                found.append(Problem(solid.spans.get("inflate"), cause, way, severity="note"))
+                continue
             gas, grown = solid.inflate, _grown(envelope.context, m)
             left = (gas.pressure + gas.outside) / grown**3 - gas.outside
             if isinstance(solid.shape.shape, Sphere) and grown <= FAR and left < MOST_LEFT * gas.pressure:
@@ -186,6 +192,21 @@ def _grown(context: Context, m: int) -> float:
         return math.inf
     # A pressure that is left is the small difference of two large ones: it needs s far more exactly than these steps.
     return float(brentq(spare, s[enough[0] - 1], s[enough[0]])) if enough[0] else 1.0
+
+
+def _left_in_box(solid: Any) -> float:
+    """Pressure that is left in a box whose sides bulge [Pa], by strips across the narrower way b of each side whose edges stay:
+    q = 64 E t w^3/(3 (1 - nu^2) b^4) with the height w of the bulge, of the volume 2/3 w b (a - b/2) with its round ends."""
+    gas, ends = solid.inflate, np.array(shapes.extent(solid.shape))
+    size = np.sort(ends[1] - ends[0])
+    stiff = 64.0 / 3.0 * solid.elasticity.modulus * solid.shape.thickness / (1.0 - NU**2)
+
+    def spare(q):
+        more = sum(4.0 / 3.0 * (q * b**4 / stiff) ** (1.0 / 3.0) * b * (a - 0.5 * b) for b, a in combinations(size, 2))
+        whole = float(size.prod())
+        return (gas.pressure + gas.outside) * whole / (whole + more) - gas.outside - q
+
+    return float(brentq(spare, 0.0, gas.pressure))
 
 
 @once_for(lambda scene: scene)
