@@ -17,9 +17,9 @@ def test_every_quantity_is_found_and_explained():
     measures = {of for facet in facets("measure") for of in getattr(facet, "MEASURES", {})}
     assert measures | {("energy", "residual")} == set(QUANTITIES)
     for subject, word in QUANTITIES:
-        of = Asked(subject if subject in GLOBALS else "ball", word)
+        of = Asked(subject if subject in GLOBALS else "ball", word, of=subject if subject == "NAMES" else "NAME")
         assert isinstance(quantity_of(of), Measurable) and of.kind is QUANTITIES[subject, word]
-        assert "a quantity, in" in explain(word if subject == "NAME" else f"{subject}.{word}")
+        assert "a quantity, in" in explain(word if subject in ("NAME", "NAMES") else f"{subject}.{word}")
 
 
 def test_arrows_are_all_vectors_but_places_and_angles():
