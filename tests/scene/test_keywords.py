@@ -79,8 +79,9 @@ def test_page_is_up_to_date():
 
 @pytest.mark.parametrize("k", WORDS, ids=lambda k: f"{k.block}.{k.name}")
 def test_example_of_each_keyword_parses(k):
-    """Examples that messages propose can be written."""
-    scene(k.block, **{k.name: k.example})
+    """Examples that messages propose can be written; what moves a held part, where something is held."""
+    held = {"hold": "all"} if k.block == "object" and k.name in ("drive", "key", "release") else {}
+    scene(k.block, **{k.name: k.example}, **held)
 
 
 DEFAULTS = [k for k in WORDS if k.default and k.block != "effects" and k.name != "gravity"]

@@ -8,7 +8,6 @@ from itertools import combinations
 from typing import Any
 
 import numpy as np
-from scipy.optimize import brentq
 
 from ...bodies import all_held
 from ...effects.context import Context, Verdict
@@ -176,6 +175,8 @@ class Gas(Effect):
 def _grown(context: Context, m: int) -> float:
     """By how much a ball of the volume and surface of an object swells until its sheet bears the gas [-]: the least s > 1 with
     2 E t (s - 1)/((1 - nu) s^2 r) = (p + p0)/s^3 - p0; infinite for none up to MOST_GROWN."""
+    from scipy.optimize import brentq  # takes 0.2 s
+
     model, solid = _solids(context)[m]
     gas = solid.inflate
     a, b, c = (model.position[model.frame.triangle[:, k]] for k in range(3))
@@ -197,6 +198,8 @@ def _grown(context: Context, m: int) -> float:
 def _left_in_box(solid: Any) -> float:
     """Pressure that is left in a box whose sides bulge [Pa], by strips across the narrower way b of each side whose edges stay:
     q = 64 E t w^3/(3 (1 - nu^2) b^4) with the height w of the bulge, of the volume 2/3 w b (a - b/2) with its round ends."""
+    from scipy.optimize import brentq  # takes 0.2 s
+
     gas, ends = solid.inflate, np.array(shapes.extent(solid.shape))
     size = np.sort(ends[1] - ends[0])
     stiff = 64.0 / 3.0 * solid.elasticity.modulus * solid.shape.thickness / (1.0 - NU**2)

@@ -96,7 +96,10 @@ def page() -> str:
         for name, of in MATERIALS.items()
         if of.sheet
     ]
-    parts += ["\nc = sqrt(E/rho) is the speed of waves in a thin rod. Strength is that in tension; no setting takes it yet.\n"]
+    parts += [
+        "\nc = sqrt(E/rho) is the speed of waves in a thin rod. Strength is that in tension, "
+        "which `strength` takes for objects with `pieces`.\n"
+    ]
     parts += ["\n## Sources\n\n", *(f"- {key}: {text}\n" for key, text in SOURCES.items() if key != CHOSEN)]
     return "".join(parts)
 
