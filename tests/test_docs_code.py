@@ -31,6 +31,7 @@ gravity (0, 0, -9.81) m/s^2
 object NAME { shape sphere 10 cm position (0, 0, 50) cm mass 1 kg elasticity 300 kPa }
 object cube { shape box (10, 10, 10) cm position (h, 0, 1) m mass 1 kg elasticity 300 kPa }
 liquid water { basin from (-1, -1, 0) m to (2, 1, 2) m density 1000 kg/m^3 level 30 cm }
+record NAME.speed
 control { time 0.4 s  frames 30 fps  resolution 10 cm }
 """
 ELSEWHERE = ("git ", "python3 -m venv ", "source ", "make ", "pip ", "cmake ", "LAMMPS_PLUGIN_PATH=", "MDANIM_MPIEXEC=")
@@ -47,7 +48,7 @@ def pieces(page: str) -> list[tuple[str, str, str]]:
 
 def is_scene(code: str) -> bool:
     """Whether a block is written in the scene language."""
-    return bool(re.match(r"(#.*\n|title .*\n|let .*\n)*(gravity|object|render|liquid|repeat|joint|expect) ", code))
+    return bool(re.match(r"(#.*\n|title .*\n|let .*\n)*(gravity|object|render|liquid|repeat|joint|expect|record) ", code))
 
 
 def command(line: str) -> list[str]:
@@ -157,6 +158,8 @@ def runs(tmp_path_factory):
         (place / f"{name}.txt").write_text(SCENE.replace("NAME", ball))
         if name != "drop":  # which the page runs itself
             Scene.load(place / f"{name}.txt").run(place / f"{name}.out")
+    for name in ("soft", "stiff"):
+        shutil.copytree(place / "ball.out", place / f"{name}.out")
     (place / "bad.txt").write_text(SCENE.replace("300 kPa", "300 kg").replace("NAME", "ball"))
     (place / "other-camera.txt").write_text("render { size (64, 48) camera from (3, -4, 2) m look (0, 0, 0) m }\n")
     shutil.copytree(SCENES / "lammps", place, dirs_exist_ok=True)
