@@ -12,6 +12,8 @@ import numpy as np
 import plugin_library
 import plugin_path
 import pytest
+from mdanim_lammps.results.checkpoint import Checkpoint
+from mdanim_lammps.results.compare import compare
 from mdanim_lammps.results.dump import read_dump
 from mdanim_lammps.results.ledger import Ledger
 from mdanim_lammps.results.trajectory import Trajectory
@@ -46,6 +48,13 @@ def ways(scene: Path, cases: dict[str, dict], ranks: int = 5, timeout: float = 6
     return {name: folder / case.get("in", name) for name, case in cases.items()}
 
 
+def forms_in(folder: Path, text: str, cases: dict[str, dict], timeout: float = 120.0, **more) -> dict[str, Path]:
+    """The folder of each form of a scene, all made in one start of MPI."""
+    path = folder / "scene.txt"
+    path.write_text(text)
+    return ways(path, cases, timeout=timeout, **more)
+
+
 def of_features(folder: str) -> dict[str, str]:
     """Variables with which a program finds the features of a folder of tests/lab/features, and the styles of the tests."""
     styles = os.pathsep.join([plugin_path.folder(), str(plugin_library.build().parent)])
@@ -65,6 +74,12 @@ def same_file(one: Path, other: Path) -> None:
     for column in ledgers[0].columns:
         if column.startswith(EXACT):
             assert ledgers[0].array(column).tobytes() == ledgers[1].array(column).tobytes(), column
+
+
+def same_frames(found: dict[str, Path], way: str) -> tuple[Checkpoint, Checkpoint]:
+    """The last states of the sequential run and of another form, whose frames are asserted to be the same."""
+    assert compare(found["sequential"], found[way]).equal
+    return Checkpoint.read(found["sequential"] / "checkpoint"), Checkpoint.read(found[way] / "checkpoint")
 
 
 def readied(place: Path, text: str) -> tuple[Prepared, Path]:
@@ -91,6 +106,13 @@ def film_of(folder: Path) -> np.ndarray:
         return np.array([trajectory.position(n) for n in range(len(trajectory))])
 
 
+def lammps_makes_the_same(found: dict[str, Path], place: Path, text: str, ranks: int = 2) -> None:
+    """Plain `lmp` makes the frames of the sequential run by the script and the data that `build` writes."""
+    _, folder = readied(place, text)
+    film = film_of(found["sequential"])
+    assert np.array_equal(film_of_lammps(folder, film.shape[1], ranks=ranks), film)
+
+
 def matrix(executors=(1, 2, 3, 4), controls=BOTH, name="", **more) -> dict[str, dict]:
     """Cases for every number of executors under each control."""
     return {f"{name}{control}{k}": {"executors": k, "control": control, **more} for control in controls for k in executors}
@@ -100,6 +122,8 @@ TEAMS = matrix((2,), ["peers"], name="teams ", settings={"least": 30, "by_thread
 """Ranks share the particles of an object."""
 THREADS = matrix((2,), ["central"], name="threads ", settings={"least": 30, "by_threads": True})
 """Threads share them."""
+FORMS = matrix((2,), ["central"], name="all move ", rotate=True) | matrix((3,), ["peers"]) | TEAMS
+"""Executors between which all objects move at each frame, executors that agree among themselves, and teams of ranks."""
 RESUMED = {
     "stopped": {"executors": 3, "control": "central", "stop": 3},
     "stopped and gone on with": {"executors": 2, "control": "peers", "resume": True, "in": "stopped"},
@@ -107,6 +131,14 @@ RESUMED = {
     "alone and gone on with": {"executors": 4, "control": "central", "resume": True, "in": "alone"},
 }
 """Runs that are stopped, and go on with other executors."""
+
+
+def gone_on_after(frames: int) -> dict[str, dict]:
+    """A run of one process that is stopped after so many frames, and goes on with two executors."""
+    return {
+        "stopped": SEQUENTIAL | {"stop": frames},
+        "stopped and gone on with": {"executors": 2, "control": "central", "resume": True, "in": "stopped"},
+    }
 
 
 @pytest.fixture

@@ -3,16 +3,9 @@
 
 import random
 
-import numpy as np
 import pytest
-from mdanim_lammps.engine.instance import Instance
-from mdanim_lammps.errors import SceneError
-from mdanim_lammps.run.energy import energies
-from mdanim_lammps.run.prepare import prepare
-from mdanim_lammps.scene.parse import parse_scene
+from changing_springs import RESIDUAL, all_changed
 
-RESIDUAL = 2e-3
-"""Change of all energies over the largest change of any."""
 LOOKS, LONG = 10, 20_000
 
 
@@ -38,30 +31,9 @@ def scene(seed: int) -> str:
     )
 
 
-def found(seed: int) -> tuple[bool, float] | None:
-    """Whether something tore, and the residual of energy; None of a scene that is refused or takes too long."""
-    try:
-        ready = prepare(parse_scene(scene(seed)))
-    except SceneError:
-        return None
-    if (steps := ready.certificate.steps) > LONG:
-        return None
-    told = []
-    with Instance(ready.plan) as instance:
-        instance.setup()
-        for _ in range(LOOKS + 1):
-            told.append(energies(instance, ready.system.center_of_mass(instance.array("x"))))
-            instance.run(max(1, steps // LOOKS))
-        assert np.isfinite(instance.array("x")).all(), seed
-        tore = bool(instance.column("torn").any())
-    swing = max(np.ptp([one[name] for one in told]) for name in told[0])
-    return tore, float(np.ptp([sum(one.values()) for one in told]) / swing)
-
-
 def torn(seeds) -> tuple[int, list[float]]:
     """Scenes in which something tore, and residuals."""
-    told = [one for seed in seeds if (one := found(seed)) is not None]
-    return sum(tore for tore, _ in told), [off for _, off in told]
+    return all_changed(map(scene, seeds), "torn", looks=LOOKS, longest=LONG)
 
 
 def test_four_random_bodies_that_tear():

@@ -4,9 +4,7 @@ plain LAMMPS."""
 
 import numpy as np
 import pytest
-from distribution_lab import RESUMED, TEAMS, THREADS, film_of, film_of_lammps, matrix, readied, ways
-from mdanim_lammps.results.checkpoint import Checkpoint
-from mdanim_lammps.results.compare import compare
+from distribution_lab import RESUMED, TEAMS, THREADS, forms_in, lammps_makes_the_same, matrix, same_frames
 from mdanim_lammps.results.ledger import Ledger
 
 pytestmark = pytest.mark.mpi
@@ -124,16 +122,13 @@ def scene(request):
 @pytest.fixture(scope="module")
 def found(tmp_path_factory, scene):
     """The folder of each form, all made in one start of MPI."""
-    path = tmp_path_factory.mktemp("drives") / "scene.txt"
-    path.write_text(SCENES[scene])
-    return ways(path, CASES, timeout=200.0)
+    return forms_in(tmp_path_factory.mktemp("drives"), SCENES[scene], CASES, timeout=200.0)
 
 
 @pytest.mark.parametrize("way", CASES)
 def test_all_forms_give_the_same(found, way):
     """Frames, the state, and the work but for rounding of its sums."""
-    assert compare(found["sequential"], found[way]).equal
-    alone, other = (Checkpoint.read(found[name] / "checkpoint") for name in ("sequential", way))
+    alone, other = same_frames(found, way)
     for name in "xvf":
         assert np.array_equal(getattr(alone, name), getattr(other, name)), name
     assert alone.records.keys() == other.records.keys()
@@ -152,6 +147,4 @@ def test_the_ledger_closes(found):
 
 def test_plain_lammps_gives_the_same(found, tmp_path, scene):
     """The script and data of the scene, with two ranks."""
-    _, folder = readied(tmp_path, SCENES[scene])
-    film = film_of(found["sequential"])
-    assert np.array_equal(film_of_lammps(folder, film.shape[1]), film)
+    lammps_makes_the_same(found, tmp_path, SCENES[scene])

@@ -3,9 +3,7 @@
 
 import numpy as np
 import pytest
-from distribution_lab import SEQUENTIAL, TEAMS, THREADS, film_of, film_of_lammps, matrix, readied, ways
-from mdanim_lammps.results.checkpoint import Checkpoint
-from mdanim_lammps.results.compare import compare
+from distribution_lab import FORMS, SEQUENTIAL, THREADS, forms_in, gone_on_after, lammps_makes_the_same, matrix, same_frames
 from mdanim_lammps.results.trajectory import Trajectory
 
 pytestmark = pytest.mark.mpi
@@ -29,31 +27,19 @@ object crate { shape box (10, 10, 10) cm  position (0.8, 0, 0.06) m  density 300
 control { time 0.3 s }
 """
 
-CASES = (
-    matrix((2,), ["central"], name="all move ", rotate=True)
-    | matrix((3,), ["peers"])
-    | TEAMS
-    | THREADS
-    | {
-        "stopped": SEQUENTIAL | {"stop": 4},
-        "stopped and gone on with": {"executors": 2, "control": "central", "resume": True, "in": "stopped"},
-    }
-)  # fmt: skip
+CASES = FORMS | THREADS | gone_on_after(4)
 
 
 @pytest.fixture(scope="module")
 def found(tmp_path_factory):
     """The folder of each form, all made in one start of MPI."""
-    path = tmp_path_factory.mktemp("folds") / "scene.txt"
-    path.write_text(SCENE)
-    return ways(path, CASES, timeout=120.0)
+    return forms_in(tmp_path_factory.mktemp("folds"), SCENE, CASES)
 
 
 @pytest.mark.parametrize("way", CASES)
 def test_all_forms_give_the_same(found, way):
     """Frames and the state, with the forces of friction."""
-    assert compare(found["sequential"], found[way]).equal
-    alone, other = (Checkpoint.read(found[name] / "checkpoint") for name in ("sequential", way))
+    alone, other = same_frames(found, way)
     assert alone.records == other.records and np.array_equal(alone.x, other.x)
 
 
@@ -68,9 +54,7 @@ def test_something_happens(found):
 @pytest.mark.parametrize("ranks", [1, 2])
 def test_lammps_alone_makes_the_same_frames(found, tmp_path, ranks):
     """The script that `build` writes, with its table of layers."""
-    _, folder = readied(tmp_path, SCENE)
-    film = film_of(found["sequential"])
-    assert np.array_equal(film_of_lammps(folder, film.shape[1], ranks=ranks), film)
+    lammps_makes_the_same(found, tmp_path, SCENE, ranks)
 
 
 TORN = """
@@ -90,9 +74,7 @@ control { time 0.12 s  frames 50 fps }
 @pytest.fixture(scope="module")
 def torn(tmp_path_factory):
     """The same of a sheet that tears under another one."""
-    path = tmp_path_factory.mktemp("torn") / "scene.txt"
-    path.write_text(TORN)
-    return ways(path, TORN_CASES, timeout=120.0)
+    return forms_in(tmp_path_factory.mktemp("torn"), TORN, TORN_CASES)
 
 
 TORN_CASES = matrix((2,), ["central"], rotate=True) | {
@@ -104,8 +86,7 @@ TORN_CASES = matrix((2,), ["central"], rotate=True) | {
 @pytest.mark.parametrize("way", TORN_CASES)
 def test_layers_that_tear_give_the_same(torn, way):
     """Some links are gone before the run is stopped, others later, and the other sheet lies on them."""
-    assert compare(torn["sequential"], torn[way]).equal
-    alone, other = (Checkpoint.read(torn[name] / "checkpoint") for name in ("sequential", way))
+    alone, other = same_frames(torn, way)
     assert np.array_equal(alone.x, other.x)
 
 

@@ -3,9 +3,7 @@
 
 import numpy as np
 import pytest
-from distribution_lab import RESUMED, TEAMS, THREADS, film_of, film_of_lammps, matrix, readied, ways
-from mdanim_lammps.results.checkpoint import Checkpoint
-from mdanim_lammps.results.compare import compare
+from distribution_lab import RESUMED, TEAMS, THREADS, forms_in, lammps_makes_the_same, matrix, same_frames
 from mdanim_lammps.results.ledger import Ledger
 
 pytestmark = pytest.mark.mpi
@@ -37,16 +35,13 @@ CASES = (
 @pytest.fixture(scope="module")
 def found(tmp_path_factory):
     """The folder of each form, all made in one start of MPI."""
-    path = tmp_path_factory.mktemp("inflate") / "scene.txt"
-    path.write_text(SCENE)
-    return ways(path, CASES, timeout=200.0)
+    return forms_in(tmp_path_factory.mktemp("inflate"), SCENE, CASES, timeout=200.0)
 
 
 @pytest.mark.parametrize("way", CASES)
 def test_all_forms_give_the_same(found, way):
     """Frames, pressures among them, and the state."""
-    assert compare(found["sequential"], found[way]).equal
-    alone, other = (Checkpoint.read(found[name] / "checkpoint") for name in ("sequential", way))
+    alone, other = same_frames(found, way)
     for name in "xvf":
         assert np.array_equal(getattr(alone, name), getattr(other, name)), name
     ledgers = [Ledger.read(found[name] / "ledger.csv") for name in ("sequential", way)]
@@ -60,6 +55,4 @@ def test_the_ledger_closes(found):
 
 def test_plain_lammps_gives_the_same(found, tmp_path):
     """The script and data of the scene, with two ranks."""
-    _, folder = readied(tmp_path, SCENE)
-    film = film_of(found["sequential"])
-    assert np.array_equal(film_of_lammps(folder, film.shape[1]), film)
+    lammps_makes_the_same(found, tmp_path, SCENE)

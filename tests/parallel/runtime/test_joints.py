@@ -3,9 +3,7 @@
 
 import numpy as np
 import pytest
-from distribution_lab import RESUMED, TEAMS, WINDOWS, film_of, film_of_lammps, matrix, readied, same_file, ways
-from mdanim_lammps.results.checkpoint import Checkpoint
-from mdanim_lammps.results.compare import compare
+from distribution_lab import RESUMED, TEAMS, WINDOWS, film_of, film_of_lammps, forms_in, matrix, readied, same_file, same_frames
 from mdanim_lammps.results.trajectory import Trajectory
 
 pytestmark = pytest.mark.mpi
@@ -46,16 +44,13 @@ CASES = (
 @pytest.fixture(scope="module")
 def found(tmp_path_factory):
     """The folder of each form, all made in one start of MPI."""
-    path = tmp_path_factory.mktemp("joints") / "scene.txt"
-    path.write_text(SCENE)
-    return ways(path, CASES, timeout=200.0)
+    return forms_in(tmp_path_factory.mktemp("joints"), SCENE, CASES, timeout=200.0)
 
 
 @pytest.mark.parametrize("way", CASES)
 def test_all_forms_give_the_same(found, way):
     """Frames with all rows of joints, and the state with records of patches, angles, anchors and what has broken."""
-    assert compare(found["sequential"], found[way]).equal
-    alone, other = (Checkpoint.read(found[name] / "checkpoint") for name in ("sequential", way))
+    alone, other = same_frames(found, way)
     assert np.array_equal(alone.x, other.x) and np.array_equal(alone.v, other.v)
     assert "joints" in alone.records and alone.records == other.records
     assert other.carried["work"] == pytest.approx(alone.carried["work"], rel=1e-9)

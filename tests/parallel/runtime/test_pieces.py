@@ -3,9 +3,7 @@
 
 import numpy as np
 import pytest
-from distribution_lab import SEQUENTIAL, TEAMS, film_of, film_of_lammps, matrix, readied, ways
-from mdanim_lammps.results.checkpoint import Checkpoint
-from mdanim_lammps.results.compare import compare
+from distribution_lab import FORMS, film_of, film_of_lammps, forms_in, gone_on_after, lammps_makes_the_same, readied, same_frames
 from mdanim_lammps.results.ledger import Ledger
 from mdanim_lammps.results.trajectory import Trajectory
 from mdanim_lammps.run.loop import simulate
@@ -28,30 +26,19 @@ control { time 0.3 s }
 expect plate.pieces > 2
 """
 
-CASES = (
-    matrix((2,), ["central"], name="all move ", rotate=True)
-    | matrix((3,), ["peers"])
-    | TEAMS
-    | {
-        "stopped": SEQUENTIAL | {"stop": 6},
-        "stopped and gone on with": {"executors": 2, "control": "central", "resume": True, "in": "stopped"},
-    }
-)
+CASES = FORMS | gone_on_after(6)
 
 
 @pytest.fixture(scope="module")
 def found(tmp_path_factory):
     """The folder of each form, all made in one start of MPI."""
-    path = tmp_path_factory.mktemp("pieces") / "scene.txt"
-    path.write_text(SCENE)
-    return ways(path, CASES, timeout=120.0)
+    return forms_in(tmp_path_factory.mktemp("pieces"), SCENE, CASES)
 
 
 @pytest.mark.parametrize("way", CASES)
 def test_all_forms_give_the_same(found, way):
     """Frames, with what hangs together in each, the state, and the energy that is lost but for rounding."""
-    assert compare(found["sequential"], found[way]).equal
-    alone, other = (Checkpoint.read(found[name] / "checkpoint") for name in ("sequential", way))
+    alone, other = same_frames(found, way)
     assert alone.records == other.records and np.array_equal(alone.x, other.x)
     torn = [Ledger.read(found[name] / "ledger.csv").array("torn") for name in ("sequential", way)]
     assert torn[0][-1] > 0.0 and torn[1] == pytest.approx(torn[0], rel=1e-9, abs=1e-12)
@@ -67,9 +54,7 @@ def test_plates_break(found):
 @pytest.mark.parametrize("ranks", [1, 2])
 def test_lammps_alone_makes_the_same_frames(found, tmp_path, ranks):
     """The script that `build` writes."""
-    _, folder = readied(tmp_path, SCENE)
-    film = film_of(found["sequential"])
-    assert np.array_equal(film_of_lammps(folder, film.shape[1], ranks=ranks), film)
+    lammps_makes_the_same(found, tmp_path, SCENE, ranks)
 
 
 MOVING = """

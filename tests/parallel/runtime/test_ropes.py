@@ -3,9 +3,7 @@
 
 import numpy as np
 import pytest
-from distribution_lab import SEQUENTIAL, TEAMS, THREADS, film_of, film_of_lammps, matrix, readied, ways
-from mdanim_lammps.results.checkpoint import Checkpoint
-from mdanim_lammps.results.compare import compare
+from distribution_lab import FORMS, THREADS, forms_in, gone_on_after, lammps_makes_the_same, same_frames
 from mdanim_lammps.results.trajectory import Trajectory
 
 pytestmark = pytest.mark.mpi
@@ -32,31 +30,19 @@ object stone { shape sphere 6 cm  position (-0.3, 0, 0.07) m  density 300  elast
 control { time 0.4 s }
 """
 
-CASES = (
-    matrix((2,), ["central"], name="all move ", rotate=True)
-    | matrix((3,), ["peers"])
-    | TEAMS
-    | THREADS
-    | {
-        "stopped": SEQUENTIAL | {"stop": 4},
-        "stopped and gone on with": {"executors": 2, "control": "central", "resume": True, "in": "stopped"},
-    }
-)  # fmt: skip
+CASES = FORMS | THREADS | gone_on_after(4)
 
 
 @pytest.fixture(scope="module")
 def found(tmp_path_factory):
     """The folder of each form, all made in one start of MPI."""
-    path = tmp_path_factory.mktemp("ropes") / "scene.txt"
-    path.write_text(SCENE)
-    return ways(path, CASES, timeout=120.0)
+    return forms_in(tmp_path_factory.mktemp("ropes"), SCENE, CASES)
 
 
 @pytest.mark.parametrize("way", CASES)
 def test_all_forms_give_the_same(found, way):
     """Frames and the state, with the anchors of friction."""
-    assert compare(found["sequential"], found[way]).equal
-    alone, other = (Checkpoint.read(found[name] / "checkpoint") for name in ("sequential", way))
+    alone, other = same_frames(found, way)
     assert alone.records == other.records and np.array_equal(alone.x, other.x)
 
 
@@ -71,6 +57,4 @@ def test_something_happens(found):
 @pytest.mark.parametrize("ranks", [1, 2])
 def test_lammps_alone_makes_the_same_frames(found, tmp_path, ranks):
     """The script that `build` writes, with its file of bodies."""
-    _, folder = readied(tmp_path, SCENE)
-    film = film_of(found["sequential"])
-    assert np.array_equal(film_of_lammps(folder, film.shape[1], ranks=ranks), film)
+    lammps_makes_the_same(found, tmp_path, SCENE, ranks)

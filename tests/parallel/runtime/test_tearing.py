@@ -3,9 +3,7 @@
 
 import numpy as np
 import pytest
-from distribution_lab import SEQUENTIAL, TEAMS, film_of, film_of_lammps, matrix, readied, ways
-from mdanim_lammps.results.checkpoint import Checkpoint
-from mdanim_lammps.results.compare import compare
+from distribution_lab import FORMS, forms_in, gone_on_after, lammps_makes_the_same, same_frames
 from mdanim_lammps.results.ledger import Ledger
 from mdanim_lammps.results.trajectory import Trajectory
 
@@ -43,30 +41,19 @@ control { time 0.3 s }
 """
 
 BALLOON = 7
-CASES = (
-    matrix((2,), ["central"], name="all move ", rotate=True)
-    | matrix((3,), ["peers"])
-    | TEAMS
-    | {
-        "stopped": SEQUENTIAL | {"stop": 5},
-        "stopped and gone on with": {"executors": 2, "control": "central", "resume": True, "in": "stopped"},
-    }
-)
+CASES = FORMS | gone_on_after(5)
 
 
 @pytest.fixture(scope="module")
 def found(tmp_path_factory):
     """The folder of each form, all made in one start of MPI."""
-    path = tmp_path_factory.mktemp("tearing") / "scene.txt"
-    path.write_text(SCENE)
-    return ways(path, CASES, timeout=120.0)
+    return forms_in(tmp_path_factory.mktemp("tearing"), SCENE, CASES)
 
 
 @pytest.mark.parametrize("way", CASES)
 def test_all_forms_give_the_same(found, way):
     """Frames, with what is torn in each, the state, and the energy that is gone but for rounding."""
-    assert compare(found["sequential"], found[way]).equal
-    alone, other = (Checkpoint.read(found[name] / "checkpoint") for name in ("sequential", way))
+    alone, other = same_frames(found, way)
     assert "column torn" in alone.records
     torn = [of.records.pop("column torn") for of in (alone, other)]
     tearing = [one.where(one.keys[:, 0] <= 8) for one in torn]  # what never tears may be without
@@ -88,6 +75,4 @@ def test_all_tear(found):
 @pytest.mark.parametrize("ranks", [1, 2])
 def test_lammps_alone_makes_the_same_frames(found, tmp_path, ranks):
     """The script that `build` writes."""
-    _, folder = readied(tmp_path, SCENE)
-    film = film_of(found["sequential"])
-    assert np.array_equal(film_of_lammps(folder, film.shape[1], ranks=ranks), film)
+    lammps_makes_the_same(found, tmp_path, SCENE, ranks)

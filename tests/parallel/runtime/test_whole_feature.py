@@ -10,7 +10,7 @@ import numpy as np
 import plugin_path
 import pytest
 import whole
-from distribution_lab import RESUMED, TEAMS, THREADS, WINDOWS, film_of, film_of_lammps, matrix, of_features, ways
+from distribution_lab import RESUMED, TEAMS, THREADS, WINDOWS, film_of, film_of_lammps, forms_in, matrix, of_features, same_frames
 from mdanim_lammps.export.cut import Cut
 from mdanim_lammps.export.write import export
 from mdanim_lammps.results.checkpoint import Checkpoint
@@ -36,16 +36,13 @@ FORGETFUL = matrix((2,), ["central"], name="forgetful ", rotate=True, forget="al
 @pytest.fixture(scope="module")
 def found(tmp_path_factory):
     """The folder of each form, all made in one start of MPI."""
-    path = tmp_path_factory.mktemp("whole") / "scene.txt"
-    path.write_text(whole.REMEMBERING)
-    return ways(path, CASES | FORGETFUL, timeout=200.0, features="whole")
+    return forms_in(tmp_path_factory.mktemp("whole"), whole.REMEMBERING, CASES | FORGETFUL, timeout=200.0, features="whole")
 
 
 @pytest.mark.parametrize("way", CASES)
 def test_all_forms_give_the_same(found, way):
     """Frames, the state with all columns and records, and the sum of the work but for rounding."""
-    assert compare(found["sequential"], found[way]).equal
-    alone, other = (Checkpoint.read(found[name] / "checkpoint") for name in ("sequential", way))
+    alone, other = same_frames(found, way)
     for name in "xvf":
         assert np.array_equal(getattr(alone, name), getattr(other, name)), name
     assert alone.records.keys() == {"contact", "rig", "column way", "column most", "column turns"}

@@ -4,9 +4,7 @@
 
 import numpy as np
 import pytest
-from distribution_lab import SEQUENTIAL, TEAMS, film_of, film_of_lammps, matrix, readied, ways
-from mdanim_lammps.results.checkpoint import Checkpoint
-from mdanim_lammps.results.compare import compare
+from distribution_lab import FORMS, forms_in, gone_on_after, lammps_makes_the_same, same_frames
 from mdanim_lammps.results.ledger import Ledger
 from mdanim_lammps.results.trajectory import Trajectory
 
@@ -32,30 +30,19 @@ control { time 0.2 s }
 YIELDS = 4
 """Objects that may yield, the first ones."""
 
-CASES = (
-    matrix((2,), ["central"], name="all move ", rotate=True)
-    | matrix((3,), ["peers"])
-    | TEAMS
-    | {
-        "stopped": SEQUENTIAL | {"stop": 3},
-        "stopped and gone on with": {"executors": 2, "control": "central", "resume": True, "in": "stopped"},
-    }
-)
+CASES = FORMS | gone_on_after(3)
 
 
 @pytest.fixture(scope="module")
 def found(tmp_path_factory):
     """The folder of each form, all made in one start of MPI."""
-    path = tmp_path_factory.mktemp("yielding") / "scene.txt"
-    path.write_text(SCENE)
-    return ways(path, CASES, timeout=120.0)
+    return forms_in(tmp_path_factory.mktemp("yielding"), SCENE, CASES)
 
 
 @pytest.mark.parametrize("way", CASES)
 def test_all_forms_give_the_same(found, way):
     """Frames, with the growth in each, the state, and the work but for rounding."""
-    assert compare(found["sequential"], found[way]).equal
-    alone, other = (Checkpoint.read(found[name] / "checkpoint") for name in ("sequential", way))
+    alone, other = same_frames(found, way)
     assert "column grown" in alone.records
     for column, first in (("column grown", 1), ("column torn", YIELDS)):  # the last of those that yield tears
         state = [of.records.pop(column) for of in (alone, other)]
@@ -80,6 +67,4 @@ def test_all_yield(found):
 @pytest.mark.parametrize("ranks", [1, 2])
 def test_lammps_alone_makes_the_same_frames(found, tmp_path, ranks):
     """The script that `build` writes."""
-    _, folder = readied(tmp_path, SCENE)
-    film = film_of(found["sequential"])
-    assert np.array_equal(film_of_lammps(folder, film.shape[1], ranks=ranks), film)
+    lammps_makes_the_same(found, tmp_path, SCENE, ranks)
