@@ -67,6 +67,7 @@ class Overlay:
         dark: whether the background is.
         action: where things happen.
         tones: colours that tell a quantity; None for none.
+        finer: pixels that are drawn for one of the picture, along each side.
 
     Raises:
         UsageError: a quantity that the run has not recorded.
@@ -89,11 +90,11 @@ class Overlay:
         self._tones, names = tones, list(trajectory.names)
         self._of_name = objects_by_name(names) if render.trail or render.label else {}
         self._colors = object_colors(trajectory.metadata.colors, trajectory.metadata.still) / 255.0
-        lines = [_vectors(render.arrows, run) for run in runs if run is not None]
+        told = [RunValues(run) for run in runs if run is not None]
+        lines = [_vectors(render.arrows, values) for values in told]
         every = [one for found in lines for one in found]
         self._vectors = [one if one.scale else replace(one, scale=_usual(one.unit, every, action)) for one in lines[0]]
         of_objects = dict(zip(names, map(tuple, self._colors)))
-        told = [RunValues(run) for run in runs if run is not None]
         self._curves = Curves(self._layer, render.plot, told, of_objects) if render.plot else None
 
     def lay_on(self, picture: np.ndarray, view: View, frame: int, low: np.ndarray, high: np.ndarray) -> None:
@@ -175,18 +176,17 @@ class Overlay:
         self._layer.words((at[0], at[1] + size[1] + 1.5 * letters), tones.name, fontweight="bold")
 
 
-def _vectors(lines: tuple[Arrows, ...], trajectory: Trajectory) -> list[_Vectors]:
+def _vectors(lines: tuple[Arrows, ...], run: RunValues) -> list[_Vectors]:
     """The arrows of all lines; those without a scale of their own still have none."""
-    told = RunValues(trajectory)
-    names, found, words = list(trajectory.names), [], dict.fromkeys(one.vector for one in lines)
+    names, found, words = run.trajectory.names, [], dict.fromkeys(one.vector for one in lines)
     others = iter(OTHERS * len(words))
     colors = {word: COLORS.get(word) or next(others) for word in words}
     for one in lines:
         objects = one.objects(names)
-        values = np.stack([told.vector(names[m], one.vector) for m in objects], axis=1)
+        values = np.stack([run.vector(names[m], one.vector) for m in objects], axis=1)
         shown = np.isfinite(values).all(axis=2).any(axis=0)
         if one.name is None:
-            shown &= ~trajectory.metadata.still
+            shown &= ~run.trajectory.metadata.still
         chosen = tuple(m for m, is_shown in zip(objects, shown) if is_shown)
         found.append(_Vectors(one.vector, colors[one.vector], chosen, values[:, shown], one.scale or 0.0))
     return found

@@ -24,7 +24,7 @@ class RunValues:
     """
 
     def __init__(self, trajectory: Trajectory):
-        self._trajectory, self.times = trajectory, trajectory.times
+        self.trajectory, self.times = trajectory, trajectory.times
 
     def series(self, of: Of) -> np.ndarray:
         """Values in SI units, shape (F,), NaN where there are none.
@@ -34,13 +34,13 @@ class RunValues:
         """
         other = [of.argument] if of.kind.takes == "object" else []
         for name in ([] if of.subject in GLOBALS else [of.subject]) + other:
-            if name not in (self._by_name if of.of == "NAMES" else self._trajectory.names):
-                raise UsageError(f"{self._trajectory.path} has no object {name}, and {of.what} is to be shown")
+            if name not in (self._by_name if of.of == "NAMES" else self.trajectory.names):
+                raise UsageError(f"{self.trajectory.path} has no object {name}, and {of.what} is to be shown")
         return series(of, self._measured)
 
     @cached_property
     def _by_name(self) -> dict[str, list[int]]:
-        return objects_by_name(self._trajectory.names)
+        return objects_by_name(self.trajectory.names)
 
     def is_mean(self, of: Of) -> bool:
         """Whether the value of a frame is the mean since the frame before."""
@@ -52,7 +52,7 @@ class RunValues:
 
     @cached_property
     def _measured(self) -> Measured:
-        t = self._trajectory
+        t = self.trajectory
         if t.scene is None:
             raise OutputError(f"{t.path}: the scene of this run, or one of its meshes, cannot be read here")
         grid = next((kept.grid for kept in t.metadata.kept.values() if hasattr(kept, "grid")), None)
@@ -60,16 +60,16 @@ class RunValues:
 
     def _column(self, name: str) -> np.ndarray:
         """A column of the ledger."""
-        path = self._trajectory.path.parent / "ledger.csv"
-        if len(self._trajectory) == 1 and not path.exists():
+        path = self.trajectory.path.parent / "ledger.csv"
+        if len(self.trajectory) == 1 and not path.exists():
             return np.full(1, np.nan)
         if name not in self._ledger.columns:
             word, _, subject = name.rpartition(".")
             raise UsageError(
                 f"the run has not recorded {word} of {subject}; write it in the scene, record {subject}.{word}, and run it again"
             )
-        return self._ledger.array(name)[: len(self._trajectory)]
+        return self._ledger.array(name)[: len(self.trajectory)]
 
     @cached_property
     def _ledger(self) -> Ledger:
-        return Ledger.read(self._trajectory.path.parent / "ledger.csv", most=len(self._trajectory))
+        return Ledger.read(self.trajectory.path.parent / "ledger.csv", most=len(self.trajectory))

@@ -85,10 +85,9 @@ class Observer:
         self.geometry, self.folds = Geometry(plan.system, plan.context.passing), Folds(plan.system)
         self.apart = any(effect.keeps_apart for effect in plan.effects)
         model_of, number = {model.name: model for model in models}, {name: m for m, name in enumerate(plan.system.names)}
-        self.recorded = [
-            (number[name], quantity.look, model_of[name], column)
-            for column, (name, quantity) in recorded(plan.scene.asked).items()
-        ]
+        wanted = recorded(plan.scene.asked)
+        self.recorded = [(number[name], quantity.look, column) for column, (name, quantity) in wanted.items()]
+        self.models = {number[name]: model_of[name] for name, _ in wanted.values()}
 
     def observe(
         self, objects: np.ndarray, near: np.ndarray, x: np.ndarray, v: np.ndarray, fields: Fields = MappingProxyType({})
@@ -113,12 +112,12 @@ class Observer:
             np.flatnonzero(self.geometry.inverted(x, objects) & ~torn.cells()) if found == INVERTED else np.zeros(0, np.int64),
             self.geometry.sunk(x, np.setdiff1d(near, torn.apart)) if self.apart and sound else None,
             *self.folds.find(objects, x if sound else self.system.position, torn.apart),
-            {
-                column: look(Glance(self.context, m, model, x, v, fields))
-                for m, look, model, column in self.recorded
-                if sound and m in objects
-            },
+            self._recorded(objects, x, v, fields) if sound else {},
         )
+
+    def _recorded(self, objects: np.ndarray, x: np.ndarray, v: np.ndarray, fields: Fields) -> dict[str, float]:
+        glances = {m: Glance(self.context, m, model, x, v, fields) for m, model in self.models.items() if m in objects}
+        return {column: look(glances[m]) for m, look, column in self.recorded if m in glances}
 
     def _torn(self, fields: Fields) -> Torn:
         return Torn(self.system, np.flatnonzero(fields[GONE]) if GONE in fields else np.zeros(0, np.int64))

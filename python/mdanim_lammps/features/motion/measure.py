@@ -13,6 +13,7 @@ from ...effects import acting
 from ...effects.balance import Balance
 from ...effects.measured import Glance, Mean, Measurable, Measured, Of, Recorded
 from ...model.spin import spin
+from ...scene.once import once_for
 
 Vectors = Callable[[Measured, Of], np.ndarray]
 """Finds a vector at all frames, shape (F, 3)."""
@@ -50,6 +51,7 @@ def _norm(vector: np.ndarray) -> float:
     return float(np.linalg.norm(vector))
 
 
+@once_for(lambda m: m)
 def balance(m: Measured) -> Balance:
     """The momenta of all objects."""
     effects = acting(features.effects(), m.scene)
@@ -60,10 +62,12 @@ def _resultant(m: Measured, of: Of) -> np.ndarray:
     return balance(m).resultant[:, m.solid(of.subject)]
 
 
+@once_for(lambda g: g)
 def _spin(g: Glance) -> np.ndarray:
     return spin(g.context.system.mass[g.mine], np.zeros(1, int), g.position[g.mine], g.velocity[g.mine])[0]
 
 
+@once_for(lambda g: g)
 def turn(g: Glance) -> np.ndarray:
     """Rotation of an object since the start, of least squares over its particles: a matrix, shape (3, 3)."""
     mass = g.context.system.mass[g.mine]
