@@ -86,3 +86,14 @@ def test_names_that_one_run_lacks_are_refused(runs, tmp_path):
     ):
         with pytest.raises(UsageError, match=f"has no object ball, {message}"):
             render_side_by_side(runs[0].folder, other.folder, render, tmp_path / "x.mp4", size=(320, 90))
+
+
+def test_names_of_groups_stand_for_their_objects(tmp_path):
+    """As in a movie of one run."""
+    text = "group pair { object ball { shape sphere 10 cm  position (0, 0, 0.6) m  mass 1 kg  elasticity rigid } }\n"
+    text += "place pair as duo { position (0, 0, 0) m }\ncontrol { time 0.1 s  frames 20 fps  resolution 10 cm }\n"
+    text += 'render { label duo "x" }\n'
+    run = Scene.from_text(text, "duo").run(tmp_path / "duo")
+    path = tmp_path / "both.mp4"
+    render_side_by_side(run.folder, run.folder, run.scene.record.render, path, size=(320, 90))
+    assert imageio_ffmpeg.count_frames_and_secs(path)[0] == 3

@@ -5,12 +5,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from contextlib import ExitStack
+from fractions import Fraction
 from pathlib import Path
 
 import numpy as np
 
 from ..errors import OutputError, UsageError
 from ..results.trajectory import Trajectory
+from ..scene.naming import objects_by_name
 from ..scene.render import Render
 from .camera import Action, action_of
 from .movie import FASTEST, MOST_PICTURES, encoder, movie_rate
@@ -18,7 +20,6 @@ from .render import Painter
 
 LINE = 2
 """Width of the line between both halves [pixels]."""
-HAIR = 1e-9
 
 
 def render_side_by_side(
@@ -70,9 +71,10 @@ def _painters(
     runs: list[Trajectory], folders: tuple[str | Path, str | Path], render: Render, size: tuple[int, int]
 ) -> list[Painter]:
     """A painter for each run; what both have in common is found from both."""
+    named = [objects_by_name(run.names) for run in runs]
     for one in (*render.trail, *render.label, *(a for a in render.arrows if a.name)):
-        for run in runs:
-            if not any(name == one.name or name.startswith(f"{one.name}[") for name in run.names):
+        for run, known in zip(runs, named):
+            if one.name not in known:
                 raise UsageError(f"{run.path} has no object {one.name}, which render names; take another render block by --scene")
     actions = [action_of(run) for run in runs]
     both = _together(*actions)
@@ -91,7 +93,7 @@ def _together(a: Action, b: Action) -> Action:
     return Action(low, high, bounds, a.escaped or b.escaped, np.concatenate([a.free, b.free]), leads)
 
 
-def _moments(runs: list[Trajectory], speed: float, fps: float | None):
+def _moments(runs: list[Trajectory], speed: float, fps: float | None) -> tuple[np.ndarray, Fraction]:
     """Simulated times of the pictures [s], and how many of them a second has."""
     end = max(float(run.times[-1]) for run in runs)
     own = max(((len(run) - 1) / float(run.times[-1]) for run in runs if len(run) > 1), default=30.0) * speed
