@@ -104,13 +104,11 @@ def action_of(trajectory: Trajectory, samples: int = 40) -> Action:
     """
     metadata, centers = trajectory.metadata, np.array(trajectory.centers)
     frames = np.unique(np.linspace(0, len(trajectory) - 1, samples).astype(int))
-    first = np.searchsorted(metadata.skin.object_of_vertex, np.arange(len(metadata.names)))
     below = np.zeros(centers.shape[1:])
     above = np.zeros(centers.shape[1:])
     for frame in frames:
         position, torn = trajectory.position(frame), trajectory.gone(frame)
-        vertices = metadata.skin.vertices(position, torn)
-        least, most = (f.reduceat(vertices, first) for f in (np.minimum, np.maximum))
+        least, most = metadata.skin.boxes(metadata.skin.vertices(position, torn))
         for m in () if torn is None else np.unique(metadata.object_of[torn[:, 0]]):
             own = position[metadata.first[m] : metadata.first[m + 1]]
             least[m], most[m] = np.quantile(own, [CRUMBS, 1.0 - CRUMBS], axis=0)

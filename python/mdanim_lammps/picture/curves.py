@@ -11,6 +11,7 @@ import numpy as np
 
 from ..scene.quantities import Asked
 from .layer import Color, InkLayer
+from .palette import is_dark, luminance
 from .plot import own_style
 from .run_values import RunValues
 
@@ -25,8 +26,8 @@ CURVES: tuple[Color, ...] = (
 )  # fmt: skip
 THIN, LETTER = 0.16, 0.62
 """Width of the topmost curve, and of a letter on average, over the height of letters."""
-LUMINANCE, DARKEST = np.array([0.2126, 0.7152, 0.0722]), 0.42
-"""Shares of red, green and blue in how bright a colour is, and how bright curves are at most on bright paper."""
+BRIGHTEST = 0.42
+"""Luminance of curves at most on bright paper; on dark paper 1 less this is the least."""
 PALE = 0.35
 """Opacity of the curves of a run beside the one that is drawn."""
 ROOM = 0.08
@@ -154,10 +155,10 @@ class Curves:
 
 def _legible(color: Color, paper: Color) -> Color:
     """A colour that stands out from the paper: darker where the paper is bright, brighter where it is dark."""
-    bright = float(np.array(color) @ LUMINANCE)
-    if float(np.array(paper) @ LUMINANCE) > 0.5:
-        return tuple(x * min(1.0, DARKEST / max(bright, 1e-9)) for x in color)
-    return tuple(x + (1.0 - x) * max(0.0, (1.0 - DARKEST - bright) / (1.0 - bright)) for x in color)
+    bright = luminance(np.array(color))
+    if is_dark(np.array(paper)):
+        return tuple(x + (1.0 - x) * max(0.0, (1.0 - BRIGHTEST - bright) / (1.0 - bright)) for x in color)
+    return tuple(x * min(1.0, BRIGHTEST / max(bright, 1e-9)) for x in color)
 
 
 def _span(series: Sequence[np.ndarray], whole: bool) -> tuple[float, float]:

@@ -42,15 +42,11 @@ def part_around(view: View, size: tuple[int, int], points: np.ndarray, around: i
     eye, none without places."""
     if not len(points):
         return PicturePart(0, 0, 0, 0)
-    ahead, right, up = _axes(view)
-    out = points - view.eye
-    depth = out @ ahead
-    if depth.min() <= 1e-3 * np.linalg.norm(view.look - view.eye):
+    pixels, before = seen_at(view, size, points)
+    if not before.all():
         return whole(size)
-    half = 0.5 * size[1] / np.tan(np.radians(FIELD_OF_VIEW) / 2.0)
-    across = np.stack([out @ right, out @ up]) * half / depth + 0.5 * np.array(size)[:, None]
-    low = np.clip(np.floor(across.min(axis=1)).astype(int) - around, 0, size)
-    high = np.clip(np.ceil(across.max(axis=1)).astype(int) + around, 0, size)
+    low = np.clip(np.floor(pixels.min(axis=0)).astype(int) - around, 0, size)
+    high = np.clip(np.ceil(pixels.max(axis=0)).astype(int) + around, 0, size)
     return PicturePart(int(low[0]), int(low[1]), int(high[0]), int(high[1]))
 
 
@@ -61,15 +57,14 @@ def seen_at(view: View, size: tuple[int, int], points: np.ndarray) -> tuple[np.n
     out = points - view.eye
     depth = out @ ahead
     before = depth > 1e-3 * np.linalg.norm(view.look - view.eye)
-    half = 0.5 * size[1] / np.tan(np.radians(FIELD_OF_VIEW) / 2.0)
-    across = np.stack([out @ right, out @ up], axis=1) * half / np.where(before, depth, 1.0)[:, None]
+    across = np.stack([out @ right, out @ up], axis=1) * _distance(size) / np.where(before, depth, 1.0)[:, None]
     return across + 0.5 * np.array(size), before
 
 
 def pixels_per_metre(view: View, size: tuple[int, int], place: np.ndarray) -> float:
     """How long a metre across the line of sight is seen at a place [pixels]; 0 beside or behind the eye."""
     depth = float((place - view.eye) @ _axes(view)[0])
-    return 0.5 * size[1] / np.tan(np.radians(FIELD_OF_VIEW) / 2.0) / depth if depth > 0.0 else 0.0
+    return _distance(size) / depth if depth > 0.0 else 0.0
 
 
 def left_of_panels(view: View, aspect: float, share: float) -> View:
@@ -87,6 +82,11 @@ def corner_rays(view: View, size: tuple[int, int]) -> np.ndarray:
     high = np.tan(np.radians(FIELD_OF_VIEW) / 2.0)
     wide = high * size[0] / size[1]
     return np.array([ahead + x * wide * right + y * high * up for x in (-1, 1) for y in (-1, 1)])
+
+
+def _distance(size: tuple[int, int]) -> float:
+    """Distance from the eye at which a picture of this size would fill the field of view [pixels]."""
+    return 0.5 * size[1] / np.tan(np.radians(FIELD_OF_VIEW) / 2.0)
 
 
 def _axes(view: View) -> np.ndarray:

@@ -45,7 +45,6 @@ class MarkActors:
     def __init__(self, marks: Marks, metadata: TrajectoryMetadata, dark: bool, height: int):
         self.actors = []
         self._skin = metadata.skin
-        self._first = np.searchsorted(self._skin.object_of_vertex, np.arange(len(metadata.names)))
         grey = 0.95 if dark else 0.15
         self._springs = self._boxes = None
         if marks.springs:
@@ -71,8 +70,7 @@ class MarkActors:
             self._springs.move(position)
         if not (self._boxes or self._names):
             return
-        vertices = self._skin.vertices(position)
-        low, high = (best.reduceat(vertices, self._first) for best in (np.minimum, np.maximum))
+        low, high = self._skin.boxes(self._skin.vertices(position))
         if self._boxes:
             corner = np.stack([low, high], axis=1)  # (O, 2, 3)
             z, y, x = np.unravel_index(np.arange(8), (2, 2, 2))

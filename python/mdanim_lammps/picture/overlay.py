@@ -97,12 +97,14 @@ class Overlay:
         of_objects = dict(zip(names, map(tuple, self._colors)))
         self._curves = Curves(self._layer, render.plot, told, of_objects) if render.plot else None
 
-    def lay_on(self, picture: np.ndarray, view: View, frame: int, low: np.ndarray, high: np.ndarray) -> None:
-        """Lay it over a picture of a frame, uint8 RGBA, shape (height, width, 4), first row below; ``low`` and ``high`` are
-        corners of the boxes around objects [m], shape (O, 3)."""
+    def lay_on(self, picture: np.ndarray, view: View, frame: int, position: np.ndarray, gone: np.ndarray | None) -> None:
+        """Lay it over a picture of a frame, uint8 RGBA, shape (height, width, 4), first row below; ``position`` and ``gone`` are
+        those of the frame in the trajectory."""
         self._trails(view, frame)
         self._arrows(view, frame)
-        self._labels(view, low, high)
+        if self._render.label:
+            skin = self._trajectory.metadata.skin
+            self._labels(view, *skin.boxes(skin.vertices(position, gone)))
         self._captions(float(self._trajectory.times[frame]))
         if self._curves:
             self._curves.show(float(self._trajectory.times[frame]))
@@ -147,6 +149,7 @@ class Overlay:
             self._layer.words((left + widest + 0.7 * letters, y), words, color=one.color)
 
     def _labels(self, view: View, low: np.ndarray, high: np.ndarray) -> None:
+        """Words beside the boxes of objects, whose corners are ``low`` and ``high`` [m], shape (O, 3)."""
         corner = np.array(np.unravel_index(np.arange(8), (2, 2, 2))).T
         for one in self._render.label:
             for m in self._of_name[one.name]:

@@ -67,4 +67,9 @@ def background_colors(chosen: str | None) -> tuple[np.ndarray, np.ndarray]:
 
 def is_dark(color: np.ndarray) -> bool:
     """Whether light writing reads better on this colour (relative luminance below one half)."""
-    return float(color @ [0.2126, 0.7152, 0.0722]) < 0.5
+    return luminance(color) < 0.5
+
+
+def luminance(color: np.ndarray) -> float:
+    """How bright a colour is to the eye, from 0 to 1; red, green and blue are from 0 to 1."""
+    return float(color @ [0.2126, 0.7152, 0.0722])

@@ -93,7 +93,6 @@ class Painter:
             dark = is_dark(background_colors(render.background)[0])
             runs = trajectory, beside
             self._overlay = Overlay(runs, render, self._pixels, dark, seen or self.action, self._tones, self._finer)
-            self._first = np.searchsorted(trajectory.metadata.skin.object_of_vertex, np.arange(len(trajectory.names)))
 
     def _pixel(self) -> np.ndarray:
         """Size of a pixel on each object where it comes nearest to the camera [m], shape (M,)."""
@@ -134,7 +133,7 @@ class Painter:
             actor.GetShaderProperty().GetFragmentCustomUniforms().SetUniform3f("eye", list(view.eye))
         picture = self._all_in_one(view) if self._behind else self._over_backdrop(view, np.concatenate([vertices, points]))
         if self._overlay:
-            self._overlay.lay_on(picture, view, index, *self._boxes_of_objects(position, gone))
+            self._overlay.lay_on(picture, view, index, position, gone)
         self._title.lay_on(picture, self._name)
         self._stamp.lay_on(picture, f"t = {time:.2f} s")
         return fewer_pixels(upright(picture), self._finer)
@@ -144,11 +143,6 @@ class Painter:
         values = self._mesh.carry @ self._tones.of_particles(index)
         still = self.trajectory.metadata.still[self._mesh.object_of_vertex]
         return np.where(still[:, None], self._surface_colors[: len(values)], self._tones.colors(values))
-
-    def _boxes_of_objects(self, position: np.ndarray, gone: np.ndarray | None) -> tuple[np.ndarray, np.ndarray]:
-        """Corners of the boxes around objects [m], each of shape (O, 3)."""
-        vertices = self.trajectory.metadata.skin.vertices(position, gone)
-        return np.minimum.reduceat(vertices, self._first), np.maximum.reduceat(vertices, self._first)
 
     def _over_backdrop(self, view: View, points: np.ndarray) -> np.ndarray:
         """Floor and background by themselves, and before them, where there is something, all else; ``points`` [m], shape (P, 3),

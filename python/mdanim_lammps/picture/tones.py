@@ -7,6 +7,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from ..effects.fields import GONE
 from ..results.trajectory import Trajectory
 from ..results.trajectory_metadata import springs_gone
 from ..scene.shown import ColorBy
@@ -62,7 +63,7 @@ class Tones:
         """Largest |r/r0 - 1| of the springs of each particle; r0 is the length in the first frame."""
         t = self._trajectory
         stretch = np.abs(self._lengths(t.position(frame)) / self._rest - 1.0)
-        gone = springs_gone(t.metadata, lambda name: t.field(name.rpartition("/")[2], frame))
+        gone = springs_gone(t.metadata, lambda _: t.field(GONE, frame))
         if gone is not None:
             stretch[gone] = 0.0
         strain = np.zeros(len(t.metadata.id))

@@ -87,6 +87,8 @@ class Skin:
     """int32, shape (T,)."""
     object_of_vertex: np.ndarray
     """int32, shape (V,)."""
+    first: np.ndarray
+    """The first vertex of each object, int64, shape (O,)."""
     painted: np.ndarray
     """Vertices that have a colour of their own, bool, shape (V,)."""
     patched: np.ndarray
@@ -98,6 +100,10 @@ class Skin:
         """Vertex positions [m], shape (V, 3), for stored particle positions [m], shape (N, 3), and the ends of springs that are
         gone (`ends_gone`)."""
         return self.carry.places(position, gone)
+
+    def boxes(self, vertices: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Lower and upper corners of the boxes around objects [m], each of shape (O, 3), by `vertices`."""
+        return np.minimum.reduceat(vertices, self.first), np.maximum.reduceat(vertices, self.first)
 
 
 def springs_gone(metadata: TrajectoryMetadata, value: Callable[[str], np.ndarray]) -> np.ndarray | None:
@@ -223,6 +229,7 @@ def merge_surfaces(metadata: TrajectoryMetadata) -> Skin:
         triangle=np.concatenate([np.zeros((0, 3), np.int32), *triangle]).astype(np.int32),
         object_of_triangle=np.repeat(objects, triangles),
         object_of_vertex=np.repeat(objects, vertices),
+        first=first_vertex,
         painted=np.repeat([surface.color is not None for surface in used], vertices),
         patched=np.repeat([surface.patch is not None for surface in used], vertices).astype(bool),
         paint=np.concatenate([np.zeros((0, 3), np.uint8), *(s.color for s in used if s.color is not None)]),
