@@ -177,9 +177,9 @@ class Recorded(Measurable):
         single: Callable[[Measured, np.ndarray, float | None], float] = Measured.at,
         follow: Callable[[np.ndarray], np.ndarray] = np.asarray,
     ):
-        super().__init__(lambda m, of: follow(m.ledger(self.of(of))), single)
+        super().__init__(lambda m, of: follow(m.ledger(self.column_of(of))), single)
         self.column, self.look = column, look
 
-    def of(self, of: Of) -> str:
-        """The column of the ledger."""
+    def column_of(self, of: Of) -> str:
+        """Its column of the ledger."""
         return f"{self.column}.{of.subject}"

@@ -31,4 +31,4 @@ def series(of: Of, measured: Measured) -> np.ndarray:
 def recorded(asked: Iterable[Of]) -> dict[str, tuple[str, Recorded]]:
     """Quantities that a run has to look at in every frame, once each: their columns of the ledger, with the objects."""
     found = ((of, quantity_of(of)) for of in asked)
-    return {quantity.of(of): (of.subject, quantity) for of, quantity in found if isinstance(quantity, Recorded)}
+    return {quantity.column_of(of): (of.subject, quantity) for of, quantity in found if isinstance(quantity, Recorded)}

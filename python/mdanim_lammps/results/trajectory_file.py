@@ -43,6 +43,8 @@ _ROW = (STEP, TIME, CHECKSUM)
 """Tables of what a frame has beside its quantities."""
 NOT_WRITTEN = -1
 """Step of a frame that is still to come."""
+OF_SOME = {"painted": ("color", (3,)), "tubed": ("tube", (4,)), "patched": ("patch", ())}
+"""Tables of vertices that only some surfaces have, with the shape of a row, by the table that tells which surfaces have one."""
 
 # The first HDF5 whose whole metadata have checksums.
 _LIBVER = ("v110", "v110")
@@ -347,7 +349,7 @@ def _write_metadata(group: h5py.Group, metadata: TrajectoryMetadata, dt: float, 
         none = np.zeros(0, np.int32 if name != "weight" else np.float64)
         flat = np.concatenate([none, *(getattr(s, name).ravel() for s in metadata.surfaces)])
         _table(surfaces, name, flat, packed=True)
-    for has, name in (("painted", "color"), ("tubed", "tube"), ("patched", "patch")):
+    for has, (name, _) in OF_SOME.items():
         if some := [getattr(s, name).ravel() for s in metadata.surfaces if getattr(s, name) is not None]:
             _table(surfaces, has, np.array([getattr(s, name) is not None for s in metadata.surfaces], dtype=np.uint8))
             _table(surfaces, name, np.concatenate(some), packed=True)
@@ -386,27 +388,29 @@ def read_metadata(file: h5py.File) -> TrajectoryMetadata:
 def _read_surfaces(group: Mapping[str, h5py.Dataset]) -> tuple[Surface, ...]:
     flat = {name: group[name][:] for name in ("triangle", "index", "weight")}
     shapes = group["shape"][:]
-    painted = group["painted"][:].astype(bool) if "painted" in group else np.zeros(len(shapes), dtype=bool)
-    colors = group["color"][:].reshape(-1, 3) if "painted" in group else np.zeros((0, 3), dtype=np.uint8)
-    tubed = group["tubed"][:].astype(bool) if "tubed" in group else np.zeros(len(shapes), dtype=bool)
-    tubes = group["tube"][:].reshape(-1, 4) if "tubed" in group else np.zeros((0, 4))
-    patched = group["patched"][:].astype(bool) if "patched" in group else np.zeros(len(shapes), dtype=bool)
-    patches = group["patch"][:] if "patched" in group else np.zeros(0, dtype=np.int32)
-    some = [shapes[:, 1] * has for has in (painted, tubed, patched)]
-    counts = np.stack([3 * shapes[:, 0], shapes[:, 1] * shapes[:, 2], *some], axis=1)
+    counts = np.stack([3 * shapes[:, 0], shapes[:, 1] * shapes[:, 2]], axis=1)
     return tuple(
         Surface(
             triangle=flat["triangle"][t - 3 * triangles : t].reshape(-1, 3),
             index=flat["index"][v - vertices * corners : v].reshape(-1, corners),
             weight=flat["weight"][v - vertices * corners : v].reshape(-1, corners),
-            color=colors[c - vertices : c] if has else None,
-            tube=tubes[r - vertices : r] if round_ else None,
-            patch=patches[p - vertices : p] if tears else None,
+            **some,
         )
-        for (triangles, vertices, corners), (t, v, c, r, p), has, round_, tears in zip(
-            shapes, np.cumsum(counts, axis=0), painted, tubed, patched, strict=True
+        for (triangles, vertices, corners), (t, v), some in zip(
+            shapes, np.cumsum(counts, axis=0), _of_some(group, shapes[:, 1]), strict=True
         )
     )
+
+
+def _of_some(group: Mapping[str, h5py.Dataset], vertices: np.ndarray) -> Iterator[dict[str, np.ndarray]]:
+    """Tables that only some surfaces have, of each surface in turn, by their names; each has these vertices, shape (K,)."""
+    there = {}
+    for has, (name, shape) in OF_SOME.items():
+        if has in group:
+            mine = group[has][:].astype(bool)
+            there[name] = mine, np.cumsum(vertices * mine), group[name][:].reshape(-1, *shape)
+    for n, count in enumerate(vertices):
+        yield {name: values[last[n] - count : last[n]] for name, (mine, last, values) in there.items() if mine[n]}
 
 
 def _read_kept(file: h5py.File) -> dict[str, KeptRecord]:
