@@ -7,7 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
-from ..effects.measured import Measured, Of
+from ..effects.measured import Measured, Of, Recorded
 from ..errors import OutputError, UsageError
 from ..results.ledger import Ledger
 from ..results.quantities import quantity_of, series
@@ -36,6 +36,10 @@ class RunValues:
         for name in ([] if of.subject in GLOBALS else [of.subject]) + other:
             if name not in (self._by_name if of.of == "NAMES" else self.trajectory.names):
                 raise UsageError(f"{self.trajectory.path} has no object {name}, and {of.what} is to be shown")
+        quantity = quantity_of(of)
+        if isinstance(quantity, Recorded) and not self._has(quantity.column_of(of)):
+            missing = f"the run has not recorded {of.quantity} of {of.subject}"
+            raise UsageError(f"{missing}; write it in the scene, record {of.what}, and run it again")
         return series(of, self._measured)
 
     @cached_property
@@ -58,18 +62,21 @@ class RunValues:
         grid = next((kept.grid for kept in t.metadata.kept.values() if hasattr(kept, "grid")), None)
         return Measured(t.scene, t.names, grid, t.times, t.centers, t.center_velocities, np.nan, self._column, t)
 
+    def _has(self, column: str) -> bool:
+        return self._ledger is None or column in self._ledger.columns
+
     def _column(self, name: str) -> np.ndarray:
-        """A column of the ledger."""
-        path = self.trajectory.path.parent / "ledger.csv"
-        if len(self.trajectory) == 1 and not path.exists():
+        """A column of the ledger. Raises UsageError where it has none of this name."""
+        if self._ledger is None:
             return np.full(1, np.nan)
-        if name not in self._ledger.columns:
-            word, _, subject = name.rpartition(".")
-            raise UsageError(
-                f"the run has not recorded {word} of {subject}; write it in the scene, record {subject}.{word}, and run it again"
-            )
+        if not self._has(name):
+            raise UsageError(f"the ledger of the run has no column {name}, which a quantity of the pictures is found from")
         return self._ledger.array(name)[: len(self.trajectory)]
 
     @cached_property
-    def _ledger(self) -> Ledger:
-        return Ledger.read(self.trajectory.path.parent / "ledger.csv", most=len(self.trajectory))
+    def _ledger(self) -> Ledger | None:
+        """None where a run has only its start."""
+        path = self.trajectory.path.parent / "ledger.csv"
+        if len(self.trajectory) == 1 and not path.exists():
+            return None
+        return Ledger.read(path, most=len(self.trajectory))
