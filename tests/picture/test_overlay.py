@@ -209,7 +209,9 @@ def test_a_run_of_before_shows_all_that_its_frames_tell(run):
     pictures(run, arrows=(Arrows("contact"), Arrows("force"), Arrows("weight")), plot=(Asked("ball", "distance", "cube"),))
     with pytest.raises(UsageError, match=r"the run has not recorded kinetic of cube; write it in the scene, record cube.kinetic"):
         pictures(run, plot=(Asked("cube", "kinetic"),))
-    with pytest.raises(UsageError, match=r"the run has not recorded strain.max of cube; .* record cube.strain.max, and run it again"):
+    with pytest.raises(
+        UsageError, match=r"the run has not recorded strain.max of cube; .* record cube.strain.max, and run it again"
+    ):
         pictures(run, plot=(Asked("cube", "strain.max"),))
     with pytest.raises(UsageError, match=r"the ledger of the run has no column liquid_cells"):
         pictures(run, plot=(Asked("liquid", "volume"),))
