@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from math import sqrt
 
 import numpy as np
@@ -10,7 +11,9 @@ import numpy as np
 from ...effects.context import Context
 from ...effects.envelope import Envelope
 from ...errors import Problem
+from ...model.triangles import areas
 from ...scene.formatting import number, say
+from ...scene.once import once_for
 from ..contact.words import CONTACT_STIFFNESS
 from .layers import LayerPair, layers, pairs
 
@@ -26,22 +29,43 @@ def passing_speeds(context: Context, pair: LayerPair) -> tuple[float, float]:
     """Relative speeds from which on parts of two layers pass through each other [m/s], if neither yields before: a particle that
     comes alone, m v^2/2 = w k g(R), the least of both; and all of two sheets that meet flat, where the mass per area is
     mu = a b/(a + b) and both push: mu v^2/2 = k g(R) (W_A + W_B), with the sum W of weights per area. Else both are equal."""
-    system, found, heaviest = context.system, [], 0.0
-    for m in (pair.first, pair.second):
-        layer = layers(context)[m]
-        mass = system.mass[system.first[m] + layer.particle]
-        if not system.still[m]:
-            heaviest = max(heaviest, float((mass / layer.weight).max()))
-        if layer.element.shape[1] == 3 and layer.half > 0.0:
-            a, b, c = layer.rest[layer.element.T]
-            area = 0.5 * float(np.linalg.norm(np.cross(b - a, c - a), axis=1).sum())
-            found.append((0.0 if system.still[m] else area / float(mass.sum()), float(layer.weight.sum()) / area))
+    ends = [_loads(context)[m] for m in (pair.first, pair.second)]
     energy = 2.0 * DEPTH * pair.stiffness
-    alone = pair.reach * sqrt(energy / heaviest)
-    if len(found) < 2:
+    alone = pair.reach * sqrt(energy / max(load.heaviest for load in ends))
+    if not all(load.is_sheet for load in ends):
         return alone, alone
-    (one, weight), (other, more) = found
-    return alone, max(alone, pair.reach * sqrt(energy * (weight + more) * (one + other)))
+    one, other = ends
+    weights, masses = one.weight + other.weight, one.per_mass + other.per_mass
+    return alone, max(alone, pair.reach * sqrt(energy * weights * masses))
+
+
+@dataclass(frozen=True, slots=True)
+class _Load:
+    """The mass of a layer and its weights."""
+
+    heaviest: float
+    """Largest mass of a particle over its weight [kg]; 0 of what never moves."""
+    is_sheet: bool
+    per_mass: float = 0.0
+    """Area of a sheet over its mass [m^2/kg]; 0 of one that never moves."""
+    weight: float = 0.0
+    """Sum of the weights of a sheet over its area [1/m^2]."""
+
+
+@once_for(lambda context: context.system)
+def _loads(context: Context) -> dict[int, _Load]:
+    """Masses and weights of all `layers`."""
+    system, found = context.system, {}
+    for m, layer in layers(context).items():
+        mass, still = system.mass[system.first[m] + layer.particle], bool(system.still[m])
+        heaviest = 0.0 if still else float((mass / layer.weight).max())
+        if layer.element.shape[1] == 3 and layer.half > 0.0:
+            area = float(areas(layer.rest, layer.element).sum())
+            per_mass = 0.0 if still else area / float(mass.sum())
+            found[m] = _Load(heaviest, True, per_mass, float(layer.weight.sum()) / area)
+        else:
+            found[m] = _Load(heaviest, False)
+    return found
 
 
 def notes(envelope: Envelope) -> list[Problem]:

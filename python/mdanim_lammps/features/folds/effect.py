@@ -7,7 +7,7 @@ import numpy as np
 
 from ...effects.context import Verdict
 from ...effects.effect import Effect
-from .layers import layers, may_meet, pairs, touching
+from .layers import coupled, layers, meeting, pairs
 
 TABLE = "folds"
 ENERGY, HEAT, DAMPED = "contact", "friction_heat", "contact_damping_loss"
@@ -29,19 +29,18 @@ class LayersTouch(Effect):
     if_off = "layers pass through each other"
 
     def called_for(self, scene, reach):
-        for i, j in touching(scene):
-            one, other = scene.solids[i], scene.solids[j]
-            if i == j:
-                return Verdict(self.name, True, f"{one.name} touches itself", one.spans.get("touches-itself"))
-            if may_meet(reach.region, i, j):
-                return Verdict(self.name, True, f"{one.name} may meet {other.name}", other.spans.get("shape"))
-        return Verdict(self.name, False, "no sheets may meet, and nothing has touches-itself")
+        if not (found := meeting(scene, reach.region)):
+            return Verdict(self.name, False, "no sheets may meet, and nothing has touches-itself")
+        one, other = (scene.solids[m] for m in found[0])
+        if one is other:
+            return Verdict(self.name, True, f"{one.name} touches itself", one.spans.get("touches-itself"))
+        return Verdict(self.name, True, f"{one.name} may meet {other.name}", other.spans.get("shape"))
 
     def acts_on(self, context):
         return bool(pairs(context))
 
     def joins(self, scene):
-        return [(i, j) for i, j in touching(scene) if i != j]
+        return coupled(scene)
 
     def commands(self, context):
         return [f"fix {self.fix} {context.pushed} mdanim/folds table:{TABLE}"]

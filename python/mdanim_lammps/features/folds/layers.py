@@ -11,8 +11,10 @@ from typing import Any
 import numpy as np
 
 from ...effects.context import Context
+from ...model.boxes import box_pairs
 from ...model.model import Model
 from ...model.rope import section
+from ...reach.region import Sweeps
 from ...scene.once import once_for
 from ...scene.scene import Rope, SceneRecord, Sheet, Shell
 from ..contact.pairs import damping, frictions, pair_rules
@@ -43,20 +45,44 @@ def folds(solid: Any) -> bool:
     return solid.touches_itself is Itself.YES
 
 
-def as_layers(one: Any, other: Any) -> bool:
-    """Whether two objects touch each other as layers where they meet."""
-    if not (is_sheet(one) or is_rope(one)) or not (is_sheet(other) or is_rope(other)):
-        return False
-    return (is_sheet(one) and is_sheet(other)) or (folds(one) and folds(other))
+@once_for(lambda scene: scene)
+def _kinds(scene: SceneRecord) -> tuple[np.ndarray, np.ndarray]:
+    """Sheets, and sheets and ropes that touch themselves, bool, each of shape (M,)."""
+    sheet = np.array([is_sheet(s) for s in scene.solids], bool)
+    return sheet, np.array([(is_sheet(s) or is_rope(s)) and folds(s) for s in scene.solids], bool)
+
+
+def _layered(scene: SceneRecord) -> np.ndarray:
+    """Numbers of the sheets and ropes of a scene, int64, shape (K,)."""
+    return np.flatnonzero([is_sheet(solid) or is_rope(solid) for solid in scene.solids])
+
+
+def as_layers(scene: SceneRecord, i: Any, j: Any) -> np.ndarray:
+    """Which pairs of sheets and ropes of a scene, by number, touch each other as layers where they meet, bool, of the shape of
+    ``i`` and ``j``."""
+    sheet, folding = _kinds(scene)
+    return (sheet[i] & sheet[j]) | (folding[i] & folding[j])
 
 
 @once_for(lambda scene: scene)
-def touching(scene: SceneRecord) -> tuple[tuple[int, int], ...]:
-    """Pairs i <= j of objects of a scene that may touch as layers, by their kinds alone; equal ones touch themselves."""
-    solids = scene.solids
-    layered = [m for m, s in enumerate(solids) if is_sheet(s) or is_rope(s)]
-    pairs = [(i, j) for n, i in enumerate(layered) for j in layered[n + 1 :] if as_layers(solids[i], solids[j])]
-    return tuple(sorted([*pairs, *((m, m) for m, s in enumerate(solids) if folds(s))]))
+def coupled(scene: SceneRecord) -> list[tuple[int, int]]:
+    """Pairs i < j of objects of a scene that touch each other as layers where they meet, sorted."""
+    layered = _layered(scene)
+    i, j = layered[np.array(np.triu_indices(len(layered), 1))]
+    may = as_layers(scene, i, j)
+    return list(zip(i[may].tolist(), j[may].tolist()))
+
+
+def meeting(scene: SceneRecord, swept: Sweeps) -> list[tuple[int, int]]:
+    """Pairs i <= j of objects of a scene that touch as layers where they meet, can be in one place, and are not joined, sorted;
+    equal ones touch themselves."""
+    found = [(m, m) for m, solid in enumerate(scene.solids) if folds(solid)]
+    layered = _layered(scene)
+    for some in box_pairs(swept.low[layered], swept.high[layered]):
+        i, j = np.sort(layered[np.array(some)], axis=0)
+        within = ((swept.low[i] < swept.high[j]) & (swept.low[j] < swept.high[i])).all(axis=1) & as_layers(scene, i, j)
+        found += zip(i[within].tolist(), j[within].tolist())
+    return sorted(pair for pair in found if pair not in swept.passing)
 
 
 @dataclass(frozen=True, slots=True)
@@ -130,8 +156,8 @@ def layer_of(model: Model, solid: Any) -> FoldLayer:
 @once_for(lambda context: context.system)
 def layers(context: Context) -> dict[int, FoldLayer]:
     """Layers of the objects of a context that may touch, by their numbers in it."""
-    of = {model.name: (model, solid) for model, solid in zip(context.models, context.scene.solids)}
-    return {m: layer_of(*of[context.system.names[m]]) for m in sorted({k for pair in _numbers(context) for k in pair})}
+    numbers = sorted({k for pair in _numbers(context) for k in pair})
+    return {m: layer_of(context.system_models[m], context.solids[m]) for m in numbers}
 
 
 @once_for(lambda context: context.system)
@@ -140,23 +166,14 @@ def pairs(context: Context) -> tuple[LayerPair, ...]:
     return tuple(_pairs(context))
 
 
+@once_for(lambda context: context.system)
 def _numbers(context: Context) -> list[tuple[int, int]]:
     """Pairs that may meet, by numbers in the context."""
     number = {name: m for m, name in enumerate(context.system.names)}
-    solids, swept, still = context.scene.solids, context.reach.region, context.system.still
-    found = []
-    for i, j in touching(context.scene):
-        a, b = number.get(solids[i].name), number.get(solids[j].name)
-        if a is None or b is None or (still[a] and still[b]):
-            continue
-        if i == j or may_meet(swept, i, j):
-            found.append((min(a, b), max(a, b)))
-    return sorted(found)
-
-
-def may_meet(swept: Any, i: int, j: int) -> bool:
-    """Whether two objects of a scene, i < j, can be in one place, and are not joined."""
-    return bool(((swept.low[i] < swept.high[j]) & (swept.low[j] < swept.high[i])).all()) and (i, j) not in swept.passing
+    solids, still = context.scene.solids, context.system.still
+    told = ((number.get(solids[m].name) for m in pair) for pair in meeting(context.scene, context.reach.region))
+    found = (sorted(pair) for pair in map(list, told) if None not in pair)
+    return sorted((a, b) for a, b in found if not (still[a] and still[b]))
 
 
 def _pairs(context: Context) -> Iterator[LayerPair]:

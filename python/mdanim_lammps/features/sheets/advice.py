@@ -31,7 +31,8 @@ def _themselves(envelope: Envelope, sheets: np.ndarray) -> list[Problem]:
     """A sheet without ``touches-itself`` touches neither itself nor a rope: a warning where it may meet one."""
     system, solids = envelope.system, envelope.scene.solids
     for first in sheets.tolist():
-        if others := [k for k in _met(envelope, first) if not as_layers(solids[first], solids[k])]:
+        met = np.array(_met(envelope, first), int)
+        if others := met[~as_layers(envelope.scene, first, met)].tolist():
             more = f" and {len(others) - 1} more" if len(others) > 1 else ""
             both = f"{system.names[first]} may meet {system.names[others[0]]}{more}"
             cause = f"{both}, and passes through: sheets and ropes touch each other where both have touches-itself"
