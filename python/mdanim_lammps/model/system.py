@@ -101,6 +101,10 @@ class System(Particles):
         which = np.asarray(solids, np.int64)
         return [places for (places,) in side_by_side(self.first[which + 1] - self.first[which], self.first[which])]
 
+    def springs_of(self, solid: int) -> slice:
+        """Springs of a solid: they are sorted by their first particles."""
+        return slice(*np.searchsorted(self.spring[:, 0], self.first[solid : solid + 2]).tolist())
+
     def bounds(self, vector: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Lowest and highest components in each solid of a particle vector, shape (N, 3); each of shape (M, 3), same unit.
 

@@ -198,11 +198,10 @@ def _pushed(context: Context) -> list[int]:
 @once_for(lambda context: context.system)
 def _skins(context: Context) -> dict[int, AirSkin]:
     """Surfaces of the solids that air pushes at, by their numbers in the context; equal objects share one."""
-    of = {model.name: (model, solid) for model, solid in zip(context.models, context.scene.solids)}
     made: dict[tuple, AirSkin] = {}
     found = {}
     for m in _pushed(context):
-        model, solid = of[context.system.names[m]]
+        model, solid = context.system_models[m], context.solids[m]
         key = (id(model.surface), solid.shape, solid.tear_strain)
         if key not in made:
             made[key] = skin_of(model, solid)

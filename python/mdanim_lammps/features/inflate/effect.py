@@ -15,7 +15,7 @@ from ...effects.effect import Effect
 from ...effects.fields import Field
 from ...errors import Problem
 from ...model import shapes
-from ...model.triangles import edges
+from ...model.triangles import areas, edges, normals
 from ...reach import Throw
 from ...scene.formatting import number, say
 from ...scene.once import once_for
@@ -70,11 +70,8 @@ class Gas(Effect):
     def tables(self, context):
         first: dict[int, int] = {}
         lines = ["# Closed surfaces with gas, written by mdanim-lammps: object MOLECULE P V P0, or like another one\n"]
-        of = _solids(context)
         for m in _inflated(context):
-            model, solid = of[m]
-            triangle = model.frame.triangle
-            gas = solid.inflate
+            triangle, gas = context.system_models[m].frame.triangle, context.solids[m].inflate
             head = f"object {m + 1} {gas.pressure!r} {_volume(context, m)!r} {gas.outside!r}"
             if id(triangle) in first:
                 lines.append(f"{head} like {first[id(triangle)]}\n")
@@ -87,14 +84,14 @@ class Gas(Effect):
         """Two parts: that of the gas as a spring, (p + p0)/V g g' with the gradient g of the volume, of which the share in any
         particle's bound is (p + p0)/V sum g_i^2/m_i; and p times the change of areas: p |c - d|/6 between the ends of an edge
         with the corners c and d beside it."""
-        found, of = np.zeros(context.system.particles), _solids(context)
+        found = np.zeros(context.system.particles)
         for m in _inflated(context):
-            model, solid = of[m]
-            gas, x, triangle = solid.inflate, model.position, model.frame.triangle
+            gas, model = context.solids[m].inflate, context.system_models[m]
+            x, triangle = model.position, model.frame.triangle
             own = slice(context.system.first[m], context.system.first[m + 1])
             mass = context.system.mass[own]
             area = np.zeros((len(x), 3))
-            normal = np.cross(x[triangle[:, 1]] - x[triangle[:, 0]], x[triangle[:, 2]] - x[triangle[:, 0]]) / 6.0
+            normal = normals(x, triangle) / 6.0
             beside = np.zeros(len(x))
             for k in range(3):
                 np.add.at(area, triangle[:, k], normal)
@@ -143,9 +140,9 @@ class Gas(Effect):
 
     def warnings(self, context):
         """Objects that swell far, or without end, as a ball of their volume and surface would."""
-        found, of = [], _solids(context)
+        found = []
         for m in _inflated(context):
-            _, solid = of[m]
+            solid = context.solids[m]
             if (grown := _grown(context, m)) > FAR:
                 size = f"to {number(grown, 2)} times its size" if math.isfinite(grown) else "without end"
                 cause = f"{solid.name} swells {size}, as a ball of its volume and surface would"
@@ -155,9 +152,9 @@ class Gas(Effect):
 
     def notes(self, envelope):
         """The pressure that is left in balls, where most of it goes; boxes of which it is as little."""
-        found, of = [], _solids(envelope.context)
+        found = []
         for m in _inflated(envelope.context):
-            _, solid = of[m]
+            solid = envelope.context.solids[m]
             if isinstance(solid.shape.shape, Box) and _left_in_box(solid) < MOST_LEFT * solid.inflate.pressure:
                 cause = f"the flat sides of {solid.name} bulge, which takes most of {say(solid.inflate.pressure, 'Pa')}"
                 way = "write a higher pressure, or a thicker sheet or more elasticity, which bulge less"
@@ -177,11 +174,9 @@ def _grown(context: Context, m: int) -> float:
     2 E t (s - 1)/((1 - nu) s^2 r) = (p + p0)/s^3 - p0; infinite for none up to MOST_GROWN."""
     from scipy.optimize import brentq  # takes 0.2 s
 
-    model, solid = _solids(context)[m]
+    model, solid = context.system_models[m], context.solids[m]
     gas = solid.inflate
-    a, b, c = (model.position[model.frame.triangle[:, k]] for k in range(3))
-    area = 0.5 * float(np.linalg.norm(np.cross(b - a, c - a), axis=1).sum())
-    r = 3.0 * _volume(context, m) / area
+    r = 3.0 * _volume(context, m) / float(areas(model.position, model.frame.triangle).sum())
     stiff = 2.0 * solid.elasticity.modulus * solid.shape.thickness / ((1.0 - NU) * r)
 
     def spare(s):
@@ -246,22 +241,14 @@ def _stored(gas: Inflate, volume: float) -> float:
 
 
 @once_for(lambda context: context.system)
-def _solids(context: Context) -> list[tuple[Any, Any]]:
-    """Models and objects, in the order of the system."""
-    of = {model.name: (model, solid) for model, solid in zip(context.models, context.scene.solids)}
-    return [of[name] for name in context.system.names]
-
-
-@once_for(lambda context: context.system)
 def _inflated(context: Context) -> list[int]:
     """Numbers of the objects of a context with gas that can move."""
-    of = _solids(context)
-    return [m for m in np.flatnonzero(~context.system.still).tolist() if of[m][1].inflate is not None]
+    return [m for m in np.flatnonzero(~context.system.still).tolist() if context.solids[m].inflate is not None]
 
 
 def _volume(context: Context, m: int) -> float:
     """Volume of an object at the start [m^3]."""
-    model, _ = _solids(context)[m]
+    model = context.system_models[m]
     return volume_in(model.position, model.frame.triangle)
 
 

@@ -13,8 +13,9 @@ from ..yielding.grown import grown_of
 
 def kept(system: System, solid: int, gone: np.ndarray | None) -> np.ndarray:
     """Numbers of the springs of a solid without those that are ``gone``, bool, in the order of the solid's springs."""
-    low, high = np.searchsorted(system.spring[:, 0], system.first[solid : solid + 2])
-    return np.arange(low, high) if gone is None else np.arange(low, high)[~gone]
+    own = system.springs_of(solid)
+    number = np.arange(own.start, own.stop)
+    return number if gone is None else number[~gone]
 
 
 def largest_strain(system: System, solid: int, position: np.ndarray, gone: np.ndarray | None = None) -> float:

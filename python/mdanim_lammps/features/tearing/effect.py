@@ -11,7 +11,7 @@ from ...effects.fields import column
 from ...errors import Problem
 from ..springs.effect import spring_norm
 from .gone import EFFECT, FIX, NAME, acts
-from .rules import beyond, over_two_of, rules_text, springs_of, strain_of
+from .rules import beyond, over_two_of, rules_text, strain_of
 from .words import fills, tears
 
 TORN = column(NAME, "1", per="bond", dtype="uint8", state=True)
@@ -51,7 +51,7 @@ class Tearing(Effect):
         more = np.zeros(len(system.spring))
         for m, (model, solid) in enumerate(zip(context.system_models, context.solids)):
             if tears(solid):
-                own, over = springs_of(system, m), over_two_of(system, m, model)
+                own, over = system.springs_of(m), over_two_of(system, m, model)
                 more[own] = beyond(system, m, over) * system.stiffness[own] * over
         return 2.0 * spring_norm(system, more) / system.mass if more.any() else np.zeros(system.particles)
 

@@ -19,9 +19,8 @@ NAME = GONE
 
 def gone_of(system: System, solid: int, fields: Fields) -> np.ndarray:
     """Which springs of an object are gone in a frame, bool, in the order of ``system.spring``; none where no field tells."""
-    low, high = np.searchsorted(system.spring[:, 0], system.first[solid : solid + 2])
-    found = fields.get(NAME)
-    return np.zeros(high - low, bool) if found is None else np.asarray(found)[low:high] > 0.0
+    own, found = system.springs_of(solid), fields.get(NAME)
+    return np.zeros(own.stop - own.start, bool) if found is None else np.asarray(found)[own] > 0.0
 
 
 def acts(context: Context) -> bool:

@@ -21,8 +21,7 @@ def pieces(g: Glance) -> int:
     from scipy.sparse.csgraph import connected_components
 
     system, first = g.context.system, g.context.system.first
-    low, high = np.searchsorted(system.spring[:, 0], first[g.solid : g.solid + 2])
-    kept = system.spring[low:high][~gone_of(system, g.solid, g.fields)] - first[g.solid]
+    kept = system.spring[system.springs_of(g.solid)][~gone_of(system, g.solid, g.fields)] - first[g.solid]
     size = int(first[g.solid + 1] - first[g.solid])
     joined = coo_matrix((np.ones(len(kept)), tuple(kept.T)), shape=(size, size))
     return int(connected_components(joined, directed=False)[0])

@@ -19,8 +19,6 @@ MORE = 1.25
 links from which a ball fell came apart in 52 pieces."""
 SAME = 1e-9
 """Difference of lengths that are alike, over one of them."""
-
-
 TOUGH, OF_ROPE = 0.36, 2.0
 """e^2 E h/G of sheets and solids, 0.31 to 0.44 (bench/tearing.py), and of a link of a rope."""
 
@@ -29,14 +27,9 @@ def strain_of(system: System, m: int, solid: Any) -> float:
     """The strain that springs of an object bear [-]."""
     if solid.tear_strain is not None:
         return solid.tear_strain
-    own, rope = springs_of(system, m), isinstance(solid.shape, Rope)
+    own, rope = system.springs_of(m), isinstance(solid.shape, Rope)
     h = float(system.unloaded[own][~over_two(system, own)].mean()) if rope else float(system.spacing[m])
     return math.sqrt((OF_ROPE if rope else TOUGH) * solid.toughness / (float(system.young[m]) * h))
-
-
-def springs_of(system: System, solid: int) -> slice:
-    """Springs of an object among those of a system."""
-    return slice(*np.searchsorted(system.spring[:, 0], system.first[solid : solid + 2]))
 
 
 def over_two(system: System, own: slice) -> np.ndarray:
@@ -46,7 +39,7 @@ def over_two(system: System, own: slice) -> np.ndarray:
 
 def over_two_of(system: System, m: int, model: Model) -> np.ndarray:
     """The same of an object: of a layer, springs that are not edges of its triangles."""
-    own = springs_of(system, m)
+    own = system.springs_of(m)
     if model.frame.dimensions != 2:
         return over_two(system, own)
     n = int(system.first[m + 1] - system.first[m])
@@ -98,7 +91,7 @@ def lengths(pair: np.ndarray, length: np.ndarray, over: np.ndarray, middle: np.n
 
 def beyond(system: System, m: int, over: np.ndarray) -> float:
     """The most that a remainder of springs over two links is stiffer than these, over their constant, at least 2 [-]."""
-    own = springs_of(system, m)
+    own = system.springs_of(m)
     if not over.any():
         return 2.0
     pair, length = system.spring[own] - system.first[m], system.unloaded[own]
@@ -119,7 +112,7 @@ def limits(solid: Any, seed: int, strain: float, length: np.ndarray) -> np.ndarr
 
 def rules_text(system: System, m: int, model: Model, solid: Any, seed: int, strain: float) -> str:
     """The lines of an object."""
-    own, lines = springs_of(system, m), [f"object {m + 1} {strain!r}\n"]
+    own, lines = system.springs_of(m), [f"object {m + 1} {strain!r}\n"]
     over, length = over_two_of(system, m, model), system.unloaded[own]
     pair = system.spring[own] - system.first[m]
     if over.any() or isinstance(solid.shape, Rope):

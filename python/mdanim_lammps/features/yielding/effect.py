@@ -78,7 +78,7 @@ def borne(context: Context) -> np.ndarray:
     system, found = context.system, np.zeros(len(context.system.spring))
     for m, solid in enumerate(context.solids):
         if yields(solid):
-            own = slice(*np.searchsorted(system.spring[:, 0], system.first[m : m + 2]))
+            own = system.springs_of(m)
             i, j = system.spring[own].T
             along = (system.position[i] - system.position[j]) @ np.array(solid.rotation)
             square = (along**2).max(axis=1) / (along**2).sum(axis=1)

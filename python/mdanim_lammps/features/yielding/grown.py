@@ -19,9 +19,8 @@ NAME = GROWN
 
 def grown_of(system: System, solid: int, fields: Fields) -> np.ndarray:
     """Growth of the rest lengths of an object in a frame [m], in the order of ``system.spring``; 0 where no field tells."""
-    low, high = np.searchsorted(system.spring[:, 0], system.first[solid : solid + 2])
-    found = fields.get(NAME)
-    return np.zeros(high - low) if found is None else np.asarray(found)[low:high]
+    own, found = system.springs_of(solid), fields.get(NAME)
+    return np.zeros(own.stop - own.start) if found is None else np.asarray(found)[own]
 
 
 def acts(context: Context) -> bool:

@@ -12,8 +12,8 @@ from .grown import grown_of
 def share(g: Glance) -> float:
     """Largest growth of a rest length of an object, either way, over the first one [-]."""
     system = g.context.system
-    low, high = np.searchsorted(system.spring[:, 0], system.first[g.solid : g.solid + 2])
-    return float(np.abs(grown_of(system, g.solid, g.fields) / system.rest[low:high]).max(initial=0.0))
+    rest = system.rest[system.springs_of(g.solid)]
+    return float(np.abs(grown_of(system, g.solid, g.fields) / rest).max(initial=0.0))
 
 
 MEASURES = {("NAME", "yielded"): Recorded("yielded", share, Measured.largest)}
