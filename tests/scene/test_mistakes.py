@@ -21,7 +21,8 @@ MISTAKES = [
     ("rate as spin", text(spin="(0, 0, 2) Hz"), 6, 8, "spin must be an angular speed", "rpm"),
     ("a word that other programs have", text(mass="1 kg bounce 0.5"), 4, 13, "bounce is not supported yet", "set damping"),
     *((f"{word} outside of all", f"{word} a b\n" + text(), 1, 1, f"{word} is not supported yet", way_out) for word, way_out in
-      (("motion", "velocity"), ("axle", "joint hinge"), ("break", "parts"), ("tear", "tear-strain"), ("balloon", "low density"))),
+      (("motion", "velocity"), ("axle", "joint hinge"), ("break", "pieces"), ("fracture", "pieces"), ("tear", "tear-strain"),
+       ("balloon", "inflate"))),
     ("a joint without its word", "weld a b\n" + text(), 1, 1, "weld is a kind of joint", "write joint weld A B { ... }"),
     ("ground that is not a floor", "ground y 0 m\n" + text(), 1, 8, "ground cannot be followed by 'y'", "write ground z 0 m"),
     ("colour with a hyphen", text(color="light-blue"), 6, 9, "'light-blue' is not a colour", "did you mean 'lightblue'?"),
