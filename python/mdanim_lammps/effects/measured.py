@@ -130,7 +130,14 @@ class Mean(Measurable):
 
 
 Measure = Callable[[Measured, Of], np.ndarray]
-"""Finds the values of a quantity at all frames, shape (F,)."""
+"""Finds the values of a quantity at all frames, shape (F,); of a vector shape (F, 3)."""
+
+
+def of_vector(subject: str, word: str, vector: Measure, kind: type[Measurable] = Measurable) -> dict[tuple[str, str], Measurable]:
+    """Size and components of a vector, by subject and word: ``weight``, ``weight.x``, ..."""
+    found = {(subject, word): kind(lambda m, of: np.linalg.norm(vector(m, of), axis=1))}
+    axes = {f"{word}.{letter}": axis for axis, letter in enumerate("xyz")}
+    return found | {(subject, part): kind(lambda m, of, axis=axis: vector(m, of)[:, axis]) for part, axis in axes.items()}
 
 
 @dataclass(frozen=True)

@@ -3,14 +3,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 
 import numpy as np
 
 from ... import features
 from ...effects import acting
 from ...effects.balance import untold
-from ...effects.measured import Mean, Measurable, Measured, Of
+from ...effects.measured import Mean, Measurable, Measured, Of, of_vector
 from ...errors import Problem
 from ...scene.scene import SceneRecord
 from ..motion.measure import balance
@@ -45,14 +45,8 @@ def unmeasured(scene: SceneRecord, asked: Iterable[Of]) -> list[Problem]:
     return list(dict.fromkeys(found))  # the components of an arrow have one problem
 
 
-def _of(vector: Callable[[Measured, Of], np.ndarray]) -> dict[str, Mean]:
-    """Size and components of a force, by their words."""
-    found = {"contact": Mean(lambda m, of: np.linalg.norm(vector(m, of), axis=1))}
-    return found | {f"contact.{x}": Mean(lambda m, of, axis=axis: vector(m, of)[:, axis]) for axis, x in enumerate("xyz")}
-
-
 MEASURES = {
     ("penetration", "max"): Measurable(lambda m, of: np.full(len(m.times), m.penetration)),
-    **{("NAME", word): found for word, found in _of(_force).items()},
-    **{(WORLD, word): found for word, found in _of(_on_world).items()},
+    **of_vector("NAME", "contact", _force, Mean),
+    **of_vector(WORLD, "contact", _on_world, Mean),
 }

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...effects.measured import Measurable, Measured, Of
+from ...effects.measured import Measurable, Measured, Of, of_vector
 from ...scene.in_time import vector_at
 
 
@@ -22,11 +22,4 @@ def _potential(m: Measured, of: Of) -> np.ndarray:
     return -np.einsum("fd,fd->f", _weight(m, of), place - place[0])
 
 
-MEASURES = {
-    ("NAME", "potential"): Measurable(_potential),
-    ("NAME", "weight"): Measurable(lambda m, of: np.linalg.norm(_weight(m, of), axis=1)),
-    **{
-        ("NAME", f"weight.{letter}"): Measurable(lambda m, of, axis=axis: _weight(m, of)[:, axis])
-        for axis, letter in enumerate("xyz")
-    },
-}
+MEASURES = {("NAME", "potential"): Measurable(_potential), **of_vector("NAME", "weight", _weight)}

@@ -11,12 +11,9 @@ import numpy as np
 from ... import features
 from ...effects import acting
 from ...effects.balance import Balance
-from ...effects.measured import Glance, Mean, Measurable, Measured, Of, Recorded
+from ...effects.measured import Glance, Mean, Measurable, Measure, Measured, Of, Recorded, of_vector
 from ...model.spin import spin
 from ...scene.once import once_for
-
-Vectors = Callable[[Measured, Of], np.ndarray]
-"""Finds a vector at all frames, shape (F, 3)."""
 
 
 def _place(m: Measured, of: Of) -> np.ndarray:
@@ -39,12 +36,12 @@ def _distance_between(m: Measured, of: Of, time: float) -> float:
     return float(np.linalg.norm(motion(m, m.solid(of.subject), time)[0] - motion(m, m.solid(of.argument), time)[0]))
 
 
-def _component(of_vector: Vectors, axis: int) -> Callable[[Measured, Of], np.ndarray]:
-    return lambda m, of: of_vector(m, of)[:, axis]
+def _speed(m: Measured, of: Of) -> np.ndarray:
+    return np.linalg.norm(_velocity(m, of), axis=1)
 
 
-def _size(of_vector: Vectors) -> Callable[[Measured, Of], np.ndarray]:
-    return lambda m, of: np.linalg.norm(of_vector(m, of), axis=1)
+def _component(vector: Measure, axis: int) -> Measure:
+    return lambda m, of: vector(m, of)[:, axis]
 
 
 def _norm(vector: np.ndarray) -> float:
@@ -106,16 +103,15 @@ MEASURES = {
         for part, (word, vector) in enumerate((("position", _place), ("velocity", _velocity)))
         for axis, letter in enumerate("xyz")
     },
-    ("NAME", "speed"): Measurable(_size(_velocity), between=_between(1, _norm)),
+    ("NAME", "speed"): Measurable(_speed, between=_between(1, _norm)),
     ("NAME", "distance"): Measurable(_distance, between=_distance_between),
-    ("NAME", "force"): Mean(_size(_resultant)),
+    **of_vector("NAME", "force", _resultant, Mean),
     ("NAME", "spin"): Recorded("spin", lambda g: _norm(_spin(g))),
     ("NAME", "kinetic"): Recorded("kinetic", _kinetic),
     **{
         ("NAME", f"{word}.{letter}"): of
         for axis, letter in enumerate("xyz")
         for word, of in (
-            ("force", Mean(_component(_resultant, axis))),
             ("spin", Recorded(f"spin.{letter}", lambda g, axis=axis: float(_spin(g)[axis]))),
             ("angle", Recorded(f"angle.{letter}", lambda g, axis=axis: _angle(g, axis), follow=_follow)),
         )
