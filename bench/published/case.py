@@ -1,0 +1,108 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""A case of the validation: scenes of scenes/validation, what others measured or derived, and what is found here."""
+
+from __future__ import annotations
+
+import tempfile
+import time
+from collections.abc import Callable, Sequence
+from contextlib import ExitStack
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+import numpy as np
+from mdanim_lammps import Run, Scene
+from mdanim_lammps.scene.parse import load_scene
+from mdanim_lammps.scene.scene import Accuracy
+
+ROOT = Path(__file__).resolve().parents[2]
+SCENES = ROOT / "scenes" / "validation"
+DATA = Path(__file__).resolve().parent / "data"
+"""Published series as tables; the first lines of each say where it is from."""
+
+
+@dataclass(frozen=True)
+class Row:
+    """A figure beside the published one."""
+
+    figure: str
+    published: float
+    found: float
+    within: float
+    """How far off it may be, relative."""
+    unit: str = ""
+    scale: float = 0.0
+    """By what the error is divided; 0: the published figure."""
+
+    @property
+    def off(self) -> float:
+        """The error, relative."""
+        return (self.found - self.published) / (self.scale or abs(self.published))
+
+    @property
+    def close(self) -> bool:
+        """Whether it is off by no more than it may be."""
+        return abs(self.off) <= self.within
+
+
+@dataclass(frozen=True)
+class Curve:
+    """A figure for the page: what is found as lines, what is published as points."""
+
+    x: str
+    y: str
+    lines: dict[str, tuple[Sequence[float], Sequence[float]]]
+    points: dict[str, tuple[Sequence[float], Sequence[float]]]
+
+
+@dataclass(frozen=True)
+class Found:
+    """What a case gives at one accuracy."""
+
+    rows: Sequence[Row]
+    curve: Curve | None = None
+
+
+@dataclass
+class Runs(ExitStack):
+    """Runs scenes of a case at an accuracy, in folders that go at the end."""
+
+    accuracy: str = "balanced"
+    seconds: float = field(default=0.0, init=False)
+    """Processor time of all runs, modelling included [s]."""
+
+    def __post_init__(self) -> None:
+        super().__init__()
+
+    def run(self, name: str, **lets: float | str) -> Run:
+        """Simulate scenes/validation/NAME.txt with these values of its ``let`` names."""
+        start = time.process_time()
+        record = load_scene(SCENES / f"{name}.txt", overrides=lets)
+        record = replace(record, control=replace(record.control, accuracy=Accuracy(self.accuracy)))
+        folder = Path(self.enter_context(tempfile.TemporaryDirectory())) / "out"
+        run = Scene(record).run(folder)
+        self.seconds += time.process_time() - start
+        return run
+
+
+@dataclass(frozen=True)
+class Case:
+    """Something published that scenes are held against."""
+
+    name: str
+    """As its scene in scenes/validation is called, or as the names of its scenes begin."""
+    title: str
+    source: str
+    """Who measured or derived it, and where that is published."""
+    tolerance: str
+    """Why rows may be off by as much as they may."""
+    limit: str
+    """Where the model ends."""
+    measure: Callable[[Runs], Found]
+    quick: bool = False
+    """Whether it takes a few seconds."""
+
+
+def series(name: str) -> np.ndarray:
+    """A table of `DATA`, shape (columns, rows)."""
+    return np.loadtxt(DATA / f"{name}.csv", delimiter=",", comments="#", ndmin=2).T

@@ -1,0 +1,163 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Scenes against published figures: ``python bench/validation.py [--cost] [--quick] [--write] [--page] [CASE ...]``.
+
+Cases are in bench/published/, their scenes in scenes/validation/; with names only these. ``--cost`` measures each at preview and
+reference beside balanced, ``--quick`` only those that take a few seconds. ``--write`` keeps what is found in
+bench/published/found/, a file for each case, and draws docs/images/validation-CASE.png; with it, or by ``--page`` without
+measuring, docs/validation.md is written from all that is kept. The exit code is 1 where a row is off by more than it may be.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import sys
+from collections.abc import Iterable
+from dataclasses import asdict
+from importlib import import_module
+from pathlib import Path
+
+from published.case import ROOT, Case, Curve, Found, Row, Runs
+from timing import machine, markdown, replace_between
+
+PARTS = ("friction",)
+"""Modules of bench/published, in the order of the page."""
+ACCURACIES = ("preview", "balanced", "reference")
+PAGE = ROOT / "docs" / "validation.md"
+KEPT = Path(__file__).parent / "published" / "found"
+HEAD = ("figure", "published", "found", "off", "within")
+
+
+def cases() -> list[Case]:
+    """All cases, in the order of the page."""
+    return [case for part in PARTS for case in import_module(f"published.{part}").CASES]
+
+
+def measured(case: Case, accuracy: str) -> tuple[Found, float]:
+    """What a case gives, and the processor time of its runs [s]."""
+    with Runs(accuracy) as runs:
+        return case.measure(runs), runs.seconds
+
+
+def cells(row: Row) -> list[str]:
+    """A row of the table: off in bold where it is more than it may be."""
+    unit = f" {row.unit}" if row.unit else ""
+    off = f"{100 * row.off:+.2g} %"
+    return [
+        row.figure,
+        f"{row.published:.4g}{unit}",
+        f"{row.found:.4g}{unit}",
+        off if row.close else f"**{off}**",
+        f"{100 * row.within:.3g} %",
+    ]
+
+
+def keep(case: Case, accuracy: str, found: Found, seconds: float) -> None:
+    """Store the rows of a case at an accuracy beside those that are kept."""
+    path = KEPT / f"{case.name}.json"
+    kept = json.loads(path.read_text()) if path.exists() else {}
+    kept[accuracy] = {
+        "rows": [asdict(row) for row in found.rows],
+        "seconds": round(seconds, 1),
+        "machine": machine().partition(";")[0],
+    }
+    path.parent.mkdir(exist_ok=True)
+    path.write_text(json.dumps({name: kept[name] for name in ACCURACIES if name in kept}, indent=1) + "\n")
+
+
+def draw(case: Case, curve: Curve) -> None:
+    """The figure of a case."""
+    from matplotlib.figure import Figure
+    from mdanim_lammps.picture.plot import own_style
+
+    with own_style():
+        figure = Figure(figsize=(6.4, 3.6), layout="constrained")
+        axes = figure.add_subplot(xlabel=curve.x, ylabel=curve.y)
+        for name, (x, y) in curve.lines.items():
+            axes.plot(x, y, label=name)
+        for name, (x, y) in curve.points.items():
+            axes.plot(x, y, "o", mfc="none", label=name)
+        axes.legend(frameon=False)
+        figure.savefig(ROOT / "docs" / "images" / f"validation-{case.name}.png", dpi=120, metadata={"Software": None})
+
+
+def _off(rows: Iterable[Row]) -> float:
+    """The largest error of rows, NaN where one is."""
+    offs = [abs(row.off) for row in rows]
+    return math.nan if any(map(math.isnan, offs)) else max(offs)
+
+
+def section(case: Case) -> str:
+    """What the page says of a case."""
+    path = KEPT / f"{case.name}.json"
+    if not path.exists():
+        return f"## {case.title}\n\nNot measured yet: `python bench/validation.py --write {case.name}`.\n"
+    kept = {
+        accuracy: ([Row(**row) for row in one["rows"]], one["seconds"]) for accuracy, one in json.loads(path.read_text()).items()
+    }
+    parts = [
+        f"## {case.title}",
+        f"*{case.source}*",
+        markdown(HEAD, [cells(row) for row in kept["balanced"][0]]),
+        case.tolerance,
+        case.limit,
+    ]
+    if (ROOT / "docs" / "images" / f"validation-{case.name}.png").exists():
+        parts.append(f"![{case.title}](images/validation-{case.name}.png)")
+    if len(kept) > 1:
+        cost = [[accuracy, f"{100 * _off(rows):.2g} %", f"{seconds:.3g} s"] for accuracy, (rows, seconds) in kept.items()]
+        parts.append(markdown(("accuracy", "largest error of a row", "processor time of all its runs"), cost))
+    return "\n\n".join(part for part in parts if part) + "\n"
+
+
+def overview(all_cases: Iterable[Case]) -> str:
+    """A row for each case: how many of its figures are within, and the worst."""
+    rows = []
+    for case in all_cases:
+        path = KEPT / f"{case.name}.json"
+        if path.exists():
+            of = [Row(**row) for row in json.loads(path.read_text())["balanced"]["rows"]]
+            close = sum(row.close for row in of)
+            many = f"{close} of {len(of)}"
+            rows.append([case.title, many if close == len(of) else f"**{many}**", f"{100 * _off(of):.2g} %"])
+    return markdown(("case", "figures within", "largest error"), rows)
+
+
+def write_page() -> None:
+    """docs/validation.md from what is kept."""
+    replace_between(PAGE, "overview", overview(cases()))
+    replace_between(PAGE, "cases", "\n".join(section(case) for case in cases()))
+
+
+def main(words: list[str]) -> int:
+    """Measure, print, and write if asked to; the exit code."""
+    flags, names = {word for word in words if word.startswith("--")}, [word for word in words if not word.startswith("--")]
+    known = {case.name: case for case in cases()}
+    unknown = [*sorted(flags - {"--cost", "--quick", "--write", "--page"}), *(name for name in names if name not in known)]
+    if unknown:
+        sys.exit(f"unknown: {', '.join(unknown)}; cases: {', '.join(known)}")
+    if "--page" in flags:
+        write_page()
+        return 0
+    close = True
+    for case in (known[name] for name in names) if names else known.values():
+        if "--quick" in flags and not case.quick:
+            continue
+        for accuracy in ACCURACIES if "--cost" in flags else ("balanced",):
+            found, seconds = measured(case, accuracy)
+            print(
+                f"\n{case.title}, {accuracy}, {seconds:.3g} s\n\n{markdown(HEAD, [cells(row) for row in found.rows])}", flush=True
+            )
+            if accuracy == "balanced":
+                close &= all(row.close for row in found.rows)
+            if "--write" in flags:
+                keep(case, accuracy, found, seconds)
+                if accuracy == "balanced" and found.curve:
+                    draw(case, found.curve)
+    if "--write" in flags:
+        write_page()
+    return 0 if close else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
