@@ -108,6 +108,8 @@ def sweeps(acting: Acting, h: np.ndarray) -> Sweeps:
     Raises SceneError for a mesh that is not a body.
     """
     scene, (limit_low, limit_high), (near_low, near_high) = acting.scene, acting.limits, acting.touched
+    if not scene.solids:
+        return Sweeps(np.empty((0, 3)), np.empty((0, 3)), np.empty(0, bool))
     bodies = _Movers(acting, h)
     low, high = _flight(acting, bodies)
     calm = bodies.size(bodies.tip)  # the largest size by its own spin
