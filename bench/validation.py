@@ -55,14 +55,11 @@ def cells(row: Row) -> list[str]:
 def keep(case: Case, accuracy: str, found: Found, seconds: float) -> None:
     """Store the rows of a case at an accuracy beside those that are kept."""
     path = KEPT / f"{case.name}.json"
-    kept = json.loads(path.read_text()) if path.exists() else {}
-    kept[accuracy] = {
-        "rows": [asdict(row) for row in found.rows],
-        "seconds": round(seconds, 1),
-        "machine": machine().partition(";")[0],
-    }
+    stored = json.loads(path.read_text()) if path.exists() else {}
+    rows = [asdict(row) for row in found.rows]
+    stored[accuracy] = {"rows": rows, "seconds": round(seconds, 1), "machine": machine().partition(";")[0]}
     path.parent.mkdir(exist_ok=True)
-    path.write_text(json.dumps({name: kept[name] for name in ACCURACIES if name in kept}, indent=1) + "\n")
+    path.write_text(json.dumps({name: stored[name] for name in ACCURACIES if name in stored}, indent=1) + "\n")
 
 
 def draw(case: Case, curve: Curve) -> None:
@@ -87,25 +84,21 @@ def _off(rows: Iterable[Row]) -> float:
     return math.nan if any(map(math.isnan, offs)) else max(offs)
 
 
+def kept(case: Case) -> dict[str, tuple[list[Row], float]]:
+    """Rows of a case by accuracy as they are stored, and the processor time of its runs [s]. Raises FileNotFoundError."""
+    stored = json.loads((KEPT / f"{case.name}.json").read_text())
+    return {accuracy: ([Row(**row) for row in one["rows"]], one["seconds"]) for accuracy, one in stored.items()}
+
+
 def section(case: Case) -> str:
-    """What the page says of a case."""
-    path = KEPT / f"{case.name}.json"
-    if not path.exists():
-        return f"## {case.title}\n\nNot measured yet: `python bench/validation.py --write {case.name}`.\n"
-    kept = {
-        accuracy: ([Row(**row) for row in one["rows"]], one["seconds"]) for accuracy, one in json.loads(path.read_text()).items()
-    }
-    parts = [
-        f"## {case.title}",
-        f"*{case.source}*",
-        markdown(HEAD, [cells(row) for row in kept["balanced"][0]]),
-        case.tolerance,
-        case.limit,
-    ]
+    """The part of the page about a case."""
+    of = kept(case)
+    table = markdown(HEAD, [cells(row) for row in of["balanced"][0]])
+    parts = [f"## {case.title}", f"*{case.source}*", table, case.tolerance, case.limit]
     if (ROOT / "docs" / "images" / f"validation-{case.name}.png").exists():
         parts.append(f"![{case.title}](images/validation-{case.name}.png)")
-    if len(kept) > 1:
-        cost = [[accuracy, f"{100 * _off(rows):.2g} %", f"{seconds:.3g} s"] for accuracy, (rows, seconds) in kept.items()]
+    if len(of) > 1:
+        cost = [[accuracy, f"{100 * _off(rows):.2g} %", f"{seconds:.3g} s"] for accuracy, (rows, seconds) in of.items()]
         parts.append(markdown(("accuracy", "largest error of a row", "processor time of all its runs"), cost))
     return "\n\n".join(part for part in parts if part) + "\n"
 
@@ -114,12 +107,10 @@ def overview(all_cases: Iterable[Case]) -> str:
     """A row for each case: how many of its figures are within, and the worst."""
     rows = []
     for case in all_cases:
-        path = KEPT / f"{case.name}.json"
-        if path.exists():
-            of = [Row(**row) for row in json.loads(path.read_text())["balanced"]["rows"]]
-            close = sum(row.close for row in of)
-            many = f"{close} of {len(of)}"
-            rows.append([case.title, many if close == len(of) else f"**{many}**", f"{100 * _off(of):.2g} %"])
+        of, _ = kept(case)["balanced"]
+        close = sum(row.close for row in of)
+        many = f"{close} of {len(of)}"
+        rows.append([case.title, many if close == len(of) else f"**{many}**", f"{100 * _off(of):.2g} %"])
     return markdown(("case", "figures within", "largest error"), rows)
 
 
