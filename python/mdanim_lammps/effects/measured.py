@@ -37,6 +37,8 @@ class Measured:
     """Gives a column of the ledger, shape (F,)."""
     trajectory: Any
     """results.trajectory.Trajectory: for quantities that need all frames."""
+    has: Callable[[str], bool] = lambda column: True
+    """Whether the ledger has a column."""
 
     def solid(self, name: str) -> int:
         """Number of an object, from 0."""

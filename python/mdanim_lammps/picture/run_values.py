@@ -13,7 +13,7 @@ from ..results.ledger import Ledger
 from ..results.quantities import quantity_of, series
 from ..results.trajectory import Trajectory
 from ..scene.naming import objects_by_name
-from ..scene.quantities import GLOBALS, Asked
+from ..scene.quantities import GLOBALS, PLANES, Asked
 
 
 class RunValues:
@@ -32,7 +32,7 @@ class RunValues:
         Raises UsageError for a quantity that the run has not recorded, or of an object that it does not have, OutputError where
         its scene cannot be read here.
         """
-        other = [of.argument] if of.kind.takes == "object" else []
+        other = [of.argument] if of.kind.takes in ("object", "touched") and of.argument not in (None, *PLANES) else []
         for name in ([] if of.subject in GLOBALS else [of.subject]) + other:
             if name not in (self._by_name if of.of == "NAMES" else self.trajectory.names):
                 raise UsageError(f"{self.trajectory.path} has no object {name}, and {of.what} is to be shown")
@@ -60,7 +60,7 @@ class RunValues:
         if t.scene is None:
             raise OutputError(f"{t.path}: the scene of this run, or one of its meshes, cannot be read here")
         grid = next((kept.grid for kept in t.metadata.kept.values() if hasattr(kept, "grid")), None)
-        return Measured(t.scene, t.names, grid, t.times, t.centers, t.center_velocities, np.nan, self._column, t)
+        return Measured(t.scene, t.names, grid, t.times, t.centers, t.center_velocities, np.nan, self._column, t, self._has)
 
     def _has(self, column: str) -> bool:
         return self._ledger is None or column in self._ledger.columns

@@ -7,7 +7,14 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ..effects.fields import GONE
+from .. import features
+from ..effects import acting
+from ..effects.fields import GONE, GROWN
+from ..errors import UsageError
+from ..features.springs.measure import stresses, von_mises
+from ..model.build import build_models
+from ..model.spacing import plan_spacing
+from ..model.system import System, assemble
 from ..results.trajectory import Trajectory
 from ..results.trajectory_metadata import springs_gone
 from ..scene.shown import ColorBy
@@ -31,14 +38,16 @@ class Tones:
 
         trajectory, beside = runs
         self._trajectory, self.name = trajectory, by.value
-        self.unit = {ColorBy.SPEED: "m/s", ColorBy.STRAIN: ""}[by]
+        self.unit = {ColorBy.SPEED: "m/s", ColorBy.STRAIN: "", ColorBy.STRESS: "Pa"}[by]
         with own_style():
             self._colors = np.round(255.0 * matplotlib.colormaps["turbo"](np.linspace(0.04, 0.96, STEPS))[:, :3]).astype(np.uint8)
         if by is ColorBy.STRAIN:
             m, start = trajectory.metadata, trajectory.position(0)
             self._bond = np.searchsorted(m.id, m.bond).reshape(-1, 2)
             self._rest = self._lengths(start)
-        self._find = {ColorBy.SPEED: self._speed, ColorBy.STRAIN: self._strain}[by]
+        if by is ColorBy.STRESS:
+            self._system = _system_of(trajectory)
+        self._find = {ColorBy.SPEED: self._speed, ColorBy.STRAIN: self._strain, ColorBy.STRESS: self._stress}[by]
         frames = np.unique(np.linspace(0, len(trajectory) - 1, SAMPLES).astype(int))
         self.most = max((float(np.quantile(self._find(int(n)), AMONG)) for n in frames), default=0.0) or 1.0
         if beside is not None:
@@ -71,5 +80,34 @@ class Tones:
             np.maximum.at(strain, end, stretch)
         return strain
 
+    def _stress(self, frame: int) -> np.ndarray:
+        """Stress of each particle by von Mises [Pa]; 0 of what is rigid."""
+        t, system = self._trajectory, self._system
+        position = np.asarray(t.position(frame), dtype=np.float64)
+        has = {field.name for field in t.metadata.fields if field.per == "bond"}
+        gone = t.field(GONE, frame) > 0.0 if GONE in has else None
+        grown = t.field(GROWN, frame) if GROWN in has else None
+        found = np.zeros(len(position))
+        for solid, (first, last) in enumerate(zip(system.first, system.first[1:])):
+            own = system.springs_of(solid)
+            parts = (None if of is None else np.asarray(of)[own] for of in (gone, grown))
+            found[first:last] = von_mises(stresses(system, solid, position, *parts))
+        return found
+
     def _lengths(self, position: np.ndarray) -> np.ndarray:
         return np.linalg.norm(position[self._bond[:, 0]] - position[self._bond[:, 1]], axis=1)
+
+
+def _system_of(trajectory: Trajectory) -> System:
+    """The particles and springs of a run, made again from its scene. Raises UsageError where they are not those of the frames."""
+    scene, m = trajectory.scene, trajectory.metadata
+    if scene is not None and len(m.id) == m.total:
+        spacing = plan_spacing(scene)
+        driven = {n for effect in acting(features.effects(), scene) for n in effect.drives(scene)}
+        system = assemble(build_models(scene, spacing.of, driven=driven), scene)
+        if np.array_equal(system.first, m.first) and np.array_equal(system.spring + 1, m.bond):
+            return system
+    raise UsageError(
+        f"{trajectory.path} does not hold all that stress is found from: it needs all particles (no save boundary) and a scene "
+        "that can be read here; color-by strain needs neither"
+    )

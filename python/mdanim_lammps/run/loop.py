@@ -330,6 +330,7 @@ class _Run:
                 self.penetration,
                 self.ledger.array,
                 trajectory,
+                self.ledger.columns.__contains__,
             )
             outcomes = evaluate(self.ready.scene.expects, measured)
             if self.ready.scene.records:

@@ -12,7 +12,7 @@ from . import units
 from .evaluated import EvaluatedBlock, EvaluatedSetting
 from .formatting import number, with_article
 from .keywords import BLOCKS, did_you_mean
-from .quantities import GLOBALS, QUANTITIES, Asked, Check, Expect, QuantityName
+from .quantities import GLOBALS, PLANES, QUANTITIES, Asked, Check, Expect, QuantityName
 
 if TYPE_CHECKING:
     from .scene import Control, Render
@@ -48,7 +48,7 @@ def quantity(v: Validator, named: tuple, span: Span) -> Asked | None:
         v.problem(span, f"{word} is not a quantity of {subject}", meant)
         return None
     of = QUANTITIES[kind, word]
-    if of.takes in ("object", "joined") and not _known_other(v, subject, word, argument, span, of.takes):
+    if isinstance(argument, str) and not _known_other(v, subject, word, argument, span, of.takes):
         return None
     if of.needs in BLOCKS and v.has_scene and not v.blocks(of.needs) and not v.out.excused(of.needs):
         v.problem(span, f"{subject}.{word} needs {with_article(of.needs)} block, and the scene has none")
@@ -76,9 +76,17 @@ def check_render(v: Validator, block: EvaluatedBlock, render: Render) -> Render:
 
 
 def _known_other(v: Validator, subject: str, word: str, other: str, span: Span, takes: str) -> bool:
-    """Another object, or the world."""
+    """Another object, the world, or what objects touch besides each other."""
+    if not takes:
+        v.problem(span, f"{subject}.{word} has nothing in brackets", f"write {subject}.{word}")
+        return False
+    if takes == "touched" and other in PLANES and other not in v.names:
+        if v.has_scene and not v.out.first(other) and not v.out.excused(other):
+            v.problem(span, f"the scene has no {other}", "name what there is to touch, or leave the brackets out")
+            return False
+        return True
     if other != subject:
-        more = ("world",) if takes == "joined" else ()
+        more = {"joined": ("world",), "touched": PLANES}.get(takes, ())
         return other in more or v.known_object(other, span, more)
     v.problem(span, f"the {word} of {subject} and itself is 0", "name another object")
     return False

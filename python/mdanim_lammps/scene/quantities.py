@@ -35,7 +35,9 @@ RELATIONS = {"=": "=", "<": "<", ">": ">", "<=": "<=", ">=": ">=", "≤": "<=", 
 OVER = ("min", "max", "mean")
 """Numbers of all frames in a time that an ``expect`` may ask for."""
 
-Argument = str | tuple[float, float] | None
+Argument = str | tuple[float, float] | float | None
+PLANES = ("ground", "walls")
+"""Planes that objects touch, as arguments of quantities of contact."""
 
 
 class _OfQuantity:
@@ -57,6 +59,8 @@ class _OfQuantity:
         taken = self.argument
         if isinstance(taken, tuple):
             taken = ", ".join(f"{number(x)} m" for x in taken)
+        elif isinstance(taken, float):
+            taken = f"{number(taken)} m"
         return f"{self.subject}.{self.quantity}" + ("" if taken is None else f"({taken})")
 
     @property
@@ -85,7 +89,7 @@ class Asked(_OfQuantity):
     quantity: str
     """``position.z``, ``velocity.x``, ``draft``, ``strain.max``, ``residual``, ``max`` ..."""
     argument: Argument = None
-    """The other object of a distance, the place of a height [m]; None of quantities that take none."""
+    """The other object of a distance, the place of a height or of a plane [m]; None of quantities that take none."""
     optional: bool = field(default=False, compare=False)
     """Whether it may be missing where it is not known."""
     span: Span | None = field(default=None, compare=False, repr=False)

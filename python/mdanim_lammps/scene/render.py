@@ -148,7 +148,8 @@ class Render(Worded):
     """[s]"""
     color_by: ColorBy | None = setting(
         None,
-        "Colours tell the `speed` of the material [m/s], or its `strain`: the largest |r/r₀ - 1| of the springs of a particle.",
+        "Colours tell the `speed` of the material [m/s], its `strain`: the largest |r/r₀ - 1| of the springs of a particle, or "
+        "its `stress` by von Mises [Pa].",
         "strain", default=None, codec=Words(ColorBy))  # fmt: skip
     spans: Mapping[str, Span] = field(default_factory=dict, compare=False, repr=False)
 

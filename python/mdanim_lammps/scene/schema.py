@@ -58,9 +58,12 @@ class Observable(NamedTuple):
     needs: str = ""
     """The effect that must be on; it has the name of the block that brings it into a scene."""
     takes: str = ""
-    """Its argument: ``object``, another object; ``joined``, that or ``world``; ``place``, a point (x, y) [m]; or nothing."""
+    """Its argument: ``object``, another object; ``joined``, that or ``world``; ``touched``, that or ``ground`` or ``walls``;
+    ``place``, a point (x, y) [m]; ``cut``, where a plane is [m]; or nothing."""
     bound: bool = False
     """Whether an ``expect`` says how large it may be, and nothing of what is true."""
+    alone: bool = False
+    """Whether it also stands without its argument."""
 
 
 def meaning(subject: str, quantity: Observable) -> str:

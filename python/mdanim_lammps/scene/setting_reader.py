@@ -35,7 +35,9 @@ from .units import UNITS, unit
 TAKEN = {
     "object": ("another object", "(cube)"),
     "joined": ("another object, or world,", "(world), or in place of world the name of the object that it is joined to"),
+    "touched": ("another object, ground or walls", "(ground)"),
     "place": ("a place (x, y)", "(0.2 m, 0 m)"),
+    "cut": ("the place of a plane", "(0.2 m)"),
 }
 """Arguments of quantities in words, and an example."""
 
@@ -287,13 +289,17 @@ class SettingReader(Reader):
 
     def argument(self, quantity: str, last: Token, stops: frozenset[str]) -> Value | None:
         """The value in brackets behind a quantity that has an argument."""
-        takes = next((q.takes for (_, word), q in QUANTITIES.items() if word == quantity and q.takes), "")
-        if not takes:
+        of = next((q for (_, word), q in QUANTITIES.items() if word == quantity and q.takes), None)
+        if of is None or (of.alone and self.peek.type != "LPAR"):
             return None
+        takes = of.takes
         if self.peek.type != "LPAR":
             raise Fault(last, f"{quantity} needs {TAKEN[takes][0]} in brackets", f"write {quantity}{TAKEN[takes][1]}")
         if takes == "place":
             node = self.expression(Slot("vector", "(x, y)", "m", 2, dim=unit("m").dim), stops)
+            return Value(self.slot, node.first, node.last, node)
+        if takes == "cut":
+            node = self.expression(Slot("number", "x", "m", dim=unit("m").dim), stops)
             return Value(self.slot, node.first, node.last, node)
         self.take()
         if self.peek.type != "NAME":

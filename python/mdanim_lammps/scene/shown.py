@@ -12,8 +12,8 @@ from ..errors import Span
 from .naming import objects_by_name
 from .quantities import QUANTITIES, VECTORS, Asked
 
-ARROWS = tuple(word for word in VECTORS if QUANTITIES["NAME", f"{word}.x"].unit not in ("m", "rad"))
-"""Quantities that arrows show: all vectors but places and angles."""
+ARROWS = tuple(word for word in VECTORS if QUANTITIES["NAME", f"{word}.x"].unit not in ("m", "rad", "Pa"))
+"""Quantities that arrows show: all vectors but places, angles and stresses."""
 
 
 class ColorBy(Enum):
@@ -21,6 +21,7 @@ class ColorBy(Enum):
 
     SPEED = "speed"
     STRAIN = "strain"
+    STRESS = "stress"
 
 
 @dataclass(frozen=True, slots=True)

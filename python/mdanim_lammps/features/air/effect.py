@@ -107,7 +107,7 @@ class Air(Effect):
         return (LOSS,)
 
     def sources(self, scene):
-        return (WORK,) if _wind(scene) else ()
+        return (WORK,) if scene.air is not None and _wind(scene) else ()
 
     def lost(self, readings):
         scene = readings.context.scene

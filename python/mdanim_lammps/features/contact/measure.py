@@ -12,14 +12,23 @@ from ...effects import acting
 from ...effects.balance import untold
 from ...effects.measured import Mean, Measurable, Measured, Of, of_vector
 from ...errors import Problem
+from ...scene.once import once_for
 from ...scene.scene import SceneRecord
 from ..motion.measure import balance
+from .between import Touching
 from .words import WORLD
 
 
 def _force(m: Measured, of: Of) -> np.ndarray:
-    """Force of all contact on an object, mean since the frame before [N], shape (F, 3)."""
+    """Force of contact on an object, of all or with one thing alone, mean since the frame before [N], shape (F, 3)."""
+    if of.argument is not None:
+        return _touching(m).force(m.solid(of.subject), of.argument)
     return balance(m).contact[:, m.solid(of.subject)]
+
+
+@once_for(lambda m: m)
+def _touching(m: Measured) -> Touching:
+    return Touching(m, balance(m))
 
 
 def _on_world(m: Measured, of: Of) -> np.ndarray:
@@ -38,6 +47,9 @@ def unmeasured(scene: SceneRecord, asked: Iterable[Of]) -> list[Problem]:
     found = []
     for of in wanted:
         m, reasons = (free, in_sum) if of.subject == WORLD else (numbers[of.subject], own)
+        other = numbers.get(str(of.argument))
+        if other is not None and other not in own:
+            m = other  # it gets the opposite
         if m in reasons:
             on = "" if of.subject != WORLD else f", nor that on {scene.solids[m].name}"
             cause = f"the force of contact on {of.subject} is not known{on}: {reasons[m]}"

@@ -39,10 +39,19 @@ WORLD = "world"
 
 QUANTITIES = {
     ("penetration", "max"): Observable("m", "deepest overlap of two objects", bound=True),
-    ("NAME", "contact"): Observable("N", "magnitude of the force of contact"),
+    ("NAME", "contact"): Observable(
+        "N",
+        "magnitude of the force of contact, or of that with one thing alone: `ball.contact(ground)`",
+        takes="touched",
+        alone=True,
+    ),
     **{
         ("NAME", f"contact.{axis}"): Observable(
-            "N", f"force of contact with objects, ground and walls on an object, mean since the frame before, {axis}"
+            "N",
+            f"force of contact with objects, ground and walls on an object, mean since the frame before, {axis}; that with one "
+            f"thing alone is `ball.contact.{axis}(cube)`",
+            takes="touched",
+            alone=True,
         )
         for axis in "xyz"
     },

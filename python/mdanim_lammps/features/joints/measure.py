@@ -11,12 +11,27 @@ from ...effects.measured import Measurable, Measure, Measured, Of
 from ...errors import Problem
 from ...scene.scene import SceneRecord
 from .links import Link, links_of
-from .rows import FIELD, FORCE, GAP, NUMBER, TORQUE, WAY
+from .rows import DRIVING, FIELD, FORCE, GAP, NUMBER, RATE, TORQUE, WAY
 
-COLUMNS = {"angle": WAY, "way": WAY, "force": FORCE, "torque": TORQUE, "gap": GAP}
+COLUMNS = {
+    "angle": (WAY,),
+    "way": (WAY,),
+    "force": (FORCE,),
+    "torque": (TORQUE,),
+    "gap": (GAP,),
+    "drive": (DRIVING,),
+    "power": (DRIVING, RATE),
+}
+"""Columns of a row whose product each quantity is."""
 
 
-KINDS = {"angle": ("hinge",), "way": ("slider", "spring"), "torque": ("weld", "hinge", "slider")}
+KINDS = {
+    "angle": ("hinge",),
+    "way": ("slider", "spring"),
+    "torque": ("weld", "hinge", "slider"),
+    "drive": ("hinge",),
+    "power": ("hinge", "slider"),
+}
 """Kinds of joints that have a quantity; all have the others."""
 
 
@@ -52,7 +67,7 @@ def _along(what: str) -> Measure:
         for frame in range(len(m.times)):
             rows = m.trajectory.field(FIELD, frame)["value"]
             own = rows[rows[:, NUMBER] == link.number] if link is not None else rows[:0]
-            values[frame] = own[0, COLUMNS[what]] if len(own) else np.nan
+            values[frame] = own[0, COLUMNS[what]].prod() if len(own) else np.nan
         return values
 
     return measure

@@ -33,6 +33,8 @@ QUANTITIES = {
         ("force", "N", "size of the force in its joint"),
         ("torque", "N*m", "size of the torque in its joint"),
         ("gap", "m", "distance of the two points that its joint holds together"),
+        ("drive", "N*m", "torque of motor, friction and stops of its hinge"),
+        ("power", "W", "power of these, or of those of its slider"),
     )
 }
 

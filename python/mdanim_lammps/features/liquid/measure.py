@@ -3,10 +3,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 import numpy as np
 
-from ...effects.measured import Glance, Measurable, Measured, Of, Recorded
+from ...effects.measured import Glance, Mean, Measurable, Measured, Of, Recorded
+from ...errors import Problem
 from ...model.grid import Grid
+from ...scene.scene import SceneRecord
 from .kept import HEIGHT, WAY
 from .ledger import CELLS, CREST, DUE, WAVES
 
@@ -36,6 +40,51 @@ def _between(x: float, count: int) -> tuple[int, float]:
     """The column before a place, and how far the place is on the way to the next one; the outermost middles go on to the edge."""
     x = min(max(x, 0.0), count - 1.0)
     return int(x), x - int(x)
+
+
+def _feeds(scene: SceneRecord, axis: int) -> list[tuple[float, float]]:
+    """Parts of an axis where liquid comes or goes [m]."""
+    return [(one.low[axis], one.high[axis]) for one in (*scene.liquid.inflow, *scene.liquid.drain)]
+
+
+def _beyond(scene: SceneRecord, axis: int, place: float) -> float | None:
+    """1 where nothing comes or goes beyond a plane, -1 where nothing does before it, None where it does on both sides."""
+    feeds = _feeds(scene, axis)
+    if all(high <= place for _, high in feeds):
+        return 1.0
+    return -1.0 if all(low >= place for low, _ in feeds) else None
+
+
+def flow(m: Measured, of: Of, axis: int) -> np.ndarray:
+    """Flow through a plane [m^3/s], shape (F,): what is on the side to which nothing else comes gets more by it, or less.
+
+    The smooth surface encloses about a per cent more or less than the cells hold, so its volumes are scaled to these. A body
+    that goes through the plane takes its displacement along."""
+    side, grid = _beyond(m.scene, axis, of.argument), m.grid
+    edges = grid.low[axis] + grid.cell[axis] * np.arange(grid.shape[axis] + 1)
+    share = np.clip((edges[1:] - of.argument) / grid.cell[axis], 0.0, 1.0)
+    share = share if side == 1.0 else 1.0 - share
+    area = grid.cell[0] * grid.cell[1]
+    lines = np.array(
+        [(m.trajectory.liquid_height(k) - grid.low[2]).sum(axis=axis, dtype=np.float64) for k in range(len(m.times))]
+    )
+    total, held = area * lines.sum(axis=1), m.ledger(CELLS) * grid.cell_volume
+    volume = area * (lines @ share) * (total[0] + held - held[0]) / total
+    return np.append(np.nan, side * np.diff(volume) / np.diff(m.times))
+
+
+def unmeasured(scene: SceneRecord, asked: Iterable[Of]) -> list[Problem]:
+    """A problem for each flow that heights do not tell."""
+    found = []
+    for of in (of for of in asked if of.quantity.startswith("flow.")):
+        cause = f"{of.what} is found from the liquid on one side of the plane"
+        if scene.liquid.wave or scene.liquid.current:
+            found.append(Problem(of.span, f"{cause}, and waves or a current come to both", "ask for liquid.height at two places"))
+        elif _beyond(scene, "xy".index(of.quantity[-1]), of.argument) is None:
+            found.append(
+                Problem(of.span, f"{cause}, and liquid comes or goes on both", "put the plane to one side of all of these")
+            )
+    return found
 
 
 def immersed_share(corners: np.ndarray, grid: Grid, height: np.ndarray) -> float:
@@ -106,6 +155,7 @@ def _height(g: Glance) -> np.ndarray:
 
 MEASURES = {
     ("liquid", "height"): Measurable(height),
+    **{("liquid", f"flow.{letter}"): Mean(lambda m, of, axis=axis: flow(m, of, axis)) for axis, letter in enumerate("xy")},
     ("liquid", "residual"): Measurable(residual, Measured.largest),
     ("liquid", "volume"): Measurable(lambda m, of: m.ledger(CELLS) * m.grid.cell_volume),
     ("liquid", "level"): Measurable(lambda m, of: np.asarray(m.trajectory.liquid_levels)),

@@ -7,7 +7,7 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-from ...scene.formatting import say, vector
+from ...scene.formatting import number, say, vector
 from ...scene.schema import Block, Observable, setting
 from ...scene.units import show
 from ..contact.words import ContactModel
@@ -30,6 +30,15 @@ QUANTITIES = {
     ("liquid", "height"): Observable(
         "m", "height of the surface at a place: `liquid.height(0.2 m, 0 m)`", "liquid", takes="place"
     ),
+    **{
+        ("liquid", f"flow.{axis}"): Observable(
+            "m^3/s",
+            f"flow through the plane at this {axis}, mean since the frame before: `liquid.flow.{axis}(0.2 m)`",
+            "liquid",
+            takes="cut",
+        )
+        for axis in "xy"
+    },
     ("liquid", "crest"): Observable("m", "highest point of the liquid at any frame, without drops", "liquid"),
     ("liquid", "waves"): Observable(
         "J", "energy of waves, of height and motion, since the start; 0 without `model waves`", "liquid"
@@ -130,6 +139,9 @@ def ground_below(v: Any, liquid: Any) -> None:
 def within_basin(v: Any, liquid: Any) -> None:
     """Places whose heights are asked for lie in the basin."""
     for (_, quantity, place), span in v.quantities() if liquid is not None else ():
+        if (axis := {"flow.x": 0, "flow.y": 1}.get(quantity)) is not None and not liquid.low[axis] < place < liquid.high[axis]:
+            cause = f"the plane at {number(place, 6)} m lies outside the basin"
+            v.problem(span, cause, f"the basin goes from {number(liquid.low[axis])} to {number(liquid.high[axis])} m")
         if quantity == "height" and not all(a <= x <= b for a, x, b in zip(liquid.low, place, liquid.high)):
             cause = f"the place {vector(place)} m lies outside the basin"
             v.problem(span, cause, f"the basin goes from {vector(liquid.low[:2])} to {vector(liquid.high[:2])} m")

@@ -97,7 +97,19 @@ def _kinetic(g: Glance) -> float:
     return float(0.5 * mass.sum() * mean @ mean + 0.5 * along @ system.inertia[g.solid] @ along)
 
 
+def _work(m: Measured, of: Of) -> np.ndarray:
+    """Energy that has come from outside [J], shape (F,): columns of the ledger."""
+    terms = dict.fromkeys(term for effect in acting(features.effects(), m.scene) for term in effect.sources(m.scene))
+    return np.sum([m.ledger(term) for term in terms if m.has(term)] or [np.zeros(len(m.times))], axis=0)
+
+
+def _power(m: Measured, of: Of) -> np.ndarray:
+    return np.append(np.nan, np.diff(_work(m, of)) / np.diff(m.times))
+
+
 MEASURES = {
+    ("energy", "work"): Measurable(_work),
+    ("energy", "power"): Mean(_power),
     **{
         ("NAME", f"{word}.{letter}"): Measurable(_component(vector, axis), between=_between(part, itemgetter(axis)))
         for part, (word, vector) in enumerate((("position", _place), ("velocity", _velocity)))

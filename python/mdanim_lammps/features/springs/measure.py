@@ -7,6 +7,7 @@ import numpy as np
 
 from ...effects.measured import Glance, Measured, Recorded
 from ...model.system import System
+from ...scene.once import once_for
 from ..tearing.gone import gone_of
 from ..yielding.grown import grown_of
 
@@ -44,7 +45,59 @@ def _look(g: Glance) -> float:
     return largest_strain(g.context.system, g.solid, g.position, gone_of(g.context.system, g.solid, g.fields))
 
 
+def stresses(
+    system: System, solid: int, position: np.ndarray, gone: np.ndarray | None = None, grown: np.ndarray | None = None
+) -> np.ndarray:
+    """Stress of each particle of a solid by its springs [Pa], shape (n, 3, 3): half of sum F r^T over its volume, the virial,
+    with the pull F of a spring beyond that in the body without load. Tension is above 0.
+
+    Args:
+        position: of all particles [m], shape (N, 3).
+        gone: springs that hold no more, in the order of the solid's own; None for none.
+        grown: growth of their rest lengths [m], in the same order; None for none.
+    """
+    first, springs = system.first, system.springs_of(solid)
+    own = kept(system, solid, gone)
+    i, j = system.spring[own].T
+    way = position[j] - position[i]
+    length = np.linalg.norm(way, axis=1)
+    longer = np.zeros(len(own)) if grown is None else grown[own - springs.start]
+    pull = system.stiffness[own] * (length - system.unloaded[own] - longer)
+    parts = (0.5 * pull / length)[:, None] * np.stack([way[:, a] * way[:, b] for a, b in PAIRS], axis=1)
+    start, count = int(first[solid]), int(first[solid + 1] - first[solid])
+    sums = [np.bincount(i - start, part, count) + np.bincount(j - start, part, count) for part in parts.T]
+    found = np.empty((count, 3, 3))
+    for (a, b), total in zip(PAIRS, sums):
+        found[:, a, b] = found[:, b, a] = total / system.volume[start : start + count]
+    return found
+
+
+PAIRS = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
+
+
+def von_mises(stress: np.ndarray) -> np.ndarray:
+    """Size of stresses [Pa], shape (n,), of (n, 3, 3): that of a pull along one axis, 0 under equal pressure from all sides."""
+    apart = stress - np.trace(stress, axis1=1, axis2=2)[:, None, None] / 3.0 * np.eye(3)
+    return np.sqrt(1.5 * np.einsum("nij,nij->n", apart, apart))
+
+
+@once_for(lambda g: g)
+def _stresses(g: Glance) -> np.ndarray:
+    system = g.context.system
+    gone, grown = gone_of(system, g.solid, g.fields), grown_of(system, g.solid, g.fields)
+    return stresses(system, g.solid, g.position, gone, grown)
+
+
+def _mean_stress(g: Glance, axis: int) -> float:
+    return float(np.average(_stresses(g)[:, axis, axis], weights=g.context.system.volume[g.mine]))
+
+
 MEASURES = {
+    ("NAME", "stress.max"): Recorded("stress", lambda g: float(von_mises(_stresses(g)).max()), Measured.largest),
+    **{
+        ("NAME", f"stress.{letter}"): Recorded(f"stress.{letter}", lambda g, axis=axis: _mean_stress(g, axis))
+        for axis, letter in enumerate("xyz")
+    },
     ("NAME", "strain.max"): Recorded("strain", _look, Measured.largest),
     ("NAME", "elastic"): Recorded("elastic", _elastic),
 }

@@ -8,6 +8,13 @@ SWITCHES = {"springs": "an object that is not all held"}
 QUANTITIES = {
     ("NAME", "strain.max"): Observable("1", "largest relative change of length of a spring"),
     ("NAME", "elastic"): Observable("J", "energy of the springs of an object"),
+    ("NAME", "stress.max"): Observable("Pa", "largest stress of a particle of an object, that of von Mises"),
+    **{
+        ("NAME", f"stress.{axis}"): Observable(
+            "Pa", f"mean stress of an object along {axis}, by its springs; pressure is below 0"
+        )
+        for axis in "xyz"
+    },
 }
 
 MARGINS = {
