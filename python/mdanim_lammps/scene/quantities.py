@@ -36,7 +36,7 @@ OVER = ("min", "max", "mean")
 """Numbers of all frames in a time that an ``expect`` may ask for."""
 
 Argument = str | tuple[float, float] | float | None
-PLANES = ("ground", "walls")
+PLANES = tuple(word for words in facets("words") for word, block in getattr(words, "TOUCHED", {}).items() if not block)
 """Planes that objects touch, as arguments of quantities of contact."""
 
 

@@ -109,6 +109,7 @@ LISTED = (
     ("rad/s", "an angular speed", "rad/s rpm"),
     ("1/s", "a rate", "1/s Hz fps"),
     ("J", "an energy", "J"),
+    ("J/s", "a power", "J/s"),
 )
 """SI unit, name and units in use of each dimension that has a name; products and quotients of units are allowed too."""
 

@@ -34,7 +34,7 @@ QUANTITIES = {
         ("torque", "N*m", "size of the torque in its joint"),
         ("gap", "m", "distance of the two points that its joint holds together"),
         ("drive", "N*m", "torque of motor, friction and stops of its hinge"),
-        ("power", "W", "power of these, or of those of its slider"),
+        ("power", "J/s", "power of these, or of those of its slider"),
     )
 }
 

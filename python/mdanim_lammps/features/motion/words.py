@@ -25,7 +25,7 @@ QUANTITIES = {
         for axis in "xyz"
     },
     ("energy", "work"): Observable("J", "work that drives, motors, forces, wind and all else from outside have done so far"),
-    ("energy", "power"): Observable("W", "power of these, mean since the frame before"),
+    ("energy", "power"): Observable("J/s", "power of these, mean since the frame before"),
     ("NAME", "speed"): Observable("m/s", "speed of the centre of mass"),
     ("NAME", "spin"): Observable("rad/s", "magnitude of the angular velocity"),
     ("NAME", "force"): Observable("N", "magnitude of the sum of all forces"),
