@@ -123,7 +123,9 @@ def test_every_quantity_can_be_expected(quantity):
     kind, what = quantity
     name = kind if kind in GLOBALS else "ball"
     unit = QUANTITIES[quantity][0].replace("1", "")
-    taken = {"object": "(floor)", "joined": "(floor)", "place": "(0.1 m, 20 cm)", "cut": "(0.1 m)"}.get(QUANTITIES[quantity].takes, "")
+    taken = {"object": "(floor)", "joined": "(floor)", "place": "(0.1 m, 20 cm)", "cut": "(0.1 m)"}.get(
+        QUANTITIES[quantity].takes, ""
+    )
     expect = scene("", expect=f"{name}.{what}{taken} at 1 s = 0.5 {unit} +- 0.1 {unit}").expects[0]
     assert (expect.subject, expect.quantity, expect.value, expect.tolerance, expect.time) == (name, what, 0.5, 0.1, 1.0)
 
