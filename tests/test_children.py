@@ -20,7 +20,6 @@ PROGRAM = "import sys\nfrom mdanim_lammps.__main__ import main\nsys.exit(main())
 """As pip writes the command `mdanim-lammps`."""
 SPY = "import os\nwith open(os.environ['SPIES'], 'a') as file:\n    file.write(__name__ + '\\n')\n"
 """A module that tells when it is run."""
-NAMES = sorted({*sys.stdlib_module_names, *packages_distributions(), "usercustomize"} - set(sys.builtin_module_names))
 SHORT = """
 gravity (0, 0, -9.81) m/s^2
 ground z 0 m
@@ -44,13 +43,18 @@ def cube(side: float) -> str:
     return CUBE.format("".join(f"facet normal 0 0 0\nouter loop\n{loop}endloop\nendfacet\n" for loop in loops))
 
 
+def names() -> set[str]:
+    """Modules of Python and of all that is installed."""
+    return {*sys.stdlib_module_names, *packages_distributions(), "usercustomize"} - set(sys.builtin_module_names)
+
+
 class Theirs:
     """A folder with a scene, where a stranger has left a module of every name that Python or this program imports."""
 
     def __init__(self, folder: Path):
         self.folder, self.log = folder / "theirs", folder / "spies"
         self.folder.mkdir()
-        for name in NAMES:
+        for name in names():
             (self.folder / f"{name}.py").write_text(SPY)
         (self.folder / "scene.txt").write_text(SHORT)
         (self.folder / "cube.stl").write_text(cube(10.0))
@@ -157,7 +161,7 @@ def test_a_study_runs_nothing_of_the_folder(theirs):
 @pytest.mark.parametrize("named", ["{}:", ":{}", "{}::/nowhere"])
 def test_an_empty_part_of_the_path_is_not_the_current_folder(theirs, named):
     """As of ``PYTHONPATH=$UNSET:/opt/lib``. What Python itself loads before a program begins is Python's affair."""
-    for name in NAMES:
+    for name in names():
         if name not in ("argparse", "cyclopts", "multiprocessing", "numpy", "queue", "resource", "scipy", "signal", "subprocess"):
             (theirs.folder / f"{name}.py").unlink()
     theirs.program("check", "scene.txt", PYTHONPATH=named.format(ROOT.parent))

@@ -20,23 +20,22 @@ def without_text(source: str) -> str:
 def end_of(source: str, brace: int) -> int:
     """The place of the brace that closes the one at `brace`."""
     depth = 0
-    for place in range(brace, len(source)):
-        depth += (source[place] == "{") - (source[place] == "}")
+    for found in re.compile("[{}]").finditer(source, brace):
+        depth += 1 if found[0] == "{" else -1
         if depth == 0:
-            return place
+            return found.start()
     return len(source)
 
 
 def data_members(body: str) -> int:
     """How many values a class holds, by the declarations of its body that are neither functions nor types nor constants."""
     flat, place = "", 0
-    while place < len(body):
-        if body[place] != "{":
-            flat, place = flat + body[place], place + 1
-            continue
+    while (brace := body.find("{", place)) >= 0:
+        flat, place = flat + body[place:brace], brace
         head = flat[max(map(flat.rfind, ";}\0")) + 1 :]
         initial = not re.search(r"\)[^=]*$|\b(class|struct|enum|union)\b", head)
         flat, place = flat + ("" if initial else "}"), end_of(body, place) + 1
+    flat += body[place:]
     count = 0
     for one in re.split(r"[;}]", re.sub(r"\b(public|private|protected):", ";", flat)):
         for _ in range(4):

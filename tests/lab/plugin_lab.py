@@ -39,17 +39,15 @@ def block(cells, corner=(0.0, 0.0, 0.0), velocity=(0.0, 0.0, 0.0)) -> Body:
     nx, ny, nz = cells
     index = np.arange((nx + 1) * (ny + 1) * (nz + 1)).reshape(nz + 1, ny + 1, nx + 1)
     x = np.stack(np.meshgrid(np.arange(nz + 1), np.arange(ny + 1), np.arange(nx + 1), indexing="ij"), -1)[..., ::-1]
-    share = np.zeros(index.size)
-    stiffness: dict[tuple[int, int], float] = {}
-    for c in product(range(nz), range(ny), range(nx)):
-        corners = [(index[c[0] + a, c[1] + b, c[2] + d], (a, b, d)) for a, b, d in product((0, 1), repeat=3)]
-        for i, p in corners:
-            share[i] += 1.0 / 8.0
-            for j, q in corners:
-                apart = sum(a != b for a, b in zip(p, q))
-                if i < j and apart in (1, 2):
-                    stiffness[i, j] = stiffness.get((i, j), 0.0) + 0.4 / (4.0 if apart == 1 else 2.0)
-    bond = np.array(sorted(stiffness))
+    places = np.array([*product((0, 1), repeat=3)])
+    corners = index[:nz, :ny, :nx].reshape(-1, 1) + index[:2, :2, :2].reshape(-1)
+    share = np.bincount(corners.reshape(-1), minlength=index.size) / 8.0
+    apart = np.abs(places[:, None] - places).sum(-1)
+    low, high = np.nonzero(np.triu((apart == 1) | (apart == 2)))  # a later corner has the higher number
+    pairs = corners[:, low] * index.size + corners[:, high]
+    part = np.broadcast_to(np.where(apart[low, high] == 1, 0.4 / 4.0, 0.4 / 2.0), pairs.shape)
+    pair, which = np.unique(pairs, return_inverse=True)
+    bond = np.stack(np.divmod(pair, index.size), 1)
     x = x.reshape(-1, 3).astype(float) + corner
     n = len(x)
     return Body(
@@ -59,7 +57,7 @@ def block(cells, corner=(0.0, 0.0, 0.0), velocity=(0.0, 0.0, 0.0)) -> Body:
         np.ones(n, int),
         share < 0.999,
         bond,
-        np.array([stiffness[i, j] for i, j in bond]),
+        np.bincount(which.reshape(-1), part.reshape(-1)),
         np.linalg.norm(x[bond[:, 0]] - x[bond[:, 1]], axis=1),
     )
 
