@@ -25,7 +25,7 @@ control { time 0.08 s  frames 100 fps  resolution 4 cm }
 """,
     "rigid": WIND + """
 ground z -10 cm
-object kite  { shape box (20, 20, 1) cm  position (0, 0, 0) cm    density 40   elasticity rigid
+object kite  { shape box (20, 20, 5) cm  position (0, 0, 0) cm    density 8    elasticity rigid
   orientation axis (0, 1, 0) angle 30 deg }
 object ball  { shape sphere 6 cm         position (30, 2, 0) cm   density 20   elasticity rigid  velocity (-3, 0, 1) m/s }
 object can   { shape cylinder 4 cm 10 cm position (0, -50, 12) cm density 30   elasticity rigid  spin (10, 3, 0) rad/s }

@@ -51,9 +51,9 @@ PUSHED = """
 gravity (0, 0, -9.81) m/s^2
 ground z -0.2 m
 object sled  { shape box (16, 8, 8) cm   position (0, 0, -16) cm   density 1000  elasticity 500 kPa
-  force (30, 0, 0) N from 0.013 s to 0.0561 s  torque (0, 0, 2) N*m }
+  force (30, 0, 0) N from 0.013 s to 0.0561 s  torque (0, 0, 0.3) N*m }
 object box   { shape box (8, 8, 8) cm    position (14, 0, -16) cm  density 700   elasticity 300 kPa }
-object top   { shape cylinder 8 cm 4 cm  position (60, 0, 0) cm    density 800   elasticity rigid
+object top   { shape cylinder 8 cm 8 cm  position (60, 0, 0) cm    density 800   elasticity rigid
   torque (0, 0, 0.4) N*m from 0.02 s  force (0, 0, 12) N to 0.031 s }
 object stone { shape box (8, 8, 8) cm    position (60, 13, 0) cm   density 300   elasticity rigid  force (0, -4, 0) N }
 object pole  { shape box (8, 8, 24) cm   position (0, 60, 0) cm    density 800   elasticity 500 kPa  hold face -z

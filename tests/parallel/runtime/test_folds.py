@@ -20,7 +20,7 @@ object upper {
   density 500  elasticity 500 kPa  damping 0.1  friction 0.3
 }
 object cord {
-  shape rope from (-0.2, 0.05, 0.09) m to (0.2, 0.02, 0.1) m thickness 1 cm  density 500  elasticity 500 kPa
+  shape rope from (-0.2, 0.05, 0.09) m to (0.2, 0.02, 0.1) m thickness 2 cm  density 500  elasticity 200 kPa
   damping 0.1  friction 0.3  touches-itself yes
 }
 object crate { shape box (10, 10, 10) cm  position (0.8, 0, 0.06) m  density 300  elasticity 200 kPa  friction 0.4 }

@@ -13,13 +13,13 @@ ground z 0
 let hard = { density 2000 kg/m^3 elasticity rigid }
 repeat k in 0 .. 2 {
   repeat i in 1 .. 3 {
-    object link[10*k + i] { use hard shape box (8, 2, 2) cm position (0.1*(i - 0.5), 0.6*k, 1) m }
+    object link[10*k + i] { use hard shape box (8, 5, 5) cm position (0.1*(i - 0.5), 0.6*k, 1) m }
   }
   joint ball link[10*k + 1] world { at (0, 0.6*k, 1) m }
   repeat i in 1 .. 2 { joint hinge link[10*k + i + 1] link[10*k + i] { at (0.1*i, 0.6*k, 1) m axis (0, 1, 0) friction 0.01 N*m } }
 }
 object post { shape box (10, 10, 40) cm position (1, 0, 0.2) m density 1000 elasticity rigid hold all }
-object arm { shape box (40, 4, 4) cm position (1.2, 0, 0.6) m density 800 elasticity 2 MPa resolution 2 cm }
+object arm { shape box (40, 6, 6) cm position (1.2, 0, 0.6) m density 800 elasticity 2 MPa resolution 3 cm }
 joint hinge arm post { at (1.02, 0, 0.6) m axis (0, 1, 0) limits -20 deg to 60 deg }
 object wheel { use hard shape sphere 10 cm position (2, 0, 0.5) m }
 joint hinge wheel world { axis (0, 1, 0) motor speed 120 rpm torque 0.5 N*m }

@@ -15,8 +15,8 @@ gravity (0, 0, -9.81) m/s^2
 ground z 0 m
 repeat i in 1 .. 2 {
   object plate[i] {
-    shape box (30, 30, 1) cm  position (0.5*i, 0, 0.2*i) m  orientation axis (1, 0.3, 0) angle 20 deg
-    density 2500  elasticity rigid  friction 0.4  pieces 8  strength 40 MPa
+    shape box (30, 30, 4) cm  position (0.5*i, 0, 0.2*i) m  orientation axis (1, 0.3, 0) angle 20 deg
+    density 2500  elasticity rigid  friction 0.4  pieces 8  strength 5 MPa
   }
 }
 object stone { shape box (10, 10, 10) cm  position (1, 0, 0.7) m  velocity (0, 0, -3) m/s

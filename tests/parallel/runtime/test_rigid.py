@@ -31,7 +31,7 @@ object barbell {{ shape mesh "{MESHES}/sliver.obj" scale 0.02  position (150, 0,
   density 1000  elasticity rigid  velocity (0, 0, -1) m/s }}
 object neck {{ shape mesh "{MESHES}/dumbbell.obj" scale 0.02  position (-150, 0, 3.05) cm
   density 1000  elasticity rigid  velocity (0, 0, -1) m/s }}
-object pin {{ shape sphere 2 cm  position (-150, 0, 8.06) cm  density 1000  elasticity rigid  velocity (0, 0, -2) m/s }}
+object pin {{ shape sphere 3 cm  position (-150, 0, 9.06) cm  density 1000  elasticity rigid  velocity (0, 0, -2) m/s }}
 control {{ time 0.1 s  frames 100 fps  friction 0.5  resolution 2.5 cm }}
 """
 """Two pairs by features, whose balls resist rolling, a mesh with a triangle of no area on something soft by surfaces, one that

@@ -23,9 +23,11 @@ repeat i in 1 .. 3 {
 }
 object rail {
   shape chain from (-0.6, 0, 0.5) m to (-0.2, 0.3, 0.5) m thickness 1 cm length 60 cm
-  density 1000  elasticity 2 MPa  hold ends
+  density 1000  elasticity 300 kPa  hold ends
 }
-object crate { shape box (10, 10, 10) cm  position (0.2, 0, 0.06) m  density 300  elasticity 200 kPa  friction 0.4 }
+object crate {
+  shape box (10, 10, 10) cm  position (0.2, 0, 0.06) m  resolution 5 cm  density 300  elasticity 200 kPa  friction 0.4
+}
 object stone { shape sphere 6 cm  position (-0.3, 0, 0.07) m  density 300  elasticity rigid  friction 0.4 }
 control { time 0.4 s }
 """

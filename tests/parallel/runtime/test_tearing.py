@@ -36,7 +36,9 @@ object balloon {
   damping 0.1  velocity (0, 0, -3) m/s  inflate 5 kPa  tear-strain 0.1
 }
 object thorn { shape cone 3 cm 15 cm  position (-0.5, -0.49, 0.075) m  density 1000  elasticity rigid  hold all }
-object crate { shape box (10, 10, 10) cm  position (0.5, 0.4, 0.06) m  density 300  elasticity 200 kPa  friction 0.4 }
+object crate {
+  shape box (10, 10, 10) cm  position (0.5, 0.4, 0.06) m  resolution 5 cm  density 600  elasticity 100 kPa  friction 0.4
+}
 control { time 0.3 s }
 """
 
