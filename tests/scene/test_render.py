@@ -84,7 +84,7 @@ def test_words_of_a_film(file):
         ("render { light (1, 0, 1) }", 16, "cannot be followed by '('", "light from (1, -1, 2)"),
         ("render { shadows 1.5 }", 18, "shadows is too large", "1 is the darkest"),
         ("render { shadows -1 }", 18, "must be >= 0", ""),
-        ("render { floor tiles }", 16, "'tiles' is not one of the choices of floor", "grid, plain, checker, none"),
+        ("render { floor rug }", 16, "'rug' is not one of the choices of floor", "grid, plain, checker, wood"),
         ("render { quality fine }", 18, "'fine' is not one of the choices of quality", "final"),
     ],
 )

@@ -178,7 +178,7 @@ def what_leads(low: np.ndarray, high: np.ndarray, basin=None) -> np.ndarray:
     return leads
 
 
-def automatic_view(action: Action, aspect: float, walls=None, basin=None) -> View:
+def automatic_view(action: Action, aspect: float, walls=None, basin=None, forward: np.ndarray | None = None) -> View:
     """A three-quarter view from slightly above that shows what happens as large as it can be; the same for all frames.
 
     What few objects do for a short time is left out where all else becomes much larger by that (`LARGER`, `LEAST`), but what
@@ -189,14 +189,10 @@ def automatic_view(action: Action, aspect: float, walls=None, basin=None) -> Vie
         aspect: width of the picture over its height.
         walls: corners of the scene's walls, shown too unless they are far larger than the action.
         basin: corners of the liquid's basin, always shown.
+        forward: direction of view, unit length; None for the three-quarter view.
     """
     low, high = action.bounds
-    extent = high - low
-    flat = np.clip(1.0 - extent[2] / max(extent[:2].max(), np.finfo(float).tiny), 0.0, 1.0)
-    elevation = np.radians(16.0 + 14.0 * flat)
-    # The longer horizontal side lies across the picture.
-    turn = np.radians(-65.0 if extent[0] >= extent[1] else -25.0)
-    back = np.array([np.cos(elevation) * np.cos(turn), np.cos(elevation) * np.sin(turn), np.sin(elevation)])
+    forward = three_quarters(action) if forward is None else forward
     boxes = np.clip(action.low, low, high), np.clip(action.high, low, high)
     # Where nothing has moved yet, the way down to the ground is shown, as objects will go there.
     fixed = [_corners(low, high) if len(action.low) == 1 else np.zeros((0, 3))]
@@ -205,8 +201,19 @@ def automatic_view(action: Action, aspect: float, walls=None, basin=None) -> Vie
     if basin is not None:
         fixed.append(_corners(*np.array(basin, dtype=float)))
     fixed = np.concatenate(fixed)
-    kept = worth_seeing(*boxes, action.free, action.leads, fixed, -back, aspect)
-    return fit_view(np.concatenate([_corners(boxes[0][kept], boxes[1][kept]), fixed]), -back, aspect)
+    kept = worth_seeing(*boxes, action.free, action.leads, fixed, forward, aspect)
+    return fit_view(np.concatenate([_corners(boxes[0][kept], boxes[1][kept]), fixed]), forward, aspect)
+
+
+def three_quarters(action: Action) -> np.ndarray:
+    """Direction in which the automatic camera looks, unit length, shape (3,)."""
+    low, high = action.bounds
+    extent = high - low
+    flat = np.clip(1.0 - extent[2] / max(extent[:2].max(), np.finfo(float).tiny), 0.0, 1.0)
+    elevation = np.radians(16.0 + 14.0 * flat)
+    # The longer horizontal side lies across the picture.
+    turn = np.radians(-65.0 if extent[0] >= extent[1] else -25.0)
+    return -np.array([np.cos(elevation) * np.cos(turn), np.cos(elevation) * np.sin(turn), np.sin(elevation)])
 
 
 def worth_seeing(low, high, free, leads, fixed: np.ndarray, forward: np.ndarray, aspect: float) -> np.ndarray:
@@ -222,7 +229,7 @@ def worth_seeing(low, high, free, leads, fixed: np.ndarray, forward: np.ndarray,
         free: objects that move, bool, shape (O,).
         leads: boxes that are inside in any case, bool, shape (W, O).
         fixed: points that are inside in any case [m], shape (P, 3).
-        forward: direction of view, unit length, not vertical.
+        forward: direction of view, unit length.
         aspect: width over height.
     """
     right, up, tangent = _screen(forward, aspect)
@@ -258,7 +265,7 @@ def fit_view(points: np.ndarray, forward: np.ndarray, aspect: float) -> View:
 
     Args:
         points: [m], shape (P, 3).
-        forward: direction of view, unit length, not vertical.
+        forward: direction of view, unit length.
         aspect: width over height.
     """
     right, up, tangent = _screen(forward, aspect)
@@ -276,7 +283,8 @@ def fit_view(points: np.ndarray, forward: np.ndarray, aspect: float) -> View:
 def _screen(forward: np.ndarray, aspect: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Right and up of a picture, and tangents of half its angles of view within the margin, shape (2,)."""
     right = np.cross(forward, [0.0, 0.0, 1.0])
-    right /= np.linalg.norm(right)
+    # Straight down x is on the right, as `View.upright` has it.
+    right = right / np.linalg.norm(right) if right.any() else np.array([1.0, 0.0, 0.0])
     tangent = MARGIN * np.tan(np.radians(FIELD_OF_VIEW / 2)) * np.array([aspect, 1.0])
     return right, np.cross(right, forward), tangent
 

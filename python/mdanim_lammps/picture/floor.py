@@ -52,7 +52,8 @@ class FloorPlane:
         self._middle, self._reach = action.centre[:2], REACH * action.size
         square = plane(self._middle - self._reach, self._middle + self._reach, self.height)
         shader, sky = shading.fragment_floor(render.floor.value), render.quality is Quality.FINAL
-        self.actor = lit_actor(square, shader, liquid=liquid, sky=sky, lamp=shading.LAMP_ON_FLOOR)
+        functions = shading.floor_functions(render.floor.value)
+        self.actor = lit_actor(square, shader, liquid=liquid, sky=sky, lamp=shading.LAMP_ON_FLOOR, functions=functions)
         dark, self._uniforms = is_dark(low), self.actor.GetShaderProperty().GetFragmentCustomUniforms()
         self._uniforms.SetUniformf("gridSpacing", grid_spacing(action.size))
         self._uniforms.SetUniformf("linePixels", float(finer))

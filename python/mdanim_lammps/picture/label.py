@@ -16,20 +16,25 @@ class Label:
         height: of a letter in pixels.
         color: red, green, blue from 0 to 1.
         right: whether ``at`` is on the right.
+        halo: whether letters have a bright rim, or a dark one around bright letters, for what is not of one colour below them.
     """
 
-    OPACITY = 0.85
+    OPACITY, RIM = 0.85, 0.7
 
-    def __init__(self, at: tuple[int, int], height: int, color: tuple[float, float, float], right: bool = False):
+    def __init__(
+        self, at: tuple[int, int], height: int, color: tuple[float, float, float], right: bool = False, halo: bool = False
+    ):
         from vtkmodules.vtkRenderingCore import vtkTextProperty
 
         self._at, self._words = at, ""
+        self._rim = max(1, round(0.1 * height)) if halo else 0
+        self._paper = 255 if sum(color) < 1.5 else 0
         self._drawn, self._origin = np.zeros((0, 0, 4), np.uint8), (0, 0)
         self._look = vtkTextProperty()
         self._look.SetFontFamilyToArial()
         self._look.SetFontSize(max(9, height))
         self._look.SetColor(color)
-        self._look.SetOpacity(self.OPACITY)
+        self._look.SetOpacity(1.0 if halo else self.OPACITY)
         self._look.SetJustificationToRight() if right else self._look.SetJustificationToLeft()
 
     def lay_on(self, picture: np.ndarray, words: str) -> None:
@@ -59,4 +64,18 @@ class Label:
         drawn = drawn[: size[1], : size[0]] if size[0] else drawn
         cover = drawn[..., 3:].astype(np.uint16)
         self._drawn = np.concatenate([(drawn[..., :3] * cover + 127) // 255, cover], axis=2).astype(np.uint8)
-        self._origin = (x0, y0)
+        self._origin = (x0 - self._rim, y0 - self._rim)
+        if self._rim:
+            self._drawn = self._with_rim(self._drawn)
+
+    def _with_rim(self, drawn: np.ndarray) -> np.ndarray:
+        """Letters over what is within a few pixels of them, uint8 RGBA, larger by these on each side."""
+        k = self._rim
+        drawn = np.pad(drawn, ((k, k), (k, k), (0, 0)))
+        wide = np.pad(drawn[..., 3], k)
+        rows, columns = drawn.shape[:2]
+        disc = [(y, x) for y in range(-k, k + 1) for x in range(-k, k + 1) if x * x + y * y <= k * k + 1]
+        around = self.RIM * np.max([wide[k + y : k + y + rows, k + x : k + x + columns] for y, x in disc], axis=0)
+        left = around * (1.0 - drawn[..., 3] / 255.0)
+        rim = np.stack([*3 * [left * self._paper / 255.0], left], axis=2)
+        return np.minimum(drawn + np.rint(rim), 255).astype(np.uint8)

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from ..results.trajectory_metadata import TrajectoryMetadata
+from ..scene.render import Floor, Render
 
 # Twelve colours of one family: bold enough to tell apart, light enough to show shading.
 OBJECTS = (
@@ -57,11 +58,16 @@ def vertex_colors(metadata: TrajectoryMetadata) -> np.ndarray:
     return color
 
 
-def background_colors(chosen: str | None) -> tuple[np.ndarray, np.ndarray]:
+SKIES = {Floor.GRASS: ("#d6e6f2", "#7fb2e0"), Floor.STUDIO: ("#eeecea", "#f7f6f5"), Floor.WOOD: ("#ebe5dd", "#f8f5f1")}
+"""Backgrounds that go with floors, as LOW and HIGH with all others."""
+
+
+def background_colors(render: Render) -> tuple[np.ndarray, np.ndarray]:
     """Colours at the bottom and at the top of the picture; the scene's own gets a gentle gradient too."""
-    if chosen is None:
-        return rgb(LOW), rgb(HIGH)
-    base = rgb(chosen)
+    if render.background is None:
+        low, high = SKIES.get(render.floor, (LOW, HIGH))
+        return rgb(low), rgb(high)
+    base = rgb(render.background)
     return 0.94 * base, np.minimum(1.0, base + 0.03)
 
 

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from . import shading
+from . import shading, textures
 
 
 class MovingMesh:
@@ -40,6 +40,14 @@ class MovingMesh:
 
         colors = numpy_to_vtk(np.ascontiguousarray(color, dtype=np.uint8), deep=1)
         self.data.GetPointData().SetScalars(colors)
+
+    def mark(self, name: str, values: np.ndarray) -> None:
+        """Give every vertex numbers that a shader of `lit_actor` reads, float32, shape (V, C)."""
+        from vtkmodules.util.numpy_support import numpy_to_vtk
+
+        held = numpy_to_vtk(np.ascontiguousarray(values, dtype=np.float32), deep=1)
+        held.SetName(name)
+        self.data.GetPointData().AddArray(held)
 
     def move(self, vertices: np.ndarray, normals: np.ndarray) -> None:
         """Place the vertices [m] and turn their normals, each of shape (V, 3)."""
@@ -154,7 +162,7 @@ class Lookup:
         self._image.Modified()
 
 
-def lit_actor(data, light: str, *, liquid: bool, sky: bool, lamp: str = shading.LAMP, functions: str = ""):
+def lit_actor(data, light: str, *, liquid: bool, sky: bool, lamp: str = shading.LAMP, functions: str = "", mark: str = ""):
     """An actor for a mesh, lit by one of the shaders of ``shading``.
 
     Args:
@@ -163,7 +171,8 @@ def lit_actor(data, light: str, *, liquid: bool, sky: bool, lamp: str = shading.
         liquid: whether it may be seen through liquid.
         sky: whether it is darker where objects hide the sky.
         lamp: how it sees the lamp, of ``shading``.
-        functions: of ``shading``, that only this shader uses.
+        functions: of ``shading`` or ``textures``, that only this shader uses.
+        mark: name of numbers of vertices that it reads (`MovingMesh.mark`).
     """
     from vtkmodules.vtkRenderingCore import vtkActor
     from vtkmodules.vtkRenderingOpenGL2 import vtkOpenGLPolyDataMapper
@@ -175,10 +184,14 @@ def lit_actor(data, light: str, *, liquid: bool, sky: bool, lamp: str = shading.
     actor = vtkActor()
     actor.SetMapper(mapper)
     shader = actor.GetShaderProperty()
-    for mark, code in shading.VERTEX.items():
-        shader.AddVertexShaderReplacement(mark, True, code, False)
-    for mark, code in shading.fragment_head(liquid, sky, lamp, functions).items():
-        shader.AddFragmentShaderReplacement(mark, True, code, False)
+    if mark:
+        from vtkmodules.vtkCommonDataModel import vtkDataObject
+
+        mapper.MapDataArrayToVertexAttribute(mark, mark, vtkDataObject.FIELD_ASSOCIATION_POINTS, -1)
+    for place, code in (shading.VERTEX | (textures.VERTEX if mark else {})).items():
+        shader.AddVertexShaderReplacement(place, True, code, False)
+    for place, code in shading.fragment_head(liquid, sky, lamp, functions).items():
+        shader.AddFragmentShaderReplacement(place, True, code, False)
     shader.AddFragmentShaderReplacement("//VTK::Light::Impl", True, light, False)
     return actor
 

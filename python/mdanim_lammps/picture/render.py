@@ -11,7 +11,7 @@ from ..scene.render import Floor, Quality, Render
 from . import shading
 from .backdrop import Backdrop
 from .behind import Behind
-from .camera import FIELD_OF_VIEW, Action, CameraPath, View, action_of, automatic_view
+from .camera import FIELD_OF_VIEW, Action, View, action_of, automatic_view
 from .curves import COVERED
 from .drawn import Additions, medium
 from .floor import REACH, FloorPlane
@@ -24,7 +24,9 @@ from .overlay import Overlay
 from .palette import background_colors, is_dark, vertex_colors
 from .pieces import MovingMesh, box_edges, have_own_textures, lit_actor
 from .scenery import scenery, way_of_walls
+from .standpoints import direction_of, path_of
 from .surfaces import shaded_mesh
+from .textures import FLOORS, MATERIAL, OBJECTS, material_places
 from .tones import Tones
 from .window import fewer_pixels, lay_over, off_screen_window, rgba, silent, upright
 
@@ -75,7 +77,7 @@ class Painter:
                 f"{self._finer} times as many along each side; take at most {MOST_PIXELS // self._finer}, or quality draft"
             )
         self.action = action or action_of(trajectory)
-        self._path = CameraPath(render.camera, trajectory) if render.camera else None
+        self._path = path_of(render.camera, trajectory, seen or self.action)
         _, walls, pool = scenery(trajectory.metadata)
         basin = (pool.low, pool.high) if pool else None
         aspect = self.size[0] / self.size[1]
@@ -83,14 +85,15 @@ class Painter:
         covered = COVERED if render.plot else 0.0
         self._still = None
         if not self._path:
-            still = automatic_view(seen or self.action, (1.0 - covered) * aspect, walls, basin)
+            way = direction_of(render.camera)
+            still = automatic_view(seen or self.action, (1.0 - covered) * aspect, walls, basin, way)
             self._still = left_of_panels(still, aspect, covered)
         self._mesh = shaded_mesh(trajectory.metadata, trajectory.position(0), self._pixel())
         self._tones = Tones((trajectory, beside), render.color_by) if render.color_by else None
         self._build(render, marks)
         self._overlay = None
         if render.tells:
-            dark = is_dark(background_colors(render.background)[0])
+            dark = is_dark(background_colors(render)[0])
             runs = trajectory, beside
             self._overlay = Overlay(runs, render, self._pixels, dark, seen or self.action, self._tones, self._finer)
 
@@ -206,7 +209,7 @@ class Painter:
         import vtkmodules.vtkRenderingOpenGL2  # noqa: F401
         from vtkmodules.vtkRenderingCore import vtkRenderer
 
-        low, high = background_colors(render.background)
+        low, high = background_colors(render)
         self._renderer = vtkRenderer()
         self._renderer.SetUseHiddenLineRemoval(False)
         # Translucent surfaces are laid over the rest in the order of adding.
@@ -234,7 +237,7 @@ class Painter:
         self._surface_colors = np.concatenate(colors)
         self._surface = MovingMesh(len(self._surface_colors), self._triangle)
         self._surface.paint(self._surface_colors)
-        self._actors = [lit_actor(self._surface.data, shading.FRAGMENT_SOLID, liquid=liquid, sky=sky)]
+        self._actors = [self._surface_actor(liquid, sky)]
         self._actors[0].SetVisibility(not marks.springs)
         # Objects are closed, so their inner faces are never visible, and drawing these takes time.
         self._actors[0].GetProperty().BackfaceCullingOn()
@@ -262,7 +265,7 @@ class Painter:
         self._marks = MarkActors(marks, metadata, dark, self.size[1] * self._finer)
         for actor in self._marks.actors:
             self._front.AddViewProp(actor)
-        self._write(low)
+        self._write(low, self._floor is not None and render.floor.value in FLOORS)
         if self._behind:
             self._renderer.SetBackground(low)
             self._renderer.SetBackground2(high)
@@ -288,6 +291,17 @@ class Painter:
         if self._backdrop and self._floor:
             have_own_textures(self._floor.actor, ("skyDepth", "liquidHeights"))
 
+    def _surface_actor(self, liquid: bool, sky: bool):
+        """An actor for all surfaces, with the textures of objects where some have one."""
+        start = self._mesh.vertices(self.trajectory.position(0), self.trajectory.gone(0))
+        places = material_places(self.trajectory, start, self._mesh.object_of_vertex)
+        if places is None or self._tones:
+            return lit_actor(self._surface.data, shading.FRAGMENT_SOLID, liquid=liquid, sky=sky)
+        rest = np.zeros((len(self._surface_colors) - len(places), 4), np.float32)
+        self._surface.mark(MATERIAL, np.concatenate([places, rest]))
+        own = {"functions": OBJECTS, "mark": MATERIAL}
+        return lit_actor(self._surface.data, shading.FRAGMENT_TEXTURED, liquid=liquid, sky=sky, **own)
+
     def _in_front(self):
         """A renderer that draws over what the other one has drawn, and behind what that holds nearer to the camera."""
         from vtkmodules.vtkRenderingCore import vtkRenderer
@@ -309,12 +323,12 @@ class Painter:
             return min(there.ground, there.liquid.low[2] if there.liquid else there.ground)
         return None if self.action.escaped else float(self.action.bounds[0][2])
 
-    def _write(self, background: np.ndarray) -> None:
+    def _write(self, background: np.ndarray, halo: bool) -> None:
         width, height = self._pixels
         color = (0.93, 0.94, 0.95) if is_dark(background) else (0.20, 0.23, 0.27)
         margin = round(0.035 * height)
-        self._title = Label((margin, margin), round(0.032 * height), color)
-        self._stamp = Label((width - margin, margin), round(0.028 * height), color, right=True)
+        self._title = Label((margin, margin), round(0.032 * height), color, halo=halo)
+        self._stamp = Label((width - margin, margin), round(0.028 * height), color, right=True, halo=halo)
 
     # --- one picture ---------------------------------------------------------------------------------------
 

@@ -7,6 +7,7 @@ picture taken from the lamp (light.py).
 """
 
 from .rays import FAR, NEAR, ROOM, SKY_PIXELS, SKY_SIDE, sky_axes
+from .textures import FLOORS, NOISE
 
 HIDDEN = 0.75
 """Share of the light that is missing where nothing is seen of the sky; surfaces that hide it throw the rest back."""
@@ -226,7 +227,7 @@ vec3 seen(vec3 color, vec3 where)
 """
 
 # `diffuseColor` is VTK's name for the colour of the surface here.
-FRAGMENT_SOLID = """//VTK::Light::Impl
+SOLID = """//VTK::Light::Impl
 {
   vec3 n = normalize(worldNormal);
   vec3 toEye = normalize(eye - worldPosition);
@@ -234,7 +235,7 @@ FRAGMENT_SOLID = """//VTK::Light::Impl
   vec3 plane = facet(worldPosition, n);
   float facing = max(dot(n, toLamp), 0.0);
   float lit = facing > 0.0 ? shadow(worldPosition, plane, 1.0) : 0.0;
-  vec3 base = linear(diffuseColor);
+  vec3 base = linear(COLOR);
   // Light from the sky above, a little thrown back from the floor below, and from behind the camera.
   vec3 sky = mix(vec3(0.20, 0.19, 0.18), vec3(0.50, 0.54, 0.60), 0.5 + 0.5 * n.z) * skySeen(worldPosition, n, plane, 0.5);
   float fill = 0.16 * max(dot(n, toEye), 0.0);
@@ -244,6 +245,9 @@ FRAGMENT_SOLID = """//VTK::Light::Impl
   fragOutput0 = vec4(seen(sqrt(min(color, vec3(1.0))), worldPosition), 1.0);
 }
 """
+
+FRAGMENT_SOLID = SOLID.replace("COLOR", "diffuseColor")
+FRAGMENT_TEXTURED = SOLID.replace("COLOR", "textured(diffuseColor)")
 
 # Lines as wide as a pixel and a half, whatever the distance; they fade where they would crowd.
 GRID = """
@@ -255,6 +259,7 @@ GRID = """
   float thin = (1.0 - smoothstep(0.3, 1.2, min(f.x, f.y))) * (1.0 - smoothstep(0.1, 0.4, max(w.x, w.y)));
   float bold = (1.0 - smoothstep(0.5, 1.5, min(c.x, c.y))) * (1.0 - smoothstep(0.5, 2.0, max(w.x, w.y)));
   float marked = max(0.22 * thin, 0.55 * bold);
+  vec3 painted = mix(floorColor, gridColor, marked);
 """
 # Squares as wide as five lines are apart; each pixel has the mean over the part of the floor that it shows.
 CHECKER = """
@@ -262,14 +267,21 @@ CHECKER = """
   vec2 w = max(fwidth(square), vec2(1e-6));
   vec2 edge = 2.0 * (abs(fract((square - 0.5 * w) * 0.5) - 0.5) - abs(fract((square + 0.5 * w) * 0.5) - 0.5)) / w;
   float marked = 0.3 * (0.5 - 0.5 * edge.x * edge.y);
+  vec3 painted = mix(floorColor, gridColor, marked);
 """
-PATTERN = {"plain": "  float marked = 0.0;\n", "grid": GRID, "checker": CHECKER}
+PLAIN = "  vec3 painted = mix(floorColor, gridColor, 0.0);\n"
+PATTERN = {"plain": PLAIN, "grid": GRID, "checker": CHECKER, **FLOORS}
 """By ``render { floor ... }``."""
 
 
 def fragment_floor(pattern: str) -> str:
     """The shader of a floor with one of `PATTERN`."""
     return FLOOR.replace("PATTERN", PATTERN[pattern])
+
+
+def floor_functions(pattern: str) -> str:
+    """Functions that this shader uses."""
+    return NOISE if pattern in FLOORS else ""
 
 
 # The floor hides nothing, so depth pictures do not hold it.
@@ -280,7 +292,7 @@ FLOOR = """//VTK::Light::Impl
 PATTERN
   // A surface that hides the sky throws back some of the lamp's warmer light: in all, grey is missing.
   vec3 light = mix(vec3(0.58, 0.62, 0.68), vec3(1.0), lit) - 0.62 * (1.0 - skySeen(worldPosition, up, up, 0.0));
-  vec3 color = mix(floorColor, gridColor, marked) * light;
+  vec3 color = painted * light;
   float away = length(worldPosition.xy - floorCentre.xy) / floorCentre.z;
   vec3 behind = mix(lowColor, highColor, clamp((gl_FragCoord.y + pictureBottom) / pictureHeight, 0.0, 1.0));
   fragOutput0 = vec4(seen(mix(color, behind, smoothstep(0.25, 1.0, away)), worldPosition), 1.0);

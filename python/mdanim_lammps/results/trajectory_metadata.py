@@ -17,6 +17,7 @@ from ..model.model import Layer, Model, Surface
 from ..model.patches import Patches, with_patches
 from ..model.tube import Tubes
 from ..scene.scene import Save, SceneRecord
+from ..scene.shown import TEXTURES
 from .weights import Carry, Weights
 
 FIELDS = "fields"
@@ -154,7 +155,7 @@ def metadata_of(
     return TrajectoryMetadata(
         title=scene.title,
         names=tuple(model.name for model in models),
-        colors=tuple(solid.color or "" for solid in named),
+        colors=tuple(solid.color or (TEXTURES[solid.texture.pattern] if solid.texture else "") for solid in named),
         still=np.array([model.still for model in models], dtype=bool),
         object_mass=np.array([model.mass.sum() for model in models], dtype=np.float64),
         first=np.cumsum([0] + [int(kept.sum()) for kept in stored]),

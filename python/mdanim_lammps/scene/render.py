@@ -46,6 +46,26 @@ class Camera:
     up: Vector = (0.0, 0.0, 1.0)
 
 
+@dataclass(frozen=True, slots=True)
+class Standpoint:
+    """A camera that is placed by what happens, in a given direction or after an object."""
+
+    FORMS: ClassVar = ("top", "side", "front", "follow <NAME>")
+    place: str
+    """``top``, ``side``, ``front`` or ``follow``."""
+    name: str | None = None
+    """The object that it follows."""
+
+    @classmethod
+    def read(cls, choice: int, values: tuple) -> Standpoint:
+        """From one of FORMS and its values."""
+        return cls(cls.FORMS[choice].split()[0], *values)
+
+    def write(self) -> tuple[int, tuple]:
+        """The number of one of FORMS, and its values."""
+        return ("top", "side", "front", "follow").index(self.place), () if self.name is None else (self.name,)
+
+
 class MovieName(Codec):
     """A file below the output folder, and none of the run's own."""
 
@@ -72,6 +92,10 @@ class Floor(Enum):
     GRID = "grid"
     PLAIN = "plain"
     CHECKER = "checker"
+    WOOD = "wood"
+    TILES = "tiles"
+    GRASS = "grass"
+    STUDIO = "studio"
     NONE = "none"
 
 
@@ -115,15 +139,17 @@ class Render(Worded):
         "0.5", Rule.NOT_NEGATIVE, default=1.0, limit=SHADOWS)  # fmt: skip
     floor: Floor = setting(
         None,
-        "What is drawn on the floor: lines that tell sizes, nothing, squares, or no floor at all.",
+        "What is drawn on the floor: lines that tell sizes, nothing, squares, planks, tiles, grass under a blue sky, a bright "
+        "studio without a horizon, or no floor at all.",
         "checker", default=Floor.GRID, codec=Words(Floor))  # fmt: skip
     background: str | None = setting("<color>", f"Background: {COLOR}", "white", default=None)
-    camera: tuple[Camera, ...] = setting(
+    camera: tuple[Camera | Standpoint, ...] = setting(
         None,
         "Where the camera stands and what it looks at; several lines with times T make a smooth path. `look NAME` follows an "
+        "object. `top`, `side` (from +x) and `front` (from -y) show the whole run from there; `follow NAME` goes along with an "
         "object. Absent: one view for all frames, chosen from the whole run so that what happens is seen large; what flies or "
         "falls far off, and what few objects do for a short time, may be left out.",
-        "from (4, -4, 2) m look (0, 0, 0.5) m", default=(), many=True, codec=OneOf(Camera))  # fmt: skip
+        "from (4, -4, 2) m look (0, 0, 0.5) m", default=(), many=True, codec=OneOf(Camera, Standpoint))  # fmt: skip
     arrows: tuple[Arrows, ...] = setting(
         None,
         "Arrows at the centres of objects, with a legend that tells their unit: of those of NAME, or of all objects of which the "

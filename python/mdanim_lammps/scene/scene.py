@@ -14,7 +14,7 @@ from ..errors import Span
 from ..features import facets
 from .formatting import vector
 from .quantities import GLOBALS, OVER, QUANTITIES, RELATIONS, VECTORS, Asked, Check, Expect, QuantityName  # noqa: F401
-from .render import Camera, Render  # noqa: F401
+from .render import Camera, Render, Standpoint  # noqa: F401
 from .rotation import IDENTITY, departure, rotation_about, rotation_euler
 from .schema import COLOR, Codec, Keyword, OneOf, Rule, Vector, Worded, Words, of_features, setting, with_words
 from .shapes import (  # noqa: F401
@@ -43,6 +43,7 @@ from .shapes import (  # noqa: F401
     VoronoiCells,
     Young,
 )
+from .shown import Texture
 
 # --- objects ----------------------------------------------------------------------------------------------
 
@@ -128,6 +129,11 @@ class Solid:
     """[m]"""
     color: str | None = setting("<color>", f"Colour in pictures: {COLOR}", "steelblue", default=None, shared=True)
     """``#rrggbb``; None lets the renderer choose."""
+    texture: Texture | None = setting(
+        None,
+        "Pattern in pictures and movies, which turns and bends with the material: grain of wood, bricks, stripes across its x "
+        "axis, or cubes of two colours. `size` is the width of a ring, a stripe or a cube, or the length of a brick.",
+        "checker size 5 cm", Rule.POSITIVE, default=None, codec=OneOf(Texture), shared=True)  # fmt: skip
     spans: Mapping[str, Span] = field(default_factory=dict, compare=False, repr=False)
     """Where each keyword's value stands; ``spans["object"]`` is the object's name."""
 

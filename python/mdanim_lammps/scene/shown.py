@@ -25,6 +25,21 @@ class ColorBy(Enum):
 
 
 @dataclass(frozen=True, slots=True)
+class Texture:
+    """A pattern on an object, which goes with its material."""
+
+    FORMS: ClassVar = ("<wood|brick|stripes|checker> [size <s:m>]",)
+    pattern: str
+    """One of TEXTURES."""
+    size: float | None = None
+    """Length of a part of the pattern [m]; None for one that the object's size gives."""
+
+
+TEXTURES = {"wood": "#c99a62", "brick": "#a9543c", "stripes": "", "checker": ""}
+"""Patterns with their colour where an object has none; empty for the one that it would have anyway."""
+
+
+@dataclass(frozen=True, slots=True)
 class Arrows:
     """Arrows of a vector at the centres of objects."""
 

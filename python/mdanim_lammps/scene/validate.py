@@ -362,6 +362,13 @@ class Validator:
         settings = [s for block in self.blocks("render")[:1] for s in block.settings.get("camera", ())]
         last = -math.inf
         for s in settings:
+            if isinstance(one := s.record(), records.Standpoint):
+                if one.name is not None:
+                    self.known_object(one.name, s.span(0))
+                if len(settings) > 1:
+                    cause = f"camera {one.place} is a view for the whole movie, and there is another camera"
+                    self.problem(s.span(), cause, "leave one of them out, or write all as camera 2 s from ...")
+                continue
             time, eye, look, up = s.values
             if isinstance(look, str):
                 self.known_object(look, s.span(2))

@@ -25,7 +25,7 @@ import numpy as np
 
 from ..errors import OutputError
 from ..features.liquid.kept import DROPS, HEIGHT, RAW, WAY
-from ..picture.camera import FIELD_OF_VIEW, Action, CameraPath, action_of, automatic_view
+from ..picture.camera import FIELD_OF_VIEW, Action, action_of, automatic_view
 from ..picture.floor import grid_spacing
 from ..picture.foam import Foam
 from ..picture.liquid import LiquidSheet, without_puddles
@@ -33,6 +33,7 @@ from ..picture.palette import LIQUID, background_colors, is_dark, object_colors,
 from ..picture.ponds import one_sheet
 from ..picture.rays import direction
 from ..picture.scenery import scenery
+from ..picture.standpoints import direction_of, path_of
 from ..picture.surfaces import shaded_mesh
 from ..results.trajectory import Trajectory
 from ..results.trajectory_metadata import ends_gone, springs_gone
@@ -48,6 +49,8 @@ MOST_FOAM = 63
 """White all over."""
 STEPS = 65535
 """Steps of a 16-bit number."""
+PATTERNS = (Floor.GRID, Floor.CHECKER, Floor.PLAIN)
+"""Floors that the page draws; it draws all others without a pattern."""
 MOST_STRAIN = 0.2
 """Strain that is drawn in the last colour [-]."""
 MOST_POINTS = 1000
@@ -119,7 +122,7 @@ class Feed:
         """Data that do not change, without arrays; lengths [m], times [s], masses [kg], colours ``[r, g, b]`` of 0 to 255."""
         m, there, action = self.metadata, self.scenery, self.action
         view = self._view()
-        low, high = background_colors(self.render.background)
+        low, high = background_colors(self.render)
         size = max(action.size, np.finfo(np.float32).tiny)
         floor = None if action.escaped else float(action.bounds[0][2])
         if there.ground is not None:
@@ -145,7 +148,7 @@ class Feed:
             "bounds": [b.tolist() for b in action.bounds],
             "size": float(size),
             "floor": floor,
-            "pattern": self.render.floor.value,
+            "pattern": self.render.floor.value if self.render.floor in PATTERNS else Floor.PLAIN.value,
             "shadows": self.render.shadows,
             "grid": grid_spacing(size),
             "lamp": direction(self.render.light).tolist(),
@@ -197,9 +200,10 @@ class Feed:
         there = self.scenery
         if self.render.camera and self.finished:
             with Trajectory(self.folder) as trajectory:
-                return CameraPath(self.render.camera, trajectory).at(0.0)
+                if (path := path_of(self.render.camera, trajectory, self.action)) is not None:
+                    return path.at(0.0)
         basin = (there.liquid.low, there.liquid.high) if there.liquid else None
-        return automatic_view(self.action, ASPECT, there.walls, basin)
+        return automatic_view(self.action, ASPECT, there.walls, basin, direction_of(self.render.camera))
 
     def _boxes(self, vertices: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Lower corner and size of each object's box [m], each of shape (O, 3)."""

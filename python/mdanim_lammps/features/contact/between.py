@@ -71,7 +71,7 @@ class Touching:
 
     @cached_property
     def _neighbours(self) -> list[dict[int, set]]:
-        """What each object may touch in the time before each frame: numbers of objects, and planes by their names."""
+        """Neighbours of each object in the time before each frame, which it may touch: numbers of objects, names of planes."""
         found: list[dict[int, set]] = [{}]
         for low, high in self._boxes():
             size = (high - low).min(axis=1)
