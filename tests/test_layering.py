@@ -139,7 +139,7 @@ FOLDERS = [
     *("numbers", "simd", "threads", "geometry", "records"),  # plain floors
     # effects; passes know those before them
     *("springs", "leapfrog", "gravity", "buoyancy", "barrier", "passes", "wall", "contact", "rigid", "joints", "drives"),
-    *("forces", "air", "inflate", "tearing", "folds"),
+    *("forces", "hands", "air", "inflate", "tearing", "folds"),
     *("liquid", "liquid/automaton", "liquid/waves"),
     *("lammps", "c_api"),
 ]

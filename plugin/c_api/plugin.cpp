@@ -13,6 +13,7 @@
 #include "lammps/fix_mdanim_folds.h"
 #include "lammps/fix_mdanim_force.h"
 #include "lammps/fix_mdanim_gravity.h"
+#include "lammps/fix_mdanim_hand.h"
 #include "lammps/fix_mdanim_inflate.h"
 #include "lammps/fix_mdanim_joint.h"
 #include "lammps/fix_mdanim_leapfrog.h"
@@ -130,6 +131,7 @@ MDANIM_EXPORT void lammpsplugin_init(void *handle_of_lammps, void *handle, void 
       style<ComputeMdanimTimestep>("compute", "mdanim/timestep", "the largest stable time step"),
       style<FixMdanimLeapfrog>("fix", "mdanim/leapfrog", "leap-frog with friction"),
       style<FixMdanimGravity>("fix", "mdanim/gravity", "m g on every particle"),
+      style<FixMdanimHand>("fix", "mdanim/hand", "hands that pull at material points of objects"),
       style<FixMdanimJoint>("fix", "mdanim/joint", "joints between objects"),
       style<FixMdanimAir>("fix", "mdanim/air", "air pushes at surfaces"),
       style<FixMdanimInflate>("fix", "mdanim/inflate", "gas in closed surfaces"),

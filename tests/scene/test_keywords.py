@@ -52,6 +52,10 @@ def scene(block: str, **settings: str):
     if "inflate" in settings:
         blocks["object"]["shape"] = "sphere 10 cm sheet thickness 1 mm"
         del blocks["liquid"]
+    if block == "hand":
+        blocks["hand"] = {"at": "(0, 0, 0) m", "key": "0 s at (0, 0, 0) m  key 2 s at (0, 0, 1) m"}
+        if "key" in settings:
+            settings = {"key": f"{settings['key']}  key 2 s at (0, 0, 1) m"}
     if block == "joint" and "restitution" in settings:
         blocks["joint"]["limits"] = "-30 deg to 60 deg"
     if "(floor)" in settings.get("expect", ""):
@@ -67,7 +71,9 @@ def scene(block: str, **settings: str):
     text = "".join(f"{word} {value}\n" for word, value in top.items())
     for name, content in blocks.items():
         heads = {"object": "object ball", "liquid": "liquid water", "contact": "contact ball floor", "floor": "object floor"}
-        head = (heads | {"place": "group few { } place few", "joint": f"joint {kind} ball floor"}).get(name, name)
+        head = (heads | {"place": "group few { } place few", "joint": f"joint {kind} ball floor", "hand": "hand ball"}).get(
+            name, name
+        )
         text += f"{head} {{\n" + "".join(f"  {w} {v}\n" for w, v in content.items()) + "}\n"
     return parse_scene(text)
 

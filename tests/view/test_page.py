@@ -2,6 +2,7 @@
 """The page in a real browser: what is seen, pressed and said. Without Chromium these tests are skipped, or fail where the
 environment says MDANIM_BROWSER=required."""
 
+import contextlib
 import io
 import os
 import shutil
@@ -449,3 +450,43 @@ def test_a_run_begun_anew_is_shown_anew(browser, tmp_path):
         browser.js("mdanim.once = true")
         show(browser, 5)
         assert browser.js("return mdanim.once")
+
+
+def test_an_object_is_pulled_by_the_mouse(browser, tmp_path):
+    """The run waits for the page; a drag of an object lifts it, shown by a line, and beside it the camera turns."""
+    (tmp_path / "fall.txt").write_text(FALL.replace("time 0.3 s", "time 9 s").replace(" at 0.3 s", ""))
+    folder = tmp_path / "fall.out"
+    command = [
+        sys.executable,
+        "-m",
+        "mdanim_lammps",
+        str(tmp_path / "fall.txt"),
+        "--hands",
+        "--no-movie",
+        "--accuracy",
+        "preview",
+    ]
+    run = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
+    try:
+        browser.go(next(line for line in run.stdout if line.startswith("view ")).split()[1])
+        browser.until(f"{SHOWN} && mdanim.run.state == 'paused' && Boolean(mdanim.hand)")
+        press(browser, "pause")
+        x, y = map(int, center_of(browser, 1))
+        down = {"type": "pointerDown", "button": 0}, {"type": "pointerMove", "x": x + 40, "y": y - 160, "duration": 100}
+        eye = browser.js("return mdanim.stage.camera.position.toArray()")
+        browser._mouse({"type": "pointerMove", "x": x, "y": y}, *down)
+        assert browser.js("return mdanim.hand.held.object") == 1 and browser.js("return mdanim.stage.extras.hand.visible")
+        browser.until("mdanim.shown.object[12 + 8] > 0.08")  # it stood at 0.025 m
+        browser._mouse({"type": "pointerUp", "button": 0})
+        assert not browser.js("return mdanim.stage.extras.hand.visible") and not browser.js("return Boolean(mdanim.hand.held)")
+        assert browser.js("return mdanim.stage.camera.position.toArray()") == eye
+        browser.drag(20, 200, 60, 20)
+        assert browser.js("return mdanim.stage.camera.position.toArray()") != eye
+        lines = (folder / "hands.txt").read_text()
+        assert lines.count("hand plate {") == 1 and lines.endswith("}\n")
+    finally:
+        while run.poll() is None:  # the run ends, then the view
+            run.terminate()
+            with contextlib.suppress(subprocess.TimeoutExpired):
+                run.wait(0.5)
+        run.stdout.close()

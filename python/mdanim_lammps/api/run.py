@@ -14,13 +14,13 @@ from typing import TYPE_CHECKING
 from weakref import ref
 
 from ..engine.threads import with_threads
-from ..errors import MdanimError, OutputError, Problem, RefusedError
+from ..errors import MdanimError, OutputError, Problem, RefusedError, UsageError
 from ..parallel.limits import check_executors
 from ..report import progress_line
 from ..results.checkpoint import Checkpoint
 from ..results.cost import Cost
 from ..results.expect import Outcome
-from ..results.files import CHECKPOINT, RECORDS, SUMMARY, claimed, in_use, read_json
+from ..results.files import CHECKPOINT, HANDS, RECORDS, SUMMARY, claimed, in_use, read_json
 from ..results.html import THUMBNAIL, html_table
 from ..results.ledger import Ledger
 from ..results.overwriting import output_file
@@ -325,19 +325,23 @@ def run_frames(
     threads: int | None = None,
     control: str | None = None,
     resume: Checkpoint | None = None,
+    hands: bool = False,
     **options,
 ) -> Result:
     """Simulate in this process, or on executors of their own when there is more than one or a ``control`` is named, each with so
     many threads; None: as many as pay, of all cores divided by executors.
 
-    ``options`` are those of `run.loop.simulate`. Raises what that does, and UsageError for less than one executor or thread or
-    more than this machine can hold.
+    ``hands`` and ``options`` are those of `run.loop.simulate`. Raises what that does, and UsageError for less than one executor
+    or thread, for more than this machine can hold, and for executors that would go on with a run with hands.
     """
     check_executors(executors, ready.system.particles)
     check_alone(ready.scene, executors, control)
     with with_threads(threads):
         if executors == 1 and control is None:
-            return simulate(ready, folder, resume=resume, **options)
+            return simulate(ready, folder, resume=resume, hands=hands, **options)
+        if hands or (resume and (folder / HANDS).exists()):
+            way_out = "leave out -n; a scene with the lines of its hands.txt runs on any number of them"
+            raise UsageError(f"a run with hands goes on in one process, not on executors: {way_out}")
         from ..parallel.runtime.launch import simulate_on
 
         return simulate_on(executors, control or "central", ready, folder, resume=resume, **options)

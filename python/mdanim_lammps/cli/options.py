@@ -41,6 +41,7 @@ Executors = Annotated[
     int, Parameter(alias="-n", converter=whole_number, help="Processes that simulate; one more supervises them.")
 ]
 View = Annotated[bool, Parameter(help="Show the run in a browser while it goes on.")]
+HandsOn = Annotated[bool, Parameter(name="--hands", help="Let the page pull at objects of the run; implies --view.")]
 
 
 @Parameter(name="*")

@@ -16,8 +16,8 @@ from ..errors import ExitCode, Problem, RefusedError, UsageError
 from ..export import FORMATS
 from ..terminal import progress_bar
 from ..view.beside import Viewer, show_address
-from .options import AllowUnstable, Executing, Look, OutFile, Quiet, RunFolder, View, whole_number
-from .steps import adopt, announce, draw_movie, frame_range, prepare, simulate_and_draw
+from .options import AllowUnstable, Executing, HandsOn, Look, OutFile, Quiet, RunFolder, View, whole_number
+from .steps import adopt, announce, check_hands, draw_movie, frame_range, prepare, simulate_and_draw
 
 if TYPE_CHECKING:
     from ..scene.render import Render
@@ -30,6 +30,7 @@ def resume(
     executing: Executing = Executing(),
     movie: Annotated[bool | None, Parameter(negative="--no-movie")] = None,
     view: View = False,
+    hands: HandsOn = False,
     allow_unstable: AllowUnstable = False,
     trust: bool = False,
     quiet: Quiet = False,
@@ -48,12 +49,14 @@ def resume(
     from ..api.run import resumed
 
     executing.check()
+    if hands:
+        check_hands(executing)
     make = partial(prepare, allow_unstable=allow_unstable)
-    with Viewer(view) as viewer, resumed(folder, make, trust) as (ready, checkpoint, draws):
+    with Viewer(view, hands=hands) as viewer, resumed(folder, make, trust) as (ready, checkpoint, draws):
         announce(ready, quiet, False, executing)
         viewer.start(folder)
         movie = draws if movie is None else movie
-        simulate_and_draw(ready, folder, executing, quiet=quiet, movie=movie, resume=checkpoint)
+        simulate_and_draw(ready, folder, executing, quiet=quiet, movie=movie, resume=checkpoint, hands=hands)
 
 
 def render(

@@ -6,6 +6,7 @@ from __future__ import annotations
 import shlex
 import sys
 import time
+from dataclasses import replace
 from json import dumps
 from pathlib import Path
 from typing import Annotated, Literal
@@ -17,8 +18,32 @@ from ..scene.formatting import number, say
 from ..scene.lammps_lines import check_alone
 from ..terminal import progress_bar
 from ..view.beside import Viewer
-from .options import AllowUnstable, Executing, Executors, Look, OutFile, OutFolder, Quiet, Reading, SceneFile, Verbose, View
-from .steps import STARTED, announce, lmp_command, percent_of, prepare, print_lines, print_warnings, seconds_of, simulate_and_draw
+from .options import (
+    AllowUnstable,
+    Executing,
+    Executors,
+    HandsOn,
+    Look,
+    OutFile,
+    OutFolder,
+    Quiet,
+    Reading,
+    SceneFile,
+    Verbose,
+    View,
+)
+from .steps import (
+    STARTED,
+    announce,
+    check_hands,
+    lmp_command,
+    percent_of,
+    prepare,
+    print_lines,
+    print_warnings,
+    seconds_of,
+    simulate_and_draw,
+)
 
 
 def run(
@@ -31,6 +56,7 @@ def run(
     movie: Annotated[bool, Parameter(negative="--no-movie")] = True,
     view: View = False,
     edit: bool = False,
+    hands: HandsOn = False,
     allow_unstable: AllowUnstable = False,
     quiet: Quiet = False,
     verbose: Verbose = False,
@@ -50,15 +76,21 @@ def run(
 
     executing.check()
     record = reading.load(scene)
+    if hands:
+        check_hands(executing, edit)
+        record = replace(record, steerable=True)
     check_alone(record, executing.executors, executing.control)
     out = output_folder(record, output.out)
     ready = prepare(record, allow_unstable=allow_unstable)
     announce(ready, quiet, verbose, executing)
     if executing.executors > 1 and not quiet:
         print("\n".join(speedup_lines(forecast_speedup(ready, executing.executors))), flush=True)
-    with Viewer(view, scene if edit else None) as viewer, open_run(ready, out, force=output.force, draws=movie) as folder:
+    with (
+        Viewer(view, scene if edit else None, hands=hands) as viewer,
+        open_run(ready, out, force=output.force, draws=movie) as folder,
+    ):
         viewer.start(folder)
-        simulate_and_draw(ready, folder, executing, quiet=quiet, movie=movie)
+        simulate_and_draw(ready, folder, executing, quiet=quiet, movie=movie, hands=hands)
 
 
 def check(

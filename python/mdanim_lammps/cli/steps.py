@@ -72,6 +72,14 @@ def frame_range(text: str) -> slice:
     return slice(*(int(word) if word else None for word in match.groups()))
 
 
+def check_hands(executing: Executing, edit: bool = False) -> None:
+    """Raises UsageError for what does not go with ``--hands``."""
+    if executing.executors > 1 or executing.control:
+        raise UsageError("--hands: a page pulls at objects of a run in one process; leave out -n. The lines it leaves run on any")
+    if edit:
+        raise UsageError("--hands: a page that edits the scene does not pull at objects; leave out --edit")
+
+
 def print_warnings(ready) -> None:
     for warning in ready.warnings:
         print(warning, file=sys.stderr)

@@ -16,9 +16,10 @@ from ..scene.scene import SceneRecord
 from .context import Context, Verdict
 from .facets import Accounts, Advice, Bounds, Frames
 from .fields import Field
+from .steered import Steered
 
 
-class Effect(Motion, Bounds, Accounts, Frames, Advice):
+class Effect(Motion, Bounds, Accounts, Frames, Steered, Advice):
     """One physical effect. A subclass is one file in a folder of features/ and holds everything that belongs to the effect.
 
     An effect that is off leaves no trace: no column, no command, no term. Each facet has defaults that say nothing, so a subclass

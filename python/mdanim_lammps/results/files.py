@@ -35,6 +35,10 @@ STOP = "stop"
 """A file of this name in the run's folder stops the run as Ctrl-C does."""
 PAUSE = "pause"
 """While a file of this name is in the run's folder, the run begins no further frame."""
+HANDS = "hands.txt"
+"""Lines of a scene with what hands did in a run."""
+HAND = "hand.json"
+"""State of the hand of a page, which the run reads before each frame."""
 JOB = ".ranks-"
 """Beginning of the name of the file by which a run is handed to its ranks, readable for its owner alone. The supervising rank
 empties the file when it has read it; the process that has started the ranks deletes it when it has the result."""
@@ -68,7 +72,7 @@ RESULTS = (
         CHECKPOINT,
         "cost.json",
     ),
-    *(SUMMARY, "progress.jsonl", "timeline.json", "edited.txt", STOP, PAUSE, "log.lammps"),
+    *(SUMMARY, "progress.jsonl", "timeline.json", "edited.txt", HANDS, HAND, STOP, PAUSE, "log.lammps"),
 )
 """Files of every run."""
 PICTURES = ("trace.json", "movie.mp4", "report.html")
@@ -282,7 +286,7 @@ def write_whole(path: Path, write: Callable[[Path], None] | str) -> None:
         OutputError: the file cannot be written, e.g. because the disk is full.
     """
     with disk_errors(path):
-        part = _new_part(path)
+        part = new_part(path)
         try:
             if isinstance(write, str):
                 part.write_text(write, encoding="utf-8")
@@ -295,7 +299,7 @@ def write_whole(path: Path, write: Callable[[Path], None] | str) -> None:
             raise
 
 
-def _new_part(path: Path) -> Path:
+def new_part(path: Path) -> Path:
     """An empty file beside ``path`` with a name that no other writer has. Raises OSError."""
     part = path.with_name(f".{path.name}.{secrets.token_hex(4)}.part")
     os.close(os.open(part, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o666))

@@ -171,6 +171,14 @@ class Sequential:
             steps -= piece
         return self._frame(frame)
 
+    def steer(self, command: str) -> None:
+        """See `run.hands.TakesCommands`."""
+        self.instance.lammps.command(command)
+
+    def places(self, rows: np.ndarray) -> np.ndarray:
+        """See `run.hands.TakesCommands`."""
+        return self.instance.array("x")[rows].copy()
+
     def stop(self, frame):
         return frame
 

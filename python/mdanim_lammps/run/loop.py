@@ -24,7 +24,7 @@ from ..interrupts import Interrupts
 from ..results.checkpoint import Checkpoint
 from ..results.cost import Cost, CostShare
 from ..results.expect import Outcome, evaluate
-from ..results.files import CHECKPOINT, PAUSE, RECORDS, STOP, SUMMARY, disk_errors, write_json, write_whole
+from ..results.files import CHECKPOINT, HANDS, PAUSE, RECORDS, STOP, SUMMARY, disk_errors, write_json, write_whole
 from ..results.ledger import Ledger
 from ..results.progress import ProgressLog
 from ..results.quantities import recorded
@@ -45,6 +45,7 @@ from .energy import (
 )
 from .frame_source import COST_SECONDS, Account, Frame, FrameSource, LammpsFailure, Sequential, clock
 from .guard import Guard
+from .hands import PageHands
 from .prepare import Prepared
 from .result import Result
 
@@ -113,17 +114,20 @@ def simulate(
     resume: Checkpoint | None = None,
     started: float | None = None,
     source: FrameSource | None = None,
+    hands: bool = False,
 ) -> Result:
     """Run all frames (or go on from a checkpoint), leaving trajectory.h5, ledger.csv, checkpoint and summary.json in ``folder``.
 
     ``started`` is what ``time.perf_counter()`` gave when the work for this run began, so that loading and modelling are in its
     cost; None is now. ``source`` gives the frames; None is one LAMMPS instance in this process. Raises DivergedError with the
     last good frame kept, Interrupted after Ctrl-C or when a file ``stop`` appears in the folder,
-    OutputError when the disk is full. While a file ``pause`` is in the folder no frame is begun.
+    OutputError when the disk is full. While a file ``pause`` is in the folder no frame is begun. With ``hands`` a page may pull
+    at objects: the run begins paused, and is no faster than the film.
     """
-    run = _Run(
-        ready, folder, resume, time.perf_counter() if started is None else started, source or Sequential(ready.plan, ready.models)
-    )
+    source = source or Sequential(ready.plan, ready.models)
+    run = _Run(ready, folder, resume, time.perf_counter() if started is None else started, source)
+    if hands or (resume and (folder / HANDS).exists()):
+        run.hands = PageHands(ready, folder, source, hands)
     return run.go(on_progress or (lambda progress: None))
 
 
@@ -177,6 +181,7 @@ class _Run:
         self.certificate = ready.certificate
         self.effects = ready.plan.effects
         self.started = started
+        self.hands: PageHands | None = None
         self.guard = Guard(ready, folder)
         self.seconds = {"setup": 0.0, "simulation": 0.0, "output": 0.0}
         self.carried = dict(resume.carried) if resume else {}
@@ -236,6 +241,8 @@ class _Run:
                 self._reread_ledger(frame)
             else:
                 self._record(out, log, frame, now)
+            if self.hands:
+                self.hands.begin(self.resume.step if self.resume else None, self.carried)
             self.seconds["setup"] = time.perf_counter() - self.started
             if now:
                 with self._clock("output"):
@@ -248,6 +255,9 @@ class _Run:
                             self._save(out, frame, now)
                         self._pause(stop, log, lambda at=frame: on_progress(self._progress(at)))
                     frame += 1
+                    if self.hands:
+                        with self._clock("paused"):
+                            self.hands.frame((frame - 1) * c.steps_per_frame, min(frame * c.steps_per_frame, c.steps))
                     with self._clock("simulation"):
                         now = self._advance(frame, lengths[frame - 1])
                     with self._clock("guard"):
@@ -415,6 +425,8 @@ class _Run:
         carried = {t: self.ledger.rows[-1][t] for t in loss_terms(self.ready.plan)}
         carried["penetration"] = self.penetration
         carried["seconds"] = sum(self.seconds.values())
+        if self.hands:
+            carried |= self.hands.kept()
         s = self.source.state()
         rows = self.ledger.checksum(frame + 1)
         Checkpoint(now.step, frame, s.x, s.v, s.f, carried, self.run_id, rows, s.records).write(self.folder / CHECKPOINT)

@@ -24,11 +24,11 @@ class Viewer:
     """The server of a view beside a run, in a process of its own; a context manager around the run.
 
     At the end it waits until the view is no longer needed: until a minute has passed without a page, or Ctrl-C. An error of the
-    run is printed before that. ``edit`` is the file of the scene if pages may edit it.
+    run is printed before that. ``edit`` is the file of the scene if pages may edit it; with ``hands`` they may pull at objects.
     """
 
-    def __init__(self, wanted: bool, edit: Path | None = None):
-        self._wanted, self._edit = wanted or edit is not None, edit
+    def __init__(self, wanted: bool, edit: Path | None = None, hands: bool = False):
+        self._wanted, self._edit, self._hands = wanted or hands or edit is not None, edit, hands
         self._process: Child | None = None
 
     def start(self, folder: Path) -> None:
@@ -38,6 +38,8 @@ class Viewer:
         server = command("mdanim_lammps.view.__main__", folder, "--linger", f"{LINGER:g}")
         if self._edit:
             server += ["--edit", "--scene", str(self._edit)]
+        if self._hands:
+            server += ["--hands"]
         # In a session of its own: the Ctrl-C that stops the run is not for the view.
         self._process = start(server, stdin=DEVNULL, stdout=PIPE, start_new_session=True)
         threading.Thread(target=self._announce, args=(self._process,), daemon=True).start()

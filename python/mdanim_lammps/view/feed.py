@@ -108,6 +108,11 @@ class Feed:
         gone (`gone`)."""
         return self._carry.places(position, gone)
 
+    @cached_property
+    def start(self) -> np.ndarray:
+        """Vertices of all surfaces at the start [m], shape (V, 3)."""
+        return self.vertices(self.frames.value("position", 0), self.gone(0))
+
     def gone(self, n: int) -> np.ndarray | None:
         """Ends of the springs that are gone in a frame, as Trajectory.gone."""
         return ends_gone(self.metadata, lambda name: self.frames.value(name, n))
@@ -216,7 +221,7 @@ class Feed:
         """A frame. Raises OutputError where it is not there or damaged, IndexError."""
         frames = self.frames
         x, center, speed = (frames.value(name, n) for name in ("position", "center_of_mass", "center_of_mass_velocity"))
-        x, center = x - self._way(n), center - self._way(n)
+        x, center = x - self.way(n), center - self.way(n)
         vertices = self.vertices(x, self.gone(n))
         check_places(frames.path, vertices, center, speed, frame=n)
         low, size = self._boxes(vertices)
@@ -244,7 +249,7 @@ class Feed:
             return None
         grid, (smooth, raw, _) = self.scenery.liquid.grid, self._liquid(n)
         read = lambda k: (*without_puddles(grid, *self._liquid(k)[:2]), self.drops(k))
-        vertices = self.vertices(self.frames.value("position", n) - self._way(n), self.gone(n))
+        vertices = self.vertices(self.frames.value("position", n) - self.way(n), self.gone(n))
         smooth, cut = one_sheet(grid, *without_puddles(grid, smooth, raw), vertices, self.triangle)
         low, high = self.scenery.liquid.low[2], self.scenery.liquid.high[2]
         height = np.rint(np.clip((smooth - low) / (high - low), 0.0, 1.0) * STEPS).astype("<u2")
@@ -259,7 +264,7 @@ class Feed:
         rows = self.frames.value(DROPS.table, n)
         return rows[rows[:, 3] > 0.0]
 
-    def _way(self, n: int) -> np.ndarray:
+    def way(self, n: int) -> np.ndarray:
         """Displacement of a basin that moves [m], shape (3,): the page shows all in its frame."""
         liquid = self.scenery.liquid
         return self.frames.value(WAY.table, n)[0] if liquid is not None and liquid.moves else np.zeros(3)

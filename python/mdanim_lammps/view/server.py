@@ -25,6 +25,7 @@ from .control import COMMANDS, command
 from .edit import LONGEST_TEXT, Editor
 from .feed import LAYERS
 from .listener import HOST, Listener
+from .pull import Puller
 from .tail import Known, Tail
 
 KINDS = {"html": "text/html; charset=utf-8", "css": "text/css; charset=utf-8", "js": "text/javascript; charset=utf-8"}
@@ -49,11 +50,20 @@ class ViewServer:
         tail: of the folder.
         port: 0 takes a free one.
         editor: of the scene's text, where pages may edit it and run it again; None where they may not.
+        puller: of objects, where pages may pull at them; None where they may not.
         linger: seconds that the server waits for a page once the run has ended and no page is open; None waits for ever.
     """
 
-    def __init__(self, tail: Tail, *, port: int = 0, linger: float | None = None, editor: Editor | None = None):
-        self.tail, self.linger, self.editor = tail, linger, editor
+    def __init__(
+        self,
+        tail: Tail,
+        *,
+        port: int = 0,
+        linger: float | None = None,
+        editor: Editor | None = None,
+        puller: Puller | None = None,
+    ):
+        self.tail, self.linger, self.editor, self.puller = tail, linger, editor, puller
         self.token = secrets.token_urlsafe(24)
         self.files = packaged_files()
         self._pages: set[ServerConnection] = set()
@@ -149,6 +159,8 @@ class ViewServer:
         finally:
             gone.set()
             self._pages.discard(page)
+            if self.puller:
+                self.puller.gone(page)
 
     def _push(self, page: ServerConnection, gone: threading.Event) -> None:
         known = Known()
@@ -157,6 +169,7 @@ class ViewServer:
                 seen = self.tail.changes
                 if news := self.tail.news(known):
                     news["edit"] = LONGEST_TEXT if self.editor else False
+                    news["hands"] = self.puller is not None
                     page.send(json.dumps({"news": news}, allow_nan=False))
                     gone.wait(LOT)
                 with self.tail.changed:
@@ -179,6 +192,8 @@ class ViewServer:
             elif "heights" in asked:
                 feed = self.tail.feed()
                 page.send(json.dumps({"heights": feed.heights(whole(asked["heights"], len(feed.first)), self.tail.count)}))
+            elif self.puller and "hand" in asked:
+                self._pull(page, asked["hand"])
             elif asked.get("do") in COMMANDS:
                 self._command(page, asked["do"])
             else:
@@ -193,6 +208,13 @@ class ViewServer:
         try:
             if self.tail.live:
                 command(self.tail.folder, what)
+        except MdanimError as error:
+            page.send(json.dumps({"refused": str(error)}))
+
+    def _pull(self, page: ServerConnection, asked: dict | None) -> None:
+        """Move the hand of a page. No answer is due, as to a command."""
+        try:
+            self.puller.pull(page, asked)
         except MdanimError as error:
             page.send(json.dumps({"refused": str(error)}))
 

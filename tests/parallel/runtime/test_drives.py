@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""Scenes with objects that are driven, or pushed by forces, give the same bits in all forms of the distribution, resumed, and by
-plain LAMMPS."""
+"""Scenes with objects that are driven, or pushed by forces and hands, give the same bits in all forms of the distribution,
+resumed, and by plain LAMMPS."""
 
 import numpy as np
 import pytest
@@ -59,6 +59,8 @@ object stone { shape box (8, 8, 8) cm    position (60, 13, 0) cm   density 300  
 object pole  { shape box (8, 8, 24) cm   position (0, 60, 0) cm    density 800   elasticity 500 kPa  hold face -z
   force (5, 0, 0) N to 0.04 s }
 object far   { shape sphere 6 cm         position (90, 60, 10) cm  density 900   elasticity 300 kPa }
+hand far     { at (93, 60, 10) cm  key 0.01 s at (93, 60, 10) cm  key 0.0333 s at (93, 66, 14) cm  key 0.06 s at (94, 66, 18) cm }
+hand stone   { at (64, 13, 4) cm   key 0.02 s at (64, 13, 3) cm   key 0.08 s at (60, 11, 8) cm }
 control { time 0.08 s  frames 100 fps  resolution 4 cm  friction 0.4 }
 """
 RELEASED = """
@@ -126,7 +128,7 @@ def found(tmp_path_factory, scene):
 
 
 @pytest.mark.parametrize("way", CASES)
-def test_all_forms_give_the_same(found, way):
+def test_all_forms_give_the_same(found, way, scene):
     """Frames, the state, and the work but for rounding of its sums."""
     alone, other = same_frames(found, way)
     for name in "xvf":
@@ -135,7 +137,8 @@ def test_all_forms_give_the_same(found, way):
     for fix, records in alone.records.items():
         if not (fix == "liquid" and way.startswith("teams")):  # its ledger is a sum over ranks
             assert records == other.records[fix], fix
-    assert other.carried["work"] == pytest.approx(alone.carried["work"], rel=1e-9)
+    rounding = 1e-8 if scene == "pushed" else 1e-9  # the dampers of its hands, where forces are found anew
+    assert other.carried["work"] == pytest.approx(alone.carried["work"], rel=rounding)
 
 
 def test_the_ledger_closes(found):

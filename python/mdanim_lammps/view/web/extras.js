@@ -21,6 +21,13 @@ export class Extras {
       part.visible = part.frustumCulled = false;
       world.add(part);
     }
+    const thread = { color: 0xd9480f, depthTest: false, transparent: true };
+    this.hand = lines(new Float32Array(6), new Uint32Array([0, 1]), new LineBasicMaterial(thread));
+    const ends = new BufferGeometry().setAttribute("position", this.hand.geometry.attributes.position);
+    this.hand.add(new Points(ends, new PointsMaterial({ ...thread, size: 8, sizeAttenuation: false })));
+    for (const part of [this.hand, ...this.hand.children]) Object.assign(part, { frustumCulled: false, renderOrder: 1 });
+    this.hand.visible = false;
+    world.add(this.hand);
     this.walls = box(scene.walls, soft);
     if (this.walls) world.add(this.walls);
   }
@@ -33,6 +40,14 @@ export class Extras {
       this.spots.set(frame.particles);
       this.springs.geometry.attributes.position.needsUpdate = true;
     }
+  }
+
+  // A line between two points, or none.
+  pull(from, to) {
+    this.hand.visible = Boolean(from);
+    if (!from) return;
+    this.hand.geometry.attributes.position.array.set([...from, ...to]);
+    this.hand.geometry.attributes.position.needsUpdate = true;
   }
 
   join(bond) {

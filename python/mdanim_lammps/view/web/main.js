@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // Puts the parts together: what is heard, what is seen, what is pressed.
 import { offerEditing } from "./edit.js";
+import { Hand } from "./hands.js";
 import { STRAIN, PARTICLES, cameraLine, nearlyMost, number, ownersAt } from "./message.js";
-import { Energies, Height, byId, element, executorColor, roundStrain, showCost, showExpects, showLegend, showObject, strainColor, table } from "./panel.js";
+import { Energies, Height, KEYS, byId, element, executorColor, roundStrain, showCost, showExpects, showLegend, showObject, strainColor, table, typing } from "./panel.js";
 import { Cache, Player, SPEEDS } from "./player.js";
 import { Embedded, Socket } from "./source.js";
 import { COARSEST, Stage } from "./stage.js";
@@ -10,15 +11,10 @@ import { COARSEST, Stage } from "./stage.js";
 const SLOW = 60, REST = 350; // milliseconds: of a picture that is too slow, and without motion before one in full
 const TOLD = 200; // milliseconds between two lots of numbers beside pictures that are eased: to draw these takes as long as a picture
 const LIVE = ["preparing", "running", "paused"];
-const KEYS = [
-  ["drag, wheel, right drag", "turn, zoom, move"], ["click", "pick an object; Esc lets it go"], ["Space", "play or hold the film"], ["Shift+Space", "pause the run, or let it go on"],
-  ["← →", "a frame, with Shift ten"], ["Home, End", "first frame, newest frame"], ["1 … 7", "what is shown"], ["F", "see all, or the picked object"],
-  ["C", "copy the camera line"], ["P", "save a screenshot"], ["?", "this list"],
-];
 const run = { file: null, count: 0, total: 0, executors: 1, state: "", message: "", seconds: 0, cost: {}, facts: {}, owners: [] };
 const energies = new Energies(), height = new Height(), cache = new Cache();
 const report = byId("replay"); // in a report: the block of data
-let source, scene, stage, player, shown = null, shownKey = "", picked = null, heightAt = 0, ease = 0, slow = 0, drawnAt = 0, rested = true, failedAt = 0, range = 0.002, lastTick = 0, toldKey = "", toldAt = 0, asked = "";
+let source, scene, stage, player, hand = null, shown = null, shownKey = "", picked = null, heightAt = 0, ease = 0, slow = 0, drawnAt = 0, rested = true, failedAt = 0, range = 0.002, lastTick = 0, toldKey = "", toldAt = 0, asked = "";
 
 async function start() {
   byId("speed").append(...SPEEDS.map((x) => element("option", { value: x, textContent: `${x} ×`, selected: x === 1 })));
@@ -44,8 +40,8 @@ async function start() {
   offer("strain", !report && scene.springs, "by strain", report ? "in a view" : "where save all is asked for");
   controls();
   byId("hello").textContent = "drag to turn, wheel to zoom, right drag to move, click an object to know it";
-  refresh();
   player.play(true);
+  refresh();
   requestAnimationFrame(tick);
 }
 
@@ -69,6 +65,7 @@ function refresh() {
   say(run.state, run.message);
   if (run.edit) offerEditing(source, run.edit);
   if (player) Object.assign(player, { count: run.count, live });
+  if (player && run.hands && live && !hand) offerHand();
   byId("slider").max = Math.max(run.total, 1) - 1;
   byId("ready").style.width = `${100 * share}%`;
   byId("pause").hidden = byId("stop").hidden = byId("newest").hidden = !live;
@@ -76,13 +73,19 @@ function refresh() {
   byId("pause").textContent = asked ? "after this frame …" : run.state === "paused" ? "go on" : "pause run";
   byId("pause").disabled = byId("stop").disabled = run.state === "preparing" || asked !== "";
   const words = live && run.total ? [`${Math.floor(100 * share)} %`] : [];
-  if (live && run.seconds && scene) words.push(`${number((run.count * scene.frameTime) / run.seconds, 2)} s of film per second`, `${number(run.seconds * (1 / share - 1), 2)} s left`);
+  if (live && run.seconds && scene && !run.hands) words.push(`${number((run.count * scene.frameTime) / run.seconds, 2)} s of film per second`, `${number(run.seconds * (1 / share - 1), 2)} s left`);
   if (energies.names.length && energies.rows.length) words.push(`energy residual ${number(energies.residual, 2)}`);
   byId("progress").textContent = words.join("   ");
   offer("executor", run.executors > 1, "by executor", "of a run with -n");
   if (picked !== null && live && performance.now() - heightAt > 1000) showHeight();
   showCost(run.cost, run.facts);
   showExpects(run.facts);
+}
+
+function offerHand() {
+  hand = new Hand(byId("stage"), stage, scene, source, () => LIVE.includes(run.state));
+  byId("hello").textContent = "press “go on”, then drag an object to pull at it; drag beside it to turn";
+  player.follow(true);
 }
 
 // A way to colour objects; one that this run does not have says where it is.
@@ -135,6 +138,7 @@ function tick(now) {
 function show(frame, key) {
   [shown, shownKey] = [frame, key];
   stage.show(frame);
+  hand?.draw();
   if (frame.strain) paintStrain(frame.strain);
   else if (byId("colour").value === "executor") stage.paint([...ownersAt(run.owners, frame.frame, scene.objects.length)].map(executorColor));
 }
@@ -220,7 +224,7 @@ function controls() {
 function pointer(canvas) {
   const at = (event) => { const box = canvas.getBoundingClientRect(); return [event.clientX - box.left, event.clientY - box.top]; };
   let down = [0, 0], looked = 0;
-  canvas.addEventListener("pointerdown", (event) => (down = at(event)));
+  canvas.addEventListener("pointerdown", (event) => { down = at(event); byId("hello").hidden = true; });
   canvas.addEventListener("pointerup", (event) => {
     const [x, y] = at(event);
     if (event.button === 0 && Math.hypot(x - down[0], y - down[1]) < 4) choose(stage.pick(x, y)?.object ?? null);
@@ -230,6 +234,7 @@ function pointer(canvas) {
     if (now - looked < 80) return;
     looked = now;
     const found = event.buttons ? null : stage.pick(x, y);
+    canvas.style.cursor = found && hand?.finds(x, y) ? "grab" : "";
     byId("hint").hidden = !found;
     if (found) Object.assign(byId("hint"), { textContent: scene.objects[found.object].name }).style.cssText = `left: ${x}px; top: ${y}px`;
   });
@@ -272,12 +277,6 @@ function screenshot() {
   });
 }
 
-// Whether a key belongs to what has the focus.
-function typing({ target, key }) {
-  if (target.matches("textarea, select, input:not([type=range], [type=checkbox])")) return true;
-  return target.matches("button, summary, input[type=checkbox]") && [" ", "Enter"].includes(key);
-}
-
 const SWITCHES = ["surface", "shadows", "liquid", "particles", "springs", "boxes", "walls"];
 
 function keyboard(event) {
@@ -294,6 +293,6 @@ function keyboard(event) {
 }
 
 // For tests: what the page knows.
-const page = (window.mdanim = { run, drawn: 0, get shown() { return shown; }, get player() { return player; }, get stage() { return stage; }, get scene() { return scene; }, get ease() { return ease; }, get source() { return source; }, cache });
+const page = (window.mdanim = { run, drawn: 0, get shown() { return shown; }, get player() { return player; }, get stage() { return stage; }, get scene() { return scene; }, get ease() { return ease; }, get source() { return source; }, get hand() { return hand; }, cache });
 
 start().catch((error) => say("lost", `The page cannot be shown: ${error.message}`));

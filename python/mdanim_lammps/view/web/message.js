@@ -64,7 +64,7 @@ export function sumNormals(triangle, at, normal) {
   }
 }
 
-// The first object that a ray meets and how far away, or null. Only triangles of objects whose box it meets are looked at.
+// The first object that a ray meets, how far away, and three vertices with weights whose mean is the point; or null. Only triangles of objects whose box it meets are looked at.
 export function pick(origin, direction, scene, frame, at) {
   const [ox, oy, oz] = origin, [dx, dy, dz] = direction, { triangle, object } = scene.data;
   const met = scene.objects.map((_, k) => meetsBox(origin, direction, frame.object, 12 * k));
@@ -82,9 +82,11 @@ export function pick(origin, direction, scene, frame, at) {
     if (u < 0 || u > 1) continue;
     const qx = sy * uz - sz * uy, qy = sz * ux - sx * uz, qz = sx * uy - sy * ux, v = (dx * qx + dy * qy + dz * qz) / det;
     const away = (vx * qx + vy * qy + vz * qz) / det;
-    if (v >= 0 && u + v <= 1 && away > 0 && away < nearest) [nearest, found] = [away, object[triangle[t]]];
+    if (v >= 0 && u + v <= 1 && away > 0 && away < nearest) [nearest, found] = [away, { t, weight: [1 - u - v, u, v] }];
   }
-  return found === null ? null : { object: found, away: nearest };
+  if (found === null) return null;
+  const vertex = [...triangle.subarray(found.t, found.t + 3)];
+  return { object: object[vertex[0]], away: nearest, vertex, weight: found.weight };
 }
 
 function meetsBox(origin, direction, box, b) {

@@ -166,3 +166,15 @@ export function showLegend(kind, range, executors) {
     place.replaceChildren("executor", ...keys, element("span", {}, swatch(executorColor(-1)), " none"));
   }
 }
+
+export const KEYS = [
+  ["drag, wheel, right drag", "turn, zoom, move"], ["click", "pick an object; Esc lets it go"], ["drag an object", "pull at it, in a run with --hands"], ["Space", "play or hold the film"], ["Shift+Space", "pause the run, or let it go on"],
+  ["← →", "a frame, with Shift ten"], ["Home, End", "first frame, newest frame"], ["1 … 7", "what is shown"], ["F", "see all, or the picked object"],
+  ["C", "copy the camera line"], ["P", "save a screenshot"], ["?", "this list"],
+];
+
+// Whether a key belongs to what has the focus.
+export function typing({ target, key }) {
+  if (target.matches("textarea, select, input:not([type=range], [type=checkbox])")) return true;
+  return target.matches("button, summary, input[type=checkbox]") && [" ", "Enter"].includes(key);
+}

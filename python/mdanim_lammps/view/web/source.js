@@ -79,6 +79,11 @@ export class Socket {
     return this.ask({ edit: text, run });
   }
 
+  // The hand on an object: three of its vertices, their weights in the point, and where the hand is; null lets go.
+  pull(hand) {
+    if (this.socket.readyState === WebSocket.OPEN) this.socket.send(JSON.stringify({ hand }));
+  }
+
   tell(what) {
     this.socket.send(JSON.stringify({ do: what }));
   }

@@ -192,9 +192,15 @@ export class Stage {
   // The object below a point of the canvas, in CSS pixels from its upper left corner.
   pick(x, y) {
     if (!this.frame) return null;
+    const { origin, way } = this.ray(x, y);
+    return pick(origin, way, this.scene, this.frame, this.at);
+  }
+
+  // From the camera through a point of the canvas: its origin and direction, and the direction in which the camera looks.
+  ray(x, y) {
     const { clientWidth: w, clientHeight: h } = this.renderer.domElement, to = new Vector3((2 * x) / w - 1, 1 - (2 * y) / h, 0.5);
     const way = to.unproject(this.camera).sub(this.camera.position).normalize();
-    return pick(this.camera.position.toArray(), way.toArray(), this.scene, this.frame, this.at);
+    return { origin: this.camera.position.toArray(), way: way.toArray(), ahead: this.camera.getWorldDirection(new Vector3()).toArray() };
   }
 
   // --- pictures ---------------------------------------------------------------------------------------------------

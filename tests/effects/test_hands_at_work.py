@@ -1,0 +1,64 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Hands of a scene: a ball that hangs at one against the closed form, what a hand may cost, and what is refused."""
+
+import numpy as np
+import pytest
+from mdanim_lammps.engine.instance import Instance
+from mdanim_lammps.errors import SceneError
+from mdanim_lammps.run.prepare import prepare
+from mdanim_lammps.scene.parse import parse_scene
+
+R, G = 0.05, 9.81
+BALL = "object ball { shape sphere 5 cm  position (0, 0, 1) m  density 1000  elasticity rigid }\n"
+SCENE = f"gravity (0, 0, -9.81) m/s^2\n{BALL}control {{ time 1 s  frames 25 fps }}\n"
+TOP = "at (0, 0, 1.05) m  key 0 s at (0, 0, 1.05) m  key 1 s at (0, 0, 1.05) m"
+
+
+def test_a_ball_comes_to_rest_below_the_hand():
+    """As a body on a critically damped spring, z = g/w^2 (1 - (1 + w t) exp(-w t)) with w^2 = 4 g/r: in the end a quarter of its
+    radius below."""
+    ready = prepare(parse_scene(f"{SCENE}hand ball {{ {TOP} }}\n"))
+    per_frame, dt = ready.certificate.steps_per_frame, ready.certificate.timestep
+    w = (4.0 * G / R) ** 0.5
+    with Instance(ready.plan) as instance:
+        instance.setup()
+        mass = ready.system.mass
+        for frame in range(1, 26):
+            instance.run(per_frame)
+            fallen = 1.0 - mass @ instance.array("x")[:, 2] / mass.sum()
+            t = frame * per_frame * dt
+            assert fallen == pytest.approx(G / w**2 * (1.0 - (1.0 + w * t) * np.exp(-w * t)), abs=0.04 * R / 4)
+        assert fallen == pytest.approx(R / 4, rel=1e-6)
+        assert instance.fix_value("hand", "work") == pytest.approx(-mass.sum() * G * R / 4, rel=1e-2)
+
+
+def test_a_hand_is_in_the_bound_and_costs_little():
+    """Of what deforms; nothing else of the plan is another one, so a hand that comes later changes nothing that has been."""
+    soft = SCENE.replace("elasticity rigid", "elasticity 300 kPa")
+    alone, held, open_ = (prepare(parse_scene(soft + more)) for more in ("", f"hands on\nhand ball {{ {TOP} }}\n", "hands on\n"))
+    assert 1.0 < alone.certificate.bound / held.certificate.bound < 1.12
+    assert held.certificate == open_.certificate and held.plan.effects == open_.plan.effects
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        (SCENE.replace("rigid }", "rigid  hold all }") + f"hand ball {{ {TOP} }}", "ball is held as a whole"),
+        (f"{SCENE}hand cube {{ {TOP} }}", "cube"),
+        (f"{SCENE}hand ball {{ at (0, 0, 1) m  key 0 s at (0, 0, 1) m }}", "fewer than two keys"),
+        (f"{SCENE}hand ball {{ at (0, 0, 1) m  key 1 s at (0, 0, 1) m  key 1 s at (0, 0, 1) m }}", "times of keys must rise"),
+        (f"{SCENE}hand ball {{ {TOP.replace('1.05', '2', 1)} }}", "the hand would hold ball at .* which is 1 m from"),
+        (f"{SCENE}hand ball {{ {TOP} }}\nrecord ball.contact", "a hand may pull at it"),
+        (
+            SCENE.replace(
+                BALL, "repeat i in 1 .. 2 { " + BALL.replace("ball", "ball[i]").replace("(0, 0, 1)", "((i), 0, 1)") + "}\n"
+            )
+            + f"hand ball {{ {TOP} }}",
+            r"ball are 2 objects, and a hand pulls at one",
+        ),
+    ],
+    ids=["held", "unknown", "keys", "times", "beside", "contact", "several"],
+)
+def test_what_is_refused(text, message):
+    with pytest.raises(SceneError, match=message):
+        prepare(parse_scene(text))
