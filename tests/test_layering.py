@@ -92,12 +92,14 @@ def imported_rooms(path: Path) -> set[str]:
 FRONT_DOOR = ROOT / "__init__.py"  # names every room, lazily
 
 
-@pytest.mark.parametrize("path", sorted({*ROOT.rglob("*.py")} - {FRONT_DOOR}), ids=lambda p: str(p.relative_to(ROOT)))
-def test_imports_point_up_the_list(path):
+def test_imports_point_up_the_list():
     """Each module may use only its own room and the rooms listed before it."""
-    own = room(path)
-    assert own in ROOMS, f"{own} is not in the list of rooms (docs/architecture.md)"
-    assert imported_rooms(path) <= set(ROOMS[: ROOMS.index(own) + 1])
+    found = {}
+    for path in sorted({*ROOT.rglob("*.py")} - {FRONT_DOOR}):
+        own = room(path)
+        assert own in ROOMS, f"{own} is not in the list of rooms (docs/architecture.md)"
+        found[str(path.relative_to(ROOT))] = imported_rooms(path) - {*ROOMS[: ROOMS.index(own) + 1]}
+    assert found and {path: later for path, later in found.items() if later} == {}
 
 
 PLAN = ROOT / "parallel" / "plan"
@@ -118,15 +120,17 @@ def test_the_check_sees_imports():
     assert {"errors", "scene", "model"} <= imported_rooms(ROOT / "run" / "prepare.py")
 
 
-@pytest.mark.parametrize("path", SCRIPTS, ids=lambda p: f"{p.parent.name}/{p.name}")
-def test_scripts_import_what_there_is(path):
+def test_scripts_import_what_there_is():
     """Whatever prints the figures of the docs finds in the package what it looks for, also where it looks late."""
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-        if isinstance(node, ast.ImportFrom) and (node.module or "").split(".")[0] == "mdanim_lammps":
-            module = import_module(node.module)
-            for name in node.names:
-                found = hasattr(module, name.name) or (hasattr(module, "__path__") and find_spec(f"{node.module}.{name.name}"))
-                assert found, f"line {node.lineno}: {name.name}"
+    for path in SCRIPTS:
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.ImportFrom) and (node.module or "").split(".")[0] == "mdanim_lammps":
+                module = import_module(node.module)
+                for name in node.names:
+                    found = hasattr(module, name.name) or (
+                        hasattr(module, "__path__") and find_spec(f"{node.module}.{name.name}")
+                    )
+                    assert found, f"{path}:{node.lineno}: {name.name}"
 
 
 def test_there_are_scripts():
@@ -147,17 +151,21 @@ WITH_LAMMPS = ("lammps", "c_api")
 CPP_FILES = sorted(p for p in PLUGIN.rglob("*.[hc]*") if p.suffix in (".h", ".cpp"))
 
 
-@pytest.mark.parametrize("path", CPP_FILES, ids=lambda p: str(p.relative_to(PLUGIN)))
-def test_plugin_includes_point_up_the_list(path):
+def test_plugin_includes_point_up_the_list():
     """A file of the plugin includes its own folder and those before it; LAMMPS and MPI are for the last two folders."""
-    own = str(path.parent.relative_to(PLUGIN))
-    allowed = FOLDERS[: FOLDERS.index(own) + 1]
-    for quote, name in re.findall(r'^#include (["<])([^">]+)', path.read_text(encoding="utf-8"), re.MULTILINE):
-        folder, slash, _ = name.rpartition("/")
-        if quote == '"' and slash and folder in FOLDERS:
-            assert folder in allowed, name
-        elif own not in WITH_LAMMPS:
-            assert quote == "<" and name not in ("mpi.h", "lammps.h"), name
+    wrong = []
+    for path in CPP_FILES:
+        own = str(path.parent.relative_to(PLUGIN))
+        allowed = FOLDERS[: FOLDERS.index(own) + 1]
+        for quote, name in re.findall(r'^#include (["<])([^">]+)', path.read_text(encoding="utf-8"), re.MULTILINE):
+            folder, slash, _ = name.rpartition("/")
+            if quote == '"' and slash and folder in FOLDERS:
+                fits = folder in allowed
+            else:
+                fits = own in WITH_LAMMPS or (quote == "<" and name not in ("mpi.h", "lammps.h"))
+            if not fits:
+                wrong.append(f"{path}: {name}")
+    assert CPP_FILES and not wrong
 
 
 def test_the_plugin_has_its_folders():
