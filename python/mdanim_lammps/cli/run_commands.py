@@ -159,6 +159,25 @@ def report(folder: Path, /, *, output: OutFile = OutFile(), exact: bool = False,
         print(f"report   {path}   {path.stat().st_size / 1e6:.1f} MB" + (f"   one of {every} frames" if every > 1 else ""))
 
 
+def lesson(folder: Path, /, *, output: OutFile = OutFile(), quiet: Quiet = False) -> None:
+    """Write a run with a movie as a lesson, one HTML file with the question of its scene, the movie, its records as curves, the
+    answer, what was expected and found, and the scene: lesson.html in the folder.
+
+    Parameters
+    ----------
+    folder
+        The output folder of a run that has ended; a scene is run with `--lesson`.
+    """
+    from ..view.lesson import write_lesson
+
+    if not folder.is_dir():
+        raise UsageError(f"{folder} is not the folder of a run; a scene is run with mdanim-lammps {folder} --lesson")
+    path = output.place(folder / "lesson.html")
+    write_lesson(folder, path)
+    if not quiet:
+        print(f"lesson   {path}   {path.stat().st_size / 1e6:.1f} MB")
+
+
 def export(
     folder: Path,
     /,
@@ -281,5 +300,5 @@ def _side_by_side(a: Path, b: Path, scene: Path | None, look: Look, output: OutF
         print(f"movie    {path}")
 
 
-COMMANDS = (resume, render, view, report, export, timeline, compare)
+COMMANDS = (resume, render, view, report, lesson, export, timeline, compare)
 """Commands of the command line, in the order of its help."""

@@ -18,6 +18,7 @@ from ..scene.formatting import number, say
 from ..scene.lammps_lines import check_alone
 from ..terminal import progress_bar
 from ..view.beside import Viewer
+from . import run_commands
 from .options import (
     AllowUnstable,
     Executing,
@@ -54,6 +55,7 @@ def run(
     executing: Executing = Executing(),
     output: OutFolder = OutFolder(),
     movie: Annotated[bool, Parameter(negative="--no-movie")] = True,
+    lesson: bool = False,
     view: View = False,
     edit: bool = False,
     hands: HandsOn = False,
@@ -67,6 +69,8 @@ def run(
     ----------
     movie
         Make movie.mp4 at the end.
+    lesson
+        Write lesson.html, too: a page with the question of the scene, the movie, curves of the records, and the answer.
     edit
         Let the page change the scene's text and run it again; implies --view.
     """
@@ -91,6 +95,8 @@ def run(
     ):
         viewer.start(folder)
         simulate_and_draw(ready, folder, executing, quiet=quiet, movie=movie, hands=hands)
+    if lesson:
+        run_commands.lesson(out, quiet=quiet)
 
 
 def check(

@@ -49,7 +49,7 @@ def material_places(trajectory: Trajectory, start: np.ndarray, object_of: np.nda
 
 
 def _whole(solid: Solid) -> Solid:
-    """What a piece is cut from, whose pattern goes on over the cuts; any other object itself."""
+    """Whole of a piece, whose pattern goes on over the cuts; any other object itself."""
     return getattr(solid.shape, "whole", solid)
 
 

@@ -40,13 +40,17 @@ class Outcome:
         return abs(self.found - e.value) <= e.tolerance + ROUNDING * max(abs(e.value), e.tolerance)
 
     def __str__(self) -> str:
-        e = self.expect
-        when = "" if e.time is None else f" at {number(e.time, 6)} s"
-        if e.begin is not None:
-            when = f" from {number(e.begin, 6)} s to {number(e.time, 6)} s"
         verdict = "met" if self.met else "MISSED"
-        place = f"{e.span}: " if e.span else ""
-        return f"{place}expect {e.said}{when} {self.asked}: found {number(self.found, 6)}, {verdict}"
+        place = f"{self.expect.span}: " if self.expect.span else ""
+        return f"{place}expect {self.what} {self.asked}: found {number(self.found, 6)}, {verdict}"
+
+    @property
+    def what(self) -> str:
+        """``max ball.speed from 0 s to 1 s``"""
+        e = self.expect
+        if e.begin is not None:
+            return f"{e.said} from {number(e.begin, 6)} s to {number(e.time, 6)} s"
+        return e.said if e.time is None else f"{e.said} at {number(e.time, 6)} s"
 
     @property
     def asked(self) -> str:

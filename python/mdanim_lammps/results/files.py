@@ -75,7 +75,7 @@ RESULTS = (
     *(SUMMARY, "progress.jsonl", "timeline.json", "edited.txt", HANDS, HAND, STOP, PAUSE, "log.lammps"),
 )
 """Files of every run."""
-PICTURES = ("trace.json", "movie.mp4", "report.html")
+PICTURES = ("trace.json", "movie.mp4", "report.html", "lesson.html")
 """Are of a run where they say so in themselves; others may have put theirs there."""
 MESHES, FRAMES = ("meshes", r"[0-9a-f]{32}\.(stl|obj|ply)"), ("frames", r"frame-\d+\.png")
 """Folders of a run, and what the names of its files in them are."""

@@ -1,0 +1,94 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""A run as a lesson: one HTML file with the question of its scene, the movie, curves, the answer, and the scene itself."""
+
+from __future__ import annotations
+
+import base64
+import html
+import io
+from pathlib import Path
+
+import numpy as np
+
+from ..api.run import Run
+from ..errors import OutputError, UsageError
+from ..picture.plot import own_style
+from ..results.files import write_whole
+from ..results.html import plain_table
+from ..results.overwriting import MADE
+from ..results.records import Records
+from ..scene.formatting import number
+from ..scene.scene import SceneRecord
+
+MOST_MOVIE = 50_000_000
+"""Bytes of a movie that the file takes in."""
+RULES = "default-src 'none'; media-src data:; img-src data:; style-src 'unsafe-inline'"
+STYLE = """
+body { font: 17px/1.5 system-ui, sans-serif; max-width: 60rem; margin: 2rem auto; padding: 0 1rem; color: #20242a; }
+video, img { width: 100%; border-radius: 6px; }
+table { border-collapse: collapse; } td, th { padding: .2rem .8rem; text-align: left; }
+.question { font-size: 1.25rem; font-weight: 600; } details { margin: 1rem 0; } summary { cursor: pointer; color: #1c6ea4; }
+pre { background: #f3f5f7; padding: 1rem; overflow: auto; font-size: 13px; }
+@media (prefers-color-scheme: dark) { body { background: #16191d; color: #e6e9ec; } pre { background: #22262b; } }
+"""
+
+
+def write_lesson(folder: Path, path: Path) -> None:
+    """Write the page of a run that has ended, with its movie. It opens from disk, has no script, and asks no host for anything.
+
+    Raises UsageError for a scene without a question, OutputError where the run has no movie or the file cannot be written.
+    """
+    run = Run(folder)
+    scene = run.scene.record
+    if not scene.question:
+        raise UsageError(f'the scene of {folder} asks nothing; write question "..." and answer "..." in it and run it again')
+    movie = folder / (scene.render.movie or "movie.mp4")
+    if not movie.is_file():
+        raise OutputError(f"{folder} has no movie; draw it: mdanim-lammps render {folder}")
+    if movie.stat().st_size > MOST_MOVIE:
+        raise OutputError(f"{movie} is too large for a page; draw it smaller: mdanim-lammps render {folder} --size 640 360")
+    write_whole(path, page_of(run, scene, movie.read_bytes()))
+
+
+def page_of(run: Run, scene: SceneRecord, movie: bytes) -> str:
+    """The page as HTML; all words of the scene are text in it."""
+    title = html.escape(scene.title or scene.name)
+    parts = [f"<h1>{title}</h1>", f'<p class="question">{html.escape(scene.question)}</p>']
+    parts.append(f'<video controls loop src="data:video/mp4;base64,{base64.b64encode(movie).decode()}"></video>')
+    if scene.records:
+        curves = base64.b64encode(drawn_curves(run.records)).decode()
+        parts.append(f'<p><img alt="curves of the records over time" src="data:image/png;base64,{curves}"></p>')
+    if scene.answer:
+        parts.append(f"<details><summary>Answer</summary><p>{html.escape(scene.answer)}</p></details>")
+    if run.outcomes:
+        rows = [(one.what, one.asked, number(one.found, 6), "met" if one.met else "missed") for one in run.outcomes]
+        table = plain_table(("quantity", "expected", "found", ""), rows)
+        parts.append(f"<details><summary>Measured in this run</summary>{table}</details>")
+    text = run.trajectory.metadata.scene_text
+    parts.append(f"<details><summary>The scene, with all defaults</summary><pre>{html.escape(text)}</pre></details>")
+    head = f'<meta charset="utf-8"><meta http-equiv="Content-Security-Policy" content="{RULES}"><title>{title}</title>'
+    head += f'<meta name="viewport" content="width=device-width"><style>{STYLE}</style>'
+    parts.append(f"<p><small>{MADE}</small></p>")
+    return f'<!doctype html><html lang="en"><head>{head}</head><body>{"".join(parts)}</body></html>\n'
+
+
+@own_style()
+def drawn_curves(records: Records) -> bytes:
+    """All records over time as a PNG, those of one unit on one axis."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    names = [name for name in records if name != "time"]
+    units = list(dict.fromkeys(records.units[name] for name in names))
+    figure = Figure(figsize=(9.0, 2.6 * len(units)), dpi=110, layout="constrained")
+    for n, unit in enumerate(units, 1):
+        axes = figure.add_subplot(len(units), 1, n)
+        for name in (name for name in names if records.units[name] == unit):
+            axes.plot(records["time"], np.asarray(records[name]), label=name.replace("$", r"\$"))
+        axes.set_ylabel(unit or "-")
+        axes.grid(alpha=0.3)
+        axes.legend(fontsize="small")
+    axes.set_xlabel("time [s]")
+    file = io.BytesIO()
+    FigureCanvasAgg(figure).print_png(file)
+    return file.getvalue()

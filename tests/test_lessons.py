@@ -1,0 +1,54 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Lessons: scenes with a question and an answer, and the page that a run of one becomes."""
+
+import base64
+import re
+from pathlib import Path
+
+import pytest
+from command_line import call
+from mdanim_lammps import Scene
+
+SCENES = Path(__file__).parent.parent / "scenes"
+LESSONS = sorted((SCENES / "lessons").glob("*.txt"))
+
+
+@pytest.mark.parametrize("path", LESSONS, ids=lambda path: path.stem)
+def test_lesson_meets_its_expectations(path, tmp_path):
+    """It asks and answers, shows curves, records, and finds what it expects; nothing warns."""
+    scene = Scene.load(path)
+    record = scene.record
+    assert record.question and record.answer and record.records and record.render.plot
+    assert not scene.prepared.warnings
+    result = scene.run(tmp_path / "r.out")
+    assert result.outcomes and not result.missed, "\n".join(map(str, result.missed))
+
+
+TEXT = """
+title "A <lesson>"
+question "Which one, <script>alert(1)</script>?"
+answer "Both & none"
+gravity (0, 0, -9.81) m/s^2
+object ball { shape sphere 5 cm  position (0, 0, 1) m  mass 1 kg  elasticity rigid }
+control { time 0.1 s  frames 20 fps }
+record ball.speed
+record ball.kinetic
+expect ball.speed at 0.1 s = 0.981 m/s +- 1 %
+render { size (64, 48) }
+"""
+
+
+def test_page_of_a_lesson(tmp_path):
+    """Question, movie, curves, answer, what was found, and the scene, in one file without a script that asks no host."""
+    (tmp_path / "fall.txt").write_text(TEXT)
+    said = call("fall.txt", "--lesson", "-q", cwd=tmp_path)
+    assert said.returncode == 0, said.stderr
+    page = (tmp_path / "fall.out" / "lesson.html").read_text()
+    assert "A &lt;lesson&gt;" in page and "Both &amp; none" in page and "ball.speed at 0.1 s" in page
+    assert "<script" not in page and "default-src 'none'" in page and not re.search(r'(src|href)="(?!data:)', page)
+    movie, curves = (base64.b64decode(found) for found in re.findall(r'src="data:[a-z/0-9]+;base64,([^"]+)"', page))
+    assert movie == (tmp_path / "fall.out" / "movie.mp4").read_bytes() and curves.startswith(b"\x89PNG")
+    (tmp_path / "fall.out" / "movie.mp4").unlink()
+    for folder, code, words in (("fall.out", 7, "has no movie; draw it"), ("fall.txt", 2, "fall.txt --lesson")):
+        refused = call("lesson", folder, cwd=tmp_path)
+        assert refused.returncode == code and words in refused.stderr
