@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""Scenes against published figures: ``python bench/validation.py [--cost] [--quick] [--write] [--page] [CASE ...]``.
+"""Scenes against published figures: ``python bench/validation.py [--cost] [--quick] [--write] [--page] [--peers] [CASE ...]``.
 
 Cases are in bench/published/, their scenes in scenes/validation/; with names only these. ``--cost`` measures each at preview and
 reference beside balanced, ``--quick`` only those that take a few seconds. ``--write`` keeps what is found in
 bench/published/found/, a file for each case, and draws docs/images/validation-CASE.png; with it, or by ``--page`` without
-measuring, docs/validation.md is written from all that is kept. The exit code is 1 where a row is off by more than it may be.
+measuring, docs/validation.md is written from all that is kept. ``--peers`` measures what other programs give for the same scenes,
+by .venv-peers (make .venv-peers/.installed). The exit code is 1 where a row is off by more than it may be.
 """
 
 from __future__ import annotations
@@ -18,13 +19,16 @@ from importlib import import_module
 from pathlib import Path
 
 from published.case import ROOT, Case, Curve, Found, Row, Runs
+from published.mujoco_runs import WAYS as PEERS
+from published.mujoco_runs import MujocoRuns
 from timing import machine, markdown, replace_between
 
-PARTS = ("friction",)
+PARTS = ("friction", "standing", "arches", "dominoes", "blows", "tops", "motion")
 """Modules of bench/published, in the order of the page."""
 ACCURACIES = ("preview", "balanced", "reference")
 PAGE = ROOT / "docs" / "validation.md"
 KEPT = Path(__file__).parent / "published" / "found"
+NOT_FOUND = "not found"
 HEAD = ("figure", "published", "found", "off", "within")
 
 
@@ -33,20 +37,24 @@ def cases() -> list[Case]:
     return [case for part in PARTS for case in import_module(f"published.{part}").CASES]
 
 
-def measured(case: Case, accuracy: str) -> tuple[Found, float]:
-    """What a case gives, and the processor time of its runs [s]."""
-    with Runs(accuracy) as runs:
+def measured(case: Case, way: str) -> tuple[Found, float]:
+    """What a case gives at an accuracy or by another program, and the processor time of its runs [s]."""
+    with (Runs if way in ACCURACIES else MujocoRuns)(way) as runs:
         return case.measure(runs), runs.seconds
+
+
+def _percent(share: float, sign: str = "") -> str:
+    return NOT_FOUND if math.isnan(share) else f"{100 * share:{sign}.2g} %"
 
 
 def cells(row: Row) -> list[str]:
     """A row of the table: off in bold where it is more than it may be."""
     unit = f" {row.unit}" if row.unit else ""
-    off = f"{100 * row.off:+.2g} %"
+    off = _percent(row.off, "+")
     return [
         row.figure,
         f"{row.published:.4g}{unit}",
-        f"{row.found:.4g}{unit}",
+        NOT_FOUND if math.isnan(row.found) else f"{row.found:.4g}{unit}",
         off if row.close else f"**{off}**",
         f"{100 * row.within:.3g} %",
     ]
@@ -57,9 +65,9 @@ def keep(case: Case, accuracy: str, found: Found, seconds: float) -> None:
     path = KEPT / f"{case.name}.json"
     stored = json.loads(path.read_text()) if path.exists() else {}
     rows = [asdict(row) for row in found.rows]
-    stored[accuracy] = {"rows": rows, "seconds": round(seconds, 1), "machine": machine().partition(";")[0]}
+    stored[accuracy] = {"rows": rows, "seconds": float(f"{seconds:.3g}"), "machine": machine().partition(";")[0]}
     path.parent.mkdir(exist_ok=True)
-    path.write_text(json.dumps({name: stored[name] for name in ACCURACIES if name in stored}, indent=1) + "\n")
+    path.write_text(json.dumps({name: stored[name] for name in (*ACCURACIES, *PEERS) if name in stored}, indent=1) + "\n")
 
 
 def draw(case: Case, curve: Curve) -> None:
@@ -98,8 +106,8 @@ def section(case: Case) -> str:
     if (ROOT / "docs" / "images" / f"validation-{case.name}.png").exists():
         parts.append(f"![{case.title}](images/validation-{case.name}.png)")
     if len(of) > 1:
-        cost = [[accuracy, f"{100 * _off(rows):.2g} %", f"{seconds:.3g} s"] for accuracy, (rows, seconds) in of.items()]
-        parts.append(markdown(("accuracy", "largest error of a row", "processor time of all its runs"), cost))
+        cost = [[accuracy, _percent(_off(rows)), f"{seconds:.3g} s"] for accuracy, (rows, seconds) in of.items()]
+        parts.append(markdown(("accuracy, or program", "largest error of a row", "processor time of all its runs"), cost))
     return "\n\n".join(part for part in parts if part) + "\n"
 
 
@@ -110,7 +118,7 @@ def overview(all_cases: Iterable[Case]) -> str:
         of, _ = kept(case)["balanced"]
         close = sum(row.close for row in of)
         many = f"{close} of {len(of)}"
-        rows.append([case.title, many if close == len(of) else f"**{many}**", f"{100 * _off(of):.2g} %"])
+        rows.append([case.title, many if close == len(of) else f"**{many}**", _percent(_off(of))])
     return markdown(("case", "figures within", "largest error"), rows)
 
 
@@ -120,11 +128,21 @@ def write_page() -> None:
     replace_between(PAGE, "cases", "\n".join(section(case) for case in cases()))
 
 
+def _ways(case: Case, flags: set[str]) -> tuple[str, ...]:
+    """Accuracies and peers that are asked for."""
+    if "--peers" in flags:
+        return tuple(PEERS) if case.peers else ()
+    return ACCURACIES if "--cost" in flags else ("balanced",)
+
+
 def main(words: list[str]) -> int:
     """Measure, print, and write if asked to; the exit code."""
     flags, names = {word for word in words if word.startswith("--")}, [word for word in words if not word.startswith("--")]
     known = {case.name: case for case in cases()}
-    unknown = [*sorted(flags - {"--cost", "--quick", "--write", "--page"}), *(name for name in names if name not in known)]
+    unknown = [
+        *sorted(flags - {"--cost", "--quick", "--write", "--page", "--peers"}),
+        *(name for name in names if name not in known),
+    ]
     if unknown:
         sys.exit(f"unknown: {', '.join(unknown)}; cases: {', '.join(known)}")
     if "--page" in flags:
@@ -134,7 +152,7 @@ def main(words: list[str]) -> int:
     for case in (known[name] for name in names) if names else known.values():
         if "--quick" in flags and not case.quick:
             continue
-        for accuracy in ACCURACIES if "--cost" in flags else ("balanced",):
+        for accuracy in _ways(case, flags):
             found, seconds = measured(case, accuracy)
             print(
                 f"\n{case.title}, {accuracy}, {seconds:.3g} s\n\n{markdown(HEAD, [cells(row) for row in found.rows])}", flush=True

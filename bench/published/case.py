@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 from mdanim_lammps import Run, Scene
 from mdanim_lammps.scene.parse import load_scene
-from mdanim_lammps.scene.scene import Accuracy
+from mdanim_lammps.scene.scene import Accuracy, SceneRecord
 
 ROOT = Path(__file__).resolve().parents[2]
 SCENES = ROOT / "scenes" / "validation"
@@ -63,6 +63,13 @@ class Found:
     curve: Curve | None = None
 
 
+Change = Callable[[SceneRecord], SceneRecord]
+
+
+def _as_it_is(scene: SceneRecord) -> SceneRecord:
+    return scene
+
+
 @dataclass
 class Runs(ExitStack):
     """Runs scenes of a case at an accuracy, in folders that go at the end."""
@@ -74,15 +81,18 @@ class Runs(ExitStack):
     def __post_init__(self) -> None:
         super().__init__()
 
-    def run(self, name: str, **lets: float | str) -> Run:
-        """Simulate scenes/validation/NAME.txt with these values of its ``let`` names."""
+    def run(self, name: str, change: Change = _as_it_is, /, **lets: float | str) -> Run:
+        """Simulate scenes/validation/NAME.txt with these values of its ``let`` names, as it is after a `change`."""
         start = time.process_time()
-        record = load_scene(SCENES / f"{name}.txt", overrides=lets)
+        record = change(load_scene(SCENES / f"{name}.txt", overrides=lets))
         record = replace(record, control=replace(record.control, accuracy=Accuracy(self.accuracy)))
-        folder = Path(self.enter_context(tempfile.TemporaryDirectory())) / "out"
-        run = Scene(record).run(folder)
+        run = Scene(record).run(self.folder() / "out")
         self.seconds += time.process_time() - start
         return run
+
+    def folder(self) -> Path:
+        """An empty folder that goes at the end."""
+        return Path(self.enter_context(tempfile.TemporaryDirectory()))
 
 
 @dataclass(frozen=True)
@@ -101,6 +111,8 @@ class Case:
     measure: Callable[[Runs], Found]
     quick: bool = False
     """Whether it takes a few seconds."""
+    peers: bool = False
+    """Whether MuJoCo can run its scenes, too (mujoco_runs.py): `measure` then reads centres, velocities and spins only."""
 
 
 def series(name: str) -> np.ndarray:

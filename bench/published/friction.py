@@ -1,9 +1,16 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""Friction: how far a block slides."""
+"""Friction and rolling: how far a block slides, on which slope it stays, what skids and what rolls."""
 
 from __future__ import annotations
 
+import math
+
+import numpy as np
+
 from .case import Case, Found, Row, Runs
+
+G = 9.81
+"""[m/s^2]"""
 
 
 def slide(runs: Runs) -> Found:
@@ -12,7 +19,56 @@ def slide(runs: Runs) -> Found:
     for mu, v in ((0.5, 2.0), (0.2, 1.0)):
         run = runs.run("slide", mu=mu, v=f"{v} m/s")
         found = run.trajectory.objects["block"].center_of_mass[-1, 0]
-        rows.append(Row(f"slides at {v:g} m/s, friction {mu:g}", v**2 / (2.0 * mu * 9.81), float(found), 0.005, "m"))
+        rows.append(Row(f"slides at {v:g} m/s, friction {mu:g}", v**2 / (2.0 * mu * G), float(found), 0.005, "m"))
+    return Found(rows)
+
+
+def incline(runs: Runs) -> Found:
+    """One block at the limit of friction, one just beyond it."""
+    slope, time = math.atan(0.5), 2.0
+    way = 0.5 * G * time**2 * (math.sin(slope) - 0.49 * math.cos(slope))
+    objects = runs.run("incline").trajectory.objects
+    ways = [
+        float((of.center_of_mass[-1] - of.center_of_mass[0])[0]) / math.cos(slope) for of in (objects["stays"], objects["slides"])
+    ]
+    return Found([
+        Row("way with friction 0.5", 0.0, ways[0], 0.01, "m", scale=way),
+        Row("way with friction 0.49", way, ways[1], 0.01, "m"),
+    ])  # fmt: skip
+
+
+def skid(runs: Runs) -> Found:
+    """Speed and place after it has come to roll, at two frictions."""
+    rows = []
+    for mu in (0.2, 0.4):
+        v, time = 3.0, 1.2
+        ball = runs.run("skid", mu=mu).trajectory.objects["ball"]
+        skids = 2.0 * v / (7.0 * mu * G)
+        place = v * skids - 0.5 * mu * G * skids**2 + 5.0 / 7.0 * v * (time - skids)
+        rows.append(Row(f"speed at last, friction {mu:g}", 5.0 / 7.0 * v, float(ball.velocity[-1, 0]), 0.002, "m/s"))
+        rows.append(Row(f"way in {time:g} s, friction {mu:g}", place, float(ball.center_of_mass[-1, 0]), 0.002, "m"))
+    return Found(rows)
+
+
+def rolls(runs: Runs) -> Found:
+    """Ways down a slope of 20 degrees in 1.2 s."""
+    objects, time = runs.run("rolls").trajectory.objects, 1.2
+    falls = 0.5 * G * time**2 * math.sin(math.radians(20.0))
+    inertia = {"ball": 2.0 / 5.0, "disc": 1.0 / 2.0, "ring": 0.8**2 + 0.75 * 0.2**2}
+    rows = []
+    for name, share in inertia.items():
+        c = objects[name].center_of_mass
+        rows.append(Row(f"way of the {name}", falls / (1.0 + share), float(np.linalg.norm(c[-1] - c[0])), 0.002, "m"))
+    return Found(rows)
+
+
+def green(runs: Runs) -> Found:
+    """Where it stops, with two arms of the torque that resists."""
+    rows = []
+    for arm in (1.5, 3.0):
+        found = runs.run("green", arm=f"{arm} mm").trajectory.objects["ball"].center_of_mass[-1, 0]
+        way = 0.7 * 1.8**2 * 21.35 / (G * arm)
+        rows.append(Row(f"rolls at 1.8 m/s, arm {arm:g} mm", way, float(found), 0.005, "m"))
     return Found(rows)
 
 
@@ -25,5 +81,45 @@ CASES = [
         "The block is rigid: friction of an elastic one acts where its sole bears weight.",
         slide,
         quick=True,
-    )
+        peers=True,
+    ),
+    Case(
+        "incline",
+        "Blocks on a slope of one half",
+        "Coulomb: a block stays up to μ = tan θ and slides by g t²/2 (sin θ − μ cos θ) beyond; IPC (Li et al. 2020) has it as "
+        "slopeTest_highSchoolPhysics with μ = 0.5 and 0.49.",
+        "The way of the first block is over that of the second. All of its friction is in use, so it slips while it sinks in at "
+        "the start, by 0.4 mm, and then stays.",
+        "Rigid blocks. Elastic ones, as IPC's, rest on points of their sole, which are loaded unevenly: with 1 GPa, run "
+        "`scenes/validation/incline_soft.txt`, the first creeps by 2.5 mm in 2 s and the second slides 1.3 % too far.",
+        incline,
+        peers=True,
+    ),
+    Case(
+        "skid",
+        "A bowling ball skids until it rolls",
+        "Newton's second law with Coulomb friction: a full ball rolls at 5/7 of its speed, after 2v/(7μg), whatever the friction "
+        "(Coriolis 1835; a test of the Newton physics engine, test_kamino_solvers_dvi.py).",
+        "Both are closed forms; the ball sinks in by a part of its radius and so turns with a shorter arm.",
+        "No resistance to rolling, which `rolling` adds.",
+        skid,
+        quick=True,
+        peers=True,
+    ),
+    Case(
+        "rolls",
+        "A ball, a disc and a ring roll down a slope",
+        "Closed form g sin θ t²/2 over 1 + I/(m R²), with I/(m R²) = 2/5, 1/2, and 0.67 of a ring of the radii 8 and 2 cm.",
+        "Closed forms without slip: friction 0.5 is above all that rolling needs.",
+        "Rigid. Elastic balls lose 1 to 2.5 % of their way by the points on which they roll (`scenes/race.txt`).",
+        rolls,
+    ),
+    Case(
+        "green",
+        "A golf ball stops on the green",
+        "Closed form 7 v² R/(10 g r) of a full ball with the arm r of the resistance; 1.8 m/s is what a stimpmeter gives it.",
+        "As in [how rolling resistance is computed](physics-rigid.md#rolling-resistance).",
+        "The arm of a real lawn depends on speed; the model has one number.",
+        green,
+    ),
 ]

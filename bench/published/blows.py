@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Blows: how high rigid objects come back, and Newton's cradle."""
+
+from __future__ import annotations
+
+import math
+
+from .case import Case, Found, Row, Runs
+
+
+def bounce(runs: Runs) -> Found:
+    """Speeds after over before, from heights, of balls, of logs that fall flat and of boxes."""
+    rows = []
+    for scene, kinds in (("bounce", ("ball",)), ("bounce_flat", ("log", "box"))):
+        objects = runs.run(scene).trajectory.objects
+        for kind in kinds:
+            for k, e in enumerate((0.4, 0.6, 0.8, 1.0), 1):
+                height = objects[f"{kind}[{k}]"].center_of_mass[:, 2] - 0.05
+                lowest = int(height[:60].argmin())
+                back = math.sqrt(float(height[lowest:].max()) / float(height[0]))
+                rows.append(Row(f"{kind}, {e:g}", e, back, 0.06, scale=1.0))
+    return Found(rows)
+
+
+def clacks(runs: Runs) -> Found:
+    """Five balls on strings of 50 cm, 2 mm apart; the first is let go at 40 degrees."""
+    run = runs.run("clacks").trajectory
+    rise, speed = 0.5 * (1.0 - math.cos(math.radians(40.0))), math.sqrt(2.0 * 9.81 * 0.5 * (1.0 - math.cos(math.radians(40.0))))
+    after = (run.times > 0.45) & (run.times < 0.6)
+    objects = run.objects
+    last = float(objects["ball[5]"].center_of_mass[:, 2].max()) - 0.5
+    rows = [
+        Row("speed of the first ball", speed, float(abs(objects["ball[1]"].velocity[:, 0]).max()), 0.005, "m/s"),
+        Row("height of the last ball", rise, last, 0.02, "m"),
+    ]
+    for k in (1, 3):
+        left = float(abs(objects[f"ball[{k}]"].velocity[after, 0]).max())
+        rows.append(Row(f"speed left to ball {k}", 0.0, left, 0.02, "m/s", scale=speed))
+    return Found(rows)
+
+
+CASES = [
+    Case(
+        "bounce",
+        "Balls, logs and boxes bounce",
+        "The coefficient of restitution, speed after a blow over the speed before it; Project Chrono has it as a unit test "
+        "(utest_SMC_cor_normal).",
+        "*off* is the difference of both coefficients. [Restitution](physics-rigid.md#restitution) promises 0.06 from 0.5 on.",
+        "A blow is a damped spring that does not pull, over some nine steps. Where something falls on several points at once, each is "
+        "damped as if it fell alone, so logs and boxes that fall flat come back too fast, by up to 0.12.",
+        bounce,
+    ),
+    Case(
+        "clacks",
+        "Newton's cradle",
+        "Equal masses exchange their velocities. Balls that touch do not: Herrmann and Seitz, Am. J. Phys. 50 (1982) 977.",
+        "Balls are 2 mm apart, so that they strike one after the other: a blow goes up to 1 mm deep.",
+        "Strings are stiff and have no mass. Balls that touch from the beginning share the blow, and all of them move.",
+        clacks,
+    ),
+]
