@@ -33,10 +33,10 @@ def measure(folder: str, quality: str) -> tuple[float, float]:
     render = replace(stored_scene(Path(folder)).render, quality=Quality(quality))
     with Trajectory(folder) as trajectory, Painter(trajectory, render, size=SIZE) as painter:
         shown = [round(k * (len(trajectory) - 1) / PICTURES) for k in range(PICTURES + 1)]
-        painter.frame(shown[0])
+        painter.pixels(shown[0])
         start = time.process_time()
         for index in shown[1:]:
-            painter.frame(index)
+            painter.pixels(index)
         return (time.process_time() - start) / PICTURES, resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
 
 

@@ -22,14 +22,16 @@ from ..results.overwriting import MADE
 from ..results.trajectory import Trajectory
 from ..scene.render import Render
 from .marks import Marks
+from .window import upright
 
 CODING = {
     "codec": "libx264",
     "quality": None,  # -crf says it
+    "pix_fmt_in": "rgb0",  # as pictures are drawn, first row below
     "macro_block_size": 1,  # no other size than asked for
     "ffmpeg_log_level": "error",
     "output_params": [
-        *("-vf", "scale=out_color_matrix=bt709:out_range=tv", "-preset", "veryfast", "-crf", "17"),
+        *("-vf", "vflip,scale=out_color_matrix=bt709:out_range=tv", "-preset", "veryfast", "-crf", "17"),
         *("-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc", "bt709", "-movflags", "+faststart"),
         *("-metadata", f"comment={MADE}"),
     ],
@@ -120,7 +122,7 @@ def render_movie(
         for done, picture in enumerate(pictures(trajectory, render, size, shown, processes), start=1):
             encode(picture)
             if frames is not None:
-                _save_png(picture, Path(frames) / f"frame-{done - 1:05d}.png")
+                _save_png(upright(picture), Path(frames) / f"frame-{done - 1:05d}.png")
             if on_progress is not None:
                 on_progress(done, len(shown))
     return Path(path)
@@ -172,7 +174,7 @@ def _draw_here(trajectory, render, size, shown: Sequence[int], _processes) -> It
 
     with Painter(trajectory, render, size=size) as painter:
         for index in shown:
-            yield painter.frame(int(index))
+            yield painter.pixels(int(index))
 
 
 def _draw_apart(trajectory, render, size, shown: Sequence[int], processes: int) -> Iterator[np.ndarray]:
@@ -212,7 +214,7 @@ def _draw_in_worker(frame: int) -> np.ndarray:
         from .render import Painter
 
         _worker["painter"] = Painter(Trajectory(path), render, size=size, action=action)
-    return _worker["painter"].frame(frame)
+    return _worker["painter"].pixels(frame)
 
 
 # --- writing ----------------------------------------------------------------------------------------------
@@ -220,7 +222,7 @@ def _draw_in_worker(frame: int) -> np.ndarray:
 
 @contextmanager
 def encoder(path: Path, size: tuple[int, int], rate: Fraction, pictures: int) -> Iterator[Callable[[np.ndarray], None]]:
-    """Send pictures to ffmpeg; the movie gets its name at the end, an error leaves nothing behind."""
+    """Send pictures to ffmpeg, as `Painter.pixels` gives them; the movie gets its name at the end, an error leaves nothing."""
     try:
         import imageio_ffmpeg
 

@@ -114,6 +114,10 @@ class Painter:
 
     def frame(self, index: int) -> np.ndarray:
         """Picture of a frame, uint8 RGB, shape (height, width, 3), first row on top."""
+        return upright(self.pixels(index))
+
+    def pixels(self, index: int) -> np.ndarray:
+        """The same as it was drawn, with a fourth number that says nothing, shape (height, width, 4), first row below."""
         position, gone = self.trajectory.position(index), self.trajectory.gone(index)
         vertices = self._mesh.vertices(position, gone)
         time = float(self.trajectory.times[index])
@@ -139,7 +143,7 @@ class Painter:
             self._overlay.lay_on(picture, view, index, position, gone)
         self._title.lay_on(picture, self._name)
         self._stamp.lay_on(picture, f"t = {time:.2f} s")
-        return fewer_pixels(upright(picture), self._finer)
+        return fewer_pixels(picture, self._finer)
 
     def _toned(self, index: int) -> np.ndarray:
         """Colours of the vertices by a quantity, uint8, shape (V, 3); what never moves keeps its own."""

@@ -59,7 +59,7 @@ def render_side_by_side(
         with encoder(Path(path), (2 * half, height), rate, len(moments)) as encode:
             for done, moment in enumerate(moments, 1):
                 frames = [int(np.abs(run.times - moment).argmin()) for run in runs]
-                picture = np.concatenate([painter.frame(n) for painter, n in zip(painters, frames)], axis=1)
+                picture = np.concatenate([painter.pixels(n) for painter, n in zip(painters, frames)], axis=1)
                 picture[:, half - LINE // 2 : half + LINE // 2] = 128
                 encode(picture)
                 if on_progress is not None:

@@ -65,11 +65,11 @@ def upright(picture: np.ndarray) -> np.ndarray:
 
 
 def fewer_pixels(picture: np.ndarray, by: int) -> np.ndarray:
-    """One pixel for each ``by`` x ``by`` of them, their mean; uint8 RGB as `upright` gives it."""
+    """One pixel for each ``by`` x ``by`` of them, their mean; uint8, shape (height, width, C)."""
     if by == 1:
         return picture
-    height, width, _ = picture.shape
-    total = np.full((height // by, width // by, 3), by * by // 2, dtype=np.uint16)
+    height, width, colors = picture.shape
+    total = np.full((height // by, width // by, colors), by * by // 2, dtype=np.uint16)
     for row in range(by):
         for column in range(by):
             total += picture[row::by, column::by]
