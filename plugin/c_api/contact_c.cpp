@@ -19,12 +19,13 @@ MDANIM_EXPORT int mdanim_contact_body(void *handle, const char *fix, int kind, c
                                       const std::int32_t *cell, const double *at, const double *centre, const double *normal,
                                       const double *area, const std::uint8_t *point_kind, const double *depth, int open,
                                       const double *open_part, const std::int32_t *frame, const double *frame_at, double radius,
-                                      char *error, int size) noexcept
+                                      double hardness, double spread, int between, const std::int32_t *sharer,
+                                      const double *share, char *error, int size) noexcept
 {
   return guarded(error, size, [&] {
     auto *found = dynamic_cast<FixMdanimContact *>(static_cast<LAMMPS *>(handle)->modify->get_fix_by_id(fix));
     if (!found) throw std::runtime_error(std::string("there is no fix ") + fix + " of style mdanim/contact");
     found->take_body(kind, {count, edge, particles, node, filled, points, cell, at, centre, normal, area, point_kind, depth, open,
-                            open_part, frame, frame_at, radius});
+                            open_part, frame, frame_at, radius, hardness, spread, between, sharer, share});
   });
 }

@@ -92,12 +92,22 @@ ContactBody read_body(Words &words)
   std::vector<std::int32_t> node, frame;
   std::vector<double> frame_at;
   int particles = 0;
-  double radius = 0.0;
+  double radius = 0.0, hardness = 1.0, spread = 0.0;
+  std::vector<std::int32_t> sharer;
+  std::vector<double> share;
+  int between = 0;
   const std::size_t is = words.choice({"particles", "rigid", "line"});
   if (is == 2) {
     particles = words.number<int>("the number of particles");
     radius = words.number<double>("the radius of particles");
     if (!(radius > 0.0)) words.fail("the radius of particles must be above 0");
+    hardness = words.number<double>("the hardness of a line");
+    spread = words.number<double>("the spread of points between particles");
+    between = words.many("points between particles", 2 * SHARERS);
+    for (int n = 0; n < between; ++n) {
+      for (int k = 0; k < SHARERS; ++k) sharer.push_back(words.number<std::int32_t>("a particle that shares a point"));
+      for (int k = 0; k < SHARERS; ++k) share.push_back(words.number<double>("a share of a point"));
+    }
   } else if (is == 0) {
     node.resize(particles = words.many("particles"));
     for (std::int32_t &n : node) n = words.number<std::int32_t>("the place of a particle");
@@ -147,7 +157,8 @@ ContactBody read_body(Words &words)
   try {
     return ContactBody({count, edge, particles, node.data(), filled.data(), points, cell.data(), at.data(), centre.data(),
                         normal.data(), area.data(), kind.data(), depth.empty() ? nullptr : depth.data(), parts, open.data(),
-                        frame.empty() ? nullptr : frame.data(), frame_at.data(), radius});
+                        frame.empty() ? nullptr : frame.data(), frame_at.data(), radius, hardness, spread, between, sharer.data(),
+                        share.data()});
   } catch (const std::runtime_error &problem) {
     words.fail(problem.what(), line);
   }

@@ -90,10 +90,21 @@ void ContactBody::take_line(const ContactBodyArrays &given)
 {
   need(given.radius > 0.0 && std::isfinite(given.radius), "the radius of its particles is not a length");
   need(!given.depth && given.open == 0, "a line is not a host");
-  need(cells[0] == number && cells[1] == 1 && cells[2] == 1 && given.points == number,
+  const int all = number + given.between;
+  need(given.between >= 0 && cells[0] == all && cells[1] == 1 && cells[2] == 1 && given.points == all,
        "a line has a cell and a point a particle");
-  for (int n = 0; n < number; ++n) need(given.cell[n] == n, "points of a line do not ascend");
+  for (int n = 0; n < all; ++n) need(given.cell[n] == n, "points of a line do not ascend");
+  need(given.hardness > 0.0 && std::isfinite(given.hardness), "the hardness of a line is not a number above 0");
+  need(given.spread >= 0.0 && std::isfinite(given.spread), "the spread of points between particles is not a length");
   radius_of_points = given.radius;
+  hardness_of_line = given.hardness;
+  stands_out = given.spread;
+  for (int n = 0; n < SHARERS * given.between; ++n) {
+    const int one = given.sharer[n];
+    need(one >= 0 && one < number && (n % SHARERS == 0 || given.sharer[n - 1] < one), "sharers of a point do not ascend");
+    need(given.share[n] >= 0.0 && given.share[n] < 1.0, "a share of a point is not from 0 to 1");
+    sharers.push_back({one, given.share[n]});
+  }
   place_of_node.resize(number);
   std::iota(place_of_node.begin(), place_of_node.end(), 0);
 }
@@ -162,7 +173,10 @@ bool ContactBody::operator==(const ContactBody &other) const
     return same_weights(0) && same_weights(1) && same_weights(2) && same_weights(3);
   };
   return std::equal(cells, cells + 3, other.cells) && std::equal(edges, edges + 3, other.edges) && number == other.number &&
-         same_frame() && radius_of_points == other.radius_of_points && place_of_node == other.place_of_node &&
+         same_frame() && radius_of_points == other.radius_of_points && hardness_of_line == other.hardness_of_line &&
+         stands_out == other.stands_out && place_of_node == other.place_of_node &&
+         std::equal(sharers.begin(), sharers.end(), other.sharers.begin(), other.sharers.end(),
+                    [](const PointCarrier &a, const PointCarrier &b) { return a.slot == b.slot && a.weight == b.weight; }) &&
          filled == other.filled && depth_grid == other.depth_grid &&
          std::equal(open_parts.begin(), open_parts.end(), other.open_parts.begin(), other.open_parts.end(), same_parts) &&
          std::equal(surface.begin(), surface.end(), other.surface.begin(), other.surface.end(), same_points);
@@ -171,7 +185,10 @@ bool ContactBody::operator==(const ContactBody &other) const
 void ContactBody::add_carriers(const SurfacePoint &point, const Vec3 &X)
 {
   if (is_line()) {
-    point_carriers.push_back({point.cell[0], 1.0});
+    const int first = SHARERS * (point.cell[0] - number);
+    if (first < 0) point_carriers.push_back({point.cell[0], 1.0});
+    for (int n = first; n >= 0 && n < first + SHARERS; ++n)
+      if (sharers[n].weight != 0.0) point_carriers.push_back(sharers[n]);
     return;
   }
   if (rigid) {
@@ -300,7 +317,7 @@ std::size_t ContactBody::bytes() const
          depth_grid.capacity() * sizeof(double) + open_parts.capacity() * sizeof(OpenPart) + area.capacity() * sizeof(double) +
          facing.capacity() * sizeof(PointFacing) + point_carriers.capacity() * sizeof(PointCarrier) +
          first_carrier.capacity() * sizeof(int) + carriers.capacity() * sizeof(PointCell) + by_cell.capacity() * sizeof(int) +
-         is_carrier.capacity();
+         is_carrier.capacity() + sharers.capacity() * sizeof(PointCarrier);
 }
 
 }    // namespace mdanim

@@ -46,6 +46,7 @@ struct OpenPart {
   int side;
   double low[2], high[2];
 };
+constexpr int SHARERS = 3;         // particles that share a point of a sheet between them
 constexpr int OPEN_NUMBERS = 5;    // of one part: side, low and high along the first axis, then along the second
 
 // The arguments of mdanim_contact_body().
@@ -66,8 +67,14 @@ struct ContactBodyArrays {
   const std::int32_t *frame = nullptr;
   const double *frame_at = nullptr;
   // Above 0: a line of round particles of this radius. Each is the point of its own number, in a cell of its own in one row;
-  // `node` is not read.
+  // `node` is not read. Points behind these, in cells that follow, lie between particles: three that share each, ascending, and
+  // their weights; none is farther from one of them than `spread` [m].
   double radius = 0.0;
+  double hardness = 1.0;    // stiffness with which a line touches other bodies, over that which its material gives
+  double spread = 0.0;
+  int between = 0;
+  const std::int32_t *sharer = nullptr;
+  const double *share = nullptr;
 };
 
 class ContactBody {
@@ -80,6 +87,7 @@ class ContactBody {
   // A line of round particles touches others with its points, and is never a host.
   bool is_line() const { return radius_of_points > 0.0; }
   double radius() const { return radius_of_points; }    // of the surface around each point [m]; 0 where points lie on the surface
+  double hardness() const { return hardness_of_line; }  // of a line against other bodies, over that by its material
   const std::optional<RigidFrame> &frame() const { return rigid; }    // none of a body that deforms
   int sides() const { return is_cuboid() ? 6 : 1; }
   int count(int axis) const { return cells[axis]; }
@@ -170,7 +178,8 @@ class ContactBody {
   std::vector<int> by_cell;    // numbers of points, cell by cell, ascending in each
   std::vector<char> is_carrier;
   bool has_fine = false;    // points
-  double stands_out = 0.0, lever = 1.0, radius_of_points = 0.0;
+  double stands_out = 0.0, lever = 1.0, radius_of_points = 0.0, hardness_of_line = 1.0;
+  std::vector<PointCarrier> sharers;    // three of each point between particles of a line
   std::vector<OpenPart> open_parts;    // sides without an open part act everywhere
   std::vector<double> depth_grid;      // coefficients of quadratic B-splines on nodes -2 to n + 2
 };

@@ -24,7 +24,7 @@ ContactLaw ContactSettings::law_of_pair(const ContactObject &owner, const Contac
   // A line or a sheet gives way as its own links do, however coarse the body is that it lies on.
   const ContactBody *const bare = lower.body->is_line() ? lower.body.get() : higher.body->is_line() ? higher.body.get() : nullptr;
   const double h = bare ? bare->spacing() : std::max(lower.body->spacing(), higher.body->spacing());
-  const double part = bare ? LINE : lower.body->is_cuboid() == higher.body->is_cuboid() ? 1.0 : ALONE;
+  const double part = bare ? LINE * bare->hardness() : lower.body->is_cuboid() == higher.body->is_cuboid() ? 1.0 : ALONE;
   const double kappa = part * stiffness * 2.0 * lower.young * higher.young / (lower.young + higher.young) / h;
   double mu = std::sqrt(lower.friction * higher.friction), beta = mu > 0.0 ? damping : 0.0;
   if (const auto own = pairs.find({lower.id, higher.id}); own != pairs.end())

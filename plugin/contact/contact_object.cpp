@@ -122,13 +122,6 @@ void ContactObject::find_crushed(const PaddedVec3 *place)
 static Box box_of(const PointCell &cell, const ContactObject &owner, const PaddedVec3 *place, bool &is_there)
 {
   const int row = owner.body->row(), layer = owner.body->layer();
-  if (owner.body->is_line()) {
-    Box box;
-    const int slot = owner.slot[cell.place];
-    is_there = slot >= 0;
-    if (is_there) box.include(&place[slot].value.x);
-    return box;
-  }
   Vec3 corner[8];
   int missing = 0;
   for (int c = 0; c < 8; ++c) {
@@ -158,7 +151,7 @@ static Box box_of(const PointCell &cell, const ContactObject &owner, const Padde
   return box;
 }
 
-// Points of a torn object may be far from the rest of their cells.
+// Points of a torn object may be far from the rest of their cells, and a line has points alone.
 static Box box_of_points(const PointCell &cell, const ContactObject &owner, const PaddedVec3 *place, bool &is_there)
 {
   Box box;
@@ -178,7 +171,7 @@ PointFinder::PointFinder(const ContactObject &owner, const ContactArrays &arrays
   cells.reserve(all.size());
   for (int c = 0; c < static_cast<int>(all.size()); ++c) {
     bool is_there = false;
-    const Box box = (owner.torn ? box_of_points : box_of)(all[c], owner, arrays.place(), is_there);
+    const Box box = (owner.torn || owner.body->is_line() ? box_of_points : box_of)(all[c], owner, arrays.place(), is_there);
     if (is_there) cells.emplace_back(c, box);
   }
 }

@@ -3,12 +3,15 @@
 
 import math
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from mdanim_lammps.errors import SceneError
+from mdanim_lammps.features.sheets.bearing import blows
 from mdanim_lammps.model.spacing import plan_spacing
 from mdanim_lammps.run.prepare import prepare
+from mdanim_lammps.scene.formatting import number
 from mdanim_lammps.scene.lock import lock_text
 from mdanim_lammps.scene.parse import parse_scene
 from mdanim_lammps.scene.scene import Cylinder, Sheet, Shell, Sphere
@@ -129,24 +132,55 @@ def bearing(z: float, control: str, skin: str = SKIN) -> list:
 
 
 @pytest.mark.parametrize(("z", "control"), [(0.5406, "resolution 2 cm"), (0.9, "resolution 2 cm"), (0.9, "")])
-def test_check_says_what_a_sheet_does_not_bear(z, control):
-    """A steel ball of 2.1 kg that is laid on, or falls by 36 cm: in runs all three came out below. With the stiffness to write
-    they were borne, and there is nothing to say."""
-    (found,) = bearing(z, control)
+def test_a_sheet_is_as_hard_as_what_comes_onto_it_asks_for(z, control):
+    """A steel ball of 2.1 kg that is laid on, or falls by 36 cm: by the material alone all three came out below.
+
+    With ``contact-stiffness`` less is left to choose."""
+    hardness = []
+    for more in ("", " contact-stiffness 2"):
+        scene = parse_scene("gravity (0, 0, -9.81) m/s^2\n" + SKIN + DROPPED % (z, control + more))
+        ready = prepare(scene)
+        hardness.append(ready.models[0].frame.hardness)
+        (said,) = [p.message for p in ready.certificate.notes if "bears" in p.message]
+        assert f"a contact {number(hardness[-1], 2)} times as stiff as by its material, so that it bears ball, which" in said
+        assert not bearing(z, control + more)
+    assert hardness[0] > 2.0 and hardness[1] == pytest.approx(0.5 * hardness[0], rel=0.05)
+
+
+def test_check_says_what_no_sheet_bears():
+    """A thin, soft one: the stiffness would have to be more than a hundred times that of its material."""
+    (found,) = bearing(0.9, "", SKIN.replace("material rubber", "density 930 kg/m^3  elasticity 200 kPa"))
     assert found.severity == "warning" and "ball may fall through skin" in found.message
     stiffness = re.search(r"contact-stiffness (\S+) in control", found.hint)[1]
-    assert not bearing(z, f"{control} contact-stiffness {stiffness}")
+    assert not bearing(0.9, f"contact-stiffness {stiffness}", SKIN.replace("material rubber", "density 930  elasticity 200 kPa"))
 
 
-def test_what_particles_of_a_sheet_hold_is_that_of_the_closed_form():
-    """pi k/h^2 int_0^R (R + s - x)^2 x dx, halved, with the radius s of the points: k = 355.9 N/m at points 2.105 cm apart."""
-    (found,) = bearing(0.5406, "resolution 2 cm")
+def test_what_points_of_a_sheet_bear_is_that_of_closed_forms():
+    """A ball comes with m g (R + depth), where the depth is that of Schwerin's membrane, a quarter of the side in radius; points
+    bear pi k/h^2 int_0^R (R + s - x)^2 x dx, times 16/9R, with the radius s of the points: k = 355.9 N/m at points 2.105 cm apart."""
+    ready = prepare(parse_scene("gravity (0, 0, -9.81) m/s^2\n" + SKIN + DROPPED % (0.5406, "resolution 2 cm")))
+    (blow,) = blows(ready.context)
     r, around, k, h = 0.04, 0.04 + 0.02105 / 12, 355.87, 0.0210526
-    most = math.pi * k / h**2 * (around**2 * r**2 / 2.0 - 2.0 * around * r**3 / 3.0 + r**4 / 4.0) / 2.0
-    bears = float(re.search(r"apart bear (\S+) J", found.message)[1])
-    assert bears == pytest.approx(most, rel=0.02)  # of squares in the cross-section
-    comes = float(re.search(r"comes with (\S+) J", found.message)[1])
-    assert comes == pytest.approx(7850.0 * 4.0 / 3.0 * math.pi * 0.04**3 * 9.81 * 0.0406, rel=0.005)
+    most = math.pi * k / h**2 * (around**2 * r**2 / 2.0 - 2.0 * around * r**3 / 3.0 + r**4 / 4.0)
+    assert blow.borne == pytest.approx(16.0 / 9.0 * most / r, rel=0.02)  # of squares in the cross-section
+    weight = 7850.0 * 4.0 / 3.0 * math.pi * 0.04**3 * 9.81
+    deep = 4.0 * blow.energy / blow.force
+    assert blow.energy == pytest.approx(weight * (0.0406 + deep), rel=0.005)
+    assert blow.force == pytest.approx(9.0 * math.pi / 16.0 * 2000.0 * deep**3 / 0.1**2, rel=1e-6)
+
+
+def test_points_between_particles_have_all_of_the_area():
+    """As close as a marble asks for, where particles are as far apart as it is thick; weights and areas add up."""
+    marble = DROPPED.replace("sphere 4 cm", "sphere 1 cm")
+    ready = prepare(parse_scene("gravity (0, 0, -9.81) m/s^2\n" + SKIN + marble % (0.7, "resolution 2 cm")))
+    frame = ready.models[0].frame
+    body, one = frame.contact, replace(frame, parts=1).contact
+    assert frame.parts == 3 and len(body.area) == pytest.approx(9 * len(one.area), rel=0.1)
+    np.testing.assert_allclose(body.share.sum(axis=1), 1.0)
+    assert body.area.sum() == pytest.approx(one.area.sum()) and body.carried.sum() == pytest.approx(one.area.sum())
+    inside = frame.woven.share > 0.99
+    assert body.area[: len(inside)][inside] == pytest.approx(one.area[inside] / 9.0, rel=0.2)
+    assert not [p for p in ready.certificate.notes if "slip through" in p.message or "fall through" in p.message]
 
 
 def test_light_objects_and_loose_sheets_are_not_warned_of():

@@ -14,7 +14,7 @@ import plugin_lab as lab
 import plugin_path
 import state_lab
 from mdanim_lammps.engine.plugin import folder
-from mdanim_lammps.model.contact_body import frame_of, make_contact_body
+from mdanim_lammps.model.contact_body import NO_SHARERS, NO_SHARES, frame_of, make_contact_body
 from mdanim_lammps.model.lattice import Cells
 from mdanim_lammps.scene.shapes import Box
 
@@ -130,6 +130,10 @@ def line_arrays(particles: int, edge: float, radius: float) -> dict:
         "frame": None,
         "frame_at": None,
         "radius": radius,
+        "hardness": 1.0,
+        "spread": 0.0,
+        "sharer": NO_SHARERS,
+        "share": NO_SHARES,
     }
 
 
@@ -141,6 +145,7 @@ def give_body(lmp, fix: str, kind: int, arrays: dict) -> None:
         a if a is None else a.ctypes.data_as(ctypes.c_void_p) for a in kept.values()
     )
     sizes = ctypes.c_int(len(kept["node"])), ctypes.c_int(len(kept["cell"]))
+    sharer, share = arrays.get("sharer", NO_SHARERS), arrays.get("share", NO_SHARES)
     error = ctypes.create_string_buffer(1024)
     handle = ctypes.c_void_p(ctypes.cast(lmp.lmp, ctypes.c_void_p).value)
     if library.mdanim_contact_body(
@@ -159,6 +164,11 @@ def give_body(lmp, fix: str, kind: int, arrays: dict) -> None:
         frame,
         frame_at,
         ctypes.c_double(arrays.get("radius", 0.0)),
+        ctypes.c_double(arrays.get("hardness", 1.0)),
+        ctypes.c_double(arrays.get("spread", 0.0)),
+        ctypes.c_int(len(sharer)),
+        sharer.ctypes.data_as(ctypes.c_void_p),
+        share.ctypes.data_as(ctypes.c_void_p),
         error,
         ctypes.c_int(1024),
     ):

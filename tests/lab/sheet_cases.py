@@ -4,6 +4,7 @@
 import math
 from collections.abc import Callable
 from functools import lru_cache
+from itertools import pairwise
 
 import numpy as np
 from mdanim_lammps.engine.instance import Instance
@@ -251,6 +252,63 @@ def _square_membrane(terms: int = 4, points: int = 24) -> float:
     return float(found.x.reshape(2, terms, terms)[0].sum())
 
 
+def ball_on_membrane(mass: float, a: float = 0.45, radius: float = 0.05) -> tuple[float, float]:
+    """Depth at which a rigid ball rests on a round sheet that is held around, below its level, and that of the least energy."""
+    young, thickness = 1e7, 1e-3
+    rows = np.linspace(-0.5, 0.5, 41)
+    holds = []
+    for low, high in pairwise(rows.tolist()):
+        x = math.sqrt(max(a**2 - (0.5 * (low + high)) ** 2, 0.0))
+        holds += [f"hold within box ({p}, {low}, -1) m to ({q}, {high}, 1) m" for p, q in ((-0.6, -x), (x, 0.6))]
+    cloth = sheet(
+        "(1, 1)", f"{thickness} m bending 0", f"elasticity {young} Pa  drag 3 N*s/m  damping 0.2  resolution 2 cm", *holds
+    )
+    ball = f"shape sphere {radius} m  position (0, 0, {radius + 0.005}) m  mass {mass} kg  elasticity rigid  drag 30 N*s/m"
+    x, ready = settled(f"{DOWN}{cloth}object ball {{ {ball} }}\n", 0.8)
+    own = x[ready.system.first[1] :].mean(axis=0)
+    return radius - float(own[2]), _ball_on_membrane(a, radius, mass * G / (young * thickness), 1000.0 * G / young)
+
+
+def _ball_on_membrane(a: float, radius: float, load: float, weight: float, parts: int = 60) -> float:
+    """Depth of the lowest place of a ball on a round membrane of the radius a, under F/E t and its own weight for each area over
+    E t [1/m]: the least of the energy among surfaces of revolution, with the ball as a stiff penalty."""
+    from scipy.optimize import minimize
+
+    r = a * np.linspace(0.0, 1.0, parts + 1) ** 1.5
+    step, middle = np.diff(r), 0.5 * (r[1:] + r[:-1])
+    ring, hard = 2.0 * math.pi * middle * step, 300.0 / radius**2
+    at = np.zeros(parts + 1)
+    at[:-1] += 0.5 * ring
+    at[1:] += 0.5 * ring
+
+    def energy(values: np.ndarray) -> tuple[float, np.ndarray]:
+        u, w, z = np.zeros(parts + 1), np.zeros(parts + 1), values[-1]
+        u[1:-1], w[:-1] = values[: parts - 1], values[parts - 1 : -1]
+        slope = np.diff(w) / step
+        er, et = np.diff(u) / step + 0.5 * slope**2, 0.5 * (u[1:] + u[:-1]) / middle
+        tr, tt = (er + NU * et) / (1.0 - NU**2) * ring, (et + NU * er) / (1.0 - NU**2) * ring
+        side, away = r + u, np.hypot(r + u, w - z - radius)
+        deep = np.maximum(radius - away, 0.0)
+        push = hard * at * deep
+        total = 0.5 * float(er @ tr + et @ tt) + load * z + weight * float(at @ w) + 0.5 * float(push @ deep)
+        du, dw = -push * side / away, weight * at - push * (w - z - radius) / away
+        for end, sign in ((slice(1, None), 1.0), (slice(None, -1), -1.0)):
+            du[end] += sign * tr / step + 0.5 * tt / middle
+            dw[end] += sign * tr * slope / step
+        down = load + float((push * (w - z - radius) / away).sum())
+        return total, np.concatenate([du[1:-1], dw[:-1], [down]])
+
+    begin = np.zeros(2 * parts)
+    begin[parts - 1 : -1] = -0.1 * (1.0 - (r[:-1] / a) ** (2.0 / 3.0))
+    begin[-1] = -0.1
+
+    def bend(values: np.ndarray) -> np.ndarray:
+        rows = np.array([energy(values + 1e-6 * way)[1] - energy(values - 1e-6 * way)[1] for way in np.eye(len(values))])
+        return 2.5e5 * (rows + rows.T)
+
+    return -float(minimize(energy, begin, jac=True, hess=bend, method="trust-exact", options={"gtol": 1e-9}).x[-1])
+
+
 def fall(friction: float, thickness: float = 2e-3) -> float:
     """Energy that a sheet has gained after it has fallen flat on the ground from 0.5 m, over that of the fall."""
     more = f"position (0, 0, {0.5 + thickness}) m  elasticity 1 MPa  friction {friction}"
@@ -310,6 +368,8 @@ CASES: dict[str, tuple[Callable[[], tuple[float, float]], float]] = {
         for of in (0, 1)
     },
     "square membrane held at its sides": (membrane, 0.05),
+    "ball of 1 kg on a round membrane": (lambda: ball_on_membrane(1.0), 0.05),
+    "ball of 5 kg on a round membrane": (lambda: ball_on_membrane(5.0), 0.06),
     "cloth over a held ball": (lambda: draped(BALL), 0.05),
     "cloth over a held table": (lambda: draped(TABLE, time=0.5), 0.05),
 }

@@ -107,7 +107,7 @@ def test_a_cuboid_has_the_points_of_the_definition(count):
 
 def test_types_are_those_of_the_plugin():
     """Contiguous arrays of the types that the C function takes, not to be changed."""
-    expected = dict(count="i4", node="i4", filled="u1", cell="i4", kind="u1")
+    expected = dict(count="i4", node="i4", filled="u1", cell="i4", kind="u1", sharer="i4")
     for body in map(body_of, SHAPES):
         for name in (field.name for field in fields(body)):
             array = getattr(body, name)

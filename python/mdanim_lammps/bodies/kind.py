@@ -65,6 +65,11 @@ class BodyKind:
         """
         raise NotImplementedError
 
+    def fitted(self, context: Any) -> dict[int, Any]:
+        """Models of its objects that are others once it is known what they may meet, by numbers of objects, in the context
+        (effects/context.py) of a scene."""
+        return {}
+
 
 def only_features(scene: SceneRecord) -> bool:
     """Whether all contacts of a scene are found from features of shapes alone: a module ``body`` may have a function

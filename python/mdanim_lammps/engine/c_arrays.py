@@ -28,5 +28,7 @@ def body_arguments(kind: int, body: ContactBody) -> list:
         ctypes.c_int(len(body.open)),
         pointer(body.open),
         *(None if array is None else pointer(array) for array in (body.frame, body.frame_at)),
-        ctypes.c_double(body.radius),
+        *map(ctypes.c_double, (body.radius, body.hardness, body.spread)),
+        ctypes.c_int(len(body.sharer)),
+        *map(pointer, (body.sharer, body.share)),
     ]

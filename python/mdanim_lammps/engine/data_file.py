@@ -73,7 +73,9 @@ def bodies_text(bodies: Mapping[int, ContactBody]) -> Iterator[str]:
         yield from rows("cells %d %d %d\n", *body.count[:, None])
         yield from rows("edge %r %r %r\n", *body.edge[:, None])
         if body.radius:
-            yield f"line {len(body.node)} {body.radius!r}\n"
+            shared = len(body.sharer)
+            yield f"line {len(body.node)} {body.radius!r} {body.hardness!r} {body.spread!r} {shared}\n"
+            yield from rows("%d %d %d %r %r %r\n", *body.sharer.T, *body.share.T)
         elif body.frame is None or body.frame_at is None:
             yield f"particles {len(body.node)}\n"
             yield from rows("%d\n", body.node)

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from ..bodies import BodyKind, lets_go
-from .contact_body import BodyFrame, ContactBody
+from .contact_body import NO_SHARERS, NO_SHARES, BodyFrame, ContactBody
 from .model import Layer, Model, Surface
 from .shapes import mass
 from .springs import reduced_mass, types
@@ -31,20 +31,27 @@ class BareFrame(BodyFrame):
 
     @cached_property
     def points(self) -> tuple[np.ndarray, float]:
-        """Area of the surface that each particle stands for [m^2], shape (N,), and the distance of the surface from it [m]."""
+        """Area of the surface that each point stands for [m^2], those of particles first, shape (P,), and the distance of the
+        surface from it [m]."""
         raise NotImplementedError
+
+    @property
+    def between(self) -> tuple[np.ndarray, np.ndarray, float]:
+        """``sharer``, ``share`` and ``spread`` of a contact body (model/contact_body.py): points between particles."""
+        return NO_SHARERS, NO_SHARES, 0.0
 
     @cached_property
     def contact(self) -> ContactBody:
         """The same object at every call."""
         area, radius = self.points
+        sharer, share, spread = self.between
         n = len(area)
         number = np.arange(n, dtype=np.int32)
         at = np.stack([number + 0.5, np.full(n, 0.5), np.full(n, 0.5)], axis=1)
         body = ContactBody(
-            count=self.cells.count.astype(np.int32),
+            count=np.array([n, 1, 1], np.int32),
             edge=self.cells.edge,
-            node=number,
+            node=number[: n - len(sharer)],
             filled=np.ones(n, np.uint8),
             cell=number,
             at=at,
@@ -55,8 +62,24 @@ class BareFrame(BodyFrame):
             depth=None,
             open=np.zeros((0, 5)),
             radius=radius,
+            hardness=self.hardness,
+            sharer=sharer,
+            share=share,
+            spread=spread,
         )
-        for array in (number, at, body.edge, body.filled, body.normal, body.area, body.kind, body.open, body.count):
+        for array in (
+            number,
+            sharer,
+            share,
+            at,
+            body.edge,
+            body.filled,
+            body.normal,
+            body.area,
+            body.kind,
+            body.open,
+            body.count,
+        ):
             array.setflags(write=False)
         return body
 

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
 from itertools import product
 from typing import ClassVar
@@ -38,6 +38,10 @@ MARGIN = 2
 OUTSIDE = 2
 """Nodes further out whose depth is worked out: where the spline ends it is not that of an endless grid, and a sixth of that error
 is left at each next node."""
+
+
+NO_SHARERS, NO_SHARES = np.zeros((0, 3), np.int32), np.zeros((0, 3))
+"""No points between particles."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,6 +87,15 @@ class ContactBody:
     radius: float = 0.0
     """Radius of the surface around each point [m]: above 0 particles are points themselves, each in a cell of its own, one behind
     the other, and the body is never a host."""
+    hardness: float = 1.0
+    """Stiffness of such a body where it touches others, over that which its material gives."""
+    sharer: np.ndarray = field(default_factory=lambda: NO_SHARERS)
+    """Particles that carry the points of such a body which lie between particles and follow those of particles, ascending,
+    int32, shape (K, 3)."""
+    share: np.ndarray = field(default_factory=lambda: NO_SHARES)
+    """Their weights, shape (K, 3)."""
+    spread: float = 0.0
+    """No such point is farther from one of its particles [m]."""
 
     @cached_property
     def carried(self) -> np.ndarray:
@@ -90,7 +103,8 @@ class ContactBody:
         and that of all others, as either act. Points beyond the cell that carries them have weights below 0. Particles at no
         cells carry nothing."""
         if self.radius:
-            return self.area
+            own, of_point = len(self.node), self.area[len(self.node) :, None] * self.share
+            return self.area[:own] + np.bincount(self.sharer.ravel(), of_point.ravel(), own) if len(of_point) else self.area
         if (self.node < 0).any():
             return np.zeros(len(self.node))
         fine = self.kind == FINE
@@ -110,6 +124,10 @@ class BodyFrame:
     """Whether it does not deform."""
     dimensions: ClassVar[int] = 3
     """Dimensions that its particles span: 1 of a line, 2 of a sheet."""
+    hardness = 1.0
+    """As that of ContactBody."""
+    parts = 1
+    """Distance of particles over that of points of contact, of lines and sheets."""
     corners: np.ndarray | None = None
     """X of its eight particles, the corners of a box [-], shape (8, 3); None where particles are at the corners of cells."""
 
@@ -170,8 +188,8 @@ def make_contact_body(shape: Shape, cells: Cells, open_parts: np.ndarray | None 
         depth=None if boxed else _depth(shape, cells),
         open=open_parts,
     )
-    for field in fields(body):
-        if isinstance(array := getattr(body, field.name), np.ndarray):
+    for one in fields(body):
+        if isinstance(array := getattr(body, one.name), np.ndarray):
             array.setflags(write=False)
     return body
 

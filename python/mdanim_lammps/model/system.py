@@ -91,6 +91,16 @@ class System(Particles):
         return np.array([frame.bare for frame in self.frames], bool)[self.contact_kind]
 
     @property
+    def hardness(self) -> np.ndarray:
+        """Stiffness with which each solid touches others, over that which its material gives [-], shape (M,)."""
+        return np.array([frame.hardness for frame in self.frames])[self.contact_kind]
+
+    @property
+    def parts(self) -> np.ndarray:
+        """Distance of particles over that of points of contact, of lines and sheets [-], shape (M,)."""
+        return np.array([frame.parts for frame in self.frames])[self.contact_kind]
+
+    @property
     def moved(self) -> np.ndarray | None:
         """Held particles that some effect moves, bool, shape (N,); None where there are none."""
         return (self.held | self.pinned) & self.driven[self.object] if self.driven.any() else None

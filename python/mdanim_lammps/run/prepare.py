@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from .. import features
+from ..bodies import kinds
 from ..certificate import Certificate, certify
 from ..certificate import warnings as margin_warnings
 from ..effects import Context, Resolved, Verdict, resolve
@@ -113,6 +114,9 @@ def _prepare(scene: SceneRecord, spacing: Spacing, allow_unstable: bool) -> Prep
         e.needs_inside(context) for e in resolved.effects
     ):
         context = _context(resolved, build_models(scene, spacing.of, driven=drives, inside=True), spacing, grid)
+    if fitted := {m: model for kind in kinds() for m, model in kind.fitted(context).items()}:
+        fit = [fitted.get(m, model) for m, model in enumerate(context.models)]
+        context = _context(resolved, fit, spacing, grid)
     certificate = certify(context, allow_unstable=allow_unstable)
     if not allow_unstable:
         _refuse(certificate)

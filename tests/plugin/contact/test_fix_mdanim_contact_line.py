@@ -86,6 +86,32 @@ def test_a_line_is_as_stiff_on_wide_cells_as_on_narrow_ones(tmp_path):
     np.testing.assert_allclose(found[1], found[0], rtol=1e-9)
 
 
+@dataclass(frozen=True)
+class Shared(Line):
+    """Three particles, one point between the first two, and one between all; twice as hard."""
+
+    @property
+    def arrays(self) -> dict:
+        return contact_lab.line_arrays(5, self.spacing, RADIUS) | {
+            "node": np.arange(3, dtype=np.int32),
+            "hardness": 2.0,
+            "spread": 2.0,
+            "sharer": np.array([[0, 1, 2], [0, 1, 2]], np.int32),
+            "share": np.array([[0.25, 0.75, 0.0], [0.2, 0.3, 0.5]]),
+        }
+
+
+def test_points_between_particles_push_these_by_their_weights(tmp_path):
+    """Level on a cuboid, all five at one depth."""
+    host, depth = Cuboid((4, 3, 2), held=True, rigid=True), 0.1
+    line = Shared((3, 1, 1), (-1.0, 0.2, 1.01 + RADIUS), velocity=(0.0, 0.0, -(depth + 0.01) / 0.15))
+    lmp = load((host, line), tmp_path, "objects", 0.15)
+    found = pushed(lmp)[-3:, 2]
+    lmp.close()
+    one = force_of(depth, 2.0 * STIFF * 2.0 * YOUNG / (1.0 + YOUNG), 2 * RADIUS)
+    np.testing.assert_allclose(found, one * np.array([1.0 + 0.25 + 0.2, 1.0 + 0.75 + 0.3, 1.0 + 0.5]), rtol=1e-9)
+
+
 def test_lines_do_not_touch_each_other(tmp_path):
     """One across the other."""
     lmp = load((Line((3, 1, 1)), Line((3, 1, 1), (0.5, 0.0, 0.7), velocity=(0.0, 0.0, -2.0))), tmp_path, "objects", 0.15)
@@ -93,10 +119,11 @@ def test_lines_do_not_touch_each_other(tmp_path):
     lmp.close()
 
 
-def test_passes_and_single_contacts_have_the_same_bits_with_a_line(tmp_path):
+@pytest.mark.parametrize(("of", "steps"), [(Line((6, 1, 1)), 120), (Shared((3, 1, 1)), 40)])
+def test_passes_and_single_contacts_have_the_same_bits_with_a_line(tmp_path, of, steps):
     """It falls onto an elastic cuboid, slides over its edge, and lies on a plane beside it; a body from a file, too."""
     slab = Cuboid((3, 3, 2), friction=0.5)
-    line = Line((6, 1, 1), (-1.0, 0.3, 1.4), friction=0.4, velocity=(0.05, 0.0, -0.1))
+    line = replace(of, centre=(-1.0, 0.3, 1.4), friction=0.4, velocity=(0.05, 0.0, -0.1))
     words = "objects plane z lo -1.05"
     states = []
     (tmp_path / "bodies").write_text(
@@ -105,7 +132,7 @@ def test_passes_and_single_contacts_have_the_same_bits_with_a_line(tmp_path):
     for run_style, more in (("verlet", ""), ("verlet/mdanim", ""), ("verlet", f" bodies {tmp_path}/bodies")):
         lmp = load((slab, line), tmp_path, words + more, 0.15, give=not more)
         lmp.command(f"run_style {run_style}")
-        lmp.command("run 120")
+        lmp.command(f"run {steps}")
         states.append(State.of(lmp))
         lmp.close()
     assert contact_lab.contacts(states[0].contacts)
@@ -116,6 +143,7 @@ def test_passes_and_single_contacts_have_the_same_bits_with_a_line(tmp_path):
     ("wrong", "why"),
     [
         ({"radius": -1.0}, "the radius of its particles is not a length"),
+        ({"hardness": 0.0}, "the hardness of a line is not a number above 0"),
         ({"cell": np.array([0, 2, 1], np.int32)}, "points of a line do not ascend"),
         ({"count": np.array([4, 1, 1], np.int32), "filled": np.ones(4, np.uint8)}, "a line has a cell and a point a particle"),
     ],

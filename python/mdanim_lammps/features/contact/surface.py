@@ -255,7 +255,7 @@ class SurfaceContact(ObjectContact):
         """kappa of the surface of each solid with the stiffest partner [N/m^3], shape (M,); 0 without a partner."""
         young = moduli(context)
         partner = largest_of_partners(context, young, [own for own, _ in settled(context)])
-        return surface_stiffness(context, young, 2.0 * partner / (young + partner))
+        return surface_stiffness(context, young, 2.0 * partner / (young + partner)) * context.system.hardness
 
     def problems(self, resolved, models, grid):
         return [*super().problems(resolved, models, grid), *too_fine(resolved.scene, models)]

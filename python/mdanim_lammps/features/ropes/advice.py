@@ -13,7 +13,7 @@ from ..folds.layers import folds
 from .words import is_rope, kind
 
 FINE = 0.5
-"""Distance of particles over the thinnest part of what they may meet, above which that may slip through between them."""
+"""Distance of points over the thinnest part of what they may meet, above which that may slip through between them."""
 
 
 def notes(envelope: Envelope) -> list[Problem]:
@@ -65,8 +65,9 @@ def coarsest(envelope: Envelope, bare: np.ndarray) -> tuple[int, int, float] | N
     if not len(others):
         return None
     thin = np.array([shapes.thickness(solids[m].shape) for m in others.tolist()])
-    m, least = int(bare[system.spacing[bare].argmax()]), float(thin.min())
-    return (m, int(others[thin.argmin()]), least) if float(system.spacing[m]) > FINE * least else None
+    apart = system.spacing / system.parts
+    m, least = int(bare[apart[bare].argmax()]), float(thin.min())
+    return (m, int(others[thin.argmin()]), least) if float(apart[m]) > FINE * least else None
 
 
 def slips(envelope: Envelope, found: tuple[int, int, float], cause: str, finest: float) -> Problem:

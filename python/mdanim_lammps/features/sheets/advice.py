@@ -10,7 +10,7 @@ from ...errors import Problem
 from ...scene.formatting import say
 from ..folds.layers import as_layers, folds
 from ..ropes.advice import coarsest, slips
-from .bearing import pressed_through
+from .bearing import hardened, pressed_through
 from .words import finest, is_sheet
 
 
@@ -23,7 +23,7 @@ def notes(envelope: Envelope) -> list[Problem]:
     touches = any(effect.touches for effect in envelope.on)
     return [
         *_themselves(envelope, moving),
-        *([*_coarse(envelope, sheets), *pressed_through(envelope, moving)] if touches else []),
+        *([*_coarse(envelope, sheets), *pressed_through(envelope), *hardened(envelope)] if touches else []),
     ]
 
 

@@ -1,78 +1,181 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""Whether a sheet that is held bears what comes onto it, or its particles are pressed through to the other side.
+"""How hard a sheet that is held has to be where it touches, and how close its points, so that it bears what comes onto it.
 
-Particles are the only contacts of a sheet: springs k = kappa w of the depth d below the surface of the other object. Where the
-object is half through, those in its cross-section A hold U = k/h^2 int_A d^2/2 dA, at most; for a ball of radius R
-pi k R^4/(12 h^2). An object with more energy than that may come out on the other side.
+Points are the only contacts of a sheet: springs k = kappa w of the depth d below the surface of the other object, which passes
+where these are pressed through its middle. Up to there those in its cross-section A hold U_A = k/h^2 int_A d^2/2 dA, for a ball
+of radius R pi k R^4/(12 h^2), and press with B = 16/9 U_A/R at most (that is where a level sheet is R/3 below the middle; 2 U_A/R
+for a cuboid). The sheet itself bears the rest, as a round membrane of the radius a does that is held around and has nu = 1/3
+(Schwerin 1929):
+
+    F = c E t delta^3/a^2,  U = F delta/4,  c = 9 pi/16        U = that of the blow, and m g delta
+    epsilon = sqrt(U/(pi E t R^2))                             beside the object, where F/(2 pi r) pulls at a distance r
+
+so contact has to be (1 + epsilon)^2 F/B as stiff as by the material of the sheet, because a stretched one has fewer points. Nor
+need it bear more than U; and the blow on a particle alone may press that halfway to the middle.
 """
 
 from __future__ import annotations
 
+import math
+from dataclasses import dataclass
+
 import numpy as np
 
+from ...effects.context import Context
 from ...effects.envelope import Envelope
 from ...errors import Problem
 from ...model import shapes
 from ...scene.formatting import number, say
 from ...scene.scene import Box, Solid
 from ..contact.rigid_surfaces import moduli
-from ..contact.surface import LINE, own_area
+from ..contact.surface import LINE, SurfaceContact, own_area
 from ..contact.words import CONTACT_STIFFNESS
+from ..ropes.advice import FINE
 from ..tearing.words import tears
-from .words import finest
+from .words import finest, is_sheet, width
 
 ACROSS = 32
 """Places along either axis of a cross-section."""
-ASIDE = 2.0
-"""U over what particles hold of what is not a cuboid: it pushes them aside as well, where the sheet is about as soft."""
-SURE = 2.0
-"""Energy over U above which an object goes through: the sheet takes a part by itself, as a trampoline, so that up to here some
-are borne."""
+SCHWERIN = 9.0 * math.pi / 16.0
+NEARER = 0.5
+"""Distance of the place of a blow from what is held, over half of the shorter side."""
 SPARE = 1.1
-"""Over the least stiffness or number of particles, in what is to be written."""
+"""Over the least stiffness, in what is chosen or is to be written."""
+HARDEST = 100.0
+"""Stiffness over that by the material, at most: a step is then a tenth as long and less."""
+MOST_PARTS = 4
+"""Parts of a link, at most."""
+SURE = 2.5
+"""Press over what points bear above which an object goes through; up to here some are borne."""
 
 
-def pressed_through(envelope: Envelope, sheets: np.ndarray) -> list[Problem]:
-    """The sheet that is held somewhere, by number, and the object that it bears least, where it may not bear it: a warning, or a
-    note where it may yet, and of a sheet that tears, which is to let things through."""
-    system, found = envelope.system, []
+@dataclass(frozen=True, slots=True)
+class Blow:
+    """An object that comes onto a sheet, and what it asks of it."""
+
+    sheet: int
+    other: int
+    energy: float
+    """[J]"""
+    force: float
+    """With which it presses, at most [N]."""
+    borne: float
+    """Force that points bear, with the hardness of 1 [N]."""
+    hardness: float
+    parts: float
+    """Parts of a link that points have to be apart [-], any number."""
+
+
+def fits(context: Context) -> dict[int, tuple[int, float]]:
+    """Parts of a link, and hardness, of each sheet that is another one by what comes onto it; one that tears lets it through."""
+    found: dict[int, tuple[int, float]] = {}
+    for blow in blows(context):
+        if tears(context.scene.solids[blow.sheet]):
+            continue
+        parts = min(MOST_PARTS, math.ceil(blow.parts * (1.0 - 1e-9)))
+        hardness = float(number(min(HARDEST, SPARE * blow.hardness), 2)) if blow.hardness > 1.0 else 1.0
+        if parts > 1 or hardness > 1.0:
+            more, harder = found.get(blow.sheet, (1, 1.0))
+            found[blow.sheet] = max(parts, more), max(hardness, harder)
+    return found
+
+
+def blows(context: Context) -> list[Blow]:
+    """Blows of all that may come onto a sheet which is held or tied, where objects touch."""
+    system, solids = context.system, context.scene.solids
+    sheets = [m for m, solid in enumerate(solids) if is_sheet(solid) and not system.held_whole[m]]
+    if not sheets or not any(effect.touches for effect in context.resolved.effects):
+        return []
     low, high = system.bounds(system.position)
-    swept = envelope.reach.region
+    swept = context.reach.region
     free = ~system.bare & ~system.held_whole & ~system.still
     held = np.logical_or.reduceat(system.held, system.first[:-1])
-    for sheet in sheets[held[sheets]].tolist():
+    tied = {m for pair in swept.passing for m in pair}
+    found = []
+    for sheet in (m for m in sheets if held[m] or m in tied):
         near = ((swept.low[sheet] < swept.high) & (swept.low < swept.high[sheet])).all(axis=1) & free
-        pairs = [(min(k, sheet), max(k, sheet)) for k in np.flatnonzero(near).tolist()]
-        for other in (sum(pair) - sheet for pair in pairs if pair not in swept.passing):
-            comes, bears = energy_of(envelope, sheet, other, low, high), borne_by(envelope, sheet, other)
-            if comes > bears:
-                found.append((comes / bears, sheet, other, comes, bears))
-    return [_warning(envelope, *max(found))] if found else []
+        others = [k for k in np.flatnonzero(near).tolist() if (min(k, sheet), max(k, sheet)) not in swept.passing]
+        found += [blow_of(context, sheet, other, low, high) for other in others]
+    return found
 
 
-def energy_of(envelope: Envelope, sheet: int, other: int, low: np.ndarray, high: np.ndarray) -> float:
-    """Energy with which an object comes to be half through a sheet [J]: that of its start, and of its fall where it is above.
+def blow_of(context: Context, sheet: int, other: int, low: np.ndarray, high: np.ndarray) -> Blow:
+    """Force and hardness that an object asks of a sheet; ``low`` and ``high`` are the bounds of all objects at the start [m],
+    shape (M, 3)."""
+    system, skin, solid = context.system, context.scene.solids[sheet], context.scene.solids[other]
+    falls, energy = _energy(context, sheet, other, low, high)
+    shorter = min(width(skin.shape), float(np.sort(high[sheet] - low[sheet])[1]))
+    across, tension = NEARER * 0.5 * shorter, float(system.young[sheet]) * skin.shape.thickness
+    weight = float(system.mass_of[other]) * context.reach.g if falls else 0.0
+    deep = 0.0
+    for _ in range(20):  # goes on by a quarter of the change
+        deep = (4.0 * (energy + weight * deep) * across**2 / (SCHWERIN * tension)) ** 0.25
+    energy += weight * deep
+    force = SCHWERIN * tension * deep**3 / across**2
+    half, h = 0.5 * shapes.thickness(solid.shape), float(system.spacing[sheet])
+    stretch = math.sqrt(energy / (math.pi * tension * half**2))
+    spring, held = _springs(context, sheet, other), _half_through(solid, system.frames[system.contact_kind[sheet]].contact.radius)
+    holds = spring / h**2 * held
+    borne = holds / half * (2.0 if isinstance(solid.shape, Box) else 16.0 / 9.0)
+    struck = 2.0 * energy / float(system.mass_of[other]) * float(system.density[sheet]) * skin.shape.thickness * h**2
+    alone = struck / (spring * (0.5 * half) ** 2)
+    hardness = max((1.0 + stretch) ** 2 * min(force / borne, energy / holds), alone)
+    return Blow(sheet, other, energy, force, borne, hardness, h * (1.0 + stretch) / (FINE * 2.0 * half))
 
-    ``low`` and ``high`` are the bounds of all objects at the start [m], shape (M, 3)."""
-    system, mass = envelope.system, float(envelope.system.mass_of[other])
+
+def pressed_through(envelope: Envelope) -> list[Problem]:
+    """The object that a sheet bears least, where it may not bear it: a warning, or a note where it may yet, and of a sheet that
+    tears, which is to let things through."""
+    hardness = envelope.system.hardness
+    found = [(blow.hardness / hardness[blow.sheet], n, blow) for n, blow in enumerate(blows(envelope.context))]
+    over, _, worst = max(found, default=(0.0, 0, None))
+    return [_warning(envelope, over, worst)] if worst and over > 1.0 else []
+
+
+def hardened(envelope: Envelope) -> list[Problem]:
+    """Notes of what touches harder than its material says, or has points between particles, and of what that costs."""
+    system, all_blows = envelope.system, blows(envelope.context)
+    hardness, parts, found = system.hardness, system.parts, []
+    for m in np.flatnonzero((hardness > 1.0) | (parts > 1)).tolist():
+        by = max((blow for blow in all_blows if blow.sheet == m), key=lambda blow: (blow.hardness, blow.parts))
+        ways = [f"points of contact {say(float(system.spacing[m]) / parts[m], 'm')} apart"] * bool(parts[m] > 1)
+        ways += [f"a contact {number(hardness[m], 2)} times as stiff as by its material"] * bool(hardness[m] > 1.0)
+        share = _of_steps(envelope, m, float(hardness[m]))
+        takes = f"; steps are {number(share, 2)} of what they would be" if share < 0.99 else ""
+        other = system.names[by.other]
+        cause = f"{system.names[m]} has {' and '.join(ways)}, so that it bears {other}, which comes with {say(by.energy, 'J')}"
+        way_out = f"a lighter or slower {other} takes less"
+        found.append(Problem(envelope.place(m, "shape"), cause + takes, way_out, severity="note"))
+    return found
+
+
+def _of_steps(envelope: Envelope, m: int, hardness: float) -> float:
+    """The bound on the time step over that with a hardness of 1 of this sheet."""
+    system, rates = envelope.system, envelope.rates
+    own = np.where(system.object == m, rates.get(SurfaceContact.name, 0.0), 0.0)
+    hard = np.where(system.held, 0.0, sum(rates.values()))
+    soft = np.where(system.held, 0.0, hard - own * (1.0 - 1.0 / hardness))
+    return math.sqrt(float(soft.max() / hard.max()))
+
+
+def _energy(context: Context, sheet: int, other: int, low: np.ndarray, high: np.ndarray) -> tuple[bool, float]:
+    """Whether an object falls onto a sheet, and the energy with which it comes to be half through it [J]: that of its start, and
+    of its fall where it is above."""
+    system, mass = context.system, float(context.system.mass_of[other])
     velocity = system.center_of_mass(system.velocity)
     energy = 0.5 * mass * float(((velocity[other] - velocity[sheet]) ** 2).sum())
     over = (low[other, :2] < high[sheet, :2]).all() and (low[sheet, :2] < high[other, :2]).all()
     middle = 0.5 * (low + high)[:, 2]
-    if not over or middle[other] < middle[sheet]:
-        return energy
-    return energy + mass * envelope.reach.g * float(middle[other] - middle[sheet])
+    falls = bool(over and middle[other] >= middle[sheet])
+    return falls, energy + (mass * context.reach.g * float(middle[other] - middle[sheet]) if falls else 0.0)
 
 
-def borne_by(envelope: Envelope, sheet: int, other: int) -> float:
-    """Energy that the particles of a sheet hold where an object is half through [J]."""
-    context, system = envelope.context, envelope.system
-    young, own = moduli(context), system.object == sheet
+def _springs(context: Context, sheet: int, other: int) -> float:
+    """k of a particle of a sheet on an object with the hardness of 1 [N/m]."""
+    system, young = context.system, moduli(context)
     pair = 2.0 * young[sheet] * young[other] / (young[sheet] + young[other])
     kappa = LINE * context.scene.control.contact_stiffness * pair / np.cbrt(system.cell_volume[sheet])
-    per_area = kappa * float(own_area(system)[own].max()) / float(system.spacing[sheet]) ** 2
-    radius = system.frames[system.contact_kind[sheet]].contact.radius
-    return per_area * _half_through(envelope.scene.solids[other], radius)
+    return float(kappa * own_area(system)[system.object == sheet].max())
 
 
 def _half_through(solid: Solid, radius: float) -> float:
@@ -86,22 +189,23 @@ def _half_through(solid: Solid, radius: float) -> float:
     x, y = np.meshgrid(reach[0] * step, reach[1] * step, indexing="ij")
     place = np.column_stack([x.ravel(), y.ravel(), np.zeros(x.size)]) @ turn + middle
     depth = shapes.depth(solid.shape, place)
-    cuboid = isinstance(solid.shape, Box)
-    pressed = np.where(depth > 0.0, float(half.min()) if cuboid else depth + radius, 0.0)
-    return float((pressed**2).sum()) * 2.0 * reach[0] * reach[1] / ACROSS**2 / (1.0 if cuboid else ASIDE)
+    pressed = np.where(depth > 0.0, float(half.min()) if isinstance(solid.shape, Box) else depth + radius, 0.0)
+    return 0.5 * float((pressed**2).sum()) * 4.0 * reach[0] * reach[1] / ACROSS**2
 
 
-def _warning(envelope: Envelope, over: float, sheet: int, other: int, comes: float, bears: float) -> Problem:
-    system, names, control = envelope.system, envelope.system.names, envelope.scene.control
-    h, more = float(system.spacing[sheet]), SPARE * over
+def _warning(envelope: Envelope, over: float, blow: Blow) -> Problem:
+    names, control, solid = envelope.system.names, envelope.scene.control, envelope.scene.solids[blow.sheet]
+    h, more, sheet, other = float(envelope.system.spacing[blow.sheet]), SPARE * over, names[blow.sheet], names[blow.other]
     stiffness, fine = control.contact_stiffness * more, h / np.sqrt(more)
-    ways = [f"resolution {say(fine, 'm')} in {names[sheet]}"] if fine >= finest(envelope.scene.solids[sheet].shape) else []
+    ways = [f"resolution {say(fine, 'm')} in {sheet}"] if fine >= finest(solid.shape) else []
     if stiffness <= CONTACT_STIFFNESS.most:
         ways.append(f"contact-stiffness {number(stiffness, 2)} in control")
+    bears = say(float(envelope.system.hardness[blow.sheet]) * blow.force / blow.hardness, "N")
+    comes = f"it comes with {say(blow.energy, 'J')} and presses with up to {say(blow.force, 'N')}"
     return Problem(
-        envelope.place(other, "shape"),
-        f"{names[other]} may fall through {names[sheet]}: it comes with {say(comes, 'J')}, and particles of {names[sheet]} that "
-        f"are {say(h, 'm')} apart bear {say(bears, 'J')} before they are pressed through it",
-        "write " + ", or ".join(ways) if ways else f"make {names[other]} lighter or slower, or {names[sheet]} thicker",
-        severity="warning" if over > SURE and not tears(envelope.scene.solids[sheet]) else "note",
+        envelope.place(blow.other, "shape"),
+        f"{other} may fall through {sheet}: {comes}, and particles of {sheet} that are {say(h, 'm')} apart bear {bears} before "
+        "they are pressed through it",
+        "write " + ", or ".join(ways) if ways else f"make {other} lighter or slower, or {sheet} thicker",
+        severity="warning" if over > SURE and not tears(solid) else "note",
     )

@@ -17,7 +17,9 @@ from ...model.lattice import Cells
 from ...scene.formatting import say
 from ...scene.scene import Accuracy, HoldAll, HoldFaces, HoldWithin, Sheet, Shell
 from ..tearing.words import tears
+from .bearing import fits
 from .drawn import both_sides
+from .refined import refined
 from .tiled import Tiled, tiled
 from .weave import Weave, weave
 from .words import finest, is_sheet, width
@@ -33,6 +35,10 @@ it gives way about as the sheet itself does in its plane, so that contact sets n
 GAP = 1.0 / 12.0
 """Radius of the surface around each particle over the spacing, at least: it sinks in a little, and no triangle between particles
 shows what it lies on."""
+
+
+FARTHEST = 1.5
+"""Distance of a point in a triangle from a corner of it over the spacing, at most."""
 
 
 class SheetBody(BareBody):
@@ -71,6 +77,14 @@ class SheetBody(BareBody):
         model = bare_model(solid, x, arm, woven.share, held, of_sheet, shared.once(_shared, sheet, h), cell)
         return replace(model, tears=tears(solid))
 
+    def fitted(self, context):
+        """With points and a hardness with which it bears what comes onto it (features/sheets/bearing.py)."""
+        found = {}
+        for m, (parts, hardness) in fits(context).items():
+            frame = replace(context.models[m].frame, parts=parts, hardness=hardness)
+            found[m] = replace(context.models[m], frame=frame)
+        return found
+
 
 @dataclass(frozen=True, eq=False)
 class SheetFrame(BareFrame):
@@ -78,6 +92,9 @@ class SheetFrame(BareFrame):
 
     dimensions = 2
     woven: Weave | Tiled = field(kw_only=True)
+    parts: int = field(kw_only=True, default=1)
+    """Parts of a link: in triangles of the layer there are points as far apart."""
+    hardness: float = field(kw_only=True, default=1.0)
 
     @property
     def spans(self) -> int:
@@ -99,7 +116,18 @@ class SheetFrame(BareFrame):
     def points(self) -> tuple[np.ndarray, float]:
         """Shares of POINT, and the half thickness or GAP."""
         area = POINT * self.shape.thickness * float(self.cells.edge[0])
-        return area * self.woven.share, max(0.5 * self.shape.thickness, GAP * self.woven.h)
+        share = self.woven.share if self.parts == 1 else self.refined[2]
+        return area * share, max(0.5 * self.shape.thickness, GAP * self.woven.h)
+
+    @cached_property
+    def refined(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Corners of triangles that are cut into ``parts``^2: the particles around each that is none itself, with weights, and
+        shares of the area of all, those of particles first."""
+        return refined(self.woven, self.parts)
+
+    @property
+    def between(self):
+        return (*self.refined[:2], FARTHEST * self.woven.h) if self.parts > 1 else super().between
 
 
 def layer(shape: Sheet | Shell, h: float) -> Weave | Tiled:
