@@ -25,7 +25,7 @@ MDANIM_EXPORT int mdanim_contact_body(void *handle, const char *fix, int kind, c
   return guarded(error, size, [&] {
     auto *found = dynamic_cast<FixMdanimContact *>(static_cast<LAMMPS *>(handle)->modify->get_fix_by_id(fix));
     if (!found) throw std::runtime_error(std::string("there is no fix ") + fix + " of style mdanim/contact");
-    found->take_body(kind, {count, edge, particles, node, filled, points, cell, at, centre, normal, area, point_kind, depth, open,
-                            open_part, frame, frame_at, radius, hardness, spread, between, sharer, share});
+    found->take_body(kind, {count, edge, particles, node,  filled,   points, cell,     at,     centre,  normal, area, point_kind,
+                            depth, open, open_part, frame, frame_at, radius, hardness, spread, between, sharer, share});
   });
 }

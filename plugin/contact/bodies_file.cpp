@@ -155,9 +155,28 @@ ContactBody read_body(Words &words)
   std::vector<double> open(OPEN_NUMBERS * static_cast<std::size_t>(parts));
   for (double &value : open) value = words.number<double>("a number of an open part");
   try {
-    return ContactBody({count, edge, particles, node.data(), filled.data(), points, cell.data(), at.data(), centre.data(),
-                        normal.data(), area.data(), kind.data(), depth.empty() ? nullptr : depth.data(), parts, open.data(),
-                        frame.empty() ? nullptr : frame.data(), frame_at.data(), radius, hardness, spread, between, sharer.data(),
+    return ContactBody({count,
+                        edge,
+                        particles,
+                        node.data(),
+                        filled.data(),
+                        points,
+                        cell.data(),
+                        at.data(),
+                        centre.data(),
+                        normal.data(),
+                        area.data(),
+                        kind.data(),
+                        depth.empty() ? nullptr : depth.data(),
+                        parts,
+                        open.data(),
+                        frame.empty() ? nullptr : frame.data(),
+                        frame_at.data(),
+                        radius,
+                        hardness,
+                        spread,
+                        between,
+                        sharer.data(),
                         share.data()});
   } catch (const std::runtime_error &problem) {
     words.fail(problem.what(), line);

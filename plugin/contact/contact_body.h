@@ -87,7 +87,7 @@ class ContactBody {
   // A line of round particles touches others with its points, and is never a host.
   bool is_line() const { return radius_of_points > 0.0; }
   double radius() const { return radius_of_points; }    // of the surface around each point [m]; 0 where points lie on the surface
-  double hardness() const { return hardness_of_line; }  // of a line against other bodies, over that by its material
+  double hardness() const { return hardness_of_line; }                // of a line against other bodies, over that by its material
   const std::optional<RigidFrame> &frame() const { return rigid; }    // none of a body that deforms
   int sides() const { return is_cuboid() ? 6 : 1; }
   int count(int axis) const { return cells[axis]; }
@@ -180,8 +180,8 @@ class ContactBody {
   bool has_fine = false;    // points
   double stands_out = 0.0, lever = 1.0, radius_of_points = 0.0, hardness_of_line = 1.0;
   std::vector<PointCarrier> sharers;    // three of each point between particles of a line
-  std::vector<OpenPart> open_parts;    // sides without an open part act everywhere
-  std::vector<double> depth_grid;      // coefficients of quadratic B-splines on nodes -2 to n + 2
+  std::vector<OpenPart> open_parts;     // sides without an open part act everywhere
+  std::vector<double> depth_grid;       // coefficients of quadratic B-splines on nodes -2 to n + 2
 };
 
 }    // namespace mdanim

@@ -157,7 +157,7 @@ def test_check_says_what_no_sheet_bears():
 
 def test_what_points_of_a_sheet_bear_is_that_of_closed_forms():
     """A ball comes with m g (R + depth), where the depth is that of Schwerin's membrane, a quarter of the side in radius; points
-    bear pi k/h^2 int_0^R (R + s - x)^2 x dx, times 16/9R, with the radius s of the points: k = 355.9 N/m at points 2.105 cm apart."""
+    bear pi k/h^2 int_0^R (R + s - x)^2 x dx, times 16/9R, with their radius s: k = 355.9 N/m at points 2.105 cm apart."""
     ready = prepare(parse_scene("gravity (0, 0, -9.81) m/s^2\n" + SKIN + DROPPED % (0.5406, "resolution 2 cm")))
     (blow,) = blows(ready.context)
     r, around, k, h = 0.04, 0.04 + 0.02105 / 12, 355.87, 0.0210526

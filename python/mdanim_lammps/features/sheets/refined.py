@@ -11,7 +11,7 @@ from .weave import Weave
 
 
 def refined(layer: Weave | Tiled, parts: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """The corners of triangles cut into ``parts``^2 each: of those that are no particles, the three particles of a triangle,
+    """The corners of triangles cut into ``parts``^2 each: of those between particles, the three particles of a triangle,
     int32, ascending, shape (K, 3), and their weights, shape (K, 3), 0 for the third one on an edge; and the area nearest to each
     corner, over h times the distance of rows [-], shape (N + K,), particles first."""
     place = np.zeros((len(layer.place), 3))
