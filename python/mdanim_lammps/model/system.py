@@ -91,16 +91,6 @@ class System(Particles):
         return np.array([frame.bare for frame in self.frames], bool)[self.contact_kind]
 
     @property
-    def hardness(self) -> np.ndarray:
-        """Stiffness with which each solid touches others, over that which its material gives [-], shape (M,)."""
-        return np.array([frame.hardness for frame in self.frames])[self.contact_kind]
-
-    @property
-    def parts(self) -> np.ndarray:
-        """Distance of particles over that of points of contact, of lines and sheets [-], shape (M,)."""
-        return np.array([frame.parts for frame in self.frames])[self.contact_kind]
-
-    @property
     def moved(self) -> np.ndarray | None:
         """Held particles that some effect moves, bool, shape (N,); None where there are none."""
         return (self.held | self.pinned) & self.driven[self.object] if self.driven.any() else None
@@ -140,6 +130,16 @@ class System(Particles):
     def center_of_mass(self, position: np.ndarray) -> np.ndarray:
         """Mass-weighted mean of each solid for particle vectors of shape (N, 3); shape (M, 3), same unit."""
         return centers(self.mass, self.first[:-1], position)
+
+
+def hardness(system: System) -> np.ndarray:
+    """Stiffness with which each solid touches others, over that which its material gives [-], shape (M,)."""
+    return np.array([frame.hardness for frame in system.frames])[system.contact_kind]
+
+
+def parts(system: System) -> np.ndarray:
+    """Distance of particles over that of points of contact, of lines and sheets [-], shape (M,)."""
+    return np.array([frame.parts for frame in system.frames])[system.contact_kind]
 
 
 def centers(mass: np.ndarray, first: np.ndarray, values: np.ndarray) -> np.ndarray:

@@ -16,7 +16,7 @@ from ...errors import Problem
 from ...model.boxes import box_pairs
 from ...model.model import Layer, Model
 from ...model.overlap import BORN_AT_REST
-from ...model.system import System
+from ...model.system import System, hardness
 from ...reach import by, thrower_of
 from ...scene.formatting import at_least, say
 from ...scene.scene import Box, SceneRecord
@@ -255,7 +255,7 @@ class SurfaceContact(ObjectContact):
         """kappa of the surface of each solid with the stiffest partner [N/m^3], shape (M,); 0 without a partner."""
         young = moduli(context)
         partner = largest_of_partners(context, young, [own for own, _ in settled(context)])
-        return surface_stiffness(context, young, 2.0 * partner / (young + partner)) * context.system.hardness
+        return surface_stiffness(context, young, 2.0 * partner / (young + partner)) * hardness(context.system)
 
     def problems(self, resolved, models, grid):
         return [*super().problems(resolved, models, grid), *too_fine(resolved.scene, models)]

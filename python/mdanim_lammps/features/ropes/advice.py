@@ -8,6 +8,7 @@ import numpy as np
 from ...effects.envelope import Envelope
 from ...errors import Problem
 from ...model import shapes
+from ...model.system import parts
 from ...scene.formatting import say
 from ..folds.layers import folds
 from .words import is_rope, kind
@@ -65,7 +66,7 @@ def coarsest(envelope: Envelope, bare: np.ndarray) -> tuple[int, int, float] | N
     if not len(others):
         return None
     thin = np.array([shapes.thickness(solids[m].shape) for m in others.tolist()])
-    apart = system.spacing / system.parts
+    apart = system.spacing / parts(system)
     m, least = int(bare[apart[bare].argmax()]), float(thin.min())
     return (m, int(others[thin.argmin()]), least) if float(apart[m]) > FINE * least else None
 

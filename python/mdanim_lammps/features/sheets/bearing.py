@@ -25,6 +25,7 @@ from ...effects.context import Context
 from ...effects.envelope import Envelope
 from ...errors import Problem
 from ...model import shapes
+from ...model.system import hardness, parts
 from ...scene.formatting import number, say
 from ...scene.scene import Box, Solid
 from ..contact.rigid_surfaces import moduli
@@ -72,11 +73,11 @@ def fits(context: Context) -> dict[int, tuple[int, float]]:
     for blow in blows(context):
         if tears(context.scene.solids[blow.sheet]):
             continue
-        parts = min(MOST_PARTS, math.ceil(blow.parts * (1.0 - 1e-9)))
-        hardness = float(number(min(HARDEST, SPARE * blow.hardness), 2)) if blow.hardness > 1.0 else 1.0
-        if parts > 1 or hardness > 1.0:
-            more, harder = found.get(blow.sheet, (1, 1.0))
-            found[blow.sheet] = max(parts, more), max(hardness, harder)
+        fine = min(MOST_PARTS, math.ceil(blow.parts * (1.0 - 1e-9)))
+        hard = float(number(min(HARDEST, SPARE * blow.hardness), 2)) if blow.hardness > 1.0 else 1.0
+        if fine > 1 or hard > 1.0:
+            finer, harder = found.get(blow.sheet, (1, 1.0))
+            found[blow.sheet] = max(fine, finer), max(hard, harder)
     return found
 
 
@@ -119,15 +120,15 @@ def blow_of(context: Context, sheet: int, other: int, low: np.ndarray, high: np.
     borne = holds / half * (2.0 if isinstance(solid.shape, Box) else 16.0 / 9.0)
     struck = 2.0 * energy / float(system.mass_of[other]) * float(system.density[sheet]) * skin.shape.thickness * h**2
     alone = struck / (spring * (0.5 * half) ** 2)
-    hardness = max((1.0 + stretch) ** 2 * min(force / borne, energy / holds), alone)
-    return Blow(sheet, other, energy, force, borne, hardness, h * (1.0 + stretch) / (FINE * 2.0 * half))
+    hard = max((1.0 + stretch) ** 2 * min(force / borne, energy / holds), alone)
+    return Blow(sheet, other, energy, force, borne, hard, h * (1.0 + stretch) / (FINE * 2.0 * half))
 
 
 def pressed_through(envelope: Envelope) -> list[Problem]:
     """The object that a sheet bears least, where it may not bear it: a warning, or a note where it may yet, and of a sheet that
     tears, which is to let things through."""
-    hardness = envelope.system.hardness
-    found = [(blow.hardness / hardness[blow.sheet], n, blow) for n, blow in enumerate(blows(envelope.context))]
+    hard = hardness(envelope.system)
+    found = [(blow.hardness / hard[blow.sheet], n, blow) for n, blow in enumerate(blows(envelope.context))]
     over, _, worst = max(found, default=(0.0, 0, None))
     return [_warning(envelope, over, worst)] if worst and over > 1.0 else []
 
@@ -135,12 +136,12 @@ def pressed_through(envelope: Envelope) -> list[Problem]:
 def hardened(envelope: Envelope) -> list[Problem]:
     """Notes of what touches harder than its material says, or has points between particles, and of what that costs."""
     system, all_blows = envelope.system, blows(envelope.context)
-    hardness, parts, found = system.hardness, system.parts, []
-    for m in np.flatnonzero((hardness > 1.0) | (parts > 1)).tolist():
+    hard, fine, found = hardness(system), parts(system), []
+    for m in np.flatnonzero((hard > 1.0) | (fine > 1)).tolist():
         by = max((blow for blow in all_blows if blow.sheet == m), key=lambda blow: (blow.hardness, blow.parts))
-        ways = [f"points of contact {say(float(system.spacing[m]) / parts[m], 'm')} apart"] * bool(parts[m] > 1)
-        ways += [f"a contact {number(hardness[m], 2)} times as stiff as by its material"] * bool(hardness[m] > 1.0)
-        share = _of_steps(envelope, m, float(hardness[m]))
+        ways = [f"points of contact {say(float(system.spacing[m]) / fine[m], 'm')} apart"] * bool(fine[m] > 1)
+        ways += [f"a contact {number(hard[m], 2)} times as stiff as by its material"] * bool(hard[m] > 1.0)
+        share = _of_steps(envelope, m, float(hard[m]))
         takes = f"; steps are {number(share, 2)} of what they would be" if share < 0.99 else ""
         other = system.names[by.other]
         cause = f"{system.names[m]} has {' and '.join(ways)}, so that it bears {other}, which comes with {say(by.energy, 'J')}"
@@ -149,12 +150,12 @@ def hardened(envelope: Envelope) -> list[Problem]:
     return found
 
 
-def _of_steps(envelope: Envelope, m: int, hardness: float) -> float:
+def _of_steps(envelope: Envelope, m: int, harder: float) -> float:
     """The bound on the time step over that with a hardness of 1 of this sheet."""
     system, rates = envelope.system, envelope.rates
     own = np.where(system.object == m, rates.get(SurfaceContact.name, 0.0), 0.0)
     hard = np.where(system.held, 0.0, sum(rates.values()))
-    soft = np.where(system.held, 0.0, hard - own * (1.0 - 1.0 / hardness))
+    soft = np.where(system.held, 0.0, hard - own * (1.0 - 1.0 / harder))
     return math.sqrt(float(soft.max() / hard.max()))
 
 
@@ -200,7 +201,7 @@ def _warning(envelope: Envelope, over: float, blow: Blow) -> Problem:
     ways = [f"resolution {say(fine, 'm')} in {sheet}"] if fine >= finest(solid.shape) else []
     if stiffness <= CONTACT_STIFFNESS.most:
         ways.append(f"contact-stiffness {number(stiffness, 2)} in control")
-    bears = say(float(envelope.system.hardness[blow.sheet]) * blow.force / blow.hardness, "N")
+    bears = say(float(hardness(envelope.system)[blow.sheet]) * blow.force / blow.hardness, "N")
     comes = f"it comes with {say(blow.energy, 'J')} and presses with up to {say(blow.force, 'N')}"
     return Problem(
         envelope.place(blow.other, "shape"),
