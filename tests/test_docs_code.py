@@ -36,7 +36,7 @@ control { time 0.4 s  frames 30 fps  resolution 10 cm }
 """
 ELSEWHERE = ("git ", "python3 -m venv ", "source ", "make ", "pip ", "cmake ", "LAMMPS_PLUGIN_PATH=", "MDANIM_MPIEXEC=")
 """Lines that need the network, a compiler or other hosts begin so; of the program's own the words are looked at."""
-BROWSER = ("view", "--view", "--edit")
+BROWSER = ("view", "--view", "--edit", "--hands")
 """A command with one of these waits for a browser: tests/view runs it."""
 
 
@@ -48,7 +48,7 @@ def pieces(page: str) -> list[tuple[str, str, str]]:
 
 def is_scene(code: str) -> bool:
     """Whether a block is written in the scene language."""
-    return bool(re.match(r"(#.*\n|title .*\n|let .*\n)*(gravity|object|render|liquid|repeat|joint|expect|record) ", code))
+    return bool(re.match(r"(#.*\n|title .*\n|let .*\n)*(gravity|object|render|liquid|repeat|joint|expect|record|hands) ", code))
 
 
 def command(line: str) -> list[str]:

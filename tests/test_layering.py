@@ -41,8 +41,8 @@ ROOMS = [
     "cost",
     "study",
     "report",
-    "api",
     "view",
+    "api",
     "cli",
     "__main__",
 ]

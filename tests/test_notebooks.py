@@ -35,6 +35,7 @@ def test_runs(name, outputs):
     text = "".join("".join(data.get("text/html", "")) for data in shown)
     assert "<progress " in text and ("<img " in text or "<table" in text)
     assert any("image/png" in data for data in shown), "no plot"
+    assert (name == "first-scene") == (" srcdoc=" in text)
 
 
 def test_nothing_is_warned_of(outputs):

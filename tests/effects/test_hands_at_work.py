@@ -33,7 +33,7 @@ def test_a_ball_comes_to_rest_below_the_hand():
 
 
 def test_a_hand_is_in_the_bound_and_costs_little():
-    """Of what deforms; nothing else of the plan is another one, so a hand that comes later changes nothing that has been."""
+    """A few per cent of what deforms; and a hand that comes later finds the certificate and the effects that it needs."""
     soft = SCENE.replace("elasticity rigid", "elasticity 300 kPa")
     alone, held, open_ = (prepare(parse_scene(soft + more)) for more in ("", f"hands on\nhand ball {{ {TOP} }}\n", "hands on\n"))
     assert 1.0 < alone.certificate.bound / held.certificate.bound < 1.12

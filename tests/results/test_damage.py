@@ -15,8 +15,8 @@ import h5py
 import numpy as np
 import pytest
 from campaign import rounds
-from mdanim_lammps.api.run import run_frames
 from mdanim_lammps.errors import OutputError
+from mdanim_lammps.parallel.frames import run_frames
 from mdanim_lammps.results.checkpoint import Checkpoint
 from mdanim_lammps.results.files import STOP
 from mdanim_lammps.results.ledger import Ledger

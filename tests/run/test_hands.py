@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What hands do in a run while it goes on is kept as lines of a scene: with these it is the same run, also on executors, and when
-it was stopped and resumed."""
+"""Hands on a run that goes on are kept as lines of a scene: with these it is the same run, also on executors, and when it was
+stopped and resumed."""
 
 import json
 import os
@@ -106,7 +106,7 @@ def test_a_run_that_was_stopped_goes_on_the_same(run, tmp_path):
 
 
 def test_executors_do_not_go_on_with_it(run):
-    from mdanim_lammps.api.run import run_frames
+    from mdanim_lammps.parallel.frames import run_frames
 
     ready = prepare(replace(parse_scene(SCENE, "toys"), steerable=True))
     with pytest.raises(UsageError, match="a run with hands goes on in one process, not on executors: leave out -n"):
@@ -126,7 +126,7 @@ def test_a_hand_is_no_faster_than_its_certificate(run):
 
 
 def test_only_requests_of_the_form_are_read(tmp_path):
-    """Of another file, of one of which nothing was heard, of links and of other words nothing is done."""
+    """Other words, links, pipes, and a file of which nothing was heard for long, do nothing."""
     path, good = tmp_path / HAND, BALL | {"to": [0, 0, 1]}
     assert read_request(path) is None
     ask(tmp_path, good)

@@ -23,7 +23,7 @@ LEAST = 0.002
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
-    """Of a run that is paused."""
+    """The folder of a run that is paused."""
     place = tmp_path_factory.mktemp("pull")
     (place / "fall.txt").write_text(FALL)
     run = Held(place / "fall.txt", place / "fall.out")
@@ -69,7 +69,7 @@ def test_a_page_moves_the_hand_and_lets_go(view, folder):
 
 
 def test_one_page_has_the_hand(view, folder):
-    """What another one asks for is left out until it is free."""
+    """Another one is not heard until the hand is free."""
     with page(view) as first, page(view) as second:
         say(first, HELD)
         say(second, HELD | {"to": [0, 0, 9]})

@@ -13,15 +13,14 @@ from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 from weakref import ref
 
-from ..engine.threads import with_threads
-from ..errors import MdanimError, OutputError, Problem, RefusedError, UsageError
-from ..parallel.limits import check_executors
+from ..errors import MdanimError, OutputError, Problem, RefusedError
+from ..parallel.frames import run_frames
 from ..report import progress_line
 from ..results.checkpoint import Checkpoint
 from ..results.cost import Cost
 from ..results.expect import Outcome
-from ..results.files import CHECKPOINT, HANDS, RECORDS, SUMMARY, claimed, in_use, read_json
-from ..results.html import THUMBNAIL, html_table
+from ..results.files import CHECKPOINT, RECORDS, SUMMARY, claimed, in_use, read_json
+from ..results.html import THUMBNAIL, CellPage, html_table
 from ..results.ledger import Ledger
 from ..results.overwriting import output_file
 from ..results.progress import ENDED, ProgressTail
@@ -32,11 +31,10 @@ from ..results.timeline import Timeline
 from ..results.trajectory import Trajectory
 from ..run.adopt import adopt_dump
 from ..run.folder import check_run, movie_file, stored_scene
-from ..run.loop import Progress, simulate
+from ..run.loop import Progress
 from ..run.prepare import Prepared, prepare
 from ..run.result import Result
 from ..scene.formatting import number
-from ..scene.lammps_lines import check_alone
 from ..scene.render import Quality
 from ..scene.scene import SceneRecord
 from ..terminal import in_notebook, progress_bar
@@ -255,6 +253,19 @@ class Run:
                 self.folder, render, file, size=size, fps=fps, on_progress=lambda done, all: bar(done, all, f"{done} of {all}")
             )
 
+    def show(self, *, height: int = 540) -> CellPage:
+        """The page of the run for a cell of a notebook, of this height [pixels]: the film to turn, with energies and cost, as
+        `mdanim-lammps report` writes it. It is in the cell as a whole, and needs no server and no network.
+
+        Raises OutputError for a run without frames, and RefusedError for one that goes on.
+        """
+        from ..view.export import write_report
+
+        with TemporaryDirectory(prefix="mdanim-page-") as name:
+            page = Path(name) / "report.html"
+            write_report(self.folder, page)
+            return CellPage(page.read_text(encoding="utf-8"), height)
+
     def export(self, to: str, path: str | Path | None = None, **options) -> Exported:
         """Write the run as a file of another program; arguments and errors are those of `mdanim_lammps.export.write.export`."""
         from ..export.write import export
@@ -315,33 +326,3 @@ def resumed(
             raise RefusedError(f"{folder} is complete; draw it again with 'mdanim-lammps render {folder}'")
         checkpoint = Checkpoint.read(folder / CHECKPOINT)
         yield make(scene), checkpoint, read_manifest(folder).get("draws") is not False
-
-
-def run_frames(
-    ready: Prepared,
-    folder: Path,
-    *,
-    executors: int = 1,
-    threads: int | None = None,
-    control: str | None = None,
-    resume: Checkpoint | None = None,
-    hands: bool = False,
-    **options,
-) -> Result:
-    """Simulate in this process, or on executors of their own when there is more than one or a ``control`` is named, each with so
-    many threads; None: as many as pay, of all cores divided by executors.
-
-    ``hands`` and ``options`` are those of `run.loop.simulate`. Raises what that does, and UsageError for less than one executor
-    or thread, for more than this machine can hold, and for executors that would go on with a run with hands.
-    """
-    check_executors(executors, ready.system.particles)
-    check_alone(ready.scene, executors, control)
-    with with_threads(threads):
-        if executors == 1 and control is None:
-            return simulate(ready, folder, resume=resume, hands=hands, **options)
-        if hands or (resume and (folder / HANDS).exists()):
-            way_out = "leave out -n; a scene with the lines of its hands.txt runs on any number of them"
-            raise UsageError(f"a run with hands goes on in one process, not on executors: {way_out}")
-        from ..parallel.runtime.launch import simulate_on
-
-        return simulate_on(executors, control or "central", ready, folder, resume=resume, **options)

@@ -14,6 +14,7 @@ from functools import cached_property, partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from types import NoneType
+from typing import overload
 
 import numpy as np
 
@@ -25,7 +26,7 @@ from ..errors import MdanimError, UsageError
 from ..model.spacing import scaled
 from ..picture.marks import Marks
 from ..processes import cores
-from ..results.html import THUMBNAIL, html_table
+from ..results.html import THUMBNAIL, CellPicture, html_table
 from ..run.folder import STUDY, default_folder, open_run, output_folder
 from ..run.loop import Progress, simulate, write_start
 from ..run.prepare import Prepared, prepare
@@ -243,9 +244,19 @@ class Scene:
         home = output_folder(self.record, folder) / STUDY
         return find_choice(self.record, error, budget=budget, folder=home, force=force, on_progress=on_progress)
 
-    def picture(self, path: str | Path, *, at: float = 0.0, size: tuple[int, int] | None = None) -> Path:
-        """Draw the scene before it is run, at its start or after ``at`` seconds of a quick, coarse run; see `draw_picture`."""
-        return draw_picture(self.record, Path(path), at=at, size=size)
+    @overload
+    def picture(self, path: str | Path, *, at: float = 0.0, size: tuple[int, int] | None = None) -> Path: ...
+
+    @overload
+    def picture(self, path: None = None, *, at: float = 0.0, size: tuple[int, int] | None = None) -> CellPicture: ...
+
+    def picture(self, path=None, *, at=0.0, size=None):
+        """Draw the scene before it is run, at its start or after ``at`` seconds of a quick, coarse run; see `draw_picture`.
+        Without a file the picture is for a cell of a notebook, which shows it."""
+        if path is not None:
+            return draw_picture(self.record, Path(path), at=at, size=size)
+        with TemporaryDirectory(prefix="mdanim-picture-") as name:
+            return CellPicture(draw_picture(self.record, Path(name) / "scene.png", at=at, size=size).read_bytes())
 
     def __repr__(self) -> str:
         values = "".join(f", {name}={value}" for name, value in self.values.items())

@@ -168,12 +168,14 @@ def lesson(folder: Path, /, *, output: OutFile = OutFile(), quiet: Quiet = False
     folder
         The output folder of a run that has ended; a scene is run with `--lesson`.
     """
+    from ..api.run import Run
     from ..view.lesson import write_lesson
 
     if not folder.is_dir():
         raise UsageError(f"{folder} is not the folder of a run; a scene is run with mdanim-lammps {folder} --lesson")
     path = output.place(folder / "lesson.html")
-    write_lesson(folder, path)
+    run = Run(folder)
+    write_lesson(run, run.scene.record, path)
     if not quiet:
         print(f"lesson   {path}   {path.stat().st_size / 1e6:.1f} MB")
 

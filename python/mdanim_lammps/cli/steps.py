@@ -104,8 +104,8 @@ def announce(ready, quiet: bool, verbose: bool, executing: Executing = Executing
 
 
 def simulate_and_draw(ready, folder: Path, executing: Executing, *, quiet: bool, movie: bool, **options) -> None:
-    from ..api.run import run_frames
     from ..cost.saving import after_run
+    from ..parallel.frames import run_frames
     from ..report import cost_line, progress_line, saving_lines, spread_line
     from ..results.files import RECORDS
     from ..results.timeline import Timeline

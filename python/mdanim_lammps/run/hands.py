@@ -48,7 +48,7 @@ class TakesCommands(Protocol):
 
 
 class PageHands:
-    """What hands do in a run, and did before it was resumed.
+    """Hands in a run, and those from before it was resumed.
 
     Args:
         ready: the scene.
@@ -73,7 +73,7 @@ class PageHands:
         """Up to this time hands of before the resume act [s]."""
         self._next = 0.0
         self._lines = b""
-        """What ``hands.txt`` has, without the end of the last hand."""
+        """Bytes of ``hands.txt``, without the end of the last hand."""
         self._end = b""
         """The end of the last hand."""
 

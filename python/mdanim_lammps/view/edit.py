@@ -117,7 +117,7 @@ def scene_of(folder: Path) -> Path | None:
 
 def main() -> None:
     """Run the scene on standard input into a folder, which is emptied if it is one of ours."""
-    from ..api.run import run_frames
+    from ..parallel.frames import run_frames
     from ..results.files import write_whole
     from ..run.folder import open_run
     from ..run.prepare import prepare

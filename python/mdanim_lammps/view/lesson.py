@@ -7,16 +7,18 @@ import base64
 import html
 import io
 from pathlib import Path
+from typing import Protocol
 
 import numpy as np
 
-from ..api.run import Run
 from ..errors import OutputError, UsageError
 from ..picture.plot import own_style
+from ..results.expect import Outcome
 from ..results.files import write_whole
 from ..results.html import plain_table
 from ..results.overwriting import MADE
 from ..results.records import Records
+from ..results.trajectory import Trajectory
 from ..scene.formatting import number
 from ..scene.scene import SceneRecord
 
@@ -33,13 +35,21 @@ pre { background: #f3f5f7; padding: 1rem; overflow: auto; font-size: 13px; }
 """
 
 
-def write_lesson(folder: Path, path: Path) -> None:
+class LessonRun(Protocol):
+    """What the page tells of a run: an `api.run.Run`."""
+
+    folder: Path
+    records: Records
+    outcomes: list[Outcome]
+    trajectory: Trajectory
+
+
+def write_lesson(run: LessonRun, scene: SceneRecord, path: Path) -> None:
     """Write the page of a run that has ended, with its movie. It opens from disk, has no script, and asks no host for anything.
 
     Raises UsageError for a scene without a question, OutputError where the run has no movie or the file cannot be written.
     """
-    run = Run(folder)
-    scene = run.scene.record
+    folder = run.folder
     if not scene.question:
         raise UsageError(f'the scene of {folder} asks nothing; write question "..." and answer "..." in it and run it again')
     movie = folder / (scene.render.movie or "movie.mp4")
@@ -50,7 +60,7 @@ def write_lesson(folder: Path, path: Path) -> None:
     write_whole(path, page_of(run, scene, movie.read_bytes()))
 
 
-def page_of(run: Run, scene: SceneRecord, movie: bytes) -> str:
+def page_of(run: LessonRun, scene: SceneRecord, movie: bytes) -> str:
     """The page as HTML; all words of the scene are text in it."""
     title = html.escape(scene.title or scene.name)
     parts = [f"<h1>{title}</h1>", f'<p class="question">{html.escape(scene.question)}</p>']
