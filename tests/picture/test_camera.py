@@ -209,3 +209,16 @@ def test_most_of_what_moves_is_seen_at_any_time(tmp_path):
     frames = [tuple((max(0, 5 - k) * (i % 2), 0, 0) for i in range(4)) for k in range(100)]
     with moving(tmp_path, models, frames) as t:
         assert inside(t, automatic_view(action_of(t), 16 / 9)).all()
+
+
+def test_words_have_room_below():
+    """What is fitted to a part of the height ends above the rest of it; to the left of panels, too."""
+    from mdanim_lammps.picture.framing import beside_words, seen_at
+
+    points = np.random.default_rng(5).uniform(-1.0, 1.0, (50, 3))
+    forward, size, below, right = np.array([0.6, 0.64, -0.48]), np.array([1600, 900]), 0.2, 0.3
+    view = beside_words(fit_view(points, forward, (1.0 - right) * 16 / 9, 1.0 - below), 16 / 9, right, below)
+    low, high = (edge(seen_at(view, size, points)[0] / size, axis=0) for edge in (np.min, np.max))
+    room = (1.0 - MARGIN) / 2
+    assert low[1] >= below + room * (1.0 - below) - 1e-9 and high[1] <= 1.0 - room * (1.0 - below) + 1e-9
+    assert low[0] >= room * (1.0 - right) - 1e-9 and high[0] <= (1.0 - right) * (1.0 - room) + 1e-9

@@ -178,7 +178,9 @@ def what_leads(low: np.ndarray, high: np.ndarray, basin=None) -> np.ndarray:
     return leads
 
 
-def automatic_view(action: Action, aspect: float, walls=None, basin=None, forward: np.ndarray | None = None) -> View:
+def automatic_view(
+    action: Action, aspect: float, walls=None, basin=None, forward: np.ndarray | None = None, height: float = 1.0
+) -> View:
     """A three-quarter view from slightly above that shows what happens as large as it can be; the same for all frames.
 
     What few objects do for a short time is left out where all else becomes much larger by that (`LARGER`, `LEAST`), but what
@@ -190,6 +192,7 @@ def automatic_view(action: Action, aspect: float, walls=None, basin=None, forwar
         walls: corners of the scene's walls, shown too unless they are far larger than the action.
         basin: corners of the liquid's basin, always shown.
         forward: direction of view, unit length; None for the three-quarter view.
+        height: share of the picture's height that the action may take.
     """
     low, high = action.bounds
     forward = three_quarters(action) if forward is None else forward
@@ -201,8 +204,8 @@ def automatic_view(action: Action, aspect: float, walls=None, basin=None, forwar
     if basin is not None:
         fixed.append(_corners(*np.array(basin, dtype=float)))
     fixed = np.concatenate(fixed)
-    kept = worth_seeing(*boxes, action.free, action.leads, fixed, forward, aspect)
-    return fit_view(np.concatenate([_corners(boxes[0][kept], boxes[1][kept]), fixed]), forward, aspect)
+    kept = worth_seeing(*boxes, action.free, action.leads, fixed, forward, aspect, height)
+    return fit_view(np.concatenate([_corners(boxes[0][kept], boxes[1][kept]), fixed]), forward, aspect, height)
 
 
 def three_quarters(action: Action) -> np.ndarray:
@@ -216,7 +219,9 @@ def three_quarters(action: Action) -> np.ndarray:
     return -np.array([np.cos(elevation) * np.cos(turn), np.cos(elevation) * np.sin(turn), np.sin(elevation)])
 
 
-def worth_seeing(low, high, free, leads, fixed: np.ndarray, forward: np.ndarray, aspect: float) -> np.ndarray:
+def worth_seeing(
+    low, high, free, leads, fixed: np.ndarray, forward: np.ndarray, aspect: float, height: float = 1.0
+) -> np.ndarray:
     """Which boxes a picture should hold so that it shows much of what happens, and shows it large; bool, shape (W, O).
 
     The score is the share of boxes that are inside times the size at which they are seen to the power of `LARGER`. From each
@@ -231,8 +236,9 @@ def worth_seeing(low, high, free, leads, fixed: np.ndarray, forward: np.ndarray,
         fixed: points that are inside in any case [m], shape (P, 3).
         forward: direction of view, unit length.
         aspect: width over height.
+        height: share of the height that they may take.
     """
-    right, up, tangent = _screen(forward, aspect)
+    right, up, tangent = _screen(forward, aspect, height)
     side = _sides(_corners(low, high), right, up, forward, tangent).reshape(8, *low.shape[:2], 4).max(axis=0)
     fixed_side = _sides(fixed, right, up, forward, tangent).max(axis=0, initial=-np.inf)
     middle = float(((low + high) / 2 @ forward).mean())
@@ -257,7 +263,7 @@ def worth_seeing(low, high, free, leads, fixed: np.ndarray, forward: np.ndarray,
     return sliding_window_view(np.pad(kept, [(moment, moment), (0, 0)]), 2 * moment + 1, axis=0).any(axis=-1)
 
 
-def fit_view(points: np.ndarray, forward: np.ndarray, aspect: float) -> View:
+def fit_view(points: np.ndarray, forward: np.ndarray, aspect: float, height: float = 1.0) -> View:
     """The nearest eye that looks along ``forward`` and sees all points inside the margin.
 
     A point (a, b, c) along right, up and forward is inside the picture of an eye (x, y, z) where
@@ -267,8 +273,9 @@ def fit_view(points: np.ndarray, forward: np.ndarray, aspect: float) -> View:
         points: [m], shape (P, 3).
         forward: direction of view, unit length.
         aspect: width over height.
+        height: share of the height that they may take.
     """
-    right, up, tangent = _screen(forward, aspect)
+    right, up, tangent = _screen(forward, aspect, height)
     most = _sides(points, right, up, forward, tangent).max(axis=0)
     along = points @ forward
     across = (most[:2] - most[2:]) / 2
@@ -280,12 +287,12 @@ def fit_view(points: np.ndarray, forward: np.ndarray, aspect: float) -> View:
     return View(eye, eye + (middle - depth) * forward, np.array([0.0, 0.0, 1.0]))
 
 
-def _screen(forward: np.ndarray, aspect: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _screen(forward: np.ndarray, aspect: float, height: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Right and up of a picture, and tangents of half its angles of view within the margin, shape (2,)."""
     right = np.cross(forward, [0.0, 0.0, 1.0])
     # Straight down x is on the right, as `View.upright` has it.
     right = right / np.linalg.norm(right) if right.any() else np.array([1.0, 0.0, 0.0])
-    tangent = MARGIN * np.tan(np.radians(FIELD_OF_VIEW / 2)) * np.array([aspect, 1.0])
+    tangent = MARGIN * np.tan(np.radians(FIELD_OF_VIEW / 2)) * np.array([aspect, height])
     return right, np.cross(right, forward), tangent
 
 

@@ -67,12 +67,12 @@ def pixels_per_metre(view: View, size: tuple[int, int], place: np.ndarray) -> fl
     return _distance(size) / depth if depth > 0.0 else 0.0
 
 
-def left_of_panels(view: View, aspect: float, share: float) -> View:
-    """A view whose middle is seen in the middle of what is left of a picture, a share of whose width at the right is covered;
-    ``aspect`` is width over height."""
-    _, right, _ = _axes(view)
+def beside_words(view: View, aspect: float, right: float, below: float) -> View:
+    """A view whose middle is seen in the middle of what is left of a picture, a share of whose width at the right is covered, and
+    a share of whose height below; ``aspect`` is width over height."""
+    _, across, up = _axes(view)
     distance = np.linalg.norm(view.look - view.eye)
-    way = share * distance * np.tan(np.radians(FIELD_OF_VIEW) / 2.0) * aspect * right
+    way = distance * np.tan(np.radians(FIELD_OF_VIEW) / 2.0) * (right * aspect * across - below * up)
     return View(view.eye + way, view.look + way, view.up)
 
 

@@ -15,7 +15,7 @@ from .camera import FIELD_OF_VIEW, Action, View, action_of, automatic_view
 from .curves import COVERED
 from .drawn import Additions, medium
 from .floor import REACH, FloorPlane
-from .framing import PicturePart, aim, left_of_panels, part_around, whole
+from .framing import PicturePart, aim, beside_words, part_around, whole
 from .ghosts import Ghosts
 from .label import Label
 from .light import Light
@@ -32,6 +32,8 @@ from .window import fewer_pixels, lay_over, off_screen_window, rgba, silent, upr
 
 FINER = {Quality.DRAFT: 1, Quality.FINAL: 2}
 """Pixels that are drawn along each side of one that is shown."""
+WORDS = {False: 0.016, True: 0.075}
+"""Share of the height that words below a picture take beyond the margin, without and with captions."""
 SAMPLES = 4
 """Samples along an edge of each drawn pixel."""
 MOST_PIXELS = 16384
@@ -86,8 +88,9 @@ class Painter:
         self._still = None
         if not self._path:
             way = direction_of(render.camera)
-            still = automatic_view(seen or self.action, (1.0 - covered) * aspect, walls, basin, way)
-            self._still = left_of_panels(still, aspect, covered)
+            words = WORDS[bool(render.caption)]
+            still = automatic_view(seen or self.action, (1.0 - covered) * aspect, walls, basin, way, 1.0 - words)
+            self._still = beside_words(still, aspect, covered, words)
         self._mesh = shaded_mesh(trajectory.metadata, trajectory.position(0), self._pixel())
         self._tones = Tones((trajectory, beside), render.color_by) if render.color_by else None
         self._build(render, marks)
