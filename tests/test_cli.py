@@ -120,6 +120,13 @@ def test_compare_and_render_use_an_output_folder(scene):
     draft = (folder / "frames" / "frame-00000.png").read_bytes()
     assert call("render", folder, "--size", 320, 180, "-q", "--frames", "--fps", 1, "--quality", "final").returncode == 0
     assert (folder / "frames" / "frame-00000.png").read_bytes() != draft
+    for when, name in (("0 s", "first"), ("0.1 s", "later")):
+        assert call("render", folder, "--at", when, "--size", 320, 180, "-q", "-o", path.parent / f"{name}.png").returncode == 0
+    assert (path.parent / "first.png").read_bytes() != (path.parent / "later.png").read_bytes()
+    assert call("render", folder, "--at", "0.1 s", "--size", 320, 180).stdout.endswith(f"{folder / 'picture.png'}\n")
+    assert (folder / "picture.png").read_bytes() == (path.parent / "later.png").read_bytes()
+    late = call("render", folder, "--at", "9 s")
+    assert late.returncode == 2 and "--at 9 s: the last frame is at" in late.stderr
     assert call("compare", folder, folder).stdout.startswith("equal")
     assert call(path, "--no-movie", "-q", "-o", path.parent / "b.out").returncode == 0
     assert call("compare", folder, path.parent / "b.out").returncode == 0

@@ -17,7 +17,7 @@ from ..export import FORMATS
 from ..terminal import progress_bar
 from ..view.beside import Viewer, show_address
 from .options import AllowUnstable, Executing, HandsOn, Look, OutFile, Quiet, RunFolder, View, whole_number
-from .steps import adopt, announce, check_hands, draw_movie, frame_range, prepare, simulate_and_draw
+from .steps import adopt, announce, check_hands, draw_movie, frame_range, prepare, seconds_of, simulate_and_draw
 
 if TYPE_CHECKING:
     from ..scene.render import Render
@@ -64,6 +64,7 @@ def render(
     /,
     *,
     look: Look = Look(),
+    at: str | None = None,
     fps: float | None = None,
     output: OutFile = OutFile(),
     frames: bool = False,
@@ -74,6 +75,8 @@ def render(
 
     Parameters
     ----------
+    at
+        Draw one picture instead, of the frame nearest to this time, e.g. "0.8 s": picture.png in the folder.
     fps
         Pictures per second of the movie.
     frames
@@ -82,6 +85,9 @@ def render(
         Take the render block (camera, background, speed) of this file instead; it need hold nothing else.
     """
     look.check()
+    when = None if at is None else seconds_of("--at", at, zero=True)
+    if when is not None and (frames or fps is not None):
+        raise UsageError("--at draws one picture: leave out --fps and --frames")
     if fps is not None and not 0.0 < fps <= 1000.0:
         raise UsageError(f"--fps {fps:g}: must be above 0 and at most 1000, e.g. --fps 30")
     from ..run.folder import movie_file
@@ -89,13 +95,32 @@ def render(
 
     stored = adopt(folder, quiet=quiet)
     record = stored if scene is None else replace(stored, render=load_render(scene, [solid.name for solid in stored.solids]))
+    record = look.of(record)
+    if when is not None:
+        path = output.place(folder / "picture.png")
+        _draw_moment(folder, when, path, record.render, look.size)
+        if not quiet:
+            print(f"picture  {path}")
+        return
     if scene is not None:
         _warn_of_slow_motion(record.render, stored.control.frames)
-    record = look.of(record)
     path = output.place(movie_file(folder, record))
     draw_movie(folder, record, path, quiet=quiet, size=look.size, fps=fps, frames=folder / "frames" if frames else None)
     if not quiet:
         print(f"movie    {path}" + (f"   pictures in {folder / 'frames'}" if frames else ""))
+
+
+def _draw_moment(folder: Path, when: float, path: Path, look: Render, size: tuple[int, int] | None) -> None:
+    """Draw the frame nearest to a time [s]. Raises UsageError for one behind the last frame."""
+    from ..picture.movie import render_still
+    from ..results.trajectory import Trajectory
+    from ..scene.formatting import number
+
+    with Trajectory(folder) as trajectory:
+        last = float(trajectory.times[-1])
+        if when > last * (1.0 + 1e-9):
+            raise UsageError(f"--at {number(when)} s: the last frame is at {number(last, 4)} s")
+        render_still(trajectory, int(abs(trajectory.times - when).argmin()), path, look, size=size)
 
 
 def _warn_of_slow_motion(render: Render, frames: float) -> None:

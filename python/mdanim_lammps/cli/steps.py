@@ -41,19 +41,21 @@ def lmp_command() -> str:
     return "lmp" if not beside.exists() or (found and beside.samefile(found)) else shlex.quote(str(beside))
 
 
-def seconds_of(option: str, text: str) -> float:
-    """A duration such as "2 min" in seconds."""
+def seconds_of(option: str, text: str, *, zero: bool = False) -> float:
+    """A duration such as "2 min" in seconds; with ``zero`` it may be a moment, 0 s among them."""
     from ..scene.units import DimensionError, unit
 
     match = re.fullmatch(r"\s*([0-9.]+(?:e[+-]?[0-9]+)?)\s*([a-z]+)\s*", text)
     try:
         u = unit(match[2])
         seconds = float(match[1]) * u.over / u.under
-        good = u.dim == unit("s").dim and 0.0 < seconds < float("inf")
+        good = u.dim == unit("s").dim and (0.0 < seconds < float("inf") or (zero and seconds == 0.0))
     except (KeyError, TypeError, ValueError, DimensionError):
         good = False
     if not good:
-        raise UsageError(f'{option} {text}: expected a time above 0, e.g. {option} "30 s" or {option} "2 min"')
+        raise UsageError(
+            f'{option} {text}: expected a time{"" if zero else " above 0"}, e.g. {option} "30 s" or {option} "2 min"'
+        )
     return seconds
 
 
