@@ -84,6 +84,22 @@ ContactBody::ContactBody(const ContactBodyArrays &given)
   take_open_parts(given);
   find_carriers();
   sort_points();
+  round = !is_cuboid() && !is_line() && normals_differ(PointKind::DENSE) && normals_differ(PointKind::FINE);
+}
+
+bool ContactBody::normals_differ(PointKind kind) const
+{
+  constexpr double SAME = 1e-6;    // square of the difference of two normals; points of 1000 cells are 3e-4 apart
+  std::vector<Vec3> normal;
+  for (const SurfacePoint &point : surface)
+    if (point.kind == kind) normal.push_back(point.normal);
+  std::sort(normal.begin(), normal.end(), [](const Vec3 &a, const Vec3 &b) { return a.x < b.x; });
+  for (std::size_t i = 0; i < normal.size(); ++i)
+    for (std::size_t j = i + 1; j < normal.size() && (normal[j].x - normal[i].x) * (normal[j].x - normal[i].x) < SAME; ++j) {
+      const Vec3 apart = normal[j] - normal[i];
+      if (dot(apart, apart) < SAME) return false;
+    }
+  return true;
 }
 
 void ContactBody::take_line(const ContactBodyArrays &given)

@@ -86,6 +86,8 @@ class ContactBody {
   bool is_cuboid() const { return depth_grid.empty() && !is_line(); }
   // A line of round particles touches others with its points, and is never a host.
   bool is_line() const { return radius_of_points > 0.0; }
+  // Curved everywhere, as a ball: no two of its points have one normal, so a plane meets them one after the other.
+  bool is_round() const { return round; }
   double radius() const { return radius_of_points; }    // of the surface around each point [m]; 0 where points lie on the surface
   double hardness() const { return hardness_of_line; }                // of a line against other bodies, over that by its material
   const std::optional<RigidFrame> &frame() const { return rigid; }    // none of a body that deforms
@@ -161,6 +163,7 @@ class ContactBody {
   void add_carriers(const SurfacePoint &point, const Vec3 &X);
   void find_carriers();
   void sort_points();
+  bool normals_differ(PointKind kind) const;    // of points of a kind
 
   int cells[3];
   double edges[3], mean_edge, steep = 0.0;    // square of the gradient of X where the body is undeformed [1/m^2]
@@ -178,6 +181,7 @@ class ContactBody {
   std::vector<int> by_cell;    // numbers of points, cell by cell, ascending in each
   std::vector<char> is_carrier;
   bool has_fine = false;    // points
+  bool round = false;
   double stands_out = 0.0, lever = 1.0, radius_of_points = 0.0, hardness_of_line = 1.0;
   std::vector<PointCarrier> sharers;    // three of each point between particles of a line
   std::vector<OpenPart> open_parts;     // sides without an open part act everywhere

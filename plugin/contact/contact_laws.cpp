@@ -9,12 +9,14 @@ namespace mdanim {
 
 static constexpr double ALONE = 2.0;     // stiffness where only the dense points of one body act, over that of points of both
 static constexpr double LINE = 0.2;      // the same of a line or a sheet of particles, of which each bears all that it meets
-static constexpr double ONSET = 0.05;    // eps over the spacing
+static constexpr double ONSET = 0.05;    // eps over the spacing: what lands flat meets many points in one step
+static constexpr double ROUND = 0.01;    // that of a body which is curved everywhere, on what is flat: its dent may be as shallow
 
-static ContactLaw law_of(const ContactObject &owner, double density, double kappa, double friction, double damping)
+static ContactLaw law_of(const ContactObject &owner, bool on_flat, double density, double kappa, double friction, double damping)
 {
   const double h = owner.body->spacing();
-  return {kappa, ONSET * h, friction, damping > 0.0 ? 2.0 * damping * std::sqrt(0.5 * kappa * density * h) / kappa : 0.0};
+  const double onset = on_flat && owner.body->is_round() ? ROUND : ONSET;
+  return {kappa, onset * h, friction, damping > 0.0 ? 2.0 * damping * std::sqrt(0.5 * kappa * density * h) / kappa : 0.0};
 }
 
 ContactLaw ContactSettings::law_of_pair(const ContactObject &owner, const ContactObject &host, double density) const
@@ -29,7 +31,7 @@ ContactLaw ContactSettings::law_of_pair(const ContactObject &owner, const Contac
   double mu = std::sqrt(lower.friction * higher.friction), beta = mu > 0.0 ? damping : 0.0;
   if (const auto own = pairs.find({lower.id, higher.id}); own != pairs.end())
     mu = own->second.friction, beta = own->second.damping;
-  ContactLaw law = law_of(owner, density, kappa, mu, beta);
+  ContactLaw law = law_of(owner, host.body->is_cuboid(), density, kappa, mu, beta);
   if (!belts.empty()) law.belt = belt(host.id) - belt(owner.id);
   return law;
 }
@@ -38,7 +40,7 @@ ContactLaw ContactSettings::law_at_plane(const ContactObject &one) const
 {
   const double part = one.body->is_line() ? LINE : one.body->is_cuboid() ? 1.0 : ALONE;
   const double kappa = part * stiffness * one.young / one.body->spacing();
-  return law_of(one, one.density, kappa, one.friction, one.friction > 0.0 ? damping : 0.0);
+  return law_of(one, true, one.density, kappa, one.friction, one.friction > 0.0 ? damping : 0.0);
 }
 
 }    // namespace mdanim

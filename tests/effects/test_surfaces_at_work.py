@@ -8,6 +8,7 @@ import math
 
 import numpy as np
 import pytest
+from ball_on_plane import approach
 from mdanim_lammps.engine.instance import Instance
 from mdanim_lammps.run.loop import simulate
 
@@ -123,9 +124,10 @@ def test_what_rests_leaves_no_gap(scene, shape, height):
     "below", ["ground z 0", f"object low {{ shape box (30, 30, 10) cm  position (0, 0, -5) cm  {STUFF}  hold all }}"]
 )
 def test_hertz(scene, below):
-    """The weight of a ball on a rigid plane is Hertz's force for the way of its centre, within 5 %; nu = 1/4.
+    """The centre of a ball comes nearer to a rigid plane by its weight as Hertz's pressure on a ball says, within 6 %; nu = 1/4.
 
-    Measured with 6 cells across the radius: 0.976 on both; with half the stiffness, where its points act alone, 0.82.
+    A ball is not the half-space that Hertz took it for: it goes 0.89 of his way. Measured with 6 cells across the radius: 1.05 of
+    that on both; with an onset of 0.05 h 1.14.
     """
     radius, young = 0.1, 1e6
     one = scene(
@@ -134,8 +136,7 @@ def test_hertz(scene, below):
     )
     one.run(0.4)
     way = radius - one.mean("x")[2]
-    hertz = 4.0 / 3.0 * young / (1.0 - 0.25**2) * math.sqrt(radius) * way**1.5
-    assert one.mass.sum() * 30.0 == pytest.approx(hertz, rel=0.05)
+    assert way / radius == pytest.approx(approach(one.mass.sum() * 30.0 / (young * radius**2))[0], rel=0.06)
     assert np.abs(one.mean("v")).max() < 1e-3
 
 
