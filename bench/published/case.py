@@ -115,6 +115,12 @@ class Case:
     """Whether MuJoCo can run its scenes, too (mujoco_runs.py): `measure` then reads centres, velocities and spins only."""
 
 
+def places(run: Run, name: str) -> np.ndarray:
+    """Where the particles of an object are [m], shape (frames, particles, 3)."""
+    track = run.trajectory.objects[name]
+    return np.stack([track.position(frame) for frame in range(len(run.trajectory))])
+
+
 def series(name: str) -> np.ndarray:
     """A table of `DATA`, shape (columns, rows)."""
     return np.loadtxt(DATA / f"{name}.csv", delimiter=",", comments="#", ndmin=2).T
