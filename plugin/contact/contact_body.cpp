@@ -89,7 +89,7 @@ ContactBody::ContactBody(const ContactBodyArrays &given)
 
 bool ContactBody::normals_differ(PointKind kind) const
 {
-  constexpr double SAME = 1e-6;    // square of the difference of two normals; points of 1000 cells are 3e-4 apart
+  constexpr double SAME = 1e-6;    // square of the difference of two normals: neighbours of a ball of 100 cells across have 4e-5
   std::vector<Vec3> normal;
   for (const SurfacePoint &point : surface)
     if (point.kind == kind) normal.push_back(point.normal);
