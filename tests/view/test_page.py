@@ -144,6 +144,13 @@ def test_a_finished_run(browser, beam):
         browser.until("!document.getElementById('camera').textContent.includes('cube')")
         press(browser, "see")
         browser.until("document.getElementById('camera').textContent.includes('look cube')")
+        press(browser, "follow")
+        before = browser.js(place := "return [...mdanim.stage.orbit.target.toArray(), ...mdanim.shown.object.subarray(18, 21)]")
+        show(browser, 0)
+        gone = np.subtract(browser.js(place), before)  # of the camera's aim, and of the cube
+        assert np.abs(gone[3:]).max() > 0.05 and np.abs(gone[:3] - gone[3:]).max() < 1e-6
+        press(browser, "follow")
+        show(browser, 29)
         browser.until("document.querySelector('#height-line canvas')")
         assert "height of the centre" in text(browser, "height")
         browser.until("document.querySelector('#height-line .now').style.left > '0px'")

@@ -199,6 +199,7 @@ function controls() {
   press("pause", () => order(run.state === "paused" ? "go" : "pause"));
   press("stop", () => order("stop"));
   press("see", see);
+  press("follow", () => byId("follow").setAttribute("aria-pressed", String(stage.follow(picked) !== null)));
   press("home", () => stage.seeStart());
   press("copy", copy);
   press("shot", screenshot);

@@ -45,6 +45,7 @@ export class Stage {
   constructor(canvas, scene) {
     this.scene = scene;
     this.changed = true; // whether a new picture is due
+    this.followed = null; // object that the camera goes with
     this.level = 0;
     this.slow = drawnByProcessor();
     // A processor takes more pixels instead of more samples of each, and these at rest only.
@@ -145,6 +146,7 @@ export class Stage {
   }
 
   show(frame) {
+    if (this.followed !== null && this.frame) this.goWith(this.frame.object, frame.object);
     this.frame = frame;
     placeVertices(this.scene.objects, frame, this.at);
     sumNormals(this.scene.data.triangle, this.at, this.normal);
@@ -179,6 +181,18 @@ export class Stage {
   looksAt([x, y, z, a, b, c]) {
     const at = this.orbit.target;
     return at.x >= x && at.x <= x + a && at.y >= y && at.y <= y + b && at.z >= z && at.z <= z + c;
+  }
+
+  // Have the camera go with an object, or with none where it does already; tells which.
+  follow(k) {
+    return (this.followed = this.followed === null ? k : null);
+  }
+
+  goWith(before, now) {
+    const [from, to] = [before, now].map((object) => new Vector3().fromArray(object, 12 * this.followed + 6)), way = to.sub(from);
+    this.camera.position.add(way);
+    this.orbit.target.add(way);
+    this.look();
   }
 
   look() {
