@@ -23,7 +23,7 @@ control { time 0.4 s  frames 200 fps  resolution 4 cm  friction 0.4 }
 LINKS = """
 gravity (0, 0, -9.81) m/s^2
 ground z 0 m
-object line { shape rope from (0, 0, 1) m to (0.4, 0, 1) m thickness 1 cm length 0.5 m  density 900 kg/m^3  elasticity 20 MPa
+object line { shape rope from (0, 0, 1) m to (0.4, 0, 1) m thickness 1 cm length 0.5 m  density 900 kg/m^3  elasticity 2 MPa
   friction 0.4  hold start }
 object weight { shape sphere 4 cm  position (0.44, 0, 1) m  density 2000 kg/m^3  elasticity rigid }
 joint ball line weight { at (0.4, 0, 1) m }
@@ -84,7 +84,7 @@ def killed_until_complete(place: Path, whole: tuple[Path, float], chance: random
 
 def test_a_run_that_is_killed_once(tmp_path, whole):
     """For every day."""
-    assert killed_until_complete(tmp_path / "one", whole, random.Random(1), 1) <= 1
+    assert killed_until_complete(tmp_path / "one", whole, random.Random(5), 1) <= 1
 
 
 @pytest.mark.soak

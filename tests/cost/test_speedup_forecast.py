@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from command_line import call, run
 from mdanim_lammps.cost.speedup_forecast import SpeedupForecast, _Moments, forecast_speedup
 from mdanim_lammps.engine.sub_plan import SubPlans
 from mdanim_lammps.features.contact.words import ContactModel
@@ -124,15 +125,14 @@ def test_a_run_and_a_check_tell_it(tmp_path):
     (tmp_path / "apart.txt").write_text(FALLING.format(speed=0))
     told = "in the first second of the film"
 
-    def words(*arguments):
-        done = subprocess.run(
-            [sys.executable, "-m", "mdanim_lammps", *arguments], capture_output=True, text=True, cwd=tmp_path, timeout=200
-        )
+    def words(program, *arguments):
+        done = program(*arguments, cwd=tmp_path)
         assert done.returncode == 0, done.stderr
         return done.stdout
 
-    assert told in words("check", "apart.txt", "-n", "2") and told not in words("check", "apart.txt")
-    assert '"faster"' in words("check", "apart.txt", "-n", "2", "--format", "json")
-    assert told in words("apart.txt", "-n", "2", "--no-movie") and told not in words("apart.txt", "--no-movie", "--force")
+    assert told in words(call, "check", "apart.txt", "-n", "2") and told not in words(call, "check", "apart.txt")
+    assert '"faster"' in words(call, "check", "apart.txt", "-n", "2", "--format", "json")
+    assert told in words(run, "apart.txt", "-n", "2", "--no-movie")
+    assert told not in words(call, "apart.txt", "--no-movie", "--force")
     code = "import sys, mdanim_lammps.cost.speedup_forecast; print('mpi4py.MPI' in sys.modules, 'lammps' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True).stdout == "False False\n"

@@ -6,7 +6,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from command_line import GOOD, run
+from command_line import GOOD, call, run
 from mdanim_lammps.errors import OutputError
 from mdanim_lammps.results.timeline import KINDS, Timeline
 from mdanim_lammps.results.trace import write_trace
@@ -108,12 +108,12 @@ def test_the_command_line_tells_and_traces(tmp_path):
     assert lines[0].startswith("spread   over 2 executors and a supervisor; the supervisor decides")
     assert lines[1].startswith("spread   2 executors, central: 0 objects moved, 0 windows begun again, busy ")
     assert lines[1].endswith(f"mdanim-lammps timeline {tmp_path / 'cube.out'}")
-    drawn = run("timeline", "cube.out", cwd=tmp_path)
+    drawn = call("timeline", "cube.out", cwd=tmp_path)
     assert drawn.stdout.startswith("trace    cube.out/trace.json "), drawn.stderr
     assert json.loads((tmp_path / "cube.out" / "trace.json").read_text())["otherData"]["executors"] == 2
-    assert run("timeline", "cube.out", cwd=tmp_path).returncode == 0, "what this program has made is made again"
+    assert call("timeline", "cube.out", cwd=tmp_path).returncode == 0, "what this program has made is made again"
 
-    assert "spread" not in run("cube.txt", "--force", "--no-movie", cwd=tmp_path).stdout
-    refused = run("timeline", "cube.out", cwd=tmp_path)
+    assert "spread" not in call("cube.txt", "--force", "--no-movie", cwd=tmp_path).stdout
+    refused = call("timeline", "cube.out", cwd=tmp_path)
     assert refused.returncode == 4 and "by one process" in refused.stderr and "-n" in refused.stderr
-    assert run("timeline", "nowhere", cwd=tmp_path).returncode == 7
+    assert call("timeline", "nowhere", cwd=tmp_path).returncode == 7
