@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """Rigid bodies of fix mdanim/rigid, beside those of LAMMPS: ``python bench/rigid.py [TABLE ...]``, all of TABLES without a word.
 
-The tables are those of docs/fix_mdanim_rigid.md, and `tops` that of docs/physics-rigid.md.
+The tables are those of docs/fix_mdanim_rigid.md, `tops` and `sleep` those of docs/physics-rigid.md.
 """
 
 import sys
@@ -95,8 +95,8 @@ def dominoes() -> tuple[list[str], list[list]]:
     return HEAD, [["dominoes, 4 s", *followed(bodies, 4.0, frequency=rigid_lab.frequency_of(3.0, 0.06), thin=0.06)]]
 
 
-def heap(count: int = 200) -> tuple[list[str], list[list]]:
-    """Cubes of 10 cm that fall into a shaft, the first second."""
+def heap_of(count: int) -> tuple[list, list[str], float]:
+    """Cubes of 10 cm that fall into a shaft, its planes, and the frequency of contacts."""
     random, side = np.random.default_rng(1), max(2, round((count / 2.5) ** (1 / 3)))
     bodies = []
     for n in range(count):
@@ -107,9 +107,13 @@ def heap(count: int = 200) -> tuple[list[str], list[list]]:
     wide = 0.08 * side + 0.1
     walls = [f"plane {axis} {end} {sign * wide!r}" for axis in "xy" for end, sign in (("lo", -1), ("hi", 1))]
     speed = np.sqrt(2 * 9.81 * 0.17 * (count // side // side))
-    return HEAD, [
-        ["heap, 1 s", *followed(bodies, 1.0, frequency=rigid_lab.frequency_of(speed, 0.1), planes=["plane z lo 0.0", *walls])]
-    ]
+    return bodies, ["plane z lo 0.0", *walls], rigid_lab.frequency_of(speed, 0.1)
+
+
+def heap() -> tuple[list[str], list[list]]:
+    """The first second of a heap of 200."""
+    bodies, planes, frequency = heap_of(200)
+    return HEAD, [["heap, 1 s", *followed(bodies, 1.0, frequency=frequency, planes=planes)]]
 
 
 def tops() -> tuple[list[str], list[list]]:
@@ -134,7 +138,28 @@ def tops() -> tuple[list[str], list[list]]:
 
 DEPTHS = (0.02, 0.002)
 """Depths of a blow at 1 m/s, over the thinnest part: that of scenes, and a tenth."""
-TABLES = {"tops": tops, "free": free, "cost": cost, "dominoes": dominoes, "heap": heap}
+SLEEP = "sleep 1e-4 1e-2 0.1"
+"""Rule of scenes with parts of 10 cm: 1e-4 sqrt(g s), 1e-3 g, sqrt(s/g)."""
+
+
+def sleep(seconds: int = 5) -> tuple[list[str], list[list]]:
+    """A heap of 200 cubes that comes to rest, second by second without and with sleep, in turns."""
+    rows = []
+    bodies, planes, frequency = heap_of(200)
+    with tempfile.TemporaryDirectory() as a, tempfile.TemporaryDirectory() as b:
+        kept = {"frequency": frequency, "thin": 0.1, "planes": planes}
+        with rigid_lab.World(Path(a), bodies, **kept) as awake, rigid_lab.World(Path(b), bodies, words=SLEEP, **kept) as sleeping:
+            for second in range(1, seconds + 1):
+                took = []
+                for world in (awake, sleeping):
+                    start = time.process_time()
+                    world.run(round(1.0 / world.dt))
+                    took.append(f"{time.process_time() - start:.2f}")
+                rows.append([f"up to {second} s", *took, f"{sleeping.number('asleep'):.0f}", f"{sleeping.number('stilled'):.0e}"])
+    return ["heap of 200 cubes", "without [s]", "with sleep [s]", "asleep then", "stilled [J]"], rows
+
+
+TABLES = {"tops": tops, "sleep": sleep, "free": free, "cost": cost, "dominoes": dominoes, "heap": heap}
 
 if __name__ == "__main__":
     print_tables(TABLES, sys.argv[1:])

@@ -40,7 +40,7 @@ static std::map<int, Inertia> moments_of(LAMMPS *lmp, const char *file)
 // fix ID group mdanim/rigid [inertia FILE] [lambda L] [glue FILE] [shapes FILE contact OMEGA EPS], and words of RigidTouching
 FixMdanimRigid::FixMdanimRigid(LAMMPS *lmp, int narg, char **arg)
     : FixBase(lmp, narg, arg), particles(lmp, *this), touching(lmp), guided(particles, touching, bodies),
-      glue(lmp, particles, touching, bodies)
+      glue(lmp, particles, touching, bodies), sleep(lmp, touching, glue, bodies), forces(lmp, particles, bodies)
 {
   time_integrate = 1;
   rigid_flag = 1;
@@ -55,7 +55,7 @@ FixMdanimRigid::FixMdanimRigid(LAMMPS *lmp, int narg, char **arg)
   look_up({}, {&lambda});
   tell_numbers();
 
-  std::vector<Keyword> known = {{"inertia", "FILE"}, {"lambda", "L|d_NAME"}, {"glue", "FILE"}};
+  std::vector<Keyword> known = {{"inertia", "FILE"}, {"lambda", "L|d_NAME"}, {"glue", "FILE"}, RigidSleep::word()};
   for (Keyword &word : RigidTouching::words()) known.push_back(std::move(word));
   for (int iarg = 3, words = 0; iarg < narg; iarg += words) {
     words = words_of_keyword(lmp, "fix mdanim/rigid", known, iarg, narg, arg);
@@ -66,6 +66,8 @@ FixMdanimRigid::FixMdanimRigid(LAMMPS *lmp, int narg, char **arg)
       has_drag = true;
     } else if (strcmp(arg[iarg], "glue") == 0) {
       glue.read_file(arg[iarg + 1]);
+    } else if (strcmp(arg[iarg], "sleep") == 0) {
+      sleep.read_word(iarg, arg);
     } else {
       touching.read_word(iarg, arg);
     }
@@ -93,8 +95,9 @@ void FixMdanimRigid::tell_numbers()
       clock(),
       {"drag_loss", true, [this] { return force->mvv2e * drag_loss; }}};
   for (mdanim::Output &output : touching.outputs()) outputs.push_back(std::move(output));
-  const auto forces = [this] { return collected || (collect(), true); };
-  for (mdanim::Output &output : glue.outputs(forces, half_dt, drag)) outputs.push_back(std::move(output));
+  const auto collects = [this] { return collected || (collect(), true); };
+  for (mdanim::Output &output : glue.outputs(collects, half_dt, drag)) outputs.push_back(std::move(output));
+  for (mdanim::Output &output : sleep.outputs()) outputs.push_back(std::move(output));
   tell(std::move(outputs));
 }
 
@@ -131,18 +134,13 @@ void FixMdanimRigid::reset_dt() { half_dt = 0.5 * update->dt * force->ftm2v; }
 void FixMdanimRigid::setup(int)
 {
   collected = false;
-  TouchAccount &account = touching.contact.account;
-  account.deepest = account.worst_bound = 0.0;
-  account.most_touching = 0;
+  touching.contact.begin_account();
   if (touching.guide()) {
     guided.find(half_dt, drag);
     guided.set_whole_motion(update->dt);
     particles.put(bodies, false);
   }
-  if (touching.is_current)
-    touching.contact.find_energy();
-  else
-    touching.step(bodies, 0.0);
+  if (!touching.is_current) touching.step(bodies, 0.0);
 }
 
 void FixMdanimRigid::setup_pre_neighbor() { locate(); }
@@ -153,6 +151,7 @@ void FixMdanimRigid::pre_neighbor() { locate(); }
 void FixMdanimRigid::locate()
 {
   particles.locate();
+  forces.forget();
   const std::vector<bigint> present = particles.present();
   for (std::size_t n = 0; n < bodies.size(); ++n) {
     bodies[n].aside = present[n] == 0;
@@ -165,10 +164,7 @@ void FixMdanimRigid::locate()
 
 void FixMdanimRigid::collect()
 {
-  const auto all = particles.sums<6>([this](int i) {
-    const Vec3 f = vec3(atom->f[i]), t = cross(vec3(atom->x[i]) - bodies[particles.body_of(i)].centre, f);
-    return std::array<double, 6>{f.x, f.y, f.z, t.x, t.y, t.z};
-  });
+  const RigidForces::Sums &all = forces.find();
   const double units = 1.0 / force->ftm2v;    // contact has forces in units of mass times acceleration
   for (std::size_t n = 0; n < bodies.size(); ++n) {
     bodies[n].force = {all[n][0], all[n][1], all[n][2]};
@@ -195,7 +191,7 @@ void FixMdanimRigid::initial_integrate(int)
   glue.kick(half_dt, drag, true, drag_loss);
   glue.drift(update->dt);
   guided.move(update->dt);
-  particles.put(bodies, true);
+  particles.put(bodies, true, false);
 }
 
 void FixMdanimRigid::final_integrate()
@@ -203,10 +199,12 @@ void FixMdanimRigid::final_integrate()
   const Lap lap(seconds);
   guided.touch(update->dt);
   collect();
+  sleep.wake_some();
   glue.kick(half_dt, drag, false, drag_loss);
   guided.set_whole_motion(update->dt);
   glue.break_some(half_dt, drag, [this] { collect(); });
-  particles.put(bodies, false);
+  sleep.put_some_to_sleep(half_dt, drag);
+  particles.put(bodies, false, false);
 }
 
 // --- output ---
@@ -216,22 +214,18 @@ void FixMdanimRigid::final_integrate()
 double FixMdanimRigid::compute_scalar()
 {
   const std::vector<double> of_particles = particles.kinetic();
-  double more = glue.torn_energy();
+  double more = glue.torn_energy() + sleep.taken();
   for (std::size_t n = 0; n < bodies.size(); ++n) more += bodies[n].translation() + bodies[n].rotation() - of_particles[n];
-  const TouchAccount &account = touching.contact.account;
+  const TouchAccount &account = touching.contact.found();
   return force->mvv2e * (more + account.energy + account.heat + account.damped + account.let_go + drag_loss - touching.taken());
 }
 
 double FixMdanimRigid::compute_array(int row, int column)
 {
   const RigidBody &body = bodies[row];
-  const double numbers[COLUMNS] = {body.centre.x,   body.centre.y,
-                                   body.centre.z,   body.velocity.x,
-                                   body.velocity.y, body.velocity.z,
-                                   body.q.w,        body.q.x,
-                                   body.q.y,        body.q.z,
-                                   body.spin.x,     body.spin.y,
-                                   body.spin.z,     glue.molecule_of_whole(row)};
+  const Vec3 &c = body.centre, &v = body.velocity, &w = body.spin;
+  const Quaternion &q = body.q;
+  const double numbers[COLUMNS] = {c.x, c.y, c.z, v.x, v.y, v.z, q.w, q.x, q.y, q.z, w.x, w.y, w.z, glue.molecule_of_whole(row)};
   return numbers[column];
 }
 

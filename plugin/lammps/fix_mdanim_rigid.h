@@ -5,8 +5,10 @@
 
 #include "lammps/fix_base.h"
 #include "lammps/guided_bodies.h"
+#include "lammps/rigid_forces.h"
 #include "lammps/rigid_glue.h"
 #include "lammps/rigid_particles.h"
+#include "lammps/rigid_sleep.h"
 #include "lammps/rigid_touching.h"
 #include "lammps/stateful.h"
 #include "rigid/body.h"
@@ -70,6 +72,8 @@ class FixMdanimRigid : public mdanim::FixBase, public mdanim::Stateful {
   std::vector<mdanim::RigidBody> bodies;
   mdanim::GuidedBodies guided;
   mdanim::RigidGlue glue;
+  mdanim::RigidSleep sleep;
+  mdanim::RigidForces forces;
   std::vector<double> drag;                         // of bodies
   std::optional<mdanim::StateRecords> restarted;    // state of a restart file, until there are particles
   double half_dt = 0.0;                             // dt/2 in units that turn force/mass into velocity

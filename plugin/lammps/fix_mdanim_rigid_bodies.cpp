@@ -41,6 +41,7 @@ void FixMdanimRigid::make()
   particles.fix_places(bodies);
   set_velocities(found);
   touching.make(name(), objects, bodies);
+  sleep.tell_contact();
   glue.join(name());
   // Last: glue changes velocities by roundings, and `changes` compares particles with what was put.
   particles.put(bodies, true);
@@ -92,6 +93,7 @@ void FixMdanimRigid::follow_changes()
                  name(), given.empty() ? "shapes" : "moments");
     make();
   } else if (largest(changes.pushed) > 0.0) {
+    sleep.wake_all();
     set_velocities(particles.weigh());
     glue.glued.take_motion(bodies);
     particles.put(bodies, false);

@@ -71,6 +71,7 @@ StateRecords FixMdanimRigid::pack() const
     if (touches) kept.push = touching.push(number).force, kept.turning_push = touching.push(number).torque;
     if (touches) kept.pose = touching.pose(number);
     head.put(kept);
+    sleep.put(n, head);
     glue.glued.put(number, head);
     if (touches && touching.solid(number) != RigidTouching::NO_SHAPE)
       touching.contact.put_at_planes(touching.solid(number), head);
@@ -137,6 +138,7 @@ void FixMdanimRigid::unpack(const StateRecords &all)
       body.refresh();
     }
     touching.take(name(), objects, bodies, std::move(poses));
+    sleep.read(rest);
     glue.unpack(name(), rest);
     touching.read_contacts(records, STATE_VERSION, rest);
     touching.read_driven(STATE_VERSION, all);

@@ -84,7 +84,7 @@ void RigidGlue::unpack(const std::string &fix, std::vector<std::optional<ByteRea
 void RigidGlue::kick(double half_dt, const std::vector<double> &drag, bool first, double &drag_loss)
 {
   for (std::size_t n = 0; n < bodies.size(); ++n)
-    if (bodies[n].aside || bodies[n].guided || glued.holds(n))
+    if (bodies[n].aside || bodies[n].guided || bodies[n].asleep || glued.holds(n))
       continue;
     else if (drag[n] == 0.0)
       bodies[n].kick(half_dt);
@@ -96,7 +96,7 @@ void RigidGlue::kick(double half_dt, const std::vector<double> &drag, bool first
 void RigidGlue::drift(double dt)
 {
   for (std::size_t n = 0; n < bodies.size(); ++n)
-    if (!bodies[n].guided && !bodies[n].aside && !glued.holds(n)) bodies[n].drift(dt);
+    if (!bodies[n].guided && !bodies[n].aside && !bodies[n].asleep && !glued.holds(n)) bodies[n].drift(dt);
   glued.drift(bodies, dt);
 }
 

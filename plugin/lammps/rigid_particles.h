@@ -23,8 +23,8 @@ class RigidParticles : public WholeObjects {
 
   // Sets the places of particles in bodies from their places in space.
   void fix_places(const std::vector<RigidBody> &bodies);
-  // Sets velocities of particles, and places as well if bodies have moved.
-  void put(const std::vector<RigidBody> &bodies, bool places) const;
+  // Sets velocities of particles, and places as well if bodies have moved. `settled`: also of bodies that sleep, where they are.
+  void put(const std::vector<RigidBody> &bodies, bool places, bool settled = true) const;
   // Whether particles are elsewhere, or have other velocities, than points of their bodies; of this rank.
   struct BodyChanges {
     bool moved = false, pushed = false;

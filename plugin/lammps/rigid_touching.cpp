@@ -30,12 +30,12 @@ std::vector<Output> RigidTouching::outputs()
 {
   const TouchAccount &account = contact.account;
   const double &mvv2e = lmp->force->mvv2e;
-  return {{"contact", true, [&] { return mvv2e * account.energy; }},
+  return {{"contact", true, [&, this] { return mvv2e * contact.found().energy; }},
           {"friction_heat", true, [&] { return mvv2e * account.heat; }},
           {"damping_loss", true, [&] { return mvv2e * account.damped; }},
           {"let_go", true, [&] { return mvv2e * account.let_go; }},
           {"deepest", false, [&] { return account.deepest; }},
-          {"touching", true, [&] { return static_cast<double>(account.touching); }},
+          {"touching", true, [this] { return static_cast<double>(contact.found().touching); }},
           {"near", true, [this] { return static_cast<double>(contact.near_pairs()); }},
           {"worst_bound", false, [&] { return account.worst_bound; }},
           {"most_touching", false, [&] { return static_cast<double>(account.most_touching); }},
@@ -216,7 +216,7 @@ void RigidTouching::take(const std::string &fix, const ObjectTable &objects, con
     for (const int id : {a, b})
       if (!shapes.count(id)) lmp->error->all(FLERR, "{}: exclude names molecule {}, which has no shape", fix, id);
   contact.take(std::move(solids));
-  place_all(bodies);
+  place_all(bodies, true);
 }
 
 void RigidTouching::glue(const GluedBodies &glued, const std::vector<int> &pieces)
@@ -259,10 +259,10 @@ void RigidTouching::take_pushes()
     if (solid_of[n] != NO_SHAPE) pushes[n] = {contact.solid(solid_of[n]).force, contact.solid(solid_of[n]).torque};
 }
 
-void RigidTouching::place_all(const std::vector<RigidBody> &bodies)
+void RigidTouching::place_all(const std::vector<RigidBody> &bodies, bool settled)
 {
   for (std::size_t n = 0; n < bodies.size(); ++n)
-    if (solid_of[n] != NO_SHAPE) contact.place(solid_of[n], bodies[n]);
+    if (solid_of[n] != NO_SHAPE && (settled || !bodies[n].settled)) contact.place(solid_of[n], bodies[n]);
 }
 
 // Where driven shapes are now; velocities are the means of the step that ends here.
@@ -305,7 +305,7 @@ void RigidTouching::count_work(bool moves)
 void RigidTouching::step(const std::vector<RigidBody> &bodies, double dt)
 {
   if (!is_on()) return;
-  place_all(bodies);
+  place_all(bodies, false);
   place_driven();
   move_planes();
   contact.step(dt);

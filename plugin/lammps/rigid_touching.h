@@ -98,7 +98,7 @@ class RigidTouching {
     Vec3 way, turned;    // of the last step
     Push push;
   };
-  void place_all(const std::vector<RigidBody> &bodies);
+  void place_all(const std::vector<RigidBody> &bodies, bool settled);    // those that are settled, too
   void place_driven();
   void move_planes();
   void take_pushes();

@@ -55,7 +55,13 @@ class WholeObjects : protected LAMMPS_NS::Pointers {
   std::vector<double> kinetic() const;
   // Sums of terms_of(i), N numbers of each local particle of a body, over all particles of each body on all ranks. They have the
   // same bits for any distribution of particles over ranks.
-  template <int N, class Terms> std::vector<std::array<double, N>> sums(const Terms &terms_of) const;
+  template <int N, class Terms> std::vector<std::array<double, N>> sums(const Terms &terms_of) const
+  {
+    return sums<N>(terms_of, [](int) { return true; });
+  }
+  // The same of bodies for which this holds; of all others they are 0. It is the same on all ranks.
+  template <int N, class Terms, class Asked>
+  std::vector<std::array<double, N>> sums(const Terms &terms_of, const Asked &asked) const;
 
   template <class Term> std::vector<double> sum_of(const Term &term_of) const
   {
@@ -81,13 +87,14 @@ class WholeObjects : protected LAMMPS_NS::Pointers {
   std::vector<LAMMPS_NS::bigint> particles;    // of each object, on all ranks
 };
 
-template <int N, class Terms> std::vector<std::array<double, N>> WholeObjects::sums(const Terms &terms_of) const
+template <int N, class Terms, class Asked>
+std::vector<std::array<double, N>> WholeObjects::sums(const Terms &terms_of, const Asked &asked) const
 {
   const std::size_t count = known.size();
   std::vector<double> largest(N * count, 0.0);
   std::vector<UnorderedSum> sum(N * count);
   for (int i = 0; i < atom->nlocal; ++i) {
-    if (of_particle[i] == ObjectTable::NONE) continue;
+    if (of_particle[i] == ObjectTable::NONE || !asked(of_particle[i])) continue;
     const std::array<double, N> terms = terms_of(i);
     double *const of_body = &largest[N * of_particle[i]];
     for (int k = 0; k < N; ++k) of_body[k] = std::isfinite(terms[k]) ? std::max(of_body[k], std::fabs(terms[k])) : HUGE_VAL;
@@ -98,7 +105,7 @@ template <int N, class Terms> std::vector<std::array<double, N>> WholeObjects::s
     one = UnorderedSum::scale_for(one);
   }
   for (int i = 0; i < atom->nlocal; ++i) {
-    if (of_particle[i] == ObjectTable::NONE) continue;
+    if (of_particle[i] == ObjectTable::NONE || !asked(of_particle[i])) continue;
     const std::array<double, N> terms = terms_of(i);
     const std::size_t first = N * of_particle[i];
     for (int k = 0; k < N; ++k) sum[first + k].add(terms[k], largest[first + k]);

@@ -17,8 +17,11 @@ struct RigidBody {
   Quaternion q;    // takes its principal axes into space
   Vec3 L;          // angular momentum about the centre, in space
 
-  bool aside = false;     // has left the simulation: does not move, and has no energy
-  bool guided = false;    // goes its way whatever pushes at it, and has no energy
+  bool aside = false;      // has left the simulation: does not move, and has no energy
+  bool guided = false;     // goes its way whatever pushes at it, and has no energy
+  double calm = 0.0;       // time for which it has hardly moved (lammps/rigid_sleep.h)
+  bool asleep = false;     // stays where it is whatever pushes at it, and has no energy of motion
+  bool settled = false;    // asleep, and so for some steps already
 
   Vec3 force, torque;
   Matrix3 turn;    // matrix(q)
@@ -96,7 +99,9 @@ struct RigidBody {
   {
     const double phi = lambda * half / mass;
     const Vec3 to_v = (half / mass) * force - phi * velocity, to_L = half * torque - phi * L;
-    return aside || guided ? 0.0 : translation() + rotation() - 0.5 * (mass * dot(to_v, to_v) + dot(to_L, over_moments(to_L)));
+    return aside || guided || asleep
+               ? 0.0
+               : translation() + rotation() - 0.5 * (mass * dot(to_v, to_v) + dot(to_L, over_moments(to_L)));
   }
 
  private:

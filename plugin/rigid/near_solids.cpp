@@ -12,7 +12,7 @@ namespace mdanim {
 
 static constexpr double WAY = 0.05;    // that a body may go while a list holds, over its thickness
 
-void NearSolids::update(const std::vector<Solid> &solids, const Pairs &excluded)
+bool NearSolids::update(const std::vector<Solid> &solids, const Pairs &excluded)
 {
   bool is_old = listed_at.size() != solids.size();
   for (std::size_t n = 0; n < solids.size() && !is_old; ++n) {
@@ -20,6 +20,7 @@ void NearSolids::update(const std::vector<Solid> &solids, const Pairs &excluded)
     is_old = dot(way, way) > ways[n] * ways[n];
   }
   if (is_old) list(solids, excluded);
+  return is_old;
 }
 
 // One large body does not make the lists of all others long, and a small one does not make lists short-lived: it may go as far as

@@ -14,9 +14,9 @@ namespace mdanim {
 class NearSolids {
  public:
   using Pairs = std::set<std::pair<int, int>>;
-  // Makes the list of pairs anew when bodies have moved far enough; contacts stay with their pairs. `excluded`: ids of pairs that
-  // are none, the lower one first.
-  void update(const std::vector<Solid> &solids, const Pairs &excluded);
+  // Makes the list of pairs anew when bodies have moved far enough, and tells whether it did; contacts stay with their pairs.
+  // `excluded`: ids of pairs that are none, the lower one first.
+  bool update(const std::vector<Solid> &solids, const Pairs &excluded);
   void forget() { listed_at.clear(); }
 
   std::vector<SolidPair> pairs;    // ascending

@@ -14,7 +14,8 @@ namespace mdanim {
 struct SolidPair {
   int a = 0, b = 0;    // numbers of bodies, a < b
   std::vector<Touch> touches;
-  Vec3 force, torque_a, torque_b;    // of this step, on the first body; torques on each. Of bodies that are glued
+  // Force on the first body and torques on each, of the last step in which they were found, where one is glued or sleeps.
+  Vec3 force, torque_a, torque_b;
 
   double asleep = 0.0;            // both may go so far together before the bodies can touch
   double known_for = -1.0;        // and so far until features must be looked up again

@@ -16,6 +16,7 @@ void RigidContact::take(std::vector<Solid> now)
   for (Solid &one : now) {    // a state that is put has the bodies that there were
     const int known = number_of(one.id);
     if (known < 0 || !one.take_yields(solids[known])) one.find_yields();
+    one.settled = one.held && !one.driven && length(one.belt) == 0.0;
   }
   solids = std::move(now);
   forget();
@@ -32,6 +33,7 @@ void RigidContact::forget()
 {
   near.pairs.clear();
   near.forget();
+  is_active_known = false;
   at_plane.assign(settings.planes.size(), std::vector<std::vector<Touch>>(solids.size()));
   plane_push.clear();
 }
@@ -141,43 +143,108 @@ void RigidContact::touch_plane(const TouchStep &step, std::vector<Touch> &touche
 
 void RigidContact::step(double dt)
 {
-  for (Solid &one : solids) {
+  const bool all = find_active(settings.objects && near.update(solids, settings.excluded));
+  for (std::size_t n = 0; n < solids.size(); ++n) {
+    Solid &one = solids[n];
+    if (unstirred[n] && !all) continue;
     one.begin_step();
     one.stir =
         one.held && !one.driven ? 0.0 : dt * (std::sqrt(dot(one.velocity, one.velocity)) + one.fastest_turn * one.shape.bound());
   }
   const TouchStep step(dt, settings.onset, account);
-  for (std::size_t k = 0; k < settings.planes.size(); ++k)
-    for (std::size_t n = 0; n < solids.size(); ++n)
-      if (!solids[n].held && !solids[n].aside) {
-        forget_parted(at_plane[k][n]);
-        touch_plane(step, at_plane[k][n], solids[n], static_cast<int>(k));
-      }
-  for (Solid &one : solids) one.force_at_planes = one.force, one.torque_at_planes = one.torque;
-  if (settings.objects) {
-    near.update(solids, settings.excluded);
-    for (SolidPair &pair : near.pairs)
-      if (solids[pair.a].whole != Solid::ALONE || solids[pair.b].whole != Solid::ALONE)
-        touch_counted(step, pair);
-      else
-        touch_pair(step, pair);
-  }
-  find_energy();
+  touch_planes(step, all);
+  if (all)
+    for (SolidPair &pair : near.pairs) touch(step, pair, true);
+  else
+    for (const int k : active) touch(step, near.pairs[k], false);
   for (const Solid &one : solids) {
     account.worst_bound = std::max(account.worst_bound, 0.25 * dt * dt * one.stiffness_sum + 0.5 * dt * one.damping_sum);
     account.most_touching = std::max(account.most_touching, one.touching);
   }
 }
 
+void RigidContact::touch_planes(const TouchStep &step, bool all)
+{
+  const bool stand = planes_stand();
+  const auto is_at_rest = [stand](const Solid &one) { return stand && one.settled; };
+  for (std::size_t k = 0; k < settings.planes.size(); ++k)
+    for (std::size_t n = 0; n < solids.size(); ++n)
+      if (Solid &one = solids[n]; !one.held && !one.aside && !is_at_rest(one)) {
+        std::vector<Touch> &touches = at_plane[k][n];
+        forget_parted(touches);
+        touch_plane(step, touches, one, static_cast<int>(k));
+        one.is_carried = one.is_carried || (length(settings.planes[k].velocity) > 0.0 && !touches.empty());
+      }
+  for (std::size_t n = 0; n < solids.size(); ++n)
+    if (Solid &one = solids[n]; !is_at_rest(one))
+      one.force_at_planes = one.force, one.torque_at_planes = one.torque;
+    else if (all || !unstirred[n])
+      one.force = one.force_at_planes, one.torque = one.torque_at_planes;
+}
+
+bool RigidContact::planes_stand() const
+{
+  return std::none_of(settings.planes.begin(), settings.planes.end(), [](const SolidPlane &plane) { return plane.moves; });
+}
+
+void RigidContact::rest(int n, bool asleep, bool settled)
+{
+  Solid &one = solids[n];
+  is_active_known = is_active_known && one.settled == settled;
+  one.asleep = asleep;
+  one.settled = settled;
+}
+
+// Pairs of which one is not settled, and all others of what is near it. In the step in which these are found anew all pairs are
+// looked at: it gives bodies that are settled the forces that they keep.
+bool RigidContact::find_active(bool listed_anew)
+{
+  if (!listed_anew && is_active_known) return false;
+  const auto is_settled = [this](const SolidPair &pair) { return solids[pair.a].settled && solids[pair.b].settled; };
+  const bool stand = planes_stand();
+  unstirred.clear();
+  for (const Solid &one : solids) unstirred.push_back(one.settled && !one.held && stand);
+  for (const SolidPair &pair : near.pairs)
+    if (!is_settled(pair)) unstirred[pair.a] = unstirred[pair.b] = 0;
+  active.clear();
+  const auto is_stirred = [this](int n) { return !solids[n].held && !unstirred[n]; };
+  for (std::size_t k = 0; k < near.pairs.size(); ++k)
+    if (const SolidPair &pair = near.pairs[k]; !is_settled(pair) || is_stirred(pair.a) || is_stirred(pair.b))
+      active.push_back(static_cast<int>(k));
+  is_active_known = true;
+  return true;
+}
+
+// Bodies that sleep give to each other what they gave in the last step in which one was awake or had just been put to sleep.
+void RigidContact::touch(const TouchStep &step, SolidPair &pair, bool all)
+{
+  Solid &a = solids[pair.a], &b = solids[pair.b];
+  if (a.settled && b.settled) {
+    if (pair.touches.empty()) return;
+    if (all || !unstirred[pair.a]) a.force += pair.force, a.torque += pair.torque_a;
+    if (all || !unstirred[pair.b]) b.force -= pair.force, b.torque += pair.torque_b;
+    return;
+  }
+  if (a.whole != Solid::ALONE || b.whole != Solid::ALONE || a.asleep || b.asleep)
+    touch_counted(step, pair);
+  else
+    touch_pair(step, pair);
+  if (pair.touches.empty()) return;
+  a.is_carried = a.is_carried || (b.driven && b.stir > 0.0);
+  b.is_carried = b.is_carried || (a.driven && a.stir > 0.0);
+}
+
 bool RigidContact::lay_aside(int n, bool aside)
 {
   if (solids[n].aside == aside) return false;
   solids[n].aside = aside;
+  is_active_known = false;
   for (auto &of_plane : at_plane) of_plane[n].clear();
   for (int k = 0; k < static_cast<int>(settings.planes.size()); ++k) plane_push.erase({k, solids[n].id});
   for (SolidPair &pair : near.pairs) {
     if (pair.a != n && pair.b != n) continue;
     pair.touches.clear();
+    pair.force = pair.torque_a = pair.torque_b = Vec3();
     pair.forget();    // its ways were not counted
   }
   return true;
@@ -244,6 +311,7 @@ double RigidContact::change(const std::map<int, double> &yielded)
   }
   if (settings.objects) {
     near.forget();    // pieces are near others that they were not before
+    is_active_known = false;
     near.update(solids, settings.excluded);
     for (SolidPair &pair : near.pairs) {
       if (!yielded.count(pair.a) && !yielded.count(pair.b)) continue;
@@ -259,7 +327,6 @@ double RigidContact::change(const std::map<int, double> &yielded)
       gone -= energy_of(pair.touches);
     }
   }
-  find_energy();
   return gone - (account.heat + account.damped + account.let_go - booked);
 }
 
@@ -274,16 +341,20 @@ void RigidContact::touch_counted(const TouchStep &step, SolidPair &pair)
   pair.torque_b = b.torque - torque_b;
 }
 
-void RigidContact::find_energy()
+const TouchAccount &RigidContact::found()
 {
   account.energy = 0.0;
   account.touching = 0;
-  const auto add = [this](const std::vector<Touch> &touches) {
-    for (const Touch &touch : touches) account.energy += touch.energy, account.touching += touch.parted == 0.0;
-  };
-  for (const auto &of_plane : at_plane)
-    for (const std::vector<Touch> &touches : of_plane) add(touches);
-  for (const SolidPair &pair : near.pairs) add(pair.touches);
+  each_touch([this](const Touch &touch) { account.energy += touch.energy, account.touching += touch.parted == 0.0; });
+  return account;
+}
+
+// Contacts of bodies that sleep are not looked at in the run.
+void RigidContact::begin_account()
+{
+  account.deepest = account.worst_bound = 0.0;
+  account.most_touching = 0;
+  if (settings.sleeps) each_touch([this](const Touch &touch) { account.deepest = std::max(account.deepest, depth_of(touch)); });
 }
 
 double overlap(Solid &a, Solid &b)
@@ -307,8 +378,18 @@ std::size_t RigidContact::bytes() const
 
 // --- records ---
 
+Bytes RigidContact::record_of(const SolidPair &pair) const
+{
+  ByteWriter writer;
+  const bool is_kept = solids[pair.a].asleep || solids[pair.b].asleep;
+  if (settings.sleeps)
+    for (const Vec3 &part : {pair.force, pair.torque_a, pair.torque_b}) writer.put(is_kept ? part : Vec3());
+  return writer.put_counted(pair.touches).take();
+}
+
 void RigidContact::put_at_planes(int n, ByteWriter &writer) const
 {
+  if (settings.sleeps) writer.put(solids[n].force_at_planes).put(solids[n].torque_at_planes);
   for (const auto &of_plane : at_plane) writer.put_counted(of_plane[n]);
   for (int k = 0; k < static_cast<int>(settings.planes.size()); ++k) {
     if (!settings.planes[k].moves) continue;
@@ -346,18 +427,24 @@ static void check(const std::vector<Touch> &touches, const Solid &a, const Solid
   }
 }
 
+static Vec3 read_vector(ByteReader &reader)
+{
+  const auto found = reader.get<Vec3>();
+  const double values[] = {found.x, found.y, found.z};
+  reader.expect_numbers(values, "a force of contact");
+  return found;
+}
+
 void RigidContact::read_at_planes(int n, ByteReader &reader)
 {
+  if (settings.sleeps) solids[n].force_at_planes = read_vector(reader), solids[n].torque_at_planes = read_vector(reader);
   for (auto &of_plane : at_plane) {
     of_plane[n] = reader.get_counted<Touch>();
     check(of_plane[n], solids[n], nullptr, reader);
   }
   for (int k = 0; k < static_cast<int>(settings.planes.size()); ++k) {
     if (!settings.planes[k].moves) continue;
-    const auto push = reader.get<Vec3>();
-    const double values[] = {push.x, push.y, push.z};
-    reader.expect_numbers(values, "a force on a plane");
-    plane_push[{k, solids[n].id}] = push;
+    plane_push[{k, solids[n].id}] = read_vector(reader);
   }
 }
 
@@ -366,9 +453,13 @@ void RigidContact::read_pair(int a, int b, ByteReader &reader)
   SolidPair pair;
   pair.a = a;
   pair.b = b;
+  if (settings.sleeps) {
+    for (Vec3 *const part : {&pair.force, &pair.torque_a, &pair.torque_b}) *part = read_vector(reader);
+  }
   pair.touches = reader.get_counted<Touch>();
   check(pair.touches, solids[a], &solids[b], reader);
   if (solids[a].aside || solids[b].aside) return;
+  is_active_known = false;
   near.pairs.push_back(std::move(pair));
 }
 

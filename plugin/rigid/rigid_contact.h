@@ -10,6 +10,7 @@
 #include "rigid/near_solids.h"
 #include "rigid/touch.h"
 
+#include <algorithm>
 #include <map>
 #include <optional>
 #include <set>
@@ -28,6 +29,7 @@ struct RigidContactSettings {
   std::map<std::pair<int, int>, double> rolling;    // the same of what resists rolling, the arm of its torque
   std::set<std::pair<int, int>> excluded;           // ids of pairs that never touch, the lower one first
   std::map<int, Vec3> belts;                        // velocities at which surfaces run over bodies, by their ids
+  bool sleeps = false;                              // whether bodies may be put to rest
 };
 
 // How deep two bodies are in each other: the depth of the deepest contact that begins without a force at the setup of a run; 0
@@ -53,14 +55,19 @@ class RigidContact {
   void place_driven(int n, const Vec3 &centre, const Matrix3 &turn, const Vec3 &velocity, const Vec3 &spin);
   // A body that is laid aside touches nothing, and its contacts end. Returns whether this is new.
   bool lay_aside(int n, bool aside);
+  // Says whether a body does not move, and whether it has not done so for some steps: between two that are settled nothing
+  // changes.
+  void rest(int n, bool asleep, bool settled);
   // Says which body a piece is glued into; `faces`: those of its shape that glue covers (see Polyhedron::cover), or none.
   void glue(int n, int whole, const Carrier &carrier, const std::vector<char> &faces);
   // To be called after it, at the end of a step: contacts of bodies that yield more than before, by their numbers and with what
   // they yielded, get softer, and those that touch from then on do so without a force. Forces on these, and on all that they
   // touch, are found again. Returns the energy that contacts lose.
   double change(const std::map<int, double> &yielded);
-  // Finds the energy of contacts, and how many there are, from what they remember.
-  void find_energy();
+  // The account, with the energy of contacts, and how many there are, from what they remember.
+  const TouchAccount &found();
+  // Begins what the account tells of a run alone.
+  void begin_account();
   // Finds the forces on bodies, dt after the last step; dt = 0 at the setup of a run.
   void step(double dt);
 
@@ -71,21 +78,35 @@ class RigidContact {
   template <class Visit> void each_pair_record(const Visit &visit) const
   {
     for (const SolidPair &pair : near.pairs)
-      if (!pair.touches.empty()) visit(pair.a, pair.b, ByteWriter().put_counted(pair.touches).take());
+      if (!pair.touches.empty()) visit(pair.a, pair.b, record_of(pair));
   }
   void read_pair(int a, int b, ByteReader &reader);
   void forget();    // all contacts
 
  private:
+  Bytes record_of(const SolidPair &pair) const;
   TouchLaw law_of(const Solid &a, const Solid &b) const;
   TouchLaw law_at(const Solid &one, int plane) const;
   TouchLaw law_with(double yields, Material material, std::pair<int, int> ids) const;
   void touch_pair(const TouchStep &step, SolidPair &pair);
   void touch_plane(const TouchStep &step, std::vector<Touch> &touches, Solid &one, int plane);
   void touch_counted(const TouchStep &step, SolidPair &pair);
+  void touch(const TouchStep &step, SolidPair &pair, bool all);
+  void touch_planes(const TouchStep &step, bool all);
+  bool planes_stand() const;
+  bool find_active(bool listed_anew);
+  template <class Visit> void each_touch(const Visit &visit) const
+  {
+    for (const auto &of_plane : at_plane)
+      for (const std::vector<Touch> &touches : of_plane) std::for_each(touches.begin(), touches.end(), visit);
+    for (const SolidPair &pair : near.pairs) std::for_each(pair.touches.begin(), pair.touches.end(), visit);
+  }
 
   std::vector<Solid> solids;
   NearSolids near;
+  std::vector<int> active;    // pairs that are looked at where some bodies are settled
+  bool is_active_known = false;
+  std::vector<char> unstirred;                              // of bodies: settled, and so is all that is near
   std::vector<std::vector<std::vector<Touch>>> at_plane;    // by planes and bodies
   // Forces on bodies from planes that move, in the last step, by planes and ids; none before the first one.
   std::map<std::pair<int, int>, std::optional<Vec3>> plane_push;

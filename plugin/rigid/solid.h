@@ -30,8 +30,10 @@ struct Solid {
   static constexpr int ALONE = -1;
   int id = 0;
   bool held = false;
-  bool driven = false;    // held, and moves
-  bool aside = false;     // touches nothing
+  bool driven = false;     // held, and moves
+  bool aside = false;      // touches nothing
+  bool asleep = false;     // does not move in this step
+  bool settled = false;    // does not move, and contacts with others that are so stay as they are
   Material material;
   SolidShape shape;          // in the frame of the body
   double over_mass = 0.0;    // 1/m, and 1/I about its axes; 0 of one that is held
@@ -53,6 +55,7 @@ struct Solid {
   Vec3 force_at_planes, torque_at_planes;           // the part of them that planes give
   double stiffness_sum = 0.0, damping_sum = 0.0;    // S and D of the bound on the step
   int touching = 0;
+  bool is_carried = false;    // touches something that is driven, and moves
 
   Vec3 in_space(const Vec3 &own) const { return turn * own; }
   Vec3 place(const Vec3 &own) const { return centre + turn * own; }
@@ -87,6 +90,7 @@ struct Solid {
     force = torque = Vec3();
     stiffness_sum = damping_sum = 0.0;
     touching = 0;
+    is_carried = false;
   }
   // To be called after the shape, the mass and the moments were set.
   void find_yields();

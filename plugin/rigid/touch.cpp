@@ -131,7 +131,7 @@ void TouchStep::book(Solid &a, Solid *b, Touch &touch, double part, const Contac
                  0.5 * touch.more * (touch.memory.depth - touch.earlier);
   account.heat += force.heat;
   account.damped += force.damped;
-  account.deepest = std::max(account.deepest, touch.memory.depth - touch.memory.offset);
+  account.deepest = std::max(account.deepest, depth_of(touch));
   const auto add_to_sums = [&](Solid &one) {
     const auto along = [&](double stick) {    // sum of lambda n n and `stick` t t
       return touch.kind == Touch::EDGES || touch.kind == Touch::CURVES ? one.yields_any

@@ -37,6 +37,9 @@ struct Touch {
   Vec3 rolled;    // angle from its anchor, in the host's frame [rad]
 };
 
+// How deep it is beyond where it began without a force.
+inline double depth_of(const Touch &touch) { return touch.memory.depth - touch.memory.offset; }
+
 // Takes out contacts of bodies that had parted in the step before.
 inline void forget_parted(std::vector<Touch> &list)
 {

@@ -131,7 +131,8 @@ def torus(radius, tube, density=600.0, **more) -> Rigid:
 
 NAMES = (
     *("bodies", "translation", "rotation", "seconds", "drag_loss", "contact", "friction_heat", "damping_loss", "let_go"),
-    *("deepest", "touching", "near", "worst_bound", "most_touching", "work", "kinetic", "torn", "broken_faces"),
+    *("deepest", "touching", "near", "worst_bound", "most_touching", "work", "kinetic", "torn", "broken_faces", "stress_share"),
+    *("stilled", "asleep"),
 )
 
 

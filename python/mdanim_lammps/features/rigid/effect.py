@@ -18,7 +18,7 @@ from ...scene.formatting import number
 from ..contact.surface import DAMPED, HEAT, LET_GO
 from ..pieces.glue import glue_text, is_glued
 from . import points, touching
-from .words import Rigid
+from .words import Rigid, Sleep
 
 GROUP = "bodies"
 """Group of the particles of all rigid bodies that move."""
@@ -33,6 +33,8 @@ AT_REST = 12.0
 The sum takes all contacts of a body for one, but they act at places of their own."""
 TAKEN = {HEAT: "friction_heat", DAMPED: "damping_loss", LET_GO: "let_go"}
 """Columns of the ledger, and their entries of the fix's vector."""
+STILLED = "stilled"
+"""Column of the ledger, and entry of the vector: energy of motion of what was put to rest."""
 WORK = "work"
 """The same of what driven objects that are held give to rigid ones."""
 
@@ -131,7 +133,9 @@ class RigidMotion(Effect):
         return self._sum(readings, "contact")
 
     def losses(self, scene):
-        return tuple(TAKEN) if _may_touch(scene) else ()
+        if not _may_touch(scene):
+            return ()
+        return (*TAKEN, STILLED) if scene.control.sleep is Sleep.ON else tuple(TAKEN)
 
     def sources(self, scene):
         effects = [e.of(scene) for e in features.effects()]

@@ -29,6 +29,7 @@ from ..contact.restitution import damping_for
 from ..contact.rigid_surfaces import frequency
 from ..contact.words import ContactPair
 from .shapes import hidden, in_file, is_known, is_rigid, on_objects, on_planes, only_balls_move
+from .words import Sleep
 
 ONSET = 0.005
 """Depth up to which a contact begins gently, over the thinnest part."""
@@ -36,7 +37,8 @@ DEEP, SUNK = 0.05, 0.005
 """Depths of a blow and of a load at rest, over the thinnest part, above which they show."""
 STEP = 0.35
 """Time step of `balanced`, half of the bound, times the frequency: what stacks and heaps were at rest with (an estimate)."""
-
+CALM, BALANCED = 1e-4, 1e-3
+"""Largest speed of what is calm over sqrt(g s), with the thinnest part s of all, and acceleration over g."""
 
 FIXES = ("rigid", "rigid_rest")
 """Fixes of what touches objects by its features, and of all else."""
@@ -168,6 +170,7 @@ def words(context: Context, part: Part, shapes: str) -> str:
     planes, scene = planes_of(context), context.scene
     found = [f"shapes {shapes} contact {omega(context)!r} {ONSET * frequency(context).thin!r}"]
     found += ["objects"] if part.objects else []
+    found += sleeps(context)
     found += map(word_of, planes)
     found += belts(context, part.shapes) if part.objects else []
     if part.objects and (guided(context) & part.shapes).any() and not released(context, part):
@@ -187,6 +190,15 @@ def words(context: Context, part: Part, shapes: str) -> str:
                 found.append(f"pair {m + 1} plane{k} {law[0]!r} {law[1]!r}")
         found += [f"rolling {m + 1} plane{k} {r!r}" for m, r in _rolling_at(context, plane.effect).items() if m in free]
     return " ".join(found)
+
+
+def sleeps(context: Context) -> list[str]:
+    """The rule of sleep, if the scene asks for it. In the time for which a body has to be calm it moved by less than CALM of the
+    thinnest part of all, and the forces on it are in balance to BALANCED of its weight."""
+    g, thin = context.reach.g, frequency(context).thin
+    if context.scene.control.sleep is Sleep.OFF or g == 0.0:
+        return []
+    return [f"sleep {CALM * math.sqrt(g * thin)!r} {BALANCED * g!r} {math.sqrt(thin / g)!r}"]
 
 
 def shapes_text(context: Context, part: Part) -> str:

@@ -6,10 +6,12 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from enum import Enum
 from typing import Any, ClassVar
 
 from ...scene.formatting import say
 from ...scene.holding import all_held
+from ...scene.schema import Words, setting
 from ...scene.shapes import Box, holds_all
 
 SWITCHES = {"rigid": "an object's `elasticity rigid`"}
@@ -29,6 +31,25 @@ class Rigid:
 
 
 ELASTICITIES = (Rigid,)
+
+
+class Sleep(Enum):
+    """Whether rigid objects that lie still cost nothing until something stirs them."""
+
+    ON, OFF = "on", "off"
+
+
+class SleepWords:
+    """Settings of ``control``."""
+
+    sleep: Sleep = setting(
+        "<on|off>",
+        "Rigid objects that lie still are put to rest, and take no time until the forces on them change: for heaps and rows of "
+        "dominoes. What is in slow motion, as a ball that hardly rolls any more, then stops.",
+        "on", default=Sleep.OFF, codec=Words(Sleep), after="restitution")  # fmt: skip
+
+
+CONTROL = SleepWords
 
 MARGINS = {
     "blow depth": "how deep rigid objects go into each other in the fastest blow; above a twentieth of their thickness it shows",
@@ -68,6 +89,7 @@ def check(v: Any, top: Mapping, held: Mapping) -> None:
     """Things that do not fit together, of all objects."""
     _check_thickness(v, held)
     _check_paper(v, held)
+    _check_sleep(v, top, held)
 
 
 def _check_thickness(v: Any, held: Mapping) -> None:
@@ -91,6 +113,17 @@ def _check_paper(v: Any, held: Mapping) -> None:
         cause = f"{solid.name} is rigid; the contact of the paper follows from the elasticity of both objects"
         way_out = "take contact-model paper out of control, or give the object an elasticity"
         v.problem(solid.spans["elasticity"], cause, way_out, key="rigid-paper")
+
+
+def _check_sleep(v: Any, top: Mapping, held: Mapping) -> None:
+    """Objects that can lie still are rigid, and gravity keeps them where they are."""
+    control = held["control"]
+    if control is None or control.sleep is Sleep.OFF:
+        return
+    rigid = any(isinstance(s.elasticity, Rigid) and not all_held(s) for s in held["solids"])
+    if not rigid or not any(map(any, (top.get("gravity", ()), *(g for _, g in top.get("gravity_path", ()))))):
+        cause = f"sleep does nothing: {'there is no gravity' if rigid else 'no object that can move is rigid'}"
+        v.problem(control.spans["sleep"], cause, "leave it out", severity="warning", key="sleep")
 
 
 CHECKS = {"object": check_object}
