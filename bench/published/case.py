@@ -82,9 +82,16 @@ class Runs(ExitStack):
         super().__init__()
 
     def run(self, name: str, change: Change = _as_it_is, /, **lets: float | str) -> Run:
-        """Simulate scenes/validation/NAME.txt with these values of its ``let`` names, as it is after a `change`."""
+        """Simulate scenes/validation/NAME.txt with these values of its ``let`` names, as it is after a `change`.
+
+        A scene that says its own resolution has a ``let fine = 1``, the number of its cells across something over that of
+        `balanced`: preview has half of it, reference twice, as where the resolution is found automatically.
+        """
         start = time.process_time()
-        record = change(load_scene(SCENES / f"{name}.txt", overrides=lets))
+        path = SCENES / f"{name}.txt"
+        if "\nlet fine = 1" in path.read_text(encoding="utf-8"):
+            lets = {"fine": Accuracy(self.accuracy).cells / Accuracy.BALANCED.cells, **lets}
+        record = change(load_scene(path, overrides=lets))
         record = replace(record, control=replace(record.control, accuracy=Accuracy(self.accuracy)))
         run = Scene(record).run(self.folder() / "out")
         self.seconds += time.process_time() - start

@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""What floats."""
+
+from __future__ import annotations
+
+from .case import Case, Curve, Found, Row, Runs, series
+from .surface import extremes
+
+
+def sphere(runs: Runs) -> Found:
+    """A sphere that bobs, at two places on the grid."""
+    measured, rows, lines = series("sphere_decay"), [], {}
+    linear, cfd = (extremes(measured[0], measured[n]) for n in (1, 2))
+    for where, x in (("", 0.0), (", half a cell aside", 0.5)):
+        run = runs.run("bobbing_sphere", x=x)
+        times, height = run.trajectory.times, -run.trajectory.objects["sphere"].center_of_mass[:, 2]
+        lines[f"here{where}"] = (times, height)
+        found = extremes(times, height)
+        for n, name in enumerate(("first", "second", "third")):
+            of = 0.5 * (linear[n][1] + cfd[n][1])
+            rows.append(Row(f"{name} turning point over the start{where}", of, found[n][1], 0.15))
+        rows.append(Row(f"time of the third{where}", 0.5 * (linear[2][0] + cfd[2][0]), found[2][0], 0.05, "s"))
+    points = {"ProteusDS, linear": (measured[0], measured[1]), "NREL, CFD": (measured[0], measured[2])}
+    return Found(rows, Curve("time [s]", "depth below rest over that at the start", lines, points))
+
+
+def afloat(runs: Runs) -> Found:
+    """Cubes at rest."""
+    rows = []
+    for density in (300.0, 500.0, 900.0):
+        run = runs.run("afloat", density=density)
+        rows.append(Row(f"share below the surface, {density:g} kg/m³", density / 1000.0, run.outcomes[0].found, 0.02))
+    return Found(rows)
+
+
+CASES = [
+    Case(
+        "bobbing_sphere",
+        "A sphere bobs",
+        "Heave decay of a sphere, IEA OES Task 10; series of HydroChrono (sphere_decay_ref_data.txt), mean of a "
+        "linear and a viscous one.",
+        "The cells are 1/10 of the diameter.",
+        "What moves along with a body depends on where it lies on the grid: with a corner of cells below its "
+        "middle this sphere bobs by a "
+        "fifth slower than with the middle of a cell there. Cubes are within 7 % "
+        "([bobbing](physics-liquid.md#bodies-in-waves)).",
+        sphere,
+    ),
+    Case(
+        "afloat",
+        "A cube floats",
+        "Archimedes.",
+        "Six cells across: the share of a body in any attitude is exact to 2 % ([what to "
+        "expect](physics-liquid.md#what-to-expect)).",
+        "",
+        afloat,
+    ),
+]

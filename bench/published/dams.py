@@ -1,0 +1,137 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Dams that break: fronts on a dry floor, and what stands in their way."""
+
+from __future__ import annotations
+
+import numpy as np
+from mdanim_lammps import Run
+
+from .case import Case, Curve, Found, Row, Runs, series
+from .surface import along_x
+
+G = 9.81
+THIN = 0.01
+"""Depth over that of the dam from which a place counts as reached."""
+PYSPH = "Digitised in PySPH (pysph/examples/db_exp_data.py)."
+
+
+def _front(run: Run, high: float) -> np.ndarray:
+    """How far the liquid is at each frame [m]."""
+    x, heights = along_x(run)
+    return np.array([x[height > THIN * high].max() for height in heights]) + 0.5 * (x[1] - x[0])
+
+
+def front(runs: Runs) -> Found:
+    """A column that is twice as high as wide."""
+    run, a = runs.run("dam_front"), 0.05715
+    times, places = run.trajectory.times * np.sqrt(2.0 * G / a), _front(run, 2.0 * a) / a
+    small, large, third = series("martin_moyce_1"), series("martin_moyce_2"), series("koshizuka_oka")
+    rows = [
+        Row(
+            f"front at {t:g} √(a/2g), a the width",
+            np.mean([np.interp(t, *of) for of in measured]),
+            np.interp(t, times, places),
+            0.15,
+            "a",
+        )
+        for t, measured in (
+            (2.0, (small, large, third)),
+            (3.0, (small, large, third)),
+            (5.0, (small, large)),
+            (7.0, (large,)),
+            (9.0, (large,)),
+        )
+    ]
+    lines = {"here": (times, places), "Ritter, 2√(gH) from the start": ((0.0, 6.5), (1.0, 14.0))}
+    points = {"Martin and Moyce, 1 1/8 in": small, "Martin and Moyce, 2 1/4 in": large, "Koshizuka and Oka": third}
+    return Found(rows, Curve("time over √(a/2g)", "front over a", lines, {name: tuple(of) for name, of in points.items()}))
+
+
+def _reached(times: np.ndarray, values: np.ndarray, least: float) -> float:
+    """When values first reach one, between frames on a straight line."""
+    n = int(np.argmax(values >= least))
+    return float(np.interp(least, values[n - 1 : n + 1], times[n - 1 : n + 1]))
+
+
+def column(runs: Runs) -> Found:
+    """A tall square column."""
+    run = runs.run("flood_on_column")
+    times, impulse = np.array([(row["time"], row["solid_impulse.x"]) for row in run.ledger.rows]).T
+    middle, force = 0.5 * (times[1:] + times[:-1]), np.diff(impulse) / np.diff(times)
+    measured = series("yeh_petroff_force")
+    zero, own = _reached(*measured, 10.0), _reached(middle, force, 10.0)
+    fine = np.linspace(0.0, 0.65, 651)
+    there, here = np.interp(fine + zero, *measured), np.interp(fine + own, middle, force)
+    plateau = (fine > 0.15) & (fine < 0.35)
+    back = slice(np.searchsorted(middle, own + 1.0), None)
+    rows = [
+        Row("impulse of 0.65 s from the first 10 N on", np.trapezoid(there, fine), np.trapezoid(here, fine), 0.15, "N s"),
+        Row("force from 0.15 to 0.35 s later", there[plateau].mean(), here[plateau].mean(), 0.15, "N"),
+        Row("back flow: force at its least", measured[1].min(), force[back].min(), 0.3, "N"),
+    ]
+    lines, points = {"here": (middle - own, force)}, {"Yeh and Petroff": (measured[0] - zero, measured[1])}
+    return Found(rows, Curve("time after the first 10 N [s]", "force of the flood [N]", lines, points))
+
+
+def box(runs: Runs) -> Found:
+    """A low box."""
+    run, high = runs.run("flood_on_box"), 0.55
+    t, liquid = run.trajectory, run.trajectory.liquid
+    ny, nx = t.liquid_height(0).shape
+    before = int((2.42 - liquid.low[0]) / (liquid.high[0] - liquid.low[0]) * nx) - 1
+    times = t.times * np.sqrt(G / high)
+    head = np.array([t.liquid_height(n)[ny // 2, before] for n in range(len(t.times))])
+    rows, lines, points = [], {}, {}
+    for name, place, gauge in (("P1", 0.021, "kleefsman_p1"), ("P3", 0.101, "kleefsman_p3")):
+        measured, pressure = series(gauge), np.maximum(head - place, 0.0) / high
+        if name == "P1":
+            rows.append(
+                Row(
+                    "arrival: P1 over 0.05 ρgH, time over √(H/g)", _reached(*measured, 0.05), _reached(times, pressure, 0.05), 0.1
+                )
+            )
+        for first, last in ((4.0, 6.0), (6.0, 9.0)):
+            of = [np.interp(np.linspace(first, last, 50), *one).mean() for one in (measured, (times, pressure))]
+            rows.append(Row(f"{name} over ρgH, mean from {first:g} to {last:g} √(H/g)", *of, 0.2))
+        lines[f"{name} here"], points[f"{name}, Kleefsman et al."] = (
+            (times, pressure),
+            tuple(measured[:, measured[0] < times[-1]]),
+        )
+    return Found(rows, Curve("time over √(H/g)", "pressure over ρgH", lines, points))
+
+
+CASES = [
+    Case(
+        "dam_front",
+        "A dam breaks onto a dry floor",
+        f"Martin and Moyce 1952, Fig. 3 (n² = 2); Koshizuka and Oka 1996. {PYSPH}",
+        "The experiments differ by up to 8 % from each other, and the cells are 1/16 of the column's width. A "
+        "place counts as reached when "
+        "the water is 1/100 of the dam's height deep.",
+        "Columns move as a whole, so the foot of a dam does not wait for the water above it to fall: the front "
+        "starts early by about a "
+        "width. Later it has the measured speed.",
+        front,
+    ),
+    Case(
+        "flood_on_column",
+        "A flood meets a tall column",
+        f"Yeh and Petroff, as in Raad and Bidoae, J. Comput. Phys. 203 (2005) 668. {PYSPH}",
+        "Scatter of the measured force. The clocks of the gate differ, so both series begin at their first 10 N.",
+        "The push on a body comes from the heights of the liquid around it (W12), which lag behind a flow that "
+        "hits: on a blunt face a body "
+        "feels little more than half of what the flood gives, and there is no blow at the start.",
+        column,
+    ),
+    Case(
+        "flood_on_box",
+        "A flood meets a low box",
+        f"Kleefsman et al. 2005, test 2 of SPHERIC. {PYSPH}",
+        "The pressure is that of the water at rest above the gauge in the column of cells before the box, which "
+        "has four cells in its height.",
+        "What shoots up at the box has no pressure here: there is no blow at the start, and until the wave comes "
+        "back from the far wall the "
+        "upper gauge has half of the measured pressure.",
+        box,
+    ),
+]
