@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What floats."""
+"""Bodies that float, bob and rest in water."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ def sphere(runs: Runs) -> Found:
     """A sphere that bobs, at two places on the grid."""
     measured, rows, lines = series("sphere_decay"), [], {}
     linear, cfd = (extremes(measured[0], measured[n]) for n in (1, 2))
-    for where, x in (("", 0.0), (", half a cell aside", 0.5)):
-        run = runs.run("bobbing_sphere", x=x)
+    for where, aside in (("", 0.0), (", half a cell aside", 0.5)):
+        run = runs.run("bobbing_sphere", aside=aside)
         times, height = run.trajectory.times, -run.trajectory.objects["sphere"].center_of_mass[:, 2]
         lines[f"here{where}"] = (times, height)
         found = extremes(times, height)
@@ -40,10 +40,10 @@ CASES = [
         "Heave decay of a sphere, IEA OES Task 10; series of HydroChrono (sphere_decay_ref_data.txt), mean of a "
         "linear and a viscous one.",
         "The cells are 1/10 of the diameter.",
-        "What moves along with a body depends on where it lies on the grid: with a corner of cells below its "
-        "middle this sphere bobs by a "
-        "fifth slower than with the middle of a cell there. Cubes are within 7 % "
-        "([bobbing](physics-liquid.md#bodies-in-waves)).",
+        "The mass of water that moves along (W14) is fitted to bodies with flat bottoms, which bob within 7 % "
+        "([bobbing](physics-liquid.md#bodies-in-waves)). Below a round one it is too large: this sphere bobs by "
+        "a fifth slower. With few "
+        "cells it also depends on where the sphere lies on the grid.",
         sphere,
     ),
     Case(

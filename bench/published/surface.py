@@ -14,7 +14,7 @@ def along_x(run: Run, crests: bool = False) -> tuple[np.ndarray, np.ndarray]:
     """
     t, liquid = run.trajectory, run.trajectory.liquid
     read = t.liquid_raw if crests else t.liquid_height
-    heights = np.array([read(frame).mean(0) for frame in range(len(t.times))]) - liquid.low[2]
+    heights = np.array([read(frame).astype(float).mean(0) for frame in range(len(t.times))]) - liquid.low[2]
     columns = heights.shape[1]
     return liquid.low[0] + (np.arange(columns) + 0.5) * (liquid.high[0] - liquid.low[0]) / columns, heights
 

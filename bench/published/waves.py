@@ -16,10 +16,9 @@ def sway(runs: Runs) -> Found:
     rows = []
     for long, depth in ((1.73, 0.6), (1.0, 1.0)):
         run = runs.run("sway", long=long, depth=depth)
-        times, (_, heights) = run.trajectory.times, along_x(run)
-        later = times > 0.3
-        zeros = crossings(times[later], heights[later, 0] - heights[later, -1])
-        k = np.pi / long
+        times, (x, heights) = run.trajectory.times, along_x(run)
+        k, later = np.pi / long, times > 0.3
+        zeros = crossings(times[later], heights[later] @ np.cos(k * x))
         period = 2.0 * np.pi / np.sqrt(G * k * np.tanh(k * depth))
         rows.append(Row(f"period, {long:g} m long, {depth:g} m deep", period, 2.0 * np.diff(zeros).mean(), 0.03, "s"))
     return Found(rows)
@@ -50,7 +49,7 @@ def shaken(runs: Runs) -> Found:
 def beach(runs: Runs) -> Found:
     """Solitary waves on a beach."""
     measured, d = series("synolakis"), 0.3
-    rows, highs, ups = [], (0.019, 0.039, 0.094, 0.188, 0.298), []
+    rows, highs, ups = [], (0.039, 0.094, 0.298), []
     for high in highs:
         run = runs.run("beach", high=high)
         x, heights = along_x(run)
@@ -104,8 +103,10 @@ CASES = [
         "Solitary waves on a beach",
         "Synolakis 1987, 77 runs in a laboratory; NTHMP benchmark problem 4. Published is the mean of the runs "
         "within 12 % of the wave's height.",
-        "Scatter of the laboratory; sixteen cells in the depth.",
-        "",
+        "Scatter of the laboratory; twelve cells in the depth.",
+        "The front of the water on the beach is thinner than a cell, and slow: run-up is short by a fifth, with "
+        "six cells in the depth by "
+        "half and more.",
         beach,
     ),
     Case(

@@ -116,7 +116,9 @@ class Liquid(Worded):
         "surface", default=LiquidModel.WAVES, codec=Words(LiquidModel),
         gone={"pressure": "write model waves, in which open hulls float by the air in them, or model surface"})  # fmt: skip
     calm: float | None = setting(
-        "auto | <T:s>", "With `model waves`: time in which waves die to 1/e, besides by drag and depth; `auto` is 50 √(depth/g).",
+        "auto | <T:s>",
+        "With `model waves`: time in which waves, and the speed of floods, die to 1/e, besides by drag and depth; `auto` is "
+        "50 √(depth/g).",
         "20 s", Rule.POSITIVE, default=None)  # fmt: skip
     """Time in which waves die to 1/e [s]; None is ``auto``."""
     drops: float = setting(
