@@ -23,7 +23,21 @@ from published.mujoco_runs import WAYS as PEERS
 from published.mujoco_runs import MujocoRuns
 from timing import machine, markdown, replace_between
 
-PARTS = ("friction", "standing", "arches", "dominoes", "blows", "tops", "motion", "beams", "contact", "ropes", "dams", "waves", "afloat")
+PARTS = (
+    "friction",
+    "standing",
+    "arches",
+    "dominoes",
+    "blows",
+    "tops",
+    "motion",
+    "beams",
+    "contact",
+    "ropes",
+    "dams",
+    "waves",
+    "afloat",
+)
 """Modules of bench/published, in the order of the page."""
 ACCURACIES = ("preview", "balanced", "reference")
 PAGE = ROOT / "docs" / "validation.md"
