@@ -212,7 +212,7 @@ def test_most_of_what_moves_is_seen_at_any_time(tmp_path):
 
 
 def test_words_have_room_below():
-    """What is fitted to a part of the height ends above the rest of it; to the left of panels, too."""
+    """Points that are fitted to a part of the height end above the rest of it; to the left of panels, too."""
     from mdanim_lammps.picture.framing import beside_words, seen_at
 
     points = np.random.default_rng(5).uniform(-1.0, 1.0, (50, 3))

@@ -8,10 +8,11 @@ from functools import lru_cache
 from ...picture.drawn import Drawn, Medium
 from ...picture.liquid import LiquidSheet
 from ...picture.palette import LIQUID, rgb
+from .stream import streams
 
 
 def drawn(trajectory):
-    """The sheet."""
+    """The sheet, and streams that fall on it."""
     if (pool := trajectory.liquid) is None:
         return ()
     sheet = LiquidSheet(pool.grid)
@@ -26,6 +27,7 @@ def drawn(trajectory):
         Drawn(
             pool.name, lambda frame: mesh(frame)[0], sheet.triangle, color=color, normals=lambda frame: mesh(frame)[1], clear=True
         ),
+        *streams(trajectory),
     )
 
 
