@@ -4,7 +4,8 @@
 import numpy as np
 from mdanim_lammps import Scene
 from mdanim_lammps.features.liquid.measure import height_at
-from mdanim_lammps.features.liquid.stream import AROUND, RINGS, SLOWEST, half_axes, streams
+from mdanim_lammps.features.liquid.picture import streams
+from mdanim_lammps.features.liquid.stream import AROUND, RINGS, SLOWEST, half_axes
 
 TEXT = """
 gravity (0, 0, -9.81) m/s^2

@@ -5,10 +5,12 @@ from __future__ import annotations
 
 from functools import lru_cache
 
+import numpy as np
+
 from ...picture.drawn import Drawn, Medium
 from ...picture.liquid import LiquidSheet
 from ...picture.palette import LIQUID, rgb
-from .stream import streams
+from .stream import stream_points, stream_triangles
 
 
 def drawn(trajectory):
@@ -28,6 +30,23 @@ def drawn(trajectory):
             pool.name, lambda frame: mesh(frame)[0], sheet.triangle, color=color, normals=lambda frame: mesh(frame)[1], clear=True
         ),
         *streams(trajectory),
+    )
+
+
+PALE = 0.65
+"""Part of white in the colour of a stream."""
+
+
+def streams(trajectory) -> tuple[Drawn, ...]:
+    """A stream for each inflow of the scene."""
+    scene = trajectory.scene
+    if scene is None or scene.liquid is None:
+        return ()
+    gravity = float(np.linalg.norm(scene.gravity))
+    color = tuple((1.0 - PALE) * rgb(trajectory.liquid.color or LIQUID) + PALE)
+    return tuple(
+        Drawn(f"inflow {n}", stream_points(trajectory, one, gravity), stream_triangles(), color=color)
+        for n, one in enumerate(scene.liquid.inflow, 1)
     )
 
 

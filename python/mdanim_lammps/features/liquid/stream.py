@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""Streams in pictures: what comes in above the surface is seen to fall on it."""
+"""Shapes of streams: what comes in above the surface of a liquid falls on it."""
 
 from __future__ import annotations
 
@@ -7,8 +7,6 @@ from collections.abc import Callable
 
 import numpy as np
 
-from ...picture.drawn import Drawn
-from ...picture.palette import LIQUID, rgb
 from .measure import height_at
 
 RINGS, AROUND = 14, 20
@@ -17,24 +15,11 @@ FLAT = 2.5
 """Long over short side of an inflow from which on its stream is a curtain as wide as the long one."""
 SLOWEST = 0.2
 """Speed at which a stream begins at least [m/s]."""
-PALE = 0.65
-"""Part of white in its colour."""
 
 
-def streams(trajectory) -> tuple[Drawn, ...]:
-    """A stream for each inflow of the scene; one below the surface is not there."""
-    scene = trajectory.scene
-    if scene is None or scene.liquid is None:
-        return ()
-    gravity = float(np.linalg.norm(scene.gravity))
-    color = tuple((1.0 - PALE) * rgb(trajectory.liquid.color or LIQUID) + PALE)
-    names = (f"inflow {n}" for n in range(1, 1 + len(scene.liquid.inflow)))
-    return tuple(
-        Drawn(name, _points(trajectory, one, gravity), _triangles(), color=color) for name, one in zip(names, scene.liquid.inflow)
-    )
-
-
-def _points(trajectory, inflow, gravity: float) -> Callable[[int], np.ndarray]:
+def stream_points(trajectory, inflow, gravity: float) -> Callable[[int], np.ndarray]:
+    """Gives the points of the stream of an inflow in a frame [m], shape (RINGS AROUND + 2, 3); all in one place where the inflow
+    is below the surface."""
     low, high = np.array(inflow.low), np.array(inflow.high)
     middle, sides = 0.5 * (low + high), (high - low)[:2]
     grid = trajectory.liquid.grid
@@ -71,7 +56,7 @@ def half_axes(area: np.ndarray, most: np.ndarray) -> np.ndarray:
     return found
 
 
-def _triangles() -> np.ndarray:
+def stream_triangles() -> np.ndarray:
     """Numbers of points, outward, of rings from above, then the middles of the first and the last one."""
     j, after = np.arange(AROUND), np.roll(np.arange(AROUND), -1)
     found = []
