@@ -34,7 +34,7 @@ FARTHEST = 1e9
 FORM = record({"object": text, "at": many(number), "to": many(number)})
 HEAD = '# What hands did in this run, by mdanim-lammps; the scene with the line  include "{}"  gives the same run.\nhands on\n'
 SUM, BYTES = "hand_lines", "hand_bytes"
-"""What a checkpoint has of the lines so far."""
+"""Names of what a checkpoint has of the lines so far."""
 
 
 class TakesCommands(Protocol):

@@ -36,7 +36,7 @@ pre { background: #f3f5f7; padding: 1rem; overflow: auto; font-size: 13px; }
 
 
 class LessonRun(Protocol):
-    """What the page tells of a run: an `api.run.Run`."""
+    """The parts of an `api.run.Run` that the page tells."""
 
     folder: Path
     records: Records

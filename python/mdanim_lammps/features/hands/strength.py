@@ -66,7 +66,7 @@ class Scale:
 
 @once_for(lambda scene: scene)
 def scales(scene) -> dict[int, Scale]:
-    """Those of all objects that may be pulled at, by their numbers: with ``hands on`` of all that can move."""
+    """Scales of all objects that may be pulled at, by their numbers: with ``hands on`` of all that can move."""
     named = {hand.object for hand in scene.held_by}
     found = {}
     for m, solid in enumerate(scene.solids):
