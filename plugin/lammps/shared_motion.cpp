@@ -31,7 +31,7 @@ void SharedMotion::locate(const std::string &who, int groupbit)
   const int size = static_cast<int>(tags.size());
   locals.assign(size, ELSEWHERE);
   for (int n = 0; n < size; ++n) {
-    const int i = atom->map(tags[n]);
+    const int i = tags[n] > atom->map_tag_max ? -1 : atom->map(tags[n]);    // which has no entry beyond
     if (i < 0 || i >= atom->nlocal) continue;
     locals[n] = i;
     here.push_back({n, (atom->mask[i] & groupbit) != 0});
