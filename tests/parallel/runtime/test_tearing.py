@@ -15,11 +15,11 @@ ground z 0 m
 repeat i in 1 .. 3 {
   object line[i] {
     shape rope from (-0.4, 0.05*i - 0.1, 0.6 + 0.02*i) m to (0.4, 0.05*i - 0.1, 0.6 + 0.02*i) m thickness 1 cm
-    resolution 2 cm  density 1000  elasticity 1 MPa  damping 0.1  friction 0.3  hold ends  tear-strain 0.05*i
+    resolution 2 cm  density 1000  elasticity 500 kPa  damping 0.1  friction 0.3  hold ends  tear-strain 0.05*i
   }
 }
 object loose {
-  shape chain from (-0.6, 0.3, 0.4) m to (-0.2, 0.3, 0.4) m thickness 1 cm  density 1000  elasticity 1 MPa
+  shape chain from (-0.6, 0.3, 0.4) m to (-0.2, 0.3, 0.4) m thickness 1 cm  density 1000  elasticity 300 kPa
   velocity (0, 0, 1) m/s  hold start  tear-strain 0.1
 }
 object paper {
@@ -30,12 +30,13 @@ object jelly {
   shape box (30, 20, 10) cm  position (0, 0, 0.1) m  resolution 5 cm  density 1000  elasticity 100 kPa  damping 0.1
   hold faces x  tear-strain 0.1
 }
-object stone { shape box (12, 20, 10) cm  position (0, 0, 0.74) m  velocity (0, 0, -4) m/s  density 2500  elasticity rigid }
+object stone { shape box (12, 20, 10) cm  position (0, 0, 0.74) m  resolution 4 cm
+  velocity (0, 0, -4) m/s  density 2500  elasticity rigid }
 object balloon {
   shape sphere 8 cm sheet thickness 1 mm  position (-0.5, -0.5, 0.3) m  resolution 2.5 cm  density 900  elasticity 1 MPa
   damping 0.1  velocity (0, 0, -3) m/s  inflate 5 kPa  tear-strain 0.1
 }
-object thorn { shape cone 3 cm 15 cm  position (-0.5, -0.49, 0.075) m  density 1000  elasticity rigid  hold all }
+object thorn { shape cone 3 cm 15 cm  position (-0.5, -0.49, 0.075) m  resolution 2 cm  density 1000  elasticity rigid  hold all }
 object crate {
   shape box (10, 10, 10) cm  position (0.5, 0.4, 0.06) m  resolution 5 cm  density 600  elasticity 100 kPa  friction 0.4
 }
