@@ -46,8 +46,8 @@ CASES = [
         "The coefficient of restitution, speed after a blow over the speed before it; Project Chrono has it as a unit test "
         "(utest_SMC_cor_normal).",
         "*off* is the difference of both coefficients. [Restitution](physics-rigid.md#restitution) promises 0.06 from 0.5 on.",
-        "A blow is a damped spring that does not pull, over some nine steps. Where something falls on several points at "
-        "once, each is damped as if it fell alone, so logs and boxes that fall flat come back too fast, by up to 0.12.",
+        "A blow is a damped spring that does not pull, over some nine steps. A log of which one end "
+        "comes first has each end damped as if it fell alone, and keeps more.",
         bounce,
     ),
     Case(

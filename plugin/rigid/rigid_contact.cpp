@@ -122,6 +122,7 @@ void RigidContact::touch_pair(const TouchStep &step, SolidPair &pair)
   const double reach = a.shape.bound() + b.shape.bound();
   if (pair.touches.empty() && (pair.asleep > 0.0 || dot(between, between) > reach * reach)) return;
   touch_solids(step, pair, a, b, law_of(a, b));
+  step.listed(pair.touches);
 }
 
 // In the frame of a plane that moves, contact is as with one that stands. The work is -F dx of the plane with the mean of the
@@ -130,10 +131,14 @@ void RigidContact::touch_plane(const TouchStep &step, std::vector<Touch> &touche
 {
   const SolidPlane &plane = settings.planes[k];
   const TouchLaw law = law_at(one, k);
-  if (!plane.moves) return mdanim::touch_plane(step, touches, one, plane, law);
+  const auto touch = [&] {
+    mdanim::touch_plane(step, touches, one, plane, law);
+    step.listed(touches, k);
+  };
+  if (!plane.moves) return touch();
   const Vec3 centre = one.centre, velocity = one.velocity, force = one.force;
   one.centre = centre - plane.shift, one.velocity = velocity - plane.velocity;
-  mdanim::touch_plane(step, touches, one, plane, law);
+  touch();
   one.centre = centre, one.velocity = velocity;
   const Vec3 now = one.force - force;
   auto &before = plane_push[{k, one.id}];
@@ -157,6 +162,7 @@ void RigidContact::step(double dt)
     for (SolidPair &pair : near.pairs) touch(step, pair, true);
   else
     for (const int k : active) touch(step, near.pairs[k], false);
+  if (!step.is_first()) step.share_blows();
   for (const Solid &one : solids) {
     account.worst_bound = std::max(account.worst_bound, 0.25 * dt * dt * one.stiffness_sum + 0.5 * dt * one.damping_sum);
     account.most_touching = std::max(account.most_touching, one.touching);

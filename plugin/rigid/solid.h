@@ -104,6 +104,30 @@ struct Solid {
   }
 };
 
+// Forces on a body, or on that which it is glued into, and how its points move by them. Arms are from the centre of the body.
+class SolidPush {
+ public:
+  void add(const Solid &one, const Vec3 &arm, const Vec3 &f)
+  {
+    force += f;
+    torque += cross(from_middle(one, arm), f);
+  }
+  // Acceleration along n at the end of the arm.
+  double moves(const Solid &one, const Vec3 &arm, const Vec3 &n) const
+  {
+    const bool alone = one.whole == Solid::ALONE;
+    const Vec3 own = one.in_body(torque), t = alone ? own : transposed_times(one.carrier.turn, own);
+    const Vec3 &over = alone ? one.over : one.carrier.over, turns{over.x * t.x, over.y * t.y, over.z * t.z};
+    const Vec3 in_space = one.in_space(alone ? turns : one.carrier.turn * turns);
+    return (alone ? one.over_mass : one.carrier.over_mass) * dot(force, n) + dot(cross(in_space, from_middle(one, arm)), n);
+  }
+
+ private:
+  static Vec3 from_middle(const Solid &one, const Vec3 &arm)
+  { return one.whole == Solid::ALONE ? arm : arm - one.in_space(one.carrier.centre); }
+  Vec3 force, torque;
+};
+
 // Largest eigenvalue of 1/m + [r]^T I^-1 [r]: how a point r yields along the direction in which it yields most.
 inline double largest_yield(double over_mass, const Vec3 &over, const Vec3 &r)
 {

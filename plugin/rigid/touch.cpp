@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <utility>
 
 namespace mdanim {
 
 // The dashpot has beta times critical damping, 2 beta sqrt(k/lambda), with lambda of both along n.
-Touch TouchStep::born(Touch::TouchKind kind, const TouchLaw &law, double yields)
+Touch TouchStep::damped(Touch::TouchKind kind, const TouchLaw &law, double yields)
 {
   Touch touch;
   touch.kind = kind;
@@ -16,6 +18,54 @@ Touch TouchStep::born(Touch::TouchKind kind, const TouchLaw &law, double yields)
   touch.yields = yields;
   touch.damping = law.damping > 0.0 ? 2.0 * law.damping * std::sqrt(law.stiffness / touch.yields) / law.stiffness : 0.0;
   return touch;
+}
+
+void TouchStep::listed(std::vector<Touch> &touches, int plane) const
+{
+  // A contact that ended at once is in no list: then none of them is known.
+  if (births.size() - found > touches.size()) found = births.size();
+  Touch *touch = touches.data() + touches.size() - (births.size() - found);
+  for (; found < births.size(); ++found) {
+    births[found].touch = touch++;
+    births[found].plane = plane;
+  }
+}
+
+// All contacts of one blow begin to press alike, so the depth of contact i yields to them by the sum of lambda_ij over all j,
+// lambda_ii being its own. A log on both ends yields half as much as on one. Each has the dashpot of a contact that yields so, at
+// most that of MOST_DAMPING; where the sum is larger it keeps its own, with which stacks come to rest.
+void TouchStep::share_blows() const
+{
+  using Body = std::pair<int, int>;
+  const auto body = [](const Solid &one) {
+    return Body{one.whole != Solid::ALONE, one.whole != Solid::ALONE ? one.whole : one.id};
+  };
+  std::map<std::pair<Body, Body>, std::vector<Birth>> blows;
+  for (Birth birth : births) {
+    if (!birth.a || !birth.touch || !(birth.touch->damping > 0.0)) continue;
+    Body a = body(*birth.a), b = birth.b ? body(*birth.b) : Body{-1, birth.plane};
+    if (birth.b && b < a) {
+      std::swap(a, b);
+      std::swap(birth.a, birth.b);
+      std::swap(birth.from_a, birth.from_b);
+      birth.n = -1.0 * birth.n;
+    }
+    blows[{a, b}].push_back(birth);
+  }
+  for (const auto &[bodies, blow] : blows) {
+    if (blow.size() == 1) continue;
+    SolidPush on_a, on_b;
+    for (const Birth &one : blow) {
+      on_a.add(*one.a, one.from_a, one.n);
+      if (one.b) on_b.add(*one.b, one.from_b, one.n);
+    }
+    for (const Birth &one : blow) {
+      const double own = one.touch->yields,
+                   all = on_a.moves(*one.a, one.from_a, one.n) + (one.b ? on_b.moves(*one.b, one.from_b, one.n) : 0.0);
+      const double most = 2.0 * Material::MOST_DAMPING / std::sqrt(one.touch->stiffness * own);
+      if (all < own) one.touch->damping = all > 0.0 ? std::min(one.touch->damping * std::sqrt(own / all), most) : most;
+    }
+  }
 }
 
 Vec3 TouchStep::relative_velocity(const Solid &a, const Solid *b, const Vec3 &x)

@@ -79,6 +79,14 @@ struct PartSlope {
   Vec3 by_place, by_turn;
 };
 
+// Where a contact was born in this step: it pushes `a` along n, and `b`, if there is one, against it.
+struct Birth {
+  Vec3 n, from_a, from_b;    // from the centres of both
+  const Solid *a = nullptr, *b = nullptr;
+  int plane = 0;
+  Touch *touch = nullptr;
+};
+
 // One evaluation of contacts: forces on bodies, and the account.
 class TouchStep {
  public:
@@ -99,9 +107,20 @@ class TouchStep {
   // A contact that is born at x. `depth_before`: that of the step before, where it came through the surface; else it overlaps
   // from the beginning, without a force.
   Touch born(Touch::TouchKind kind, const TouchLaw &law, const Solid &a, const Solid *b, const Vec3 &x, const Vec3 &n) const
-  { return born(kind, law, a.yields_at(x, n) + (b ? b->yields_at(x, n) : 0.0)); }
-  // The same where its depth yields so to its force.
-  static Touch born(Touch::TouchKind kind, const TouchLaw &law, double yields);
+  {
+    births.push_back({n, x - a.centre, b ? x - b->centre : Vec3(), &a, b});
+    return damped(kind, law, a.yields_at(x, n) + (b ? b->yields_at(x, n) : 0.0));
+  }
+  // The same of a point that shares its contact with others: its depth yields so to its force.
+  Touch born(Touch::TouchKind kind, const TouchLaw &law, double yields) const
+  {
+    births.emplace_back();
+    return damped(kind, law, yields);
+  }
+  // The contacts that were born since the last call are the last ones of this list.
+  void listed(std::vector<Touch> &touches, int plane = 0) const;
+  // Damps contacts of two bodies, or of one and a plane, that were born together in this step as the one blow that they are.
+  void share_blows() const;
   static void came_from(Touch &touch, double depth_before) { touch.memory.depth = std::min(0.0, depth_before); }
   static void overlaps(Touch &touch, double depth) { touch.memory.offset = touch.memory.depth = depth; }
   // Velocity of the point x of `a` over that of `b`, or of a plane.
@@ -169,9 +188,12 @@ class TouchStep {
   void resist_rolling(Touch &touch, const TouchLaw &law, Solid &a, Solid *b, const Vec3 &n, double part,
                       ContactForce<double> &push) const;
   double follow(Touch &touch, double depth, double k) const;
+  static Touch damped(Touch::TouchKind kind, const TouchLaw &law, double yields);
   double dt, onset;
   bool deep = true;
   TouchAccount &account;
+  mutable std::vector<Birth> births;
+  mutable std::size_t found = 0;    // births whose contacts are known
 };
 
 }    // namespace mdanim

@@ -178,7 +178,7 @@ void touch_rim(const TouchStep &step, std::vector<Touch> &touches, Touch::TouchK
       if (part <= 0.0 || cone < AT_BIRTH || host.outside(own) >= ramp_of(b) || !on.is_mine(k, own, deepest)) continue;
       // All points on a rim yield together, as its middle.
       const Vec3 middle = b.place(circle.middle);
-      Touch touch = k < ON_RIM ? TouchStep::born(kind, share, ON_RIM * (a.yields_at(middle, at.n) + b.yields_at(middle, at.n)))
+      Touch touch = k < ON_RIM ? step.born(kind, share, ON_RIM * (a.yields_at(middle, at.n) + b.yields_at(middle, at.n)))
                                : step.born(kind, law, a, &b, at.x, at.n);
       touch.first = number + k;
       touch.side = side;

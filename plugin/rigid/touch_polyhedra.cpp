@@ -238,7 +238,7 @@ void touch_edges(const TouchStep &step, SolidPair &pair, Solid &a, Solid &b, con
       if (at.cone < AT_BIRTH || at.depth <= 0.0 || part <= 0.0 ||
           (at.depth > SHALLOW_BIRTH * thinner(a, b) && !step.may_be_deep()))
         continue;
-      Touch touch = step.born(Touch::EDGES, law, a, &b, x, at.n);
+      Touch touch = step.born(Touch::EDGES, law, a, &b, x, -1.0 * at.n);
       touch.first = i;
       touch.second = j;
       touch.anchor = {at.s, at.r, 0.0};
