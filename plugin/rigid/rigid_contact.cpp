@@ -131,14 +131,10 @@ void RigidContact::touch_plane(const TouchStep &step, std::vector<Touch> &touche
 {
   const SolidPlane &plane = settings.planes[k];
   const TouchLaw law = law_at(one, k);
-  const auto touch = [&] {
-    mdanim::touch_plane(step, touches, one, plane, law);
-    step.listed(touches, k);
-  };
-  if (!plane.moves) return touch();
+  if (!plane.moves) return mdanim::touch_plane(step, touches, one, plane, law);
   const Vec3 centre = one.centre, velocity = one.velocity, force = one.force;
   one.centre = centre - plane.shift, one.velocity = velocity - plane.velocity;
-  touch();
+  mdanim::touch_plane(step, touches, one, plane, law);
   one.centre = centre, one.velocity = velocity;
   const Vec3 now = one.force - force;
   auto &before = plane_push[{k, one.id}];
@@ -179,6 +175,7 @@ void RigidContact::touch_planes(const TouchStep &step, bool all)
         std::vector<Touch> &touches = at_plane[k][n];
         forget_parted(touches);
         touch_plane(step, touches, one, static_cast<int>(k));
+        step.listed(touches, static_cast<int>(k));
         one.is_carried = one.is_carried || (length(settings.planes[k].velocity) > 0.0 && !touches.empty());
       }
   for (std::size_t n = 0; n < solids.size(); ++n)
