@@ -44,7 +44,7 @@ WAVE_PERIOD, WAVE_STRIDE = 0.15, 1.5
 and the body leaps as high to 2 %; with 0.2 and 2.0 these are 2 and 7 %: bodies with sides of 6 to 24 cells, as fast as if fallen
 from their own height (bench/dives.py)."""
 CALM = 50.0
-"""Time in which waves die, over sqrt(depth/g)."""
+"""Time in which waves die, over that of a long wave through the basin."""
 ROUNDING = 1e-9
 """Share by which the density of a body, mass over volume of its cells, may miss the one that was written."""
 SHALLOW = 4
@@ -305,8 +305,11 @@ def _light(scene, system) -> list[Problem]:
 
 
 def calm_time(scene) -> float:
-    """Time in which waves die where the scene does not tell it [s]."""
-    return CALM * math.sqrt((liquid_level(scene.liquid) - scene.liquid.low[2]) / -scene.gravity[2])
+    """Time in which waves die where the scene does not tell it [s]: CALM times that of a long wave through the basin, or of a
+    deep one through its depth."""
+    depth = liquid_level(scene.liquid) - scene.liquid.low[2]
+    longest = max(high - low for low, high in zip(scene.liquid.low[:2], scene.liquid.high[:2]))
+    return CALM * max(longest, depth) / math.sqrt(-scene.gravity[2] * depth)
 
 
 def _held(context) -> str:

@@ -118,7 +118,7 @@ class Liquid(Worded):
     calm: float | None = setting(
         "auto | <T:s>",
         "With `model waves`: time in which waves, and the speed of floods, die to 1/e, besides by drag and depth; `auto` is "
-        "50 √(depth/g).",
+        "50 times that of a long wave through the longer side of the basin, L/√(g depth), or through its depth.",
         "20 s", Rule.POSITIVE, default=None)  # fmt: skip
     """Time in which waves die to 1/e [s]; None is ``auto``."""
     drops: float = setting(
