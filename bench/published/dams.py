@@ -45,10 +45,7 @@ def front(runs: Runs) -> Found:
     speeds = [0.5 * (np.interp(7.0, t, y) - np.interp(5.0, t, y)) for t, y in (large, (times, places))]
     rows.append(Row("speed of the front from 5 to 7 √(a/2g), over √(2ga)", speeds[0], speeds[1], 0.15))
     dry = places < 13.5
-    lines = {
-        "here": (times[dry], places[dry]),
-        "Ritter, 2√(gH) from the start": ((0.0, 6.5), (1.0, 14.0)),
-    }
+    lines = {"here": (times[dry], places[dry]), "Ritter, 2√(gH) from the start": ((0.0, 6.5), (1.0, 14.0))}
     points = {"Martin and Moyce, 1 1/8 in": small, "Martin and Moyce, 2 1/4 in": large, "Koshizuka and Oka": third}
     return Found(rows, Curve("time over √(a/2g)", "front over a", lines, {name: tuple(of) for name, of in points.items()}))
 
