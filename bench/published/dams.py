@@ -116,8 +116,8 @@ CASES = [
         "the water is 1/100 of the dam's height deep.",
         "The model is one of shallow liquid where the surface is steep: the foot of the dam does not wait for the water above it "
         "to fall, and the front is ahead by a width and a half from the start. *Tried:* fronts that break only where they "
-        "rise. The lead at 2 √(a/2g) falls from 63 to 39 %; but the flood of the low box then comes 10 % late in place of 3 %, and "
-        "its pressure is lower by a quarter.",
+        "rise. The lead at 2 √(a/2g) falls from 63 to 39 %; but the flood of the low box then comes 10 % late in place of 3 %, "
+        "and its pressure is lower by a quarter.",
         front,
     ),
     Case(
