@@ -52,6 +52,7 @@ int FixMdanimHand::modify_param(int narg, char **arg)
       held.push_back({read_hand(text, name()), {}, {}});
       choose();
       locate();
+      go_on(held.back());
       return narg;
     }
     if (strcmp(arg[0], "key") == 0) {
@@ -104,6 +105,29 @@ bool FixMdanimHand::is_idle() const
   });
 }
 
+// Place and velocity of the point that it holds.
+HandMotion FixMdanimHand::point_of(const Held &one) const
+{
+  HandMotion point;
+  for (std::size_t n = 0; n < one.numbers.size(); ++n) {
+    const int row = shared.row_of(one.numbers[n]);
+    point.at += one.hand.weights[n] * shared.place(row);
+    point.velocity += one.hand.weights[n] * shared.speed(row);
+  }
+  return point;
+}
+
+// A hand that had taken hold before a run was stopped: its force is among those on the particles already, and has a part in the
+// work of the next step.
+void FixMdanimHand::go_on(Held &one)
+{
+  const auto now = one.hand.at(update->ntimestep, update->dt);
+  if (!now || !one.acts) return;
+  shared.share();
+  const HandMotion point = point_of(one);
+  one.force = one.hand.force(*now, point.at, point.velocity);
+}
+
 double FixMdanimHand::pull()
 {
   shared.share();
@@ -112,14 +136,9 @@ double FixMdanimHand::pull()
     const Vec3 before = std::exchange(one.force, {});
     const auto now = one.hand.at(update->ntimestep, update->dt);
     if (!one.acts || (!now && dot(before, before) == 0.0)) continue;
-    Vec3 place, velocity;
-    for (std::size_t n = 0; n < one.numbers.size(); ++n) {
-      const int row = shared.row_of(one.numbers[n]);
-      place += one.hand.weights[n] * shared.place(row);
-      velocity += one.hand.weights[n] * shared.speed(row);
-    }
-    if (now) one.force = one.hand.force(*now, place, velocity);
-    power += dot(before + one.force, velocity);
+    const HandMotion point = point_of(one);
+    if (now) one.force = one.hand.force(*now, point.at, point.velocity);
+    power += dot(before + one.force, point.velocity);
     for (std::size_t n = 0; n < one.numbers.size(); ++n)
       if (const int i = shared.local(one.numbers[n]); i != SharedMotion::ELSEWHERE && shared.is_pushed(one.numbers[n]))
         add_to(atom->f[i], one.hand.weights[n] * one.force);

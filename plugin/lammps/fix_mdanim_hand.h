@@ -43,6 +43,8 @@ class FixMdanimHand : public mdanim::FixBase, public mdanim::PassParticipant {
   void choose();
   void locate();
   bool is_idle() const;
+  mdanim::HandMotion point_of(const Held &one) const;
+  void go_on(Held &one);
   // Adds the forces of this step; gives the power of those of the last one and this.
   double pull();
 

@@ -92,7 +92,7 @@ class Hands(Effect):
         )
 
     def steered(self, context, scene, after):
-        more = (hand for hand in scene.held_by[len(context.scene.held_by) :] if hand.keys[-1].time > after)
+        more = (hand for hand in scene.held_by[len(context.scene.held_by) :] if hand.keys[-1].time >= after)
         return [(hand.keys[-1].time, f"fix_modify {self.fix} hold {_words(context, hand)}") for hand in more]
 
     def problems(self, resolved, models, grid):
