@@ -52,7 +52,7 @@ def cases() -> list[Case]:
 
 
 def measured(case: Case, way: str) -> tuple[Found, float]:
-    """What a case gives at an accuracy or by another program, and the processor time of its runs [s]."""
+    """Findings of a case at an accuracy or by another program, and the processor time of its runs [s]."""
     with (Runs if way in ACCURACIES else MujocoRuns)(way) as runs:
         return case.measure(runs), runs.seconds
 

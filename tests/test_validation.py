@@ -40,7 +40,7 @@ def test_quick_cases_give_what_is_kept(case):
 
 
 def test_a_row_is_close_within_its_tolerance_only():
-    """Of the published figure, or of the scale of the row; a figure that was not found is not close."""
+    """The tolerance is of the published figure, or of the scale of the row; a figure that was not found is not close."""
     assert validation.Row("a", 2.0, 2.1, 0.051).close and not validation.Row("a", 2.0, 2.1, 0.049).close
     assert validation.Row("a", 0.0, 0.1, 0.051, scale=2.0).close
     assert not validation.Row("a", 2.0, math.nan, 0.5).close

@@ -57,7 +57,7 @@ class Curve:
 
 @dataclass(frozen=True)
 class Found:
-    """What a case gives at one accuracy."""
+    """Findings of a case at one accuracy."""
 
     rows: Sequence[Row]
     curve: Curve | None = None

@@ -96,8 +96,8 @@ def test_its_lines_give_the_same_bits_on_executors(run, tmp_path):
 
 @pytest.mark.parametrize("stop", [5, 10])
 def test_a_run_that_was_stopped_goes_on_the_same(run, tmp_path, stop):
-    """Stopped while a hand pulls or as it lets go, and resumed with the hand; and what was kept of frames behind the checkpoint is
-    done again, without a page. The hand's work between checkpoint and next step is not lost."""
+    """Stopped while a hand pulls or as it lets go, and resumed with the hand; and what was kept of frames behind the checkpoint
+    is done again, without a page. The hand's work between checkpoint and next step is not lost."""
     folder = tmp_path / "toys.out"
     with pytest.raises(Interrupted):
         pulled(folder, stop=stop)

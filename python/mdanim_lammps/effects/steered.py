@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What is done to a run while it goes on, and kept as lines of a scene: how an effect takes it up."""
+"""Steering of a run while it goes on, kept as lines of a scene: how an effect takes it up."""
 
 from __future__ import annotations
 
@@ -48,6 +48,6 @@ class Steered:
         return None
 
     def steered(self, context: Context, scene: SceneRecord, after: float) -> list[tuple[float, str]]:
-        """Ends [s] of what such pulls of a scene do after a time [s], with the commands that do it; the scene has those of the
+        """Ends [s] of what such pulls of a scene do from a time on [s], with the commands that do it; the scene has those of the
         context and more behind them, of which alone it is asked."""
         return []
