@@ -48,6 +48,13 @@ def test_page_of_a_lesson(tmp_path):
     assert "<script" not in page and "default-src 'none'" in page and not re.search(r'(src|href)="(?!data:)', page)
     movie, curves = (base64.b64decode(found) for found in re.findall(r'src="data:[a-z/0-9]+;base64,([^"]+)"', page))
     assert movie == (tmp_path / "fall.out" / "movie.mp4").read_bytes() and curves.startswith(b"\x89PNG")
+    (tmp_path / "silent.txt").write_text(TEXT.replace("question", "# question"))
+    for name, more, words in (
+        ("silent", (), "silent asks nothing; write question"),
+        ("fall", ("--no-movie",), "shows the movie"),
+    ):
+        refused = call(f"{name}.txt", "--lesson", "-o", "never.out", *more, cwd=tmp_path)  # before it takes any time
+        assert refused.returncode == 2 and words in refused.stderr and not (tmp_path / "never.out").exists()
     (tmp_path / "fall.out" / "movie.mp4").unlink()
     for folder, code, words in (("fall.out", 7, "has no movie; draw it"), ("fall.txt", 2, "fall.txt --lesson")):
         refused = call("lesson", folder, cwd=tmp_path)

@@ -37,6 +37,7 @@ from .steps import (
     STARTED,
     announce,
     check_hands,
+    check_lesson,
     lmp_command,
     percent_of,
     prepare,
@@ -80,6 +81,8 @@ def run(
 
     executing.check()
     record = reading.load(scene)
+    if lesson:
+        check_lesson(record, movie)
     if hands:
         check_hands(executing, edit)
         record = replace(record, steerable=True)

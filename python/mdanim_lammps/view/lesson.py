@@ -19,6 +19,7 @@ from ..results.html import plain_table
 from ..results.overwriting import MADE
 from ..results.records import Records
 from ..results.trajectory import Trajectory
+from ..run.folder import movie_file
 from ..scene.formatting import number
 from ..scene.scene import SceneRecord
 
@@ -50,14 +51,19 @@ def write_lesson(run: LessonRun, scene: SceneRecord, path: Path) -> None:
     Raises UsageError for a scene without a question, OutputError where the run has no movie or the file cannot be written.
     """
     folder = run.folder
-    if not scene.question:
-        raise UsageError(f'the scene of {folder} asks nothing; write question "..." and answer "..." in it and run it again')
-    movie = folder / (scene.render.movie or "movie.mp4")
+    check_asks(scene)
+    movie = movie_file(folder, scene)
     if not movie.is_file():
         raise OutputError(f"{folder} has no movie; draw it: mdanim-lammps render {folder}")
     if movie.stat().st_size > MOST_MOVIE:
         raise OutputError(f"{movie} is too large for a page; draw it smaller: mdanim-lammps render {folder} --size 640 360")
     write_whole(path, page_of(run, scene, movie.read_bytes()))
+
+
+def check_asks(scene: SceneRecord) -> None:
+    """Raises UsageError for a scene without a question."""
+    if not scene.question:
+        raise UsageError(f'{scene.name} asks nothing; write question "..." and answer "..." in its scene and run it')
 
 
 def page_of(run: LessonRun, scene: SceneRecord, movie: bytes) -> str:
