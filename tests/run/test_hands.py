@@ -107,6 +107,10 @@ def test_a_run_that_was_stopped_goes_on_the_same(run, tmp_path, stop):
     pulled(folder, resume=True, live=False)
     assert compare(run, folder).equal and works(folder) == pytest.approx(works(run), rel=1e-5)  # without it 0.003 are gone
     (folder / CHECKPOINT).write_bytes(kept)
+    for torn in (b"  key 0.06 s at (0.0", b"\xff\n}\n"):
+        (folder / HANDS).write_bytes(lines.removesuffix("}\n").encode() + torn)
+        with pytest.raises(OutputError, match=rf"hands\.txt is damaged: keep its first {lines.count(chr(10)) - 1} lines"):
+            pulled(folder, resume=True, live=False)
     (folder / HANDS).write_text(lines.replace("0.03", "0.04"))
     with pytest.raises(OutputError, match="hands\\.txt is damaged: it is not the one of the checkpoint"):
         pulled(folder, resume=True, live=False)

@@ -19,7 +19,7 @@ from typing import Protocol
 import numpy as np
 
 from ..effects.steered import Steering
-from ..errors import OutputError, UsageError
+from ..errors import OutputError, SceneError, UsageError
 from ..results.files import HAND, HANDS, PAUSE, disk_errors, write_whole
 from ..results.forms import Misfit, many, number, record, strict_json, text
 from ..scene.parse import parse_scene
@@ -79,7 +79,7 @@ class PageHands:
 
     def begin(self, resumed: int | None, carried: dict[str, float]) -> None:
         """Begin the file of a new run, or go on behind a step with what its checkpoint has `kept`: what hands did later is done
-        again. A page has the run begin. Raises OutputError where the file is not the one of the checkpoint."""
+        again. A page has the run begin. Raises OutputError where the file is not the one of the checkpoint, or is damaged."""
         path = self.folder / HANDS
         with disk_errors(path):
             (self.folder / HAND).unlink(missing_ok=True)
@@ -98,8 +98,13 @@ class PageHands:
         size, known = int(carried.pop(BYTES, -1.0)), carried.pop(SUM, -1.0)
         if zlib.crc32(self._lines[: max(size, 0)]) != known:
             raise OutputError(f"{path} is damaged: it is not the one of the checkpoint; run the scene again with --force")
-        lines = self._lines.decode().removeprefix(HEAD.format(HANDS))
-        scene = parse_scene(f"{self.ready.lock}\n{lines}", self.ready.scene.name, folder=self.folder)
+        try:
+            lines = self._lines.decode().removeprefix(HEAD.format(HANDS))
+            scene = parse_scene(f"{self.ready.lock}\n{lines}", self.ready.scene.name, folder=self.folder)
+        except (UnicodeDecodeError, SceneError) as wrong:
+            known = self._lines[:size].count(b"\n")
+            way_out = "close the last hand with a line } and resume again"
+            raise OutputError(f"{path} is damaged: keep its first {known} lines, those of the checkpoint, {way_out}") from wrong
         for effect in self.ready.plan.effects:
             for end, command in effect.steered(self.ready.context, scene, after):
                 self._again = max(self._again, end)
