@@ -6,7 +6,7 @@
 
 namespace mdanim {
 
-constexpr int ABI = 19;    // of our own C functions (c_api/*_c.cpp); Python refuses another number
+constexpr int ABI = 20;    // of our own C functions (c_api/*_c.cpp); Python refuses another number
 
 struct PluginRecord {
   const char *version;    // of the LAMMPS that the plugin was built for

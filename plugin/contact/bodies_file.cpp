@@ -146,8 +146,7 @@ ContactBody read_body(Words &words)
 
   words.expect("depth");
   std::vector<double> depth(words.many("depths"));
-  if (!depth.empty() && static_cast<double>(depth.size()) != (count[0] + 5.0) * (count[1] + 5.0) * (count[2] + 5.0))
-    words.fail("a body of these counts has another number of depths");
+  if (!depth.empty() && depth_margin(count, depth.size()) == 0) words.fail("a body of these counts has another number of depths");
   for (double &value : depth) value = words.number<double>("a depth");
 
   words.expect("open");
@@ -168,6 +167,7 @@ ContactBody read_body(Words &words)
                         area.data(),
                         kind.data(),
                         depth.empty() ? nullptr : depth.data(),
+                        depth.size(),
                         parts,
                         open.data(),
                         frame.empty() ? nullptr : frame.data(),

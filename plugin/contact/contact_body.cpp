@@ -22,10 +22,21 @@ static bool are_finite(const double *values, std::size_t n)
   return std::all_of(values, values + n, [](double value) { return std::isfinite(value); });
 }
 
+int depth_margin(const int (&cells)[3], std::size_t depths)
+{
+  constexpr int LEAST = 2, MOST = 1 << 10;
+  for (int margin = LEAST; margin <= MOST; ++margin) {
+    double nodes = 1.0;    // their product may not fit an integer
+    for (const int n : cells) nodes *= n + 1.0 + 2.0 * margin;
+    if (nodes >= static_cast<double>(depths)) return nodes == static_cast<double>(depths) ? margin : 0;
+  }
+  return 0;
+}
+
 ContactBody::ContactBody(const ContactBodyArrays &given)
 {
   need(given.particles > 0 && given.points >= 0, "it has no particles, or less than no points");
-  std::size_t volume = 1, nodes = 1, coefficients = 1;
+  std::size_t volume = 1, nodes = 1;
   double product = 1.0;
   for (int d = 0; d < 3; ++d) {
     cells[d] = given.count[d];
@@ -34,7 +45,6 @@ ContactBody::ContactBody(const ContactBodyArrays &given)
     need(edges[d] > 0.0 && std::isfinite(edges[d]), "an edge of the cells is not a length");
     volume *= cells[d];
     nodes *= cells[d] + 1;
-    coefficients *= cells[d] + 1 + 2 * DEPTH_MARGIN;
     product *= edges[d];
   }
   need(nodes < (std::size_t{1} << 31), "it has too many places");
@@ -54,8 +64,10 @@ ContactBody::ContactBody(const ContactBodyArrays &given)
     need_particles_of_cells();
   }
   if (given.depth) {
-    need(are_finite(given.depth, coefficients), "a depth is not a number");
-    depth_grid.assign(given.depth, given.depth + coefficients);
+    margin = depth_margin(cells, given.depths);
+    need(margin > 0, "a body of these counts has another number of depths");
+    need(are_finite(given.depth, given.depths), "a depth is not a number");
+    depth_grid.assign(given.depth, given.depth + given.depths);
     depth_grid.push_back(0.0);    // kernels read three numbers and one more
   } else if (is_cuboid()) {
     need(rigid || number == static_cast<int>(nodes), "a cuboid has a particle in each place");
@@ -307,7 +319,7 @@ Depth<double> ContactBody::depth(int side, const Vec3 &X) const
   const double *first = grid.depth;
   Weights<double> weights;
   for (int d = 0; d < 3; ++d) {
-    const double x = component(X, d) + DEPTH_MARGIN;
+    const double x = component(X, d) + grid.margin;
     const int middle = middle_node(x, depth_row(grid, d) - 1);
     depth_weights<double>(x, middle, weights[d]);
     first += (middle - 1) * step[d];

@@ -61,6 +61,7 @@ struct ContactBodyArrays {
   const double *at, *centre, *normal, *area;
   const std::uint8_t *kind;
   const double *depth;    // null for a cuboid
+  std::size_t depths = 0;
   int open = 0;
   const double *open_part = nullptr;    // OPEN_NUMBERS for each part
   // A body that does not deform has a frame, others null: numbers of four particles, and X of each. `node` is then not read.
@@ -76,6 +77,9 @@ struct ContactBodyArrays {
   const std::int32_t *sharer = nullptr;
   const double *share = nullptr;
 };
+
+// The margin of a grid of these cells with so many coefficients of its depth; 0 where no margin has as many.
+int depth_margin(const int (&cells)[3], std::size_t depths);
 
 class ContactBody {
  public:
@@ -104,8 +108,14 @@ class ContactBody {
   // Inline, so that code that asks for one of its fields does not fill the others.
   Lattice lattice() const
   {
-    return {{cells[0], cells[1], cells[2]},           filled.data(), {edges[0], edges[1], edges[2]}, mean_edge, row(), layer(),
-            is_cuboid() ? nullptr : depth_grid.data()};
+    return {{cells[0], cells[1], cells[2]},
+            filled.data(),
+            {edges[0], edges[1], edges[2]},
+            mean_edge,
+            row(),
+            layer(),
+            is_cuboid() ? nullptr : depth_grid.data(),
+            margin};
   }
   const std::vector<SurfacePoint> &points() const { return surface; }
   // The particles with a weight in a point. All objects of a body share them, so that they stay in the cache.
@@ -185,7 +195,8 @@ class ContactBody {
   double stands_out = 0.0, lever = 1.0, radius_of_points = 0.0, hardness_of_line = 1.0;
   std::vector<PointCarrier> sharers;    // three of each point between particles of a line
   std::vector<OpenPart> open_parts;     // sides without an open part act everywhere
-  std::vector<double> depth_grid;       // coefficients of quadratic B-splines on nodes -2 to n + 2
+  std::vector<double> depth_grid;       // coefficients of quadratic B-splines on nodes -margin to n + margin
+  int margin = 0;
 };
 
 }    // namespace mdanim

@@ -48,7 +48,7 @@ MDANIM_ALWAYS_INLINE Depth<Four> depth_by_splines(const Lattice &host, const Vec
   Weights<Four> weights;
 #pragma GCC unroll 3
   for (int d = 0; d < 3; ++d) {
-    const Four x = component(X, d) + static_cast<double>(DEPTH_MARGIN);
+    const Four x = component(X, d) + static_cast<double>(host.margin);
     int middle[LANES];
     depth_weights(x, middle_nodes(x, depth_row(host, d) - 1, middle), weights[d]);
 #pragma GCC unroll 8

@@ -56,7 +56,7 @@ template <class Real> MDANIM_ALWAYS_INLINE void depth_weights(const Real &x, con
   of.slope[0] = -p, of.slope[1] = -2.0 * u, of.slope[2] = q;
 }
 
-MDANIM_ALWAYS_INLINE int depth_row(const Lattice &host, int axis) { return host.cells[axis] + 1 + 2 * DEPTH_MARGIN; }
+MDANIM_ALWAYS_INLINE int depth_row(const Lattice &host, int axis) { return host.cells[axis] + 1 + 2 * host.margin; }
 
 // line(j, k): the three coefficients of a line along x, j and k nodes from the first along y and z.
 template <class Real, class Line>

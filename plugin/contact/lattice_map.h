@@ -23,9 +23,9 @@ struct Lattice {
   const std::uint8_t *filled;    // whether a cell is filled, x fastest
   double edge[3], spacing;       // [m]
   int row, layer;                // distance to the next place along y and z
-  const double *depth;    // coefficients of quadratic B-splines on nodes -DEPTH_MARGIN to n + DEPTH_MARGIN; null for a cuboid
+  const double *depth;           // coefficients of quadratic B-splines on nodes -margin to n + margin; null for a cuboid
+  int margin;                    // of the depth: beyond it, less half a cell, the depth is no distance
 };
-constexpr int DEPTH_MARGIN = 2;
 
 MDANIM_ALWAYS_INLINE bool is_filled(const Lattice &grid, int i, int j, int k)
 {

@@ -159,6 +159,7 @@ def give_body(lmp, fix: str, kind: int, arrays: dict) -> None:
         filled,
         sizes[1],
         *of_points,
+        ctypes.c_int64(0 if kept["depth"] is None else len(kept["depth"])),
         ctypes.c_int(len(kept["open"])),
         open_parts,
         frame,

@@ -1,12 +1,15 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""The depth below surfaces on which lines and sheets of particles lie is true to a thousandth of their thickness."""
+"""The depth below surfaces on which lines and sheets of particles lie is true to a thousandth of their thickness, and is a
+distance as far around them as points of these are thick."""
+
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from mdanim_lammps.bodies import kind_of
 from mdanim_lammps.model import build_models, shapes
 from mdanim_lammps.model.spread import spread
-from mdanim_lammps.scene.scene import Ellipsoid, HoldAll, Sphere, Torus
+from mdanim_lammps.scene.scene import Cylinder, Ellipsoid, HoldAll, Sphere, Torus
 from model_samples import ROPE, SHEET, scene, solid
 
 ROUND = [Sphere(0.2), Torus(0.2, 0.05), Ellipsoid((0.2, 0.15, 0.1))]
@@ -15,8 +18,9 @@ ROUND = [Sphere(0.2), Torus(0.2, 0.05), Ellipsoid((0.2, 0.15, 0.1))]
 def depth_at(body, place: np.ndarray) -> np.ndarray:
     """Value of the depth [m] at places X [-], shape (P, 3), from its B-splines."""
     count = body.count
-    coefficient = body.depth.reshape(tuple((count + 5)[::-1]))
-    at = place + 2.0
+    margin = next(m for m in range(2, 40) if (count + 1 + 2 * m).prod() == len(body.depth))
+    coefficient = body.depth.reshape(tuple((count + 1 + 2 * margin)[::-1]))
+    at = place + margin
     middle = np.floor(at + 0.5).astype(int)
     u = at - middle
     weight = [0.5 * (0.5 - u) ** 2, 0.75 - u**2, 0.5 * (0.5 + u) ** 2]
@@ -40,3 +44,20 @@ def test_a_held_object_beneath_is_fine_enough(shape, beside):
     low = build_models(made, [spacing, 0.1])[0].frame.cells.low
     off = np.abs(depth_at(body, (points - low) / body.edge)) / shapes.thickness(shape)
     assert off.max() < 1e-3
+
+
+@pytest.mark.parametrize(("radius", "known"), [(0.002, 2), (0.05, 22), (0.5, 32)])
+def test_the_depth_around_a_thin_rod_is_a_distance_as_far_as_ropes_are_thick(radius, known):
+    """A rod of 2 cm in cells of 2.5 mm. It was kept on two nodes around the cells, and one depth was read everywhere beyond."""
+    rod, rope = (
+        solid(Cylinder(0.01, 0.1), hold=(HoldAll(),)),
+        solid(replace(ROPE, thickness=2.0 * radius), position=(2.0, 0.0, 0.0)),
+    )
+    frame = build_models(scene(rod, rope), [0.0025, 0.1])[0].frame
+    assert frame.margin == known
+    assert (frame.known_for >= radius) == (known < 32)
+    angle = np.linspace(0.0, 2.0 * np.pi, 40)
+    away = 0.01 + min(radius, frame.known_for)
+    place = np.stack([away * np.cos(angle), away * np.sin(angle), 0.0 * angle], axis=1)
+    found = depth_at(frame.contact, (place - frame.cells.low) / frame.contact.edge)
+    assert np.abs(found - 0.01 + away).max() < 2e-5

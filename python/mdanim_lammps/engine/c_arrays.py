@@ -25,6 +25,7 @@ def body_arguments(kind: int, body: ContactBody) -> list:
         ctypes.c_int(len(body.cell)),
         *map(pointer, (body.cell, body.at, body.centre, body.normal, body.area, body.kind)),
         None if body.depth is None else pointer(body.depth),
+        ctypes.c_int64(0 if body.depth is None else len(body.depth)),
         ctypes.c_int(len(body.open)),
         pointer(body.open),
         *(None if array is None else pointer(array) for array in (body.frame, body.frame_at)),

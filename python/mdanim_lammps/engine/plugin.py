@@ -26,7 +26,7 @@ SHARED = 16 << 20
 """Size of files that MPI shares memory by [bytes]: one process makes one of 4.3 MB, five have one of 5.3 MB."""
 VERSION = 20250722
 """The LAMMPS version whose headers the plugin was compiled with; its ABI is that of one version."""
-ABI = 19
+ABI = 20
 """Number of the plugin's own C interface, `mdanim_abi`."""
 ARGUMENTS = ["-screen", "none", "-nocite", "-log", "none"]
 """Words of LAMMPS's command line."""

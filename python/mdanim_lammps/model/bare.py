@@ -36,6 +36,10 @@ class BareFrame(BodyFrame):
         raise NotImplementedError
 
     @property
+    def radius(self):
+        return self.points[1]
+
+    @property
     def between(self) -> tuple[np.ndarray, np.ndarray, float]:
         """``sharer``, ``share`` and ``spread`` of a contact body (model/contact_body.py): points between particles."""
         return NO_SHARERS, NO_SHARES, 0.0

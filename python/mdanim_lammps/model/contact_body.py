@@ -16,7 +16,7 @@ from .distance import grid_distance
 from .embed import nearest_cell
 from .lattice import Cells, any_corner, cells_around
 from .nearest import blocks
-from .shapes import contains, thickness
+from .shapes import contains, extent, thickness
 from .spread import spread
 
 FLAT, SHARP, DENSE, FINE = 0, 1, 2, 3
@@ -33,11 +33,13 @@ and their pressures turn the ball: at 100 MPa by up to 12 % of what friction doe
 3 % for a ninth."""
 WORTHWHILE = 0.9
 """Distance of fine points over that of dense ones from which on there are none."""
-MARGIN = 2
-"""Nodes around the grid whose depth is kept."""
+MARGIN, MOST_MARGIN = 2, 32
+"""Nodes around the grid whose depth is kept, at least and at most, which for a rod of 1 mm and 1 m are 400 MB."""
 OUTSIDE = 2
 """Nodes further out whose depth is worked out: where the spline ends it is not that of an endless grid, and a sixth of that error
 is left at each next node."""
+BEFORE_END = 0.55
+"""Cells before the last of these nodes from which on the depth is not a distance: half of one, and the error of the spline."""
 
 
 NO_SHARERS, NO_SHARES = np.zeros((0, 3), np.int32), np.zeros((0, 3))
@@ -74,7 +76,8 @@ class ContactBody:
     """FLAT, SHARP, DENSE or FINE, uint8, shape (P,). Fine points act on what is flat, and then no dense ones do."""
     depth: np.ndarray | None
     """Depth below the drawn surface [m], the distance to it, negative outside: coefficients of centred quadratic B-splines on the
-    nodes -2 .. n + 2 of each axis, shape ((nz + 5)(ny + 5)(nx + 5),). None for a cuboid: the distance to its six sides."""
+    nodes -m .. n + m of each axis, shape ((nz + 1 + 2m)(ny + 1 + 2m)(nx + 1 + 2m),) with the margin m. None for a cuboid: the
+    distance to its six sides."""
     open: np.ndarray
     """Open parts of sides of a cuboid that others cover (model/cover.py): rows of a side, 0 to 5 for -x, +x, -y, +y, -z, +z, and
     a rectangle, low and high along the first and the second axis across, X, shape (R, 5). A side acts only in its rectangles; a
@@ -130,6 +133,30 @@ class BodyFrame:
     """Distance of particles over that of points of contact, of lines and sheets."""
     corners: np.ndarray | None = None
     """X of its eight particles, the corners of a box [-], shape (8, 3); None where particles are at the corners of cells."""
+    margin: int = MARGIN
+    """Nodes around the grid whose depth is kept."""
+
+    @property
+    def radius(self) -> float:
+        """Of the surface around each of its points [m]."""
+        return 0.0
+
+    def stiff(self, radius: float) -> BodyFrame:
+        """The frame as one that does not deform, with a depth that is a distance wherever points of this radius [m] touch it."""
+        margin = math.ceil(float(((radius + self._beyond_cells) / self.cells.edge).max()) + BEFORE_END)
+        return replace(self, rigid=True, margin=min(max(MARGIN, margin), MOST_MARGIN))
+
+    @property
+    def known_for(self) -> float:
+        """The largest radius of points that touch it [m]."""
+        exact = isinstance(self.shape, Box) or not self.rigid
+        return math.inf if exact else float(((self.margin - BEFORE_END) * self.cells.edge - self._beyond_cells).min())
+
+    @property
+    def _beyond_cells(self) -> np.ndarray:
+        """How far the shape extends beyond the grid along each axis [m], shape (3,)."""
+        low, high = extent(self.shape)
+        return np.maximum(self.cells.low - low, high - (self.cells.low + self.cells.count * self.cells.edge))
 
     @property
     def spans(self) -> int:
@@ -144,7 +171,7 @@ class BodyFrame:
     @cached_property
     def contact(self) -> ContactBody:
         """The same object at every call."""
-        body = make_contact_body(self.shape, self.cells, self.open)
+        body = make_contact_body(self.shape, self.cells, self.open, self.margin)
         if self.corners is not None:
             return _in_box(body, self.corners)
         return frame_of(body) if self.rigid else body
@@ -165,8 +192,9 @@ class BodyFrame:
         return contains(self.shape, self.cells.low + place * self.cells.edge)
 
 
-def make_contact_body(shape: Shape, cells: Cells, open_parts: np.ndarray | None = None) -> ContactBody:
-    """Points and depth of a shape that fills these cells, both about its centre of mass.
+def make_contact_body(shape: Shape, cells: Cells, open_parts: np.ndarray | None = None, margin: int = MARGIN) -> ContactBody:
+    """Points and depth of a shape that fills these cells, both about its centre of mass; the depth is kept on so many nodes
+    around the grid.
 
     A cuboid has a point for every boundary particle and side, in the order FLAT, SHARP, then sides -x, +x, -y, +y, -z, +z, then
     particles; none on covered parts of its sides (``open_parts`` as ContactBody.open). Any other shape has points of its true
@@ -185,7 +213,7 @@ def make_contact_body(shape: Shape, cells: Cells, open_parts: np.ndarray | None 
         node=np.flatnonzero(cells_around(cells.filled)).astype(np.int32),
         filled=cells.filled.astype(np.uint8).ravel(),
         **points,
-        depth=None if boxed else _depth(shape, cells),
+        depth=None if boxed else _depth(shape, cells, margin),
         open=open_parts,
     )
     for one in fields(body):
@@ -320,9 +348,9 @@ def _spread_on(shape: Shape, cells: Cells, spacing: float, of_kind: int) -> dict
     return {"cell": cell, "at": at, "centre": at, "normal": normal, "area": area, "kind": kind}
 
 
-def _depth(shape: Shape, cells: Cells) -> np.ndarray:
+def _depth(shape: Shape, cells: Cells, margin: int) -> np.ndarray:
     """Coefficients of the depth, see ContactBody."""
-    out = MARGIN + OUTSIDE
+    out = margin + OUTSIDE
     x, y, z = (low + edge * np.arange(-out, n + out + 1) for low, edge, n in zip(cells.low, cells.edge, cells.count))
     depth = grid_distance(shape, x, y, z)
     inner = slice(OUTSIDE, -OUTSIDE)

@@ -27,15 +27,16 @@ DIGITS = 6
 
 
 def with_covers(models: Sequence[Model], solids: Sequence[Solid]) -> tuple[Model, ...]:
-    """The models of a scene; contact bodies of what never moves, or moves as a whole, know that they do not deform, and those of
-    held cuboids which of their sides are covered in part.
+    """The models of a scene; contact bodies of what never moves, or moves as a whole, know that they do not deform and how thick
+    ropes and sheets are, and those of held cuboids which of their sides are covered in part.
 
     Decided from the poses of the whole scene, so it is the same for every part of it.
     """
     stiff: dict[int, BodyFrame] = {}
+    radius = max((model.frame.radius for model in models), default=0.0)
     whole = [model.still or model.inertia is not None for model in models]
     for frame in (model.frame for model, one in zip(models, whole) if one):
-        stiff.setdefault(id(frame), replace(frame, rigid=True))
+        stiff.setdefault(id(frame), frame.stiff(radius))
     models = [replace(model, frame=stiff[id(model.frame)]) if one else model for model, one in zip(models, whole)]
     held = [n for n, model in enumerate(models) if isinstance(model.frame.shape, Box) and model.still]
     if len(held) < 2:

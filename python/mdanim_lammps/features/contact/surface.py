@@ -22,6 +22,7 @@ from ...scene.formatting import at_least, say
 from ...scene.scene import Box, SceneRecord
 from ..tearing.words import tears
 from .barrier import GAP, ObjectContact, barrier, barrier_rate, excluded
+from .fineness import too_thin
 from .forms import particle_stiffness
 from .pairs import USUAL_DAMPING, any_friction, belts, damping, frictions, largest_of_partners, pair_rules, runs
 from .planes import STIFFNESS, BarrierPlanes, Planes, Sides, word_of, yielding
@@ -268,7 +269,7 @@ class SurfaceContact(ObjectContact):
 
     def about_friction(self, context: Context) -> list[Problem]:
         """Where it does not act, as notes and warnings."""
-        return [*self.full_reaches(context), *one_sided(context.scene, context.system, context.passing)]
+        return [*self.full_reaches(context), *one_sided(context.scene, context.system, context.passing), *too_thin(context)]
 
     def full_reaches(self, context: Context) -> list[Problem]:
         """Warning that the barrier keeps fast objects apart: without friction, whatever was written."""
@@ -279,8 +280,7 @@ class SurfaceContact(ObjectContact):
         m, reach, spans = int(found[0]), context.reach, scene.solids[found[0]].spans
         thrower = thrower_of(reach.acting, m, float(reach.closing(reach.drop, reach.thrown_across)[m]), others=True)
         more = f" and {len(found) - 1} more" if len(found) > 1 else ""
-        rubs = self.law.rubs(scene)
-        so = ": friction with others works as 0" if rubs else ""
+        so = ": friction with others works as 0" if (rubs := self.law.rubs(scene)) else ""
         return [
             Problem(
                 thrower.span if thrower else next((spans[k] for k in ("velocity", "position", "object") if k in spans), None),
