@@ -38,6 +38,8 @@ ELSEWHERE = ("git ", "python3 -m venv ", "source ", "make ", "pip ", "cmake ", "
 """Lines that need the network, a compiler or other hosts begin so; of the program's own the words are looked at."""
 BROWSER = ("view", "--view", "--edit", "--hands")
 """A command with one of these waits for a browser: tests/view runs it."""
+LESSON = ("lesson", "--lesson")
+"""A command with one of these is of a scene of the repository: tests/test_lessons.py runs it."""
 
 
 def pieces(page: str) -> list[tuple[str, str, str]]:
@@ -106,7 +108,7 @@ class Newcomer:
             for step in line.split(" && "):
                 words = command(step)
                 self.done += [words] if words else []
-                if step.startswith(ELSEWHERE) or any(word in BROWSER for word in words):
+                if step.startswith(ELSEWHERE) or any(word in (*BROWSER, *LESSON) for word in words):
                     if words:
                         app.parse_args(words, exit_on_error=False, print_error=False)
                     break
