@@ -167,7 +167,7 @@ void RigidContact::step(double dt)
 
 void RigidContact::touch_planes(const TouchStep &step, bool all)
 {
-  const bool stand = planes_stand();
+  const bool stand = settings.planes_stand();
   const auto is_at_rest = [stand](const Solid &one) { return stand && one.settled; };
   for (std::size_t k = 0; k < settings.planes.size(); ++k)
     for (std::size_t n = 0; n < solids.size(); ++n)
@@ -185,11 +185,6 @@ void RigidContact::touch_planes(const TouchStep &step, bool all)
       one.force = one.force_at_planes, one.torque = one.torque_at_planes;
 }
 
-bool RigidContact::planes_stand() const
-{
-  return std::none_of(settings.planes.begin(), settings.planes.end(), [](const SolidPlane &plane) { return plane.moves; });
-}
-
 void RigidContact::rest(int n, bool asleep, bool settled)
 {
   Solid &one = solids[n];
@@ -204,7 +199,7 @@ bool RigidContact::find_active(bool listed_anew)
 {
   if (!listed_anew && is_active_known) return false;
   const auto is_settled = [this](const SolidPair &pair) { return solids[pair.a].settled && solids[pair.b].settled; };
-  const bool stand = planes_stand();
+  const bool stand = settings.planes_stand();
   unstirred.clear();
   for (const Solid &one : solids) unstirred.push_back(one.settled && !one.held && stand);
   for (const SolidPair &pair : near.pairs)

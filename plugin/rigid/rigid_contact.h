@@ -30,6 +30,11 @@ struct RigidContactSettings {
   std::set<std::pair<int, int>> excluded;           // ids of pairs that never touch, the lower one first
   std::map<int, Vec3> belts;                        // velocities at which surfaces run over bodies, by their ids
   bool sleeps = false;                              // whether bodies may be put to rest
+
+  bool planes_stand() const
+  {
+    return std::none_of(planes.begin(), planes.end(), [](const SolidPlane &plane) { return plane.moves; });
+  }
 };
 
 // How deep two bodies are in each other: the depth of the deepest contact that begins without a force at the setup of a run; 0
@@ -93,7 +98,6 @@ class RigidContact {
   void touch_counted(const TouchStep &step, SolidPair &pair);
   void touch(const TouchStep &step, SolidPair &pair, bool all);
   void touch_planes(const TouchStep &step, bool all);
-  bool planes_stand() const;
   bool find_active(bool listed_anew);
   template <class Visit> void each_touch(const Visit &visit) const
   {
