@@ -118,6 +118,8 @@ def test_check_says_what_a_sheet_passes_through():
     thin = BOX.replace("(20, 20, 20)", "(20, 20, 2)")
     assert any("box is 2 cm thin: it may slip through between them" in said for said in notes(thin + cloth()))
     assert not any("slip through" in said for said in notes(thin + cloth(more="resolution 1 cm")))
+    rod = BOX.replace("(20, 20, 20)", "(80, 2, 2)")
+    assert any("points of contact 1.28 cm apart and a contact 2 times as stiff" in said for said in notes(rod + cloth()))
     assert not any("does not touch itself" in said for said in notes(BOX + cloth(more="hold all")))
 
 

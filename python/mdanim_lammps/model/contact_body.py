@@ -138,7 +138,7 @@ class BodyFrame:
 
     @property
     def radius(self) -> float:
-        """Of the surface around each of its points [m]."""
+        """Radius of the surface around each of its points [m]."""
         return 0.0
 
     def stiff(self, radius: float) -> BodyFrame:

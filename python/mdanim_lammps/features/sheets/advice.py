@@ -10,7 +10,7 @@ from ...errors import Problem
 from ...scene.formatting import say
 from ..folds.layers import as_layers, folds
 from ..ropes.advice import coarsest, slips
-from .bearing import hardened, pressed_through
+from .bearing import borne, hardened, laid, pressed_through
 from .words import finest, is_sheet
 
 
@@ -23,7 +23,7 @@ def notes(envelope: Envelope) -> list[Problem]:
     touches = any(effect.touches for effect in envelope.on)
     return [
         *_themselves(envelope, moving),
-        *([*_coarse(envelope, sheets), *pressed_through(envelope), *hardened(envelope)] if touches else []),
+        *([*_coarse(envelope, sheets), *pressed_through(envelope), *hardened(envelope), *laid(envelope)] if touches else []),
     ]
 
 
@@ -54,8 +54,9 @@ def _met(envelope: Envelope, m: int) -> list[int]:
 
 
 def _coarse(envelope: Envelope, sheets: np.ndarray) -> list[Problem]:
-    """The coarsest sheet, beside the thinnest object that it may meet."""
-    if (found := coarsest(envelope, sheets)) is None:
+    """The coarsest sheet, beside the thinnest object that it may meet, of those that nothing has made fine enough."""
+    sheets = np.setdiff1d(sheets, list(borne(envelope)))
+    if not len(sheets) or (found := coarsest(envelope, sheets)) is None:
         return []
     m, thinnest, least = found
     name, thing = envelope.system.names[m], envelope.system.names[thinnest]

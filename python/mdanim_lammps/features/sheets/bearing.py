@@ -27,7 +27,7 @@ from ...errors import Problem
 from ...model import shapes
 from ...model.system import hardness, parts
 from ...scene.formatting import number, say
-from ...scene.scene import Box, Solid
+from ...scene.scene import Box, Cone, Cylinder, Ellipsoid, Shape, Solid, Sphere
 from ..contact.rigid_surfaces import moduli
 from ..contact.surface import LINE, SurfaceContact, own_area
 from ..contact.words import CONTACT_STIFFNESS
@@ -68,8 +68,8 @@ class Blow:
 
 
 def fits(context: Context) -> dict[int, tuple[int, float]]:
-    """Parts of a link, and hardness, of each sheet that is another one by what comes onto it; one that tears lets it through."""
-    found: dict[int, tuple[int, float]] = {}
+    """Parts of a link, and hardness, of each sheet that is another one by what it meets; one that tears lets it through."""
+    found = {m: (fine, float(fine)) for m, (fine, _) in laid_over(context).items()}
     for blow in blows(context):
         if tears(context.scene.solids[blow.sheet]):
             continue
@@ -81,23 +81,76 @@ def fits(context: Context) -> dict[int, tuple[int, float]]:
     return found
 
 
+def laid_over(context: Context) -> dict[int, tuple[int, int]]:
+    """Parts of a link of each loose sheet whose particles are farther apart than something that it may meet is narrow, and that
+    object: its points are as close as that is narrow, as far as MOST_PARTS goes, and as much harder, so
+    that a row of them on a rod bears what a row of particles does."""
+    system, solids = context.system, context.scene.solids
+    found = {}
+    for m in _sheets(context, loose=True):
+        if tears(solids[m]) or not (met := _met(context, m, ~system.bare)):
+            continue
+        narrowest = min(met, key=lambda k: narrow(solids[k].shape))
+        fine = math.ceil(float(system.spacing[m]) / narrow(solids[narrowest].shape) * (1.0 - 1e-9))
+        if fine > 1:
+            found[m] = min(MOST_PARTS, fine), narrowest
+    return found
+
+
+def narrow(shape: Shape) -> float:
+    """How narrow a shape is for what is laid over it [m]: a plate is as wide as its narrower side, a rod as its thickness."""
+    low, high = shapes.extent(shape)
+    wide = isinstance(shape, Box | Sphere | Ellipsoid | Cylinder | Cone)  # they have no holes
+    return float(np.sort(high - low)[1]) if wide else shapes.thickness(shape)
+
+
+def borne(envelope: Envelope) -> dict[int, int]:
+    """Sheets of `laid_over` whose points are as close as the narrowest object that they may meet is narrow, and that object."""
+    spacing, solids = envelope.system.spacing, envelope.scene.solids
+    found = laid_over(envelope.context).items()
+    return {m: k for m, (fine, k) in found if spacing[m] / fine <= narrow(solids[k].shape) * (1.0 + 1e-9)}
+
+
+def laid(envelope: Envelope) -> list[Problem]:
+    """Notes of loose sheets with points between particles."""
+    system, found = envelope.system, []
+    for m, k in borne(envelope).items():
+        apart = say(float(system.spacing[m] / parts(system)[m]), "m")
+        hard = float(hardness(system)[m])
+        cause = f"{system.names[m]} has points of contact {apart} apart and a contact {number(hard, 2)} times as stiff as by its "
+        cause += (
+            f"material, as {system.names[k]} is thin; steps are {number(_of_steps(envelope, m, hard), 2)} of what they would be"
+        )
+        found.append(Problem(envelope.place(m, "shape"), cause, f"a thicker {system.names[k]} takes less", severity="note"))
+    return found
+
+
 def blows(context: Context) -> list[Blow]:
     """Blows of all that may come onto a sheet which is held or tied, where objects touch."""
+    system, found = context.system, []
+    low, high = system.bounds(system.position)
+    for sheet in _sheets(context, loose=False):
+        others = _met(context, sheet, ~system.bare & ~system.held_whole & ~system.still)
+        found += [blow_of(context, sheet, other, low, high) for other in others]
+    return found
+
+
+def _sheets(context: Context, *, loose: bool) -> list[int]:
+    """Sheets that can move, where objects touch: those that are held or tied somewhere, or all others."""
     system, solids = context.system, context.scene.solids
     sheets = [m for m, solid in enumerate(solids) if is_sheet(solid) and not system.held_whole[m]]
     if not sheets or not any(effect.touches for effect in context.resolved.effects):
         return []
-    low, high = system.bounds(system.position)
-    swept = context.reach.region
-    free = ~system.bare & ~system.held_whole & ~system.still
     held = np.logical_or.reduceat(system.held, system.first[:-1])
-    tied = {m for pair in swept.passing for m in pair}
-    found = []
-    for sheet in (m for m in sheets if held[m] or m in tied):
-        near = ((swept.low[sheet] < swept.high) & (swept.low < swept.high[sheet])).all(axis=1) & free
-        others = [k for k in np.flatnonzero(near).tolist() if (min(k, sheet), max(k, sheet)) not in swept.passing]
-        found += [blow_of(context, sheet, other, low, high) for other in others]
-    return found
+    tied = {m for pair in context.reach.region.passing for m in pair}
+    return [m for m in sheets if loose != bool(held[m] or m in tied)]
+
+
+def _met(context: Context, sheet: int, some: np.ndarray) -> list[int]:
+    """Numbers of some objects, bool, shape (M,), that a sheet may meet."""
+    swept = context.reach.region
+    near = ((swept.low[sheet] < swept.high) & (swept.low < swept.high[sheet])).all(axis=1) & some
+    return [k for k in np.flatnonzero(near).tolist() if (min(k, sheet), max(k, sheet)) not in swept.passing]
 
 
 def blow_of(context: Context, sheet: int, other: int, low: np.ndarray, high: np.ndarray) -> Blow:
@@ -138,7 +191,9 @@ def hardened(envelope: Envelope) -> list[Problem]:
     system, all_blows = envelope.system, blows(envelope.context)
     hard, fine, found = hardness(system), parts(system), []
     for m in np.flatnonzero((hard > 1.0) | (fine > 1)).tolist():
-        by = max((blow for blow in all_blows if blow.sheet == m), key=lambda blow: (blow.hardness, blow.parts))
+        if not (onto := [blow for blow in all_blows if blow.sheet == m]):
+            continue
+        by = max(onto, key=lambda blow: (blow.hardness, blow.parts))
         ways = [f"points of contact {say(float(system.spacing[m]) / fine[m], 'm')} apart"] * bool(fine[m] > 1)
         ways += [f"a contact {number(hard[m], 2)} times as stiff as by its material"] * bool(hard[m] > 1.0)
         share = _of_steps(envelope, m, float(hard[m]))
