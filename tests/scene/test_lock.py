@@ -177,11 +177,12 @@ def scenes(draw):
                 continue
             if takes == "joined":  # these scenes have no joints
                 continue
+            axis = quantity.endswith("y")
             argument = {
                 "object": others and draw(st.sampled_from(others)),
                 "touched": draw(st.sampled_from([None, *others])),
                 "place": basin.low[:2] if wet else None,
-                "cut": basin.low[quantity.endswith("y")] if wet else None,
+                "cut": 0.5 * (basin.low[axis] + basin.high[axis]) if wet else None,
             }.get(takes)
             relation = draw(st.sampled_from(["=", "<", ">", "<=", ">="]))
             tolerance = draw(st.floats(0, 1e3)) if relation == "=" else 0.0
