@@ -24,7 +24,7 @@ struct Lattice {
   double edge[3], spacing;       // [m]
   int row, layer;                // distance to the next place along y and z
   const double *depth;           // coefficients of quadratic B-splines on nodes -margin to n + margin; null for a cuboid
-  int margin;                    // of the depth: beyond it, less half a cell, the depth is no distance
+  int margin;                    // of the depth: beyond it, less half a cell, the depth is not a distance
 };
 
 MDANIM_ALWAYS_INLINE bool is_filled(const Lattice &grid, int i, int j, int k)
