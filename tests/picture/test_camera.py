@@ -6,7 +6,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from mdanim_lammps.export.usd import camera_matrix
-from mdanim_lammps.picture.camera import MARGIN, CameraPath, View, action_of, automatic_view, fit_view, hermite_weights
+from mdanim_lammps.picture.camera import MARGIN, CameraPath, Reserved, View, action_of, automatic_view, fit_view, hermite_weights
 from mdanim_lammps.results.trajectory import Trajectory
 from mdanim_lammps.scene.render import Camera
 from mdanim_lammps.scene.scene import Control, SceneRecord
@@ -177,10 +177,12 @@ def inside(t, view):
 
 
 def test_a_last_flier_does_not_shrink_the_rest(tmp_path):
-    """One of nine flies off at the end of the run: the row is seen nearly as large as without it, and always whole."""
+    """One of nine flies off at the end of the run: the row is seen nearly as large as without it, and always whole.
+    A view from a side that the scene names shows the whole run."""
     with row_with_a_flier(tmp_path, lambda k: (2.5 + 0.2 * max(0, k - 45), 0, 0.5)) as t:
         view = automatic_view(action_of(t), 16 / 9)
         seen = inside(t, view)
+        assert inside(t, automatic_view(action_of(t), 16 / 9, forward=np.array([0.0, 1.0, 0.0]))).all()
     with row_with_a_flier(tmp_path, lambda k: (2.5, 0, 0.5)) as t:
         near = automatic_view(action_of(t), 16 / 9)
     assert seen[:, :8].all() and seen[:46].all() and not seen[-1, 8]
@@ -213,11 +215,11 @@ def test_most_of_what_moves_is_seen_at_any_time(tmp_path):
 
 def test_words_have_room_below():
     """Points that are fitted to a part of the height end above the rest of it; to the left of panels, too."""
-    from mdanim_lammps.picture.framing import beside_words, seen_at
+    from mdanim_lammps.picture.framing import seen_at
 
     points = np.random.default_rng(5).uniform(-1.0, 1.0, (50, 3))
     forward, size, below, right = np.array([0.6, 0.64, -0.48]), np.array([1600, 900]), 0.2, 0.3
-    view = beside_words(fit_view(points, forward, (1.0 - right) * 16 / 9, 1.0 - below), 16 / 9, right, below)
+    view = fit_view(points, forward, 16 / 9, Reserved(right=right, below=below))
     low, high = (edge(seen_at(view, size, points)[0] / size, axis=0) for edge in (np.min, np.max))
     room = (1.0 - MARGIN) / 2
     assert low[1] >= below + room * (1.0 - below) - 1e-9 and high[1] <= 1.0 - room * (1.0 - below) + 1e-9

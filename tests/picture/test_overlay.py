@@ -12,14 +12,14 @@ from mdanim_lammps.errors import SceneError
 from mdanim_lammps.picture.curves import COVERED, _span
 from mdanim_lammps.picture.framing import pixels_per_metre, seen_at
 from mdanim_lammps.picture.layer import InkLayer
-from mdanim_lammps.picture.overlay import _round_value
+from mdanim_lammps.picture.overlay import _round_value, room_for
 from mdanim_lammps.picture.render import Painter
 from mdanim_lammps.picture.run_values import RunValues
 from mdanim_lammps.picture.tones import Tones
 from mdanim_lammps.scene.lock import lock_text
 from mdanim_lammps.scene.parse import parse_scene
 from mdanim_lammps.scene.quantities import Asked
-from mdanim_lammps.scene.render import Render
+from mdanim_lammps.scene.render import Render, Standpoint
 from mdanim_lammps.scene.shown import Arrows, Caption, ColorBy, NameTag, Trail
 
 SIZE = (320, 180)
@@ -133,6 +133,29 @@ def test_the_automatic_camera_leaves_room_for_panels(run):
     for frame in range(len(t)):
         pixels, ahead = seen_at(view, (640, 360), t.metadata.skin.vertices(t.position(frame)))
         assert ahead.all() and pixels[:, 0].max() < 640 * (1 - COVERED) and pixels.min() > 0 and pixels[:, 1].max() < 360
+
+
+@pytest.mark.parametrize("place", ["side", "front"])
+def test_a_view_in_a_direction_shows_the_whole_run_beside_what_is_laid_over_it(run, place):
+    """In every frame: right of the scale of colours, below the legend, left of the curves, however near to the eye."""
+    t, size = run.trajectory, np.array([640, 360])
+    tells = {"plot": (Asked("ball", "speed"),), "color_by": ColorBy("speed"), "arrows": (Arrows("velocity"),) * 2}
+    render = Render(camera=(Standpoint(place),), **tells)
+    with Painter(t, render, size=tuple(size)) as painter:
+        view, room = painter.view(0.0), room_for(render, tuple(size))
+    assert room.left > 0.1 and room.above > 0.08
+    points = np.concatenate([t.metadata.skin.vertices(t.position(frame)) for frame in range(len(t))])
+    share = seen_at(view, size, points)[0] / size
+    assert (share > (room.left, room.below)).all() and (share < (1.0 - room.right, 1.0 - room.above)).all()
+
+
+def test_strings_are_in_the_picture(tmp_path):
+    """A pendulum is seen from its bob to the point of the world that it hangs at."""
+    text = "gravity (0, 0, -9.81) m/s^2\nobject bob { shape sphere 3 cm  position (5, 0, 0) cm  mass 1 kg  elasticity rigid }\n"
+    text += "joint spring bob world { to (0, 0, 1) m }\ncontrol { time 0.05 s }\n"
+    with Scene.from_text(text, "pendulum").run(tmp_path / "r", movie=False).trajectory as t, Painter(t) as painter:
+        at, _ = seen_at(painter.view(0.0), painter.size, np.array([(0.0, 0.0, 1.0), (0.05, 0.0, 0.0)]))
+    assert (at > 0.0).all() and (at < painter.size).all() and at[0, 1] - at[1, 1] > 0.5 * painter.size[1]
 
 
 def test_words_stand_where_and_when_they_should(run):

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
@@ -14,6 +14,7 @@ from ..results.trajectory import Trajectory
 from ..results.untrusted import check_places
 from ..scene.keywords import did_you_mean
 from ..scene.render import Camera
+from .drawn import drawn
 from .scenery import scenery
 
 FIELD_OF_VIEW = 30.0
@@ -62,6 +63,24 @@ class View:
 
 
 @dataclass(frozen=True)
+class Reserved:
+    """Shares of a picture's width and height that are left to words, scales and curves."""
+
+    left: float = 0.0
+    right: float = 0.0
+    above: float = 0.0
+    below: float = 0.0
+
+    def tangents(self, aspect: float) -> np.ndarray:
+        """Tangents of the angles from the line of sight to the right, upper, left and lower side of what the action may fill,
+        shape (4,); a side on the other side of the line of sight has a negative one. ``aspect`` is width over height."""
+        first, last = np.array([self.left, self.below]), np.array([self.right, self.above])
+        half, middle = MARGIN * (1.0 - first - last), first - last
+        tangent = np.tan(np.radians(FIELD_OF_VIEW / 2)) * np.array([aspect, 1.0])
+        return np.concatenate([tangent * (half + middle), tangent * (half - middle)])
+
+
+@dataclass(frozen=True)
 class Action:
     """Where things happen, over all frames."""
 
@@ -77,6 +96,8 @@ class Action:
     """Objects that are not held as a whole, bool, shape (O,)."""
     leads: np.ndarray
     """Objects that the picture must hold: they move most in a stretch and meet something then or later, bool, shape (W, O)."""
+    hung: np.ndarray = field(default_factory=lambda: np.zeros((0, 3)))
+    """Points of strings, joints and the like at the start, which the picture must hold [m], shape (P, 3)."""
 
     @property
     def size(self) -> float:
@@ -149,7 +170,10 @@ def action_of(trajectory: Trajectory, samples: int = 40) -> Action:
         bounds[0][2] = min(bounds[0][2], max(there.ground, start_low[2] - FAR * size))
     basin = (there.liquid.low, there.liquid.high) if there.liquid is not None else None
     leads = what_leads(low, high, basin) & ~gone
-    return Action(low, high, bounds, bool(gone.any()), ~metadata.still, leads)
+    added = [np.asarray(one.points(0), float) for one in drawn(trajectory) if not one.clear]
+    hung = np.clip(np.concatenate([np.zeros((0, 3)), *added]), start_low - far, start_high + far)
+    check_places(trajectory.path, hung, frame=0)
+    return Action(low, high, bounds, bool(gone.any()), ~metadata.still, leads, hung)
 
 
 def what_leads(low: np.ndarray, high: np.ndarray, basin=None) -> np.ndarray:
@@ -179,12 +203,12 @@ def what_leads(low: np.ndarray, high: np.ndarray, basin=None) -> np.ndarray:
 
 
 def automatic_view(
-    action: Action, aspect: float, walls=None, basin=None, forward: np.ndarray | None = None, height: float = 1.0
+    action: Action, aspect: float, walls=None, basin=None, forward: np.ndarray | None = None, room: Reserved = Reserved()
 ) -> View:
-    """A three-quarter view from slightly above that shows what happens as large as it can be; the same for all frames.
+    """A view that shows what happens as large as it can be; the same for all frames.
 
-    What few objects do for a short time is left out where all else becomes much larger by that (`LARGER`, `LEAST`), but what
-    leads is not.
+    Without a direction it is a three-quarter view from slightly above, and what few objects do for a short time is left out where
+    all else becomes much larger by that (`LARGER`, `LEAST`), but what leads is not. In a direction that is given all is shown.
 
     Args:
         action: what must be seen.
@@ -192,20 +216,20 @@ def automatic_view(
         walls: corners of the scene's walls, shown too unless they are far larger than the action.
         basin: corners of the liquid's basin, always shown.
         forward: direction of view, unit length; None for the three-quarter view.
-        height: share of the picture's height that the action may take.
+        room: what of the picture the action may not take.
     """
     low, high = action.bounds
-    forward = three_quarters(action) if forward is None else forward
+    everything, forward = forward is not None, three_quarters(action) if forward is None else forward
     boxes = np.clip(action.low, low, high), np.clip(action.high, low, high)
     # Where nothing has moved yet, the way down to the ground is shown, as objects will go there.
-    fixed = [_corners(low, high) if len(action.low) == 1 else np.zeros((0, 3))]
+    fixed = [action.hung, _corners(low, high) if len(action.low) == 1 else np.zeros((0, 3))]
     if walls is not None and np.linalg.norm(np.subtract(*walls)) < 2.0 * action.size:
         fixed.append(_corners(*np.array(walls, dtype=float)))
     if basin is not None:
         fixed.append(_corners(*np.array(basin, dtype=float)))
     fixed = np.concatenate(fixed)
-    kept = worth_seeing(*boxes, action.free, action.leads, fixed, forward, aspect, height)
-    return fit_view(np.concatenate([_corners(boxes[0][kept], boxes[1][kept]), fixed]), forward, aspect, height)
+    kept = np.ones_like(action.leads) if everything else worth_seeing(*boxes, action, fixed, forward, aspect, room)
+    return fit_view(np.concatenate([_corners(boxes[0][kept], boxes[1][kept]), fixed]), forward, aspect, room)
 
 
 def three_quarters(action: Action) -> np.ndarray:
@@ -220,7 +244,7 @@ def three_quarters(action: Action) -> np.ndarray:
 
 
 def worth_seeing(
-    low, high, free, leads, fixed: np.ndarray, forward: np.ndarray, aspect: float, height: float = 1.0
+    low, high, action: Action, fixed: np.ndarray, forward: np.ndarray, aspect: float, room: Reserved = Reserved()
 ) -> np.ndarray:
     """Which boxes a picture should hold so that it shows much of what happens, and shows it large; bool, shape (W, O).
 
@@ -231,14 +255,14 @@ def worth_seeing(
 
     Args:
         low, high: corners of each object in each stretch of frames [m], shape (W, O, 3).
-        free: objects that move, bool, shape (O,).
-        leads: boxes that are inside in any case, bool, shape (W, O).
+        action: which objects move, and which boxes are inside in any case.
         fixed: points that are inside in any case [m], shape (P, 3).
         forward: direction of view, unit length.
         aspect: width over height.
-        height: share of the height that they may take.
+        room: what of the picture they may not take.
     """
-    right, up, tangent = _screen(forward, aspect, height)
+    free, leads = action.free, action.leads
+    (right, up), tangent = _screen(forward), room.tangents(aspect)
     side = _sides(_corners(low, high), right, up, forward, tangent).reshape(8, *low.shape[:2], 4).max(axis=0)
     fixed_side = _sides(fixed, right, up, forward, tangent).max(axis=0, initial=-np.inf)
     middle = float(((low + high) / 2 @ forward).mean())
@@ -247,7 +271,7 @@ def worth_seeing(
         if free.any() and kept[:, free].mean(axis=1).min() < LEAST:
             return -np.inf
         most = np.maximum(side[kept].max(axis=0), fixed_side)
-        away = middle + ((most[:2] + most[2:]) / (2 * tangent)).max()
+        away = middle + ((most[:2] + most[2:]) / (tangent[:2] + tangent[2:])).max()
         return float(np.log(kept.mean()) - LARGER * np.log(max(away, np.finfo(float).tiny)))
 
     kept = np.ones(low.shape[:2], dtype=bool)
@@ -263,43 +287,43 @@ def worth_seeing(
     return sliding_window_view(np.pad(kept, [(moment, moment), (0, 0)]), 2 * moment + 1, axis=0).any(axis=-1)
 
 
-def fit_view(points: np.ndarray, forward: np.ndarray, aspect: float, height: float = 1.0) -> View:
+def fit_view(points: np.ndarray, forward: np.ndarray, aspect: float, room: Reserved = Reserved()) -> View:
     """The nearest eye that looks along ``forward`` and sees all points inside the margin.
 
     A point (a, b, c) along right, up and forward is inside the picture of an eye (x, y, z) where
-    ``|a - x| <= tx (c - z)`` and ``|b - y| <= ty (c - z)``; both give x, y and the largest z in closed form.
+    ``a - x <= t (c - z)`` and ``x - a <= s (c - z)``, with the tangents t at the right and s at the left, and so for b and y;
+    they give x, y and the largest z in closed form.
 
     Args:
         points: [m], shape (P, 3).
         forward: direction of view, unit length.
         aspect: width over height.
-        height: share of the height that they may take.
+        room: what of the picture they may not take.
     """
-    right, up, tangent = _screen(forward, aspect, height)
+    (right, up), tangent = _screen(forward), room.tangents(aspect)
     most = _sides(points, right, up, forward, tangent).max(axis=0)
     along = points @ forward
-    across = (most[:2] - most[2:]) / 2
-    depth = (-(most[:2] + most[2:]) / (2 * tangent)).min()
+    depth = (-(most[:2] + most[2:]) / (tangent[:2] + tangent[2:])).min()
     middle = (along.min() + along.max()) / 2
     # A single point has no size to stand back from.
     depth = min(depth, middle - 1e-3)
+    across = (most[:2] - most[2:] + depth * (tangent[:2] - tangent[2:])) / 2
     eye = across[0] * right + across[1] * up + depth * forward
     return View(eye, eye + (middle - depth) * forward, np.array([0.0, 0.0, 1.0]))
 
 
-def _screen(forward: np.ndarray, aspect: float, height: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Right and up of a picture, and tangents of half its angles of view within the margin, shape (2,)."""
+def _screen(forward: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Right and up of a picture."""
     right = np.cross(forward, [0.0, 0.0, 1.0])
     # Straight down x is on the right, as `View.upright` has it.
     right = right / np.linalg.norm(right) if right.any() else np.array([1.0, 0.0, 0.0])
-    tangent = MARGIN * np.tan(np.radians(FIELD_OF_VIEW / 2)) * np.array([aspect, height])
-    return right, np.cross(right, forward), tangent
+    return right, np.cross(right, forward)
 
 
 def _sides(points: np.ndarray, right, up, forward, tangent) -> np.ndarray:
-    """How far points push the right, upper, left and lower side of the picture out, a - tx c and so on [m], shape (P, 4)."""
-    across, along = points @ np.stack([right, up], axis=1), (points @ forward)[:, None]
-    return np.concatenate([across - tangent * along, -across - tangent * along], axis=1)
+    """How far points push the right, upper, left and lower side of the picture out, a - t c and so on [m], shape (P, 4)."""
+    across = points @ np.stack([right, up], axis=1)
+    return np.concatenate([across, -across], axis=1) - tangent * (points @ forward)[:, None]
 
 
 class CameraPath:

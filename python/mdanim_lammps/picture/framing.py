@@ -67,15 +67,6 @@ def pixels_per_metre(view: View, size: tuple[int, int], place: np.ndarray) -> fl
     return _distance(size) / depth if depth > 0.0 else 0.0
 
 
-def beside_words(view: View, aspect: float, right: float, below: float) -> View:
-    """A view whose middle is seen in the middle of what is left of a picture, a share of whose width at the right is covered, and
-    a share of whose height below; ``aspect`` is width over height."""
-    _, across, up = _axes(view)
-    distance = np.linalg.norm(view.look - view.eye)
-    way = distance * np.tan(np.radians(FIELD_OF_VIEW) / 2.0) * (right * aspect * across - below * up)
-    return View(view.eye + way, view.look + way, view.up)
-
-
 def corner_rays(view: View, size: tuple[int, int]) -> np.ndarray:
     """Directions in which the corners of a picture of this size are seen, shape (4, 3)."""
     ahead, right, up = _axes(view)

@@ -14,7 +14,7 @@ from ..scene.naming import objects_by_name
 from ..scene.quantities import QUANTITIES
 from ..scene.render import Render
 from ..scene.shown import Arrows
-from .camera import Action, View
+from .camera import Action, Reserved, View
 from .curves import COVERED, Curves
 from .framing import pixels_per_metre, seen_at
 from .layer import Color, InkLayer
@@ -24,6 +24,11 @@ from .tones import Tones
 
 LETTERS, SMALLEST, LARGEST = 0.028, 11.0, 0.055
 """Height of letters over that of a picture, the least [pixels], and the most of a small picture."""
+WORDS = {False: 0.016, True: 0.075}
+"""Share of the height that words below a picture take beyond the margin, without and with captions."""
+BAR, ROW, MOST_ROOM = 7.5, 1.5, 0.16
+"""Width of a scale of colours with its numbers, and height of a row of the legend, over that of letters; the most of a picture
+that each of them is given."""
 LEGEND = 4.5
 """Length of an arrow of the legend over that of letters, at most."""
 USUAL, AMONG = 0.14, 0.95
@@ -38,6 +43,19 @@ COLORS: dict[str, Color] = {
 }
 """Colours of arrows; the others have these in turn."""
 OTHERS: tuple[Color, ...] = ((0.49, 0.28, 0.68), (0.85, 0.45, 0.05), (0.00, 0.50, 0.52), (0.75, 0.25, 0.55))
+
+
+def letters_of(size: tuple[int, int], finer: int = 1) -> float:
+    """Height of letters in a picture of this size [pixels], where ``finer`` of these along each side are drawn for one of it."""
+    return max(LETTERS * size[1], min(SMALLEST * finer, LARGEST * size[1]))
+
+
+def room_for(render: Render, size: tuple[int, int]) -> Reserved:
+    """Room in a picture of this size [pixels] for all that is laid over it at fixed places."""
+    letters = letters_of(size)
+    left = min(BAR * letters / size[0], MOST_ROOM) if render.color_by else 0.0
+    above = min(ROW * len(render.arrows) * letters / size[1], MOST_ROOM)
+    return Reserved(left, COVERED if render.plot else 0.0, above, WORDS[bool(render.caption)])
 
 
 @dataclass(frozen=True)
@@ -86,7 +104,7 @@ class Overlay:
     ):
         self._trajectory = trajectory = runs[0]
         self._render, self._size, self._action = render, size, action
-        self._layer = InkLayer(size, max(LETTERS * size[1], min(SMALLEST * finer, LARGEST * size[1])), dark)
+        self._layer = InkLayer(size, letters_of(size, finer), dark)
         self._tones, names = tones, list(trajectory.names)
         self._of_name = objects_by_name(names) if render.trail or render.label else {}
         self._colors = object_colors(trajectory.metadata.colors, trajectory.metadata.still) / 255.0
@@ -143,7 +161,7 @@ class Overlay:
         rows = [(one, value, value * one.scale * pixels) for one, value in zip(self._vectors, values)]
         widest = max((length for _, _, length in rows), default=0.0)
         for n, (one, value, length) in enumerate(rows):
-            y = top - n * 1.5 * letters
+            y = top - n * ROW * letters
             self._layer.arrow(np.array([left, y]), np.array([left + length, y]), one.color, width)
             words = f"{one.word}  {number(value)} {one.unit}"
             self._layer.words((left + widest + 0.7 * letters, y), words, color=one.color)

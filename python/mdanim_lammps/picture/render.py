@@ -12,15 +12,14 @@ from . import shading
 from .backdrop import Backdrop
 from .behind import Behind
 from .camera import FIELD_OF_VIEW, Action, View, action_of, automatic_view
-from .curves import COVERED
 from .drawn import Additions, medium
 from .floor import REACH, FloorPlane
-from .framing import PicturePart, aim, beside_words, part_around, whole
+from .framing import PicturePart, aim, part_around, whole
 from .ghosts import Ghosts
 from .label import Label
 from .light import Light
 from .marks import MarkActors, Marks
-from .overlay import Overlay
+from .overlay import Overlay, room_for
 from .palette import background_colors, is_dark, vertex_colors
 from .pieces import MovingMesh, box_edges, have_own_textures, lit_actor
 from .scenery import scenery, way_of_walls
@@ -32,8 +31,6 @@ from .window import fewer_pixels, lay_over, off_screen_window, rgba, silent, upr
 
 FINER = {Quality.DRAFT: 1, Quality.FINAL: 2}
 """Pixels that are drawn along each side of one that is shown."""
-WORDS = {False: 0.016, True: 0.075}
-"""Share of the height that words below a picture take beyond the margin, without and with captions."""
 SAMPLES = 4
 """Samples along an edge of each drawn pixel."""
 MOST_PIXELS = 16384
@@ -83,14 +80,10 @@ class Painter:
         _, walls, pool = scenery(trajectory.metadata)
         basin = (pool.low, pool.high) if pool else None
         aspect = self.size[0] / self.size[1]
-        # An automatic camera leaves room for curves.
-        covered = COVERED if render.plot else 0.0
         self._still = None
         if not self._path:
             way = direction_of(render.camera)
-            words = WORDS[bool(render.caption)]
-            still = automatic_view(seen or self.action, (1.0 - covered) * aspect, walls, basin, way, 1.0 - words)
-            self._still = beside_words(still, aspect, covered, words)
+            self._still = automatic_view(seen or self.action, aspect, walls, basin, way, room_for(render, self.size))
         self._mesh = shaded_mesh(trajectory.metadata, trajectory.position(0), self._pixel())
         self._tones = Tones((trajectory, beside), render.color_by) if render.color_by else None
         self._build(render, marks)

@@ -90,7 +90,8 @@ def _together(a: Action, b: Action) -> Action:
     last = lambda x: np.concatenate([x, np.repeat(x[-1:], stretches - len(x), axis=0)])
     low, high, leads = (np.concatenate([last(getattr(one, word)) for one in (a, b)], axis=1) for word in ("low", "high", "leads"))
     bounds = np.minimum(a.bounds[0], b.bounds[0]), np.maximum(a.bounds[1], b.bounds[1])
-    return Action(low, high, bounds, a.escaped or b.escaped, np.concatenate([a.free, b.free]), leads)
+    free, hung = (np.concatenate([getattr(one, word) for one in (a, b)]) for word in ("free", "hung"))
+    return Action(low, high, bounds, a.escaped or b.escaped, free, leads, hung)
 
 
 def _moments(runs: list[Trajectory], speed: float, fps: float | None) -> tuple[np.ndarray, Fraction]:
