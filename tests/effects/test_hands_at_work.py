@@ -3,8 +3,10 @@
 
 import numpy as np
 import pytest
+from mdanim_lammps import Scene
 from mdanim_lammps.engine.instance import Instance
 from mdanim_lammps.errors import SceneError
+from mdanim_lammps.picture.drawn import drawn
 from mdanim_lammps.run.prepare import prepare
 from mdanim_lammps.scene.parse import parse_scene
 
@@ -62,3 +64,20 @@ def test_a_hand_is_in_the_bound_and_costs_little():
 def test_what_is_refused(text, message):
     with pytest.raises(SceneError, match=message):
         prepare(parse_scene(text))
+
+
+@pytest.mark.parametrize(("elasticity", "near"), [("rigid", 1e-4), ("300 kPa  damping 0.3", 0.2 * R)], ids=["rigid", "soft"])
+def test_pictures_show_the_hand_and_what_it_holds(tmp_path, elasticity, near):
+    """A line from where the hand is to the top of the ball, a quarter of its radius long at rest; nothing before and after."""
+    scene = SCENE.replace("elasticity rigid", f"elasticity {elasticity}  resolution 2.5 cm").replace("time 1 s", "time 0.6 s")
+    hand = "hand ball { at (0, 0, 1.05) m  key 0.04 s at (0, 0, 1.05) m  key 0.44 s at (0, 0, 1.05) m }\n"
+    with Scene.from_text(scene + hand, "hand").run(tmp_path / "r", movie=False).trajectory as t:
+        (one,) = drawn(t)
+        for frame, time in enumerate(t.times):
+            a, p = one.points(frame)[one.line[0]]
+            np.testing.assert_allclose(a, (0.0, 0.0, 1.05), atol=1e-12)
+            if holds := 0.04 <= time <= 0.44:
+                np.testing.assert_allclose(p, t.centers[frame, 0] + (0.0, 0.0, R), atol=near)
+                rest = a[2] - p[2]
+            assert holds or np.ptp(one.points(frame), axis=0).max() < 1e-12
+        assert elasticity != "rigid" or rest == pytest.approx(R / 4, rel=0.03)
