@@ -10,12 +10,15 @@ import pytest
 from mdanim_lammps import Scene, Trajectory, UsageError
 from mdanim_lammps.errors import SceneError
 from mdanim_lammps.picture.curves import COVERED, _span
+from mdanim_lammps.picture.drawn import drawn
 from mdanim_lammps.picture.framing import pixels_per_metre, seen_at
 from mdanim_lammps.picture.layer import InkLayer
 from mdanim_lammps.picture.overlay import _round_value, room_for
 from mdanim_lammps.picture.render import Painter
 from mdanim_lammps.picture.run_values import RunValues
 from mdanim_lammps.picture.tones import Tones
+from mdanim_lammps.run.loop import write_start
+from mdanim_lammps.run.prepare import prepare
 from mdanim_lammps.scene.lock import lock_text
 from mdanim_lammps.scene.parse import parse_scene
 from mdanim_lammps.scene.quantities import Asked
@@ -150,11 +153,16 @@ def test_a_view_in_a_direction_shows_the_whole_run_beside_what_is_laid_over_it(r
 
 
 def test_strings_are_in_the_picture(tmp_path):
-    """A pendulum is seen from its bob to the point of the world that it hangs at."""
+    """A pendulum is seen from its bob to the point of the world that it hangs at; before its run, too."""
     text = "gravity (0, 0, -9.81) m/s^2\nobject bob { shape sphere 3 cm  position (5, 0, 0) cm  mass 1 kg  elasticity rigid }\n"
     text += "joint spring bob world { to (0, 0, 1) m }\ncontrol { time 0.05 s }\n"
-    with Scene.from_text(text, "pendulum").run(tmp_path / "r", movie=False).trajectory as t, Painter(t) as painter:
+    scene = Scene.from_text(text, "pendulum")
+    with scene.run(tmp_path / "r", movie=False).trajectory as t, Painter(t) as painter:
         at, _ = seen_at(painter.view(0.0), painter.size, np.array([(0.0, 0.0, 1.0), (0.05, 0.0, 0.0)]))
+        (string,) = drawn(t)
+        with Trajectory(write_start(prepare(scene.record), tmp_path)) as start:
+            np.testing.assert_allclose(drawn(start)[0].points(0), string.points(0), atol=1e-9)
+            assert RunValues(start).end == RunValues(t).end == pytest.approx(0.05)
     assert (at > 0.0).all() and (at < painter.size).all() and at[0, 1] - at[1, 1] > 0.5 * painter.size[1]
 
 

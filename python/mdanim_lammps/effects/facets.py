@@ -144,6 +144,10 @@ class Frames:
         """The values of these `fields` now, of the part of the scene that is simulated there."""
         return {}
 
+    def tell_start(self, context: Context) -> Fields:
+        """The values of those per pair at the start, where they follow from the scene alone: for a picture before any step."""
+        return {}
+
     def fault(self, scene: SceneRecord, time: float, fields: Fields) -> str:
         """Fault of a frame at this time [s] that can never be right, in words; empty where all is well."""
         return ""

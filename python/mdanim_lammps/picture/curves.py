@@ -65,6 +65,7 @@ class Curves:
 
     def __init__(self, layer: InkLayer, plots: Sequence[Asked], runs: Sequence[RunValues], of_objects: Mapping[str, Color]):
         self._layer, self._of_objects = layer, of_objects
+        self._end = max(run.end for run in runs)
         panels: dict[str, list[list[_Curve]]] = {}
         for of in plots:
             curves = [_Curve(of, run.times, run.series(of), run.is_mean(of)) for run in runs]
@@ -88,8 +89,7 @@ class Curves:
         size = (left + WIDTH - 0.9 * letters / width - inner[0], top - 1.9 * letters / height - inner[1])
         axes = layer.figure.add_axes((*inner, *size), facecolor="none")
         low, high = _span([one.values for both in curves for one in both], whole=unit != "m")
-        end = max(float(one.times[-1]) for both in curves for one in both)
-        axes.set_xlim(0.0, max(end, 1e-9))
+        axes.set_xlim(0.0, self._end)
         axes.set_ylim(low, high)
         axes.locator_params(axis="x", nbins=5)
         axes.locator_params(axis="y", nbins=4)

@@ -46,6 +46,12 @@ class RunValues:
     def _by_name(self) -> dict[str, list[int]]:
         return objects_by_name(self.trajectory.names)
 
+    @property
+    def end(self) -> float:
+        """Time of the last frame; of a run that has only its start the time that its scene asks for [s]."""
+        last, scene = float(self.times[-1]), self.trajectory.scene
+        return last if last > 0.0 or scene is None else scene.control.time
+
     def is_mean(self, of: Of) -> bool:
         """Whether the value of a frame is the mean since the frame before."""
         return quantity_of(of).since

@@ -121,5 +121,6 @@ def whole_fields(plan: Plan, parts: Iterable[tuple[np.ndarray, Fields]]) -> dict
 
 def start_fields(plan: Plan) -> dict[str, Any]:
     """Fields of things that objects have before the first step, as they are declared."""
-    told = whole_fields(plan, ())
+    of_effects = {name: value for e in plan.effects for name, value in e.tell_start(plan.context).items()}
+    told = whole_fields(plan, [(np.arange(len(plan.system.names)), of_effects)])
     return {field.name: told[field.name] for field in frame_fields(plan) if field.per in OF_OBJECTS}

@@ -16,7 +16,7 @@ from ...scene.formatting import number, say
 from .links import NOTHING, Link, links_of
 from .place import doubled, misplaced
 from .preload import torn
-from .rows import joint_field, rows_of_joints
+from .rows import BROKEN, FORCE, joint_field, rows_of_joints
 from .strength import GAP, Strength, Sums, strengths
 from .table import joints_text
 
@@ -107,6 +107,12 @@ class Joints(Effect):
         told = readings.fix_rows(self.fix, len(here), 13)
         numbers = _numbers(readings.context)
         return {joint_field(readings.context.scene).name: rows_of_joints(here, told, numbers)}
+
+    def tell_start(self, context):
+        here = _here(context)
+        # Forces and ways are not known yet.
+        told = [(*[np.nan] * (BROKEN - FORCE), 0.0, *one.link.begin, *one.link.end) for one in here]
+        return {joint_field(context.scene).name: rows_of_joints(here, np.array(told), _numbers(context))}
 
     # --- advice -------------------------------------------------------------------------------------------------------
 
