@@ -2,12 +2,15 @@
 """Lessons: scenes with a question and an answer, and the page that a run of one becomes."""
 
 import base64
+import io
 import re
 from pathlib import Path
 
+import numpy as np
 import pytest
 from command_line import call
 from mdanim_lammps import Scene
+from PIL import Image
 
 SCENES = Path(__file__).parent.parent / "scenes"
 LESSONS = sorted((SCENES / "lessons").glob("*.txt"))
@@ -29,7 +32,7 @@ title "A <lesson>"
 question "Which one, <script>alert(1)</script>?"
 answer "Both & none"
 gravity (0, 0, -9.81) m/s^2
-object ball { shape sphere 5 cm  position (0, 0, 1) m  mass 1 kg  elasticity rigid }
+object ball { shape sphere 5 cm  position (0, 0, 1) m  mass 1 kg  elasticity rigid  color "#8000c0" }
 control { time 0.1 s  frames 20 fps }
 record ball.speed
 record ball.kinetic
@@ -48,6 +51,8 @@ def test_page_of_a_lesson(tmp_path):
     assert "<script" not in page and "default-src 'none'" in page and not re.search(r'(src|href)="(?!data:)', page)
     movie, curves = (base64.b64decode(found) for found in re.findall(r'src="data:[a-z/0-9]+;base64,([^"]+)"', page))
     assert movie == (tmp_path / "fall.out" / "movie.mp4").read_bytes() and curves.startswith(b"\x89PNG")
+    colors = np.asarray(Image.open(io.BytesIO(curves)).convert("RGB")).reshape(-1, 3)
+    assert (colors == (0x80, 0x00, 0xC0)).all(axis=1).sum() > 100  # a curve has the colour of its object
     (tmp_path / "silent.txt").write_text(TEXT.replace("question", "# question"))
     for name, more, words in (
         ("silent", (), "silent asks nothing; write question"),

@@ -106,7 +106,7 @@ class Curves:
         corner = 0.35 * letters / (WIDTH * width), 0.35 * letters / (share * height)
         ground.text(*corner, "t [s]", transform=ground.transAxes, **time)
         names = [both[0].of for both in curves]
-        colors = self._tints(names, n)
+        colors = tints([of.subject for of in names], self._of_objects, layer.paper, n)
         self._names(ground, names, colors, unit, WIDTH * width)
         for k, (color, both) in enumerate(zip(colors, curves)):
             # Curves below are wider, so that all are seen where they lie on each other.
@@ -131,13 +131,6 @@ class Curves:
         packed = HPacker(children=boxes, pad=0, sep=0.7 * size)
         ground.add_artist(AnchoredOffsetbox("upper left", child=packed, frameon=False, pad=0.0, borderpad=0.35))
 
-    def _tints(self, names: list[Asked], n: int) -> list[Color]:
-        """Colours of the curves of a panel: those of their objects where no two have the same, else some that differ."""
-        own = [self._of_objects.get(of.subject) for of in names]
-        if None not in own and len(set(own)) == len(own):
-            return [_legible(color, self._layer.paper) for color in own if color is not None]
-        return [CURVES[(n + k) % len(CURVES)] for k in range(len(names))]
-
     def show(self, time: float) -> None:
         """Add the curves up to a time [s], with a point where they are then."""
         from matplotlib.lines import Line2D
@@ -151,6 +144,14 @@ class Curves:
             if len(pixels) and not beside:
                 size = (0.35 + width) * letters
                 self._layer.add(Line2D(*pixels[-1:].T, marker="o", markersize=size, markeredgewidth=0, linestyle="", **look))
+
+
+def tints(subjects: Sequence[str], of_objects: Mapping[str, Color], paper: Color, n: int = 0) -> list[Color]:
+    """Colours of curves in the n-th panel: those of their objects where no two have the same, else some that differ."""
+    own = [of_objects.get(subject) for subject in subjects]
+    if None not in own and len(set(own)) == len(own):
+        return [_legible(color, paper) for color in own if color is not None]
+    return [CURVES[(n + k) % len(CURVES)] for k in range(len(subjects))]
 
 
 def _legible(color: Color, paper: Color) -> Color:

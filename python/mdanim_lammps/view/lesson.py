@@ -6,12 +6,16 @@ from __future__ import annotations
 import base64
 import html
 import io
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Protocol
 
 import numpy as np
 
 from ..errors import OutputError, UsageError
+from ..picture.curves import tints
+from ..picture.layer import Color
+from ..picture.palette import object_colors
 from ..picture.plot import own_style
 from ..results.expect import Outcome
 from ..results.files import write_whole
@@ -25,6 +29,7 @@ from ..scene.scene import SceneRecord
 
 MOST_MOVIE = 50_000_000
 """Bytes of a movie that the file takes in."""
+WHITE = (1.0, 1.0, 1.0)
 RULES = "default-src 'none'; media-src data:; img-src data:; style-src 'unsafe-inline'"
 STYLE = """
 body { font: 17px/1.5 system-ui, sans-serif; max-width: 60rem; margin: 2rem auto; padding: 0 1rem; color: #20242a; }
@@ -72,7 +77,10 @@ def page_of(run: LessonRun, scene: SceneRecord, movie: bytes) -> str:
     parts = [f"<h1>{title}</h1>", f'<p class="question">{html.escape(scene.question)}</p>']
     parts.append(f'<video controls loop src="data:video/mp4;base64,{base64.b64encode(movie).decode()}"></video>')
     if scene.records:
-        curves = base64.b64encode(drawn_curves(run.records)).decode()
+        subjects, metadata = {of.what: of.subject for of in scene.records}, run.trajectory.metadata
+        found = object_colors(metadata.colors, metadata.still) / 255.0
+        colors = dict(zip(metadata.names, map(tuple, found)))
+        curves = base64.b64encode(drawn_curves(run.records, subjects, colors)).decode()
         parts.append(f'<p><img alt="curves of the records over time" src="data:image/png;base64,{curves}"></p>')
     if scene.answer:
         parts.append(f"<details><summary>Answer</summary><p>{html.escape(scene.answer)}</p></details>")
@@ -89,8 +97,9 @@ def page_of(run: LessonRun, scene: SceneRecord, movie: bytes) -> str:
 
 
 @own_style()
-def drawn_curves(records: Records) -> bytes:
-    """All records over time as a PNG, those of one unit on one axis."""
+def drawn_curves(records: Records, subjects: Mapping[str, str], colors: Mapping[str, Color]) -> bytes:
+    """All records over time as a PNG, those of one unit on one axis, in the colours of their objects; ``subjects`` are names of
+    these by the names of records."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
@@ -99,11 +108,13 @@ def drawn_curves(records: Records) -> bytes:
     figure = Figure(figsize=(9.0, 2.6 * len(units)), dpi=110, layout="constrained")
     for n, unit in enumerate(units, 1):
         axes = figure.add_subplot(len(units), 1, n)
-        for name in (name for name in names if records.units[name] == unit):
-            axes.plot(records["time"], np.asarray(records[name]), label=name.replace("$", r"\$"))
+        own = [name for name in names if records.units[name] == unit]
+        for name, color in zip(own, tints([subjects.get(name, "") for name in own], colors, WHITE, n - 1)):
+            axes.plot(records["time"], np.asarray(records[name]), color=color, label=name.replace("$", r"\$"))
         axes.set_ylabel(unit or "-")
         axes.grid(alpha=0.3)
-        axes.legend(fontsize="small")
+        # Above the axes, where no curve is.
+        axes.legend(fontsize="small", loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=3, frameon=False, borderaxespad=0.0)
     axes.set_xlabel("time [s]")
     file = io.BytesIO()
     FigureCanvasAgg(figure).print_png(file)
