@@ -142,3 +142,13 @@ def test_colours_tell_stress(tmp_path):
     tones = Tones((trajectory, None), ColorBy.STRESS)
     assert tones.unit == "Pa" and 1e3 < tones.most < 1e5
     assert (tones.of_particles(1)[trajectory.metadata.object_of == 1] == 0.0).all()
+
+
+def test_stress_of_a_rigid_object_is_refused():
+    """It has no springs, so what is in it is not known: it is not 0."""
+    brick = (
+        "object brick { shape box (10, 10, 10) cm  position (0, 0, 0) m  mass 1 kg  elasticity rigid }\ncontrol { time 0.1 s }\n"
+    )
+    for quantity in ("stress.max", "stress.x"):
+        with pytest.raises(SceneError, match="brick is rigid: its stress is not known"):
+            _ = Scene.from_text(brick + f"record brick.{quantity}\n", "brick").certificate

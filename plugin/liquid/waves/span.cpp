@@ -206,6 +206,21 @@ double volume_below(const SolidParts &solid, const Span &span, double height)
   return volume;
 }
 
+double moment_of(const SolidParts &solid, const Span &span, Units content)
+{
+  double left = static_cast<double>(std::min(content, span.capacity)) / UNITS_PER_CELL;
+  if (span.plain) return left * (span.floor + 0.5 * left);
+  double moment = 0.0;
+  for (int z = span.low; z < span.high && left > 0.0; ++z) {
+    const Slice s = slice(solid, span, z);
+    if (s.open <= 0.0) continue;
+    const double taken = std::min(left, s.open);
+    moment += taken * (s.low + 0.5 * taken / s.open * (s.high - s.low));
+    left -= taken;
+  }
+  return moment;
+}
+
 // At equal height the plate leaves less than half open. Spread samples of a tilted plate leave more than nothing.
 bool are_parted(const SolidParts &solid, const Span &a, const Span &b)
 {

@@ -58,6 +58,9 @@ struct Head {
 Head head_of(const SolidParts &solid, const Span &span, Units content);
 // Volume in cells. The content of a span that is level at a height is its whole units.
 double volume_below(const SolidParts &solid, const Span &span, double height);
+// The volume of a content in cells times the height of its middle: what lies beside a solid is lower than half of its surface.
+// Liquid over capacity does not count.
+double moment_of(const SolidParts &solid, const Span &span, Units content);
 
 // Whether the plate below one of two spans of neighbouring columns continues as the plate above the other one, or the other way
 // round: it passes between them, however it is tilted.

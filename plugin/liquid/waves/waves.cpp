@@ -56,9 +56,9 @@ Waves::Energy Waves::energy() const
 {
   Energy energy{};
   columns.each_span([&](long i) {
-    const double volume = static_cast<double>(columns.content[i]) / UNITS_PER_CELL, capacity = columns.arrays.capacity[i];
-    const double middle = 0.5 * (columns.span[i].floor + head_of(columns.solid, columns.span[i], columns.content[i]).height);
-    energy.height += std::min(volume, capacity) * middle + std::max(0.0, volume - capacity) * columns.span[i].roof;
+    const Span &span = columns.span[i];
+    const double excess = static_cast<double>(std::max<Units>(0, columns.content[i] - span.capacity)) / UNITS_PER_CELL;
+    energy.height += moment_of(columns.solid, span, columns.content[i]) + excess * span.roof;
   });
   columns.each_link([&](const LinkPlace &link) {
     const WaveLinks &l = columns.arrays_of(link);

@@ -12,7 +12,7 @@ from . import units
 from .evaluated import EvaluatedBlock, EvaluatedSetting
 from .formatting import number, with_article
 from .keywords import BLOCKS, did_you_mean
-from .quantities import GLOBALS, PLANES, QUANTITIES, Asked, Check, Expect, QuantityName
+from .quantities import GLOBALS, PLANES, QUANTITIES, TAKEN, Asked, Check, Expect, QuantityName, meant
 
 if TYPE_CHECKING:
     from .scene import Control, Render
@@ -39,19 +39,21 @@ def quantity(v: Validator, named: tuple, span: Span) -> Asked | None:
     kind = subject if subject in GLOBALS else "NAME"
     if kind == "NAME" and subject in v.named and subject not in v.names and ("NAMES", word) in QUANTITIES:
         kind = "NAMES"
-    known = [q for k, q in QUANTITIES if k == kind]
     if kind == "NAME" and not v.known_object(subject, span, (*v.own_names, *GLOBALS)):
         return None
     if (kind, word) not in QUANTITIES:
-        part = next((q for q in (f"position.{word}", *known) if q in known and q.endswith(f".{word}")), None)
-        meant = did_you_mean(word, known) if part is None else f"did you mean '{part}'?"
-        v.problem(span, f"{word} is not a quantity of {subject}", meant)
+        v.problem(span, f"{word} is not a quantity of {subject}", meant(kind, word, did_you_mean))
         return None
     of = QUANTITIES[kind, word]
+    if of.takes and not of.alone and argument is None:
+        what, example = TAKEN[of.takes]
+        v.problem(span, f"{word} needs {what} in brackets", f"write {subject}.{word}{example}")
+        return None
     if isinstance(argument, str) and not _known_other(v, subject, word, argument, span, of.takes):
         return None
     if of.needs in BLOCKS and v.has_scene and not v.blocks(of.needs) and not v.out.excused(of.needs):
-        v.problem(span, f"{subject}.{word} needs {with_article(of.needs)} block, and the scene has none")
+        cause = f"{subject}.{word} needs {with_article(of.needs)} block, and the scene has none"
+        v.problem(span, cause, f"write one, as 'mdanim-lammps explain {of.needs}' shows, or take this out")
     return Asked(subject, word, argument, span=span, of=kind)
 
 

@@ -165,8 +165,12 @@ def example(keyword: Keyword) -> str:
 
 
 def example_of(keyword: Keyword, words: Sequence[str]) -> str:
-    """The form that begins with the first of some words, where the example is of another one: ``write shape cylinder r h``."""
-    if not words or words[0] in keyword.example.split():
+    """The form that begins with the first of some words, where the example is of another one: ``write shape cylinder r h``.
+    Without words the example, and the forms that begin with a word."""
+    if not words:
+        others = [form for form in syntax(keyword).split(" | ") if form.split()[0] in beginnings(keyword)]
+        return example(keyword) + (f", or {keyword.name} {'|'.join(others)}" if others else "")
+    if words[0] in keyword.example.split():
         return example(keyword)
     forms = [form for form in syntax(keyword).split(" | ") if form.split()[0] == words[0]]
     return f"write {keyword.name} {forms[0]}" if forms else example(keyword)

@@ -40,6 +40,32 @@ PLANES = tuple(word for words in facets("words") for word, block in getattr(word
 """Planes that objects touch, as arguments of quantities of contact."""
 
 
+TAKEN = {
+    "object": ("another object", "(cube)"),
+    "joined": ("another object, or world,", "(world), or in place of world the name of the object that it is joined to"),
+    "touched": ("another object, ground or walls", "(ground)"),
+    "place": ("a place (x, y)", "(0.2 m, 0 m)"),
+    "cut": ("the place of a plane", "(0.2 m)"),
+}
+"""Arguments of quantities in words, and an example."""
+
+
+def meant(kind: str, word: str, near: Callable[[str, list[str]], str]) -> str:
+    """Hint for a word that is not a quantity of a kind of subject: its parts, those of which it is a part, the subject that has
+    it, or what ``near`` finds among those that there are."""
+    known = [q for k, q in QUANTITIES if k == kind]
+    before, _, last = word.rpartition(".")
+    whole = f"{before}." if before and len(last) == 1 else f"{word}."  # one letter is a component
+    if parts := [q for q in known if q.startswith(whole)]:
+        return f"write {', '.join(parts[:-1])} or {parts[-1]}" if len(parts) > 1 else f"write {parts[0]}"
+    if part := next((q for q in (f"position.{word}", *known) if q in known and q.endswith(f".{word}")), None):
+        return f"did you mean '{part}'?"
+    if other := next((k for k in GLOBALS if (k, word) in QUANTITIES), None):
+        takes = QUANTITIES[other, word].takes
+        return f"it belongs to {other}: write {other}.{word}{TAKEN[takes][1] if takes else ''}"
+    return near(word, known)
+
+
 class _OfQuantity:
     """The words of something that has ``subject``, ``quantity`` and ``argument``."""
 

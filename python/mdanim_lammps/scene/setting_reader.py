@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cache
 from itertools import count
@@ -24,22 +24,13 @@ from .keywords import (
     owner,
 )
 from .limits import DEEPEST_GROUP, DEEPEST_REPEAT
-from .quantities import GLOBALS, QUANTITIES, RELATIONS
+from .quantities import GLOBALS, QUANTITIES, RELATIONS, TAKEN, meant
 from .reader import ODD, Reader
 from .schema import Keyword
 from .source import Fault, Problems, SceneFile
 from .tokens import Token
 from .tree import Name, SettingNode, Value
 from .units import UNITS, unit
-
-TAKEN = {
-    "object": ("another object", "(cube)"),
-    "joined": ("another object, or world,", "(world), or in place of world the name of the object that it is joined to"),
-    "touched": ("another object, ground or walls", "(ground)"),
-    "place": ("a place (x, y)", "(0.2 m, 0 m)"),
-    "cut": ("the place of a plane", "(0.2 m)"),
-}
-"""Arguments of quantities in words, and an example."""
 
 
 @dataclass(eq=False)
@@ -168,9 +159,9 @@ class SettingReader(Reader):
             raise Fault(t, f"{keyword.name} cannot be followed by {t.found()}", misplaced(keyword, str(t), starts) or hint)
         return free[0]
 
-    def _missing(self, word: Token, keyword: Keyword) -> None:
+    def _missing(self, word: Token, keyword: Keyword, words: Sequence[str] = ()) -> None:
         rest = self.source.lines[word.line - 1][word.column + len(word) - 1 :].strip()
-        hint = example(keyword)
+        hint = example_of(keyword, words) if words else example(keyword)
         if rest.startswith("#") and "color" in keyword.form:
             hint = "'#' starts a comment: put the colour in quotes, \"#rrggbb\""
         cause = f"nothing follows {word}"
@@ -203,7 +194,7 @@ class SettingReader(Reader):
                     values += [None] * sum(isinstance(p, Slot) for p in pieces(part.parts))
             else:
                 if t.type in ("NEWLINE", "END", "RBRACE"):
-                    self._missing(self.tokens[self.at - 1], keyword)
+                    self._missing(self.tokens[self.at - 1], keyword, words)
                 more = isinstance(parts[n + 1] if n + 1 < len(parts) else behind, Slot)
                 values.append(self.value(part, keyword, more))
 
@@ -284,16 +275,25 @@ class SettingReader(Reader):
         if at == len(parts):
             raise Fault(name.token, f"{keyword.name} {name.token} names no quantity", f"e.g. {name.token}.position.z", name.last)
         text = ".".join(part.token for part in parts[at:])
-        argument = self.argument(text, last, stops(keyword))
+        argument = self.argument(name.token, text, last, stops(keyword))
+        if argument is None and self.peek.type == "LPAR":
+            kind = name.token if name.token in GLOBALS else "NAME"
+            if (kind, text) in QUANTITIES:
+                raise Fault(self.peek, f"{text} has nothing in brackets", f"write {name.token}.{text}")
+            if at > 1 and any(q.startswith(f"{parts[at - 1].token}.") for _, q in QUANTITIES):  # joint.work: work alone is one
+                text = f"{parts[at - 1].token}.{text}"
+            raise Fault(name.token, f"{text} is not a quantity of {name.token}", meant(kind, text, did_you_mean), last)
         return Value(slot, name.token, argument.last if argument else last, text=text, name=name, argument=argument)
 
-    def argument(self, quantity: str, last: Token, stops: frozenset[str]) -> Value | None:
+    def argument(self, subject: str, quantity: str, last: Token, stops: frozenset[str]) -> Value | None:
         """The value in brackets behind a quantity that has an argument."""
         of = next((q for (_, word), q in QUANTITIES.items() if word == quantity and q.takes), None)
         if of is None or (of.alone and self.peek.type != "LPAR"):
             return None
         takes = of.takes
         if self.peek.type != "LPAR":
+            if subject not in GLOBALS and ("NAME", quantity) not in QUANTITIES:
+                return None  # only an object, or the liquid by its name: asked.py knows
             raise Fault(last, f"{quantity} needs {TAKEN[takes][0]} in brackets", f"write {quantity}{TAKEN[takes][1]}")
         if takes == "place":
             node = self.expression(Slot("vector", "(x, y)", "m", 2, dim=unit("m").dim), stops)

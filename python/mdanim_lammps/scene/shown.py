@@ -28,7 +28,7 @@ class ColorBy(Enum):
 class Texture:
     """A pattern on an object, which goes with its material."""
 
-    FORMS: ClassVar = ("<wood|brick|stripes|checker> [size <s:m>]",)
+    FORMS: ClassVar = ("<wood|brick|stripes|checker> [size <width:m>]",)
     pattern: str
     """One of TEXTURES."""
     size: float | None = None

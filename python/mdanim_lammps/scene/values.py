@@ -63,7 +63,7 @@ class Evaluator:
         given = out.settings.get(word)
         if given and not s.keyword.many:
             first = given[0].entry
-            cause = f"{word} is given twice" + f" in {out.block} {out.name}".rstrip()
+            cause = f"{word} is given twice" + f" in {out.block} {out.name}".rstrip() * bool(out.block)
             self.problems.add(
                 s.source.span(s.token, None, env.used_at), cause, f"first given at {first.source.span(first.token)}"
             )
@@ -210,7 +210,9 @@ class Evaluator:
 
 
 def label(s: SettingNode, v: Value) -> str:
-    """How a value is called in messages: ``mass``, ``r of sphere``."""
+    """How a value is called in messages: ``mass``, ``r of sphere``, ``the place of height``."""
+    if asks := next((one for one in s.values if one is not None and one.argument is v), None):
+        return f"the place of {asks.text}"
     alone = sum(given is not None for given in s.values) == 1
     if alone and not s.words:
         return s.keyword.name

@@ -41,7 +41,10 @@ QUANTITIES = {
     },
     ("liquid", "crest"): Observable("m", "highest point of the liquid at any frame, without drops", "liquid"),
     ("liquid", "waves"): Observable(
-        "J", "energy of waves, of height and motion, since the start; 0 without `model waves`", "liquid"
+        "J",
+        "energy of the liquid, of height and motion, less that at the start; at rest what floats has lifted it by so much; "
+        "0 without `model waves`",
+        "liquid",
     ),
 }
 
@@ -139,6 +142,8 @@ def ground_below(v: Any, liquid: Any) -> None:
 def within_basin(v: Any, liquid: Any) -> None:
     """Places whose heights are asked for lie in the basin."""
     for (_, quantity, place), span in v.quantities() if liquid is not None else ():
+        if place is None:
+            continue  # it is missing, or the quantity takes none
         if (axis := {"flow.x": 0, "flow.y": 1}.get(quantity)) is not None and not liquid.low[axis] < place < liquid.high[axis]:
             cause = f"the plane at {number(place, 6)} m lies outside the basin"
             v.problem(span, cause, f"the basin goes from {number(liquid.low[axis])} to {number(liquid.high[axis])} m")

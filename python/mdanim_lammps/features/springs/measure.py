@@ -3,11 +3,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 import numpy as np
 
-from ...effects.measured import Glance, Measured, Recorded
+from ...effects.measured import Glance, Measured, Of, Recorded
+from ...errors import Problem
 from ...model.system import System
 from ...scene.once import once_for
+from ...scene.scene import SceneRecord
+from ..rigid.words import Rigid
 from ..tearing.gone import gone_of
 from ..yielding.grown import grown_of
 
@@ -90,6 +95,16 @@ def _stresses(g: Glance) -> np.ndarray:
 
 def _mean_stress(g: Glance, axis: int) -> float:
     return float(np.average(_stresses(g)[:, axis, axis], weights=g.context.system.volume[g.mine]))
+
+
+def unmeasured(scene: SceneRecord, asked: Iterable[Of]) -> list[Problem]:
+    """A problem for each stress of what is rigid: it does not deform, so nothing tells what is in it."""
+    rigid = {solid.name for solid in scene.solids if isinstance(solid.elasticity, Rigid)}
+    return [
+        Problem(of.span, f"{of.subject} is rigid: its stress is not known", "write its elasticity, as in elasticity 1 MPa")
+        for of in asked
+        if of.quantity.startswith("stress.") and of.subject in rigid
+    ]
 
 
 MEASURES = {

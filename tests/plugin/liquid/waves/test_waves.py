@@ -486,3 +486,13 @@ def test_a_basin_without_memory_is_told():
     """An absurd size raises an error with its reason instead of ending the process."""
     with pytest.raises(MemoryError, match="out of memory"):
         lab.Waves((2**10, 2**15 - 8, 2**15 - 8))
+
+
+def test_energy_of_height_counts_liquid_beside_solids_where_it_is():
+    """A solid fills half of the third cell of a column: 0.5 + 1.5 + 2.5/2 cells^2 are left of three cells; beside it 4.5."""
+    w = lab.Waves((4, 1, 2))
+    part = np.zeros((4, 1, 2), int)
+    part[2, 0, 0] = 2048
+    w.solids(part)
+    w.pour(3)
+    assert w.energy[0] == pytest.approx(3.25 + 4.5, abs=1e-6)
