@@ -84,6 +84,11 @@ def keep(case: Case, accuracy: str, found: Found, seconds: float) -> None:
     path.write_text(json.dumps({name: stored[name] for name in (*ACCURACIES, *PEERS) if name in stored}, indent=1) + "\n")
 
 
+def picture_of(case: Case) -> Path:
+    """The file of its figure."""
+    return ROOT / "docs" / "images" / f"validation-{case.name}.png"
+
+
 def draw(case: Case, curve: Curve) -> None:
     """The figure of a case."""
     from matplotlib.figure import Figure
@@ -97,7 +102,7 @@ def draw(case: Case, curve: Curve) -> None:
         for name, (x, y) in curve.points.items():
             axes.plot(x, y, "o", mfc="none", label=name)
         axes.legend(frameon=False)
-        figure.savefig(ROOT / "docs" / "images" / f"validation-{case.name}.png", dpi=120, metadata={"Software": None})
+        figure.savefig(picture_of(case), dpi=120, metadata={"Software": None})
 
 
 def _off(rows: Iterable[Row]) -> float:
@@ -117,8 +122,8 @@ def section(case: Case) -> str:
     of = kept(case)
     table = markdown(HEAD, [cells(row) for row in of["balanced"][0]])
     parts = [f"## {case.title}", f"*{case.source}*", table, case.tolerance, case.limit]
-    if (ROOT / "docs" / "images" / f"validation-{case.name}.png").exists():
-        parts.append(f"![{case.title}](images/validation-{case.name}.png)")
+    if (picture := picture_of(case)).exists():
+        parts.append(f"![{case.title}](images/{picture.name})")
     if len(of) > 1:
         cost = [[accuracy, _percent(_off(rows)), f"{seconds:.3g} s"] for accuracy, (rows, seconds) in of.items()]
         parts.append(markdown(("accuracy, or program", "largest error of a row", "processor time of all its runs"), cost))

@@ -66,7 +66,8 @@ class Found:
 Change = Callable[[SceneRecord], SceneRecord]
 
 
-def _as_it_is(scene: SceneRecord) -> SceneRecord:
+def unchanged(scene: SceneRecord) -> SceneRecord:
+    """The scene as its file has it."""
     return scene
 
 
@@ -81,7 +82,7 @@ class Runs(ExitStack):
     def __post_init__(self) -> None:
         super().__init__()
 
-    def run(self, name: str, change: Change = _as_it_is, /, **lets: float | str) -> Run:
+    def run(self, name: str, change: Change = unchanged, /, **lets: float | str) -> Run:
         """Simulate scenes/validation/NAME.txt with these values of its ``let`` names, as it is after a `change`.
 
         A scene that says its own resolution has a ``let fine = 1``, the number of its cells across something over that of

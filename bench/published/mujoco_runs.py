@@ -18,7 +18,7 @@ from mdanim_lammps.scene import shapes
 from mdanim_lammps.scene.parse import load_scene
 from mdanim_lammps.scene.scene import SceneRecord, Solid
 
-from .case import ROOT, SCENES, Change, Runs, _as_it_is
+from .case import ROOT, SCENES, Change, Runs, unchanged
 
 PYTHON = ROOT / ".venv-peers" / "bin" / "python"
 WAYS = {
@@ -57,7 +57,7 @@ class Tracks:
 class MujocoRuns(Runs):
     """Runs scenes with one of the `WAYS`, by its name in `accuracy`."""
 
-    def run(self, name: str, change: Change = _as_it_is, /, **lets: float | str) -> Tracks:  # type: ignore[override]
+    def run(self, name: str, change: Change = unchanged, /, **lets: float | str) -> Tracks:  # type: ignore[override]
         scene = change(load_scene(SCENES / f"{name}.txt", overrides=lets))
         folder = self.folder()
         gravity = [[0.0, *scene.gravity], *([time, *g] for time, g in scene.gravity_path)]

@@ -19,6 +19,16 @@ def check(name: str) -> None:
     assert found == pytest.approx(expected, rel=most, abs=0.0 if expected else most)
 
 
+def before_and_after(ready, time: float) -> tuple[dict[str, float], dict[str, float], np.ndarray]:
+    """Energies at the start and after a time [s], and positions then."""
+    with Instance(ready.plan) as instance:
+        instance.setup()
+        begin = energies(instance, ready.system.center_of_mass(instance.array("x")))
+        instance.run(round(time / ready.certificate.timestep))
+        x = instance.array("x").copy()
+        return begin, energies(instance, ready.system.center_of_mass(x)), x
+
+
 @pytest.mark.parametrize("name", SHORT)
 def test_closed_forms(name):
     """One way each."""
@@ -42,12 +52,7 @@ def test_a_sheet_that_flies_keeps_momentum_and_energy():
     """Bent, spun and loose: its centre of mass goes straight on."""
     text = sheet_cases.sheet("(0.4, 0.3)", "2 mm", "elasticity 500 kPa  velocity (1, 0, 0) m/s  spin (0, 3, 9) rad/s")
     ready = made(text, 0.3)
-    with Instance(ready.plan) as instance:
-        instance.setup()
-        begin = energies(instance, ready.system.center_of_mass(instance.array("x")))
-        instance.run(round(0.3 / ready.certificate.timestep))
-        x = instance.array("x").copy()
-        end = energies(instance, ready.system.center_of_mass(x))
+    begin, end, x = before_and_after(ready, 0.3)
     centre = ready.system.center_of_mass(x)[0]
     assert centre == pytest.approx((0.3, 0.0, 0.0), abs=1e-4)
     assert sum(end.values()) == pytest.approx(sum(begin.values()), rel=1e-5)
@@ -66,12 +71,7 @@ def test_a_held_sheet_bears_what_comes(what):
     """By the hardness and the points that it chooses; all three passed by those of its material. No energy comes or goes."""
     text = f"{CLOTH}object thing {{ {COMES[what]}  elasticity rigid }}\n"
     ready = prepare(parse_scene(f"{text}control {{ time 0.1 s  accuracy preview }}\n"))
-    with Instance(ready.plan) as instance:
-        instance.setup()
-        begin = energies(instance, ready.system.center_of_mass(instance.array("x")))
-        instance.run(round(0.04 / ready.certificate.timestep))
-        x = instance.array("x").copy()
-        end = energies(instance, ready.system.center_of_mass(x))
+    begin, end, x = before_and_after(ready, 0.04)
     cloth, thing = x[: ready.system.first[1]], x[ready.system.first[1] :]
     assert cloth[:, 2].min() < thing[:, 2].min() + 0.01
     assert sum(end.values()) == pytest.approx(sum(begin.values()), abs=1e-3 * begin["kinetic"])
@@ -83,12 +83,7 @@ def test_a_sheet_over_a_rod_thinner_than_its_spacing_hangs_on_it_and_keeps_energ
     sheet = "resolution 4 cm  elasticity 1 MPa  position (0, 0.017, 0.03) m"
     rod = "shape cylinder 5 mm 30 cm  position (0, 0, 0) m  orientation axis (0, 1, 0) angle 90 deg  elasticity rigid  hold all"
     ready = made(f"{DOWN}object rod {{ {rod}  mass 1 kg }}\n" + sheet_cases.sheet("(0.3, 0.3)", "1 mm", sheet), 0.2)
-    with Instance(ready.plan) as instance:
-        instance.setup()
-        begin = energies(instance, ready.system.center_of_mass(instance.array("x")))
-        instance.run(round(0.2 / ready.certificate.timestep))
-        x = instance.array("x").copy()
-        end = energies(instance, ready.system.center_of_mass(x))
+    begin, end, x = before_and_after(ready, 0.2)
     assert x[ready.system.object == 1, 2].max() > 0.0
     assert sum(end.values()) == pytest.approx(sum(begin.values()), abs=1e-4 * end["kinetic"])
 

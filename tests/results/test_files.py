@@ -77,7 +77,7 @@ def test_what_a_killed_writer_leaves_can_be_removed(tmp_path):
     """Parts of files go, files stay."""
     with pytest.raises(SystemExit):
         write_whole(tmp_path / "checkpoint", lambda part: (_ for _ in ()).throw(SystemExit))
-    part = files.new_part(tmp_path / "checkpoint")
+    part = files._new_part(tmp_path / "checkpoint")
     for name in ("checkpoint", "trajectory.h5.part", "movie.mp4"):
         (tmp_path / name).touch()
     remove_parts(tmp_path)

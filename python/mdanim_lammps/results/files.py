@@ -273,7 +273,7 @@ def in_use(folder: Path) -> bool:
     return False
 
 
-def write_whole(path: Path, write: Callable[[Path], None] | str) -> None:
+def write_whole(path: Path, write: Callable[[Path], None] | str, *, lasting: bool = True) -> None:
     """Write a file beside its final name, sync it and rename it: the name always holds a whole file, also after a loss of power.
 
     A failure leaves the former file and nothing else. Several writers of one name do not disturb each other: the last wins.
@@ -281,25 +281,29 @@ def write_whole(path: Path, write: Callable[[Path], None] | str) -> None:
     Args:
         path: the final name.
         write: the text, or a function that writes the file whose path it is given.
+        lasting: wait for the disk; without it a loss of power may leave the name with no file or a damaged one.
 
     Raises:
         OutputError: the file cannot be written, e.g. because the disk is full.
     """
     with disk_errors(path):
-        part = new_part(path)
+        part = _new_part(path)
         try:
             if isinstance(write, str):
                 part.write_text(write, encoding="utf-8")
             else:
                 write(part)
-            sync(part)
-            rename(part, path)
+            if lasting:
+                sync(part)
+                rename(part, path)
+            else:
+                os.replace(part, path)
         except BaseException:
             part.unlink(missing_ok=True)
             raise
 
 
-def new_part(path: Path) -> Path:
+def _new_part(path: Path) -> Path:
     """An empty file beside ``path`` with a name that no other writer has. Raises OSError."""
     part = path.with_name(f".{path.name}.{secrets.token_hex(4)}.part")
     os.close(os.open(part, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o666))

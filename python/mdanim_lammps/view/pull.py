@@ -5,15 +5,13 @@ run reads it before each frame (run/hands.py)."""
 from __future__ import annotations
 
 import json
-import os
 import threading
 import time
 from contextlib import suppress
-from pathlib import Path
 
 import numpy as np
 
-from ..results.files import HAND, disk_errors, new_part
+from ..results.files import HAND, write_whole
 from .tail import Tail
 
 LEAST = 0.01
@@ -51,7 +49,8 @@ class Puller:
                 return
             time.sleep(max(0.0, min(LEAST, self._last + LEAST - time.monotonic())))
             self._owner, self._last = page, time.monotonic()
-            _write(self._tail.folder / HAND, json.dumps(told, allow_nan=False))
+            # The next frame alone reads it.
+            write_whole(self._tail.folder / HAND, json.dumps(told, allow_nan=False), lasting=False)
 
     def gone(self, page: object) -> None:
         """A page is gone: what it held is let go."""
@@ -92,11 +91,3 @@ def numbers(value: object) -> list[float]:
     if not all(type(x) in (int, float) and abs(x) <= FARTHEST for x in value):
         raise ValueError(value)
     return [float(x) for x in value]
-
-
-def _write(path: Path, text: str) -> None:
-    """As write_whole, without waiting for the disk: it is of use for the next frame alone."""
-    with disk_errors(path):
-        part = new_part(path)
-        part.write_text(text, encoding="ascii")
-        os.replace(part, path)

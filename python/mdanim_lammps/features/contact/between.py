@@ -10,6 +10,7 @@ import numpy as np
 
 from ...effects.balance import Balance
 from ...effects.measured import Measured
+from ...model.boxes import box_pairs
 
 NEAR = 1e-3
 """Gap of two things that count as touching, over the size of the smaller one: rigid ones rest beside each other with less."""
@@ -75,10 +76,14 @@ class Touching:
         found: list[dict[int, set]] = [{}]
         for low, high in self._boxes():
             size = (high - low).min(axis=1)
-            gap = np.maximum(low[:, None] - high[None], low[None] - high[:, None]).max(axis=2)
-            near = gap <= NEAR * np.minimum(size[:, None], size[None])
-            np.fill_diagonal(near, False)
-            now = {n: set(np.flatnonzero(row).tolist()) for n, row in enumerate(near)}
+            now: dict[int, set] = {n: set() for n in range(len(size))}
+            skin = 0.5 * NEAR * size[:, None]
+            for i, j in box_pairs(low - skin, high + skin):  # the skins of two are no less than twice the smaller one
+                gap = np.maximum(low[i] - high[j], low[j] - high[i]).max(axis=1)
+                near = gap <= NEAR * np.minimum(size[i], size[j])
+                for a, b in zip(i[near].tolist(), j[near].tolist()):
+                    now[a].add(b)
+                    now[b].add(a)
             for plane, gaps in self._gaps(low, high):
                 for n in np.flatnonzero(gaps <= NEAR * size).tolist():
                     now[n].add(plane)
