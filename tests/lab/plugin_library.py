@@ -38,7 +38,8 @@ SOURCES = (
     *sorted(path for path in (PLUGIN / "liquid").rglob("*.cpp") if not path.stem.endswith("_of_set")),
     *(PLUGIN / f"{name}.cpp" for name in (*FLOORS, *PASSES)),
 )
-OF_SET = sorted(PLUGIN.rglob("*_of_set.cpp"))
+OF_SET = (PLUGIN / "simd" / "kernels_of_set.cpp", PLUGIN / "liquid" / "waves" / "waves_kernels_of_set.cpp")
+"""Of what is compiled for each set of instructions: the tables, and the loops of waves. The rest is in unused_kernels.cpp."""
 SETS = [
     (name, [f"-DMDANIM_SET={name}", f"-DMDANIM_LANES={lanes}", "-Wno-psabi", *flags])
     for name, lanes, *flags in map(str.split, (PLUGIN / "simd" / "sets.txt").read_text().splitlines())
@@ -66,8 +67,7 @@ def _compile() -> None:
     objects = {FOLDER / f"{source.parent.name}-{source.stem}.o": (source, [f"-DMDANIM_SETS={names}"]) for source in SOURCES}
     for name, flags in SETS:
         for source in OF_SET:
-            unused = [] if source.parent.name == "waves" else ["-O0"]  # linked, but only those of waves are called here
-            objects[FOLDER / f"{name}-{source.stem}.o"] = source, flags + unused
+            objects[FOLDER / f"{name}-{source.stem}.o"] = source, flags
     with ThreadPoolExecutor(len(os.sched_getaffinity(0))) as pool:
         commands = ([*_command(), *flags, "-c", str(source), "-o", str(o)] for o, (source, flags) in objects.items())
         list(pool.map(_run, commands))
