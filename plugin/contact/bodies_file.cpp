@@ -96,8 +96,9 @@ ContactBody read_body(Words &words)
   std::vector<std::int32_t> sharer;
   std::vector<double> share;
   int between = 0;
-  const std::size_t is = words.choice({"particles", "rigid", "line"});
-  if (is == 2) {
+  const std::size_t is = words.choice({"particles", "rigid", "line", "tears"});
+  constexpr std::size_t RIGID = 1, LINE = 2, TEARS = 3;
+  if (is == LINE) {
     particles = words.number<int>("the number of particles");
     radius = words.number<double>("the radius of particles");
     if (!(radius > 0.0)) words.fail("the radius of particles must be above 0");
@@ -108,7 +109,7 @@ ContactBody read_body(Words &words)
       for (int k = 0; k < SHARERS; ++k) sharer.push_back(words.number<std::int32_t>("a particle that shares a point"));
       for (int k = 0; k < SHARERS; ++k) share.push_back(words.number<double>("a share of a point"));
     }
-  } else if (is == 0) {
+  } else if (is != RIGID) {
     node.resize(particles = words.many("particles"));
     for (std::int32_t &n : node) n = words.number<std::int32_t>("the place of a particle");
   } else {
@@ -177,7 +178,8 @@ ContactBody read_body(Words &words)
                         spread,
                         between,
                         sharer.data(),
-                        share.data()});
+                        share.data(),
+                        is == TEARS});
   } catch (const std::runtime_error &problem) {
     words.fail(problem.what(), line);
   }

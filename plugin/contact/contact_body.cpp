@@ -33,6 +33,18 @@ int depth_margin(const int (&cells)[3], std::size_t depths)
   return 0;
 }
 
+// Calls visit(i, j, k) for each corner of eight filled cells.
+template <class Visit> static void each_inside(const Lattice &grid, const Visit &visit)
+{
+  for (int k = 1; k < grid.cells[2]; ++k)
+    for (int j = 1; j < grid.cells[1]; ++j)
+      for (int i = 1; i < grid.cells[0]; ++i) {
+        bool is_inside = true;
+        for (int c = 0; c < 8 && is_inside; ++c) is_inside = is_filled(grid, i - (c & 1), j - (c >> 1 & 1), k - (c >> 2));
+        if (is_inside) visit(i, j, k);
+      }
+}
+
 ContactBody::ContactBody(const ContactBodyArrays &given)
 {
   need(given.particles > 0 && given.points >= 0, "it has no particles, or less than no points");
@@ -80,23 +92,33 @@ ContactBody::ContactBody(const ContactBodyArrays &given)
     need(are_finite(given.at + 3 * p, 3) && are_finite(given.centre + 3 * p, 3), "a point is nowhere");
     const Vec3 normal = vec3(given.normal + 3 * p);
     need(std::fabs(dot(normal, normal) - 1.0) < 1e-6, "a normal has not length 1");
-    surface.push_back({{given.cell[p] % cells[0], given.cell[p] / cells[0] % cells[1], given.cell[p] / (cells[0] * cells[1])},
-                       vec3(given.at + 3 * p),
-                       vec3(given.centre + 3 * p),
-                       vec3(given.normal + 3 * p),
-                       given.area[p],
-                       static_cast<PointKind>(given.kind[p])});
-    area.push_back(given.area[p]);
-    const Vec3 &normal_now = surface.back().normal;
-    const int (&own)[3] = surface.back().cell;
-    facing.push_back(
-        {{normal_now.x * edges[0], normal_now.y * edges[1], normal_now.z * edges[2]}, place(own[0], own[1], own[2])});
-    has_fine |= surface.back().kind == PointKind::FINE;
+    add_point({{given.cell[p] % cells[0], given.cell[p] / cells[0] % cells[1], given.cell[p] / (cells[0] * cells[1])},
+               vec3(given.at + 3 * p),
+               vec3(given.centre + 3 * p),
+               vec3(given.normal + 3 * p),
+               given.area[p],
+               static_cast<PointKind>(given.kind[p])});
   }
+  need(!given.tears || (!is_line() && !rigid), "what does not deform, and a line, has no particles inside");
+  if (given.tears)    // a particle inside stands for a cell's share of a face
+    each_inside(lattice(), [this](int i, int j, int k) {
+      const Vec3 X = {1.0 * i, 1.0 * j, 1.0 * k};
+      add_point({{i, j, k}, X, X, {0.0, 0.0, 1.0}, mean_edge * mean_edge, PointKind::INNER});
+    });
   take_open_parts(given);
   find_carriers();
   sort_points();
   round = !is_cuboid() && !is_line() && normals_differ(PointKind::DENSE) && normals_differ(PointKind::FINE);
+}
+
+void ContactBody::add_point(const SurfacePoint &point)
+{
+  const Vec3 &normal = point.normal;
+  surface.push_back(point);
+  area.push_back(point.area);
+  facing.push_back(
+      {{normal.x * edges[0], normal.y * edges[1], normal.z * edges[2]}, place(point.cell[0], point.cell[1], point.cell[2])});
+  has_fine |= point.kind == PointKind::FINE;
 }
 
 bool ContactBody::normals_differ(PointKind kind) const
@@ -237,7 +259,7 @@ void ContactBody::find_carriers()
   const auto now = [this] { return static_cast<int>(point_carriers.size()); };
   for (const SurfacePoint &point : surface) {
     first_carrier.push_back(now());
-    add_carriers(point, point.at);
+    if (point.kind != PointKind::INNER) add_carriers(point, point.at);
     first_carrier.push_back(now());
     if (point.kind == PointKind::SHARP) add_carriers(point, point.centre);
   }

@@ -21,7 +21,8 @@ enum class PointKind : std::uint8_t {
   FLAT = 0,     // inside a side of a cuboid
   SHARP = 1,    // on an edge of a cuboid or in a corner
   DENSE = 2,    // of any other shape
-  FINE = 3      // closer to each other, for a round shape of few cells, which acts on flat surfaces with these only
+  FINE = 3,     // closer to each other, for a round shape of few cells, which acts on flat surfaces with these only
+  INNER = 4     // at a particle inside of a body that may tear: none before a tear lays it bare (TornBody)
 };
 
 // A point of the drawn surface and the area that it stands for.
@@ -76,6 +77,7 @@ struct ContactBodyArrays {
   int between = 0;
   const std::int32_t *sharer = nullptr;
   const double *share = nullptr;
+  bool tears = false;    // its particles inside have points, too
 };
 
 // The margin of a grid of these cells with so many coefficients of its depth; 0 where no margin has as many.
@@ -170,6 +172,7 @@ class ContactBody {
   void take_line(const ContactBodyArrays &given);
   void take_frame(const ContactBodyArrays &given);
   void take_open_parts(const ContactBodyArrays &given);
+  void add_point(const SurfacePoint &point);
   void add_carriers(const SurfacePoint &point, const Vec3 &X);
   void find_carriers();
   void sort_points();

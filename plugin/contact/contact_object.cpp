@@ -9,13 +9,24 @@
 
 namespace mdanim {
 
+// The place of the particle of a point of kind INNER: the low corner of its cell.
+static int inner_place(const ContactBody &body, int point)
+{
+  const int (&cell)[3] = body.points()[point].cell;
+  return body.place(cell[0], cell[1], cell[2]);
+}
+
 TornBody::TornBody(const ContactBody &body, const std::vector<int> &ends)
     : at_tear(body.slots(), 0), replaced(body.points().size(), 0), area(body.areas(), body.areas() + body.points().size())
 {
   for (const int slot : ends) at_tear[slot] = 1;
+  const std::vector<char> bare = laid_bare(body, ends);
   for (std::size_t p = 0; p < replaced.size(); ++p) {
     const PointCarriers by = body.carriers_of(static_cast<int>(p));
-    replaced[p] = std::any_of(by.first, by.last, [this](const PointCarrier &one) { return at_tear[one.slot] != 0; });
+    if (body.points()[p].kind == PointKind::INNER)
+      replaced[p] = bare[inner_place(body, static_cast<int>(p))];
+    else
+      replaced[p] = std::any_of(by.first, by.last, [this](const PointCarrier &one) { return at_tear[one.slot] != 0; });
   }
   const std::vector<int> own = own_particles(body);
   for (std::size_t p = 0; p < replaced.size(); ++p) {
@@ -32,7 +43,31 @@ TornBody::TornBody(const ContactBody &body, const std::vector<int> &ends)
   carriers.push_back({0, 0.0});    // one more, as bodies have it
 }
 
-// The particle of each point that is replaced, -1 for none, those first that carry most of a point; and the areas of these.
+// Which particles are corners of a cell with both ends of a link, by places.
+std::vector<char> TornBody::laid_bare(const ContactBody &body, const std::vector<int> &ends) const
+{
+  std::vector<char> found(at_tear.size(), 0);
+  const auto at = [&](int place, int axis) {
+    return axis == 0 ? place % body.row() : axis == 1 ? place % body.layer() / body.row() : place / body.layer();
+  };
+  for (std::size_t n = 0; n + 1 < ends.size(); n += 2) {
+    int from[3], to[3];
+    for (int d = 0; d < 3; ++d) {
+      const auto [low, high] = std::minmax(at(ends[n], d), at(ends[n + 1], d));
+      from[d] = high - 1, to[d] = low;    // cells that have both
+    }
+    for (int k = from[2]; k <= to[2]; ++k)
+      for (int j = from[1]; j <= to[1]; ++j)
+        for (int i = from[0]; i <= to[0]; ++i) {
+          if (!body.is_filled(i, j, k)) continue;
+          for (int c = 0; c < 8; ++c) found[body.place(i + (c & 1), j + (c >> 1 & 1), k + (c >> 2))] = 1;
+        }
+  }
+  return found;
+}
+
+// The particle of each point that is replaced, -1 for none, those first that carry most of a point; and the areas of these: of a
+// particle inside of the body, the larger one of those that it carried and its own.
 std::vector<int> TornBody::own_particles(const ContactBody &body)
 {
   struct Carried {
@@ -40,7 +75,7 @@ std::vector<int> TornBody::own_particles(const ContactBody &body)
     int point, slot;
   };
   std::vector<Carried> all;
-  std::vector<double> of_particle(at_tear.size(), 0.0);
+  std::vector<double> of_particle(at_tear.size(), 0.0), of_fine(at_tear.size(), 0.0);    // one set or the other acts
   for (int p = 0; p < static_cast<int>(replaced.size()); ++p) {
     if (!replaced[p]) continue;
     const PointCarriers by = body.carriers_of(p);
@@ -48,12 +83,20 @@ std::vector<int> TornBody::own_particles(const ContactBody &body)
     for (const PointCarrier *one = by.first; one < by.middle; ++one) sum += std::fabs(one->weight);
     for (const PointCarrier *one = by.first; one < by.middle; ++one) {
       all.push_back({std::fabs(one->weight), p, one->slot});
-      of_particle[one->slot] += body.areas()[p] * std::fabs(one->weight) * sum;
+      (body.points()[p].kind == PointKind::FINE ? of_fine : of_particle)[one->slot] +=
+          body.areas()[p] * std::fabs(one->weight) * sum;
     }
   }
+  for (std::size_t slot = 0; slot < of_fine.size(); ++slot) of_particle[slot] = std::max(of_particle[slot], of_fine[slot]);
   std::stable_sort(all.begin(), all.end(), [](const Carried &a, const Carried &b) { return a.weight > b.weight; });
   std::vector<int> found(replaced.size(), -1);
   std::vector<char> has_one(at_tear.size(), 0);
+  for (int p = 0; p < static_cast<int>(replaced.size()); ++p) {
+    if (!replaced[p] || body.points()[p].kind != PointKind::INNER) continue;
+    found[p] = inner_place(body, p);
+    has_one[found[p]] = 1;
+    area[p] = std::max(area[p], of_particle[found[p]]);
+  }
   for (const Carried &one : all) {
     if (found[one.point] >= 0 || has_one[one.slot]) continue;
     found[one.point] = one.slot;

@@ -25,10 +25,11 @@ class LateOuterCells;
 // An object of which links are gone. A cell with a particle of such a link pushes at no point of others: what is left of the body
 // around it is not known. Points that such a particle carries, with others or alone, are replaced: each of their particles gets
 // one of them for its own, with the area that it carried, so that contact is as stiff as before for each particle at most; points
-// that are left over are none.
+// that are left over are none. A particle inside of the body is a point from when on a cell around it is torn: one that has both
+// ends of a link that is gone.
 class TornBody {
  public:
-  // The ends of links that are gone, by places of particles (ContactBody::slot_of()).
+  // Both ends of each link that is gone, one behind the other, by places of particles (ContactBody::slot_of()).
   TornBody(const ContactBody &body, const std::vector<int> &ends);
 
   bool is_at_tear(int slot) const { return at_tear[slot] != 0; }
@@ -47,6 +48,7 @@ class TornBody {
   }
 
  private:
+  std::vector<char> laid_bare(const ContactBody &body, const std::vector<int> &ends) const;
   std::vector<int> own_particles(const ContactBody &body);
 
   std::vector<char> at_tear, replaced;    // by places of particles, and by points
@@ -246,6 +248,9 @@ class PointFinder {
       if (!zone.meets(box)) continue;
       const auto [first, end] = owner.body->acting(cell, on_flat);
       for (int n = first; n < end; ++n) mark(owner.body->points_by_cell()[n]);
+      if (!owner.torn) continue;    // points of single particles act on all shapes
+      for (int n = cell.first; n < cell.last; ++n)
+        if (const int point = owner.body->points_by_cell()[n]; owner.torn->is_replaced(point)) mark(point);
     }
     for (const Contact &one : contacts) mark(one.point);
     std::vector<int> found;

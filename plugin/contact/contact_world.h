@@ -51,8 +51,9 @@ class ContactWorld {
   // Forgets lists and all points except those in contact: to be called before list() at the setup of a run.
   void forget();
 
-  // Sets links of objects that are gone: the numbers of particles at their ends, by ids of objects. In a run, with all particles
-  // at these places, contacts of points that are replaced end, and list() must follow; at its setup, null, they have ended.
+  // Sets links of objects that are gone: the numbers of particles at their ends, two for each, by ids of objects. In a run, with
+  // all particles at these places, contacts of points that are replaced end, and list() must follow; at its setup, null, they
+  // have ended.
   using TornEnds = std::map<int, std::vector<int>>;
   void tear(const TornEnds &ends, const Coordinates *places);
 

@@ -9,8 +9,10 @@
 
 namespace mdanim {
 
-FoldContact::FoldContact(const FoldObject &own, const FoldObject &other, const FoldLaw &law, double apart, bool itself)
-    : own(&own), other(&other), rule(law), apart(itself ? apart : 0.0), lines(!own.segments.empty() && !other.segments.empty())
+FoldContact::FoldContact(const FoldObject &own, const FoldSurface &of_own, const FoldObject &other, const FoldSurface &of_other,
+                         const FoldLaw &law, double apart)
+    : own(&own), other(&other), of_own(&of_own), of_other(&of_other), rule(law), apart(apart), itself(&own == &other),
+      lines(!own.segments.empty() && !other.segments.empty())
 {
   identity.resize(own.particles.size());
   for (std::size_t n = 0; n < identity.size(); ++n) identity[n] = static_cast<int>(n);
@@ -42,11 +44,13 @@ static Vec3 at_foot(const Vec3 *x, const int *corners, const double *weight, int
 Vec3 FoldContact::way(const Vec3 *x, int f, const Vec3 *y, int e, const NearestPoints &at) const
 { return at_foot(x, feature(f), at.own, corners_of_feature()) - at_foot(y, element(e), at.other, corners_of_element()); }
 
-// Whether two parts of one object are so far from each other without load that they may touch.
+// Whether two parts of one object may touch: they are pieces of it, or so far from each other without load.
 bool FoldContact::is_apart(int f, int e) const
 {
-  if (apart == 0.0) return true;
+  if (!itself) return true;
   const int *const a = feature(f), *const b = element(e);
+  if (of_own->part(a[0]) != of_other->part(b[0])) return true;
+  if (apart == 0.0) return false;
   for (int k = 0; k < corners_of_element(); ++k) {    // most of what is near is a neighbour
     const Vec3 corner = other->rest[b[k]] - own->rest[a[0]];
     if (dot(corner, corner) < apart * apart) return false;
@@ -55,17 +59,7 @@ bool FoldContact::is_apart(int f, int e) const
   return dot(way, way) >= apart * apart;
 }
 
-void FoldContact::open(const FoldObject &object, int low, int high, std::vector<char> &gone)
-{
-  const auto has = [&](const auto &corners) {
-    int found = 0;
-    for (const int k : corners) found += object.particles[k] == low || object.particles[k] == high;
-    return found == 2;
-  };
-  gone.resize(std::max(object.triangles.size(), object.segments.size()), 0);
-  for (std::size_t n = 0; n < gone.size(); ++n)
-    gone[n] = gone[n] || (object.triangles.empty() ? has(object.segments[n]) : has(object.triangles[n]));
-}
+bool FoldContact::has_feature(int f) const { return lines ? of_own->has_element(f, itself) : of_own->has_particle(f, itself); }
 
 static Box box_of(const Vec3 *x, const int *corners, int count)
 {
@@ -78,21 +72,27 @@ void FoldContact::list(const Vec3 *x, const Vec3 *y, double skin)
 {
   const double far = rule.reach + skin;
   Box mine, all;
-  std::vector<Box> boxes(count());
-  for (std::size_t n = 0; n < own->particles.size(); ++n) mine.include(&x[n].x);
-  for (std::size_t n = 0; n < boxes.size(); ++n) {
-    boxes[n] = box_of(y, element(static_cast<int>(n)), corners_of_element()).grown(far);
-    all.unite(boxes[n]);
-  }
+  std::vector<Box> boxes;
+  std::vector<int> number;
   elements.clear();
   std::fill(first.begin(), first.end(), 0);
-  if (!meet(mine, all, 0.0)) return;
+  if (!may_touch()) return;
+  for (int f = 0; f < features(); ++f)
+    if (has_feature(f)) mine.unite(box_of(x, feature(f), corners_of_feature()));
+  for (int e = 0; e < count(); ++e) {
+    if (!of_other->has_element(e, itself)) continue;
+    boxes.push_back(box_of(y, element(e), corners_of_element()).grown(far));
+    all.unite(boxes.back());
+    number.push_back(e);
+  }
+  if (boxes.empty() || mine.empty() || !meet(mine, all, 0.0)) return;
   const BoxTree tree(boxes);
   for (int f = 0; f < features(); ++f) {
     first[f] = static_cast<int>(elements.size());
-    if (!feature_gone.empty() && feature_gone[f]) continue;
-    tree.meeting(box_of(x, feature(f), corners_of_feature()), [&](int e) {
-      if ((!element_gone.empty() && element_gone[e]) || !is_apart(f, e)) return;
+    if (!has_feature(f)) continue;
+    tree.meeting(box_of(x, feature(f), corners_of_feature()), [&](int n) {
+      const int e = number[n];
+      if (!is_apart(f, e)) return;
       const Vec3 there = way(x, f, y, e, foot(x, f, y, e));
       if (dot(there, there) < far * far) elements.push_back(e);
     });

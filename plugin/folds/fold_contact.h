@@ -8,6 +8,7 @@
 #pragma once
 
 #include "folds/fold_object.h"
+#include "folds/fold_surface.h"
 
 #include <cstddef>
 #include <vector>
@@ -22,17 +23,16 @@ struct FoldNodes {
 };
 
 // One way of a pair: features of one object against elements of the other one. Features are particles, and against segments those
-// of an object of segments are its segments.
+// of an object of segments are its segments. The parts of an object that touch each other are pieces, or are `apart` without
+// load.
 class FoldContact {
  public:
-  FoldContact(const FoldObject &own, const FoldObject &other, const FoldLaw &law, double apart, bool itself);
+  // Objects and surfaces must outlive it; with the same object twice it touches itself.
+  FoldContact(const FoldObject &own, const FoldSurface &of_own, const FoldObject &other, const FoldSurface &of_other,
+              const FoldLaw &law, double apart);
 
-  // Takes away the elements, and features, of which this is a link that is gone: particles of the object as in its table.
-  void open_element(int low, int high) { open(*other, low, high, element_gone); }
-  void open_feature(int low, int high)
-  {
-    if (lines) open(*own, low, high, feature_gone);
-  }
+  // Whether something may touch: pieces of an object only once it is torn, and of cells what is laid bare.
+  bool may_touch() const { return apart > 0.0 || !(itself || is_of_cells()) || of_own->is_torn() || of_other->is_torn(); }
   // Looks for what may come within reach while no particle moves by more than half of the skin.
   void list(const Vec3 *own, const Vec3 *other, double skin);
   // Adds forces, and returns the energy.
@@ -51,17 +51,18 @@ class FoldContact {
   NearestPoints foot(const Vec3 *x, int f, const Vec3 *y, int e) const;
   Vec3 way(const Vec3 *x, int f, const Vec3 *y, int e, const NearestPoints &at) const;
   bool is_apart(int f, int e) const;
+  bool has_feature(int f) const;
+  bool is_of_cells() const { return !own->cells.empty() || !other->cells.empty(); }
   void act(const FoldNodes &own, const FoldNodes &other, int f, int e, const NearestPoints &at, double distance, double dt) const;
 
   const FoldObject *own, *other;
+  const FoldSurface *of_own, *of_other;
   FoldLaw rule;
-  double apart;    // 0 of two objects
-  bool lines;
-  static void open(const FoldObject &object, int low, int high, std::vector<char> &gone);
+  double apart;    // 0 of two objects, and where pieces of one alone touch
+  bool itself, lines;
 
   std::vector<int> identity;
-  std::vector<char> element_gone, feature_gone;    // empty before the first
-  std::vector<int> first, elements;                // elements near each feature, ascending
+  std::vector<int> first, elements;    // elements near each feature, ascending
 };
 
 }    // namespace mdanim

@@ -3,6 +3,8 @@
 #include "folds/fold_object.h"
 #include "records/line_words.h"
 
+#include <algorithm>
+
 namespace mdanim {
 
 namespace {
@@ -34,15 +36,20 @@ void read_part(LineWords &words, const std::string &kind, FoldObject &object)
     object.rest.push_back(words.vector("its place without load"));
     object.weight.push_back(words.positive("its weight"));
   } else if (kind == "triangle") {
-    if (!object.segments.empty()) words.fail("an object has triangles or segments");
+    if (!object.segments.empty() || !object.cells.empty()) words.fail("an object has cells, triangles or segments");
     const int a = read_corner(words, object), b = read_corner(words, object), c = read_corner(words, object);
     object.triangles.push_back({a, b, c});
   } else if (kind == "segment") {
-    if (!object.triangles.empty()) words.fail("an object has triangles or segments");
+    if (!object.triangles.empty() || !object.cells.empty()) words.fail("an object has cells, triangles or segments");
     const int a = read_corner(words, object), b = read_corner(words, object);
     object.segments.push_back({a, b});
+  } else if (kind == "cell") {
+    if (!object.segments.empty() || !object.triangles.empty()) words.fail("an object has cells, triangles or segments");
+    std::array<int, 8> corners;
+    for (int &corner : corners) corner = read_corner(words, object);
+    object.cells.push_back(corners);
   } else {
-    words.fail("a line begins with object, particle, triangle, segment or pair, got " + kind);
+    words.fail("a line begins with object, particle, cell, triangle, segment or pair, got " + kind);
   }
 }
 
@@ -54,18 +61,39 @@ FoldPair read_pair(LineWords &words, const FoldTable &table)
   for (const int id : {pair.first, pair.second}) {
     const auto found = table.objects.find(id);
     if (found == table.objects.end()) words.fail("there is no object " + std::to_string(id) + " before this pair");
-    if (found->second.triangles.empty() && found->second.segments.empty())
-      words.fail("object " + std::to_string(id) + " has no triangle and no segment");
+    if (found->second.triangles.empty() && found->second.segments.empty() && found->second.cells.empty())
+      words.fail("object " + std::to_string(id) + " has no cell, triangle or segment");
   }
   pair.law.reach = words.positive("the reach of a pair");
   pair.law.stiffness = words.positive("the stiffness of a pair");
   pair.law.friction = words.at_least_zero("the friction of a pair");
   pair.law.damping = words.at_least_zero("the damping of a pair");
-  if (pair.first == pair.second) pair.apart = words.positive("the distance from which on an object touches itself");
+  if (pair.first == pair.second && !words.is_at_end())
+    pair.apart = words.positive("the distance from which on an object touches itself");
   return pair;
 }
 
 }    // namespace
+
+void FoldObject::cut_faces()
+{
+  constexpr int FACES[6][4] = {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}};
+  std::map<std::array<int, 4>, std::size_t> known;    // the first triangle of each face, by its corners
+  for (std::size_t c = 0; c < cells.size(); ++c)
+    for (const auto &face : FACES) {
+      std::array<int, 4> corner, sorted;
+      for (int k = 0; k < 4; ++k) corner[k] = sorted[k] = cells[c][face[k]];
+      std::sort(sorted.begin(), sorted.end());
+      const auto [at, is_new] = known.emplace(sorted, triangles.size());
+      if (!is_new) {
+        sides[at->second][1] = sides[at->second + 1][1] = static_cast<int>(c);
+        continue;
+      }
+      triangles.push_back({corner[0], corner[1], corner[2]});
+      triangles.push_back({corner[0], corner[2], corner[3]});
+      sides.insert(sides.end(), 2, {static_cast<int>(c), -1});
+    }
+}
 
 FoldTable read_folds(const std::string &name, const std::string &text)
 {
@@ -85,6 +113,7 @@ FoldTable read_folds(const std::string &name, const std::string &text)
     }
     words.expect_end();
   });
+  for (auto &[id, object] : table.objects) object.cut_faces();
   return table;
 }
 

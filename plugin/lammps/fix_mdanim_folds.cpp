@@ -17,6 +17,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <stdexcept>
 
 using namespace LAMMPS_NS;
@@ -55,14 +56,21 @@ void FixMdanimFolds::make_ways()
   std::map<int, int> number;
   for (int n = 0; n < nodes.count(); ++n) number[nodes.molecule(n)] = n;
   ways.clear();
+  surfaces.clear();
+  for (int n = 0; n < nodes.count(); ++n) surfaces.emplace_back(table.objects.at(nodes.molecule(n)));
   for (const FoldPair &pair : table.pairs) {
     skin = std::max(skin, SKIN * pair.law.reach);
     const FoldObject &a = table.objects.at(pair.first), &b = table.objects.at(pair.second);
     const int one = number[pair.first], other = number[pair.second];
-    ways.push_back({one, other, FoldContact(a, b, pair.law, pair.apart, one == other)});
+    ways.push_back({one, other, FoldContact(a, surfaces[one], b, surfaces[other], pair.law, pair.apart)});
     if (one != other && (a.segments.empty() || b.segments.empty()))
-      ways.push_back({other, one, FoldContact(b, a, pair.law, 0.0, false)});
+      ways.push_back({other, one, FoldContact(b, surfaces[other], a, surfaces[one], pair.law, 0.0)});
   }
+}
+
+bool FixMdanimFolds::may_touch() const
+{
+  return std::any_of(ways.begin(), ways.end(), [](const FoldWay &way) { return way.contact.may_touch(); });
 }
 
 int FixMdanimFolds::setmask() { return PRE_NEIGHBOR | POST_INTEGRATE | POST_FORCE; }
@@ -74,6 +82,7 @@ void FixMdanimFolds::init()
   listed.clear();
   tears = FixMdanimTear::of(lmp);
   known_tears = 0;
+  energy = 0.0;
   make_ways();
 }
 
@@ -86,9 +95,14 @@ void FixMdanimFolds::list_again()
   lists += 1.0;
 }
 
-// Velocities are those of half a step before: what has moved the particles here.
-void FixMdanimFolds::find_pushes()
+// Velocities are those of half a step before: what has moved the particles here. Nothing moves at the setup of a run.
+void FixMdanimFolds::find_pushes(bool moves)
 {
+  const bool has_torn = tears && known_tears < tears->gone().size(), woken = may_touch();
+  if (!woken && !has_torn) {
+    pushes.clear();
+    return;
+  }
   const double units = 1.0 / force->ftm2v;
   nodes.share();
   const std::size_t count = nodes.count() ? nodes.end(nodes.count() - 1) : 0;
@@ -96,7 +110,7 @@ void FixMdanimFolds::find_pushes()
   v.resize(count);
   mass.resize(count);
   double farthest = 0.0;
-  const bool known = listed.size() == count;
+  const bool known = woken && listed.size() == count;
   for (std::size_t k = 0; k < count; ++k) {
     x[k] = nodes.place(k);
     v[k] = nodes.speed(k);
@@ -107,31 +121,38 @@ void FixMdanimFolds::find_pushes()
   }
   if (!known || !(farthest <= 0.25 * skin * skin)) list_again();
 
-  if (tears && known_tears < tears->gone().size()) {    // what a torn element has stored is lost
+  if (has_torn) {    // what a torn element has stored is lost
     const double before = known ? push_all() : 0.0;
     open_torn();
     list_again();
     energy = push_all();
-    if (known && comm->me == 0) loss += before - energy;
+    if (moves && comm->me == 0) loss += before - energy;
   } else {
     energy = push_all();
   }
 
   pushes.clear();
+  const auto is_pushed = [this](std::size_t k) {
+    return dot(pushed[k], pushed[k]) + dot(rubbed[k], rubbed[k]) + dot(damped[k], damped[k]) != 0.0;
+  };
   for (std::size_t k = 0; k < count; ++k)
-    if (const int i = nodes.target(k); i != ObjectNodes::ELSEWHERE) pushes.push_back({i, pushed[k], {rubbed[k], damped[k]}});
+    if (const int i = nodes.target(k); i != ObjectNodes::ELSEWHERE && is_pushed(k))
+      pushes.push_back({i, pushed[k], {rubbed[k], damped[k]}});
 }
 
 // The links that are gone since the last time.
 void FixMdanimFolds::open_torn()
 {
+  std::set<int> torn;
   for (; known_tears < tears->gone().size(); ++known_tears) {
     const GoneLink &link = tears->gone()[known_tears];
-    for (FoldWay &way : ways) {
-      if (nodes.molecule(way.second) == link.object) way.contact.open_element(link.low, link.high);
-      if (nodes.molecule(way.first) == link.object) way.contact.open_feature(link.low, link.high);
+    for (int n = 0; n < nodes.count(); ++n) {
+      if (nodes.molecule(n) != link.object) continue;
+      surfaces[n].open(link.low, link.high);
+      torn.insert(n);
     }
   }
+  for (const int n : torn) surfaces[n].settle();
 }
 
 // Forces of all contacts on nodes, and their energy.
@@ -173,7 +194,7 @@ void FixMdanimFolds::count()
 void FixMdanimFolds::setup(int)
 {
   if (restarted) unpack(StateRecords(*restarted));
-  find_pushes();
+  find_pushes(false);
   for (FoldForce &one : pushes)
     if (const auto found = acted.find(atom->tag[one.i]); found != acted.end()) one.lost = found->second;
   acted.clear();
@@ -189,7 +210,7 @@ void FixMdanimFolds::post_integrate()
 void FixMdanimFolds::post_force(int)
 {
   const Lap lap(seconds);
-  find_pushes();
+  find_pushes(true);
   push();
   count();
 }
@@ -232,5 +253,6 @@ double FixMdanimFolds::memory_usage()
   std::size_t found = nodes.bytes() + (x.capacity() + v.capacity() + listed.capacity() + pushed.capacity()) * sizeof(Vec3);
   for (const auto &one : table.objects) found += one.second.bytes();
   for (const FoldWay &way : ways) found += way.contact.bytes();
+  for (const FoldSurface &one : surfaces) found += one.bytes();
   return static_cast<double>(found);
 }

@@ -54,8 +54,9 @@ class FixMdanimFolds : public mdanim::FixBase, public mdanim::Stateful {
   };
 
   void make_ways();
+  bool may_touch() const;
   void locate() { nodes.locate(name(), groupbit); }
-  void find_pushes();
+  void find_pushes(bool moves);
   double push_all();
   void open_torn();
   void list_again();
@@ -64,6 +65,7 @@ class FixMdanimFolds : public mdanim::FixBase, public mdanim::Stateful {
 
   mdanim::FoldTable table;
   mdanim::ObjectNodes nodes;
+  std::vector<mdanim::FoldSurface> surfaces;    // of nodes' objects
   std::vector<FoldWay> ways;
   double skin = 0.0;
   const FixMdanimTear *tears = nullptr;                              // null where nothing tears

@@ -31,7 +31,7 @@ class TornEnds {
   }
 
  private:
-  // All ends of objects of which links have gone since the last time, counted from the lowest tag of the object, 0.
+  // Both ends of all links of objects of which some have gone since the last time, counted from the lowest tag of the object, 0.
   using Ends = ContactWorld::TornEnds;
   Ends news()
   {

@@ -107,7 +107,7 @@ def cuboid_arrays(cells, edge, rigid: bool = False) -> dict:
     """The arrays of a cuboid's contact body."""
     size = np.array(cells) * edge
     body = make_contact_body(Box(tuple(size.tolist())), Cells(np.ones(cells[::-1], bool), -size / 2, size / 2))
-    return {name: getattr(frame_of(body) if rigid else body, name) for name in (*ARRAYS, "radius")}
+    return {name: getattr(frame_of(body) if rigid else body, name) for name in (*ARRAYS, "radius", "tears")}
 
 
 def line_arrays(particles: int, edge: float, radius: float) -> dict:
@@ -170,6 +170,7 @@ def give_body(lmp, fix: str, kind: int, arrays: dict) -> None:
         ctypes.c_int(len(sharer)),
         sharer.ctypes.data_as(ctypes.c_void_p),
         share.ctypes.data_as(ctypes.c_void_p),
+        ctypes.c_int(arrays.get("tears", False)),
         error,
         ctypes.c_int(1024),
     ):

@@ -32,4 +32,5 @@ def body_arguments(kind: int, body: ContactBody) -> list:
         *map(ctypes.c_double, (body.radius, body.hardness, body.spread)),
         ctypes.c_int(len(body.sharer)),
         *map(pointer, (body.sharer, body.share)),
+        ctypes.c_int(body.tears),
     ]

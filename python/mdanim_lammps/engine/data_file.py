@@ -77,7 +77,7 @@ def bodies_text(bodies: Mapping[int, ContactBody]) -> Iterator[str]:
             yield f"line {len(body.node)} {body.radius!r} {body.hardness!r} {body.spread!r} {shared}\n"
             yield from rows("%d %d %d %r %r %r\n", *body.sharer.T, *body.share.T)
         elif body.frame is None or body.frame_at is None:
-            yield f"particles {len(body.node)}\n"
+            yield f"{'tears' if body.tears else 'particles'} {len(body.node)}\n"
             yield from rows("%d\n", body.node)
         else:
             yield f"rigid {len(body.node)}  # four particles, at\n"

@@ -99,12 +99,14 @@ class ContactBody:
     """Their weights, shape (K, 3)."""
     spread: float = 0.0
     """No such point is farther from one of its particles [m]."""
+    tears: bool = False
+    """Whether particles inside of it become points where a tear lays them bare."""
 
     @cached_property
     def carried(self) -> np.ndarray:
         """w_i, the area of the surface that each particle carries [m^2], shape (N,): the larger one of that of its fine points
         and that of all others, as either act. Points beyond the cell that carries them have weights below 0. Particles at no
-        cells carry nothing."""
+        cells carry nothing; those inside of a body that may tear a cell's share of a face, which they are once they are bare."""
         if self.radius:
             own, of_point = len(self.node), self.area[len(self.node) :, None] * self.share
             return self.area[:own] + np.bincount(self.sharer.ravel(), of_point.ravel(), own) if len(of_point) else self.area
@@ -112,7 +114,11 @@ class ContactBody:
             return np.zeros(len(self.node))
         fine = self.kind == FINE
         sets = [np.flatnonzero(some) for some in (fine, ~fine) if some.any()]
-        return np.max([_carried(self, some) for some in sets], axis=0)
+        most = np.max([_carried(self, some) for some in sets], axis=0)
+        if not self.tears:
+            return most
+        around = cells_around(self.filled.reshape(self.count[::-1]).astype(bool)).ravel()[self.node]
+        return np.where(around == 8, np.maximum(most, self.edge.prod() ** (2.0 / 3.0)), most)
 
 
 @dataclass(frozen=True, eq=False)
@@ -135,6 +141,8 @@ class BodyFrame:
     """X of its eight particles, the corners of a box [-], shape (8, 3); None where particles are at the corners of cells."""
     margin: int = MARGIN
     """Nodes around the grid whose depth is kept."""
+    tears: bool = False
+    """As that of ContactBody."""
 
     @property
     def radius(self) -> float:
@@ -174,7 +182,9 @@ class BodyFrame:
         body = make_contact_body(self.shape, self.cells, self.open, self.margin)
         if self.corners is not None:
             return _in_box(body, self.corners)
-        return frame_of(body) if self.rigid else body
+        if self.rigid:
+            return frame_of(body)
+        return replace(body, tears=True) if self.tears else body
 
     @cached_property
     def drawn(self) -> np.ndarray:

@@ -40,12 +40,12 @@ def two_sheets():
 
 def folded():
     """A strip that is folded over: without load it is flat."""
-    rest = grid(5, 0.0, 3)
+    rest = grid(4, 0.0, 3)
     x = rest.copy()
     over = x[:, 0] > 0.5
     x[over, 0], x[over, 2] = 1.0 - x[over, 0], x[over, 2] + 0.1
-    one = sheet(0, 5, rest)
-    return x, [25], [Pair(one, one, 0.25, 20.0, 0.4, 0.3, 0.4)], [(1, 1)]
+    one = sheet(0, 4, rest)
+    return x, [16], [Pair(one, one, 0.25, 20.0, 0.4, 0.3, 0.4)], [(1, 1)]
 
 
 def ropes():
@@ -160,7 +160,7 @@ def test_particles_of_the_group_alone_are_pushed(tmp_path):
         ("particle 1 0 0 0 1\n", "particle belongs behind a line object"),
         ("object 1\nparticle 1 0 0 0 1\nparticle 1 0 0 0 1\n", "ascend"),
         ("object 1\nparticle 1 0 0 0 1\ntriangle 1 2 3\n", "there is no particle 2"),
-        ("object 1\nparticle 1 0 0 0 1\npair 1 1 1 1 0 0 1\n", "has no triangle and no segment"),
+        ("object 1\nparticle 1 0 0 0 1\npair 1 1 1 1 0 0 1\n", "has no cell, triangle or segment"),
         ("object 1\npair 2 1 1 1 0 0\n", "there is no object 2"),
     ],
 )

@@ -70,7 +70,7 @@ def _loads(context: Context) -> dict[int, _Load]:
 
 def notes(envelope: Envelope) -> list[Problem]:
     """The two layers, or the one, that come the most too fast for their contact: a warning if they pass flat, a note if only
-    single particles do."""
+    single particles do, or if it takes a tear first."""
     if not any(effect.name == EFFECT for effect in envelope.on):
         return []
     context, speed = envelope.context, _Meeting(envelope)
@@ -81,17 +81,19 @@ def notes(envelope: Envelope) -> list[Problem]:
     if fastest <= alone:
         return []
     one, other = (envelope.system.names[m] for m in (pair.first, pair.second))
-    both = f"parts of {one}" if pair.first == pair.second else f"{one} and {other}"
+    word = "parts" if pair.apart else "pieces"
+    both = f"{word} of {one}" if pair.first == pair.second else f"{one} and {other}"
     through = f"layers that meet flat pass through each other from {say(flat, 'm/s')} on, " if flat > alone else ""
     cause = f"{both} may meet at {say(fastest, 'm/s')}: {through}single particles from {say(alone, 'm/s')} on"
     over = fastest / alone
     ways = [f"write a speed or a height for less than {say(alone, 'm/s')}"]
     thick = 1.02 * pair.reach * over
-    if thick <= max(layers(context)[m].spacing for m in (pair.first, pair.second)):
+    both_layers = [layers(context)[m] for m in (pair.first, pair.second)]
+    if all(one.half for one in both_layers) and thick <= max(one.spacing for one in both_layers):
         ways.append(f"a thickness of {say(thick, 'm')}" + ("" if one == other else " for both"))
     if (stiff := 1.02 * envelope.scene.control.contact_stiffness * over**2) <= CONTACT_STIFFNESS.most:
         ways.append(f"contact-stiffness {number(stiff)} in control")
-    severity = "warning" if fastest > flat else "note"
+    severity = "warning" if fastest > flat and not any(one.element.shape[1] == 8 for one in both_layers) else "note"
     comes = max(pair.first, pair.second, key=lambda m: (speed.speed[m], -m))
     return [Problem(envelope.place(comes, "velocity", "position"), cause, ", or ".join(ways), severity=severity)]
 

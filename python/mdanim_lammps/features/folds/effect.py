@@ -7,7 +7,8 @@ import numpy as np
 
 from ...effects.context import Verdict
 from ...effects.effect import Effect
-from .layers import coupled, layers, meeting, pairs
+from ..tearing.words import word_of
+from .layers import coupled, folds, layers, meeting, pairs
 
 TABLE = "folds"
 ENERGY, HEAT, DAMPED = "contact", "friction_heat", "contact_damping_loss"
@@ -30,10 +31,12 @@ class LayersTouch(Effect):
 
     def called_for(self, scene, reach):
         if not (found := meeting(scene, reach.region)):
-            return Verdict(self.name, False, "no sheets may meet, and nothing has touches-itself")
+            return Verdict(self.name, False, "no sheets may meet, nothing tears, and nothing has touches-itself")
         one, other = (scene.solids[m] for m in found[0])
-        if one is other:
+        if one is other and folds(one):
             return Verdict(self.name, True, f"{one.name} touches itself", one.spans.get("touches-itself"))
+        if one is other:
+            return Verdict(self.name, True, f"pieces of {one.name} touch each other", one.spans.get(word_of(one)))
         return Verdict(self.name, True, f"{one.name} may meet {other.name}", other.spans.get("shape"))
 
     def acts_on(self, context):
@@ -52,7 +55,7 @@ class LayersTouch(Effect):
         for m, layer in layers(context).items():
             lines += [f"object {m + 1}\n", layer.text()]
         for pair in pairs(context):
-            apart = f" {pair.apart!r}" if pair.first == pair.second else ""
+            apart = f" {pair.apart!r}" if pair.apart else ""
             values = f"{pair.reach!r} {pair.stiffness!r} {pair.friction!r} {pair.damping!r}"
             lines.append(f"pair {pair.first + 1} {pair.second + 1} {values}{apart}\n")
         return {TABLE: "".join(lines)}
@@ -65,7 +68,7 @@ class LayersTouch(Effect):
             ends = (pair.first, pair.second)
             for own, other in {ends, ends[::-1]}:
                 one, far = layers(context)[own], layers(context)[other]
-                borne = max(1.0, (one.spacing / far.spacing) ** (one.element.shape[1] - 1))
+                borne = max(1.0, (one.spacing / far.spacing) ** (1 if one.element.shape[1] == 2 else 2))
                 rows = system.first[own] + one.particle
                 found[rows] += 2.0 * SIDES * pair.stiffness * (1.0 + borne) * one.weight / system.mass[rows]
         return found

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""Which objects touch as layers, and how: their elements, reach and stiffness (docs/physics-folds.md)."""
+"""Which objects touch as layers, and how: their elements, reach and stiffness (docs/physics-folds.md). What tears is a layer,
+too, or its surface is: its pieces touch each other."""
 
 from __future__ import annotations
 
@@ -18,6 +19,7 @@ from ...reach.region import Sweeps
 from ...scene.once import once_for
 from ...scene.scene import Rope, SceneRecord, Sheet, Shell
 from ..contact.pairs import damping, frictions, pair_rules
+from ..tearing.words import fills, tears
 from .words import Itself
 
 REACH = 1.0 / 3.0
@@ -45,23 +47,32 @@ def folds(solid: Any) -> bool:
     return solid.touches_itself is Itself.YES
 
 
+def breaks(solid: Any) -> bool:
+    """Whether an object may tear into pieces that touch each other: a sheet or a solid."""
+    return tears(solid) and not is_rope(solid)
+
+
 @once_for(lambda scene: scene)
-def _kinds(scene: SceneRecord) -> tuple[np.ndarray, np.ndarray]:
-    """Sheets, and sheets and ropes that touch themselves, bool, each of shape (M,)."""
+def _kinds(scene: SceneRecord) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Sheets, sheets and ropes that touch themselves, all sheets and ropes, and solids that tear, bool, each of shape (M,)."""
     sheet = np.array([is_sheet(s) for s in scene.solids], bool)
-    return sheet, np.array([(is_sheet(s) or is_rope(s)) and folds(s) for s in scene.solids], bool)
+    bare = np.array([not fills(s) for s in scene.solids], bool)
+    folding = bare & [folds(s) for s in scene.solids]
+    return sheet, folding, bare, ~bare & [tears(s) for s in scene.solids]
 
 
 def _layered(scene: SceneRecord) -> np.ndarray:
-    """Numbers of the sheets and ropes of a scene, int64, shape (K,)."""
-    return np.flatnonzero([is_sheet(solid) or is_rope(solid) for solid in scene.solids])
+    """Numbers of the sheets, ropes and solids that may tear of a scene, int64, shape (K,)."""
+    _, _, bare, torn = _kinds(scene)
+    return np.flatnonzero(bare | torn)
 
 
 def as_layers(scene: SceneRecord, i: Any, j: Any) -> np.ndarray:
     """Which pairs of sheets and ropes of a scene, by number, touch each other as layers where they meet, bool, of the shape of
     ``i`` and ``j``."""
-    sheet, folding = _kinds(scene)
-    return (sheet[i] & sheet[j]) | (folding[i] & folding[j])
+    sheet, folding, bare, torn = _kinds(scene)
+    layered = bare | torn
+    return (sheet[i] & sheet[j]) | (folding[i] & folding[j]) | (torn[i] & layered[j]) | (layered[i] & torn[j])
 
 
 @once_for(lambda scene: scene)
@@ -76,7 +87,7 @@ def coupled(scene: SceneRecord) -> list[tuple[int, int]]:
 def meeting(scene: SceneRecord, swept: Sweeps) -> list[tuple[int, int]]:
     """Pairs i <= j of objects of a scene that touch as layers where they meet, can be in one place, and are not joined, sorted;
     equal ones touch themselves."""
-    found = [(m, m) for m, solid in enumerate(scene.solids) if folds(solid)]
+    found = [(m, m) for m, solid in enumerate(scene.solids) if folds(solid) or breaks(solid)]
     layered = _layered(scene)
     for some in box_pairs(swept.low[layered], swept.high[layered]):
         i, j = np.sort(layered[np.array(some)], axis=0)
@@ -99,7 +110,7 @@ class LayerPair:
     damping: float
     """Share of critical damping."""
     apart: float
-    """[m]; 0 of two objects."""
+    """[m]; 0 of two objects, and of one whose pieces alone touch."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,7 +122,7 @@ class FoldLayer:
     rest: np.ndarray
     """Their places without load [m], shape (n, 3)."""
     element: np.ndarray
-    """Rows of `particle`: segments, shape (E, 2), or triangles, shape (E, 3)."""
+    """Rows of `particle`: segments, shape (E, 2), triangles, shape (E, 3), or cells, shape (E, 8)."""
     weight: np.ndarray
     """Part of the stiffness of each that is its own, up to 1, shape (n,)."""
     spacing: float
@@ -125,13 +136,13 @@ class FoldLayer:
         """Its lines in the table of the fix."""
         rows = zip(self.particle.tolist(), self.rest.tolist(), self.weight.tolist())
         lines = [f"particle {i + 1} {x!r} {y!r} {z!r} {w!r}" for i, (x, y, z), w in rows]
-        word = "triangle" if self.element.shape[1] == 3 else "segment"
+        word = {2: "segment", 3: "triangle", 8: "cell"}[self.element.shape[1]]
         lines += [f"{word} {' '.join(str(k + 1) for k in row)}" for row in self.element.tolist()]
         return "".join(f"{line}\n" for line in lines)
 
 
 def layer_of(model: Model, solid: Any) -> FoldLayer:
-    """The layer of an object: all of a rope or a sheet, the surface of its cells of a solid."""
+    """The layer of an object: all of a rope or a sheet, the surface of its cells of a solid; all cells of one that may tear."""
     n, h = len(model.position), model.spacing
     every = np.arange(n)
     weight = np.minimum(1.0, model.share / np.median(model.share))
@@ -145,6 +156,8 @@ def layer_of(model: Model, solid: Any) -> FoldLayer:
     if is_sheet(solid):
         t = solid.shape.thickness
         return FoldLayer(every, rest, model.frame.triangle, weight, h, 0.5 * t, model.young * t)
+    if tears(solid):
+        return FoldLayer(every, rest, model.hexahedron, weight, h, 0.0, model.young * h)
     face = model.hexahedron[:, FACES].reshape(-1, 4)
     _, first, uses = np.unique(np.sort(face, axis=1), axis=0, return_index=True, return_counts=True)
     outer = face[np.sort(first[uses == 1])]
@@ -187,4 +200,5 @@ def _pairs(context: Context) -> Iterator[LayerPair]:
         k = STIFF * scene.control.contact_stiffness * 2.0 * one.link * other.link / (one.link + other.link)
         mu = sqrt(mu_of[names[a]] * mu_of[names[b]])
         mu, beta = told.get((a, b), (mu, damping(scene) if mu > 0.0 else 0.0))
-        yield LayerPair(a, b, reach, k, mu, beta, APART * h + 2.0 * reach if a == b else 0.0)
+        itself = a == b and folds(context.solids[a])
+        yield LayerPair(a, b, reach, k, mu, beta, APART * h + 2.0 * reach if itself else 0.0)

@@ -9,7 +9,7 @@ from typing import Any
 from ...scene.holding import all_held
 from ...scene.schema import Words, setting
 
-SWITCHES = {"folds": "an object with `touches-itself`, or two sheets that may meet"}
+SWITCHES = {"folds": "an object with `touches-itself`, two sheets that may meet, or an object that may tear"}
 
 
 class Itself(Enum):

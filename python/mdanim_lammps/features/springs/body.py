@@ -20,7 +20,13 @@ class LatticeBody(BodyKind):
         return True
 
     def make(self, solid, h, shared):
-        return replace(lattice_model(solid, h, shared), tears=tears(solid))
+        model = lattice_model(solid, h, shared)
+        return replace(model, tears=True, frame=shared.once(_that_tears, model.frame)) if tears(solid) else model
+
+
+def _that_tears(shared, frame):
+    """The frame of bodies that may tear, the same for all of one shape."""
+    return replace(frame, tears=True)
 
 
 KINDS = (LatticeBody(),)

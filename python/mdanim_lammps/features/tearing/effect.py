@@ -9,10 +9,11 @@ from ...effects.context import Verdict
 from ...effects.effect import Effect
 from ...effects.fields import column
 from ...errors import Problem
+from ...scene.formatting import say
 from ..springs.effect import spring_norm
 from .gone import EFFECT, FIX, NAME, acts
 from .rules import beyond, over_two_of, rules_text, strain_of
-from .words import fills, tears
+from .words import fills, tears, word_of
 
 TORN = column(NAME, "1", per="bond", dtype="uint8", state=True)
 """1 for a spring that is gone."""
@@ -34,7 +35,7 @@ class Tearing(Effect):
     def called_for(self, scene, reach):
         for solid in scene.solids:
             if tears(solid):
-                word = "toughness" if solid.tear_strain is None else "tear-strain"
+                word = word_of(solid)
                 return Verdict(self.name, True, f"{solid.name} has a {word}", solid.spans.get(word))
         return Verdict(self.name, False, "no object has a tear-strain or a toughness")
 
@@ -69,19 +70,28 @@ class Tearing(Effect):
         return [f"fix {self.fix} mobile mdanim/tear torn {TORN.name} objects table:{RULES}"]
 
     def notes(self, envelope):
-        """Solids whose cells no longer push at others once they are torn."""
+        """Solids whose cells no longer push at others once they are torn: their particles alone do."""
         swept, system = envelope.reach.region, envelope.system
         for m, solid in enumerate(envelope.context.solids):
             if not (tears(solid) and fills(solid)):
                 continue
             near = ((swept.low[m] < swept.high) & (swept.low < swept.high[m])).all(axis=1)
-            others = [k for k in np.flatnonzero(near).tolist() if k != m and (min(k, m), max(k, m)) not in swept.passing]
+            solids = envelope.context.solids
+            others = [
+                k
+                for k in np.flatnonzero(near).tolist()
+                if k != m and fills(solids[k]) and not tears(solids[k]) and (min(k, m), max(k, m)) not in swept.passing
+            ]
             if not others:
                 continue
-            word = "toughness" if solid.tear_strain is None else "tear-strain"
+            word = word_of(solid)
             it, more = system.names[others[0]], f" and {len(others) - 1} more" if others[1:] else ""
-            cause = f"{solid.name} may meet {it}{more}: where it is torn it bears nothing, and what lies on it sinks in"
-            way = f"write a larger {word} in {solid.name} if it is to bear {it}"
+            apart = say(float(system.spacing[m]), "m")
+            cause = (
+                f"{solid.name} may meet {it}{more}: where it is torn it bears others by its particles alone, {apart} apart, "
+                "and what is narrower sinks in"
+            )
+            way = f"write a larger {word} or a finer resolution in {solid.name} if it is to bear {it}"
             return [Problem(solid.spans.get(word), cause, way, severity="note")]
         return []
 

@@ -50,6 +50,11 @@ def tears(solid: Any) -> bool:
     return not all_held(solid)
 
 
+def word_of(solid: Any) -> str:
+    """The word by which it tears."""
+    return "toughness" if solid.tear_strain is None else "tear-strain"
+
+
 def fills(solid: Any) -> bool:
     """Whether an object fills a volume with cells."""
     return not isinstance(solid.shape, (Rope, Sheet, Shell))
@@ -57,7 +62,7 @@ def fills(solid: Any) -> bool:
 
 def check_object(v: Any, block: Any, solid: Any) -> Any:
     """No rigid object tears, and no rope is torn to begin with."""
-    word = "toughness" if solid.tear_strain is None else "tear-strain"
+    word = word_of(solid)
     if word not in solid.spans:
         return solid
     span, rope = solid.spans[word], solid.shape
@@ -85,8 +90,7 @@ def check(v: Any, top: Mapping, held: Mapping) -> None:
         return
     for solid in [s for s in held["solids"] if tears(s) and fills(s)][:1]:
         cause = f"{solid.name} may tear, and a liquid finds objects by their cells, which are then torn"
-        at = solid.spans["tear-strain" if "tear-strain" in solid.spans else "toughness"]
-        v.problem(at, cause, "take the liquid out, or the tearing", key="tear-liquid")
+        v.problem(solid.spans[word_of(solid)], cause, "take the liquid out, or the tearing", key="tear-liquid")
 
 
 CHECKS = {"object": check_object}
