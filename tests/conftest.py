@@ -37,6 +37,25 @@ def threads_of_tests():
     os.environ[threads.THREADS] = "1"
 
 
+@pytest.fixture(scope="session", autouse=True)
+def meshes_read_here():
+    """Mesh files are read by this process: the start of one of their own takes longer than most tests that have a mesh."""
+    from mdanim_lammps.model import mesh_reader
+
+    apart = mesh_reader._read_apart
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(mesh_reader, "_read_apart", mesh_reader.contents)
+        yield apart
+
+
+@pytest.fixture
+def meshes_read_apart(monkeypatch, meshes_read_here):
+    """Mesh files are read as they are for users, by a process of its own for each."""
+    from mdanim_lammps.model import mesh_reader
+
+    monkeypatch.setattr(mesh_reader, "_read_apart", meshes_read_here)
+
+
 @pytest.fixture(scope="session")
 def scenes() -> Path:
     """The folder of scenes."""

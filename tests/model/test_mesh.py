@@ -3,12 +3,14 @@
 
 import os
 import re
+import sys
 
 import numpy as np
 import pytest
-from mdanim_lammps.model import mesh, shapes
+from mdanim_lammps.model import mesh, mesh_reader, shapes
 from mdanim_lammps.model.cells import fill_cells
 from mdanim_lammps.model.crossings import crossings
+from mdanim_lammps.model.mesh_formats import UnreadableMesh
 from mdanim_lammps.scene.scene import Box, Mesh, Sphere, Torus
 from model_samples import MESHES, assert_closed, enclosed_volume
 
@@ -181,6 +183,25 @@ def test_large_and_irregular_files_are_not_opened(tmp_path):
     ):
         with pytest.raises(mesh.MeshError, match=words):
             mesh.load(Mesh(tmp_path / f"{name}.stl"))
+
+
+@pytest.mark.usefixtures("meshes_read_apart")
+def test_files_are_read_by_a_process_of_their_own(monkeypatch):
+    """It hands on what a file holds, and says what is wrong with one; its time is bounded, and its end is no end of this one."""
+    for ours, theirs in zip(mesh_reader.contents(MESHES / "mixed.obj"), mesh_reader.read_polygons(MESHES / "mixed.obj")):
+        np.testing.assert_array_equal(ours, theirs)
+    told = {
+        "import sys; print('no faces', file=sys.stderr); sys.exit(3)": "no faces",
+        "import os; os.kill(os.getpid(), 9)": "too large",
+    }
+    for code, words in told.items():
+        monkeypatch.setattr(mesh_reader, "command", lambda *_: [sys.executable, "-c", code])
+        with pytest.raises(UnreadableMesh, match=words):
+            mesh_reader.read_polygons(MESHES / "mixed.obj")
+    monkeypatch.setattr(mesh_reader, "SECONDS", 0.05)
+    monkeypatch.setattr(mesh_reader, "command", lambda *_: [sys.executable, "-c", "import time; time.sleep(9)"])
+    with pytest.raises(UnreadableMesh, match=r"in 0\.05 s"):
+        mesh_reader.read_polygons(MESHES / "mixed.obj")
 
 
 def test_a_changed_file_is_read_again(tmp_path):

@@ -34,6 +34,11 @@ def read_polygons(path: Path) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         raise UnreadableMesh("is not a regular file")
     if found.st_size > MOST_BYTES_OF_MESH:
         raise UnreadableMesh(f"has {found.st_size >> 20} MiB, {MOST_BYTES_OF_MESH >> 20} are the most")
+    return _read_apart(path)
+
+
+def _read_apart(path: Path) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """`contents` by a process of its own."""
     try:
         done = run(command(__name__, path), text=False, capture_output=True, timeout=SECONDS)
     except TimeoutExpired:
@@ -46,17 +51,22 @@ def read_polygons(path: Path) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     return np.load(arrays), np.load(arrays), np.load(arrays)
 
 
+def contents(path: Path) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """What `read_polygons` returns, read by this process, however much memory and time that takes. Raises UnreadableMesh."""
+    found = read(path.read_bytes(), path.suffix.lower())
+    faces = np.insert(found.index, np.cumsum(found.count) - found.count, found.count)
+    return found.points, faces, found.color
+
+
 def main() -> None:
     """Write the contents of a file to the standard output, as three arrays."""
     for limit, most in ((resource.RLIMIT_AS, MEMORY), (resource.RLIMIT_CORE, 0)):
         hard = resource.getrlimit(limit)[1]
         resource.setrlimit(limit, (most if hard == resource.RLIM_INFINITY else min(most, hard), hard))
-    path = Path(sys.argv[1])
     try:
-        found = read(path.read_bytes(), path.suffix.lower())
+        found = contents(Path(sys.argv[1]))
     except UnreadableMesh as error:
         print(error, file=sys.stderr)
         sys.exit(UNREADABLE)
-    faces = np.insert(found.index, np.cumsum(found.count) - found.count, found.count)
-    for array in (found.points, faces, found.color):
+    for array in found:
         np.save(sys.stdout.buffer, array)
