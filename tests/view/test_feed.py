@@ -117,15 +117,18 @@ def models_at(models):
     return np.concatenate([m.position for m in models])
 
 
-def test_heights_are_those_of_the_centre_of_mass(slab, monkeypatch):
-    """Heights of all frames, or of fewer of them from the first to the last."""
+def test_the_way_of_an_object(slab, monkeypatch):
+    """Places and velocities of all frames, or of fewer of them from the first to the last."""
     folder, feed = slab
+    read = lambda k, count: unpacked(feed.track(k, count))[1]
     with Trajectory(folder) as t:
-        heights = t.objects["ball"].center_of_mass[:, 2]
-        np.testing.assert_array_equal(feed.heights(2, len(t)), [t.times, heights])
-        np.testing.assert_array_equal(feed.heights(2, 2), [t.times[:2], heights[:2]])
+        found = read(2, len(t))
+        np.testing.assert_array_equal(found["time"], t.times.astype("f4"))
+        np.testing.assert_array_equal(found["centre"].reshape(-1, 3), t.centers[:, 2].astype("f4"))
+        np.testing.assert_array_equal(found["velocity"].reshape(-1, 3), t.center_velocities[:, 2].astype("f4"))
+        np.testing.assert_array_equal(read(2, 2)["time"], t.times[:2].astype("f4"))
         monkeypatch.setattr("mdanim_lammps.view.feed.MOST_POINTS", 3)
-        np.testing.assert_array_equal(feed.heights(2, len(t))[0], t.times[[0, 2, 5]])
+        np.testing.assert_array_equal(read(2, len(t))["time"], t.times[[0, 2, 5]].astype("f4"))
 
 
 def test_light_and_floor_are_those_of_the_scene(slab):
@@ -144,6 +147,10 @@ def test_the_camera_of_the_scene_comes_first(slab):
     camera = Camera(eye=(1.0, -3.0, 2.0), look="ball", time=0.0)
     feed = Feed(slab[0], "", Render(camera=(camera,)), finished=True)
     assert feed.head()["view"]["eye"] == [1.0, -3.0, 2.0]
+    path = feed.buffers()["path"].reshape(-1, 3, 3)  # it looks at what moves, as the movie does
+    with Trajectory(slab[0]) as t:
+        np.testing.assert_allclose(path[:, 1], t.objects["ball"].center_of_mass, atol=1e-6)
+    np.testing.assert_array_equal(path[:, 0], np.tile([1.0, -3.0, 2.0], (len(path), 1)).astype("f4"))
     feed.close()
 
 

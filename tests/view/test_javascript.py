@@ -9,6 +9,7 @@ from pathlib import Path
 
 import mdanim_lammps
 import pytest
+from mdanim_lammps.view.server import packaged_files
 
 HERE, ROOT = Path(__file__).parent, Path(__file__).parents[2]
 WEB = Path(mdanim_lammps.__file__).parent / "view" / "web"
@@ -30,7 +31,7 @@ def test_modules_are_small_and_our_own(path):
     text = path.read_text(encoding="utf-8")
     assert len(text.splitlines()) < 300 and text.startswith("// SPDX-License-Identifier: GPL-2.0-only")
     for name in re.findall(r"from \"([^\"]+)\"", text):
-        assert name.startswith("./") and (WEB / name).exists(), name
+        assert name.startswith("./") and name[1:] in packaged_files(), name
 
 
 def test_others_code_has_its_licences():

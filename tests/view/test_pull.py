@@ -45,8 +45,8 @@ def view(folder, monkeypatch):
 def say(link, hand) -> None:
     """Move the hand; return when the server has done it."""
     link.send(json.dumps({"hand": hand}))
-    link.send(json.dumps({"heights": 0}))
-    while "heights" not in json.loads(link.recv(20)):
+    link.send(json.dumps({"track": 0}))
+    while isinstance(link.recv(20), str):
         pass
 
 

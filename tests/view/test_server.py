@@ -21,6 +21,7 @@ from mdanim_lammps.results.ledger import Ledger
 from mdanim_lammps.results.progress import PROGRESS, ProgressLog
 from mdanim_lammps.view import beside, server
 from mdanim_lammps.view.__main__ import serve
+from mdanim_lammps.view.feed import packed
 from mdanim_lammps.view.server import LONGEST_MESSAGE, PAGES, packaged_files
 from mdanim_lammps.view.tail import MOST_ROWS, Known, Tail
 from scene_texts import FALL
@@ -89,8 +90,14 @@ def test_a_page_is_told_all_and_gets_scene_and_frames(view, folder):
         assert link.recv(10) == view.tail.feed().scene()
         link.send('{"get": 7, "layers": 3}')
         assert link.recv(10) == view.tail.feed().frame(7, 3)
-        link.send('{"heights": 0}')
-        assert json.loads(link.recv(10)) == {"heights": [*map(list, view.tail.feed().heights(0, view.tail.count))]}
+        link.send('{"track": 0}')
+        assert link.recv(10) == view.tail.feed().track(0, view.tail.count)
+        link.send('{"told": 1}')
+        assert json.loads(link.recv(10)) == view.tail.told().head()
+        link.send('{"curve": ["plate", "contact.z"]}')
+        assert link.recv(10) == packed(*view.tail.told().curve(["plate", "contact.z"]))
+        link.send('{"arrows": "weight"}')
+        assert link.recv(10) == packed({}, {"vector": view.tail.told().vectors("weight")})
         link.send('{"springs": 1}')
         assert link.recv(10) == view.tail.feed().springs()
 
@@ -305,7 +312,9 @@ def test_paths_lead_nowhere(view, path):
 
 WRONG = ["", "null", "[]", "{", "[" * 4000, b"\x00\x01", "x" * (LONGEST_MESSAGE + 1), '{"do": "rm"}', '{"do": "pause/../x"}']
 WRONG += [f'{{"get": {n}, "layers": 0}}' for n in ("-1", "16", "1.5", "true", '"1"', "1e999")]
-WRONG += ['{"get": 1}', '{"get": 1, "layers": 4}', '{"heights": 99}', '{"heights": -1}', '{"heights": null}']
+WRONG += ['{"get": 1}', '{"get": 1, "layers": 4}', '{"track": 99}', '{"track": -1}', '{"track": null}']
+NAMED = ("plate.speed", ["nobody", "speed"], ["plate", "distance"], 1, ["plate", "x", "y"], [["plate"], "speed"])
+WRONG += [json.dumps({"curve": named}) for named in NAMED] + ['{"arrows": 1}', '{"arrows": "position"}']
 
 
 @pytest.mark.parametrize("text", WRONG, ids=lambda text: repr(text)[:30])

@@ -37,7 +37,7 @@ class RunValues:
             if name not in (self._by_name if of.of == "NAMES" else self.trajectory.names):
                 raise UsageError(f"{self.trajectory.path} has no object {name}, and {of.what} is to be shown")
         quantity = quantity_of(of)
-        if isinstance(quantity, Recorded) and not self._has(quantity.column_of(of)):
+        if isinstance(quantity, Recorded) and not self.has(quantity.column_of(of)):
             missing = f"the run has not recorded {of.quantity} of {of.subject}"
             raise UsageError(f"{missing}; write it in the scene, record {of.what}, and run it again")
         return series(of, self._measured)
@@ -66,16 +66,17 @@ class RunValues:
         if t.scene is None:
             raise OutputError(f"{t.path}: the scene of this run, or one of its meshes, cannot be read here")
         grid = next((kept.grid for kept in t.metadata.kept.values() if hasattr(kept, "grid")), None)
-        return Measured(t.scene, t.names, grid, t.times, t.centers, t.center_velocities, np.nan, self._column, t, self._has)
+        return Measured(t.scene, t.names, grid, t.times, t.centers, t.center_velocities, np.nan, self._column, t, self.has)
 
-    def _has(self, column: str) -> bool:
+    def has(self, column: str) -> bool:
+        """Whether the ledger of the run has a column; OutputError where it is damaged."""
         return self._ledger is None or column in self._ledger.columns
 
     def _column(self, name: str) -> np.ndarray:
         """A column of the ledger. Raises UsageError where it has none of this name."""
         if self._ledger is None:
             return np.full(1, np.nan)
-        if not self._has(name):
+        if not self.has(name):
             raise UsageError(f"the ledger of the run has no column {name}, which a quantity of the pictures is found from")
         return self._ledger.array(name)[: len(self.trajectory)]
 

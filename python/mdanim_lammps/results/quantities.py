@@ -9,7 +9,9 @@ from functools import lru_cache
 import numpy as np
 
 from ..effects.measured import Measurable, Measured, Of, Recorded
+from ..errors import Problem
 from ..features import facets
+from ..scene.scene import SceneRecord
 
 
 @lru_cache(maxsize=1)
@@ -32,3 +34,9 @@ def recorded(asked: Iterable[Of]) -> dict[str, tuple[str, Recorded]]:
     """Quantities that a run has to look at in every frame, once each: their columns of the ledger, with the objects."""
     found = ((of, quantity_of(of)) for of in asked)
     return {quantity.column_of(of): (of.subject, quantity) for of, quantity in found if isinstance(quantity, Recorded)}
+
+
+def unmeasured(scene: SceneRecord, asked: Iterable[Of]) -> list[Problem]:
+    """A problem for each quantity that frames do not tell."""
+    asked = list(asked)
+    return [one for facet in facets("measure") if hasattr(facet, "unmeasured") for one in facet.unmeasured(scene, asked)]

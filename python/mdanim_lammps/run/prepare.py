@@ -15,7 +15,6 @@ from ..effects import Context, Resolved, Verdict, resolve
 from ..engine.overlaps import Overlaps
 from ..engine.plan import Plan, make_plan
 from ..errors import Problem, RefusedError, SceneError
-from ..features import facets
 from ..model.build import build_models
 from ..model.grid import Grid
 from ..model.model import Model
@@ -23,6 +22,7 @@ from ..model.overlap import check_geometry
 from ..model.spacing import Spacing, plan_spacing, too_large
 from ..model.system import System, as_parts, assemble
 from ..reach import Reach
+from ..results.quantities import unmeasured
 from ..scene.lammps_lines import check_trust, note
 from ..scene.lock import lock_text
 from ..scene.meshes import mesh_files
@@ -154,8 +154,7 @@ def _unmeasurable(resolved: Resolved) -> list[Problem]:
         for of in wanted
         if (needs := of.kind.needs) and not resolved.on(needs)
     ]
-    unmeasured = (facet.unmeasured for facet in facets("measure") if hasattr(facet, "unmeasured"))
-    return [*off, *(problem for find in unmeasured for problem in find(resolved.scene, wanted))]
+    return [*off, *unmeasured(resolved.scene, wanted)]
 
 
 def _undriven(resolved: Resolved, models: Sequence[Model]) -> list[Problem]:

@@ -31,9 +31,10 @@ from ..results.stored import STUDY as STUDY_FILE
 from ..results.stored import read_manifest
 from ..results.untrusted import check_places, check_plain
 from ..run.folder import STUDY, stored_scene
-from .feed import Feed, packed
+from .feed import BY_FRAME, Feed, packed
 from .server import packaged_files
 from .tail import Known, Tail
+from .told import ShownQuantities
 
 STEPS, STEPS_EXACT = 4095, 65535
 """Steps across the box of an object: 0.3 mm of the beam of 1.2 m, and 0.02 mm."""
@@ -41,6 +42,8 @@ MOST_BYTES = 20_000_000
 """Largest size of the packed frames: beyond it only every n-th frame is kept."""
 LEVEL = 6
 """Level of compression: 9 makes a report smaller by 0.3 to 1.2 %, in twice the time, and in twenty times where frames repeat."""
+MOST_ARROWS = 50_000
+"""Arrows of a vector that a report takes in: objects times frames."""
 MOST_PICTURE = 2_000_000
 """Bytes of a picture of a study that the file takes in."""
 
@@ -79,12 +82,12 @@ def write_report(
             raise RefusedError(
                 f"{folder}: the run goes on; wait for its end, stop it, or look at it: mdanim-lammps view {folder}"
             )
-        feed, news = tail.feed(), _cleaned(tail.news(Known()))
+        feed, news, told = tail.feed(), _cleaned(tail.news(Known())), tail.told()
         if not (count := tail.count):
             raise OutputError(f"{folder}: there is no frame to report on; run the scene again with --force")
         with disk_errors(path), _Frames(feed, count, STEPS_EXACT if exact else STEPS, path.parent, on_progress) as frames:
             every = 1
-            while (block := compressed(frames.pieces(news, every), MOST_BYTES if every < count else None)) is None:
+            while (block := compressed(frames.pieces(news, every, told), MOST_BYTES if every < count else None)) is None:
                 every *= 2
         page = _page(feed.title, block, [*_sections(folder, news), _kept(every)])
     write_whole(path, page)
@@ -178,8 +181,8 @@ class _Frames:
         """Vertices of a frame about the centres of mass of their objects ``own`` [m], shape (V, 3)."""
         return self.feed.vertices(self.feed.frames.value("position", n), self.feed.gone(n)) - self._moving(n)[own, :3]
 
-    def pieces(self, news: dict, every: int) -> Iterator[bytes]:
-        """Scene, then times, centres and velocities, positions and liquid of every n-th frame."""
+    def pieces(self, news: dict, every: int, told: ShownQuantities | None = None) -> Iterator[bytes]:
+        """Scene, with curves and arrows, then times, centres and velocities, positions and liquid of every n-th frame."""
         kept = range(0, len(self.times), every)
         news = news | {
             "count": len(kept),
@@ -191,7 +194,12 @@ class _Frames:
         columns = self.heights.ends[1] // 2 if self.heights.ends[1:] else 0
         head["replay"] = {"news": news, "steps": self.steps, "columns": columns, "vertices": self.vertices}
         head["replay"]["drops"] = [len(self.drops.row(n)) // 16 for n in kept]
-        scene = packed(_cleaned(head), self.feed.buffers() | {"boxes": self.boxes})
+        buffers = self.feed.buffers()
+        buffers |= {name: buffers[name][: len(self.times) : every] for name in BY_FRAME if name in buffers}
+        if told is not None:
+            head["replay"]["told"], more = _told(told, len(self.times), every)
+            buffers |= more
+        scene = packed(_cleaned(head), buffers | {"boxes": self.boxes})
         yield struct.pack("<I", len(scene)) + scene
         yield self.times[::every].astype("<f8").tobytes()
         yield from map(self.moving.row, kept)
@@ -200,6 +208,25 @@ class _Frames:
             yield from differences(map(self.heights.row, [*kept, *kept]), len(kept))
             yield from map(self.states.row, kept)
             yield from map(self.drops.row, kept)
+
+
+def _told(told: ShownQuantities, count: int, every: int) -> tuple[dict, dict[str, np.ndarray]]:
+    """Header and arrays of what a report tells beside its picture: curves of all that the scene asks for at all frames, and
+    vectors of arrows at those that are kept."""
+    head, arrays = told.head(), {}
+    head["curves"] = []
+    for what in head["own"]:
+        try:
+            one, columns = told.curve(what)
+        except MdanimError:
+            continue
+        n = len(head["curves"])
+        head["curves"].append(one)
+        arrays |= {f"time {n}": columns["time"], f"value {n}": columns["value"]}
+    head["arrows"] = [word for word in head["arrows"] if word != "velocity" and count * told.objects <= MOST_ARROWS]
+    for word in head["arrows"]:
+        arrays[f"arrows {word}"] = told.vectors(word)[:count:every]
+    return head, arrays
 
 
 def differences(rows: Iterable[bytes], count: int) -> Iterator[bytes]:

@@ -25,20 +25,22 @@ import numpy as np
 
 from ..errors import OutputError
 from ..features.liquid.kept import DROPS, HEIGHT, RAW, WAY
-from ..picture.camera import FIELD_OF_VIEW, Action, action_of, automatic_view
+from ..picture.camera import FIELD_OF_VIEW, Action, View, action_of, automatic_view
 from ..picture.floor import grid_spacing
 from ..picture.foam import Foam
 from ..picture.liquid import LiquidSheet, without_puddles
 from ..picture.palette import LIQUID, background_colors, is_dark, object_colors, rgb, vertex_colors
 from ..picture.ponds import one_sheet
 from ..picture.rays import direction
-from ..picture.scenery import scenery
+from ..picture.scenery import scenery, way_of_walls
 from ..picture.standpoints import direction_of, path_of
 from ..picture.surfaces import shaded_mesh
+from ..picture.textures import material_places
 from ..results.trajectory import Trajectory
 from ..results.trajectory_metadata import ends_gone, springs_gone
 from ..results.untrusted import check_places
 from ..scene.render import Floor, Render
+from .told import shown
 
 STRAIN, PARTICLES = 1, 2
 LAYERS = STRAIN | PARTICLES
@@ -49,14 +51,16 @@ MOST_FOAM = 63
 """White all over."""
 STEPS = 65535
 """Steps of a 16-bit number."""
-PATTERNS = (Floor.GRID, Floor.CHECKER, Floor.PLAIN)
-"""Floors that the page draws; it draws all others without a pattern."""
 MOST_STRAIN = 0.2
 """Strain that is drawn in the last colour [-]."""
+PAGE = 2
+"""Form of what a page is sent: a report of another one is not shown beside a run."""
+BY_FRAME = ("path", "walls")
+"""Arrays of a scene that have a row for each frame."""
 MOST_POINTS = 1000
-"""Largest number of points of a line over time in the page."""
+"""Frames of the way of an object that a page is sent while the run goes on, at most."""
 ASPECT = 16 / 9
-"""Width over height of the picture for which the first camera is chosen."""
+"""Width over height of the picture for which the first camera is chosen: a narrower one shows as much from side to side."""
 
 
 class Feed:
@@ -144,6 +148,7 @@ class Feed:
             liquid = {"name": pool.name, "low": pool.low, "high": pool.high, "shape": pool.shape, "color": color}
             liquid["drops"] = pool.most_drops
         return {
+            "page": PAGE,
             "title": self.title,
             "frames": self.frames.total,
             "frameTime": self._frame_time,
@@ -153,7 +158,7 @@ class Feed:
             "bounds": [b.tolist() for b in action.bounds],
             "size": float(size),
             "floor": floor,
-            "pattern": self.render.floor.value if self.render.floor in PATTERNS else Floor.PLAIN.value,
+            "pattern": self.render.floor.value,
             "shadows": self.render.shadows,
             "grid": grid_spacing(size),
             "lamp": direction(self.render.light).tolist(),
@@ -161,6 +166,7 @@ class Feed:
             "background": [(255 * c).round().tolist() for c in (low, high)],
             "dark": is_dark(low),
             "fieldOfView": FIELD_OF_VIEW,
+            "aspect": ASPECT,
             "view": {"eye": view.eye.tolist(), "look": view.look.tolist(), "up": view.up.tolist()},
             "objects": [
                 {"name": name, "mass": mass, "color": color, "still": still, "first": first, "count": count}
@@ -169,17 +175,30 @@ class Feed:
                 )
             ],
             "liquid": liquid,
+            "shown": shown(self.render, m.names),
         }
 
     def buffers(self) -> dict[str, np.ndarray]:
-        """Arrays that do not change: ``triangle``, ``object`` of vertices, their ``tint`` where mesh files have colours; of a
-        liquid ``sheet`` and ``rim``."""
+        """Arrays that do not change: ``triangle``, ``object`` of vertices, their ``tint`` where mesh files have colours, their
+        ``material`` where objects have textures; of a liquid ``sheet`` and ``rim``; by frame the ``path`` of a camera that moves,
+        eye, look and up, and the way of walls that move, ``walls``."""
         found = {"triangle": self.triangle.astype("<u4"), "object": self.object_of_vertex.astype("<u4")}
         if self.metadata.skin.painted.any():
             found["tint"] = vertex_colors(self.metadata)[self._of_skin].ravel()
         if self.scenery.liquid:
             sheet = LiquidSheet(self.scenery.liquid.grid)
             found |= {"sheet": sheet.triangle.astype("<u4"), "rim": sheet.rim.astype("<u4")}
+        if (material := material_places(self._trajectory, self.start, self.object_of_vertex)) is not None:
+            found["material"] = material.astype("<f4")
+        return found | {name: rows.astype("<f4") for name, rows in self._by_frame().items()}
+
+    def _by_frame(self) -> dict[str, np.ndarray]:
+        """Arrays of BY_FRAME that there are."""
+        found, liquid = {}, self.scenery.liquid
+        if len(path := self._path()) > 1:
+            found["path"] = np.array([np.concatenate([view.eye, view.look, view.upright]) for view in path])
+        if (way := way_of_walls(self._trajectory.scene)) is not None and not (liquid and liquid.moves):
+            found["walls"] = np.array([way(self._frame_time * n) for n in range(self.frames.total)])
         return found
 
     def springs(self) -> bytes:
@@ -201,12 +220,20 @@ class Feed:
         check_places(self.frames.path, vertices, frame=0)
         return first_action(self.metadata, *self._boxes(vertices))
 
-    def _view(self):
+    def _path(self) -> list[View]:
+        """The movie's camera at each frame, once where it never moves; empty where it is one view of the whole run, or as long
+        as the run goes on."""
+        if not (self.render.camera and self.finished):
+            return []
+        with Trajectory(self.folder) as trajectory:
+            if (path := path_of(self.render.camera, trajectory, self.action)) is None:
+                return []
+            return [path.at(self._frame_time * n) for n in range(1 if path.still else self.frames.total)]
+
+    def _view(self) -> View:
         there = self.scenery
-        if self.render.camera and self.finished:
-            with Trajectory(self.folder) as trajectory:
-                if (path := path_of(self.render.camera, trajectory, self.action)) is not None:
-                    return path.at(0.0)
+        if path := self._path():
+            return path[0]
         basin = (there.liquid.low, there.liquid.high) if there.liquid else None
         return automatic_view(self.action, ASPECT, there.walls, basin, direction_of(self.render.camera))
 
@@ -274,11 +301,14 @@ class Feed:
         smooth, raw = (self.frames.value(of.table, n) for of in (HEIGHT, RAW))
         return smooth, raw, self.drops(n)
 
-    def heights(self, k: int, count: int) -> tuple[list[float], list[float]]:
-        """Times [s] and heights of an object's centre of mass [m], in at most `MOST_POINTS` of the first ``count`` frames."""
-        shown = np.unique(np.linspace(0, count - 1, min(count, MOST_POINTS)).astype(int)).tolist()
-        frames = self.frames
-        return [frames.time(n) for n in shown], [float(frames.value("center_of_mass", n)[k, 2]) for n in shown]
+    def track(self, k: int, count: int) -> bytes:
+        """The same form as `scene`: ``time`` [s], ``centre`` [m] and ``velocity`` [m/s] of an object in at most `MOST_POINTS` of
+        the first ``count`` frames."""
+        chosen = np.unique(np.linspace(0, count - 1, min(count, MOST_POINTS)).astype(int)).tolist()
+        centre = np.array([self.frames.value("center_of_mass", n)[k] - self.way(n) for n in chosen])
+        velocity = np.array([self.frames.value("center_of_mass_velocity", n)[k] for n in chosen])
+        time = np.array([self.frames.time(n) for n in chosen])
+        return packed({}, {"time": time.astype("<f4"), "centre": centre.astype("<f4"), "velocity": velocity.astype("<f4")})
 
     @cached_property
     def _springs(self) -> tuple[np.ndarray, np.ndarray]:

@@ -21,9 +21,10 @@ from websockets.http11 import Request, Response
 from websockets.sync.server import Server, ServerConnection, serve
 
 from ..errors import MdanimError
+from ..picture.textures import FLOORS, NOISE, OBJECTS
 from .control import COMMANDS, command
 from .edit import LONGEST_TEXT, Editor
-from .feed import LAYERS
+from .feed import LAYERS, packed
 from .listener import HOST, Listener
 from .pull import Puller
 from .tail import Known, Tail
@@ -189,9 +190,15 @@ class ViewServer:
                 page.send(self.tail.feed().scene())
             elif "springs" in asked:
                 page.send(self.tail.feed().springs())
-            elif "heights" in asked:
+            elif "track" in asked:
                 feed = self.tail.feed()
-                page.send(json.dumps({"heights": feed.heights(whole(asked["heights"], len(feed.first)), self.tail.count)}))
+                page.send(feed.track(whole(asked["track"], len(feed.first)), self.tail.count))
+            elif "told" in asked:
+                page.send(json.dumps(self.tail.told().head()))
+            elif "curve" in asked:
+                page.send(packed(*self.tail.told().curve(asked["curve"])))
+            elif "arrows" in asked:
+                page.send(packed({}, {"vector": self.tail.told().vectors(asked["arrows"])}))
             elif self.puller and "hand" in asked:
                 self._pull(page, asked["hand"])
             elif asked.get("do") in COMMANDS:
@@ -239,8 +246,9 @@ def whole(value: object, below: int) -> int:
 
 
 def packaged_files() -> dict[str, tuple[bytes, str]]:
-    """Contents and kind of each file of a page, by its path in an address."""
-    found = {}
+    """Contents and kind of each file of a page, by its path in an address; patterns.js has the shaders of pictures."""
+    patterns = f"export const OBJECTS = {json.dumps(OBJECTS)}, NOISE = {json.dumps(NOISE)}, FLOORS = {json.dumps(FLOORS)};\n"
+    found = {"/patterns.js": (patterns.encode(), KINDS["js"])}
     for file in resources.files(__package__).joinpath("web").iterdir():
         if (kind := KINDS.get(Path(file.name).suffix[1:])) is not None:
             found["/" if file.name == "index.html" else f"/{file.name}"] = (file.read_bytes(), kind)

@@ -21,6 +21,7 @@ from ..results.trajectory_file import find_trajectory, trajectory_names
 from ..run.folder import stored_scene
 from ..scene.render import Render
 from .feed import Feed
+from .told import ShownQuantities
 
 LOOK = 0.02
 """Wall time between two looks at the folder [s]."""
@@ -63,6 +64,7 @@ class Tail:
         """How often there was something new."""
         self._progress = ProgressTail(folder)
         self._feed: Feed | None = None
+        self._told: ShownQuantities | None = None
         self._files = 0
         self._state = "preparing"
         self._message = ""
@@ -125,6 +127,15 @@ class Tail:
                 self._feed.finished = True
                 self._feed.__dict__.pop("action", None)
             return self._feed
+
+    def told(self) -> ShownQuantities:
+        """Quantities of the run. Raises OutputError as long as it goes on."""
+        with self.changed:
+            if self.live:
+                raise OutputError("the run goes on: what needs all of it can be shown when it has ended")
+            if self._told is None:
+                self._told = ShownQuantities(self.folder)
+            return self._told
 
     def read_ahead(self) -> None:
         """Make the scene, where there is one, before a page asks for it: it takes half a second, as a browser does to begin."""
@@ -209,7 +220,7 @@ class Tail:
 
     def _begin_anew(self) -> None:
         # Another thread may be reading a frame of it: its file is closed when nothing has it any more.
-        self._feed, self._files, self._facts = None, self._files + 1, {}
+        self._feed, self._told, self._files, self._facts = None, None, self._files + 1, {}
 
     def _set(self, state: str, message: str) -> None:
         if state != self._state and state == "done":
@@ -217,6 +228,8 @@ class Tail:
                 self._facts = read_facts(self.folder)
             except OutputError as error:
                 message = str(error)
+        if state != self._state:
+            self._told = None
         self._state, self._message = state, message
 
     def _take_old(self) -> None:

@@ -11,12 +11,12 @@ const BALL = `
   #include <colorspace_fragment>`;
 
 export class Drops {
-  constructor(world, { most, color }, fov) {
+  constructor(world, { most, color }) {
     [this.at, this.radius] = [new Float32Array(3 * most), new Float32Array(most)];
     this.geometry = new BufferGeometry();
     this.geometry.setAttribute("position", new BufferAttribute(this.at, 3).setUsage(DynamicDrawUsage));
     this.geometry.setAttribute("radius", new BufferAttribute(this.radius, 1).setUsage(DynamicDrawUsage));
-    const size = 2 / Math.tan((fov * Math.PI) / 360), material = new PointsMaterial({ color, size, transparent: true });
+    const material = new PointsMaterial({ color, transparent: true });
     material.onBeforeCompile = (shader) => {
       shader.vertexShader = "attribute float radius;\n" + shader.vertexShader.replace("gl_PointSize = size;", "gl_PointSize = radius * size;");
       shader.fragmentShader = shader.fragmentShader.replace("#include <colorspace_fragment>", BALL);
@@ -25,6 +25,11 @@ export class Drops {
     this.points.frustumCulled = false;
     this.points.renderOrder = 4;
     world.add(this.points);
+  }
+
+  // Tell the tangent of half of the camera's vertical angle.
+  seenBy(half) {
+    this.points.material.size = 2 / half;
   }
 
   // Rows of middle and radius.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// The scene's text with its problems, and running it again; only where the server offers it.
+// The scene's text with its problems, sliders for its numbers, and running it again; only where the server offers it.
+import { letsOf, withLet } from "./lets.js";
 import { byId, element } from "./panel.js";
 
 const QUIET = 400; // milliseconds without typing before a text is checked
@@ -9,7 +10,8 @@ export async function offerEditing(source, most) {
   if (byId("editor")) return;
   const text = element("textarea", { spellcheck: false, rows: 18, ariaLabel: "text of the scene" }), problems = element("div", { id: "problems" });
   const again = element("button", { id: "again", textContent: "run again", title: "Run this text into a folder of its own (Ctrl+Enter)" });
-  const panel = element("details", { id: "editor", open: true }, element("summary", { textContent: "Scene" }), text, problems, again);
+  const sliders = element("div", { id: "lets", className: "lets" });
+  const panel = element("details", { id: "editor", open: true }, element("summary", { textContent: "Scene" }), sliders, text, problems, again);
   document.querySelector("aside").prepend(panel);
   let due;
   const show = ({ problems: found, started }) => {
@@ -23,13 +25,32 @@ export async function offerEditing(source, most) {
     return source.edit(text.value, run).then(show, failed);
   };
   const run = () => send(true);
-  text.oninput = () => {
+  const changed = () => {
     clearTimeout(due);
     due = setTimeout(() => send(false), QUIET);
+  };
+  text.oninput = () => {
+    offerLets(sliders, text, changed, run);
+    changed();
   };
   text.onkeydown = (event) => { if (event.key === "Enter" && event.ctrlKey && !again.disabled) run(); };
   again.onclick = run;
   text.value = (await source.edit()).text;
+  offerLets(sliders, text, changed, run);
+}
+
+// A slider for each number that has a name: it changes the text while it is moved, and runs it when it is let go.
+function offerLets(place, text, changed, run) {
+  place.replaceChildren(...letsOf(text.value).flatMap(({ line, name, value, unit, low, high, step }) => {
+    const slider = element("input", { type: "range", min: low, max: high, step, value, ariaLabel: name }), told = element("output", { textContent: `${value} ${unit}` });
+    slider.oninput = () => {
+      text.value = withLet(text.value, line, slider.valueAsNumber);
+      told.textContent = `${slider.valueAsNumber} ${unit}`;
+      changed();
+    };
+    slider.onchange = run;
+    return [element("span", { textContent: name }), slider, told];
+  }));
 }
 
 // One problem; a click leads to its line.

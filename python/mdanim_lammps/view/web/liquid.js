@@ -84,7 +84,7 @@ export class Liquid {
     plate.position.set((low[0] + high[0]) / 2, (low[1] + high[1]) / 2, low[2]);
     plate.receiveShadow = true;
     this.colourThrough(plate.material);
-    this.drops = this.basin.drops ? new Drops(world, { most: this.basin.drops, color: hex }, scene.fieldOfView) : null;
+    this.drops = this.basin.drops ? new Drops(world, { most: this.basin.drops, color: hex }) : null;
     if (this.drops) this.parts.push(this.drops.points);
     world.add(plate, box([low, high], scene.dark ? 0xaebac2 : 0x7f93a3), ...this.parts);
   }

@@ -3,9 +3,14 @@
 import { offerEditing } from "./edit.js";
 import { Hand } from "./hands.js";
 import { STRAIN, PARTICLES, cameraLine, nearlyMost, number, ownersAt } from "./message.js";
-import { Energies, Height, KEYS, byId, element, executorColor, roundStrain, showCost, showExpects, showLegend, showObject, strainColor, table, typing } from "./panel.js";
+import { Energies, Height, KEYS, byId, element, executorColor, offer, roundStrain, say, showCost, showExpects, showLegend, showObject, strainColor, table, typing } from "./panel.js";
 import { Cache, Player, SPEEDS } from "./player.js";
 import { Embedded, Socket } from "./source.js";
+import { pointer } from "./pointer.js";
+import { ofMotion } from "./quantities.js";
+import { Saving } from "./saving.js";
+import { Second } from "./second.js";
+import { Shows } from "./shows.js";
 import { COARSEST, Stage } from "./stage.js";
 
 const SLOW = 60, REST = 350; // milliseconds: of a picture that is too slow, and without motion before one in full
@@ -14,12 +19,12 @@ const LIVE = ["preparing", "running", "paused"];
 const run = { file: null, count: 0, total: 0, executors: 1, state: "", message: "", seconds: 0, cost: {}, facts: {}, owners: [] };
 const energies = new Energies(), height = new Height(), cache = new Cache();
 const report = byId("replay"); // in a report: the block of data
-let source, scene, stage, player, hand = null, shown = null, shownKey = "", picked = null, heightAt = 0, ease = 0, slow = 0, drawnAt = 0, rested = true, failedAt = 0, range = 0.002, lastTick = 0, toldKey = "", toldAt = 0, asked = "";
+let source, scene, stage, player, shows, saving, second = null, hand = null, shown = null, shownKey = "", picked = null, ease = 0, slow = 0, drawnAt = 0, rested = true, failedAt = 0, range = 0.002, lastTick = 0, toldKey = "", toldAt = 0, asked = "", grownAt = 0;
 
 async function start() {
   byId("speed").append(...SPEEDS.map((x) => element("option", { value: x, textContent: `${x} ×`, selected: x === 1 })));
   byId("keys").querySelector("table").append(...table(KEYS).children);
-  source = report ? new Embedded(report) : new Socket();
+  source = report ? new Embedded(report.textContent) : new Socket();
   const opening = source.open(); // which reads the address
   if (!report) history.replaceState(null, "", "/");
   await opening;
@@ -38,17 +43,20 @@ async function start() {
   if (stage.slow) ease = COARSEST;
   for (const [id, on] of [["liquid", scene.liquid], ["walls", scene.walls], ["springs", scene.springs && !report], ["particles", !report]]) byId(`show-${id}`).parentElement.hidden = !on;
   offer("strain", !report && scene.springs, "by strain", report ? "in a view" : "where save all is asked for");
+  shows = new Shows(scene, source, stage);
+  saving = new Saving(player, () => [{ stage, overlay: shows.overlay, frame: shown, canvas: shows.canvas }, ...(second ? [{ ...second, frame: second.frame }] : [])], seen);
   controls();
   byId("hello").textContent = "drag to turn, wheel to zoom, right drag to move, click an object to know it";
   player.play(true);
   refresh();
   requestAnimationFrame(tick);
+  await shows.begin();
 }
 
 // --- what is heard ----------------------------------------------------------------------------------------------------
 
 function hear({ columns, keep, rows, owners, ...news }) {
-  if (run.file !== null && news.file > run.file) return location.reload(); // another run in the same folder
+  if (run.file !== null && news.file > run.file) { shows?.keep(); return location.reload(); } // another run in the same folder
   Object.assign(run, news);
   if (columns) {
     energies.begin(columns, news.energies ?? 0, keep);
@@ -77,7 +85,8 @@ function refresh() {
   if (energies.names.length && energies.rows.length) words.push(`energy residual ${number(energies.residual, 2)}`);
   byId("progress").textContent = words.join("   ");
   offer("executor", run.executors > 1, "by executor", "of a run with -n");
-  if (picked !== null && live && performance.now() - heightAt > 1000) showHeight();
+  if (live && performance.now() - grownAt > 1000) grow();
+  if (shows && !live) shows.ended();
   showCost(run.cost, run.facts);
   showExpects(run.facts);
 }
@@ -88,27 +97,11 @@ function offerHand() {
   player.follow(true);
 }
 
-// A way to colour objects; one that this run does not have says where it is.
-function offer(value, there, words, where) {
-  const choice = byId("colour").querySelector(`[value="${value}"]`);
-  choice.disabled = !there;
-  choice.textContent = there ? words : `${words} (${where})`;
-}
-
 // Tell the run, and that it was told: it obeys when it has finished its frame.
 function order(what) {
   source.tell(what);
   asked = run.state;
   refresh();
-}
-
-function say(state, message) {
-  byId("state").textContent = state || "connecting";
-  byId("state").className = `pill ${state}`;
-  const more = { killed: "The run was killed; what it has written can be seen. It goes on from its last checkpoint with: mdanim-lammps resume DIR" }[state];
-  byId("message").hidden = !(message || more);
-  byId("message").textContent = message || more || "";
-  byId("message").classList.toggle("bad", ["failed", "lost", "killed"].includes(state));
 }
 
 // --- what is seen -----------------------------------------------------------------------------------------------------
@@ -131,13 +124,14 @@ function tick(now) {
   byId("play").classList.toggle("on", player.playing && !player.newest);
   byId("newest").setAttribute("aria-pressed", String(player.newest));
   if (shown && toldKey !== shownKey && (!ease || !player.playing || now - toldAt > TOLD)) tell(now);
-  if (stage.changed && shown) draw(now, 0);
+  if ((stage.changed || second?.stage.changed) && shown) draw(now, 0);
   else if (!rested && !player.playing && now - drawnAt > REST) draw(now, 1);
 }
 
 function show(frame, key) {
   [shown, shownKey] = [frame, key];
   stage.show(frame);
+  second?.show(frame.time);
   hand?.draw();
   if (frame.strain) paintStrain(frame.strain);
   else if (byId("colour").value === "executor") stage.paint([...ownersAt(run.owners, frame.frame, scene.objects.length)].map(executorColor));
@@ -150,6 +144,7 @@ function tell(now) {
   byId("clock").textContent = `frame ${shown.frame}/${Math.max(run.total, 1) - 1}   t = ${shown.time.toFixed(3)} s`;
   byId("camera").textContent = cameraWords();
   energies.at(shown.time);
+  shows.curves.at(shown.time);
   height.at(shown.time);
   about();
 }
@@ -171,8 +166,10 @@ function draw(now, full) {
   const gap = now - drawnAt;
   if (!full && gap < 1000 && (player.playing || stage.moving)) slow = 0.7 * slow + 0.3 * gap;
   if (slow > SLOW && ease < COARSEST && !full) [ease, slow] = [ease + 1, 0];
-  stage.quality(full ? 0 : ease);
-  stage.draw();
+  for (const one of [stage, second?.stage].filter(Boolean)) { one.quality(full ? 0 : ease); one.draw(); }
+  shows.draw(shown);
+  second?.draw();
+  saving.drawn();
   rested = full || !ease;
   drawnAt = now;
   if (!page.drawn++) performance.mark("first picture");
@@ -202,7 +199,8 @@ function controls() {
   press("follow", () => byId("follow").setAttribute("aria-pressed", String(stage.follow(picked) !== null)));
   press("home", () => stage.seeStart());
   press("copy", copy);
-  press("shot", screenshot);
+  press("beside", () => (second ? compare(null) : byId("report-file").click()));
+  byId("report-file").onchange = ({ target }) => { if (target.files[0]) compare(target.files[0]); target.value = ""; };
   press("help", () => byId("keys").showModal());
   byId("slider").oninput = (event) => player.go(Number(event.target.value));
   byId("speed").onchange = (event) => (player.speed = Number(event.target.value));
@@ -218,28 +216,8 @@ function controls() {
   new ResizeObserver(() => stage.resize()).observe(byId("stage")); // also where a message takes some of its room
   stage.orbit.addEventListener("start", () => { stage.moving = true; byId("hello").hidden = true; });
   stage.orbit.addEventListener("end", () => (stage.moving = false));
-  pointer(byId("stage"));
+  pointer(byId("stage"), scene, stage, choose, (x, y) => hand?.finds(x, y));
   addEventListener("keydown", keyboard);
-}
-
-function pointer(canvas) {
-  const at = (event) => { const box = canvas.getBoundingClientRect(); return [event.clientX - box.left, event.clientY - box.top]; };
-  let down = [0, 0], looked = 0;
-  canvas.addEventListener("pointerdown", (event) => { down = at(event); byId("hello").hidden = true; });
-  canvas.addEventListener("pointerup", (event) => {
-    const [x, y] = at(event);
-    if (event.button === 0 && Math.hypot(x - down[0], y - down[1]) < 4) choose(stage.pick(x, y)?.object ?? null);
-  });
-  canvas.addEventListener("pointermove", (event) => {
-    const now = performance.now(), [x, y] = at(event);
-    if (now - looked < 80) return;
-    looked = now;
-    const found = event.buttons ? null : stage.pick(x, y);
-    canvas.style.cursor = found && hand?.finds(x, y) ? "grab" : "";
-    byId("hint").hidden = !found;
-    if (found) Object.assign(byId("hint"), { textContent: scene.objects[found.object].name }).style.cssText = `left: ${x}px; top: ${y}px`;
-  });
-  canvas.addEventListener("pointerleave", () => (byId("hint").hidden = true));
 }
 
 function choose(k) {
@@ -248,16 +226,30 @@ function choose(k) {
   byId("see").textContent = k === null ? "see all" : "see it";
   byId("camera").textContent = cameraWords();
   about();
+  shows.pick(k);
   height.show(null);
   if (k !== null) showHeight();
 }
 
+// Ask again for lines that grow while the run goes on.
+function grow() {
+  grownAt = performance.now();
+  if (picked !== null) showHeight();
+  shows?.refresh().catch(() => {});
+}
+
 async function showHeight() {
-  heightAt = performance.now();
-  const k = picked, points = await source.heights(k).catch(() => null);
-  if (k !== picked || !points) return;
-  height.show(points);
+  const k = picked, track = await source.track(k).catch(() => null);
+  if (k !== picked || !track) return;
+  height.show([[...track.time], [...ofMotion("position.z", track)]]);
   if (shown) height.at(shown.time);
+}
+
+// Show a frame and wait until it is drawn.
+async function seen(n) {
+  player.go(n);
+  while (shown.frame !== n || (second && second.stage.frame !== second.frame)) await new Promise(requestAnimationFrame);
+  await second?.show(shown.time);
 }
 
 function see() {
@@ -269,13 +261,15 @@ async function copy() {
   setTimeout(() => (byId("copy").textContent = "copy line"), 1500);
 }
 
-function screenshot() {
-  const paper = stage.paper();
-  paper.toBlob((file) => {
-    const link = element("a", { href: URL.createObjectURL(file), download: `frame-${shown.frame}.png` });
-    link.click();
-    setTimeout(() => URL.revokeObjectURL(link.href), 10000);
-  });
+// Show the run of a report beside this one, or this one alone.
+async function compare(file) {
+  second?.close();
+  second = null;
+  if (file) second = await Second.load(file, (canvas, of) => new Stage(canvas, of), stage).catch((error) => { say(run.state, `${file.name}: ${error.message}`); return null; });
+  byId("beside").textContent = second ? "one run" : "second run";
+  stage.resize();
+  await second?.begin(shown.time, shows.overlay.arrows);
+  await shows.curves.compare(second?.quantities ?? null);
 }
 
 const SWITCHES = ["surface", "shadows", "liquid", "particles", "springs", "boxes", "walls"];
@@ -285,7 +279,7 @@ function keyboard(event) {
   const many = event.shiftKey ? 10 : 1, act = {
     " ": () => (event.shiftKey ? !byId("pause").hidden && byId("pause").click() : player.play()),
     ArrowRight: () => player.go(player.frame + many), ArrowLeft: () => player.go(player.frame - many), Home: () => player.go(0),
-    End: () => (player.live ? player.follow(true) : player.go(player.last)), f: see, c: copy, p: screenshot, Escape: () => choose(null), "?": () => byId("keys").showModal(),
+    End: () => (player.live ? player.follow(true) : player.go(player.last)), f: see, c: copy, p: () => byId("shot").click(), g: () => byId("gif").click(), v: () => byId("arrows-velocity").click(), t: () => byId("trail").click(), Escape: () => choose(null), "?": () => byId("keys").showModal(),
   }[event.key.length === 1 ? event.key.toLowerCase() : event.key];
   const number_ = SWITCHES[Number(event.key) - 1], box = number_ && byId(`show-${number_}`);
   if (!act && (!box || box.parentElement.hidden)) return;
@@ -294,6 +288,6 @@ function keyboard(event) {
 }
 
 // For tests: what the page knows.
-const page = (window.mdanim = { run, drawn: 0, get shown() { return shown; }, get player() { return player; }, get stage() { return stage; }, get scene() { return scene; }, get ease() { return ease; }, get source() { return source; }, get hand() { return hand; }, cache });
+const page = (window.mdanim = { run, drawn: 0, get shown() { return shown; }, get player() { return player; }, get stage() { return stage; }, get scene() { return scene; }, get ease() { return ease; }, get source() { return source; }, get hand() { return hand; }, get shows() { return shows; }, get second() { return second; }, cache });
 
 start().catch((error) => say("lost", `The page cannot be shown: ${error.message}`));

@@ -3,7 +3,7 @@
 import { Plot } from "./vendor.js";
 import { RELATIVE, drawn, number } from "./message.js";
 
-const INK = ["#e8743b", "#3b8fc4", "#4fae7b", "#d99a1c", "#d3557a", "#7a6fc9", "#2fa39d", "#b5654f", "#7f9c2e"];
+export const INK = ["#e8743b", "#3b8fc4", "#4fae7b", "#d99a1c", "#d3557a", "#7a6fc9", "#2fa39d", "#b5654f", "#7f9c2e"];
 export const byId = (id) => document.getElementById(id);
 
 // An element with properties and children.
@@ -15,6 +15,23 @@ export function element(name, properties = {}, ...children) {
 
 export function table(rows) {
   return element("table", {}, ...rows.map((cells) => element("tr", {}, ...cells.map((cell) => element("td", { textContent: cell })))));
+}
+
+// A way to colour objects; one that this run does not have says where it is.
+export function offer(value, there, words, where) {
+  const choice = byId("colour").querySelector(`[value="${value}"]`);
+  choice.disabled = !there;
+  choice.textContent = there ? words : `${words} (${where})`;
+}
+
+// Show the state of the run, and a message.
+export function say(state, message) {
+  byId("state").textContent = state || "connecting";
+  byId("state").className = `pill ${state}`;
+  const more = { killed: "The run was killed; what it has written can be seen. It goes on from its last checkpoint with: mdanim-lammps resume DIR" }[state];
+  byId("message").hidden = !(message || more);
+  byId("message").textContent = message || more || "";
+  byId("message").classList.toggle("bad", ["failed", "lost", "killed"].includes(state));
 }
 
 // Show the values of the picked object at a frame.
@@ -30,8 +47,24 @@ export function showObject(scene, frame, k, owner) {
   return place.replaceChildren(table(rows));
 }
 
+// A mark of a colour with words, which shows and hides a line: a click calls "toggle" with whether it is shown now.
+export function legendKey(words, color, toggle, shown = true) {
+  const mark = element("i"), key = element("button", { className: "legend-key", title: "Show or hide this curve" }, mark, words);
+  mark.style.background = color;
+  const press = (on) => key.setAttribute("aria-pressed", String(on));
+  press(shown);
+  key.onclick = () => { shown = !shown; press(shown); toggle(shown); };
+  return key;
+}
+
+// Least and largest value of an axis that has 0, with some room.
+function withZero(_, low, high) {
+  const least = Math.min(0, low ?? 0), most = Math.max(0, high ?? 1), room = 0.08 * (most - least || 1);
+  return [least - (least < 0 ? room : 0), most + (most > 0 ? room : 0)];
+}
+
 // Lines over time, with a cursor at the frame that is seen.
-class Lines {
+export class Lines {
   constructor() {
     this.line = document.createElement("div");
     this.time = 0;
@@ -42,13 +75,13 @@ class Lines {
     this.plot = null;
   }
 
-  // Times and one array of values for each name.
-  set(place, names, data, height) {
+  // Times and one array of values for each name, with looks that are not the usual ones; "whole": the axis has 0.
+  set(place, names, data, height, looks = [], whole = false) {
     if (this.plot) return this.plot.setData(data);
     const ink = getComputedStyle(document.body).getPropertyValue("--faint"), axis = { stroke: ink, font: "10px sans-serif", grid: { stroke: ink + "30" }, ticks: { show: false } };
-    const series = [{}, ...names.map((label, k) => ({ label, stroke: INK[k % INK.length], width: 1.5 }))];
+    const series = [{}, ...names.map((label, k) => ({ label, stroke: INK[k % INK.length], width: 1.5, ...looks[k] }))];
     const values = (_, ticks) => ticks.map((x) => number(x, 4));
-    this.plot = new Plot({ width: 272, height, scales: { x: { time: false } }, legend: { show: false }, cursor: { show: false }, padding: [6, 8, 0, 0],
+    this.plot = new Plot({ width: Math.max(160, Math.min(640, (place.closest("aside")?.clientWidth || 300) - 28)), height, scales: { x: { time: false }, ...(whole ? { y: { range: withZero } } : {}) }, legend: { show: false }, cursor: { show: false }, padding: [6, 8, 0, 0],
       axes: [{ ...axis, size: 24, values: (_, ticks) => ticks.map((x) => `${number(x)} s`) }, { ...axis, size: 46, values }], series,
       hooks: { draw: [() => this.at(this.time)] } }, data, place);
     this.line = element("div", { className: "now" });
@@ -101,9 +134,7 @@ export class Energies extends Lines {
     const data = drawn(this.names, this.rows);
     if (!this.plot) {
       const keys = element("div", { className: "keys" }, ...this.names.map((name, k) => {
-        const mark = element("i");
-        mark.style.background = INK[k % INK.length];
-        return element("span", {}, mark, name.replaceAll("_", " ") + (RELATIVE.includes(name) ? ", change" : ""));
+        return legendKey(name.replaceAll("_", " ") + (RELATIVE.includes(name) ? ", change" : ""), INK[k % INK.length], (show) => this.plot?.setSeries(k + 1, { show }));
       }));
       this.figure = element("div");
       byId("energies").replaceChildren(keys, this.figure);
@@ -169,8 +200,8 @@ export function showLegend(kind, range, executors) {
 
 export const KEYS = [
   ["drag, wheel, right drag", "turn, zoom, move"], ["click", "pick an object; Esc lets it go"], ["drag an object", "pull at it, in a run with --hands"], ["Space", "play or hold the film"], ["Shift+Space", "pause the run, or let it go on"],
-  ["← →", "a frame, with Shift ten"], ["Home, End", "first frame, newest frame"], ["1 … 7", "what is shown"], ["F", "see all, or the picked object"],
-  ["C", "copy the camera line"], ["P", "save a screenshot"], ["?", "this list"],
+  ["← →", "a frame, with Shift ten"], ["Home, End", "first frame, newest frame"], ["1 … 7", "what is shown"], ["V", "arrows of velocity"], ["T", "the trail of the picked object"], ["F", "see all, or the picked object"],
+  ["C", "copy the camera line"], ["P, G", "save a screenshot, a GIF"], ["?", "this list"],
 ];
 
 // Whether a key belongs to what has the focus.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // Where scene and frames come from: the server of a run, or the block of data in a report.
 import { inOwnBoxes, readFrame, readScene, undoDifferences } from "./message.js";
+import { ofVector } from "./quantities.js";
 
 // The token that admits this page: from its address, or from the tab when it is loaded again. No other port gets it.
 function token() {
@@ -65,9 +66,22 @@ export class Socket {
     return readScene(await this.ask({ springs: 1 })).data.bond;
   }
 
-  // Times and heights of an object, one array each.
-  async heights(k) {
-    return (await this.ask({ heights: k })).heights;
+  // Times, places and velocities of an object's centre.
+  async track(k) {
+    return readScene(await this.ask({ track: k })).data;
+  }
+
+  told() {
+    return this.ask({ told: 1 });
+  }
+
+  async curve(named) {
+    const { data, ...head } = readScene(await this.ask({ curve: named }));
+    return { ...head, ...data };
+  }
+
+  async arrows(word) {
+    return readScene(await this.ask({ arrows: word })).data.vector;
   }
 
   async frame(frame, layers) {
@@ -91,12 +105,12 @@ export class Socket {
 
 // A block of gzip in base64 that export.py has made.
 export class Embedded {
-  constructor(element) {
-    this.element = element;
+  constructor(text) {
+    this.text = text;
   }
 
   async open() {
-    const packed = Uint8Array.from(atob(this.element.textContent.trim()), (sign) => sign.charCodeAt(0));
+    const packed = Uint8Array.from(atob(this.text.trim()), (sign) => sign.charCodeAt(0));
     const plain = await new Response(new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip"))).arrayBuffer();
     const size = new DataView(plain).getUint32(0, true);
     this.head = readScene(plain.slice(4, 4 + size));
@@ -120,8 +134,29 @@ export class Embedded {
     return this.head;
   }
 
-  async heights(k) {
-    return [[...this.times], Array.from(this.times, (_, f) => this.moving[6 * (this.O * f + k) + 2])];
+  async track(k) {
+    const { moving, O } = this, rows = (first) => Float32Array.from({ length: 3 * this.times.length }, (_, i) => moving[6 * (O * Math.floor(i / 3) + k) + first + (i % 3)]);
+    return { time: Float32Array.from(this.times), centre: rows(0), velocity: rows(3) };
+  }
+
+  async told() {
+    const { curves, words, arrows, ...told } = this.head.replay.told, known = (word) => arrows.some((name) => word === name || word.startsWith(`${name}.`));
+    return { ...told, arrows, globals: {}, words: Object.fromEntries(Object.entries(words).filter(([word]) => known(word))) };
+  }
+
+  async curve(named) {
+    const { told } = this.head.replay, { data, objects } = this.head, n = told.curves.findIndex(({ what }) => what === named);
+    if (n >= 0) return { ...told.curves[n], time: data[`time ${n}`], value: data[`value ${n}`] };
+    const [subject, word] = named, k = objects.findIndex(({ name }) => name === subject);
+    for (const name of told.arrows) {
+      const value = ofVector(word, name, data[`arrows ${name}`], k, this.O);
+      if (value) return { what: named.join("."), unit: told.words[word], mean: told.means.includes(name), time: Float32Array.from(this.times), value };
+    }
+    throw new Error("it is not in this report: a record line of the scene brings it there");
+  }
+
+  async arrows(word) {
+    return this.head.data[`arrows ${word}`];
   }
 
   async frame(frame) {

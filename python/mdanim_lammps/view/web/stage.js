@@ -1,35 +1,17 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // The 3-D picture: objects, floor, lamp and camera.
 import {
-  BufferAttribute, BufferGeometry, Color, DirectionalLight, DynamicDrawUsage, HemisphereLight, Mesh, MeshLambertMaterial,
-  MeshPhongMaterial, OrbitControls, PCFShadowMap, PerspectiveCamera, PlaneGeometry, Scene, Vector2, Vector3, WebGLRenderer,
+  BufferAttribute, BufferGeometry, DirectionalLight, DynamicDrawUsage, HemisphereLight, Mesh, MeshPhongMaterial, OrbitControls,
+  PCFShadowMap, PerspectiveCamera, Scene, Vector3, WebGLRenderer,
 } from "./vendor.js";
 import { Extras } from "./extras.js";
 import { Liquid } from "./liquid.js";
+import { floorOf, texture } from "./looks.js";
 import { pick, placeVertices, sumNormals } from "./message.js";
 
 const SHADOWS = [2048, 1024, 512], PIXELS = [1, 0.7, 0.5]; // by level of quality
 export const COARSEST = SHADOWS.length - 1;
 const MOST_PIXELS = 4e6; // of a picture at rest that a processor draws
-const FLOOR = 5; // half side of the floor, in sizes of the scene
-
-const PATTERN = { // of `render { floor ... }`: how much of the colour of the lines is seen
-  plain: "float marked = 0.0;",
-  grid: `
-  vec2 fine = place.xy / gridStep, coarse = fine / 5.0, w = fwidth(fine);
-  vec2 f = abs(fract(fine - 0.5) - 0.5) / w, c = abs(fract(coarse - 0.5) - 0.5) / (w / 5.0);
-  float thin = (1.0 - smoothstep(0.3, 1.2, min(f.x, f.y))) * (1.0 - smoothstep(0.1, 0.4, max(w.x, w.y)));
-  float bold = (1.0 - smoothstep(0.5, 1.5, min(c.x, c.y))) * (1.0 - smoothstep(0.5, 2.0, max(w.x, w.y)));
-  float marked = max(0.22 * thin, 0.5 * bold);`,
-  checker: `
-  vec2 square = place.xy / (5.0 * gridStep), w = max(fwidth(square), vec2(1e-6));
-  vec2 edge = 2.0 * (abs(fract((square - 0.5 * w) * 0.5) - 0.5) - abs(fract((square + 0.5 * w) * 0.5) - 0.5)) / w;
-  float marked = 0.3 * (0.5 - 0.5 * edge.x * edge.y);`,
-};
-const FLOOR_COLOR = `
-  gl_FragColor.rgb = mix(gl_FragColor.rgb, gridColor, marked);
-  gl_FragColor.a = 1.0 - smoothstep(0.25, 1.0, distance(place.xy, gridMiddle) / gridReach);
-  gl_FragColor.rgb *= gl_FragColor.a;`;
 
 // Whether a processor draws, not a graphics card.
 function drawnByProcessor() {
@@ -59,10 +41,11 @@ export class Stage {
     this.orbit = new OrbitControls(this.camera, canvas);
     this.orbit.enableDamping = false;
     this.orbit.addEventListener("change", () => (this.changed = true));
+    this.orbit.addEventListener("start", () => { this.onPath = false; this.moved = true; });
     this.lights();
     this.liquid = scene.liquid ? new Liquid(this.world, scene) : null;
     this.solids();
-    if (scene.floor !== null) this.floor();
+    if (scene.floor !== null) this.world.add(floorOf(scene, this.middle));
     this.extras = new Extras(this.world, scene);
     this.seeStart();
     if (scene.floor !== null) this.orbit.maxPolarAngle = Math.max(ABOVE_FLOOR, this.orbit.getPolarAngle());
@@ -94,6 +77,11 @@ export class Stage {
     geometry.setIndex(new BufferAttribute(data.triangle, 1));
     const material = new MeshPhongMaterial({ vertexColors: true, specular: 0x282828, shininess: 30 });
     this.liquid?.colourThrough(material);
+    if (data.material) {
+      geometry.setAttribute("material", new BufferAttribute(data.material, 4));
+      this.textures = { value: 1 };
+      texture(material, this.textures);
+    }
     this.surface = new Mesh(geometry, material);
     this.surface.castShadow = this.surface.receiveShadow = true;
     this.surface.frustumCulled = false;
@@ -101,36 +89,16 @@ export class Stage {
     this.paintOwn();
   }
 
-  floor() {
-    const { floor, size, grid, pattern, dark, background } = this.scene, reach = FLOOR * size;
-    const base = new Color(...background[0].map((c) => (c / 255) ** 2.2));
-    const material = new MeshLambertMaterial({ color: dark ? base.clone().multiplyScalar(2).addScalar(0.02) : base, transparent: true, premultipliedAlpha: true });
-    material.customProgramCacheKey = () => "floor";
-    material.onBeforeCompile = (shader) => {
-      Object.assign(shader.uniforms, {
-        gridStep: { value: grid }, gridReach: { value: reach }, gridMiddle: { value: new Vector2(this.middle.x, this.middle.y) },
-        gridColor: { value: dark ? new Color(0.35, 0.38, 0.42) : new Color(0.42, 0.46, 0.5) },
-      });
-      shader.vertexShader = "varying vec3 place;\n" + shader.vertexShader.replace("#include <begin_vertex>", "#include <begin_vertex>\nplace = (modelMatrix * vec4(position, 1.0)).xyz;");
-      shader.fragmentShader = "varying vec3 place; uniform float gridStep, gridReach; uniform vec2 gridMiddle; uniform vec3 gridColor;\n" +
-        shader.fragmentShader.replace("#include <premultiplied_alpha_fragment>", PATTERN[pattern] + FLOOR_COLOR);
-    };
-    const plane = new Mesh(new PlaneGeometry(2 * reach, 2 * reach), material);
-    plane.position.set(this.middle.x, this.middle.y, floor - 1e-4 * size);
-    plane.receiveShadow = true;
-    plane.renderOrder = -1;
-    this.world.add(plane);
-  }
-
   // The colours of the scene: of objects, or of vertices where a mesh file has them.
   paintOwn() {
     const { data: { tint }, objects } = this.scene;
-    if (tint) this.paint(null, (i) => tint.subarray(3 * i, 3 * i + 3));
-    else this.paint(objects.map(({ color }) => color));
+    if (tint) this.paint(null, (i) => tint.subarray(3 * i, 3 * i + 3), true);
+    else this.paint(objects.map(({ color }) => color), null, true);
   }
 
   // Colours [r, g, b] of 0 to 255, one per object; or of vertices, by a function of the vertex.
-  paint(colors, ofVertex = null) {
+  paint(colors, ofVertex = null, own = false) {
+    if (this.textures) this.textures.value = Number(own);
     const { tint, scene } = this, put = (i, [r, g, b]) => {
       tint[3 * i] = (r / 255) ** 2.2; tint[3 * i + 1] = (g / 255) ** 2.2; tint[3 * i + 2] = (b / 255) ** 2.2;
     };
@@ -148,10 +116,12 @@ export class Stage {
   show(frame) {
     if (this.followed !== null && this.frame) this.goWith(this.frame.object, frame.object);
     this.frame = frame;
+    if (this.onPath) this.goAlong(frame.frame);
     placeVertices(this.scene.objects, frame, this.at);
     sumNormals(this.scene.data.triangle, this.at, this.normal);
     this.geometry.attributes.position.needsUpdate = this.geometry.attributes.normal.needsUpdate = true;
     if (frame.liquid) this.liquid.show(frame);
+    if (this.scene.data.walls) this.extras.walls.position.fromArray(this.scene.data.walls, 3 * frame.frame);
     this.extras.show(frame);
     this.renderer.shadowMap.needsUpdate = this.changed = true;
   }
@@ -163,11 +133,38 @@ export class Stage {
     this.camera.position.set(...eye);
     this.camera.up.set(...up);
     this.orbit.target.set(...look);
+    this.moved = false; // whether somebody has turned the picture
+    this.onPath = Boolean(this.scene.data.path); // whether the camera goes as in the movie
+    if (this.onPath && this.frame) this.goAlong(this.frame.frame);
+    this.look();
+  }
+
+  // The camera of the movie at a frame.
+  goAlong(frame) {
+    const part = (n) => this.scene.data.path.subarray(9 * frame + 3 * n, 9 * frame + 3 * n + 3);
+    this.camera.position.fromArray(part(0));
+    this.orbit.target.fromArray(part(1));
+    this.camera.up.fromArray(part(2));
+    this.look();
+  }
+
+  // Where the camera stands: eye, aim and up.
+  standpoint() {
+    return [this.camera.position, this.orbit.target, this.camera.up].map((point) => point.toArray());
+  }
+
+  stand([eye, look, up]) {
+    this.camera.position.set(...eye);
+    this.orbit.target.set(...look);
+    this.camera.up.set(...up);
+    this.onPath = false;
+    this.moved = true;
     this.look();
   }
 
   // Turn to boxes (corner and size) so that all of them are in the picture, from the side from which the camera looks now.
   see(boxes) {
+    this.onPath = false;
     const low = new Vector3(Infinity, Infinity, Infinity), high = low.clone().negate();
     for (const [x, y, z, a, b, c] of boxes) { low.min(new Vector3(x, y, z)); high.max(new Vector3(x + a, y + b, z + c)); }
     const middle = low.clone().add(high).multiplyScalar(0.5), back = this.camera.position.clone().sub(this.orbit.target).normalize();
@@ -185,6 +182,7 @@ export class Stage {
 
   // Have the camera go with an object, or with none where it does already; tells which.
   follow(k) {
+    this.onPath = false;
     return (this.followed = this.followed === null ? k : null);
   }
 
@@ -237,6 +235,10 @@ export class Stage {
     this.renderer.setPixelRatio(PIXELS[this.level] * finer);
     this.renderer.setSize(w, h, false);
     this.camera.aspect = w / h;
+    // A picture that is narrower than the movie shows as much from side to side.
+    const { fieldOfView, aspect } = this.scene, half = Math.tan((fieldOfView * Math.PI) / 360) * Math.max(1, (aspect * h) / w);
+    this.camera.fov = (360 / Math.PI) * Math.atan(half);
+    this.liquid?.drops?.seenBy(half);
     this.look();
   }
 
@@ -245,16 +247,26 @@ export class Stage {
     this.changed = false;
   }
 
-  // A canvas with the picture in full on its background.
-  paper() {
+  // A canvas with the picture in full on its background, or of a width in pixels.
+  paper(width = null) {
     this.quality(0);
+    if (width) {
+      const { clientWidth: w, clientHeight: h } = this.renderer.domElement;
+      this.renderer.setPixelRatio(width / w);
+      this.renderer.setSize(w, h, false);
+    }
     this.draw();
-    const { width, height } = this.renderer.domElement, paper = Object.assign(document.createElement("canvas"), { width, height }), pen = paper.getContext("2d");
+    const size = { width: this.renderer.domElement.width, height: this.renderer.domElement.height }, paper = Object.assign(document.createElement("canvas"), size), pen = paper.getContext("2d");
+    this.sky(pen, 0, size.width, size.height);
+    pen.drawImage(this.renderer.domElement, 0, 0);
+    return paper;
+  }
+
+  // Fill a part of a canvas with the background.
+  sky(pen, left, width, height) {
     const sky = pen.createLinearGradient(0, 0, 0, height);
     this.scene.background.forEach((color, k) => sky.addColorStop(1 - k, `rgb(${color})`));
     pen.fillStyle = sky;
-    pen.fillRect(0, 0, width, height);
-    pen.drawImage(this.renderer.domElement, 0, 0);
-    return paper;
+    pen.fillRect(left, 0, width, height);
   }
 }

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: GPL-2.0-only
+// Quantities of a run: what can be asked for, curves over time, vectors for arrows. Nothing here touches the page.
+
+const AXES = ["x", "y", "z"];
+// What the way of an object's centre tells, also while the run goes on; units by word.
+export const MOTION = { speed: "m/s", ...Object.fromEntries(AXES.flatMap((a) => [[`position.${a}`, "m"], [`velocity.${a}`, "m/s"]])) };
+export const ARROW_UNITS = { velocity: "m/s", spin: "rad/s" }; // of all other arrows: N
+const USUAL = 0.14, AMONG = 0.95; // length of an arrow over the size of the scene, that of the value that this share of all values does not exceed
+const NOTHING = 1e-9; // values below this share of the largest have no part in that
+
+const norm = (v, at = 0) => Math.hypot(v[at], v[at + 1], v[at + 2]);
+
+// Values of a word of MOTION from the places and velocities of a track.
+export function ofMotion(word, { centre, velocity }) {
+  const [name, axis] = word.split("."), rows = name === "position" ? centre : velocity;
+  return Float64Array.from({ length: rows.length / 3 }, (_, n) => (axis ? rows[3 * n + AXES.indexOf(axis)] : norm(rows, 3 * n)));
+}
+
+// "contact", "contact.x" from the vectors of object k of O, by frame; null where the word is not of this vector.
+export function ofVector(word, name, vectors, k, O) {
+  if (word !== name && !AXES.some((axis) => word === `${name}.${axis}`)) return null;
+  const axis = AXES.indexOf(word.slice(name.length + 1));
+  return Float64Array.from({ length: vectors.length / (3 * O) }, (_, f) => (axis < 0 ? norm(vectors, 3 * (O * f + k)) : vectors[3 * (O * f + k) + axis]));
+}
+
+// The least value that a share of some values does not exceed; NaN and what is next to nothing are left out.
+export function usual(sizes, share = AMONG) {
+  const found = Float64Array.from(sizes).filter(Number.isFinite), most = found.reduce((a, b) => Math.max(a, b), 0);
+  const some = found.filter((x) => x > NOTHING * most).sort();
+  return some.length ? some[Math.min(some.length - 1, Math.floor(share * some.length))] : 0;
+}
+
+// Metres per unit that show vectors well: rows of three, several arrays of them.
+export function usualScale(vectors, size) {
+  const sizes = vectors.flatMap((rows) => Array.from({ length: rows.length / 3 }, (_, n) => norm(rows, 3 * n))), most = usual(sizes);
+  return most ? (USUAL * size) / most : 1;
+}
+
+// The largest of 1, 2, 5 times a power of ten that is not above a value.
+export function roundValue(value) {
+  if (!(value > 0)) return 1;
+  const power = 10 ** Math.floor(Math.log10(value));
+  return power * [5, 2, 1].find((k) => k * power <= value * (1 + 1e-12));
+}
+
+// What a page may show of a run. While the run goes on only its motion is known.
+export class Quantities {
+  constructor(source, scene) {
+    Object.assign(this, { source, scene, own: {}, words: {}, globals: {}, arrows: ["velocity"], whole: false, vectors: new Map() });
+  }
+
+  // Ask what there is; tells whether the run has ended.
+  async look() {
+    const told = await this.source.told().catch(() => null);
+    this.whole = told !== null;
+    if (told) Object.assign(this, told, { arrows: ["velocity", ...told.arrows.filter((word) => word !== "velocity")] });
+    this.words = { ...MOTION, ...this.words };
+    return this.whole;
+  }
+
+  number(name) {
+    return this.scene.objects.findIndex((object) => object.name === name);
+  }
+
+  // The parts of "ball.contact.z": a subject and a word, or null where it is the scene's own.
+  parts(what) {
+    const of = this.scene.objects.map(({ name }) => name).filter((name) => what.startsWith(`${name}.`)).sort((a, b) => b.length - a.length)[0];
+    if (of) return [of, what.slice(of.length + 1)];
+    return what in this.globals ? [what.slice(0, what.indexOf(".")), what.slice(what.indexOf(".") + 1)] : null;
+  }
+
+  // A curve by its name; rejects with a reason where there is none.
+  async curve(what) {
+    const parts = this.parts(what);
+    if (parts && parts[1] in MOTION) {
+      const track = await this.source.track(this.number(parts[0]));
+      return { what, unit: MOTION[parts[1]], mean: false, time: track.time, value: ofMotion(parts[1], track) };
+    }
+    if (what in this.own) return this.source.curve(what);
+    if (!this.whole) throw new Error("it can be shown when the run has ended");
+    if (!parts) throw new Error(`the run does not tell ${what}`);
+    return this.source.curve(parts);
+  }
+
+  // Vectors of all objects at all frames, or null: of velocity they are those of each frame.
+  async vectorsOf(word) {
+    if (!this.vectors.has(word)) this.vectors.set(word, await this.source.arrows(word).catch(() => null));
+    return this.vectors.get(word);
+  }
+}
