@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What tests do with the page in a browser."""
+"""Steps that tests take with the page in a browser."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What a page tells beside its picture: the values of records and pictures, with reasons where there are none."""
+"""Quantities that a page tells beside its picture have the values of records; where there are none it says why."""
 
 import numpy as np
 import pytest
@@ -47,7 +47,7 @@ def test_curves_are_those_of_the_records(folder):
 
 
 def test_what_the_run_does_not_tell(folder):
-    """What was not recorded, or frames do not tell, is refused with a reason; what is not a quantity is a wrong question."""
+    """A quantity that was not recorded is refused with a reason; what is not a quantity is a wrong question."""
     told = ShownQuantities(folder)
     with pytest.raises(MdanimError, match=r"record block\.spin\.z"):
         told.curve(["block", "spin.z"])
