@@ -3,6 +3,7 @@
 
 import re
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -16,6 +17,7 @@ from mdanim_lammps.engine.sub_plan import SubPlans
 from mdanim_lammps.features.contact.barrier import plane_stiffness
 from mdanim_lammps.features.contact.words import ContactModel
 from mdanim_lammps.features.liquid.tables import MOST_LAYERS, lattice_cells, layers_of_cells
+from mdanim_lammps.run.prepare import prepare
 from mdanim_lammps.scene.parse import parse_scene
 
 FULL = """gravity (0, 0, -9.81)
@@ -442,12 +444,15 @@ def test_what_is_on_is_there(prepared, model):
     assert ("barrier" in fixes(ready)) == (model == "surface")
 
 
+ready_of = cache(lambda text: prepare(parse_scene(text)))
+
+
 @pytest.mark.parametrize("model", MODELS)
 @pytest.mark.parametrize("effect", [e.name for e in features.effects() if e.name not in ELSEWHERE])
 def test_what_is_off_leaves_nothing(prepared, effect, model):
     """Find no trace of an effect that is off, nor of those that need it, and all traces of the others."""
     every = with_every_effect(ALL.replace("MODEL", model))
-    whole, ready = prepared(every), prepared(every + f"effects {{ {effect} off }}\n")
+    whole, ready = ready_of(every), prepared(every + f"effects {{ {effect} off }}\n")
     gone = {effect} | TAKES_ALONG.get(effect, set())
     assert {v.name for v in ready.verdicts.values() if not v.on} == gone | ELSEWHERE
     text, words_of = written(ready), traces(whole)

@@ -51,8 +51,18 @@ CASES = {
 }
 
 
-@pytest.mark.parametrize("density", [300, 500, 700, 900])
-@pytest.mark.parametrize("case", CASES)
+DAILY = {*((case, 500) for case in CASES), ("dropped tilted", 300), ("dropped fast", 900)}
+"""Cases and densities of every day; all pairs with `make soak`."""
+
+
+@pytest.mark.parametrize(
+    ("case", "density"),
+    [
+        pytest.param(case, density, marks=() if (case, density) in DAILY else pytest.mark.soak)
+        for density in (300, 500, 700, 900)
+        for case in CASES
+    ],
+)
 def test_a_cube_floats_as_deep_as_archimedes_says(case, density):
     """Immersed share = density ratio within 2 % of the side; the liquid's volume is kept to the unit throughout."""
     what = CASES[case](density)
