@@ -6,8 +6,8 @@ import pytest
 from campaign import rounds
 from random_objects import keeps_energy, others
 
-FEW = (0, 3, 4, 9)
-"""Seeds of scenes that are run every day."""
+FEW = (1, 6, 9)
+"""Seeds of scenes that are run every day: of those with the least work."""
 HOLDS = ("", "hold face -x", "hold faces y", "hold face +y")
 
 

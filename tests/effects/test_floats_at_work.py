@@ -141,7 +141,7 @@ def test_a_hull_with_a_heavy_load_sinks_and_stays_on_the_floor(tmp_path):
     objects = HULL.format(z=35.2, density=700) + LOAD.format(density=14000)
     with Afloat(tmp_path, objects, more=SETTLE) as scene:
         scene.until(1.5)
-        for time in (2.0, 2.5, 3.0):
+        for time in (2.0, 2.5):
             scene.until(time)
             assert scene.lowest("hull") < CELL / 2 and scene.immersed("hull") == scene.immersed("load") == 1.0
         assert scene.held_inside("hull") > 0.004  # of 9 litres, less what the load fills and where it leans
@@ -164,7 +164,7 @@ def test_a_hull_that_stands_full_on_the_floor_stays(tmp_path):
     """It is taller than the lake is deep; empty it would float on 15 cm."""
     objects = HULL.format(z=12.55, density=1100).replace("100 kPa", "400 kPa")
     with Afloat(tmp_path, objects, hull=(40, 40, 25), level=20, top=50, half=25, more=f"{SETTLE} {FILL}") as scene:
-        for time in (2.0, 2.5, 3.0):
+        for time in (1.0, 1.5):
             scene.until(time)
             assert scene.held_inside("hull", (30, 30)) > 0.008 and scene.lowest("hull") < 0.4 * CELL
 
@@ -175,10 +175,10 @@ def test_a_hull_that_a_drain_empties_lifts_off_the_floor(tmp_path):
     Single units of 16 ml come and go while it bobs, 0 to 8 of them in 8 to 14 s.
     """
     objects = HULL.format(z=12.55, density=1100).replace("100 kPa", "400 kPa")
-    drain = "drain from (-12, -12, 5.5) cm to (12, 12, 10) cm  rate 2 l/s"
+    drain = "drain from (-12, -12, 5.5) cm to (12, 12, 10) cm  rate 8 l/s"
     with Afloat(tmp_path, objects, hull=(40, 40, 25), level=16, top=50, half=60, more=f"{SETTLE} {WIDE} {drain}") as scene:
-        assert scene.until(2.0).lowest("hull") < 0.001 and scene.held_inside("hull", (30, 30)) > 0.002
-        scene.until(10.0)
+        assert scene.until(0.3).lowest("hull") < 0.001 and scene.held_inside("hull", (30, 30)) > 0.002
+        scene.until(5.0)
         assert scene.lowest("hull") > 0.008 and scene.held_inside("hull", (30, 30)) < 0.0002
         assert scene.draft("hull") == pytest.approx(0.151, abs=0.0025)
 
