@@ -3,12 +3,14 @@
 
 import numpy as np
 import pytest
-from mdanim_lammps import Scene
+from mdanim_lammps import Scene, Trajectory
 from mdanim_lammps.engine.instance import Instance
 from mdanim_lammps.errors import SceneError
 from mdanim_lammps.picture.drawn import drawn
+from mdanim_lammps.results.files import HANDS
 from mdanim_lammps.run.prepare import prepare
 from mdanim_lammps.scene.parse import parse_scene
+from mdanim_lammps.view.feed import ADDED, Feed
 
 R, G = 0.05, 9.81
 BALL = "object ball { shape sphere 5 cm  position (0, 0, 1) m  density 1000  elasticity rigid }\n"
@@ -81,3 +83,21 @@ def test_pictures_show_the_hand_and_what_it_holds(tmp_path, elasticity, near):
                 rest = a[2] - p[2]
             assert holds or np.ptp(one.points(frame), axis=0).max() < 1e-12
         assert elasticity != "rigid" or rest == pytest.approx(R / 4, rel=0.03)
+
+
+def test_pictures_show_the_hands_of_a_page(tmp_path):
+    """Hands that the run has kept beside its trajectory are drawn; a file that cannot be read as a scene has none."""
+    scene = SCENE.replace("time 1 s", "time 0.04 s")
+    folder = Scene.from_text("hands on\n" + scene, "hand").run(tmp_path / "r", movie=False).folder
+    hand = "hand ball { at (0, 0, 1.05) m  key 0 s at (0, 0, 1.05) m  key 0.04 s at (0, 0, 1.07) m }\n"
+    for lines, count in (("", 0), (f"# page\nhands on\n{hand}", 1), ("object x {", 0), (f"repeat i in 1 .. 2 {{ {hand} }}", 0)):
+        (folder / HANDS).write_text(lines)
+        with Trajectory(folder) as t:
+            found = drawn(t)
+            assert len(found) == count
+            if found:
+                np.testing.assert_allclose(found[0].points(len(t) - 1)[-2], (0.0, 0.0, 1.07), atol=1e-12)
+                feed = Feed(folder, finished=True)  # the page shows it, too
+                points = np.frombuffer(feed.frame(len(t) - 1, ADDED)[-12 * feed.head()["added"] :], "<f4").reshape(-1, 3)
+                np.testing.assert_array_equal(points, found[0].points(len(t) - 1).astype("f4"))
+                feed.close()

@@ -181,7 +181,7 @@ def test_a_long_run_need_not_fit_in_memory(tmp_path):
     frames = SimpleNamespace(value=lambda name, n: (1.0 + 0.001 * n) * values[name], time=float, path=tmp_path)
     feed = SimpleNamespace(
         frames=frames, first=np.zeros(1, int), count=np.array([4000]), vertices=lambda x, gone: np.array(x),
-        gone=lambda n: None, liquid=lambda n: None,
+        gone=lambda n: None, liquid=lambda n: None, added=lambda n: np.zeros((0, 3), "<f4"),
         drops=lambda n: np.zeros((0, 4)), head=lambda: {"frameTime": 0.1}, buffers=dict,
     )  # fmt: skip
     tracemalloc.start()

@@ -94,13 +94,18 @@ class Trajectory(*TRACKS):  # type: ignore[misc]  # features are found when the 
         It may be of an older language, its meshes may be elsewhere, or it is not written out in full, as every run stores it: so
         reading it takes no longer than the objects of the run ask for.
         """
+        return self.scene_with("")
+
+    def scene_with(self, lines: str) -> SceneRecord | None:
+        """The scene with further lines that are written out as it is; None where the text cannot be read here."""
         from ..scene.parse import parse_scene
 
         m = self.metadata
-        if len(m.scene_text) > MOST_TEXT + MOST_TEXT_OF_OBJECT * len(m.names) or _UNFOLDS.search(_QUOTED.sub(" ", m.scene_text)):
+        text = f"{m.scene_text}\n{lines}" if lines else m.scene_text
+        if len(text) > MOST_TEXT + MOST_TEXT_OF_OBJECT * len(m.names) or _UNFOLDS.search(_QUOTED.sub(" ", text)):
             return None
         try:
-            scene = parse_scene(m.scene_text, folder=self.path.parent)
+            scene = parse_scene(text, folder=self.path.parent)
         except SceneError:
             return None
         return scene if tuple(solid.name for solid in scene.solids) == m.names else None

@@ -155,7 +155,9 @@ class _Frames:
         low, size = self.boxes[own, :3], self.boxes[own, 3:]
         scale = np.divide(steps, size, out=np.zeros_like(size), where=size > 0.0)
         self.vertices = len(own)
-        self.moving, self.places, self.heights, self.states, self.drops = self._tables = [_Rows(folder) for _ in range(5)]
+        self.moving, self.places, self.heights, self.states, self.drops, self.added = self._tables = [
+            _Rows(folder) for _ in range(6)
+        ]
         for n in range(count):
             self.moving.append(self._moving(n))
             self.places.append(np.rint(np.clip((self._about(n, own) - low) * scale, 0, steps)).astype("<u2").ravel())
@@ -163,6 +165,7 @@ class _Frames:
                 self.heights.append(liquid[0])
                 self.states.append(liquid[1])
             self.drops.append(feed.drops(n).astype("<f4"))
+            self.added.append(feed.added(n))
             on_progress(count + n + 1, 2 * count)
 
     def __enter__(self) -> _Frames:
@@ -182,7 +185,7 @@ class _Frames:
         return self.feed.vertices(self.feed.frames.value("position", n), self.feed.gone(n)) - self._moving(n)[own, :3]
 
     def pieces(self, news: dict, every: int, told: ShownQuantities | None = None) -> Iterator[bytes]:
-        """Scene, with curves and arrows, then times, centres and velocities, positions and liquid of every n-th frame."""
+        """Scene, with curves and arrows, then times, centres and velocities, positions, liquid and additions of every n-th."""
         kept = range(0, len(self.times), every)
         news = news | {
             "count": len(kept),
@@ -208,6 +211,7 @@ class _Frames:
             yield from differences(map(self.heights.row, [*kept, *kept]), len(kept))
             yield from map(self.states.row, kept)
             yield from map(self.drops.row, kept)
+        yield from map(self.added.row, kept)
 
 
 def _told(told: ShownQuantities, count: int, every: int) -> tuple[dict, dict[str, np.ndarray]]:

@@ -10,7 +10,8 @@ All numbers are little endian, and every array is padded to a multiple of four b
            u16 (V, 3): vertices within the box of their object
            u16 (C), u8 (C): heights of the liquid within its basin, and `OPEN`, `HIDDEN` or `DRY` plus 4 times its foam
            f32 (D, 4): middle and radius of each drop [m]
-           u8 (V): strain, 255 is `MOST_STRAIN`, where asked for; f32 (N, 3): particles [m], where asked for
+           u8 (V): strain, 255 is `MOST_STRAIN`, where asked for; f32 (A, 3): points of what features add [m], where asked for;
+           f32 (N, 3): particles [m], where asked for
 """
 
 from __future__ import annotations
@@ -26,6 +27,7 @@ import numpy as np
 from ..errors import OutputError
 from ..features.liquid.kept import DROPS, HEIGHT, RAW, WAY
 from ..picture.camera import FIELD_OF_VIEW, Action, View, action_of, automatic_view
+from ..picture.drawn import Drawn, drawn
 from ..picture.floor import grid_spacing
 from ..picture.foam import Foam
 from ..picture.liquid import LiquidSheet, without_puddles
@@ -42,8 +44,8 @@ from ..results.untrusted import check_places
 from ..scene.render import Floor, Render
 from .told import shown
 
-STRAIN, PARTICLES = 1, 2
-LAYERS = STRAIN | PARTICLES
+STRAIN, PARTICLES, ADDED = 1, 2, 4
+LAYERS = STRAIN | PARTICLES | ADDED
 """Layers of a frame beside the surfaces and the liquid: bits, and all of them."""
 OPEN, HIDDEN, DRY = 0, 1, 2
 """States of a column of liquid: seen from above, below a solid, kept dry by one as by a hull."""
@@ -53,6 +55,8 @@ STEPS = 65535
 """Steps of a 16-bit number."""
 MOST_STRAIN = 0.2
 """Strain that is drawn in the last colour [-]."""
+GREY = {False: (38, 38, 38), True: (242, 242, 242)}
+"""Colour of what features add without one, on bright and dark background."""
 PAGE = 2
 """Form of what a page is sent: a report of another one is not shown beside a run."""
 BY_FRAME = ("path", "walls")
@@ -175,6 +179,7 @@ class Feed:
                 )
             ],
             "liquid": liquid,
+            "added": sum(self._added_counts),
             "shown": shown(self.render, m.names),
         }
 
@@ -190,6 +195,13 @@ class Feed:
             found |= {"sheet": sheet.triangle.astype("<u4"), "rim": sheet.rim.astype("<u4")}
         if (material := material_places(self._trajectory, self.start, self.object_of_vertex)) is not None:
             found["material"] = material.astype("<f4")
+        if self._added:
+            first = np.cumsum([0, *self._added_counts])
+            shifted = [(one.triangle + n, one.line + n) for one, n in zip(self._added, first)]
+            found["added triangle"], found["added line"] = (np.concatenate(part).astype("<u4").ravel() for part in zip(*shifted))
+            grey = GREY[is_dark(background_colors(self.render)[0])]
+            colors = [grey if one.color is None else np.rint(255.0 * np.array(one.color)) for one in self._added]
+            found["added color"] = np.repeat(np.array(colors), self._added_counts, axis=0).astype("u1").ravel()
         return found | {name: rows.astype("<f4") for name, rows in self._by_frame().items()}
 
     def _by_frame(self) -> dict[str, np.ndarray]:
@@ -209,6 +221,22 @@ class Feed:
     def bond(self) -> np.ndarray:
         """Springs as pairs of stored particles, shape (B, 2)."""
         return np.searchsorted(self.metadata.id, self.metadata.bond)
+
+    @cached_property
+    def _added(self) -> tuple[Drawn, ...]:
+        """Additions of features to pictures, as joints and strings, in a run that has ended."""
+        return tuple(one for one in drawn(Trajectory(self.folder)) if not one.clear) if self.finished else ()
+
+    @cached_property
+    def _added_counts(self) -> list[int]:
+        """Numbers of their points."""
+        return [len(one.points(0)) for one in self._added]
+
+    def added(self, n: int) -> np.ndarray:
+        """Points of what features add in a frame [m], float32, shape (A, 3)."""
+        points = np.concatenate([np.zeros((0, 3)), *(one.points(n) for one in self._added)]) - self.way(n)
+        check_places(self.frames.path, points, frame=n)
+        return points.astype("<f4")
 
     @cached_property
     def action(self) -> Action:
@@ -266,6 +294,8 @@ class Feed:
         ]
         if layers & STRAIN:
             parts.append(padded(self._strain(x, n)))
+        if layers & ADDED:
+            parts.append(padded(self.added(n)))
         if layers & PARTICLES:
             parts.append(padded(x.astype("<f4")))
         return b"".join(parts)

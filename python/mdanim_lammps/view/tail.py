@@ -125,7 +125,8 @@ class Tail:
                 self._feed = Feed(self.folder, *self._stored(), finished=self._state == "done")
             elif self._state == "done" and not self._feed.finished:
                 self._feed.finished = True
-                self._feed.__dict__.pop("action", None)
+                for known in ("action", "_added", "_added_counts"):
+                    self._feed.__dict__.pop(known, None)
             return self._feed
 
     def told(self) -> ShownQuantities:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What a page tells beside its picture: curves of quantities, and the vectors of arrows, of a run that has ended."""
+"""Curves of quantities and vectors of arrows of a run that has ended, for a page."""
 
 from __future__ import annotations
 
@@ -137,7 +137,7 @@ class ShownQuantities:
 
 
 def shown(render: Render, names: tuple[str, ...]) -> dict:
-    """What a scene has laid over its pictures, with numbers of objects in place of names: ``arrows``, ``trails``, ``labels``,
+    """Arrows, words and curves that a scene has laid over its pictures, with numbers of objects in place of names: ``arrows``, ``trails``, ``labels``,
     ``captions``, ``plots``. What names an object that is not there is left out."""
     of = objects_by_name(names)
     arrows = [[one.vector, of.get(one.name, []) if one.name else None, one.scale] for one in render.arrows]

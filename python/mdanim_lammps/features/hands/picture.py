@@ -9,7 +9,10 @@ import numpy as np
 
 from ...model import shapes
 from ...picture.drawn import Drawn
+from ...results.files import HANDS
+from ...results.trajectory import MOST_TEXT
 from ...scene.scene import Sphere
+from ...scene.source import UnreadableFile, read_text
 from ..joints.patches import ALL, Patch
 from ..rigid.words import Rigid
 from .strength import GRASP
@@ -24,10 +27,21 @@ COLOR = (0.80, 0.10, 0.50)
 
 
 def drawn(trajectory):
-    """A ball and a line for each hand of the scene, from its first key to its last."""
+    """A ball and a line for each hand of the scene and of its pages, from its first key to its last."""
     scene = trajectory.scene
+    if scene is not None and scene.steerable:
+        scene = _with_those_of_pages(trajectory) or scene
     held_by = [] if scene is None else [hand for hand in scene.held_by if hand.object in trajectory.names]
     return tuple(_hand(trajectory, hand, n) for n, hand in enumerate(held_by, 1))
+
+
+def _with_those_of_pages(trajectory):
+    """The scene with the hands that a page has moved, which the run keeps beside its trajectory; None where there are none."""
+    try:
+        lines = read_text(trajectory.path.parent / HANDS, MOST_TEXT, HANDS)
+    except (UnreadableFile, OSError):
+        return None
+    return trajectory.scene_with("\n".join(line for line in lines.splitlines() if line.strip() != "hands on"))
 
 
 def _hand(trajectory, hand, n: int) -> Drawn:

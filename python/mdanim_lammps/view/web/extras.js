@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// Drawings beside the objects: boxes of objects and walls, particles, springs.
+// Drawings beside the objects: boxes of objects and walls, particles, springs, and what features add, as joints and strings.
 import {
-  Box3, BufferAttribute, BufferGeometry, DynamicDrawUsage, LineBasicMaterial, LineSegments, Points, PointsMaterial, Vector3,
+  Box3, BufferAttribute, BufferGeometry, DynamicDrawUsage, LineBasicMaterial, LineSegments, Mesh, MeshPhongMaterial, Points,
+  PointsMaterial, Vector3,
 } from "./vendor.js";
+import { sumNormals } from "./message.js";
 
 const EDGES = [0, 1, 1, 3, 3, 2, 2, 0, 4, 5, 5, 7, 7, 6, 6, 4, 0, 4, 1, 5, 2, 6, 3, 7];
 
@@ -28,11 +30,30 @@ export class Extras {
     for (const part of [this.hand, ...this.hand.children]) Object.assign(part, { frustumCulled: false, renderOrder: 1 });
     this.hand.visible = false;
     world.add(this.hand);
+    if (scene.added) this.add(world, scene);
     this.walls = box(scene.walls, soft);
     if (this.walls) world.add(this.walls);
   }
 
+  add(world, { data, added }) {
+    const geometry = (index) => new BufferGeometry().setAttribute("position", this.place).setAttribute("color", color).setIndex(new BufferAttribute(index, 1));
+    this.place = new BufferAttribute(new Float32Array(3 * added), 3).setUsage(DynamicDrawUsage);
+    const color = new BufferAttribute(Float32Array.from(data["added color"], (c) => (c / 255) ** 2.2), 3);
+    this.added = new Mesh(geometry(data["added triangle"]).setAttribute("normal", new BufferAttribute(new Float32Array(3 * added), 3).setUsage(DynamicDrawUsage)), new MeshPhongMaterial({ vertexColors: true }));
+    this.added.castShadow = this.added.receiveShadow = true;
+    for (const part of [this.added, new LineSegments(geometry(data["added line"]), new LineBasicMaterial({ vertexColors: true }))]) {
+      part.frustumCulled = false;
+      world.add(part);
+    }
+  }
+
   show(frame) {
+    if (frame.added && this.added) {
+      this.place.array.set(frame.added);
+      const { normal } = this.added.geometry.attributes;
+      sumNormals(this.added.geometry.index.array, this.place.array, normal.array);
+      this.place.needsUpdate = normal.needsUpdate = true;
+    }
     if (this.boxes.visible) placeBoxes(this.boxes, frame.object);
     this.mark.visible = this.picked !== null;
     if (this.picked !== null) placeBoxes(this.mark, frame.object.subarray(12 * this.picked, 12 * this.picked + 12));

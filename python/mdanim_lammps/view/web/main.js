@@ -2,7 +2,7 @@
 // Puts the parts together: what is heard, what is seen, what is pressed.
 import { offerEditing } from "./edit.js";
 import { Hand } from "./hands.js";
-import { STRAIN, PARTICLES, cameraLine, nearlyMost, number, ownersAt } from "./message.js";
+import { ADDED, STRAIN, PARTICLES, cameraLine, nearlyMost, number, ownersAt } from "./message.js";
 import { Energies, Height, KEYS, byId, element, executorColor, offer, roundStrain, say, showCost, showExpects, showLegend, showObject, strainColor, table, typing } from "./panel.js";
 import { Cache, Player, SPEEDS } from "./player.js";
 import { Embedded, Socket } from "./source.js";
@@ -107,7 +107,7 @@ function order(what) {
 // --- what is seen -----------------------------------------------------------------------------------------------------
 
 const checked = (id) => byId(`show-${id}`).checked;
-const layers = () => (byId("colour").value === "strain" ? STRAIN : 0) | (checked("particles") || checked("springs") ? PARTICLES : 0);
+const layers = () => (byId("colour").value === "strain" ? STRAIN : 0) | (checked("particles") || checked("springs") ? PARTICLES : 0) | (scene.added ? ADDED : 0);
 
 function tick(now) {
   requestAnimationFrame(tick);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 // Messages of the server (feed.py) and what is computed from them; nothing here touches the page or WebGL.
 
-export const STRAIN = 1, PARTICLES = 2; // layers of a frame
+export const STRAIN = 1, PARTICLES = 2, ADDED = 4; // layers of a frame
 export const DRY = 2; // state of a column of liquid
 export const stateOf = (column) => column & 3, foamOf = (column) => (column >> 2) / 63;
 const ARRAYS = { u1: Uint8Array, u2: Uint16Array, u4: Uint32Array, f4: Float32Array, f8: Float64Array };
@@ -17,7 +17,8 @@ export function readScene(buffer) {
   return { ...head, data };
 }
 
-export function readFrame(buffer) {
+// "added": how many points features add to the scene.
+export function readFrame(buffer, added = 0) {
   if (kind(buffer) !== "MDF1") throw new Error("not a frame");
   const head = new DataView(buffer), [layers, V, O, C, D] = [16, 20, 24, 28, 32].map((at) => head.getUint32(at, true));
   const frame = { frame: head.getUint32(4, true), time: head.getFloat64(8, true), layers, bytes: buffer.byteLength };
@@ -32,6 +33,7 @@ export function readFrame(buffer) {
   if (C) [frame.liquid, frame.columns] = [next(Uint16Array, C), next(Uint8Array, C)];
   if (D) frame.drops = next(Float32Array, 4 * D);
   if (layers & STRAIN) frame.strain = next(Uint8Array, V);
+  if (layers & ADDED) frame.added = next(Float32Array, 3 * added);
   if (layers & PARTICLES) frame.particles = next(Float32Array, (buffer.byteLength - at) / 4);
   return frame;
 }

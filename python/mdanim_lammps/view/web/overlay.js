@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// What is laid over the picture: arrows with their legend, trails, labels, captions; looks are those of picture/overlay.py.
+// Things that are laid over the picture: arrows with their legend, trails, labels, captions; looks are those of picture/overlay.py.
 import { Vector3 } from "./vendor.js";
 import { number } from "./message.js";
 import { ARROW_UNITS, roundValue, usualScale } from "./quantities.js";
@@ -94,7 +94,7 @@ export class Overlay {
     }
   }
 
-  // Of velocities while the run goes on: by the largest so far.
+  // The scale of velocities while the run goes on: by the largest so far.
   usual() {
     return this.fastest ? (0.14 * this.scene.size) / this.fastest : 1;
   }

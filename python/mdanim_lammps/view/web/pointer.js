@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// What the mouse points at in the picture.
+// The mouse in the picture: what it points at.
 import { byId } from "./panel.js";
 
 // "choose" is called with the object that is clicked, or null; grabs(x, y) tells whether there is something to pull at.

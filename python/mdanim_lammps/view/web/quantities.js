@@ -2,7 +2,7 @@
 // Quantities of a run: what can be asked for, curves over time, vectors for arrows. Nothing here touches the page.
 
 const AXES = ["x", "y", "z"];
-// What the way of an object's centre tells, also while the run goes on; units by word.
+// Quantities that the way of an object's centre tells, also while the run goes on; units by word.
 export const MOTION = { speed: "m/s", ...Object.fromEntries(AXES.flatMap((a) => [[`position.${a}`, "m"], [`velocity.${a}`, "m/s"]])) };
 export const ARROW_UNITS = { velocity: "m/s", spin: "rad/s" }; // of all other arrows: N
 const USUAL = 0.14, AMONG = 0.95; // length of an arrow over the size of the scene, that of the value that this share of all values does not exceed
@@ -43,7 +43,7 @@ export function roundValue(value) {
   return power * [5, 2, 1].find((k) => k * power <= value * (1 + 1e-12));
 }
 
-// What a page may show of a run. While the run goes on only its motion is known.
+// Quantities that a page may show of a run. While the run goes on only its motion is known.
 export class Quantities {
   constructor(source, scene) {
     Object.assign(this, { source, scene, own: {}, words: {}, globals: {}, arrows: ["velocity"], whole: false, vectors: new Map() });

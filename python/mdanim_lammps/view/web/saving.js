@@ -68,7 +68,7 @@ export class Saving {
     this.refresh();
   }
 
-  // What is seen from now on, as it is seen, until the button is pressed again.
+  // Record what is seen, as it is seen, until the button is pressed again.
   record() {
     const { clientWidth, clientHeight } = byId("picture"), share = Math.min(1, CLIP / clientWidth), even = (x) => 2 * Math.round((x * share) / 2), chunks = [];
     this.tape = element("canvas", { width: even(clientWidth), height: even(clientHeight) });

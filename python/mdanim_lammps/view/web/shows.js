@@ -115,7 +115,7 @@ export class Shows {
     if (overlay.busy) overlay.paint(pen, w, h, this.stage.camera, frame);
   }
 
-  // What is shown, for a page that is loaded again because the scene was run again.
+  // Keep what is shown, for a page that is loaded again because the scene was run again.
   keep() {
     const { overlay, stage, curves } = this;
     const desk = { arrows: [...this.on], trails: [...overlay.trails].map(([k, seconds]) => [k, Number.isFinite(seconds) ? seconds : null]), curves: curves.names, camera: stage.moved ? stage.standpoint() : null };

@@ -59,7 +59,9 @@ export class Socket {
   }
 
   async scene() {
-    return readScene(await this.ask({ scene: 1 }));
+    const scene = readScene(await this.ask({ scene: 1 }));
+    this.added = scene.added;
+    return scene;
   }
 
   async springs() {
@@ -85,7 +87,7 @@ export class Socket {
   }
 
   async frame(frame, layers) {
-    return readFrame(await this.ask({ get: frame, layers }));
+    return readFrame(await this.ask({ get: frame, layers }), this.added);
   }
 
   // Without a text: the text that is there. Else its problems, and whether a run of it has begun.
@@ -122,6 +124,7 @@ export class Embedded {
     this.places = undoDifferences(new Uint8Array(next(6 * V * F)), 3 * V, F);
     if (C) [this.heights, this.states] = [undoDifferences(new Uint8Array(next(2 * C * F)), C, F), new Uint8Array(next(C * F))];
     this.drops = Array.from(this.head.replay.drops, (D) => new Float32Array(next(16 * D)));
+    this.added = new Float32Array(next(12 * this.head.added * F));
     Object.assign(this, { O, V, C });
     return this;
   }
@@ -162,7 +165,7 @@ export class Embedded {
   async frame(frame) {
     const { O, V, C, head } = this, part = (array, size) => array.subarray(size * frame, size * (frame + 1));
     const solids = inOwnBoxes(head.objects, part(this.places, 3 * V), head.replay.steps, head.data.boxes, part(this.moving, 6 * O));
-    const found = { frame, time: this.times[frame], layers: 0, bytes: 0, ...solids };
+    const found = { frame, time: this.times[frame], layers: 0, bytes: 0, added: part(this.added, 3 * head.added), ...solids };
     return C ? { ...found, liquid: part(this.heights, C), columns: part(this.states, C), drops: this.drops[frame] } : found;
   }
 }
