@@ -137,8 +137,8 @@ class ShownQuantities:
 
 
 def shown(render: Render, names: tuple[str, ...]) -> dict:
-    """Arrows, words and curves that a scene has laid over its pictures, with numbers of objects in place of names: ``arrows``, ``trails``, ``labels``,
-    ``captions``, ``plots``. What names an object that is not there is left out."""
+    """Arrows, words and curves that a scene has laid over its pictures, with numbers of objects in place of names: ``arrows``,
+    ``trails``, ``labels``, ``captions``, ``plots``. A line that names an object which is not there is left out."""
     of = objects_by_name(names)
     arrows = [[one.vector, of.get(one.name, []) if one.name else None, one.scale] for one in render.arrows]
     return {
