@@ -61,9 +61,9 @@ struct WholePush {
   Vec3 a, alpha, centre;
 
   Vec3 on(double mass, const Vec3 &x) const { return mass * (a + cross(alpha, x - centre)); }
-  // sum f_i v_i for particles with the momentum P, and the angular momentum L about `about`.
-  double power(const Vec3 &momentum, const Vec3 &angular, const Vec3 &about) const
-  { return dot(a, momentum) + dot(alpha, angular + cross(about - centre, momentum)); }
+  // sum f_i d_i for particles that go ways d, with sum m d, and sum m (x - about) x d.
+  double work(const Vec3 &way, const Vec3 &swept, const Vec3 &about) const
+  { return dot(a, way) + dot(alpha, swept + cross(about - centre, way)); }
 };
 
 inline Matrix3 matrix(const Inertia &of) { return {{{of.xx, of.xy, of.xz}, {of.xy, of.yy, of.yz}, {of.xz, of.yz, of.zz}}}; }

@@ -2,8 +2,6 @@
 
 #include "lammps/whole_objects.h"
 
-#include "lammps/particle_value.h"
-
 #include "fmt/format.h"
 #include "group.h"
 
@@ -12,8 +10,6 @@ using namespace LAMMPS_NS;
 namespace mdanim {
 
 std::string WholeObjects::name() const { return fmt::format("fix {} {}", fix.id, fix.style); }
-
-double WholeObjects::mass_at(int i) const { return mass_of(atom->rmass, atom->mass, atom->type, i); }
 
 // --- objects ---
 
@@ -49,9 +45,9 @@ std::vector<bigint> WholeObjects::take_objects(bool with_aside)
     if (inside[n] > 0 && inside[n] != all[n])
       error->all(FLERR, "{}: {} of the {} particles of object {} (molecule ID) are in its group; a body has all of them", name(),
                  inside[n], all[n], known.id(n));
-    if (all[n] > UnorderedSum::MOST_TERMS)
+    if (all[n] > unordered::MOST_TERMS)
       error->all(FLERR, "{}: object {} (molecule ID) has {} particles, a body may have {}", name(), known.id(n), all[n],
-                 UnorderedSum::MOST_TERMS);
+                 unordered::MOST_TERMS);
   }
   return all;
 }

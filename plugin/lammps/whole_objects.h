@@ -4,6 +4,7 @@
 #pragma once
 
 #include "lammps/object_table.h"
+#include "lammps/particle_value.h"
 #include "numbers/unordered_sum.h"
 #include "numbers/vec3.h"
 #include "rigid/inertia.h"
@@ -29,7 +30,7 @@ class WholeObjects : protected LAMMPS_NS::Pointers {
   WholeObjects(LAMMPS_NS::LAMMPS *lmp, const LAMMPS_NS::Fix &fix) : Pointers(lmp), fix(fix) {}
 
   bool moves(int i) const { return atom->mask[i] & fix.groupbit; }
-  double mass_at(int i) const;
+  double mass_at(int i) const { return mass_of(atom->rmass, atom->mass, atom->type, i); }
   int body_of(int i) const { return of_particle[i]; }    // ObjectTable::NONE of one that is not in the group
 
   // Called by all ranks together. find_objects() tells whether there are other objects or particles than before, or they are all
@@ -61,11 +62,27 @@ class WholeObjects : protected LAMMPS_NS::Pointers {
   }
   // The same of bodies for which this holds; of all others they are 0. It is the same on all ranks.
   template <int N, class Terms, class Asked>
-  std::vector<std::array<double, N>> sums(const Terms &terms_of, const Asked &asked) const;
+  std::vector<std::array<double, N>> sums(const Terms &terms_of, const Asked &asked) const
+  { return sums_within<N>(terms_of, asked, largest<N>(terms_of, asked)); }
+  // Such sums where no term is larger than a bound of its body, which all ranks have.
+  template <int N, class Terms, class Asked>
+  std::vector<std::array<double, N>> sums_within(const Terms &terms_of, const Asked &asked,
+                                                 const std::vector<std::array<double, N>> &bounds) const;
+  // The largest magnitude of each of N numbers of the particles of a body on all ranks.
+  template <int N, class Terms, class Asked>
+  std::vector<std::array<double, N>> largest(const Terms &terms_of, const Asked &asked) const;
 
   template <class Term> std::vector<double> sum_of(const Term &term_of) const
   {
     const auto values = sums<1>([&](int i) { return std::array<double, 1>{term_of(i)}; });
+    std::vector<double> found;
+    for (const auto &value : values) found.push_back(value[0]);
+    return found;
+  }
+
+  template <class Term> std::vector<double> largest_of(const Term &term_of) const
+  {
+    const auto values = largest<1>([&](int i) { return std::array<double, 1>{term_of(i)}; }, [](int) { return true; });
     std::vector<double> found;
     for (const auto &value : values) found.push_back(value[0]);
     return found;
@@ -88,32 +105,40 @@ class WholeObjects : protected LAMMPS_NS::Pointers {
 };
 
 template <int N, class Terms, class Asked>
-std::vector<std::array<double, N>> WholeObjects::sums(const Terms &terms_of, const Asked &asked) const
+std::vector<std::array<double, N>> WholeObjects::largest(const Terms &terms_of, const Asked &asked) const
 {
-  const std::size_t count = known.size();
-  std::vector<double> largest(N * count, 0.0);
-  std::vector<UnorderedSum> sum(N * count);
+  std::vector<std::array<double, N>> found(known.size(), std::array<double, N>{});
   for (int i = 0; i < atom->nlocal; ++i) {
     if (of_particle[i] == ObjectTable::NONE || !asked(of_particle[i])) continue;
     const std::array<double, N> terms = terms_of(i);
-    double *const of_body = &largest[N * of_particle[i]];
+    std::array<double, N> &of_body = found[of_particle[i]];
     for (int k = 0; k < N; ++k) of_body[k] = std::isfinite(terms[k]) ? std::max(of_body[k], std::fabs(terms[k])) : HUGE_VAL;
   }
-  if (comm->nprocs > 1) MPI_Allreduce(MPI_IN_PLACE, largest.data(), static_cast<int>(largest.size()), MPI_DOUBLE, MPI_MAX, world);
-  for (double &one : largest) {
-    if (one == HUGE_VAL) error->all(FLERR, "{}: a force, velocity or place of a particle is not a finite number", name());
-    one = UnorderedSum::scale_for(one);
-  }
+  if (comm->nprocs > 1) MPI_Allreduce(MPI_IN_PLACE, found.data(), static_cast<int>(N * found.size()), MPI_DOUBLE, MPI_MAX, world);
+  for (const auto &of_body : found)
+    for (const double one : of_body)
+      if (one == HUGE_VAL) error->all(FLERR, "{}: a force, velocity or place of a particle is not a finite number", name());
+  return found;
+}
+
+template <int N, class Terms, class Asked>
+std::vector<std::array<double, N>> WholeObjects::sums_within(const Terms &terms_of, const Asked &asked,
+                                                             const std::vector<std::array<double, N>> &bounds) const
+{
+  const std::size_t count = known.size();
+  std::vector<std::array<double, N>> scale = bounds;
+  for (auto &of_body : scale)
+    for (double &one : of_body) one = unordered::scale_for(one);
+  std::vector<UnorderedSums<N>> sum(count);
   for (int i = 0; i < atom->nlocal; ++i) {
     if (of_particle[i] == ObjectTable::NONE || !asked(of_particle[i])) continue;
-    const std::array<double, N> terms = terms_of(i);
-    const std::size_t first = N * of_particle[i];
-    for (int k = 0; k < N; ++k) sum[first + k].add(terms[k], largest[first + k]);
+    sum[of_particle[i]].add(terms_of(i), scale[of_particle[i]]);
   }
-  static_assert(sizeof(UnorderedSum) == 2 * sizeof(std::int64_t), "two numbers, summed over ranks");
-  if (comm->nprocs > 1) MPI_Allreduce(MPI_IN_PLACE, sum.data(), static_cast<int>(2 * sum.size()), MPI_INT64_T, MPI_SUM, world);
+  static_assert(sizeof(UnorderedSums<N>) == 2 * N * sizeof(std::uint64_t), "whole numbers, summed over ranks");
+  if (comm->nprocs > 1) MPI_Allreduce(MPI_IN_PLACE, sum.data(), static_cast<int>(2 * N * count), MPI_UINT64_T, MPI_SUM, world);
   std::vector<std::array<double, N>> values(count);
-  for (std::size_t n = 0; n < N * count; ++n) values[n / N][n % N] = sum[n].value(largest[n]);
+  for (std::size_t n = 0; n < count; ++n)
+    for (int k = 0; k < N; ++k) values[n][k] = sum[n].value(k, scale[n][k]);
   return values;
 }
 
