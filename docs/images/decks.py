@@ -24,6 +24,7 @@ PICTURES = {
     "shaker": 0.5,
     "crank": 0.3,
     "ropes": 0.6,
+    "air": 0.5,
 }
 """Script, and which part of its run has passed in the picture."""
 SIZE = (480, 360)

@@ -141,6 +141,16 @@ def test_a_rope_tears_alike_on_any_number_of_ranks(tmp_path):
     assert alone == run(tmp_path, 3, "ropes", "-var", "steps", "400")[0]
 
 
+@pytest.mark.mpi
+def test_a_windmill_turns_alike_on_any_number_of_ranks(tmp_path):
+    """Dumps are the same byte for byte; it comes to the speed of its closed form, and energy less work stays."""
+    alone, output = run(tmp_path, 1, "air", "-var", "steps", "3000")
+    t = table(output)
+    assert t["f_axle[1][4]"][-1] == pytest.approx(t["v_exact"][-1], rel=3e-3)
+    assert t["TotEng"] == pytest.approx(0.0, abs=1e-4 * t["f_air[2]"][-1])
+    assert alone == run(tmp_path, 3, "air", "-var", "steps", "3000")[0]
+
+
 def last_table(output):
     """Log of the last ``run``: these scripts have a ``run 0`` before it, which finds the time step."""
     return table(output[output.rindex("   Step ") :])
