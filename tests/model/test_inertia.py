@@ -3,7 +3,7 @@
 
 import numpy as np
 import pytest
-from mdanim_lammps.model.inertia import components, mobility, tensor
+from mdanim_lammps.model.inertia import components, largest_mobility, mobility, tensor
 from mdanim_lammps.scene.rotation import rotation_euler
 from mdanim_lammps.scene.scene import Box, Cone, Cylinder, Ellipsoid, Mesh, Sphere, Torus
 from model_samples import MESHES
@@ -53,3 +53,14 @@ def test_mobility_of_a_corner_of_a_cube():
     along = np.array([[0.0, 0.0, 1.0], [0.0, 0.0, 1.0]])
     found = mobility(cube, M, np.array([[0.1, 0.1, 0.1], [0.0, 0.0, 0.1]]), along)
     np.testing.assert_allclose(found, [4.0 / M, 1.0 / M], rtol=1e-12)
+
+
+def test_the_largest_mobility_is_that_of_the_best_direction():
+    """No other direction of many yields more, and the best of them nearly as much."""
+    turn, random = np.array(rotation_euler((0.3, -1.1, 2.0))), np.random.default_rng(1)
+    box, arm = tensor(Box((0.1, 0.2, 0.3)), M, turn), random.normal(size=(3, 3))
+    along = random.normal(size=(20_000, 3))
+    along /= np.linalg.norm(along, axis=1)[:, None]
+    tried = np.array([mobility(box, M, np.broadcast_to(r, along.shape), along).max() for r in arm])
+    found = largest_mobility(box, M, arm)
+    assert (tried <= found * (1 + 1e-12)).all() and (tried > 0.999 * found).all()

@@ -48,3 +48,15 @@ def mobility(tensor: np.ndarray, mass: float, arm: np.ndarray, along: np.ndarray
     """
     lever = np.cross(arm, along)
     return 1.0 / mass + np.einsum("pi,pi->p", lever, np.linalg.solve(tensor, lever.T).T)
+
+
+def largest_mobility(tensor: np.ndarray, mass: float, arm: np.ndarray) -> np.ndarray:
+    """The mobility in the direction in which a free body yields most, at each arm r from its centre [1/kg], shape (P,).
+
+    Args:
+        tensor: of inertia [kg m^2], shape (3, 3).
+        mass: [kg].
+        arm: r [m], shape (P, 3), in the frame of the tensor.
+    """
+    lever = np.cross(arm[:, None, :], np.eye(3))  # rows are r x e_k
+    return 1.0 / mass + np.linalg.eigvalsh(lever @ np.linalg.solve(tensor, lever.transpose(0, 2, 1)))[:, -1]

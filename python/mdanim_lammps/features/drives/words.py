@@ -206,7 +206,7 @@ def check_shift(v: Any, what: str, said: Sequence[tuple[Any, Any]]) -> None:
         if isinstance(one, DriveOscillation) and not one.frequency > 0.0:
             _no_frequency(v, s, one)
     keys = [(s, one) for s, one in said if isinstance(one, ShiftKey)]
-    _check_times(v, [s for s, _ in keys], [key for _, key in keys])
+    check_times(v, [s for s, _ in keys], [key for _, key in keys])
     for s, key in keys:
         if key.time == 0.0 and any(key.by):
             cause = f"at 0 s {what} is where the scene has it, and this key has it {vector(key.by)} m from there"
@@ -218,7 +218,7 @@ def _no_frequency(v: Any, s: Any, one: DriveOscillation) -> None:
 
 
 def _check_keys(v: Any, settings: Any, solid: Any) -> None:
-    _check_times(v, settings, solid.key_points)
+    check_times(v, settings, solid.key_points)
     for s, key in zip(settings, solid.key_points):
         if key.angle and not 1e-150 < math.hypot(*key.axis) < 1e150:
             v.problem(s.span(2), f"the axis of a key needs a direction, found {vector(key.axis)}", "e.g. axis (0, 0, 1)")
@@ -232,7 +232,8 @@ def _check_keys(v: Any, settings: Any, solid: Any) -> None:
             v.problem(s.span(1), cause, "leave the key at 0 s out, or change position and orientation")
 
 
-def _check_times(v: Any, settings: Any, points: Any) -> None:
+def check_times(v: Any, settings: Sequence[Any], points: Sequence[Any]) -> None:
+    """Keys whose times rise, from the start on and not too near to each other: settings, each with what it says."""
     last = -math.inf
     for s, key in zip(settings, points):
         if key.time < 0.0:

@@ -21,6 +21,7 @@ import numpy as np
 
 from ...effects.context import Context
 from ...model import shapes
+from ...model.inertia import largest_mobility
 from ...model.springs import equivalent_modulus
 from ...model.system import System
 from ...reach import Throw
@@ -175,8 +176,6 @@ def _arms(system: System, m: int) -> np.ndarray:
 
 
 def _mobilities(system: System, m: int, arm: np.ndarray) -> np.ndarray:
-    """No less than the velocity of points of a rigid object, at arms from its centre [m], shape (P, 3), for an impulse of 1 on
-    them [1/kg], shape (P,): 1/M + tr(r^T I^-1 r) with the cross products r."""
-    mass = float(system.mass[system.first[m] : system.first[m + 1]].sum())
-    cross = np.cross(arm[:, None, :], np.eye(3))  # rows are r x e_k
-    return 1.0 / mass + np.einsum("pki,ij,pkj->p", cross, np.linalg.pinv(system.inertia[m], hermitian=True), cross)
+    """The largest velocity of points of a rigid object, at arms from its centre [m], shape (P, 3), for an impulse of 1 on them
+    [1/kg], shape (P,)."""
+    return largest_mobility(system.inertia[m], float(system.mass_of[m]), arm)

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any, ClassVar
@@ -12,6 +11,7 @@ from ...errors import Span
 from ...scene.formatting import number
 from ...scene.holding import all_held
 from ...scene.schema import Block, OneOf, Vector, setting
+from ..drives.words import check_times
 from ..joints.words import Flag
 
 SWITCHES = {"hands": "`hands` (as `--hands` says), or a `hand` block"}
@@ -97,14 +97,7 @@ def check_hand(v: Any, block: Any, hand: Hand) -> Hand | None:
     if len(hand.keys) < 2 and not block.excused("key"):
         cause = f"hand {hand.object} has fewer than two keys: it takes hold at the first and lets go at the last{block.where}"
         v.problem(block.head, cause, "e.g. key 0 s at (0, 0, 1) m  key 2 s at (0, 0, 2) m")
-    last = -math.inf
-    for s, key in zip(block.settings.get("key", ()), hand.keys):
-        if key.time < 0.0:
-            v.problem(s.span(0), f"the time of a key must be >= 0, found {number(key.time, 6)} s", "the run begins at 0 s")
-        elif key.time <= last:
-            cause = f"the times of keys must rise, found {number(key.time, 6)} s after {number(last, 6)} s"
-            v.problem(s.span(0), cause, "write the keys in the order of their times, one for each")
-        last = max(last, key.time)
+    check_times(v, block.settings.get("key", ()), hand.keys)
     return replace(hand, object=list(v.names)[numbers[0]]) if v.problems.errors == found and numbers else None
 
 

@@ -51,16 +51,19 @@ def kind(rope: Rope) -> str:
 
 def check(v: Any, top: Mapping, held: Mapping) -> None:
     """Parts of a scene that know objects by their cells, which a rope does not have."""
-    ropes = [s for s in held["solids"] if is_rope(s)]
-    control = held["control"]
-    for rope in ropes[:1]:
-        at, what = rope.spans.get("shape"), kind(rope.shape)
-        if held.get("liquid") is not None:
-            cause = f"{rope.name} is a {what}, and a liquid finds objects by their cells, which a {what} does not have"
-            v.problem(at, cause, "take the liquid out, or write shape cylinder for what is to float", key="rope-liquid")
-        if control is not None and control.contact_model.value == "paper" and len(held["solids"]) > 1:
-            cause = f"{rope.name} is a {what}, which touches others with its surface alone"
-            v.problem(at, cause, "take contact-model paper out of control", key="rope-paper")
+    if rope := next(filter(is_rope, held["solids"]), None):
+        check_without_cells(v, held, rope, kind(rope.shape), "shape cylinder")
+
+
+def check_without_cells(v: Any, held: Mapping, solid: Any, what: str, instead: str) -> None:
+    """Parts of a scene that know objects by their cells, which this one, a rope, a chain or a sheet (``what``), does not have."""
+    at, control = solid.spans.get("shape"), held["control"]
+    if held.get("liquid") is not None:
+        cause = f"{solid.name} is a {what}, and a liquid finds objects by their cells, which a {what} does not have"
+        v.problem(at, cause, f"take the liquid out, or write {instead} for what is to float", key=f"{what}-liquid")
+    if control is not None and control.contact_model.value == "paper" and len(held["solids"]) > 1:
+        cause = f"{solid.name} is a {what}, which touches others with its surface alone"
+        v.problem(at, cause, "take contact-model paper out of control", key=f"{what}-paper")
 
 
 CHECKS = {"object": check_object}

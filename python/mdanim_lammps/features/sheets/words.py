@@ -9,6 +9,7 @@ from typing import Any
 
 from ...scene.formatting import number, say
 from ...scene.shapes import Box, Cone, Cylinder, Ellipsoid, HoldFaces, Sheet, Shell, Sphere, Torus, Young
+from ..ropes.words import check_without_cells
 
 SWITCHES: dict[str, str] = {}
 
@@ -80,15 +81,8 @@ def check_object(v: Any, block: Any, solid: Any) -> Any:
 
 def check(v: Any, top: Mapping, held: Mapping) -> None:
     """Parts of a scene that know objects by their cells, which a sheet does not have."""
-    control = held["control"]
-    for sheet in [s for s in held["solids"] if is_sheet(s)][:1]:
-        at = sheet.spans.get("shape")
-        if held.get("liquid") is not None:
-            cause = f"{sheet.name} is a sheet, and a liquid finds objects by their cells, which a sheet does not have"
-            v.problem(at, cause, "take the liquid out, or write shape box for what is to float", key="sheet-liquid")
-        if control is not None and control.contact_model.value == "paper" and len(held["solids"]) > 1:
-            cause = f"{sheet.name} is a sheet, which touches others with its surface alone"
-            v.problem(at, cause, "take contact-model paper out of control", key="sheet-paper")
+    if sheet := next(filter(is_sheet, held["solids"]), None):
+        check_without_cells(v, held, sheet, "sheet", "shape box")
 
 
 CHECKS = {"object": check_object}
