@@ -15,7 +15,9 @@ RESIDUAL = 1e-3
 """Error of energy that `accuracy balanced` stands for."""
 WORST, RARE = 5e-3, 0.03
 """The largest one, and the part of scenes that may be off by more than RESIDUAL: a rope that holds what is thrown against its
-joints. Of 87 scenes one was off by 1.5e-3."""
+joints."""
+ROUNDING = 1e-9
+"""Part of the largest energy of a scene that counts as moved at least: what hangs at rest moves by rounding alone."""
 STEPS, LOOKS = 60_000, 20
 """Most steps of a scene, and how often it is looked at."""
 FEW = (2, 6, 9, 12, 17)
@@ -40,8 +42,9 @@ def residual(seed: int) -> float | None:
             instance.run(min(STEPS, ready.certificate.steps) // LOOKS)
         assert np.isfinite(instance.array("x")).all(), text
     terms = [name for name in told[0] if name != "contact_bound"]
+    most = max(abs(value) for e in told for value in e.values())
     total = np.array([sum(e[name] * (-1.0 if name in sources else 1.0) for name in terms) for e in told])
-    return float(np.abs(total - total[0]).max() / max(np.ptp([e[name] for e in told]) for name in terms))
+    return float(np.abs(total - total[0]).max() / max(ROUNDING * most, *(np.ptp([e[name] for e in told]) for name in terms)))
 
 
 @pytest.mark.parametrize("seed", FEW)
