@@ -43,7 +43,7 @@ class FixMdanimForce : public mdanim::FixBase, public mdanim::PassParticipant {
   int unpack_exchange(int i, double *from) override;
 
  private:
-  // What is known of an object in a step.
+  // An object in a step.
   struct PushedObject {
     mdanim::Vec3 about, centre;    // a particle of its own, and its centre of mass
     mdanim::Inertia inertia;       // about its centre
