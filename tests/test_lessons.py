@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from command_line import call
 from mdanim_lammps import Scene
+from mdanim_lammps.errors import ExitCode
 from PIL import Image
 
 SCENES = Path(__file__).parent.parent / "scenes"
@@ -42,12 +43,13 @@ render { size (64, 48) }
 
 
 def test_page_of_a_lesson(tmp_path):
-    """Question, movie, curves, answer, what was found, and the scene, in one file without a script that asks no host."""
-    (tmp_path / "fall.txt").write_text(TEXT)
+    """Question, movie, curves, answer, what was found, also what was missed, and the scene, in one file without a script that
+    asks no host."""
+    (tmp_path / "fall.txt").write_text(TEXT + "expect ball.speed at 0.1 s > 2 m/s\n")
     said = call("fall.txt", "--lesson", "-q", cwd=tmp_path)
-    assert said.returncode == 0, said.stderr
+    assert said.returncode == ExitCode.DIVERGED and "MISSED" in said.stderr, said.stderr
     page = (tmp_path / "fall.out" / "lesson.html").read_text()
-    assert "A &lt;lesson&gt;" in page and "Both &amp; none" in page and "ball.speed at 0.1 s" in page
+    assert ">missed<" in page and "A &lt;lesson&gt;" in page and "Both &amp; none" in page and "ball.speed at 0.1 s" in page
     assert "<script" not in page and "default-src 'none'" in page and not re.search(r'(src|href)="(?!data:)', page)
     movie, curves = (base64.b64decode(found) for found in re.findall(r'src="data:[a-z/0-9]+;base64,([^"]+)"', page))
     assert movie == (tmp_path / "fall.out" / "movie.mp4").read_bytes() and curves.startswith(b"\x89PNG")

@@ -13,7 +13,7 @@ from typing import Annotated, Literal
 
 from cyclopts import Parameter
 
-from ..errors import Problem, RefusedError, SceneError, UsageError, problem_json
+from ..errors import ExitCode, Problem, RefusedError, SceneError, UsageError, problem_json
 from ..scene.formatting import number, say
 from ..scene.lammps_lines import check_alone
 from ..terminal import progress_bar
@@ -92,12 +92,17 @@ def run(
     announce(ready, quiet, verbose, executing)
     if executing.executors > 1 and not quiet:
         print("\n".join(speedup_lines(forecast_speedup(ready, executing.executors))), flush=True)
-    with (
-        Viewer(view, scene if edit else None, hands=hands) as viewer,
-        open_run(ready, out, force=output.force, draws=movie) as folder,
-    ):
-        viewer.start(folder)
-        simulate_and_draw(ready, folder, executing, quiet=quiet, movie=movie, hands=hands)
+    try:
+        with (
+            Viewer(view, scene if edit else None, hands=hands) as viewer,
+            open_run(ready, out, force=output.force, draws=movie) as folder,
+        ):
+            viewer.start(folder)
+            simulate_and_draw(ready, folder, executing, quiet=quiet, movie=movie, hands=hands)
+    except SystemExit as end:
+        if lesson and end.code == ExitCode.DIVERGED:  # an expectation was missed: its page tells it
+            run_commands.lesson(out, quiet=quiet)
+        raise
     if lesson:
         run_commands.lesson(out, quiet=quiet)
 

@@ -68,6 +68,11 @@ export class Shows {
     const { shown } = this.scene, lines = [];
     for (const word of this.quantities.arrows.filter((one) => this.on.has(one))) {
       const vectors = this.quantities.whole ? await this.quantities.vectorsOf(word) : null, asked = shown.arrows.filter(([one]) => one === word);
+      if (vectors && !vectors.some(Number.isFinite)) {
+        this.on.delete(word);
+        byId("telling").textContent = `${word}: the run does not tell it of any object`;
+        continue;
+      }
       if (vectors || word === "velocity") for (const [, objects, scale] of asked.length ? asked : [[word, null, null]]) lines.push({ word, vectors, objects, scale });
     }
     for (const word of this.quantities.arrows) byId(`arrows-${word}`).checked = this.on.has(word);
