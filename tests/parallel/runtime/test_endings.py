@@ -17,6 +17,7 @@ from mdanim_lammps.errors import ExecutorLost, OutputError
 from mdanim_lammps.parallel.plan.frame_plan import PlannerOptions
 from mdanim_lammps.parallel.runtime import launch
 from mdanim_lammps.parallel.runtime.launch import simulate_on
+from mdanim_lammps.results.checkpoint import Checkpoint
 from mdanim_lammps.results.compare import compare
 from mdanim_lammps.results.timeline import Timeline
 from mdanim_lammps.results.trajectory import Trajectory
@@ -24,6 +25,8 @@ from mpi import scenes as films
 from ranks_lab import command, environment, ranks_in
 
 pytestmark = pytest.mark.mpi
+EITHER = pytest.mark.parametrize("control", ["central", pytest.param("peers", marks=pytest.mark.soak)])
+"""Ends that are of the ranks, not of what they say to each other."""
 WHOLE = "time 1000 s"  # longer than any test waits
 LONG = films.FLYING.split("expect")[0].replace("time 0.2 s", WHOLE)
 EAGER = """
@@ -141,7 +144,7 @@ def test_a_killed_launcher_ends_all_ranks(place):
     os.kill(proxy, signal.SIGKILL)
     code, said = ended(process, 20.0)
     assert code == 5 and "all others were stopped" in said and f"mdanim-lammps resume {place / 'film.out'}" in said, said
-    goes_on(place, 0)
+    assert 0 < Checkpoint.read(place / "film.out" / "checkpoint").frame < written(place / "film.out")
 
 
 def test_a_run_that_is_complete_is_told_as_such(tmp_path):
@@ -193,7 +196,7 @@ def test_ctrl_c_twice_ends_at_once(place):
     assert code in (5, 130) and "Traceback" not in said, said
 
 
-@pytest.mark.parametrize("control", ["central", "peers"])
+@EITHER
 def test_a_run_that_diverges_names_the_object(place, control):
     """The guard's message, once; the last good frame is kept."""
     text = films.MIXED.replace("frames 100 fps", "frames 100 fps  timestep 2 ms").replace("time 0.12 s", "time 1 s")
@@ -226,7 +229,7 @@ def faulty(place: Path, monkeypatch, rank: int, module: str, method: str, time: 
     monkeypatch.setenv("PYTHONPATH", environment(place)["PYTHONPATH"])
 
 
-@pytest.mark.parametrize("control", ["central", "peers"])
+@EITHER
 def test_a_full_disk_ends_all_ranks(place, monkeypatch, control):
     """The error of the writer comes up here, whole."""
     ready, folder = readied(place, LONG)
@@ -290,7 +293,7 @@ def test_a_fault_of_mpi_is_told(place, monkeypatch, rank, module, kind, method):
     assert time.monotonic() - begin < 15.0
 
 
-@pytest.mark.parametrize("control", ["central", "peers"])
+@EITHER
 def test_a_folder_that_is_deleted_ends_the_run(place, control):
     """One message, as soon as something is to be written under its name: the next checkpoint, of which one is due each second
     here."""
