@@ -3,7 +3,7 @@
 
 import numpy as np
 import pytest
-from distribution_lab import RESUMED, TEAMS, THREADS, forms_in, lammps_makes_the_same, matrix, same_frames
+from distribution_lab import FORMS, THREADS, forms_in, gone_on_after, lammps_makes_the_same, same_frames
 from mdanim_lammps.results.ledger import Ledger
 
 pytestmark = pytest.mark.mpi
@@ -33,13 +33,7 @@ object rest  { shape box (8, 8, 8) cm    position (40, -60, -6) cm density 900  
 control { time 0.08 s  frames 100 fps  friction 0.4 }
 """,
 }  # fmt: skip
-CASES = (
-    matrix((2,), ["central"], name="all move ", rotate=True)
-    | matrix((3,), ["peers"], name="all move ", rotate=True)
-    | TEAMS
-    | THREADS
-    | RESUMED
-)
+CASES = FORMS | THREADS | gone_on_after(4)
 
 
 @pytest.fixture(scope="module", params=SCENES)

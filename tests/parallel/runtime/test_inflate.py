@@ -3,7 +3,7 @@
 
 import numpy as np
 import pytest
-from distribution_lab import RESUMED, TEAMS, THREADS, forms_in, lammps_makes_the_same, matrix, same_frames
+from distribution_lab import FORMS, THREADS, forms_in, gone_on_after, lammps_makes_the_same, same_frames
 from mdanim_lammps.results.ledger import Ledger
 
 pytestmark = pytest.mark.mpi
@@ -23,13 +23,7 @@ object cube { shape box (6, 6, 6) cm  position (0.25, 0.4, 0.1) m  density 500  
   ballast 2000 kg/m^3 within box (-1, 0, 0) m to (1, 1, 0.09) m  velocity (-2, 0, 0) m/s }
 control { time 0.06 s  frames 100 fps  resolution 2 cm }
 """
-CASES = (
-    matrix((2,), ["central"], name="all move ", rotate=True)
-    | matrix((3,), ["peers"], name="all move ", rotate=True)
-    | TEAMS
-    | THREADS
-    | RESUMED
-)
+CASES = FORMS | THREADS | gone_on_after(4)
 
 
 @pytest.fixture(scope="module")
