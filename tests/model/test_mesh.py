@@ -89,6 +89,7 @@ def ply(vertices: int, faces: int, data: bytes, form: str = "binary_little_endia
     return HEADER.format(form, vertices, faces).encode() + data
 
 
+@pytest.mark.usefixtures("meshes_read_apart")
 @pytest.mark.parametrize(
     ("name", "content"),
     [
