@@ -4,6 +4,7 @@ stopped and resumed."""
 
 import json
 import os
+import shutil
 import time
 from dataclasses import replace
 from pathlib import Path
@@ -16,6 +17,7 @@ from mdanim_lammps.results.checkpoint import Checkpoint
 from mdanim_lammps.results.compare import compare
 from mdanim_lammps.results.files import CHECKPOINT, HAND, HANDS, PAUSE, STOP
 from mdanim_lammps.results.ledger import Ledger
+from mdanim_lammps.run import hands
 from mdanim_lammps.run.folder import open_run
 from mdanim_lammps.run.hands import SILENT, read_request
 from mdanim_lammps.run.loop import Interrupted, simulate
@@ -95,12 +97,14 @@ def test_its_lines_give_the_same_bits_on_executors(run, tmp_path):
 
 
 @pytest.mark.parametrize("stop", [5, 10])
-def test_a_run_that_was_stopped_goes_on_the_same(run, tmp_path, stop):
+def test_a_run_that_was_stopped_goes_on_the_same(run, tmp_path, stop, monkeypatch):
     """Stopped while a hand pulls or as it lets go, and resumed with the hand; and what was kept of frames behind the checkpoint
     is done again, without a page. The hand's work between checkpoint and next step is not lost."""
-    folder = tmp_path / "toys.out"
+    folder, on_disk = tmp_path / "toys.out", []
+    monkeypatch.setattr(hands, "sync", lambda path: on_disk.append(path.read_bytes()))
     with pytest.raises(Interrupted):
         pulled(folder, stop=stop)
+    assert on_disk[-1] == (folder / HANDS).read_bytes()  # before the checkpoint
     kept, lines = (folder / CHECKPOINT).read_bytes(), (folder / HANDS).read_text()
     assert lines.endswith("}\n") and lines.count("key") == stop - 1
     (folder / HANDS).write_bytes((run / HANDS).read_bytes())  # of a run that was killed later
@@ -113,6 +117,18 @@ def test_a_run_that_was_stopped_goes_on_the_same(run, tmp_path, stop):
             pulled(folder, resume=True, live=False)
     (folder / HANDS).write_text(lines.replace("0.03", "0.04"))
     with pytest.raises(OutputError, match="hands\\.txt is damaged: it is not the one of the checkpoint"):
+        pulled(folder, resume=True, live=False)
+
+
+def test_lines_of_hands_are_read_up_to_a_length(run, tmp_path, monkeypatch):
+    """As long as a scene may be, and not through a link."""
+    folder = shutil.copytree(run, tmp_path / "toys.out")
+    monkeypatch.setattr(hands, "MOST_BYTES_OF_LINES", (folder / HANDS).stat().st_size - 1)
+    with pytest.raises(OutputError, match=r"hands\.txt is damaged: it has more than"):
+        pulled(folder, resume=True, live=False)
+    (folder / HANDS).unlink()
+    (folder / HANDS).symlink_to(run / HANDS)
+    with pytest.raises(OutputError, match=r"hands\.txt is a link"):
         pulled(folder, resume=True, live=False)
 
 

@@ -68,6 +68,16 @@ def test_a_page_moves_the_hand_and_lets_go(view, folder):
     assert not (folder / HAND).exists()
 
 
+def test_before_the_first_frame_there_is_nothing_to_pull_at(view, folder, monkeypatch):
+    """A page that asks before it can have seen one is told so, and goes on."""
+    monkeypatch.setattr(type(view.tail), "count", 0)
+    with page(view) as link:
+        link.send(json.dumps({"hand": HELD}))
+        while "refused" not in (said := json.loads(link.recv(20))):
+            pass
+        assert "no frame yet" in said["refused"] and not (folder / HAND).exists()
+
+
 def test_one_page_has_the_hand(view, folder):
     """Another one is not heard until the hand is free."""
     with page(view) as first, page(view) as second:

@@ -20,8 +20,10 @@ import numpy as np
 
 from ..effects.steered import Steering
 from ..errors import OutputError, SceneError, UsageError
-from ..results.files import HAND, HANDS, PAUSE, disk_errors, write_whole
+from ..results.files import HAND, HANDS, PAUSE, disk_errors, sync, write_whole
 from ..results.forms import Misfit, many, number, record, strict_json, text
+from ..results.untrusted import check_plain
+from ..scene.limits import MOST_BYTES as MOST_BYTES_OF_LINES
 from ..scene.parse import parse_scene
 from .prepare import Prepared
 
@@ -93,8 +95,12 @@ class PageHands:
                 (self.folder / PAUSE).touch()
 
     def _do_again(self, path: Path, after: float, carried: dict[str, float]) -> None:
-        with disk_errors(path):
-            self._lines = path.read_bytes()
+        check_plain(path)
+        with disk_errors(path), open(path, "rb") as file:
+            self._lines = file.read(MOST_BYTES_OF_LINES + 1)
+        if len(self._lines) > MOST_BYTES_OF_LINES:
+            most = f"more than {MOST_BYTES_OF_LINES >> 20} MiB, which no scene may have"
+            raise OutputError(f"{path} is damaged: it has {most}; run the scene again with --force")
         size, known = int(carried.pop(BYTES, -1.0)), carried.pop(SUM, -1.0)
         if zlib.crc32(self._lines[: max(size, 0)]) != known:
             raise OutputError(f"{path} is damaged: it is not the one of the checkpoint; run the scene again with --force")
@@ -111,7 +117,9 @@ class PageHands:
                 self.source.steer(command)
 
     def kept(self) -> dict[str, float]:
-        """For a checkpoint."""
+        """For a checkpoint, which is of use only with the lines so far: they are on the disk. Raises OutputError."""
+        with disk_errors(self.folder / HANDS):
+            sync(self.folder / HANDS)
         return {SUM: float(zlib.crc32(self._lines)), BYTES: float(len(self._lines))}
 
     def frame(self, first: int, last: int) -> None:

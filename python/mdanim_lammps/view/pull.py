@@ -11,6 +11,7 @@ from contextlib import suppress
 
 import numpy as np
 
+from ..errors import OutputError
 from ..results.files import HAND, write_whole
 from .tail import Tail
 
@@ -37,7 +38,8 @@ class Puller:
         """Move the hand of a page, or let go with None. What another page asks for meanwhile is left out.
 
         ``asked`` has ``object``, its number; ``vertex`` and ``weight``, three vertices and the weights with which the point is
-        their mean; ``to``, the place of the hand [m]. Raises ValueError, KeyError, TypeError for anything else, OutputError.
+        their mean; ``to``, the place of the hand [m]. Raises ValueError, KeyError, TypeError for anything else, OutputError, also
+        as long as there is no frame.
         """
         told = None if asked is None else self._told(asked)
         with self._turn:
@@ -79,8 +81,10 @@ class Puller:
             raise ValueError(vertex)
         if min(weight) < 0.0 or not abs(sum(weight) - 1.0) < 1e-3:
             raise ValueError(weight)
+        if (frames := self._tail.count) == 0:
+            raise OutputError("there is no frame yet; pull when the first one is seen")
         at = np.array(weight) / sum(weight) @ feed.start[vertex]
-        way = feed.way(self._tail.count - 1)
+        way = feed.way(frames - 1)
         return {"object": feed.metadata.names[m], "at": at.tolist(), "to": (np.array(to) + way).tolist()}
 
 
