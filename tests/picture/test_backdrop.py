@@ -62,7 +62,7 @@ def test_light_on_a_floor_is_the_mean_over_four_pixels():
     random, pixels, block = np.random.default_rng(3), 64, 16
     matrix = np.eye(4)
     matrix[2] = [0.1, 0.2, -0.5, 0.8]  # depth falls with the height
-    shade = FloorShade(0.4, matrix, pixels)
+    shade = FloorShade(0.4)
     depth = np.where(random.random((pixels, pixels)) < 0.1, random.uniform(0.4, 1.0, (pixels, pixels)), 1.0).astype(np.float32)
     depth[:, :20] = 1.0
     nearest = depth.reshape(4, block, 4, block).min(axis=(1, 3))
@@ -72,11 +72,11 @@ def test_light_on_a_floor_is_the_mean_over_four_pixels():
     wide = np.pad(hides, 2)
     share = np.mean([wide[i : i + pixels, j : j + pixels] for i in range(4) for j in range(4)], axis=0)
     for _ in range(2):  # twice: what the first call left is gone
-        shade.cast(depth, nearest)
+        shade.cast(depth, nearest, matrix)
         inside = (slice(2, -2), slice(2, -2))
         np.testing.assert_array_equal(shade._seen[inside], np.rint(255 * (1 - share)).astype(np.uint8)[inside])
     assert hides.any() and (depth < 1.0).sum() > hides.sum()
-    shade.cast(np.ones_like(depth), np.ones_like(nearest))
+    shade.cast(np.ones_like(depth), np.ones_like(nearest), matrix)
     assert (shade._seen == 255).all() and not len(shade.corners)
 
 

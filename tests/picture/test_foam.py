@@ -9,7 +9,9 @@ import numpy as np
 import pytest
 from mdanim_lammps.model.grid import Grid
 from mdanim_lammps.picture.foam import BREAKING, FADE, MOST, Foam, breaking, looked_at, spread
+from mdanim_lammps.picture.light import Light
 from mdanim_lammps.picture.render import Painter
+from mdanim_lammps.picture.tank import Tank
 from mdanim_lammps.results.trajectory import Trajectory
 from mdanim_lammps.scene.render import Camera, Render
 from picture_measures import SIZE, spot
@@ -153,6 +155,27 @@ def test_a_breaking_front_is_drawn_white(tmp_path):
     assert found[:, 0].std() > 0.02
     for point in ((-0.5, 0.0, 0.6), (0.5, 0.0, 0.3)):
         np.testing.assert_array_equal(spot(white, view, point), spot(still, view, point))
+
+
+def test_parts_of_the_surface_that_need_less_look_as_all_do(tmp_path, monkeypatch):
+    """Each triangle drawn by a shader that does for it, and all by that with foam and shadows: the same picture, to rounding."""
+    scene, models, grid = pool_scene([box("cube", (0.4, 0.4, 0.2), (4, 4, 2), (0.4, 0.0, 1.3))])
+    x, _ = column_centres(grid)
+    smooth = [0.7 - 0.3 * np.clip(1.0 + 10.0 * (x - front), 0.0, 1.0) for front in (-0.5, -0.4, -0.3)]
+    frames = wet_frames(models, *((z, raw_of(grid, z, models)) for z in smooth))
+    render = Render(camera=(Camera((0.0, -3.5, 2.4), (0.0, 0.0, 0.45)),))
+    everything = lambda light, points, triangle: np.ones(len(triangle), bool)
+    found, parts = [], []
+    with Trajectory(write(tmp_path / "t.h5", scene, models, frames, grid)) as t:
+        for all_ in (False, True):
+            if all_:
+                monkeypatch.setattr(Light, "may_shade", everything)
+                monkeypatch.setattr(Tank, "_foamy", lambda tank: np.ones(tank._mesh.data.GetNumberOfPoints(), bool))
+            with Painter(t, render, size=SIZE) as painter:
+                found.append(painter.frame(2).astype(int))
+                parts.append([actor.GetVisibility() for actor in painter._tank.outer[:4]])
+    assert sum(parts[0]) > 1 and parts[1] == [0, 0, 0, 1]
+    assert abs(found[0] - found[1]).max() <= 2
 
 
 def test_cells_have_no_foam(tmp_path):

@@ -8,7 +8,7 @@ from functools import cache
 
 import numpy as np
 import pytest
-from mdanim_lammps.picture import shading
+from mdanim_lammps.picture import skin
 from mdanim_lammps.picture.render import Painter
 from mdanim_lammps.results.trajectory import Trajectory
 from mdanim_lammps.scene.render import Camera, Floor, Quality, Render
@@ -78,7 +78,7 @@ def test_a_level_surface_and_the_glass_shift_nothing(tmp_path, monkeypatch):
     """The same picture whatever the liquid's refractive index, to the bit."""
     side = replace(ABOVE, camera=(Camera((1.5, -4.0, 1.4), (0.0, 0.0, 0.4)),))
     bent, _ = picture(tmp_path / "b.h5", plate(), 0.0, side)
-    monkeypatch.setattr(shading, "REFRACTIVE_INDEX", 1.0)
+    monkeypatch.setattr(skin, "REFRACTIVE_INDEX", 1.0)
     straight, _ = picture(tmp_path / "s.h5", plate(), 0.0, side)
     np.testing.assert_array_equal(bent, straight)
 
@@ -87,7 +87,7 @@ def test_what_is_above_the_liquid_stays_where_it_is(tmp_path, monkeypatch):
     """A cube that hovers over a slope has the same outline, and none of its colour is seen beside it in the liquid."""
     cube = [box("cube", (0.3, 0.3, 0.3), (3, 3, 3), (0.0, 0.0, 1.2))]
     bent, _ = picture(tmp_path / "b.h5", cube, 0.4)
-    monkeypatch.setattr(shading, "REFRACTIVE_INDEX", 1.0)
+    monkeypatch.setattr(skin, "REFRACTIVE_INDEX", 1.0)
     straight, _ = picture(tmp_path / "s.h5", cube, 0.4)
     masks = [hue_mask(image, "#e8743b") for image in (bent, straight)]
     assert masks[1].sum() > 500 and (masks[0] != masks[1]).sum() <= 4
@@ -97,7 +97,7 @@ def test_draft_quality_shifts_nothing(tmp_path, monkeypatch):
     """A draft is as fast as it was: it draws everything where it is."""
     draft = replace(ABOVE, quality=Quality.DRAFT)
     image, _ = picture(tmp_path / "d.h5", plate(), 0.3, draft)
-    monkeypatch.setattr(shading, "REFRACTIVE_INDEX", 1.0)
+    monkeypatch.setattr(skin, "REFRACTIVE_INDEX", 1.0)
     np.testing.assert_array_equal(image, picture(tmp_path / "e.h5", plate(), 0.3, draft)[0])
 
 

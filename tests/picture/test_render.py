@@ -10,6 +10,7 @@ import pytest
 from mdanim_lammps.features.walls.words import Walls
 from mdanim_lammps.picture import light as lighting
 from mdanim_lammps.picture.floor import grid_spacing
+from mdanim_lammps.picture.framing import whole
 from mdanim_lammps.picture.light import nearest_around
 from mdanim_lammps.picture.palette import LOW, OBJECTS, STILL, object_colors
 from mdanim_lammps.picture.render import Painter
@@ -140,9 +141,12 @@ def test_shadows_are_the_same_without_the_short_cut(tmp_path, monkeypatch):
     scene, models = slab_scene()
     with Trajectory(write(tmp_path / "t.h5", scene, models, falling(models, 2))) as t:
         quick = picture(t, frame=1)
-        always = np.zeros((lighting.PIXELS // lighting.BLOCK,) * 2)
-        monkeypatch.setattr(lighting, "nearest_around", lambda depth, block: always)
+        always = lambda depth, block: np.zeros((depth.shape[0] // block, depth.shape[1] // block))
+        monkeypatch.setattr(lighting, "nearest_around", always)
         np.testing.assert_array_equal(picture(t, frame=1), quick)
+        # All of the lamp's picture, where only the part with something in it is drawn.
+        monkeypatch.setattr(lighting.Light, "_part", lambda light, points: whole((light._pixels, light._pixels)))
+        assert abs(picture(t, frame=1).astype(int) - quick).max() <= 2
 
 
 def test_nearest_around_is_that_of_nine_blocks():

@@ -22,6 +22,7 @@ class Backdrop:
         floor: what is drawn before it; None for no floor.
         still: whether the camera never moves.
         everywhere: whether all of the floor may change, and not only what is in shadow.
+        cover: hides what of the floor is never seen; None for nothing.
     """
 
     def __init__(
@@ -31,6 +32,7 @@ class Backdrop:
         floor: FloorPlane | None,
         still: bool,
         everywhere: bool,
+        cover=None,
     ):
         from vtkmodules.vtkRenderingCore import vtkRenderer
 
@@ -39,6 +41,8 @@ class Backdrop:
         self._renderer = vtkRenderer()
         self._renderer.GradientBackgroundOn()
         if floor:
+            if cover:
+                self._renderer.AddActor(cover)
             self._renderer.AddActor(floor.actor)
         self._window = off_screen_window([self._renderer], size, samples=0)
         self._lit: np.ndarray | None = None

@@ -65,7 +65,7 @@ class FloorPlane:
         self._uniforms.SetUniform3f("highColor", list(high))
         self.start_at(0)
         self._cover = MovingMesh(4, np.array([[0, 1, 2], [0, 2, 3]]))
-        self.cover = _nothing(self._cover.data)
+        self.cover = nothing(self._cover.data)
         """Hides what is on the other side of the floor in a window without the floor; to be drawn first."""
 
     def start_at(self, row: int) -> None:
@@ -114,8 +114,8 @@ def _softened(hides: np.ndarray, count: int) -> np.ndarray:
     return sum(rows[:, :, k : count + k] for k in range(SOFT))
 
 
-def _nothing(data):
-    """An actor that hides what is behind it, and is not seen."""
+def nothing(data):
+    """An actor of ``vtkPolyData`` that hides what is behind it, and is not seen; to be drawn first."""
     from vtkmodules.vtkRenderingCore import vtkActor
     from vtkmodules.vtkRenderingOpenGL2 import vtkOpenGLPolyDataMapper
 
@@ -131,23 +131,22 @@ class FloorShade:
 
     Args:
         height: of the floor [m].
-        matrix: from the world to the lamp's picture, x, y and depth from 0 to 1, shape (4, 4).
-        pixels: of that picture along a side.
     """
 
-    def __init__(self, height: float, matrix: np.ndarray, pixels: int):
-        from vtkmodules.util.numpy_support import numpy_to_vtk
-
-        self._seen = np.full((pixels, pixels), 255, np.uint8)
-        self._texels = numpy_to_vtk(self._seen.reshape(-1))  # the same memory
-        self._image, self.texture = texture(self._texels, pixels, pixels, smooth=True)
+    def __init__(self, height: float):
+        self._height = height
+        self._image, self.texture = texture(self._hold(1, 1), 1, 1, smooth=True)
         self._dark = np.zeros((2, 0), int)
-        self._pixels, self._back = pixels, np.linalg.inv(matrix)
-        # Depth at the floor is a + b x + c y: z is linear in x, y and depth.
-        x, y, depth, one = self._back[2]
-        self._plane = np.array([(height - one) / depth, -x / depth, -y / depth])
         self.corners = np.zeros((0, 3))
         """Corners of the part of the floor that is not in full light [m], shape (4, 3) or (0, 3)."""
+
+    def _hold(self, rows: int, columns: int):
+        from vtkmodules.util.numpy_support import numpy_to_vtk
+
+        self._seen = np.full((rows, columns), 255, np.uint8)
+        self._dark = np.zeros((2, 0), int)
+        self._texels = numpy_to_vtk(self._seen.reshape(-1))  # the same memory
+        return self._texels
 
     @contextmanager
     def lifted(self) -> Iterator[None]:
@@ -159,15 +158,25 @@ class FloorShade:
         self._seen[:] = kept
         self._changed()
 
-    def cast(self, depth: np.ndarray, nearest: np.ndarray) -> None:
-        """Take a depth picture along the lamp's rays, from 0 to 1, shape (pixels, pixels), and its least depths in and around
-        blocks of pixels, fewer of them."""
-        block, blocks = len(depth) // len(nearest), len(nearest)
-        seen = self._seen.reshape(blocks, block, blocks, block)
+    def cast(self, depth: np.ndarray, nearest: np.ndarray, matrix: np.ndarray) -> None:
+        """Take a depth picture along the lamp's rays.
+
+        Args:
+            depth: from 0 to 1, shape (h, w).
+            nearest: least depths in and around blocks of its pixels, fewer of them.
+            matrix: from the world to that picture, x, y and depth from 0 to 1, shape (4, 4).
+        """
+        if self._seen.shape != depth.shape:
+            self._image.GetPointData().SetScalars(self._hold(*depth.shape))
+            self._image.SetDimensions(*depth.shape[::-1], 1)
+        self._back = np.linalg.inv(matrix)
+        block = len(depth) // len(nearest)
+        seen = self._seen.reshape(len(nearest), block, -1, block)
         seen[self._dark[0], :, self._dark[1]] = 255
         at = np.stack(np.nonzero(nearest < 1.0))
         # Pixels of each block, and those that count in its means.
-        y, x = (block * at[:, :, None] + np.arange(-2, block + SOFT - 3)).clip(0, self._pixels - 1)
+        y, x = block * at[:, :, None] + np.arange(-2, block + SOFT - 3)
+        y, x = y.clip(0, len(depth) - 1), x.clip(0, depth.shape[1] - 1)
         hidden = _softened(depth[y[:, :, None], x[:, None, :]] <= self._depth_of_floor(x, y), block)
         some = hidden.any(axis=(1, 2))
         self._dark = at[:, some]
@@ -179,14 +188,20 @@ class FloorShade:
 
     def _depth_of_floor(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:
         """Depth of the floor at pixels x (K, a) and y (K, b), less than that where nothing is, float32, shape (K, b, a)."""
-        one, across, up = self._plane
-        flat = (one + across * (x + 0.5) / self._pixels)[:, None, :] + (up * (y + 0.5) / self._pixels)[:, :, None]
+        one, across, up = self._plane()
+        rows, columns = self._seen.shape
+        flat = (one + across * (x + 0.5) / columns)[:, None, :] + (up * (y + 0.5) / rows)[:, :, None]
         return np.minimum(flat, 1.0 - 1e-7).astype(np.float32)
 
+    def _plane(self) -> np.ndarray:
+        """Depth at the floor is a + b x + c y: z is linear in x, y and depth."""
+        x, y, depth, one = self._back[2]
+        return np.array([(self._height - one) / depth, -x / depth, -y / depth])
+
     def _bound(self, low: np.ndarray, high: np.ndarray) -> None:
-        y, x = ((np.array([a - SOFT, b + SOFT])) / self._pixels for a, b in zip(low, high))
+        y, x = ((np.array([a - SOFT, b + SOFT])) / count for a, b, count in zip(low, high, self._seen.shape))
         x, y = x[[0, 1, 1, 0]], y[[0, 0, 1, 1]]
-        at = np.stack([x, y, self._plane @ [np.ones(4), x, y], np.ones(4)])
+        at = np.stack([x, y, self._plane() @ [np.ones(4), x, y], np.ones(4)])
         self.corners = (self._back @ at)[:3].T
 
     def _changed(self) -> None:

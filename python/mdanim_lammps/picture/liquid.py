@@ -55,8 +55,15 @@ class LiquidSheet:
         """Move vertices of `mesh` over the columns by x and y [m], shape (ny, nx, 2); those on the edges stay on them."""
         by = np.pad(by, [(1, 1), (1, 1), (0, 0)], mode="edge")
         by[:, [0, -1], 0] = by[[0, -1], :, 1] = 0.0
-        by = by.reshape(-1, 2)
-        points[:, :2] += np.concatenate([by, *(np.concatenate([by[side], by[side]]) for side in self._sides)])
+        points[:, :2] += self._on_walls(by.reshape(-1, 2))
+
+    def at_vertices(self, values: np.ndarray) -> np.ndarray:
+        """Values of columns, shape (ny, nx), at the vertices of `mesh`, shape (V,)."""
+        return self._on_walls(np.pad(values, 1, mode="edge").ravel())
+
+    def _on_walls(self, found: np.ndarray) -> np.ndarray:
+        """Values at vertices of the surface, followed by those at the walls below them, shape (V, ...)."""
+        return np.concatenate([found, *(np.concatenate([found[side], found[side]]) for side in self._sides)])
 
     def pond(self, height: np.ndarray, quads: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Vertices and normals as of `mesh`, and triangles of a sheet over some of the quads between columns' middles.

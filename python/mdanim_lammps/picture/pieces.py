@@ -34,6 +34,11 @@ class MovingMesh:
         self.data.GetPointData().SetNormals(normals)
         self._points, self._normals = vtk_to_numpy(points.GetData()), vtk_to_numpy(normals)
 
+    @property
+    def points(self) -> np.ndarray:
+        """Where the vertices are [m], float32, shape (V, 3)."""
+        return self._points
+
     def paint(self, color: np.ndarray) -> None:
         """Colour every vertex, uint8, shape (V, 3)."""
         from vtkmodules.util.numpy_support import numpy_to_vtk
@@ -143,13 +148,23 @@ class Lookup:
     """
 
     def __init__(self, width: int, height: int, *, smooth: bool = False, packed: bool = False):
+        self._packed = packed
+        self._image, self.texture = texture(self._hold(width, height), self._held.shape[1], height, smooth)
+
+    def _hold(self, width: int, height: int):
         from vtkmodules.util.numpy_support import numpy_to_vtk
 
-        held = np.zeros((height, width // 4, 4) if packed else (height, width, 3), dtype=np.float32)
-        self.numbers = held.reshape(height, width) if packed else held[:, :, 0]
+        held = np.zeros((height, width // 4, 4) if self._packed else (height, width, 3), dtype=np.float32)
+        self.numbers = held.reshape(height, width) if self._packed else held[:, :, 0]
         self._held = held
         self._texels = numpy_to_vtk(held.reshape(-1, held.shape[2]))  # the same memory
-        self._image, self.texture = texture(self._texels, held.shape[1], height, smooth)
+        return self._texels
+
+    def resize(self, width: int, height: int) -> None:
+        """Have a grid of another size; ``numbers`` is then another array."""
+        if self.numbers.shape != (height, width):
+            self._image.GetPointData().SetScalars(self._hold(width, height))
+            self._image.SetDimensions(self._held.shape[1], height, 1)
 
     def fill(self, numbers: np.ndarray) -> None:
         """Overwrite all, shape (height, width), or, with three numbers each, (height, width, 3)."""

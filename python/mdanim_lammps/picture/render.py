@@ -123,18 +123,21 @@ class Painter:
         shown = self._mesh.normals(vertices, position, gone)
         if self._tones:
             self._surface.paint(np.concatenate([self._toned(index), self._surface_colors[len(vertices) :]]))
-        self._surface.move(np.concatenate([vertices, points]), np.concatenate([shown, normals]))
+        shown_points = np.concatenate([vertices, points])
+        self._surface.move(shown_points, np.concatenate([shown, normals]))
         if self._tank:
             self._tank.show(index, position, vertices, self._mesh.triangle)
         if self._walls and self._way_of_walls:
             self._walls.SetPosition(*self._way_of_walls(time))
         self._marks.show(position)
         # Before the picture: only one window can be drawn into at a time.
-        self._light.cast()
+        self._light.cast(shown_points)
         view = self.view(time)
+        if self._tank:
+            self._tank.part_skin(self._light, view.eye, bool(self._floor and self._floor.covers(view, self._pixels)))
         for actor in self._actors:
             actor.GetShaderProperty().GetFragmentCustomUniforms().SetUniform3f("eye", list(view.eye))
-        picture = self._all_in_one(view) if self._behind else self._over_backdrop(view, np.concatenate([vertices, points]))
+        picture = self._all_in_one(view) if self._behind else self._over_backdrop(view, shown_points)
         if self._overlay:
             self._overlay.lay_on(picture, view, index, position, gone)
         self._title.lay_on(picture, self._name)
@@ -286,7 +289,8 @@ class Painter:
             self._window = off_screen_window(self._renderers, (width, height), SAMPLES, clear=not self._behind)
             self._light = Light(self._surface.data, self.action.centre, self.action.size, typical, render, self._floor)
             still = not self._path or self._path.still
-            self._backdrop = None if self._behind else Backdrop(self._pixels, (low, high), self._floor, still, sky)
+            cover = self._tank.cover if self._tank else None
+            self._backdrop = None if self._behind else Backdrop(self._pixels, (low, high), self._floor, still, sky, cover)
         self._light.fall_on(self._actors)
         if self._backdrop and self._floor:
             have_own_textures(self._floor.actor, ("skyDepth", "liquidHeights"))

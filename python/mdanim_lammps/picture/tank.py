@@ -10,12 +10,15 @@ import numpy as np
 from ..results.trajectory import Trajectory
 from . import shading
 from .behind import Behind
+from .floor import nothing
 from .foam import Foam
 from .hulls import FINER, dry_spots
+from .light import Light
 from .liquid import Blocks, Drops, LiquidSheet, droplets, kept_dry, overhang, undersides, without_puddles
 from .palette import LIQUID, rgb
 from .pieces import Lookup, MovingLine, MovingMesh, box_edges, lit_actor, plane
 from .ponds import Ponds, parted
+from .skin import LiquidSkin
 
 CLEAR = 1.0
 """Distance that one sees in the liquid, in half diagonals of the basin: by then 1/e is left of the light from behind."""
@@ -24,6 +27,8 @@ COVER = {"smooth": 0.24, "cells": 0.35}
 
 RIM = 0.7
 """How much the bright line covers where the liquid meets the glass."""
+INSET = 0.01
+"""How far from the edge of the tank's floor what is behind that is not drawn, in sides of the basin."""
 HAIR = 1e-3
 """By how much, in sizes of the basin, the edges are drawn outside and the liquid inside: what stands flush
 with the glass is then seen in front of the liquid, and nothing flickers."""
@@ -53,13 +58,19 @@ class Tank:
         self._corners = np.array([self._floor.GetPoint(n) for n in range(self._floor.GetNumberOfPoints())])
         self.plate = lit_actor(self._floor, shading.FRAGMENT_SOLID, liquid=True, sky=sky)
         """The tank's floor, opaque."""
+        # Its edge, which covers pixels in part, hides nothing.
+        inset = INSET * (self._high - self._low)
+        self.cover = None if pool.moves else nothing(plane(self._low + inset, self._high - inset, pool.low[2]))
+        """Hides what is behind that floor in a window without it; None where it moves."""
         self.plate.GetProperty().SetColor((0.28, 0.33, 0.37) if dark else (0.74, 0.78, 0.81))
         self._foam = Foam(pool.grid, trajectory.dt * trajectory.steps_per_frame) if look == "smooth" else None
         self._white = Lookup(*pool.shape[:2], smooth=True)
         self._dry, self._beside_ponds = (Lookup(FINER * pool.shape[0], FINER * pool.shape[1], smooth=True) for _ in range(2))
         self._pond = MovingMesh(1, np.zeros((0, 3)))
         sheets = [(self._mesh, self._dry), (self._pond, self._beside_ponds)][: 2 if look == "smooth" else 1]
-        self.inner, self.outer = zip(*(self._faces(mesh.data, cut, behind) for mesh, cut in sheets))
+        self._skins = [LiquidSkin(mesh, self._white, cut, pool.grid.cell, COVER[look], behind) for mesh, cut in sheets]
+        self.inner = [actor for skin in self._skins for actor in skin.inner]
+        self.outer = [actor for skin in self._skins for actor in skin.outer]
         """The liquid's own faces, seen from inside and from outside; translucent, the inner ones are drawn first."""
         self.skin = [*self.inner, *self.outer]
         """The liquid's own faces, and its drops."""
@@ -82,27 +93,6 @@ class Tank:
             self.skin.append(drops)
             self.actors.append(drops)
         self._through: Sequence = ()
-
-    def _faces(self, data, cut: Lookup, behind: Behind | None) -> tuple:
-        """Actors of inner and outer faces of a sheet, which is not drawn where it is ``cut``."""
-        pool = self._trajectory.liquid
-        # Behind, then in front: a ray meets the inner faces before the outer ones.
-        inner, outer = (
-            lit_actor(data, shading.FRAGMENT_LIQUID, liquid=True, sky=False, functions=shading.FOAM + bent)
-            for bent in (shading.NOT_BENT, shading.bent() if behind else shading.NOT_BENT)
-        )
-        inner.GetProperty().FrontfaceCullingOn()
-        outer.GetProperty().BackfaceCullingOn()
-        if behind:
-            behind.look_up([outer])
-        for actor in (inner, outer):
-            actor.ForceTranslucentOn()
-            actor.GetProperty().SetTexture("liquidFoam", self._white.texture)
-            actor.GetProperty().SetTexture("liquidDry", cut.texture)
-            uniforms = actor.GetShaderProperty().GetFragmentCustomUniforms()
-            uniforms.SetUniform3f("cell", list(pool.grid.cell))
-            uniforms.SetUniformf("skinCover", COVER[self._look])
-        return inner, outer
 
     def colour_through(self, actors: Sequence) -> None:
         """Let everything that is lit take the liquid's colour where it is seen through liquid."""
@@ -161,14 +151,12 @@ class Tank:
         if dry.any():
             # Under a hull there is liquid.
             top = np.where(dry, undersides(grid, position), top)
+        if self._foam:
+            self._white.fill(self._foam.at(frame, self._liquid))
+        self._skins[0].take(self._form.triangle, self._foamy())
         self._show_ponds(ponds, way)
         level, bottom = (ponds.level, ponds.bottom) if ponds else (top, np.full(top.shape, np.inf))
         self._heights.fill(np.stack([top, level, np.minimum(bottom, self._high[2])], axis=-1))
-        if self._foam:
-            self._white.fill(self._foam.at(frame, self._liquid))
-        for actor in (*self.inner, *self.outer):
-            uniforms = actor.GetShaderProperty().GetFragmentCustomUniforms()
-            uniforms.SetUniformf("foamMost", float(self._white.numbers.max()))
         for actor in self._through:
             uniforms = actor.GetShaderProperty().GetFragmentCustomUniforms()
             uniforms.SetUniformf("liquidTop", float(max(top.max(), level[bottom < level].max(initial=-np.inf))))
@@ -195,8 +183,24 @@ class Tank:
             self._pond.reshape(len(points), triangle)
             self._pond.move(points + way, normals)
             self._beside_ponds.fill(ponds.hidden)
+            self._skins[1].take(triangle, self._foamy())
         elif self._pond.data.GetNumberOfPolys():
             self._pond.reshape(1, np.zeros((0, 3)))
+            self._skins[1].take(np.zeros((0, 3), np.int32), np.zeros(1, bool))
+
+    def _foamy(self) -> np.ndarray:
+        """Around which vertices of the sheet there may be foam, bool, shape (V,)."""
+        from scipy.ndimage import maximum_filter
+
+        if not self._foam:
+            return np.zeros(self._mesh.data.GetNumberOfPoints(), bool)
+        return self._form.at_vertices(maximum_filter(self._white.numbers, 3)) > 0.0
+
+    def part_skin(self, light: Light, eye: np.ndarray, floor: bool) -> None:
+        """Draw each part of the surface by what it needs: as light falls in this frame, as an eye [m] sees it, and by whether a
+        floor is behind all."""
+        for skin in self._skins:
+            skin.part(light, eye, floor)
 
     def _liquid(self, frame: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Smooth and raw heights, and drops, of a frame."""
