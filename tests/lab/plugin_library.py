@@ -39,7 +39,7 @@ SOURCES = (
     *(PLUGIN / f"{name}.cpp" for name in (*FLOORS, *PASSES)),
 )
 OF_SET = (PLUGIN / "simd" / "kernels_of_set.cpp", PLUGIN / "liquid" / "waves" / "waves_kernels_of_set.cpp")
-"""Of what is compiled for each set of instructions: the tables, and the loops of waves. The rest is in unused_kernels.cpp."""
+"""Tables and loops of waves, for each set of instructions; unused_kernels.cpp has the other names."""
 SETS = [
     (name, [f"-DMDANIM_SET={name}", f"-DMDANIM_LANES={lanes}", "-Wno-psabi", *flags])
     for name, lanes, *flags in map(str.split, (PLUGIN / "simd" / "sets.txt").read_text().splitlines())

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// What the tables of kernels name and this library never calls: its styles and functions use the loops of waves alone. Compiled
-// in full, the rest takes a fifth of the time of the library.
+// Empty kernels for the tables, which this library never calls: its styles and functions use the loops of waves alone. Compiled
+// in full, the others take a fifth of the time of the library.
 
 #include <cstdlib>
 
