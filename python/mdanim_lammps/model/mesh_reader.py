@@ -52,7 +52,7 @@ def _read_apart(path: Path) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 
 def contents(path: Path) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """What `read_polygons` returns, read by this process, however much memory and time that takes. Raises UnreadableMesh."""
+    """The same as `read_polygons`, by this process, however much memory and time that takes. Raises UnreadableMesh."""
     found = read(path.read_bytes(), path.suffix.lower())
     faces = np.insert(found.index, np.cumsum(found.count) - found.count, found.count)
     return found.points, faces, found.color
