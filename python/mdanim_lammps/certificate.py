@@ -285,9 +285,9 @@ def _margins(envelope: Envelope, limit: np.ndarray) -> list[Margin]:
 
 def _notes(envelope: Envelope) -> list[Problem]:
     """Changes to surfaces of files; notes of the effects that are on, and the advice of all features, where something can
-    move."""
+    move, or a liquid."""
     mended = list(_mended(envelope))
-    if not envelope.reach.moving.any():
+    if not envelope.reach.moving.any() and envelope.context.grid is None:
         return mended
     return [
         *mended,

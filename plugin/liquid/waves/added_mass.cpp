@@ -68,19 +68,23 @@ double AddedMass::energy() const
 double AddedMass::most_at(const Depths &depths, int column) const
 { return mass_within(depths.below, distances[column]) + mass_within(depths.above, distances[column]); }
 
-// By two passes over neighbours, forth and back.
+// By two passes over neighbours, forth and back. Along a bottom that rises a way counts less: liquid gets out of the way aslant.
 void AddedMass::find_distances(const std::vector<int> &with, const Depths *depths)
 {
   const double diagonal = std::sqrt(2.0);
-  distances.assign(columns.size(), EDGE - 1.0);
+  distances.assign(columns.size(), 0.0);
   for (const int c : with)
     if (depths[c].below > 0.0) distances[c] = NOWHERE;
   const auto pass = [&](int c, int way) {
+    if (depths[c].below <= 0.0) return;
+    const double flat = flatness(c, depths);
     const auto from = [&](int dx, int dy, double step) {
       const int x = c % nx + dx, y = c / nx + dy;
-      if (x >= 0 && x < nx && y >= 0 && y < ny) distances[c] = std::min(distances[c], distances[y * nx + x] + step);
+      if (x < 0 || x >= nx || y < 0 || y >= ny) return;
+      const int other = y * nx + x;
+      const double from_there = depths[other].below > 0.0 ? step : step + (EDGE - 1.0);
+      distances[c] = std::min(distances[c], distances[other] + flat * from_there);
     };
-    if (depths[c].below <= 0.0) return;
     from(-way, 0, 1.0);
     from(0, -way, 1.0);
     from(-way, -way, diagonal);
@@ -88,6 +92,19 @@ void AddedMass::find_distances(const std::vector<int> &with, const Depths *depth
   };
   for (std::size_t n = 0; n < with.size(); ++n) pass(with[n], 1);
   for (std::size_t n = with.size(); n-- > 0;) pass(with[n], -1);
+}
+
+// Square of the upward part of the normal of what is wet from below.
+double AddedMass::flatness(int column, const Depths *depths) const
+{
+  double steep[2] = {0.0, 0.0};
+  for (int side = 0; side < 4; ++side) {
+    const int other = neighbour(column, side, nx, ny);
+    if (other < 0 || depths[other].below <= 0.0) continue;
+    double &along = steep[side / 2];
+    along = std::max(along, std::fabs(depths[other].bottom - depths[column].bottom));
+  }
+  return 1.0 / (1.0 + steep[0] * steep[0] + steep[1] * steep[1]);
 }
 
 // (W15): the acceleration of connected columns, as of a rigid body.

@@ -13,6 +13,7 @@ class AddedMass {
  public:
   struct Depths {
     double below = 0.0, above = 0.0;    // of the liquid that touches solids; none is taken along where there is none below
+    double bottom = 0.0;                // height of the lower face of these solids
   };
   struct Solids {
     double mass = 0.0, velocity = 0.0;    // of the moving solids of a column; upwards
@@ -34,6 +35,7 @@ class AddedMass {
 
  private:
   double most_at(const Depths &depths, int column) const;
+  double flatness(int column, const Depths *depths) const;
   void find_distances(const std::vector<int> &with, const Depths *depths);
   void find_accelerations(const std::vector<int> &with, const Depths *depths, const Solids *solids, double since);
 

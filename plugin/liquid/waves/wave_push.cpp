@@ -199,7 +199,7 @@ void WavePush::take_along(const Waves &waves, const AddedMass::Solids *solids, d
       SolidRun &run = runs[first_run[column] + n];
       if (run.below < 0 || !run.wet || run.top <= run.bottom || !waves.exchange.span_view(column, run.below).full) continue;
       run.moves = true;
-      depths[column].below = run.bottom - run.floor;
+      depths[column] = {run.bottom - run.floor, 0.0, run.bottom};
       if (run.above < 0) break;
       const WaveExchange::SpanView above = waves.exchange.span_view(column, run.above);
       if (above.wet) depths[column].above = std::max(0.0, above.phi - run.top);

@@ -8,15 +8,17 @@
 
 using mdanim::AddedMass;
 
-// `depths`: below and above; `solids`: mass and velocity; `state`: mass, force and velocity, which is brought up to date.
-MDANIM_EXPORT void mdanim_added_mass(int nx, int ny, const double *depths, const double *solids, double since, double *state)
+// `depths`: below and above; `bottoms`: heights of the lower faces; `solids`: mass and velocity; `state`: mass, force and
+// velocity, which is brought up to date.
+MDANIM_EXPORT void mdanim_added_mass(int nx, int ny, const double *depths, const double *bottoms, const double *solids,
+                                     double since, double *state)
 {
   AddedMass added(nx, ny);
   std::vector<AddedMass::Depths> of_liquid(nx * ny);
   std::vector<AddedMass::Solids> moving(nx * ny);
   std::vector<int> with;
   for (int c = 0; c < nx * ny; ++c) {
-    of_liquid[c] = {depths[2 * c], depths[2 * c + 1]};
+    of_liquid[c] = {depths[2 * c], depths[2 * c + 1], bottoms[c]};
     moving[c] = {solids[2 * c], solids[2 * c + 1]};
     if (moving[c].mass > 0.0) with.push_back(c);
   }

@@ -9,25 +9,26 @@ from waves_lab import DOUBLE, DOUBLES, INT
 DT = 0.1
 
 
-def follow(depths, mass, velocity, since, state):
-    """The state of all columns, (ny, nx, 3): mass, force and velocity; since 0 begins."""
+def follow(depths, mass, velocity, since, state, bottom=0.0):
+    """The state of all columns, (ny, nx, 3): mass, force and velocity; since 0 begins. `bottom`: heights of the lower faces."""
     function = library().mdanim_added_mass
-    function.restype, function.argtypes = None, [INT, INT, DOUBLES, DOUBLES, DOUBLE, DOUBLES]
+    function.restype, function.argtypes = None, [INT, INT, DOUBLES, DOUBLES, DOUBLES, DOUBLE, DOUBLES]
     state = np.ascontiguousarray(state, float).copy()
     ny, nx = state.shape[:2]
     solids = np.ascontiguousarray(np.stack(np.broadcast_arrays(mass, velocity), axis=-1), float)
-    function(nx, ny, np.ascontiguousarray(depths, float), solids, since, state)
+    bottoms = np.ascontiguousarray(np.broadcast_to(bottom, (ny, nx)), float)
+    function(nx, ny, np.ascontiguousarray(depths, float), bottoms, solids, since, state)
     return state
 
 
-def most(depths):
-    """(W14), with the distance to all columns that are not wet from below tried out."""
+def most(depths, flat=1.0):
+    """(W14), with the distance to all columns that are not wet from below tried out; a way along the bottom counts `flat`."""
     found = np.zeros(depths.shape[:2])
     wet = depths[..., 0] > 0
     others = np.argwhere(~wet)
     for place in np.argwhere(wet):
         way = np.sort(np.abs(others - place), axis=1)
-        reach = 2.0 * ((way[:, 1] + (2**0.5 - 1) * way[:, 0]).min() - 0.25)
+        reach = 2.0 * flat * ((way[:, 1] + (2**0.5 - 1) * way[:, 0]).min() - 0.25)
         found[tuple(place)] = sum((9 / d**2 + 1 / reach**2) ** -0.5 for d in depths[tuple(place)] if d > 0)
     return found
 
@@ -49,6 +50,16 @@ def test_the_mass_is_that_of_the_twin():
     state = follow(depths, mass, np.where(mass > 0, 0.3, 0.0), 0.0, np.zeros((*mass.shape, 3)))
     np.testing.assert_allclose(state[..., 0], most(depths), rtol=1e-12)
     assert not state[..., 1].any() and (state[mass > 0, 2] == 0.3).all()
+
+
+@pytest.mark.parametrize("slope", [0.5, 2.0])
+def test_below_a_wedge_less_moves_along(slope):
+    """In potential flow a bottom at 45 degrees takes half of what a flat one takes: 0.76 of 1.51 pi rho a^2 of a square that
+    moves along its diagonal, or across a side."""
+    depths, mass, _ = plate()
+    bottom = np.broadcast_to(slope * np.abs(np.arange(11) - 5.0), mass.shape)
+    state = follow(depths, mass, 0.0, 0.0, np.zeros((9, 11, 3)), bottom)
+    np.testing.assert_allclose(state[..., 0], most(depths, 1.0 / (1.0 + slope**2)), rtol=1e-12)
 
 
 @pytest.mark.parametrize("seed", range(3))

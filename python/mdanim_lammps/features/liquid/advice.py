@@ -1,0 +1,291 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Notes of ``check`` on what waves are known to get wrong, where a scene meets it: by how much, and the page that measures it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...effects.envelope import Envelope
+from ...errors import Problem, Span
+from ...model import shapes
+from ...model.model import Model
+from ...scene.formatting import number, say
+from ...scene.scene import Solid
+from ..contact.pairs import frictions
+from ..drives.words import DriveOscillation
+from .basin import liquid_level
+from .frames import is_wavy
+from .occupied import filled
+
+TALL = 1.0
+"""Height of a dam over its width from which its foot runs ahead."""
+GENTLE = math.cos(math.radians(35.0))
+"""Upward part of the normal of a face from which water runs up it in a thin layer."""
+LEVEL = 1.0 - 1e-4
+"""The same from which a face is level."""
+BESIDE = 2.0
+"""Cells between a body and a side of its basin up to which it slides."""
+SUDDEN = 0.5
+"""Speed over sqrt(g L) from which a body of size L that starts in the liquid pushes it as a blow."""
+SLENDER = 3.0
+"""Length along its way over its width from which a body cuts through the liquid."""
+HIGH = 0.2
+"""Height of waves over the depth from which crests at walls are too high."""
+Found = tuple[Span | None, str]
+"""Place of what meets a limit, and how a sentence about it begins."""
+
+
+@dataclass(frozen=True)
+class Limit:
+    """Something that waves get wrong."""
+
+    met: Callable[[Envelope], Found | None]
+    """Where a scene meets it."""
+    text: str
+    """How far off it is, with the figure of the page."""
+    page: str
+    way_out: str = ""
+
+
+def notes(envelope: Envelope) -> list[Problem]:
+    """One for each limit that the scene meets."""
+    if envelope.scene.liquid is None or envelope.context.grid is None or not is_wavy(envelope.scene):
+        return []
+    return [
+        Problem(found[0], f"{found[1]}: {limit.text} (docs/{limit.page})", limit.way_out, severity="note")
+        for limit in LIMITS
+        if (found := limit.met(envelope))
+    ]
+
+
+def _held_cells(envelope: Envelope) -> np.ndarray:
+    """Cells of the basin that held solids fill by half or more, shape (nz, ny, nx)."""
+    held = [model for model in envelope.context.models if model.still]
+    return filled(envelope.context.grid, held, spread=False) >= 0.5
+
+
+# --- dams ---------------------------------------------------------------------------------------------------
+
+
+def _dam(envelope: Envelope) -> tuple[int, float, float] | None:
+    """The axis along which liquid is let go onto a dry floor, how wide it is along it, and how high [m]."""
+    liquid = envelope.scene.liquid
+    if liquid.fill is None or liquid.fill[0][2] > liquid.low[2] + envelope.context.grid.cell[2]:
+        return None
+    (low, high), cell = liquid.fill, envelope.context.grid.cell
+    room = [max(low[k] - liquid.low[k], liquid.high[k] - high[k]) for k in (0, 1)]
+    axis = int(np.argmax(room))
+    if room[axis] <= cell[axis]:
+        return None
+    width, across = (min(high[k], liquid.high[k]) - max(low[k], liquid.low[k]) for k in (axis, 1 - axis))
+    height = liquid.volume / (width * across) if liquid.level is None else liquid.level - liquid.low[2]
+    return None if _walled(envelope, axis, height) else (axis, width, height)
+
+
+def _walled(envelope: Envelope, axis: int, height: float) -> bool:
+    """Whether held solids close more than half of the faces across an axis of the box that liquid starts in, up to a height."""
+    liquid, grid = envelope.scene.liquid, envelope.context.grid
+    first, last = (np.rint((np.array(side) - grid.low) / grid.cell).astype(int) for side in liquid.fill)
+    first, last = np.maximum(first, 0), np.minimum(last, grid.shape)
+    last[2] = max(1, round(height / grid.cell[2]))
+    cells = np.moveaxis(_held_cells(envelope).T, axis, 0)
+    across = tuple(slice(first[k], last[k]) for k in range(3) if k != axis)
+    closed = [(cells[at - 1][across] | cells[at][across]).mean() for at in (first[axis], last[axis]) if 0 < at < grid.shape[axis]]
+    return bool(closed) and min(closed) > 0.5
+
+
+def _tall_dam(envelope: Envelope) -> Found | None:
+    dam, liquid = _dam(envelope), envelope.scene.liquid
+    if dam is None or dam[2] < TALL * dam[1]:
+        return None
+    return liquid.spans.get("fill"), f"{liquid.name} breaks from a dam {number(dam[2] / dam[1], 2)} times as high as wide"
+
+
+def _in_a_flood(envelope: Envelope) -> Found | None:
+    """A body that can move, on the dry floor before a dam."""
+    dam, liquid = _dam(envelope), envelope.scene.liquid
+    if dam is None:
+        return None
+    axis, _, height = dam
+    for m, low, high in _free(envelope):
+        dry = low[axis] >= liquid.fill[1][axis] or high[axis] <= liquid.fill[0][axis]
+        if dry and low[2] < liquid.low[2] + 0.5 * height:
+            return envelope.place(m, "position"), f"{liquid.name} floods {envelope.system.names[m]}"
+    return None
+
+
+# --- walls and floors ---------------------------------------------------------------------------------------
+
+
+def _narrow_arm(envelope: Envelope) -> Found | None:
+    """Liquid between walls that goes on below one of them, in an arm that is narrower than deep."""
+    from scipy.ndimage import label
+
+    scene, grid = envelope.scene, envelope.context.grid
+    top = round((liquid_level(scene.liquid) - grid.low[2]) / grid.cell[2])
+    if not any(model.still for model in envelope.context.models) or not 0 < top <= grid.shape[2]:
+        return None
+    open_cells = ~_held_cells(envelope)[:top]
+    arms, many = label(open_cells[-1])
+    if many < 2:
+        return None
+    joined, _ = label(open_cells)
+    of_arm = [int(joined[-1][arms == n][0]) for n in range(1, many + 1)]
+    deep = np.where(open_cells.all(axis=0), top, np.argmin(open_cells[::-1], axis=0)) * grid.cell[2]
+    for n in range(1, many + 1):
+        if of_arm.count(of_arm[n - 1]) < 2:
+            continue
+        wide = float(np.minimum(*(_runs(arms == n, k) * grid.cell[k] for k in (0, 1))).max())
+        depth = float(deep[arms == n].max())
+        if wide < depth:
+            cause = f"an arm of {scene.liquid.name} is {say(wide, 'm')} wide and {say(depth, 'm')} deep"
+            return scene.liquid.spans.get("basin"), cause
+    return None
+
+
+def _runs(mask: np.ndarray, axis: int) -> np.ndarray:
+    """Cells of the run along x or y in which each cell of a mask is, 0 outside, shape (ny, nx)."""
+    from scipy.ndimage import label
+
+    beside = np.zeros((3, 3), int)
+    beside[(slice(None), 1) if axis else (1, slice(None))] = 1
+    run, _ = label(mask, beside)
+    return np.where(mask, np.bincount(run.ravel())[run], 0)
+
+
+def _slopes(envelope: Envelope) -> Iterator[tuple[Model, np.ndarray]]:
+    """Gentle slopes of held solids: corners of their triangles, shape (T, 3, 3)."""
+    for model in envelope.context.models:
+        if not model.still:
+            continue
+        corner = model.surface.vertices(model.position)[model.surface.triangle]
+        normal = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])
+        up = normal[:, 2] / np.maximum(np.linalg.norm(normal, axis=1), 1e-300)
+        if (gentle := (up > GENTLE) & (up < LEVEL)).any():
+            yield model, corner[gentle]
+
+
+def _beach(envelope: Envelope) -> Found | None:
+    scene = envelope.scene
+    level = liquid_level(scene.liquid)
+    for model, corner in _slopes(envelope):
+        low, high = corner.min(axis=1), corner.max(axis=1)
+        there = (low[:, 2] < level) & (high[:, 2] > level)
+        there &= (high[:, :2] > scene.liquid.low[:2]).all(axis=1) & (low[:, :2] < scene.liquid.high[:2]).all(axis=1)
+        if there.any():
+            return _place(envelope, model), f"{scene.liquid.name} has a beach, {model.name}"
+    return None
+
+
+def _wet_slope(envelope: Envelope) -> Found | None:
+    for model, corner in _slopes(envelope):
+        low, high = corner.min(axis=1), corner.max(axis=1)
+        for flow in envelope.scene.liquid.inflow:
+            over = (high[:, :2] > flow.low[:2]).all(axis=1) & (low[:, :2] < flow.high[:2]).all(axis=1)
+            if (over & (low[:, 2] < flow.high[2])).any():
+                return _place(envelope, model), f"{envelope.scene.liquid.name} flows down {model.name}"
+    return None
+
+
+def _place(envelope: Envelope, model: Model) -> Span | None:
+    return envelope.place(envelope.system.names.index(model.name), "shape")
+
+
+# --- bodies -------------------------------------------------------------------------------------------------
+
+
+def _free(envelope: Envelope) -> Iterator[tuple[int, np.ndarray, np.ndarray]]:
+    """Solids that can move, with the corners of the boxes around them [m]."""
+    lows, highs = envelope.system.bounds(envelope.system.position)
+    for m in np.flatnonzero(envelope.reach.free).tolist():
+        yield m, lows[m], highs[m]
+
+
+def _slides(envelope: Envelope) -> Found | None:
+    """A body without friction that stands on the floor, in the liquid, near a side."""
+    liquid, grid = envelope.scene.liquid, envelope.context.grid
+    smooth = dict(zip((solid.name for solid in envelope.scene.solids), frictions(envelope.scene, "basin")))
+    for m, low, high in _free(envelope):
+        name = envelope.system.names[m]
+        stands = low[2] < liquid.low[2] + grid.cell[2] and envelope.reach.weight_left[m] > 0.0
+        if not stands or smooth[name] or liquid_level(liquid) <= liquid.low[2] + grid.cell[2]:
+            continue
+        way, cell = min((min(low[k] - liquid.low[k], liquid.high[k] - high[k]), grid.cell[k]) for k in (0, 1))
+        if 0.0 <= way <= BESIDE * cell * (1.0 + 1e-9):
+            return envelope.place(m, "position"), f"{name} stands without friction {say(way, 'm')} from a side of the basin"
+    return None
+
+
+def _slams(envelope: Envelope) -> Found | None:
+    """A body that starts in the liquid, blunt and fast."""
+    liquid, system = envelope.scene.liquid, envelope.system
+    level = liquid_level(liquid)
+    for m, low, high in _free(envelope):
+        solid: Solid = envelope.context.solids[m]
+        way = np.array([*solid.velocity[:2], 0.0])
+        speed, size = float(np.linalg.norm(way)), float(np.cbrt(shapes.volume(solid.shape)))
+        if speed < SUDDEN * math.sqrt(envelope.reach.g * size) or low[2] >= level:
+            continue
+        long = np.abs(way / speed) @ (high - low)
+        if long < SLENDER * min(high[:2] - low[:2]):
+            return envelope.place(m, "velocity"), f"{system.names[m]} starts in {liquid.name} at {say(speed, 'm/s')}"
+    return None
+
+
+def _high_crests(envelope: Envelope) -> Found | None:
+    """A basin that is shaken near the period of its longest wave, by the linear law of that wave."""
+    liquid, g = envelope.scene.liquid, envelope.reach.g
+    depth = liquid_level(liquid) - liquid.low[2]
+    for drive in liquid.drive:
+        if not isinstance(drive, DriveOscillation):
+            continue
+        turn = 2.0 * math.pi * drive.frequency
+        for k in (0, 1):
+            long = liquid.high[k] - liquid.low[k]
+            own = g * math.pi / long * math.tanh(math.pi * depth / long)
+            steady = own * 4.0 * long / math.pi**2 * drive.way[k] * turn**2 / g / max(abs(own - turn**2), 0.05 * own)
+            beats = 2.0 * abs(steady) / depth
+            if beats > HIGH:
+                cause = f"waves in {liquid.name} become {number(beats, 2)} of its depth high by the law of low ones"
+                return liquid.spans.get("drive"), cause
+    return None
+
+
+VALIDATION, PHYSICS = "validation.md#", "physics-liquid.md#"
+LIMITS = (
+    Limit(
+        _tall_dam,
+        "its front starts at once, and is 68 % too far at first where the dam is twice as high as wide",
+        f"{VALIDATION}a-dam-breaks-onto-a-dry-floor",
+    ),
+    Limit(
+        _in_a_flood,
+        "a flood pushes a blunt body too little, by 38 % of the impulse on a tall column, and without a blow at first",
+        f"{VALIDATION}a-flood-meets-a-tall-column",
+    ),
+    Limit(_narrow_arm, "there liquid swings too fast, in 19 % less time in a U-tube", f"{VALIDATION}a-u-tube"),
+    Limit(
+        _beach,
+        "waves run up 19 % too little with twelve cells in the depth, half with six",
+        f"{VALIDATION}solitary-waves-on-a-beach",
+        "write a finer resolution",
+    ),
+    Limit(
+        _wet_slope,
+        "a layer thinner than half a cell runs off, and is not drawn",
+        f"{PHYSICS}bodies-in-waves",
+        "write a finer resolution, or a larger rate",
+    ),
+    Limit(_slides, "after some seconds it begins to slide to and fro", f"{PHYSICS}bodies-in-waves", "write friction 0.5 in it"),
+    Limit(
+        _slams,
+        "a blunt body that is set in motion at once gives the liquid up to twice what it loses",
+        f"{PHYSICS}bodies-in-waves",
+        "begin slower, or make it slender",
+    ),
+    Limit(_high_crests, "crests at its walls come out up to 41 % too high", f"{VALIDATION}a-tank-is-shaken"),
+)

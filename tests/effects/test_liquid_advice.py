@@ -1,0 +1,69 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Notes of ``check`` on what waves get wrong: where they are told, where not, and that they tell what the page has measured."""
+
+import json
+import re
+
+import pytest
+from mdanim_lammps.features.liquid.advice import LIMITS
+from paths import REPOSITORY
+
+POOL = """gravity (0, 0, -9.81) m/s^2
+liquid water {{
+  basin   from (0, 0, 0) m to (2, 0.8, 1) m
+  density 1000 kg/m^3
+  {liquid}
+}}
+{objects}
+control {{ time 1 s  frames 10 fps  resolution 5 cm }}
+"""
+HELD = "density 2000 kg/m^3  elasticity 1 MPa  hold all"
+DAM = "fill from (0, 0, 0) m to ({width}, 0.8, 1) m  level 0.6 m"
+BLOCK = "object block {{ shape box (20, 20, 20) cm  position ({x}, 0.4, 0.1) m  density 2000 kg/m^3  elasticity rigid  {more} }}"
+POST = f"object post {{ shape box (10, 10, 10) cm  position (0.5, 0.4, 0.9) m  {HELD} }}"
+LIES = "shape box (100, 80, 20) cm  position (1.3, 0.4, 0.3) m  orientation axis (0, 1, 0) angle {tilt} deg"
+SLOPE = f"object slope {{{{ {LIES}  {HELD} }}}}"
+WALL = f"object wall {{{{ shape box ({{long}}, 80, 80) cm  position (1, 0.4, {{z}}) m  {HELD} }}}}"
+INFLOW = "level 0.1 m  inflow from (1.2, 0.2, 0.8) m to (1.3, 0.6, 0.9) m rate 0.01 m^3/s"
+SHAKE = "level 0.4 m  drive oscillation ({way}, 0, 0) m frequency 0.6 Hz"
+
+
+@pytest.mark.parametrize(
+    ("liquid", "objects", "told"),
+    [
+        (DAM.format(width=0.3), POST, "2 times as high as wide"),
+        (DAM.format(width=0.9), POST, ""),
+        (DAM.format(width=0.9), BLOCK.format(x=1.5, more="friction 0.5"), "floods block"),
+        (DAM.format(width=0.9), BLOCK.format(x=0.4, more="friction 0.5"), ""),
+        ("fill from (0, 0, 0) m to (0.3, 0.8, 1) m  level 0.6 m", WALL.format(long=140, z=0.5), ""),
+        ("level 0.6 m", WALL.format(long=140, z=0.5), "an arm of water is 30 cm wide and 60 cm deep"),
+        ("level 0.6 m", WALL.format(long=140, z=0.4), ""),
+        ("level 0.3 m", SLOPE.format(tilt=-20), "has a beach, slope"),
+        ("level 0.8 m", SLOPE.format(tilt=-20), ""),
+        (INFLOW, SLOPE.format(tilt=-20), "flows down slope"),
+        (INFLOW, SLOPE.format(tilt=0), ""),
+        ("level 0.6 m", BLOCK.format(x=0.15, more=""), "block stands without friction 5 cm from a side"),
+        ("level 0.6 m", BLOCK.format(x=0.15, more="friction 0.5"), ""),
+        ("level 0.6 m", BLOCK.format(x=1, more=""), ""),
+        ("level 0.6 m", BLOCK.format(x=1, more="velocity (1.5, 0, 0) m/s"), "block starts in water at 1.5 m/s"),
+        ("level 0.6 m", BLOCK.format(x=1, more="velocity (0.3, 0, 0) m/s"), ""),
+        (SHAKE.format(way=0.1), POST, "by the law of low ones"),
+        (SHAKE.format(way=0.002), POST, ""),
+    ],
+)
+def test_a_limit_is_told_where_a_scene_meets_it(prepared, liquid, objects, told):
+    """One note for it, and no other one of waves."""
+    notes = [n.message for n in prepared(POOL.format(liquid=liquid, objects=objects)).certificate.notes if "docs/" in n.message]
+    assert len(notes) == bool(told) and all(told in note for note in notes)
+
+
+def test_notes_tell_what_the_page_has_measured():
+    """Each leads to a heading, and per cents of the validation are those of the rows that are kept."""
+    for limit in LIMITS:
+        page, _, anchor = limit.page.partition("#")
+        headings = re.findall(r"^#+ (.*)", (REPOSITORY / "docs" / page).read_text(encoding="utf-8"), re.M)
+        assert anchor in {re.sub(r"[^a-z0-9 -]", "", h.lower()).replace(" ", "-") for h in headings}
+    kept = [json.loads(path.read_text())["balanced"]["rows"] for path in (REPOSITORY / "bench/published/found").glob("*.json")]
+    offs = {round(100 * abs((r["found"] - r["published"]) / (r["scale"] or r["published"]))) for rows in kept for r in rows}
+    told = {int(n) for limit in LIMITS for n in re.findall(r"(\d+) %", limit.text)}
+    assert told == {68, 38, 19, 41} and told <= offs
