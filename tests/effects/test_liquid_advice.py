@@ -5,7 +5,7 @@ import json
 import re
 
 import pytest
-from mdanim_lammps.features.liquid.advice import LIMITS
+from mdanim_lammps.features.liquid.advice import SHORTFALLS
 from paths import REPOSITORY
 
 POOL = """gravity (0, 0, -9.81) m/s^2
@@ -51,7 +51,7 @@ SHAKE = "level 0.4 m  drive oscillation ({way}, 0, 0) m frequency 0.6 Hz"
         (SHAKE.format(way=0.002), POST, ""),
     ],
 )
-def test_a_limit_is_told_where_a_scene_meets_it(prepared, liquid, objects, told):
+def test_a_shortfall_is_told_where_a_scene_meets_it(prepared, liquid, objects, told):
     """One note for it, and no other one of waves."""
     notes = [n.message for n in prepared(POOL.format(liquid=liquid, objects=objects)).certificate.notes if "docs/" in n.message]
     assert len(notes) == bool(told) and all(told in note for note in notes)
@@ -59,11 +59,11 @@ def test_a_limit_is_told_where_a_scene_meets_it(prepared, liquid, objects, told)
 
 def test_notes_tell_what_the_page_has_measured():
     """Each leads to a heading, and per cents of the validation are those of the rows that are kept."""
-    for limit in LIMITS:
-        page, _, anchor = limit.page.partition("#")
+    for one in SHORTFALLS:
+        page, _, anchor = one.page.partition("#")
         headings = re.findall(r"^#+ (.*)", (REPOSITORY / "docs" / page).read_text(encoding="utf-8"), re.M)
         assert anchor in {re.sub(r"[^a-z0-9 -]", "", h.lower()).replace(" ", "-") for h in headings}
     kept = [json.loads(path.read_text())["balanced"]["rows"] for path in (REPOSITORY / "bench/published/found").glob("*.json")]
     offs = {round(100 * abs((r["found"] - r["published"]) / (r["scale"] or r["published"]))) for rows in kept for r in rows}
-    told = {int(n) for limit in LIMITS for n in re.findall(r"(\d+) %", limit.text)}
+    told = {int(n) for one in SHORTFALLS for n in re.findall(r"(\d+) %", one.text)}
     assert told == {68, 38, 19, 41} and told <= offs

@@ -36,11 +36,11 @@ SLENDER = 3.0
 HIGH = 0.2
 """Height of waves over the depth from which crests at walls are too high."""
 Found = tuple[Span | None, str]
-"""Place of what meets a limit, and how a sentence about it begins."""
+"""Place of what meets a shortfall, and how a sentence about it begins."""
 
 
 @dataclass(frozen=True)
-class Limit:
+class Shortfall:
     """Something that waves get wrong."""
 
     met: Callable[[Envelope], Found | None]
@@ -52,13 +52,13 @@ class Limit:
 
 
 def notes(envelope: Envelope) -> list[Problem]:
-    """One for each limit that the scene meets."""
+    """One for each shortfall that the scene meets."""
     if envelope.scene.liquid is None or envelope.context.grid is None or not is_wavy(envelope.scene):
         return []
     return [
-        Problem(found[0], f"{found[1]}: {limit.text} (docs/{limit.page})", limit.way_out, severity="note")
-        for limit in LIMITS
-        if (found := limit.met(envelope))
+        Problem(found[0], f"{found[1]}: {one.text} (docs/{one.page})", one.way_out, severity="note")
+        for one in SHORTFALLS
+        if (found := one.met(envelope))
     ]
 
 
@@ -256,36 +256,38 @@ def _high_crests(envelope: Envelope) -> Found | None:
 
 
 VALIDATION, PHYSICS = "validation.md#", "physics-liquid.md#"
-LIMITS = (
-    Limit(
+SHORTFALLS = (
+    Shortfall(
         _tall_dam,
         "its front starts at once, and is 68 % too far at first where the dam is twice as high as wide",
         f"{VALIDATION}a-dam-breaks-onto-a-dry-floor",
     ),
-    Limit(
+    Shortfall(
         _in_a_flood,
         "a flood pushes a blunt body too little, by 38 % of the impulse on a tall column, and without a blow at first",
         f"{VALIDATION}a-flood-meets-a-tall-column",
     ),
-    Limit(_narrow_arm, "there liquid swings too fast, in 19 % less time in a U-tube", f"{VALIDATION}a-u-tube"),
-    Limit(
+    Shortfall(_narrow_arm, "there liquid swings too fast, in 19 % less time in a U-tube", f"{VALIDATION}a-u-tube"),
+    Shortfall(
         _beach,
         "waves run up 19 % too little with twelve cells in the depth, half with six",
         f"{VALIDATION}solitary-waves-on-a-beach",
         "write a finer resolution",
     ),
-    Limit(
+    Shortfall(
         _wet_slope,
         "a layer thinner than half a cell runs off, and is not drawn",
         f"{PHYSICS}bodies-in-waves",
         "write a finer resolution, or a larger rate",
     ),
-    Limit(_slides, "after some seconds it begins to slide to and fro", f"{PHYSICS}bodies-in-waves", "write friction 0.5 in it"),
-    Limit(
+    Shortfall(
+        _slides, "after some seconds it begins to slide to and fro", f"{PHYSICS}bodies-in-waves", "write friction 0.5 in it"
+    ),
+    Shortfall(
         _slams,
         "a blunt body that is set in motion at once gives the liquid up to twice what it loses",
         f"{PHYSICS}bodies-in-waves",
         "begin slower, or make it slender",
     ),
-    Limit(_high_crests, "crests at its walls come out up to 41 % too high", f"{VALIDATION}a-tank-is-shaken"),
+    Shortfall(_high_crests, "crests at its walls come out up to 41 % too high", f"{VALIDATION}a-tank-is-shaken"),
 )
