@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 from mdanim_lammps import Scene, SceneError
 from mdanim_lammps.model import shapes
+from mdanim_lammps.run.prepare import prepare
 from mdanim_lammps.scene.lock import lock_text
 from mdanim_lammps.scene.parse import parse_scene
 from mdanim_lammps.scene.scene import Box
@@ -69,3 +70,21 @@ def test_one_message_for_one_mistake(scene, shape, message):
     with pytest.raises(SceneError) as caught:
         scene("origin file", shape)
     assert message in str(caught.value) and len(caught.value.problems) == 1
+
+
+def test_the_unit_of_a_large_mesh_is_asked_about(scene, tmp_path):
+    """With the scale of the units that files often have; also beside the error that its size brings."""
+    import pyvista
+
+    assert not scene("origin file").record.warnings
+    box = pyvista.read(tmp_path / "box.stl")
+    box.points *= 10.0
+    box.save(tmp_path / "large.stl")
+    (told,) = scene("origin file", 'mesh "large.stl"').record.warnings
+    assert told.message == "box is 40 m long if the unit of its file is a metre"
+    assert "scale 0.001 if it is a millimetre, 4 cm or scale 0.01 if it is a centimetre, 40 cm" in told.hint
+    assert not scene("origin file", 'mesh "large.stl" scale 0.01').record.warnings
+    text = 'ground z 0\nobject box { shape mesh "large.stl" density 1 elasticity rigid position (0, 0, 1) }\n'
+    low = parse_scene(text + "control { time 1 s }\n", folder=tmp_path)
+    with pytest.raises(SceneError, match=r"(?s)below the ground.*if the unit of its file"):
+        prepare(low)

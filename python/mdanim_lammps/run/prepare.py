@@ -108,7 +108,7 @@ def _prepare(scene: SceneRecord, spacing: Spacing, allow_unstable: bool) -> Prep
     ]
     problems += _unmeasurable(resolved) + _undriven(resolved, models)
     if problems:
-        raise SceneError(problems)
+        raise SceneError([*problems, *scene.warnings])
     context = _context(resolved, models, spacing, grid)
     if any(model.held.all() and not len(model.hexahedron) for model in models) and any(
         e.needs_inside(context) for e in resolved.effects

@@ -1,19 +1,27 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""The position that follows from the origin of a file."""
+"""The position that follows from the origin of a file; files whose unit is perhaps not a metre."""
 
 from __future__ import annotations
 
 from contextlib import suppress
+from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from ...model import mesh, shapes
-from ...scene.evaluated import EvaluatedBlock
+from ...scene.evaluated import EvaluatedBlock, EvaluatedSetting
+from ...scene.formatting import say
 from ...scene.keywords import KEYWORDS
 from ...scene.meshes import beside, refusal_of_mesh
 from ...scene.rotation import IDENTITY
-from ...scene.shapes import mesh_of, with_path
+from ...scene.shapes import Mesh, mesh_of, with_path
+
+UNITS = {"millimetre": 1e-3, "centimetre": 1e-2}
+"""Units of files in which objects are often larger than LARGE as they stand [m]."""
+LARGE = 10.0
+"""Longest side from which on the unit of a file without a scale is asked about [m]."""
 
 
 def explained() -> dict[str, str]:
@@ -26,6 +34,7 @@ def fill(v: Any) -> None:
 
     c = P + R x with the centre of mass x in the file and the place P of its origin.
     """
+    _ask_of_units(v)
     for block in v.blocks("object"):
         origin = block.first("origin")
         if origin is None or origin.values[0] != "file" or (shape := block.first("shape")) is None:
@@ -45,6 +54,34 @@ def fill(v: Any) -> None:
         turn = np.array(_record(block, "orientation") or IDENTITY)
         at = np.array(block.first("position").values[0] if "position" in block.settings else (0.0, 0.0, 0.0))
         block.settings["position"] = [origin.following(KEYWORDS["object"]["position"], tuple((at + turn @ centre).tolist()))]
+
+
+def _ask_of_units(v: Any) -> None:
+    """Warn of each mesh without a scale that is larger than what is mostly modelled."""
+    known: set[Path] = set()
+    lines: set[int] = set()  # objects of a repeat have one
+    for block in v.blocks("object"):
+        if (shape := block.first("shape")) is None or id(shape.entry) in lines:
+            continue
+        lines.add(id(shape.entry))
+        file = mesh_of(_record(block, "shape"))
+        if file is None or file.scale != 1.0:
+            continue
+        path = beside(shape.entry.source.folder, file.path)
+        if path not in known:
+            known.add(path)
+            _ask_of_unit(v, shape, replace(file, path=path), block.names[0])
+
+
+def _ask_of_unit(v: Any, shape: EvaluatedSetting, file: Mesh, name: str) -> None:
+    if refusal_of_mesh(file.path, str(file.path)) is not None:
+        return
+    with suppress(mesh.MeshError):
+        size = float(np.ptp(mesh.load(file).points, axis=0).max())
+        if size >= LARGE:
+            ways = [f"scale {scale:g} if it is a {unit}, {say(size * scale, 'm')}" for unit, scale in UNITS.items()]
+            cause = f"{name} is {say(size, 'm')} long if the unit of its file is a metre"
+            v.problem(shape.span(), cause, f"write {' or '.join(ways)}", severity="warning")
 
 
 def _record(block: EvaluatedBlock, word: str) -> Any:
