@@ -6,13 +6,18 @@
 #include "hands/hand_words.h"
 #include "lammps/shared_file.h"
 #include "numbers/stopwatch.h"
+#include "records/byte_reader.h"
+#include "records/byte_writer.h"
 
 #include "atom.h"
 #include "error.h"
+#include "fmt/format.h"
 #include "update.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
+#include <mpi.h>
 #include <stdexcept>
 #include <utility>
 
@@ -21,10 +26,12 @@ using namespace FixConst;
 using namespace mdanim;
 
 static const char *const STYLE = "fix mdanim/hand";
+static constexpr std::int64_t STATE_VERSION = 1;
 
 // fix ID group mdanim/hand [hands FILE]
 FixMdanimHand::FixMdanimHand(LAMMPS *lmp, int narg, char **arg) : FixBase(lmp, narg, arg), shared(lmp)
 {
+  restart_global = 1;
   need(THREE_DIMENSIONS | OPEN_BOX | ATOM_MAP);
   tell({{"work", true, [this] { return work; }}, clock()});
   if (narg == 3) return;
@@ -124,8 +131,17 @@ void FixMdanimHand::go_on(Held &one)
   const auto now = one.hand.at(update->ntimestep, update->dt);
   if (!now || !one.acts) return;
   shared.share();
-  const HandMotion point = point_of(one);
-  one.force = one.hand.force(*now, point.at, point.velocity);
+  one.force = force_at(one, *now, point_of(one));
+}
+
+Vec3 FixMdanimHand::force_at(const Held &one, const HandMotion &now, const HandMotion &point)
+{
+  if (!acted.empty()) {
+    const std::pair key(object_of(one), one.hand.keys.front().time);
+    if (const auto found = acted.lower_bound(key); found != acted.end() && found->first == key)
+      return acted.extract(found).mapped();
+  }
+  return one.hand.force(now, point.at, point.velocity);
 }
 
 double FixMdanimHand::pull()
@@ -137,7 +153,7 @@ double FixMdanimHand::pull()
     const auto now = one.hand.at(update->ntimestep, update->dt);
     if (!one.acts || (!now && dot(before, before) == 0.0)) continue;
     const HandMotion point = point_of(one);
-    if (now) one.force = one.hand.force(*now, point.at, point.velocity);
+    if (now) one.force = force_at(one, *now, point);
     power += dot(before + one.force, point.velocity);
     for (std::size_t n = 0; n < one.numbers.size(); ++n)
       if (const int i = shared.local(one.numbers[n]); i != SharedMotion::ELSEWHERE && shared.is_pushed(one.numbers[n]))
@@ -148,6 +164,7 @@ double FixMdanimHand::pull()
 
 void FixMdanimHand::setup(int)
 {
+  if (restarted) unpack(StateRecords(*restarted));
   for (Held &one : held) one.force = {};
   if (!is_idle()) pull();
 }
@@ -156,6 +173,7 @@ void FixMdanimHand::setup(int)
 void FixMdanimHand::post_force(int)
 {
   const Lap lap(seconds);
+  acted.clear();
   if (!is_idle()) work += 0.5 * update->dt * pull();
 }
 
@@ -168,4 +186,55 @@ void FixMdanimHand::append_required_atoms(std::vector<int> &wanted) const
     for (const int number : one.numbers)
       if (const int i = shared.local(number); i != SharedMotion::ELSEWHERE) wanted.push_back(i);
   }
+}
+
+// --- state ---
+
+// The same on all ranks; 0 where particles are of no object.
+int FixMdanimHand::object_of(const Held &one) const
+{
+  int here = 0, all = 0;
+  const int i = shared.local(one.numbers.front());
+  if (atom->molecule_flag && i != SharedMotion::ELSEWHERE) here = static_cast<int>(atom->molecule[i]);
+  MPI_Allreduce(&here, &all, 1, MPI_INT, MPI_MAX, world);
+  return all;
+}
+
+// A record for each object that is pulled at: the first key of each hand and its force.
+StateRecords FixMdanimHand::pack() const
+{
+  if (restarted) return *restarted;
+  StateRecords records;
+  for (const Held &one : held) {
+    if (!one.acts || dot(one.force, one.force) == 0.0) continue;
+    Bytes &record = records[{object_of(one), 0}];
+    ByteWriter writer(std::move(record));
+    if (writer.is_empty()) writer.put(STATE_VERSION);
+    record = writer.put(one.hand.keys.front().time).put(one.force).take();
+  }
+  return records;
+}
+
+void FixMdanimHand::unpack(const StateRecords &records)
+{
+  std::multimap<std::pair<int, double>, Vec3> found;
+  for (const auto &[key, record] : records) {
+    ByteReader reader(record.data(), record.size(), fmt::format("the record of the hands on object {}", key.a));
+    reader.expect_version(STATE_VERSION);
+    while (reader.left() > 0) {
+      const auto begin = reader.get<double>();
+      const auto force = reader.get<Vec3>();
+      if (!std::isfinite(begin) || !std::isfinite(dot(force, force))) reader.is_damaged("a force");
+      found.insert({{key.a, begin}, force});
+    }
+  }
+  acted = std::move(found);
+  restarted.reset();
+}
+
+void FixMdanimHand::write_restart(FILE *file) { mdanim::write_restart(*this, lmp, name(), file); }
+
+void FixMdanimHand::restart(char *buffer)
+{
+  mdanim::read_restart([this](const StateRecords &all) { restarted = all; }, lmp, name(), buffer);
 }

@@ -107,3 +107,17 @@ def test_what_is_refused(tmp_path, words, message):
 def test_a_key_of_no_hand_is_refused(tmp_path):
     with pytest.raises(Exception, match="there is no hand that the key is of; write hold first"):
         lab.load(BLOCK, tmp_path, ["fix pull all mdanim/hand", "fix_modify pull key 1 0 0 0"])
+
+
+def test_a_restart_file_has_the_last_force(tmp_path):
+    """Two hands pull at one object from one time on: the work of each goes on, as places do, as if nothing had been."""
+    script = [MOVE, *hand(tmp_path, f"{WORDS}\n{WORDS.replace('2.5', '1.5').replace('0.4 most', '0.8 most')}")]
+    lmp = lab.load(BLOCK, tmp_path, [*script, "run 20", f"write_restart {tmp_path}/half"])
+    half = lmp.extract_fix("pull", 0, 1, 0)
+    lmp.command("run 20 pre no")
+    whole, x = lmp.extract_fix("pull", 0, 1, 0), lab.by_tag(lmp, "x").copy()
+    lmp.close()
+    again = lab.restarted(tmp_path / "half", BLOCK, [*script, "run 20"])
+    np.testing.assert_array_equal(lab.by_tag(again, "x"), x)
+    assert half + again.extract_fix("pull", 0, 1, 0) == pytest.approx(whole, rel=1e-14)
+    again.close()
