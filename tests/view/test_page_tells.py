@@ -28,7 +28,7 @@ def test_arrows_curves_a_second_run_and_a_film(browser, tmp_path):
     browser.messages()
     scene = tmp_path / "fall.txt"
     scene.write_text(
-        FALL.replace("time 0.3 s", "time 0.1 s").split("expect")[0].replace("object cube {", "object cube { texture brick")
+        FALL.replace("time 0.3 s", "time 0.04 s").split("expect")[0].replace("object cube {", "object cube { texture brick")
         + SHOWN_THERE
     )
     folder = Scene.load(scene).run(tmp_path / "fall.out").folder
@@ -36,7 +36,7 @@ def test_arrows_curves_a_second_run_and_a_film(browser, tmp_path):
     with served(folder) as view:
         open_page(browser, view.address)
         browser.until("document.querySelectorAll('#curves canvas').length == 2 && mdanim.shows.overlay.trails.size == 1")
-        show(browser, 4)
+        show(browser, 2)
         assert browser.js("return mdanim.shows.overlay.arrows.map((a) => [a.word, a.objects, Boolean(a.vectors)])") == [
             ["velocity", None, True], ["weight", [0], True]]  # fmt: skip
         look = np.subtract(
@@ -68,7 +68,7 @@ def test_arrows_curves_a_second_run_and_a_film(browser, tmp_path):
             browser.until("!document.getElementById('message').hidden")
             assert browser.js("return !window.evil && !mdanim.second")
         send(tmp_path / "second.html")
-        browser.until("mdanim.second && mdanim.second.frame && mdanim.second.frame.frame == 4")
+        browser.until("mdanim.second && mdanim.second.frame && mdanim.second.frame.frame == 2")
         assert browser.js("return mdanim.second.stage.camera.position.distanceTo(mdanim.stage.camera.position)") < 1e-6
         browser.until("mdanim.shows.curves.panels[0].plot.series.length == 3")
         browser.js(
@@ -76,10 +76,12 @@ def test_arrows_curves_a_second_run_and_a_film(browser, tmp_path):
             URL.createObjectURL = (blob) => {
                 const r = new FileReader(); r.onload = () => (window.bytes = r.result); r.readAsDataURL(blob); return ""; }"""
         )
+        press(browser, "show-shadows")  # they take most of the time
+        browser.js("mdanim.second.stage.sun.castShadow = false")
         press(browser, "gif")
         browser.until("window.bytes")
         film = Image.open(io.BytesIO(base64.b64decode(browser.js("return bytes").partition(",")[2])))
-        assert browser.js("return saved") == "film.gif" and film.n_frames == 3 and film.size[0] == 640
+        assert browser.js("return saved") == "film.gif" and film.n_frames == 2 and film.size[0] == 640
         seen = np.asarray(film.convert("RGB")).astype(int)
         assert np.abs(seen[:, :320].mean(axis=(0, 1)) - seen[:, 320:].mean(axis=(0, 1))).max() < 20 and np.ptp(seen) > 100
         press(browser, "beside")

@@ -46,7 +46,7 @@ async function start() {
   shows = new Shows(scene, source, stage);
   saving = new Saving(player, () => [{ stage, overlay: shows.overlay, frame: shown, canvas: shows.canvas }, ...(second ? [{ ...second, frame: second.frame }] : [])], seen);
   controls();
-  byId("hello").textContent = "drag to turn, wheel to zoom, right drag to move, click an object to know it";
+  byId("hello").textContent = "drag to turn, wheel to zoom, click an object to know it";
   player.play(true);
   refresh();
   requestAnimationFrame(tick);

@@ -50,8 +50,8 @@ export class Saving {
       read.drawImage(sheet, 0, 0);
       return [sheet, read.getImageData(0, 0, width, height).data];
     };
-    const some = [];
-    for (let k = 0; k < SAMPLES && this.making; k++) some.push((await look(frames[Math.floor((k * (frames.length - 1)) / (SAMPLES - 1))]))[1]);
+    const some = [], every = Math.max(1, Math.ceil(frames.length / SAMPLES));
+    for (let k = 0; k < frames.length && this.making; k += every) some.push((await look(frames[k]))[1]);
     const palette = paletteOf(some), hundredths = (n) => Math.round((100 * n * player.frameTime) / player.speed);
     let gif = null;
     for (const n of frames) {
