@@ -4,8 +4,9 @@
 Cases are in bench/published/, their scenes in scenes/validation/; with names only these. ``--cost`` measures each at preview and
 reference beside balanced, ``--quick`` only those that take a few seconds. ``--write`` keeps what is found in
 bench/published/found/, a file for each case, and draws docs/images/validation-CASE.png; with it, or by ``--page`` without
-measuring, docs/validation.md is written from all that is kept. ``--peers`` measures what other programs give for the same scenes,
-by .venv-peers (make .venv-peers/.installed). The exit code is 1 where a row is off by more than it may be.
+measuring, docs/validation.md is written from all that is kept. ``--peers`` measures what other programs give for the same scenes:
+MuJoCo by .venv-peers (make .venv-peers/.installed), SPH by LAMMPS itself. The exit code is 1 where a row is off by more than it
+may be.
 """
 
 from __future__ import annotations
@@ -18,9 +19,8 @@ from dataclasses import asdict
 from importlib import import_module
 from pathlib import Path
 
+from published import mujoco_runs, sph_runs
 from published.case import ROOT, Case, Curve, Found, Row, Runs
-from published.mujoco_runs import WAYS as PEERS
-from published.mujoco_runs import MujocoRuns
 from timing import machine, markdown, replace_between
 
 PARTS = (
@@ -39,6 +39,8 @@ PARTS = (
     "afloat",
 )
 """Modules of bench/published, in the order of the page."""
+PEERS = {way: runs for peer, runs in ((mujoco_runs, mujoco_runs.MujocoRuns), (sph_runs, sph_runs.SphRuns)) for way in peer.WAYS}
+"""What runs scenes by another program, by the name under which its figures are kept."""
 ACCURACIES = ("preview", "balanced", "reference")
 PAGE = ROOT / "docs" / "validation.md"
 KEPT = Path(__file__).parent / "published" / "found"
@@ -53,7 +55,7 @@ def cases() -> list[Case]:
 
 def measured(case: Case, way: str) -> tuple[Found, float]:
     """Findings of a case at an accuracy or by another program, and the processor time of its runs [s]."""
-    with (Runs if way in ACCURACIES else MujocoRuns)(way) as runs:
+    with PEERS.get(way, Runs)(way) as runs:
         return case.measure(runs), runs.seconds
 
 
@@ -150,7 +152,7 @@ def write_page() -> None:
 def _ways(case: Case, flags: set[str]) -> tuple[str, ...]:
     """Accuracies and peers that are asked for."""
     if "--peers" in flags:
-        return tuple(PEERS) if case.peers else ()
+        return (*(mujoco_runs.WAYS if case.peers else ()), *(sph_runs.WAYS if case.sph else ()))
     return ACCURACIES if "--cost" in flags else ("balanced",)
 
 

@@ -121,6 +121,8 @@ class Case:
     """Whether it takes a few seconds."""
     peers: bool = False
     """Whether MuJoCo can run its scenes, too (mujoco_runs.py): `measure` then reads centres, velocities and spins only."""
+    sph: bool = False
+    """Whether LAMMPS's package SPH can (sph_runs.py): `measure` then reads heights of a liquid only."""
 
 
 def places(run: Run, name: str) -> np.ndarray:

@@ -142,6 +142,7 @@ CASES = [
         "library of the liquid, with its bore and plateau ([against closed forms](physics-liquid.md#measured)).",
         ritter,
         quick=True,
+        sph=True,
     ),
     Case(
         "dam_front",
@@ -155,6 +156,7 @@ CASES = [
         "rise. The lead at 2 √(a/2g) falls from 63 to 39 %; but the flood of the low box then comes 10 % late in place of 3 %, "
         "and its pressure is lower by a quarter.",
         front,
+        sph=True,
     ),
     Case(
         "flood_on_column",

@@ -150,7 +150,6 @@ CASES = [
         "3 %: undulations behind the bore, and its width of some cells.",
         "A jump that stands needs a flow faster than its waves: `scenes/weir.txt` has one below its weir, without a figure.",
         bore,
-        quick=True,
     ),
     Case(
         "shaken_tank",
