@@ -28,7 +28,7 @@ test("arrows are as long as shows well", () => {
 });
 
 test("a quantity is the way's, the scene's, or that of the run that has ended", async () => {
-  const asked = [], source = { track: async (k) => { asked.push(k); return TRACK; }, curve: async (named) => ({ what: named }), told: async () => { throw new Error(); } };
+  const asked = [], source = { track: async (k) => { asked.push(k); return TRACK; }, curve: async (named) => ({ what: named }), told: async () => { throw new Error("when the run has ended"); } };
   const q = new Quantities(source, { objects: [{ name: "a" }, { name: "a.b" }] });
   assert.equal(await q.look(), false);
   assert.deepEqual([...(await q.curve("a.b.speed")).value], [5, 2]);

@@ -50,7 +50,7 @@ async function start() {
   player.play(true);
   refresh();
   requestAnimationFrame(tick);
-  await shows.begin();
+  await shows.begin().catch((error) => say(run.state, error.message));
 }
 
 // --- what is heard ----------------------------------------------------------------------------------------------------

@@ -51,7 +51,7 @@ export class Quantities {
 
   // Ask what there is; tells whether the run has ended.
   async look() {
-    const told = await this.source.told().catch(() => null);
+    const told = await this.source.told().catch((error) => { this.why = error.message; return null; });
     this.whole = told !== null;
     if (told) Object.assign(this, told, { arrows: ["velocity", ...told.arrows.filter((word) => word !== "velocity")] });
     this.words = { ...MOTION, ...this.words };
@@ -77,7 +77,7 @@ export class Quantities {
       return { what, unit: MOTION[parts[1]], mean: false, time: track.time, value: ofMotion(parts[1], track) };
     }
     if (what in this.own) return this.source.curve(what);
-    if (!this.whole) throw new Error("it can be shown when the run has ended");
+    if (!this.whole) throw new Error(this.why);
     if (!parts) throw new Error(`the run does not tell ${what}`);
     return this.source.curve(parts);
   }
