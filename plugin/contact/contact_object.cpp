@@ -6,6 +6,8 @@
 #include <cmath>
 #include <cstdlib>
 #include <limits>
+#include <set>
+#include <utility>
 
 namespace mdanim {
 
@@ -20,15 +22,11 @@ TornBody::TornBody(const ContactBody &body, const std::vector<int> &ends)
     : at_tear(body.slots(), 0), replaced(body.points().size(), 0), area(body.areas(), body.areas() + body.points().size())
 {
   for (const int slot : ends) at_tear[slot] = 1;
-  const std::vector<char> bare = laid_bare(body, ends);
-  for (std::size_t p = 0; p < replaced.size(); ++p) {
-    const PointCarriers by = body.carriers_of(static_cast<int>(p));
-    if (body.points()[p].kind == PointKind::INNER)
-      replaced[p] = bare[inner_place(body, static_cast<int>(p))];
-    else
-      replaced[p] = std::any_of(by.first, by.last, [this](const PointCarrier &one) { return at_tear[one.slot] != 0; });
-  }
-  const std::vector<int> own = own_particles(body);
+  if (body.is_line())
+    find_torn_between(body, ends);
+  else
+    find_replaced(body, laid_bare(body, ends));
+  const std::vector<int> own = body.is_line() ? std::vector<int>(replaced.size(), -1) : own_particles(body);
   for (std::size_t p = 0; p < replaced.size(); ++p) {
     const PointCarriers by = body.carriers_of(static_cast<int>(p));
     first.push_back(static_cast<int>(carriers.size()));
@@ -43,6 +41,30 @@ TornBody::TornBody(const ContactBody &body, const std::vector<int> &ends)
   carriers.push_back({0, 0.0});    // one more, as bodies have it
 }
 
+// Points between particles of a line go with a link between these.
+void TornBody::find_torn_between(const ContactBody &body, const std::vector<int> &ends)
+{
+  std::set<std::pair<int, int>> gone;
+  for (std::size_t n = 0; n + 1 < ends.size(); n += 2) gone.insert(std::minmax(ends[n], ends[n + 1]));
+  for (int p = body.particles(); p < static_cast<int>(replaced.size()); ++p) {
+    const PointCarriers by = body.carriers_of(p);
+    for (const PointCarrier *one = by.first; one < by.middle; ++one)
+      for (const PointCarrier *other = by.first; other < one; ++other)
+        if (gone.count(std::minmax(one->slot, other->slot))) replaced[p] = 1;
+  }
+}
+
+void TornBody::find_replaced(const ContactBody &body, const std::vector<char> &bare)
+{
+  for (std::size_t p = 0; p < replaced.size(); ++p) {
+    const PointCarriers by = body.carriers_of(static_cast<int>(p));
+    if (body.points()[p].kind == PointKind::INNER)
+      replaced[p] = bare[inner_place(body, static_cast<int>(p))];
+    else
+      replaced[p] = std::any_of(by.first, by.last, [this](const PointCarrier &one) { return at_tear[one.slot] != 0; });
+  }
+}
+
 // Which particles are corners of a cell with both ends of a link, by places.
 std::vector<char> TornBody::laid_bare(const ContactBody &body, const std::vector<int> &ends) const
 {
@@ -53,7 +75,7 @@ std::vector<char> TornBody::laid_bare(const ContactBody &body, const std::vector
   for (std::size_t n = 0; n + 1 < ends.size(); n += 2) {
     int from[3], to[3];
     for (int d = 0; d < 3; ++d) {
-      const auto [low, high] = std::minmax(at(ends[n], d), at(ends[n + 1], d));
+      const auto [low, high] = std::minmax({at(ends[n], d), at(ends[n + 1], d)});
       from[d] = high - 1, to[d] = low;    // cells that have both
     }
     for (int k = from[2]; k <= to[2]; ++k)

@@ -26,7 +26,7 @@ class LateOuterCells;
 // around it is not known. Points that such a particle carries, with others or alone, are replaced: each of their particles gets
 // one of them for its own, with the area that it carried, so that contact is as stiff as before for each particle at most; points
 // that are left over are none. A particle inside of the body is a point from when on a cell around it is torn: one that has both
-// ends of a link that is gone.
+// ends of a link that is gone. Of a line, points between particles are none any more, once a link between these is gone.
 class TornBody {
  public:
   // Both ends of each link that is gone, one behind the other, by places of particles (ContactBody::slot_of()).
@@ -49,6 +49,8 @@ class TornBody {
 
  private:
   std::vector<char> laid_bare(const ContactBody &body, const std::vector<int> &ends) const;
+  void find_replaced(const ContactBody &body, const std::vector<char> &bare);
+  void find_torn_between(const ContactBody &body, const std::vector<int> &ends);
   std::vector<int> own_particles(const ContactBody &body);
 
   std::vector<char> at_tear, replaced;    // by places of particles, and by points

@@ -228,8 +228,9 @@ void ContactWorld::tear(const TornEnds &ends, const Coordinates *places)
   }
   for (const auto &[id, nodes] : ends) {
     const auto found = number_of.find(id);
-    if (found == number_of.end() || all[found->second].is_rigid() || all[found->second].body->is_line()) continue;
+    if (found == number_of.end() || all[found->second].is_rigid()) continue;
     ContactObject &one = all[found->second];
+    if (one.body->is_line() && one.body->particles() == static_cast<int>(one.body->points().size())) continue;    // none between
     std::vector<int> slots;
     for (const int node : nodes) slots.push_back(one.body->slot_of(node));
     const std::shared_ptr<const TornBody> before = one.torn;

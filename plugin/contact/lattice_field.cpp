@@ -68,7 +68,12 @@ LatticeField::Fate LatticeField::push(FieldContact &contact, std::size_t q, cons
     return Fate::CRUSHED;
   }
   if (!(below.value > std::min(contact.state.memory.offset, 0.0) && part > 0.0 && below.value <= task.longest)) {
-    if (task.dt > 0.0) account.damped += last_damping_work(contact.state.memory, below.value);
+    if (task.dt > 0.0) {
+      account.damped += last_damping_work(contact.state.memory, below.value);
+      if (below.value > task.longest)    // it has been pulled through
+        account.let_go += let_go_energy(task.law, now.area, contact.state.memory, contact.last.energy,
+                                        below.value - contact.state.memory.depth, part);
+    }
     return Fate::OUT;
   }
 

@@ -89,7 +89,12 @@ ObjectField::Fate RigidField::push(FieldContact &contact, std::size_t q, const P
   Vec3 part_slope;
   if (body.is_cuboid()) part = part_that_counts<double>(task.ramps, task.host, X + shift, contact.side / 2, part_slope);
   if (!(below.value > std::min(contact.state.memory.offset, 0.0) && part > 0.0 && below.value <= task.longest)) {
-    if (task.dt > 0.0) account.damped += last_damping_work(contact.state.memory, below.value);
+    if (task.dt > 0.0) {
+      account.damped += last_damping_work(contact.state.memory, below.value);
+      if (below.value > task.longest)    // it has been pulled through
+        account.let_go += let_go_energy(task.law, now.area, contact.state.memory, contact.last.energy,
+                                        below.value - contact.state.memory.depth, part);
+    }
     return Fate::OUT;
   }
   const ContactPush<double> push =

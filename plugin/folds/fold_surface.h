@@ -29,7 +29,7 @@ class FoldSurface {
   // Whether an element, or a particle, may touch parts of the object itself, or else other objects.
   bool has_element(int e, bool itself) const { return element[e] & (itself ? ITSELF : OTHERS); }
   bool has_particle(int p, bool itself) const { return particle[p] & (itself ? ITSELF : OTHERS); }
-  // What hangs together with a particle: the number of the lowest one.
+  // The lowest particle of the piece that a particle is of.
   int part(int p) const { return parts[p]; }
   std::size_t bytes() const
   { return element.capacity() + particle.capacity() + parts.capacity() * sizeof(int) + gone.size() * 6 * sizeof(void *); }

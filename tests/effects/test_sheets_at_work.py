@@ -88,6 +88,60 @@ def test_a_sheet_over_a_rod_thinner_than_its_spacing_hangs_on_it_and_keeps_energ
     assert sum(end.values()) == pytest.approx(sum(begin.values()), abs=1e-4 * end["kinetic"])
 
 
+MAT = """object mat {
+  shape sheet (0.4, 0.4) m thickness 1 mm  resolution 3 cm  position (0, 0, 0) m  density 300  elasticity 1 MPa  damping 0.1
+  hold faces x  tear-strain 0.1
+}
+object ball { shape sphere 1.2 cm  position (0.01, 0.013, 0.017) m  density 7800  elasticity rigid  velocity (0, 0, -5) m/s }
+control { time 0.3 s  accuracy preview }
+"""
+
+
+def test_a_sheet_that_tears_is_torn_by_what_comes():
+    """A marble narrower than the spacing came through between particles, and no link was gone; its points hold it until they are
+    torn."""
+    ready = prepare(parse_scene(MAT))
+    ball = slice(int(ready.system.first[1]), None)
+    torn, below = [], []
+    with Instance(ready.plan) as instance:
+        instance.setup()
+        for _ in range(20):
+            instance.run(round(0.001 / ready.certificate.timestep))
+            x = instance.array("x")
+            torn.append((instance.column("torn") > 0).sum())
+            below.append(x[ball, 2].mean() < np.percentile(x[: ball.start, 2], 1) - 0.01)
+    assert below[-1] and torn[below.index(True)] > 0
+
+
+def test_points_between_particles_go_with_their_links():
+    """A marble flies through a gap that a tear has opened, as if nothing were there."""
+    ready = prepare(parse_scene(MAT))
+    system, (i, j) = ready.system, ready.system.spring.T
+    left = system.position[:, 0] < 0.013
+    ready.plan.columns["torn"][(left[i] != left[j])] = 1
+    ball = slice(int(system.first[1]), None)
+    with Instance(ready.plan) as instance:
+        instance.array("x")[~left & (system.object == 0), 0] += 0.08
+        instance.array("x")[ball, 0] += 0.04
+        instance.setup()
+        instance.run(round(0.01 / ready.certificate.timestep))
+        x, v = instance.array("x")[ball], instance.array("v")[ball]
+    assert x[:, 2].max() < -0.02
+    np.testing.assert_allclose(v, np.tile([0.0, 0.0, -5.0], (8, 1)), atol=1e-9)
+
+
+def test_a_tied_sheet_lies_on_a_rod_thinner_than_its_spacing():
+    """It fell through: only loose sheets had points between particles for what stays where it is."""
+    sheet = "resolution 4 cm  elasticity 1 MPa  position (0, 0.017, 0.03) m  hold face -x"
+    rod = (
+        "shape cylinder 5 mm 30 cm  position (0.05, 0, 0) m  orientation axis (1, 0, 0) angle 90 deg  elasticity rigid  hold all"
+    )
+    ready = made(f"{DOWN}object rod {{ {rod}  mass 1 kg }}\n" + sheet_cases.sheet("(0.3, 0.3)", "1 mm", sheet), 0.2)
+    _, _, x = before_and_after(ready, 0.2)
+    over = (ready.system.object == 1) & (abs(ready.system.position[:, 0] - 0.05) < 0.03)
+    assert x[over, 2].max() > -0.01
+
+
 @pytest.mark.parametrize("joint", ["ball", "weld"])
 def test_a_weight_hangs_from_a_corner(joint):
     """A joint at a corner holds a box there."""

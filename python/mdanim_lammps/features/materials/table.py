@@ -29,7 +29,8 @@ SOURCES = {
     "F": "The Engineering ToolBox, Friction coefficients of some common materials and combinations, sliding where given",
     "G": "J. M. Gere, Mechanics of Materials, 5th ed., 2001, appendix H",
     "H": "D. Halliday, R. Resnick and J. Walker, Fundamentals of Physics, 5th ed., 1997, table 13-1",
-    "I": "L. W. Gold, Engineering properties of fresh-water ice, Journal of Glaciology 19, 1977; density at 0 deg C" + UNSEEN,
+    "I": "P. H. Gammon, H. Kiefte, M. J. Clouter and W. W. Denner, Elastic constants of artificial and natural ice samples by "
+         "Brillouin spectroscopy, Journal of Glaciology: elasticity by the means of Reuss and Voigt of those at -16 deg C",
     "J": "H. Nielsen, B. U. Marr and S. Hvidt, Carbohydrate Polymers 45, 2001: G' of gels from 0.4 kPa on, E = 3 G'",
     "K": "L. J. Gibson, K. E. Easterling and M. F. Ashby, The structure and mechanics of cork, "
          "Proc. R. Soc. A 377, 1981" + UNSEEN,
@@ -43,6 +44,9 @@ SOURCES = {
     "S": "Z. Wang, A. A. Volinsky and N. D. Gallant, J. Appl. Polym. Sci. 131, 2014, 41050: silicone (PDMS); density "
          "of its data sheet",
     "T": "G. Elert, The Physics Hypertextbook, Friction: coefficients for selected interfaces",
+    "U": "Wikipedia, Ice",
+    "V": "O. Anjos, H. Pereira and M. E. Rosa, Effect of quality, porosity and density on the compression properties of cork, "
+         "Holz als Roh- und Werkstoff 66, 2008",
     "W": "J. F. Young et al., The Science and Technology of Civil Engineering Materials, 1998; strength along the "
          "grain: M. F. Ashby and D. R. H. Jones, Engineering Materials 2, 1986",
     CHOSEN: "a choice of this program, with no source",
@@ -102,10 +106,10 @@ MATERIALS = {
         "structural steel", _f(7850, 7800, 7900, "A"), _f(200 * _G, 190 * _G, 215 * _G, "AG"), _f(0.5, 0.42, 0.58, "FT"),
         _f(5 / 9, 5 / 9, 5 / 9, "N"), None, _f(400 * _M, 345 * _M, 580 * _M, "AH"), "#8a939b"),
     "aluminium": Material(
-        "an alloy of aluminium", _f(2700, 2600, 2800, "G"), _f(70 * _G, 68 * _G, 82 * _G, "A"), _f(0.4, 0.4, 1.35, "F"),
+        "an alloy of aluminium", _f(2700, 2600, 2800, "G"), _f(70 * _G, 70 * _G, 79 * _G, "G"), _f(0.4, 0.4, 1.35, "F"),
         _own(0.5), None, _f(110 * _M, 58 * _M, 550 * _M, "AH"), "#c3c8cd"),
     "glass": Material(
-        "soda-lime glass, of windows, bottles and marbles", _f(2470, 2440, 2490, "A"), _f(70 * _G, 68 * _G, 72 * _G, "A"),
+        "soda-lime glass, of windows, bottles and marbles", _f(2470, 2400, 2800, "G"), _f(70 * _G, 48 * _G, 83 * _G, "G"),
         _f(0.4, 0.4, 1.0, "FT"), _f(15 / 16, 15 / 16, 15 / 16, "N"), None, _f(33 * _M, 31 * _M, 35 * _M, "A"), "#9fd0cb"),
     "iron": Material(
         "grey cast iron", _f(7200, 6970, 7370, "G"), _f(130 * _G, 83 * _G, 170 * _G, "EG"), _f(0.4, 0.15, 1.1, "F"),
@@ -132,13 +136,13 @@ MATERIALS = {
         "marble, the stone; marbles are of glass", _f(2700, 2640, 2880, "G"), _f(50 * _G, 15 * _G, 97 * _G, "EG"),
         _f(0.5, 0.3, 0.7, "T"), _own(0.8), None, _f(10 * _M, 5 * _M, 17 * _M, "A"), "#e6e2dc"),
     "concrete": Material(
-        "concrete", _f(2300, 2200, 2600, "A"), _f(30 * _G, 25 * _G, 38 * _G, "A"), _own(0.6),
+        "concrete", _f(2300, 2300, 2320, "GH"), _f(30 * _G, 17 * _G, 31 * _G, "GH"), _own(0.6),
         _own(0.6), None, _f(4 * _M, 2 * _M, 6 * _M, "A"), "#b4b1aa"),
     "brick": Material(
         "fired clay", _f(1900, 1900, 2100, "A"), _f(15 * _G, 10 * _G, 50 * _G, "A"), _own(0.6),
         _own(0.5), None, _f(10 * _M, 7 * _M, 14 * _M, "A"), "#a5533b"),
     "ice": Material(
-        "ice of fresh water", _f(917, 916, 918, "I"), _f(9 * _G, 9 * _G, 10 * _G, "I"), _f(0.02, 0.02, 0.09, "T"),
+        "ice of fresh water", _f(916.7, 916.7, 916.8, "U"), _f(9.2 * _G, 9.1 * _G, 9.3 * _G, "I"), _f(0.02, 0.02, 0.09, "T"),
         _own(0.5), None, _f(1.4 * _M, 0.7 * _M, 3.1 * _M, "P"), "#cfe6f2"),
     "oak": Material(
         "oak, elasticity and strength along the grain", _f(700, 590, 930, "D"), _f(11 * _G, 11 * _G, 12.4 * _G, "EW"),
@@ -147,7 +151,7 @@ MATERIALS = {
         "pine, elasticity and strength along the grain", _f(500, 370, 660, "D"), _f(9 * _G, 8.3 * _G, 9 * _G, "EW"),
         _f(0.4, 0.17, 0.48, "FT"), _own(0.5), None, _f(73 * _M, 2 * _M, 73 * _M, "W"), "#dcb67a"),
     "cork": Material(
-        "cork", _f(170, 120, 240, "A"), _f(20 * _M, 13 * _M, 50 * _M, "AK"), _own(0.5),
+        "cork", _f(170, 120, 200, "V"), _f(20 * _M, 13 * _M, 50 * _M, "AK"), _own(0.5),
         _f(0.5, 0.5, 5 / 9, "N"), None, _f(1.5 * _M, 0.5 * _M, 2.5 * _M, "A"), "#b98a5a"),
     "leather": Material(
         "leather", _f(930, 810, 1050, "A"), _f(200 * _M, 100 * _M, 500 * _M, "A"), _f(0.5, 0.27, 0.56, "T"),

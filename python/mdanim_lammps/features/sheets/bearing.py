@@ -11,7 +11,8 @@ for a cuboid). The sheet itself bears the rest, as a round membrane of the radiu
     epsilon = sqrt(U/(pi E t R^2))                             beside the object, where F/(2 pi r) pulls at a distance r
 
 so contact has to be (1 + epsilon)^2 F/B as stiff as by the material of the sheet, because a stretched one has fewer points. Nor
-need it bear more than U; and the blow on a particle alone may press that halfway to the middle.
+need it bear more than U; and the blow on a particle alone may press that halfway to the middle. A sheet that tears at the
+strain e bears no more than at TORN e, where it has torn beside the object.
 """
 
 from __future__ import annotations
@@ -32,6 +33,7 @@ from ..contact.rigid_surfaces import moduli
 from ..contact.surface import LINE, SurfaceContact, own_area
 from ..contact.words import CONTACT_STIFFNESS
 from ..ropes.advice import FINE
+from ..tearing.rules import strain_of
 from ..tearing.words import tears
 from .words import finest, is_sheet, width
 
@@ -46,6 +48,8 @@ HARDEST = 100.0
 """Stiffness over that by the material, at most: a step is then a tenth as long and less."""
 MOST_PARTS = 4
 """Parts of a link, at most."""
+TORN = 2.0
+"""Strain beside an object up to which its sheet is to bear it, over that at which it tears."""
 SURE = 2.5
 """Press over what points bear above which an object goes through; up to here some are borne."""
 
@@ -68,11 +72,9 @@ class Blow:
 
 
 def fits(context: Context) -> dict[int, tuple[int, float]]:
-    """Parts of a link, and hardness, of each sheet that is another one by what it meets; one that tears lets it through."""
+    """Parts of a link, and hardness, of each sheet that is another one by what it meets."""
     found = {m: (fine, float(fine)) for m, (fine, _) in laid_over(context).items()}
     for blow in blows(context):
-        if tears(context.scene.solids[blow.sheet]):
-            continue
         fine = min(MOST_PARTS, math.ceil(blow.parts * (1.0 - 1e-9)))
         hard = float(number(min(HARDEST, SPARE * blow.hardness), 2)) if blow.hardness > 1.0 else 1.0
         if fine > 1 or hard > 1.0:
@@ -82,13 +84,15 @@ def fits(context: Context) -> dict[int, tuple[int, float]]:
 
 
 def laid_over(context: Context) -> dict[int, tuple[int, int]]:
-    """Parts of a link of each loose sheet whose particles are farther apart than something that it may meet is narrow, and that
-    object: its points are as close as that is narrow, as far as MOST_PARTS goes, and as much harder, so
-    that a row of them on a rod bears what a row of particles does."""
+    """Parts of a link of each sheet whose particles are farther apart than something that it may meet is narrow, and that object,
+    which stays where it is if the sheet is held or tied somewhere: its points are as close as that is narrow, as far as
+    MOST_PARTS goes, and as much harder, so that a row of them on a rod bears what a row of particles does."""
     system, solids = context.system, context.scene.solids
     found = {}
-    for m in _sheets(context, loose=True):
-        if tears(solids[m]) or not (met := _met(context, m, ~system.bare)):
+    loose = set(_sheets(context, loose=True))
+    for m in sorted(loose | set(_sheets(context, loose=False))):
+        stays = system.held_whole | system.still  # what moves onto a sheet that is held is a blow
+        if not (met := _met(context, m, ~system.bare & (stays | (m in loose)))):
             continue
         narrowest = min(met, key=lambda k: narrow(solids[k].shape))
         fine = math.ceil(float(system.spacing[m]) / narrow(solids[narrowest].shape) * (1.0 - 1e-9))
@@ -112,7 +116,7 @@ def borne(envelope: Envelope) -> dict[int, int]:
 
 
 def laid(envelope: Envelope) -> list[Problem]:
-    """Notes of loose sheets with points between particles."""
+    """Notes of sheets that lie on something, with points between particles."""
     system, found = envelope.system, []
     for m, k in borne(envelope).items():
         apart = say(float(system.spacing[m] / parts(system)[m]), "m")
@@ -164,22 +168,24 @@ def blow_of(context: Context, sheet: int, other: int, low: np.ndarray, high: np.
     deep = 0.0
     for _ in range(20):  # goes on by a quarter of the change
         deep = (4.0 * (energy + weight * deep) * across**2 / (SCHWERIN * tension)) ** 0.25
-    energy += weight * deep
-    force = SCHWERIN * tension * deep**3 / across**2
+    comes = energy = energy + weight * deep
     half, h = 0.5 * shapes.thickness(solid.shape), float(system.spacing[sheet])
+    if tears(skin):
+        most = math.pi * tension * (max(half, h) * TORN * strain_of(system, sheet, skin)) ** 2
+        energy, deep = min(energy, most), min(deep, (4.0 * most * across**2 / (SCHWERIN * tension)) ** 0.25)
+    force = SCHWERIN * tension * deep**3 / across**2
     stretch = math.sqrt(energy / (math.pi * tension * half**2))
     spring, held = _springs(context, sheet, other), _half_through(solid, system.frames[system.contact_kind[sheet]].contact.radius)
     holds = spring / h**2 * held
     borne = holds / half * (2.0 if isinstance(solid.shape, Box) else 16.0 / 9.0)
-    struck = 2.0 * energy / float(system.mass_of[other]) * float(system.density[sheet]) * skin.shape.thickness * h**2
+    struck = 2.0 * comes / float(system.mass_of[other]) * float(system.density[sheet]) * skin.shape.thickness * h**2
     alone = struck / (spring * (0.5 * half) ** 2)
     hard = max((1.0 + stretch) ** 2 * min(force / borne, energy / holds), alone)
-    return Blow(sheet, other, energy, force, borne, hard, h * (1.0 + stretch) / (FINE * 2.0 * half))
+    return Blow(sheet, other, comes, force, borne, hard, h * (1.0 + stretch) / (FINE * 2.0 * half))
 
 
 def pressed_through(envelope: Envelope) -> list[Problem]:
-    """The object that a sheet bears least, where it may not bear it: a warning, or a note where it may yet, and of a sheet that
-    tears, which is to let things through."""
+    """The object that a sheet bears least, where it may not bear it: a warning, or a note where it may yet."""
     hard = hardness(envelope.system)
     found = [(blow.hardness / hard[blow.sheet], n, blow) for n, blow in enumerate(blows(envelope.context))]
     over, _, worst = max(found, default=(0.0, 0, None))
@@ -263,5 +269,5 @@ def _warning(envelope: Envelope, over: float, blow: Blow) -> Problem:
         f"{other} may fall through {sheet}: {comes}, and particles of {sheet} that are {say(h, 'm')} apart bear {bears} before "
         "they are pressed through it",
         "write " + ", or ".join(ways) if ways else f"make {other} lighter or slower, or {sheet} thicker",
-        severity="warning" if over > SURE and not tears(solid) else "note",
+        severity="warning" if over > SURE else "note",
     )
