@@ -1,8 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""Closed triangle meshes from files: reading, checking, volume, inside or not.
-
-pyvista (VTK) is needed only here and only for scenes that name a mesh; it is imported inside the functions.
-"""
+"""Closed triangle meshes from files: reading, checking, volume, inside or not."""
 
 from __future__ import annotations
 
@@ -16,6 +13,7 @@ import numpy as np
 
 from ..scene.formatting import say
 from ..scene.scene import Mesh, PieceShape
+from . import vtk_surface
 from .crossings import crossings
 from .mesh_formats import UnreadableMesh
 from .mesh_reader import read_polygons
@@ -23,7 +21,7 @@ from .nearest import Nearest, blocks
 from .orientation import MeshError, outward
 from .solid import solid
 from .thickness import thickness
-from .triangles import areas, edges, spots, surface_of, volume_and_centre
+from .triangles import areas, edges, spots, volume_and_centre
 
 SUFFIXES = (".stl", ".obj", ".ply")
 SIZES = 1e-9, 1e9
@@ -106,24 +104,22 @@ def check_size(points: np.ndarray, scale: float, name: str) -> None:
 
 def read_file(path: Path) -> tuple[np.ndarray, np.ndarray, np.ndarray | None]:
     """Points in units of the file (V, 3), equal ones merged, triangles (T, 3), and colours of points (V, 3) if it has any."""
-    import pyvista
-
     try:
-        polygons, faces, color = read_polygons(path)
+        corners, faces, color = read_polygons(path)
     except (OSError, UnreadableMesh) as error:
         raise MeshError(f"mesh {path.name}: {error}", "export it again as STL, OBJ or PLY") from None
-    surface = pyvista.PolyData(polygons, faces=faces)
+    surface = vtk_surface.polygons(corners, faces)
     if len(color):
-        surface.point_data["color"] = color
-    surface = surface.triangulate().clean(tolerance=1e-7, absolute=False)
-    points, triangles = surface_of(surface)
+        vtk_surface.paint(surface, color)
+    surface = vtk_surface.merged(vtk_surface.triangulated(surface), 1e-7)
+    points, triangles = vtk_surface.arrays(surface)
     corners = np.sort(triangles, axis=1)
     triangles = triangles[(corners[:, 0] != corners[:, 1]) & (corners[:, 1] != corners[:, 2])]
     if not len(triangles):
         raise MeshError(f"mesh {path.name}: holds no triangle", "export a surface, not points or lines")
     if not np.isfinite(points).all():
         raise MeshError(f"mesh {path.name}: holds coordinates that are not finite", "export it again")
-    return points, triangles, np.asarray(surface.point_data["color"]) if len(color) else None
+    return points, triangles, vtk_surface.paint_of(surface) if len(color) else None
 
 
 def second_moments(mesh: Triangles) -> np.ndarray:
@@ -168,11 +164,7 @@ def depth(mesh: Triangles, points: np.ndarray) -> np.ndarray:
 
 def away(mesh, points: np.ndarray) -> np.ndarray:
     """Distance of points [m], shape (N, 3), to the surface of a mesh [m], shape (N,)."""
-    import pyvista
-
-    surface = pyvista.PolyData.from_regular_faces(mesh.points, mesh.triangles)
-    cloud = pyvista.PolyData(np.asarray(points, float)).compute_implicit_distance(surface)
-    return abs(np.asarray(cloud["implicit_distance"]))
+    return abs(vtk_surface.depth_below(mesh.points, mesh.triangles)(points))
 
 
 # --- surface ------------------------------------------------------------------------------------------------
@@ -201,19 +193,16 @@ def colors_at(mesh: Triangles, points: np.ndarray) -> np.ndarray | None:
 
 def refined_surface(mesh: Triangles, size: float) -> tuple[np.ndarray, np.ndarray]:
     """Points [m] (V, 3) and triangles (T, 3) of the surface, with no edge much longer than ``size`` [m]."""
-    import pyvista
-
     edge = mesh.points[edges(mesh.triangles)]
     if np.linalg.norm(edge[:, 0] - edge[:, 1], axis=1).max() <= 2 * size:
         return mesh.points, mesh.triangles
     # The filters' limits of lengths and areas are numbers without a unit: here the size is near 1, and no bit is lost.
     unit = 2.0 ** math.frexp(size)[1]
-    fine = pyvista.PolyData.from_regular_faces(mesh.points / unit, mesh.triangles)
+    fine = vtk_surface.surface(mesh.points / unit, mesh.triangles)
     for _ in range(12):  # a pass for each call: Ctrl-C is answered between them
-        before = fine.n_cells
-        fine = fine.subdivide_adaptive(max_edge_len=2 * size / unit, max_tri_area=1e30, max_n_passes=1)
-        if fine.n_cells == before:
+        before = fine.GetNumberOfCells()
+        fine = vtk_surface.subdivided(fine, 2 * size / unit)
+        if fine.GetNumberOfCells() == before:
             break
-    fine = fine.clean(tolerance=1e-9)
-    points, triangles = surface_of(fine)
+    points, triangles = vtk_surface.arrays(vtk_surface.merged(fine, 1e-9))
     return unit * points, triangles

@@ -1,8 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""Thickness of the thinnest part of a mesh; tips and edges, which are as thin as one likes, do not count.
-
-pyvista (VTK) is imported inside the functions, as in mesh.py.
-"""
+"""Thickness of the thinnest part of a mesh; tips and edges, which are as thin as one likes, do not count."""
 
 from __future__ import annotations
 
@@ -12,6 +9,7 @@ from itertools import product
 import numpy as np
 
 from .triangles import areas, spots, unit_normals
+from .vtk_surface import depth_below, hits
 
 RAYS, EACH = 300, 3
 """Rays, and every which of them is asked for its ball."""
@@ -45,7 +43,7 @@ def thickness(points: np.ndarray, triangles: np.ndarray, volume: float) -> float
     length, middle = _rays(points, triangles)
     if not len(length):
         return bound
-    depth = _depth_below(points, triangles)
+    depth = depth_below(points, triangles)
     found = float(np.percentile(length, SHARE))
     shortest = length <= found
     if 2 * np.count_nonzero(2 * _grown(middle[shortest], depth) > TIP * length[shortest]) > np.count_nonzero(shortest):
@@ -55,38 +53,17 @@ def thickness(points: np.ndarray, triangles: np.ndarray, volume: float) -> float
 
 def _rays(points: np.ndarray, triangles: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Lengths of the rays [m], shape (R,), and their middles [m], shape (R, 3)."""
-    import pyvista
-
     area = areas(points, triangles)
     chosen = np.searchsorted(area.cumsum(), (np.arange(RAYS) + 0.5) / RAYS * area.sum()).clip(max=len(area) - 1)
     start, inward = spots(points[triangles[chosen]]), -unit_normals(points, triangles)[chosen]
     size = np.linalg.norm(np.ptp(points, axis=0))
-    surface = pyvista.PolyData.from_regular_faces(points, triangles)
-    length = np.zeros(RAYS)
+    between, length = hits(points, triangles), np.zeros(RAYS)
     for ray, (origin, direction) in enumerate(zip(start, inward)):
-        hits, _ = surface.ray_trace(origin + 1e-6 * size * direction, origin + size * direction)
-        if len(hits):
-            length[ray] = np.linalg.norm(hits - origin, axis=1).min()
+        met = between(origin + 1e-6 * size * direction, origin + size * direction)
+        if len(met):
+            length[ray] = np.linalg.norm(met - origin, axis=1).min()
     found = length > 0
     return length[found], (start + length[:, None] / 2 * inward)[found]
-
-
-def _depth_below(points: np.ndarray, triangles: np.ndarray) -> Callable[[np.ndarray], np.ndarray]:
-    """A function: depth [m] of places [m], shape (..., 3), below the surface, negative outside."""
-    import pyvista
-    from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
-    from vtkmodules.vtkFiltersCore import vtkImplicitPolyDataDistance
-
-    implicit = vtkImplicitPolyDataDistance()
-    implicit.SetInput(pyvista.PolyData.from_regular_faces(points, triangles))
-
-    def depth(place: np.ndarray) -> np.ndarray:
-        given, found = np.ascontiguousarray(place.reshape(-1, 3)), np.zeros(place.size // 3)
-        answer = numpy_to_vtk(found)
-        implicit.EvaluateFunction(numpy_to_vtk(given), answer)
-        return -vtk_to_numpy(answer).reshape(place.shape[:-1])
-
-    return depth
 
 
 def _grown(centre: np.ndarray, depth: Callable[[np.ndarray], np.ndarray]) -> np.ndarray:
