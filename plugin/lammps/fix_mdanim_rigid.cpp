@@ -24,7 +24,7 @@ using namespace LAMMPS_NS;
 using namespace FixConst;
 using namespace mdanim;
 
-static constexpr int COLUMNS = 14;    // of compute_array()
+static constexpr int COLUMNS = 23;    // of compute_array()
 
 static std::map<int, Inertia> moments_of(LAMMPS *lmp, const char *file)
 {
@@ -179,7 +179,7 @@ void FixMdanimRigid::collect()
     const double *const own = lambda.values(lmp);
     drag = particles.sum_of([&](int i) { return own ? own[i] : lambda.number; });
   }
-  glue.glued.gather(bodies, drag);
+  glue.gather(drag);
   collected = true;
 }
 
@@ -222,11 +222,12 @@ double FixMdanimRigid::compute_scalar()
 
 double FixMdanimRigid::compute_array(int row, int column)
 {
-  const RigidBody &body = bodies[row];
-  const Vec3 &c = body.centre, &v = body.velocity, &w = body.spin;
-  const Quaternion &q = body.q;
-  const double numbers[COLUMNS] = {c.x, c.y, c.z, v.x, v.y, v.z, q.w, q.x, q.y, q.z, w.x, w.y, w.z, glue.molecule_of_whole(row)};
-  return numbers[column];
+  const auto &[f, t, at] = glue.load_of(row, [this] { return collected || (collect(), true); });
+  const Vec3 &c = bodies[row].centre, &v = bodies[row].velocity, &w = bodies[row].spin;
+  const Quaternion &q = bodies[row].q;
+  return std::array<double, COLUMNS>{
+      c.x, c.y, c.z, v.x, v.y, v.z, q.w,  q.x,  q.y, q.z, w.x, w.y, w.z, glue.molecule_of_whole(row),
+      f.x, f.y, f.z, t.x, t.y, t.z, at.x, at.y, at.z}[column];
 }
 
 double FixMdanimRigid::memory_usage()

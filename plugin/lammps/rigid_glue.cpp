@@ -27,6 +27,14 @@ std::vector<Output> RigidGlue::outputs(const std::function<bool()> &collect, con
           {"stress_share", false, [this] { return glued.largest_share(); }}};
 }
 
+FaceLoads RigidGlue::load_of(int body, const std::function<bool()> &collect)
+{
+  if (!glued.is_on()) return {};
+  collect();
+  if (loads.empty()) loads = glued.face_loads(bodies, lmp->force->ftm2v);
+  return loads[body];
+}
+
 void RigidGlue::read_file(const char *file)
 {
   const std::string text = read_shared_file(lmp, "fix mdanim/rigid", "glue", file);

@@ -31,6 +31,14 @@ class RigidGlue {
   double torn_energy() const { return torn; }    // in units of mass times velocity squared
   // The lowest molecule ID of all that a body is glued together with.
   double molecule_of_whole(int body) const { return static_cast<double>(particles.objects().id(glued.first_of(body))); }
+  // Load of the face by which a body hangs on the first one of its whole; `collect` as in `outputs`.
+  FaceLoads load_of(int body, const std::function<bool()> &collect);
+  // After forces on bodies were found.
+  void gather(const std::vector<double> &drag)
+  {
+    glued.gather(bodies, drag);
+    loads.clear();
+  }
   void forget_bodies();
   // Pieces as they are now move as one body, where glue holds them together. `fix` begins messages.
   void join(const std::string &fix);
@@ -45,7 +53,7 @@ class RigidGlue {
   // those of the pieces.
   template <class Collect> void break_some(double half_dt, const std::vector<double> &drag, const Collect &collect)
   {
-    if (!glued.is_on()) return;
+    if (!glued.may_break()) return;
     const double before = kinetic_of_all(half_dt, drag);
     if (!judge()) return;
     collect();
@@ -63,8 +71,9 @@ class RigidGlue {
   const RigidParticles &particles;
   RigidTouching &touching;
   std::vector<RigidBody> &bodies;
-  std::vector<GlueFace> faces;    // as the file has them
-  double torn = 0.0;              // energy of contacts and motion that was lost where glue broke
+  std::vector<GlueFace> faces;     // as the file has them
+  std::vector<FaceLoads> loads;    // of bodies, once they were asked for
+  double torn = 0.0;               // energy of contacts and motion that was lost where glue broke
 };
 
 }    // namespace mdanim

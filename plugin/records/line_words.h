@@ -31,6 +31,14 @@ class LineWords {
     at = end;
     return found;
   }
+  // Goes on behind the next word, if it is this one.
+  bool takes(const std::string &wanted)
+  {
+    const std::size_t before = at;
+    if (!is_at_end() && word("a word") == wanted) return true;
+    at = before;
+    return false;
+  }
   bool is_at_end() const { return line.find_first_not_of(" \t\r", at) == std::string::npos; }
   void expect_end()
   {

@@ -8,7 +8,7 @@ namespace mdanim {
 
 static constexpr double RIGHT = 1e-6;    // how far axes may be from right angles
 
-// A B side side strength area  I1 I2  W1 W2 Wn  x y z  n  e1
+// A B side side strength area  I1 I2  W1 W2 Wn  x y z  n  e1, or A B weld x y z
 std::vector<GlueFace> read_glue(const std::string &name, const std::string &text)
 {
   std::vector<GlueFace> found;
@@ -17,6 +17,12 @@ std::vector<GlueFace> read_glue(const std::string &name, const std::string &text
     face.a = words.molecule();
     face.b = words.molecule();
     if (face.a >= face.b) words.fail("the molecule ID with the lower number stands first");
+    if (words.takes("weld")) {
+      face.at = words.vector("the place of the weld");
+      words.expect_end();
+      found.push_back(face);
+      return;
+    }
     face.side_a = words.number<int>("the side of the first piece");
     face.side_b = words.number<int>("the side of the second piece");
     face.strength = words.positive("the strength");

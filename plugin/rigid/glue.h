@@ -4,6 +4,8 @@
 // A face bears the force F and the torque M about its middle. With its normal n, from piece a to piece b, and axes e1, e2 across,
 //   pull  = F.n/A + sqrt((M.e1/W1)^2 + (M.e2/W2)^2)       shear = |F - (F.n) n|/A + |M.n|/Wn
 // as in the section of a beam: area A, section moduli W. It breaks where one of both is above its strength.
+//
+// A weld is a face that never breaks; its middle alone counts.
 
 #pragma once
 
@@ -19,11 +21,13 @@ namespace mdanim {
 struct GlueFace {
   int a = 0, b = 0;                // molecule IDs
   int side_a = -1, side_b = -1;    // numbers of the faces of their shapes; -1 where these are not known
-  double strength = 0.0;
-  double area = 0.0;
+  double strength = HUGE_VAL;
+  double area = 1.0;
   Vec3 second;         // second moments of area about e1, e2, and their sum about n
   Vec3 section;        // W1, W2, Wn
   Vec3 at, axis[3];    // its middle, and n, e1, e2, in space when bodies are made
+
+  bool is_weld() const { return !std::isfinite(strength); }
 };
 
 struct FaceLoad {
@@ -40,7 +44,7 @@ struct FaceLoad {
   double share(const GlueFace &face) const { return std::max(pull, shear) / face.strength; }
 };
 
-// The file of glue: a line for each face. Throws std::runtime_error.
+// The file of glue: a line for each face or weld. Throws std::runtime_error.
 std::vector<GlueFace> read_glue(const std::string &name, const std::string &text);
 
 }    // namespace mdanim

@@ -100,4 +100,31 @@ void solve(const std::vector<GlueSpring> &springs, const PieceMotions &stiff, co
   }
 }
 
+std::vector<FaceLoads> hanging_loads(const std::vector<GlueSpring> &springs, const std::vector<Vec3> &places, PieceMotions load)
+{
+  std::vector<FaceLoads> found(places.size());
+  if (springs.size() + 1 != places.size()) return found;
+  std::vector<std::vector<int>> of_piece(places.size());
+  for (std::size_t s = 0; s < springs.size(); ++s)
+    for (const int piece : {springs[s].a, springs[s].b}) of_piece[piece].push_back(static_cast<int>(s));
+  struct Hung {
+    int piece, on, by;
+  };
+  std::vector<Hung> order{{0, -1, -1}};    // each behind the one that it hangs on
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    const Hung one = order[k];
+    for (const int s : of_piece[one.piece])
+      if (s != one.by) order.push_back({springs[s].a == one.piece ? springs[s].b : springs[s].a, one.piece, s});
+  }
+  for (std::size_t k = order.size() - 1; k > 0; --k) {
+    const auto [piece, on, by] = order[k];
+    const Vec3 &place = places[piece], middle = place + (springs[by].a == piece ? springs[by].arm_a : springs[by].arm_b);
+    const PieceMotion &own = load[piece];
+    found[piece] = {own.place, own.turn + cross(place - middle, own.place), middle};
+    load[on].place += own.place;
+    load[on].turn += own.turn + cross(place - places[on], own.place);
+  }
+  return found;
+}
+
 }    // namespace mdanim

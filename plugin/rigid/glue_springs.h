@@ -28,6 +28,16 @@ struct FaceForce {
   Vec3 force, torque;
 };
 
+// Force, torque about its middle, and middle of a face.
+struct FaceLoads {
+  Vec3 force, torque, at;
+};
+
+// The load of the face by which each piece hangs on the first one, where faces are a tree: all that hangs on it is in balance.
+// `places` are those of pieces, in the frame of their whole as loads are. Zeros for the first one, and for all where faces make
+// a ring.
+std::vector<FaceLoads> hanging_loads(const std::vector<GlueSpring> &springs, const std::vector<Vec3> &places, PieceMotions load);
+
 FaceForce face_force(const GlueSpring &spring, const PieceMotions &x);
 // Adds the diagonal of K.
 void add_diagonal(const GlueSpring &spring, PieceMotions &stiff);

@@ -18,6 +18,7 @@ static Quaternion reversed(const Quaternion &q) { return {q.w, -q.x, -q.y, -q.z}
 void GluedBodies::take(std::vector<GlueFace> given, std::size_t bodies)
 {
   faces = std::move(given);
+  breakable = !std::all_of(faces.begin(), faces.end(), [](const GlueFace &face) { return face.is_weld(); });
   broken.assign(faces.size(), 0);
   at.assign(bodies, {});
   whole_of.assign(bodies, ALONE);
@@ -168,7 +169,7 @@ void GluedBodies::find_springs(Whole &whole) const
     const Pose &piece = in_whole[face.a], &start = from_start[face.a];
     const Matrix3 turn = matrix(piece.q) * matrix(start.q);
     const Vec3 middle = piece.place + matrix(piece.q) * (start.place + matrix(start.q) * face.at);
-    const double over = 1.0 / length(in_whole[face.b].place - piece.place);
+    const double over = face.is_weld() ? 0.0 : 1.0 / length(in_whole[face.b].place - piece.place);
     GlueSpring spring;
     spring.face = f, spring.a = row(face.a), spring.b = row(face.b);
     spring.arm_a = middle - piece.place;
@@ -225,7 +226,7 @@ std::vector<int> GluedBodies::judge(const std::vector<RigidBody> &bodies, double
   std::vector<char> is_opened(wholes.size(), 0);
   for (std::size_t w = 0; w < wholes.size(); ++w) {
     Whole &whole = wholes[w];
-    if (whole.body.aside) continue;
+    if (whole.body.aside || !std::isfinite(whole.bears)) continue;
     const std::vector<double> share = shares(whole, bodies, to_acceleration);
     for (const double one : share) most_share = std::max(most_share, one);
     if (!break_some(whole, share)) continue;
@@ -249,6 +250,22 @@ std::vector<int> GluedBodies::judge(const std::vector<RigidBody> &bodies, double
   }
   number_wholes();
   return apart;
+}
+
+std::vector<FaceLoads> GluedBodies::face_loads(const std::vector<RigidBody> &bodies, double to_acceleration) const
+{
+  std::vector<FaceLoads> found(at.size());
+  for (const Whole &whole : wholes) {
+    if (whole.body.aside) continue;
+    std::vector<Vec3> places;
+    for (const int n : whole.pieces) places.push_back(in_whole[n].place);
+    const PieceMotions load = loads_of_pieces(whole.body, whole.pieces, in_whole, bodies, to_acceleration);
+    const std::vector<FaceLoads> own = hanging_loads(whole.springs, places, load);
+    const Matrix3 &turn = whole.body.turn;
+    for (std::size_t k = 0; k < own.size(); ++k)
+      found[whole.pieces[k]] = {turn * own[k].force, turn * own[k].torque, whole.body.centre + turn * own[k].at};
+  }
+  return found;
 }
 
 // In the order of their first pieces, in which records bring them.

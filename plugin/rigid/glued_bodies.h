@@ -29,7 +29,7 @@ class GluedBodies {
     double drag = 0.0;
     std::vector<GlueSpring> springs;    // of unbroken faces
     PieceMotions stiff;                 // diagonal of K
-    double bears = 0.0;                 // force that its weakest face bears
+    double bears = 0.0;                 // force that its weakest face bears; infinite of one that never breaks
   };
 
   bool is_on() const { return !faces.empty(); }
@@ -40,6 +40,7 @@ class GluedBodies {
 
   bool holds(std::size_t body) const { return is_on() && whole_of[body] != ALONE; }
   const std::vector<GlueFace> &all_faces() const { return faces; }
+  bool may_break() const { return breakable; }
   bool is_broken(std::size_t face) const { return broken[face] != 0; }
   const std::vector<int> &faces_of(int body) const { return at[body]; }
   int number_of_whole(int body) const { return is_on() ? whole_of[body] : ALONE; }    // ALONE where it is none
@@ -48,6 +49,8 @@ class GluedBodies {
   const Pose &pose(int body) const { return in_whole[body]; }    // of a piece in its whole
   int broken_faces() const;
   double largest_share() const { return most_share; }    // of what a face bears, since the bodies were made
+  // Loads of faces by pieces, in space, as hanging_loads has them.
+  std::vector<FaceLoads> face_loads(const std::vector<RigidBody> &bodies, double to_acceleration) const;
 
   // Sums up forces on pieces, drag and whether they are laid aside.
   void gather(const std::vector<RigidBody> &bodies, const std::vector<double> &drag);
@@ -88,6 +91,7 @@ class GluedBodies {
   std::vector<std::vector<int>> parts(const Whole &whole) const;
 
   std::vector<GlueFace> faces;    // a and b are numbers of bodies
+  bool breakable = false;         // whether not all of them are welds
   std::vector<char> broken;
   std::vector<std::vector<int>> at;    // faces of bodies
   std::vector<int> whole_of;

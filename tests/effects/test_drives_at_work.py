@@ -267,7 +267,7 @@ def test_what_is_driven_is_not_a_load(prepared):
     ball = "object ball { shape sphere 4 cm position (0, 0, 4) cm density 700 elasticity rigid }\n"
     system = prepared(GRAVITY + plate("drive velocity (0.1, 0, 0) m/s") + ball + lid + "control { time 0.1 s }\n").system
     with np.errstate(all="raise"):
-        found = loads(system, np.arange(3))
+        found = loads(system, np.arange(3), np.arange(3))
     np.testing.assert_allclose(found, [1.0 + system.mass_of[1] / system.mass_of[0], 1.0, 1.0])
 
 

@@ -104,8 +104,9 @@ def test_loads_are_what_is_above(prepared):
         over = ((low[:, :2] < high[m, :2]) & (high[:, :2] > low[m, :2])).all(axis=1)
         over &= low[:, 2] + high[:, 2] > low[m, 2] + high[m, 2]
         wanted.append(1.0 + weight[over].sum() / weight[m])
-    assert loads(system, np.arange(40)).tolist() == wanted
-    assert max(wanted) > 2.0 and loads(system, np.array([7])).tolist() == [wanted[7]]
+    body = np.arange(len(system.names))
+    assert loads(system, np.arange(40), body).tolist() == wanted
+    assert max(wanted) > 2.0 and loads(system, np.array([7]), body).tolist() == [wanted[7]]
 
 
 # --- who is named -----------------------------------------------------------------------------------------------------

@@ -150,6 +150,16 @@ def test_a_basin_too_large_for_memory_is_told(monkeypatch):
     assert basin.plan_grid(WATER, coarser).cells * basin.BYTES_PER_CELL <= 1e4
 
 
+def test_waves_that_no_checkpoint_holds_are_told(monkeypatch):
+    """Refuse more state than LAMMPS can count in a restart file, with a resolution that will do."""
+    monkeypatch.setattr(basin, "available_memory", lambda: 1e12)
+    waves, fine = replace(WATER, model=LiquidModel.WAVES), 1.1e-3
+    (problem,) = basin.too_large(waves, basin.plan_grid(waves, fine))
+    assert "are the most that waves can have" in problem.message
+    coarser = float(problem.hint.split()[2]) * {"cm": 1e-2, "mm": 1e-3}[problem.hint.split()[3].rstrip(",")]
+    assert not basin.too_large(waves, basin.plan_grid(waves, coarser))
+
+
 def test_a_drop_is_no_liquid():
     """Refuse less than half a cell."""
     (problem,) = problems(block(), volume=4e-4)

@@ -299,3 +299,17 @@ def test_scaled_spacings_are_those_of_objects_alone():
     made = scene(solid(BEAM), solid(Sphere(0.2), "ball", resolution=0.05), resolution=0.02)
     assert [s.resolution for s in spacing.scaled(made, 0.5).solids] == [None, 0.025]
     assert [s.resolution for s in spacing.scaled(made, None).solids] == [None, None]
+
+
+def test_cells_of_a_liquid_are_those_of_what_displaces_most():
+    """A hull with a sail beside a quay: a fourth of the hull's thickness, however thin the sail and however thick the quay."""
+    scene = (
+        "gravity (0, 0, -9.81) m/s^2\nliquid water { basin from (-2, -1, 0) m to (2, 1, 2) m density 1000 level 0.6 m }\n"
+        "object quay { shape box (1, 1, 1) m position (1.2, 0, 0.5) m density 3000 elasticity rigid hold all }\n"
+        "object hull { shape box (80, 30, 18) cm position (-1.2, 0, 0.64) m density 300 elasticity rigid }\n"
+        "object sail { shape box (1, 50, 50) cm position (-1.18, 0, 1.2) m density 40 elasticity rigid }\n"
+        "control { time 1 s }\n"
+    )
+    plan = plan_spacing(parse_scene(scene))
+    assert plan.set_by == "hull" and plan.h == pytest.approx(0.045)
+    assert plan.of[2] < 0.01

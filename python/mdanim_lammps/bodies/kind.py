@@ -44,6 +44,10 @@ class BodyKind:
         wanted = scene.control.accuracy.cells
         return min(wanted, 2) if all_held(solid) else wanted
 
+    def asks(self, scene: SceneRecord) -> Callable[[Solid], bool]:
+        """Which of its objects have a part in setting the spacing of a scene, by their thinnest parts."""
+        return lambda solid: self.sets_spacing
+
     def spacing(self, scene: SceneRecord, h: float) -> Callable[[Solid], float]:
         """Particle spacing [m] of its objects that have no ``resolution`` of their own, where that of the scene is h [m]."""
         return lambda solid: h

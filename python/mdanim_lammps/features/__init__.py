@@ -26,6 +26,7 @@ A folder has facets, each a module that is looked for by its name:
 ``body``     KINDS, the kinds of bodies that it brings (bodies/kind.py): what objects are made of, and how finely
 ``proposal`` words with which a scene would look the same (effects/proposal.py): before(envelope), by what is known before a run,
              and after(context, trajectory), by a run; None where there are none
+``glue``     lines(context), lines of the file of glue of ``fix mdanim/rigid``: what moves as one rigid body
 ``advice``   notes(envelope), the remarks of `check` on a scene besides those of effects, whether or not any of them is on
 
 Folders are found, so adding a feature touches no other module of the package; CONTRIBUTING.md lists its tests and docs. Those in

@@ -120,7 +120,8 @@ def _choose(scene: SceneRecord, thin: list[float]) -> tuple[float, str]:
         return control.resolution, "resolution"
     if thin:
         needed = [t / kind_of(s).cells(scene, s) for s, t in zip(scene.solids, thin)]
-        sets = [s.resolution is None and kind_of(s).sets_spacing for s in scene.solids]
+        asks = {kind: kind.asks(scene) for kind in kinds()}
+        sets = [s.resolution is None and asks[kind_of(s)](s) for s in scene.solids]
         wanted = np.where(sets, needed, np.inf)
         if not any(sets):
             counts = [kind_of(s).fills for s in scene.solids]

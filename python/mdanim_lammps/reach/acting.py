@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Collection, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Protocol
@@ -153,6 +153,10 @@ class Motion:
 
     def joins(self, scene: SceneRecord) -> Iterable[tuple[int, int]]:
         """Pairs of solids, by number, that it couples wherever they are: one process simulates both."""
+        return ()
+
+    def unites(self, scene: SceneRecord) -> Iterable[Sequence[int]]:
+        """Groups of solids, by number and ascending, of which each moves as one rigid body at all times."""
         return ()
 
     def holds(self, scene: SceneRecord) -> Mapping[int, Leash | None]:

@@ -29,6 +29,9 @@ object drop { use hard shape sphere 5 cm position (3, 0, 1) m }
 joint ball drop world { at (3, 0, 1.04) m breaks 30 N }
 object hung { use hard shape sphere 8 cm position (3, 0, 0.8) m }
 joint spring hung drop { length 2 cm stiffness 200 N/m }
+object head { use hard shape box (6, 12, 6) cm position (4, 0, 0.3) m spin (0, 3, 1) rad/s }
+object grip { use hard shape cylinder 1.5 cm 20 cm position (4, 0, 0.42) m spin (0, 3, 1) rad/s velocity (0.36, 0, 0) m/s }
+joint weld grip head { at (4, 0, 0.33) m }
 expect wheel.joint.angle(world) = 0 rad +- 100 rad
 control { time 0.4 s frames 25 fps friction 0.3 accuracy preview }
 """
@@ -66,7 +69,7 @@ def test_frames_have_a_row_for_each_joint(found):
     """In the order of objects; one has broken on the way."""
     with Trajectory(found["again peers3"]) as trajectory:
         first, last = (trajectory.field("joint", n)["value"] for n in (0, len(trajectory) - 1))
-    assert sorted(first[:, 0].tolist()) == list(range(len(first))) and len(first) == 14
+    assert sorted(first[:, 0].tolist()) == list(range(len(first))) and len(first) == 15
     assert np.array_equal(first[:, 0], last[:, 0])
     assert first[:, 8].sum() == 0 and last[:, 8].sum() == 1
 

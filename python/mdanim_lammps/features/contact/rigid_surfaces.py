@@ -55,7 +55,7 @@ def frequency(context: Context) -> Frequency:
     thin = min(shapes.thickness(shape) for shape in {context.scene.solids[m].shape for m in free.tolist()})
     thrown = _thrown_across(context, system) if reach.acting.throws else None
     speed = float(struck_at(context, system, thrown)[free].max())
-    load = float(loads(system, free).max())
+    load = float(loads(system, free, bodies(context)).max())
     slowest = 2.0 * math.pi * context.scene.control.frames * DEPTH * thin  # of what hardly moves
     omega = float(max(speed, 2.0 * math.sqrt(load * reach.g * thin), slowest)) / (DEPTH * thin)
     return Frequency(float(omega), float(thin), speed, load)
@@ -89,15 +89,24 @@ def _toppled(context: Context, system: System) -> np.ndarray:
     return np.where(reach.stands, np.sqrt(3.0 * reach.g * np.maximum(height, 0.0)), 0.0)
 
 
-def loads(system: System, asked: np.ndarray) -> np.ndarray:
-    """Mass of some solids, by number and ascending, shape (K,), and of all free ones above each at the start, over its own [-],
-    shape (K,)."""
+def bodies(context: Context) -> np.ndarray:
+    """Number of the first solid of the rigid body that each solid of a scene is a part of, its own of most, shape (M,)."""
+    found = np.arange(len(context.scene.solids))
+    for group in (group for e in context.resolved.effects for group in e.unites(context.scene)):
+        found[list(group)] = group[0]
+    return found
+
+
+def loads(system: System, asked: np.ndarray, body: np.ndarray) -> np.ndarray:
+    """Mass of the bodies of some solids, by number and ascending, shape (K,), and of all other free solids above each at the
+    start, over that of its body [-], shape (K,); ``body`` has a number for the body of each solid, shape (M,)."""
     low, high = system.bounds(system.position)
     weight = np.where(system.held_whole, 0.0, system.mass_of)
+    mass = np.bincount(body, system.mass_of, len(body))[body]
     found = np.ones(len(weight))
     for m, near in overlaps_in_plan(low, high, asked):
-        above = near[low[near, 2] + high[near, 2] > low[m, 2] + high[m, 2]]
-        found[m] += weight[above].sum() / system.mass_of[m]
+        above = near[(low[near, 2] + high[near, 2] > low[m, 2] + high[m, 2]) & (body[near] != body[m])]
+        found[m] += weight[above].sum() / mass[m]
     return found[asked]
 
 

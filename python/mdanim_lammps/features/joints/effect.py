@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -16,9 +17,10 @@ from ...scene.formatting import number, say
 from .links import NOTHING, Link, links_of
 from .place import doubled, misplaced
 from .preload import torn
-from .rows import BROKEN, FORCE, joint_field, rows_of_joints
+from .rows import BROKEN, FIELD, FORCE, TOLD, joint_field, rows_of_joints
 from .strength import GAP, Strength, Sums, strengths
 from .table import joints_text
+from .welds import thin_of, told_of_welds, welds_here
 
 HEAT, WORK = "joint_heat", "work"
 """Columns of the ledger."""
@@ -53,6 +55,10 @@ class Joints(Effect):
     def joins(self, scene):
         return links_of(scene).pairs if scene.joints else ()
 
+    def unites(self, scene):
+        groups = links_of(scene).whole_of.values() if scene.joints else ()
+        return {group[0]: group for group in groups}.values()
+
     def holds(self, scene):
         return links_of(scene).leashes if scene.joints else {}
 
@@ -66,13 +72,13 @@ class Joints(Effect):
     # --- what it brings into a run ------------------------------------------------------------------------------------
 
     def acts_on(self, context):
-        return bool(_here(context))
+        return bool(_here(context) or welds_here(context))
 
     def commands(self, context):
-        return [f"fix {self.fix} {context.pushed} mdanim/joint joints table:{self.fix}"]
+        return [f"fix {self.fix} {context.pushed} mdanim/joint joints table:{self.fix}"] if _here(context) else []
 
     def tables(self, context):
-        return {self.fix: joints_text(_here(context), _numbers(context))}
+        return {self.fix: joints_text(found, _numbers(context))} if (found := _here(context)) else {}
 
     def rate(self, context):
         return _sums(context)[0]
@@ -87,7 +93,7 @@ class Joints(Effect):
     # --- accounts and frames ------------------------------------------------------------------------------------------
 
     def energy(self, readings):
-        return readings.fix_value(self.fix, "joints")
+        return readings.fix_value(self.fix, "joints") if _here(readings.context) else 0.0
 
     def losses(self, scene):
         return (HEAT,)
@@ -96,23 +102,25 @@ class Joints(Effect):
         return (WORK,) if any(joint.motor for joint in scene.joints) else ()
 
     def lost(self, readings):
-        scene = readings.context.scene
-        return {term: readings.fix_value(self.fix, term) for term in (*self.losses(scene), *self.sources(scene))}
+        scene, acts = readings.context.scene, bool(_here(readings.context))
+        return {term: readings.fix_value(self.fix, term) if acts else 0.0 for term in (*self.losses(scene), *self.sources(scene))}
+
+    def clocks(self, readings):
+        return super().clocks(readings) if _here(readings.context) else {}
 
     def fields(self, scene):
         return (joint_field(scene),)
 
     def tell(self, readings):
         here = _here(readings.context)
-        told = readings.fix_rows(self.fix, len(here), 13)
-        numbers = _numbers(readings.context)
-        return {joint_field(readings.context.scene).name: rows_of_joints(here, told, numbers)}
+        told = [readings.fix_rows(self.fix, len(here), TOLD)] if here else []
+        told.append(told_of_welds(readings))
+        return {FIELD: _rows(readings.context, np.concatenate(told))}
 
     def tell_start(self, context):
-        here = _here(context)
         # Forces and ways are not known yet.
-        told = [(*[np.nan] * (BROKEN - FORCE), 0.0, *one.link.begin, *one.link.end) for one in here]
-        return {joint_field(context.scene).name: rows_of_joints(here, np.array(told), _numbers(context))}
+        links = [one.link for one in _here(context)] + welds_here(context)
+        return {FIELD: _rows(context, [(*[np.nan] * (BROKEN - FORCE), 0.0, *one.begin, *one.end) for one in links])}
 
     # --- advice -------------------------------------------------------------------------------------------------------
 
@@ -178,7 +186,7 @@ class Joints(Effect):
         if rates[self.name][worst] < 0.5 * total[worst]:
             return []
         m = int(envelope.system.object[worst])
-        own = [one for one in found if m in (one.link.first, one.link.second)]
+        own = [one for one in found if any(m in body.members for body in one.bodies)]
         hardest = max(own, key=lambda one: one.stiffness)
         joint = hardest.link.joint
         return [
@@ -204,8 +212,15 @@ def _here(context: Context) -> list[Strength]:
     return [one for one in strengths(context) if _is_in(one.link, numbers)]
 
 
+def _rows(context: Context, told: np.ndarray | Sequence) -> np.ndarray:
+    """Rows of a frame, of what springs hold together and then of welds."""
+    joined = [(one.link, one.thin) for one in _here(context)]
+    joined += [(one, thin_of(context.scene, one)) for one in welds_here(context)]
+    return rows_of_joints(joined, np.reshape(told, (len(joined), TOLD)), _numbers(context))
+
+
 def _is_in(link: Link, numbers: dict[int, int]) -> bool:
-    return link.first in numbers and (link.second == NOTHING or link.second in numbers)
+    return all(m in numbers for m in link.ends)
 
 
 def _sums(context: Context) -> tuple[np.ndarray, np.ndarray]:

@@ -27,11 +27,20 @@ class JointEnd:
     object: int
     """Number in the scene, from 0."""
     d: np.ndarray
-    """The point of the joint from the centre of the object, or of the patch [m], shape (3,)."""
+    """The point of the joint from the centre of the body, or of the patch [m], shape (3,)."""
     patch: Patch | None
     """None of what is rigid."""
     root: np.ndarray
     """M^-1/2 of the six motions of a rigid body, shape (6, 6); of all else nothing, shape (0, 0)."""
+    tensor: np.ndarray
+    """Moments of inertia of a rigid body [kg m^2], shape (3, 3)."""
+    members: tuple[int, ...]
+    """Objects that move as one with it, welded together, ascending; itself is one of them."""
+
+    @property
+    def body(self) -> int:
+        """Number of the body that it belongs to: its first object."""
+        return self.members[0]
 
     @property
     def rigid(self) -> bool:

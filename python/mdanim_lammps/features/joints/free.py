@@ -72,18 +72,18 @@ def welds_of(joints: Sequence[Strength]) -> list[list[int]]:
     for n, one in enumerate(joints):
         if one.link.joint.kind == "weld" and all(body.rigid for body in one.bodies):
             for body in one.bodies:
-                at.setdefault(body.object, []).append(n)
+                at.setdefault(body.body, []).append(n)
 
     def met(one: Strength) -> list[int]:
         found: set[int] = set()
-        todo = [body.object for body in one.bodies]
+        todo = [body.body for body in one.bodies]
         while todo:
             for n in at.get(todo.pop(), []):
                 weld = joints[n]
                 if n in found or (weld.link.joint.stiffness is not None and weld.frequency < one.frequency):
                     continue
                 found.add(n)
-                todo += [body.object for body in weld.bodies]
+                todo += [body.body for body in weld.bodies]
         return sorted(found)
 
     return [met(one) if one.link.joint.limits is not None or one.link.joint.motor is not None else [] for one in joints]
@@ -127,7 +127,7 @@ def _places(one: Strength, welds: Sequence[Strength]) -> dict[int, int]:
     """Places of objects among all that a joint and welds join."""
     found: dict[int, int] = {}
     for body in (body for joint in (one, *welds) for body in joint.bodies):
-        found.setdefault(body.object, len(found))
+        found.setdefault(body.body, len(found))
     return found
 
 
@@ -135,7 +135,7 @@ def _motion(one: Strength, along: np.ndarray, about: bool, place: dict[int, int]
     """Row of a direction of a joint in the motions of all objects, each times the root of its mass, shape (6 n,)."""
     row = np.zeros((len(place), 6))
     for s, body in zip((1.0, -1.0), one.bodies):
-        row[place[body.object]] = s * motion_along(body, along, about) @ body.root
+        row[place[body.body]] = s * motion_along(body, along, about) @ body.root
     return row.ravel()
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import heapq
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -17,8 +17,9 @@ from ...reach import Leash
 from ...scene import units
 from ...scene.naming import objects_by_name
 from ...scene.once import once_for
-from ...scene.scene import Rope, SceneRecord, Sheet
+from ...scene.scene import PieceShape, Rope, SceneRecord, Sheet, Solid
 from ...scene.schema import Vector
+from ..rigid.shapes import is_known, is_rigid
 from .planes import settled
 from .words import WORLD, Joint
 
@@ -51,6 +52,11 @@ class Link:
     """Axis about which the first one is seen from the second."""
     swapped: bool = False
     """Whether the scene names the second object first."""
+
+    @property
+    def ends(self) -> list[int]:
+        """Numbers of what it joins that may move."""
+        return [m for m in (self.first, self.second) if m != NOTHING]
 
     @property
     def length(self) -> float:
@@ -124,6 +130,22 @@ class Links:
         """A place in the planes of sheets that hold it, where it is there but for a rounding; a rope has it at its line."""
         sheets = [self.solids[m] for m in self.sheets(objects)]
         return settled(sheets, point) if sheets and self.rope(objects) is None else point
+
+    @cached_property
+    def welds(self) -> list[Link]:
+        """Welds that make one rigid body of both objects, in the order of joints."""
+        return [link for link in self.all if _makes_one(link, self.solids)]
+
+    @cached_property
+    def springs(self) -> list[Link]:
+        """All others, which springs hold together."""
+        numbers = {link.number for link in self.welds}
+        return [link for link in self.all if link.number not in numbers]
+
+    @cached_property
+    def whole_of(self) -> dict[int, list[int]]:
+        """All objects of its body, ascending, for each object that is welded to others."""
+        return {m: part for part in parts(link.ends for link in self.welds) for m in part}
 
     @cached_property
     def of_names(self) -> dict[str, list[tuple[str, Link]]]:
@@ -218,6 +240,18 @@ class Links:
             lightest = min(shapes.mass(solids[m]) for m in ends)
             return abs(link.length - link.rest) * math.sqrt(joint.stiffness / lightest)
         return 0.0
+
+
+def _makes_one(link: Link, solids: Sequence[Solid]) -> bool:
+    """Whether a joint is a weld of two objects that move as one rigid body: nothing else moves or holds them, and contact knows
+    their shapes, as it has to know that they do not touch each other."""
+    joint = link.joint
+    if joint.kind != "weld" or link.second == NOTHING or joint.stiffness is not None or joint.breaks is not None:
+        return False
+    return all(
+        is_rigid(s) and not s.hold and not s.drag and not isinstance(s.shape, PieceShape) and is_known(s)
+        for s in (solids[m] for m in link.ends)
+    )
 
 
 def _play(link: Link) -> float:

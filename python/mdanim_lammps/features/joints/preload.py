@@ -41,16 +41,16 @@ def preloads(context: Context, joints: Sequence[Strength]) -> np.ndarray:
     number: dict[int, int] = {}
     for n, _ in held:
         for body in joints[n].bodies:
-            number.setdefault(body.object, len(number))
+            number.setdefault(body.body, len(number))
     scene, free = context.scene, np.zeros((len(number), 6))
     spin = {m: np.array(scene.solids[m].spin) for m in number}
     free[:, :3] = context.reach.acting.acceleration
-    inverse = {}
+    inverse, tensors = {}, {}
     for one in joints:
-        for body in (b for b in one.bodies if b.object in number and b.rigid):
-            inverse[body.object] = body.root @ body.root
+        for body in (b for b in one.bodies if b.body in number and b.rigid):
+            inverse[body.body], tensors[body.body] = body.root @ body.root, body.tensor
     for m, k in number.items():
-        tensor = context.reach.system.inertia[m]
+        tensor = tensors[m]
         free[k, 3:] = -np.linalg.solve(tensor, np.cross(spin[m], tensor @ spin[m]))
     _add_springs(joints, number, inverse, free)
     rows, columns, values, wanted = [], [], [], []
@@ -58,12 +58,12 @@ def preloads(context: Context, joints: Sequence[Strength]) -> np.ndarray:
         one, right = joints[n], 0.0
         for sign, body in zip((1.0, -1.0), one.bodies):
             j = motion_along(body, along, turns)
-            right -= sign * (j @ free[number[body.object]] + _turning(body, along, turns, spin[body.object]))
+            right -= sign * (j @ free[number[body.body]] + _turning(body, along, turns, spin[body.body]))
             rows += [k] * 6
-            columns += range(6 * number[body.object], 6 * number[body.object] + 6)
+            columns += range(6 * number[body.body], 6 * number[body.body] + 6)
             values += (sign * j).tolist()
         if turns and len(one.bodies) == 2:
-            a, b = (spin[body.object] for body in one.bodies)
+            a, b = (spin[body.body] for body in one.bodies)
             right -= float((a - b) @ np.cross(b, along))
         wanted.append(right)
     held_motions = coo_array((values, (rows, columns)), shape=(len(held), 6 * len(number))).tocsr()
@@ -139,5 +139,5 @@ def _add_springs(joints: Sequence[Strength], number: dict[int, int], inverse: di
         force = one.stiffness * (max(0.0, more) if link.joint.pulls else more)
         way = unit(np.subtract(link.end, link.begin))
         for sign, body in zip((1.0, -1.0), one.bodies):
-            if body.object in number:
-                free[number[body.object]] += inverse[body.object] @ motion_along(body, sign * force * way, False)
+            if body.body in number:
+                free[number[body.body]] += inverse[body.body] @ motion_along(body, sign * force * way, False)

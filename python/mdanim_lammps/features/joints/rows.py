@@ -8,8 +8,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from ...effects.fields import Field, pair_rows
-from .links import links_of
-from .strength import Strength
+from .links import Link, links_of
 from .words import KINDS, Joint
 
 NUMBER, KIND, FORCE, TORQUE, WAY, RATE, DRIVING, GAP, BROKEN = range(9)
@@ -20,6 +19,8 @@ FIRST, SECOND = slice(9, 12), slice(12, 15)
 SIZE = 15
 """Column with the thinnest part of what it joins [m]."""
 WIDTH = 16
+TOLD = 13
+"""Columns from the force to the second point."""
 DRAWN = (*KINDS, "line")
 """Kinds as they are drawn: a spring without a stiffness of its own, or that only pulls, is a line."""
 FIELD = "joint"
@@ -30,13 +31,14 @@ def joint_field(scene) -> Field:
     return Field(FIELD, "1", per="pair", counts=(max(1, len(links_of(scene).all)),), shape=(WIDTH,))
 
 
-def rows_of_joints(joints: Sequence[Strength], told: np.ndarray, numbers: Mapping[int, int]) -> np.ndarray:
-    """The rows of a frame from what the fix tells, shape (J, 13); ``numbers`` are molecule IDs of objects."""
+def rows_of_joints(joints: Sequence[tuple[Link, float]], told: np.ndarray, numbers: Mapping[int, int]) -> np.ndarray:
+    """The rows of a frame from what is told of joints, shape (J, TOLD); they are given with the thinnest parts of what they join
+    [m], and ``numbers`` are molecule IDs of objects."""
     found = np.empty(len(joints), pair_rows(Field(FIELD, "1", per="pair", shape=(WIDTH,))))
-    for n, one in enumerate(joints):
-        ends = [numbers[m] - 1 for m in one.link.pair]
+    for n, (link, thin) in enumerate(joints):
+        ends = [numbers[m] - 1 for m in link.pair]
         found["a"][n], found["b"][n] = min(ends), max(ends)
-        found["value"][n] = one.link.number, DRAWN.index(_drawn(one.link.joint)), *told[n], one.thin
+        found["value"][n] = link.number, DRAWN.index(_drawn(link.joint)), *told[n], thin
     order = np.lexsort((found["value"][:, NUMBER], found["b"], found["a"]))
     return found[order]
 

@@ -10,6 +10,7 @@ s_A = 1 + lambda_B/lambda_A, by the mobilities of both ends; s is 1 where the ot
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -132,6 +133,37 @@ class Strength:
                     rate.point(body, body.d, share * servo, 0.0)
 
 
+@dataclass(frozen=True)
+class RigidPart:
+    """Rigid objects that are welded together, or one alone."""
+
+    centre: np.ndarray
+    """[m], shape (3,)."""
+    tensor: np.ndarray
+    """Moments of inertia about it [kg m^2], shape (3, 3)."""
+    root: np.ndarray
+    """M^-1/2 of its six motions, shape (6, 6)."""
+
+    @classmethod
+    def of(cls, context: Context, members: Sequence[int]) -> RigidPart:
+        """The body of these objects of a scene."""
+        system, solids = context.reach.system, context.scene.solids
+        if len(members) == 1:
+            mass, centre, tensor = system.mass_of[members[0]], np.array(solids[members[0]].position), system.inertia[members[0]]
+        else:
+            masses, places = system.mass_of[list(members)], np.array([solids[m].position for m in members])
+            mass = masses.sum()
+            centre = masses @ places / mass
+            arms = places - centre
+            tensor = system.inertia[list(members)].sum(axis=0) + (masses * (arms**2).sum(axis=1)).sum() * np.eye(3)
+            tensor = tensor - (masses[:, None] * arms).T @ arms
+        values, axes = np.linalg.eigh(tensor)
+        root = np.zeros((6, 6))
+        root[:3, :3] = np.eye(3) / math.sqrt(mass)
+        root[3:, 3:] = axes / np.sqrt(values) @ axes.T
+        return cls(centre, tensor, root)
+
+
 class Sums:
     """Sums of K and C over the joints of each body: six motions of a rigid one, particles of all others."""
 
@@ -160,7 +192,7 @@ class Sums:
             self._particles(body.patch, body.patch.of_direction(turned), k, 0.0)
 
     def _rigid(self, body: JointEnd, rows: np.ndarray, k: float, c: float) -> None:
-        _, stiff, drag = self.bodies.setdefault(body.object, (body, np.zeros((6, 6)), np.zeros((6, 6))))
+        _, stiff, drag = self.bodies.setdefault(body.body, (body, np.zeros((6, 6)), np.zeros((6, 6))))
         stiff += k * rows.T @ rows
         drag += c * rows.T @ rows
 
@@ -172,10 +204,12 @@ class Sums:
     def of_particles(self) -> tuple[np.ndarray, np.ndarray]:
         """Shares in the bound of each particle, of stiffness [1/s^2] and of damping [1/s], each of shape (N,)."""
         rate, drag = self.rate.copy(), self.drag.copy()
-        for m, (body, stiff, damped) in self.bodies.items():
-            own = slice(self.system.first[m], self.system.first[m + 1])
-            rate[own] += np.linalg.eigvalsh(body.root @ stiff @ body.root)[-1]
-            drag[own] += np.linalg.eigvalsh(body.root @ damped @ body.root)[-1]
+        for body, stiff, damped in self.bodies.values():
+            own_rate, own_drag = (np.linalg.eigvalsh(body.root @ sum_ @ body.root)[-1] for sum_ in (stiff, damped))
+            for m in body.members:
+                own = slice(self.system.first[m], self.system.first[m + 1])
+                rate[own] += own_rate
+                drag[own] += own_drag
         return rate, drag
 
 
@@ -201,8 +235,8 @@ def _rail(link: Link) -> float:
 def strengths(context: Context) -> list[Strength]:
     """All joints of a scene; also asked of the context of a part of it."""
     system, scene, links = context.reach.system, context.scene, links_of(context.scene)
-    pull = loads(context, links)
-    roots: dict[int, np.ndarray] = {}
+    pull, springs = loads(context, links), {link.number for link in links.springs}
+    rigid: dict[int, RigidPart] = {}
     thin = [thickness(solid.shape) for solid in scene.solids]
 
     def body(m: int, point, rail: float) -> JointEnd | None:
@@ -211,16 +245,17 @@ def strengths(context: Context) -> list[Strength]:
         at = np.array(point, float)
         if not system.rigid[m]:
             patch = patch_of(system, m, at, rail)
-            return JointEnd(m, at - patch.centre, patch, np.zeros((0, 0)))
-        if m not in roots:
-            values, axes = np.linalg.eigh(system.inertia[m])
-            roots[m] = np.zeros((6, 6))
-            roots[m][:3, :3] = np.eye(3) / math.sqrt(system.mass_of[m])
-            roots[m][3:, 3:] = axes / np.sqrt(values) @ axes.T
-        return JointEnd(m, at - np.array(scene.solids[m].position), None, roots[m])
+            return JointEnd(m, at - patch.centre, patch, np.zeros((0, 0)), np.zeros((3, 3)), (m,))
+        members = tuple(links.whole_of.get(m, [m]))
+        if members[0] not in rigid:
+            rigid[members[0]] = RigidPart.of(context, members)
+        part = rigid[members[0]]
+        return JointEnd(m, at - part.centre, None, part.root, part.tensor, members)
 
     found = []
     for link, (load, most) in zip(links.all, pull):
+        if link.number not in springs:
+            continue
         rail = _rail(link)
         first, second = body(link.first, link.begin, rail), body(link.second, link.end, rail)
         if first is None:  # held, and driven

@@ -19,6 +19,8 @@ from .occupied import room
 from .record import Liquid, LiquidModel
 
 BYTES_PER_CELL = 20.0
+MOST_STATE = 2.0**31 - 1
+"""Bytes of state that LAMMPS can count in a restart file."""
 """Memory of fix mdanim/liquid per cell, measured 18 to 21: content, masks, counts of samples, marks."""
 NARROWEST = 3
 """Fewest cells along a side: with two, no cell is off the walls, and a slope has no middle."""
@@ -62,19 +64,24 @@ def check_basin(scene: SceneRecord, models: Sequence[Model], grid: Grid, lifts: 
 
 
 def too_large(liquid: Liquid, grid: Grid) -> list[Problem]:
-    """Find a basin that does not fit into memory: it need not wait for the models of all solids."""
+    """Find a basin that does not fit into memory, or waves whose state no checkpoint can hold: it need not wait for the models
+    of all solids."""
     needed, free = grid.cells * BYTES_PER_CELL, available_memory()
-    if needed <= free:
+    has = f"the basin has {estimate(grid.cells)} cells of {say(max(grid.cell), 'm')}"
+    if needed > free:
+        over, cause = needed / free, f"{has}, which need {number(needed * 1e-9)} GB, {number(free * 1e-9)} GB are free"
+    elif liquid.model is LiquidModel.WAVES and (kept := wave_state(grid)) > MOST_STATE:
+        over, cause = kept / MOST_STATE, f"{has}; {estimate(grid.cells / (kept / MOST_STATE))} are the most that waves can have"
+    else:
         return []
-    coarser = 1.1 * max(grid.cell) * (needed / free) ** (1 / 3)
-    return [
-        Problem(
-            liquid.spans.get("basin"),
-            f"the basin has {estimate(grid.cells)} cells of {say(max(grid.cell), 'm')}, which need "
-            f"{number(needed * 1e-9)} GB, {number(free * 1e-9)} GB are free",
-            f"try resolution {say(coarser, 'm')}, or a smaller basin",
-        )
-    ]
+    coarser = 1.1 * max(grid.cell) * over ** (1 / 3)
+    return [Problem(liquid.spans.get("basin"), cause, f"try resolution {say(coarser, 'm')}, or a smaller basin")]
+
+
+def wave_state(grid: Grid) -> float:
+    """Most bytes of state that a liquid with momentum has in a checkpoint, as WaveBasin::unusable counts them."""
+    nx, ny, nz = grid.shape
+    return 4.0 * nx * ny * nz + 200.0 * nx * ny
 
 
 def _unusable(liquid: Liquid, grid: Grid) -> list[Problem]:

@@ -9,7 +9,7 @@ from ...effects.context import Verdict
 from ...effects.effect import Effect
 from ...effects.fields import Field
 from ...scene.scene import PieceShape
-from ..rigid.touching import FIXES
+from ..rigid.touching import COLUMNS, FIXES, OF_WHOLE
 from .glue import EFFECT, is_glued, wholes
 
 TORN = "torn"
@@ -58,7 +58,7 @@ class Glue(Effect):
         system, solids = readings.system, readings.context.solids
         number = {solid.name: m + 1.0 for m, solid in enumerate(readings.context.scene.solids)}
         bodies = np.flatnonzero(system.rigid)
-        first = readings.fix_rows(FIXES[0], len(bodies), 14)[:, 13].astype(int) - 1
+        first = readings.fix_rows(FIXES[0], len(bodies), COLUMNS)[:, OF_WHOLE].astype(int) - 1
         found = np.zeros(len(system.names))  # others than pieces may be elsewhere, where nothing tells of them
         for m, other in zip(bodies.tolist(), first.tolist()):
             if isinstance(solids[m].shape, PieceShape):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""The file of glue of ``fix mdanim/rigid``: a line for each face between two pieces (docs/fix_mdanim_rigid.md)."""
+"""Pieces in the file of glue of ``fix mdanim/rigid``: a line for each face between two (docs/fix_mdanim_rigid.md)."""
 
 from __future__ import annotations
 
@@ -37,13 +37,10 @@ def is_glued(context: Context) -> bool:
     return context.on(EFFECT) and any(isinstance(solid.shape, PieceShape) for solid in context.solids)
 
 
-def glue_text(context: Context) -> str:
-    """The file: pieces, their sides, strength and area, second moments, section moduli, middle, normal and first axis."""
-    head = "# Glue, written by mdanim-lammps: pieces, sides, strength, area, second moments, section moduli, place, axes\n"
-    return head + "".join(_lines(context))
-
-
-def _lines(context: Context) -> Iterator[str]:
+def lines(context: Context) -> Iterator[str]:
+    """Pieces, their sides, strength and area, second moments, section moduli, middle, normal and first axis."""
+    if not is_glued(context):
+        return
     number = {name: m + 1 for m, name in enumerate(context.system.names)}
     scene = context.scene
     for first, _ in wholes(scene):

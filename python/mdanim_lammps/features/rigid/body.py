@@ -6,6 +6,8 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
+import numpy as np
+
 from ...bodies import BodyKind, all_held, beneath, kind_of, unguided
 from ...model import shapes
 from ...model.added import tensor_of
@@ -18,6 +20,8 @@ from ...scene.once import once_for
 from ...scene.scene import Box, Cone, Cylinder, Ellipsoid, Mesh, PieceShape, Sphere, Torus
 from .shapes import hidden, is_known, is_rigid, on_objects, only_balls_move
 
+DISPLACED = 0.9
+"""Part of the volume of the rigid objects in a scene with a liquid that those have whose thinnest parts set its cells."""
 ACROSS, ROUND = 2, 4
 """Cells across its thinnest part: the least that have an inside; and of what is round, or touches others at points of its
 surface, a third of a cell apart: a torus of 2 rolls so down a slope with 0.96 of its acceleration, one of 4 with 0.995."""
@@ -41,6 +45,15 @@ class RigidBody(BodyKind):
         if scene.liquid is not None:
             return super().cells(scene, solid)
         return _across(solid)
+
+    def asks(self, scene):
+        """Objects that displace most of a liquid have one, where nothing else moves in it. Its cells are not those of its
+        banks."""
+        others = any(s.resolution is None and not all_held(s) and kind_of(s).sets_spacing for s in scene.solids)
+        if scene.liquid is None or others:
+            return lambda solid: False
+        large = displacing(scene)
+        return lambda solid: solid.name in large
 
     def spacing(self, scene, h):
         """Two cells across, four of what is round or has no known features; no coarser than the scene where there is a liquid or
@@ -68,6 +81,15 @@ class RigidBody(BodyKind):
         else:
             model = lattice_model(solid, h, shared, loose=True)
         return replace(model, inertia=tensor_of(solid))
+
+
+def displacing(scene) -> set[str]:
+    """Names of the rigid objects without a spacing of their own, from the largest on until they have `DISPLACED` of the volume of
+    all of them: a mast or a sail on a hull has no part in it."""
+    asked = [s for s in scene.solids if s.resolution is None and isinstance(kind_of(s), RigidBody)]
+    asked.sort(key=lambda s: shapes.volume(s.shape), reverse=True)
+    volume = np.array([shapes.volume(s.shape) for s in asked])
+    return {s.name for s, before in zip(asked, np.cumsum(volume) - volume) if before < DISPLACED * volume.sum()}
 
 
 def is_hollow(shape) -> bool:

@@ -16,7 +16,6 @@ from ...errors import Problem
 from ...model.inertia import components
 from ...scene.formatting import number
 from ..contact.surface import DAMPED, HEAT, LET_GO
-from ..pieces.glue import glue_text, is_glued
 from . import points, touching
 from .words import Rigid, Sleep
 
@@ -25,7 +24,7 @@ GROUP = "bodies"
 TOUCHING, ON_PLANES = "touching", "on_planes"
 """Groups of the particles of all that touches objects by its features, and planes."""
 INERTIA, SHAPES, GLUE = "inertia", "shapes", "glue"
-"""Tables of moments, and of shapes, with the fix; and of faces between pieces."""
+"""Tables of moments, and of shapes, with the fix; and of what is glued together."""
 PROOF = "contact_bound"
 """Column of the ledger: largest dt^2 S/4 + dt D/2 of a body since the start (docs/physics-rigid.md)."""
 AT_REST = 12.0
@@ -87,7 +86,7 @@ class RigidMotion(Effect):
             groups[part.fix] = part.bodies
             words = "".join(f" {word}" for word in touching.guides(context)) if touching.released(context, part) else ""
             words += f" {touching.words(context, part, f'table:{SHAPES}-{part.fix}')}" if part.shapes.any() else ""
-            words = f" glue table:{GLUE}{words}" if _glues(context, part) else words
+            words = f" glue table:{GLUE}{words}" if _glue(context, part) else words
             fixes.append(f"fix {part.fix} {part.fix} mdanim/rigid inertia table:{INERTIA}-{part.fix}{words}")
         return [*(f"group {name} molecule {molecule_ranges(solids)}" for name, solids in groups.items()), *fixes]
 
@@ -97,8 +96,8 @@ class RigidMotion(Effect):
             found[f"{INERTIA}-{part.fix}"] = inertia_text(context.system.inertia, part.bodies)
             if part.shapes.any():
                 found[f"{SHAPES}-{part.fix}"] = touching.shapes_text(context, part)
-            if _glues(context, part):
-                found[GLUE] = glue_text(context)
+            if lines := _glue(context, part):
+                found[GLUE] = "# Glue, written by mdanim-lammps: faces between pieces, and welds\n" + "".join(lines)
         return found
 
     def rate(self, context):
@@ -193,9 +192,11 @@ class RigidMotion(Effect):
         return sum(readings.fix_value(part.fix, entry) for part in touching.parts(readings.context))
 
 
-def _glues(context, part: touching.Part) -> bool:
-    """Whether a fix moves pieces that are glued together, which are of known shapes."""
-    return part.fix == touching.FIXES[0] and is_glued(context)
+def _glue(context, part: touching.Part) -> list[str]:
+    """The file of glue of a fix: what is glued together is of known shapes."""
+    if part.fix != touching.FIXES[0]:
+        return []
+    return [line for facet in features.facets("glue") for line in facet.lines(context)]
 
 
 def _may_touch(scene) -> bool:

@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Welds between rigid objects: they move as one body, and rows of joints tell what a weld bears, as statics has it."""
+
+import numpy as np
+import pytest
+from mdanim_lammps.engine.instance import Instance
+from mdanim_lammps.features.joints.links import links_of
+from mdanim_lammps.features.joints.rows import FIRST, FORCE, GAP, NUMBER, TORQUE
+from mdanim_lammps.features.joints.welds import hung_by
+from mdanim_lammps.run.energy import tell
+
+G = 9.81
+CONTROL = "gravity (0, 0, -9.81) m/s^2\nground z 0\ncontrol { time 1 s friction 0.5 }\n"
+LAMP = """object foot {{ shape box (20, 20, 10) cm position (0, 0, {low}) m density 2000 elasticity rigid }}
+object post {{ shape box (4, 4, 30) cm position (0, 0, {low} + 0.2) m density 500 elasticity rigid }}
+object arm {{ shape box (16, 4, 4) cm position (0.1, 0, {low} + 0.33) m density 1000 elasticity rigid }}
+joint weld arm post {{ at (0.02, 0, {low} + 0.33) m }}
+joint weld foot post {{ at (0, 0, {low} + 0.05) m }}
+"""
+FOOT, POST, ARM = 8.0, 0.24, 0.256  # kg
+
+
+def rows_after(ready, seconds):
+    """Rows of joints, in the order of the scene, and particles after some time."""
+    with Instance(ready.plan) as instance:
+        instance.setup()
+        instance.run(round(seconds / ready.certificate.timestep))
+        told = tell(instance)["joint"]["value"]
+        return told[np.argsort(told[:, NUMBER])], instance.array("x").copy()
+
+
+def test_welds_bear_what_hangs_on_them(prepared):
+    """A lamp that stands: its arm by its root, arm and post at the foot."""
+    ready = prepared(CONTROL + LAMP.format(low=0.05))
+    rows, _ = rows_after(ready, 0.5)
+    assert rows[:, FORCE] == pytest.approx([ARM * G, (POST + ARM) * G], rel=1e-6)
+    # The foot sinks in more on the side of the arm: the lamp leans by 4e-6.
+    assert rows[:, TORQUE] == pytest.approx([ARM * G * 0.08, ARM * G * 0.1], rel=3e-5)
+    assert rows[:, GAP].tolist() == [0.0, 0.0]
+    assert rows[:, FIRST] == pytest.approx(np.array([(0.02, 0.0, 0.38), (0.0, 0.0, 0.1)]), abs=1e-4)
+
+
+def test_a_weld_bears_nothing_in_a_fall_and_what_turns_its_part(prepared):
+    """A cube that spins about the weld pulls at it by m w^2 r."""
+    text = "".join(
+        f"object end[{k}] {{ shape box (10, 10, 10) cm position ({0.05 * (2 * k - 3)}, 0, 5) m density 1000 elasticity rigid "
+        f"velocity (0, {0.05 * (2 * k - 3) * 20}, 0) m/s spin (0, 0, 20) rad/s }}\n"
+        for k in (1, 2)
+    )
+    ready = prepared(CONTROL + text + "joint weld end[1] end[2] { at (0, 0, 5) m }\n")
+    rows, x = rows_after(ready, 0.1)
+    assert rows[0, FORCE] == pytest.approx(1.0 * 20.0**2 * 0.05, rel=1e-5)
+    assert rows[0, TORQUE] == pytest.approx(0.0, abs=1e-9)
+    middle = ready.system.center_of_mass(x)
+    assert np.linalg.norm(middle[1] - middle[0]) == pytest.approx(0.1, abs=1e-12)
+
+
+def test_step_is_that_of_the_body(prepared):
+    """A table with a heavy crate: legs bear it as a part of the table, not each alone."""
+    text = (
+        "object top { shape box (100, 60, 4) cm position (0, 0, 0.72) m density 600 elasticity rigid }\n"
+        "object crate { shape box (40, 40, 40) cm position (0, 0, 0.94) m density 600 elasticity rigid }\n"
+    )
+    for k, (x, y) in enumerate(((0.4, 0.2), (-0.4, 0.2), (0.4, -0.2), (-0.4, -0.2))):
+        text += f"object leg[{k}] {{ shape box (4, 4, 70) cm position ({x}, {y}, 0.35) m density 600 elasticity rigid }}\n"
+        text += f"joint weld leg[{k}] top {{ at ({x}, {y}, 0.7) m MORE }}\n"
+    steps = [prepared(CONTROL + text.replace("MORE", more)).certificate.timestep for more in ("", "stiffness 1e6 N/m")]
+    assert steps[0] > 1.5 * steps[1]
+
+
+@pytest.mark.parametrize(
+    ("more", "count"),
+    [("", 3), ("joint weld arm foot { at (0.02, 0, 0.3) m }", 4), ("joint weld arm world { at (0.1, 0, 0.38) m }", 3)],
+)
+def test_which_welds_make_one_body(prepared, more, count):
+    """Welds between objects that are free do, also where they close a ring, which bears nothing; not those with the world."""
+    hook = "object hook { shape sphere 2 cm position (0.19, 0, 0.35) m density 100 elasticity rigid }\njoint weld hook arm { }\n"
+    links = links_of(prepared(CONTROL + LAMP.format(low=0.05) + hook + more).scene)
+    assert len(links.welds) == count and len(hung_by(links)) == 3
+    assert set(links.whole_of) == {0, 1, 2, 3}
+
+
+@pytest.mark.parametrize("own", ["stiffness 1e5 N/m", "breaks 100 N"])
+def test_what_a_weld_says_of_itself_makes_it_a_spring(prepared, own):
+    """It gives way, or breaks."""
+    text = LAMP.format(low=0.05).replace("at (0.02, 0, 0.05 + 0.33) m", f"at (0.02, 0, 0.05 + 0.33) m {own}")
+    links = links_of(prepared(CONTROL + text).scene)
+    assert [link.number for link in links.welds] == [1] and [link.number for link in links.springs] == [0]
