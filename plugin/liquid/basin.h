@@ -198,6 +198,8 @@ class Basin {
   virtual double energy() const { return 0.0; }    // of the liquid since the start, over density g cell^4; 0 without momentum
   virtual Vec3 momentum() const { return {}; }     // of the liquid, over density [volume * velocity]; sideways
   virtual Impulses impulses() const { return {}; }
+  // Work on the liquid by the acceleration of the basin so far, in the frame of the basin, over density.
+  virtual double shaken() const { return 0.0; }
   virtual double highest() const { return top(); }    // of all liquid
   virtual double bytes() const = 0;
   virtual double mean_level() const = 0;    // [distance]

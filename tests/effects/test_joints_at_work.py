@@ -293,3 +293,16 @@ control {{ time 1 s }}
     assert not ready.resolved.on("contact") and "all that could meet is joined" in ready.verdicts["contact"].reason
     with pytest.raises(Exception, match="b starts inside a"):
         prepared(text.replace("MORE", "contact on"))
+
+
+@pytest.mark.parametrize("elasticity", ["1 MPa", "5 MPa", "50 MPa"])
+def test_what_hangs_on_a_rope_does_not_part_from_it(prepared, elasticity):
+    """No gap that shows at the usual stiffness, however much the rope stretches; a harder rope has the joint of its material."""
+    text = f"""gravity (0, 0, -9.81) m/s^2
+object line {{ shape rope from (0, 0, 2) m to (0, 0, 1) m thickness 1 cm density 900 elasticity {elasticity} hold start }}
+object bob {{ shape sphere 8 cm position (0, 0, 0.92) m mass 1 kg elasticity rigid }}
+joint ball line bob {{ at (0, 0, 1) m }}
+control {{ time 0.1 s }}
+"""
+    gap = next(m for m in prepared(text).certificate.margins if m.name == "joint gap")
+    assert gap.severity == "ok" and gap.value < 1.6e-4

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """How hard joints are, and their share in the bound on the time step (docs/physics-joints.md, "Stiffness" and "The time step").
 
-Where something deforms, a joint is as hard as its material: k = f E h. Between what does not deform its gap under the expected
-load F is GAP of the thinnest part: k = F/(GAP s). The share in the bound is exact for the six motions of a rigid body: with the
-motion q of a body and the matrix J of what a joint holds of it, K <= blockdiag(s_A K_A, s_B K_B) with K_A = k J_A' J_A and
-s_A = 1 + lambda_B/lambda_A, by the mobilities of both ends; s is 1 where the other one never moves.
+Where something deforms, a joint is as hard as its material, k = f E h, and at a rope so hard, too, that its gap does not show.
+Between what does not deform its gap under the expected load F is GAP of the thinnest part: k = F/(GAP s). The share in the bound
+is exact for the six motions of a rigid body: with the motion q of a body and the matrix J of what a joint holds of it,
+K <= blockdiag(s_A K_A, s_B K_B) with K_A = k J_A' J_A and s_A = 1 + lambda_B/lambda_A, by the mobilities of both ends; s is 1
+where the other one never moves.
 """
 
 from __future__ import annotations
@@ -19,6 +20,7 @@ import numpy as np
 from ...effects.context import Context
 from ...model.shapes import thickness
 from ...scene.once import once_for
+from ...scene.scene import Rope
 from .ends import JointEnd, across, directions_of, lever, spin, unit
 from .free import rise_of, stop_of, welds_of
 from .links import NOTHING, Link, links_of
@@ -28,6 +30,8 @@ from .preload import preloads
 
 GAP = 0.005
 """Gap of a joint between rigid objects under LOAD times what hangs on it, over the thinnest part of both."""
+AT_ROPES = 0.015
+"""The same of a joint at a rope that is softer, under what hangs on it at rest: less than shows."""
 STOPPED = 2.0
 """Times the frequency that a joint between rigid objects has with limits: its stops are softer than itself (free.py)."""
 DAMPING = 0.02
@@ -290,6 +294,8 @@ def _strength(context: Context, link: Link, first: JointEnd, second: JointEnd | 
         k = joint.stiffness
     elif soft := [b for b in bodies if not b.rigid]:
         k = max(slowest, min(_of_material(context, b.object) for b in soft))
+        if all(isinstance(context.scene.solids[b.object].shape, Rope) for b in soft):
+            k = max(k, load / (AT_ROPES * min(sides)))
     else:
         k = max(slowest, most / (GAP * min(sides))) * (1.0 if joint.limits is None else STOPPED**2)
     usual = 2.0 * DAMPING * math.sqrt(k / mobility)
