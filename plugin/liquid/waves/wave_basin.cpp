@@ -176,11 +176,9 @@ void WaveBasin::go_on(double time, int parts, int n)
 {
   makers.apply(waves, time);
   account.came += waves.take_came();
-  const bool pulled = dot(mean_acceleration, mean_acceleration) > 0.0;    // by the acceleration of the basin: power -a.p
-  const Vec3 before = pulled ? waves.momentum() : Vec3{};
   gone += waves.update(time, 1.0 / (parts - n)) * unit_of_time;
-  if (pulled) work_of_basin -= 0.5 * time * unit_of_time * dot(mean_acceleration, in_world(before + waves.momentum()));
   account.came -= waves.take_left_behind();
+  work_of_basin -= unit_of_time * dot(mean_acceleration, in_world(waves.take_flown()));
   const Vec3 lost = waves.take_lost(), flying = drops.momentum();
   drops.update(waves, time, key_of(static_cast<std::uint64_t>(updates), n));
   account.basin += lost - (drops.momentum() - flying) - waves.take_came();

@@ -85,7 +85,7 @@ void WaveStepper::move_links()
   });
   loops.each_listed(columns.listed_links, [&](const LinkPlace &link) { general_push(link); });
   run.lost += law.dt * (walls.force() + law.calm * moving());
-  if (run.is_moved) run.left_behind += left_behind();
+  if (run.is_moved) leave_behind();
   if (const WaveLoops::RowRange tight = balance(); tight.first < tight.last) {
     limit(tight);
     balance();
@@ -109,15 +109,20 @@ Vec3 WaveStepper::moving() const
   return {sum[0], sum[1], 0.0};
 }
 
-// Momentum along x and y that liquid loses against a basin that gains speed.
-Vec3 WaveStepper::left_behind() const
+// Momentum along x and y that liquid has lost against a basin that gains speed, and what it had meanwhile: the mean of that
+// before and after pressure.
+void WaveStepper::leave_behind()
 {
-  double wet[2] = {0.0, 0.0};
+  double wet[2] = {0.0, 0.0}, momentum[2] = {0.0, 0.0};
   columns.each_link([&](const LinkPlace &link) {
     const WaveLinks &l = columns.arrays_of(link);
-    if (l.wet[link.at] > 0.0) wet[link.d] += l.height[link.at];
+    const long i = link.at;
+    if (!(l.wet[i] > 0.0)) return;
+    wet[link.d] += l.height[i];
+    momentum[link.d] += 0.5 * l.height[i] * (l.faster[i] + l.u[i]);
   });
-  return {law.dt * law.tilt[0] * wet[0], law.dt * law.tilt[1] * wet[1], 0.0};
+  run.left_behind += law.dt * Vec3{law.tilt[0] * wet[0], law.tilt[1] * wet[1], 0.0};
+  run.flown += law.dt * Vec3{momentum[0], momentum[1], 0.0};
 }
 
 // Sums the units into spans and out of them. Returns the rows from the first to the last in which some span must be limited.

@@ -37,7 +37,7 @@ class WaveStepper {
   void find_surfaces();
   void move_links();
   Vec3 moving() const;
-  Vec3 left_behind() const;
+  void leave_behind();
   WaveLoops::RowRange balance();
   void limit(const WaveLoops::RowRange &tight);
   void general_surface(long i);
