@@ -85,6 +85,7 @@ class Basin {
   // among them; on solids that move; and the momentum that came with liquid, less that which left with it.
   struct Impulses {
     Vec3 basin, solids, came;
+    double shaken = 0.0;    // work on the liquid by the acceleration of the basin, in its frame, over density
   };
   // A drop of liquid that flies.
   struct Droplet {
@@ -198,8 +199,6 @@ class Basin {
   virtual double energy() const { return 0.0; }    // of the liquid since the start, over density g cell^4; 0 without momentum
   virtual Vec3 momentum() const { return {}; }     // of the liquid, over density [volume * velocity]; sideways
   virtual Impulses impulses() const { return {}; }
-  // Work on the liquid by the acceleration of the basin so far, in the frame of the basin, over density.
-  virtual double shaken() const { return 0.0; }
   virtual double highest() const { return top(); }    // of all liquid
   virtual double bytes() const = 0;
   virtual double mean_level() const = 0;    // [distance]

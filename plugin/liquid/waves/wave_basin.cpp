@@ -59,7 +59,6 @@ WaveBasin::WaveBasin(const Shape &shape, double g, double calm, double spray, st
 
 void WaveBasin::accelerate(const Vec3 &mean)
 {
-  mean_acceleration = mean;
   const double per_g = 1.0 / (g * shape.cell.z);
   waves.tilt(per_g * mean.x * shape.cell.x, per_g * mean.y * shape.cell.y);
 }
@@ -160,8 +159,7 @@ void WaveBasin::update(const AddBodies &bodies, std::uint64_t)
   stale = false;
 }
 
-// Exchanges the impulses of solids on the liquid, and of the liquid on them, since the last update. Impulses that liquid gave to
-// solids while `asleep` came from the basin.
+// Impulses between solids and liquid since the last update. Those that liquid gave to solids while `asleep` came from the basin.
 void WaveBasin::give_impulses(double since, double asleep)
 {
   const SolidImpulses::Totals sums = from_solids.sum_over(ranks);
@@ -178,7 +176,7 @@ void WaveBasin::go_on(double time, int parts, int n)
   account.came += waves.take_came();
   gone += waves.update(time, 1.0 / (parts - n)) * unit_of_time;
   account.came -= waves.take_left_behind();
-  work_of_basin -= unit_of_time * dot(mean_acceleration, in_world(waves.take_flown()));
+  account.shaken -= g * shape.cell.z * cell_volume() * waves.take_climbed();
   const Vec3 lost = waves.take_lost(), flying = drops.momentum();
   drops.update(waves, time, key_of(static_cast<std::uint64_t>(updates), n));
   account.basin += lost - (drops.momentum() - flying) - waves.take_came();

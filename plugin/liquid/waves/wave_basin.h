@@ -72,8 +72,8 @@ class WaveBasin : public Basin {
   { return gone + slept + wait.time() + static_cast<double>(wait.since_look(step, pace.every)) * dt; }
   double energy() const override { return energy_now() - energy_at_start; }
   Vec3 momentum() const override { return in_world(waves.momentum() + drops.momentum()); }
-  Impulses impulses() const override { return {in_world(account.basin), in_world(account.solids), in_world(account.came)}; }
-  double shaken() const override { return work_of_basin; }
+  Impulses impulses() const override
+  { return {in_world(account.basin), in_world(account.solids), in_world(account.came), account.shaken}; }
   double highest() const override { return heights.crest(); }
   double bytes() const override;
   double mean_level() const override { return mean_of(heights.all_heads()); }
@@ -113,9 +113,7 @@ class WaveBasin : public Basin {
   std::int64_t updates = 0;
   Units units = 0;    // of liquid at the start
   double energy_at_start = 0.0;
-  Impulses account;    // in units of the waves
-  double work_of_basin = 0.0;
-  Vec3 mean_acceleration;    // of the basin in the next update
+  Impulses account;    // in units of the waves, but for work
 };
 
 }    // namespace mdanim

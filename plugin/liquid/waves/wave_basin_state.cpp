@@ -29,15 +29,15 @@ struct WaveBasinHead {
   double gone, slept;
   double travel, energy_at_start;
   Basin::Impulses account;
-  double work_of_basin;
   std::uint64_t of_drops;    // bytes
 
   void check(const ByteReader &reader) const
   {
     reader.expect_numbers(std::array{wait.before, wait.dt, gone, slept, travel}, "a time or a way", 0.0);
     reader.expect_numbers(std::array{units, updates, moving, wait.steps, wait.looked}, "a count", 0.0);
-    reader.expect_numbers(std::array{ledger.sum.work, ledger.sum.lost, ledger.power.work, ledger.power.lost, energy_at_start, work_of_basin},
-                          "an energy");
+    reader.expect_numbers(
+        std::array{ledger.sum.work, ledger.sum.lost, ledger.power.work, ledger.power.lost, energy_at_start, account.shaken},
+        "an energy");
     for (const Vec3 &impulse : {account.basin, account.solids, account.came})
       reader.expect_numbers(std::array{impulse.x, impulse.y, impulse.z}, "an impulse");
   }
@@ -122,7 +122,6 @@ std::vector<std::uint8_t> WaveBasin::state(const Ledger &ledger) const
                            travel,
                            energy_at_start,
                            account,
-                           work_of_basin,
                            of_drops.size()};
   ByteWriter writer;
   writer.put(head).put_all(solids.now().mass).put_all(solids.now().afloat).put_all(push.state()).put_all(push.added_state());
@@ -169,7 +168,6 @@ Basin::Ledger WaveBasin::set_state(const std::uint8_t *bytes, std::size_t size)
   units = head.units;
   energy_at_start = head.energy_at_start;
   account = head.account;
-  work_of_basin = head.work_of_basin;
   find_heights();
   return head.ledger;
 }

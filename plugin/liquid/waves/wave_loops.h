@@ -23,7 +23,7 @@ struct WaveRun {
   bool is_moved = false;           // the basin moves, and liquid never comes to rest
   bool some_full = false;          // some span is
   Vec3 lost, came, left_behind;    // momentum, see Waves::take_lost()
-  Vec3 flown;                      // see Waves::take_flown()
+  double climbed = 0.0;            // see Waves::take_climbed()
   struct Counts {                  // for tests and benchmarks
     long updates = 0, sub_updates = 0, solutions = 0, iterations = 0, limited = 0;
     Units displaced = 0;    // units displaced by spans that closed

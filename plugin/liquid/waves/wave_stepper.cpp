@@ -109,8 +109,8 @@ Vec3 WaveStepper::moving() const
   return {sum[0], sum[1], 0.0};
 }
 
-// Momentum along x and y that liquid has lost against a basin that gains speed, and what it had meanwhile: the mean of that
-// before and after pressure.
+// Momentum along x and y that liquid has lost against a basin that gains speed, and the work: by the momentum that it had
+// meanwhile, the mean of that before and after pressure.
 void WaveStepper::leave_behind()
 {
   double wet[2] = {0.0, 0.0}, momentum[2] = {0.0, 0.0};
@@ -122,7 +122,7 @@ void WaveStepper::leave_behind()
     momentum[link.d] += 0.5 * l.height[i] * (l.faster[i] + l.u[i]);
   });
   run.left_behind += law.dt * Vec3{law.tilt[0] * wet[0], law.tilt[1] * wet[1], 0.0};
-  run.flown += law.dt * Vec3{momentum[0], momentum[1], 0.0};
+  run.climbed += law.dt * (law.tilt[0] * momentum[0] + law.tilt[1] * momentum[1]);
 }
 
 // Sums the units into spans and out of them. Returns the rows from the first to the last in which some span must be limited.

@@ -65,8 +65,8 @@ class Waves {
   Vec3 take_came() { return std::exchange(run.came, Vec3{}); }
   // Momentum, as seen in the basin, that liquid has lost because the basin gained speed.
   Vec3 take_left_behind() { return std::exchange(run.left_behind, Vec3{}); }
-  // Integral over time of the momentum that it had meanwhile.
-  Vec3 take_flown() { return std::exchange(run.flown, Vec3{}); }
+  // Work against the tilt by which that acts.
+  double take_climbed() { return std::exchange(run.climbed, 0.0); }
 
   // Everything that later updates depend on, as it is between updates.
   std::vector<std::uint8_t> state() const;
