@@ -46,6 +46,6 @@ def test_four_random_bodies_that_tear():
 @pytest.mark.timeout(3600)
 @pytest.mark.parametrize("part", range(4))
 def test_two_hundred_random_bodies_that_tear(part):
-    """Fifty in each part; three of all have more than RESIDUAL: stiff contacts that let go within a few steps."""
+    """Fifty in each part; five of all have more than RESIDUAL, by the time step: with half of it none has."""
     tore, off = torn(range(50 * part, 50 * part + 50))
-    assert tore >= 35 and max(off) < 10.0 * RESIDUAL and sum(one > RESIDUAL for one in off) <= 2
+    assert tore >= 35 and max(off) < 2.0 * RESIDUAL and sum(one > RESIDUAL for one in off) <= 2
