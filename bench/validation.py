@@ -40,7 +40,7 @@ PARTS = (
 )
 """Modules of bench/published, in the order of the page."""
 PEERS = {way: runs for peer, runs in ((mujoco_runs, mujoco_runs.MujocoRuns), (sph_runs, sph_runs.SphRuns)) for way in peer.WAYS}
-"""What runs scenes by another program, by the name under which its figures are kept."""
+"""Runs by other programs, by the names under which their figures are kept."""
 ACCURACIES = ("preview", "balanced", "reference")
 PAGE = ROOT / "docs" / "validation.md"
 KEPT = Path(__file__).parent / "published" / "found"

@@ -24,7 +24,7 @@ G, ALPHA, COURANT, LAYERS = 9.81, 0.1, 0.25, 3
 
 @dataclass(frozen=True)
 class Heights:
-    """What cases read of a trajectory: times, and heights of the liquid above the floor of its basin, columns of one spacing."""
+    """Times and heights of a liquid by columns of one spacing, as cases read them of a trajectory."""
 
     times: np.ndarray
     liquid: Any
