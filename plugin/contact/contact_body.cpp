@@ -266,6 +266,14 @@ void ContactBody::find_carriers()
   first_carrier.push_back(now());
   point_carriers.push_back({});    // the end of the last point has an address
   point_carriers.shrink_to_fit();
+  std::vector<char> has_weight(slots(), 0);
+  at_particles = !rigid;
+  for (int p = 0; p < static_cast<int>(surface.size()); ++p) {
+    const PointCarriers by = carriers_of(p);
+    at_particles = at_particles && by.middle - by.first == 1;
+    for (const PointCarrier *one = by.first; one < by.middle; ++one) has_weight[one->slot] = 1;
+  }
+  for (const int at : place_of_node) is_carrier.push_back(has_weight[at]);
 }
 
 void ContactBody::sort_points()
@@ -277,18 +285,13 @@ void ContactBody::sort_points()
   std::stable_sort(by_cell.begin(), by_cell.end(), [&](int p, int q) {
     return low_corner(p) != low_corner(q) ? low_corner(p) < low_corner(q) : is_fine(p) < is_fine(q);
   });
-  std::vector<char> is_corner(places(), 0);
   low = {}, high = {1.0 * cells[0], 1.0 * cells[1], 1.0 * cells[2]};
   for (int n = 0; n < static_cast<int>(by_cell.size()); ++n) {
     const int p = by_cell[n], first = low_corner(p);
     const Vec3 &at = surface[p].at;
     low = {std::min(low.x, at.x), std::min(low.y, at.y), std::min(low.z, at.z)};
     high = {std::max(high.x, at.x), std::max(high.y, at.y), std::max(high.z, at.z)};
-    if (carriers.empty() || carriers.back().place != first) {
-      carriers.push_back({first, n, n, n, {}, {}});
-      for (int corner = 0; corner < 8; ++corner)
-        is_corner[first + (corner & 1) + row() * (corner >> 1 & 1) + layer() * (corner >> 2)] = 1;
-    }
+    if (carriers.empty() || carriers.back().place != first) { carriers.push_back({first, n, n, n, {}, {}}); }
     PointCell &cell = carriers.back();
     const Vec3 from_corner = surface[p].at - Vec3{1.0 * surface[p].cell[0], 1.0 * surface[p].cell[1], 1.0 * surface[p].cell[2]};
     if (cell.first == n) cell.low = cell.high = from_corner;
@@ -304,7 +307,6 @@ void ContactBody::sort_points()
     unite(from_corner.y, cell.low.y, cell.high.y, edges[1]);
     unite(from_corner.z, cell.low.z, cell.high.z, edges[2]);
   }
-  for (const int at : place_of_node) is_carrier.push_back(is_corner[at]);
   if (rigid) stands_out = 0.0;    // boxes of rigid objects are around their surfaces
 }
 

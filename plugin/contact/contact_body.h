@@ -138,7 +138,9 @@ class ContactBody {
     if (on_flat) return {has_fine ? cell.fine : cell.first, cell.last};
     return {cell.first, is_cuboid() ? cell.first : cell.fine};
   }
-  bool carries(int node) const { return rigid ? slot_of(node) >= 0 : is_carrier[node]; }    // points, or centres of their areas
+  bool carries(int node) const { return rigid ? slot_of(node) >= 0 : is_carrier[node]; }    // points
+  // Whether each point is at one particle, as those of a cuboid that deforms are.
+  bool points_are_particles() const { return at_particles; }
   // Corners of a box around the grid and all points, X.
   const Vec3 &least() const { return low; }
   const Vec3 &most() const { return high; }
@@ -191,8 +193,9 @@ class ContactBody {
   std::vector<PointCarrier> point_carriers;    // of all points, one after the other, and one more
   std::vector<int> first_carrier;              // of each point, then of the centre of its area; at the end, the number of all
   std::vector<PointCell> carriers;
-  std::vector<int> by_cell;    // numbers of points, cell by cell, ascending in each
-  std::vector<char> is_carrier;
+  std::vector<int> by_cell;        // numbers of points, cell by cell, ascending in each
+  std::vector<char> is_carrier;    // of particles
+  bool at_particles = false;
   bool has_fine = false;    // points
   bool round = false;
   double stands_out = 0.0, lever = 1.0, radius_of_points = 0.0, hardness_of_line = 1.0;

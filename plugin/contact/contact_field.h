@@ -130,7 +130,7 @@ template <class Contact, class Known> class FieldOf : public ContactField {
       while (contact < contacts.size() && contacts[contact].point < p) ++contact;
       const bool touches = contact < contacts.size() && contacts[contact].point == p;
       while (before < points_before.size() && points_before[before] < p) ++before;
-      if (!owner->has_point(p)) continue;
+      if (!(at_plane() ? owner->has_place_of(p) : owner->has_point(p))) continue;
       const double out = distance(owner->place_of(p, with.arrays.place()));
       const bool is_known = before < points_before.size() && points_before[before] == p;
       if (!touches && out > reach) continue;

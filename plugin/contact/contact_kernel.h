@@ -104,6 +104,8 @@ struct ContactKernels {
   void (*push)(const PushTask &, FieldContact *first, const PointNow *now, int n, PushedBlock &pushed);
   // Computes `n` contacts from `first` on.
   void (*push_at_plane)(const PlaneTask &, PlaneContact *first, int n, PlanePush<double> *pushed);
+  // Adds the forces of these contacts on the particles that carry their points.
+  void (*add_at_plane)(const PointsTask &, const PlaneContact *first, int n, const PlanePush<double> *pushed, PaddedVec3 *on);
   // Looks at the first `n` of the points from `first` on.
   void (*look)(const LookTask &, const PointBefore *first, int n, LookedBlock &looked);
   // Adds the forces of lanes from `first` to `end` - 1 on the host's nodes.

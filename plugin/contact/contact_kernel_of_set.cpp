@@ -222,16 +222,6 @@ void find_points(const PointsTask &task, const FieldContact *first, int n, Point
   }
 }
 
-MDANIM_ALWAYS_INLINE void push_carriers(const PointsTask &task, int one, int last, const Vec3 &force, PaddedVec3 *on)
-{
-  const Four row = {force.x, force.y, force.z, 0.0};
-  for (; one < last; ++one) {
-    const PointCarrier &carrier = task.carriers.all[one];
-    double *const to = &on[task.slot[carrier.slot]].value.x;
-    store(to, load<Four>(to) + carrier.weight * row);
-  }
-}
-
 void add_to_points(const PointsTask &task, const FieldContact *contacts, const PushedBlock &pushed, int first, int end,
                    PaddedVec3 *on)
 {
@@ -262,10 +252,13 @@ void push(const PushTask &task, FieldContact *first, const PointNow *now, int n,
 
 void MDANIM_OF_SET(push_at_plane)(const PlaneTask &task, PlaneContact *first, int n,
                                   PlanePush<double> *pushed);    // contact_plane_of_set.cpp
+void MDANIM_OF_SET(add_at_plane)(const PointsTask &task, const PlaneContact *first, int n, const PlanePush<double> *pushed,
+                                 PaddedVec3 *on);    // contact_plane_of_set.cpp
 void MDANIM_OF_SET(look_at_points)(const LookTask &task, const PointBefore *first, int n,
                                    LookedBlock &looked);    // contact_look_of_set.cpp
 extern const ContactKernels MDANIM_OF_SET(contact_kernels);
 const ContactKernels MDANIM_OF_SET(contact_kernels) = {
-    find_points, push, MDANIM_OF_SET(push_at_plane), MDANIM_OF_SET(look_at_points), add_to_nodes, add_to_points};
+    find_points,  push,         MDANIM_OF_SET(push_at_plane), MDANIM_OF_SET(add_at_plane), MDANIM_OF_SET(look_at_points),
+    add_to_nodes, add_to_points};
 
 }    // namespace mdanim

@@ -69,6 +69,16 @@ MDANIM_ALWAYS_INLINE Four weighted_sum(const PointsTask &task, int one, int last
   return sum;
 }
 
+MDANIM_ALWAYS_INLINE void push_carriers(const PointsTask &task, int one, int last, const Vec3 &force, PaddedVec3 *on)
+{
+  const Four row = {force.x, force.y, force.z, 0.0};
+  for (; one < last; ++one) {
+    const PointCarrier &carrier = task.carriers.all[one];
+    double *const to = &on[task.slot[carrier.slot]].value.x;
+    store(to, load<Four>(to) + carrier.weight * row);
+  }
+}
+
 // Records of doubles, one for each lane, as one record of vectors, and back.
 template <class Vectors, class OfLane> MDANIM_ALWAYS_INLINE void gather_record(const OfLane &record, Vectors &vectors)
 {

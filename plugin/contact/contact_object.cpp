@@ -183,23 +183,41 @@ void ContactObject::find_crushed(const PaddedVec3 *place)
   unchecked = h * std::fabs(least - LEAST) / CHANGE;
 }
 
-// A map that is linear along each axis maps a box into the box around the images of its corners.
-static Box box_of(const PointCell &cell, const ContactObject &owner, const PaddedVec3 *place, bool &is_there)
+// Points of a torn object may be far from the rest of their cells, a line has points alone, and where an object is near planes
+// only those of its particles are here that carry points.
+static Box box_of_points(const PointCell &cell, const ContactObject &owner, const PaddedVec3 *place)
+{
+  Box box;
+  for (int n = cell.first; n < cell.last; ++n) {
+    const int point = owner.body->points_by_cell()[n];
+    if (!owner.has_place_of(point)) continue;
+    const Vec3 x = owner.place_of(point, place);
+    box.include(&x.x);
+  }
+  return box;
+}
+
+// The box around the points of a cell that are here. A map that is linear along each axis maps a box into the box around the
+// images of its corners.
+static Box box_of(const PointCell &cell, const ContactObject &owner, const PaddedVec3 *place)
 {
   const int row = owner.body->row(), layer = owner.body->layer();
   Vec3 corner[8];
-  int missing = 0;
+  int here = 0;
   for (int c = 0; c < 8; ++c) {
     if (owner.is_rigid()) {
       const int i = cell.place % row, j = cell.place % layer / row, k = cell.place / layer;
       corner[c] = owner.rigid.x + owner.rigid.to_space({i + 1.0 * (c & 1), j + 1.0 * (c >> 1 & 1), k + 1.0 * (c >> 2)});
+      ++here;
       continue;
     }
     const int slot = owner.slot[cell.place + (c & 1) + row * (c >> 1 & 1) + layer * (c >> 2)];
-    missing |= slot;
+    here += slot >= 0;
     corner[c] = place[slot].value;
   }
-  is_there = missing >= 0;
+  Box box;
+  if (here == 0) return box;
+  if (here < 8) return box_of_points(cell, owner, place);
   const auto stretch = [&corner](int step, double low, double high) {
     for (int c = 0; c < 8; ++c) {
       if (c & step) continue;
@@ -211,22 +229,7 @@ static Box box_of(const PointCell &cell, const ContactObject &owner, const Padde
   stretch(1, cell.low.x, cell.high.x);
   stretch(2, cell.low.y, cell.high.y);
   stretch(4, cell.low.z, cell.high.z);
-  Box box;
   for (const Vec3 &one : corner) box.include(&one.x);
-  return box;
-}
-
-// Points of a torn object may be far from the rest of their cells, and a line has points alone.
-static Box box_of_points(const PointCell &cell, const ContactObject &owner, const PaddedVec3 *place, bool &is_there)
-{
-  Box box;
-  for (int n = cell.first; n < cell.last; ++n) {
-    const int point = owner.body->points_by_cell()[n];
-    if (!owner.has_point(point)) continue;
-    const Vec3 x = owner.place_of(point, place);
-    box.include(&x.x);
-  }
-  is_there = !box.empty();
   return box;
 }
 
@@ -235,9 +238,8 @@ PointFinder::PointFinder(const ContactObject &owner, const ContactArrays &arrays
   const std::vector<PointCell> &all = owner.body->point_cells();
   cells.reserve(all.size());
   for (int c = 0; c < static_cast<int>(all.size()); ++c) {
-    bool is_there = false;
-    const Box box = (owner.torn || owner.body->is_line() ? box_of_points : box_of)(all[c], owner, arrays.place(), is_there);
-    if (is_there) cells.emplace_back(c, box);
+    const Box box = (owner.torn || owner.body->is_line() ? box_of_points : box_of)(all[c], owner, arrays.place());
+    if (!box.empty()) cells.emplace_back(c, box);
   }
 }
 
@@ -250,7 +252,7 @@ double PointFinder::least_along(const Vec3 &direction) const
   double least = Box::FAR;
   const auto try_points_of = [&](const PointCell &cell) {
     for (int n = cell.first; n < cell.fine; ++n) {    // points that are not fine are close enough for this
-      if (owner.has_point(points[n])) least = std::min(least, dot(direction, owner.place_of(points[n], arrays.place())));
+      if (owner.has_place_of(points[n])) least = std::min(least, dot(direction, owner.place_of(points[n], arrays.place())));
     }
   };
   if (first != cells.end()) try_points_of(owner.body->point_cells()[first->first]);

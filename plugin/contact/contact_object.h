@@ -114,13 +114,16 @@ struct ContactObject {
     return found;
   }
 
-  // Whether all particles that carry a point are here.
+  // Whether all particles that carry a point are here, and those that carry the centre of its area.
   bool has_point(int point) const
   {
-    if (is_rigid()) return slot[0] >= 0;
     const PointCarriers by = carriers_of(point);
-    return by.first < by.middle &&
-           std::all_of(by.first, by.last, [this](const PointCarrier &one) { return slot[one.slot] >= 0; });
+    return by.first < by.middle && are_here(by.first, by.last);
+  }
+  bool has_place_of(int point) const    // without the centre
+  {
+    const PointCarriers by = carriers_of(point);
+    return by.first < by.middle && are_here(by.first, by.middle);
   }
   PointsTask points_at(const PaddedVec3 *at) const { return {all_carriers(), areas(), slot.data(), at}; }
   Vec3 place_by(const PointCarriers &by, const PaddedVec3 *at) const { return weighted_sum(by.first, by.middle, at); }
@@ -146,6 +149,11 @@ struct ContactObject {
   { return first_tag == other.first_tag && (body == other.body || *body == *other.body); }
 
  private:
+  bool are_here(const PointCarrier *first, const PointCarrier *last) const
+  {
+    if (is_rigid()) return slot[0] >= 0;
+    return std::all_of(first, last, [this](const PointCarrier &one) { return slot[one.slot] >= 0; });
+  }
   Vec3 weighted_sum(const PointCarrier *one, const PointCarrier *last, const PaddedVec3 *at) const
   {
     Vec3 x = one->weight * at[slot[one->slot]].value;
@@ -267,7 +275,7 @@ class PointFinder {
  private:
   const ContactObject &owner;
   const ContactArrays &arrays;
-  std::vector<std::pair<int, Box>> cells;    // cells of the body that carry points, if all their particles are here
+  std::vector<std::pair<int, Box>> cells;    // cells of the body, and boxes around those of their points that are here
 };
 
 // Cells on an object's surface, from which a search begins. They are found by the places that they had when this was made.

@@ -44,4 +44,16 @@ void MDANIM_OF_SET(push_at_plane)(const PlaneTask &task, PlaneContact *first, in
   for (int c = 0; c < n; c += LANES) push_four(task, first + c, n - c < LANES ? n - c : LANES, pushed + c);
 }
 
+void MDANIM_OF_SET(add_at_plane)(const PointsTask &task, const PlaneContact *first, int n, const PlanePush<double> *pushed,
+                                 PaddedVec3 *on);
+void MDANIM_OF_SET(add_at_plane)(const PointsTask &task, const PlaneContact *first, int n, const PlanePush<double> *pushed,
+                                 PaddedVec3 *on)
+{
+  for (int c = 0; c < n; ++c) {
+    if (pushed[c].depth <= 0.0) continue;    // it is over
+    const int *const from = &task.carriers.first[2 * first[c].point];
+    push_carriers(task, from[0], from[1], pushed[c].force, on);
+  }
+}
+
 }    // namespace mdanim

@@ -85,8 +85,8 @@ void NearObjects::find_zones()
   for (const auto &[n, p] : near_planes) {
     const ContactBody &body = *all[n].body;
     const ContactPlane &plane = settings.planes[p];
-    const double gap =
-        PlaneField::REACH * skin_now + plane.ahead(skin_now) + CARRIED * body.spacing() + body.overhang() + body.radius();
+    const double carried = body.points_are_particles() ? 0.0 : CARRIED * body.spacing() + body.overhang();
+    const double gap = PlaneField::REACH * skin_now + plane.ahead(skin_now) + carried + body.radius();
     zones[n].push_back({plane.within(gap), -1});
   }
 }

@@ -92,35 +92,48 @@ void PlaneField::push_all(const ContactArrays &arrays, double dt)
 
 void PlaneField::work_ahead(const ContactArrays &arrays, double dt) { push_all(arrays, dt); }
 
+void PlaneField::end(const PlaneContact &contact, std::size_t q, double depth, ContactAccount &account)
+{
+  account.heat += contact.state.memory.stick_energy;
+  account.damped += last_damping_work(contact.state.memory, depth);
+  known[q] = 0;
+  wake.set(q, budget - depth);
+}
+
 void PlaneField::add_forces(ContactArrays &arrays, double dt, ContactAccount &account)
 {
   const bool moves = dt > 0.0;
-  if (moves && ahead.empty()) push_all(arrays, dt);
+  std::vector<PlaneContact> copies;    // in which nothing changes at a setup
+  if (!moves) {
+    copies = contacts;
+    for (std::size_t c = 0; c < copies.size(); ++c) ahead.push_back(push(copies[c], of_contact[c], arrays, dt));
+  } else if (ahead.empty()) {
+    push_all(arrays, dt);
+  }
+  const std::vector<PlaneContact> &now = moves ? contacts : copies;
+  if (arrays.kernels)
+    arrays.kernels->add_at_plane(owner->points_at(arrays.place()), now.data(), static_cast<int>(now.size()), ahead.data(),
+                                 arrays.force());
+  ContactAccount sums;
   std::size_t left = 0;
-  for (std::size_t c = 0; c < contacts.size(); ++c) {
-    PlaneContact copy = contacts[c];    // in which nothing changes at a setup
-    PlaneContact &contact = moves ? contacts[c] : copy;
-    const std::size_t q = of_contact[c];
-    const PlanePush<double> found = moves ? ahead[c] : push(contact, q, arrays, dt);
+  for (std::size_t c = 0; c < now.size(); ++c) {
+    const PlanePush<double> &found = ahead[c];
     if (found.depth <= 0.0) {
-      if (!moves) continue;
-      account.heat += contact.state.memory.stick_energy;
-      account.damped += last_damping_work(contact.state.memory, found.depth);
-      known[q] = 0;
-      wake.set(q, budget - found.depth);
+      if (moves) end(now[c], of_contact[c], found.depth, sums);
       continue;
     }
-    owner->push_point(near[q], found.force, arrays.force());
+    if (!arrays.kernels) owner->push_point(now[c].point, found.force, arrays.force());
     on_plane -= found.force;
-    account.energy += found.energy;
-    account.stick_energy += contact.state.memory.stick_energy;
-    account.heat += found.heat;
-    account.damped += found.damped;
-    account.deepest = std::max(account.deepest, found.depth);
-    ++account.touching;
+    sums.energy += found.energy;
+    sums.stick_energy += now[c].state.memory.stick_energy;
+    sums.heat += found.heat;
+    sums.damped += found.damped;
+    sums.deepest = std::max(sums.deepest, found.depth);
+    ++sums.touching;
     if (moves) keep(c, left);
   }
   if (moves) keep_first(left);
+  account.add(sums);
   if (!plane.moves) return;
   // -F dx with the mean of the forces before and after the step; at the setup of a run nothing has moved.
   if (moves) account.work -= 0.5 * dot(kept_force() + on_plane, plane.of_step);

@@ -46,6 +46,7 @@ class PlaneField : public FieldOf<PlaneContact, std::uint8_t> {
   void begin_step(const ContactArrays &arrays) override;
   PlanePush<double> push(PlaneContact &contact, std::size_t q, const ContactArrays &arrays, double dt) const;
   void push_all(const ContactArrays &arrays, double dt);
+  void end(const PlaneContact &contact, std::size_t q, double depth, ContactAccount &account);
 
   int number;
   const ContactPlane &plane;

@@ -298,8 +298,15 @@ void FixMdanimContact::list()
     }
   if (!std::is_sorted(needed.begin(), needed.end())) std::sort(needed.begin(), needed.end());
   std::vector<ContactParticle> particles;
-  mine.clear();
-  for (const auto &[particle, i] : needed) particles.push_back(particle), mine.push_back(i);
+  mine.clear(), of_object.clear();
+  for (const auto &[particle, i] : needed) {
+    if (of_object.empty() || of_object.back().object != particle.object) {
+      const long first = static_cast<long>(mine.size());
+      of_object.push_back({particle.object, first, first});
+    }
+    particles.push_back(particle), mine.push_back(i);
+    ++of_object.back().end;
+  }
 
   const std::vector<ContactParticle> ascending = shared.share(particles);
   for (const ContactParticle &one : ascending)
@@ -329,11 +336,13 @@ Coordinates FixMdanimContact::places_now()
 template <class Add> void FixMdanimContact::give_forces(const Add &add) const
 {
   const PaddedVec3 *forces = world_of_contact.forces();
-  threads_now.parts(static_cast<long>(mine.size()), NS_OF_PARTICLE, [&](long first, long end) {
-    for (long n = first; n < end; ++n) {
-      if (!world_of_contact.is_pushed(objects[mine[n]])) continue;
-      const Vec3 &force = forces[shared.number_of(n)].value;
-      if ((force.x != 0.0 || force.y != 0.0 || force.z != 0.0) && atom->mask[mine[n]] & groupbit) add(n, force);
+  threads_now.parts(static_cast<long>(mine.size()), NS_OF_PARTICLE, [&](long from, long to) {
+    for (const OwnParticles &own : of_object) {
+      if (!world_of_contact.is_pushed(own.object)) continue;
+      for (long n = std::max(own.first, from); n < std::min(own.end, to); ++n) {
+        const Vec3 &force = forces[shared.number_of(n)].value;
+        if ((force.x != 0.0 || force.y != 0.0 || force.z != 0.0) && atom->mask[mine[n]] & groupbit) add(n, force);
+      }
     }
   });
 }
@@ -383,7 +392,7 @@ std::size_t FixMdanimContact::bytes_of_bodies() const
 std::size_t FixMdanimContact::bytes_of_particles() const
 {
   return world_of_contact.bytes_of_particles() + my_places.bytes() + shared.bytes() + objects.bytes() +
-         mine.capacity() * sizeof(int);
+         mine.capacity() * sizeof(int) + of_object.capacity() * sizeof(OwnParticles);
 }
 
 double FixMdanimContact::memory_usage()

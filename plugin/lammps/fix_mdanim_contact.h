@@ -84,7 +84,12 @@ class FixMdanimContact : public mdanim::FixBase, public mdanim::PassParticipant,
   mdanim::ObjectTable objects;    // at the setup; their particles when lists were made
   std::vector<tagint> lowest;     // tags of objects
   std::vector<int> mine;          // local particles that take part in contacts, in the order of the world of contact
-  mdanim::SharedPlaces shared;    // places of these particles, on all ranks
+  struct OwnParticles {
+    int object;
+    long first, end;    // of `mine`
+  };
+  std::vector<OwnParticles> of_object;    // by ascending objects
+  mdanim::SharedPlaces shared;            // places of these particles, on all ranks
   mdanim::Positions my_places;
   mdanim::Threads threads_now;
 };
