@@ -116,6 +116,7 @@ void ContactBody::add_point(const SurfacePoint &point)
   const Vec3 &normal = point.normal;
   surface.push_back(point);
   area.push_back(point.area);
+  kinds.push_back(point.kind);
   facing.push_back(
       {{normal.x * edges[0], normal.y * edges[1], normal.z * edges[2]}, place(point.cell[0], point.cell[1], point.cell[2])});
   has_fine |= point.kind == PointKind::FINE;
@@ -367,7 +368,7 @@ std::size_t ContactBody::bytes() const
 {
   return place_of_node.capacity() * sizeof(int) + filled.capacity() + surface.capacity() * sizeof(SurfacePoint) +
          depth_grid.capacity() * sizeof(double) + open_parts.capacity() * sizeof(OpenPart) + area.capacity() * sizeof(double) +
-         facing.capacity() * sizeof(PointFacing) + point_carriers.capacity() * sizeof(PointCarrier) +
+         kinds.capacity() + facing.capacity() * sizeof(PointFacing) + point_carriers.capacity() * sizeof(PointCarrier) +
          first_carrier.capacity() * sizeof(int) + carriers.capacity() * sizeof(PointCell) + by_cell.capacity() * sizeof(int) +
          is_carrier.capacity() + sharers.capacity() * sizeof(PointCarrier);
 }

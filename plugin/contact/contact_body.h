@@ -128,6 +128,7 @@ class ContactBody {
   }
   BodyCarriers all_carriers() const { return {point_carriers.data(), first_carrier.data()}; }
   const double *areas() const { return area.data(); }    // of points
+  PointKind kind_of(int point) const { return kinds[point]; }
   const PointFacing *facings() const { return facing.data(); }
   const std::vector<PointCell> &point_cells() const { return carriers; }
   const std::vector<int> &points_by_cell() const { return by_cell; }
@@ -189,6 +190,7 @@ class ContactBody {
   std::vector<std::uint8_t> filled;
   std::vector<SurfacePoint> surface;
   std::vector<double> area;                    // of points, also here: kernels read no SurfacePoint
+  std::vector<PointKind> kinds;                // the same
   std::vector<PointFacing> facing;             // the same
   std::vector<PointCarrier> point_carriers;    // of all points, one after the other, and one more
   std::vector<int> first_carrier;              // of each point, then of the centre of its area; at the end, the number of all

@@ -11,16 +11,23 @@ void ContactField::settle(const ContactArrays &arrays)
     if (wake[q] < NEVER && wake[q] <= budget) look_at(q, arrays, false);
 }
 
-void ContactField::look(const ContactArrays &arrays, double dt, double now)
+void ContactField::find_due(double dt, double now)
 {
   budget = now;
   if (host->is_crushed)
     for (std::size_t q = 0; q < near.size(); ++q)
       if (wake[q] < NEVER && distrusts(q)) wake.set(q, AT_ONCE);
-  if (dt > 0.0)
-    wake.look_below(
-        budget, [this](std::size_t q) { fetch(q); },
-        [&](const std::vector<std::size_t> &points) { look_at_all(points, arrays); });
+  if (dt > 0.0) fetch(wake.find_due(budget));
+}
+
+void ContactField::look(const ContactArrays &arrays, LookBatches &batches)
+{
+  if (!wake.found_due().empty()) look_at_all(wake.found_due(), arrays, batches);
+}
+
+void ContactField::end_looks(const ContactArrays &arrays)
+{
+  wake.settle();
   begin_step(arrays);
 }
 

@@ -20,6 +20,8 @@
 
 namespace mdanim {
 
+class LookBatches;
+
 // Data for new lists of a field.
 struct FieldLists {
   ContactObject &owner, &host;    // the present objects; the host of a plane is the owner
@@ -43,14 +45,18 @@ class ContactField {
   virtual void forget() = 0;
   // Looks at every point without a contact as it is now; no contact begins. For the setup of a run.
   void settle(const ContactArrays &arrays);
-  // The part of a step that fields may do side by side: contacts begin. dt = 0: nothing moves, as at the setup of a run. `now` is
-  // the budget: how much points and host have come nearer since it was 0 [m].
-  void look(const ContactArrays &arrays, double dt, double now);
-  // The budget up to which neither look() nor add_forces() has anything to do.
+  // The part of a step that fields may do side by side, in three turns, so that waits for memory overlap and points of several
+  // fields are looked at together: the points that are due, looks at them, and contacts that begin, once `batches` is finished.
+  // dt = 0: nothing moves, as at the setup of a run. `now` is the budget: how much points and host have come nearer since it was
+  // 0 [m].
+  void find_due(double dt, double now);
+  void look(const ContactArrays &arrays, LookBatches &batches);
+  void end_looks(const ContactArrays &arrays);
+  // The budget up to which a step has nothing to do with the field.
   double rests_until() const { return is_idle() ? wake.least_value() : AT_ONCE; }
   double budget_now() const { return budget; }
   void rest(double now) { budget = now; }
-  // After look(), computes contacts ahead for add_forces(), which otherwise computes them itself.
+  // After end_looks(), computes contacts ahead for add_forces(), which otherwise computes them itself.
   virtual void work_ahead(const ContactArrays &arrays, double dt) = 0;
   // The part of a step that fields do one after the other.
   virtual void add_forces(ContactArrays &arrays, double dt, ContactAccount &account) = 0;
@@ -61,7 +67,7 @@ class ContactField {
 
   virtual std::size_t touching() const = 0;    // number of contacts
   bool is_idle() const { return touching() == 0; }
-  bool has_something() const { return !is_idle() || looks > 0; }      // whether there are forces to add, after look()
+  bool has_something() const { return !is_idle() || looks > 0; }      // whether there are forces to add, after end_looks()
   virtual int cost() const = 0;                                       // of a step, approximately, when lists were made [ns]
   virtual const ContactPlane *at_plane() const { return nullptr; }    // null for a field of two objects
   virtual Vec3 force_on_plane() const { return {}; }                  // in this step
@@ -78,12 +84,12 @@ class ContactField {
   // Looks at a point without a contact: whether a contact begins; otherwise sets when to look again.
   virtual bool look_at(std::size_t q, const ContactArrays &arrays, bool may_begin) = 0;
   // The same for several points; contacts may begin.
-  virtual void look_at_all(const std::vector<std::size_t> &points, const ContactArrays &arrays)
+  virtual void look_at_all(const std::vector<std::size_t> &points, const ContactArrays &arrays, LookBatches &)
   {
     for (const std::size_t q : points) look_at(q, arrays, true);
   }
-  // Has what is known of a point brought into the cache.
-  virtual void fetch(std::size_t q) const = 0;
+  // Has what is known of points brought into the cache.
+  virtual void fetch(const std::vector<std::size_t> &points) const = 0;
   // Whether a point is due in each step while its host is crushed, because looks do not tell when to look again.
   virtual bool distrusts(std::size_t q) const = 0;
   // For the forces of a step, once contacts have begun.
@@ -143,13 +149,14 @@ template <class Contact, class Known> class FieldOf : public ContactField {
     drop_lost_contacts();
   }
 
-  void fetch(std::size_t q) const final
+  void fetch(const std::vector<std::size_t> &points) const final
   {
-    const char *const point = reinterpret_cast<const char *>(&owner->body->points()[near[q]]);
-    __builtin_prefetch(&known[q]);
-    __builtin_prefetch(point);
-    __builtin_prefetch(point + sizeof(SurfacePoint) - 1);
-    __builtin_prefetch(owner->body->carriers_of(near[q]).first);
+    const ContactBody &body = *owner->body;
+    for (const std::size_t q : points) {
+      __builtin_prefetch(&known[q]);
+      __builtin_prefetch(&body.facings()[near[q]]);
+      __builtin_prefetch(body.carriers_of(near[q]).first);
+    }
   }
   void begin(std::size_t q, const Contact &contact)
   {

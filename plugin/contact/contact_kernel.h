@@ -57,26 +57,28 @@ struct PushedBlock {
   PaddedVec3 on_node[27][CONTACT_LANES];
 };
 
-// Looks at points without a contact that few steps of Newton's method find from where they were.
+// Looks at points without a contact that few steps of Newton's method find from where they were: points of objects with one body
+// in hosts with one body.
 struct LookTask {
   Lattice host;
-  const int *slot;    // as those of PushTask
-  const PaddedVec3 *place;
-  double steep;    // as that of pressed(), of the host
+  const PaddedVec3 *place;    // as that of Placed
+  double steep;               // as that of pressed(), of the host
   Ramps ramps;
   bool is_smooth;    // the map
-  PointsTask points;
+  BodyCarriers carriers;
   const PointFacing *facing;    // of each point
   double radius;                // of the surface around each point [m]; such points have no normals
-  int row, layer;               // of the grid of the object whose points these are
+  int row, layer;               // of the grid of the objects whose points these are
   double spacing, own_steep;
-  const Spot<double> *rigid;    // X = 0 of that object if it does not deform, else null
+  bool is_rigid;    // these objects
 };
 
 // A point and X of it, in a cell, where it was found last.
 struct PointBefore {
   int point, cell[3];
   PaddedVec3 X;
+  const int *slot, *own_slot;    // as those of PushTask and PointsTask
+  const Spot<double> *rigid;     // X = 0 of a rigid object whose point it is
 };
 
 struct LookedBlock {

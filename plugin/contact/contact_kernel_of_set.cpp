@@ -216,8 +216,8 @@ void find_points(const PointsTask &task, const FieldContact *first, int n, Point
 {
   for (int c = 0; c < n; ++c) {
     const int point = first[c].point, *const from = &task.carriers.first[2 * point];
-    const Four x = weighted_sum(task, from[0], from[1]);
-    const Four shift = from[1] == from[2] ? Four{} : weighted_sum(task, from[1], from[2]) - x;
+    const auto sum = [&](int one, int last) { return weighted_sum(task.carriers, task.slot, task.place, one, last); };
+    const Four x = sum(from[0], from[1]), shift = from[1] == from[2] ? Four{} : sum(from[1], from[2]) - x;
     now[c] = {{x[0], x[1], x[2]}, {shift[0], shift[1], shift[2]}, task.area[point]};
   }
 }

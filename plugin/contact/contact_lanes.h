@@ -58,11 +58,14 @@ MDANIM_ALWAYS_INLINE Depth<Four> depth_by_splines(const Lattice &host, const Vec
                           [&](int j, int k) { return gather_rows([&](int lane) { return first[lane] + row * j + layer * k; }); });
 }
 
-MDANIM_ALWAYS_INLINE Four weighted_sum(const PointsTask &task, int one, int last)
+// Numbers of particles by their places in grids, for each lane.
+using Slots = const int *[LANES];
+
+MDANIM_ALWAYS_INLINE Four weighted_sum(const BodyCarriers &carriers, const int *slot, const PaddedVec3 *place, int one, int last)
 {
   const auto term = [&](int n) {
-    const PointCarrier &carrier = task.carriers.all[n];
-    return carrier.weight * load<Four>(&task.place[task.slot[carrier.slot]].value.x);
+    const PointCarrier &carrier = carriers.all[n];
+    return carrier.weight * load<Four>(&place[slot[carrier.slot]].value.x);
   };
   Four sum = term(one);
   while (++one < last) sum += term(one);
@@ -98,14 +101,15 @@ struct Places {
   Vec<Four> x, shift;    // of points; to the centres of their areas
 };
 
-MDANIM_ALWAYS_INLINE Places places_of(const PointsTask &task, const int (&point)[LANES])
+MDANIM_ALWAYS_INLINE Places places_of(const BodyCarriers &carriers, const Slots &slot, const PaddedVec3 *place,
+                                      const int (&point)[LANES])
 {
   Four x[LANES], shift[LANES];
 #pragma GCC unroll 8
   for (int lane = 0; lane < LANES; ++lane) {
-    const int *const from = &task.carriers.first[2 * point[lane]];
-    x[lane] = weighted_sum(task, from[0], from[1]);
-    shift[lane] = from[1] == from[2] ? Four{} : weighted_sum(task, from[1], from[2]) - x[lane];
+    const int *const from = &carriers.first[2 * point[lane]];
+    x[lane] = weighted_sum(carriers, slot[lane], place, from[0], from[1]);
+    shift[lane] = from[1] == from[2] ? Four{} : weighted_sum(carriers, slot[lane], place, from[1], from[2]) - x[lane];
   }
   transpose(x[0], x[1], x[2], x[3]);
   transpose(shift[0], shift[1], shift[2], shift[3]);

@@ -13,7 +13,7 @@ constexpr int MOST_GUESSES = 3;
 
 // The sum over the nodes whose numbers begin at slots[lane]. `missing` gets a bit for each lane whose nodes are not all here.
 template <bool SMOOTH>
-MDANIM_ALWAYS_INLINE void evaluate_from(const Weights<Four> &weights, const int *const (&slots)[LANES], long row, long layer,
+MDANIM_ALWAYS_INLINE void evaluate_from(const Weights<Four> &weights, const Slots &slots, long row, long layer,
                                         const PaddedVec3 *place, Spot<Four> &spot, int &missing)
 {
   long least[LANES] = {};
@@ -33,26 +33,23 @@ MDANIM_ALWAYS_INLINE void evaluate_from(const Weights<Four> &weights, const int 
 }
 
 // The outward normals of points, in space, and the edges of the cells that turn them.
-MDANIM_ALWAYS_INLINE Vec<Four> normals_of(const LookTask &task, const int (&point)[LANES], Four &edge, int &missing)
+MDANIM_ALWAYS_INLINE Vec<Four> normals_of(const LookTask &task, const PointBefore *const (&of)[LANES], Four &edge, int &missing)
 {
   Spot<Four> spot;
   edge = constant<Four>(task.spacing);
-  if (task.rigid) {
+  if (task.is_rigid) {
 #pragma GCC unroll 3
-    for (int d = 0; d < 3; ++d) {
-      const Vec3 &K = task.rigid->K[d];
-      spot.K[d] = {constant<Four>(K.x), constant<Four>(K.y), constant<Four>(K.z)};
-    }
+    for (int d = 0; d < 3; ++d) spot.K[d] = gather_rows([&](int lane) { return &of[lane]->rigid->K[d].x; });
   } else {
     Weights<Four> middle;
     for (AxisWeights<Four> &axis : middle) linear_weights(constant<Four>(0.5), Four{}, axis);
-    const int *slots[LANES];
+    Slots slots;
 #pragma GCC unroll 8
-    for (int lane = 0; lane < LANES; ++lane) slots[lane] = task.points.slot + task.facing[point[lane]].place;
-    evaluate_from<false>(middle, slots, task.row, task.layer, task.points.place, spot, missing);
+    for (int lane = 0; lane < LANES; ++lane) slots[lane] = of[lane]->own_slot + task.facing[of[lane]->point].place;
+    evaluate_from<false>(middle, slots, task.row, task.layer, task.place, spot, missing);
     edge = edge * pressed(task.own_steep, spot);
   }
-  const Vec<Four> along = spot.gradient(gather_rows([&](int lane) { return &task.facing[point[lane]].by_cells.x; }));
+  const Vec<Four> along = spot.gradient(gather_rows([&](int lane) { return &task.facing[of[lane]->point].by_cells.x; }));
   const Four length = root(dot(along, along));
   missing |= ALL & ~bits(length > 0.0);
   return (1.0 / length) * along;
@@ -67,7 +64,8 @@ struct Guessed {
   int unsure = 0;    // one bit for each lane whose place takes a search
 };
 
-template <bool SMOOTH> MDANIM_ALWAYS_INLINE void guess(const LookTask &task, const Vec<Four> &x, Guessed &found)
+template <bool SMOOTH>
+MDANIM_ALWAYS_INLINE void guess(const LookTask &task, const Slots &of_host, const Vec<Four> &x, Guessed &found)
 {
   const Lattice &host = task.host;
   const double least = WHOLE_CELL * host.spacing * host.spacing * host.spacing;
@@ -75,9 +73,9 @@ template <bool SMOOTH> MDANIM_ALWAYS_INLINE void guess(const LookTask &task, con
   for (int step = 0; again && step < MOST_GUESSES; ++step) {
     Weights<Four> weights;
     Four cell[3];
-    const int *slots[LANES];
+    Slots slots;
 #pragma GCC unroll 8
-    for (int lane = 0; lane < LANES; ++lane) slots[lane] = task.slot;
+    for (int lane = 0; lane < LANES; ++lane) slots[lane] = of_host[lane];
 #pragma GCC unroll 3
     for (int d = 0; d < 3; ++d) {
       const int along = d == 0 ? 1 : d == 1 ? host.row : host.layer;
@@ -131,22 +129,26 @@ MDANIM_ALWAYS_INLINE void look_at(const LookTask &task, const PointBefore *first
   const Lattice &host = task.host;
   const PointBefore *of[LANES];    // lanes without a point repeat the last one
   int point[LANES];
+  Slots of_host, own;
 #pragma GCC unroll 8
-  for (int lane = 0; lane < LANES; ++lane) of[lane] = first + (lane < n ? lane : n - 1), point[lane] = of[lane]->point;
-  const Places at = places_of(task.points, point);
+  for (int lane = 0; lane < LANES; ++lane) {
+    of[lane] = first + (lane < n ? lane : n - 1);
+    point[lane] = of[lane]->point, of_host[lane] = of[lane]->slot, own[lane] = of[lane]->own_slot;
+  }
+  const Places at = places_of(task.carriers, own, task.place, point);
   Guessed found;
   found.X = gather_rows([&](int lane) { return &of[lane]->X.value.x; });
 #pragma GCC unroll 8
   for (int lane = 0; lane < LANES; ++lane)
 #pragma GCC unroll 3
     for (int d = 0; d < 3; ++d) found.cell[lane][d] = of[lane]->cell[d];
-  guess<SMOOTH>(task, at.x, found);
+  guess<SMOOTH>(task, of_host, at.x, found);
   const Spot<Four> &spot = found.spot;
   const Vec<Four> &X = found.X;
 
   Four turning{};
   Vec<Four> normal;
-  if (task.facing) normal = normals_of(task, point, turning, found.unsure);
+  if (task.facing) normal = normals_of(task, of, turning, found.unsure);
   turning = smaller(turning, constant<Four>(host.spacing));
   const Vec<Four> X_centre = X + spot.to_material(at.shift);
   const Four press = PRESSED * pressed(task.steep, spot), everywhere = constant<Four>(-1e30);

@@ -7,6 +7,8 @@
 namespace mdanim {
 namespace {
 
+// Without friction a contact keeps its depths alone.
+template <bool ROUGH>
 MDANIM_ALWAYS_INLINE void push_four(const PlaneTask &task, PlaneContact *first, int n, PlanePush<double> *pushed)
 {
   int point[LANES];
@@ -21,9 +23,18 @@ MDANIM_ALWAYS_INLINE void push_four(const PlaneTask &task, PlaneContact *first, 
     result[lane] = lane < n ? pushed + lane : &unused;
   }
   const Vec<Four> shift = {constant<Four>(task.shift.x), constant<Four>(task.shift.y), constant<Four>(task.shift.z)};
-  const Vec<Four> x = places_of(task.points, point).x - shift;    // anchors go with the plane
+  Slots slot;
+#pragma GCC unroll 8
+  for (int lane = 0; lane < LANES; ++lane) slot[lane] = task.points.slot;
+  const Vec<Four> x = places_of(task.points.carriers, slot, task.points.place, point).x - shift;    // anchors go with the plane
   PlaneState<Four> state;
-  gather_record([&](int lane) { return of[lane]; }, state);
+  if constexpr (ROUGH) {
+    gather_record([&](int lane) { return of[lane]; }, state);
+  } else {
+    state.memory.offset = gather([&](int lane) { return of[lane]->memory.offset; });
+    state.memory.depth = gather([&](int lane) { return of[lane]->memory.depth; });
+    state.memory.damping = gather([&](int lane) { return of[lane]->memory.damping; });
+  }
   const Four along = task.axis == 0 ? x.x : task.axis == 1 ? x.y : x.z;
   const Four depth = task.sign * (task.at - along) + task.radius, none{};
   const auto down = [&](int axis) { return constant<Four>(axis == task.axis ? -task.sign : -0.0); };
@@ -33,7 +44,16 @@ MDANIM_ALWAYS_INLINE void push_four(const PlaneTask &task, PlaneContact *first, 
 #pragma GCC unroll 8
   for (int lane = 0; lane < LANES; ++lane) to[lane] = lane < n && !(over >> lane & 1) ? of[lane] : &unused_contact.state;
   scatter_record(push, [&](int lane) { return result[lane]; });
-  scatter_record(state, [&](int lane) { return to[lane]; });
+  if constexpr (ROUGH) {
+    scatter_record(state, [&](int lane) { return to[lane]; });
+  } else {
+#pragma GCC unroll 8
+    for (int lane = 0; lane < LANES; ++lane) {
+      ContactMemory<double> &memory = to[lane]->memory;
+      memory.offset = state.memory.offset[lane], memory.depth = state.memory.depth[lane];
+      memory.damping = state.memory.damping[lane];
+    }
+  }
 }
 
 }    // namespace
@@ -41,7 +61,11 @@ MDANIM_ALWAYS_INLINE void push_four(const PlaneTask &task, PlaneContact *first, 
 void MDANIM_OF_SET(push_at_plane)(const PlaneTask &task, PlaneContact *first, int n, PlanePush<double> *pushed);
 void MDANIM_OF_SET(push_at_plane)(const PlaneTask &task, PlaneContact *first, int n, PlanePush<double> *pushed)
 {
-  for (int c = 0; c < n; c += LANES) push_four(task, first + c, n - c < LANES ? n - c : LANES, pushed + c);
+  for (int c = 0; c < n; c += LANES) {
+    const int lanes = n - c < LANES ? n - c : LANES;
+    task.law.friction > 0.0 ? push_four<true>(task, first + c, lanes, pushed + c)
+                            : push_four<false>(task, first + c, lanes, pushed + c);
+  }
 }
 
 void MDANIM_OF_SET(add_at_plane)(const PointsTask &task, const PlaneContact *first, int n, const PlanePush<double> *pushed,

@@ -2,6 +2,7 @@
 
 #include "contact/field_sums.h"
 
+#include "contact/look_batches.h"
 #include "threads/waiting.h"
 
 #include <algorithm>
@@ -52,17 +53,32 @@ void FieldSums::step(std::vector<ContactObject> &objects, ContactArrays &arrays,
     look_and_work_ahead(objects, arrays, threads, dt);
     add_side_by_side(objects, arrays, threads, dt);
   } else {
+    look(0, active.size(), objects, arrays, dt);
     for (std::size_t k = 0; k < active.size(); ++k) {
-      ContactField &field = *active[k].field;
-      if (goes_on_resting(rests[k], objects) && dt > 0.0) continue;
-      if (dt == 0.0) field.settle(arrays);
-      field.look(arrays, dt, rests[k].budget);
-      rests[k].has_something = true;
+      if (!rests[k].has_something) continue;
+      active[k].field->end_looks(arrays);
       add_forces(k, objects, arrays, dt);
     }
   }
   for (std::size_t k = 0; k < active.size(); ++k)
     if (rests[k].has_something) account.add(active[k].of_step);
+}
+
+// Looks at the points that are due, of fields from `first` to `end` - 1 that do not rest.
+void FieldSums::look(std::size_t first, std::size_t end, const std::vector<ContactObject> &objects, const ContactArrays &arrays,
+                     double dt)
+{
+  for (std::size_t k = first; k < end; ++k) {
+    ContactField &field = *active[k].field;
+    if (goes_on_resting(rests[k], objects) && dt > 0.0) continue;
+    if (dt == 0.0) field.settle(arrays);
+    field.find_due(dt, rests[k].budget);
+    rests[k].has_something = true;
+  }
+  LookBatches batches(arrays);
+  for (std::size_t k = first; k < end; ++k)
+    if (rests[k].has_something) active[k].field->look(arrays, batches);
+  batches.finish();
 }
 
 // The work that fields do independently. Their contributions to shared particles and sums are added afterwards, in one order.
@@ -71,10 +87,12 @@ void FieldSums::look_and_work_ahead(const std::vector<ContactObject> &objects, c
 {
   threads.parts(costs.back(), 1.0, [&](long from, long to) {    // costs are in ns, approximately
     const auto number = [&](long cost) { return std::lower_bound(costs.begin(), costs.end() - 1, cost) - costs.begin(); };
-    for (long k = number(from), end = number(to); k < end; ++k) {
-      if (goes_on_resting(rests[k], objects)) continue;
+    const std::size_t first = number(from), end = number(to);
+    look(first, end, objects, arrays, dt);
+    for (std::size_t k = first; k < end; ++k) {
+      if (!rests[k].has_something) continue;
       ContactField &field = *active[k].field;
-      field.look(arrays, dt, rests[k].budget);
+      field.end_looks(arrays);
       field.work_ahead(arrays, dt);
       rests[k].has_something = field.has_something();
       if (!rests[k].has_something) rests[k].until = field.rests_until();

@@ -18,6 +18,11 @@ class LatticeField : public ObjectField {
 
   void list(const FieldLists &with) override;
 
+  // For looks at points of several fields.
+  LookTask look_task(bool is_smooth, const ContactArrays &arrays) const;
+  bool looks_like(const LatticeField &other) const { return host->body == other.host->body && owner->body == other.owner->body; }
+  void take_look(std::size_t q, const LookedBlock &looked, int lane, const ContactArrays &arrays);
+
  private:
   static Verdict lost();
   bool start(const Vec3 &x, const Moment &at, const ContactArrays &arrays, PointTrack &track, std::array<int, 3> &cell,
@@ -25,11 +30,10 @@ class LatticeField : public ObjectField {
   bool is_surely_apart(std::size_t q, const Vec3 &x, const Moment &at, PointTrack &track, Verdict &verdict) const;
   Verdict sight(std::size_t q, const Moment &at, const ContactArrays &arrays, PointTrack &track, Vec3 &X) const;
   bool is_near(std::size_t q, const Moment &at, const ContactArrays &arrays, Verdict &verdict);
-  LookTask look_task(bool is_smooth, const ContactArrays &arrays) const;
   bool look_closely(std::size_t q, const ContactArrays &arrays, bool may_begin);
   void put_off(std::size_t q, double slack);
   bool look_at(std::size_t q, const ContactArrays &arrays, bool may_begin) override;
-  void look_at_all(const std::vector<std::size_t> &points, const ContactArrays &arrays) override;
+  void look_at_all(const std::vector<std::size_t> &points, const ContactArrays &arrays, LookBatches &batches) override;
   Fate push(FieldContact &contact, std::size_t q, const PushTask &task, const PointNow &now, ContactArrays &arrays,
             ContactAccount &account) const override;
 };

@@ -5,6 +5,7 @@
 
 #include "contact/contact_birth.h"
 #include "contact/lattice_field.h"
+#include "contact/look_batches.h"
 
 #include <algorithm>
 #include <cmath>
@@ -146,61 +147,53 @@ LookTask LatticeField::look_task(bool is_smooth, const ContactArrays &arrays) co
 {
   const ContactBody &body = *host->body, &own = *owner->body;
   return {body.lattice(),
-          host->host_slots().data(),
           arrays.place(),
           body.steepness(),
           ramps_of(body, is_smooth ? PointKind::SHARP : PointKind::FLAT),
           is_smooth,
-          owner->points_at(arrays.place()),
+          own.all_carriers(),
           own.is_line() ? nullptr : own.facings(),
           own.radius(),
           own.row(),
           own.layer(),
           own.spacing(),
           own.steepness(),
-          own.frame() ? &owner->rigid : nullptr};
+          own.frame().has_value()};
+}
+
+void LatticeField::take_look(std::size_t q, const LookedBlock &looked, int lane, const ContactArrays &arrays)
+{
+  PointTrack &track = known[q];
+  PointTrack there = track;
+  there.move_to({looked.cell[lane][0], looked.cell[lane][1], looked.cell[lane][2]}, looked.X[lane].value);
+  if (looked.sure >> lane & 1 && PointSearch(*host, arrays.now()).confirm_cell(there, looked.x[lane].value, budget)) {
+    track = there;
+    put_off(q, looked.slack[lane]);
+  } else {
+    look_closely(q, arrays, true);
+  }
 }
 
 // Several at once tell most of them apart from the host; others are looked at one by one.
-void LatticeField::look_at_all(const std::vector<std::size_t> &points, const ContactArrays &arrays)
+void LatticeField::look_at_all(const std::vector<std::size_t> &points, const ContactArrays &arrays, LookBatches &batches)
 {
-  if (!arrays.kernels || host->is_crushed || host->body->has_covers() || owner->torn) return FieldOf::look_at_all(points, arrays);
-  const Moment now = arrays.now();
-  for (const bool by_splines : {false, true}) {
-    const LookTask task = look_task(by_splines, arrays);
-    PointBefore before[CONTACT_LANES];
-    std::size_t of[CONTACT_LANES];
-    int n = 0;
-    const auto look = [&] {
-      LookedBlock looked;
-      arrays.kernels->look(task, before, n, looked);
-      for (int lane = 0; lane < n; ++lane) {
-        PointTrack &track = known[of[lane]];
-        PointTrack there = track;
-        there.move_to({looked.cell[lane][0], looked.cell[lane][1], looked.cell[lane][2]}, looked.X[lane].value);
-        if (looked.sure >> lane & 1 && PointSearch(*host, now).confirm_cell(there, looked.x[lane].value, budget)) {
-          track = there;
-          put_off(of[lane], looked.slack[lane]);
-        } else {
-          look_closely(of[lane], arrays, true);
-        }
-      }
-      n = 0;
-    };
-    for (const std::size_t q : points) {
-      if (is_smooth(*host->body, surface_point(q).kind) != by_splines) continue;
-      ++looks;
-      Verdict verdict;
-      if (!is_near(q, now, arrays, verdict)) {
-        put_off(q, verdict.slack);
-        continue;
-      }
-      const PointTrack &track = known[q];
-      before[n] = {near[q], {track.cell[0], track.cell[1], track.cell[2]}, {track.X}};
-      of[n++] = q;
-      if (n == CONTACT_LANES) look();
+  if (!arrays.kernels || host->is_crushed || host->body->has_covers() || owner->torn)
+    return FieldOf::look_at_all(points, arrays, batches);
+  for (const std::size_t q : points) {
+    ++looks;
+    Verdict verdict;
+    if (!is_near(q, arrays.now(), arrays, verdict)) {
+      put_off(q, verdict.slack);
+      continue;
     }
-    if (n > 0) look();
+    const PointTrack &track = known[q];
+    batches.add(*this, q, is_smooth(*host->body, owner->body->kind_of(near[q])),
+                {near[q],
+                 {track.cell[0], track.cell[1], track.cell[2]},
+                 {track.X},
+                 host->host_slots().data(),
+                 owner->slot.data(),
+                 &owner->rigid});
   }
 }
 

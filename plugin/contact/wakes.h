@@ -34,29 +34,32 @@ class Wakes {
     least_of[q / BLOCK] = std::min(least_of[q / BLOCK], at);
     least = std::min(least, at);
   }
-  // Calls look(points), which sets the values of these points anew, with all points whose value a budget exceeds, ascending;
-  // before that, fetch(q) for each of them, so that waits for memory overlap.
-  template <class Fetch, class Look> void look_below(double budget, const Fetch &fetch, const Look &look)
+  // Finds all points whose value a budget exceeds, ascending. Their values must then be set anew, and settle() must be called.
+  const std::vector<std::size_t> &find_due(double budget)
   {
-    if (!(least < budget)) return;
     due_blocks.clear(), due.clear();
-    double least_left = NEVER;
+    if (!(least < budget)) return due;
+    least = NEVER;
     for (std::size_t block = 0; block < least_of.size(); ++block)
       if (least_of[block] < budget) {
         __builtin_prefetch(&wake[block * BLOCK]);
         due_blocks.push_back(block);
       } else {
-        least_left = std::min(least_left, least_of[block]);
+        least = std::min(least, least_of[block]);
       }
     for (const std::size_t block : due_blocks)
       for (std::size_t q = block * BLOCK; q < end_of(block); ++q)
-        if (wake[q] < budget) fetch(q), due.push_back(q);
-    look(due);
+        if (wake[q] < budget) due.push_back(q);
+    return due;
+  }
+  const std::vector<std::size_t> &found_due() const { return due; }
+  void settle()
+  {
     for (const std::size_t block : due_blocks) {
       least_of[block] = *std::min_element(wake.begin() + block * BLOCK, wake.begin() + end_of(block));
-      least_left = std::min(least_left, least_of[block]);
+      least = std::min(least, least_of[block]);
     }
-    least = least_left;
+    due_blocks.clear(), due.clear();
   }
   std::size_t bytes() const { return (wake.capacity() + least_of.capacity()) * sizeof(double); }
 
@@ -67,7 +70,7 @@ class Wakes {
   std::vector<double> wake, least_of;    // value of each point; for each block of points the least of them, or less
   double least = NEVER;                  // least of all values, or less
   double early = 0.0;
-  std::vector<std::size_t> due_blocks, due;    // while points are looked at
+  std::vector<std::size_t> due_blocks, due;    // from find_due() to settle()
 };
 
 }    // namespace mdanim

@@ -292,7 +292,7 @@ void FixMdanimContact::list()
   std::vector<std::pair<ContactParticle, int>> needed;    // and local indices
   if (!world_of_contact.near.none())
     for (int i = 0; i < nlocal; ++i) {
-      if (objects[i] < 0) continue;
+      if (objects[i] < 0 || !world_of_contact.near.has_zones(objects[i])) continue;
       const ContactParticle particle{objects[i], static_cast<int>(atom->tag[i] - lowest[objects[i]])};
       if (world_of_contact.near.needs(particle, vec3(atom->x[i]))) needed.push_back({particle, i});
     }
