@@ -267,14 +267,19 @@ void ContactBody::find_carriers()
   first_carrier.push_back(now());
   point_carriers.push_back({});    // the end of the last point has an address
   point_carriers.shrink_to_fit();
-  std::vector<char> has_weight(slots(), 0);
   at_particles = !rigid;
-  for (int p = 0; p < static_cast<int>(surface.size()); ++p) {
-    const PointCarriers by = carriers_of(p);
-    at_particles = at_particles && by.middle - by.first == 1;
-    for (const PointCarrier *one = by.first; one < by.middle; ++one) has_weight[one->slot] = 1;
+  for (std::size_t p = 0; at_particles && p < surface.size(); ++p)
+    at_particles = first_carrier[2 * p + 1] - first_carrier[2 * p] == 1;
+  std::vector<char> bears(slots(), 0);
+  for (int p = 0; !rigid && p < static_cast<int>(surface.size()); ++p) {
+    const int (&cell)[3] = surface[p].cell, low = place(cell[0], cell[1], cell[2]);
+    if (at_particles)
+      bears[carriers_of(p).first->slot] = 1;
+    else
+      for (int corner = 0; corner < 8; ++corner)
+        bears[low + (corner & 1) + row() * (corner >> 1 & 1) + layer() * (corner >> 2)] = 1;
   }
-  for (const int at : place_of_node) is_carrier.push_back(has_weight[at]);
+  for (const int at : place_of_node) is_carrier.push_back(bears[at]);
 }
 
 void ContactBody::sort_points()

@@ -139,7 +139,7 @@ class ContactBody {
     if (on_flat) return {has_fine ? cell.fine : cell.first, cell.last};
     return {cell.first, is_cuboid() ? cell.first : cell.fine};
   }
-  bool carries(int node) const { return rigid ? slot_of(node) >= 0 : is_carrier[node]; }    // points
+  bool carries(int node) const { return rigid ? slot_of(node) >= 0 : is_carrier[node]; }    // points, with their cells
   // Whether each point is at one particle, as those of a cuboid that deforms are.
   bool points_are_particles() const { return at_particles; }
   // Corners of a box around the grid and all points, X.

@@ -51,6 +51,9 @@ class ContactField {
   // 0 [m].
   void find_due(double dt, double now);
   void look(const ContactArrays &arrays, LookBatches &batches);
+  // Has what find_due() reads first brought into the cache, and what the contacts keep.
+  void fetch_wakes() const { wake.fetch(); }
+  virtual void fetch_contacts() const = 0;
   void end_looks(const ContactArrays &arrays);
   // The budget up to which a step has nothing to do with the field.
   double rests_until() const { return is_idle() ? wake.least_value() : AT_ONCE; }
@@ -112,6 +115,12 @@ template <class Contact, class Known> class FieldOf : public ContactField {
   void restore(std::vector<Contact> rows) { contacts = std::move(rows); }
   std::size_t touching() const final { return contacts.size(); }
   void put_rows(ByteWriter &writer) const final { writer.put_all(contacts); }
+  void fetch_contacts() const final
+  {
+    constexpr std::size_t LINE = 64, MOST = 4096;    // more is read ahead by the processor
+    const char *const first = reinterpret_cast<const char *>(contacts.data());
+    for (std::size_t n = 0; n < std::min(MOST, contacts.size() * sizeof(Contact)); n += LINE) __builtin_prefetch(first + n);
+  }
   void forget() final
   {
     near.clear(), wake.clear(), known.clear(), of_contact.clear();

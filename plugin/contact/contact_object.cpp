@@ -217,7 +217,7 @@ static Box box_of(const PointCell &cell, const ContactObject &owner, const Padde
   }
   Box box;
   if (here == 0) return box;
-  if (here < 8) return box_of_points(cell, owner, place);
+  if (here < 8) return owner.body->points_are_particles() ? box_of_points(cell, owner, place) : box;
   const auto stretch = [&corner](int step, double low, double high) {
     for (int c = 0; c < 8; ++c) {
       if (c & step) continue;

@@ -53,32 +53,50 @@ void FieldSums::step(std::vector<ContactObject> &objects, ContactArrays &arrays,
     look_and_work_ahead(objects, arrays, threads, dt);
     add_side_by_side(objects, arrays, threads, dt);
   } else {
-    look(0, active.size(), objects, arrays, dt);
-    for (std::size_t k = 0; k < active.size(); ++k) {
-      if (!rests[k].has_something) continue;
-      active[k].field->end_looks(arrays);
-      add_forces(k, objects, arrays, dt);
-    }
+    look(0, active.size(), objects, arrays, dt, [&](std::size_t k) { add_forces(k, objects, arrays, dt); });
   }
   for (std::size_t k = 0; k < active.size(); ++k)
     if (rests[k].has_something) account.add(active[k].of_step);
 }
 
-// Looks at the points that are due, of fields from `first` to `end` - 1 that do not rest.
-void FieldSums::look(std::size_t first, std::size_t end, const std::vector<ContactObject> &objects, const ContactArrays &arrays,
-                     double dt)
+// Has what a step reads of a field brought into the cache, some fields ahead: of most fields a step reads little, and waits for
+// it.
+template <class Fetch> static void fetch_ahead(const std::vector<ContactField *> &awake, std::size_t n, const Fetch &fetch)
 {
+  constexpr std::size_t AHEAD = 4, LINE = 64, LINES = 6;
+  if (n + 2 * AHEAD < awake.size()) {
+    const char *const field = reinterpret_cast<const char *>(awake[n + 2 * AHEAD]);
+    for (std::size_t line = 0; line < LINES; ++line) __builtin_prefetch(field + LINE * line);
+  }
+  if (n + AHEAD < awake.size()) fetch(*awake[n + AHEAD]);
+}
+
+// Looks at the points that are due, of fields from `first` to `end` - 1 that do not rest. Then calls work(k) for each of these
+// fields.
+template <class Work>
+void FieldSums::look(std::size_t first, std::size_t end, const std::vector<ContactObject> &objects, const ContactArrays &arrays,
+                     double dt, const Work &work)
+{
+  std::vector<ContactField *> awake;
+  std::vector<std::size_t> number;
   for (std::size_t k = first; k < end; ++k) {
-    ContactField &field = *active[k].field;
     if (goes_on_resting(rests[k], objects) && dt > 0.0) continue;
-    if (dt == 0.0) field.settle(arrays);
-    field.find_due(dt, rests[k].budget);
     rests[k].has_something = true;
+    awake.push_back(active[k].field), number.push_back(k);
+  }
+  for (std::size_t n = 0; n < awake.size(); ++n) {
+    fetch_ahead(awake, n, [](const ContactField &field) { field.fetch_wakes(); });
+    if (dt == 0.0) awake[n]->settle(arrays);
+    awake[n]->find_due(dt, rests[number[n]].budget);
   }
   LookBatches batches(arrays);
-  for (std::size_t k = first; k < end; ++k)
-    if (rests[k].has_something) active[k].field->look(arrays, batches);
+  for (ContactField *field : awake) field->look(arrays, batches);
   batches.finish();
+  for (std::size_t n = 0; n < awake.size(); ++n) {
+    fetch_ahead(awake, n, [](const ContactField &field) { field.fetch_contacts(); });
+    awake[n]->end_looks(arrays);
+    work(number[n]);
+  }
 }
 
 // The work that fields do independently. Their contributions to shared particles and sums are added afterwards, in one order.
@@ -87,16 +105,12 @@ void FieldSums::look_and_work_ahead(const std::vector<ContactObject> &objects, c
 {
   threads.parts(costs.back(), 1.0, [&](long from, long to) {    // costs are in ns, approximately
     const auto number = [&](long cost) { return std::lower_bound(costs.begin(), costs.end() - 1, cost) - costs.begin(); };
-    const std::size_t first = number(from), end = number(to);
-    look(first, end, objects, arrays, dt);
-    for (std::size_t k = first; k < end; ++k) {
-      if (!rests[k].has_something) continue;
+    look(number(from), number(to), objects, arrays, dt, [&](std::size_t k) {
       ContactField &field = *active[k].field;
-      field.end_looks(arrays);
       field.work_ahead(arrays, dt);
       rests[k].has_something = field.has_something();
       if (!rests[k].has_something) rests[k].until = field.rests_until();
-    }
+    });
   });
 }
 

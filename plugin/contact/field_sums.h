@@ -47,8 +47,9 @@ class FieldSums {
   };
   static bool goes_on_resting(Rest &rest, const std::vector<ContactObject> &objects);
   void add_forces(std::size_t k, std::vector<ContactObject> &objects, ContactArrays &arrays, double dt);
-  void look(std::size_t first, std::size_t end, const std::vector<ContactObject> &objects, const ContactArrays &arrays,
-            double dt);
+  template <class Work>
+  void look(std::size_t first, std::size_t end, const std::vector<ContactObject> &objects, const ContactArrays &arrays, double dt,
+            const Work &work);
   void look_and_work_ahead(const std::vector<ContactObject> &objects, const ContactArrays &arrays, const Threads &threads,
                            double dt);
   void order(std::size_t objects);

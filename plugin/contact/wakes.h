@@ -61,6 +61,11 @@ class Wakes {
     }
     due_blocks.clear(), due.clear();
   }
+  // Has the least values brought into the cache.
+  void fetch() const
+  {
+    for (std::size_t block = 0; block < least_of.size(); block += BLOCK) __builtin_prefetch(&least_of[block]);
+  }
   std::size_t bytes() const { return (wake.capacity() + least_of.capacity()) * sizeof(double); }
 
  private:
