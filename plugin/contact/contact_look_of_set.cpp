@@ -55,7 +55,8 @@ MDANIM_ALWAYS_INLINE Vec<Four> normals_of(const LookTask &task, const PointBefor
   return (1.0 / length) * along;
 }
 
-// X of points in the host by steps of Newton's method.
+// X of points in the host by steps of Newton's method. A lane that has its place repeats the same numbers, so that no lane
+// depends on the others.
 struct Guessed {
   Vec<Four> X;
   Four off;    // from the last guess
@@ -69,6 +70,7 @@ MDANIM_ALWAYS_INLINE void guess(const LookTask &task, const Slots &of_host, cons
 {
   const Lattice &host = task.host;
   const double least = WHOLE_CELL * host.spacing * host.spacing * host.spacing;
+  Vec<Four> from = found.X;
   int again = ALL;
   for (int step = 0; again && step < MOST_GUESSES; ++step) {
     Weights<Four> weights;
@@ -82,12 +84,12 @@ MDANIM_ALWAYS_INLINE void guess(const LookTask &task, const Slots &of_host, cons
       cell[d] = gather([&](int lane) { return static_cast<double>(found.cell[lane][d]); });
       if (SMOOTH) {
         int middle[LANES];
-        const Four node = middle_nodes(component(found.X, d), host.cells[d], middle);
-        smooth_weights(component(found.X, d), node, host.cells[d], weights[d]);
+        const Four node = middle_nodes(component(from, d), host.cells[d], middle);
+        smooth_weights(component(from, d), node, host.cells[d], weights[d]);
 #pragma GCC unroll 8
         for (int lane = 0; lane < LANES; ++lane) slots[lane] += (middle[lane] - 1) * along;
       } else {
-        linear_weights(component(found.X, d), cell[d], weights[d]);
+        linear_weights(component(from, d), cell[d], weights[d]);
 #pragma GCC unroll 8
         for (int lane = 0; lane < LANES; ++lane) slots[lane] += found.cell[lane][d] * along;
       }
@@ -96,7 +98,7 @@ MDANIM_ALWAYS_INLINE void guess(const LookTask &task, const Slots &of_host, cons
     evaluate_from<SMOOTH>(weights, slots, host.row, host.layer, task.place, found.spot, missing);
     const Vec<Four> change = found.spot.to_material(x - found.spot.x);
     const Four square = dot(change, change);
-    found.X += change;
+    found.X = from + change;
     found.off = root(square);
     found.unsure |= missing | (ALL & ~bits((found.spot.det > least) & (square < 1.0)));
     again = ALL & ~bits(square < NEAR_PLACE * NEAR_PLACE);
@@ -112,6 +114,8 @@ MDANIM_ALWAYS_INLINE void guess(const LookTask &task, const Slots &of_host, cons
           step_to_neighbour(host, found.cell[lane], {found.X.x[lane], found.X.y[lane], found.X.z[lane]}, LEFT))
         again |= 1 << lane;
     again &= ~found.unsure;
+    const auto goes_on = gather([&](int lane) { return static_cast<double>(again >> lane & 1); }) > 0.0;
+    from = {pick(goes_on, found.X.x, from.x), pick(goes_on, found.X.y, from.y), pick(goes_on, found.X.z, from.z)};
   }
   found.unsure |= again;
   Four away{};

@@ -12,8 +12,8 @@ from mdanim_lammps.run.prepare import prepare
 from mdanim_lammps.scene.parse import load_scene
 from paths import SCENES
 
-LOOKS = 14
-"""Entry of the fix's vector."""
+TOUCHING, BYTES_OF_PARTICLES, LOOKS = 5, 13, 14
+"""Entries of the fix's vector."""
 SOLID = "density 1000  elasticity 0.2 MPa"
 PAIRS = {
     "boxes": ("box (6, 6, 6) cm  orientation axis (1, 1, 0) angle 5 deg", 6.6),
@@ -21,6 +21,7 @@ PAIRS = {
     "ball over box": ("sphere 3 cm", 6.3),
 }
 """Shape of the upper object, and its height [cm]; the lower one has that of `LOWER`."""
+END_OF_CUBE = "gravity (0, 0, -9.81)\ncontrol { time 1 s  resolution 1 cm }"
 LOWER = {"boxes": "box (6, 6, 6) cm", "balls": "sphere 3 cm", "ball over box": "box (6, 6, 6) cm"}
 
 
@@ -137,3 +138,13 @@ def film_of_stairs(skins: float) -> list[bytes]:
 def test_contacts_with_what_is_held_begin_in_the_same_steps_however_often_lists_are_made():
     """The normal of a point is known before it comes to a side of the host."""
     assert film_of_stairs(1.0) == film_of_stairs(0.4)
+
+
+def test_on_the_ground_a_cube_takes_part_with_its_lowest_particles(prepared):
+    """A point of a cuboid is a particle. With all that is near the ground a cube of 6^3 cells would take twice the room."""
+    ready = prepared(f"ground z 0\nobject a {{ shape box (6, 6, 6) cm position (0, 0, 3) cm {SOLID} }}\n{END_OF_CUBE}")
+    with Instance(ready.plan) as instance:
+        instance.setup()
+        instance.run(2)
+        assert instance.fix_value("ground", TOUCHING) == 7 * 7 + 4 * 7
+        assert instance.fix_value("ground", BYTES_OF_PARTICLES) < 18_000
