@@ -45,6 +45,22 @@ template <class Visit> static void each_inside(const Lattice &grid, const Visit 
       }
 }
 
+// Of points of a kind.
+static bool normals_differ(const std::vector<SurfacePoint> &surface, PointKind kind)
+{
+  constexpr double SAME = 1e-6;    // square of the difference of two normals: neighbours of a ball of 100 cells across have 4e-5
+  std::vector<Vec3> normal;
+  for (const SurfacePoint &point : surface)
+    if (point.kind == kind) normal.push_back(point.normal);
+  std::sort(normal.begin(), normal.end(), [](const Vec3 &a, const Vec3 &b) { return a.x < b.x; });
+  for (std::size_t i = 0; i < normal.size(); ++i)
+    for (std::size_t j = i + 1; j < normal.size() && (normal[j].x - normal[i].x) * (normal[j].x - normal[i].x) < SAME; ++j) {
+      const Vec3 apart = normal[j] - normal[i];
+      if (dot(apart, apart) < SAME) return false;
+    }
+  return true;
+}
+
 ContactBody::ContactBody(const ContactBodyArrays &given)
 {
   need(given.particles > 0 && given.points >= 0, "it has no particles, or less than no points");
@@ -108,7 +124,7 @@ ContactBody::ContactBody(const ContactBodyArrays &given)
   take_open_parts(given);
   find_carriers();
   sort_points();
-  round = !is_cuboid() && !is_line() && normals_differ(PointKind::DENSE) && normals_differ(PointKind::FINE);
+  round = !is_cuboid() && !is_line() && normals_differ(surface, PointKind::DENSE) && normals_differ(surface, PointKind::FINE);
 }
 
 void ContactBody::add_point(const SurfacePoint &point)
@@ -116,25 +132,9 @@ void ContactBody::add_point(const SurfacePoint &point)
   const Vec3 &normal = point.normal;
   surface.push_back(point);
   area.push_back(point.area);
-  kinds.push_back(point.kind);
   facing.push_back(
       {{normal.x * edges[0], normal.y * edges[1], normal.z * edges[2]}, place(point.cell[0], point.cell[1], point.cell[2])});
   has_fine |= point.kind == PointKind::FINE;
-}
-
-bool ContactBody::normals_differ(PointKind kind) const
-{
-  constexpr double SAME = 1e-6;    // square of the difference of two normals: neighbours of a ball of 100 cells across have 4e-5
-  std::vector<Vec3> normal;
-  for (const SurfacePoint &point : surface)
-    if (point.kind == kind) normal.push_back(point.normal);
-  std::sort(normal.begin(), normal.end(), [](const Vec3 &a, const Vec3 &b) { return a.x < b.x; });
-  for (std::size_t i = 0; i < normal.size(); ++i)
-    for (std::size_t j = i + 1; j < normal.size() && (normal[j].x - normal[i].x) * (normal[j].x - normal[i].x) < SAME; ++j) {
-      const Vec3 apart = normal[j] - normal[i];
-      if (dot(apart, apart) < SAME) return false;
-    }
-  return true;
 }
 
 void ContactBody::take_line(const ContactBodyArrays &given)
@@ -262,24 +262,12 @@ void ContactBody::find_carriers()
     first_carrier.push_back(now());
     if (point.kind != PointKind::INNER) add_carriers(point, point.at);
     first_carrier.push_back(now());
+    at_particles &= now() - first_carrier[first_carrier.size() - 2] == 1;
     if (point.kind == PointKind::SHARP) add_carriers(point, point.centre);
   }
   first_carrier.push_back(now());
   point_carriers.push_back({});    // the end of the last point has an address
   point_carriers.shrink_to_fit();
-  at_particles = !rigid;
-  for (std::size_t p = 0; at_particles && p < surface.size(); ++p)
-    at_particles = first_carrier[2 * p + 1] - first_carrier[2 * p] == 1;
-  std::vector<char> bears(slots(), 0);
-  for (int p = 0; !rigid && p < static_cast<int>(surface.size()); ++p) {
-    const int (&cell)[3] = surface[p].cell, low = place(cell[0], cell[1], cell[2]);
-    if (at_particles)
-      bears[carriers_of(p).first->slot] = 1;
-    else
-      for (int corner = 0; corner < 8; ++corner)
-        bears[low + (corner & 1) + row() * (corner >> 1 & 1) + layer() * (corner >> 2)] = 1;
-  }
-  for (const int at : place_of_node) is_carrier.push_back(bears[at]);
 }
 
 void ContactBody::sort_points()
@@ -291,13 +279,19 @@ void ContactBody::sort_points()
   std::stable_sort(by_cell.begin(), by_cell.end(), [&](int p, int q) {
     return low_corner(p) != low_corner(q) ? low_corner(p) < low_corner(q) : is_fine(p) < is_fine(q);
   });
+  std::vector<char> is_corner(places(), 0);
   low = {}, high = {1.0 * cells[0], 1.0 * cells[1], 1.0 * cells[2]};
   for (int n = 0; n < static_cast<int>(by_cell.size()); ++n) {
     const int p = by_cell[n], first = low_corner(p);
     const Vec3 &at = surface[p].at;
     low = {std::min(low.x, at.x), std::min(low.y, at.y), std::min(low.z, at.z)};
     high = {std::max(high.x, at.x), std::max(high.y, at.y), std::max(high.z, at.z)};
-    if (carriers.empty() || carriers.back().place != first) { carriers.push_back({first, n, n, n, {}, {}}); }
+    if (carriers.empty() || carriers.back().place != first) {
+      carriers.push_back({first, n, n, n, {}, {}});
+      for (int corner = 0; corner < 8 && !at_particles; ++corner)
+        is_corner[first + (corner & 1) + row() * (corner >> 1 & 1) + layer() * (corner >> 2)] = 1;
+    }
+    if (at_particles) is_corner[carriers_of(p).first->slot] = 1;
     PointCell &cell = carriers.back();
     const Vec3 from_corner = surface[p].at - Vec3{1.0 * surface[p].cell[0], 1.0 * surface[p].cell[1], 1.0 * surface[p].cell[2]};
     if (cell.first == n) cell.low = cell.high = from_corner;
@@ -313,6 +307,7 @@ void ContactBody::sort_points()
     unite(from_corner.y, cell.low.y, cell.high.y, edges[1]);
     unite(from_corner.z, cell.low.z, cell.high.z, edges[2]);
   }
+  for (const int at : place_of_node) is_carrier.push_back(is_corner[at]);
   if (rigid) stands_out = 0.0;    // boxes of rigid objects are around their surfaces
 }
 
@@ -373,7 +368,7 @@ std::size_t ContactBody::bytes() const
 {
   return place_of_node.capacity() * sizeof(int) + filled.capacity() + surface.capacity() * sizeof(SurfacePoint) +
          depth_grid.capacity() * sizeof(double) + open_parts.capacity() * sizeof(OpenPart) + area.capacity() * sizeof(double) +
-         kinds.capacity() + facing.capacity() * sizeof(PointFacing) + point_carriers.capacity() * sizeof(PointCarrier) +
+         facing.capacity() * sizeof(PointFacing) + point_carriers.capacity() * sizeof(PointCarrier) +
          first_carrier.capacity() * sizeof(int) + carriers.capacity() * sizeof(PointCell) + by_cell.capacity() * sizeof(int) +
          is_carrier.capacity() + sharers.capacity() * sizeof(PointCarrier);
 }

@@ -128,7 +128,6 @@ class ContactBody {
   }
   BodyCarriers all_carriers() const { return {point_carriers.data(), first_carrier.data()}; }
   const double *areas() const { return area.data(); }    // of points
-  PointKind kind_of(int point) const { return kinds[point]; }
   const PointFacing *facings() const { return facing.data(); }
   const std::vector<PointCell> &point_cells() const { return carriers; }
   const std::vector<int> &points_by_cell() const { return by_cell; }
@@ -140,7 +139,7 @@ class ContactBody {
     return {cell.first, is_cuboid() ? cell.first : cell.fine};
   }
   bool carries(int node) const { return rigid ? slot_of(node) >= 0 : is_carrier[node]; }    // points, with their cells
-  // Whether each point is at one particle, as those of a cuboid that deforms are.
+  // Whether each point is at one particle, as those of a cuboid that deforms and cannot tear.
   bool points_are_particles() const { return at_particles; }
   // Corners of a box around the grid and all points, X.
   const Vec3 &least() const { return low; }
@@ -179,7 +178,6 @@ class ContactBody {
   void add_carriers(const SurfacePoint &point, const Vec3 &X);
   void find_carriers();
   void sort_points();
-  bool normals_differ(PointKind kind) const;    // of points of a kind
 
   int cells[3];
   double edges[3], mean_edge, steep = 0.0;    // square of the gradient of X where the body is undeformed [1/m^2]
@@ -190,15 +188,14 @@ class ContactBody {
   std::vector<std::uint8_t> filled;
   std::vector<SurfacePoint> surface;
   std::vector<double> area;                    // of points, also here: kernels read no SurfacePoint
-  std::vector<PointKind> kinds;                // the same
   std::vector<PointFacing> facing;             // the same
   std::vector<PointCarrier> point_carriers;    // of all points, one after the other, and one more
   std::vector<int> first_carrier;              // of each point, then of the centre of its area; at the end, the number of all
   std::vector<PointCell> carriers;
   std::vector<int> by_cell;        // numbers of points, cell by cell, ascending in each
   std::vector<char> is_carrier;    // of particles
-  bool at_particles = false;
-  bool has_fine = false;    // points
+  bool at_particles = true;        // each point
+  bool has_fine = false;           // points
   bool round = false;
   double stands_out = 0.0, lever = 1.0, radius_of_points = 0.0, hardness_of_line = 1.0;
   std::vector<PointCarrier> sharers;    // three of each point between particles of a line

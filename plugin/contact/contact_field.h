@@ -164,6 +164,7 @@ template <class Contact, class Known> class FieldOf : public ContactField {
     for (const std::size_t q : points) {
       __builtin_prefetch(&known[q]);
       __builtin_prefetch(&body.facings()[near[q]]);
+      __builtin_prefetch(&body.points()[near[q]].kind);
       __builtin_prefetch(body.carriers_of(near[q]).first);
     }
   }

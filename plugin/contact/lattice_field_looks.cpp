@@ -187,7 +187,7 @@ void LatticeField::look_at_all(const std::vector<std::size_t> &points, const Con
       continue;
     }
     const PointTrack &track = known[q];
-    batches.add(*this, q, is_smooth(*host->body, owner->body->kind_of(near[q])),
+    batches.add(*this, q, is_smooth(*host->body, surface_point(q).kind),
                 {near[q],
                  {track.cell[0], track.cell[1], track.cell[2]},
                  {track.X},

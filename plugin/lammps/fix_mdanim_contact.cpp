@@ -32,6 +32,16 @@ static constexpr double USUAL_DAMPING = 0.3;     // beta
 static const char *const STYLE = "fix mdanim/contact";
 static const char *const LEFT_OUT = ", or leave it out by 'among GROUP'";
 
+static std::vector<OwnParticles> by_object(const std::vector<ContactParticle> &ascending)
+{
+  std::vector<OwnParticles> found;
+  for (long n = 0; n < static_cast<long>(ascending.size()); ++n) {
+    if (found.empty() || found.back().object != ascending[n].object) found.push_back({ascending[n].object, n, n});
+    ++found.back().end;
+  }
+  return found;
+}
+
 // --- the command ---
 
 // fix ID group mdanim/contact BODY YOUNG FRICTION [objects] [plane x|y|z lo|hi at]… [moving x|y|z lo|hi at FIXID]…
@@ -298,16 +308,9 @@ void FixMdanimContact::list()
     }
   if (!std::is_sorted(needed.begin(), needed.end())) std::sort(needed.begin(), needed.end());
   std::vector<ContactParticle> particles;
-  mine.clear(), of_object.clear();
-  for (const auto &[particle, i] : needed) {
-    if (of_object.empty() || of_object.back().object != particle.object) {
-      const long first = static_cast<long>(mine.size());
-      of_object.push_back({particle.object, first, first});
-    }
-    particles.push_back(particle), mine.push_back(i);
-    ++of_object.back().end;
-  }
-
+  mine.clear();
+  for (const auto &[particle, i] : needed) particles.push_back(particle), mine.push_back(i);
+  of_object = by_object(particles);
   const std::vector<ContactParticle> ascending = shared.share(particles);
   for (const ContactParticle &one : ascending)
     if (one.node < 0 || one.node >= world_of_contact.object(one.object).body->particles())
@@ -337,13 +340,11 @@ template <class Add> void FixMdanimContact::give_forces(const Add &add) const
 {
   const PaddedVec3 *forces = world_of_contact.forces();
   threads_now.parts(static_cast<long>(mine.size()), NS_OF_PARTICLE, [&](long from, long to) {
-    for (const OwnParticles &own : of_object) {
-      if (!world_of_contact.is_pushed(own.object)) continue;
-      for (long n = std::max(own.first, from); n < std::min(own.end, to); ++n) {
+    for (const OwnParticles &own : of_object)
+      for (long n = std::max(own.first, from); n < std::min(own.end, to) && world_of_contact.is_pushed(own.object); ++n) {
         const Vec3 &force = forces[shared.number_of(n)].value;
         if ((force.x != 0.0 || force.y != 0.0 || force.z != 0.0) && atom->mask[mine[n]] & groupbit) add(n, force);
       }
-    }
   });
 }
 

@@ -19,6 +19,16 @@
 #include <optional>
 #include <vector>
 
+namespace mdanim {
+
+// A rank's particles of an object, among all of its particles that take part in contacts.
+struct OwnParticles {
+  int object;
+  long first, end;
+};
+
+}    // namespace mdanim
+
 namespace LAMMPS_NS {
 
 class FixMdanimContact : public mdanim::FixBase, public mdanim::PassParticipant, public mdanim::Stateful {
@@ -84,12 +94,8 @@ class FixMdanimContact : public mdanim::FixBase, public mdanim::PassParticipant,
   mdanim::ObjectTable objects;    // at the setup; their particles when lists were made
   std::vector<tagint> lowest;     // tags of objects
   std::vector<int> mine;          // local particles that take part in contacts, in the order of the world of contact
-  struct OwnParticles {
-    int object;
-    long first, end;    // of `mine`
-  };
-  std::vector<OwnParticles> of_object;    // by ascending objects
-  mdanim::SharedPlaces shared;            // places of these particles, on all ranks
+  std::vector<mdanim::OwnParticles> of_object;    // parts of these, by ascending objects
+  mdanim::SharedPlaces shared;                    // places of these particles, on all ranks
   mdanim::Positions my_places;
   mdanim::Threads threads_now;
 };
