@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""mdanim-lammps: ``ours.py SCENE JSON``; with a ``lattice`` it also leaves its particles and springs there for others to take."""
+"""mdanim-lammps: ``ours.py SCENE JSON``; a way is the ``contact-stiffness`` of rigid bodies; with a ``lattice`` it also leaves
+its particles and springs there for others to take."""
 
 import numpy as np
 import rigid_bodies
@@ -30,7 +31,7 @@ gravity (0, 0, -9.81)
 ground z 0
 {walls}
 {objects}
-control {{ time {time} s  friction {friction} }}
+control {{ time {time} s  friction {friction}  {more} }}
 """
 AUTO = 0.5
 """Time step over the certified bound of ``timestep auto``."""
@@ -47,7 +48,8 @@ def rigid_text(scene: str, case: dict) -> str:
         for b in bodies
     )
     walls = "" if wall is None else f"walls from ({-wall}, {-wall}, -1) m to ({wall}, {wall}, 100) m"
-    return RIGID.format(walls=walls, objects=objects, time=case["time"], friction=rigid_bodies.FRICTION)
+    more = f"contact-stiffness {way}" if (way := case.get("way")) else ""
+    return RIGID.format(walls=walls, objects=objects, time=case["time"], friction=rigid_bodies.FRICTION, more=more)
 
 
 def overlap(scene: str, case: dict, system, position: np.ndarray) -> float:
@@ -101,7 +103,8 @@ def main() -> None:
     if scene == "cantilever":
         figures["error"] = None if found["extrapolated"] else -np.average(moved[:, 2], weights=system.mass) / case["exact"] - 1.0
     if scene in rigid_bodies.SCENES:
-        figures["note"] = f"overlap at the end {overlap(scene, case, system, end):.2g}"
+        stiffness = f"contact-stiffness {way}, " if (way := case.get("way")) else ""
+        figures["note"] = f"{stiffness}overlap at the end {overlap(scene, case, system, end):.2g}"
         tell(version=__version__, nodes=len(system.names), **found, **figures)
         return
     tell(version=__version__, nodes=system.particles, **found, **figures)

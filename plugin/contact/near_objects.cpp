@@ -20,7 +20,8 @@ bool NearObjects::is_excluded(int a, int b) const
 std::vector<std::pair<int, int>> NearObjects::pairs_within(const std::vector<Box> &boxes, double gap) const
 {
   std::vector<std::pair<int, int>> found;
-  if (settings.objects)
+  const auto is_excepted = [](const ContactObject &one) { return one.is_excepted; };
+  if (settings.objects && !std::all_of(all.begin(), all.end(), is_excepted))
     for (const auto &[a, b] : meeting_pairs(boxes, gap))
       if ((movable[a] || movable[b]) && !(all[a].is_excepted && all[b].is_excepted) && !is_excluded(a, b))
         found.emplace_back(a, b);

@@ -61,9 +61,10 @@ void NearSolids::list(const std::vector<Solid> &solids, const Pairs &excluded)
   for (const auto &[a, b] : meeting_pairs(boxes, 0.0))
     if (are_near(solids[a], solids[b], ways[a] + ways[b]) && !excluded.count({solids[a].id, solids[b].id}))
       found.emplace_back(a, b);
-  for (const SolidPair &pair : pairs)
+  const auto near = static_cast<std::ptrdiff_t>(found.size());
+  for (const SolidPair &pair : pairs)    // ascending, as those that meet
     if (!pair.touches.empty()) found.emplace_back(pair.a, pair.b);
-  std::sort(found.begin(), found.end());
+  std::inplace_merge(found.begin(), found.begin() + near, found.end());
   found.erase(std::unique(found.begin(), found.end()), found.end());
 
   std::vector<SolidPair> now(found.size());

@@ -6,22 +6,29 @@
 #include "rigid/touch.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 #include <vector>
 
 namespace mdanim {
 
+// Features that may touch, numbers of a corner, or of two edges. They cannot as long as `known_for` of the pair is above `until`.
+struct NearFeatures {
+  int first = 0, second = 0;
+  double until = HUGE_VAL;
+};
+
 struct SolidPair {
-  int a = 0, b = 0;    // numbers of bodies, a < b
+  // What is asked of each pair in each step comes first: most pairs are near and do not touch.
+  int a = 0, b = 0;           // numbers of bodies, a < b
+  double asleep = 0.0;        // both may go so far together before the bodies can touch
+  double known_for = -1.0;    // and so far until features must be looked up again
   std::vector<Touch> touches;
+  int axis = 0;    // number of the direction that separated the bodies last
+
   // Force on the first body and torques on each, of the last step in which they were found, where one is glued or sleeps.
   Vec3 force, torque_a, torque_b;
-
-  double asleep = 0.0;            // both may go so far together before the bodies can touch
-  double known_for = -1.0;        // and so far until features must be looked up again
-  int axis = 0;                   // number of the direction that separated the bodies last
-  std::vector<int> corners[2];    // of a near b, of b near a
-  std::vector<std::pair<int, int>> edges;
+  std::vector<NearFeatures> corners[2], edges;    // corners of a near b, of b near a
   // For meshes: sides of b near a, of a near b; corners with the sides that they may be below; triangles near what is round.
   std::vector<int> sides[2], triangles;
   std::vector<std::pair<int, int>> below[2];
@@ -62,7 +69,10 @@ struct SolidPlane {
   double at = 0.0;    // at the start
   bool moves = false;
   Vec3 shift, way, velocity;    // of one that moves: from the start, of the step that ends here, and its mean velocity
+
+  bool is_beyond(const Solid &one) const { return dot(n, one.centre) - at > one.shape.bound(); }    // of reach, at the start
 };
+// Contacts of a body that may reach the plane.
 void touch_plane(const TouchStep &step, std::vector<Touch> &touches, Solid &one, const SolidPlane &plane, const TouchLaw &law);
 
 constexpr double NEAR = 0.02;    // over the thinnest part: how near features are that are remembered

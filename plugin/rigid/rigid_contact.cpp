@@ -130,11 +130,15 @@ void RigidContact::touch_pair(const TouchStep &step, SolidPair &pair)
 void RigidContact::touch_plane(const TouchStep &step, std::vector<Touch> &touches, Solid &one, int k)
 {
   const SolidPlane &plane = settings.planes[k];
-  const TouchLaw law = law_at(one, k);
-  if (!plane.moves) return mdanim::touch_plane(step, touches, one, plane, law);
+  const auto touch = [&] {
+    if (touches.empty() && plane.is_beyond(one)) return;
+    mdanim::touch_plane(step, touches, one, plane, law_at(one, k));
+    step.listed(touches, k);
+  };
+  if (!plane.moves) return touch();
   const Vec3 centre = one.centre, velocity = one.velocity, force = one.force;
   one.centre = centre - plane.shift, one.velocity = velocity - plane.velocity;
-  mdanim::touch_plane(step, touches, one, plane, law);
+  touch();
   one.centre = centre, one.velocity = velocity;
   const Vec3 now = one.force - force;
   auto &before = plane_push[{k, one.id}];
@@ -175,7 +179,6 @@ void RigidContact::touch_planes(const TouchStep &step, bool all)
         std::vector<Touch> &touches = at_plane[k][n];
         forget_parted(touches);
         touch_plane(step, touches, one, static_cast<int>(k));
-        step.listed(touches, static_cast<int>(k));
         one.is_carried = one.is_carried || (length(settings.planes[k].velocity) > 0.0 && !touches.empty());
       }
   for (std::size_t n = 0; n < solids.size(); ++n)
@@ -369,8 +372,8 @@ std::size_t RigidContact::bytes() const
 {
   std::size_t all = solids.capacity() * sizeof(Solid) + near.pairs.capacity() * sizeof(SolidPair);
   for (const SolidPair &pair : near.pairs)
-    all += pair.touches.capacity() * sizeof(Touch) + (pair.corners[0].capacity() + pair.corners[1].capacity()) * sizeof(int) +
-           pair.edges.capacity() * sizeof(pair.edges[0]);
+    all += pair.touches.capacity() * sizeof(Touch) +
+           (pair.corners[0].capacity() + pair.corners[1].capacity() + pair.edges.capacity()) * sizeof(NearFeatures);
   return all;
 }
 

@@ -28,34 +28,34 @@ struct Carrier {
 
 struct Solid {
   static constexpr int ALONE = -1;
+  // What all pairs ask in each step comes first.
   int id = 0;
+  int whole = ALONE;    // number of the body that it is glued into; its pieces do not touch each other
   bool held = false;
-  bool driven = false;     // held, and moves
-  bool aside = false;      // touches nothing
-  bool asleep = false;     // does not move in this step
-  bool settled = false;    // does not move, and contacts with others that are so stay as they are
-  Material material;
-  SolidShape shape;          // in the frame of the body
+  bool driven = false;        // held, and moves
+  bool aside = false;         // touches nothing
+  bool asleep = false;        // does not move in this step
+  bool settled = false;       // does not move, and contacts with others that are so stay as they are
+  bool is_carried = false;    // touches something that is driven, and moves
+  double stir = 0.0;          // farthest way of a point of it in this step
+  Vec3 centre;
+
+  Matrix3 turn;
+  Vec3 axis[3];    // columns of `turn`
+  Vec3 velocity, spin;
+  Vec3 force, torque;
+  double stiffness_sum = 0.0, damping_sum = 0.0;    // S and D of the bound on the step
+  int touching = 0;
   double over_mass = 0.0;    // 1/m, and 1/I about its axes; 0 of one that is held
   Vec3 over;
   double yields = 0.0;        // largest lambda along normals at its features (see find_yields)
   double yields_any = 0.0;    // along any direction
-  int whole = ALONE;          // number of the body that it is glued into; its pieces do not touch each other
-  Carrier carrier;            // the same body
-
-  Vec3 belt;    // velocity at which its surface runs over it
-
-  Vec3 centre, velocity, spin;
-  Matrix3 turn;
-  Vec3 axis[3];                 // columns of `turn`
-  double fastest_turn = 0.0;    // no less than its angular velocity at any time of the step
-  double stir = 0.0;            // farthest way of a point of it in this step
-
-  Vec3 force, torque;
-  Vec3 force_at_planes, torque_at_planes;           // the part of them that planes give
-  double stiffness_sum = 0.0, damping_sum = 0.0;    // S and D of the bound on the step
-  int touching = 0;
-  bool is_carried = false;    // touches something that is driven, and moves
+  Material material;
+  SolidShape shape;                          // in the frame of the body
+  double fastest_turn = 0.0;                 // no less than its angular velocity at any time of the step
+  Vec3 belt;                                 // velocity at which its surface runs over it
+  Carrier carrier;                           // the body that it is glued into
+  Vec3 force_at_planes, torque_at_planes;    // the part of forces that planes give
 
   Vec3 in_space(const Vec3 &own) const { return turn * own; }
   Vec3 place(const Vec3 &own) const { return centre + turn * own; }

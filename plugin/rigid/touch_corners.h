@@ -60,6 +60,7 @@ class PolyhedronHost {
 // Cosine between an edge of a corner and the normal of a side below which the corner cannot be: the edge leads into the host.
 constexpr double LEADS_IN = -0.45;
 constexpr double DEEPEST_BIRTH = 0.5, SHALLOW = 0.03;    // over the thinnest part of the host
+constexpr double SURELY = 0.9;                           // of a way that leads nowhere near
 constexpr double A_STEP = 1.01;                          // the last step, and a little for rounding
 
 // The side of a host below which a corner is, with the depth; -1 where it is below none: it has to be below each side that
@@ -72,13 +73,14 @@ int side_of_birth(const Host &host, const Polyhedron::Corner &corner, const Turn
   depth = HUGE_VAL;
   for (int side = 0; side < host.sides(); ++side) {
     if (!host.is_open(side)) continue;
+    const double d = host.depth(side, x);
+    if (d > 0.0 && d >= depth) continue;
     const Vec3 n = in_owner(host.normal(side, x));
     const bool leads_in =
         std::any_of(corner.ways.begin(), corner.ways.end(), [&](const Vec3 &way) { return dot(way, n) < LEADS_IN; });
     if (leads_in) continue;
-    const double d = host.depth(side, x);
     if (d <= 0.0) return -1;
-    if (d < depth) depth = d, found = side;
+    depth = d, found = side;
   }
   if (found < 0 || depth > deepest) return -1;
   // Beyond a blunt edge there may be a side through which the corner leads in: contacts go on below it.
@@ -161,11 +163,14 @@ void each_corner_near(const Solid &one, const Solid &other, double more, const s
     if (!corners[q].covered) visit(q);
 }
 
-// Corners of `a` in `host`, the convex shape of `b`. `near`: those that may touch, looked up anew where `stale`.
+// Corners of `a` in `host`, the convex shape of `b`; those that may touch are looked up anew where `stale`.
 template <class Host>
-void touch_corners(const TouchStep &step, std::vector<Touch> &touches, Touch::TouchKind kind, std::vector<int> &near, Solid &a,
-                   Solid &b, const Host &host, const TouchLaw &law, double ramp, double margin, bool stale)
+void touch_corners(const TouchStep &step, SolidPair &pair, bool of_other, Solid &a, Solid &b, const Host &host,
+                   const TouchLaw &law, double ramp, double margin, bool stale)
 {
+  const Touch::TouchKind kind = of_other ? Touch::CORNER_OF_OTHER : Touch::CORNER;
+  std::vector<Touch> &touches = pair.touches;
+  std::vector<NearFeatures> &near = pair.corners[of_other];
   if (!stale && near.empty()) return;
   const std::vector<Polyhedron::Corner> &corners = a.shape.corners();
   const Vec3 between = b.in_body(a.centre - b.centre);
@@ -174,14 +179,19 @@ void touch_corners(const TouchStep &step, std::vector<Touch> &touches, Touch::To
     near.clear();
     each_corner_near(a, b, ramp + margin, touches, kind, [&](int q) {
       if (host.outside(in_host(corners[q].at)) < ramp + margin || find_touch(touches, kind, q) != touches.end())
-        near.push_back(q);
+        near.push_back({q});
     });
   }
-  for (const int q : near) {
+  for (NearFeatures &one : near) {
+    if (pair.known_for > one.until) continue;
+    const int q = one.first;
     const Vec3 x = in_host(corners[q].at);
     auto found = find_touch(touches, kind, q);
     if (found == touches.end()) {
-      if (host.outside(x) >= ramp) continue;
+      if (const double way = host.outside(x) - ramp; way >= 0.0) {
+        one.until = pair.known_for - SURELY * way;
+        continue;
+      }
       const auto in_owner = [&](const Vec3 &n) { return a.in_body(b.in_space(n)); };
       double depth;
       const int side = side_of_birth(host, corners[q], in_owner, x, DEEPEST_BIRTH * b.shape.thin(), depth);

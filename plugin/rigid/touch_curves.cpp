@@ -450,7 +450,7 @@ void look_up_curves(SolidPair &pair, const Solid &a, const Solid &b, double marg
     for (const int j : of_b) {
       const Curve other = placed(b, j);
       if (least_gap(one, other) < slack || find_touch(pair.touches, Touch::CURVES, i, j) != pair.touches.end())
-        pair.edges.emplace_back(i, j);
+        pair.edges.push_back({i, j});
     }
   }
 }
@@ -477,7 +477,7 @@ void touch_with_curves(const TouchStep &step, SolidPair &pair, Solid &a, Solid &
   touch_sides(step, pair, false, a, b, law, margin, stale);
   touch_sides(step, pair, true, b, a, law, margin, stale);
   if (stale) look_up_curves(pair, a, b, margin);
-  for (const auto &[i, j] : pair.edges) CurvePair(step, pair.touches, a, b, i, j, law).touch();
+  for (const NearFeatures &one : pair.edges) CurvePair(step, pair.touches, a, b, one.first, one.second, law).touch();
 }
 
 }    // namespace mdanim

@@ -107,10 +107,7 @@ static void touch_corners_in_mesh(const TouchStep &step, SolidPair &pair, bool o
 void touch_corners_in(const TouchStep &step, SolidPair &pair, bool of_other, Solid &a, Solid &b, const TouchLaw &law,
                       double margin, bool stale)
 {
-  const Touch::TouchKind kind = of_other ? Touch::CORNER_OF_OTHER : Touch::CORNER;
-  const auto with = [&](const auto &host) {
-    touch_corners(step, pair.touches, kind, pair.corners[of_other], a, b, host, law, ramp_of(b), margin, stale);
-  };
+  const auto with = [&](const auto &host) { touch_corners(step, pair, of_other, a, b, host, law, ramp_of(b), margin, stale); };
   if (b.shape.kind() == SolidShape::MESH)
     touch_corners_in_mesh(step, pair, of_other, a, b, law, margin, stale);
   else if (b.shape.kind() == SolidShape::POLYHEDRON)

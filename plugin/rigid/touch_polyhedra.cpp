@@ -78,17 +78,18 @@ bool are_separated(SolidPair &pair, const Solid &a, const Solid &b)
 
 // An edge in space.
 struct PlacedEdge {
-  Vec3 middle, along, across[2];
+  Vec3 middle, along;
   double half;
   PlacedEdge(const Solid &solid, int number)
+      : middle(solid.place(solid.shape.edges()[number].middle)), along(solid.in_space(solid.shape.edges()[number].along)),
+        half(solid.shape.edges()[number].half), solid(solid), edge(solid.shape.edges()[number])
   {
-    const Polyhedron::Edge &edge = solid.shape.edges()[number];
-    middle = solid.place(edge.middle);
-    along = solid.in_space(edge.along);
-    across[0] = solid.in_space(edge.across[0]);
-    across[1] = solid.in_space(edge.across[1]);
-    half = edge.half;
   }
+  Vec3 across(int face) const { return solid.in_space(edge.across[face]); }
+
+ private:
+  const Solid &solid;
+  const Polyhedron::Edge &edge;
 };
 
 // The lines of two edges: where they are closest, along each from its middle, and n across both, out of the first.
@@ -112,9 +113,10 @@ struct EdgeCrossing {
   void find_normal(const PlacedEdge &a, const PlacedEdge &b)
   {
     n = (1.0 / std::sqrt(square)) * cross(a.along, b.along);
-    outward = -dot(n, a.across[0] + a.across[1]);
+    const Vec3 one = a.across(0), other = a.across(1);
+    outward = -dot(n, one + other);
     if (outward < 0.0) n = -1.0 * n, outward = -outward;
-    cone = std::min(std::min(-dot(n, a.across[0]), -dot(n, a.across[1])), std::min(dot(n, b.across[0]), dot(n, b.across[1])));
+    cone = std::min(std::min(-dot(n, one), -dot(n, other)), std::min(dot(n, b.across(0)), dot(n, b.across(1))));
     depth = dot((a.middle + s * a.along) - (b.middle + r * b.along), n);
   }
 };
@@ -147,6 +149,7 @@ bool passes(const Solid &host, const PlacedEdge &edge, double more, double by)
 }
 
 constexpr double PARALLEL = 1e-4;                   // square of the sine below which two edges have no crossing
+constexpr double CROSSED = 0.05;                    // the same: below it nothing is said of a later time
 constexpr double FADED = 0.02, FADES = 0.015;       // the same: the ramp of nearly parallel edges
 constexpr double AT_BIRTH = -0.1, AT_END = -0.4;    // how far n may be out of the cones
 constexpr double SHALLOW_BIRTH = 0.06;              // over the thinnest part
@@ -204,7 +207,7 @@ void look_up_edges(SolidPair &pair, const Solid &a, const Solid &b, double margi
           if (at.outward > 2.0 * tilt && (at.cone < AT_BIRTH - tilt || at.depth < -margin - slack * tilt)) continue;
         }
       }
-      pair.edges.emplace_back(i, j);
+      pair.edges.push_back({i, j});
     }
   }
 }
@@ -217,16 +220,46 @@ void run_along(Vec3 &anchor, const Vec3 &ran, const Vec3 &one, const Vec3 &other
   anchor.y += (at.cosine * by_one - by_other) / at.square;
 }
 
+// How far both bodies may go until edges begin to touch that do not cross, or not with a normal of both, or above each other:
+// after a way w they have moved along each other by 4 w/sine at most, and n has turned by 4 w/(sine size). Half of that, to be
+// sure; 0 where the edges are nearly parallel.
+double way_to_cross(const PlacedEdge &one, const PlacedEdge &other, const EdgeCrossing &at)
+{
+  if (at.square < CROSSED) return 0.0;
+  const double apart = std::max(std::fabs(at.s) - one.half, std::fabs(at.r) - other.half);
+  return 0.125 * std::max(apart, 0.0) * std::sqrt(at.square);
+}
+
+double way_to_meet(const Solid &a, const Solid &b, const EdgeCrossing &at)
+{
+  if (at.square < CROSSED) return 0.0;
+  const double sine = std::sqrt(at.square), turns = 0.25 * sine * std::min(a.shape.bound(), b.shape.bound());
+  const double by_turning = std::min(0.5 * at.outward, AT_BIRTH - at.cone) * turns;
+  // The depth changes by w + (4 w/sine) (w/turns).
+  const double above = std::max(-at.depth, 0.0), bends = 4.0 / (sine * turns);
+  const double by_depth = std::min(0.5 * at.outward * turns, 2.0 * above / (1.0 + std::sqrt(1.0 + 4.0 * bends * above)));
+  return 0.5 * std::max({by_turning, by_depth, 0.0});
+}
+
 void touch_edges(const TouchStep &step, SolidPair &pair, Solid &a, Solid &b, const TouchLaw &law)
 {
-  for (const auto &[i, j] : pair.edges) {
+  for (NearFeatures &near : pair.edges) {
+    if (pair.known_for > near.until) continue;
+    const int i = near.first, j = near.second;
     const PlacedEdge one(a, i), other(b, j);
     EdgeCrossing at(one, other);
     if (at.square < PARALLEL) continue;
     auto found = find_touch(pair.touches, Touch::EDGES, i, j);
     const bool is_known = found != pair.touches.end();
-    if (!is_known && (std::fabs(at.s) >= one.half || std::fabs(at.r) >= other.half)) continue;
+    if (!is_known && (std::fabs(at.s) >= one.half || std::fabs(at.r) >= other.half)) {
+      near.until = pair.known_for - way_to_cross(one, other, at);
+      continue;
+    }
     at.find_normal(one, other);
+    if (!is_known && (at.cone < AT_BIRTH || at.depth <= 0.0)) {
+      near.until = pair.known_for - way_to_meet(a, b, at);
+      continue;
+    }
     // Ramps from the ends inward, and for edges that are nearly parallel.
     const double wa = 0.5 * ramp_of(a), wb = 0.5 * ramp_of(b);
     double slope_a, slope_b, slope_angle;
@@ -235,9 +268,7 @@ void touch_edges(const TouchStep &step, SolidPair &pair, Solid &a, Solid &b, con
                  part_angle = smooth_step(at.square - FADED, FADES, slope_angle), part = part_a * part_b * part_angle;
     const Vec3 on_a = one.middle + at.s * one.along, on_b = other.middle + at.r * other.along, x = 0.5 * (on_a + on_b);
     if (!is_known) {
-      if (at.cone < AT_BIRTH || at.depth <= 0.0 || part <= 0.0 ||
-          (at.depth > SHALLOW_BIRTH * thinner(a, b) && !step.may_be_deep()))
-        continue;
+      if (part <= 0.0 || (at.depth > SHALLOW_BIRTH * thinner(a, b) && !step.may_be_deep())) continue;
       Touch touch = step.born(Touch::EDGES, law, a, &b, x, -1.0 * at.n);
       touch.first = i;
       touch.second = j;

@@ -124,7 +124,6 @@ Vec3 lowest_of_ellipsoid(const Solid &one, const Vec3 &n)
 
 void touch_plane(const TouchStep &step, std::vector<Touch> &touches, Solid &one, const SolidPlane &plane, const TouchLaw &law)
 {
-  if (touches.empty() && dot(plane.n, one.centre) - plane.at > one.shape.bound()) return;
   const OnPlane on(step, touches, one, plane, law);
   const SolidShape &shape = one.shape;
   const Vec3 middle = middle_of(one), along = shape.half_height() * one.in_space(shape.axis(2));

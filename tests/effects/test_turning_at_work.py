@@ -6,7 +6,7 @@ import math
 import numpy as np
 import pytest
 from mdanim_lammps import Scene
-from scipy.special import ellipk
+from rigid_motions import half_period
 
 BALL = """ground z 0 m
 object ball {{ shape sphere 10 cm position (0, 0, {z}) cm density 1000 kg/m^3 elasticity {young} MPa {more} }}
@@ -94,17 +94,3 @@ control { time 2.2 s frames 100 fps }
     at = np.flatnonzero(height[:-1] * height[1:] < 0)
     flips = (at + height[at] / (height[at] - height[at + 1])) / 100
     assert np.diff(flips) == pytest.approx([half_period(moment, start)], rel=1e-3)
-
-
-def half_period(moment, spin) -> float:
-    """Time between two flips [s] of a body with principal moments (3,) and a spin (3,) in its frame (Landau, Lifshitz, 37)."""
-    order = np.argsort(moment)
-    (a, b, c), w = moment[order], spin[order]
-    energy, square = (moment[order] * w**2).sum(), ((moment[order] * w) ** 2).sum()
-    if square > energy * b:
-        rate = math.sqrt((c - b) * (square - energy * a) / (a * b * c))
-        k2 = (b - a) * (energy * c - square) / ((c - b) * (square - energy * a))
-    else:
-        rate = math.sqrt((b - a) * (energy * c - square) / (a * b * c))
-        k2 = (c - b) * (square - energy * a) / ((b - a) * (energy * c - square))
-    return 2 * ellipk(k2) / rate

@@ -34,11 +34,6 @@ def rolled(world):
     return (last[3] - first[3]) / (half * world.dt), last
 
 
-def beta_for(e):
-    """Share of critical damping of a linear dashpot with this restitution."""
-    return -np.log(e) / np.hypot(np.pi, np.log(e))
-
-
 def meeting(random, two):
     """Two bodies that meet at 2 m/s, turned and spinning at random."""
     found = []

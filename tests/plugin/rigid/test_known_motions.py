@@ -8,7 +8,8 @@ the softness of contacts, of first order in that depth.
 import numpy as np
 import pytest
 import rigid_lab as lab
-from rigid_samples import BALL, CAN, COIN, CONE, CUBE, DOMINO, EGG, WEDGE, G, beta_for, meeting, momenta, rolled, tilted
+import rigid_motions
+from rigid_samples import BALL, CAN, COIN, CONE, CUBE, DOMINO, EGG, WEDGE, G, meeting, momenta, rolled, tilted
 
 
 @pytest.mark.parametrize("host", ["plane", "box"])
@@ -105,68 +106,17 @@ def test_a_box_on_a_slope_stands_or_slides(tmp_path, tangent):
         assert (last[3] - first[3]) / (half * world.dt) == pytest.approx(G * (sine - 0.5 * cosine), rel=1e-3)
 
 
-def housner(share, alpha, count):
-    """Amplitudes over alpha of a rocking block that is let go at this share: 1 - (1 - a)^2 falls by r^2 = (1 - 3/2 sin^2)^2."""
-    r, found = 1.0 - 1.5 * np.sin(alpha) ** 2, []
-    for _ in range(count):
-        share = 1.0 - np.sqrt(1.0 - (1.0 - (1.0 - share) ** 2) * r * r)
-        found.append(share)
-    return found
-
-
 def test_a_block_rocks_as_housner_says(tmp_path):
-    """Housner 1963: the first fall takes acosh(1/(1 - a))/p, p^2 = 3 g/4R. Blows of 0.5 % of the width."""
-    width, height, share = 0.1, 0.4, 0.6
-    alpha, radius = np.arctan(width / height), np.hypot(width, height) / 2.0
-    q = lab.about((0, 1, 0), share * alpha)
-    corner = lab.matrix(q) @ (width / 2, 0.0, -height / 2)
-    block = lab.box((width, 0.3, height), at=(-corner[0], 0.0, -corner[2]), q=q, mu=10.0)
-    world = lab.World(tmp_path, [block], frequency=lab.frequency_of(1.0, width, 0.005), thin=width)
-    every, leans, times = 20, [], []
-    with world:
-        for n in range(round(1.6 / world.dt / every)):
-            world.run(every)
-            leans.append(lab.matrix(world.rows()[0, 6:10])[:, :])
-            times.append((n + 1) * every * world.dt)
-        axes = np.array(leans)
-    # The principal axis that was along x at first.
-    k = np.argmax(np.abs(axes[0][0]))
-    lean = np.arcsin(axes[:, 2, k] * -np.sign(axes[0, 0, k]))
-    crossings = np.flatnonzero(np.sign(lean[1:]) != np.sign(lean[:-1]))
-    fall = times[crossings[0]] + every * world.dt * lean[crossings[0]] / (lean[crossings[0]] - lean[crossings[0] + 1])
-    assert fall == pytest.approx(np.arccosh(1.0 / (1.0 - share)) / np.sqrt(3.0 * G / (4.0 * radius)), rel=1e-2)
-    found = [np.abs(lean[a:b]).max() / alpha for a, b in zip(crossings + 1, crossings[1:] + 1)]
-    assert found[:3] == pytest.approx(housner(share, alpha, 3), rel=0.1)
+    """Its first fall within 1 %, the next three amplitudes within 10 %."""
+    fall, found, law = rigid_motions.rocking(tmp_path)
+    assert fall == pytest.approx(1.0, rel=1e-2) and found == pytest.approx(law, rel=0.1)
 
 
-RESTING = {
-    "ball on floor": (lab.ball(0.05), None),
-    "face": (lab.box((0.1, 0.1, 0.1)), (0, 0, -0.05)),
-    "edge": (lab.box((0.1, 0.1, 0.1), q=lab.about((1, 0, 0), np.pi / 4)), (0, 0, -0.05 * 2**0.5)),
-    "corner": (lab.box((0.4, 0.2, 0.02), q=lab.about((1, 2, 0), 0.3)), "lowest"),
-}
-
-
-@pytest.mark.parametrize("case", RESTING)
+@pytest.mark.parametrize("case", rigid_motions.LANDING)
 @pytest.mark.parametrize("e", [1.0, 0.8, 0.5])
 def test_restitution(tmp_path, case, e):
-    """Over the speed at which the point closes that meets the floor: on faces, edges, in corners; of balls. The mean of five
-    bodies that meet it at other times within a step: a blow takes nine steps, and the dashpot lags by half of one."""
-    body, low = RESTING[case]
-    corners = lab.SIGNS * body.spread @ lab.matrix(body.q).T
-    arm = corners[np.argmin(corners[:, 2])] if isinstance(low, str) else np.array(low or (0, 0, -0.05))
-    frequency = lab.frequency_of(1.0, body.thin)
-    bodies = [
-        body.put(
-            at=(n, 0, (10 + n / 5) * 0.35 / frequency - arm[2]), v=(0, 0, -1.0), mu=0.0, beta=0.0 if e == 1.0 else beta_for(e)
-        )
-        for n in range(5)
-    ]
-    with lab.World(tmp_path, bodies, frequency=frequency, gravity=(0, 0, 0)) as world:
-        world.run(40)
-        assert world.number("touching") == 0 and world.number("deepest") > 0.0
-        after = [(row[3:6] + np.cross(row[10:], arm))[2] for row in world.rows()]
-    assert np.mean(after) == pytest.approx(e, abs=0.06)
+    """On faces, edges, in corners; of balls."""
+    assert rigid_motions.bounced(tmp_path, case, e) == pytest.approx(e, abs=0.06)
 
 
 @pytest.mark.parametrize("beta", [0.0, 0.1, 0.3])

@@ -7,7 +7,8 @@ As in test_known_motions.py: a time step of 0.35/frequency, blows 2 % of the thi
 import numpy as np
 import pytest
 import rigid_lab as lab
-from rigid_samples import BALL, CAN, CONE, CUBE, DOMINO, EGG, WEDGE, G, beta_for, meeting, momenta, rolled, tilted
+from mdanim_lammps.features.contact.restitution import damping_for
+from rigid_samples import BALL, CAN, CONE, CUBE, DOMINO, EGG, WEDGE, G, meeting, momenta, rolled, tilted
 
 RING, DISC = lab.torus(0.06, 0.02), lab.cylinder(0.08, 0.03)
 LYING, OVER = lab.about((1, 0, 0), np.pi / 2), lab.about((1, 0, 0), np.pi)
@@ -89,7 +90,7 @@ LANDS = {
 def test_restitution(tmp_path, case, e):
     """The mean of five bodies that land at other times within a step."""
     body, host, height = LANDS[case]
-    frequency, beta = lab.frequency_of(1.0, min(body.thin, 0.1)), 0.0 if e == 1.0 else beta_for(e)
+    frequency, beta = lab.frequency_of(1.0, min(body.thin, 0.1)), damping_for(e)
     start = [(n, 0, (10 + n / 5) * 0.35 / frequency + height) for n in range(5)]
     bodies = [body.put(at=at, v=(0, 0, -1), mu=0.0, beta=beta) for at in start]
     hosts = [host.put(at=(n, 0, -0.05), mu=0.0, beta=beta, held=True) for n in range(5)]
