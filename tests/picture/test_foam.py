@@ -157,6 +157,7 @@ def test_a_breaking_front_is_drawn_white(tmp_path):
         np.testing.assert_array_equal(spot(white, view, point), spot(still, view, point))
 
 
+@pytest.mark.soak
 def test_parts_of_the_surface_that_need_less_look_as_all_do(tmp_path, monkeypatch):
     """Each triangle drawn by a shader that does for it, and all by that with foam and shadows: the same picture, to rounding."""
     scene, models, grid = pool_scene([box("cube", (0.4, 0.4, 0.2), (4, 4, 2), (0.4, 0.0, 1.3))])
