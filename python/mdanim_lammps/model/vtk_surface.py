@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 TOLERANCE = float(np.finfo(np.float32).eps)
-"""Of where a line meets a surface, as VTK takes it."""
+"""Tolerance of VTK where a line meets a surface."""
 
 
 def polygons(points: np.ndarray, faces: np.ndarray) -> Any:

@@ -214,9 +214,9 @@ class LiquidSkin:
         self._mesh, self._triangle, self._foamy = mesh, np.zeros((0, 3), np.int32), np.zeros(0, bool)
         bend = bent() if behind else NOT_BENT
         self.inner = [self._actor(mesh.data, _fragment(True, sky=sky), NOT_BENT) for sky in (False, True)]
-        """Of faces seen from inside, without and with the sky behind; one of them is seen."""
+        """Actors of faces seen from inside, without and with the sky behind; one of them is seen."""
         self.outer, self._parts = [], []
-        """Of faces seen from outside, each of some triangles."""
+        """Actors of faces seen from outside, each of some triangles."""
         for foamy in (False, True):
             for shaded in (False, True):
                 part = MovingMesh(0, np.zeros((0, 3)))
