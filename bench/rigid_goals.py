@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What rigid bodies are to reach, and what they do: ``python bench/rigid_goals.py [WORD ...]``, lines that begin with a WORD.
+"""Goals of rigid bodies, and what they reach: ``python bench/rigid_goals.py [WORD ...]``, lines that begin with a WORD.
 
 Prints a table. Times are processor seconds of one core. All takes ten minutes,
 most of it `heap`, whose other program needs .venv-peers (make .venv-peers/.installed), and `random scenes`.
@@ -139,7 +139,7 @@ def rocking(folder: Path) -> Iterator[Reached]:
 
 
 def leaning_log(folder: Path, e: float, leans: float) -> float:
-    """What is left of the speed of a log, 80 cm long, that falls on one end a little before the other."""
+    """Speed that is left of a log, 80 cm long, that falls on one end a little before the other."""
     log, angle = lab.cylinder(0.1, 0.8), np.radians(leans)
     q = lab.about((1, 0, 0), np.pi / 2 + angle)
     z = 0.1 * np.cos(angle) + 0.4 * np.sin(angle) + 2e-3
@@ -150,7 +150,7 @@ def leaning_log(folder: Path, e: float, leans: float) -> float:
 
 
 def restitution(folder: Path) -> Iterator[Reached]:
-    """Of the point that meets the floor; and of a log that falls flat, or nearly so."""
+    """Restitution of the point that meets the floor; and of a log that falls flat, or nearly so."""
     for lowest, highest, most in ((0.5, 1.0, 0.06), (0.1, 0.4, 0.1)):
         asked = [e for e in (0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.8, 0.9, 1.0) if lowest <= e <= highest]
         worst = {case: max(abs(rigid_motions.bounced(folder, case, e) - e) for e in asked) for case in rigid_motions.LANDING}

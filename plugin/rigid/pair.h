@@ -19,7 +19,7 @@ struct NearFeatures {
 };
 
 struct SolidPair {
-  // What is asked of each pair in each step comes first: most pairs are near and do not touch.
+  // Values that each pair is asked for in each step come first: most pairs are near and do not touch.
   int a = 0, b = 0;           // numbers of bodies, a < b
   double asleep = 0.0;        // both may go so far together before the bodies can touch
   double known_for = -1.0;    // and so far until features must be looked up again

@@ -28,7 +28,7 @@ struct Carrier {
 
 struct Solid {
   static constexpr int ALONE = -1;
-  // What all pairs ask in each step comes first.
+  // Values that all pairs ask for in each step come first.
   int id = 0;
   int whole = ALONE;    // number of the body that it is glued into; its pieces do not touch each other
   bool held = false;

@@ -91,7 +91,7 @@ LANDING = {
 
 
 def bounced(folder: Path, case: str, e: float) -> float:
-    """What is left of the speed at which the point closes that meets the floor first, with the dashpot for e: the mean of five
+    """Speed after a blow over that before, of the point that meets the floor first, with the dashpot for e: the mean of five
     bodies that meet it at other times within a step, because a blow takes nine steps and the dashpot lags by half of one."""
     body, low = LANDING[case]
     corners = lab.SIGNS * body.spread @ lab.matrix(body.q).T
