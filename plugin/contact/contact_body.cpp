@@ -45,7 +45,7 @@ template <class Visit> static void each_inside(const Lattice &grid, const Visit 
       }
 }
 
-// Of points of a kind.
+// Whether the normals of points of a kind differ.
 static bool normals_differ(const std::vector<SurfacePoint> &surface, PointKind kind)
 {
   constexpr double SAME = 1e-6;    // square of the difference of two normals: neighbours of a ball of 100 cells across have 4e-5
