@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """Welds between rigid objects: they move as one body, and rows of joints tell what a weld bears, as statics has it."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from mdanim_lammps.engine.instance import Instance
@@ -10,6 +12,7 @@ from mdanim_lammps.features.joints.welds import hung_by
 from mdanim_lammps.run.energy import tell
 
 G = 9.81
+MESHES = Path(__file__).parents[2] / "scenes" / "meshes"
 CONTROL = "gravity (0, 0, -9.81) m/s^2\nground z 0\ncontrol { time 1 s friction 0.5 }\n"
 LAMP = """object foot {{ shape box (20, 20, 10) cm position (0, 0, {low}) m density 2000 elasticity rigid }}
 object post {{ shape box (4, 4, 30) cm position (0, 0, {low} + 0.2) m density 500 elasticity rigid }}
@@ -78,6 +81,24 @@ def test_which_welds_make_one_body(prepared, more, count):
     links = links_of(prepared(CONTROL + LAMP.format(low=0.05) + hook + more).scene)
     assert len(links.welds) == count and len(hung_by(links)) == 3
     assert set(links.whole_of) == {0, 1, 2, 3}
+
+
+def test_rows_are_told_beside_what_another_fix_moves(prepared):
+    """A mesh whose features contact does not know stands first, and has no row in the fix of welds."""
+    shape = f'shape mesh "{MESHES / "bottle.stl"}" scale 0.01 resolution 1.5 cm'
+    bottle = f"object bottle {{ {shape} position (3, 0, 1) m density 300 elasticity rigid }}\n"
+    rows, _ = rows_after(prepared(CONTROL + bottle + LAMP.format(low=0.05)), 1e-3)
+    assert rows[:, FIRST] == pytest.approx(np.array([(0.02, 0.0, 0.38), (0.0, 0.0, 0.1)]), abs=1e-4)
+
+
+def test_welds_of_what_moves_apart_are_warned_of(prepared):
+    """As one body, both lose their motion against each other at the start."""
+    text = "object a {{ shape box (1, 1, 1) m position (0, 0, 5) m density 1000 elasticity rigid velocity ({v}, 0, 0) m/s }}\n"
+    other = text.replace("a {{", "b {{").replace("(0, 0, 5)", "(1, 0, 5)")
+    weld = "joint weld a b { at (0.5, 0, 5) m }\n"
+    assert not prepared(CONTROL + text.format(v=2) + other.format(v=2) + weld).warnings
+    (told,) = prepared(CONTROL + text.format(v=2) + other.format(v=-1) + weld).warnings
+    assert "joint weld a b: what it holds together moves apart at 3 m/s" in str(told.message)
 
 
 @pytest.mark.parametrize("own", ["stiffness 1e5 N/m", "breaks 100 N"])

@@ -20,7 +20,7 @@ from .preload import torn
 from .rows import BROKEN, FIELD, FORCE, TOLD, joint_field, rows_of_joints
 from .strength import GAP, Strength, Sums, strengths
 from .table import joints_text
-from .welds import thin_of, told_of_welds, welds_here
+from .welds import arm_of, thin_of, told_of_welds, welds_here
 
 HEAT, WORK = "joint_heat", "work"
 """Columns of the ledger."""
@@ -133,18 +133,20 @@ class Joints(Effect):
 
     def _torn(self, context):
         """The object that moves against its joints at the start more than any other, where one does."""
-        speeds = [(torn(context, one), one) for one in strengths(context)]
+        joined = [(one.link, one.arm) for one in strengths(context)]
+        joined += [(link, arm_of(context.scene, link)) for link in welds_here(context)]
+        speeds = [(torn(context, *one), one[0]) for one in joined]
         if not speeds:
             return []
         speed, worst = max(speeds, key=lambda found: found[0])
         fastest = max(math.hypot(*s.velocity) + math.hypot(*s.spin) * radius(s.shape) for s in context.scene.solids)
         if speed <= TORN * fastest:
             return []
-        names = [context.scene.solids[m].name for m in (worst.link.first, worst.link.named) if m != NOTHING]
+        names = [context.scene.solids[m].name for m in (worst.first, worst.named) if m != NOTHING]
         return [
             Problem(
-                worst.link.joint.spans.get("joint"),
-                f"joint {worst.link.joint.words}: what it holds together moves apart at {say(speed, 'm/s')} at the start, which "
+                worst.joint.spans.get("joint"),
+                f"joint {worst.joint.words}: what it holds together moves apart at {say(speed, 'm/s')} at the start, which "
                 "begins with a blow",
                 f"write a velocity and a spin of {' and '.join(names)} that belong together",
                 severity="warning",

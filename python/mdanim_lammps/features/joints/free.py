@@ -95,13 +95,13 @@ def _freedom(one: Strength, welds: Sequence[Strength]) -> tuple[float, float, fl
     if not all(body.rigid for body in one.bodies):
         return None
     axis, turns = unit(one.link.axis), one.link.joint.kind == "hinge"
-    rows, place = held_rows(one), _places(one, welds)
+    rows, place = held_rows(one.link), _places(one, welds)
     a = _motion(one, axis, turns, place)
-    held = np.array([_motion(joint, *row, place) for joint in (one, *welds) for row in held_rows(joint)])
+    held = np.array([_motion(joint, *row, place) for joint in (one, *welds) for row in held_rows(joint.link)])
     borne = np.linalg.lstsq(held @ held.T, -held @ a, rcond=None)[0]
     force = sum((x * along for x, (along, about) in zip(borne, rows) if not about), np.zeros(3))
     y = float(a @ a + a @ held.T @ borne)
-    springs = np.array([_spring(joint, *row) for joint in (one, *welds) for row in held_rows(joint)])
+    springs = np.array([_spring(joint, *row) for joint in (one, *welds) for row in held_rows(joint.link)])
     gives = float((borne**2 / springs).sum())
     return (y, float(np.linalg.norm(force)), gives) if y > STILL * float(a @ a) else None
 
@@ -111,7 +111,7 @@ def _frequency(one: Strength, welds: Sequence[Strength]) -> float:
     if not welds:
         return one.frequency
     place = _places(one, welds)
-    held = np.array([_motion(weld, *row, place) for weld in welds for row in held_rows(weld)])
+    held = np.array([_motion(weld, *row, place) for weld in welds for row in held_rows(weld.link)])
     point = np.array([_motion(one, e, False, place) for e in np.eye(3)])
     free = point - np.linalg.lstsq(held.T, point.T, rcond=None)[0].T @ held
     return math.sqrt(one.stiffness * float(np.linalg.eigvalsh(free @ free.T)[-1]))

@@ -19,7 +19,7 @@ import numpy as np
 
 from ...effects.context import Context
 from .ends import JointEnd, both_across, directions_of, skew, unit
-from .links import NOTHING
+from .links import NOTHING, Link
 
 if TYPE_CHECKING:
     from .strength import Strength
@@ -35,7 +35,7 @@ def preloads(context: Context, joints: Sequence[Strength]) -> np.ndarray:
     from scipy.sparse.linalg import spsolve
 
     found = np.zeros((len(joints), 6))
-    held = [(n, row) for n, one in enumerate(joints) if all(b.rigid for b in one.bodies) for row in held_rows(one)]
+    held = [(n, row) for n, one in enumerate(joints) if all(b.rigid for b in one.bodies) for row in held_rows(one.link)]
     if not held:
         return found
     number: dict[int, int] = {}
@@ -88,26 +88,25 @@ def preloads(context: Context, joints: Sequence[Strength]) -> np.ndarray:
     return found
 
 
-def torn(context: Context, one: Strength) -> float:
-    """Speed at which what a joint holds together moves apart at the start [m/s]: points, and directions one arm long."""
+def torn(context: Context, link: Link, arm: float) -> float:
+    """Speed at which what a joint holds together moves apart at the start [m/s]: points, and directions one arm [m] long."""
 
     def motion(m: int) -> tuple[np.ndarray, np.ndarray]:
         if m == NOTHING:
             return np.zeros(3), np.zeros(3)
         solid = context.scene.solids[m]
-        arm = np.subtract(one.link.begin if m == one.link.first else one.link.end, solid.position)
-        return np.array(solid.velocity) + skew(np.array(solid.spin)) @ arm, np.array(solid.spin)
+        d = np.subtract(link.begin if m == link.first else link.end, solid.position)
+        return np.array(solid.velocity) + skew(np.array(solid.spin)) @ d, np.array(solid.spin)
 
-    (v, w), (u, s) = motion(one.link.first), motion(one.link.second)
+    (v, w), (u, s) = motion(link.first), motion(link.second)
     return max(
-        (abs(float(along @ (w - s))) * one.arm if turns else abs(float(along @ (v - u))) for along, turns in held_rows(one)),
+        (abs(float(along @ (w - s))) * arm if turns else abs(float(along @ (v - u))) for along, turns in held_rows(link)),
         default=0.0,
     )
 
 
-def held_rows(one: Strength) -> list[tuple[np.ndarray, bool]]:
+def held_rows(link: Link) -> list[tuple[np.ndarray, bool]]:
     """Directions in which a joint holds its point, and about which it holds its objects."""
-    link = one.link
     match link.joint.kind:
         case "spring":
             hard = link.joint.stiffness is None and link.length > 0.0 and link.joint.length is None

@@ -4,12 +4,14 @@ objects")."""
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from ...effects.context import Context
 from ...model.shapes import thickness
 from ...scene.scene import SceneRecord
-from ..rigid.touching import AT, BEARS_FORCE, BEARS_TORQUE, COLUMNS, FIXES
+from ..rigid.touching import AT, BEARS_FORCE, BEARS_TORQUE, told_of_bodies
 from .links import Link, Links, links_of
 from .rows import TOLD
 
@@ -26,6 +28,11 @@ def thin_of(scene: SceneRecord, link: Link) -> float:
     return min(thickness(scene.solids[m].shape) for m in link.ends)
 
 
+def arm_of(scene: SceneRecord, link: Link) -> float:
+    """Distance of a weld from the farther one of the centres of what it joins [m]."""
+    return max(math.dist(scene.solids[m].position, link.begin) for m in link.ends)
+
+
 def told_of_welds(readings) -> np.ndarray:
     """Columns that rows of joints tell of the welds of a context, shape (J, TOLD). A weld that closes a ring bears nothing."""
     context = readings.context
@@ -33,9 +40,8 @@ def told_of_welds(readings) -> np.ndarray:
     found = np.zeros((len(here), TOLD))
     if not here:
         return found
-    bodies = np.flatnonzero(context.system.rigid).tolist()
     names = {solid.name: m for m, solid in enumerate(context.scene.solids)}
-    rows = dict(zip((names[context.system.names[m]] for m in bodies), readings.fix_rows(FIXES[0], len(bodies), COLUMNS)))
+    rows = {names[context.system.names[m]]: row for m, row in told_of_bodies(readings).items()}
     hangs = hung_by(links_of(context.scene))
     for n, link in enumerate(here):
         row = rows[hangs.get(link.number, link.first)]

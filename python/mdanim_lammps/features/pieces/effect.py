@@ -9,7 +9,7 @@ from ...effects.context import Verdict
 from ...effects.effect import Effect
 from ...effects.fields import Field
 from ...scene.scene import PieceShape
-from ..rigid.touching import COLUMNS, FIXES, OF_WHOLE
+from ..rigid.touching import FIXES, OF_WHOLE, told_of_bodies
 from .glue import EFFECT, is_glued, wholes
 
 TORN = "torn"
@@ -57,12 +57,10 @@ class Glue(Effect):
     def tell(self, readings):
         system, solids = readings.system, readings.context.solids
         number = {solid.name: m + 1.0 for m, solid in enumerate(readings.context.scene.solids)}
-        bodies = np.flatnonzero(system.rigid)
-        first = readings.fix_rows(FIXES[0], len(bodies), COLUMNS)[:, OF_WHOLE].astype(int) - 1
         found = np.zeros(len(system.names))  # others than pieces may be elsewhere, where nothing tells of them
-        for m, other in zip(bodies.tolist(), first.tolist()):
+        for m, row in told_of_bodies(readings).items():
             if isinstance(solids[m].shape, PieceShape):
-                found[m] = number[solids[other].name]
+                found[m] = number[solids[int(row[OF_WHOLE]) - 1].name]
         return {WHOLE: found}
 
 

@@ -17,6 +17,7 @@ from ...bodies import all_held
 from ...effects.context import Context
 from ...effects.envelope import Envelope
 from ...effects.margin import Margin
+from ...effects.readings import Readings
 from ...model.planes import Plane
 from ...model.shapes import thickness
 from ...model.system import System
@@ -68,6 +69,12 @@ def parts(context: Context) -> list[Part]:
     first = Part(FIXES[0], system.rigid & known, meets_objects(context) | (meets_planes(context) & known), objects_touch(context))
     rest = Part(FIXES[1], system.rigid & ~known, meets_planes(context) & ~known, False)
     return [part for part in (first, rest) if part.bodies.any()]
+
+
+def told_of_bodies(readings: Readings) -> dict[int, np.ndarray]:
+    """What the first fix tells of each of its bodies, shape (COLUMNS,), by the number of the solid in its context."""
+    bodies = [m for part in parts(readings.context) if part.fix == FIXES[0] for m in np.flatnonzero(part.bodies).tolist()]
+    return dict(zip(bodies, readings.fix_rows(FIXES[0], len(bodies), COLUMNS)))
 
 
 def meets_objects(context: Context) -> np.ndarray:
