@@ -9,6 +9,12 @@ namespace mdanim {
 
 FoldSurface::FoldSurface(const FoldObject &object) : object(object) { settle(); }
 
+void FoldSurface::open(int low, int high)
+{
+  const auto has = [this](int p) { return std::binary_search(object.particles.begin(), object.particles.end(), p); };
+  if (has(low) && has(high)) gone.insert({low, high});
+}
+
 // Whether the link between two entries of the object is gone.
 bool FoldSurface::is_gone(int a, int b) const
 {

@@ -21,8 +21,9 @@ class FoldSurface {
  public:
   explicit FoldSurface(const FoldObject &object);
 
-  // Takes a link away: numbers of particles as in the table of the object. settle() must follow before all else is asked.
-  void open(int low, int high) { gone.insert({low, high}); }
+  // Takes a link away: numbers of particles as in the table of the object, and none where this has not both of them. settle()
+  // must follow before all else is asked.
+  void open(int low, int high);
   void settle();
 
   bool is_torn() const { return !gone.empty(); }

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """fix mdanim/folds: forces against a twin without lists; momentum, energy, lists that change nothing, ranks, what is refused."""
 
+from dataclasses import replace
+
 import numpy as np
 import plugin_lab as lab
 import pytest
@@ -151,6 +153,25 @@ def test_particles_of_the_group_alone_are_pushed(tmp_path):
     found = lab.by_tag(lmp, "f")
     lmp.close()
     assert not found[:16].any() and found[16:].any()
+
+
+def test_a_link_between_others_opens_nothing(tmp_path):
+    """Particles of the molecule that the file leaves out: a link between two of them tears, beside a cell that is as it was."""
+    corner = np.array([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)], float)
+    x = np.concatenate([corner[:4], [(9.0, 0.0, 0.0)], corner[4:], [(7.0, 0.0, 0.0), (0.3, 0.4, 1.1), (0.6, 0.5, 1.1)]])
+    links = lab.particles(x, molecule=np.repeat([1, 2], [10, 2]))
+    links = replace(links, bond=np.array([[4, 9]]), k=np.ones(1), r0=np.ones(1))
+    rows = [*range(1, 5), *range(6, 10)]
+    text = "object 1\n" + "".join(f"particle {n} {' '.join(map(str, x[n - 1]))} 1\n" for n in rows) + "cell 1 2 3 4 5 6 7 8\n"
+    text += "object 2\nparticle 1 0.3 0.4 1.1 1\nparticle 2 0.6 0.5 1.1 1\nsegment 1 2\npair 1 2 0.3 1 0 0\n"
+    (tmp_path / "table").write_text(text)
+    (tmp_path / "tear").write_text("object 1 0.2\n")
+    tear = ["fix state all property/atom i_torn", f"fix tear all mdanim/tear torn torn objects {tmp_path}/tear"]
+    fixes = [*tear, f"fix folds all mdanim/folds {tmp_path}/table", "fix run all mdanim/leapfrog", f"timestep {DT}"]
+    lmp = lab.load(links, tmp_path, [*fixes, "run 2"])
+    gone, energy = lmp.extract_fix("tear", 0, 1, 0), lmp.extract_fix("folds", 0, 0)
+    lmp.close()
+    assert gone > 0.0 and energy == 0.0
 
 
 @pytest.mark.parametrize(
