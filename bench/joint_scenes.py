@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """Joints of scenes against closed forms (docs/physics-joints.md), and what they cost.
 
-python bench/joint_scenes.py [forms] [cost]
+python bench/joint_scenes.py [forms] [cost] [welds]
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ import sys
 import tempfile
 import time
 from collections.abc import Callable
+from dataclasses import replace
 from functools import cache, partial
 from pathlib import Path
 
@@ -244,6 +245,40 @@ def cost() -> None:
         )
 
 
+TABLE = """gravity (0, 0, -9.81) m/s^2
+ground z 0
+object top { shape box (100, 60, 4) cm position (0, 0, 72) cm density 600 elasticity rigid }
+repeat i in 1 .. 2 { repeat k in 1 .. 2 {
+  object leg[i][k] { shape box (4, 4, 70) cm position (90*i - 135 cm, 50*k - 75 cm, 35 cm) density 600 elasticity rigid }
+  joint weld leg[i][k] top { at (90*i - 135 cm, 50*k - 75 cm, 70 cm) }
+} }
+object crate { shape box (40, 40, 40) cm position (0, 0, 94) cm density 600 elasticity rigid }
+control { time 2 s friction 0.5 }
+"""
+
+
+def welds() -> None:
+    """Steps and processor time of scenes whose welds make one body of what they join, and with springs in place of them: a weld
+    that may break is one."""
+    scenes = Path(__file__).parents[1] / "scenes"
+    print("scene: steps and processor time [s] with springs, as one body")
+    for name in ("pendulum", "chairs", "table"):
+        record = parse_scene(TABLE) if name == "table" else load_scene(scenes / f"{name}.txt")
+        springs = [replace(j, breaks=(1e12, None)) if j.kind == "weld" else j for j in record.joints]
+        found = []
+        for joints in (tuple(springs), record.joints):
+            ready = prepare(replace(record, joints=joints, expects=()))
+            took = []
+            for _ in range(3):
+                with Instance(ready.plan) as instance:
+                    instance.setup()
+                    began = time.process_time()
+                    instance.run(ready.certificate.steps)
+                    took.append(time.process_time() - began)
+            found.append(f"{ready.certificate.steps} {min(took):.2f}")
+        print(f"{name}: {', '.join(found)}", flush=True)
+
+
 if __name__ == "__main__":
-    for name in sys.argv[1:] or ("forms", "cost"):
-        {"forms": forms, "cost": cost}[name]()
+    for name in sys.argv[1:] or ("forms", "cost", "welds"):
+        {"forms": forms, "cost": cost, "welds": welds}[name]()

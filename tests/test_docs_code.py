@@ -123,7 +123,7 @@ class Newcomer:
 
     def program(self, words: list[str], place: Path) -> None:
         """A command of the program. A page's first run draws its movie; one after it is drawn by other tests."""
-        for option, *values in (("--size", "64", "48"), ("--budget", "6 s")):
+        for option, *values in (("--size", "64", "48"), ("--budget", "9 s")):
             if option in words:
                 at = words.index(option) + 1
                 words[at : at + len(values)] = values

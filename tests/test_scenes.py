@@ -26,6 +26,7 @@ LONG = {
     "bridge": (0.2, True),
     "buggy": (0.5, False),
     "cards": (0.25, False),
+    "chairs": (0.5, False),
     "clay": (0.28, False),
     "cloth": (0.3, True),
     "crowd": (0.5, True),

@@ -83,6 +83,7 @@ PICTURES = {
     "fall": 0.5,
     "slope": 0.7,
     "pendulum": 2.1,
+    "chairs": 0.6,
     "catapult": 1.1,
     "swing": 7.8,
     "merry": 5.0,
