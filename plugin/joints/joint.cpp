@@ -267,7 +267,12 @@ Joint::Driving Joint::drive(double rate, const Time &time, Past &past)
     now.energy += stored(servo, state.stretch);
     return state.force;
   };
-  if (given.motor) found.motor = move({given.motor->speed, given.motor->most, given.rise}, past.motor);
+  if (given.motor) {
+    Drive motor{given.motor->speed, given.motor->most, given.rise};
+    // One without limit is stronger than the stops: it goes as far as these.
+    if (given.limits && motor.most == HUGE_VAL) motor.low = given.limits->low, motor.high = given.limits->high;
+    found.motor = move(motor, past.motor);
+  }
   if (given.friction > 0.0) found.losses = move({0.0, given.friction}, past.brake);
   if (given.limits) {
     const SpringLaw its{stop.k, implicit(stop.c, stop_mobility, time.step)};

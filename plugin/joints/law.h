@@ -16,9 +16,11 @@ struct SpringLaw {
 // A motor that drives towards the speed w with at most M; dry friction is the motor of speed 0. Its spring goes from an anchor
 // that moves on with the speed, and is dragged along where the spring would be stronger than M:
 //   s = clip(anchor - q, +-M/k),   F = clip(k s + c (w - q'), +-M).
-// The speed that it has at first is that of q; it goes from there to its own by `rise` in a unit of time.
+// The speed that it has at first is that of q; it goes from there to its own by `rise` in a unit of time, and so to 0 where the
+// anchor comes to an end of the range in which it stays.
 struct Drive {
   double speed = 0.0, most = HUGE_VAL, rise = HUGE_VAL;
+  double low = -HUGE_VAL, high = HUGE_VAL;
 };
 
 struct DriveState {
@@ -29,10 +31,12 @@ struct DriveState {
 inline DriveState driven(const Drive &drive, const SpringLaw &law, const DriveState &before, double q, double rate, double dt,
                          bool begins)
 {
-  double speed = drive.speed;
+  const double next = before.anchor + drive.speed * dt;
+  double speed = next < drive.low || next > drive.high ? 0.0 : drive.speed;
   if (drive.rise < HUGE_VAL)
     speed = begins ? rate : before.speed + std::clamp(speed - before.speed, -drive.rise * dt, drive.rise * dt);
-  const double s = std::clamp(before.anchor + speed * dt - q, -drive.most / law.k, drive.most / law.k);
+  const double anchor = std::clamp(before.anchor + speed * dt, drive.low, drive.high);
+  const double s = std::clamp(anchor - q, -drive.most / law.k, drive.most / law.k);
   return {q + s, s, std::clamp(law.k * s + law.c * (speed - rate), -drive.most, drive.most), speed};
 }
 

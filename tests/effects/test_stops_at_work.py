@@ -156,6 +156,21 @@ def test_a_motor_without_limit_starts_as_hard_as_its_joint_bears(prepared, lengt
     assert np.ptp(sums) < 1e-3 * ready.system.mass_of[0] * 9.81 * length
 
 
+@pytest.mark.parametrize("turns", [True, False])
+@pytest.mark.parametrize("sign", [1, -1])
+def test_a_motor_without_limit_goes_to_the_stops_and_stays(prepared, turns, sign):
+    """It went through, by the whole way of its speed; the stop gives way by little of it, and the books close."""
+    kind, speed, end = ("hinge", f"{2 * sign} rad/s", "1 rad") if turns else ("slider", f"{0.5 * sign} m/s", "20 cm")
+    door = "object door { shape box (40, 4, 80) cm position (0.2, 0, 1) m density 600 elasticity rigid }\n"
+    text = f"joint {kind} door world {{ at (0, 0, 1) m axis (0, 0, 1) motor speed {speed} limits -{end} to {end} }}\n"
+    ready = prepared(door + text + "control { time 1 s }\n")
+    _, rows, sums = watched(ready, 1.0, 40)
+    most = 1.0 if turns else 0.2
+    assert np.abs(rows[:, WAY]).max() < 1.03 * most
+    assert rows[-4:, WAY] * sign == pytest.approx(most, rel=2e-3)
+    assert np.ptp(sums) < 1e-3 * ready.system.mass_of[0] * 0.5**2
+
+
 def test_a_motor_without_limit_knows_what_is_welded_on(prepared):
     """Rod of 1.1 kg with 5.6 kg at its end: the hinge bears the force that starts both."""
     weight = "object w { shape box (20, 20, 20) cm density 700 position (1, 0, 10) m elasticity rigid }\njoint weld w rod { }\n"
@@ -180,13 +195,13 @@ control { time 1 s }
     assert prepared(text.replace("DENSITY", "7800"), insist=True).certificate.steps > 0
 
 
-def test_a_rope_that_bears_much_is_not_refused(prepared):
+def test_a_ball_that_bears_much_is_not_refused(prepared):
     """A ball joint turns nothing over, however far it opens."""
     text = """gravity (0, 0, -9.81) m/s^2
-object line { shape rope from (0, 0, 2) m to (0, 0, 1.5) m thickness 1 cm density 1000 elasticity 1 MPa hold start }
-object weight { shape sphere 10 cm position (0, 0, 1.5) m density 7800 elasticity rigid }
-joint ball line weight { at (0, 0, 1.5) m }
-control { time 1 s }
+object bar { shape box (4, 4, 30) cm position (0, 0, 1.65) m density 1000 elasticity 20 kPa hold face +z }
+object weight { shape sphere 12 cm position (0, 0, 1.5) m density 7800 elasticity rigid }
+joint ball bar weight { at (0, 0, 1.5) m }
+control { time 0.1 s }
 """
     gap = next(m for m in prepared(text).certificate.margins if m.name == "joint gap")
-    assert gap.value > 0.01 and gap.severity == "warning"
+    assert gap.value > 0.04 and gap.severity == "warning"
