@@ -72,7 +72,7 @@ def parts(context: Context) -> list[Part]:
 
 
 def told_of_bodies(readings: Readings) -> dict[int, np.ndarray]:
-    """What the first fix tells of each of its bodies, shape (COLUMNS,), by the number of the solid in its context."""
+    """Rows that the first fix tells of its bodies, shape (COLUMNS,) each, by the numbers of the solids in its context."""
     bodies = [m for part in parts(readings.context) if part.fix == FIXES[0] for m in np.flatnonzero(part.bodies).tolist()]
     return dict(zip(bodies, readings.fix_rows(FIXES[0], len(bodies), COLUMNS)))
 
