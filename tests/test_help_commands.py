@@ -231,3 +231,10 @@ def test_the_problem_matcher_reads_what_check_prints(tmp_path):
     first = call("check", "bad.txt", cwd=tmp_path).stderr.splitlines()[0]
     file, line, column, severity, message = re.match(pattern["regexp"], first).groups()
     assert (file, line, severity) == ("bad.txt", "8", "error") and int(column) > 1 and "elasticity" in message
+
+
+@pytest.mark.parametrize(("word", "meant"), [("weight", "mass"), ("rotation", "orientation"), ("duration", "time")])
+def test_words_of_other_programs_are_known(word, meant):
+    """Where the word that is meant may stand, it is named."""
+    assert did_you_mean(word, words()) == f"did you mean '{meant}'?"
+    assert meant not in did_you_mean(word, ["density", "radius"])

@@ -118,6 +118,23 @@ NOT_SUPPORTED = {
 }
 """Words that people look for, which the language does not have, and what to write instead."""
 
+MEANT = {
+    "weight": "mass",
+    "rotation": "orientation",
+    "rotate": "orientation",
+    "angle": "orientation",
+    "tilt": "orientation",
+    "pos": "position",
+    "place": "position",
+    "centre": "position",
+    "center": "position",
+    "speed": "velocity",
+    "duration": "time",
+    "stiffness": "elasticity",
+    "wood": "oak",
+}
+"""Words of other programs for names that the language has."""
+
 MISPLACED = {
     "expect within": "a tolerance is written as +-, e.g. = 2 m/s +- 2 %",
     **{f"expect {over}": f"it stands first, e.g. expect {over} ball.speed < 3 m/s" for over in OVER},
@@ -188,6 +205,8 @@ def examples(keyword: Keyword) -> str:
 def did_you_mean(word: str, choices) -> str:
     """``did you mean 'mass'?``, or the choices where none is near: a third of the letters may be wrong, and one in any case."""
     choices = list(dict.fromkeys(choices))
+    if (meant := MEANT.get(word.lower())) in choices:
+        return f"did you mean '{meant}'?"
     close = [c for spelling in dict.fromkeys((word, word.lower())) for c in get_close_matches(spelling, choices, 8, 0.5)]
     far = {choice: edits(word.lower(), choice.lower()) for choice in close}
     near = [c for c in close if far[c] <= max(1, len(word) // 3) or (len(word) >= 3 and c.startswith(word))]

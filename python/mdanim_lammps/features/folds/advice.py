@@ -84,7 +84,8 @@ def notes(envelope: Envelope) -> list[Problem]:
     word = "parts" if pair.apart else "pieces"
     both = f"{word} of {one}" if pair.first == pair.second else f"{one} and {other}"
     through = f"layers that meet flat pass through each other from {say(flat, 'm/s')} on, " if flat > alone else ""
-    cause = f"{both} may meet at {say(fastest, 'm/s')}: {through}single particles from {say(alone, 'm/s')} on"
+    singly = f"single particles get through from {say(alone, 'm/s')} on, and may stay there"
+    cause = f"{both} may meet at {say(fastest, 'm/s')}: {through}{singly}"
     over = fastest / alone
     ways = [f"write a speed or a height for less than {say(alone, 'm/s')}"]
     thick = 1.02 * pair.reach * over

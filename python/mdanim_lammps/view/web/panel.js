@@ -3,7 +3,8 @@
 import { Plot } from "./vendor.js";
 import { RELATIVE, drawn, number } from "./message.js";
 
-export const INK = ["#e8743b", "#3b8fc4", "#4fae7b", "#d99a1c", "#d3557a", "#7a6fc9", "#2fa39d", "#b5654f", "#7f9c2e"];
+export const INK = ["#e8743b", "#3b8fc4", "#4fae7b", "#d99a1c", "#d3557a", "#7a6fc9", "#2fa39d", "#b5654f", "#7f9c2e",
+  "#5b6b7a", "#a13f8f", "#1f6f5c", "#c2b23a", "#3f4fa8"];
 export const byId = (id) => document.getElementById(id);
 
 // An element with properties and children.
