@@ -151,11 +151,15 @@ def leaning_log(folder: Path, e: float, leans: float) -> float:
 
 def restitution(folder: Path) -> Iterator[Reached]:
     """Restitution of the point that meets the floor; and of a log that falls flat, or nearly so."""
-    for lowest, highest, most in ((0.5, 1.0, 0.06), (0.1, 0.4, 0.1)):
+    for lowest, highest, most in ((0.4, 1.0, 0.02), (0.1, 0.3, 0.04)):
         asked = [e for e in (0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.8, 0.9, 1.0) if lowest <= e <= highest]
         worst = {case: max(abs(rigid_motions.bounced(folder, case, e) - e) for e in asked) for case in rigid_motions.LANDING}
         told = ", ".join(f"{case} {value:.3f}" for case, value in worst.items())
         yield Reached(f"restitution of {lowest:g} to {highest:g}", f"{most:g}", told, max(worst.values()) <= most)
+    blows = [(speed, e) for speed in (0.1, 0.01) for e in (0.8, 0.5, 0.2)]
+    slow = [(speed, e, rigid_motions.bounced(folder, "ball on floor", e, speed)) for speed, e in blows]
+    told = ", ".join(f"{left:.3f} of {e:g} at {speed:g}" for speed, e, left in slow)
+    yield Reached("restitution at parts of the fastest speed", "0.02", told, all(abs(left - e) <= 0.02 for _, e, left in slow))
     leans = (0.0, 0.02, 0.05, 0.1, 0.2)
     found = [leaning_log(folder, 0.5, lean) - 0.5 for lean in leans]
     told = ", ".join(f"{value:+.3f} at {lean:g}°" for lean, value in zip(leans, found))

@@ -45,7 +45,7 @@ CASES = [
         "Balls, logs and boxes bounce",
         "The coefficient of restitution, speed after a blow over the speed before it; Project Chrono has it as a unit test "
         "(utest_SMC_cor_normal).",
-        "*off* is the difference of both coefficients. [Restitution](physics-rigid.md#restitution) promises 0.06 from 0.5 on.",
+        "*off* is the difference of both coefficients. [Restitution](physics-rigid.md#restitution) promises 0.03 from 0.4 on.",
         "A blow is a damped spring that does not pull, over some nine steps. A log of which one end "
         "comes first has each end damped as if it fell alone, and keeps more.",
         bounce,

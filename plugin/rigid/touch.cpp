@@ -126,10 +126,24 @@ double TouchStep::follow(Touch &touch, double depth, double k) const
   return (depth - last) - (last - touch.earlier) + dt * dt * touch.yields * touch.press;
 }
 
-ContactForce<double> TouchStep::pressure(Touch &touch, const ContactLaw &law, double part, double depth) const
+// The dashpot over that of a spring without an onset: in a blow F/sqrt(2 k U) for the force F of the spring and its energy U. As
+// a function of sqrt(2 U) the speed then is that of a linear spring, whatever F, so that as much is left of a slow blow, which
+// hardly leaves the onset, as of a fast one. What has gone deeper again after it came back rests: that has all of it, and
+// trembles less.
+static double dashpot_at(const Touch &touch, double depth, double onset)
+{
+  if (touch.rests != 0.0) return 1.0;
+  const Onset<double> g(depth - touch.memory.offset, onset);
+  return g.value > 0.0 ? g.slope / std::sqrt(2.0 * g.value) : 0.0;
+}
+
+ContactForce<double> TouchStep::pressure(Touch &touch, const ContactLaw &its_law, double part, double depth) const
 {
   constexpr int LOOKS = 3;    // each is nearer to the next depth by (dt Omega)^2 and more
   const double before = touch.memory.depth, k = touch.stiffness * part, pulled = is_first() ? 0.0 : follow(touch, depth, k);
+  if (touch.followed != 0.0 && before < touch.earlier && depth > before) touch.rests = 1.0;
+  ContactLaw law = its_law;
+  law.damping *= dashpot_at(touch, depth, onset);
   ContactForce<double> force = contact_pressure<double>(law, 1.0, part, depth, dt, touch.memory);
   if (is_first()) return force;
   const double now = depth - touch.memory.offset, came = depth - before;

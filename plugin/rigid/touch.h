@@ -29,6 +29,7 @@ struct Touch {
   double more = 0.0;
   double owed = 0.0;        // work that `more` has still to do [J]
   double followed = 0.0;    // 1 from the second step on
+  double rests = 0.0;       // 1 from where it goes deeper again after it came back
   double parted = 0.0;      // 1 in the step after the bodies have parted, the last one that it is there
   double counted = 0.0;     // part of it that counted in the last step, of points that are nearest on a mesh
   double energy = 0.0;      // now, with that of sticking [J]

@@ -5,7 +5,6 @@ import numpy as np
 import pytest
 from mdanim_lammps.engine.instance import Instance
 from mdanim_lammps.errors import RefusedError, SceneError
-from mdanim_lammps.features.joints.free import share_for
 from mdanim_lammps.features.joints.rows import GAP, NUMBER, RATE, WAY
 from mdanim_lammps.run.energy import energies, tell
 
@@ -118,16 +117,6 @@ def test_stops_of_what_is_welded_fast_do_nothing(prepared, weld):
     ready = prepared(SLIDER.format(a=0.1, b=0.1, density=700, more="").replace("velocity (2, 0, 0) m/s", "") + weld + "\n")
     _, rows, sums = watched(ready, 0.05, 10)
     assert np.abs(rows[:, WAY]).max() < 1e-12 and np.ptp(sums) < 1e-12
-
-
-def test_shares_of_damping_leave_the_part_that_is_asked():
-    """By small steps of x'' + 2 b x' + x = 0 until the force would pull."""
-    for e in (0.9, 0.5, 0.2):
-        b, x, v, dt = share_for(e), 0.0, 1.0, 1e-4
-        while v > 0.0 or x + 2.0 * b * v > 0.0:
-            v += dt * (-2.0 * b * v - x)
-            x += dt * v
-        assert -v == pytest.approx(e, abs=1e-3)
 
 
 def test_restitution_needs_limits(prepared):

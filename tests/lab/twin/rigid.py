@@ -88,6 +88,8 @@ class TwinTouch:
     more: float = 0.0
     """The part of the force beside spring and dashpot, for the work of beginning, onset and end."""
     owed: float = 0.0
+    rests: bool = False
+    """Whether it has gone deeper again after it came back."""
 
     def look_back(self, now: float, dt: float, work: float) -> float:
         """Books the last step, whose way ends here; the change of depth by other forces in it."""
@@ -146,8 +148,11 @@ class TwinWorld:
             self.touches[key] = touch
         last, now, k = touch.depth, depth, touch.k
         others = touch.look_back(now, dt, k * self._missing(last, now) if now < last else 0.0)
-        press = k * self.energy_and_force(now)[1]
-        press += max(touch.eta * (now - last) / dt, -press)
+        energy, force = self.energy_and_force(now)
+        press = k * force
+        touch.rests = touch.rests or (touch.earlier is not None and last < touch.earlier and now > last)
+        share = 1.0 if touch.rests else force / np.sqrt(2.0 * energy)
+        press += max(share * touch.eta * (now - last) / dt, -press)
         if now > last:
             touch.owed += k * self._missing(last, now)
         more = 0.0

@@ -109,8 +109,8 @@ def test_a_bar_that_is_pushed_at_its_end_breaks_by_bending(tmp_path, over, break
 @pytest.mark.parametrize("strength", [2e4, 5e5])
 def test_energies_add_up_where_a_ball_breaks_a_bar(tmp_path, strength, friction):
     """The force on the ball changes too where the bar breaks, and with it the energy of its motion by half of a kick."""
-    bodies = [b.put(mu=friction, beta=0.4) for b in bar(4)]
-    ball = lab.ball(0.1, 4e3, at=(0.01, 0.02, 0.1501), v=(0.5, 0, -5), mu=friction, beta=0.4)
+    bodies = [b.put(mu=friction, beta=0.8) for b in bar(4)]
+    ball = lab.ball(0.1, 4e3, at=(0.01, 0.02, 0.1501), v=(0.5, 0, -5), mu=friction, beta=0.8)
     with world(tmp_path, bodies, strength, beside=[ball], frequency=lab.frequency_of(5.0, EDGE), thin=EDGE) as one:
         columns = ("kinetic", "contact", "friction_heat", "damping_loss", "let_go", "torn")
         before = sum(map(one.number, columns))

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...model.shapes import radius
+from ..contact.restitution import damping_for
 from .ends import unit
 from .preload import held_rows, motion_along
 
@@ -30,12 +31,8 @@ STIFF = 40.0
 give a part of this blow back."""
 CRITICAL = 1.0
 """Share of critical damping of stops without a `restitution`."""
-MOST_DAMPED = CRITICAL
-"""The largest one: a harder dashpot is a blow on the joint, which springs back by itself."""
 STILL = 1e-9
 """Part of the mobility of the ends alone, below which welds leave no motion."""
-CLOSE = 1e-12
-"""Square of the frequency from which on a damped spring counts as critical."""
 
 
 def stop_of(one: Strength, welds: Sequence[Strength] = ()) -> tuple[float, float, float]:
@@ -44,7 +41,7 @@ def stop_of(one: Strength, welds: Sequence[Strength] = ()) -> tuple[float, float
     e = one.link.joint.restitution
     if one.link.joint.limits is None or ((found := _freedom(one, welds)) is None and e is None):
         return 0.0, 0.0, 0.0
-    share = CRITICAL if e is None else share_for(e)
+    share = CRITICAL if e is None else damping_for(e)
     if found is None:
         return one.servo[0], share * one.servo[1], 4.0 * one.servo[0] / one.servo[1] ** 2
     y, _, gives = found
@@ -137,22 +134,3 @@ def _motion(one: Strength, along: np.ndarray, about: bool, place: dict[int, int]
     for s, body in zip((1.0, -1.0), one.bodies):
         row[place[body.body]] = s * motion_along(body, along, about) @ body.root
     return row.ravel()
-
-
-def share_for(e: float) -> float:
-    """Share of critical damping with which a dashpot beside a spring that does not pull leaves a part e of the speed."""
-    low, high = 0.0, MOST_DAMPED
-    for _ in range(60):
-        middle = 0.5 * (low + high)
-        low, high = (middle, high) if _left(middle) > e else (low, middle)
-    return 0.5 * (low + high)
-
-
-def _left(share: float) -> float:
-    """Part of the speed that is left where the force of x'' + 2 b x' + x = 0 would begin to pull."""
-    root = 1j * math.sqrt(max(1.0 - share * share, CLOSE))
-    slow, fast = -share + root, -share - root
-    # There x'' = 0: (fast/slow)^2 = exp((slow - fast) t).
-    t = (2.0 * np.angle(fast / slow) % (2.0 * np.pi)) / abs(2.0 * root)
-    speed = (slow * np.exp(slow * t) - fast * np.exp(fast * t)) / (slow - fast)
-    return float(abs(speed))
