@@ -55,10 +55,8 @@ def breaks(solid: Any) -> bool:
 @once_for(lambda scene: scene)
 def _kinds(scene: SceneRecord) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Sheets, sheets and ropes that touch themselves, all sheets and ropes, and solids that tear, bool, each of shape (M,)."""
-    sheet = np.array([is_sheet(s) for s in scene.solids], bool)
-    bare = np.array([not fills(s) for s in scene.solids], bool)
-    folding = bare & [folds(s) for s in scene.solids]
-    return sheet, folding, bare, ~bare & [tears(s) for s in scene.solids]
+    sheet, filled, folding, torn = (np.array([is_so(s) for s in scene.solids], bool) for is_so in (is_sheet, fills, folds, tears))
+    return sheet, ~filled & folding, ~filled, filled & torn
 
 
 def _layered(scene: SceneRecord) -> np.ndarray:
