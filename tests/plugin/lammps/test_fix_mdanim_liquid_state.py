@@ -150,6 +150,7 @@ WAVES_HEAD = np.dtype(
         *((n, t) for n, t in zip(("before", "steps", "dt", "looked"), ("f8", "i8", "f8", "i8"))),
         *((n, "f8") for n in ("gone", "slept", "travel", "energy")),
         ("impulses", "f8", 9),
+        ("shaken", "f8"),
         ("drops", "u8"),
     ]
 )
@@ -198,7 +199,7 @@ def test_the_state_of_waves_is_as_it_is_read_here(splash):
     ("part", "field"),
     [
         *(("head", name) for name in ("before", "dt", "gone", "slept", "travel", "work", "lost", "work_power", "lost_power")),
-        *(("head", name) for name in ("energy", "impulses")),
+        *(("head", name) for name in ("energy", "impulses", "shaken")),
         *((name, None) for name in ("mass", "afloat", "ambient", "added", "paddle", "due")),
     ],
 )
@@ -214,7 +215,7 @@ def test_no_number_of_a_state_is_taken_unlooked_at(splash, part, field, bad):
         target[field] = bad
     else:
         target.reshape(-1)[{"afloat": 2, "added": 3}.get(part, 0)] = bad
-    anything = part == "ambient" or field in ("work", "lost", "work_power", "lost_power", "energy", "impulses")
+    anything = part == "ambient" or field in ("work", "lost", "work_power", "lost_power", "energy", "impulses", "shaken")
     if (np.isnan(bad) and part == "ambient") or (bad == -1e300 and anything):
         return
     with pytest.raises(RuntimeError, match="is damaged: "):
@@ -239,6 +240,16 @@ def test_liquid_faster_than_it_may_be_is_refused(splash):
     damaged[-16:-8].view("f8")[:] = 1e9
     with pytest.raises(RuntimeError, match="faster than 16"):
         take_up(lmp, damaged)
+
+
+def test_a_state_of_an_older_version_is_refused(splash):
+    """Its numbers stand in other places."""
+    lmp, stored = splash
+    older = stored.copy()
+    parts(older)["head"]["version"] -= 1
+    with pytest.raises(RuntimeError, match=r"not of version \d+ of kind waves, .*another version of the plugin"):
+        take_up(lmp, older)
+    assert np.array_equal(state(lmp), stored)
 
 
 def test_each_kind_of_liquid_refuses_the_state_of_the_other(tmp_path, splash):

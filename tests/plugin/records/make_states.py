@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""Make the stored states: ``python tests/plugin/records/make_states.py``.
+"""Make the stored states: ``python tests/plugin/records/make_states.py [SCENE ...]``, all without names.
 
 Each scene is run into the middle of what happens in it, and positions, velocities, forces and all records of fixes are stored in
-states.npz. Make them again only when the contents of a record are meant to change: its version has to change too, as checkpoints
-and restart files of users hold the same bytes.
+states.npz. Make them again only when the contents of a record are meant to change, and only the scenes that hold such a record:
+its version has to change too, as checkpoints and restart files of users hold the same bytes.
 """
 
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -44,12 +45,13 @@ def plan_of(name: str):
     return prepare(parse_scene(SCENES[name][0])).plan
 
 
-def main() -> None:
-    """Run the scenes and store their states."""
+def main(names: list[str]) -> None:
+    """Run these scenes and store their states; those of others stay as they are."""
     from mdanim_lammps.engine.instance import Instance
 
-    stored = {}
-    for name, (_, seconds) in SCENES.items():
+    stored = {key: array for key, array in np.load(FILE).items() if key.split()[0] not in names} if FILE.exists() else {}
+    for name in names:
+        seconds = SCENES[name][1]
         with Instance(plan := plan_of(name)) as instance:
             instance.setup()
             instance.run(round(seconds / plan.certificate.timestep))
@@ -61,4 +63,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    main(sys.argv[1:] or list(SCENES))
