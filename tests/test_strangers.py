@@ -8,6 +8,7 @@ import os
 import random
 import re
 import shutil
+from contextlib import suppress
 
 import h5py
 import numpy as np
@@ -19,6 +20,7 @@ from mdanim_lammps.export import FORMATS
 from mdanim_lammps.results.ledger import Ledger
 from mdanim_lammps.results.progress import PROGRESS
 from mdanim_lammps.results.timeline import Timeline
+from mdanim_lammps.view.feed import LAYERS
 from mdanim_lammps.view.tail import Known, Tail
 from scene_texts import POOL
 
@@ -68,9 +70,14 @@ def viewed(folder) -> int:
             json.dumps(tail.news(Known()), allow_nan=False).encode()
             if tail.count:
                 feed = tail.feed()
-                feed.scene(), feed.springs(), feed.heights(0, tail.count)
+                feed.scene(), feed.springs(), feed.track(0, tail.count)
+                told = tail.told()
+                for word in json.loads(json.dumps(told.head(), allow_nan=False))["words"]:
+                    with suppress(MdanimError):  # a page shows it in place of this curve
+                        told.curve([feed.metadata.names[0], word])
+                told.vectors("velocity")
                 for frame in range(tail.count):
-                    feed.frame(frame, 3)
+                    feed.frame(frame, LAYERS)
     except MdanimError as error:
         return int(error.exit_code)
     return 0

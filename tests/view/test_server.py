@@ -21,7 +21,7 @@ from mdanim_lammps.results.ledger import Ledger
 from mdanim_lammps.results.progress import PROGRESS, ProgressLog
 from mdanim_lammps.view import beside, server
 from mdanim_lammps.view.__main__ import serve
-from mdanim_lammps.view.feed import packed
+from mdanim_lammps.view.feed import LAYERS, packed
 from mdanim_lammps.view.server import LONGEST_MESSAGE, PAGES, packaged_files
 from mdanim_lammps.view.tail import MOST_ROWS, Known, Tail
 from scene_texts import FALL
@@ -312,7 +312,7 @@ def test_paths_lead_nowhere(view, path):
 
 WRONG = ["", "null", "[]", "{", "[" * 4000, b"\x00\x01", "x" * (LONGEST_MESSAGE + 1), '{"do": "rm"}', '{"do": "pause/../x"}']
 WRONG += [f'{{"get": {n}, "layers": 0}}' for n in ("-1", "16", "1.5", "true", '"1"', "1e999")]
-WRONG += ['{"get": 1}', '{"get": 1, "layers": 4}', '{"track": 99}', '{"track": -1}', '{"track": null}']
+WRONG += ['{"get": 1}', f'{{"get": 1, "layers": {LAYERS + 1}}}', '{"track": 99}', '{"track": -1}', '{"track": null}']
 NAMED = ("plate.speed", ["nobody", "speed"], ["plate", "distance"], 1, ["plate", "x", "y"], [["plate"], "speed"])
 WRONG += [json.dumps({"curve": named}) for named in NAMED] + ['{"arrows": 1}', '{"arrows": "position"}']
 
