@@ -10,6 +10,7 @@ import numpy as np
 
 from ...effects.context import Context
 from ...model.shapes import thickness
+from ...scene.once import once_for
 from ...scene.scene import SceneRecord
 from ..rigid.touching import AT, BEARS_FORCE, BEARS_TORQUE, told_of_bodies
 from .links import Link, Links, links_of
@@ -54,6 +55,7 @@ def told_of_welds(readings) -> np.ndarray:
     return found
 
 
+@once_for(lambda links: links)
 def hung_by(links: Links) -> dict[int, int]:
     """The object that hangs on the first one of its body by a weld, by the number of the weld. Welds that close rings are not
     among them."""
