@@ -270,7 +270,7 @@ def test_on_a_dark_background_in_final_quality(run):
 @pytest.mark.parametrize(
     ("line", "message", "hint"),
     [
-        ("arrows speed", "'speed' is not one of the choices of arrows", "known here: contact, weight, velocity, spin, force"),
+        ("arrows speed", "'speed' is not one of the choices of arrows", "did you mean 'velocity'?"),
         ("arrows velocity of bal", "no object is called bal", "did you mean 'ball'?"),
         ("arrows velocity scale 0", "s of arrows must be > 0, found 0", ""),
         ("trail", "nothing follows trail", ""),
