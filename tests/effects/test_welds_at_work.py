@@ -58,6 +58,20 @@ def test_a_weld_bears_nothing_in_a_fall_and_what_turns_its_part(prepared):
     assert np.linalg.norm(middle[1] - middle[0]) == pytest.approx(0.1, abs=1e-12)
 
 
+def test_welds_of_a_ring_share_what_they_bear(prepared):
+    """Two welds side by side bear half each, in any place of the body; of three parts in a ring, what hangs on both others."""
+    cube = "object {} {{ shape box (20, 20, 20) cm position (0, 0, {}) cm density 1000 elasticity rigid velocity (0, {}, 0) m/s "
+    cube += "spin (3, 0, 0) rad/s }}\n"
+    pair = cube.format("a", 100, 0) + cube.format("b", 80, 0.6)
+    welds = "".join(f"joint weld a b {{ at (0, {y}, 90) cm }}\n" for y in (-8, 8))
+    rows, _ = rows_after(prepared(CONTROL.replace("-9.81", "0") + pair + welds), 0.3)
+    assert rows[:, FORCE] == pytest.approx(np.full(2, 0.5 * 8.0 * 3.0**2 * 0.1), rel=1e-5)
+    turned, middle = np.array([(0.0, np.cos(0.9), np.sin(0.9))]), np.array([(0.0, 0.3 * 0.3, 0.9)])
+    assert rows[:, FIRST] == pytest.approx(np.concatenate([middle - 0.08 * turned, middle + 0.08 * turned]), abs=1e-5)
+    rows, _ = rows_after(prepared(CONTROL + LAMP.format(low=0.05) + "joint weld arm foot { at (0.02, 0, 0.3) m }\n"), 0.5)
+    assert (rows[:, FORCE] > 0.01 * ARM * G).all() and (rows[:, FORCE] < (POST + ARM) * G).all()
+
+
 def test_step_is_that_of_the_body(prepared):
     """A table with a heavy crate: legs bear it as a part of the table, not each alone."""
     text = (
@@ -76,7 +90,7 @@ def test_step_is_that_of_the_body(prepared):
     [("", 3), ("joint weld arm foot { at (0.02, 0, 0.3) m }", 4), ("joint weld arm world { at (0.1, 0, 0.38) m }", 3)],
 )
 def test_which_welds_make_one_body(prepared, more, count):
-    """Welds between objects that are free do, also where they close a ring, which bears nothing; not those with the world."""
+    """Welds between objects that are free do, also where they close a ring; not those with the world."""
     hook = "object hook { shape sphere 2 cm position (0.19, 0, 0.35) m density 100 elasticity rigid }\njoint weld hook arm { }\n"
     links = links_of(prepared(CONTROL + LAMP.format(low=0.05) + hook + more).scene)
     assert len(links.welds) == count and len(hung_by(links)) == 3

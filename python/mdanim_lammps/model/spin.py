@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""Spin of objects, from their particles."""
+"""Spin and rotation of objects, from their particles."""
 
 from __future__ import annotations
 
@@ -28,3 +28,15 @@ def spin(mass: np.ndarray, first: np.ndarray, position: np.ndarray, velocity: np
     found = np.full(momentum.shape, np.nan)
     found[finite] = np.einsum("oij,oj->oi", np.linalg.pinv(inertia[finite], hermitian=True), momentum[finite])
     return found
+
+
+def rotation(mass: np.ndarray, start: np.ndarray, now: np.ndarray) -> np.ndarray:
+    """Rotation from one place to another, of least squares over particles: a matrix, shape (3, 3).
+
+    Args:
+        mass: of N particles [kg], shape (N,).
+        start, now: their places [m], shape (N, 3).
+    """
+    start, now = (x - np.average(x, axis=0, weights=mass) for x in (start, now))
+    u, _, v = np.linalg.svd(np.einsum("n,ni,nj->ij", mass, now, start))
+    return u @ np.diag([1.0, 1.0, np.sign(np.linalg.det(u @ v))]) @ v

@@ -134,7 +134,7 @@ class Joints(Effect):
     def _torn(self, context):
         """The object that moves against its joints at the start more than any other, where one does."""
         joined = [(one.link, one.arm) for one in strengths(context)]
-        joined += [(link, arm_of(context.scene, link)) for link in welds_here(context)]
+        joined += [(link, arm_of(context.scene.solids, link)) for link in welds_here(context)]
         speeds = [(torn(context, *one), one[0]) for one in joined]
         if not speeds:
             return []
@@ -217,7 +217,7 @@ def _here(context: Context) -> list[Strength]:
 def _rows(context: Context, told: np.ndarray | Sequence) -> np.ndarray:
     """Rows of a frame, of what springs hold together and then of welds."""
     joined = [(one.link, one.thin) for one in _here(context)]
-    joined += [(one, thin_of(context.scene, one)) for one in welds_here(context)]
+    joined += [(one, thin_of(context.scene.solids, one)) for one in welds_here(context)]
     return rows_of_joints(joined, np.reshape(told, (len(joined), TOLD)), _numbers(context))
 
 

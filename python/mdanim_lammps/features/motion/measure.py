@@ -12,7 +12,7 @@ from ... import features
 from ...effects import acting
 from ...effects.balance import Balance
 from ...effects.measured import Glance, Mean, Measurable, Measure, Measured, Of, Recorded, of_vector
-from ...model.spin import spin
+from ...model.spin import rotation, spin
 from ...scene.once import once_for
 
 
@@ -67,11 +67,8 @@ def _spin(g: Glance) -> np.ndarray:
 @once_for(lambda g: g)
 def turn(g: Glance) -> np.ndarray:
     """Rotation of an object since the start, of least squares over its particles: a matrix, shape (3, 3)."""
-    mass = g.context.system.mass[g.mine]
-    start, now = g.context.system.position[g.mine], g.position[g.mine]
-    start, now = (x - np.average(x, axis=0, weights=mass) for x in (start, now))
-    u, _, v = np.linalg.svd(np.einsum("n,ni,nj->ij", mass, now, start))
-    return u @ np.diag([1.0, 1.0, np.sign(np.linalg.det(u @ v))]) @ v
+    system = g.context.system
+    return rotation(system.mass[g.mine], system.position[g.mine], g.position[g.mine])
 
 
 def _angle(g: Glance, axis: int) -> float:
