@@ -36,6 +36,22 @@ def test_a_ball_comes_to_rest_below_the_hand():
         assert instance.fix_value("hand", "work") == pytest.approx(-mass.sum() * G * R / 4, rel=1e-2)
 
 
+def test_a_hand_lifts_all_that_is_welded():
+    """A hammer of four times the weight of the handle at which it is taken hangs a quarter of the radius of all below the hand."""
+    handle = "object handle { shape box (4, 4, 20) cm  position (0, 0, 1) m  density 500  elasticity rigid }\n"
+    head = "object head { shape box (10, 10, 8) cm  position (0, 0, 0.88) m  density 500  elasticity rigid }\n"
+    weld = "joint weld handle head { at (0, 0, 0.91) m }\n"
+    pull = TOP.replace("1.05", "1.1")
+    ready = prepare(parse_scene(SCENE.replace(BALL, handle + head + weld) + f"hand handle {{ {pull} }}\n"))
+    middle = (0.16 * 1.0 + 0.4 * 0.88) / 0.56
+    radius = max(1.0 - middle + np.hypot(0.1, 0.02 * 2**0.5), middle - 0.88 + np.hypot(0.04, 0.05 * 2**0.5))
+    with Instance(ready.plan) as instance:
+        instance.setup()
+        before = instance.array("x")[0, 2]
+        instance.run(ready.certificate.steps)
+        assert before - instance.array("x")[0, 2] == pytest.approx(0.25 * radius, rel=1e-3)
+
+
 def test_a_hand_is_in_the_bound_and_costs_little():
     """A few per cent of what deforms; and a hand that comes later finds the certificate and the effects that it needs."""
     soft = SCENE.replace("elasticity rigid", "elasticity 300 kPa")

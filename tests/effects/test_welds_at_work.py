@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from mdanim_lammps.engine.instance import Instance
+from mdanim_lammps.errors import SceneError
 from mdanim_lammps.features.joints.links import links_of
 from mdanim_lammps.features.joints.rows import FIRST, FORCE, GAP, NUMBER, TORQUE
 from mdanim_lammps.features.joints.welds import hung_by
@@ -95,6 +96,15 @@ def test_which_welds_make_one_body(prepared, more, count):
     links = links_of(prepared(CONTROL + LAMP.format(low=0.05) + hook + more).scene)
     assert len(links.welds) == count and len(hung_by(links)) == 3
     assert set(links.whole_of) == {0, 1, 2, 3}
+
+
+def test_parts_of_one_body_may_overlap(prepared):
+    """Also where no weld joins both; a knob at the post is in the foot, too. What is not of the body may not."""
+    knob = "object knob { shape sphere 4 cm position (0, 0, 0.12) m density 100 elasticity rigid }\n"
+    text = CONTROL + LAMP.format(low=0.05) + knob
+    prepared(text + "joint weld knob post { at (0, 0, 0.14) m }\n")
+    with pytest.raises(SceneError, match="knob starts inside"):
+        prepared(text)
 
 
 def test_rows_are_told_beside_what_another_fix_moves(prepared):

@@ -3,9 +3,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Container, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 from .. import features
 from ..bodies import kinds
@@ -101,7 +102,7 @@ def _prepare(scene: SceneRecord, spacing: Spacing, allow_unstable: bool) -> Prep
     models = build_models(scene, spacing.of, driven=drives)
     planes = [p for e in features.effects() for p in e.of(scene).planes(scene)]  # also of those that are off
     contact = next((e.of(scene) for e in features.effects() if e.keeps_apart), None)
-    passing = {pair for e in resolved.effects for pair in e.passes(scene)}
+    passing = _Passing(resolved)
     overlaps = Overlaps(lambda m: next((line for e in resolved.effects if (line := e.outline(scene, m)) is not None), None))
     problems = check_geometry(scene, models, planes, contact, passing, overlaps) + [
         p for e in resolved.effects for p in e.problems(resolved, models, grid)
@@ -123,6 +124,17 @@ def _prepare(scene: SceneRecord, spacing: Spacing, allow_unstable: bool) -> Prep
     plan = make_plan(context, certificate)
     warnings = [*scene.warnings, *note(scene), *resolved.warnings, *(w for e in resolved.effects for w in e.warnings(context))]
     return Prepared(context, (*warnings, *margin_warnings(certificate)), certificate, plan, allow_unstable)
+
+
+class _Passing(Container):
+    """Pairs of solids i < j that may be in each other: an effect says so, or both move as one rigid body."""
+
+    def __init__(self, resolved: Resolved):
+        self.pairs = {pair for e in resolved.effects for pair in e.passes(resolved.scene)}
+        self.body = {m: group[0] for e in resolved.effects for group in e.unites(resolved.scene) for m in group}
+
+    def __contains__(self, pair: Any) -> bool:
+        return pair in self.pairs or (pair[0] in self.body and self.body[pair[0]] == self.body.get(pair[1]))
 
 
 def _refuse(certificate: Certificate) -> None:

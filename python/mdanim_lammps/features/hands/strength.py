@@ -23,12 +23,13 @@ from ...effects.context import Context
 from ...model import shapes
 from ...model.inertia import largest_mobility
 from ...model.springs import equivalent_modulus
-from ...model.system import System
 from ...reach import Throw
 from ...reach.reach import wave_speed
 from ...scene.holding import all_held
 from ...scene.once import once_for
+from ..joints.links import links_of
 from ..joints.patches import patch_of
+from ..joints.strength import RigidPart
 from .words import Hand
 
 SAG = 0.25
@@ -51,7 +52,7 @@ HARDEST, STIFFEST = 0.3, 0.2
 
 @dataclass(frozen=True)
 class Scale:
-    """Strength of a hand at one object as a whole."""
+    """Strength of a hand at one object as a whole, with all that is welded to it as one rigid body."""
 
     mass: float
     """[kg]"""
@@ -73,12 +74,27 @@ def scales(scene) -> dict[int, Scale]:
     for m, solid in enumerate(scene.solids):
         if all_held(solid) or not (scene.steerable or solid.name in named):
             continue
-        mass, radius = shapes.mass(solid), shapes.radius(solid.shape)
+        mass, radius = _size(scene, _body(scene, m))
         pulled = max(_gravity(scene), FREE * radius)
         frequency = math.sqrt(pulled / (SAG * radius))
         waves = math.sqrt(equivalent_modulus(np.ones(3), solid.elasticity) * shapes.volume(solid.shape) / mass)
         found[m] = Scale(mass, radius, frequency, STRONGEST * mass * pulled, min(frequency * radius, OF_WAVES * waves))
     return found
+
+
+def _body(scene, m: int) -> list[int]:
+    """Objects that move with one as one rigid body, itself among them."""
+    return links_of(scene).whole_of.get(m, [m]) if scene.joints else [m]
+
+
+def _size(scene, members: list[int]) -> tuple[float, float]:
+    """Mass [kg], and radius of the sphere around what moves as one body [m]."""
+    solids = [scene.solids[m] for m in members]
+    if len(solids) == 1:
+        return shapes.mass(solids[0]), shapes.radius(solids[0].shape)
+    masses, places = np.array([shapes.mass(s) for s in solids]), np.array([s.position for s in solids])
+    away = np.linalg.norm(places - np.average(places, axis=0, weights=masses), axis=1)
+    return float(masses.sum()), float(max(far + shapes.radius(s.shape) for far, s in zip(away.tolist(), solids)))
 
 
 def _gravity(scene) -> float:
@@ -135,7 +151,8 @@ def limits(context: Context) -> tuple[np.ndarray, np.ndarray]:
     squared, rate = np.zeros(len(system.names)), np.zeros(len(system.names))
     for m, scale in _here(context).items():
         if system.rigid[m]:
-            easier = scale.mass * float(_mobilities(system, m, _arms(system, m)).max())
+            own = system.position[system.first[m] : system.first[m + 1]]
+            easier = scale.mass * float(_mobilities(context, m, own).max())
             squared[m], rate[m] = easier * scale.frequency**2, 2.0 * easier * scale.frequency
         else:
             lattice = float(wave_speed(system)[m] / system.spacing[m])
@@ -150,7 +167,7 @@ def grip(context: Context, m: int, point: np.ndarray) -> Grip:
     patch = patch_of(system, m, point, GRASP * 0.5 * float(np.min(np.subtract(high, low))))
     weights = patch.of_point(point)
     if system.rigid[m]:
-        easier = float(_mobilities(system, m, (point - _centre(system, m))[None])[0])
+        easier = float(_mobilities(context, m, point[None])[0])
     else:
         easier = float((weights**2 / patch.mass).sum())
     squared, rate = (of[m] for of in limits(context))
@@ -166,16 +183,13 @@ def _here(context: Context) -> dict[int, Scale]:
     return {number[solids[m].name]: scale for m, scale in scales(context.scene).items() if solids[m].name in number}
 
 
-def _centre(system: System, m: int) -> np.ndarray:
-    rows = slice(system.first[m], system.first[m + 1])
-    return system.mass[rows] @ system.position[rows] / system.mass[rows].sum()
-
-
-def _arms(system: System, m: int) -> np.ndarray:
-    return system.position[system.first[m] : system.first[m + 1]] - _centre(system, m)
-
-
-def _mobilities(system: System, m: int, arm: np.ndarray) -> np.ndarray:
-    """The largest velocity of points of a rigid object, at arms from its centre [m], shape (P, 3), for an impulse of 1 on them
-    [1/kg], shape (P,)."""
-    return largest_mobility(system.inertia[m], float(system.mass_of[m]), arm)
+def _mobilities(context: Context, m: int, points: np.ndarray) -> np.ndarray:
+    """The largest velocity of points of a rigid object [m], shape (P, 3), for an impulse of 1 on them [1/kg], shape (P,)."""
+    system, scene = context.system, context.scene
+    members = _body(scene, next(k for k, solid in enumerate(scene.solids) if solid.name == system.names[m]))
+    if len(members) > 1:
+        part = RigidPart.of(context, members)
+        return largest_mobility(part.tensor, _size(scene, members)[0], points - part.centre)
+    own = slice(system.first[m], system.first[m + 1])
+    centre = system.mass[own] @ system.position[own] / system.mass[own].sum()
+    return largest_mobility(system.inertia[m], float(system.mass_of[m]), points - centre)
