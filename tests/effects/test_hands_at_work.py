@@ -37,7 +37,7 @@ def test_a_ball_comes_to_rest_below_the_hand():
 
 
 def test_a_hand_lifts_all_that_is_welded():
-    """A hammer of four times the weight of the handle at which it is taken hangs a quarter of the radius of all below the hand."""
+    """A hammer that is taken at its handle hangs a quarter of the radius of all of it below the hand."""
     handle = "object handle { shape box (4, 4, 20) cm  position (0, 0, 1) m  density 500  elasticity rigid }\n"
     head = "object head { shape box (10, 10, 8) cm  position (0, 0, 0.88) m  density 500  elasticity rigid }\n"
     weld = "joint weld handle head { at (0, 0, 0.91) m }\n"

@@ -109,8 +109,13 @@ REFUSED = {
     ),
     "a spring without its end": (
         line() + BOX + "joint spring box line { from (1, 0, 1) m }\n",
-        "joint spring box line has no to, and the centre of line is",
-        "write to (1, 0, 1) m, where its nearest particle is",
+        "joint spring box line has no to: where along line is it?",
+        "write to (0, 0, 1) m, its end that is nearer to box",
+    ),
+    "a joint without a place": (
+        line() + BOX + "joint ball line box { }\n",
+        "joint ball line box has no at: where along line is it?",
+        "write at (0, 0, 1) m, its end that is nearer to box",
     ),
     "no length": (line(SLACK.replace("1.2 m", "0 m")), "L of rope must be > 0, found 0 m", "write L > 0"),
     "in a box": (BOX + line(SLACK.replace("(0, 0, 1)", "(0, 0, 0.1)")), "line starts inside box", "move it"),
@@ -125,7 +130,9 @@ def test_what_does_not_fit_is_refused_with_its_place(name):
     assert found.span is not None and re.search(cause, found.message) and way_out in found.hint, (found.message, found.hint)
 
 
-@pytest.mark.parametrize("joint", ["spring box line { from (0, 0, 0.15) m }", "ball box line { at (0.5, 0, 0.2) m }"])
+@pytest.mark.parametrize(
+    "joint", ["spring box line { from (0, 0, 0.15) m to (0.5, 0, 1) m }", "ball box line { at (0.5, 0, 0.2) m }"]
+)
 def test_a_joint_off_a_rope_is_one_problem(joint):
     """It does not tell of the same place twice."""
     with pytest.raises(SceneError) as error:

@@ -166,10 +166,7 @@ def grip(context: Context, m: int, point: np.ndarray) -> Grip:
     low, high = shapes.extent(context.solids[m].shape)
     patch = patch_of(system, m, point, GRASP * 0.5 * float(np.min(np.subtract(high, low))))
     weights = patch.of_point(point)
-    if system.rigid[m]:
-        easier = float(_mobilities(context, m, point[None])[0])
-    else:
-        easier = float((weights**2 / patch.mass).sum())
+    easier = float(_mobilities(context, m, point[None])[0]) if system.rigid[m] else float((weights**2 / patch.mass).sum())
     squared, rate = (of[m] for of in limits(context))
     stiffness = min(scale.mass * scale.frequency**2, float(squared) / easier)
     damping = min(2.0 * math.sqrt(scale.mass * stiffness), float(rate) / easier)

@@ -3,7 +3,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 
@@ -13,16 +14,58 @@ from ...model.distance import distance
 from ...model.model import Model
 from ...model.segments import to_segments
 from ...scene.formatting import say
-from ...scene.scene import Box, Mesh, SceneRecord, Solid
+from ...scene.scene import Box, Mesh, PieceShape, Rope, SceneRecord, Sheet, Solid
+from ...scene.schema import Vector
+from ..ropes.words import is_rope
 from .links import NOTHING, Link, links_of
 from .planes import ON, across, off_plane
+from .words import WORLD, Joint
 
 BENT = 3e-5
 """Part of its length by which a piece of a rope is off a straight line, from which on it has two directions."""
 
+BY_PARTICLES = (Rope, Sheet, Mesh, PieceShape)
+"""Shapes whose places are told by their particles, or by a file."""
+
+
+def misplaced_by_words(joint: Joint, first: Solid, second: Solid | None) -> list[Problem]:
+    """Problems of the place of a joint that follow from shapes alone: it is outside of both objects by more than one is thick, of
+    a spring each end; nothing says where along a rope it is. ``second`` is None for the world."""
+    solids = [solid for solid in (first, second) if solid is not None]
+    if joint.kind == "spring":
+        ends = [(first, joint.begin, "from"), *([(second, joint.end, "to")] if second is not None else [])]
+        places = [[(solid, given or solid.position, word)] for solid, given, word in ends]
+    else:
+        ends = [(first, joint.at, "at")]
+        places = [[(solid, joint.at or first.position, "at") for solid in solids]]
+    if joint.kind in ("hinge", "slider") and (rope := next(filter(is_rope, solids), None)) is not None:
+        cause = f"joint {joint.words} turns about an axis, and a rope does not resist twist: it has no direction across"
+        return [Problem(joint.spans.get("joint"), cause, f"write joint ball, or joint weld, for {rope.name}")]
+    along = [(solid, word) for solid, given, word in ends if given is None and is_rope(solid)]
+    if along:
+        return [_along(joint, rope, next((s for s in solids if s is not rope), None), word) for rope, word in along]
+    plain = [place for place in places if not any(isinstance(solid.shape, BY_PARTICLES) for solid, *_ in place)]
+    found = (_far(joint, place, max(shapes.thickness(solid.shape) for solid, *_ in place)) for place in plain)
+    return [p for p in found if p is not None]
+
+
+def _along(joint: Joint, rope: Solid, other: Solid | None, word: str) -> Problem:
+    """The problem of a joint that does not say where along a rope it is."""
+
+    def away(end: Vector) -> tuple[float, float]:
+        if other is None:
+            return 0.0, 0.0
+        return 0.0 if is_rope(other) else outside(other, np.array(end, float)), math.dist(other.position, end)
+
+    end = min((rope.shape.start, rope.shape.end), key=away)
+    near = "an end of it" if other is None else f"its end that is nearer to {other.name}"
+    cause = f"joint {joint.words} has no {word}: where along {rope.name} is it?"
+    return Problem(joint.spans.get("joint"), cause, f"write {word} {_vector(end)} m, {near}")
+
 
 def misplaced(scene: SceneRecord, models: Sequence[Model]) -> list[Problem]:
-    """Problems of joints that are outside of both objects by more than a spacing, or than one is thick; of springs each end."""
+    """Problems of the places of joints that follow from particles: what is a line, a sheet or a mesh is far from them, or does
+    not have them or their directions."""
     problems: list[Problem | None] = []
     for link in links_of(scene).all:
         ends = [(m, n) for n, m in enumerate((link.first, link.named)) if m != NOTHING]
@@ -33,7 +76,12 @@ def misplaced(scene: SceneRecord, models: Sequence[Model]) -> list[Problem]:
             places = [[end] for end in ends if models[end[0]].frame.dimensions > 1]
         else:
             places = [] if lines else [ends]
-        problems += [_far(scene, models, link, place) or _off_sheet(scene, models, link, place) for place in places]
+        for place in places:
+            problem = None
+            if any(isinstance(scene.solids[m].shape, BY_PARTICLES) for m, _ in place):
+                most = max(max(models[m].spacing, shapes.thickness(scene.solids[m].shape)) for m, _ in place)
+                problem = _far(link.joint, [(scene.solids[m], (link.begin, link.end)[n], _word(link, n)) for m, n in place], most)
+            problems.append(problem or _off_sheet(scene, models, link, place))
     return [p for p in problems if p is not None]
 
 
@@ -58,11 +106,8 @@ def _word(link: Link, n: int) -> str:
 
 
 def _off_line(model: Model, link: Link, n: int, solid: Solid) -> list[Problem]:
-    """Problems of a joint whose object n is a line of particles, which has no place beside them, and no direction across."""
+    """Problems of a joint whose object n is a line of particles, which has no place beside them."""
     joint, x, at = link.joint, model.position, np.array((link.begin, link.end)[n], float)
-    if joint.kind in ("hinge", "slider"):
-        cause = f"joint {joint.words} turns about an axis, and a rope does not resist twist: it has no direction across"
-        return [Problem(joint.spans.get("joint"), cause, f"write joint ball, or joint weld, for {solid.name}")]
     away = to_segments(at[:, None], x[:-1].T, x[1:].T)
     if away.min() <= ON * model.spacing:
         return []
@@ -70,9 +115,9 @@ def _off_line(model: Model, link: Link, n: int, solid: Solid) -> list[Problem]:
     span = joint.spans.get(word)
     wanted = np.array((link.end, link.begin)[n], float) if span is None else at
     nearest = x[np.linalg.norm(x - wanted, axis=1).argmin()]
-    place = joint.words if span is not None else f"{joint.words} has no {word}, and the centre of {solid.name}"
+    place = joint.words if span is not None else f"{joint.words} has no {word}, and the centre of {joint.first}"
     cause = f"joint {place} is {say(float(away.min()), 'm')} beside the line of {solid.name}, which has all of its particles"
-    way_out = f"write {word} ({', '.join(f'{c:.9g}' for c in nearest)}) m, where its nearest particle is"
+    way_out = f"write {word} {_vector(nearest)} m, where its nearest particle is"
     return [Problem(span or joint.spans.get("joint"), cause, way_out)]
 
 
@@ -130,27 +175,26 @@ def _span(model: Model, solid: Solid, at: np.ndarray) -> np.ndarray:
     return rows[sizes > BENT * sizes[0]]
 
 
-def _far(scene: SceneRecord, models: Sequence[Model], link: Link, ends: list[tuple[int, int]]) -> Problem | None:
-    """The problem of a place that is at none of these objects, each with its number in the joint, 0 or 1."""
-    points = (link.begin, link.end)
-    away = [outside(scene.solids[m], np.array(points[n], float)) for m, n in ends]
+def _far(joint: Joint, ends: Sequence[tuple[Solid, Vector, str]], most: float) -> Problem | None:
+    """The problem of a place that is farther than ``most`` [m] from each of these objects, given with the place in each and the
+    setting that says it."""
+    away = [outside(solid, np.array(point, float)) for solid, point, _ in ends]
     nearest = int(np.argmin(away))
-    most = max(max(models[m].spacing, shapes.thickness(scene.solids[m].shape)) for m, _ in ends)
     if away[nearest] <= most * (1.0 + 1e-9):
         return None
-    names = [scene.solids[m].name for m, _ in ends]
+    names = [solid.name for solid, *_ in ends]
     where = "both objects" if len(names) == 2 else names[0]
-    solid, n = scene.solids[ends[nearest][0]], ends[nearest][1]
-    at, centre = (f"({', '.join(f'{c:g}' for c in place)}) m" for place in (points[n], solid.position))
+    solid, point, word = ends[nearest]
+    at, centre = (f"({', '.join(f'{c:g}' for c in place)}) m" for place in (point, solid.position))
     way_out = f"move it from {at} into {' or '.join(names)}, whose centre is at {centre}"
-    if link.named == NOTHING and link.joint.kind != "spring":
+    if joint.second == WORLD and joint.kind != "spring":
         way_out += (
             f"; or hold {solid.name} at a distance: by joint spring {solid.name} world {{ from {centre} to {at} }}, or by a rod"
         )
         way_out += f", another object that a joint weld ties to {solid.name}, and this joint to the world"
     return Problem(
-        link.joint.spans.get(_word(link, n)) or link.joint.spans.get("joint"),
-        f"joint {link.joint.words} is outside of {where}: {say(away[nearest], 'm')} from {solid.name}",
+        joint.spans.get(word) or joint.spans.get("joint"),
+        f"joint {joint.words} is outside of {where}: {say(away[nearest], 'm')} from {solid.name}",
         way_out,
     )
 
@@ -162,3 +206,7 @@ def outside(solid: Solid, point: np.ndarray) -> float:
         low, high = shapes.extent(solid.shape)
         return float(np.linalg.norm(np.maximum(0.0, np.maximum(low - place, place - high))))
     return max(0.0, -float(distance(solid.shape, place[None])[0]))
+
+
+def _vector(point: Iterable[float]) -> str:
+    return f"({', '.join(f'{c:.9g}' for c in point)})"
