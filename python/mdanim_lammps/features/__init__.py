@@ -15,6 +15,7 @@ A folder has facets, each a module that is looked for by its name:
 ``follow``   what follows from its words: fill(validator) gives blocks settings that follow from others, before records are made;
              explained() has texts for ``explain`` by the words that are told
 ``divide``   DIVIDES by the word of a block, functions (validator, record) that give the records that it stands for
+``places``   check(validator, held) of a whole scene by the shapes of objects: what is not where it has to be
 ``measure``  how its quantities are measured (effects/measured.py): MEASURES, by subject and word as in QUANTITIES;
              unmeasured(scene, asked), problems of what is asked for and cannot be told
 ``effect``   EFFECTS, the effects that it brings (effects/effect.py): causes, columns, commands, planes, bound, ledger

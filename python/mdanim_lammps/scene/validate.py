@@ -92,6 +92,8 @@ class Validator:
         for words in facets("words"):
             if hasattr(words, "check"):
                 words.check(self, top, held)
+        for facet in facets("places"):
+            facet.check(self, held)
         held["control"] = control = self.frames(control, held["render"])
         self.cameras()
         top |= asked_for(self, control)

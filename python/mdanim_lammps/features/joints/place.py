@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""Where joints are: near what they join."""
+"""Where joints are: near what they join, by its particles."""
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Sequence
 
 import numpy as np
@@ -16,7 +15,6 @@ from ...model.segments import to_segments
 from ...scene.formatting import say
 from ...scene.scene import Box, Mesh, PieceShape, Rope, SceneRecord, Sheet, Solid
 from ...scene.schema import Vector
-from ..ropes.words import is_rope
 from .links import NOTHING, Link, links_of
 from .planes import ON, across, off_plane
 from .words import WORLD, Joint
@@ -26,41 +24,6 @@ BENT = 3e-5
 
 BY_PARTICLES = (Rope, Sheet, Mesh, PieceShape)
 """Shapes whose places are told by their particles, or by a file."""
-
-
-def misplaced_by_words(joint: Joint, first: Solid, second: Solid | None) -> list[Problem]:
-    """Problems of the place of a joint that follow from shapes alone: it is outside of both objects by more than one is thick, of
-    a spring each end; nothing says where along a rope it is. ``second`` is None for the world."""
-    solids = [solid for solid in (first, second) if solid is not None]
-    if joint.kind == "spring":
-        ends = [(first, joint.begin, "from"), *([(second, joint.end, "to")] if second is not None else [])]
-        places = [[(solid, given or solid.position, word)] for solid, given, word in ends]
-    else:
-        ends = [(first, joint.at, "at")]
-        places = [[(solid, joint.at or first.position, "at") for solid in solids]]
-    if joint.kind in ("hinge", "slider") and (rope := next(filter(is_rope, solids), None)) is not None:
-        cause = f"joint {joint.words} turns about an axis, and a rope does not resist twist: it has no direction across"
-        return [Problem(joint.spans.get("joint"), cause, f"write joint ball, or joint weld, for {rope.name}")]
-    along = [(solid, word) for solid, given, word in ends if given is None and is_rope(solid)]
-    if along:
-        return [_along(joint, rope, next((s for s in solids if s is not rope), None), word) for rope, word in along]
-    plain = [place for place in places if not any(isinstance(solid.shape, BY_PARTICLES) for solid, *_ in place)]
-    found = (_far(joint, place, max(shapes.thickness(solid.shape) for solid, *_ in place)) for place in plain)
-    return [p for p in found if p is not None]
-
-
-def _along(joint: Joint, rope: Solid, other: Solid | None, word: str) -> Problem:
-    """The problem of a joint that does not say where along a rope it is."""
-
-    def away(end: Vector) -> tuple[float, float]:
-        if other is None:
-            return 0.0, 0.0
-        return 0.0 if is_rope(other) else outside(other, np.array(end, float)), math.dist(other.position, end)
-
-    end = min((rope.shape.start, rope.shape.end), key=away)
-    near = "an end of it" if other is None else f"its end that is nearer to {other.name}"
-    cause = f"joint {joint.words} has no {word}: where along {rope.name} is it?"
-    return Problem(joint.spans.get("joint"), cause, f"write {word} {_vector(end)} m, {near}")
 
 
 def misplaced(scene: SceneRecord, models: Sequence[Model]) -> list[Problem]:
@@ -80,7 +43,7 @@ def misplaced(scene: SceneRecord, models: Sequence[Model]) -> list[Problem]:
             problem = None
             if any(isinstance(scene.solids[m].shape, BY_PARTICLES) for m, _ in place):
                 most = max(max(models[m].spacing, shapes.thickness(scene.solids[m].shape)) for m, _ in place)
-                problem = _far(link.joint, [(scene.solids[m], (link.begin, link.end)[n], _word(link, n)) for m, n in place], most)
+                problem = far(link.joint, [(scene.solids[m], (link.begin, link.end)[n], _word(link, n)) for m, n in place], most)
             problems.append(problem or _off_sheet(scene, models, link, place))
     return [p for p in problems if p is not None]
 
@@ -117,7 +80,7 @@ def _off_line(model: Model, link: Link, n: int, solid: Solid) -> list[Problem]:
     nearest = x[np.linalg.norm(x - wanted, axis=1).argmin()]
     place = joint.words if span is not None else f"{joint.words} has no {word}, and the centre of {joint.first}"
     cause = f"joint {place} is {say(float(away.min()), 'm')} beside the line of {solid.name}, which has all of its particles"
-    way_out = f"write {word} {_vector(nearest)} m, where its nearest particle is"
+    way_out = f"write {word} {vector(nearest)} m, where its nearest particle is"
     return [Problem(span or joint.spans.get("joint"), cause, way_out)]
 
 
@@ -175,7 +138,7 @@ def _span(model: Model, solid: Solid, at: np.ndarray) -> np.ndarray:
     return rows[sizes > BENT * sizes[0]]
 
 
-def _far(joint: Joint, ends: Sequence[tuple[Solid, Vector, str]], most: float) -> Problem | None:
+def far(joint: Joint, ends: Sequence[tuple[Solid, Vector, str]], most: float) -> Problem | None:
     """The problem of a place that is farther than ``most`` [m] from each of these objects, given with the place in each and the
     setting that says it."""
     away = [outside(solid, np.array(point, float)) for solid, point, _ in ends]
@@ -208,5 +171,5 @@ def outside(solid: Solid, point: np.ndarray) -> float:
     return max(0.0, -float(distance(solid.shape, place[None])[0]))
 
 
-def _vector(point: Iterable[float]) -> str:
+def vector(point: Iterable[float]) -> str:
     return f"({', '.join(f'{c:.9g}' for c in point)})"

@@ -65,7 +65,7 @@ def told_of_welds(readings: Readings) -> np.ndarray:
 
 
 def _shared(readings: Readings, ring: Ring, rows: dict[int, np.ndarray]) -> Iterator[tuple[int, np.ndarray]]:
-    """The number of each weld of a body with a ring, and what it bears: force, torque and place, shape (3, 3)."""
+    """Numbers of the welds of a body with a ring, each with what it bears: force, torque and place, shape (3, 3)."""
     system, x = readings.context.system, readings.array("x")
     number = {name: m for m, name in enumerate(system.names)}
     mine = np.isin(system.object, [number[ring.solids[m].name] for m in ring.parts])
@@ -98,8 +98,8 @@ class Ring:
         self.arms = np.array([max(arm_of(self.solids, weld), thin_of(self.solids, weld)) for weld in self.welds])
 
     def shares(self, borne: np.ndarray) -> np.ndarray:
-        """What each weld bears, force and torque about its place, shape (W, 6), in the frame of the start, from what the welds by
-        which parts hang would bear alone, shape (P, 6)."""
+        """Loads of welds, force and torque about the place of each, shape (W, 6), in the frame of the start, from what the welds
+        by which parts hang would bear alone, shape (P, 6)."""
         loads = np.zeros((len(self.parts), 6))
         for k, other, weld in self.hangs:
             for sign, m in ((1.0, k), (-1.0, other)):

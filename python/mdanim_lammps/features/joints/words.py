@@ -116,14 +116,14 @@ class Joint:
     second: str
     """The same, or ``world``."""
     at: Vector | None = setting(
-        "<(x, y, z):m>", "Where it is at the start. Absent: the centre of the first object, which may not be a rope. Not of a spring.",
-        "(0, 0, 2) m", default=None)  # fmt: skip
+        "<(x, y, z):m>", "Where it is at the start. Absent: the centre of the first one, unless that is a rope. Not of a spring.",
+        "(0, 0, 1) m", default=None)  # fmt: skip
     """[m]"""
     axis: Vector | None = setting(
         "<(x, y, z)>", "Axis of a hinge, along which a slider slides. It goes with the second object.", "(0, 1, 0)",
         default=None)  # fmt: skip
     begin: Vector | None = setting(
-        "<(x, y, z):m>", "End of a spring in the first object. Absent: its centre.", "(0, 0, 2) m", name="from",
+        "<(x, y, z):m>", "End of a spring in the first object. Absent: its centre.", "(0, 0, 1) m", name="from",
         default=None)  # fmt: skip
     """[m]"""
     end: Vector | None = setting(
@@ -314,9 +314,7 @@ def _check_units(v: Any, joint: Joint) -> None:
 
 
 def check(v: Any, top: Mapping, held: Mapping) -> None:
-    """Something that a joint joins can move, and it is at what it joins."""
-    from .place import misplaced_by_words  # which is built on these words
-
+    """Something that a joint joins can move."""
     solids = held["solids"]
     by_name = objects_by_name(s.name for s in solids)
     moves = [not all_held(s) for s in solids]
@@ -327,10 +325,6 @@ def check(v: Any, top: Mapping, held: Mapping) -> None:
             v.problem(
                 joint.spans["joint"], f"{both}: nothing of joint {joint.words} can move", "take hold all out of one of them"
             )
-        pairs = ((i, j) for i in ends[0] for j in ([None] if joint.second == WORLD else ends[1]) if i != j)
-        for i, j in pairs:
-            for found in misplaced_by_words(joint, solids[i], None if j is None else solids[j]):
-                v.problem(found.span, found.message, found.hint)
 
 
 CHECKS = {"joint": check_joint}
