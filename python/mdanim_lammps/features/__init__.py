@@ -40,7 +40,7 @@ from __future__ import annotations
 import os
 import pkgutil
 from collections.abc import Iterator
-from functools import lru_cache
+from functools import cache, lru_cache
 from importlib import import_module
 from importlib.util import find_spec
 from types import ModuleType
@@ -58,15 +58,19 @@ def names() -> tuple[str, ...]:
     return tuple(sorted(module.name for module in pkgutil.iter_modules(__path__) if module.ispkg))
 
 
+@cache
+def _modules(kind: str) -> tuple[str, ...]:
+    """Full names of the modules of this name that features have, in the order of `names`; looked for on the disk once."""
+    return tuple(module for name in names() if find_spec(module := f"{__name__}.{name}.{kind}"))
+
+
 def facets(kind: str) -> Iterator[ModuleType]:
     """The modules of this name that features have, in the order of `names`."""
-    for name in names():
-        module = f"{__name__}.{name}.{kind}"
-        if find_spec(module):
-            found = import_module(module)
-            if getattr(found.__spec__, "_initializing", False):
-                raise ImportError(f"{module} imports what is made of it; it may import scene/schema.py, not scene/scene.py")
-            yield found
+    for module in _modules(kind):
+        found = import_module(module)
+        if getattr(found.__spec__, "_initializing", False):
+            raise ImportError(f"{module} imports what is made of it; it may import scene/schema.py, not scene/scene.py")
+        yield found
 
 
 @lru_cache(maxsize=1)
