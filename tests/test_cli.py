@@ -147,7 +147,7 @@ def test_compare_and_render_use_an_output_folder(scene):
             ["cube is 4 cm below the floor of the basin", "move it up by 4 cm", "2 cells wide along x"],
             id="basin",
         ),
-        pytest.param(["check", "alone.txt"], 3, ["at least one object", "hold all"], id="liquid alone"),
+        pytest.param(["check", "alone.txt"], 3, ["there is nothing in the scene", "object ball {"], id="nothing"),
         pytest.param(
             ["check", "dry.txt"], 3, ["liquid.level needs the liquid, which is off", "switch the liquid on"], id="liquid off"
         ),
@@ -195,7 +195,7 @@ def test_exit_codes(scene, arguments, code, words):
         GOOD + water.replace("(-1, -1, 0) m to (1, 1, 1)", "(-4, -20, 5) cm to (4, 20, 80)").replace(") m\n d", ") cm\n d"),
         "liquid.txt",
     )
-    scene("gravity (0, 0, -9.81)\ncontrol { time 1 s }\n" + water, "alone.txt")
+    scene("gravity (0, 0, -9.81)\ncontrol { time 1 s }\neffects { liquid off }\n" + water, "alone.txt")
     scene(GOOD + water + "effects { liquid off }\nexpect liquid.level = 0.5 m +- 1 cm\n", "dry.txt")
     scene(GOOD.replace("time 0.1 s", "time 0.1 s\n  timestep 1 s"), "fast.txt")
     scene(GOOD + "expect cube.position.z at 0.1 s = 9 m +- 1 m\n", "wrong.txt")

@@ -123,15 +123,16 @@ def certify(context: Context, *, allow_unstable: bool = False) -> Certificate:
         total_rate -= np.sum(own, axis=0) - np.max(own, axis=0)
     limit = stable_step(total_rate, sum(drags.values(), np.zeros(system.particles)))
     limit[system.held] = np.inf
-    worst = int(np.argmin(limit))
-    bound = float(limit[worst])
+    worst = int(np.argmin(limit)) if len(limit) else None  # a scene of liquid alone has no particles
+    bound = math.inf if worst is None else float(limit[worst])
     # Where nothing vibrates any step integrates free fall exactly: one step per frame, or what liquid or scene say.
-    causes = {name: r[worst] for name, r in rates.items()}
+    causes = {} if worst is None else {name: r[worst] for name, r in rates.items()}
     if math.isfinite(bound):
         causes |= {name: 2.0 * r[worst] / bound for name, r in drags.items()}
     total = sum(causes.values())
     cause = max(causes, key=causes.get) if total else "nothing"
-    name = system.names[system.object[worst]]
+    setter = None if worst is None else int(system.object[worst])
+    name = "nothing" if setter is None else system.names[setter]
 
     asked, fraction = scene.control.timestep, scene.control.accuracy.fraction
     if asked is not None and asked > bound * (1.0 + 1e-12) and not allow_unstable:
@@ -162,7 +163,7 @@ def certify(context: Context, *, allow_unstable: bool = False) -> Certificate:
         steps_per_frame=per_frame,
         frames=frames,
         last_steps=last,
-        span=scene.solids[system.object[worst]].spans.get("elasticity"),
+        span=None if setter is None else scene.solids[setter].spans.get("elasticity"),
         margins=tuple(_margins(envelope, limit)),
         notes=(*early, *_notes(envelope)),
     )

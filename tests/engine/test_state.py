@@ -71,3 +71,8 @@ def test_fixes_are_joined_apart():
     a, b = records({(1, 0): b"a"}), records({(2, 0): b"b"})
     found = join_all([{"rub": a, "heat": b}, {"rub": b}, {}])
     assert list(found) == ["heat", "rub"] and found["rub"] == join([a, b]) and found["heat"] == b
+
+
+def test_without_objects_records_are_those_of_the_whole():
+    """Of a liquid alone."""
+    assert records({(0, 0): b"all"}).home(np.zeros(0, bool)).tolist() == [0]

@@ -113,7 +113,6 @@ liquid water {
   fill    from (-1, -0.1, 0) m to (0, 0.1, 0.8) m
   level   0.4 m
 }
-object post { shape box (4, 4, 4) cm  position (-0.96, -0.06, 0.78) m  density 2000  elasticity 1 MPa  hold all }
 control { time 0.3 s  frames 50 fps  resolution 4 cm }
 record liquid.flow.x(0 m)
 record liquid.flow.y(0 m)

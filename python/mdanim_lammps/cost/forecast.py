@@ -97,7 +97,7 @@ def extrapolate(ready: Prepared, folder: Path, *, setup: float = 0.0) -> Cost:
     from ..run.loop import Interrupted, Progress, simulate
 
     c, particles = ready.certificate, ready.system.particles
-    steps = min(max(PARTICLE_STEPS // particles, STEPS), c.steps_per_frame)
+    steps = min(max(PARTICLE_STEPS // max(1, particles), STEPS), c.steps_per_frame)
     frames = min(max(c.steps // steps, FRAMES[0]), FRAMES[1])
     marks: list[tuple[float, float, float]] = []
 

@@ -33,6 +33,8 @@ def data_text(plan: Plan) -> Iterator[str]:
     yield f"{n} atoms\n{s} bonds\n8 atom types\n{len(plan.coefficients)} bond types\n\n"
     for axis, a, b in zip("xyz", low, high):
         yield f"{a!r} {b!r} {axis}lo {axis}hi\n"
+    if not n:  # liquid alone
+        return
     # Remarks to LAMMPS, which knows molecules by number.
     yield "".join(f"# molecule {number} {name}\n" for number, name in enumerate(system.names, 1))
     yield "\nAtoms # bond\n\n"

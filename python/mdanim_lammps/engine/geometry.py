@@ -109,7 +109,7 @@ class Geometry:
         """The plugin, the system as it takes it, and the arrays of that."""
         system = self.system
         rows, face = faces_of_solids(system, self.first_cell)
-        drawn = np.concatenate([system.frames[kind].drawn for kind in system.contact_kind.tolist()])
+        drawn = np.concatenate([np.zeros(0, bool), *(system.frames[kind].drawn for kind in system.contact_kind.tolist())])
         arrays = {
             name: np.ascontiguousarray(array, kind)
             for name, array, kind in (

@@ -161,7 +161,7 @@ def make_plan(context: Context, certificate: Certificate) -> Plan:
         bond_kind=kind,
         coefficients=coefficients,
         asked=asked,
-        spacing=float(system.spacing.max()),
+        spacing=float(max(system.spacing, default=context.spacing.h)),
         exponential=bool(strong_drag(context, certificate.timestep)),
     )
 

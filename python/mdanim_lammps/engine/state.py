@@ -47,7 +47,7 @@ class StateRecords:
         """Object, from 0, with which each record travels: the lower one of those that can move; M for that of the whole; int64,
         shape (R,). ``still`` says which of all M objects cannot move."""
         a, b = self.keys.T.astype(np.int64) - 1
-        return np.where(a < 0, len(still), np.where((b >= 0) & still[a], b, a))
+        return np.where(a < 0, len(still), np.where((b >= 0) & np.append(still, False)[a], b, a))
 
     def take(self, objects: Sequence[int], whole: bool) -> StateRecords:
         """Records of a part that has these objects of M, from 0 and ascending, numbered as in the part; and that of the whole

@@ -21,18 +21,25 @@ class Format:
     """Names of the files in the folder that is written beside the file of the first suffix; empty where there is none."""
     needs: str = ""
     """Module that only ``pip install 'mdanim-lammps[export]'`` brings."""
+    liquid: bool = False
+    """Whether it has the liquid, so that a run without objects can be written."""
 
 
 FORMATS = {
     "usd": Format(
-        "usd", (".usdc",), "USD: meshes over time, materials, liquid, camera, lamp; Blender, Houdini, usdview", needs="pxr"
+        "usd",
+        (".usdc",),
+        "USD: meshes over time, materials, liquid, camera, lamp; Blender, Houdini, usdview",
+        needs="pxr",
+        liquid=True,
     ),
-    "gltf": Format("gltf", (".glb",), "glTF: meshes with a morph target for each frame; browsers, slides"),
+    "gltf": Format("gltf", (".glb",), "glTF: meshes with a morph target for each frame; browsers, slides", liquid=True),
     "vtk": Format(
         "vtk",
         (".pvd", ".vtk"),
         "PVD series: surfaces, particles with velocity and strain, liquid; ParaView, PyVista",
         r"(surfaces|particles|liquid|drops)-\d{6,}\.vtp",
+        liquid=True,
     ),
     "xyz": Format("xyz", (".xyz",), "extended XYZ in metres: particles with velocity and mass, box, time; OVITO, ASE"),
     "xtc": Format("xtc", (".xtc", ".gro"), "XTC with its GRO: particles, a tenth of the size, lengths scaled; VMD, MDAnalysis"),

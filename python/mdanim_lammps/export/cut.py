@@ -65,7 +65,7 @@ class Cut:
         """Numbers of the frames, shape (F,)."""
         if not len(self.frames):
             raise UsageError(f"--frames {frames.start}:{frames.stop}: the run has frames 0 to {len(trajectory) - 1}")
-        self.objects = np.array([n for n, name in enumerate(trajectory.names) if not objects or name in objects])
+        self.objects = np.array([n for n, name in enumerate(trajectory.names) if not objects or name in objects], np.intp)
         """Indices into ``trajectory.names``, shape (O,)."""
         m = trajectory.metadata
         self._kept = np.isin(m.object_of, self.objects)
@@ -193,7 +193,7 @@ class Cut:
         paint = vertex_colors(m)[of_kept][mesh.of_skin][self._order]
         painted = np.zeros(len(skin.object_of_vertex), bool)
         painted[skin.painted] = True
-        chosen = np.array([bool(name) for name in m.colors])
+        chosen = np.array([bool(name) for name in m.colors], bool)
         painted = (painted & ~chosen[skin.object_of_vertex])[of_kept][mesh.of_skin][self._order]
         rank = np.empty(len(self._order), np.int32)
         rank[self._order] = np.arange(len(self._order))

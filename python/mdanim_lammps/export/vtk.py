@@ -21,11 +21,12 @@ def write(cut: Cut, folder: Path, stem: str, on_frame: Callable[[int], None]) ->
     sizes = [len(vertices) for vertices, _ in cut.surfaces(cut.frames[0])][: len(solids)]
     of = [*cut.objects, *[-1] * (len(solids) - len(cut.objects))]
     owner, first = np.repeat(of, sizes).astype(np.int32), np.cumsum([0, *sizes])
-    triangle = np.concatenate([body.triangle + np.int32(start) for body, start in zip(solids, first)])
+    triangles = [body.triangle + np.int32(start) for body, start in zip(solids, first)]
+    triangle = np.concatenate([np.zeros((0, 3), np.int32), *triangles])
     m, lines = cut.metadata, []
     for done, (frame, time) in enumerate(zip(cut.frames, cut.times), 1):
         surfaces = cut.surfaces(frame)
-        vertices, normals = (np.concatenate([s[k] for s in surfaces[: len(solids)]]) for k in (0, 1))
+        vertices, normals = (np.concatenate([np.zeros((0, 3)), *(s[k] for s in surfaces[: len(solids)])]) for k in (0, 1))
         x = cut.position(frame)
         parts = {
             "surfaces": _mesh(vertices, triangle, {"object": owner, "Normals": normals}),

@@ -61,7 +61,7 @@ def export(
         on_progress: called with (frames done, frames in all).
 
     Raises:
-        UsageError: a format, an object or a range that is not there.
+        UsageError: a format, an object or a range that is not there; a format of objects for a run without any.
         SetupError: the library of the format is not installed.
         OutputError: no frames, a file in the way, a full disk.
     """
@@ -74,6 +74,9 @@ def export(
         with Trajectory(run) as opened:
             return export(opened, to, path, objects=objects, every=every, frames=frames, force=force, on_progress=on_progress)
     cut = Cut(run, objects, every, frames)
+    if not run.names and not kind.liquid:
+        others = ", ".join(name for name, other in FORMATS.items() if other.liquid)
+        raise UsageError(f"--to {to}: the run has a liquid and no object, and {to} is of objects; its surface is in {others}")
     home = run.path.parent.resolve()
     path = place_of(home / f"{home.stem}{kind.suffixes[0]}", path, to)
     try:

@@ -132,7 +132,13 @@ def _choose(scene: SceneRecord, thin: list[float]) -> tuple[float, str]:
     for words in facets("words"):
         if hasattr(words, "width") and (found := words.width(scene)):
             return found[0] / control.accuracy.cells, found[1]
-    raise SceneError([Problem(None, "the scene has no object", "add an object block")])
+    raise nothing_in(scene)
+
+
+def nothing_in(scene: SceneRecord) -> SceneError:
+    """The error of a scene in which there is nothing to simulate."""
+    way_out = "write an object, e.g.  object ball { shape sphere 10 cm  position (0, 0, 1) m  material rubber }"
+    return SceneError([Problem(next(iter(scene.spans.values()), None), "there is nothing in the scene", way_out)])
 
 
 @lru_cache(maxsize=4096)

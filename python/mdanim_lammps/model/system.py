@@ -152,7 +152,9 @@ def centers(mass: np.ndarray, first: np.ndarray, values: np.ndarray) -> np.ndarr
 
 
 def assemble(models: Sequence[Model], scene: SceneRecord) -> System:
-    """Join the models of a scene, in order, into one System."""
+    """Join the models of a scene, in order, into one System; of none, a scene of liquid alone, an empty one."""
+    if not models:
+        return _empty()
     first = np.concatenate([[0], np.cumsum([len(m.position) for m in models])]).astype(np.int64)
 
     def join(arrays):
@@ -188,6 +190,34 @@ def assemble(models: Sequence[Model], scene: SceneRecord) -> System:
         driven=np.array([m.driven for m in models], bool),
         pinned=join([np.zeros_like(m.held) if m.pinned is None else m.pinned for m in models]),
         inertia=np.array([np.zeros((3, 3)) if m.inertia is None else m.inertia for m in models]),
+    )
+
+
+def _empty() -> System:
+    numbers, vectors, flags = np.zeros(0), np.zeros((0, 3)), np.zeros(0, bool)
+    return System(
+        names=(),
+        first=np.zeros(1, np.int64),
+        position=vectors,
+        velocity=vectors,
+        mass=numbers,
+        share=numbers,
+        layer=np.zeros(0, np.uint8),
+        held=flags,
+        spring=np.zeros((0, 2), np.int32),
+        spring_type=np.zeros(0, np.uint8),
+        constants=np.zeros((0, 4)),
+        young=numbers,
+        spacing=numbers,
+        cell_volume=numbers,
+        per_share=numbers,
+        inertia_error=numbers,
+        hexahedron=np.zeros((0, 8), np.int32),
+        contact_kind=np.zeros(0, np.int32),
+        frames=(),
+        driven=flags,
+        pinned=flags,
+        inertia=np.zeros((0, 3, 3)),
     )
 
 

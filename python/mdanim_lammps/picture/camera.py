@@ -121,9 +121,13 @@ def action_of(trajectory: Trajectory, samples: int = 40) -> Action:
     need not be read whole. Left out is what would make everything else tiny: an object, where there is no
     ground, from when it has fallen out of the scene; of a crowd the outermost twentieth on each side and what
     lies farther from the start than four times its size; of few objects what lies ten times farther still; of
-    what is torn the outermost twentieth of its particles on each side.
+    what is torn the outermost twentieth of its particles on each side. Of a liquid alone it is the basin.
     """
-    metadata, centers = trajectory.metadata, np.array(trajectory.centers)
+    metadata, centers, there = trajectory.metadata, np.array(trajectory.centers), scenery(trajectory.metadata)
+    if not metadata.names:
+        nothing = np.zeros((1, 0, 3))
+        bounds = tuple(np.array(corner, float) for corner in (there.liquid.low, there.liquid.high))
+        return Action(nothing, nothing, bounds, False, ~metadata.still, np.zeros((1, 0), bool))
     frames = np.unique(np.linspace(0, len(trajectory) - 1, samples).astype(int))
     below = np.zeros(centers.shape[1:])
     above = np.zeros(centers.shape[1:])
@@ -145,7 +149,6 @@ def action_of(trajectory: Trajectory, samples: int = 40) -> Action:
     start_low, start_high = (centers[0] + below).min(axis=0), (centers[0] + above).max(axis=0)
     size = max(float(np.linalg.norm(start_high - start_low)), np.finfo(float).tiny)
     gone = np.zeros(low.shape[:2], dtype=bool)
-    there = scenery(metadata)
     if there.ground is None:
         # Nothing falls out of a basin, which has a floor of its own.
         bottom = min(start_low[2], there.liquid.low[2]) if there.liquid else start_low[2]
@@ -228,7 +231,11 @@ def automatic_view(
     if basin is not None:
         fixed.append(_corners(*np.array(basin, dtype=float)))
     fixed = np.concatenate(fixed)
-    kept = np.ones_like(action.leads) if everything else worth_seeing(*boxes, action, fixed, forward, aspect, room)
+    kept = (
+        np.ones_like(action.leads)
+        if everything or not action.leads.size
+        else worth_seeing(*boxes, action, fixed, forward, aspect, room)
+    )
     return fit_view(np.concatenate([_corners(boxes[0][kept], boxes[1][kept]), fixed]), forward, aspect, room)
 
 

@@ -53,7 +53,7 @@ def vertex_colors(metadata: TrajectoryMetadata) -> np.ndarray:
     """Colour of each vertex of the skin, uint8, shape (V, 3): its object's, or else that of the mesh file."""
     skin = metadata.skin
     color = object_colors(metadata.colors, metadata.still)[skin.object_of_vertex]
-    chosen = np.array([bool(name) for name in metadata.colors])[skin.object_of_vertex]
+    chosen = np.array([bool(name) for name in metadata.colors], bool)[skin.object_of_vertex]
     color[skin.painted & ~chosen] = skin.paint[~chosen[skin.painted]]
     return color
 

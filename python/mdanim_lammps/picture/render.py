@@ -284,7 +284,8 @@ class Painter:
             look = actor.GetProperty()
             look.SetLineWidth(look.GetLineWidth() * self._finer)
 
-        typical = float(np.median(np.linalg.norm(self.action.high[0] - self.action.low[0], axis=1)))
+        sizes = np.linalg.norm(self.action.high[0] - self.action.low[0], axis=1)
+        typical = float(np.median(sizes)) if len(sizes) else self.action.size
         with silent():
             self._window = off_screen_window(self._renderers, (width, height), SAMPLES, clear=not self._behind)
             self._light = Light(self._surface.data, self.action.centre, self.action.size, typical, render, self._floor)

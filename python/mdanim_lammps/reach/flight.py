@@ -19,7 +19,7 @@ class Flight:
     def __init__(self, acting: Acting, system: System):
         held = np.logical_or.reduceat(system.held, system.first[:-1]) | np.isfinite(acting.room[0]).all(axis=1)
         self.low, self.high = system.bounds(system.position)
-        self.velocity = np.where(held[:, None], 0.0, [s.velocity for s in acting.scene.solids])
+        self.velocity = np.where(held[:, None], 0.0, np.reshape([s.velocity for s in acting.scene.solids], (-1, 3)))
         apart = np.linalg.norm(system.velocity - self.velocity[system.object], axis=1)
         self.around = np.maximum.reduceat(apart, system.first[:-1])
         """Speed of the fastest particle relative to its object, by its spin [m/s], shape (M,)."""

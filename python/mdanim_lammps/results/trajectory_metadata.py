@@ -218,7 +218,7 @@ def merge_surfaces(metadata: TrajectoryMetadata) -> Skin:
     triangles = np.array([len(surface.triangle) for surface in used], dtype=np.int64)
     weight = _joined([surface.weight.ravel() for surface in used], np.float64)
     particle = _joined([surface.index.ravel() + first for surface, first in zip(used, metadata.first)], np.int64)
-    corners = np.repeat([surface.index.shape[1] for surface in used], vertices)
+    corners = np.repeat(np.array([surface.index.shape[1] for surface in used], np.int64), vertices)
     first_vertex = np.cumsum(vertices) - vertices
     vertex = np.repeat(np.arange(len(corners)), corners)
     kept = weight != 0.0
@@ -231,7 +231,7 @@ def merge_surfaces(metadata: TrajectoryMetadata) -> Skin:
         object_of_triangle=np.repeat(objects, triangles),
         object_of_vertex=np.repeat(objects, vertices),
         first=first_vertex,
-        painted=np.repeat([surface.color is not None for surface in used], vertices),
+        painted=np.repeat([surface.color is not None for surface in used], vertices).astype(bool),
         patched=np.repeat([surface.patch is not None for surface in used], vertices).astype(bool),
         paint=np.concatenate([np.zeros((0, 3), np.uint8), *(s.color for s in used if s.color is not None)]),
     )

@@ -139,8 +139,8 @@ class TrajectoryWriter:
         )
         """For processes that write rows of particles themselves (`add`)."""
         # Masses of all particles, stored or not: the centre of mass is that of the whole object.
-        self._mass = np.concatenate([model.mass for model in models])
-        self._starts = np.cumsum([0] + [len(model.position) for model in models][:-1])
+        self._mass = np.concatenate([np.zeros(0), *(model.mass for model in models)])  # none of a liquid alone
+        self._starts = np.cumsum([0] + [len(model.position) for model in models])[:-1]
         self._stored: dict[str, np.ndarray] = {}
         """Particles and springs that the file has, of all, bool, for fields of these."""
         if any(of.per in ("particle", "bond") for of in self.metadata.fields):

@@ -95,7 +95,7 @@ def check_metadata(path: Path, m: TrajectoryMetadata) -> None:
         if not holds:
             raise OutputError(f"{path}: damaged: {what}")
 
-    must(count > 0, "it holds no object")
+    must(count > 0 or bool(m.kept), "it holds no object and no liquid")
     must(len(set(m.names)) == count, "two objects have one name")
     must(all(name and name.isprintable() for name in m.names), "a name of an object cannot be printed")
     must(all(re.fullmatch("(#[0-9a-fA-F]{6})?", color) for color in m.colors), "a colour is not written as #rrggbb")

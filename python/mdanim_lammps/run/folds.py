@@ -28,7 +28,7 @@ class Folds:
 
     def __init__(self, system: System):
         self.system = system
-        kind = np.array([f.cells.filled.sum() < SLENDER * float(f.cells.count.max()) ** 3 for f in system.frames])
+        kind = np.array([f.cells.filled.sum() < SLENDER * float(f.cells.count.max()) ** 3 for f in system.frames], bool)
         self.may = kind[system.contact_kind] & ~system.still
         """Bodies that may fold, bool, shape (M,)."""
 

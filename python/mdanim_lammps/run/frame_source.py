@@ -141,7 +141,7 @@ class Sequential:
         self.objects = np.arange(len(plan.system.names))
         self.spent = Account()
         """On what is not an effect's."""
-        self.of_step = PER_PARTICLE * plan.system.particles
+        self.of_step = PER_PARTICLE * max(1, plan.system.particles)
         """Time of a step [s]: a guess, until the first ones have been measured."""
 
     def __enter__(self) -> Sequential:

@@ -20,7 +20,7 @@ from ..model.build import build_models
 from ..model.grid import Grid
 from ..model.model import Model
 from ..model.overlap import check_geometry
-from ..model.spacing import Spacing, plan_spacing, too_large
+from ..model.spacing import Spacing, nothing_in, plan_spacing, too_large
 from ..model.system import System, as_parts, assemble
 from ..reach import Reach
 from ..results.quantities import unmeasured
@@ -77,17 +77,6 @@ def prepare(scene: SceneRecord, *, allow_unstable: bool = False) -> Prepared:
     above the bound.
     """
     check_trust(scene)
-    if not scene.solids:
-        raise SceneError(
-            [
-                Problem(
-                    next(iter(scene.spans.values()), None),
-                    "a scene needs at least one object",
-                    "write one; one that never moves will do, e.g.  object stone { shape box (10, 10, 10) cm  "
-                    "position (0, 0, 0) m  density 2000  elasticity 1 MPa  hold all }",
-                )
-            ]
-        )
     spacing = plan_spacing(scene)
     try:
         return _prepare(scene, spacing, allow_unstable)
@@ -100,6 +89,8 @@ def _prepare(scene: SceneRecord, spacing: Spacing, allow_unstable: bool) -> Prep
     grid = next((cells for e in resolved.effects if (cells := e.grid(scene, spacing.h))), None)
     drives = {m for e in resolved.effects for m in e.drives(scene)}
     models = build_models(scene, spacing.of, driven=drives)
+    if not models and grid is None:
+        raise nothing_in(scene)
     planes = [p for e in features.effects() for p in e.of(scene).planes(scene)]  # also of those that are off
     contact = next((e.of(scene) for e in features.effects() if e.keeps_apart), None)
     passing = _Passing(resolved)

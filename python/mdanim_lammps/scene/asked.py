@@ -59,6 +59,11 @@ def quantity(v: Validator, named: tuple, span: Span) -> Asked | None:
 
 def check_render(v: Validator, block: EvaluatedBlock, render: Render) -> Render:
     """Names of what pictures show, quantities of their curves, times of captions."""
+    if v.has_scene and not v.names and not v.out.excused("object"):
+        for word in ("arrows", "freeze", "color-by"):
+            for s in block.settings.get(word, ())[:1]:
+                cause = f"{word} needs an object, and the scene has none"
+                v.problem(s.span(), cause, "take it out; a curve is  plot liquid.height(0.2 m, 0 m)")
     for word, at in (("arrows", 1), ("trail", 0), ("label", 0)):
         for s in block.settings.get(word, ()):
             if s.values[at] is not None and s.values[at] not in v.named:

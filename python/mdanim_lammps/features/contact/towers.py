@@ -34,7 +34,8 @@ def towers(envelope: Envelope) -> list[Problem]:
     """
     g, scene = envelope.reach.g, envelope.scene
     if (
-        scene.control.contact_model is ContactModel.PAPER
+        not scene.solids
+        or scene.control.contact_model is ContactModel.PAPER
         or g <= 0.0
         or envelope.reach.acting.changes
         or math.hypot(*scene.gravity[:2]) > LEVEL * g

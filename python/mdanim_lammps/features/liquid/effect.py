@@ -22,8 +22,9 @@ from . import frames
 from .balance import UNEVEN, full_basin, load_energy
 from .basin import check_basin, leaky_walls, liquid_level, open_hulls, plan_grid, too_large
 from .forces import Buoyancy, LiquidDrag, free_solid
-from .frames import FLOW, OCCUPANCY, is_wavy
+from .frames import FIX, FLOW, OCCUPANCY, SHAKEN, WAVES, WORK, is_wavy
 from .ledger import CELLS, DUE
+from .ledger import WAVES as ENERGY
 from .record import LiquidModel
 from .tables import lattice_cells, layers_of_cells
 
@@ -234,6 +235,24 @@ class LiquidAutomaton(Effect):
 
 class LiquidWaves(LiquidAutomaton):
     """A liquid with momentum: columns of whole units move by their pressure rho g h [Pa] (docs/physics-liquid.md, "Waves")."""
+
+    ledger = ENERGY
+    further_ledger = ("wave_loss",)
+    has_arbitrary_zero = True
+
+    def energy(self, readings):
+        return readings.fix_value(FIX, WAVES)
+
+    def further_energies(self, readings):
+        # The energy that closes the sum with the work on solids, of which the scalar is the negative, and that on the liquid.
+        shaken = readings.fix_value(FIX, SHAKEN) if readings.context.scene.liquid.moves else 0.0
+        return {"wave_loss": readings.fix_scalar(FIX) + shaken - readings.fix_value(FIX, WAVES)}
+
+    def sources(self, scene):
+        return (WORK,) if scene.liquid.moves else ()
+
+    def lost(self, readings):
+        return {term: readings.fix_value(FIX, term) for term in self.sources(readings.context.scene)}
 
     def margins(self, envelope):
         return []

@@ -15,7 +15,7 @@ from ...effects.leapfrog import DRAG_LOSS, LAMBDA, drag_loss, drag_seconds
 from ...model.system import System
 from ...model.tensors import largest_eigenvalue
 from .basin import liquid_level
-from .frames import COUPLING, FIX, SHAKEN, WAVES, WORK, is_wavy
+from .frames import COUPLING, FIX, is_wavy
 
 WAVE_DRAG = 0.15
 """Part of the usual drag that is left where waves take energy away."""
@@ -97,29 +97,18 @@ class Buoyancy(Effect):
 
 class WavePush(Buoyancy):
     """Lift and push by the pressure of a liquid with momentum on parts of lattice cells (docs/physics-liquid.md, "Bodies in
-    waves").
+    waves"). Its work is among the accounts of the waves.
     """
 
-    ledger = "waves"
-    further_ledger = ("wave_loss",)
+    ledger = ""
+    has_arbitrary_zero = False
+
+    def energy(self, readings):
+        return 0.0
 
     def rate(self, context):
         # It acts on parts of lattice cells that are half as high; those of a particle at a face lie at one height.
         return 2.0 * super().rate(context)
-
-    def energy(self, readings):
-        return readings.fix_value(FIX, WAVES)
-
-    def further_energies(self, readings):
-        # The energy that closes the sum with the work on solids, of which the scalar is the negative, and that on the liquid.
-        shaken = readings.fix_value(FIX, SHAKEN) if readings.context.scene.liquid.moves else 0.0
-        return {"wave_loss": readings.fix_scalar(FIX) + shaken - readings.fix_value(FIX, WAVES)}
-
-    def sources(self, scene):
-        return (WORK,) if scene.liquid.moves else ()
-
-    def lost(self, readings):
-        return {term: readings.fix_value(FIX, term) for term in self.sources(readings.context.scene)}
 
 
 class LiquidDrag(Effect):

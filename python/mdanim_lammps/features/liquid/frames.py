@@ -49,14 +49,14 @@ def is_wavy(scene: SceneRecord) -> bool:
 
 
 def fields(scene: SceneRecord) -> tuple[Field, ...]:
-    """Cells to the unit: whole ones of an automaton, whole 2^-20 of one of waves. Columns of the ledger are the highest liquid
-    and the energy of waves where an ``expect`` asks for them."""
+    """Cells to the unit: whole ones of an automaton, whole 2^-20 of one of waves. The highest liquid is a column of the ledger
+    where an ``expect`` asks for it; so is the energy of waves of an automaton, 0, as others have it among their energies."""
     asked = {e.quantity for e in scene.asked if e.subject == "liquid"}
     return (
         Field(CELLS, "1", ledger=True, whole=True),
         Field(DUE, "1", ledger=scene.liquid.fed, whole=True),
         Field(CREST, "m", ledger="crest" in asked),
-        Field(ENERGY, "J", ledger="waves" in asked),
+        Field(ENERGY, "J", ledger="waves" in asked and not is_wavy(scene)),
         *(Field(name, "N s", ledger=True) for name in MOMENTA if is_wavy(scene)),
         *(Field(TIME, "s") for _ in range(is_wavy(scene))),
         HEIGHT,

@@ -2,7 +2,7 @@
 """Columns of the ledger of a liquid."""
 
 WAVES = "waves"
-"""Energy of a liquid with momentum [J]: a term where something moves in it, else an extra where an ``expect`` asks for it."""
+"""Energy of a liquid with momentum [J]."""
 DUE = "liquid_due"
 """Extra of a liquid that comes and goes: cells at the start, and what has come since less what has gone."""
 LIQUID_MOMENTUM = ("liquid_momentum.x", "liquid_momentum.y")
