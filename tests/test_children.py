@@ -7,6 +7,7 @@ import signal
 import subprocess
 import sys
 import time
+from functools import cache
 from importlib.metadata import packages_distributions
 from pathlib import Path
 
@@ -43,6 +44,7 @@ def cube(side: float) -> str:
     return CUBE.format("".join(f"facet normal 0 0 0\nouter loop\n{loop}endloop\nendfacet\n" for loop in loops))
 
 
+@cache
 def names() -> set[str]:
     """Modules of Python and of all that is installed."""
     return {*sys.stdlib_module_names, *packages_distributions(), "usercustomize"} - set(sys.builtin_module_names)
@@ -154,7 +156,7 @@ def test_processes_of_a_sweep_run_nothing_of_the_folder(theirs):
 
 def test_a_study_runs_nothing_of_the_folder(theirs):
     """It runs in this process, and draws a plot."""
-    theirs.program("study", "scene.txt", "--budget", "5 s", "--ladders", "time step", "-q")
+    theirs.program("study", "scene.txt", "--budget", "20 s", "--ladders", "time step", "-q")
     assert list(theirs.folder.rglob("*.png")), "no plot was drawn"
 
 

@@ -93,8 +93,8 @@ REFUSED = {
         "write hold faces x",
     ),
     "fine cells": (
-        BOX.replace("MPa }", "MPa  resolution 2 mm }") + line(SLACK.replace("1 cm", "2 cm")),
-        "line is 2 cm thick, more than two cells of box, which are 2 mm wide",
+        BOX.replace("MPa }", "MPa  resolution 4 mm }") + line(SLACK.replace("1 cm", "2 cm")),
+        "line is 2 cm thick, more than two cells of box, which are 4 mm wide",
         "write resolution 1 cm in box",
     ),
     "a hinge": (

@@ -106,7 +106,7 @@ def test_what_floats_at_rest_stays_at_rest():
     assert fastest < 1e-4 * (9 * 0.01) ** 0.5
 
 
-@pytest.mark.parametrize("draft", [2, 3])
+@pytest.mark.parametrize("draft", [pytest.param(2, marks=pytest.mark.soak), 3])
 def test_a_cube_bobs_as_in_a_flow_with_vertical_motion(draft):
     """The first fall and the period are within 10 % of those in linear potential flow."""
     side, depth, width, above = 6, 10, 24, 0.9

@@ -139,10 +139,9 @@ def small_disk(tmp_path):
 
 
 @pytest.mark.skipif(os.geteuid() != 0, reason="only root may mount a small file system")
-@pytest.mark.parametrize("size", [4, 6])
-@pytest.mark.parametrize("executors", [1, pytest.param(2, marks=pytest.mark.mpi)])
+@pytest.mark.parametrize(("size", "executors"), [(4, 1), pytest.param(6, 2, marks=pytest.mark.mpi)])
 def test_a_small_disk(whole, small_disk, tmp_path, size, executors):
-    """A file system of 4 or 6 MiB that fills up during the run, on one process and on two executors."""
+    """A file system of 4 MiB that fills up during the run, and one of 6 MiB on two executors."""
     scene, folder = whole
     out = small_disk(size << 20) / "box.out"
     ended_well(command(scene, "--no-movie", "-n", executors, "-o", out), "No space left on device; make room and resume")

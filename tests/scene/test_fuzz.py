@@ -24,7 +24,7 @@ SPICE += ["auto", "all", "title", "camera", "matrix"]
 # A scene takes milliseconds of processor time; a hundred times that is a hang.
 LONGEST = 5.0
 
-steady = settings(max_examples=400, derandomize=True, deadline=None)
+steady = settings(max_examples=150, derandomize=True, deadline=None)
 
 
 def survives(text: str) -> None:
@@ -101,7 +101,7 @@ def test_word_salad(text):
     survives(text)
 
 
-@settings(max_examples=300, derandomize=True, deadline=None)
+@settings(max_examples=150, derandomize=True, deadline=None)
 @given(st.binary(max_size=200))
 def test_random_bytes(tmp_path_factory, data):
     """A file of random bytes."""

@@ -220,7 +220,7 @@ def test_a_target_in_a_scene_is_refused(target_file, capsys, word):
     assert 'mdanim-lammps study SCENE --target "2 %"' in err
 
 
-@pytest.mark.parametrize("percent", [12.0, 8.0, 5.0])
+@pytest.mark.parametrize("percent", [12.0, 8.0, pytest.param(5.0, marks=pytest.mark.soak)])
 def test_a_target_that_takes_many_cells_is_met_at_fair_cost(percent, stiff_in_bending, monkeypatch):
     """Look up the ladder of a lattice that takes 4, 5 and 7 cells."""
     monkeypatch.syspath_prepend(REPOSITORY / "bench")

@@ -51,7 +51,7 @@ def test_something_happens(found):
     assert last[rows == 1, 0].mean() < 0.05 + 0.5 * 0.3 - 0.02
 
 
-@pytest.mark.parametrize("ranks", [1, 2])
+@pytest.mark.parametrize("ranks", [pytest.param(1, marks=pytest.mark.soak), 2])
 def test_lammps_alone_makes_the_same_frames(found, tmp_path, ranks):
     """The script that `build` writes, with its table of layers."""
     lammps_makes_the_same(found, tmp_path, SCENE, ranks)

@@ -51,7 +51,7 @@ def test_plates_break(found):
     assert parts[0] == 3 and 3 < parts[6] < parts[-1]
 
 
-@pytest.mark.parametrize("ranks", [1, 2])
+@pytest.mark.parametrize("ranks", [pytest.param(1, marks=pytest.mark.soak), 2])
 def test_lammps_alone_makes_the_same_frames(found, tmp_path, ranks):
     """The script that `build` writes."""
     lammps_makes_the_same(found, tmp_path, SCENE, ranks)

@@ -125,7 +125,7 @@ def test_a_state_is_taken_up_without_what_is_laid_aside(tmp_path):
         assert np.array_equal(ends[0].x[rows.stop :], before.x[rows.stop :]) and instance.fix_value("rigid", "bodies") == 3.0
 
 
-@pytest.mark.parametrize("ranks", [1, 2])
+@pytest.mark.parametrize("ranks", [pytest.param(1, marks=pytest.mark.soak), 2])
 def test_lammps_alone_makes_the_same_frames(tmp_path, ranks):
     """The script that `build` writes, with its tables."""
     ready, folder = readied(tmp_path, SCENE)

@@ -51,7 +51,7 @@ def test_something_happens(found):
     assert np.abs(last - first)[rows].max() > 0.1
 
 
-@pytest.mark.parametrize("ranks", [1, 2])
+@pytest.mark.parametrize("ranks", [pytest.param(1, marks=pytest.mark.soak), 2])
 def test_lammps_alone_makes_the_same_frames(found, tmp_path, ranks):
     """The script that `build` writes, with its file of bodies."""
     lammps_makes_the_same(found, tmp_path, SCENE, ranks)

@@ -75,7 +75,7 @@ def test_all_tear(found):
     assert {0, 4, 5, BALLOON} <= set(last.tolist()) and popped[0] > 0.0 and popped[1] == 0.0
 
 
-@pytest.mark.parametrize("ranks", [1, 2])
+@pytest.mark.parametrize("ranks", [pytest.param(1, marks=pytest.mark.soak), 2])
 def test_lammps_alone_makes_the_same_frames(found, tmp_path, ranks):
     """The script that `build` writes."""
     lammps_makes_the_same(found, tmp_path, SCENE, ranks)

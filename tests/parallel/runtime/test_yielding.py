@@ -64,7 +64,7 @@ def test_all_yield(found):
     assert set(of.tolist()) == set(range(YIELDS)) and torn > 0.0
 
 
-@pytest.mark.parametrize("ranks", [1, 2])
+@pytest.mark.parametrize("ranks", [pytest.param(1, marks=pytest.mark.soak), 2])
 def test_lammps_alone_makes_the_same_frames(found, tmp_path, ranks):
     """The script that `build` writes."""
     lammps_makes_the_same(found, tmp_path, SCENE, ranks)

@@ -123,7 +123,7 @@ def reachable(solid, start):
         found = grown
 
 
-@pytest.mark.parametrize("side", [12, 13])
+@pytest.mark.parametrize("side", [pytest.param(12, marks=pytest.mark.soak), 13])
 def test_density_is_uniform_among_obstacles(side):
     """Find liquid as often in every cell that can be reached, and in no other, with 25 % random obstacles."""
     solid = (np.random.default_rng(side).random((side, side)) < 0.25).astype(np.uint8)
