@@ -149,10 +149,10 @@ def test_half_a_character_is_no_text(folder):
 
 def test_a_check_has_an_end(folder, monkeypatch):
     """A text that takes long to be read is told; the next is checked as if nothing had been."""
-    monkeypatch.setattr(check, "CHECKING", 2.0)
     endless = SHORT + "repeat i in 1 .. 1000 { repeat j in 1 .. 1990 { let unused = i * j } }\n"
     with served(folder, editor=Editor(folder)) as view, page(view) as link:
         assert ask(link, edit=SHORT) == {"problems": [], "started": False}
+        monkeypatch.setattr(check, "CHECKING", 2.0)
         found = ask(link, edit=endless, run=True)
         assert not found["started"] and "takes more than 2 s" in found["problems"][0]["message"]
         monkeypatch.undo()
