@@ -257,7 +257,7 @@ def test_an_executor_that_raises_is_told(place, monkeypatch, capfd, settings, te
     begin = time.monotonic()
     with pytest.raises(ExecutorLost, match="executor 1: ValueError: out of the blue"):
         simulate_on(2, "peers", ready, folder, settings=PlannerOptions(**settings))
-    assert time.monotonic() - begin < 15.0
+    assert time.monotonic() - begin < 60.0
     assert "out of the blue" in capfd.readouterr().err
 
 
@@ -271,7 +271,7 @@ def test_a_planner_that_raises_is_told(place, monkeypatch, heard):
     begin = time.monotonic()
     with pytest.raises(ExecutorLost, match="no plan"):
         simulate_on(2, "central", ready, folder)
-    assert time.monotonic() - begin < 15.0
+    assert time.monotonic() - begin < 60.0
 
 
 @pytest.mark.parametrize(
@@ -290,7 +290,7 @@ def test_a_fault_of_mpi_is_told(place, monkeypatch, rank, module, kind, method):
     begin = time.monotonic()
     with pytest.raises(ExecutorLost, match="Message truncated"):
         simulate_on(2, "central", ready, folder)
-    assert time.monotonic() - begin < 15.0
+    assert time.monotonic() - begin < 60.0
 
 
 @EITHER
