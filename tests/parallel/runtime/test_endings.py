@@ -183,7 +183,7 @@ def test_ctrl_c_before_the_first_frame_is_not_forgotten(place):
     while not ranks_in(place) and time.monotonic() < deadline:
         time.sleep(0.01)
     process.send_signal(signal.SIGINT)
-    code, said = ended(process, 15.0)
+    code, said = ended(process, 60.0)
     assert code == 130, said
 
 
@@ -201,7 +201,7 @@ def test_a_run_that_diverges_names_the_object(place, control):
     """The guard's message, once; the last good frame is kept."""
     text = films.MIXED.replace("frames 100 fps", "frames 100 fps  timestep 2 ms").replace("time 0.12 s", "time 1 s")
     process = begun(place, text, "-n", 2, "--control", control, "--allow-unstable")
-    code, said = ended(process, 15.0)
+    code, said = ended(process, 60.0)
     assert code == 6, said
     assert re.search(r"step \d+, t = .* s: (ball|plate|falling|feather|sheet|shelf|onto|skimming): ", said), said
     assert said.count("cause:") == 1 and "last good frame" in said and "Traceback" not in said
