@@ -25,6 +25,7 @@ PICTURES = {
     "crank": 0.3,
     "ropes": 0.6,
     "air": 0.5,
+    "satellite": 0.5,
 }
 """Script, and which part of its run has passed in the picture."""
 SIZE = (480, 360)

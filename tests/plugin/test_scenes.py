@@ -131,6 +131,19 @@ def test_a_crank_turns_alike_on_any_number_of_ranks(tmp_path):
 
 
 @pytest.mark.mpi
+@pytest.mark.soak
+def test_a_satellite_flies_alike_on_any_number_of_ranks(tmp_path):
+    """Dumps are the same byte for byte; it comes to rest where its forces bring it, at a right angle but for what its wings give,
+    and has the energy that the jets have brought in."""
+    alone, output = run(tmp_path, 1, "satellite")
+    t = table(output)
+    assert t["v_place"] == pytest.approx(t["v_exact_place"], abs=1e-6)
+    assert t["v_angle"] == pytest.approx(t["v_exact_angle"], abs=0.01)
+    assert abs(t["v_off"]).max() < 1e-6 and t["KinEng"][-1] < 1e-4
+    assert alone == run(tmp_path, 3, "satellite")[0]
+
+
+@pytest.mark.mpi
 def test_a_rope_tears_alike_on_any_number_of_ranks(tmp_path):
     """Dumps are the same byte for byte; the rope has torn at its strength, the others hold, and what it held is heat."""
     alone, output = run(tmp_path, 1, "ropes", "-var", "steps", "400")
