@@ -83,6 +83,7 @@ void FixMdanimForce::init()
   }
   now.assign(of_object.size(), {});
   pushes.assign(of_object.size(), {});
+  aside.assign(of_object.size(), 0);
   locate();
   mass = particles.sum_of([this](int i) { return particles.mass_at(i); });
   heaviest = particles.largest_of([this](int i) { return particles.mass_at(i); });
@@ -100,6 +101,10 @@ void FixMdanimForce::locate()
   for (const int i : forced) lowest[particles.body_of(i)] = std::min(lowest[particles.body_of(i)], atom->tag[i]);
   MPI_Allreduce(MPI_IN_PLACE, lowest.data(), static_cast<int>(lowest.size()), MPI_LMP_TAGINT, MPI_MIN, world);
   first.assign(of_object.size(), -1);
+  for (std::size_t n = 0; n < aside.size(); ++n) {
+    aside[n] = lowest[n] == MAXTAGINT;
+    if (aside[n]) pushes[n] = {};
+  }
   for (const int i : forced)
     if (atom->tag[i] == lowest[particles.body_of(i)]) first[particles.body_of(i)] = i;
 }
@@ -201,7 +206,7 @@ void FixMdanimForce::find_pushes(bool counts)
   const std::vector<PushedObject> objects = whole_objects();
   double done = 0.0;
   for (std::size_t n = 0; n < pushes.size(); ++n) {
-    if (mass[n] == 0.0) continue;    // laid aside
+    if (aside[n]) continue;
     const PushedObject &object = objects[n];
     WholePush push;
     push.centre = object.centre;

@@ -70,6 +70,7 @@ class FixMdanimForce : public mdanim::FixBase, public mdanim::PassParticipant {
   std::vector<char> turned;
   std::vector<mdanim::ForceWindow> now;
   std::vector<mdanim::WholePush> pushes;
+  std::vector<char> aside;                    // whether all of its particles have left the group
   std::vector<double> mass, heaviest;         // the latter of their particles
   std::vector<int> first;                     // the particle with the lowest tag; -1 on all ranks but its own
   std::vector<mdanim::Vec3> here, before;     // places of particles in this step and the last one; the latter where objects turn

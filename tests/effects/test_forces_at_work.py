@@ -196,3 +196,19 @@ def test_the_way_to_a_partner_chooses_the_barrier(prepared, push, speed):
         context = prepared(objects + f"control {{ time {seconds} s  friction 0.5 }}", insist=True).plan.context
         assert context.reach.thrown_across == pytest.approx([speed, 0.0])
         assert fast(context).tolist() == 2 * [speed > 0.3 * np.sqrt(1.2 * 300e3 / 500.0)]
+
+
+@pytest.mark.parametrize("push", ["torque (0, 0, 0.02) N*m", "force (0.5, 0, 0) N"])
+def test_what_is_laid_aside_has_no_part(prepared, push):
+    """Its forces do no work, and a torque finds nothing to turn."""
+    more = (
+        "control { time 0.1 s resolution 5 cm }\n" + CUBE.replace("cube", "other").replace("(0, 0, 0)", "(1, 0, 0)") + "rigid }\n"
+    )
+    ready = prepared(CUBE + f"100 kPa {push} }}\n" + more)
+    with Instance(ready.plan) as instance:
+        instance.setup()
+        instance.run(20)
+        work = instance.fix_value("force", "work")
+        instance.lay_aside([0])
+        instance.run(20)
+        assert work > 0.0 and instance.fix_value("force", "work") == work
