@@ -6,6 +6,8 @@ import pytest
 from mdanim_lammps import Scene, Trajectory
 from mdanim_lammps.engine.instance import Instance
 from mdanim_lammps.errors import SceneError
+from mdanim_lammps.features.hands import strength
+from mdanim_lammps.model.inertia import largest_mobility
 from mdanim_lammps.picture.drawn import drawn
 from mdanim_lammps.results.files import HANDS
 from mdanim_lammps.run.prepare import prepare
@@ -50,6 +52,15 @@ def test_a_hand_lifts_all_that_is_welded():
         before = instance.array("x")[0, 2]
         instance.run(ready.certificate.steps)
         assert before - instance.array("x")[0, 2] == pytest.approx(0.25 * radius, rel=1e-3)
+
+
+def test_each_object_is_looked_at_once(monkeypatch):
+    """Its mobility, for the strength of a hand, however many objects there are and whoever asks."""
+    asked = []
+    monkeypatch.setattr(strength, "largest_mobility", lambda *a: asked.append(a) or largest_mobility(*a))
+    balls = "".join(BALL.replace("ball", f"b{n}").replace("(0, 0, 1)", f"({n}, 0, 1)") for n in range(5))
+    prepare(parse_scene(f"hands on\n{balls}control {{ time 1 s  frames 25 fps }}\n"))
+    assert len(asked) == 5
 
 
 def test_a_hand_is_in_the_bound_and_costs_little():

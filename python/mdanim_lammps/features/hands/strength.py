@@ -70,11 +70,15 @@ class Scale:
 def scales(scene) -> dict[int, Scale]:
     """Scales of all objects that may be pulled at, by their numbers: with ``hands on`` of all that can move."""
     named = {hand.object for hand in scene.held_by}
-    found = {}
+    found: dict[int, Scale] = {}
+    sizes: dict[int, tuple[float, float]] = {}
     for m, solid in enumerate(scene.solids):
         if all_held(solid) or not (scene.steerable or solid.name in named):
             continue
-        mass, radius = _size(scene, _body(scene, m))
+        body = _body(scene, m)
+        if body[0] not in sizes:
+            sizes[body[0]] = _size(scene, body)
+        mass, radius = sizes[body[0]]
         pulled = max(_gravity(scene), FREE * radius)
         frequency = math.sqrt(pulled / (SAG * radius))
         waves = math.sqrt(equivalent_modulus(np.ones(3), solid.elasticity) * shapes.volume(solid.shape) / mass)
@@ -144,6 +148,7 @@ class Grip:
         return f"stiffness {self.stiffness!r} damping {self.damping!r} most {self.most!r} particles {len(self.rows)} {particles}"
 
 
+@once_for(lambda context: context)
 def limits(context: Context) -> tuple[np.ndarray, np.ndarray]:
     """Squared frequency [1/s^2] and rate [1/s] that a hand gives to any part of each object at most, each of shape (M,); 0 of
     those that no hand may pull at."""
@@ -173,20 +178,32 @@ def grip(context: Context, m: int, point: np.ndarray) -> Grip:
     return Grip(patch.rows, weights, stiffness, damping, scale.most)
 
 
+@once_for(lambda context: context)
 def _here(context: Context) -> dict[int, Scale]:
     """The scales of the objects of a context, by their numbers in its system."""
-    number = {name: m for m, name in enumerate(context.system.names)}
-    solids = context.scene.solids
-    return {number[solids[m].name]: scale for m, scale in scales(context.scene).items() if solids[m].name in number}
+    of = scales(context.scene)
+    return {m: of[k] for m, k in enumerate(_numbers(context)) if k in of}
+
+
+@once_for(lambda context, first: context)
+def _welded(context: Context, first: int) -> RigidPart:
+    """All that is welded to the first object of a body of the scene."""
+    return RigidPart.of(context, _body(context.scene, first))
+
+
+@once_for(lambda context: context)
+def _numbers(context: Context) -> list[int]:
+    """The number of each object of the system in the scene."""
+    number = {solid.name: k for k, solid in enumerate(context.scene.solids)}
+    return [number[name] for name in context.system.names]
 
 
 def _mobilities(context: Context, m: int, points: np.ndarray) -> np.ndarray:
     """The largest velocity of points of a rigid object [m], shape (P, 3), for an impulse of 1 on them [1/kg], shape (P,)."""
-    system, scene = context.system, context.scene
-    members = _body(scene, next(k for k, solid in enumerate(scene.solids) if solid.name == system.names[m]))
-    if len(members) > 1:
-        part = RigidPart.of(context, members)
-        return largest_mobility(part.tensor, _size(scene, members)[0], points - part.centre)
+    system, body = context.system, _body(context.scene, _numbers(context)[m])
+    if len(body) > 1:
+        part = _welded(context, body[0])
+        return largest_mobility(part.tensor, _here(context)[m].mass, points - part.centre)
     own = slice(system.first[m], system.first[m + 1])
     centre = system.mass[own] @ system.position[own] / system.mass[own].sum()
     return largest_mobility(system.inertia[m], float(system.mass_of[m]), points - centre)
