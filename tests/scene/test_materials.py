@@ -153,6 +153,12 @@ def test_mistakes(text, line, column, words, hint):
     assert words.startswith("object a has") or not any("a has no" in p.message for p in found), found
 
 
+def test_a_wrong_word_behind_a_material_hides_nothing():
+    """What is complete before a word that cannot follow is looked at, too."""
+    told = [p.message for p in problems(f"object a {{ material wood velocty (1, 0, 0) m/s {AT} }}\n")]
+    assert told == ["no material is called wood", "'velocty' cannot follow here; material is complete"]
+
+
 def test_a_problem_in_a_material_names_its_use():
     """A fault for an object alone is told at the material, with the place that uses it."""
     text = f"material u {{ density 3 kg/m^3 elasticity rigid }}\nobject a {{ material u {AT} damping 0.3 }}\n"
@@ -186,5 +192,6 @@ def test_the_page_and_explain_have_the_table():
     told = explain("oak")
     assert "density 700 kg/m^3   found 590 kg/m^3 to 930 kg/m^3" in told and "so its objects are rigid" in told
     assert "rubber" in explain("rubber") and "elastic" in explain("rubber")
+    assert "instead: material oak or material pine" in explain("wood")
     for row in PAIRS:
         assert f"| {row[0]}, {row[1]} | " in page.page()

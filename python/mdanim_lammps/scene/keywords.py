@@ -131,7 +131,6 @@ MEANT = {
     "speed": "velocity",
     "duration": "time",
     "stiffness": "elasticity",
-    "wood": "oak",
 }
 """Words of other programs for names that the language has."""
 

@@ -133,8 +133,14 @@ class SettingReader(Reader):
         choice = self.choose(word, keyword)
         words, values = [], []
         self.match(alternatives(keyword.form)[choice], keyword, words, values)
-        self.end_of_statement(keyword.name, KEYWORDS[keyword.block])
-        return SettingNode(self.source, word, keyword, choice, tuple(words), tuple(values))
+        node = SettingNode(self.source, word, keyword, choice, tuple(words), tuple(values))
+        try:
+            self.end_of_statement(keyword.name, KEYWORDS[keyword.block])
+        except Fault as fault:
+            if not any(value and value.node for value in values):  # else what follows may belong to a value
+                fault.behind = node
+            raise
+        return node
 
     def choose(self, word: Token, keyword: Keyword) -> int:
         """The alternative of the form that the next word calls for, or the next two of alternatives that begin alike."""

@@ -6,10 +6,14 @@ from __future__ import annotations
 import os
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from ..errors import Problem, SceneError, Span
 from .limits import MOST_PROBLEMS
 from .tokens import Token
+
+if TYPE_CHECKING:
+    from .tree import SettingNode
 
 
 class Fault(Exception):
@@ -18,6 +22,8 @@ class Fault(Exception):
     def __init__(self, token: Token, message: str, hint: str = "", last: Token | None = None):
         super().__init__(message)
         self.token, self.message, self.hint, self.last = token, message, hint, last or token
+        self.behind: SettingNode | None = None
+        """The setting that is complete before the token."""
 
 
 class NoValue(Fault):

@@ -99,7 +99,8 @@ class Parser(SettingReader):
                 word, name = self.peek, self.ahead(1)
                 self.skip_statement(start, block, fault.token)
                 known = [*KEYWORDS[block], *BLOCKS, *STATEMENTS]
-                result.append(UnreadableStatement(nearest(str(word), known) or str(word), str(name) if word == "let" else ""))
+                bad = UnreadableStatement(nearest(str(word), known) or str(word), str(name) if word == "let" else "")
+                result.append(fault.behind or bad)
                 if (home := owner(KEYWORDS[block], str(fault.token))) is not None:
                     result.append(UnreadableStatement(home.name))
             except Unclosed as trouble:

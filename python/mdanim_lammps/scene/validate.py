@@ -394,6 +394,10 @@ class Validator:
         """Whether an object has this name; an unknown one is a problem, whose way out may be one of ``more`` too."""
         if name in self.names or self.out.excused("object"):
             return name in self.names
+        if len(several := self.named.get(name, ())) > 1:
+            first = next(islice(self.names, several[0], None))
+            self.problem(span, f"{name} stands for {len(several)} objects, and one is needed", f"name one of them, e.g. {first}")
+            return False
         known = [*islice(self.names, 2000), *more]
         self.problem(span, f"no object is called {name}", did_you_mean(name, known) if known else "the scene has no object")
         return False

@@ -8,12 +8,10 @@ from collections.abc import Mapping
 
 from ...scene.formatting import number, say
 from .resolve import STIFF
-from .table import CHOSEN, MATERIALS, PAIRS, SOURCES, Figure, Material
+from .table import CHOSEN, MATERIALS, MEANT, PAIRS, SOURCES, Figure, Material
 
 UNITS = {"density": "kg/m^3", "elasticity": "Pa", "strength": "Pa"}
 """SI units of figures that have one."""
-NOT_YET = ("strength",)
-"""Figures that no setting takes."""
 
 _TOP = f"""\
 # Materials
@@ -111,7 +109,11 @@ def rule(a: str, b: str) -> float:
 
 def explained() -> dict[str, str]:
     """Texts of ``explain`` by the names of materials."""
-    return {name: _told(name, material) for name, material in MATERIALS.items()}
+    others = {
+        name: f"{name}   is not a material of object {{ }}\n  instead: material {' or material '.join(meant)}"
+        for name, meant in MEANT.items()
+    }
+    return others | {name: _told(name, material) for name, material in MATERIALS.items()}
 
 
 def speed(material: Material, instead: Mapping[str, Figure] | None = None) -> float:
@@ -124,7 +126,7 @@ def _told(name: str, material: Material) -> str:
     lines = [f"material {name}   a material of object {{ }}: {material.about}"]
     for word, figure in material.figures().items():
         chosen = "a choice of this program" if figure.source == CHOSEN else f"found {_range(figure.low, figure.high, word)}"
-        lines.append(f"{word} {_value(figure.value, word)}   {chosen}{', no setting yet' if word in NOT_YET else ''}")
+        lines.append(f"{word} {_value(figure.value, word)}   {chosen}{', with pieces' if word == 'strength' else ''}")
     if material.sheet:
         found = (f"{word} {_value(figure.value, word)}, found {_range(figure.low, figure.high, word)}"
                  for word, figure in material.sheet.items())  # fmt: skip

@@ -172,6 +172,9 @@ MATERIALS = {
     "foam": Material(
         "soft foam of upholstery", _f(30, 16, 35, "A"), _f(300 * _k, 300 * _k, 1000 * _k, "A"), _own(0.6),
         _own(0.65), _own(1.5), _f(0.4 * _M, 0.24 * _M, 0.85 * _M, "A"), "#f2d98b"),
+    "biscuit": Material(
+        "biscuit or cookie, dry", _own(600), _own(100 * _M), _own(0.4),
+        _own(0.2), None, _own(1 * _M), "#c68e4e"),
     "jelly": Material(
         "firm gelatine, as of fruit gums; a dessert has about 1 kPa [J] and folds up where it is dropped",
         _own(1000), _own(50 * _k), _own(0.2), _own(0.3), _own(0.3), _own(10 * _k), "#d3324d"),
@@ -201,6 +204,6 @@ PAIRS = (
 MEANT = {
     "wood": ("oak", "pine"), "timber": ("oak", "pine"), "metal": ("steel", "iron", "brass"), "rock": ("stone", "granite"),
     "cloth": ("cotton",), "fabric": ("cotton",), "textile": ("cotton",), "cardboard": ("paper",), "latex": ("rubber",),
-    "plastic": ("rubber", "silicone"), "gelatine": ("jelly",), "sponge": ("foam",),
+    "plastic": ("rubber", "silicone"), "gelatine": ("jelly",), "sponge": ("foam",), "cookie": ("biscuit",),
 }  # fmt: skip
 """Materials that are meant by words which name none."""

@@ -70,7 +70,7 @@ def check_object(v: Any, block: Any, solid: Any) -> Any:
         v.problem(span, cause, "write elasticity rigid")
     if solid.strength is None and not block.excused("strength"):
         cause = f"{solid.name} has pieces and no strength: when does it break?"
-        v.problem(span, cause, "write strength 1 MPa, or a material: glass, brick, concrete, ice, clay")
+        v.problem(span, cause, "write strength 1 MPa, or a material: glass, brick, biscuit, ice")
     for word, place in solid.spans.items():
         if word not in ALLOWED and word in given(solid) and not (word == "hold" and holds_all(solid.hold)):
             v.problem(place, f"{solid.name} has pieces, and {word} does not act on pieces", f"leave out {word}, or pieces")
