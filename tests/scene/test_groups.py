@@ -194,7 +194,8 @@ MISTAKES = [
      "the position of g.a is too large", "", ["scene:2:7"]),
     ("contact of nothing", PAIR + "place pair { }\ncontact pair.c pair { friction 1 }", 6, 9, "no object is called pair.c", "",
      []),
-    ("expect of several", PAIR + "place pair { }\nexpect pair.torn = 1", 6, 8, "pair stands for ", "name one of them, e.g. pair.", []),
+    ("expect of several", PAIR + "place pair { }\nexpect pair.torn = 1", 6, 8, "pair stands for ", "name one of them, e.g. pair.",
+     []),
     ("expect of nothing", PAIR + "place pair { }\nexpect pair.b[6].speed = 1", 6, 8, "no object is called pair.b[6]", "", []),
     ("a long name", f"object {'.'.join('abcdefghij')} {{ }}", 1, 25, "this name has more than 9 parts", "", []),
 ]  # fmt: skip
