@@ -2,12 +2,21 @@
 
 #include "folds/fold_contact.h"
 
-#include "geometry/box_tree.h"
-
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace mdanim {
+
+// As many links as are as long as what is apart without load, two at least; in a triangular lattice they go 0.87 of that.
+template <class Element>
+static int links_of(const FoldObject &object, int count, int corners, const Element &element, double apart)
+{
+  constexpr double LEAST_WAY = 0.86;
+  double sum = 0.0;
+  for (int e = 0; e < count; ++e) sum += length(object.rest[element(e)[1]] - object.rest[element(e)[0]]);
+  return std::max(2, static_cast<int>(std::ceil(apart * count / (LEAST_WAY * sum))));
+}
 
 FoldContact::FoldContact(const FoldObject &own, const FoldSurface &of_own, const FoldObject &other, const FoldSurface &of_other,
                          const FoldLaw &law, double apart)
@@ -17,6 +26,7 @@ FoldContact::FoldContact(const FoldObject &own, const FoldSurface &of_own, const
   identity.resize(own.particles.size());
   for (std::size_t n = 0; n < identity.size(); ++n) identity[n] = static_cast<int>(n);
   first.assign(features() + 1, 0);
+  if (itself) links = links_of(*this->other, count(), corners_of_element(), [this](int e) { return element(e); }, apart);
 }
 
 double FoldContact::weight(int f) const
@@ -44,19 +54,26 @@ static Vec3 at_foot(const Vec3 *x, const int *corners, const double *weight, int
 Vec3 FoldContact::way(const Vec3 *x, int f, const Vec3 *y, int e, const NearestPoints &at) const
 { return at_foot(x, feature(f), at.own, corners_of_feature()) - at_foot(y, element(e), at.other, corners_of_element()); }
 
-// Whether two parts of one object may touch: they are pieces of it, or so far from each other without load.
+// Whether two parts of one object may touch: they are so far from each other without load, or a tear has parted them.
 bool FoldContact::is_apart(int f, int e) const
 {
   if (!itself) return true;
-  const int *const a = feature(f), *const b = element(e);
-  if (of_own->part(a[0]) != of_other->part(b[0])) return true;
+  if (of_own->is_torn() && !are_linked(f, e)) return true;
   if (apart == 0.0) return false;
+  const int *const a = feature(f), *const b = element(e);
   for (int k = 0; k < corners_of_element(); ++k) {    // most of what is near is a neighbour
     const Vec3 corner = other->rest[b[k]] - own->rest[a[0]];
     if (dot(corner, corner) < apart * apart) return false;
   }
   const Vec3 way = this->way(own->rest.data(), f, other->rest.data(), e, foot(own->rest.data(), f, other->rest.data(), e));
   return dot(way, way) >= apart * apart;
+}
+
+bool FoldContact::are_linked(int f, int e) const
+{
+  const int *const a = feature(f), *const b = element(e);
+  const auto is_corner = [b, end = b + corners_of_element()](int p) { return std::find(b, end, p) != end; };
+  return std::any_of(a, a + corners_of_feature(), [&](int p) { return of_own->any_near(p, links, is_corner); });
 }
 
 bool FoldContact::has_feature(int f) const { return lines ? of_own->has_element(f, itself) : of_own->has_particle(f, itself); }
@@ -68,12 +85,38 @@ static Box box_of(const Vec3 *x, const int *corners, int count)
   return box;
 }
 
+void FoldContact::append_box(const Vec3 *y, int e)
+{
+  boxes.push_back(box_of(y, element(e), corners_of_element()).grown(far));
+  number.push_back(e);
+}
+
+// Appends the elements near a feature.
+void FoldContact::look_around(const Vec3 *x, const Vec3 *y, int f)
+{
+  if (!has_feature(f)) return;
+  const std::size_t begin = elements.size();
+  const Box mine = box_of(x, feature(f), corners_of_feature());
+  const auto look = [&](std::size_t n) {
+    const int e = number[n];
+    if (!of_other->has_element(e, itself) || !is_apart(f, e)) return;
+    const Vec3 there = way(x, f, y, e, foot(x, f, y, e));
+    if (dot(there, there) < far * far) elements.push_back(e);
+  };
+  tree.meeting(mine, look);
+  for (std::size_t n = in_tree; n < boxes.size(); ++n)
+    if (meet(boxes[n], mine, 0.0)) look(n);
+  std::sort(elements.begin() + begin, elements.end());
+  elements.erase(std::unique(elements.begin() + begin, elements.end()), elements.end());
+}
+
 void FoldContact::list(const Vec3 *x, const Vec3 *y, double skin)
 {
-  const double far = rule.reach + skin;
   Box mine, all;
-  std::vector<Box> boxes;
-  std::vector<int> number;
+  far = rule.reach + skin;
+  listed = false;
+  boxes.clear();
+  number.clear();
   elements.clear();
   std::fill(first.begin(), first.end(), 0);
   if (!may_touch()) return;
@@ -81,24 +124,65 @@ void FoldContact::list(const Vec3 *x, const Vec3 *y, double skin)
     if (has_feature(f)) mine.unite(box_of(x, feature(f), corners_of_feature()));
   for (int e = 0; e < count(); ++e) {
     if (!of_other->has_element(e, itself)) continue;
-    boxes.push_back(box_of(y, element(e), corners_of_element()).grown(far));
+    append_box(y, e);
     all.unite(boxes.back());
-    number.push_back(e);
   }
   if (boxes.empty() || mine.empty() || !meet(mine, all, 0.0)) return;
-  const BoxTree tree(boxes);
+  listed = true;
+  tree = BoxTree(boxes);
+  in_tree = boxes.size();
   for (int f = 0; f < features(); ++f) {
     first[f] = static_cast<int>(elements.size());
-    if (!has_feature(f)) continue;
-    tree.meeting(box_of(x, feature(f), corners_of_feature()), [&](int n) {
-      const int e = number[n];
-      if (!is_apart(f, e)) return;
-      const Vec3 there = way(x, f, y, e, foot(x, f, y, e));
-      if (dot(there, there) < far * far) elements.push_back(e);
-    });
-    std::sort(elements.begin() + first[f], elements.end());
+    look_around(x, y, f);
   }
   first[features()] = static_cast<int>(elements.size());
+}
+
+void FoldContact::renew(const Vec3 *x, const Vec3 *y, double skin)
+{
+  constexpr std::size_t MOST = 200;    // further boxes, which are looked at one by one
+  if (!listed || boxes.size() > in_tree + MOST) {
+    list(x, y, skin);
+    return;
+  }
+  const std::size_t known = boxes.size();
+  for (const int e : of_other->new_elements())
+    if (of_other->has_element(e, itself)) append_box(y, e);
+  const std::vector<char> anew = to_renew(x, known);
+  const std::vector<int> before = std::move(elements);
+  elements.clear();
+  for (int f = 0, from = 0; f < features(); ++f) {
+    const int to = first[f + 1];
+    first[f] = static_cast<int>(elements.size());
+    if (anew[f])
+      look_around(x, y, f);
+    else
+      std::copy_if(before.begin() + from, before.begin() + to, std::back_inserter(elements),
+                   [this](int e) { return of_other->has_element(e, itself); });
+    from = to;
+  }
+  first[features()] = static_cast<int>(elements.size());
+}
+
+// Features that the news may be about: near the ends of links that went, corners of elements that changed, and near elements that
+// are further ones from this box on.
+std::vector<char> FoldContact::to_renew(const Vec3 *x, std::size_t known) const
+{
+  std::vector<char> particle(own->particles.size(), 0), found(features(), 0);
+  for (const int end : of_own->new_ends()) of_own->any_near(end, links, [&](int p) { return particle[p] = 1, false; });
+  for (const int e : of_own->new_elements())
+    for (int k = 0; k < of_own->corners(); ++k) particle[of_own->corner(e, k)] = 1;
+  Box further;
+  for (std::size_t n = known; n < boxes.size(); ++n) further.unite(boxes[n]);
+  for (int f = 0; f < features(); ++f) {
+    const int *const a = feature(f);
+    found[f] = particle[a[0]] || (lines && particle[a[1]]);
+    if (found[f] || known == boxes.size()) continue;
+    const Box mine = box_of(x, a, corners_of_feature());
+    if (!meet(mine, further, 0.0)) continue;
+    found[f] = std::any_of(boxes.begin() + known, boxes.end(), [&mine](const Box &one) { return meet(mine, one, 0.0); });
+  }
+  return found;
 }
 
 double FoldContact::push(const FoldNodes &mine, const FoldNodes &theirs, double dt) const

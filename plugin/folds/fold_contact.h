@@ -9,6 +9,7 @@
 
 #include "folds/fold_object.h"
 #include "folds/fold_surface.h"
+#include "geometry/box_tree.h"
 
 #include <cstddef>
 #include <vector>
@@ -23,22 +24,25 @@ struct FoldNodes {
 };
 
 // One way of a pair: features of one object against elements of the other one. Features are particles, and against segments those
-// of an object of segments are its segments. The parts of an object that touch each other are pieces, or are `apart` without
-// load.
+// of an object of segments are its segments. The parts of an object that touch each other are `apart` without load, or, once
+// it is torn, some links from each other.
 class FoldContact {
  public:
   // Objects and surfaces must outlive it; with the same object twice it touches itself.
   FoldContact(const FoldObject &own, const FoldSurface &of_own, const FoldObject &other, const FoldSurface &of_other,
               const FoldLaw &law, double apart);
 
-  // Whether something may touch: pieces of an object only once it is torn, and of cells what is laid bare.
+  // Whether something may touch: what links keep near each other only once it is torn, and of cells what is laid bare.
   bool may_touch() const { return apart > 0.0 || !(itself || is_of_cells()) || of_own->is_torn() || of_other->is_torn(); }
   // Looks for what may come within reach while no particle moves by more than half of the skin.
   void list(const Vec3 *own, const Vec3 *other, double skin);
+  // The same lists, with the surfaces as they are now: to be called with the places and the skin of the last time, while the
+  // surfaces have news.
+  void renew(const Vec3 *own, const Vec3 *other, double skin);
   // Adds forces, and returns the energy.
   double push(const FoldNodes &own, const FoldNodes &other, double dt) const;
   bool is_near() const { return !elements.empty(); }
-  std::size_t bytes() const { return (first.capacity() + elements.capacity()) * sizeof(int); }
+  std::size_t bytes() const { return (first.capacity() + elements.capacity()) * sizeof(int) + boxes.capacity() * sizeof(Box); }
 
  private:
   int features() const { return static_cast<int>(lines ? own->segments.size() : own->particles.size()); }
@@ -51,18 +55,30 @@ class FoldContact {
   NearestPoints foot(const Vec3 *x, int f, const Vec3 *y, int e) const;
   Vec3 way(const Vec3 *x, int f, const Vec3 *y, int e, const NearestPoints &at) const;
   bool is_apart(int f, int e) const;
+  bool are_linked(int f, int e) const;
   bool has_feature(int f) const;
+  void look_around(const Vec3 *own, const Vec3 *other, int f);
+  std::vector<char> to_renew(const Vec3 *own, std::size_t known) const;
+  void append_box(const Vec3 *other, int e);
   bool is_of_cells() const { return !own->cells.empty() || !other->cells.empty(); }
   void act(const FoldNodes &own, const FoldNodes &other, int f, int e, const NearestPoints &at, double distance, double dt) const;
 
   const FoldObject *own, *other;
   const FoldSurface *of_own, *of_other;
   FoldLaw rule;
-  double apart;    // 0 of two objects, and where pieces of one alone touch
+  double apart;    // 0 of two objects, and where what is torn alone touches itself
   bool itself, lines;
+  int links = 0;    // up to so many links from each other parts of one object never touch
 
   std::vector<int> identity;
   std::vector<int> first, elements;    // elements near each feature, ascending
+  // Elements that may touch, and boxes of what they reach: those of the tree, and further ones since it was made.
+  bool listed = false;
+  double far = 0.0;
+  BoxTree tree;
+  std::size_t in_tree = 0;
+  std::vector<int> number;
+  std::vector<Box> boxes;
 };
 
 }    // namespace mdanim

@@ -17,7 +17,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 #include <stdexcept>
 
 using namespace LAMMPS_NS;
@@ -124,7 +123,8 @@ void FixMdanimFolds::find_pushes(bool moves)
   if (has_torn) {    // what a torn element has stored is lost
     const double before = known ? push_all() : 0.0;
     open_torn();
-    list_again();
+    for (FoldWay &way : ways) way.contact.renew(&listed[nodes.first(way.first)], &listed[nodes.first(way.second)], skin);
+    for (FoldSurface &one : surfaces) one.forget_news();
     energy = push_all();
     if (moves && comm->me == 0) loss += before - energy;
   } else {
@@ -143,16 +143,11 @@ void FixMdanimFolds::find_pushes(bool moves)
 // The links that are gone since the last time.
 void FixMdanimFolds::open_torn()
 {
-  std::set<int> torn;
   for (; known_tears < tears->gone().size(); ++known_tears) {
     const GoneLink &link = tears->gone()[known_tears];
-    for (int n = 0; n < nodes.count(); ++n) {
-      if (nodes.molecule(n) != link.object) continue;
-      surfaces[n].open(link.low, link.high);
-      torn.insert(n);
-    }
+    for (int n = 0; n < nodes.count(); ++n)
+      if (nodes.molecule(n) == link.object) surfaces[n].open(link.low, link.high);
   }
-  for (const int n : torn) surfaces[n].settle();
 }
 
 // Forces of all contacts on nodes, and their energy.

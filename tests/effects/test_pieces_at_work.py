@@ -74,6 +74,28 @@ def test_every_piece_is_glued_to_its_neighbours(shape, how):
             assert normal @ face.axes[0] * sign > 0.999 * np.linalg.norm(normal)
 
 
+def test_faces_of_bricks_are_those_of_any_piece():
+    """Sides, area, moments and section moduli as the faces of any two pieces have them; equal bricks share what they are."""
+    found = cut.division(Box((1.0, 0.2, 0.5)), Bricks((0.25, 0.1, 0.11)), "")
+    assert len(set(found.alike)) == 2 and found.alike[0] == 0
+    for face in found.faces[::7]:
+        one, other = (found.pieces[n].surface for n in (face.a, face.b))
+        low, high = (np.array([end(p.points + p.centre, axis=0) for p in (one, other)]) for end in (np.min, np.max))
+        start, end = low.max(axis=0), high.min(axis=0)
+        u, v = (k for k in range(3) if end[k] - start[k] > 1e-9)
+        loop = np.tile(0.5 * (start + end), (4, 1))
+        loop[[1, 2], u], loop[[2, 3], v] = end[u], end[v]
+        loop[[0, 3], u], loop[[0, 1], v] = start[u], start[v]
+        twin = cut._common(face.a, face.b, face.side_a, face.side_b, loop)
+        assert abs(twin.axes[0] @ face.axes[0]) == pytest.approx(1.0)
+        assert (face.axes[0] @ (other.centre - one.centre)) > 0.0 and np.linalg.det(face.axes) == pytest.approx(1.0)
+        assert (face.area, *face.second, *face.section) == pytest.approx((twin.area, *twin.second, *twin.section))
+        assert face.at == pytest.approx(twin.at)
+        loops = [found.pieces[n].polyhedron.faces[side] for n, side in ((face.a, face.side_a), (face.b, face.side_b))]
+        along = int(np.abs(face.axes[0]).argmax())
+        assert [float(np.ptp(p.points[list(loop), along])) for p, loop in zip((one, other), loops)] == pytest.approx([0.0, 0.0])
+
+
 def test_a_face_has_the_moments_of_its_section():
     """A bar in two bricks: b h^2/6 about both axes of the section."""
     (face,) = cut.division(Box((1.0, 0.2, 0.1)), Bricks((0.5, 0.2, 0.1)), "").faces

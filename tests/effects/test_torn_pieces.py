@@ -144,3 +144,27 @@ def test_halves_of_a_sheet_touch(prepared):
         x, v = instance.array("x"), instance.array("v")
         assert x[left, 2].mean() > x[~left, 2].mean()
         np.testing.assert_allclose((system.mass[:, None] * v).sum(axis=0), before, atol=1e-9 * np.abs(before).max())
+
+
+@pytest.mark.parametrize("shape", ["sheet (0.4, 0.2) m thickness 4 mm", "box (0.4, 0.2, 0.08) m"])
+def test_sides_of_a_crack_touch(prepared, shape):
+    """What hangs together at the end of a crack alone: one side falls on the other and stays above it. It fell through."""
+    ready = prepared(
+        f"object paper {{ shape {shape}  position (0, 0, 1) m  resolution 4 cm  density 500\n"
+        "  elasticity 500 kPa  damping 0.3  tear-strain 1 }\ncontrol { time 1 s }\n"
+    )
+    system, (i, j) = ready.system, ready.system.spring.T
+    place = system.position
+    left, joined = place[:, 0] < -0.01, place[:, 1] > 0.05
+    ready.plan.columns["torn"][(left[i] != left[j]) & ~(joined[i] & joined[j])] = 1
+    thick = np.ptp(place[:, 2])
+    with Instance(ready.plan) as instance:
+        x, v = instance.array("x"), instance.array("v")
+        far = np.clip((0.02 - place[:, 1]) / 0.06, 0.0, 1.0)[left, None]  # from the joint
+        x[left] += far * [0.07, 0.0, thick + 0.02]
+        v[left] = far * [0.0, 0.0, -0.5]
+        instance.setup()
+        instance.run(round(0.04 / ready.certificate.timestep))
+        x = instance.array("x").copy()
+    near = (place[:, 1] < -0.03) & (np.abs(place[:, 0]) < 0.05)
+    assert x[left & near, 2].mean() - x[~left & near, 2].mean() > 0.9 * thick + 0.01

@@ -9,9 +9,8 @@ from __future__ import annotations
 
 import hashlib
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
-from itertools import pairwise
 
 import numpy as np
 
@@ -75,8 +74,13 @@ class Division:
 
     pieces: tuple[Piece, ...]
     faces: tuple[CommonFace, ...]
-    volume: float
-    """Sum over the pieces [m^3]."""
+    alike: tuple[int, ...]
+    """Of each piece the first one that differs from it by its place alone."""
+
+    @property
+    def volume(self) -> float:
+        """Sum over the pieces [m^3]."""
+        return float(sum(p.surface.volume for p in self.pieces))
 
 
 def piece(shape: PieceShape) -> Piece:
@@ -92,9 +96,10 @@ def count(shape: Shape, how: VoronoiCells | Bricks) -> int:
 @lru_cache(maxsize=256)
 def division(shape: Shape, how: VoronoiCells | Bricks, seed: str) -> Division:
     """A shape in pieces. Raises mesh.MeshError where it cannot be cut."""
-    cells = _bricks(shape, how) if isinstance(how, Bricks) else _voronoi(shape, how.number, seed)
-    pieces = tuple(_piece(corner, faces) for corner, faces in cells)
-    return Division(pieces, tuple(_common_faces(pieces)), float(sum(p.surface.volume for p in pieces)))
+    if isinstance(how, Bricks):
+        return _bricks(shape, how)
+    pieces = tuple(_piece(corner, faces) for corner, faces in _voronoi(shape, how.number, seed))
+    return Division(pieces, tuple(_common_faces(pieces)), tuple(range(len(pieces))))
 
 
 # --- cells of points ---------------------------------------------------------------------------------------------------
@@ -203,10 +208,10 @@ def convex_planes(shape: Shape) -> np.ndarray:
 
 def _corners(shape: Shape) -> np.ndarray:
     """Corners of a convex shape, of a round one of a polyhedron with its volume [m], shape (N, 3)."""
-    from scipy.spatial import ConvexHull
-
     if isinstance(shape, Box):
         return 0.5 * np.array(shape.size) * np.array([(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
+    from scipy.spatial import ConvexHull
+
     if isinstance(shape, Torus):
         raise MeshError("a torus is not convex", "cut a box, a sphere, an ellipsoid, a cylinder, a cone or a mesh")
     if isinstance(shape, Mesh):
@@ -247,21 +252,32 @@ def _rows(shape: Shape, how: Bricks) -> list[np.ndarray]:
     return [half if row % 2 else whole for row in range(high) for _ in range(deep)]
 
 
-def _bricks(shape: Shape, how: Bricks) -> list[tuple[np.ndarray, dict[int, list[int]]]]:
-    """Corners and faces of bricks as `_voronoi` has them; a face may have several bricks beyond, of which none is named."""
+def _bricks(shape: Shape, how: Bricks) -> Division:
+    """Bricks of two widths; a face of one may have several others beyond, of which it names none."""
     ends = _rows(shape, how)
     counts = [max(1, round(shape.size[k] / how.size[k])) for k in (1, 2)]
     y, z = (np.linspace(-0.5, 0.5, n + 1) * size for n, size in zip(counts, shape.size[1:]))
-    found = []
+    low, high = [], []
     for number, x in enumerate(ends):
         row, layer = divmod(number, counts[0])
-        for left, right in pairwise(x):
-            corner = [(a, b, c) for c in z[row : row + 2] for b in y[layer : layer + 2] for a in (left, right)]
-            found.append((np.array(corner), dict(enumerate(BRICK, -len(BRICK)))))
-    return found
+        low += [(left, y[layer], z[row]) for left in x[:-1]]
+        high += [(right, y[layer + 1], z[row + 1]) for right in x[1:]]
+    lows, highs = np.array(low), np.array(high)
+    whole = float((highs - lows)[:, 0].max())
+    size = np.array([whole, shape.size[1] / counts[0], shape.size[2] / counts[1]])
+    half = (highs - lows)[:, 0] < 0.75 * whole
+    kinds = [
+        _piece(_corners(Box(size=tuple(size * (wide, 1.0, 1.0)))), dict(enumerate(BRICK, -len(BRICK)))) for wide in (1.0, 0.5)
+    ]
+    pieces = tuple(
+        replace(kinds[kind], surface=replace(kinds[kind].surface, centre=middle))
+        for kind, middle in zip(half.astype(int).tolist(), 0.5 * (lows + highs))
+    )
+    alike = np.where(half, half.argmax(), (~half).argmax())
+    return Division(pieces, tuple(_between_bricks(lows, highs)), tuple(alike.tolist()))
 
 
-BRICK = ([0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6])
+BRICK = ([0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3])
 """Corners of the sides -x, +x, -y, +y, -z, +z."""
 
 
@@ -284,7 +300,7 @@ def _piece(corner: np.ndarray, faces: dict[int, list[int]]) -> Piece:
 
 
 def _common_faces(pieces: tuple[Piece, ...]) -> list[CommonFace]:
-    """Faces of Voronoi cells that have a piece beyond, each once; of bricks where two of them meet."""
+    """Faces of Voronoi cells that have a piece beyond, each once."""
     found = []
     numbers = {(n, other): side for n, p in enumerate(pieces) for side, other in enumerate(p.beyond) if other >= 0}
     for (a, b), side in numbers.items():
@@ -293,30 +309,48 @@ def _common_faces(pieces: tuple[Piece, ...]) -> list[CommonFace]:
             loop = own.polyhedron.faces[side] if own.polyhedron else ()
             if loop:
                 found.append(_common(a, b, side, numbers[b, a], own.surface.points[list(loop)] + own.surface.centre))
-    return found or _between_bricks(pieces)
+    return found
 
 
-def _between_bricks(pieces: tuple[Piece, ...]) -> list[CommonFace]:
+def _between_bricks(low: np.ndarray, high: np.ndarray) -> list[CommonFace]:
+    """Faces where two bricks meet; both ends of bricks [m], shape (N, 3)."""
     from .boxes import box_pairs
 
-    low = np.array([p.surface.points.min(axis=0) + p.surface.centre for p in pieces])
-    high = np.array([p.surface.points.max(axis=0) + p.surface.centre for p in pieces])
     near = 1e-6 * float(np.min(high - low))
     found = []
-    for first, second in box_pairs(low - near, high + near):
-        for a, b in zip(np.minimum(first, second).tolist(), np.maximum(first, second).tolist()):
-            start, end = np.maximum(low[a], low[b]), np.minimum(high[a], high[b])
-            flat = end - start <= 2.0 * near
-            if flat.sum() != 1:
-                continue
-            axis = int(flat.argmax())
-            up = low[b, axis] > low[a, axis]
-            u, v = (axis + 1) % 3, (axis + 2) % 3
-            loop = np.tile(0.5 * (start + end), (4, 1))
-            loop[:, u], loop[:, v] = start[u], start[v]
-            loop[[1, 2], u], loop[[2, 3], v] = end[u], end[v]
-            found.append(_common(a, b, 2 * axis + up, 2 * axis + (not up), loop if up else loop[::-1]))
+    for some in box_pairs(low - near, high + near):
+        a, b = np.sort(np.array(some), axis=0)
+        start, end = np.maximum(low[a], low[b]), np.minimum(high[a], high[b])
+        flat = end - start <= 2.0 * near
+        met = np.flatnonzero(flat.sum(axis=1) == 1)
+        axis = flat[met].argmax(axis=1)
+        up = (low[b] > low[a])[met, axis]
+        rows = zip(
+            a[met].tolist(), b[met].tolist(), axis.tolist(), up.tolist(), (end - start)[met].tolist(), 0.5 * (start + end)[met]
+        )
+        found += [_rectangle(*row) for row in rows]
     return sorted(found, key=lambda face: (face.a, face.b))
+
+
+def _rectangle(a: int, b: int, axis: int, up: bool, size: list[float], at: np.ndarray) -> CommonFace:
+    """The face between two bricks across an axis, ``up`` where the second one is farther along it."""
+    (short, along), (long, _) = sorted((size[k], k) for k in range(3) if k != axis)
+    area = short * long
+    second = area * long**2 / 12.0, area * short**2 / 12.0
+    section = area * long / 6.0, area * short / 6.0, sum(second) / (0.5 * math.hypot(short, long))
+    return CommonFace(a, b, 2 * axis + up, 2 * axis + (not up), at, AXES[axis, up, along], area, second, section)
+
+
+def _axes(axis: int, up: bool, along: int) -> np.ndarray:
+    """The normal of a face across an axis, one along, and the third."""
+    normal, first = (1.0 if up else -1.0) * np.eye(3)[axis], np.eye(3)[along]
+    return np.stack([normal, first, np.cross(normal, first)])
+
+
+AXES = {
+    (axis, up, along): _axes(axis, up, along) for axis in range(3) for up in (False, True) for along in range(3) if along != axis
+}
+"""Axes of faces of bricks, by the axis across, the side, and the axis of the shorter edges."""
 
 
 def _common(a: int, b: int, side_a: int, side_b: int, loop: np.ndarray) -> CommonFace:

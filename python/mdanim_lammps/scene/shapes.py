@@ -160,7 +160,7 @@ class PieceShape(Mesh):
     seed: str = ""
     """Random numbers follow from it."""
     number: int = 0
-    """Which piece, from 0."""
+    """Which piece, from 0: the first one of those that are alike."""
     whole: Any = field(default=None, compare=False, repr=False)
     """The object that it is a piece of, as the scene has it."""
 

@@ -108,7 +108,7 @@ class LayerPair:
     damping: float
     """Share of critical damping."""
     apart: float
-    """[m]; 0 of two objects, and of one whose pieces alone touch."""
+    """[m]; 0 of two objects, and of one that touches itself only once it is torn."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -194,9 +194,10 @@ def _pairs(context: Context) -> Iterator[LayerPair]:
     for a, b in _numbers(context):
         one, other = layers(context)[a], layers(context)[b]
         h = max(one.spacing, other.spacing)
-        reach = max(one.half + other.half, REACH * h)
+        itself = a == b and folds(context.solids[a])
+        thick = one.half + other.half if a != b or itself else 0.0  # a tear parts what is nearer than a thickness may be
+        reach = max(thick, REACH * h)
         k = STIFF * scene.control.contact_stiffness * 2.0 * one.link * other.link / (one.link + other.link)
         mu = sqrt(mu_of[names[a]] * mu_of[names[b]])
         mu, beta = told.get((a, b), (mu, damping(scene) if mu > 0.0 else 0.0))
-        itself = a == b and folds(context.solids[a])
         yield LayerPair(a, b, reach, k, mu, beta, APART * h + 2.0 * reach if itself else 0.0)

@@ -31,15 +31,15 @@ def pieces_of(v: Any, solid: Solid) -> tuple[Solid, ...]:
         v.problem(solid.spans["pieces"], cause, "write another seed in control, or a few pieces more")
         return ()
     turn, spin, velocity = (np.array(x) for x in (solid.rotation, solid.spin, solid.velocity))
-    found = []
+    volume, found = division.volume, []
     for n, piece in enumerate(division.pieces):
         arm = turn @ piece.surface.centre
-        share = piece.surface.volume / division.volume
+        share = piece.surface.volume / volume
         found.append(
             replace(
                 solid,
                 name=piece_name(solid.name, n),
-                shape=PieceShape(of=solid.shape, how=solid.pieces, seed=seed, number=n, whole=solid),
+                shape=PieceShape(of=solid.shape, how=solid.pieces, seed=seed, number=division.alike[n], whole=solid),
                 position=tuple((np.array(solid.position) + arm).tolist()),
                 velocity=tuple((velocity + np.cross(spin, arm)).tolist()),
                 mass=None if solid.mass is None else solid.mass * share,
