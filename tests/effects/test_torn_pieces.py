@@ -148,7 +148,7 @@ def test_halves_of_a_sheet_touch(prepared):
 
 @pytest.mark.parametrize("shape", ["sheet (0.4, 0.2) m thickness 4 mm", "box (0.4, 0.2, 0.08) m"])
 def test_sides_of_a_crack_touch(prepared, shape):
-    """What hangs together at the end of a crack alone: one side falls on the other and stays above it. It fell through."""
+    """One side falls on the other and stays above it, where both hang together at the end of the crack. It fell through."""
     ready = prepared(
         f"object paper {{ shape {shape}  position (0, 0, 1) m  resolution 4 cm  density 500\n"
         "  elasticity 500 kPa  damping 0.3  tear-strain 1 }\ncontrol { time 1 s }\n"

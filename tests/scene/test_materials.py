@@ -154,7 +154,7 @@ def test_mistakes(text, line, column, words, hint):
 
 
 def test_a_wrong_word_behind_a_material_hides_nothing():
-    """What is complete before a word that cannot follow is looked at, too."""
+    """A setting that is complete before a word that cannot follow is looked at, too."""
     told = [p.message for p in problems(f"object a {{ material wood velocty (1, 0, 0) m/s {AT} }}\n")]
     assert told == ["no material is called wood", "'velocty' cannot follow here; material is complete"]
 

@@ -75,7 +75,7 @@ class Division:
     pieces: tuple[Piece, ...]
     faces: tuple[CommonFace, ...]
     alike: tuple[int, ...]
-    """Of each piece the first one that differs from it by its place alone."""
+    """First piece that differs from each by its place alone."""
 
     @property
     def volume(self) -> float:
