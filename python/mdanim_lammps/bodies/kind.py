@@ -52,6 +52,10 @@ class BodyKind:
         """Particle spacing [m] of its objects that have no ``resolution`` of their own, where that of the scene is h [m]."""
         return lambda solid: h
 
+    def thinner(self, scene: SceneRecord, solid: Solid) -> bool:
+        """Whether one of its objects may be thinner than its spacing."""
+        return not self.fills
+
     def has_spacing(self, scene: SceneRecord) -> bool:
         """Whether something reads particles or points of them as far apart as their spacing, so that ``resolution`` sets it."""
         return True

@@ -14,6 +14,9 @@ from . import mesh, shapes
 from .lattice import Cells
 from .springs import MAX_ASPECT
 
+THINNER = 1.25
+"""Spacing over the thickness of a cuboid from which its cells are plates."""
+
 
 class TooThin(Exception):
     """No cells near this size form the shape; the message names the cause."""
@@ -27,7 +30,8 @@ def fill_cells(shape: Shape, spacing: float) -> Cells:
     if spacing == inf:
         return Cells(np.ones((1, 1, 1), bool), *shapes.extent(shape))
     if isinstance(shape, Box):
-        return _box_cells(shape, box_counts(shape.size, spacing))
+        plate = min(shape.size) < spacing / THINNER
+        return _box_cells(shape, plate_counts(shape.size, spacing) if plate else box_counts(shape.size, spacing))
     return _voxels(shape, spacing, mesh.load(shape) if isinstance(shape, Mesh) else None)
 
 
@@ -60,6 +64,11 @@ def box_counts(size, spacing: float) -> tuple[int, int, int]:
             best = np.lexsort((off[fits], aspect[fits].round(6)))[0]
             return tuple(counts[fits][best].tolist())
     raise TooThin("its edges cannot be divided into nearly equal cells")
+
+
+def plate_counts(size, spacing: float) -> tuple[int, int, int]:
+    """The same of a cuboid that is thinner than the spacing, and has no springs: cells of any aspect, at least one."""
+    return tuple(max(1, round(length / spacing)) for length in size)
 
 
 def _trial_counts(size: np.ndarray, spacing: float, reach: float) -> np.ndarray:

@@ -113,21 +113,26 @@ class Reach:
         solids that stand still at the start.
 
         As if through air: in a liquid, heights count by the part of the weight that it leaves. Below the surface a light solid
-        gains height; where there are others it may meet them at the surface already.
+        gains height; where there are others it may meet them at the surface already. What is part of a body that floats, as a
+        sail on a hull, comes down as far as that does.
         """
         (bottom, floor), surface = self.heights, self.acting.surface
         bottom = np.where(self.stands, np.minimum(bottom, floor), bottom)
         if surface is None:
             return np.minimum(bottom - floor, self.farthest_down) if self.acting.leashes else bottom - floor
-        in_air, below = np.maximum(0.0, bottom - surface), np.minimum(bottom, surface) - floor
-        weight = self.weight_left
+        weight, body = self.weight_left, self.acting.body
+        lowest = bottom.copy()
+        np.minimum.at(lowest, body, bottom)
+        above = np.where(weight < 0.0, lowest[body], bottom) - surface
+        in_air, below = np.maximum(0.0, above), np.minimum(bottom, surface) - floor
         return in_air + below * (weight if len(self.system.names) == 1 else np.maximum(0.0, weight))
 
     @cached_property
     def weight_left(self) -> np.ndarray:
-        """Part of each solid's weight that the liquid leaves when the solid is immersed [-]; below 0 where it floats, shape
-        (M,)."""
-        return 1.0 - self.acting.lift(self.system) / self.system.mass_of
+        """Part of the weight of each solid, or of the rigid body that it is a part of, that the liquid leaves when that is
+        immersed [-]; below 0 where it floats, shape (M,)."""
+        of_body = lambda values: np.bincount(self.acting.body, values, len(values))[self.acting.body]
+        return 1.0 - of_body(self.acting.lift(self.system)) / of_body(self.system.mass_of)
 
     @cached_property
     def speed(self) -> np.ndarray:

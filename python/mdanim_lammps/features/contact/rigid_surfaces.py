@@ -24,6 +24,10 @@ from ...scene.once import once_for
 
 DEPTH = 0.02
 """How deep the fastest blow goes, over the thinnest part of all rigid bodies."""
+LARGE, SMALL = 0.9, 5.0
+"""Part of the volume of a body that its large parts have; how much deeper than others its small ones may be struck, as a sail or
+a mast on a hull. Random blows go up to 3.4 times as deep as v/Omega: with 5 that is 0.34 of the thickness, and contact knows
+sides up to half of it; a step at full speed is 0.035 of it, and edges begin up to 0.06 (plugin/rigid/touch_polyhedra.cpp)."""
 HARD = 1e20
 """Modulus of what is rigid and held [Pa]: the surface of its partner alone yields."""
 STICK = 0.8
@@ -37,7 +41,9 @@ class Frequency:
     omega: float
     """[1/s]"""
     thin: float
-    """Thinnest part of all rigid bodies that move [m]."""
+    """Thinnest part of all rigid bodies that move [m], see `_thickness`."""
+    thinnest: int
+    """Number of the solid that has it."""
     speed: float
     """Closing speed of the fastest blow [m/s]; what pushes objects counts on their way to others and to planes."""
     load: float
@@ -52,13 +58,30 @@ def frequency(context: Context) -> Frequency:
     """
     reach, system = context.reach, context.reach.system
     free = np.flatnonzero(system.rigid)
-    thin = min(shapes.thickness(shape) for shape in {context.scene.solids[m].shape for m in free.tolist()})
+    part = _thickness(context, free)
     thrown = _thrown_across(context, system) if reach.acting.throws else None
     speed = float(struck_at(context, system, thrown)[free].max())
-    load = float(loads(system, free, bodies(context)).max())
+    load = float(loads(system, free, reach.acting.body).max())
+    thinnest = int(free[part.argmin()])
+    thin = float(part.min())
     slowest = 2.0 * math.pi * context.scene.control.frames * DEPTH * thin  # of what hardly moves
     omega = float(max(speed, 2.0 * math.sqrt(load * reach.g * thin), slowest)) / (DEPTH * thin)
-    return Frequency(float(omega), float(thin), speed, load)
+    return Frequency(float(omega), thin, thinnest, speed, load)
+
+
+def _thickness(context: Context, free: np.ndarray) -> np.ndarray:
+    """Thickness of some solids, by number, that says how deep blows may go [m], shape (K,): their own, and of small parts of a
+    body `SMALL` times that, up to the thinnest of its large parts."""
+    solids, body = context.scene.solids, context.reach.acting.body[free]
+    own = {shape: shapes.thickness(shape) for shape in {solids[m].shape for m in free.tolist()}}
+    found = np.array([own[solids[m].shape] for m in free.tolist()])
+    first, parts = np.unique(body, return_counts=True)
+    for b in first[parts > 1].tolist():
+        of = np.flatnonzero(body == b)
+        large = of[shapes.largest([solids[m].shape for m in free[of].tolist()], LARGE)]
+        small = np.setdiff1d(of, large)
+        found[small] = np.maximum(found[small], np.minimum(SMALL * found[small], found[large].min()))
+    return found
 
 
 def struck_at(context: Context, system: System, thrown: np.ndarray | None = None) -> np.ndarray:
@@ -87,14 +110,6 @@ def _toppled(context: Context, system: System) -> np.ndarray:
         return np.zeros(len(system.names))
     height = system.bounds(system.position)[1][:, 2] - reach.heights[1]
     return np.where(reach.stands, np.sqrt(3.0 * reach.g * np.maximum(height, 0.0)), 0.0)
-
-
-def bodies(context: Context) -> np.ndarray:
-    """Number of the first solid of the rigid body that each solid of a scene is a part of, its own of most, shape (M,)."""
-    found = np.arange(len(context.scene.solids))
-    for group in (group for e in context.resolved.effects for group in e.unites(context.scene)):
-        found[list(group)] = group[0]
-    return found
 
 
 def loads(system: System, asked: np.ndarray, body: np.ndarray) -> np.ndarray:

@@ -6,8 +6,6 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
-import numpy as np
-
 from ...bodies import BodyKind, all_held, beneath, kind_of, unguided
 from ...model import shapes
 from ...model.added import tensor_of
@@ -57,11 +55,16 @@ class RigidBody(BodyKind):
 
     def spacing(self, scene, h):
         """Two cells across, four of what is round or has no known features; no coarser than the scene where there is a liquid or
-        something soft, whose forces find the body at its particles and at points as far apart as these."""
+        something soft, whose forces find the body at its particles and at points as far apart as these. A plate in a liquid may
+        have one."""
         soft = any(is_soft(s) and not is_line(s) for s in scene.solids)
         finest = h if scene.liquid is not None or soft else math.inf
         across = lambda s: max(_across(s), beneath(scene, s) if isinstance(s.shape, Sphere) else 0)
-        return lambda solid: min(finest, shapes.thickness(solid.shape) / across(solid))
+        return lambda s: finest if self.thinner(scene, s) else min(finest, shapes.thickness(s.shape) / across(s))
+
+    def thinner(self, scene, solid):
+        """A cuboid may be so where a liquid alone reads its cells: one across, which it fills."""
+        return isinstance(solid.shape, Box) and scene.liquid is not None and _features_alone(scene)
 
     def has_spacing(self, scene):
         return not by_features(scene)
@@ -87,9 +90,7 @@ def displacing(scene) -> set[str]:
     """Names of the rigid objects without a spacing of their own, from the largest on until they have `DISPLACED` of the volume of
     all of them: a mast or a sail on a hull has no part in it."""
     asked = [s for s in scene.solids if s.resolution is None and isinstance(kind_of(s), RigidBody)]
-    asked.sort(key=lambda s: shapes.volume(s.shape), reverse=True)
-    volume = np.array([shapes.volume(s.shape) for s in asked])
-    return {s.name for s, before in zip(asked, np.cumsum(volume) - volume) if before < DISPLACED * volume.sum()}
+    return {asked[k].name for k in shapes.largest([s.shape for s in asked], DISPLACED)}
 
 
 def is_hollow(shape) -> bool:
@@ -113,12 +114,12 @@ def by_features(scene) -> bool:
     """Whether rigid objects move, and all contacts are of shapes that know each other by their features, so that nothing reads
     points of their surfaces, nor particles inside. Beside held cuboids that cover sides of each other in part, balls alone touch
     by features; what an effect moves without telling where it is (reach.Motion.guides) is found at points."""
-    return not any(map(is_line, scene.solids)) and _features_alone(scene)
+    return scene.liquid is None and not any(map(is_line, scene.solids)) and _features_alone(scene)
 
 
 def lines_alone(scene) -> bool:
     """The same but for lines of particles that there are: these find places in a rigid object by four of its particles."""
-    return any(map(is_line, scene.solids)) and _features_alone(scene)
+    return scene.liquid is None and any(map(is_line, scene.solids)) and _features_alone(scene)
 
 
 def is_line(solid) -> bool:
@@ -126,9 +127,11 @@ def is_line(solid) -> bool:
     return is_soft(solid) and not kind_of(solid).fills
 
 
+@once_for(lambda scene: scene)
 def _features_alone(scene) -> bool:
+    """Whether rigid objects move, and they and all that is held touch by their features."""
     solids = [s for s in scene.solids if kind_of(s).fills]
-    if scene.liquid is not None or all(map(all_held, solids)) or any(map(is_soft, solids)) or unguided(scene):
+    if all(map(all_held, solids)) or any(map(is_soft, solids)) or unguided(scene):
         return False
     if not all(map(is_known, solids)):
         return False

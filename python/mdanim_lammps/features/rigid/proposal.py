@@ -18,7 +18,7 @@ from ...scene.formatting import number
 from ...scene.naming import bare_name, told_together
 from ...scene.scene import SceneRecord, Solid
 from ..contact.pairs import damping, frictions
-from ..contact.rigid_surfaces import bodies, loads, struck_at
+from ..contact.rigid_surfaces import loads, struck_at
 from ..contact.words import ContactModel
 from ..springs import measure as springs
 from ..springs.strength import folds_at, spots
@@ -55,7 +55,7 @@ def before(envelope: Envelope) -> Proposal | None:
     thin = np.array([shapes.thickness(s.shape) for s in solids])
     weight = system.density * envelope.reach.g * size / system.young
     sag = BAR * weight * (size / thin) ** 2
-    sag[free] *= loads(system, free, bodies(context))
+    sag[free] *= loads(system, free, context.reach.acting.body)
     fine = (blow <= BLOW * folds_at(spots(envelope))) & (sag <= SAG)
     return _proposal(
         context.scene,

@@ -150,8 +150,8 @@ def depths(envelope: Envelope) -> list[Margin]:
     """How deep the fastest blow goes, and how deep things sink in at rest, beside the thinnest part."""
     context, found, frequency_of = envelope.context, frequency(envelope.context), omega(envelope.context)
     solids = context.scene.solids
-    free = np.flatnonzero(context.system.rigid).tolist()
-    thinnest = min(free, key=lambda m: thickness(solids[m].shape))
+    thinnest = found.thinnest
+    own = thickness(solids[thinnest].shape)
     place = context.scene.control.spans.get("contact-stiffness") or envelope.place(thinnest, "shape")
     blow = found.speed / frequency_of
     stiffness = context.scene.control.contact_stiffness
@@ -163,8 +163,8 @@ def depths(envelope: Envelope) -> list[Margin]:
             value,
             part * found.thin,
             "m",
-            f"{what} {say(value, 'm')} deep, {number(100.0 * value / found.thin, 2)} % of the thinnest part of a rigid object, "
-            f"{say(found.thin, 'm')} of {solids[thinnest].name}",
+            f"{what} {say(value, 'm')} deep, {number(100.0 * value / own, 2)} % of the thinnest part of a rigid object, "
+            f"{say(own, 'm')} of {solids[thinnest].name}",
             place,
             "warning" if value > part * found.thin * (1.0 + 1e-9) else "ok",
             hint=f"write contact-stiffness {number(stiffness * max(1.0, value / (part * found.thin)) ** 2 * 1.05, 2)} in control",
