@@ -8,7 +8,6 @@ places that a new shape has.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from functools import lru_cache
 from math import ceil, hypot, pi
 from typing import Any, get_args
@@ -436,14 +435,6 @@ def area(shape: kinds.Shape) -> float:
 def thickness(shape: kinds.Shape) -> float:
     """Thickness of the thinnest part [m]; for a mesh an estimate, for a cone the largest ball inside."""
     return LAWS[type(shape)].thickness(shape)
-
-
-def largest(found: Sequence[kinds.Shape], part: float) -> list[int]:
-    """Numbers of the largest of some shapes, from the largest on, until they have this part of the volume of all."""
-    volumes = np.array([volume(shape) for shape in found])
-    order = np.argsort(-volumes, kind="stable")
-    before = np.cumsum(volumes[order]) - volumes[order]
-    return order[before < part * volumes.sum()].tolist()
 
 
 @lru_cache(maxsize=4096)

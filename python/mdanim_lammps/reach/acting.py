@@ -310,14 +310,6 @@ class Acting:
         return frozenset(pair for e in self.effects for pair in e.passes(self.scene))
 
     @cached_property
-    def body(self) -> np.ndarray:
-        """Number of the first solid of the rigid body that each solid is a part of, its own of most, shape (M,)."""
-        found = np.arange(len(self.scene.solids))
-        for group in (group for e in self.effects for group in e.unites(self.scene)):
-            found[list(group)] = group[0]
-        return found
-
-    @cached_property
     def drives(self) -> dict[int, Drive]:
         """Motions of held particles, by the numbers of their solids."""
         return {m: drive for e in self.effects for m, drive in e.drives(self.scene).items()}

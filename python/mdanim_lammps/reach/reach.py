@@ -69,6 +69,14 @@ class Reach:
         return self.acting.g
 
     @cached_property
+    def body(self) -> np.ndarray:
+        """Number of the first solid of the rigid body that each solid is a part of, its own of most, shape (M,)."""
+        found = np.arange(len(self.scene.solids))
+        for group in (group for e in self.acting.effects for group in e.unites(self.scene)):
+            found[list(group)] = group[0]
+        return found
+
+    @cached_property
     def moving(self) -> np.ndarray:
         """Solids of which something can move, bool, shape (M,)."""
         return ~self.system.still
@@ -120,7 +128,7 @@ class Reach:
         bottom = np.where(self.stands, np.minimum(bottom, floor), bottom)
         if surface is None:
             return np.minimum(bottom - floor, self.farthest_down) if self.acting.leashes else bottom - floor
-        weight, body = self.weight_left, self.acting.body
+        weight, body = self.weight_left, self.body
         lowest = bottom.copy()
         np.minimum.at(lowest, body, bottom)
         above = np.where(weight < 0.0, lowest[body], bottom) - surface
@@ -131,7 +139,7 @@ class Reach:
     def weight_left(self) -> np.ndarray:
         """Part of the weight of each solid, or of the rigid body that it is a part of, that the liquid leaves when that is
         immersed [-]; below 0 where it floats, shape (M,)."""
-        of_body = lambda values: np.bincount(self.acting.body, values, len(values))[self.acting.body]
+        of_body = lambda values: np.bincount(self.body, values, len(values))[self.body]
         return 1.0 - of_body(self.acting.lift(self.system)) / of_body(self.system.mass_of)
 
     @cached_property

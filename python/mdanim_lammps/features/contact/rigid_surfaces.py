@@ -18,6 +18,7 @@ from ...model import shapes
 from ...model.boxes import overlaps_in_plan
 from ...model.contact_body import FINE, ContactBody
 from ...model.inertia import mobility
+from ...model.largest import largest
 from ...model.system import System
 from ...reach import thrown_within
 from ...scene.once import once_for
@@ -61,7 +62,7 @@ def frequency(context: Context) -> Frequency:
     part = _thickness(context, free)
     thrown = _thrown_across(context, system) if reach.acting.throws else None
     speed = float(struck_at(context, system, thrown)[free].max())
-    load = float(loads(system, free, reach.acting.body).max())
+    load = float(loads(system, free, reach.body).max())
     thinnest = int(free[part.argmin()])
     thin = float(part.min())
     slowest = 2.0 * math.pi * context.scene.control.frames * DEPTH * thin  # of what hardly moves
@@ -72,13 +73,13 @@ def frequency(context: Context) -> Frequency:
 def _thickness(context: Context, free: np.ndarray) -> np.ndarray:
     """Thickness of some solids, by number, that says how deep blows may go [m], shape (K,): their own, and of small parts of a
     body `SMALL` times that, up to the thinnest of its large parts."""
-    solids, body = context.scene.solids, context.reach.acting.body[free]
+    solids, body = context.scene.solids, context.reach.body[free]
     own = {shape: shapes.thickness(shape) for shape in {solids[m].shape for m in free.tolist()}}
     found = np.array([own[solids[m].shape] for m in free.tolist()])
     first, parts = np.unique(body, return_counts=True)
     for b in first[parts > 1].tolist():
         of = np.flatnonzero(body == b)
-        large = of[shapes.largest([solids[m].shape for m in free[of].tolist()], LARGE)]
+        large = of[largest([solids[m].shape for m in free[of].tolist()], LARGE)]
         small = np.setdiff1d(of, large)
         found[small] = np.maximum(found[small], np.minimum(SMALL * found[small], found[large].min()))
     return found

@@ -13,6 +13,7 @@ from ...model.build import lattice_model, single_cell_model
 from ...model.cells import fill_cells
 from ...model.contact_body import BodyFrame
 from ...model.held import free_model
+from ...model.largest import largest
 from ...model.polyhedron import polyhedron
 from ...scene.once import once_for
 from ...scene.scene import Box, Cone, Cylinder, Ellipsoid, Mesh, PieceShape, Sphere, Torus
@@ -90,7 +91,7 @@ def displacing(scene) -> set[str]:
     """Names of the rigid objects without a spacing of their own, from the largest on until they have `DISPLACED` of the volume of
     all of them: a mast or a sail on a hull has no part in it."""
     asked = [s for s in scene.solids if s.resolution is None and isinstance(kind_of(s), RigidBody)]
-    return {asked[k].name for k in shapes.largest([s.shape for s in asked], DISPLACED)}
+    return {asked[k].name for k in largest([s.shape for s in asked], DISPLACED)}
 
 
 def is_hollow(shape) -> bool:

@@ -55,7 +55,7 @@ def before(envelope: Envelope) -> Proposal | None:
     thin = np.array([shapes.thickness(s.shape) for s in solids])
     weight = system.density * envelope.reach.g * size / system.young
     sag = BAR * weight * (size / thin) ** 2
-    sag[free] *= loads(system, free, context.reach.acting.body)
+    sag[free] *= loads(system, free, context.reach.body)
     fine = (blow <= BLOW * folds_at(spots(envelope))) & (sag <= SAG)
     return _proposal(
         context.scene,
