@@ -133,20 +133,43 @@ InLiquid Buoyancy::look_at_particle(const Basin &basin, std::size_t n, const dou
 
 // --- a step ---
 
-bool Buoyancy::acts_in_passes(const Basin &basin, const double *lambda) const
-{ return basin.acts_on_cells() && lifts && slows && lambda == lambda_column.values(lmp); }
+bool Buoyancy::acts_in_passes(bool has_friction, const double *lambda) const
+{ return lifts && (slows ? lambda == lambda_column.values(lmp) : lambda || !has_friction); }
 
-std::function<Immersed<double>(int)> Buoyancy::immersed(const std::vector<char> &is_near) const
+std::function<Immersed<double>(int)> Buoyancy::immersed(const std::vector<char> &is_near, const double *lambda) const
 {
   const auto of = [this](const ParticleValue &value) {
     return [values = value.values(lmp), number = value.number](int i) { return values ? values[i] : number; };
   };
-  const double *const lambda = lambda_column.values(lmp), *const base = base_column.given() ? base_column.values(lmp) : nullptr;
+  const double *const dry = slows ? (base_column.given() ? base_column.values(lmp) : nullptr) : lambda;
   return [=, &is_near, volume = of(volume), gamma = of(gamma), per_length = of(per_length)](int i) -> Immersed<double> {
     const double mass = mass_of(atom->rmass, atom->mass, atom->type, i);
-    if (!is_near[i]) return {{0.0, mass, 0.0, 0.0, lambda[i], 0.0}};
-    return {{volume(i), mass, gamma(i), is_quadratic ? per_length(i) : 0.0, base ? base[i] : 0.0, 1.0}};
+    if (!is_near[i]) return {{0.0, mass, 0.0, 0.0, lambda ? lambda[i] : 0.0, 0.0}};
+    return {{volume(i), mass, slows ? gamma(i) : 0.0, is_quadratic ? per_length(i) : 0.0, dry ? dry[i] : 0.0, 1.0}};
   };
+}
+
+// Nothing is immersed from `above` up, and all from `below` down: most particles of a large body need not look up the surface.
+struct Buoyancy::Surface {
+  explicit Surface(const Basin &of) : basin(of), above(of.height(of.top() + 1.0)), below(of.all_below()) {}
+  double part_below(const double *x) const
+  {
+    if (!(x[2] < above)) return 0.0;
+    return x[2] <= below && basin.over_floor(x) ? 1.0 : basin.part_below(basin.in_cells(x));
+  }
+
+ private:
+  const Basin &basin;
+  const double above, below;
+};
+
+void Buoyancy::parts_below(const Basin &basin, const double *const *x, int first, int many, double *part) const
+{
+  const Surface surface(basin);
+  for (int i = first; i < first + many; ++i) {
+    const double place[3] = {x[0][i], x[1][i], x[2][i]};
+    *part++ = surface.part_below(place);
+  }
 }
 
 double Buoyancy::weight(const Basin &basin) const { return basin.g / force->ftm2v; }
@@ -168,23 +191,19 @@ struct Buoyancy::Acting {
   double *const *f;
   const double *volume, *gamma, *per_length, *base;
   double *lambda;
-  InLiquid *kept;         // nullptr where the surface is evaluated in each step
-  double above, below;    // nothing is immersed from `above` up; most particles of a large body need not look up the surface
+  InLiquid *kept;    // nullptr where the surface is evaluated in each step
+  Surface surface;
 };
 
-__attribute__((always_inline)) inline Buoyancy::Wet Buoyancy::act_on(const Acting &now, const Basin &basin, int i)
+__attribute__((always_inline)) inline Buoyancy::Wet Buoyancy::act_on(const Acting &now, int i)
 {
   if (atom->mask[i] & standing) return {i, {}, 0.0};
   const double *const x = now.x[i];
   Basin::AtPlace at;
-  if (now.kept) {
+  if (now.kept)
     at = now.kept[i].waves.at(x[2]);
-  } else if (x[2] < now.above) {
-    if (x[2] <= now.below && basin.over_floor(x))
-      at.immersed = at.push.z = 1.0;
-    else
-      at = basin.at(basin.in_cells(x));
-  }
+  else
+    at.immersed = at.push.z = now.surface.part_below(x);
   const Immersed<double> particle{{now.volume ? now.volume[i] : volume.number, mass_of(atom->rmass, atom->mass, atom->type, i),
                                    now.gamma ? now.gamma[i] : gamma.number,
                                    now.per_length ? now.per_length[i] : per_length.number}};
@@ -209,7 +228,6 @@ void Buoyancy::act(const Basin &basin, const std::vector<int> &these, bool in_st
   wet.resize(lifts ? these.size() : 0);
   if (wet.empty()) return;
   const Lap lap(seconds);
-  const double floor = basin.shape.low.z, height = basin.shape.cell.z;
   const Acting now{scales(basin, in_step),
                    atom->x,
                    atom->v,
@@ -220,10 +238,9 @@ void Buoyancy::act(const Basin &basin, const std::vector<int> &these, bool in_st
                    base_column.given() ? base_column.values(lmp) : nullptr,
                    slows ? lambda_column.values(lmp) : nullptr,
                    basin.acts_on_cells() ? kept.data() : nullptr,
-                   floor + (basin.top() + 1.0) * height,
-                   basin.all_below()};
+                   Surface(basin)};
   threads.parts(static_cast<long>(these.size()), PARTICLE, [&](long from, long to) {
-    for (long n = from; n < to; ++n) wet[n] = act_on(now, basin, these[n]);
+    for (long n = from; n < to; ++n) wet[n] = act_on(now, these[n]);
   });
 }
 

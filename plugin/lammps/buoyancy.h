@@ -46,10 +46,12 @@ class Buoyancy : protected LAMMPS_NS::Pointers {
   void go_on_with_ledger();
   void use(const Threads &now) { threads = now; }    // for steps; the bits are the same for any number of them
 
-  // For passes (passes/pass_liquid.h): whether they compute the same as act(), with friction in the column that is read; a
-  // particle; all particles; and the results of passes in this step.
-  bool acts_in_passes(const Basin &basin, const double *lambda) const;
-  std::function<Immersed<double>(int)> immersed(const std::vector<char> &is_near) const;
+  // For passes (passes/pass_liquid.h): whether they compute the same as act(), where the integrator has friction or not, and
+  // reads it from a column or not; a particle; the part of a volume at a place below the surface; all particles; and the results
+  // of passes in this step.
+  bool acts_in_passes(bool has_friction, const double *lambda) const;
+  std::function<Immersed<double>(int)> immersed(const std::vector<char> &is_near, const double *lambda) const;
+  void parts_below(const Basin &basin, const double *const *x, int first, int many, double *part) const;
   LiquidScales scales(const Basin &basin, bool in_step) const;
   void add_power(const Basin::Energies &of_passes, double more_seconds);
 
@@ -79,8 +81,9 @@ class Buoyancy : protected LAMMPS_NS::Pointers {
     double lambda;
   };
 
+  struct Surface;
   struct Acting;
-  Wet act_on(const Acting &now, const Basin &basin, int i);
+  Wet act_on(const Acting &now, int i);
   InLiquid look_at_particle(const Basin &basin, std::size_t n, const double *x) const;
   Basin::Energies power() const;
 

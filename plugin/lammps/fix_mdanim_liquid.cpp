@@ -233,7 +233,11 @@ bool FixMdanimLiquid::join(PassCrew &crew)
   return PassParticipant::join(crew);
 }
 
-bool FixMdanimLiquid::joins(const double *lambda) { return in_passes = buoyancy.acts_in_passes(*basin, lambda); }
+bool FixMdanimLiquid::joins(const PassIntegrator &integrator)
+{
+  in_passes = buoyancy.acts_in_passes(integrator.friction() != Friction::NONE, integrator.friction_of_particles());
+  return in_passes;
+}
 
 void FixMdanimLiquid::acted(double work, double lost, double fastest, double seconds)
 {

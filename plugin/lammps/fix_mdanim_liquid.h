@@ -49,14 +49,17 @@ class FixMdanimLiquid : public mdanim::FixBase,
   bool needs_all_atoms() override;
   void equip(const mdanim::Kernels &, const mdanim::Threads &threads) override { use(threads); }
   bool join(mdanim::PassCrew &crew) override;
-  bool joins(const double *lambda) override;
+  bool joins(const mdanim::PassIntegrator &integrator) override;
   mdanim::LiquidScales scales() const override { return buoyancy.scales(*basin, true); }
   double top_of_near() const override { return mdanim::NearLiquid::top_of_near(*basin); }
   const std::vector<int> &near_particles() const override { return near.all(); }
   long long listed() const override { return near.listed(); }
   bool is_near(int i) const override { return near.marks()[i]; }
-  std::function<mdanim::Immersed<double>(int)> immersed() const override { return buoyancy.immersed(near.marks()); }
-  mdanim::InLiquid *kept() override { return buoyancy.kept.data(); }
+  std::function<mdanim::Immersed<double>(int)> immersed(const double *lambda) const override
+  { return buoyancy.immersed(near.marks(), lambda); }
+  mdanim::InLiquid *kept() override { return basin->acts_on_cells() ? buoyancy.kept.data() : nullptr; }
+  void parts_below(const double *const *x, int first, int many, double *part) const override
+  { buoyancy.parts_below(*basin, x, first, many, part); }
   void split(const std::vector<int> *in_arrays) override { near.split(in_arrays, *basin); }
   bool is_due() override;
   void update_liquid() override;

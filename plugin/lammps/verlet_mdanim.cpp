@@ -130,7 +130,7 @@ bool VerletMdanim::find_crew()
 {
   PassCrew &crew = engine.crew;
   if (!search.find(crew)) return false;
-  if (crew.liquid && !crew.liquid->joins(crew.integrator->friction_of_particles())) crew.liquid = nullptr;
+  if (crew.liquid && !crew.liquid->joins(*crew.integrator)) crew.liquid = nullptr;
   if (crew.springs->refresh_coefficients()) decided_for = -1;
   if (engine.begin_run(told ? *told : widest_kernels())) decided_for = -1;
   return true;

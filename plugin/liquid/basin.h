@@ -139,15 +139,16 @@ class Basin {
 
   // --- what acts on solids, and they on the liquid ---
 
-  virtual AtPlace at(const Vec3 & /*place*/) const { return {}; }
-  // Whether on_parts() is to be called after each update, instead of at() in each step, and solids report their action on the
-  // liquid.
+  // Fraction of a volume at a place that is below the surface; only Archimedes' lift acts on it.
+  virtual double part_below(const Vec3 & /*place*/) const { return 0.0; }
+  // Whether on_parts() is to be called after each update, instead of part_below() in each step, and solids report their action on
+  // the liquid.
   virtual bool acts_on_cells() const { return false; }
   // Action on a lattice cell with its middle at a place; cells may come in any order.
   virtual OnParts on_parts(const Vec3 & /*middle*/) const { return {}; }
   // Upward velocity of the solid around a place [distance/time].
   virtual double rising_at(const Vec3 & /*place*/) const { return 0.0; }
-  // From the returned height down, the whole basin is below the surface, and only Archimedes' lift acts.
+  // From the returned height down, the whole basin is below the surface.
   virtual double all_below() const = 0;
   // Rate [1/time] at which immersed particles lose the velocity relative to the solid around them.
   virtual double calms_solids() const { return 0.0; }

@@ -22,10 +22,12 @@ class ImmersedBlocks {
   void forget() { listed = -1; }    // coefficients of particles have changed
   bool knows(const PassLiquid &liquid) const { return listed == liquid.listed(); }
   // Lists the blocks whose `immersed` is not negative.
-  template <class Own> void list(const PassLiquid &liquid, std::vector<Block> &all, const Own &own);
+  template <class Own> void list(const PassLiquid &liquid, const double *lambda, std::vector<Block> &all, const Own &own);
   // Takes in what is kept for particles; blocks that are held back are left out.
   template <class Own>
   void take_in(const Threads &threads, PassLiquid &liquid, const std::vector<Block> &all, const Own &own, ImmersedRows &rows);
+  // Where nothing is kept: the parts of particles below the surface in this step, at their places.
+  void look_up(const Threads &threads, const PassLiquid &liquid, const std::vector<Block> &all, const double *const *x);
   // Gives the impulses of particles on the liquid back.
   template <class Own>
   void give_out(const Threads &threads, PassLiquid &liquid, const std::vector<Block> &all, const Own &own) const;
@@ -38,12 +40,14 @@ class ImmersedBlocks {
   }
 
  private:
-  // Calls work(kept values of a particle, number of the block, its lane) for all own particles that the liquid acts on in passes,
-  // shared among threads. Returns the number of these particles.
+  // Calls work(particle, number of the block, its lane) for all own particles that the liquid acts on in passes, shared among
+  // threads. Returns the number of these particles.
   template <class Own, class Work>
-  long each(const Threads &threads, PassLiquid &liquid, const std::vector<Block> &all, const Own &own, const Work &work) const;
+  long each(const Threads &threads, const std::vector<Block> &all, const Own &own, const Work &work) const;
   template <class Array> auto *number_at(Array &array, long block, int numbers, int number, int lane) const
   { return array.data() + (block * numbers + number) * lanes + lane; }
+
+  static constexpr double PARTICLE = 10.0;    // time for one [ns], approximately
 
   const int lanes;
   long long listed = -1;      // by the liquid
@@ -55,12 +59,13 @@ class ImmersedBlocks {
   std::vector<unsigned> coefficients_of;
 };
 
-template <class Own> void ImmersedBlocks::list(const PassLiquid &liquid, std::vector<Block> &all, const Own &own)
+template <class Own>
+void ImmersedBlocks::list(const PassLiquid &liquid, const double *lambda, std::vector<Block> &all, const Own &own)
 {
   blocks.clear();
   coefficients_of.clear();
   coefficients = {};
-  const auto mover = liquid.immersed();
+  const auto mover = liquid.immersed(lambda);
   std::vector<double> row(PARTICLE_NUMBERS * lanes);
   for (std::size_t b = 0; b < all.size(); ++b) {
     Block &block = all[b];
@@ -80,11 +85,8 @@ template <class Own> void ImmersedBlocks::list(const PassLiquid &liquid, std::ve
 }
 
 template <class Own, class Work>
-long ImmersedBlocks::each(const Threads &threads, PassLiquid &liquid, const std::vector<Block> &all, const Own &own,
-                          const Work &work) const
+long ImmersedBlocks::each(const Threads &threads, const std::vector<Block> &all, const Own &own, const Work &work) const
 {
-  constexpr double PARTICLE = 10.0;    // [ns], approximately
-  InLiquid *const of = liquid.kept();
   std::atomic<long> many{0};
   threads.parts(static_cast<long>(blocks.size()), PARTICLE * lanes, [&](long from, long to) {
     long of_part = 0;
@@ -94,7 +96,7 @@ long ImmersedBlocks::each(const Threads &threads, PassLiquid &liquid, const std:
       for (int lane = 0; lane < block.lanes; ++lane) {
         const int i = own(block.start + lane);
         if (i < 0) continue;
-        work(of[i], n, lane);
+        work(i, n, lane);
         ++of_part;
       }
     }
@@ -107,7 +109,10 @@ template <class Own>
 void ImmersedBlocks::take_in(const Threads &threads, PassLiquid &liquid, const std::vector<Block> &all, const Own &own,
                              ImmersedRows &rows)
 {
-  particles_in = static_cast<double>(each(threads, liquid, all, own, [this](const InLiquid &of, long block, int lane) {
+  const InLiquid *const of_all = liquid.kept();
+  particles_in = static_cast<double>(each(threads, all, own, [=](int i, long block, int lane) {
+    if (!of_all) return;
+    const InLiquid &of = of_all[i];
     const auto put = [&](int number, double value) { *number_at(kept, block, KEPT_NUMBERS, number, lane) = value; };
     for (int k = 0; k < EXACT_NUMBERS; ++k) put(k, of.waves.exact[k]);
     for (int k = 0; k < SMALL_NUMBERS; ++k) *number_at(small, block, SMALL_NUMBERS, k, lane) = of.waves.small[k];
@@ -117,12 +122,24 @@ void ImmersedBlocks::take_in(const Threads &threads, PassLiquid &liquid, const s
   rows = {kept.data(), small.data(), coefficients.data(), coefficients_of.data(), liquid.scales(), liquid.top_of_near()};
 }
 
+inline void ImmersedBlocks::look_up(const Threads &threads, const PassLiquid &liquid, const std::vector<Block> &all,
+                                    const double *const *x)
+{
+  threads.parts(static_cast<long>(blocks.size()), PARTICLE * lanes, [&](long from, long to) {
+    for (long n = from; n < to; ++n)
+      if (const Block &block = all[blocks[n]]; !block.held_back)
+        liquid.parts_below(x, block.start, block.lanes, number_at(kept, n, KEPT_NUMBERS, BASE, 0));
+  });
+}
+
 template <class Own>
 void ImmersedBlocks::give_out(const Threads &threads, PassLiquid &liquid, const std::vector<Block> &all, const Own &own) const
 {
-  each(threads, liquid, all, own, [this](InLiquid &of, long block, int lane) {
-    of.impulse_x = *number_at(kept, block, KEPT_NUMBERS, IMPULSE_X, lane);
-    of.impulse_y = *number_at(kept, block, KEPT_NUMBERS, IMPULSE_Y, lane);
+  InLiquid *const of = liquid.kept();
+  if (!of) return;
+  each(threads, all, own, [=](int i, long block, int lane) {
+    of[i].impulse_x = *number_at(kept, block, KEPT_NUMBERS, IMPULSE_X, lane);
+    of[i].impulse_y = *number_at(kept, block, KEPT_NUMBERS, IMPULSE_Y, lane);
   });
 }
 

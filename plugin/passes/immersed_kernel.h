@@ -5,12 +5,26 @@
 
 #include "passes/pass_kernel.h"
 
+#include <utility>
+
 namespace mdanim {
 namespace {
 
 typedef float Floats __attribute__((vector_size(4 * LANES)));
 
 MDANIM_ALWAYS_INLINE Vector load_floats(const float *from) { return __builtin_convertvector(load<Floats>(from), Vector); }
+
+// Built at once: numbers that are set one by one are cleared in memory first.
+template <int MANY> using Numbers = std::make_integer_sequence<int, MANY>;
+
+template <int... EXACT, int... SMALL>
+MDANIM_ALWAYS_INLINE InWaves<Vector> load_waves(const double *exact, const float *small, std::integer_sequence<int, EXACT...>,
+                                                std::integer_sequence<int, SMALL...>)
+{ return {{load(exact + EXACT * LANES)...}, {load_floats(small + SMALL * LANES)...}}; }
+
+template <int... NUMBER>
+MDANIM_ALWAYS_INLINE Immersed<Vector> load_particle(const double *from, std::integer_sequence<int, NUMBER...>)
+{ return {{load(from + NUMBER * LANES)...}}; }
 
 // The law is liquid_force() of buoyancy/immersed.h. Not inlined: most blocks are dry.
 template <Friction FRICTION, bool DAMPED>
@@ -22,11 +36,8 @@ __attribute__((noinline)) void move_immersed(const Pass &pass, const Block &bloc
   const float *const small = rows.small + static_cast<long>(block.immersed) * (SMALL_NUMBERS * LANES);
   const double *const own =
       rows.particle + static_cast<unsigned long>(rows.particles[block.immersed]) * (PARTICLE_NUMBERS * LANES);
-  InWaves<Vector> waves;
-  for (int k = 0; k < EXACT_NUMBERS; ++k) waves.exact[k] = load(kept + k * LANES);
-  for (int k = 0; k < SMALL_NUMBERS; ++k) waves.small[k] = load_floats(small + k * LANES);
-  Immersed<Vector> particle;
-  for (int k = 0; k < PARTICLE_NUMBERS; ++k) particle.of[k] = load(own + k * LANES);
+  const auto waves = load_waves(kept, small, Numbers<EXACT_NUMBERS>(), Numbers<SMALL_NUMBERS>());
+  const auto particle = load_particle(own, Numbers<PARTICLE_NUMBERS>());
   const AtPlace<Vector> at = waves.at(load(pass.x[2] + block.start));
   const auto force = liquid_force(rows.liquid, particle, at, load(pass.v, block.start));
   store(kept + IMPULSE_X * LANES, load(kept + IMPULSE_X * LANES) + force.impulse_x);
@@ -35,7 +46,7 @@ __attribute__((noinline)) void move_immersed(const Pass &pass, const Block &bloc
   tally.largest_phi = larger(phi, tally.largest_phi);
   const auto then = [&](const Vector3 &middle, const Vector3 &last, const Vector3 &place) {
     add_lanes(tally.sums.liquid_work, dot(force.push, middle));
-    add_lanes(tally.sums.liquid_lost, force.lambda * dot(middle, middle));
+    if constexpr (FRICTION != Friction::NONE) add_lanes(tally.sums.liquid_lost, force.lambda * dot(middle, middle));
     const Vector square = particle.of[LISTED] > 0.0 ? dot(last, last) : constant<Vector>(-1.0);
     tally.fastest_near = place.z < rows.top_of_near ? larger(square, tally.fastest_near) : tally.fastest_near;
   };

@@ -11,13 +11,15 @@
 
 namespace mdanim {
 
+class PassIntegrator;
+
 // A liquid whose force on a particle depends on the particle's place and velocity and on a few numbers that are kept for it. A
 // pass computes the force (buoyancy/immersed.h) and moves the particle at once. Particles that are held back for other
 // participants are left to the fix, which is a late participant as well. Particles are numbered as in LAMMPS's arrays.
 class PassLiquid {
  public:
-  // Whether passes may compute the liquid's forces in this whole run; `lambda` is where the integrator reads friction.
-  virtual bool joins(const double *lambda) = 0;
+  // Whether passes may compute the liquid's forces in this whole run.
+  virtual bool joins(const PassIntegrator &integrator) = 0;
   virtual LiquidScales scales() const = 0;
   // Height below which a particle's speed counts.
   virtual double top_of_near() const = 0;
@@ -25,10 +27,13 @@ class PassLiquid {
   virtual const std::vector<int> &near_particles() const = 0;
   virtual long long listed() const = 0;
   virtual bool is_near(int i) const = 0;
-  // Coefficients of a particle for passes. They hold until particles move to other places of the arrays.
-  virtual std::function<Immersed<double>(int i)> immersed() const = 0;
-  // Kept values of all particles in LAMMPS's arrays.
+  // Coefficients of a particle for passes; `lambda` is where the integrator reads friction, null without any. They hold until
+  // particles move to other places of the arrays.
+  virtual std::function<Immersed<double>(int i)> immersed(const double *lambda) const = 0;
+  // Kept values of all particles in LAMMPS's arrays. Null where nothing is kept, and the part of a volume below the surface,
+  // which alone acts, is looked up in each step: for `many` particles from `first` on in arrays of coordinates.
   virtual InLiquid *kept() = 0;
+  virtual void parts_below(const double *const *x, int first, int many, double *part) const = 0;
   // From now on the arrays hold only these particles, until this is called again; null for all particles.
   virtual void split(const std::vector<int> *in_arrays) = 0;
   // Whether the liquid is to move in this step. If so, it moves before the pass, when the arrays hold all particles.

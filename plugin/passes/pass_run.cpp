@@ -64,7 +64,7 @@ void PassRun::hold_back()
   for (const PassParticipant *p : crew.late) p->append_required_atoms(wanted);
   blocks.hold_back(wanted, false);
   if (crew.liquid) {
-    blocks.immerse(threads, *crew.liquid, pass);
+    blocks.immerse(threads, *crew.liquid, crew.integrator->friction_of_particles(), pass);
     crew.liquid->split(&blocks.held_back());
   }
   pass.friction =
@@ -82,7 +82,11 @@ void PassRun::step(long long next, const std::function<void(bool at_end)> &late)
   }
   early_participants_turn();
   if (pass.gravity.works) set_gravity();
-  double all = 0.0;
+  double all = 0.0, looking = 0.0;
+  if (crew.liquid && !crew.liquid->kept()) {
+    const Lap lap(looking);
+    blocks.look_up_surface(threads, *crew.liquid);
+  }
   pass.bends = crew.integrator->tells_of(next);
   pass.looks = crew.integrator->looks();
   {
@@ -95,7 +99,7 @@ void PassRun::step(long long next, const std::function<void(bool at_end)> &late)
   crew.integrator->moved(sums.loss, sums.bend, pass.largest_phi, moving);
   if (crew.gravity) crew.gravity->took(pulling);
   if (pass.gravity.works) crew.gravity->worked(sums.pulled + pulled_at_held_back());
-  if (crew.liquid) crew.liquid->acted(sums.liquid_work, sums.liquid_lost, pass.fastest_near, lifting);
+  if (crew.liquid) crew.liquid->acted(sums.liquid_work, sums.liquid_lost, pass.fastest_near, lifting + looking);
   crew.springs->took(all - moving - pulling - lifting);
   if (!crew.late.empty()) {
     late_participants_turn(late);

@@ -163,12 +163,12 @@ bool SimdBlocks::friction_acts() const
   return false;
 }
 
-void SimdBlocks::immerse(const Threads &threads, PassLiquid &liquid, Pass &pass)
+void SimdBlocks::immerse(const Threads &threads, PassLiquid &liquid, const double *lambda, Pass &pass)
 {
   if (!immersed.knows(liquid)) {
     for (Block &block : all) block.immersed = -1;
     for (const int i : liquid.near_particles()) all[home[ours(i)]].immersed = 0;
-    immersed.list(liquid, all, own_particle());
+    immersed.list(liquid, lambda, all, own_particle());
   }
   immersed.take_in(threads, liquid, all, own_particle(), pass.immersed);
 }

@@ -52,7 +52,8 @@ class SimdBlocks {
 
   // Sets the blocks that a liquid acts on, with its coefficients; blocks that are held back as well are left out. The second
   // function gives the impulses on the liquid back to it.
-  void immerse(const Threads &threads, PassLiquid &liquid, Pass &pass);
+  void immerse(const Threads &threads, PassLiquid &liquid, const double *lambda, Pass &pass);
+  void look_up_surface(const Threads &threads, const PassLiquid &liquid) { immersed.look_up(threads, liquid, all, x); }
   void give_out_impulses(const Threads &threads, PassLiquid &liquid) const;
   // Share of the liquid in the time of a pass in which a particle in the liquid takes `more` than another, relative to that.
   double share_of_liquid(double more) const { return more * immersed.particles() / (particles + more * immersed.particles()); }

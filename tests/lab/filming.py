@@ -87,8 +87,8 @@ EFFECTS = {
 }
 
 
-# After contact and walls, for which places suffice, a shallow liquid, whose particles are held back, and then walls again, where
-# particles are that have felt it.
+# After contact and walls, whose forces passes ask for beforehand, a shallow liquid, which acts in the pass, and then walls again,
+# whose particles are held back, some of which have felt it.
 POND = (
     "region pond block -0.08 0.13 -0.08 0.08 -0.03 0.12",
     "fix pond mobile mdanim/liquid pond 1000 grid 21 16 60 level -0.015 gravity 9.81 buoyancy 1e-6",

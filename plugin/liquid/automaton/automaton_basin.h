@@ -39,10 +39,10 @@ class AutomatonBasin : public Basin {
   bool is_due(double fastest, double dt, std::int64_t step) override;
   void update(const AddBodies &bodies, std::uint64_t when) override;
 
-  AtPlace at(const Vec3 &place) const override
+  double part_below(const Vec3 &place) const override
   {
-    const double s = immersed(place);
-    return {s, {0.0, 0.0, s}, {}};
+    if (!(place.x >= 0.0 && place.x <= shape.nx && place.y >= 0.0 && place.y <= shape.ny)) return 0.0;
+    return immersion == Immersion::SURFACE ? immersed_part(surface_at(place), place.z) : liquid_around(place);
   }
   double all_below() const override
   {
@@ -83,12 +83,6 @@ class AutomatonBasin : public Basin {
   bool is_parted(int x, int y) const;
   double shut_in_height() const;
   double liquid_around(const Vec3 &place) const;
-  // Fraction of the volume around a particle that counts as immersed.
-  double immersed(const Vec3 &place) const
-  {
-    if (!(place.x >= 0.0 && place.x <= shape.nx && place.y >= 0.0 && place.y <= shape.ny)) return 0.0;
-    return immersion == Immersion::SURFACE ? immersed_part(surface_at(place), place.z) : liquid_around(place);
-  }
   double surface_at(const Vec3 &place) const
   { return at_point(eta.data(), blocked.data(), shape.nx, shape.ny, place.x, place.y); }
 
