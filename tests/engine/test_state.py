@@ -74,5 +74,5 @@ def test_fixes_are_joined_apart():
 
 
 def test_without_objects_records_are_those_of_the_whole():
-    """Of a liquid alone."""
+    """The place of the only record of a liquid alone."""
     assert records({(0, 0): b"all"}).home(np.zeros(0, bool)).tolist() == [0]

@@ -298,6 +298,31 @@ def test_what_cannot_be_shown_is_refused(line, message, hint):
     assert message in problem.message and hint in problem.hint and problem.span.line == 7
 
 
+IN_A_LAKE = """
+gravity (0, 0, -9.81) m/s^2
+liquid lake { basin from (-0.2, -0.2, 0) m to (0.2, 0.2, 0.4) m  density 1000 kg/m^3  level 0.2 m }
+object cork { shape box (16, 16, 16) cm  position (0, 0, 0.3) m  density 500 kg/m^3  elasticity rigid }
+control { time 0.1 s }
+"""
+
+
+def test_arrows_that_no_object_would_have_are_refused(prepared):
+    """Contact beside a liquid; what is told of an object at least has arrows."""
+    with pytest.raises(SceneError, match="the force of contact on cork is not known: lift and drag"):
+        prepared(IN_A_LAKE + "render { arrows contact }\n")
+    prepared(IN_A_LAKE + "render { arrows force }\n", "force")
+
+
+def test_the_legend_says_that_arrows_are_too_small(run, monkeypatch):
+    """In place of a scale by which none is seen."""
+    from mdanim_lammps.picture.layer import InkLayer
+
+    words = []
+    monkeypatch.setattr(InkLayer, "words", lambda self, at, text, **looks: words.append(text))
+    pictures(run, arrows=(Arrows("velocity"), Arrows("weight", scale=1e-6)))
+    assert "weight: too small to be seen" in words and any(w.startswith("velocity  ") for w in words)
+
+
 def test_four_units_have_no_room():
     """Three panels are the most."""
     lines = "\n".join(f"plot ball.{word}" for word in ("speed", "position.z", "kinetic", "force"))

@@ -275,6 +275,10 @@ def test_a_report_from_disk(browser, beam, tmp_path):
     write_report(beam, tmp_path / "beam.html")
     assert (tmp_path / "beam.html").stat().st_size <= 2_000_000
     open_page(browser, f"file://{tmp_path / 'beam.html'}")
+    assert browser.js(
+        "const a = document.querySelector('aside'); return a.scrollHeight == a.clientHeight"
+    )  # the page alone scrolls
+    assert browser.js("return document.getElementById('cost-panel').hidden")  # a table below has it
     show(browser, 40)
     browser.click(*center_of(browser, 1))
     browser.until("document.getElementById('object').innerText.includes('8 kg')")

@@ -43,7 +43,7 @@ def test_curves_are_those_of_the_records(folder):
     assert np.isfinite(vectors[1:, 0]).all() and np.isnan(vectors[0]).all()
     with Trajectory(folder) as t:
         np.testing.assert_array_equal(told.vectors("velocity"), t.center_velocities.astype("f4"))
-    assert told.head()["means"] == ["contact", "force"]
+    assert told.head()["means"] == ["contact", "force"] and not told.head()["untold"]
 
 
 def test_what_the_run_does_not_tell(folder):

@@ -31,6 +31,8 @@ BAR, ROW, MOST_ROOM = 7.5, 1.5, 0.16
 that each of them is given."""
 LEGEND = 4.5
 """Length of an arrow of the legend over that of letters, at most."""
+SEEN = 2.0
+"""Length of the longest arrow of a line from which on the legend has its scale [pixels]."""
 USUAL, AMONG = 0.14, 0.95
 """Length of an arrow over the size of the scene, that of the value that this share of all values does not exceed."""
 NOTHING = 1e-9
@@ -158,12 +160,14 @@ class Overlay:
         top = self._size[1] - 1.4 * letters
         pixels = pixels_per_metre(view, self._size, self._action.centre)
         values = [_round_value(LEGEND * letters / max(pixels * one.scale, 1e-300)) for one in self._vectors]
-        rows = [(one, value, value * one.scale * pixels) for one, value in zip(self._vectors, values)]
+        seen = [np.nanmax(np.abs(one.values), initial=0.0) * one.scale * pixels >= SEEN for one in self._vectors]
+        rows = [(one, value, value * one.scale * pixels * s) for one, value, s in zip(self._vectors, values, seen)]
         widest = max((length for _, _, length in rows), default=0.0)
         for n, (one, value, length) in enumerate(rows):
             y = top - n * ROW * letters
-            self._layer.arrow(np.array([left, y]), np.array([left + length, y]), one.color, width)
-            words = f"{one.word}  {number(value)} {one.unit}"
+            if length:
+                self._layer.arrow(np.array([left, y]), np.array([left + length, y]), one.color, width)
+            words = f"{one.word}  {number(value)} {one.unit}" if length else f"{one.word}: too small to be seen"
             self._layer.words((left + widest + 0.7 * letters, y), words, color=one.color)
 
     def _labels(self, view: View, low: np.ndarray, high: np.ndarray) -> None:

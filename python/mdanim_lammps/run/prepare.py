@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Container, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -157,7 +157,18 @@ def _unmeasurable(resolved: Resolved) -> list[Problem]:
         for of in wanted
         if (needs := of.kind.needs) and not resolved.on(needs)
     ]
-    return [*off, *unmeasured(resolved.scene, wanted)]
+    return [*off, *unmeasured(resolved.scene, wanted), *_no_arrows(resolved.scene)]
+
+
+def _no_arrows(scene: SceneRecord) -> list[Problem]:
+    """A problem for each line of arrows of all objects that would show none."""
+    names = [solid.name for solid in scene.solids]
+    found = []
+    for line in (one for one in scene.render.arrows if one.name is None):
+        problems = unmeasured(scene, line.asked(names))
+        if len(problems) == len(names):  # the components of an arrow have one
+            found.append(replace(problems[0], hint="take this line out, or show another one, e.g. arrows velocity"))
+    return found
 
 
 def _undriven(resolved: Resolved, models: Sequence[Model]) -> list[Problem]:

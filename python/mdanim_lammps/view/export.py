@@ -228,7 +228,7 @@ def _told(told: ShownQuantities, count: int, every: int) -> tuple[dict, dict[str
         head["curves"].append(one)
         arrays |= {f"time {n}": columns["time"], f"value {n}": columns["value"]}
     head["arrows"] = [word for word in head["arrows"] if word != "velocity" and count * told.objects <= MOST_ARROWS]
-    for word in head["arrows"]:
+    for word in (word for word in head["arrows"] if word not in head["untold"]):
         arrays[f"arrows {word}"] = told.vectors(word)[:count:every]
     return head, arrays
 

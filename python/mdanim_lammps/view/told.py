@@ -44,7 +44,8 @@ class ShownQuantities:
 
     def head(self) -> dict:
         """Quantities that can be asked for, with units: ``own``, those of the scene, ``words`` of any object, ``globals``; the
-        words of ``arrows``, and those of them that are ``means`` since the frame before."""
+        words of ``arrows``, those of them that are ``means`` since the frame before, and why those are ``untold`` of which
+        frames know nothing of any object."""
         with self._turn:
             words = {word: of.unit for (kind, word), of in self._free() if kind == "NAME"}
             arrows = [word for word in ARROWS if word == "velocity" or f"{word}.x" in words]
@@ -53,6 +54,7 @@ class ShownQuantities:
                 "words": words,
                 "globals": {f"{kind}.{word}": of.unit for (kind, word), of in self._free() if kind in GLOBALS},
                 "arrows": arrows,
+                "untold": {word: why for word in arrows if (why := self._untold(word))},
                 "means": [word for word in arrows if quantity_of(Asked("", f"{word}.x")).since],
             }
 
@@ -100,6 +102,12 @@ class ShownQuantities:
                     one = self._values.vector(name, word)[: len(t)]
                     found[: len(one), m] = one
             return found
+
+    def _untold(self, word: str) -> str:
+        """Why a vector is not told of any object; empty where it is of one."""
+        names = self._trajectory.names
+        problems = unmeasured(self._trajectory.scene, [Asked(name, f"{word}.x") for name in names])
+        return problems[0].message if names and len(problems) == len(names) else ""
 
     def _asked(self, named: Named) -> Asked:
         if isinstance(named, str):

@@ -34,7 +34,8 @@ const FLOOR_COLOR = `
 export function floorOf({ floor, size, grid, pattern, dark, background }, middle) {
   const reach = FLOOR * size;
   const base = new Color(...background[0].map((c) => (c / 255) ** 2.2));
-  const material = new MeshLambertMaterial({ color: dark ? base.clone().multiplyScalar(2).addScalar(0.02) : base, transparent: true, premultipliedAlpha: true });
+  const material = new MeshLambertMaterial({ color: dark ? base.clone().multiplyScalar(2).addScalar(0.02) : base, transparent: true, premultipliedAlpha: true,
+    polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 16 }); // behind the bottom of a liquid at the same height
   material.customProgramCacheKey = () => "floor";
   material.onBeforeCompile = (shader) => {
     Object.assign(shader.uniforms, {

@@ -42,6 +42,8 @@ async function start() {
   stage = new Stage(byId("stage"), scene);
   if (stage.slow) ease = COARSEST;
   for (const [id, on] of [["liquid", scene.liquid], ["walls", scene.walls], ["springs", scene.springs && !report], ["particles", !report]]) byId(`show-${id}`).parentElement.hidden = !on;
+  if (!scene.objects.length) for (const id of ["object-panel", "arrows", "trail", "follow"]) byId(id).hidden = true;
+  if (!scene.objects.length) for (const id of ["only", "show-surface", "show-particles", "show-springs", "show-boxes", "colour"]) byId(id).parentElement.hidden = true;
   offer("strain", !report && scene.springs, "by strain", report ? "in a view" : "where save all is asked for");
   shows = new Shows(scene, source, stage);
   saving = new Saving(player, () => [{ stage, overlay: shows.overlay, frame: shown, canvas: shows.canvas }, ...(second ? [{ ...second, frame: second.frame }] : [])], seen);
@@ -87,7 +89,7 @@ function refresh() {
   offer("executor", run.executors > 1, "by executor", "of a run with -n");
   if (live && performance.now() - grownAt > 1000) grow();
   if (shows && !live) shows.ended();
-  showCost(run.cost, run.facts);
+  if (!report) showCost(run.cost, run.facts); // a report has a table of it
   showExpects(run.facts);
 }
 

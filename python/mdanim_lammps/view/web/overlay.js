@@ -7,6 +7,7 @@ import { ARROW_UNITS, roundValue, usualScale } from "./quantities.js";
 const COLORS = { velocity: "#1c66bf", force: "#333333", contact: "#cc1f24", weight: "#1f8533", spin: "#7d47ad" };
 const ON_DARK = { velocity: "#63a8ff", force: "#d8d8d8", contact: "#ff6b6b", weight: "#5fd67b", spin: "#c39bf0" };
 const LETTERS = 0.028, SMALLEST = 11, LARGEST = 20; // height of letters over that of the picture, and its limits [pixels]
+const SEEN = 2; // length of the longest arrow of a word at which it is seen [pixels]
 const LEGEND = 4.5, HEAD = 3.2, HALF = 0.42; // length of an arrow of the legend over that of letters; of a head over the width of a shaft; half of its width over its length
 
 export class Overlay {
@@ -28,7 +29,8 @@ export class Overlay {
     const units = (word) => ARROW_UNITS[word] ?? "N";
     this.arrows = arrows.map((one) => {
       const alike = arrows.filter((other) => units(other.word) === units(one.word) && other.scale === null && other.vectors);
-      return { ...one, unit: units(one.word), scale: one.scale ?? (one.vectors ? usualScale(alike.map(({ vectors }) => vectors), this.scene.size) : null) };
+      const most = one.vectors ? one.vectors.reduce((most, x) => Math.max(most, Math.abs(x) || 0), 0) : Infinity;
+      return { ...one, most, unit: units(one.word), scale: one.scale ?? (one.vectors ? usualScale(alike.map(({ vectors }) => vectors), this.scene.size) : null) };
     });
   }
 
@@ -122,15 +124,15 @@ export class Overlay {
   // An arrow of a round value for each word, as long as it would be in the middle of the scene across the line of sight.
   legend() {
     const away = this.middle.clone().sub(this.eye).dot(this.ahead), pixels = this.height / (2 * Math.tan((this.camera.fov * Math.PI) / 360) * Math.max(away, this.camera.near));
-    const rows = [...new Map(this.arrows.map((one) => [`${one.word} ${one.scale}`, one])).values()].map(({ word, unit, scale }) => {
+    const rows = [...new Map(this.arrows.map((one) => [`${one.word} ${one.scale}`, one])).values()].map(({ word, unit, scale, most }) => {
       const long = scale ?? this.usual(), value = roundValue((LEGEND * this.letters) / (pixels * long));
-      return { word, unit, value, length: value * long * pixels };
+      return most * long * pixels < SEEN ? { word, length: 0 } : { word, unit, value, length: value * long * pixels };
     });
     const widest = Math.max(0, ...rows.map(({ length }) => length)), left = 1.2 * this.letters;
     rows.forEach(({ word, unit, value, length }, n) => {
       const y = (1.4 + 1.5 * n) * this.letters;
       this.arrow([left, y], [left + length, y], this.color(word));
-      this.write(`${word}  ${number(value)} ${unit}`, left + widest + 0.7 * this.letters, y, { color: this.color(word) });
+      this.write(length ? `${word}  ${number(value)} ${unit}` : `${word}: too small to be seen`, left + widest + 0.7 * this.letters, y, { color: this.color(word) });
     });
   }
 

@@ -80,9 +80,9 @@ export class Lines {
   set(place, names, data, height, looks = [], whole = false) {
     if (this.plot) return this.plot.setData(data);
     const ink = getComputedStyle(document.body).getPropertyValue("--faint"), axis = { stroke: ink, font: "10px sans-serif", grid: { stroke: ink + "30" }, ticks: { show: false } };
-    const series = [{}, ...names.map((label, k) => ({ label, stroke: INK[k % INK.length], width: 1.5, ...looks[k] }))];
+    const series = [{}, ...names.map((label, k) => ({ label, stroke: INK[k % INK.length], width: 1.5, pxAlign: 0, ...looks[k] }))];
     const values = (_, ticks) => ticks.map((x) => number(x, 4));
-    this.plot = new Plot({ width: Math.max(160, Math.min(640, (place.closest("aside")?.clientWidth || 300) - 28)), height, scales: { x: { time: false }, ...(whole ? { y: { range: withZero } } : {}) }, legend: { show: false }, cursor: { show: false }, padding: [6, 8, 0, 0],
+    this.plot = new Plot({ width: Math.max(160, Math.min(640, (place.closest("aside")?.clientWidth || 300) - 28)), height, scales: { x: { time: false }, ...(whole ? { y: { range: withZero } } : {}) }, legend: { show: false }, cursor: { show: false }, padding: [6, 16, 0, 0],
       axes: [{ ...axis, size: 24, values: (_, ticks) => ticks.map((x) => `${number(x)} s`) }, { ...axis, size: 46, values }], series,
       hooks: { draw: [() => this.at(this.time)] } }, data, place);
     this.line = element("div", { className: "now" });

@@ -46,7 +46,7 @@ export function roundValue(value) {
 // Quantities that a page may show of a run. While the run goes on only its motion is known.
 export class Quantities {
   constructor(source, scene) {
-    Object.assign(this, { source, scene, own: {}, words: {}, globals: {}, arrows: ["velocity"], whole: false, vectors: new Map() });
+    Object.assign(this, { source, scene, own: {}, words: {}, globals: {}, arrows: ["velocity"], untold: {}, whole: false, vectors: new Map() });
   }
 
   // Ask what there is; tells whether the run has ended.

@@ -51,7 +51,9 @@ export class Shows {
     byId("arrows").replaceChildren(...quantities.arrows.map((word) => {
       const box = element("input", { type: "checkbox", id: `arrows-${word}`, checked: this.on.has(word) });
       box.onchange = () => { this.on[box.checked ? "add" : "delete"](word); return this.setArrows(); };
-      return element("label", {}, box, ` ${word}`);
+      const why = quantities.untold[word];
+      box.disabled = Boolean(why);
+      return element("label", why ? { className: "faint", title: why } : {}, box, ` ${word}`);
     }));
     const movers = this.scene.objects.filter(({ still }) => !still), others = this.scene.objects.filter(({ still }) => still);
     const names = [...movers, ...others].slice(0, MOST_LISTED).map(({ name }) => name), rest = [...Object.keys(quantities.own), ...Object.keys(quantities.globals)];
@@ -66,7 +68,7 @@ export class Shows {
 
   async setArrows() {
     const { shown } = this.scene, lines = [];
-    for (const word of this.quantities.arrows.filter((one) => this.on.has(one))) {
+    for (const word of this.quantities.arrows.filter((one) => this.on.has(one) && !this.quantities.untold[one])) {
       const vectors = this.quantities.whole ? await this.quantities.vectorsOf(word) : null, asked = shown.arrows.filter(([one]) => one === word);
       if (vectors && !vectors.some(Number.isFinite)) {
         this.on.delete(word);
