@@ -19,6 +19,7 @@ NAMES = sorted({p.stem for p in SCENES.glob("*.txt")} - FRAGMENTS)
 LONG = {
     "barge": (0.3, True),
     "billiard": (0.5, False),
+    "biscuit": (0.25, True),
     "blocks": (0.2, False),
     "boat": (1.0, False),
     "bottle": (1.0, False),
@@ -46,6 +47,7 @@ LONG = {
     "utube": (1.5, False),
     "vessels": (1.5, False),
     "wake": (1.2, True),
+    "wall": (0.3, True),
     "weir": (1.5, False),
     "windmill": (0.2, False),
     "wrecking": (0.4, False),

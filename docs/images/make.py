@@ -96,6 +96,7 @@ PICTURES = {
     "mattress": 0.27,
     "pop": 0.2,
     "paper": 0.3,
+    "biscuit": 0.26,
     "wall": 0.36,
     "shatter": 0.5,
 }
