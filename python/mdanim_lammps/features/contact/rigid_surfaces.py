@@ -31,6 +31,8 @@ a mast on a hull. Random blows go up to 3.4 times as deep as v/Omega: with 5 tha
 sides up to half of it; a step at full speed is 0.035 of it, and edges begin up to 0.06 (plugin/rigid/touch_polyhedra.cpp)."""
 HARD = 1e20
 """Modulus of what is rigid and held [Pa]: the surface of its partner alone yields."""
+THICKER = 2.0
+"""How much thicker than the thinnest one others are that are told of beside it."""
 STICK = 0.8
 """Stiffness of the stick spring of friction over that of the contact."""
 
@@ -49,6 +51,8 @@ class Frequency:
     """Closing speed of the fastest blow [m/s]; what pushes objects counts on their way to others and to planes."""
     load: float
     """Largest weight that a body bears, over its own, and one more for its own [-]."""
+    thicker: float | None
+    """Omega by those alone that are more than THICKER times as thick [1/s]; None without such."""
 
 
 @once_for(lambda context: context.reach)
@@ -60,14 +64,14 @@ def frequency(context: Context) -> Frequency:
     reach, system = context.reach, context.reach.system
     free = np.flatnonzero(system.rigid)
     part = _thickness(context, free)
+    thinnest = int(free[part.argmin()])
+    thin, thicker = float(part.min()), float(part[part > THICKER * part.min()].min(initial=math.inf))
     thrown = _thrown_across(context, system) if reach.acting.throws else None
     speed = float(struck_at(context, system, thrown)[free].max())
     load = float(loads(system, free, reach.body).max())
-    thinnest = int(free[part.argmin()])
-    thin = float(part.min())
-    slowest = 2.0 * math.pi * context.scene.control.frames * DEPTH * thin  # of what hardly moves
-    omega = float(max(speed, 2.0 * math.sqrt(load * reach.g * thin), slowest)) / (DEPTH * thin)
-    return Frequency(float(omega), thin, thinnest, speed, load)
+    slowest = 2.0 * math.pi * context.scene.control.frames * DEPTH  # of what hardly moves, over a thickness
+    hard = lambda s: float(max(speed, 2.0 * math.sqrt(load * reach.g * s), slowest * s)) / (DEPTH * s)
+    return Frequency(hard(thin), thin, thinnest, speed, load, hard(thicker) if thicker < math.inf else None)
 
 
 def _thickness(context: Context, free: np.ndarray) -> np.ndarray:

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""Contacts of rigid objects at points of their surfaces, where they set the time step: which, and the way out."""
+"""Contacts of rigid objects that set the time step, because a part is thin or touches at points of its surface: which, and the
+way out."""
 
 from __future__ import annotations
 
@@ -9,20 +10,53 @@ import numpy as np
 
 from ...effects.envelope import Envelope
 from ...errors import Problem
+from ...model import shapes
 from ...model.polyhedron import MOST_CORNERS
-from ...scene.formatting import estimate
+from ...scene.formatting import estimate, number, say
+from ..contact.rigid_surfaces import frequency
 from . import touching
 from .shapes import is_known
 
-MUCH = 2.0
-"""Times as many steps from which on another shape is advised."""
+MUCH, MANY = 2.0, 20_000
+"""Times as many steps from which on another shape is advised; steps from which on something thin is told of."""
 
 
 def notes(envelope: Envelope) -> list[Problem]:
+    """Notes on contacts of rigid objects that set the time step."""
+    return [] if envelope.scene.control.timestep is not None else [*_at_points(envelope), *_thin(envelope)]
+
+
+def _thin(envelope: Envelope) -> list[Problem]:
+    """Note that one that is thinner than others sets the step of all."""
+    found, rate = frequency(envelope.context), envelope.rates.get("rigid")
+    total, steps = sum(envelope.rates.values()), envelope.scene.control.time / envelope.dt
+    if found.thicker is None or rate is None or rate.max() < 0.5 * total.max() or steps < MANY:
+        return []
+    others = (total - rate).max() / rate.max()
+    longer = math.sqrt(max((found.thicker / found.omega) ** 2, others))
+    if longer > 1.0 / MUCH:
+        return []
+    solid = envelope.scene.solids[found.thinnest]
+    body = envelope.reach.body
+    is_part = bool((body == body[found.thinnest]).sum() > 1)
+    softer = number(envelope.scene.control.contact_stiffness / 4.0, 2)
+    return [
+        Problem(
+            envelope.place(found.thinnest, "shape"),
+            f"{solid.name}, {say(shapes.thickness(solid.shape), 'm')} thin, sets the time step, of {estimate(steps)} steps; by "
+            f"thicker rigid objects there would be {estimate(steps * longer)}",
+            f"make it thicker{'' if is_part else ', weld it to something larger'}, or write contact-stiffness {softer} in "
+            "control: half of the steps, and blows twice as deep",
+            severity="note",
+        )
+    ]
+
+
+def _at_points(envelope: Envelope) -> list[Problem]:
     """Note that the contact of a rigid object with another one, whose shape has no known features, sets the time step."""
     context, control, system = envelope.context, envelope.scene.control, envelope.system
     contact = next((e.name for e in envelope.on if e.keeps_apart), None)
-    if control.timestep is not None or contact not in envelope.rates:
+    if contact not in envelope.rates:
         return []
     total = np.where(system.held, 0.0, sum(envelope.rates.values()))
     worst = int(total.argmax())
