@@ -35,10 +35,11 @@ struct AirLaw {
     return part > MOST ? speed * (MOST / part) : speed;
   }
 
-  // Force on a part of a surface with this velocity. `area` has the direction of the outward normal, and the length of the area.
-  Vec3 on_surface(const Vec3 &area, const Vec3 &velocity, AirSides sides, double load) const
+  // Force on a part of a surface with this velocity. `area` has the direction of the outward normal, and the length of the area,
+  // which is `size`.
+  Vec3 on_surface(const Vec3 &area, double size, const Vec3 &velocity, AirSides sides, double load) const
   {
-    const double size = length(area), flow = dot(area, wind - velocity);    // A u
+    const double flow = dot(area, wind - velocity);    // A u
     if (size == 0.0 || (sides == AirSides::OUTER && flow >= 0.0)) return {};
     const double u = flow / size;
     return (half * effective(std::fabs(u), load) * u) * area;

@@ -81,27 +81,44 @@ void AirSkin::open(int low, int high, Holes &holes) const
 
 static bool is_hole(const std::vector<char> &holes, std::size_t n) { return !holes.empty() && holes[n]; }
 
-// Part of the surface of each point.
-void AirSkin::find_areas(const Areas &areas, const Holes &holes, AirScratch &with) const
+void AirSkin::find_faces(const Holes &holes, AirScratch &with) const
 {
-  with.area.assign(points(), 0.0);
+  const std::size_t rods = triangles.size() + cylinders.size(), round = rods + balls.size();
+  with.face.resize(triangles.size() + panels.size());
+  with.size.resize(round + panels.size());
   for (std::size_t n = 0; n < triangles.size(); ++n) {
-    if (is_hole(holes.triangle, n)) continue;
-    const Points &t = triangles[n];
-    const double third = length(area_of(t, with)) / 3.0;
-    for (const int p : t) with.area[p] += third;
+    with.face[n] = is_hole(holes.triangle, n) ? Vec3{} : area_of(triangles[n], with);
+    with.size[n] = length(with.face[n]);
   }
   for (std::size_t n = 0; n < cylinders.size(); ++n) {
-    if (is_hole(holes.cylinder, n)) continue;
-    const Cylinder &one = cylinders[n];
-    const double way = length(with.place[one.to] - with.place[one.from]);
-    if (way > one.most) continue;
-    const double half = 0.5 * one.diameter * way;
+    const double way = length(with.place[cylinders[n].to] - with.place[cylinders[n].from]);
+    const bool gone = is_hole(holes.cylinder, n) || way > cylinders[n].most;
+    with.size[triangles.size() + n] = gone ? 0.0 : cylinders[n].diameter * way;
+  }
+  for (std::size_t n = 0; n < balls.size(); ++n) with.size[rods + n] = AirLaw::face_of_ball(balls[n].diameter);
+  const Areas areas = areas_of_frame(with);
+  for (std::size_t n = 0; n < panels.size(); ++n) {
+    with.face[triangles.size() + n] = areas.of(panels[n].part);
+    with.size[round + n] = length(with.face[triangles.size() + n]);
+  }
+}
+
+// Part of the surface of each point.
+void AirSkin::find_areas(AirScratch &with) const
+{
+  with.area.assign(points(), 0.0);
+  auto size = with.size.begin();
+  for (const Points &t : triangles) {
+    const double third = *size++ / 3.0;
+    for (const int p : t) with.area[p] += third;
+  }
+  for (const Cylinder &one : cylinders) {
+    const double half = 0.5 * *size++;
     with.area[one.from] += half;
     with.area[one.to] += half;
   }
-  for (const Ball &one : balls) with.area[one.at] += AirLaw::face_of_ball(one.diameter);
-  for (const Panel &one : panels) with.area[one.at] += length(areas.of(one.part));
+  for (const Ball &one : balls) with.area[one.at] += *size++;
+  for (const Panel &one : panels) with.area[one.at] += *size++;
 }
 
 // Largest area over mass of the nodes of each point, where a node carries the areas of its points by its weights.
@@ -121,53 +138,57 @@ void AirSkin::find_loads(AirScratch &with) const
 bool AirSkin::may_be_lowered(const AirLaw &law, const AirScratch &with) const
 {
   double all = 0.0, fastest = 0.0;
-  for (const double area : with.area) all += area;
+  for (const double size : with.size) all += size;
   for (const Vec3 &v : with.velocity) fastest = std::max(fastest, dot(law.wind - v, law.wind - v));
   const double lightest = *std::min_element(with.mass.begin(), with.mass.end());
   return law.half * std::sqrt(fastest) * law.dt * largest_weight * all > AirLaw::MOST * lightest;
 }
 
-template <class Push>
-void AirSkin::each_force(const AirLaw &law, double above, const Holes &holes, const AirScratch &with, const Push &push) const
+template <class Push> void AirSkin::each_force(const AirLaw &law, double above, const AirScratch &with, const Push &push) const
 {
   const std::vector<Vec3> &x = with.place, &v = with.velocity;
   const std::vector<double> &load = with.load;
-  for (std::size_t n = 0; n < triangles.size(); ++n) {
-    if (is_hole(holes.triangle, n)) continue;
-    const Points &t = triangles[n];
+  const double *size = with.size.data();
+  const Vec3 *face = with.face.data();
+  for (const Points &t : triangles) {
+    const Vec3 &area = *face++;
+    const double its_size = *size++;
     const auto [a, b, c] = t;
-    if ((x[a].z + x[b].z + x[c].z) / 3.0 < above) continue;
+    if (its_size == 0.0 || (x[a].z + x[b].z + x[c].z) / 3.0 < above) continue;
     const Vec3 velocity = (1.0 / 3.0) * (v[a] + v[b] + v[c]);
-    push(law.on_surface(area_of(t, with), velocity, sides, std::max({load[a], load[b], load[c]})), t, 1.0 / 3.0);
+    push(law.on_surface(area, its_size, velocity, sides, std::max({load[a], load[b], load[c]})), t, 1.0 / 3.0);
   }
-  for (std::size_t n = 0; n < cylinders.size(); ++n) {
-    if (is_hole(holes.cylinder, n)) continue;
-    const Cylinder &one = cylinders[n];
+  for (const Cylinder &one : cylinders) {
     const std::array<int, 2> ends = {one.from, one.to};
-    if (0.5 * (x[one.from].z + x[one.to].z) < above || length(x[one.to] - x[one.from]) > one.most) continue;
+    if (*size++ == 0.0 || 0.5 * (x[one.from].z + x[one.to].z) < above) continue;
     const Vec3 velocity = 0.5 * (v[one.from] + v[one.to]);
     push(law.on_cylinder(x[one.to] - x[one.from], one.diameter, velocity, std::max(load[one.from], load[one.to])), ends, 0.5);
   }
   for (const Ball &one : balls)
     if (x[one.at].z >= above) push(law.on_ball(one.diameter, v[one.at], load[one.at]), std::array<int, 1>{one.at}, 1.0);
-  const Areas areas = areas_of_frame(with);
-  for (const Panel &one : panels)
+  size += balls.size();
+  for (const Panel &one : panels) {
+    const Vec3 &area = *face++;
+    const double its_size = *size++;
     if (x[one.at].z >= above)
-      push(law.on_surface(areas.of(one.part), v[one.at], sides, load[one.at]), std::array<int, 1>{one.at}, 1.0);
+      push(law.on_surface(area, its_size, v[one.at], sides, load[one.at]), std::array<int, 1>{one.at}, 1.0);
+  }
 }
 
 Vec3 AirSkin::push(const AirLaw &law, double above, const Holes &holes, AirScratch &with) const
 {
   find_points(with);
-  find_areas(areas_of_frame(with), holes, with);
-  if (may_be_lowered(law, with))
+  find_faces(holes, with);
+  if (may_be_lowered(law, with)) {
+    find_areas(with);
     find_loads(with);
-  else
+  } else {
     with.load.assign(points(), 0.0);
+  }
   with.push.assign(points(), {});
   with.force.assign(needed.size(), {});
   Vec3 sum;
-  each_force(law, above, holes, with, [&](const Vec3 &force, const auto &at, double part) {
+  each_force(law, above, with, [&](const Vec3 &force, const auto &at, double part) {
     sum += force;
     for (const int p : at) with.push[p] += part * force;
   });

@@ -23,6 +23,8 @@ struct AirScratch {
   std::vector<Vec3> force;                    // on nodes, the result
   std::vector<Vec3> place, velocity, push;    // of points
   std::vector<double> area, load;             // of points
+  std::vector<Vec3> face;                     // of triangles, then of panels: their areas with directions
+  std::vector<double> size;                   // of triangles, cylinders, balls and panels
   std::vector<double> load_of_node;
 };
 
@@ -81,14 +83,14 @@ class AirSkin {
   };
   void find_points(AirScratch &with) const;
   template <std::size_t N> bool needs(const std::array<int, N> &of, int particle) const;
-  void find_areas(const Areas &areas, const Holes &holes, AirScratch &with) const;
+  void find_faces(const Holes &holes, AirScratch &with) const;    // what is a hole or torn has no size
+  void find_areas(AirScratch &with) const;
   bool may_be_lowered(const AirLaw &law, const AirScratch &with) const;
   void find_loads(AirScratch &with) const;
   Areas areas_of_frame(const AirScratch &with) const;
   static Vec3 area_of(const Points &t, const AirScratch &with);
   // Calls push(force, points that share it, part of each).
-  template <class Push>
-  void each_force(const AirLaw &law, double above, const Holes &holes, const AirScratch &with, const Push &push) const;
+  template <class Push> void each_force(const AirLaw &law, double above, const AirScratch &with, const Push &push) const;
 
   AirSides sides;
   std::vector<std::size_t> first{0};    // weights of each point, and the end
