@@ -56,11 +56,12 @@ class RigidBody(BodyKind):
 
     def spacing(self, scene, h):
         """Two cells across, four of what is round or has no known features; no coarser than the scene where there is a liquid or
-        something soft, whose forces find the body at its particles and at points as far apart as these. A plate in a liquid may
+        something soft, whose forces find the body at its particles and at points as far apart as these. A cuboid in a liquid may
         have one."""
         soft = any(is_soft(s) and not is_line(s) for s in scene.solids)
         finest = h if scene.liquid is not None or soft else math.inf
-        across = lambda s: max(_across(s), beneath(scene, s) if isinstance(s.shape, Sphere) else 0)
+        usual = lambda s: 1 if scene.liquid is not None and isinstance(s.shape, Box) else _across(s)
+        across = lambda s: max(usual(s), beneath(scene, s) if isinstance(s.shape, Sphere) else 0)
         return lambda s: finest if self.thinner(scene, s) else min(finest, shapes.thickness(s.shape) / across(s))
 
     def thinner(self, scene, solid):
