@@ -73,7 +73,7 @@ def test_one_message_for_one_mistake(scene, shape, message):
 
 
 def test_the_unit_of_a_large_mesh_is_asked_about(scene, tmp_path):
-    """With the scale of the units that files often have; also beside the error that its size brings."""
+    """With the scale of the units that files often have; before the error that its size brings."""
     import pyvista
 
     assert not scene("origin file").record.warnings
@@ -86,5 +86,5 @@ def test_the_unit_of_a_large_mesh_is_asked_about(scene, tmp_path):
     assert not scene("origin file", 'mesh "large.stl" scale 0.01').record.warnings
     text = 'ground z 0\nobject box { shape mesh "large.stl" density 1 elasticity rigid position (0, 0, 1) }\n'
     low = parse_scene(text + "control { time 1 s }\n", folder=tmp_path)
-    with pytest.raises(SceneError, match=r"(?s)below the ground.*if the unit of its file"):
+    with pytest.raises(SceneError, match=r"(?s)if the unit of its file.*below the ground"):
         prepare(low)

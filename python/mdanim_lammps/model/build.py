@@ -14,8 +14,8 @@ import numpy as np
 from ..bodies import kind_of, lets_go, only_features
 from ..errors import Problem, SceneError
 from ..scene.formatting import number, say
-from ..scene.scene import Elasticity, HoldAll, HoldFaces, HoldWithin, SceneRecord, Shape, Solid
-from . import shapes
+from ..scene.scene import Elasticity, HoldAll, HoldFaces, HoldWithin, Mesh, SceneRecord, Shape, Solid
+from . import mesh, shapes
 from .added import weighed
 from .cells import TooThin, fill_cells
 from .contact_body import BodyFrame
@@ -29,6 +29,7 @@ from .mesh import MeshError
 from .model import Model, Surface
 from .spacing import plan_spacing
 from .springs import equivalent_modulus, reduced_mass, rest_lengths, stiffness, types
+from .triangles import connected
 
 
 def build_models(
@@ -292,5 +293,13 @@ def _too_thin(solid: Solid, h: float, error: TooThin) -> Problem:
     return Problem(
         solid.spans.get("shape"),
         f"{solid.name}: {error}, " + (f"neither at {found[0]} nor at {found[-1]}" if len(tried) > 1 else f"at {found[0]}"),
-        "make separate bodies, and parts that touch in a point, separate objects",
+        _in_parts(solid),
     )
+
+
+def _in_parts(solid: Solid) -> str:
+    """Way out of what is never in one piece."""
+    if isinstance(solid.shape, Mesh) and (parts := int(connected(mesh.load(solid.shape).triangles).max()) + 1) > 1:
+        cause = f"{solid.shape.path.name} has {parts} surfaces that do not hang together"
+        return f"{cause}: save each body as a file and write an object for each, with origin file, which keeps their places"
+    return "make separate bodies, and parts that touch in a point, separate objects"

@@ -9,8 +9,10 @@ import numpy as np
 
 from ..effects.measured import Measured, Of, Recorded
 from ..errors import OutputError, UsageError
+from ..results.files import read_json
 from ..results.ledger import Ledger
 from ..results.quantities import quantity_of, series
+from ..results.stored import SUMMARY
 from ..results.trajectory import Trajectory
 from ..scene.naming import objects_by_name
 from ..scene.quantities import GLOBALS, PLANES, Asked
@@ -66,7 +68,13 @@ class RunValues:
         if t.scene is None:
             raise OutputError(f"{t.path}: the scene of this run, or one of its meshes, cannot be read here")
         grid = next((kept.grid for kept in t.metadata.kept.values() if hasattr(kept, "grid")), None)
-        return Measured(t.scene, t.names, grid, t.times, t.centers, t.center_velocities, np.nan, self._column, t, self.has)
+        deepest = self._deepest()
+        return Measured(t.scene, t.names, grid, t.times, t.centers, t.center_velocities, deepest, self._column, t, self.has)
+
+    def _deepest(self) -> float:
+        """Deepest penetration of a run that has ended [m]; NaN of others."""
+        path = self.trajectory.path.parent / "summary.json"
+        return read_json(path, SUMMARY)["penetration"] if path.exists() else np.nan
 
     def has(self, column: str) -> bool:
         """Whether the ledger of the run has a column; OutputError where it is damaged."""
