@@ -32,8 +32,7 @@ class FoldContact {
   FoldContact(const FoldObject &own, const FoldSurface &of_own, const FoldObject &other, const FoldSurface &of_other,
               const FoldLaw &law, double apart);
 
-  // Whether something may touch: what links keep near each other only once it is torn, and of cells what is laid bare.
-  bool may_touch() const { return apart > 0.0 || !(itself || is_of_cells()) || of_own->is_torn() || of_other->is_torn(); }
+  bool may_touch() const { return touch_untorn(*own, *other, apart) || of_own->is_torn() || of_other->is_torn(); }
   // Looks for what may come within reach while no particle moves by more than half of the skin.
   void list(const Vec3 *own, const Vec3 *other, double skin);
   // The same lists, with the surfaces as they are now: to be called with the places and the skin of the last time, while the
@@ -60,7 +59,6 @@ class FoldContact {
   void look_around(const Vec3 *own, const Vec3 *other, int f);
   std::vector<char> to_renew(const Vec3 *own, std::size_t known) const;
   void append_box(const Vec3 *other, int e);
-  bool is_of_cells() const { return !own->cells.empty() || !other->cells.empty(); }
   void act(const FoldNodes &own, const FoldNodes &other, int f, int e, const NearestPoints &at, double distance, double dt) const;
 
   const FoldObject *own, *other;

@@ -42,6 +42,11 @@ struct FoldPair {
       0.0;    // of an object with itself: what is nearer than this without load does not touch; 0 where pieces alone do
 };
 
+// Whether objects may touch before anything is torn: parts of one that are apart without load, and two that have no cells. Links
+// keep other parts of one near each other, and cells are touched where they are laid bare.
+inline bool touch_untorn(const FoldObject &a, const FoldObject &b, double apart)
+{ return apart > 0.0 || !(&a == &b || !a.cells.empty() || !b.cells.empty()); }
+
 struct FoldTable {
   std::map<int, FoldObject> objects;    // by molecule ID
   std::vector<FoldPair> pairs;

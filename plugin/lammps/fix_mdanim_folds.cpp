@@ -49,27 +49,25 @@ FixMdanimFolds::FixMdanimFolds(LAMMPS *lmp, int narg, char **arg) : FixBase(lmp,
   for (const auto &[molecule, object] : table.objects) nodes.append(molecule, object.particles);
 }
 
-// All contacts, without what is torn.
-void FixMdanimFolds::make_ways()
+// All objects, without what is torn.
+void FixMdanimFolds::make_surfaces()
 {
-  std::map<int, int> number;
-  for (int n = 0; n < nodes.count(); ++n) number[nodes.molecule(n)] = n;
-  ways.clear();
+  number.clear();
   surfaces.clear();
-  for (int n = 0; n < nodes.count(); ++n) surfaces.emplace_back(table.objects.at(nodes.molecule(n)));
+  ways.clear();
+  for (int n = 0; n < nodes.count(); ++n) {
+    number[nodes.molecule(n)] = n;
+    surfaces.emplace_back(table.objects.at(nodes.molecule(n)));
+  }
   for (const FoldPair &pair : table.pairs) {
     skin = std::max(skin, SKIN * pair.law.reach);
-    const FoldObject &a = table.objects.at(pair.first), &b = table.objects.at(pair.second);
-    const int one = number[pair.first], other = number[pair.second];
-    ways.push_back({one, other, FoldContact(a, surfaces[one], b, surfaces[other], pair.law, pair.apart)});
-    if (one != other && (a.segments.empty() || b.segments.empty()))
-      ways.push_back({other, one, FoldContact(b, surfaces[other], a, surfaces[one], pair.law, 0.0)});
+    untorn_touch |= touch_untorn(table.objects.at(pair.first), table.objects.at(pair.second), pair.apart);
   }
 }
 
 bool FixMdanimFolds::may_touch() const
 {
-  return std::any_of(ways.begin(), ways.end(), [](const FoldWay &way) { return way.contact.may_touch(); });
+  return untorn_touch || std::any_of(surfaces.begin(), surfaces.end(), [](const FoldSurface &one) { return one.is_torn(); });
 }
 
 int FixMdanimFolds::setmask() { return PRE_NEIGHBOR | POST_INTEGRATE | POST_FORCE; }
@@ -82,16 +80,49 @@ void FixMdanimFolds::init()
   tears = FixMdanimTear::of(lmp);
   known_tears = 0;
   energy = 0.0;
-  make_ways();
+  make_surfaces();
 }
 
 // --- forces ---
 
 void FixMdanimFolds::list_again()
 {
+  find_ways();
   for (FoldWay &way : ways) way.contact.list(&x[nodes.first(way.first)], &x[nodes.first(way.second)], skin);
   listed = x;
   lists += 1.0;
+}
+
+// Contacts of the pairs that may come within reach before the next list; with many objects most pairs are far from each other.
+void FixMdanimFolds::find_ways()
+{
+  std::vector<Box> around(nodes.count());
+  for (int n = 0; n < nodes.count(); ++n)
+    for (std::size_t k = nodes.first(n); k < nodes.end(n); ++k) around[n].include(&x[k].x);
+
+  std::vector<FoldWay> before = std::move(ways);
+  ways.clear();
+  auto known = before.begin();
+  for (std::size_t p = 0; p < table.pairs.size(); ++p) {
+    const FoldPair &pair = table.pairs[p];
+    const int one = number.at(pair.first), other = number.at(pair.second);
+    if (one != other && !meet(around[one], around[other], pair.law.reach + skin)) continue;
+    known = std::find_if(known, before.end(), [p](const FoldWay &way) { return way.pair >= p; });
+    if (known == before.end() || known->pair > p) {
+      append_ways(p, one, other);
+      continue;
+    }
+    for (; known != before.end() && known->pair == p; ++known) ways.push_back(std::move(*known));
+  }
+}
+
+void FixMdanimFolds::append_ways(std::size_t p, int one, int other)
+{
+  const FoldPair &pair = table.pairs[p];
+  const FoldObject &a = table.objects.at(pair.first), &b = table.objects.at(pair.second);
+  ways.push_back({p, one, other, FoldContact(a, surfaces[one], b, surfaces[other], pair.law, pair.apart)});
+  if (one != other && (a.segments.empty() || b.segments.empty()))
+    ways.push_back({p, other, one, FoldContact(b, surfaces[other], a, surfaces[one], pair.law, 0.0)});
 }
 
 // Velocities are those of half a step before: what has moved the particles here. Nothing moves at the setup of a run.
@@ -145,8 +176,7 @@ void FixMdanimFolds::open_torn()
 {
   for (; known_tears < tears->gone().size(); ++known_tears) {
     const GoneLink &link = tears->gone()[known_tears];
-    for (int n = 0; n < nodes.count(); ++n)
-      if (nodes.molecule(n) == link.object) surfaces[n].open(link.low, link.high);
+    if (const auto found = number.find(link.object); found != number.end()) surfaces[found->second].open(link.low, link.high);
   }
 }
 

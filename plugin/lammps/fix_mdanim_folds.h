@@ -38,8 +38,9 @@ class FixMdanimFolds : public mdanim::FixBase, public mdanim::Stateful {
   void unpack(const mdanim::StateRecords &) override;
 
  private:
-  // One way of a pair, by numbers of objects.
+  // One way of a pair, by its place in the table, and by numbers of objects.
   struct FoldWay {
+    std::size_t pair;
     int first, second;
     mdanim::FoldContact contact;
   };
@@ -53,20 +54,24 @@ class FixMdanimFolds : public mdanim::FixBase, public mdanim::Stateful {
     Lost lost;
   };
 
-  void make_ways();
+  void make_surfaces();
   bool may_touch() const;
   void locate() { nodes.locate(name(), groupbit); }
   void find_pushes(bool moves);
   double push_all();
   void open_torn();
   void list_again();
+  void find_ways();
+  void append_ways(std::size_t p, int one, int other);
   void push() const;
   void count();    // the losses of half a step
 
   mdanim::FoldTable table;
   mdanim::ObjectNodes nodes;
   std::vector<mdanim::FoldSurface> surfaces;    // of nodes' objects
-  std::vector<FoldWay> ways;
+  std::map<int, int> number;                    // of nodes' objects, by molecule ID
+  bool untorn_touch = false;                    // some objects touch before anything is torn
+  std::vector<FoldWay> ways;                    // of pairs near each other, in the order of the table
   double skin = 0.0;
   const FixMdanimTear *tears = nullptr;                              // null where nothing tears
   std::size_t known_tears = 0;                                       // of its links

@@ -41,8 +41,7 @@ def test_sheets_that_meet_flat_pass_from_the_speed_of_the_law_on(case):
     """On a held one: none passes below, nine of ten above; borders, which have half of the weight or none of it below them, come
     a little later or sooner. A particle alone has 1/sqrt(2) of that where both are as fine, less for m/w at borders."""
     ready, _ = blow(1.0, **case)
-    (pair,) = pairs(ready.context)
-    alone, flat = passing_speeds(ready.context, pair)
+    (alone,), (flat,) = passing_speeds(ready.context, pairs(ready.context))
     assert alone == pytest.approx(flat / 2.0**0.5, rel=0.12)
     assert passed(case, 0.9 * alone) == 0.0
     assert passed(case, 1.15 * flat) > 0.8
@@ -52,8 +51,7 @@ def test_sheets_that_meet_flat_pass_from_the_speed_of_the_law_on(case):
 def test_check_tells_of_it(part, severity):
     """Two free sheets that meet at parts of the speed of a particle alone; flat they pass from twice that on."""
     ready, _ = blow(1.0, lower="")
-    (pair,) = pairs(ready.context)
-    alone, flat = passing_speeds(ready.context, pair)
+    (alone,), (flat,) = passing_speeds(ready.context, pairs(ready.context))
     assert flat == pytest.approx(2.0 * alone, rel=0.12)
     ready, _ = blow(part * alone, lower="")
     found = [n for n in ready.certificate.notes if "lower and upper may meet" in n.message]

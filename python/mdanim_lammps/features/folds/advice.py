@@ -3,8 +3,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from math import sqrt
 
 import numpy as np
 
@@ -25,18 +25,20 @@ DEPTH = 0.5 * (1.0 - 0.5 * ONSET) ** 2 + ONSET**2 / 24.0
 """g(R)/R^2, the energy of a contact at the distance 0, over k R^2."""
 
 
-def passing_speeds(context: Context, pair: LayerPair) -> tuple[float, float]:
-    """Relative speeds from which on parts of two layers pass through each other [m/s], if neither yields before: a particle that
-    comes alone, m v^2/2 = w k g(R), the least of both; and all of two sheets that meet flat, where the mass per area is
-    mu = a b/(a + b) and both push: mu v^2/2 = k g(R) (W_A + W_B), with the sum W of weights per area. Else both are equal."""
-    ends = [_loads(context)[m] for m in (pair.first, pair.second)]
-    energy = 2.0 * DEPTH * pair.stiffness
-    alone = pair.reach * sqrt(energy / max(load.heaviest for load in ends))
-    if not all(load.is_sheet for load in ends):
-        return alone, alone
-    one, other = ends
-    weights, masses = one.weight + other.weight, one.per_mass + other.per_mass
-    return alone, max(alone, pair.reach * sqrt(energy * weights * masses))
+def passing_speeds(context: Context, these: Sequence[LayerPair]) -> tuple[np.ndarray, np.ndarray]:
+    """Relative speeds from which on parts of two layers pass through each other [m/s], if neither yields before, each of shape
+    (P,): a particle that comes alone, m v^2/2 = w k g(R), the least of both; and all of two sheets that meet flat, where
+    the mass per area is mu = a b/(a + b) and both push: mu v^2/2 = k g(R) (W_A + W_B), with the sum W of weights per area. Else
+    both are equal."""
+    of = _loads(context)
+    one, other = ([of[m] for m in ends] for ends in zip(*((pair.first, pair.second) for pair in these)))
+    reach = np.array([pair.reach for pair in these])
+    energy = 2.0 * DEPTH * np.array([pair.stiffness for pair in these])
+    alone = reach * np.sqrt(energy / [max(a.heaviest, b.heaviest) for a, b in zip(one, other)])
+    weights = np.array([a.weight + b.weight for a, b in zip(one, other)])
+    per_mass = np.array([a.per_mass + b.per_mass for a, b in zip(one, other)])
+    sheets = np.array([a.is_sheet and b.is_sheet for a, b in zip(one, other)])
+    return alone, np.where(sheets, np.maximum(alone, reach * np.sqrt(energy * weights * per_mass)), alone)
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,11 +75,13 @@ def notes(envelope: Envelope) -> list[Problem]:
     single particles do, or if it takes a tear first."""
     if not any(effect.name == EFFECT for effect in envelope.on):
         return []
-    context, speed = envelope.context, _Meeting(envelope)
-    found = [(speed.of(pair), *passing_speeds(context, pair), pair) for pair in pairs(context)]
-    if not found:
+    context, these = envelope.context, pairs(envelope.context)
+    if not these:
         return []
-    fastest, alone, flat, pair = max(found, key=lambda row: row[0] / row[1])
+    meeting, passing = _Meeting(envelope), passing_speeds(context, these)
+    speeds = meeting.of(these)
+    n = int(np.argmax(speeds / passing[0]))
+    pair, (fastest, alone, flat) = these[n], (float(row[n]) for row in (speeds, *passing))
     if fastest <= alone:
         return []
     one, other = (envelope.system.names[m] for m in (pair.first, pair.second))
@@ -95,7 +99,7 @@ def notes(envelope: Envelope) -> list[Problem]:
     if (stiff := 1.02 * envelope.scene.control.contact_stiffness * over**2) <= CONTACT_STIFFNESS.most:
         ways.append(f"contact-stiffness {number(stiff)} in control")
     severity = "warning" if fastest > flat and not any(one.element.shape[1] == 8 for one in both_layers) else "note"
-    comes = max(pair.first, pair.second, key=lambda m: (speed.speed[m], -m))
+    comes = max(pair.first, pair.second, key=lambda m: (meeting.speed[m], -m))
     return [Problem(envelope.place(comes, "velocity", "position"), cause, ", or ".join(ways), severity=severity)]
 
 
@@ -111,11 +115,13 @@ class _Meeting:
         self.free = reach.free
         self.driven = reach.acting.driven_at + reach.acting.given + reach.acting.thrown_at
 
-    def of(self, pair: LayerPair) -> float:
-        """[m/s]; parts of one object meet where some of it has been stopped, and the rest falls by its own height, too."""
-        i, j = pair.first, pair.second
-        if i == j:
-            return sqrt(float(self.speed[i]) ** 2 + 2.0 * self.g * float(self.tall[i]))
+    def of(self, these: Sequence[LayerPair]) -> np.ndarray:
+        """[m/s], shape (P,); parts of one object meet where some of it has been stopped, and the rest falls by its
+        own height, too."""
+        i, j = np.array([(pair.first, pair.second) for pair in these]).T
         apart = np.maximum(0.0, np.maximum(self.high[i] - self.low[j], self.high[j] - self.low[i]))
-        start = float(np.linalg.norm(apart)) + float(self.driven[i] + self.driven[j])
-        return sqrt(start**2 + 2.0 * self.g * max(float(self.fall[k]) if self.free[k] else 0.0 for k in (i, j)))
+        start = np.linalg.norm(apart, axis=1) + self.driven[i] + self.driven[j]
+        fall = np.where(self.free, self.fall, 0.0)
+        itself = i == j
+        start = np.where(itself, self.speed[i], start)
+        return np.sqrt(start**2 + 2.0 * self.g * np.where(itself, self.tall[i], np.maximum(fall[i], fall[j])))

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from heapq import nlargest
+
 import numpy as np
 
 from ...effects.context import Verdict
@@ -14,7 +16,9 @@ TABLE = "folds"
 ENERGY, HEAT, DAMPED = "contact", "friction_heat", "contact_damping_loss"
 """Columns of the ledger."""
 SIDES = 2.0
-"""Layers that a particle may touch at once."""
+"""Layers of one object that a particle may touch at once."""
+AT_ONCE = 2
+"""Objects that a particle may touch at once: one over it, and one below."""
 
 
 class LayersTouch(Effect):
@@ -62,15 +66,20 @@ class LayersTouch(Effect):
 
     def rate(self, context):
         """2 SIDES k (1 + s) w/m of a particle: the point itself, with nodes of weights 2 in all, and the s points that it bears
-        of the other layer, which are the more the finer that is."""
-        system, found = context.system, np.zeros(context.system.particles)
+        of the other layer, which are the more the finer that is. Of many objects that it may meet it has at most `AT_ONCE` on
+        its two sides, the hardest ones at worst."""
+        system, of = context.system, layers(context)
+        hardness: dict[int, list[float]] = {}
         for pair in pairs(context):
             ends = (pair.first, pair.second)
             for own, other in {ends, ends[::-1]}:
-                one, far = layers(context)[own], layers(context)[other]
+                one, far = of[own], of[other]
                 borne = max(1.0, (one.spacing / far.spacing) ** (1 if one.element.shape[1] == 2 else 2))
-                rows = system.first[own] + one.particle
-                found[rows] += 2.0 * SIDES * pair.stiffness * (1.0 + borne) * one.weight / system.mass[rows]
+                hardness.setdefault(own, []).append(pair.stiffness * (1.0 + borne))
+        found = np.zeros(system.particles)
+        for own, all_of in hardness.items():
+            rows = system.first[own] + of[own].particle
+            found[rows] = 2.0 * SIDES * sum(nlargest(AT_ONCE, all_of)) * of[own].weight / system.mass[rows]
         return found
 
     def energy(self, readings):

@@ -188,11 +188,11 @@ def _numbers(context: Context) -> list[tuple[int, int]]:
 
 
 def _pairs(context: Context) -> Iterator[LayerPair]:
-    scene, names = context.scene, context.system.names
+    scene, names, of = context.scene, context.system.names, layers(context)
     mu_of = dict(zip((s.name for s in scene.solids), frictions(scene)))
     told = {(i, j): rule for i, j, *rule in pair_rules(scene, names)}
     for a, b in _numbers(context):
-        one, other = layers(context)[a], layers(context)[b]
+        one, other = of[a], of[b]
         h = max(one.spacing, other.spacing)
         itself = a == b and folds(context.solids[a])
         thick = one.half + other.half if a != b or itself else 0.0  # a tear parts what is nearer than a thickness may be
