@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from air_cases import CASES, DOWN, made, residual
 from mdanim_lammps.engine.instance import Instance
+from mdanim_lammps.engine.sub_plan import SubPlans
 from mdanim_lammps.features.air.effect import _skins
 
 SLOW = {
@@ -117,3 +118,12 @@ def test_friction_does_not_depend_on_how_long_the_wind_may_blow(prepared):
     np.testing.assert_allclose(found[1], found[0], atol=0.02)
     told = {m.name: m for m in ready.certificate.margins}["closing speed"]
     assert told.severity == "warning" and "by the wind" in told.text and "wind at T" in told.hint and told.span.line == 3
+
+
+def test_parts_of_a_scene_have_the_skins_of_the_whole(prepared):
+    """Equal objects share one, whose last digits depend on where the first of them stands, also in an executor without that."""
+    box = "object box[{n}] {{ shape box (8, 8, 8) cm position ({x}, 0.17, {x}/3) m density 300 elasticity rigid }}\n"
+    text = "".join(box.format(n=n, x=x) for n, x in enumerate((0.1, 0.7, 1.9)))
+    ready = prepared(text + "air { wind (4, 0, 0) m/s }\ncontrol { time 0.1 s }\n")
+    one, whole = SubPlans(ready.plan).part([2], False).tables["air"], ready.plan.tables["air"]
+    assert "like 1" in whole and one == whole[: whole.index("object 2 like 1")]

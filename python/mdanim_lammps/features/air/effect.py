@@ -195,17 +195,24 @@ def _pushed(context: Context) -> list[int]:
     return np.flatnonzero(~context.system.still).tolist()
 
 
-@once_for(lambda context: context.system)
 def _skins(context: Context) -> dict[int, AirSkin]:
-    """Surfaces of the solids that air pushes at, by their numbers in the context; equal objects share one."""
+    """Surfaces of the solids that air pushes at, by their numbers in the context."""
+    found = _all_skins(context)
+    return {m: found[context.system.names[m]] for m in _pushed(context)}
+
+
+@once_for(lambda context: context.reach)
+def _all_skins(context: Context) -> dict[str, AirSkin]:
+    """The same of a whole scene, by names. Equal objects share that of the first one of all: its last digits depend on where this
+    stands, and each part of the scene has to have the same ones."""
     made: dict[tuple, AirSkin] = {}
     found = {}
-    for m in _pushed(context):
-        model, solid = context.system_models[m], context.solids[m]
+    for m in np.flatnonzero(~context.reach.system.still).tolist():
+        model, solid = context.models[m], context.scene.solids[m]
         key = (id(model.surface), solid.shape, solid.tear_strain)
         if key not in made:
             made[key] = skin_of(model, solid)
-        found[m] = made[key]
+        found[solid.name] = made[key]
     return found
 
 
