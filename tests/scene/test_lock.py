@@ -224,6 +224,15 @@ def test_rotations_are_rotations(rows):
     assert departure(rows) < 1e-14
 
 
+def test_joints_without_settings_survive():
+    """Their place follows from what they join, so that nothing need be written in them."""
+    box = "object {} {{ shape box (10, 10, 10) cm  position ({}, 0, 0) cm  density 500  elasticity rigid }}\n"
+    text = box.format("a", 0) + box.format("b", 10) + "joint weld a b {}\njoint spring a b {}\ncontrol { time 1 s }\n"
+    scene = parse_scene(text, "scene")
+    assert len(scene.joints) == 2
+    assert parse_scene(lock_text(scene), "scene", strict=True) == scene
+
+
 def test_names_that_are_words_of_the_language_survive():
     """An object may be called mass, box, or repeat."""
     text = "".join(

@@ -67,8 +67,8 @@ def _block(block: Block, record: Any) -> list[str]:
         settings = (
             [] if record is None else [(word, text) for word, k in KEYWORDS[block.name].items() for text in k.lines(record)]
         )
-    if not settings:
+    if not settings and not block.many:
         return []
     head = " ".join((block.name, *([record.kind] if block.kinds else []), *(getattr(record, name) for name in block.names)))
-    width = max(len(word) for word, _ in settings)
+    width = max((len(word) for word, _ in settings), default=0)
     return ["", head + " {", *(f"  {word:<{width}} {text}" for word, text in settings), "}"]
