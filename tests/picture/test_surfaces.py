@@ -7,7 +7,9 @@ import numpy as np
 import pytest
 from mdanim_lammps.picture.surfaces import shaded_mesh
 from mdanim_lammps.results.trajectory_metadata import metadata_of
+from mdanim_lammps.run.prepare import prepare
 from mdanim_lammps.scene import scene as records
+from mdanim_lammps.scene.parse import parse_scene
 from picture_samples import ball, box, slab_scene, solid
 
 
@@ -106,3 +108,22 @@ def test_flat_triangles_give_no_nan(collapsed):
     """A body pressed to nothing has no normals, and no NaN either."""
     mesh, position = prepared(box("box", (1, 1, 1), (2, 2, 2), (0, 0, 0)))
     assert np.isfinite(mesh.normals(mesh.vertices(position * collapsed), position * collapsed)).all()
+
+
+def test_a_layer_is_drawn_nearer_to_the_eye():
+    """Vertices of a sheet move along their lines of sight by half of its spacing, h/2, so that the edge of a box between its
+    particles does not show through; a solid stays."""
+    scene = parse_scene(
+        "object cloth { shape sheet (1, 0.8) m thickness 1 mm  position (0, 0, 1) m  density 300  elasticity 1 MPa"
+        "  resolution 4 cm }\n"
+        "object box { shape box (1, 1, 1) m  position (0, 0, 0) m  density 300  elasticity 1 MPa }\ncontrol { time 1 s }\n"
+    )
+    ready = prepare(scene)
+    position, eye = ready.system.position, np.array([1.0, -2.0, 3.0])
+    mesh = shaded_mesh(metadata_of(scene, ready.context.system_models), position)
+    vertices = mesh.vertices(position)
+    way = mesh.seen_from(eye, vertices) - vertices
+    cloth = mesh.object_of_vertex == 0
+    assert not way[~cloth].any()
+    np.testing.assert_allclose(np.linalg.norm(way[cloth], axis=1), 0.5 * ready.system.spacing[0], rtol=0.1)
+    assert np.abs(np.cross(way[cloth], eye - vertices[cloth])).max() < 1e-12

@@ -123,7 +123,8 @@ class Painter:
         shown = self._mesh.normals(vertices, position, gone)
         if self._tones:
             self._surface.paint(np.concatenate([self._toned(index), self._surface_colors[len(vertices) :]]))
-        shown_points = np.concatenate([vertices, points])
+        view = self.view(time)
+        shown_points = np.concatenate([self._mesh.seen_from(view.eye, vertices), points])
         self._surface.move(shown_points, np.concatenate([shown, normals]))
         if self._tank:
             self._tank.show(index, position, vertices, self._mesh.triangle)
@@ -132,7 +133,6 @@ class Painter:
         self._marks.show(position)
         # Before the picture: only one window can be drawn into at a time.
         self._light.cast(shown_points)
-        view = self.view(time)
         if self._tank:
             self._tank.part_skin(self._light, view.eye, bool(self._floor and self._floor.covers(view, self._pixels)))
         for actor in self._actors:

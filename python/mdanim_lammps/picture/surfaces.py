@@ -17,6 +17,9 @@ above the facets of a round shape."""
 
 ROUNDNESS = 0.15
 """How far a round outline may be cut short, in pixels."""
+NEARER = 0.5
+"""How much nearer to the eye a layer is drawn, over its spacing, along lines of sight: edges of boxes under it come up to 0.35 of
+that through it, between its particles."""
 WORTH = 1.8
 """A mesh is made coarser if its edges may grow by this much at least; with less the triangles would only become uneven."""
 
@@ -41,11 +44,21 @@ class ShadedMesh:
     """Weights of stored particles in vertices of the skin, shape (S, N)."""
     tangent: tuple[Weights, ...]
     """Weights of these in two tangents at each of the coarse ones, shape (C, S) each."""
+    lift: np.ndarray
+    """How much nearer to the eye each vertex is drawn [m], shape (V,): those of layers."""
 
     def vertices(self, position: np.ndarray, gone: np.ndarray | None = None) -> np.ndarray:
         """Vertex positions [m], shape (V, 3), for stored particle positions [m], shape (N, 3), and the ends of springs that are
         gone (Trajectory.gone)."""
         return self.carry.places(position, gone)
+
+    def seen_from(self, eye: np.ndarray, vertices: np.ndarray) -> np.ndarray:
+        """Vertices [m], shape (V, 3), those of layers so much nearer to the eye [m], shape (3,)."""
+        if not self.lift.any():
+            return vertices
+        way = eye - vertices
+        far = np.maximum(np.linalg.norm(way, axis=1), np.finfo(float).tiny)
+        return vertices + np.minimum(self.lift / far, 0.5)[:, None] * way
 
     def normals(self, vertices: np.ndarray, position: np.ndarray, gone: np.ndarray | None = None) -> np.ndarray:
         """Outward unit normals, shape (V, 3), of ``vertices`` that were carried by ``position``.
@@ -90,7 +103,25 @@ def shaded_mesh(metadata: TrajectoryMetadata, rest: np.ndarray, pixel: np.ndarra
     gather = Weights.of(corner.ravel(), triangles, np.ones(corner.size))
     coarse = np.flatnonzero(np.isin(skin.object_of_vertex[old], fewer))
     tangent = _tangents(vertices, skin.triangle, old[coarse])
-    return ShadedMesh(skin.carry[old], corner, gather, skin.object_of_vertex[old], old, coarse, skin.carry, tangent)
+    of = skin.object_of_vertex[old]
+    lift = NEARER * _spacings_of_layers(metadata, vertices)[of]
+    return ShadedMesh(skin.carry[old], corner, gather, of, old, coarse, skin.carry, tangent, lift)
+
+
+def _spacings_of_layers(metadata: TrajectoryMetadata, vertices: np.ndarray) -> np.ndarray:
+    """Distance of particles of each object that is drawn from both sides, so that its surface encloses nothing [m], shape (M,); 0
+    of all others."""
+    skin = metadata.skin
+    own, count = skin.object_of_triangle, len(metadata.names)
+    middle = np.stack([np.bincount(skin.object_of_vertex, vertices[:, k], count) for k in range(3)], axis=1)
+    middle = middle / np.maximum(np.bincount(skin.object_of_vertex, minlength=count), 1)[:, None]
+    twice = _area_vectors(vertices, skin.triangle)
+    arm = vertices[skin.triangle[:, 0]] - middle[own]
+    volume = np.bincount(own, np.einsum("td,td->t", arm, twice) / 6.0, count)
+    area = 0.25 * np.bincount(own, np.linalg.norm(twice, axis=1), count)  # of one side
+    layer = (area > 0.0) & (np.abs(volume) < 1e-9 * area**1.5)
+    each = 2.0 / np.sqrt(3.0) * area / np.maximum(np.diff(metadata.first), 1)  # of two triangles with equal sides
+    return np.where(layer, np.sqrt(each), 0.0)
 
 
 def _tangents(vertices: np.ndarray, triangle: np.ndarray, at: np.ndarray) -> tuple[Weights, ...]:
