@@ -44,7 +44,7 @@ def bends() -> tuple[list[str], list[list]]:
 
 
 def cost() -> tuple[list[str], list[list]]:
-    """Processor time of a step per spring, of a sheet and of a solid of about as many springs, both damped: the least of many, in turns."""
+    """Processor time of a step per spring of a sheet and a solid of about as many springs, both damped: the least of many."""
     texts = {
         "sheet": sheet_cases.sheet("(1, 1)", "2 mm", "elasticity 1 MPa  damping 0.1  resolution 1.5 cm"),
         "solid": "object block { shape box (1, 0.5, 0.5) m  position (0, 0, 0) m  density 1000 kg/m^3  elasticity 1 MPa"
