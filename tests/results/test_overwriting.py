@@ -9,6 +9,7 @@ import time
 import pytest
 from command_line import GOOD, call
 from mdanim_lammps import Scene
+from mdanim_lammps.cli import scene_commands
 from mdanim_lammps.errors import OutputError, UsageError
 from mdanim_lammps.export.write import export
 from mdanim_lammps.results.files import claimed, delete_results, scratch
@@ -195,3 +196,14 @@ def test_a_killed_study_leaves_no_run(tmp_path):
     assert len(left := list(place.glob(".*-*"))) == 1
     with scratch(place, "c4"):
         assert not left[0].exists()
+
+
+def test_a_folder_in_the_way_is_told_before_the_work(tmp_path, monkeypatch):
+    """Preparing a large scene takes a minute."""
+    path = tmp_path / "good.txt"
+    path.write_text(GOOD)
+    assert call("build", path).returncode == 0
+    monkeypatch.setattr(scene_commands, "prepare", lambda *a, **more: pytest.fail("the scene was prepared"))
+    for command in ((), ("build",)):
+        ended = call(*command, path)
+        assert ended.returncode == 7 and "overwrite it with --force" in ended.stderr

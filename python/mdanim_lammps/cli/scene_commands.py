@@ -77,7 +77,7 @@ def run(
     """
     from ..cost.speedup_forecast import forecast_speedup
     from ..report import speedup_lines
-    from ..run.folder import open_run, output_folder
+    from ..run.folder import check_room, open_run, output_folder
 
     executing.check()
     record = reading.load(scene)
@@ -88,6 +88,7 @@ def run(
         record = replace(record, steerable=True)
     check_alone(record, executing.executors, executing.control)
     out = output_folder(record, output.out)
+    check_room(out, force=output.force)
     ready = prepare(record, allow_unstable=allow_unstable)
     announce(ready, quiet, verbose, executing)
     if executing.executors > 1 and not quiet:
@@ -223,10 +224,11 @@ def build(
     verbose: Verbose = False,
 ) -> None:
     """Write data.NAME and in.NAME only; 'lmp -in in.NAME' then runs without Python."""
-    from ..run.folder import open_run, output_folder
+    from ..run.folder import check_room, open_run, output_folder
 
     record = reading.load(scene)
     out = output_folder(record, output.out)
+    check_room(out, force=output.force)
     ready = prepare(record, allow_unstable=allow_unstable)
     announce(ready, quiet, verbose)
     with open_run(ready, out, force=output.force, draws=None) as folder:

@@ -113,16 +113,16 @@ def open_folder(folder: Path, *, force: bool, keep: Sequence[str] = ()) -> Itera
     Raises OutputError when something is in the way and ``force`` is not given, and when another run writes into the folder.
     """
     with disk_errors(folder):
-        _check_folder(folder, force, keep)  # refused before anything is made in a folder that is not ours
+        check_free(folder, force=force, keep=keep)  # refused before anything is made in a folder that is not ours
         folder.mkdir(parents=True, exist_ok=True)
     with claimed(folder):
         with disk_errors(folder):
-            if _check_folder(folder, force, keep):
+            if check_free(folder, force=force, keep=keep):
                 delete_results(folder)
         yield
 
 
-def _check_folder(folder: Path, force: bool, keep: Sequence[str]) -> bool:
+def check_free(folder: Path, *, force: bool, keep: Sequence[str] = ()) -> bool:
     """Whether the folder holds anything. Raises OutputError where that stands in the way, and OSError."""
     if not folder.exists():
         return False
