@@ -5,6 +5,7 @@ import json
 import re
 
 import pytest
+from mdanim_lammps.features.liquid import advice
 from mdanim_lammps.features.liquid.advice import SHORTFALLS
 from paths import REPOSITORY
 
@@ -67,3 +68,27 @@ def test_notes_tell_what_the_page_has_measured():
     offs = {round(100 * abs((r["found"] - r["published"]) / (r["scale"] or r["published"]))) for rows in kept for r in rows}
     told = {int(n) for one in SHORTFALLS for n in re.findall(r"(\d+) %", one.text)}
     assert told == {68, 38, 19, 41} and told <= offs
+
+
+@pytest.mark.parametrize(
+    ("words", "resolution"),
+    [
+        ("elasticity rigid", "resolution 3 cm in control for about 830"),
+        ("elasticity 1 MPa", "resolution 2 cm in control for about 2 800"),
+    ],
+)
+def test_what_makes_very_many_cells_is_told(prepared, monkeypatch, words, resolution):
+    """With one that will do: a rigid plate may be thinner than a cell, a soft one not."""
+    monkeypatch.setattr(advice, "MANY", 10_000)
+    monkeypatch.setattr(advice, "FEW", 1000)
+    text = (
+        "gravity (0, 0, -9.81) m/s^2\n"
+        "liquid pool { basin from (0, 0, 0) cm to (30, 30, 25) cm  density 1000  level 10 cm }\n"
+        f"object plate {{ shape box (20, 16, 2) cm  position (15, 15, 11) cm  density 600  {words} }}\n"
+        "control { time 1 s WAY_OUT }\n"
+    )
+    found = [note for note in prepared(text.replace("WAY_OUT", "")).certificate.notes if "cells of" in note.message]
+    assert [note.message for note in found] == ["plate is 2 cm thin, and so the liquid has 180 000 cells of 5 mm"]
+    assert found[0].line == 3 and resolution in found[0].hint
+    way_out = re.search(r"resolution \d+ cm", found[0].hint).group()
+    assert not [note for note in prepared(text.replace("WAY_OUT", way_out)).certificate.notes if "cells of" in note.message]

@@ -9,11 +9,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ...bodies import kind_of
 from ...effects.envelope import Envelope
 from ...errors import Problem, Span
 from ...model import shapes
 from ...model.model import Model
-from ...scene.formatting import number, say
+from ...scene.formatting import number, say, whole
 from ...scene.scene import Solid
 from ..contact.pairs import frictions
 from ..drives.words import DriveOscillation
@@ -35,6 +36,8 @@ SLENDER = 3.0
 """Length along its way over its width from which a body cuts through the liquid."""
 HIGH = 0.2
 """Height of waves over the depth from which crests at walls are too high."""
+MANY, FEW = 1_000_000, 100_000
+"""Cells from which on it is told why there are so many, and how many are enough to see what happens."""
 Found = tuple[Span | None, str]
 """Place of what meets a shortfall, and how a sentence about it begins."""
 
@@ -52,14 +55,31 @@ class Shortfall:
 
 
 def notes(envelope: Envelope) -> list[Problem]:
-    """One for each shortfall that the scene meets."""
-    if envelope.scene.liquid is None or envelope.context.grid is None or not is_wavy(envelope.scene):
+    """One of cells that are very many, and one for each shortfall that the scene meets."""
+    if envelope.scene.liquid is None or envelope.context.grid is None:
         return []
-    return [
-        Problem(found[0], f"{found[1]}: {one.text} (docs/{one.page})", one.way_out, severity="note")
-        for one in SHORTFALLS
-        if (found := one.met(envelope))
+    met = [(one, found) for one in SHORTFALLS if (found := one.met(envelope))] if is_wavy(envelope.scene) else []
+    return _many_cells(envelope) + [
+        Problem(found[0], f"{found[1]}: {one.text} (docs/{one.page})", one.way_out, severity="note") for one, found in met
     ]
+
+
+def _many_cells(envelope: Envelope) -> list[Problem]:
+    """What makes the cells so fine, where nothing that the scene says does."""
+    cells, spacing = int(np.prod(envelope.context.grid.shape)), envelope.context.spacing
+    solid = next((solid for solid in envelope.scene.solids if solid.name == spacing.set_by), None)
+    if cells <= MANY or solid is None:
+        return []
+    coarse = float(f"{spacing.h * (cells / FEW) ** (1 / 3):.1g}")
+    thin = shapes.thickness(solid.shape)
+    if not kind_of(solid).thinner(envelope.scene, solid):
+        coarse = min(coarse, thin)
+    if coarse < 2.0 * spacing.h:
+        return []
+    cause = f"{solid.name} is {say(thin, 'm')} thin, and so the liquid has {whole(cells)} cells of {say(spacing.h, 'm')}"
+    few = int(float(f"{cells * (spacing.h / coarse) ** 3:.2g}"))
+    way_out = f"write resolution {say(coarse, 'm')} in control for about {whole(few)}"
+    return [Problem(solid.spans.get("shape"), cause, way_out, severity="note")]
 
 
 def _held_cells(envelope: Envelope) -> np.ndarray:
