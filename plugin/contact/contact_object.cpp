@@ -265,6 +265,8 @@ OuterCells::OuterCells(const ContactObject &owner, const ContactArrays &arrays)
     : spacing(owner.body->spacing()), grid([](int) { return static_cast<const double *>(nullptr); }, 0, 1.0)
 {
   const ContactBody &body = *owner.body;
+  std::vector<OuterCell> found;
+  std::vector<Vec3> middle;
   for (int k = 0; k < body.count(2); ++k)
     for (int j = 0; j < body.count(1); ++j)
       for (int i = 0; i < body.count(0); ++i) {
@@ -272,38 +274,43 @@ OuterCells::OuterCells(const ContactObject &owner, const ContactArrays &arrays)
         const std::vector<int> &slots = owner.host_slots();
         const int low = slots[body.place(i, j, k)], high = slots[body.place(i + 1, j + 1, k + 1)];
         if (low < 0 || high < 0) continue;
-        cells.push_back({{i, j, k}, low, high});
+        found.push_back({{i, j, k}, low, high, static_cast<int>(found.size())});
         middle.push_back(0.5 * (arrays.place()[low].value + arrays.place()[high].value));
       }
-  grid = Grid([this](int n) { return &middle[n].x; }, static_cast<int>(middle.size()), SEARCHED * body.spacing());
+  grid = Grid([&](int n) { return &middle[n].x; }, static_cast<int>(middle.size()), SEARCHED * body.spacing());
+  cells.reserve(found.size());
+  for (const int n : grid.order()) cells.push_back(found[n]);
 }
 
-// Uses the present places of cells, so that the answer does not depend on when lists were made.
+// Uses the present places of cells, so that the answer does not depend on when lists were made. Loops have no branch that the
+// processor would have to guess.
 OuterCells::NearestCell OuterCells::nearest(const Vec3 &x, const PaddedVec3 *place) const
 {
   constexpr double KNOWN = 3.0;    // spacings to go to a cell that is not searched, at least, since this was made
-  struct Seen {
-    int number;
-    double square;
+  thread_local std::vector<double> squares;
+  squares.resize(cells.size());
+  const auto each = [&](const auto &visit) __attribute__((always_inline)) {
+    grid.ranges(&x.x, [&](int from, int to) {
+      for (int n = from; n < to; ++n) visit(cells[n], squares[n]);
+    });
   };
-  thread_local std::vector<Seen> seen;
-  seen.clear();
-  int best = -1;
   double least = std::numeric_limits<double>::infinity(), others = KNOWN * spacing * KNOWN * spacing;
-  grid.around(&x.x, [&](int slot) {
-    const int n = grid.order()[slot];
-    const Vec3 d = 0.5 * (place[cells[n].low].value + place[cells[n].high].value) - x;
-    const double square = dot(d, d);
-    if (square < least || (square == least && n < best)) least = square, best = n;
-    if (square < others) seen.push_back({n, square});
+  each([&](const OuterCell &one, double &square) {
+    const Vec3 d = 0.5 * (place[one.low].value + place[one.high].value) - x;
+    square = dot(d, d);
+    least = square < least ? square : least;
   });
-  if (best < 0) return {};
-  const std::array<int, 3> &cell = cells[best].at;
-  for (const Seen &one : seen) {
-    const std::array<int, 3> &at = cells[one.number].at;
-    if (one.square < others && (std::abs(at[0] - cell[0]) > 1 || std::abs(at[1] - cell[1]) > 1 || std::abs(at[2] - cell[2]) > 1))
-      others = one.square;
-  }
+  const OuterCell *best = nullptr;
+  each([&](const OuterCell &one, double square) {
+    if (square == least && (!best || one.number < best->number)) best = &one;
+  });
+  if (!best || !(least < std::numeric_limits<double>::infinity())) return {};
+  const std::array<int, 3> cell = best->at;
+  each([&](const OuterCell &one, double square) {
+    const auto beside = [&](int d) { return static_cast<unsigned>(one.at[d] - cell[d] + 1) <= 2; };
+    const bool counts = !(beside(0) & beside(1) & beside(2)) & (square < others);
+    others = counts ? square : others;
+  });
   return {cell, std::sqrt(least), std::sqrt(others)};
 }
 

@@ -289,16 +289,16 @@ class OuterCells {
   OuterCells(const ContactObject &owner, const ContactArrays &arrays);
   // With particles at `place`.
   NearestCell nearest(const Vec3 &x, const PaddedVec3 *place) const;
-  std::size_t bytes() const { return cells.capacity() * (sizeof cells[0] + sizeof middle[0]); }
+  std::size_t bytes() const { return cells.capacity() * sizeof cells[0]; }
   static constexpr double SEARCHED = 5.0;
 
  private:
   struct OuterCell {
     std::array<int, 3> at;
     int low, high;    // slots of two opposite corners
+    int number;       // of two that are equally near the lower one counts
   };
-  std::vector<OuterCell> cells;
-  std::vector<Vec3> middle;
+  std::vector<OuterCell> cells;    // in the order of the grid
   double spacing;
   Grid grid;
 };
