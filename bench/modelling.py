@@ -7,6 +7,7 @@ python bench/modelling.py masses     moments of inertia, and what their fit cost
 python bench/modelling.py shapes     how well cells fill round bodies
 python bench/modelling.py spacings   impulses where two spacings meet
 python bench/modelling.py forecast   processor seconds and memory that are told before modelling, and those it took
+python bench/modelling.py goals      the same of meshes of 30 000 particles (3 s at most) and of 1.8 million (15 s)
 """
 
 from __future__ import annotations
@@ -125,14 +126,23 @@ def told(name: str, size: float) -> None:
     )
 
 
-def forecast() -> None:
+def print_told(cases) -> None:
+    """A row for each of some names and sizes."""
     print("| body | particles | told [s] | took [s] | told over took | told [GB] | peak without LAMMPS [GB] |")
     print("|---|---|---|---|---|---|---|", flush=True)
-    for size in SIZES:
-        for name in TOLD:
-            process = multiprocessing.get_context("spawn").Process(target=told, args=(name, size))
-            process.start()
-            process.join()
+    for case in cases:
+        process = multiprocessing.get_context("spawn").Process(target=told, args=case)
+        process.start()
+        process.join()
+
+
+def forecast() -> None:
+    print_told((name, size) for size in SIZES for name in TOLD)
+
+
+def goals() -> None:
+    meshes = [name for name in TOLD if "mesh" in name][1:]
+    print_told([*((name, 3e4) for name in meshes[::-1]), ("cuboid", 1.8e6), ("ball", 1.8e6)])
 
 
 def physics() -> None:
@@ -225,6 +235,7 @@ if __name__ == "__main__":
         "masses": masses,
         "shapes": round_bodies,
         "forecast": forecast,
+        "goals": goals,
     }
     for part in sys.argv[1:] or parts:
         parts[part]()

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """Cost of a picture: python bench/pictures.py FOLDER ... prints seconds of one core per picture of 1280 x 720, in draft and in
 final quality, and the memory of the process that draws, for output folders of runs. Without a folder: what the command
-``mdanim-lammps picture scenes/beam.txt`` takes."""
+``mdanim-lammps picture scenes/beam.txt`` takes. ``floor FOLDER ...``: what the window of objects takes when it is empty, by VTK's
+own shader and by ours, beside a whole draft."""
 
 from __future__ import annotations
 
@@ -54,8 +55,56 @@ def picture_command() -> None:
     print(f"picture {SCENE.name}: {processor:.2f} s of processor time, {wall:.2f} s, load {os.getloadavg()[0]:.1f}")
 
 
+def floor(folder: str) -> tuple[int, list[float]]:
+    """Pixels of the window of objects in the middle of a run, and seconds of processor time of it when it is empty, by VTK's own
+    shader and by ours, and of the whole picture; each the least of several."""
+    os.environ["LP_NUM_THREADS"] = "1"
+    from mdanim_lammps.picture.render import Painter
+    from mdanim_lammps.picture.window import rgba
+    from mdanim_lammps.results.trajectory import Trajectory
+    from mdanim_lammps.run.folder import stored_scene
+
+    def least(work) -> float:
+        times = []
+        for _ in range(RUNS + 1):  # the first one compiles shaders
+            start = time.process_time()
+            work()
+            times.append(time.process_time() - start)
+        return min(times)
+
+    with Trajectory(folder) as trajectory, Painter(trajectory, stored_scene(Path(folder)).render, size=SIZE) as painter:
+        middle = len(trajectory) // 2
+        whole = least(lambda: painter.pixels(middle))
+        window, actors = painter._window, [a for r in painter._renderers for a in r.GetActors() if a.GetVisibility()]
+
+        def drawn() -> float:
+            return least(lambda: (window.Render(), rgba(window)))
+
+        ours = drawn()
+        for actor in painter._actors:
+            actor.GetShaderProperty().ClearAllShaderReplacements()
+            actor.GetProperty().RemoveAllTextures()
+        plain = drawn()
+        for actor in actors:
+            actor.VisibilityOff()
+        width, height = window.GetSize()
+        return width * height, [drawn(), plain, ours, whole]
+
+
+def print_floors(folders: list[str]) -> None:
+    """Print a line for each folder, each measured by a process of its own."""
+    print(f"{'folder':<24}  pixels  empty [ms]  VTK's shader  ours  whole picture")
+    for folder in folders:
+        with ProcessPoolExecutor(1, get_context("spawn")) as pool:
+            pixels, seconds = pool.submit(floor, folder).result()
+        print(f"{Path(folder).name:<24} {pixels:7d} " + " ".join(f"{1e3 * s:9.1f}" for s in seconds), flush=True)
+
+
 def main(folders: list[str]) -> None:
     """Print a line for each folder."""
+    if folders[:1] == ["floor"]:
+        print_floors(folders[1:])
+        return
     if not folders:
         picture_command()
         return

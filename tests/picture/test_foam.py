@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from mdanim_lammps.model.grid import Grid
-from mdanim_lammps.picture.foam import BREAKING, FADE, MOST, Foam, breaking, looked_at, spread
+from mdanim_lammps.picture.foam import BREAKING, FADE, MOST, Foam, breaking, looked_at, spread, ways
 from mdanim_lammps.picture.light import Light
 from mdanim_lammps.picture.render import Painter
 from mdanim_lammps.picture.tank import Tank
@@ -99,7 +99,7 @@ def test_foam_spreads_over_a_level_liquid_and_is_not_lost():
     """Twice half stays and an eighth goes to each side; at the edge what would go out stays."""
     level, one = np.full((35, 50), 0.7), np.zeros((35, 50), np.float32)
     one[10, 20] = one[0, 0] = 1.0
-    found = spread(one, level, level, CELL)
+    found = spread(one, *ways(level, level, CELL))
     row = [1 / 64, 1 / 8, 5 / 16, 1 / 8, 1 / 64]
     assert (
         found[10, 18:23] == pytest.approx(row) and found[8:13, 20] == pytest.approx(row) and found[9, 19] == pytest.approx(1 / 32)
@@ -112,10 +112,10 @@ def test_foam_goes_down_a_fall_but_not_up_nor_under_a_solid():
     x, _ = column_centres(GRID)
     fall = np.where(x < 0.0, 0.7, 0.6)
     all_over = np.ones((35, 50), np.float32)
-    found = spread(all_over, fall, fall, CELL)[17]
+    found = spread(all_over, *ways(fall, fall, CELL))[17]
     assert found[24] < found[23] < 0.99 and found[25] > 0.98 and found[10] == 1.0
     hidden = np.where(np.abs(x - 0.5) < 0.1, np.nan, fall)
-    assert not spread(all_over, fall, hidden, CELL)[np.isnan(hidden)].any()
+    assert not spread(all_over, *ways(fall, hidden, CELL))[np.isnan(hidden)].any()
 
 
 def test_a_front_leaves_foam_behind():

@@ -42,7 +42,6 @@ import pkgutil
 from collections.abc import Iterator
 from functools import cache, lru_cache
 from importlib import import_module
-from importlib.util import find_spec
 from types import ModuleType
 from typing import Any
 
@@ -59,18 +58,20 @@ def names() -> tuple[str, ...]:
 
 
 @cache
-def _modules(kind: str) -> tuple[str, ...]:
-    """Full names of the modules of this name that features have, in the order of `names`; looked for on the disk once."""
-    return tuple(module for name in names() if find_spec(module := f"{__name__}.{name}.{kind}"))
+def _modules(name: str) -> frozenset[str]:
+    """Modules in the folder of a feature, found once: facets of many kinds are looked for in each."""
+    return frozenset(module.name for module in pkgutil.iter_modules(import_module(f"{__name__}.{name}").__path__))
 
 
 def facets(kind: str) -> Iterator[ModuleType]:
     """The modules of this name that features have, in the order of `names`."""
-    for module in _modules(kind):
-        found = import_module(module)
-        if getattr(found.__spec__, "_initializing", False):
-            raise ImportError(f"{module} imports what is made of it; it may import scene/schema.py, not scene/scene.py")
-        yield found
+    for name in names():
+        if kind in _modules(name):
+            module = f"{__name__}.{name}.{kind}"
+            found = import_module(module)
+            if getattr(found.__spec__, "_initializing", False):
+                raise ImportError(f"{module} imports what is made of it; it may import scene/schema.py, not scene/scene.py")
+            yield found
 
 
 @lru_cache(maxsize=1)

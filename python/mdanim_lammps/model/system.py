@@ -67,7 +67,7 @@ class System(Particles):
     def contact_bodies(self) -> dict[int, ContactBody]:
         """The undeformed bodies of the kinds that some solid has, by kind, ascending; made when they are first asked for, and
         the same objects in all systems that are cut out of one."""
-        return {kind: self.frames[kind].contact for kind in np.unique(self.contact_kind).tolist()}
+        return {kind: self.frames[kind].contact for kind in sorted({*self.contact_kind.tolist()})}
 
     @cached_property
     def held_whole(self) -> np.ndarray:

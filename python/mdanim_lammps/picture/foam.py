@@ -53,13 +53,13 @@ class Foam:
         that have not been looked at."""
         foam, before = None, 0
         for n in looked_at(frame, self._frame_time):
-            made, smooth, raw = self._look(n, read)
+            made, comes, open_ = self._look(n, read)
             if foam is not None and foam.any():
                 # Where there is foam, and two columns around.
                 some = (np.flatnonzero(foam.any(axis=k)) for k in (1, 0))
                 near = tuple(slice(max(0, k[0] - 2), k[-1] + 3) for k in some)
                 left = math.exp(-(n - before) * self._frame_time / FADE)
-                foam[near] = left * spread(foam[near], smooth[near], raw[near], self._grid.cell[2])
+                foam[near] = left * spread(foam[near], comes[(..., *near)], open_[near])
                 foam[foam < LEAST] = 0.0
             if made is not None:
                 foam = made.copy() if foam is None else np.maximum(foam, made)
@@ -67,11 +67,11 @@ class Foam:
         return np.zeros(self._grid.shape[1::-1], np.float32) if foam is None else np.minimum(foam, 1.0)
 
     def _look(self, frame: int, read: Callable[[int], Liquid]) -> tuple[np.ndarray | None, np.ndarray, np.ndarray]:
-        """The foam that a frame makes, None for none, and its heights."""
+        """The foam that a frame makes, None for none, and its `ways`."""
         if frame not in self._made:
             smooth, raw, drops = read(frame)
             made = breaking(self._grid, smooth, raw, drops)
-            self._made[frame] = made if made.any() else None, smooth, raw
+            self._made[frame] = made if made.any() else None, *ways(smooth, raw, self._grid.cell[2])
             if len(self._made) > KEPT:
                 del self._made[next(iter(self._made))]
         return self._made[frame]
@@ -110,21 +110,35 @@ def breaking(grid: Grid, smooth: np.ndarray, raw: np.ndarray, drops: np.ndarray)
     return np.minimum(made, MOST).astype(np.float32)
 
 
-def spread(foam: np.ndarray, smooth: np.ndarray, raw: np.ndarray, step: float) -> np.ndarray:
-    """Twice half of the foam of each column goes to those around it: not up a step, nor to where a solid hides the liquid.
+def ways(smooth: np.ndarray, raw: np.ndarray, step: float) -> tuple[np.ndarray, np.ndarray]:
+    """Where foam can go, found once for a frame: whether it comes to each column from those before and after it, along y and
+    along x, bool, shape (2, 2, ny, nx), which is not up a step, and whether no solid hides its liquid, shape (ny, nx).
 
     Args:
-        foam: of each column, float32, shape (ny, nx).
         smooth, raw: heights z [m], shape (ny, nx).
         step: [m].
     """
-    comes = (_pairs(smooth) > smooth - step) & np.isfinite(raw)
+    open_ = np.isfinite(raw)
+    return (_pairs(smooth) > smooth - step) & open_, open_
+
+
+def spread(foam: np.ndarray, comes: np.ndarray, open_: np.ndarray) -> np.ndarray:
+    """Twice half of the foam of each column goes to those around it.
+
+    Args:
+        foam: of each column, float32, shape (ny, nx).
+        comes, open_: `ways` of the same columns.
+    """
     for _ in range(2):
         foam = 0.5 * foam + 0.125 * np.where(comes, _pairs(foam), np.float32(0.0)).sum(axis=(0, 1))
-    return np.where(np.isfinite(raw), foam, np.float32(0.0))
+    return np.where(open_, foam, np.float32(0.0))
 
 
 def _pairs(field: np.ndarray) -> np.ndarray:
     """Values of the columns before and after each column, along y and along x, shape (2, 2, ny, nx); beyond the edge its own."""
-    z = np.pad(field, 1, mode="edge")
-    return np.stack([[z[:-2, 1:-1], z[2:, 1:-1]], [z[1:-1, :-2], z[1:-1, 2:]]])
+    found = np.empty((2, 2, *field.shape), field.dtype)
+    found[0, 0, 0], found[0, 0, 1:] = field[0], field[:-1]
+    found[0, 1, -1], found[0, 1, :-1] = field[-1], field[1:]
+    found[1, 0, :, 0], found[1, 0, :, 1:] = field[:, 0], field[:, :-1]
+    found[1, 1, :, -1], found[1, 1, :, :-1] = field[:, -1], field[:, 1:]
+    return found

@@ -236,7 +236,10 @@ def encoder(path: Path, size: tuple[int, int], rate: Fraction, pictures: int) ->
         except OSError as error:
             raise OutputError(f"{path}: cannot be written: {error.strerror}; name another file or folder") from None
         said = stack.enter_context(tempfile.TemporaryFile())
-        writer = stack.enter_context(closing(imageio_ffmpeg.write_frames(part, size, fps=rate, **CODING)))
+        # With more threads the same pictures take more processor time: 15 ms each in place of 11.
+        threads = ["-threads", str(max(1, cores() // 2))]
+        coding = CODING | {"output_params": [*CODING["output_params"], *threads]}
+        writer = stack.enter_context(closing(imageio_ffmpeg.write_frames(part, size, fps=rate, **coding)))
 
         def failed() -> OutputError:
             said.seek(0)

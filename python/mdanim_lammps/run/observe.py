@@ -59,7 +59,7 @@ class Torn:
 
     def __init__(self, system: System, gone: np.ndarray):
         self._system, self._ends = system, system.spring[gone]
-        self.apart = np.unique(system.object[self._ends[:, 0]])
+        self.apart = np.flatnonzero(np.bincount(system.object[self._ends[:, 0]]))
         """Objects that are torn, ascending, int64, shape (m,)."""
 
     def cells(self) -> np.ndarray:

@@ -5,8 +5,6 @@ from __future__ import annotations
 
 import re
 
-from PIL import ImageColor
-
 from .keywords import did_you_mean
 
 
@@ -14,6 +12,8 @@ def color(text: str) -> str:
     """A colour as ``#rrggbb``; raises ValueError(message, hint)."""
     if re.fullmatch(r"#[0-9a-fA-F]{6}", text):
         return text.lower()
+    from PIL import ImageColor  # loaded for names alone: a tenth of the time to a plan
+
     if text.lower() in ImageColor.colormap:
         return "#{:02x}{:02x}{:02x}".format(*ImageColor.getrgb(text.lower()))
     hint = did_you_mean(text, ImageColor.colormap) or 'write a CSS name such as steelblue, or "#rrggbb"'
