@@ -16,9 +16,10 @@ def said(code: str) -> str:
     return subprocess.run([sys.executable, "-c", code], cwd=BENCH, check=True, capture_output=True, text=True).stdout
 
 
-def test_the_start_of_a_run_can_be_measured():
+def test_the_start_of_a_run_can_be_measured(tmp_path):
     """The part of bench/around.py that runs in a process of its own succeeds."""
-    assert float(said("import around; print(around.start_up('float', None))")) > 0.0
+    arguments = f"Path({str(tmp_path)!r}), around.PLAN, around.SCENES / 'float.txt'"
+    assert float(said(f"import around; from pathlib import Path; print(around.python({arguments}))")) > 0.0
 
 
 @pytest.mark.parametrize(
