@@ -106,7 +106,7 @@ def table(rows: list[dict]) -> str:
             "particles",
             "run [s]",
             "start to plan, median (minimum) [processor s]",
-            "of it Python and numpy",
+            "of it Python and NumPy",
             "opening LAMMPS",
             "goal",
             "loading and modelling in the run [s]",

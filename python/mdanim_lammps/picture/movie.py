@@ -30,12 +30,12 @@ CODING = {
     "pix_fmt_in": "rgb0",  # as pictures are drawn, first row below
     "macro_block_size": 1,  # no other size than asked for
     "ffmpeg_log_level": "error",
-    "output_params": [
-        *("-vf", "vflip,scale=out_color_matrix=bt709:out_range=tv", "-preset", "veryfast", "-crf", "17"),
-        *("-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc", "bt709", "-movflags", "+faststart"),
-        *("-metadata", f"comment={MADE}"),
-    ],
 }
+OUTPUT = [
+    *("-vf", "vflip,scale=out_color_matrix=bt709:out_range=tv", "-preset", "veryfast", "-crf", "17"),
+    *("-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc", "bt709", "-movflags", "+faststart"),
+    *("-metadata", f"comment={MADE}"),
+]
 """H.264 that browsers and slides play."""
 MOST_PICTURES = 10_000_000
 FASTEST = 60.0
@@ -237,9 +237,8 @@ def encoder(path: Path, size: tuple[int, int], rate: Fraction, pictures: int) ->
             raise OutputError(f"{path}: cannot be written: {error.strerror}; name another file or folder") from None
         said = stack.enter_context(tempfile.TemporaryFile())
         # With more threads the same pictures take more processor time: 15 ms each in place of 11.
-        threads = ["-threads", str(max(1, cores() // 2))]
-        coding = CODING | {"output_params": [*CODING["output_params"], *threads]}
-        writer = stack.enter_context(closing(imageio_ffmpeg.write_frames(part, size, fps=rate, **coding)))
+        output = [*OUTPUT, "-threads", str(max(1, cores() // 2))]
+        writer = stack.enter_context(closing(imageio_ffmpeg.write_frames(part, size, fps=rate, output_params=output, **CODING)))
 
         def failed() -> OutputError:
             said.seek(0)
