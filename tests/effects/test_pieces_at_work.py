@@ -185,6 +185,7 @@ def test_what_cannot_break_is_refused(pieces):
     [
         ("torus 20 cm 5 cm", "density 2500  elasticity rigid", "plate is a torus, which is not cut into pieces"),
         ("sheet (1, 1) m thickness 1 cm", "density 2500  elasticity 1 MPa", "plate is a sheet, which is not cut into pieces"),
+        ("cylinder 4 cm 12 cm sheet thickness 3 mm", "material glass  elasticity rigid", "plate is a sheet, which is not cut"),
         ("box (10, 10, 10) cm", "density 2500  elasticity 1 MPa", "only rigid objects are cut into pieces"),
         ("sphere 10 cm", "density 2500  elasticity rigid  pieces bricks (1, 1, 1) cm", "only a box is made of bricks"),
     ],

@@ -9,7 +9,7 @@ from typing import Any
 from ...scene.formatting import with_article
 from ...scene.limits import Limit
 from ...scene.schema import Observable, OneOf, Rule, setting
-from ...scene.shapes import Bricks, PieceShape, Rope, Sheet, Torus, VoronoiCells, holds_all
+from ...scene.shapes import Bricks, PieceShape, Rope, Sheet, Shell, Torus, VoronoiCells, holds_all
 
 SWITCHES = {"pieces": "an object's `pieces n`"}
 
@@ -59,10 +59,13 @@ def check_object(v: Any, block: Any, solid: Any) -> Any:
             v.problem(solid.spans["strength"], cause, "write pieces 20, or leave it out", severity="warning")
         return solid
     span, shape = solid.spans["pieces"], solid.shape
-    if isinstance(shape, Rope | Sheet | Torus):
-        kind = with_article(type(shape).FORMS[0].split()[0])
-        way_out = "write tear-strain 0.1" if isinstance(shape, Rope) else "take another shape, or leave out pieces"
+    if isinstance(shape, Rope | Sheet | Shell | Torus):
+        kind = "a sheet" if isinstance(shape, Shell) else with_article(type(shape).FORMS[0].split()[0])
+        way_out = (
+            "take another shape, or leave out pieces" if isinstance(shape, Torus) else "write tear-strain 0.1 in place of it"
+        )
         v.problem(span, f"{solid.name} is {kind}, which is not cut into pieces", way_out)
+        return solid
     if holds_all(solid.hold):
         v.problem(span, f"{solid.name} is held as a whole, so it never breaks", "leave out pieces, or hold all")
     elif not isinstance(solid.elasticity, Rigid):

@@ -33,7 +33,7 @@ def check_object(v: Any, block: Any, solid: Any) -> Any:
         v.problem(
             spans["hold"], f"{solid.name} is a {kind(rope)} and has no faces", "write hold ends, hold start or hold end, or a box"
         )
-    if solid.restitution is not None:
+    if solid.restitution is not None and isinstance(solid.elasticity, Young):
         cause = f"{solid.name} is a {kind(rope)}: restitution is of rigid and held objects"
         v.problem(spans["restitution"], cause, "leave it out; damping takes energy of its springs")
     if solid.resolution is not None and not rope.thickness * (1.0 - 1e-9) <= solid.resolution <= 0.5 * rope.length:

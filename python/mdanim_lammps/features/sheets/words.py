@@ -48,9 +48,8 @@ def check_object(v: Any, block: Any, solid: Any) -> Any:
     spans, sheet = solid.spans, solid.shape
     if not isinstance(solid.elasticity, Young):
         cause = f"{solid.name} is a sheet: its springs follow from Young's modulus and its thickness"
-        v.problem(
-            spans["elasticity"], cause, "write elasticity 1 MPa, or whatever its material has, or shape box for a rigid plate"
-        )
+        rigid = "shape box for a rigid plate" if isinstance(sheet, Sheet) else "leave out sheet for what is rigid and solid"
+        v.problem(spans["elasticity"], cause, f"write elasticity 1 MPa, or whatever its material has, or {rigid}")
     flat = isinstance(sheet, Sheet)
     if not flat and sheet.thickness > THICKEST * width(sheet):
         cause = f"{solid.name} is too thick for a sheet: {say(sheet.thickness, 'm', 6)}, it is {say(width(sheet), 'm', 6)} wide"
@@ -59,7 +58,7 @@ def check_object(v: Any, block: Any, solid: Any) -> Any:
     if flat and any(side.value[1] == "z" for hold in solid.hold if isinstance(hold, HoldFaces) for side in hold.sides):
         cause = f"{solid.name} is a sheet in its xy plane, and its faces along z are all of it"
         v.problem(spans["hold"], cause, "write hold face -x, +x, -y or +y, hold all, or a box")
-    if solid.restitution is not None:
+    if solid.restitution is not None and isinstance(solid.elasticity, Young):  # a material has one for what is rigid
         cause = f"{solid.name} is a sheet: restitution is of rigid and held objects"
         v.problem(spans["restitution"], cause, "leave it out; damping takes energy of its springs")
     least, most = finest(sheet), 0.5 * width(sheet)
