@@ -143,9 +143,21 @@ def overview(all_cases: Iterable[Case]) -> str:
     return markdown(("case", "figures within", "largest error"), rows)
 
 
+def beside_peers(all_cases: Iterable[Case]) -> str:
+    """A row for each case that another program has run: the largest error of each, and its processor time."""
+    rows = []
+    for case in all_cases:
+        of = kept(case)
+        told = {way: f"{_percent(_off(of[way][0]))}; {of[way][1]:.2g} s" for way in ("balanced", *PEERS) if way in of}
+        if len(told) > 1:
+            rows.append([case.title, *(told.get(way, "") for way in ("balanced", *PEERS))])
+    return markdown(("largest error; processor time", "here, balanced", *PEERS), rows)
+
+
 def write_page() -> None:
     """docs/validation.md from what is kept."""
     replace_between(PAGE, "overview", overview(cases()))
+    replace_between(PAGE, "peers", beside_peers(cases()))
     replace_between(PAGE, "cases", "\n".join(section(case) for case in cases()))
 
 

@@ -89,10 +89,13 @@ CASES = [
         "Coulomb: a block stays up to μ = tan θ and slides by g t²/2 (sin θ − μ cos θ) beyond; IPC (Li et al. 2020) has it as "
         "slopeTest_highSchoolPhysics with μ = 0.5 and 0.49.",
         "The way of the first block is over that of the second. All of its friction is in use, so it slips while it sinks in at "
-        "the start, by 0.4 mm, and then stays.",
-        "Rigid blocks. Elastic ones of 1 GPa, as IPC's, get 1.3 mm/s while they settle (`scenes/validation/incline_soft.txt`). "
-        "Where the friction is that of the slope nothing takes it off them, so the first goes on for 2.5 mm in 2 s, and the "
-        "second slides 1.3 % too far. With `friction 0.505` the first stays, to 0.03 mm (at `preview`).",
+        "the start, and keeps 0.25 mm/s of that, as nothing takes it off: 0.5 mm in 2 s.",
+        "Rigid blocks, put down without a bounce. With the damping that contacts with friction have by default "
+        "(`--set e=0.45`) they come back once while they sink in, and slip meanwhile: the first then goes on at "
+        "3.5 mm/s, 7 mm in 2 s, and the second slides 3.5 % too far. Elastic ones of 1 GPa, as IPC's, get 1.3 mm/s "
+        "while they settle (`scenes/validation/incline_soft.txt`). Where the friction is that of the slope nothing "
+        "takes it off them, so the first goes on for 2.5 mm in 2 s, and the second slides 1.3 % too far. With "
+        "`friction 0.505` the first stays, to 0.03 mm (at `preview`).",
         incline,
         peers=True,
     ),

@@ -42,6 +42,7 @@ void Waves::pour(const double *height, const double *from, const std::vector<std
     columns.arrays.rest[i] = columns.arrays.phi[i] = columns.arrays.head[i] =
         full ? std::max(columns.span[i].roof, level) : head.height;
     columns.arrays.delta[i] = columns.arrays.last_delta[i] = 0.0;
+    columns.arrays.coming[i] = 0.0;    // solids were there before
   });
 }
 

@@ -71,6 +71,19 @@ def test_waves_do_what_the_equations_say(seed, speed):
         assert w.counts.sub_updates > w.counts.updates and w.counts.limited > 0
 
 
+@pytest.mark.parametrize("closed", [True, False])
+def test_what_is_poured_under_a_wall_begins_at_rest(closed):
+    """A wall up to the top of the basin, over a duct: its spans let out nothing in the first update, as in the twin."""
+    part = np.zeros((12, 2, 9), int)
+    part[2:, : 2 if closed else 1, 3:6] = 4096
+    height = np.broadcast_to(np.where(np.arange(9) < 3, 8.3, 7.0), (2, 9))
+    w, twin = waves(part, height, tolerance=1e-14), Twin(part, height)
+    for _ in range(10):
+        w.update()
+        twin.update()
+        assert_same(w, twin)
+
+
 @pytest.mark.parametrize("seed", range(4))
 def test_a_moving_roof_pushes_as_the_equations_say(seed):
     """Press a lid down on the liquid and lift it again, as the twin."""
