@@ -10,8 +10,10 @@
 
 #include "folds/fold_object.h"
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 namespace mdanim {
@@ -80,6 +82,10 @@ class FoldSurface {
 
 template <class Visit> bool FoldSurface::any_near(int p, int many, const Visit &visit) const
 {
+  if (search == std::numeric_limits<int>::max()) {
+    std::fill(seen.begin(), seen.end(), 0);
+    search = 0;
+  }
   ++search;
   ring.assign(1, p);
   seen[p] = search;
