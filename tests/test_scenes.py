@@ -32,6 +32,7 @@ LONG = {
     "cloth": (0.3, True),
     "crowd": (0.5, True),
     "dominoes": (0.8, False),
+    "double": (0.5, True),
     "drawbridge": (0.5, False),
     "hammock": (0.2, True),
     "henge": (0.3, False),

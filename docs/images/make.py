@@ -71,6 +71,8 @@ PICTURES = {
     "trampoline": 1.2,
     "bridge": 2.0,
     "pendulums": 1.4,
+    "double": 1.1,
+    "newton": 0.62,
     "crank": 0.3,
     "seesaw": 0.7,
     "buggy": 1.9,
