@@ -37,6 +37,7 @@ LONG = {
     "hammock": (0.2, True),
     "henge": (0.3, False),
     "mattress": (0.1, False),
+    "newton": (0.66, True),
     "paddle": (1.1, True),
     "pegs": (1.0, False),
     "pile": (0.5, False),
