@@ -52,7 +52,8 @@ def kind(rope: Rope) -> str:
 def check(v: Any, top: Mapping, held: Mapping) -> None:
     """Parts of a scene that know objects by their cells, which a rope does not have."""
     if rope := next(filter(is_rope, held["solids"]), None):
-        check_without_cells(v, held, rope, kind(rope.shape), "shape cylinder")
+        instead = "shape cylinder for what is to float, or joint spring A B { pulls only } for a string"
+        check_without_cells(v, held, rope, kind(rope.shape), instead)
 
 
 def check_without_cells(v: Any, held: Mapping, solid: Any, what: str, instead: str) -> None:
@@ -60,7 +61,7 @@ def check_without_cells(v: Any, held: Mapping, solid: Any, what: str, instead: s
     at, control = solid.spans.get("shape"), held["control"]
     if held.get("liquid") is not None:
         cause = f"{solid.name} is a {what}, and a liquid finds objects by their cells, which a {what} does not have"
-        v.problem(at, cause, f"take the liquid out, or write {instead} for what is to float", key=f"{what}-liquid")
+        v.problem(at, cause, f"take the liquid out, or write {instead}", key=f"{what}-liquid")
     if control is not None and control.contact_model.value == "paper" and len(held["solids"]) > 1:
         cause = f"{solid.name} is a {what}, which touches others with its surface alone"
         v.problem(at, cause, "take contact-model paper out of control", key=f"{what}-paper")

@@ -81,7 +81,7 @@ def check_object(v: Any, block: Any, solid: Any) -> Any:
 def check(v: Any, top: Mapping, held: Mapping) -> None:
     """Parts of a scene that know objects by their cells, which a sheet does not have."""
     if sheet := next(filter(is_sheet, held["solids"]), None):
-        check_without_cells(v, held, sheet, "sheet", "shape box")
+        check_without_cells(v, held, sheet, "sheet", "shape box for what is to float")
 
 
 CHECKS = {"object": check_object}
