@@ -46,7 +46,7 @@ __attribute__((noinline)) void move_immersed(const Pass &pass, const Block &bloc
   tally.largest_phi = larger(phi, tally.largest_phi);
   const auto then = [&](const Vector3 &middle, const Vector3 &last, const Vector3 &place) {
     add_lanes(tally.sums.liquid_work, dot(force.push, middle));
-    if constexpr (FRICTION != Friction::NONE) add_lanes(tally.sums.liquid_lost, force.lambda * dot(middle, middle));
+    add_lanes(tally.sums.liquid_lost, force.lambda * dot(middle, middle));
     const Vector square = particle.of[LISTED] > 0.0 ? dot(last, last) : constant<Vector>(-1.0);
     tally.fastest_near = place.z < rows.top_of_near ? larger(square, tally.fastest_near) : tally.fastest_near;
   };

@@ -132,10 +132,8 @@ template <Friction FRICTION> MDANIM_ALWAYS_INLINE auto half_steps(const Vector &
 {
   if constexpr (FRICTION == Friction::IMPLICIT)
     return Implicit<Vector>::of(phi, kick);
-  else if constexpr (FRICTION == Friction::EXPONENTIAL)
-    return Exponential<Vector>::of(phi, kick);
   else
-    return Frictionless<Vector>{kick};
+    return Exponential<Vector>::of(phi, kick);
 }
 
 // The second half of a step and the first half of the next, by a law of leapfrog/law.h; friction takes from `mass` only.
@@ -197,9 +195,11 @@ MDANIM_ALWAYS_INLINE void move(const Pass &pass, const Block &block, const doubl
       }
     return;
   }
-  if (__builtin_expect(block.immersed >= 0, 0)) {
-    move_immersed<FRICTION, DAMPED>(pass, block, total, tally);
-    return;
+  if constexpr (FRICTION != Friction::NONE) {
+    if (__builtin_expect(block.immersed >= 0, 0)) {
+      move_immersed<FRICTION, DAMPED>(pass, block, total, tally);
+      return;
+    }
   }
   const double *const motion = pass.motion + static_cast<unsigned long>(block.motion) * (MOTIONS * LANES);
   advance<FRICTION, DAMPED>(pass, block, total, load_own(total), half_steps<FRICTION>(motion), load(motion + BRAKED_MASS * LANES),

@@ -67,8 +67,8 @@ void PassRun::hold_back()
     blocks.immerse(threads, *crew.liquid, crew.integrator->friction_of_particles(), pass);
     crew.liquid->split(&blocks.held_back());
   }
-  pass.friction =
-      blocks.friction_acts() ? crew.integrator->friction() : Friction::NONE;    // without friction: the same, and faster
+  // Without friction: the same, and faster. Passes without it know no liquid; a friction of 0 changes no bit.
+  pass.friction = blocks.friction_acts() ? std::max(Friction::IMPLICIT, crew.integrator->friction()) : Friction::NONE;
 }
 
 void PassRun::step(long long next, const std::function<void(bool at_end)> &late)
