@@ -55,7 +55,7 @@ def test_a_hand_lifts_all_that_is_welded():
 
 
 def test_each_object_is_looked_at_once(monkeypatch):
-    """Its mobility, for the strength of a hand, however many objects there are and whoever asks."""
+    """Its mobility, for the strength of a hand, however many objects there are and however often it is asked for."""
     asked = []
     monkeypatch.setattr(strength, "largest_mobility", lambda *a: asked.append(a) or largest_mobility(*a))
     balls = "".join(BALL.replace("ball", f"b{n}").replace("(0, 0, 1)", f"({n}, 0, 1)") for n in range(5))
