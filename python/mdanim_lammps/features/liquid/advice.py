@@ -65,7 +65,7 @@ def notes(envelope: Envelope) -> list[Problem]:
 
 
 def _many_cells(envelope: Envelope) -> list[Problem]:
-    """What makes the cells so fine, where nothing that the scene says does."""
+    """The thin object that makes the cells so fine, where the scene does not ask for them."""
     cells, spacing = int(np.prod(envelope.context.grid.shape)), envelope.context.spacing
     solid = next((solid for solid in envelope.scene.solids if solid.name == spacing.set_by), None)
     if cells <= MANY or solid is None:
