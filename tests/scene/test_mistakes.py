@@ -76,6 +76,7 @@ MISTAKES = [
      "write shape box"),
     ("setting of another block", text(level="1 m"), 6, 3, "'level' cannot stand inside object", "liquid"),
     ("setting outside", "mass 2 kg\n" + text(), 1, 1, "'mass' cannot stand outside of all blocks", "object"),
+    ("word of others outside", "duration 2 s\n" + text(), 1, 1, "'duration' is not a word", "'time'? it belongs in control { }"),
     ("assignment without let", "a = 3\n" + text(), 1, 1, "'a' is not a word of the scene language",
      "write let a ="),
     ("mistyped shape", text(shape="spere 1 m"), 2, 9, "shape cannot be followed by 'spere'",

@@ -12,6 +12,7 @@ from .forms import Slot, literals
 from .keywords import (
     BLOCKS,
     KEYWORDS,
+    MEANT,
     NOT_SUPPORTED,
     STATEMENTS,
     Block,
@@ -28,6 +29,16 @@ from .setting_reader import SettingReader, Shared
 from .source import Fault, Problems, SceneFile, UnreadableFile, read_text
 from .tokens import Token
 from .tree import Group, Let, Repeat, Set, Template, UnreadableStatement, Use
+
+
+def _homes(word: str | None) -> list[str]:
+    """Blocks that have a setting of this name, "" for the outermost level."""
+    return [b for b in KEYWORDS if word in KEYWORDS[b] and not (b and BLOCKS[b].of)]
+
+
+def _belongs_in(homes: list[str]) -> str:
+    place = " or ".join(f"{b} {{ }}" if b else "the outermost level" for b in homes)
+    return f"it belongs {'in' if homes[0] else 'on'} {place}"
 
 
 class Unclosed(Exception):
@@ -148,15 +159,14 @@ class Parser(SettingReader):
     def unknown(self, word: Token, block: str, opened: Token | None, repeats: int) -> list:
         """A word that has no meaning here: report it, and read on with what was most likely meant."""
         here = [*KEYWORDS[block], *((*BLOCKS[block].holds, *STATEMENTS) if block else (*BLOCKS, *STATEMENTS))]
-        homes = [b for b in KEYWORDS if word in KEYWORDS[b] and not (b and BLOCKS[b].of)]
+        homes = _homes(word)
         if "" in homes and opened is not None and self._first_on_line(word) and word.column <= opened.column:
             raise Unclosed(word)
         home = owner(KEYWORDS[block], str(word))
         guess = "" if home else nearest(str(word), here)  # a word that a form begins with is not a misspelt one
         if homes and not guess and home is None:
-            place = " or ".join(f"{b} {{ }}" if b else "the outermost level" for b in homes)
             inside = f"inside {block} {{ }}" if block else "outside of all blocks"
-            raise Fault(word, f"'{word}' cannot stand {inside}", f"it belongs {'in' if homes[0] else 'on'} {place}")
+            raise Fault(word, f"'{word}' cannot stand {inside}", _belongs_in(homes))
         if str(word) in NOT_SUPPORTED:
             raise Fault(word, f"{word} is not supported yet", NOT_SUPPORTED[str(word)])
         if (head := next((b for b in BLOCKS.values() if str(word) in b.kinds), None)) is not None:
@@ -167,6 +177,9 @@ class Parser(SettingReader):
         kind = f"a setting of {block}" if block else "a word of the scene language"
         home = home or next((k for k in KEYWORDS[block].values() if word in literals(k.form)), None)
         hint = did_you_mean(str(word), here)
+        meant = MEANT.get(str(word).lower())
+        if meant not in here and (others := _homes(meant)):
+            hint = f"did you mean '{meant}'? {_belongs_in(others)}"
         if self.peek.type == "EQUAL":
             hint = f"write let {word} = ..."
         elif home is not None and not guess:

@@ -122,7 +122,8 @@ def _tall_dam(envelope: Envelope) -> Found | None:
     dam, liquid = _dam(envelope), envelope.scene.liquid
     if dam is None or dam[2] < TALL * dam[1]:
         return None
-    return liquid.spans.get("fill"), f"{liquid.name} breaks from a dam {number(dam[2] / dam[1], 2)} times as high as wide"
+    times = number(dam[2] / dam[1], 2)
+    return liquid.spans.get("fill"), f"{liquid.name} breaks from a dam {'' if times == '1' else f'{times} times '}as high as wide"
 
 
 def _in_a_flood(envelope: Envelope) -> Found | None:
