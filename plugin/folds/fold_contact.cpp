@@ -115,6 +115,7 @@ void FoldContact::list(const Vec3 *x, const Vec3 *y, double skin)
   Box mine, all;
   far = rule.reach + skin;
   listed = false;
+  listed_torn = of_own->is_torn();
   boxes.clear();
   number.clear();
   elements.clear();
@@ -141,7 +142,9 @@ void FoldContact::list(const Vec3 *x, const Vec3 *y, double skin)
 void FoldContact::renew(const Vec3 *x, const Vec3 *y, double skin)
 {
   constexpr std::size_t MOST = 200;    // further boxes, which are looked at one by one
-  if (!listed || boxes.size() > in_tree + MOST) {
+  // From its first tear on, parts of an object far from that may touch, too.
+  const bool first_tear = itself && listed_torn != of_own->is_torn();
+  if (!listed || first_tear || boxes.size() > in_tree + MOST) {
     list(x, y, skin);
     return;
   }

@@ -71,7 +71,7 @@ class FoldContact {
   std::vector<int> identity;
   std::vector<int> first, elements;    // elements near each feature, ascending
   // Elements that may touch, and boxes of what they reach: those of the tree, and further ones since it was made.
-  bool listed = false;
+  bool listed = false, listed_torn = false;    // the latter: of an own object that was torn
   double far = 0.0;
   BoxTree tree;
   std::size_t in_tree = 0;

@@ -168,3 +168,20 @@ def test_sides_of_a_crack_touch(prepared, shape):
         x = instance.array("x").copy()
     near = (place[:, 1] < -0.03) & (np.abs(place[:, 0]) < 0.05)
     assert x[left & near, 2].mean() - x[~left & near, 2].mean() > 0.9 * thick + 0.01
+
+
+def test_all_of_a_torn_bag_touches_itself_at_once(prepared):
+    """Its two sides, which are nearer to each other without load than what touches itself before, far from the only link that is
+    gone. They did so from the next list on, which depends on executors and on where a run was taken up."""
+    ready = prepared(
+        "object bag { shape box (10, 10, 2.4) cm sheet thickness 2 mm  position (0, 0, 1) m  resolution 1.2 cm  density 300\n"
+        "  elasticity 1 MPa  tear-strain 2  touches-itself yes }\ncontrol { time 1 s }\n"
+    )
+    place, (i, j) = ready.system.position, ready.system.spring.T
+    ready.plan.columns["torn"][np.linalg.norm(place[i] + place[j], axis=1).argmax()] = 1
+    top, near = place[:, 2] > 1.005, np.hypot(*(place[:, :2] + 0.01).T) < 0.02
+    with Instance(ready.plan) as instance:
+        instance.array("x")[near, 2] += np.where(top, -0.0105, 0.0105)[near]
+        instance.setup()
+        instance.run(1)
+        assert instance.fix_value("folds", "lists") == 1.0 and instance.fix_scalar("folds") > 1e-4
