@@ -15,6 +15,7 @@ from ...effects.context import Context
 from ...effects.readings import Readings
 from ...model.shapes import thickness
 from ...model.spin import rotation
+from ...model.system import System
 from ...scene.once import once_for
 from ...scene.scene import Solid
 from ..rigid.touching import AT, BEARS_FORCE, BEARS_TORQUE, told_of_bodies
@@ -48,10 +49,14 @@ def told_of_welds(readings: Readings) -> np.ndarray:
     if not here:
         return told
     links = links_of(context.scene)
-    names = {solid.name: m for m, solid in enumerate(context.scene.solids)}
-    rows = {names[context.system.names[m]]: row for m, row in told_of_bodies(readings).items()}
+    number = {name: m for m, name in enumerate(context.system.names)}
+    number_of = {k: number[solid.name] for k, solid in enumerate(context.scene.solids) if solid.name in number}
+    told_of = told_of_bodies(readings)
+    rows = {k: told_of[m] for k, m in number_of.items() if m in told_of}
     hangs = hung_by(links)
-    shared = dict(found for ring in rings(links) if ring.parts[0] in rows for found in _shared(readings, ring, rows))
+    x = readings.array("x")
+    whole = (ring for ring in rings(links) if ring.parts[0] in rows)
+    shared = dict(found for ring in whole for found in _shared(context.system, x, ring, number_of, rows))
     for n, link in enumerate(here):
         if link.number in shared:
             force, torque, place = shared[link.number]
@@ -64,11 +69,12 @@ def told_of_welds(readings: Readings) -> np.ndarray:
     return told
 
 
-def _shared(readings: Readings, ring: Ring, rows: dict[int, np.ndarray]) -> Iterator[tuple[int, np.ndarray]]:
-    """Numbers of the welds of a body with a ring, each with what it bears: force, torque and place, shape (3, 3)."""
-    system, x = readings.context.system, readings.array("x")
-    number = {name: m for m, name in enumerate(system.names)}
-    mine = np.isin(system.object, [number[ring.solids[m].name] for m in ring.parts])
+def _shared(
+    system: System, x: np.ndarray, ring: Ring, number_of: dict[int, int], rows: dict[int, np.ndarray]
+) -> Iterator[tuple[int, np.ndarray]]:
+    """Numbers of the welds of a body with a ring, each with what it bears: force, torque and place, shape (3, 3), with
+    particles at x [m], shape (N, 3); ``number_of`` has the numbers in the system of solids of the scene."""
+    mine = np.concatenate([np.arange(*system.first[m : m + 2]) for m in (number_of[k] for k in ring.parts)])
     turned = rotation(system.mass[mine], system.position[mine], x[mine])
     borne = np.zeros((len(ring.parts), 6))
     for k, _, weld in ring.hangs:
@@ -83,10 +89,9 @@ class Ring:
     """A body whose welds close rings. Balance does not tell what each of them bears: they share it as springs would that are all
     alike, k u^2/2 + k L^2 w^2/2 with the way u and the turn w by which a weld gives way, and its arm L."""
 
-    def __init__(self, links: Links, parts: list[int]):
-        self.solids, self.parts = links.solids, parts
+    def __init__(self, links: Links, parts: list[int], welds: list[Link]):
+        self.solids, self.parts, self.welds = links.solids, parts, welds
         number = {m: k for k, m in enumerate(parts)}
-        self.welds = [weld for weld in links.welds if weld.first in number]
         self.ends = [[number[m] for m in weld.ends] for weld in self.welds]
         hung = hung_by(links)
         self.hangs = [
@@ -137,9 +142,10 @@ class Ring:
 def rings(links: Links) -> list[Ring]:
     """Bodies whose welds close rings."""
     hangs = hung_by(links)
-    closing = {weld.first for weld in links.welds if weld.number not in hangs}
-    found = {links.whole_of[m][0]: links.whole_of[m] for m in sorted(closing)}
-    return [Ring(links, part) for part in found.values()]
+    welds: dict[int, list[Link]] = {}
+    for weld in links.welds:
+        welds.setdefault(links.whole_of[weld.first][0], []).append(weld)
+    return [Ring(links, links.whole_of[m], of) for m, of in sorted(welds.items()) if any(w.number not in hangs for w in of)]
 
 
 @once_for(lambda links: links)
