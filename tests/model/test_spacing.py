@@ -207,7 +207,7 @@ def test_finer_cells_are_tried_up_to_a_number(monkeypatch, most, tried):
     """A large body in pieces is refused soon: the search ends before it has looked at millions of cells."""
     looked = []
 
-    def fill(shape, h):
+    def fill(shape, h, loose=False):
         looked.append(h)
         raise TooThin("its cells are not in one piece")
 
@@ -299,6 +299,20 @@ def test_scaled_spacings_are_those_of_objects_alone():
     made = scene(solid(BEAM), solid(Sphere(0.2), "ball", resolution=0.05), resolution=0.02)
     assert [s.resolution for s in spacing.scaled(made, 0.5).solids] == [None, 0.025]
     assert [s.resolution for s in spacing.scaled(made, None).solids] == [None, None]
+
+
+@pytest.mark.parametrize("size", [(4.5, 11.045, 25.23), (5.255, 6.735, 8.87), (0.3, 7, 9)])
+def test_rigid_plates_in_a_liquid_have_cells_of_any_aspect(prepared, size):
+    """Springs ask for nearly cubic ones, which these do not have at this spacing; the whole volume is in them."""
+    text = (
+        "gravity (0, 0, -9.81)\nliquid l { basin from (-40, -40, 0) cm to (40, 40, 60) cm  density 1000  level 30 cm }\n"
+        f"object plate {{ shape box {size} cm  position (0, 0, 45) cm  density 500  elasticity rigid }}\n"
+        "control { time 0.1 s  resolution 5 cm }\n"
+    )
+    volume = 1e-6 * np.prod(size)
+    assert prepared(text).system.volume.sum() == pytest.approx(volume)
+    with pytest.raises(SceneError, match="thin"):
+        prepared(text.replace("elasticity rigid", "elasticity 1 MPa"))
 
 
 def test_cells_of_a_liquid_are_those_of_what_displaces_most():

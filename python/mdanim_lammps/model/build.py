@@ -122,8 +122,8 @@ class SharedParts:
         return only_features(self.scene)
 
 
-def _make_body(shape: Shape, h: float) -> _Body:
-    lattice = make_lattice(fill_cells(shape, h))
+def _make_body(shape: Shape, h: float, loose: bool = False) -> _Body:
+    lattice = make_lattice(fill_cells(shape, h, loose))
     surface = make_surface(shape, lattice)
     _freeze(lattice.position, lattice.share, lattice.layer, lattice.spring, lattice.hexahedron)
     _freeze(surface.triangle, surface.index, surface.weight)
@@ -172,7 +172,7 @@ def lattice_model(solid: Solid, h: float, shared: SharedParts, *, loose: bool = 
 
     Raises cells.TooThin, mesh.MeshError, NothingHeld.
     """
-    body = shared.body(solid.shape, h)
+    body = shared.body(solid.shape, h, loose)
     lattice = body.lattice
     held = _held(solid, lattice)
     mass = shapes.mass(solid)

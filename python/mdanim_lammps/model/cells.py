@@ -22,16 +22,16 @@ class TooThin(Exception):
     """No cells near this size form the shape; the message names the cause."""
 
 
-def fill_cells(shape: Shape, spacing: float) -> Cells:
-    """Cells of about this spacing [m] that a shape fills, body frame; an infinite one asks for one cell, the box around it.
+def fill_cells(shape: Shape, spacing: float, loose: bool = False) -> Cells:
+    """Cells of about this spacing [m] that a shape fills, body frame; an infinite one asks for one cell, the box around it. Those
+    of a ``loose`` body, which has no springs, may have any aspect.
 
     Raises TooThin, mesh.MeshError.
     """
     if spacing == inf:
         return Cells(np.ones((1, 1, 1), bool), *shapes.extent(shape))
     if isinstance(shape, Box):
-        plate = min(shape.size) < spacing / THINNER
-        return _box_cells(shape, plate_counts(shape.size, spacing) if plate else box_counts(shape.size, spacing))
+        return _box_cells(shape, _counts(shape.size, spacing, loose))
     return _voxels(shape, spacing, mesh.load(shape) if isinstance(shape, Mesh) else None)
 
 
@@ -42,6 +42,17 @@ def end_share(filled: np.ndarray) -> float:
 
 
 # --- cuboids ------------------------------------------------------------------------------------------------
+
+
+def _counts(size, spacing: float, loose: bool) -> tuple[int, int, int]:
+    if min(size) < spacing / THINNER:
+        return plate_counts(size, spacing)
+    try:
+        return box_counts(size, spacing)
+    except TooThin:
+        if not loose:
+            raise
+        return plate_counts(size, spacing)
 
 
 def box_counts(size, spacing: float) -> tuple[int, int, int]:
@@ -67,7 +78,7 @@ def box_counts(size, spacing: float) -> tuple[int, int, int]:
 
 
 def plate_counts(size, spacing: float) -> tuple[int, int, int]:
-    """The same of a cuboid that is thinner than the spacing, and has no springs: cells of any aspect, at least one."""
+    """The same of a cuboid that has no springs: cells of any aspect, at least one along each edge."""
     return tuple(max(1, round(length / spacing)) for length in size)
 
 
