@@ -37,6 +37,7 @@ def test_quick_cases_give_what_is_kept(case):
     kept = validation.kept(case)["balanced"][0]
     for row, before in zip(found.rows, kept, strict=True):
         assert math.isclose(row.found, before.found, rel_tol=1e-6), row.figure
+        assert row.within == before.within, row.figure
 
 
 def test_a_row_is_close_within_its_tolerance_only():

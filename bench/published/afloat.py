@@ -32,7 +32,7 @@ def sphere(runs: Runs) -> Found:
         found = extremes(times, height)
         for n, name in enumerate(("first", "second", "third")):
             of = 0.5 * (linear[n][1] + cfd[n][1])
-            rows.append(Row(f"{name} turning point over the start{where}", of, found[n][1], 0.15))
+            rows.append(Row(f"{name} turning point over the start{where}", of, found[n][1], 0.1))
         rows.append(Row(f"time of the third{where}", 0.5 * (linear[2][0] + cfd[2][0]), found[2][0], 0.05, "s"))
     shown = measured[:, measured[0] < 12.0]
     points = {"ProteusDS, linear": (shown[0], shown[1]), "NREL, CFD": (shown[0], shown[2])}
@@ -54,7 +54,8 @@ CASES = [
         "A sphere bobs",
         "Heave decay of a sphere, IEA OES Task 10; series of HydroChrono (sphere_decay_ref_data.txt), mean of a "
         "linear and a viscous one.",
-        "The cells are 1/10 of the diameter.",
+        "10 % of turning points: both series differ by 3 % from their mean, and two places on the grid by 7 %, as cells are 1/10 "
+        "of the diameter. 5 % of the time, for which places on the grid differ by 9 %.",
         "The mass of water that moves along (W14) counts a way along the bottom by the square of its normal's upward part, so "
         "that round bodies bob in time at any accuracy, within 7 %; before, this sphere was up to 24 % slow. It still depends on "
         "where the sphere lies on the grid. Waves take less of its swing here than they should, and the drag that bodies have by "

@@ -32,8 +32,8 @@ def incline(runs: Runs) -> Found:
         float((of.center_of_mass[-1] - of.center_of_mass[0])[0]) / math.cos(slope) for of in (objects["stays"], objects["slides"])
     ]
     return Found([
-        Row("way with friction 0.5", 0.0, ways[0], 0.01, "m", scale=way),
-        Row("way with friction 0.49", way, ways[1], 0.01, "m"),
+        Row("way with friction 0.5", 0.0, ways[0], 0.005, "m", scale=way),
+        Row("way with friction 0.49", way, ways[1], 0.005, "m"),
     ])  # fmt: skip
 
 
@@ -45,8 +45,8 @@ def skid(runs: Runs) -> Found:
         ball = runs.run("skid", mu=mu).trajectory.objects["ball"]
         skids = 2.0 * v / (7.0 * mu * G)
         place = v * skids - 0.5 * mu * G * skids**2 + 5.0 / 7.0 * v * (time - skids)
-        rows.append(Row(f"speed at last, friction {mu:g}", 5.0 / 7.0 * v, float(ball.velocity[-1, 0]), 0.002, "m/s"))
-        rows.append(Row(f"way in {time:g} s, friction {mu:g}", place, float(ball.center_of_mass[-1, 0]), 0.002, "m"))
+        rows.append(Row(f"speed at last, friction {mu:g}", 5.0 / 7.0 * v, float(ball.velocity[-1, 0]), 0.0005, "m/s"))
+        rows.append(Row(f"way in {time:g} s, friction {mu:g}", place, float(ball.center_of_mass[-1, 0]), 0.0005, "m"))
     return Found(rows)
 
 
@@ -58,7 +58,7 @@ def rolls(runs: Runs) -> Found:
     rows = []
     for name, share in inertia.items():
         c = objects[name].center_of_mass
-        rows.append(Row(f"way of the {name}", falls / (1.0 + share), float(np.linalg.norm(c[-1] - c[0])), 0.002, "m"))
+        rows.append(Row(f"way of the {name}", falls / (1.0 + share), float(np.linalg.norm(c[-1] - c[0])), 0.0005, "m"))
     return Found(rows)
 
 
@@ -68,7 +68,7 @@ def green(runs: Runs) -> Found:
     for arm in (1.5, 3.0):
         found = runs.run("green", arm=f"{arm} mm").trajectory.objects["ball"].center_of_mass[-1, 0]
         way = 0.7 * 1.8**2 * 21.35 / (G * arm)
-        rows.append(Row(f"rolls at 1.8 m/s, arm {arm:g} mm", way, float(found), 0.005, "m"))
+        rows.append(Row(f"rolls at 1.8 m/s, arm {arm:g} mm", way, float(found), 0.0005, "m"))
     return Found(rows)
 
 
@@ -88,8 +88,8 @@ CASES = [
         "Blocks on a slope of one half",
         "Coulomb: a block stays up to μ = tan θ and slides by g t²/2 (sin θ − μ cos θ) beyond; IPC (Li et al. 2020) has it as "
         "slopeTest_highSchoolPhysics with μ = 0.5 and 0.49.",
-        "The way of the first block is over that of the second. All of its friction is in use, so it slips while it sinks in at "
-        "the start, and keeps 0.25 mm/s of that, as nothing takes it off: 0.5 mm in 2 s.",
+        "0.5 %. The way of the first block is over that of the second. All of its friction is in use, so it slips while it sinks "
+        "in at the start, and keeps 0.25 mm/s of that, as nothing takes it off: 0.5 mm in 2 s.",
         "Rigid blocks, put down without a bounce. With the damping that contacts with friction have by default "
         "(`--set e=0.45`) they come back once while they sink in, and slip meanwhile: the first then goes on at "
         "3.5 mm/s, 7 mm in 2 s, and the second slides 3.5 % too far. Elastic ones of 1 GPa, as IPC's, get 1.3 mm/s "
@@ -104,7 +104,7 @@ CASES = [
         "A bowling ball skids until it rolls",
         "Newton's second law with Coulomb friction: a full ball rolls at 5/7 of its speed, after 2v/(7μg), whatever the friction "
         "(Coriolis 1835; a test of the Newton physics engine, test_kamino_solvers_dvi.py).",
-        "Both are closed forms; the ball sinks in by a part of its radius and so turns with a shorter arm.",
+        "0.05 %: both are closed forms; the ball sinks in by a part of its radius and so turns with a shorter arm.",
         "No resistance to rolling, which `rolling` adds.",
         skid,
         quick=True,
@@ -114,7 +114,7 @@ CASES = [
         "rolls",
         "A ball, a disc and a ring roll down a slope",
         "Closed form g sin θ t²/2 over 1 + I/(m R²), with I/(m R²) = 2/5, 1/2, and 0.67 of a ring of the radii 8 and 2 cm.",
-        "Closed forms without slip: friction 0.5 is above all that rolling needs.",
+        "0.05 %: closed forms without slip, where friction 0.5 is above all that rolling needs.",
         "Rigid. Elastic balls lose 1 to 2.5 % of their way by the points on which they roll (`scenes/race.txt`).",
         rolls,
     ),
@@ -122,7 +122,7 @@ CASES = [
         "green",
         "A golf ball stops on the green",
         "Closed form 7 v² R/(10 g r) of a full ball with the arm r of the resistance; 1.8 m/s is what a stimpmeter gives it.",
-        "As in [how rolling resistance is computed](physics-rigid.md#rolling-resistance).",
+        "0.05 %: a closed form, as in [how rolling resistance is computed](physics-rigid.md#rolling-resistance).",
         "The arm of a real lawn depends on speed; the model has one number.",
         green,
     ),

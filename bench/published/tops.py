@@ -44,9 +44,9 @@ def gyro(runs: Runs) -> Found:
     lowest = math.degrees(math.acos(float(np.mean(depth)) / arm))
     return Found(
         [
-            Row("steady precession", steady, rate, 0.002, "rad/s"),
-            Row("period of nodding", nod, float(np.mean(np.diff(times))), 0.002, "s"),
-            Row("lean when lowest", math.degrees(math.acos(low)), lowest, 0.002, "°"),
+            Row("steady precession", steady, rate, 0.0005, "rad/s"),
+            Row("period of nodding", nod, float(np.mean(np.diff(times))), 0.0005, "s"),
+            Row("lean when lowest", math.degrees(math.acos(low)), lowest, 0.0005, "°"),
         ]
     )
 
@@ -73,8 +73,8 @@ def flip(runs: Runs) -> Found:
     fastest = math.sqrt(_largest_square(inertia, energy, square))
     found = float(np.mean(np.diff(highest)))
     rows = [
-        Row("time from one turn-over to the next", turn, found, 0.002, "s"),
-        Row("fastest spin on the way", fastest, float(spin.max()), 0.002, "rad/s"),
+        Row("time from one turn-over to the next", turn, found, 0.0005, "s"),
+        Row("fastest spin on the way", fastest, float(spin.max()), 0.0005, "rad/s"),
     ]
     curve = Curve("time [s]", "spin [rad/s]", {"found": (run.times, spin)}, {})
     return Found(rows, curve if len(times) else None)
@@ -93,7 +93,7 @@ CASES = [
         "A heavy top precesses and nods",
         "Steady precession of a symmetric top, (I₁ − I₃) cos θ Ω² − I₃ s Ω + m g l = 0, and its nutation by an elliptic integral "
         "(Klein and Sommerfeld 1897; Goldstein, Classical Mechanics, 5.7).",
-        "The joint that holds the tip gives way by a part of the size of the top.",
+        "0.05 %: the joint that holds the tip gives way by a part of the size of the top.",
         "Air and friction of the bearing are left out. `scenes/tops.txt` has tops that stand on the ground by friction.",
         gyro,
     ),
@@ -101,7 +101,7 @@ CASES = [
         "flip",
         "A block turns over about its middle axis",
         "Euler's equations: 2K(k)/λ from one turn-over to the next (Landau and Lifshitz, Mechanics, § 37).",
-        "Rotations are exact to rounding; the time depends on the logarithm of how far off the axis it starts.",
+        "0.05 %: rotations are exact to rounding; the time depends on the logarithm of how far off the axis it starts.",
         "A rigid block. One that deforms ends up about the axis of its largest moment, as its `damping` takes energy.",
         flip,
         peers=True,
