@@ -109,6 +109,15 @@ def test_values_that_do_not_fit_the_kind(block, cause):
     assert any(cause in found for found in problems(ROD + BAR + block + "\n" + END)), problems(ROD + BAR + block + "\n" + END)
 
 
+def test_a_place_beside_a_skin_is_within_a_spacing(prepared):
+    """A string is tied to a balloon 5 mm off its skin, which is 1 mm thick and has particles 4 cm apart."""
+    balloon = "object balloon { shape sphere 20 cm sheet thickness 1 mm  position (0, 0, 1) m  density 1000\n"
+    balloon += "  elasticity 1 MPa  resolution 4 cm }\n"
+    prepared(balloon + "joint ball balloon world { at (0, 0, 1.205) m }\n" + END)
+    with pytest.raises(SceneError, match="outside of balloon: 9"):
+        prepared(balloon + "joint ball balloon world { at (0, 0, 1.3) m }\n" + END)
+
+
 def test_places_far_from_what_is_joined_are_refused(prepared):
     """With the distance; of a spring each end by itself. They are told beside other mistakes of the file."""
     far = "joint ball rod bar { at (0, 0, 3) m }\njoint spring rod bar { from (0, 0, 1) m to (0, 0, 0) m }\n"

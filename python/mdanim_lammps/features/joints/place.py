@@ -13,7 +13,7 @@ from ...model.distance import distance
 from ...model.model import Model
 from ...model.segments import to_segments
 from ...scene.formatting import say
-from ...scene.scene import Box, Mesh, PieceShape, Rope, SceneRecord, Sheet, Solid
+from ...scene.scene import Box, Mesh, PieceShape, Rope, SceneRecord, Sheet, Shell, Solid
 from ...scene.schema import Vector
 from .links import NOTHING, Link, links_of
 from .planes import ON, across, off_plane
@@ -22,7 +22,7 @@ from .words import WORLD, Joint
 BENT = 3e-5
 """Part of its length by which a piece of a rope is off a straight line, from which on it has two directions."""
 
-BY_PARTICLES = (Rope, Sheet, Mesh, PieceShape)
+BY_PARTICLES = (Rope, Sheet, Shell, Mesh, PieceShape)
 """Shapes whose places are told by their particles, or by a file."""
 
 
