@@ -74,7 +74,8 @@ class RunValues:
     def _deepest(self) -> float:
         """Deepest penetration of a run that has ended [m]; NaN of others."""
         path = self.trajectory.path.parent / "summary.json"
-        return read_json(path, SUMMARY)["penetration"] if path.exists() else np.nan
+        found = read_json(path, SUMMARY).get("penetration") if path.exists() else None
+        return np.nan if found is None else found
 
     def has(self, column: str) -> bool:
         """Whether the ledger of the run has a column; OutputError where it is damaged."""

@@ -11,7 +11,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from ..errors import OutputError
-from ..results.files import MARK, check_free, open_folder, write_json
+from ..results.files import MARK, check_free, disk_errors, open_folder, write_json
 from ..results.stored import read_manifest
 from ..results.untrusted import check_folder, check_plain
 from ..scene.meshes import mesh_files
@@ -51,7 +51,8 @@ def output_folder(record: SceneRecord, out: str | Path | None = None) -> Path:
 
 def check_room(folder: Path, *, force: bool) -> None:
     """Raises OutputError where results stand in the way of those of a run: to be told before its scene is prepared."""
-    check_free(folder, force=force, keep=(STUDY,))
+    with disk_errors(folder):
+        check_free(folder, force=force, keep=(STUDY,))
 
 
 def default_folder(record: SceneRecord) -> Path:

@@ -80,9 +80,9 @@ def _thickness(context: Context, free: np.ndarray) -> np.ndarray:
     solids, body = context.scene.solids, context.reach.body[free]
     own = {shape: shapes.thickness(shape) for shape in {solids[m].shape for m in free.tolist()}}
     found = np.array([own[solids[m].shape] for m in free.tolist()])
-    first, parts = np.unique(body, return_counts=True)
-    for b in first[parts > 1].tolist():
-        of = np.flatnonzero(body == b)
+    order = np.argsort(body, kind="stable")
+    bodies = np.split(order, np.flatnonzero(np.diff(body[order])) + 1)
+    for of in (of for of in bodies if len(of) > 1):
         large = of[largest([solids[m].shape for m in free[of].tolist()], LARGE)]
         small = np.setdiff1d(of, large)
         found[small] = np.maximum(found[small], np.minimum(SMALL * found[small], found[large].min()))

@@ -17,8 +17,9 @@ from ...model.model import Model
 from ...model.rope import section
 from ...reach.region import Sweeps
 from ...scene.once import once_for
-from ...scene.scene import Rope, SceneRecord
+from ...scene.scene import SceneRecord
 from ..contact.pairs import damping, frictions, pair_rules
+from ..ropes.words import is_rope
 from ..sheets.words import is_sheet
 from ..tearing.words import fills, tears
 from .words import Itself
@@ -31,11 +32,6 @@ APART = 2.5
 """Spacings without load between parts of one object, up to which they never touch each other, beside twice the reach."""
 FACES = ((0, 3, 2, 1), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7))
 """Corners of the faces of a cell, counter-clockwise seen from outside."""
-
-
-def is_rope(solid: Any) -> bool:
-    """Whether an object is a line of particles."""
-    return isinstance(solid.shape, Rope)
 
 
 def folds(solid: Any) -> bool:
