@@ -202,6 +202,7 @@ def test_the_scene_as_it_is_proposed(prepared):
         (["a[1]", "a[3]"], "a (2 objects)"),
         (["gate[1].post[1]", "gate[1].post[2]"], "gate.post (2 objects)"),
         (["g.block[1]", "g.block[2]"], "g.block[1...2]"),
+        (["lid", "biscuit.piece[1]", "biscuit.piece[2]"], "lid and 2 more"),
     ],
 )
 def test_names_of_like_objects(names, told):

@@ -52,10 +52,13 @@ def bare_name(name: str) -> str:
 
 
 def told_together(names: Sequence[str]) -> str:
-    """Like objects in a message: ``ball``, ``domino[1...9]`` of a repeat without gaps, else ``gate.post (12 objects)``."""
+    """Objects in a message: ``ball``, ``domino[1...9]`` of a repeat without gaps, ``gate.post (12 objects)`` of one name, else
+    ``ball and 3 more``."""
     if len(names) == 1:
         return names[0]
     bare = bare_name(names[0])
+    if any(bare_name(name) != bare for name in names):
+        return f"{names[0]} and {len(names) - 1} more"
     found = [re.fullmatch(r"(.*)\[(-?\d+)\]", name) for name in names]
     numbers = [int(one[2]) for one in found if one and one[1] == bare]
     if len(numbers) == len(names) and numbers == list(range(numbers[0], numbers[-1] + 1)):
