@@ -53,7 +53,7 @@ def _spent() -> float:
 
 
 def _limited(function, *values):
-    """What a function returns in a process with limits, or which of them it passed."""
+    """The result of a function in a process with limits, or which of them it passed."""
     near, far = multiprocessing.Pipe(duplex=False)
 
     def work() -> None:
@@ -84,7 +84,7 @@ def _size(path: Path) -> tuple[int, float] | None:
 
 
 def _refused(path: Path, word: str, scale: float) -> str:
-    """What the message says where a file is not taken; empty where it is."""
+    """The message where a file is not taken; empty where it is."""
     with tempfile.TemporaryDirectory() as name:
         scene = Path(name) / "body.txt"
         body = f'shape {word} "{path.resolve()}" scale {scale!r}  position (0, 0, 1) m  density 1000 kg/m^3  elasticity rigid'
