@@ -5,6 +5,7 @@ Figures of docs/physics-solids.md, Masses. Masses are those of `model/masses.py`
 
 bars    first torsional frequency of a free square bar, five times as long as thick, over sqrt(G J / rho I)/2L
 balls   lowest frequency of a free ball over that of an elastic ball, a torsion of its halves
+twist   torsional stiffness of a layer of a long square bar, what makes it right, and what that costs
 program the largest w where a linear program makes the least w as large as it can be
 """
 
@@ -85,6 +86,88 @@ def balls() -> tuple[list[str], list[list]]:
     return ["cells across", "fitted", "w = 1"], rows
 
 
+def layer(cells: int) -> tuple[np.ndarray, np.ndarray, float]:
+    """Springs of a long square bar in a layer and from it to the next: ends, the lower x first, shape (S, 2, 3), from its axis;
+    stiffness, shape (S,); and the polar moment of the masses of the layer over that of a full square."""
+    length = float(SLENDER * cells)
+    body = model(Box((length, float(cells), float(cells))), 1.0, mass=length * cells**2)
+    position = body.position - body.position.mean(axis=0)
+    places = np.unique(position[:, 0].round(6))
+    here = np.isclose(position[:, 0], places[len(places) // 2])
+    ends = position[body.spring.astype(int)]
+    ends = np.where((ends[:, 0, 0] > ends[:, 1, 0])[:, None, None], ends[:, ::-1], ends)
+    inside = np.isclose(ends[:, 0, 0], places[len(places) // 2])
+    polar = (body.mass[here] * (position[here, 1:] ** 2).sum(axis=1)).sum() / body.mass[here].sum() / (cells**2 / 6.0)
+    return ends[inside], body.stiffness[inside], polar
+
+
+def rigidities(ends: np.ndarray, stiffness: np.ndarray, cells: int) -> tuple[float, float, float, float]:
+    """E, bending and torsional stiffness over those of a solid bar of this E, and Poisson's ratio of the outer faces.
+
+    Each layer is moved as the one before and turned, pulled or bent on; the periodic motion on top, warping among it, is that
+    of least energy: Saint-Venant's problem for springs.
+    """
+    way = ends[:, 1] - ends[:, 0]
+    unit = way / np.linalg.norm(way, axis=1)[:, None]
+    sites, index = np.unique(ends[..., 1:].round(6).reshape(-1, 2), axis=0, return_inverse=True)
+    index, row = index.reshape(-1, 2), np.arange(len(ends))
+    lengthen = np.zeros((len(ends), len(sites), 3))
+    lengthen[row, index[:, 1]] += unit
+    lengthen[row, index[:, 0]] -= unit
+    lengthen = lengthen.reshape(len(ends), -1)
+    pull = unit[:, 0] * way[:, 0]
+    bend = pull * ends[..., 2].mean(axis=1)
+    twist = way[:, 0] * (unit[:, 2] * ends[:, 1, 1] - unit[:, 1] * ends[:, 1, 2])
+    energies, moved = [], []
+    for load in (pull, bend, twist):
+        u = -np.linalg.lstsq((lengthen.T * stiffness) @ lengthen, lengthen.T @ (stiffness * load), rcond=1e-10)[0]
+        energies.append(float(stiffness @ (load + lengthen @ u) ** 2))
+        moved.append(u.reshape(-1, 3))
+    young = energies[0] / cells**2
+    face = sites[:, 1] == sites[:, 1].max()
+    narrower = -(np.ptp(sites[face, 0]) ** -1) * (moved[0][face, 1][-1] - moved[0][face, 1][0])
+    return young, energies[1] / (young * cells**4 / 12.0), energies[2] / (young * SHEAR * TORSION * cells**4), narrower
+
+
+def outer(ends: np.ndarray, cells: int, edges: float, diagonals: float) -> np.ndarray:
+    """Shares of springs, shape (S,), where edges and diagonals in outer faces lose these parts to the next plane inside."""
+    way = ends[:, 1] - ends[:, 0]
+    lost = np.where((abs(way) > 0.5).sum(axis=1) == 2, diagonals, edges)
+    share = np.ones(len(ends))
+    for axis in (1, 2):
+        deep = np.where(abs(way[:, axis]) < 0.5, 0.5 * cells - abs(ends[:, 0, axis]), np.nan)
+        share *= np.where(np.isclose(deep, 0.0), 0.5 * (1.0 - lost), 1.0)
+        share *= np.where(np.isclose(deep, 1.0), 1.0 + 0.5 * lost * (1 + (cells == 2)), 1.0)
+    return share
+
+
+def twist() -> tuple[list[str], list[list]]:
+    """Torsion of the lattice as it is, and with parts of outer faces that make bending and torsion right together."""
+    from scipy.optimize import fsolve
+
+    rows = []
+    for cells in (2, 3, 4, 6, 8):
+        ends, stiffness, polar = layer(cells)
+        _, bends, twists, _ = rigidities(ends, stiffness, cells)
+
+        def off(parts: np.ndarray, ends: np.ndarray = ends, cells: int = cells) -> np.ndarray:
+            return np.array(rigidities(ends, outer(ends, cells, *parts), cells)[1:3]) - 1.0
+
+        parts = fsolve(off, (0.1, 0.25))
+        _, _, _, poisson = rigidities(ends, outer(ends, cells, *parts), cells)
+        rows.append([cells, *(f"{v:.3f}" for v in (bends, twists, polar, math.sqrt(twists / polar), *parts, poisson))])
+    return [
+        "cells thick",
+        "bending",
+        "torsion",
+        "polar moment",
+        "speed of twist",
+        "edges",
+        "diagonals",
+        "nu of outer faces",
+    ], rows
+
+
 def program() -> tuple[list[str], list[list]]:
     """Largest and least w by a linear program, and by the fit."""
     from scipy.optimize import linprog
@@ -109,7 +192,7 @@ def program() -> tuple[list[str], list[list]]:
     return ["shape", "least w", "largest w", "second largest", "fit: least", "largest"], rows
 
 
-TABLES = {"bars": bars, "balls": balls, "program": program}
+TABLES = {"bars": bars, "balls": balls, "twist": twist, "program": program}
 
 
 if __name__ == "__main__":

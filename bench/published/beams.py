@@ -202,10 +202,12 @@ CASES = [
         "Closed forms: √(E/ρ), and Saint-Venant's √(G J/ρ I) with J = 0.1406 a⁴ and I = a⁴/6 of a square.",
         "1 % of stretching; 2 % of twist. The held end keeps the cross section from warping, as if the bar were shorter"
         " by a part of its thickness.",
-        "Bars of few cells are too stiff against twist: 1.57 times with two cells across, 1.16 with four, 1.04 with eight"
-        " ([why](physics-solids.md#masses)). Waves are faster by half of that, 25 %, 8 % and 2 % at `preview`, `balanced`"
-        " and `reference`: springs of the outer faces are weaker by what makes bending right, and nothing is left in them"
-        " to make twist right as well. Where a bar is to twist, write a finer `resolution` in it.",
+        "Bars of few cells are too stiff against twist: 1.59 times with two cells across, 1.165 with four, 1.04 with eight."
+        " Waves are faster by half of that, 25 %, 8 % and 2 % at `preview`, `balanced` and `reference`. That is all of the"
+        " error: the same springs by Saint-Venant's problem for one layer, `python bench/lattice_modes.py twist`, give 8.2 %"
+        " where the wave is 8.1 % fast, and the polar moment is right to 0.4 %. *Tried:* other parts for springs of outer"
+        " faces, which make bending and twist right together; Poisson's ratio of the outer faces of a pulled bar then falls"
+        " from 0.25 to 0.22 ([why](physics-solids.md#masses)). Where a bar is to twist, write a finer `resolution` in it.",
         waves,
     ),
 ]
