@@ -24,7 +24,7 @@ from mdanim_lammps.scene.parse import load_scene
 SIZE = 0.2
 """Longest side of the box around each body [m]."""
 SECONDS, BYTES = 20, 2_000_000_000
-"""What a try may take: processor time [s], data [bytes]."""
+"""Most that a try may take: processor time [s], data [bytes]."""
 SUFFIXES = (".stl", ".obj", ".ply")
 
 
