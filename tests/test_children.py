@@ -156,7 +156,7 @@ def test_processes_of_a_sweep_run_nothing_of_the_folder(theirs):
 
 def test_a_study_runs_nothing_of_the_folder(theirs):
     """It runs in this process, and draws a plot."""
-    theirs.program("study", "scene.txt", "--budget", "20 s", "--ladders", "time step", "-q")
+    theirs.program("study", "scene.txt", "--budget", "8 s", "--ladders", "time step", "-q")
     assert list(theirs.folder.rglob("*.png")), "no plot was drawn"
 
 

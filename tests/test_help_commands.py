@@ -95,11 +95,12 @@ def typos(word):
         yield from (word[:k] + wrong + word[k + 1 :] for wrong in "aeqx")
 
 
-def test_typos_are_guessed():
-    """One wrong letter in any word of a scene of three letters or more: that word, or one that is as near."""
+@pytest.mark.parametrize("every", [4, pytest.param(1, marks=pytest.mark.soak)])
+def test_typos_are_guessed(every):
+    """One wrong letter in a word of three letters or more, each fourth every day: that word, or one that is as near."""
     known = words()
     assert {*BLOCKS, *(k for block in KEYWORDS.values() for k in block)} <= {*known}
-    for word in (w for w in known if len(w) > 2):
+    for word in [w for w in known if len(w) > 2][::every]:
         for typo in {*typos(word)} - {*known}:
             hint = did_you_mean(typo, known)
             guess = hint.removeprefix("did you mean '").removesuffix("'?")

@@ -185,9 +185,7 @@ CASES = [
         "same time, 30 %. The clocks of the gate differ, so both series begin at their first 5 N.",
         "The push on a body comes from the heights of the liquid around it (W12), which follow with a lag (W13), so "
         "that it feels seven eighths of what the heads of the water beside it would give. These are too low as well: "
-        "water that shoots up before the column has no blow, and while it comes down its head is below its surface. "
-        "*Tried:* the height of the surface in place of the head gives an impulse of 12.1 N s, and a quarter too much "
-        "force after the blow.",
+        "water that shoots up before the column has no blow, and while it comes down its head is below its surface.",
         column,
     ),
     Case(
