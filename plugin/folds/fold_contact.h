@@ -40,7 +40,6 @@ class FoldContact {
   void renew(const Vec3 *own, const Vec3 *other, double skin);
   // Adds forces, and returns the energy.
   double push(const FoldNodes &own, const FoldNodes &other, double dt) const;
-  bool is_near() const { return !elements.empty(); }
   std::size_t bytes() const { return (first.capacity() + elements.capacity()) * sizeof(int) + boxes.capacity() * sizeof(Box); }
 
  private:
