@@ -27,13 +27,13 @@ test("arrows are as long as shows well", () => {
   assert.deepEqual([0.7, 2, 49.999, 50, 0].map(roundValue), [0.5, 2, 20, 50, 1]);
 });
 
-test("a quantity is the way's, the scene's, or that of the run that has ended", async () => {
-  const asked = [], source = { track: async (k) => { asked.push(k); return TRACK; }, curve: async (named) => ({ what: named }), told: async () => { throw new Error("when the run has ended"); } };
+test("a quantity is the way's, the scene's, or what the run tells once it has frames", async () => {
+  const asked = [], source = { track: async (k) => { asked.push(k); return TRACK; }, curve: async (named) => ({ what: named }), told: async () => { throw new Error("no frame yet"); } };
   const q = new Quantities(source, { objects: [{ name: "a" }, { name: "a.b" }] });
   assert.equal(await q.look(), false);
   assert.deepEqual([...(await q.curve("a.b.speed")).value], [5, 2]);
   assert.deepEqual(asked, [1]);
-  await assert.rejects(q.curve("a.contact.z"), /when the run has ended/);
+  await assert.rejects(q.curve("a.contact.z"), /no frame yet/);
   source.told = async () => ({ own: { "a.distance(a.b)": "m" }, words: { "contact.z": "N" }, globals: { "energy.work": "J" }, arrows: ["contact", "velocity"] });
   assert.equal(await q.look(), true);
   assert.deepEqual(q.arrows, ["velocity", "contact"]);

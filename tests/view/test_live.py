@@ -35,8 +35,19 @@ def told(link, wanted) -> dict:
     return known
 
 
+def answers(link, asked: dict) -> dict[str, np.ndarray]:
+    """Arrays that the server answers with."""
+    link.send(json.dumps(asked))
+    while isinstance(said := link.recv(60), str):
+        assert "news" in json.loads(said), said
+    size = int.from_bytes(said[4:8], "little")
+    table = json.loads(said[8 : 8 + size])["buffers"]
+    return {name: np.frombuffer(said, dtype, count, 8 + size + at) for name, (dtype, at, count) in table.items()}
+
+
 def test_bits_do_not_depend_on_a_view(scene, tmp_path):
-    """Watched, paused and let go by a page, every frame and the ledger are those of a run that was left alone."""
+    """Watched, paused and let go by a page, every frame and the ledger are those of a run that was left alone; curves of the
+    paused run are the begin of those at the end."""
     Scene.load(scene).run(tmp_path / "alone")
     run = Held(scene, tmp_path / "seen")
     assert run.wait_for("paused").count == HOLD + 1
@@ -45,10 +56,19 @@ def test_bits_do_not_depend_on_a_view(scene, tmp_path):
         for frame in range(HOLD + 1):
             link.send(json.dumps({"get": frame, "layers": 3}))
             assert link.recv(60)[:4] == b"MDF1"
+        before = [answers(link, {"curve": ["cube", word]}) for word in ("strain.max", "contact.z")]
+        before.append(answers(link, {"arrows": "contact"}))
+        assert len(before[0]["value"]) == HOLD + 1 and np.isfinite(before[1]["value"][1:]).all()
         time.sleep(0.5)
         assert run.wait_for("paused").count == HOLD + 1
         link.send('{"do": "go"}')
         told(link, lambda known: known.get("state") == "done")
+        after = [answers(link, {"curve": ["cube", word]}) for word in ("strain.max", "contact.z")]
+        after.append(answers(link, {"arrows": "contact"}))
+    for early, late in zip(before, after):
+        for name, values in early.items():
+            np.testing.assert_array_equal(late[name][: len(values)], values)
+    assert len(after[0]["value"]) == 16
     run.thread.join()
     assert compare(tmp_path / "alone", tmp_path / "seen").equal
     assert (tmp_path / "alone" / "ledger.csv").read_bytes() == (tmp_path / "seen" / "ledger.csv").read_bytes()

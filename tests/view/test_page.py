@@ -208,10 +208,18 @@ def test_a_live_run_is_let_go_and_stopped(browser, tmp_path):
         browser.until(SHOWN)
         browser.until("document.getElementById('state').innerText == 'paused'")
         assert browser.js("return mdanim.run.count") == HOLD + 1 and text(browser, "pause") == "go on"
+        press(browser, "arrows-contact")
+        for word in ("strain.max", "contact.z"):
+            choose(browser, "curve-what", word)
+            press(browser, "add-curve")
+            browser.until(f"mdanim.shows.curves.names.includes('cube.{word}')")
+        so_far = "return [...mdanim.shows.curves.chosen.values()].map(({ curve }) => curve.value.length)"
+        assert browser.js(so_far) == [HOLD + 1] * 2 and browser.js("return mdanim.shows.overlay.arrows.length") == 1
         told = "const e = document.getElementById('pause'); e.click(); return [e.textContent, e.disabled]"
         assert browser.js(told) == ["after this frame …", True]
         browser.until("document.getElementById('state').innerText == 'done'")
         browser.until("mdanim.shown.frame == 15 && document.getElementById('pause').hidden")
+        browser.until("[...mdanim.shows.curves.chosen.values()].every(({ curve }) => curve.value.length == 16)")
     run.thread.join()
     assert compare(tmp_path / "alone", tmp_path / "go").equal
     run = Held(tmp_path / "fall.txt", tmp_path / "stop")

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from functools import cached_property
 
 import numpy as np
@@ -23,10 +24,13 @@ class RunValues:
 
     Args:
         trajectory: of the run; one that has only its start has no ledger, and no values that need one.
+        columns: of its ledger, each of shape (F,); None reads ledger.csv when it is needed.
     """
 
-    def __init__(self, trajectory: Trajectory):
+    def __init__(self, trajectory: Trajectory, columns: Mapping[str, np.ndarray] | None = None):
         self.trajectory, self.times = trajectory, trajectory.times
+        if columns is not None:
+            self._columns = columns
 
     def series(self, of: Of) -> np.ndarray:
         """Values in SI units, shape (F,), NaN where there are none.
@@ -79,20 +83,21 @@ class RunValues:
 
     def has(self, column: str) -> bool:
         """Whether the ledger of the run has a column; OutputError where it is damaged."""
-        return self._ledger is None or column in self._ledger.columns
+        return self._columns is None or column in self._columns
 
     def _column(self, name: str) -> np.ndarray:
         """A column of the ledger. Raises UsageError where it has none of this name."""
-        if self._ledger is None:
+        if self._columns is None:
             return np.full(1, np.nan)
         if not self.has(name):
             raise UsageError(f"the ledger of the run has no column {name}, which a quantity of the pictures is found from")
-        return self._ledger.array(name)[: len(self.trajectory)]
+        return self._columns[name][: len(self.trajectory)]
 
     @cached_property
-    def _ledger(self) -> Ledger | None:
+    def _columns(self) -> Mapping[str, np.ndarray] | None:
         """None where a run has only its start."""
         path = self.trajectory.path.parent / "ledger.csv"
         if len(self.trajectory) == 1 and not path.exists():
             return None
-        return Ledger.read(path, most=len(self.trajectory))
+        ledger = Ledger.read(path, most=len(self.trajectory))
+        return {name: ledger.array(name) for name in ledger.columns}

@@ -30,6 +30,8 @@ if TYPE_CHECKING:
 
 MOST_TEXT, MOST_TEXT_OF_OBJECT = 1 << 18, 1 << 12
 """Signs of a stored scene at most, and for each object; a lock has 340 of an object with all its settings."""
+_LASTING = ("path", "metadata", "format", "dt", "steps_per_frame", "frames", "scene")
+"""Attributes of a trajectory that do not grow with its frames."""
 _QUOTED = re.compile(r'"[^"\n]*"|#[^\n]*')
 _UNFOLDS = re.compile(r"\b(repeat|include)\b")
 """Statements that a scene which is written out does not have."""
@@ -64,11 +66,25 @@ class Trajectory(*TRACKS):  # type: ignore[misc]  # features are found when the 
             check_steps(self.path, self.dt, self.steps_per_frame)
             self.frames = FrameReader(self.path, file)
             """Also of frames that were not on the disk when this was opened."""
-            steps, times, sums = self.frames.rows()
-            count = self._count(steps, times, sums)
-            check_frames(self.path, frame_shapes(self.metadata), self.frames.tables, steps[:count], times[:count])
+            self._take_rows()
             if self.frames.has_checksums:
                 file.close()
+
+    def renewed(self, most: int) -> Trajectory:
+        """The same run with the frames that it has by now, the first ``most`` of them; the file is not opened again.
+
+        Raises OutputError where a frame that has come is damaged.
+        """
+        later = object.__new__(Trajectory)
+        later.__dict__ |= {name: value for name, value in self.__dict__.items() if name in _LASTING}
+        with later._damage():
+            later._take_rows(most)
+        return later
+
+    def _take_rows(self, most: int | None = None) -> None:
+        steps, times, sums = self.frames.rows()
+        count = self._count(steps[:most], times[:most], sums)
+        check_frames(self.path, frame_shapes(self.metadata), self.frames.tables, steps[:count], times[:count])
         self.steps: np.ndarray = steps[:count]
         """Time step of each frame, shape (F,)."""
         self.times: np.ndarray = times[:count]

@@ -11,6 +11,8 @@ from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
+
 from ..errors import MdanimError, OutputError, SceneError
 from ..results.files import in_use
 from ..results.ledger import Ledger
@@ -130,13 +132,20 @@ class Tail:
             return self._feed
 
     def told(self) -> ShownQuantities:
-        """Quantities of the run. Raises OutputError as long as it goes on."""
+        """Quantities of the run, of one that goes on those of the frames that there are. Raises OutputError before the first."""
         with self.changed:
+            p, columns = self._progress, None
             if self.live:
-                raise OutputError("the run goes on: what needs all of it can be shown when it has ended")
+                if not p.count:
+                    raise OutputError("the run has no frame yet")
+                table = np.array(p.rows[: p.count * len(p.columns)]).reshape(p.count, -1)
+                columns = dict(zip(p.columns, table.T))
             if self._told is None:
-                self._told = ShownQuantities(self.folder)
-            return self._told
+                self._told = ShownQuantities(self.folder, columns)
+            told = self._told
+        if columns is not None:
+            told.renew(columns)  # outside: while it waits for a curve, the run is followed
+        return told
 
     def read_ahead(self) -> None:
         """Make the scene, where there is one, before a page asks for it: it takes half a second, as a browser does to begin."""
@@ -229,7 +238,7 @@ class Tail:
                 self._facts = read_facts(self.folder)
             except OutputError as error:
                 message = str(error)
-        if state != self._state:
+        if (state in LIVE) != self.live:
             self._told = None
         self._state, self._message = state, message
 

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""Curves of quantities and vectors of arrows of a run that has ended, for a page."""
+"""Curves of quantities and vectors of arrows of a run, for a page."""
 
 from __future__ import annotations
 
 import threading
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from functools import cached_property
 from pathlib import Path
 
@@ -28,19 +28,30 @@ Named = str | list[str]
 
 
 class ShownQuantities:
-    """Quantities of a run that has ended; may be used by several threads.
+    """Quantities of a run, at the frames that it has; may be used by several threads.
 
     Args:
         folder: output folder of the run.
+        columns: of its ledger, as of `RunValues`; a run that goes on has no ledger.csv.
 
     Raises:
         OutputError: no trajectory there, or a damaged one.
     """
 
-    def __init__(self, folder: Path):
-        self._trajectory = Trajectory(folder)
-        self._values = RunValues(self._trajectory)
+    def __init__(self, folder: Path, columns: Mapping[str, np.ndarray] | None = None):
         self._turn = threading.Lock()
+        self._trajectory = Trajectory(folder)
+        self._values = RunValues(self._trajectory, columns)
+        if columns is not None:
+            self.renew(columns)
+
+    def renew(self, columns: Mapping[str, np.ndarray]) -> None:
+        """Take the frames that have come since, as many as the ledger has rows. Raises OutputError."""
+        count = len(columns["time"])
+        with self._turn:
+            if count != len(self._trajectory):
+                self._trajectory = self._trajectory.renewed(count)
+                self._values = RunValues(self._trajectory, columns)
 
     def head(self) -> dict:
         """Quantities that can be asked for, with units: ``own``, those of the scene, ``words`` of any object, ``globals``; the

@@ -22,7 +22,7 @@ export class Curves {
     if (this.chosen.size >= MOST) return this.told(`${MOST} curves are the most that are shown: take one away first`);
     try {
       const curve = await this.quantities.curve(what);
-      if (![...curve.value].some(Number.isFinite)) throw new Error("the run does not tell it at any frame");
+      if (!this.quantities.live && ![...curve.value].some(Number.isFinite)) throw new Error("the run does not tell it at any frame");
       this.chosen.set(what, { curve, shown: true });
       await this.addSecond(what);
       this.draw();

@@ -8,7 +8,7 @@ const QUIET = 400; // milliseconds without typing before a text is checked
 // `most`: bytes of a text below which the server takes it.
 export async function offerEditing(source, most) {
   if (byId("editor")) return;
-  const text = element("textarea", { spellcheck: false, rows: 18, ariaLabel: "text of the scene" }), problems = element("div", { id: "problems" });
+  const text = element("textarea", { spellcheck: false, rows: 12, ariaLabel: "text of the scene" }), problems = element("div", { id: "problems" });
   const again = element("button", { id: "again", textContent: "run again", title: "Run this text into a folder of its own (Ctrl+Enter)" });
   const sliders = element("div", { id: "lets", className: "lets" });
   const panel = element("details", { id: "editor", open: true }, element("summary", { textContent: "Scene" }), sliders, text, problems, again);

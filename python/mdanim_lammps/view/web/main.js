@@ -15,11 +15,12 @@ import { COARSEST, Stage } from "./stage.js";
 
 const SLOW = 60, REST = 350; // milliseconds: of a picture that is too slow, and without motion before one in full
 const TOLD = 200; // milliseconds between two lots of numbers beside pictures that are eased: to draw these takes as long as a picture
+const GROW_SHARE = 2; // time between two questions for lines that grow, over that which the answers took
 const LIVE = ["preparing", "running", "paused"];
 const run = { file: null, count: 0, total: 0, executors: 1, state: "", message: "", seconds: 0, cost: {}, facts: {}, owners: [] };
 const energies = new Energies(), height = new Height(), cache = new Cache();
 const report = byId("replay"); // in a report: the block of data
-let source, scene, stage, player, shows, saving, second = null, hand = null, shown = null, shownKey = "", picked = null, ease = 0, slow = 0, drawnAt = 0, rested = true, failedAt = 0, range = 0.002, lastTick = 0, toldKey = "", toldAt = 0, asked = "", grownAt = 0;
+let source, scene, stage, player, shows, saving, second = null, hand = null, shown = null, shownKey = "", picked = null, ease = 0, slow = 0, drawnAt = 0, rested = true, failedAt = 0, range = 0.002, lastTick = 0, toldKey = "", toldAt = 0, asked = "", growAt = 0;
 
 async function start() {
   byId("speed").append(...SPEEDS.map((x) => element("option", { value: x, textContent: `${x} ×`, selected: x === 1 })));
@@ -87,7 +88,8 @@ function refresh() {
   if (energies.names.length && energies.rows.length) words.push(`energy residual ${number(energies.residual, 2)}`);
   byId("progress").textContent = words.join("   ");
   offer("executor", run.executors > 1, "by executor", "of a run with -n");
-  if (live && performance.now() - grownAt > 1000) grow();
+  if (live && shows) shows.quantities.live = true;
+  if (live && performance.now() > growAt) grow();
   if (shows && !live) shows.ended();
   if (!report) showCost(run.cost, run.facts); // a report has a table of it
   showExpects(run.facts);
@@ -233,11 +235,13 @@ function choose(k) {
   if (k !== null) showHeight();
 }
 
-// Ask again for lines that grow while the run goes on.
-function grow() {
-  grownAt = performance.now();
+// Ask again for lines that grow while the run goes on: each second, and less often where the answers take long.
+async function grow() {
+  const begun = performance.now();
+  growAt = Infinity;
   if (picked !== null) showHeight();
-  shows?.refresh().catch(() => {});
+  await shows?.refresh().catch(() => {});
+  growAt = performance.now() + Math.max(1000, GROW_SHARE * (performance.now() - begun));
 }
 
 async function showHeight() {

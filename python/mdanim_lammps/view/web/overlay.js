@@ -90,7 +90,7 @@ export class Overlay {
     for (const k of chosen) {
       if (this.only !== null && k !== this.only) continue;
       const begin = object.subarray(12 * k + 6, 12 * k + 9), v = of(k);
-      if (![...v].every(Number.isFinite)) continue;
+      if (v.length < 3 || ![...v].every(Number.isFinite)) continue; // no value, or none yet
       const ends = [this.at(...begin), this.at(...begin.map((x, d) => x + length * v[d]))];
       if (ends[0] && ends[1]) this.arrow(...ends, this.color(word));
     }

@@ -43,19 +43,19 @@ export function roundValue(value) {
   return power * [5, 2, 1].find((k) => k * power <= value * (1 + 1e-12));
 }
 
-// Quantities that a page may show of a run. While the run goes on only its motion is known.
+// Quantities that a page may show of a run; while it goes on ("live") those of the frames that there are.
 export class Quantities {
   constructor(source, scene) {
-    Object.assign(this, { source, scene, own: {}, words: {}, globals: {}, arrows: ["velocity"], untold: {}, whole: false, vectors: new Map() });
+    Object.assign(this, { source, scene, own: {}, words: {}, globals: {}, arrows: ["velocity"], untold: {}, known: false, live: false, why: "", vectors: new Map() });
   }
 
-  // Ask what there is; tells whether the run has ended.
+  // Ask what there is; tells whether anything was told: not before the first frame.
   async look() {
     const told = await this.source.told().catch((error) => { this.why = error.message; return null; });
-    this.whole = told !== null;
+    this.known = told !== null;
     if (told) Object.assign(this, told, { arrows: ["velocity", ...told.arrows.filter((word) => word !== "velocity")] });
     this.words = { ...MOTION, ...this.words };
-    return this.whole;
+    return this.known;
   }
 
   number(name) {
@@ -77,9 +77,14 @@ export class Quantities {
       return { what, unit: MOTION[parts[1]], mean: false, time: track.time, value: ofMotion(parts[1], track) };
     }
     if (what in this.own) return this.source.curve(what);
-    if (!this.whole) throw new Error(this.why);
+    if (!this.known) throw new Error(this.why);
     if (!parts) throw new Error(`the run does not tell ${what}`);
     return this.source.curve(parts);
+  }
+
+  // Vectors are asked for again: there are more frames.
+  forget() {
+    this.vectors.clear();
   }
 
   // Vectors of all objects at all frames, or null: of velocity they are those of each frame.

@@ -19,7 +19,10 @@ export class Shows {
     byId("words").onchange = ({ target }) => { this.overlay.words = target.checked; stage.changed = true; };
     byId("only").onchange = () => this.pick(this.picked);
     byId("trail").onclick = () => this.toggleTrail();
-    byId("add-curve").onclick = () => this.curves.add(byId("curve-what").value.includes(".") && byId("curve-of").value === "" ? byId("curve-what").value : `${byId("curve-of").value}.${byId("curve-what").value}`);
+    byId("add-curve").onclick = () => {
+      const [of, what] = [byId("curve-of").value, byId("curve-what").value];
+      if (what) this.curves.add(of === "" ? what : `${of}.${what}`);
+    };
     byId("curve-of").onchange = () => this.listWords();
   }
 
@@ -33,16 +36,17 @@ export class Shows {
     await this.offer();
   }
 
-  // Once more when the run has ended: all quantities are known then.
+  // Once more when the run has ended: all its frames are there, and what only its end tells.
   async ended() {
-    if (this.first && !this.quantities.whole) await this.offer();
+    if (!this.first || !this.quantities.live) return;
+    this.quantities.live = false;
+    await this.refresh(true);
   }
 
   async offer() {
     await this.look();
     await this.setArrows();
     for (const what of this.first) await this.curves.add(what);
-    if (this.quantities.whole) await this.refresh();
   }
 
   async look() {
@@ -57,20 +61,23 @@ export class Shows {
     }));
     const movers = this.scene.objects.filter(({ still }) => !still), others = this.scene.objects.filter(({ still }) => still);
     const names = [...movers, ...others].slice(0, MOST_LISTED).map(({ name }) => name), rest = [...Object.keys(quantities.own), ...Object.keys(quantities.globals)];
+    const chosen = byId("curve-of").value;
     byId("curve-of").replaceChildren(...names.map((name) => element("option", { value: name, textContent: name })), ...(rest.length ? [element("option", { value: "", textContent: "of the scene" })] : []));
+    if (names.includes(chosen)) byId("curve-of").value = chosen;
     this.listWords();
   }
 
   listWords() {
-    const { words, own, globals } = this.quantities, list = byId("curve-of").value === "" ? { ...own, ...globals } : words;
+    const { words, own, globals } = this.quantities, chosen = byId("curve-what").value, list = byId("curve-of").value === "" ? { ...own, ...globals } : words;
     byId("curve-what").replaceChildren(...Object.keys(list).map((word) => element("option", { value: word, textContent: list[word] ? `${word} [${list[word]}]` : word })));
+    if (chosen in list) byId("curve-what").value = chosen;
   }
 
   async setArrows() {
     const { shown } = this.scene, lines = [];
     for (const word of this.quantities.arrows.filter((one) => this.on.has(one) && !this.quantities.untold[one])) {
-      const vectors = this.quantities.whole ? await this.quantities.vectorsOf(word) : null, asked = shown.arrows.filter(([one]) => one === word);
-      if (vectors && !vectors.some(Number.isFinite)) {
+      const vectors = this.quantities.known && !(this.quantities.live && word === "velocity") ? await this.quantities.vectorsOf(word) : null, asked = shown.arrows.filter(([one]) => one === word);
+      if (vectors && !this.quantities.live && !vectors.some(Number.isFinite)) {
         this.on.delete(word);
         byId("telling").textContent = `${word}: the run does not tell it of any object`;
         continue;
@@ -105,8 +112,12 @@ export class Shows {
     this.stage.changed = true;
   }
 
-  // Ask again for what grows while the run goes on.
-  async refresh() {
+  // Ask again for what grows while the run goes on; "anew" also what there is to choose from.
+  async refresh(anew = !this.quantities.known) {
+    if (!this.first) return; // it has not begun
+    this.quantities.forget();
+    if (anew) await this.offer();
+    else if ([...this.on].some((word) => word !== "velocity")) await this.setArrows();
     for (const k of this.overlay.trails.keys()) this.overlay.ways.set(k, await this.source.track(k));
     await this.curves.refresh();
     this.stage.changed = true;
