@@ -270,13 +270,15 @@ void FixMdanimDrive::initial_integrate(int)
   const double per_dt = 1.0 / update->dt;
   find_ways();
   if (is_due()) release(update->ntimestep);
+  double done = 0.0;    // of one step: small beside all work, so that its sum keeps its digits
   for (int i = 0; i < atom->nlocal; ++i) {
     if (!guides(i)) continue;
     const Vec3 there = ways(i).now.of(vec3(start[i])), way = there - vec3(atom->x[i]), velocity = per_dt * way;
-    work -= 0.5 * dot(vec3(atom->f[i]), way);
+    done += dot(vec3(atom->f[i]), way);
     atom->v[i][0] = velocity.x, atom->v[i][1] = velocity.y, atom->v[i][2] = velocity.z;
     atom->x[i][0] = there.x, atom->x[i][1] = there.y, atom->x[i][2] = there.z;
   }
+  work -= 0.5 * done;
 }
 
 void FixMdanimDrive::end_of_step()
@@ -284,8 +286,10 @@ void FixMdanimDrive::end_of_step()
   if (tells_alone) return;
   const Lap lap(seconds);
   double **const start = home();
+  double done = 0.0;
   for (int i = 0; i < atom->nlocal; ++i)
-    if (guides(i)) work -= 0.5 * dot(vec3(atom->f[i]), vec3(atom->x[i]) - ways(i).before.of(vec3(start[i])));
+    if (guides(i)) done += dot(vec3(atom->f[i]), vec3(atom->x[i]) - ways(i).before.of(vec3(start[i])));
+  work -= 0.5 * done;
 }
 
 // --- restart ---

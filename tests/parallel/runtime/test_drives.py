@@ -143,7 +143,7 @@ def test_all_forms_give_the_same(found, scene):
         for fix, records in alone.records.items():
             if not (fix == "liquid" and way.startswith("teams")):  # its ledger is a sum over ranks
                 assert records == other.records[fix], (way, fix)
-        assert other.carried["work"] == pytest.approx(alone.carried["work"], rel=1e-9), way
+        assert other.carried["work"] == pytest.approx(alone.carried["work"], rel=1e-12), way
 
 
 def test_the_ledger_closes(found):
