@@ -11,7 +11,7 @@ import time
 
 import numpy as np
 import pytest
-from mdanim_lammps import Scene, Trajectory
+from mdanim_lammps import Run, Scene, Trajectory
 from mdanim_lammps.certificate import Certificate
 from mdanim_lammps.errors import DivergedError, OutputError
 from mdanim_lammps.results.checkpoint import Checkpoint
@@ -243,8 +243,8 @@ def stop_at(frame):
 
 
 def test_a_file_named_stop_stops_the_run(tmp_path):
-    """Stop as Ctrl-C does, and take the file away, so that the next run is not stopped by it."""
-    (tmp_path / "fall.txt").write_text(FALL)
+    """Stop as Ctrl-C does, with the records so far, and take the file away, so that the next run is not stopped by it."""
+    (tmp_path / "fall.txt").write_text(FALL + "record cube.speed\nrecord cube.contact.z\nrecord cube.strain.max\n")
     folder = tmp_path / "fall.out"
 
     def watch(progress):
@@ -255,6 +255,9 @@ def test_a_file_named_stop_stops_the_run(tmp_path):
         Scene.load(tmp_path / "fall.txt").run(folder, on_progress=watch)
     assert Checkpoint.read(folder / "checkpoint").frame == 2
     assert not (folder / "stop").exists()
+    records = Run(folder).records
+    np.testing.assert_allclose(records["cube.speed"], 9.81 * records["time"], rtol=1e-9, atol=1e-12)
+    assert len(records["time"]) == 3 and np.isfinite(records["cube.strain.max"]).all()
 
 
 def test_interrupt_during_an_impact_resumes_bit_for_bit(tmp_path):

@@ -118,8 +118,10 @@ class Run:
 
     @property
     def records(self) -> Records:
-        """The quantities of the scene's ``record`` lines, at every frame. Raises OutputError as long as the run is not
-        complete, and where the scene records nothing."""
+        """The quantities of the scene's ``record`` lines, at every frame; of a run that was stopped, up to then.
+
+        Raises OutputError as long as the run goes on, where it was killed, and where the scene records nothing.
+        """
         path = self.folder / RECORDS
         if not path.exists():
             missing = "the run is not complete" if not (self.folder / SUMMARY).exists() else "the scene has no record line"

@@ -185,8 +185,8 @@ def report(folder: Path, /, *, output: OutFile = OutFile(), exact: bool = False,
 
 
 def lesson(folder: Path, /, *, output: OutFile = OutFile(), quiet: Quiet = False) -> None:
-    """Write a run with a movie as a lesson, one HTML file with the question of its scene, the movie, its records as curves, the
-    answer, what was expected and found, and the scene: lesson.html in the folder.
+    """Write a run as a lesson, one HTML file with the question of its scene, the movie if there is one, its records as curves,
+    the answer, what was expected and found, and the scene: lesson.html in the folder.
 
     Parameters
     ----------
@@ -194,15 +194,18 @@ def lesson(folder: Path, /, *, output: OutFile = OutFile(), quiet: Quiet = False
         The output folder of a run that has ended; a scene is run with `--lesson`.
     """
     from ..api.run import Run
+    from ..run.folder import movie_file
     from ..view.lesson import write_lesson
 
     if not folder.is_dir():
         raise UsageError(f"{folder} is not the folder of a run; a scene is run with mdanim-lammps {folder} --lesson")
     path = output.place(folder / "lesson.html")
     run = Run(folder)
-    write_lesson(run, run.scene.record, path)
+    scene = run.scene.record
+    write_lesson(run, scene, path)
     if not quiet:
-        print(f"lesson   {path}   {path.stat().st_size / 1e6:.1f} MB")
+        more = "" if movie_file(folder, scene).is_file() else "   without a movie; mdanim-lammps render draws one"
+        print(f"lesson   {path}   {path.stat().st_size / 1e6:.1f} MB{more}")
 
 
 def export(

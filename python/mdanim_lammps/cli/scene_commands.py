@@ -37,7 +37,6 @@ from .steps import (
     STARTED,
     announce,
     check_hands,
-    check_lesson,
     lmp_command,
     percent_of,
     prepare,
@@ -82,7 +81,9 @@ def run(
     executing.check()
     record = reading.load(scene)
     if lesson:
-        check_lesson(record, movie)
+        from ..view.lesson import check_asks
+
+        check_asks(record)
     if hands:
         check_hands(executing, edit)
         record = replace(record, steerable=True)

@@ -12,14 +12,10 @@ from collections.abc import Callable
 from dataclasses import asdict
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from ..errors import DivergedError, ExitCode, UsageError
 from ..terminal import PROGRAM, progress_bar
 from .options import Executing
-
-if TYPE_CHECKING:
-    from ..scene.scene import SceneRecord
 
 STARTED = time.perf_counter()
 """When this process began to work: reading and modelling are part of what a run costs."""
@@ -84,15 +80,6 @@ def check_hands(executing: Executing, edit: bool = False) -> None:
         raise UsageError("--hands: a page pulls at objects of a run in one process; leave out -n. The lines it leaves run on any")
     if edit:
         raise UsageError("--hands: a page that edits the scene does not pull at objects; leave out --edit")
-
-
-def check_lesson(record: SceneRecord, movie: bool) -> None:
-    """Raises UsageError for a run that would have no lesson at its end."""
-    from ..view.lesson import check_asks
-
-    check_asks(record)
-    if not movie:
-        raise UsageError("--lesson: a lesson shows the movie; leave out --no-movie")
 
 
 def print_warnings(ready) -> None:

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 import operator
 from dataclasses import dataclass
 
@@ -57,6 +58,20 @@ class Outcome:
         """``= 0.12 +- 0.01``, ``< 0.1``"""
         e = self.expect
         return f"{e.relation} {number(e.value, 6)}" + (f" +- {number(e.tolerance, 6)}" if e.relation == "=" else "")
+
+    def to_json(self) -> dict:
+        """A row of summary.json."""
+        e = self.expect
+        return {
+            "what": e.said,
+            "time": e.time,
+            "from": e.begin,
+            "relation": e.relation,
+            "value": e.value,
+            "tolerance": e.tolerance,
+            "found": self.found if math.isfinite(self.found) else None,
+            "met": self.met,
+        }
 
 
 def evaluate(expects: tuple[Expect, ...], measured: Measured) -> list[Outcome]:

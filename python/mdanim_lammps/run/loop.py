@@ -8,6 +8,7 @@ import shlex
 import shutil
 import time
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -229,7 +230,13 @@ class _Run:
             executors=self.source.executors,
             resumed=resumed,
         ) as log:
-            return self._finish(self._frames(on_progress, log))
+            try:
+                account = self._frames(on_progress, log)
+            except (MdanimError, KeyboardInterrupt):
+                with suppress(MdanimError, OSError), Trajectory(self.folder) as trajectory:
+                    self._write_records(self._measured(trajectory.renewed(len(self.ledger.rows))))
+                raise
+            return self._finish(account)
 
     def _frames(self, on_progress: Callable[[Progress], None], log: ProgressLog) -> Account:
         c = self.certificate
@@ -330,22 +337,9 @@ class _Run:
 
     def _finish(self, account: Account) -> Result:
         with self._clock("output"), Trajectory(self.folder) as trajectory:
-            measured = Measured(
-                self.ready.scene,
-                tuple(self.ready.system.names),
-                self.ready.plan.grid,
-                trajectory.times,
-                trajectory.centers,
-                trajectory.center_velocities,
-                self.penetration,
-                self.ledger.array,
-                trajectory,
-                self.ledger.columns.__contains__,
-            )
+            measured = self._measured(trajectory)
             outcomes = evaluate(self.ready.scene.expects, measured)
-            if self.ready.scene.records:
-                records = Records.of(self.ready.scene.records, measured)
-                write_whole(self.folder / RECORDS, records.write)
+            self._write_records(measured)
         cost = self._cost(account)
         write_json(self.folder / "cost.json", cost.to_json())
         write_json(self.folder / SUMMARY, self._summary(outcomes))
@@ -373,20 +367,15 @@ class _Run:
             "dents": {self.ready.system.names[m]: cells for m, cells in self.guard.dents.items()},
             **{word: value for e in self.effects for word, value in e.summary(self.ledger.rows[0], self.ledger.rows[-1]).items()},
             "seconds": sum(self.seconds.values()),
-            "expect": [
-                {
-                    "what": o.expect.said,
-                    "time": o.expect.time,
-                    "from": o.expect.begin,
-                    "relation": o.expect.relation,
-                    "value": o.expect.value,
-                    "tolerance": o.expect.tolerance,
-                    "found": o.found if np.isfinite(o.found) else None,
-                    "met": o.met,
-                }
-                for o in outcomes
-            ],
+            "expect": [outcome.to_json() for outcome in outcomes],
         }
+
+    def _measured(self, trajectory: Trajectory) -> Measured:
+        names, grid, ledger = tuple(self.ready.system.names), self.ready.plan.grid, self.ledger
+        found = trajectory.times, trajectory.centers, trajectory.center_velocities
+        return Measured(
+            self.ready.scene, names, grid, *found, self.penetration, ledger.array, trajectory, ledger.columns.__contains__
+        )
 
     # --- recording --------------------------------------------------------------------------------------------------
 
@@ -441,6 +430,10 @@ class _Run:
             )
         for row in stored.rows[: frame + 1]:
             self.ledger.add(row["time"], row)
+
+    def _write_records(self, measured: Measured) -> None:
+        if asked := self.ready.scene.records:
+            write_whole(self.folder / RECORDS, Records.of(asked, measured).write)
 
     def _write_ledger(self) -> None:
         write_whole(self.folder / "ledger.csv", self.ledger.write)

@@ -51,18 +51,18 @@ class LessonRun(Protocol):
 
 
 def write_lesson(run: LessonRun, scene: SceneRecord, path: Path) -> None:
-    """Write the page of a run that has ended, with its movie. It opens from disk, has no script, and asks no host for anything.
+    """Write the page of a run that has ended, with its movie if it has one. It opens from disk, has no script, and asks no host
+    for anything.
 
-    Raises UsageError for a scene without a question, OutputError where the run has no movie or the file cannot be written.
+    Raises UsageError for a scene without a question, OutputError where the movie is too large or the file cannot be written.
     """
     folder = run.folder
     check_asks(scene)
     movie = movie_file(folder, scene)
-    if not movie.is_file():
-        raise OutputError(f"{folder} has no movie; draw it: mdanim-lammps render {folder}")
-    if movie.stat().st_size > MOST_MOVIE:
+    there = movie.is_file()
+    if there and movie.stat().st_size > MOST_MOVIE:
         raise OutputError(f"{movie} is too large for a page; draw it smaller: mdanim-lammps render {folder} --size 640 360")
-    write_whole(path, page_of(run, scene, movie.read_bytes()))
+    write_whole(path, page_of(run, scene, movie.read_bytes() if there else b""))
 
 
 def check_asks(scene: SceneRecord) -> None:
@@ -72,10 +72,11 @@ def check_asks(scene: SceneRecord) -> None:
 
 
 def page_of(run: LessonRun, scene: SceneRecord, movie: bytes) -> str:
-    """The page as HTML; all words of the scene are text in it."""
+    """The page as HTML; all words of the scene are text in it. An empty movie is left out."""
     title = html.escape(scene.title or scene.name)
     parts = [f"<h1>{title}</h1>", f'<p class="question">{html.escape(scene.question)}</p>']
-    parts.append(f'<video controls loop src="data:video/mp4;base64,{base64.b64encode(movie).decode()}"></video>')
+    if movie:
+        parts.append(f'<video controls loop src="data:video/mp4;base64,{base64.b64encode(movie).decode()}"></video>')
     if scene.records:
         subjects, metadata = {of.what: of.subject for of in scene.records}, run.trajectory.metadata
         found = object_colors(metadata.colors, metadata.still) / 255.0
