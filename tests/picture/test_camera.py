@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from mdanim_lammps.export.usd import camera_matrix
 from mdanim_lammps.picture.camera import MARGIN, CameraPath, Reserved, View, action_of, automatic_view, fit_view, hermite_weights
+from mdanim_lammps.picture.standpoints import camera_of
 from mdanim_lammps.results.trajectory import Trajectory
 from mdanim_lammps.scene.render import Camera
 from mdanim_lammps.scene.scene import Control, SceneRecord
@@ -168,12 +169,15 @@ def row_with_a_flier(tmp_path, flight, frames=60):
 
 def inside(t, view):
     """Whether each object is wholly in the picture in each frame, bool, shape (F, O)."""
-    skin, found = t.metadata.skin, []
-    for i in range(len(t)):
-        seen, depth = project(view, skin.vertices(t.position(i)), 16 / 9)
-        out = (np.abs(seen).max(axis=1) > 1.0) | (depth <= 0.0)
-        found.append(np.bincount(skin.object_of_vertex, out) == 0)
-    return np.array(found)
+    return np.array([inside_at(t, n, view) for n in range(len(t))])
+
+
+def inside_at(t, n, view):
+    """The same in one frame, shape (O,)."""
+    skin = t.metadata.skin
+    seen, depth = project(view, skin.vertices(t.position(n)), 16 / 9)
+    out = (np.abs(seen).max(axis=1) > 1.0) | (depth <= 0.0)
+    return np.bincount(skin.object_of_vertex, out) == 0
 
 
 def test_a_last_flier_does_not_shrink_the_rest(tmp_path):
@@ -203,6 +207,26 @@ def test_what_comes_to_hit_is_seen_from_the_start(tmp_path):
         with row_with_a_flier(tmp_path, lambda k, s=stops: (-s - 0.3 * max(0, 15 - k), 0, 0.3 + 0.1 * max(0, 15 - k))) as t:
             seen = inside(t, automatic_view(action_of(t), 16 / 9))
         assert seen[:, :8].all() and seen[0, 8] == followed
+
+
+def test_the_camera_goes_back_for_what_moves_most(tmp_path):
+    """One of nine flies off last: it is seen at any time, from farther and farther away, smoothly; before that the row is as
+    large as without it. What goes too far is left, and the row is large again. Beside another run the camera stands still."""
+    with row_with_a_flier(tmp_path, lambda k: (2.5 + 0.2 * max(0, k - 45), 0, 0.5)) as t:
+        action = action_of(t)
+        camera, base = camera_of((), t, action, 16 / 9), automatic_view(action, 16 / 9)
+        views = [camera.at(time) for time in t.times]
+        assert not camera.still and all(inside_at(t, n, view).all() for n, view in enumerate(views))
+        np.testing.assert_allclose(views[0].eye, base.eye, atol=1e-9)
+        gone = np.linalg.norm(np.diff([view.eye for view in views], axis=0), axis=1)
+        total = np.linalg.norm(views[-1].eye - views[0].eye)
+        assert 0.3 * np.linalg.norm(base.eye) < total and np.abs(np.diff(gone)).max() < 0.06 * total
+        assert camera_of((), t, action, 16 / 9, fixed=True).still
+    with row_with_a_flier(tmp_path, lambda k: (2.5 + 2.0 * max(0, k - 15), 0, 0.5)) as t:
+        action = action_of(t)
+        camera, base = camera_of((), t, action, 16 / 9), automatic_view(action, 16 / 9)
+        away = [np.linalg.norm(camera.at(time).eye - base.eye) for time in t.times]
+        assert 10 < np.argmax(away) < 30 and away[-1] < 1e-9
 
 
 def test_most_of_what_moves_is_seen_at_any_time(tmp_path):

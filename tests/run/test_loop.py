@@ -244,7 +244,7 @@ def stop_at(frame):
 
 def test_a_file_named_stop_stops_the_run(tmp_path):
     """Stop as Ctrl-C does, with the records so far, and take the file away, so that the next run is not stopped by it."""
-    (tmp_path / "fall.txt").write_text(FALL + "record cube.speed\nrecord cube.contact.z\nrecord cube.strain.max\n")
+    (tmp_path / "fall.txt").write_text(FALL + "record cube.speed\nrecord cube.strain.max\n")
     folder = tmp_path / "fall.out"
 
     def watch(progress):
@@ -253,11 +253,8 @@ def test_a_file_named_stop_stops_the_run(tmp_path):
 
     with pytest.raises(Interrupted, match=rf"resume {folder}\n.* render {folder}$"):
         Scene.load(tmp_path / "fall.txt").run(folder, on_progress=watch)
-    assert Checkpoint.read(folder / "checkpoint").frame == 2
-    assert not (folder / "stop").exists()
-    records = Run(folder).records
-    np.testing.assert_allclose(records["cube.speed"], 9.81 * records["time"], rtol=1e-9, atol=1e-12)
-    assert len(records["time"]) == 3 and np.isfinite(records["cube.strain.max"]).all()
+    assert Checkpoint.read(folder / "checkpoint").frame == 2 and not (folder / "stop").exists()
+    np.testing.assert_allclose(Run(folder).records["cube.speed"], [0.0, 0.1962, 0.3924], atol=1e-9)
 
 
 def test_interrupt_during_an_impact_resumes_bit_for_bit(tmp_path):

@@ -173,7 +173,7 @@ def test_a_run_ends_while_it_is_fed(slab, tmp_path):
     assert feed.head()["bounds"] != finished.head()["bounds"]
     (tmp_path / "trajectory.h5.part").rename(tmp_path / "trajectory.h5")
     feed.finished = True
-    del feed.action
+    del feed.action, feed._path
     assert feed.scene() == finished.scene()
     feed.close()
 

@@ -8,9 +8,8 @@ from pathlib import Path
 
 import numpy as np
 
-from ..picture.camera import FIELD_OF_VIEW, View, action_of, automatic_view
-from ..picture.scenery import scenery
-from ..picture.standpoints import direction_of, path_of
+from ..picture.camera import FIELD_OF_VIEW, View, action_of
+from ..picture.standpoints import camera_of
 from ..scene.render import Render
 from .cut import Body, Cut
 
@@ -150,16 +149,13 @@ def _camera(stage, cut: Cut, render: Render) -> None:
     camera.CreateFocalLengthAttr(12.0 / np.tan(np.radians(FIELD_OF_VIEW / 2)))
     place = camera.AddTransformOp()
     matrix = lambda view: Gf.Matrix4d(camera_matrix(view).tolist())
-    action = action_of(t)
-    if (path := path_of(render.camera, t, action)) is not None:
-        views = [path.at(float(time)) for time in cut.times]
+    path = camera_of(render.camera, t, action_of(t), width / height)
+    views = [path.at(float(time)) for time in (cut.times[:1] if path.still else cut.times)]
+    if path.still:
+        place.Set(matrix(views[0]))
+    else:
         for time, view in zip(cut.times, views):
             place.Set(matrix(view), time * cut.rate)
-    else:
-        pool = t.liquid
-        basin = (pool.low, pool.high) if pool else None
-        views = [automatic_view(action, width / height, scenery(t.metadata).walls, basin, direction_of(render.camera))]
-        place.Set(matrix(views[0]))
     far = max(float(np.linalg.norm(view.eye - view.look)) for view in views)
     camera.CreateClippingRangeAttr(Gf.Vec2f(0.001 * far, 100.0 * far))
 

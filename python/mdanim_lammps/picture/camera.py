@@ -33,6 +33,8 @@ MOMENT = 0.03
 """Share of the run for which the picture follows objects that come and go after they are worth it."""
 LEAD = 1.0 / 3.0
 """Share of all movement in a stretch from which on an object leads it."""
+STIR = 0.05
+"""Share of the movement of the liveliest stretch up to which a stretch is at rest."""
 NEAR = 0.1
 """Distance at which an object meets others, in sizes of its own."""
 ALONG = 1e-6
@@ -98,6 +100,8 @@ class Action:
     """Objects that the picture must hold: they move most in a stretch and meet something then or later, bool, shape (W, O)."""
     hung: np.ndarray = field(default_factory=lambda: np.zeros((0, 3)))
     """Points of strings, joints and the like at the start, which the picture must hold [m], shape (P, 3)."""
+    movers: np.ndarray = field(default_factory=lambda: np.zeros((0, 0), bool))
+    """Objects that make a large part of all movement in a stretch, bool, shape (W, O)."""
 
     @property
     def size(self) -> float:
@@ -172,28 +176,46 @@ def action_of(trajectory: Trajectory, samples: int = 40) -> Action:
     if there.ground is not None:
         bounds[0][2] = min(bounds[0][2], max(there.ground, start_low[2] - FAR * size))
     basin = (there.liquid.low, there.liquid.high) if there.liquid is not None else None
-    leads = what_leads(low, high, basin) & ~gone
+    path, moved = movement(low, high)
+    leads, movers = what_leads(low, high, shares(moved), basin) & ~gone, what_moves(path, moved) & ~gone
     added = [np.asarray(one.points(0), float) for one in drawn(trajectory) if not one.clear]
     hung = np.clip(np.concatenate([np.zeros((0, 3)), *added]), start_low - far, start_high + far)
     check_places(trajectory.path, hung, frame=0)
-    return Action(low, high, bounds, bool(gone.any()), ~metadata.still, leads, hung)
+    return Action(low, high, bounds, bool(gone.any()), ~metadata.still, leads, hung, movers)
 
 
-def what_leads(low: np.ndarray, high: np.ndarray, basin=None) -> np.ndarray:
-    """Objects that make most of the movement in a stretch, path times size, until they have last met another object or the basin;
+def movement(low: np.ndarray, high: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Path of each object in a stretch [m], shape (W, O), and path times size [m^2], for boxes [m], each of shape (W, O, 3)."""
+    if len(low) < 2:
+        return np.zeros(low.shape[:2]), np.zeros(low.shape[:2])
+    path = np.linalg.norm(np.gradient((low + high) / 2, axis=0), axis=-1)
+    return path, path * np.linalg.norm(high - low, axis=-1)
+
+
+def shares(values: np.ndarray) -> np.ndarray:
+    """Values over their sum in a stretch, shape (W, O)."""
+    return values / np.maximum(values.sum(axis=1, keepdims=True), np.finfo(float).tiny)
+
+
+def what_moves(path: np.ndarray, moved: np.ndarray) -> np.ndarray:
+    """Objects that make a third of all movement in a stretch that is not at rest, or of all paths, as a stone beside the arm that
+    has thrown it, bool, shape (W, O)."""
+    total = moved.sum(axis=1, keepdims=True)
+    return (total > STIR * total.max(initial=0.0)) & ((shares(moved) >= LEAD) | (shares(path) >= LEAD))
+
+
+def what_leads(low: np.ndarray, high: np.ndarray, share: np.ndarray, basin=None) -> np.ndarray:
+    """Objects that make most of the movement in a stretch, until they have last met another object or the basin;
     bool, shape (W, O).
 
     A ball that swings at a wall is one long before it is there, as nothing else moves; what flies off is none.
 
     Args:
         low, high: corners of each object in each stretch [m], shape (W, O, 3).
+        share: of each object in all movement, shape (W, O).
         basin: corners of the liquid's basin.
     """
     leads = np.zeros(low.shape[:2], dtype=bool)
-    if len(low) < 2:
-        return leads
-    movement = np.linalg.norm(np.gradient((low + high) / 2, axis=0), axis=-1) * np.linalg.norm(high - low, axis=-1)
-    share = movement / np.maximum(movement.sum(axis=1, keepdims=True), np.finfo(float).tiny)
     for o in np.flatnonzero((share >= LEAD).any(axis=0)):
         near = NEAR * np.linalg.norm(high[:, [o]] - low[:, [o]], axis=-1, keepdims=True)
         meets = ((low <= high[:, [o]] + near) & (high >= low[:, [o]] - near)).all(axis=-1)
@@ -221,22 +243,29 @@ def automatic_view(
         forward: direction of view, unit length; None for the three-quarter view.
         room: what of the picture the action may not take.
     """
-    low, high = action.bounds
     everything, forward = forward is not None, three_quarters(action) if forward is None else forward
+    return fit_view(worth_holding(action, aspect, walls, basin, forward, everything, room), forward, aspect, room)
+
+
+def worth_holding(
+    action: Action, aspect: float, walls, basin, forward: np.ndarray, everything: bool, room: Reserved
+) -> np.ndarray:
+    """Points that `automatic_view` holds [m], shape (P, 3)."""
+    low, high = action.bounds
     boxes = np.clip(action.low, low, high), np.clip(action.high, low, high)
     # Where nothing has moved yet, the way down to the ground is shown, as objects will go there.
-    fixed = [action.hung, _corners(low, high) if len(action.low) == 1 else np.zeros((0, 3))]
+    fixed = [action.hung, corners(low, high) if len(action.low) == 1 else np.zeros((0, 3))]
     if walls is not None and np.linalg.norm(np.subtract(*walls)) < 2.0 * action.size:
-        fixed.append(_corners(*np.array(walls, dtype=float)))
+        fixed.append(corners(*np.array(walls, dtype=float)))
     if basin is not None:
-        fixed.append(_corners(*np.array(basin, dtype=float)))
+        fixed.append(corners(*np.array(basin, dtype=float)))
     fixed = np.concatenate(fixed)
     kept = (
         np.ones_like(action.leads)
         if everything or not action.leads.size
         else worth_seeing(*boxes, action, fixed, forward, aspect, room)
     )
-    return fit_view(np.concatenate([_corners(boxes[0][kept], boxes[1][kept]), fixed]), forward, aspect, room)
+    return np.concatenate([corners(boxes[0][kept], boxes[1][kept]), fixed])
 
 
 def three_quarters(action: Action) -> np.ndarray:
@@ -270,7 +299,7 @@ def worth_seeing(
     """
     free, leads = action.free, action.leads
     (right, up), tangent = _screen(forward), room.tangents(aspect)
-    side = _sides(_corners(low, high), right, up, forward, tangent).reshape(8, *low.shape[:2], 4).max(axis=0)
+    side = _sides(corners(low, high), right, up, forward, tangent).reshape(8, *low.shape[:2], 4).max(axis=0)
     fixed_side = _sides(fixed, right, up, forward, tangent).max(axis=0, initial=-np.inf)
     middle = float(((low + high) / 2 @ forward).mean())
 
@@ -307,16 +336,39 @@ def fit_view(points: np.ndarray, forward: np.ndarray, aspect: float, room: Reser
         aspect: width over height.
         room: what of the picture they may not take.
     """
-    (right, up), tangent = _screen(forward), room.tangents(aspect)
-    most = _sides(points, right, up, forward, tangent).max(axis=0)
+    lens = Lens(forward, aspect, room)
     along = points @ forward
-    depth = (-(most[:2] + most[2:]) / (tangent[:2] + tangent[2:])).min()
-    middle = (along.min() + along.max()) / 2
-    # A single point has no size to stand back from.
-    depth = min(depth, middle - 1e-3)
-    across = (most[:2] - most[2:] + depth * (tangent[:2] - tangent[2:])) / 2
-    eye = across[0] * right + across[1] * up + depth * forward
-    return View(eye, eye + (middle - depth) * forward, np.array([0.0, 0.0, 1.0]))
+    return lens.view(lens.sides(points).max(axis=0), (along.min() + along.max()) / 2)
+
+
+class Lens:
+    """A direction of view and what of the picture may be filled.
+
+    Args:
+        forward: direction of view, unit length.
+        aspect: width over height.
+        room: what of the picture is left free.
+    """
+
+    def __init__(self, forward: np.ndarray, aspect: float, room: Reserved = Reserved()):
+        self.forward, self.tangent = forward, room.tangents(aspect)
+        self.right, self.up = _screen(forward)
+
+    def sides(self, points: np.ndarray) -> np.ndarray:
+        """How far points [m], shape (P, 3), push the right, upper, left and lower side of the picture out, shape (P, 4)."""
+        return _sides(points, self.right, self.up, self.forward, self.tangent)
+
+    def depth(self, most: np.ndarray) -> np.ndarray:
+        """Where along the direction of view the nearest eye is whose sides are pushed out so far, for sides of shape (..., 4)."""
+        return (-(most[..., :2] + most[..., 2:]) / (self.tangent[:2] + self.tangent[2:])).min(axis=-1)
+
+    def view(self, most: np.ndarray, middle: float) -> View:
+        """The view of that eye, whose look is so far along the direction [m]."""
+        # A single point has no size to stand back from.
+        depth = min(float(self.depth(most)), middle - 1e-3)
+        across = (most[:2] - most[2:] + depth * (self.tangent[:2] - self.tangent[2:])) / 2
+        eye = across[0] * self.right + across[1] * self.up + depth * self.forward
+        return View(eye, eye + (middle - depth) * self.forward, np.array([0.0, 0.0, 1.0]))
 
 
 def _screen(forward: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -408,7 +460,7 @@ def hermite_weights(times: np.ndarray, time: float) -> np.ndarray:
     )
 
 
-def _corners(low: np.ndarray, high: np.ndarray) -> np.ndarray:
+def corners(low: np.ndarray, high: np.ndarray) -> np.ndarray:
     """The eight corners of each box, shape (8 n, 3)."""
     box = np.stack([low.reshape(-1, 3), high.reshape(-1, 3)])
     x, y, z = np.meshgrid([0, 1], [0, 1], [0, 1])

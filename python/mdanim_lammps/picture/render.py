@@ -11,7 +11,7 @@ from ..scene.render import Floor, Quality, Render
 from . import shading
 from .backdrop import Backdrop
 from .behind import Behind
-from .camera import FIELD_OF_VIEW, Action, View, action_of, automatic_view
+from .camera import FIELD_OF_VIEW, Action, View, action_of
 from .drawn import Additions, medium
 from .floor import REACH, FloorPlane
 from .framing import PicturePart, aim, part_around, whole
@@ -23,7 +23,7 @@ from .overlay import Overlay, room_for
 from .palette import background_colors, is_dark, vertex_colors
 from .pieces import MovingMesh, box_edges, have_own_textures, lit_actor
 from .scenery import scenery, way_of_walls
-from .standpoints import direction_of, path_of
+from .standpoints import camera_of
 from .surfaces import shaded_mesh
 from .textures import FLOORS, MATERIAL, OBJECTS, material_places
 from .tones import Tones
@@ -76,14 +76,9 @@ class Painter:
                 f"{self._finer} times as many along each side; take at most {MOST_PIXELS // self._finer}, or quality draft"
             )
         self.action = action or action_of(trajectory)
-        self._path = path_of(render.camera, trajectory, seen or self.action)
-        _, walls, pool = scenery(trajectory.metadata)
-        basin = (pool.low, pool.high) if pool else None
-        aspect = self.size[0] / self.size[1]
-        self._still = None
-        if not self._path:
-            way = direction_of(render.camera)
-            self._still = automatic_view(seen or self.action, aspect, walls, basin, way, room_for(render, self.size))
+        aspect, room = self.size[0] / self.size[1], room_for(render, self.size)
+        # Two runs beside each other have one camera.
+        self._camera = camera_of(render.camera, trajectory, seen or self.action, aspect, room, fixed=seen is not None)
         self._mesh = shaded_mesh(trajectory.metadata, trajectory.position(0), self._pixel())
         self._tones = Tones((trajectory, beside), render.color_by) if render.color_by else None
         self._build(render, marks)
@@ -106,7 +101,7 @@ class Painter:
 
     def view(self, time: float) -> View:
         """Where the camera is at a simulated time [s]."""
-        return self._path.at(time) if self._path else self._still
+        return self._camera.at(time)
 
     def frame(self, index: int) -> np.ndarray:
         """Picture of a frame, uint8 RGB, shape (height, width, 3), first row on top."""
@@ -289,7 +284,7 @@ class Painter:
         with silent():
             self._window = off_screen_window(self._renderers, (width, height), SAMPLES, clear=not self._behind)
             self._light = Light(self._surface.data, self.action.centre, self.action.size, typical, render, self._floor)
-            still = not self._path or self._path.still
+            still = self._camera.still
             cover = self._tank.cover if self._tank else None
             self._backdrop = None if self._behind else Backdrop(self._pixels, (low, high), self._floor, still, sky, cover)
         self._light.fall_on(self._actors)

@@ -6,17 +6,38 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 
 from ..errors import UsageError
 from ..results.trajectory import Trajectory
 from ..scene.keywords import did_you_mean
 from ..scene.render import Camera, Standpoint
-from .camera import FIELD_OF_VIEW, Action, CameraPath, View, three_quarters
+from .camera import (
+    FIELD_OF_VIEW,
+    Action,
+    CameraPath,
+    Lens,
+    Reserved,
+    View,
+    automatic_view,
+    corners,
+    three_quarters,
+    worth_holding,
+)
+from .scenery import scenery
 
 DIRECTIONS = {"top": (0.0, 0.0, -1.0), "side": (-1.0, 0.0, 0.0), "front": (0.0, 1.0, 0.0)}
 """Directions of view by the word of a camera."""
+ALL_OF_IT = Reserved()
+"""A picture of which nothing is left to words."""
 ROOM = 1.4
 """Half of the height of what is seen around an object that is followed, in its own sizes."""
+WIDEST = 4.0
+"""Distance to which the automatic camera goes back for an object at most, over that from which it sees what is worth seeing."""
+SLIGHT = 1.1
+"""The same up to which it stands there from the start."""
+EASE = 0.4
+"""Time over which it goes [s], on both sides."""
 CALM = 0.15
 """Time over which the way of an object is smoothed [s], on both sides."""
 
@@ -27,14 +48,97 @@ def direction_of(cameras: Sequence[Camera | Standpoint]) -> np.ndarray | None:
     return np.array(DIRECTIONS[first.place]) if isinstance(first, Standpoint) and first.place in DIRECTIONS else None
 
 
-def path_of(cameras: Sequence[Camera | Standpoint], trajectory: Trajectory, action: Action) -> CameraPath | Following | None:
-    """The camera of a scene that is not one view of the whole run. Raises UsageError for an object that there is not."""
-    if not cameras or direction_of(cameras) is not None:
-        return None
-    first = cameras[0]
-    if isinstance(first, Standpoint):
+def camera_of(
+    cameras: Sequence[Camera | Standpoint],
+    trajectory: Trajectory,
+    action: Action,
+    aspect: float,
+    room: Reserved = ALL_OF_IT,
+    *,
+    fixed: bool = False,
+) -> CameraPath | Following | Standing | Widening:
+    """The camera of a scene, or the automatic one. Raises UsageError for an object that there is not.
+
+    Args:
+        cameras: of the scene.
+        trajectory: of the run.
+        action: where things happen.
+        aspect: width of the picture over its height.
+        room: what of the picture the automatic camera leaves free.
+        fixed: whether the automatic camera has to stand still.
+    """
+    first, forward = cameras[0] if cameras else None, direction_of(cameras)
+    if isinstance(first, Camera):
+        return CameraPath([one for one in cameras if isinstance(one, Camera)], trajectory)
+    if first is not None and forward is None:
         return Following(str(first.name), trajectory, action)
-    return CameraPath([one for one in cameras if isinstance(one, Camera)], trajectory)
+    _, walls, pool = scenery(trajectory.metadata)
+    basin = (pool.low, pool.high) if pool else None
+    if fixed or forward is not None or len(action.movers) < 2:
+        return Standing(automatic_view(action, aspect, walls, basin, forward, room))
+    forward = three_quarters(action)
+    wider = Widening(
+        action, trajectory.times, worth_holding(action, aspect, walls, basin, forward, False, room), Lens(forward, aspect, room)
+    )
+    return wider if not wider.still else Standing(wider.at(0.0))
+
+
+class Standing:
+    """A camera that stands still."""
+
+    still = True
+
+    def __init__(self, view: View):
+        self._view = view
+
+    def at(self, time: float) -> View:
+        """The view, at any time."""
+        return self._view
+
+
+class Widening:
+    """The automatic camera: a view that holds what is worth seeing, and goes back for what moves most where that leaves it.
+
+    It goes along its line of sight, smoothly; an object for which it would have to go more than `WIDEST` times as far is left.
+    Where a little more is enough for the whole run, it stands still there.
+
+    Args:
+        action: where things happen, in two stretches at least.
+        times: of all frames [s], shape (F,).
+        points: what is worth seeing [m], shape (P, 3).
+        lens: direction and room.
+    """
+
+    def __init__(self, action: Action, times: np.ndarray, points: np.ndarray, lens: Lens):
+        self._lens, along = lens, points @ lens.forward
+        self._middle = float((along.min() + along.max()) / 2)
+        stretches = np.array_split(times, len(action.low))
+        self._times = np.array([part.mean() for part in stretches])
+        base = lens.sides(points).max(axis=0)
+        away = lambda sides: self._middle - lens.depth(sides)
+        near = max(float(away(base)), 1e-3)
+        when, objects = np.nonzero(action.movers)
+        boxes = (np.clip(bound[when, objects], *action.bounds) for bound in (action.low, action.high))
+        pushed = np.maximum(lens.sides(corners(*boxes)).reshape(8, len(when), 4).max(axis=0), base)
+        followed = away(pushed) <= WIDEST * near
+        needed = np.tile(base, (len(stretches), 1))
+        np.maximum.at(needed, when[followed], pushed[followed])
+        self._sides = _eased(needed, max(1, round(EASE / max(self._times[1] - self._times[0], 1e-9))))
+        self.still = bool(away(self._sides).max() <= SLIGHT * near)
+        if self.still:
+            self._sides[:] = self._sides.max(axis=0)
+
+    def at(self, time: float) -> View:
+        """The view at a simulated time [s]."""
+        sides = np.array([np.interp(time, self._times, self._sides[:, k]) for k in range(4)])
+        return self._lens.view(sides, self._middle)
+
+
+def _eased(values: np.ndarray, half: int) -> np.ndarray:
+    """Rows that change smoothly over ``half`` rows to both sides, and nowhere fall short of these, shape (W, n)."""
+    windows = lambda rows: sliding_window_view(np.pad(rows, [(half, half), (0, 0)], mode="edge"), 2 * half + 1, axis=0)
+    bell = np.hanning(2 * half + 3)[1:-1]
+    return windows(windows(values).max(axis=-1)) @ (bell / bell.sum())
 
 
 class Following:

@@ -26,7 +26,7 @@ import numpy as np
 
 from ..errors import OutputError
 from ..features.liquid.kept import DROPS, HEIGHT, RAW, WAY
-from ..picture.camera import FIELD_OF_VIEW, Action, View, action_of, automatic_view
+from ..picture.camera import FIELD_OF_VIEW, Action, View, action_of
 from ..picture.drawn import Drawn, drawn
 from ..picture.floor import grid_spacing
 from ..picture.foam import Foam
@@ -35,7 +35,7 @@ from ..picture.palette import LIQUID, background_colors, is_dark, object_colors,
 from ..picture.ponds import one_sheet
 from ..picture.rays import direction
 from ..picture.scenery import scenery, way_of_walls
-from ..picture.standpoints import direction_of, path_of
+from ..picture.standpoints import camera_of, direction_of
 from ..picture.surfaces import shaded_mesh
 from ..picture.textures import material_places
 from ..results.trajectory import Trajectory
@@ -134,7 +134,7 @@ class Feed:
     def head(self) -> dict:
         """Data that do not change, without arrays; lengths [m], times [s], masses [kg], colours ``[r, g, b]`` of 0 to 255."""
         m, there, action = self.metadata, self.scenery, self.action
-        view = self._view()
+        view = self._path[0]
         low, high = background_colors(self.render)
         size = max(action.size, np.finfo(np.float32).tiny)
         floor = None if action.escaped else float(action.bounds[0][2])
@@ -207,7 +207,7 @@ class Feed:
     def _by_frame(self) -> dict[str, np.ndarray]:
         """Arrays of BY_FRAME that there are."""
         found, liquid = {}, self.scenery.liquid
-        if len(path := self._path()) > 1:
+        if len(path := self._path) > 1:
             found["path"] = np.array([np.concatenate([view.eye, view.look, view.upright]) for view in path])
         if (way := way_of_walls(self._trajectory.scene)) is not None and not (liquid and liquid.moves):
             found["walls"] = np.array([way(self._frame_time * n) for n in range(self.frames.total)])
@@ -248,22 +248,15 @@ class Feed:
         check_places(self.frames.path, vertices, frame=0)
         return first_action(self.metadata, *self._boxes(vertices))
 
+    @cached_property
     def _path(self) -> list[View]:
-        """The movie's camera at each frame, once where it never moves; empty where it is one view of the whole run, or as long
-        as the run goes on."""
-        if not (self.render.camera and self.finished):
-            return []
+        """The movie's camera at each frame, once where it never moves; as long as the run goes on one view of what will be."""
+        if not self.finished:
+            seen = self.render.camera if direction_of(self.render.camera) is not None else ()
+            return [camera_of(seen, self._trajectory, self.action, ASPECT).at(0.0)]
         with Trajectory(self.folder) as trajectory:
-            if (path := path_of(self.render.camera, trajectory, self.action)) is None:
-                return []
-            return [path.at(self._frame_time * n) for n in range(1 if path.still else self.frames.total)]
-
-    def _view(self) -> View:
-        there = self.scenery
-        if path := self._path():
-            return path[0]
-        basin = (there.liquid.low, there.liquid.high) if there.liquid else None
-        return automatic_view(self.action, ASPECT, there.walls, basin, direction_of(self.render.camera))
+            camera = camera_of(self.render.camera, trajectory, self.action, ASPECT)
+            return [camera.at(self._frame_time * n) for n in range(1 if camera.still else self.frames.total)]
 
     def _boxes(self, vertices: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Lower corner and size of each object's box [m], each of shape (O, 3)."""

@@ -127,7 +127,7 @@ class Tail:
                 self._feed = Feed(self.folder, *self._stored(), finished=self._state == "done")
             elif self._state == "done" and not self._feed.finished:
                 self._feed.finished = True
-                for known in ("action", "_added", "_added_counts"):
+                for known in ("action", "_path", "_added", "_added_counts"):
                     self._feed.__dict__.pop(known, None)
             return self._feed
 
