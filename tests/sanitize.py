@@ -72,6 +72,27 @@ walls from (-8, -8, -8) cm to (14, 8, 12) cm
 object a {{ shape box (5, 5, 5) cm position (0, 0, 0) {SOLID} velocity (2, 0, -2) }}
 object b {{ shape box (5, 5, 5) cm position (6.5, 0, 2) cm {SOLID} velocity (-1, 0, 1) }}
 """,
+    "connected": f"""
+gravity (0, 0, -9.81)
+ground z 0 m
+object a {{ shape box (8, 2, 2) cm position (0, 0, 3) cm density 600 elasticity rigid force (0.2, 0, 0) N from 0.02 s to 0.1 s }}
+object b {{ shape cylinder 2 cm 2 cm position (0, 0, 8) cm density 600 elasticity rigid pieces 6 strength 1 kPa spin (0, 30, 0) }}
+object c {{ shape box (2, 2, 6) cm position (6, 0, 4) cm {SOLID} hold face -z key 0.05 s at (6.5, 0, 4) cm release 0.1 s }}
+object d {{ shape rope from (-8, 0, 4) cm to (-2, 0, 12) cm thickness 5 mm density 900 elasticity 1 MPa tear-strain 0.05 }}
+joint hinge a world {{ axis (0, 1, 0) motor speed 60 rpm torque 0.1 N*m }}
+joint ball d b {{ at (-2, 0, 12) cm breaks 1 N }}
+hand c {{ at (6, 0, 6) cm key 0.02 s at (6, 0, 6) cm key 0.06 s at (6, 0.5, 6) cm }}
+""",
+    "layers": f"""
+gravity (0, 0, -9.81)
+ground z 0 m
+air {{ density 1.2 kg/m^3 wind (2, 0, 0) m/s }}
+let cloth = {{ density 300 elasticity 0.1 MPa tear-strain 0.05 touches-itself yes }}
+object a {{ use cloth shape sheet (16, 16) cm thickness 1 mm position (0, 0, 5.2) cm }}
+object b {{ shape sphere 3 cm position (0, 0, 9) cm density 1500 elasticity rigid velocity (0, 0, -1) }}
+object c {{ shape sphere 4 cm sheet thickness 1 mm position (0, 12, 5) cm density 900 elasticity 1 MPa inflate 1 kPa }}
+object d {{ shape box (6, 6, 4) cm position (0, 0, 2) cm {SOLID} yield-strain 0.1 touches-itself yes }}
+""",
 }
 END = "control {{ time 0.2 s frames 50 fps resolution 1 cm  {} }}\n"
 THREADS = {
@@ -86,7 +107,7 @@ SET = ("-DMDANIM_SET=common", "-DMDANIM_LANES=4", "-DMDANIM_SETS=MDANIM_A_SET(co
 """The instructions that they are compiled for."""
 LEFT_OUT = ("bodies_file.cpp",)
 """Files that read files."""
-WORDS = {"friction": "friction 0.4", "surface": "contact-model surface"}
+WORDS = {"friction": "friction 0.4", "surface": "contact-model surface"} | dict.fromkeys(("connected", "layers"), "friction 0.4")
 """Control words for those of TEXT that need more; the other texts use the paper's contact."""
 
 

@@ -73,6 +73,22 @@ def test_a_foot_that_is_crushed_is_told(prepared):
     assert margin(prepared(pile(foot=enough)).certificate, "load").severity == "ok"
 
 
+@pytest.mark.parametrize(("x", "density", "told"), [(0, 1500, True), (0, 500, False), (50, 1500, False)])
+def test_a_blow_on_what_yields_is_told(prepared, x, density, told):
+    """Warn where the energy of motion by volume of what may land on it is above 0.15 E e; 1 m/s and a fall of 2 cm."""
+    ready = prepared(
+        f"""gravity (0, 0, -9.81)
+ground z 0 m
+object clay {{ shape box (6, 6, 4) cm position (0, 0, 2) cm density 1000 elasticity 0.2 MPa yield-strain 0.02 }}
+object ball {{ shape sphere 3 cm position ({x}, 0, 9) cm density {density} elasticity rigid velocity (0, 0, -1) }}
+control {{ time 0.2 s resolution 1 cm friction 0.4 }}
+"""
+    )
+    found = [w for w in ready.warnings if "ball may hit clay" in w.message]
+    assert len(found) == told
+    assert not found or (found[0].span.line == 3 and "yield-strain 0.0" in found[0].hint)
+
+
 def test_a_liquid_carries_its_share_of_the_load(prepared):
     """Count the weight less buoyancy: nothing for what floats."""
     assert margin(prepared(pool(density=500)).certificate, "load").value == 0.0

@@ -38,6 +38,14 @@ class Flight:
             self.low, self.high = self.low + dt * self.velocity, self.high + dt * self.velocity
             self.time += dt
 
+    def swept(self, time: float) -> tuple[np.ndarray, np.ndarray]:
+        """Fly on to this time [s]; corners (M, 3) [m] of boxes around the way there."""
+        low, high = self.low, self.high
+        while self.time < time - 1e-9:
+            self.to(min(self.time + FLIGHT, time))
+            low, high = np.minimum(low, self.low), np.maximum(high, self.high)
+        return low, high
+
     def boxes(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Corners (M, 3) [m], and the speed of the fastest particle of each (M,) [m/s]."""
         return self.low, self.high, np.linalg.norm(self.velocity, axis=1) + self.around

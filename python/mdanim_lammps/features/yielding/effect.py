@@ -22,6 +22,8 @@ BEARS = column("bears", "m", per="bond")
 """Stretch that a spring bears, either way; 0 for one that never yields."""
 CRUSHED = 0.15
 """Energy of motion of each volume over E e above which cells at the spot of a blow may be crushed (docs/physics-yielding.md)."""
+LOOK = 2.0
+"""Seconds of the flights of what may hit."""
 POISSON = 0.25
 """Poisson's ratio of lattices (docs/physics-solids.md)."""
 LOST = "yielding"
@@ -122,8 +124,42 @@ def blow(env: Envelope) -> list[Margin]:
             env.place(m, "yield-strain"),
             "warning" if ratio[m] > CRUSHED else "ok",
             hint=f"write yield-strain {number(enough)} or more, a larger elasticity, or a lower height or speed",
-        )
+        ),
+        *struck(env, bears),
     ]
+
+
+def struck(env: Envelope, bears: np.ndarray) -> list[Margin]:
+    """The energy of motion of each volume of what may hit a solid, beside the stress E e that this one bears [Pa], shape (M,): of
+    the pair of most energy for which it is too much and whose ways cross as both fly alone. None where no pair is."""
+    system, (low, high) = env.system, env.reach.flight().swept(min(env.scene.control.time, LOOK))
+    energy = 0.5 * system.density * np.where(env.reach.moving, env.reach.speed, 0.0) ** 2
+    own = np.flatnonzero(np.isfinite(bears))
+    for n in np.argsort(-energy, kind="stable").tolist():
+        if energy[n] <= CRUSHED * bears[own].min():
+            break
+        meets = (own != n) & ((low[own] <= high[n]) & (low[n] <= high[own])).all(axis=1)
+        ratio = np.where(meets, energy[n] / bears[own], 0.0)
+        m = int(own[ratio.argmax()])
+        if (worst := float(ratio.max())) > CRUSHED:
+            hits, who = system.names[n], system.names[m]
+            speed, stress = say(env.reach.speed[n], "m/s", 2), say(bears[m], "Pa", 2)
+            return [
+                Margin(
+                    "yielding",
+                    who,
+                    worst,
+                    CRUSHED,
+                    "",
+                    f"{hits} may hit {who} at {speed}: its energy by volume is {worst:.2g} of the stress {stress} at which {who} "
+                    f"yields; above about {CRUSHED:g} cells where it lands may be crushed",
+                    env.place(m, "yield-strain"),
+                    "warning",
+                    hint=f"write yield-strain {number(at_least(env.scene.solids[m].yield_strain * worst / CRUSHED))} or more, a "
+                    f"larger elasticity, or a lower speed or density of {hits}",
+                )
+            ]
+    return []
 
 
 EFFECTS = (Yielding(),)
