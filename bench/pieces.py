@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""Objects in pieces: ``python bench/pieces.py heights|cost|many`` prints the tables of docs/physics-pieces.md.
+"""Objects in pieces: ``python bench/pieces.py heights|blows|cost|many`` prints the tables of docs/physics-pieces.md.
 
-``heights``: from which height a plate breaks, by strength, accuracy and pieces; ``cost``: processor time of a step before and
-after; ``many``: ten thousand pieces.
+``heights``: from which height a plate breaks, by strength, accuracy and pieces; ``blows``: what a cylinder of glass bears, by the
+stiffness of contact; ``cost``: processor time of a step before and after; ``many``: ten thousand pieces.
 """
 
 from __future__ import annotations
@@ -20,6 +20,12 @@ PLATE = """object plate {{ shape box (30, 30, 1) cm  position (0, 0, {height!r})
 gravity (0, 0, -9.81) m/s^2
 ground z 0 m
 control {{ time {time!r} s  frames 10 fps  accuracy {accuracy} }}
+"""
+CYLINDER = """object glass {{ shape cylinder 4 cm 12 cm  position (0, 0, 1.07) m  orientation axis (1, 0.3, 0) angle 20 deg
+  material glass  pieces 24  strength 100 GPa }}
+gravity (0, 0, -9.81) m/s^2
+ground z 0 m
+control {{ time 0.5 s  frames 10 fps  contact-stiffness {stiffness} }}
 """
 LOWEST, HIGHEST, HALVINGS = 0.1, 6.4, 6
 WALL = """object wall {{ shape box ({wide}, 0.2, {high}) m  position (0, 0, {middle}) m  elasticity rigid  density 1900
@@ -65,6 +71,23 @@ def heights() -> None:
         print(f"| {strength} | " + " | ".join(f"{h:.2f}" for h in found) + " |", flush=True)
 
 
+def blows() -> None:
+    """Prints what a cylinder of glass of 8 x 12 cm bears that falls 1 m, and the load of a ball by Hertz."""
+    print("| contact-stiffness | bore [MPa] | steps |\n|---|---|---|")
+    for stiffness in (1, 4, 16, 36):
+        ready = prepare(parse_scene(CYLINDER.format(stiffness=stiffness), "scene.txt"))
+        with Instance(ready.plan) as instance:
+            instance.setup()
+            instance.run(ready.certificate.steps)
+            bore = ready.scene.solids[0].strength * instance.fix_value("rigid", "stress_share")
+            print(f"| {stiffness} | {1e-6 * bore:.0f} | {ready.certificate.steps} |", flush=True)
+    mass, radius, twice = float(ready.system.mass.sum()), 0.04, 2.0 * 9.81  # v^2 after 1 m
+    hertz = (4.0 / 3.0 * 70e9 / (1.0 - 0.22**2) * radius**0.5) ** 0.4 * (1.25 * mass * twice) ** 0.6
+    print(
+        f"a ball of {mass:.2g} kg by Hertz: {hertz / (mass * twice / (0.02 * 2.0 * radius)):.2g} times the load of one 2 % deep"
+    )
+
+
 def cost() -> None:
     """Processor time of a step of a plate that lies still, by its pieces."""
     print("| pieces | glued [us] | apart [us] |\n|---|---|---|")
@@ -93,5 +116,5 @@ def many() -> None:
 
 
 if __name__ == "__main__":
-    for what in sys.argv[1:] or ["heights", "cost", "many"]:
-        {"heights": heights, "cost": cost, "many": many}[what]()
+    for what in sys.argv[1:] or ["heights", "blows", "cost", "many"]:
+        {"heights": heights, "blows": blows, "cost": cost, "many": many}[what]()

@@ -24,7 +24,7 @@ using namespace LAMMPS_NS;
 using namespace FixConst;
 using namespace mdanim;
 
-static constexpr int COLUMNS = 23;    // of compute_array()
+static constexpr int COLUMNS = 24;    // of compute_array()
 
 static std::map<int, Inertia> moments_of(LAMMPS *lmp, const char *file)
 {
@@ -225,9 +225,9 @@ double FixMdanimRigid::compute_array(int row, int column)
   const auto &[f, t, at] = glue.load_of(row, [this] { return collected || (collect(), true); });
   const Vec3 &c = bodies[row].centre, &v = bodies[row].velocity, &w = bodies[row].spin;
   const Quaternion &q = bodies[row].q;
-  return std::array<double, COLUMNS>{
-      c.x, c.y, c.z, v.x, v.y, v.z, q.w,  q.x,  q.y, q.z, w.x, w.y, w.z, glue.molecule_of_whole(row),
-      f.x, f.y, f.z, t.x, t.y, t.z, at.x, at.y, at.z}[column];
+  const double whole = glue.molecule_of_whole(row), bore = glue.glued.stress(row);
+  return std::array<double, COLUMNS>{c.x, c.y,   c.z, v.x, v.y, v.z, q.w, q.x, q.y,  q.z,  w.x,  w.y,
+                                     w.z, whole, f.x, f.y, f.z, t.x, t.y, t.z, at.x, at.y, at.z, bore}[column];
 }
 
 double FixMdanimRigid::memory_usage()

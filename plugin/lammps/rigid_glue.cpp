@@ -140,7 +140,13 @@ double RigidGlue::kinetic_of_all(double half_dt, const std::vector<double> &drag
 
 bool RigidGlue::judge()
 {
-  const std::vector<int> apart = glued.judge(bodies, lmp->force->ftm2v);
+  PieceMotions more(bodies.size());
+  if (touching.is_on()) {
+    const PieceMotions of_solids = touching.contact.spread_over_beds();
+    for (std::size_t n = 0; n < bodies.size(); ++n)
+      if (const int solid = touching.solid(static_cast<int>(n)); solid != RigidTouching::NO_SHAPE) more[n] = of_solids[solid];
+  }
+  const std::vector<int> apart = glued.judge(bodies, more, lmp->force->ftm2v);
   if (apart.empty()) return false;
   for (const int n : apart)
     if (touching.is_on() && touching.solid(n) != RigidTouching::NO_SHAPE) touching.contact.place(touching.solid(n), bodies[n]);

@@ -25,6 +25,7 @@ void GluedBodies::take(std::vector<GlueFace> given, std::size_t bodies)
   in_whole.assign(bodies, {});
   from_start.assign(bodies, {});
   given_way.assign(bodies, {});
+  bore.assign(bodies, 0.0);
   for (std::size_t f = 0; f < faces.size(); ++f)
     for (const int body : {faces[f].a, faces[f].b}) at[body].push_back(static_cast<int>(f));
 }
@@ -183,10 +184,12 @@ void GluedBodies::find_springs(Whole &whole) const
   }
 }
 
-std::vector<double> GluedBodies::shares(const Whole &whole, const std::vector<RigidBody> &bodies, double to_acceleration)
+std::vector<double> GluedBodies::shares(const Whole &whole, const std::vector<RigidBody> &bodies, const PieceMotions &more,
+                                        double to_acceleration)
 {
   std::vector<double> found(whole.springs.size(), 0.0);
-  const PieceMotions load = loads_of_pieces(whole.body, whole.pieces, in_whole, bodies, to_acceleration);
+  PieceMotions load = loads_of_pieces(whole.body, whole.pieces, in_whole, bodies, to_acceleration);
+  add_in_frame(whole.body, whole.pieces, more, load);
   double pushes = 0.0;
   for (const PieceMotion &one : load) pushes = std::max(pushes, length(one.place));
   if (pushes <= QUIET * whole.bears) return found;
@@ -202,34 +205,44 @@ std::vector<double> GluedBodies::shares(const Whole &whole, const std::vector<Ri
   return found;
 }
 
+void GluedBodies::take_stress(const Whole &whole, const std::vector<double> &share)
+{
+  for (std::size_t s = 0; s < share.size(); ++s) {
+    const GlueFace &face = faces[whole.springs[s].face];
+    most_share = std::max(most_share, share[s]);
+    for (const int body : {face.a, face.b}) bore[body] = std::max(bore[body], share[s] * face.strength);
+  }
+}
+
 // Faces above their strength break that have the largest share of all faces of both of their pieces, so that a crack
 // goes from face to face; of equal ones the first.
-bool GluedBodies::break_some(const Whole &whole, const std::vector<double> &share)
+static std::vector<int> faces_that_break(const GluedBodies::Whole &whole, const std::vector<double> &share)
 {
   std::vector<double> most(whole.pieces.size(), 0.0);
-  std::vector<int> first(whole.pieces.size(), -1);
+  std::vector<int> first(whole.pieces.size(), -1), found;
   for (std::size_t s = 0; s < share.size(); ++s)
     for (const int end : {whole.springs[s].a, whole.springs[s].b})
       if (share[s] > most[end]) most[end] = share[s], first[end] = static_cast<int>(s);
-  bool found = false;
   for (std::size_t s = 0; s < share.size(); ++s) {
     const int number = static_cast<int>(s);
     const bool is_largest = first[whole.springs[s].a] == number && first[whole.springs[s].b] == number;
-    if (share[s] > 1.0 && is_largest) broken[whole.springs[s].face] = 1, found = true;
+    if (share[s] > 1.0 && is_largest) found.push_back(whole.springs[s].face);
   }
   return found;
 }
 
-std::vector<int> GluedBodies::judge(const std::vector<RigidBody> &bodies, double to_acceleration)
+std::vector<int> GluedBodies::judge(const std::vector<RigidBody> &bodies, const PieceMotions &more, double to_acceleration)
 {
   std::vector<int> apart;
   std::vector<char> is_opened(wholes.size(), 0);
   for (std::size_t w = 0; w < wholes.size(); ++w) {
     Whole &whole = wholes[w];
     if (whole.body.aside || !std::isfinite(whole.bears)) continue;
-    const std::vector<double> share = shares(whole, bodies, to_acceleration);
-    for (const double one : share) most_share = std::max(most_share, one);
-    if (!break_some(whole, share)) continue;
+    const std::vector<double> share = shares(whole, bodies, more, to_acceleration);
+    take_stress(whole, share);
+    const std::vector<int> gone = faces_that_break(whole, share);
+    if (gone.empty()) continue;
+    for (const int f : gone) broken[f] = 1;
     is_opened[w] = 1;
     apart.insert(apart.end(), whole.pieces.begin(), whole.pieces.end());
   }
@@ -282,7 +295,7 @@ void GluedBodies::put(int body, ByteWriter &writer) const
 {
   if (!is_on() || at[body].empty()) return;
   Kept kept;
-  kept.from_start = from_start[body];
+  kept.from_start = from_start[body], kept.bore = bore[body];
   if (holds(body)) {
     const Whole &whole = wholes[whole_of[body]];
     kept.behind = body - whole.pieces.front();
@@ -310,7 +323,8 @@ void GluedBodies::read(int body, ByteReader &reader)
       broken[f] = own[next++] != 0;
     }
   const Kept &now = kept[body];
-  if (next != own.size() || now.behind > body || now.behind < ALONE || (now.behind != ALONE && !(now.mass > 0.0)) ||
+  if (next != own.size() || !(now.bore >= 0.0) || now.behind > body || now.behind < ALONE ||
+      (now.behind != ALONE && !(now.mass > 0.0)) ||
       !std::isfinite(now.centre.x + now.centre.y + now.centre.z + now.velocity.x + now.velocity.y + now.velocity.z))
     reader.is_damaged("its glue");
 }
@@ -333,6 +347,7 @@ void GluedBodies::rebuild(const std::vector<char> &has)
     }
     const Kept &own = kept[n];
     from_start[n] = own.from_start;
+    bore[n] = own.bore;
     in_whole[n] = own.pose;
     given_way[n] = own.way;
     whole_of[n] = ALONE;

@@ -48,7 +48,8 @@ class GluedBodies {
   int first_of(int body) const { return holds(body) ? whole(body).pieces.front() : body; }
   const Pose &pose(int body) const { return in_whole[body]; }    // of a piece in its whole
   int broken_faces() const;
-  double largest_share() const { return most_share; }    // of what a face bears, since the bodies were made
+  double largest_share() const { return most_share; }                     // of what a face bears, since the bodies were made
+  double stress(int body) const { return is_on() ? bore[body] : 0.0; }    // the largest in a face of a piece, so far
   // Loads of faces by pieces, in space, as hanging_loads has them.
   std::vector<FaceLoads> face_loads(const std::vector<RigidBody> &bodies, double to_acceleration) const;
 
@@ -60,8 +61,9 @@ class GluedBodies {
   // After velocities of pieces were set.
   void take_motion(std::vector<RigidBody> &bodies);
 
-  // Breaks the glue whose stress is too large, and takes wholes apart. Returns the pieces of these, ascending.
-  std::vector<int> judge(const std::vector<RigidBody> &bodies, double to_acceleration);
+  // Breaks the glue whose stress is too large, and takes wholes apart. `more`: what bodies bear besides their forces, in space.
+  // Returns the pieces of these, ascending.
+  std::vector<int> judge(const std::vector<RigidBody> &bodies, const PieceMotions &more, double to_acceleration);
 
   // Part of the record of a body.
   void put(int body, ByteWriter &writer) const;
@@ -79,15 +81,17 @@ class GluedBodies {
     Vec3 L;
     Pose pose, from_start;
     PieceMotion way;
+    double bore = 0.0;
   };
 
   void make_whole(const std::vector<RigidBody> &bodies, std::vector<int> pieces);
   void spread(std::vector<RigidBody> &bodies, const Whole &whole, bool places) const;
   void find_springs(Whole &whole) const;
   // The largest stress in the face of each spring of a whole, over what the face bears.
-  std::vector<double> shares(const Whole &whole, const std::vector<RigidBody> &bodies, double to_acceleration);
+  std::vector<double> shares(const Whole &whole, const std::vector<RigidBody> &bodies, const PieceMotions &more,
+                             double to_acceleration);
   void number_wholes();
-  bool break_some(const Whole &whole, const std::vector<double> &share);
+  void take_stress(const Whole &whole, const std::vector<double> &share);
   std::vector<std::vector<int>> parts(const Whole &whole) const;
 
   std::vector<GlueFace> faces;    // a and b are numbers of bodies
@@ -98,6 +102,7 @@ class GluedBodies {
   std::vector<Pose> in_whole;      // of pieces
   std::vector<Pose> from_start;    // of pieces: from space at the start to their frames
   PieceMotions given_way;          // x of pieces, in the frame of their whole
+  std::vector<double> bore;        // largest stress in a face of each piece, so far
   double most_share = 0.0;
   std::vector<Whole> wholes;    // by their first pieces
   std::vector<Kept> kept;       // while records are read

@@ -67,4 +67,12 @@ PieceMotions loads_of_pieces(const RigidBody &whole, const std::vector<int> &pie
   return found;
 }
 
+void add_in_frame(const RigidBody &whole, const std::vector<int> &pieces, const PieceMotions &more, PieceMotions &load)
+{
+  for (std::size_t k = 0; k < pieces.size(); ++k) {
+    load[k].place += transposed_times(whole.turn, more[pieces[k]].place);
+    load[k].turn += transposed_times(whole.turn, more[pieces[k]].turn);
+  }
+}
+
 }    // namespace mdanim

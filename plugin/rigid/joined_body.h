@@ -17,5 +17,7 @@ RigidBody joined_body(const std::vector<RigidBody> &bodies, const std::vector<in
 // numbers of bodies.
 PieceMotions loads_of_pieces(const RigidBody &whole, const std::vector<int> &pieces, const std::vector<Pose> &in_whole,
                              const std::vector<RigidBody> &bodies, double to_acceleration);
+// Adds further forces and torques in space, by the numbers of bodies.
+void add_in_frame(const RigidBody &whole, const std::vector<int> &pieces, const PieceMotions &more, PieceMotions &load);
 
 }    // namespace mdanim

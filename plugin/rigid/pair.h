@@ -71,6 +71,7 @@ struct SolidPlane {
   Vec3 shift, way, velocity;    // of one that moves: from the start, of the step that ends here, and its mean velocity
 
   bool is_beyond(const Solid &one) const { return dot(n, one.centre) - at > one.shape.bound(); }    // of reach, at the start
+  bool is_above(const Solid &one) const { return dot(n, one.centre - shift) - at > one.shape.bound(); }    // the same, now
 };
 // Contacts of a body that may reach the plane.
 void touch_plane(const TouchStep &step, std::vector<Touch> &touches, Solid &one, const SolidPlane &plane, const TouchLaw &law);

@@ -140,6 +140,15 @@ void Polyhedron::cover(const std::vector<char> &faces)
   for (Corner &corner : all_corners) corner.covered = closes(corner.faces);
 }
 
+double Polyhedron::area(int face) const
+{
+  const std::vector<int> &loop = all_faces[face].corners;
+  Vec3 twice;
+  for (std::size_t k = 2; k < loop.size(); ++k)
+    twice += cross(all_corners[loop[k - 1]].at - all_corners[loop[0]].at, all_corners[loop[k]].at - all_corners[loop[0]].at);
+  return 0.5 * dot(twice, all_faces[face].normal);
+}
+
 double Polyhedron::outside(const Vec3 &x) const
 {
   double most = -HUGE_VAL;

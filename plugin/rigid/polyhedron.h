@@ -59,6 +59,7 @@ class Polyhedron {
   // Directions of edges, each once but for its sign.
   const std::vector<Vec3> &directions() const { return all_directions; }
 
+  double area(int face) const;
   // Largest normal . X - at over faces: below 0 inside, at most the distance outside.
   double outside(const Vec3 &x) const;
   // Largest n . X.

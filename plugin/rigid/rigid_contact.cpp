@@ -19,6 +19,7 @@ void RigidContact::take(std::vector<Solid> now)
     one.settled = one.held && !one.driven && length(one.belt) == 0.0;
   }
   solids = std::move(now);
+  beds.forget();
   forget();
 }
 
@@ -254,8 +255,8 @@ bool RigidContact::lay_aside(int n, bool aside)
 void RigidContact::glue(int n, int whole, const Carrier &carrier, const std::vector<char> &faces)
 {
   Solid &one = solids[n];
-  one.whole = whole;
-  one.carrier = carrier;
+  beds.forget();
+  one.whole = whole, one.carrier = carrier;
   one.find_yields();
   if (!faces.empty()) one.shape.cover(faces);
 }

@@ -8,6 +8,7 @@
 #include "records/byte_writer.h"
 #include "rigid/body.h"
 #include "rigid/near_solids.h"
+#include "rigid/rigid_beds.h"
 #include "rigid/touch.h"
 
 #include <algorithm>
@@ -65,8 +66,10 @@ class RigidContact {
   void rest(int n, bool asleep, bool settled);
   // Says which body a piece is glued into; `faces`: those of its shape that glue covers (see Polyhedron::cover), or none.
   void glue(int n, int whole, const Carrier &carrier, const std::vector<char> &faces);
-  // To be called after it, at the end of a step: contacts of bodies that yield more than before, by their numbers and with what
-  // they yielded, get softer, and those that touch from then on do so without a force. Forces on these, and on all that they
+  // Finds what bodies that are glued together bear more than contact gives them (RigidBeds::spread).
+  PieceMotions spread_over_beds() { return beds.spread(solids, near.pairs, settings.planes, at_plane, settings.onset); }
+  // To be called after `glue`, at the end of a step: contacts of bodies that yield more than before, by their numbers and with
+  // what they yielded, get softer, and those that touch from then on do so without a force. Forces on these, and on all that they
   // touch, are found again. Returns the energy that contacts lose.
   double change(const std::map<int, double> &yielded);
   // The account, with the energy of contacts, and how many there are, from what they remember.
@@ -107,11 +110,12 @@ class RigidContact {
   }
 
   std::vector<Solid> solids;
+  RigidBeds beds;
   NearSolids near;
   std::vector<int> active;    // pairs that are looked at where some bodies are settled
   bool is_active_known = false;
-  std::vector<char> unstirred;                              // of bodies: settled, and so is all that is near
-  std::vector<std::vector<std::vector<Touch>>> at_plane;    // by planes and bodies
+  std::vector<char> unstirred;    // of bodies: settled, and so is all that is near
+  RigidBeds::TouchesAtPlanes at_plane;
   // Forces on bodies from planes that move, in the last step, by planes and ids; none before the first one.
   std::map<std::pair<int, int>, std::optional<Vec3>> plane_push;
 };

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """Messages on rigid objects: notes and their hints, words in the wrong place, what `explain` tells."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from mdanim_lammps.errors import SceneError
@@ -51,7 +53,7 @@ def test_no_damping_is_advised_for_rigid_objects(prepared, objects, control, hin
 def test_a_bound_with_which_things_come_to_rest_is_not_told(prepared, most, told):
     """The note comes above the largest sum that scenes came to rest with, at no place of a scene: nobody wrote the step."""
     context = prepared(scene("elasticity rigid", more="accuracy balanced")).context
-    found = RigidMotion().doubts(context, 1.0, {PROOF: np.array([0.0, most])}.__getitem__)
+    found = RigidMotion().doubts(context, SimpleNamespace(ledger={PROOF: np.array([0.0, most])}.__getitem__))
     assert [told in p.hint and p.span is None and p.severity == "note" for p in found] == [True] * bool(told)
 
 

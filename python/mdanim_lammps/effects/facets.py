@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -17,6 +17,7 @@ from .context import Context, Resolved
 from .envelope import Envelope
 from .fields import Field, Fields
 from .margin import Margin
+from .measured import Measured
 from .readings import Readings
 
 
@@ -172,6 +173,6 @@ class Advice:
         """Further remarks of ``check`` on a scene in which something can move: nothing is doubtful, but it may not be known."""
         return []
 
-    def doubts(self, context: Context, time: float, ledger: Callable[[str], np.ndarray]) -> list[Problem]:
-        """Doubts about a run of this length [s] that has ended; ``ledger`` gives a column."""
+    def doubts(self, context: Context, run: Measured) -> list[Problem]:
+        """Doubts about a run that has ended, and what may not be known of it."""
         return []

@@ -340,11 +340,10 @@ class _Run:
             measured = self._measured(trajectory)
             outcomes = evaluate(self.ready.scene.expects, measured)
             self._write_records(measured)
+            doubts = [p for e in self.effects for p in e.doubts(self.ready.context, measured)]
         cost = self._cost(account)
         write_json(self.folder / "cost.json", cost.to_json())
         write_json(self.folder / SUMMARY, self._summary(outcomes))
-        c, context = self.certificate, self.ready.context
-        doubts = [p for e in self.effects for p in e.doubts(context, c.steps * c.timestep, self.ledger.array)]
         return Result(self.folder, self.ledger, outcomes, cost, [*self.guard.warnings(self.ledger), *doubts])
 
     def _summary(self, outcomes: list[Outcome]) -> dict:

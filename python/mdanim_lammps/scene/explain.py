@@ -73,6 +73,7 @@ def _entries() -> Iterator[tuple[str, str]]:
             yield form.split()[0], f"elasticity {_slots(form)}   a form of elasticity in object {{ }}\n  {_plain(about)}"
     for (subject, quantity), kind in QUANTITIES.items():
         unit = kind.unit if kind.unit != "1" else "plain numbers"
+        subject = "NAME" if subject == "NAMES" else subject
         what = f"expect {subject}.{quantity} = ...   a quantity, in {unit}\n  {_plain(meaning(subject, kind))}"
         yield f"{subject}.{quantity}".removeprefix("NAME."), what
     for unit, about, others in units.LISTED:

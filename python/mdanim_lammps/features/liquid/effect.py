@@ -156,8 +156,8 @@ class LiquidAutomaton(Effect):
     def fault(self, scene, time, fields):
         return frames.fault(scene, time, fields)
 
-    def doubts(self, context, time, ledger):
-        return frames.overflow(context, time, ledger)
+    def doubts(self, context, run):
+        return frames.overflow(context, run.times[-1], run.ledger)
 
     def weighed(self, scene, system):
         return full_basin(scene) if scene.liquid else 0.0

@@ -8,14 +8,21 @@ import numpy as np
 from ...effects.context import Verdict
 from ...effects.effect import Effect
 from ...effects.fields import Field
+from ...errors import Problem
+from ...scene.formatting import number, say
 from ...scene.scene import PieceShape
-from ..rigid.touching import FIXES, OF_WHOLE, told_of_bodies
+from ..contact.words import CONTACT_STIFFNESS
+from ..rigid.touching import FIXES, OF_WHOLE, STRESS, told_of_bodies
 from .glue import EFFECT, is_glued, wholes
 
 TORN = "torn"
 """Column of the ledger: energy that was lost where glue broke."""
 WHOLE = "whole"
 """Field of objects: number of the first piece that one hangs together with, from 1; 0 of what is none."""
+HARDER = 1.5
+"""Stress over the strength that a harder contact is to give: loads of a blow rise with the root of the stiffness."""
+BORE = "stress"
+"""Field of objects: largest stress that the glue of a piece bore so far [Pa]; 0 of what is none."""
 
 
 class Glue(Effect):
@@ -52,16 +59,34 @@ class Glue(Effect):
         return {TORN: readings.fix_value(FIXES[0], TORN)}
 
     def fields(self, scene):
-        return (whole_field(scene),)
+        return (whole_field(scene), Field(BORE, "Pa", per="object", counts=(len(scene.solids),)))
 
     def tell(self, readings):
         system, solids = readings.system, readings.context.solids
         number = {solid.name: m + 1.0 for m, solid in enumerate(readings.context.scene.solids)}
-        found = np.zeros(len(system.names))  # others than pieces may be elsewhere, where nothing tells of them
+        whole, bore = np.zeros((2, len(system.names)))  # others than pieces may be elsewhere, where nothing tells of them
         for m, row in told_of_bodies(readings).items():
             if isinstance(solids[m].shape, PieceShape):
-                found[m] = number[solids[int(row[OF_WHOLE]) - 1].name]
-        return {WHOLE: found}
+                whole[m] = number[solids[int(row[OF_WHOLE]) - 1].name]
+                bore[m] = row[STRESS]
+        return {WHOLE: whole, BORE: bore}
+
+    def doubts(self, context, run):
+        """Notes on objects that did not break, with the stress that they bore."""
+        found = []
+        for begin, end in wholes(context.scene):
+            solid = context.scene.solids[begin]
+            if len(np.unique(run.trajectory.field(WHOLE, len(run.times) - 1)[begin:end])) > 1:
+                continue
+            bore, whole = float(run.trajectory.field(BORE, len(run.times) - 1)[begin:end].max()), solid.shape.whole
+            cause = f"{whole.name} bore up to {say(bore, 'Pa')} of {say(solid.strength, 'Pa')} and did not break"
+            ways = [f"write strength {say(float(number(0.5 * bore, 2)), 'Pa')}"] if bore > 0.0 else []
+            ways += ["let it fall from higher"]
+            if bore > 0.0 and (harder := (HARDER * solid.strength / bore) ** 2) <= CONTACT_STIFFNESS.most:
+                ways += [f"write contact-stiffness {number(harder, 2)} in control"]
+            way_out = f"if it should, {', or '.join(ways)}"
+            found.append(Problem(whole.spans["pieces"], cause, way_out, severity="note"))
+        return found
 
 
 def whole_field(scene) -> Field:

@@ -14,7 +14,10 @@ from ...scene.shapes import Bricks, PieceShape, Rope, Sheet, Shell, Torus, Voron
 SWITCHES = {"pieces": "an object's `pieces n`"}
 
 QUANTITIES = {
-    ("NAMES", "pieces"): Observable("1", "parts of an object with `pieces` that hang together; 1 before it breaks", "pieces")
+    ("NAMES", "pieces"): Observable("1", "parts of an object with `pieces` that hang together; 1 before it breaks", "pieces"),
+    ("NAMES", "stress.max"): Observable(
+        "Pa", "largest stress that glue of an object with `pieces` bore so far, above its `strength` where that broke", "pieces"
+    ),
 }
 
 LEDGER = {"torn": "energy of motion and contact that was lost where glue broke"}

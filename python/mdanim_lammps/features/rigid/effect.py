@@ -154,9 +154,9 @@ class RigidMotion(Effect):
     def tell(self, readings):
         return {PROOF: max(readings.fix_value(part.fix, "worst_bound") for part in touching.parts(readings.context))}
 
-    def doubts(self, context, time, ledger):
+    def doubts(self, context, run):
         """The largest sum that proves a step, where it is above all with which things are known to have come to rest."""
-        most = float(ledger(PROOF).max()) if _may_touch(context.scene) else 0.0
+        most = float(run.ledger(PROOF).max()) if _may_touch(context.scene) else 0.0
         if most <= AT_REST:
             return []
         factor = number(min(0.9, math.sqrt(AT_REST / most)), 2)

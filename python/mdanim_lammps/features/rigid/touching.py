@@ -43,10 +43,11 @@ CALM, BALANCED = 1e-4, 1e-3
 
 FIXES = ("rigid", "rigid_rest")
 """Fixes of what touches objects by its features, and of all else."""
-COLUMNS = 23
+COLUMNS = 24
 """Columns of the array of a fix, a row for each body."""
-OF_WHOLE, BEARS_FORCE, BEARS_TORQUE, AT = 13, slice(14, 17), slice(17, 20), slice(20, 23)
-"""Columns of the first object that a body is glued together with; of what it bears where it hangs on that; of the place."""
+OF_WHOLE, BEARS_FORCE, BEARS_TORQUE, AT, STRESS = 13, slice(14, 17), slice(17, 20), slice(20, 23), 23
+"""Columns of the first object that a body is glued together with; of what it bears where it hangs on that; of the place; of the
+largest stress that its glue bore."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
