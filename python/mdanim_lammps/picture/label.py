@@ -3,9 +3,23 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
+from importlib.util import find_spec
+from pathlib import Path
+
 import numpy as np
 
 from .window import lay_over
+
+VTK_FONT_FILE = 4
+"""VTK's number for letters from a file."""
+
+
+@lru_cache(maxsize=1)
+def letters_file() -> Path:
+    """The letters of curves and arrows, which come with matplotlib: those of VTK have an equals sign of one line where they are
+    small."""
+    return Path(find_spec("matplotlib").origin).parent / "mpl-data" / "fonts" / "ttf" / "DejaVuSans.ttf"
 
 
 class Label:
@@ -31,7 +45,8 @@ class Label:
         self._paper = 255 if sum(color) < 1.5 else 0
         self._drawn, self._origin = np.zeros((0, 0, 4), np.uint8), (0, 0)
         self._look = vtkTextProperty()
-        self._look.SetFontFamilyToArial()
+        self._look.SetFontFamily(VTK_FONT_FILE)
+        self._look.SetFontFile(str(letters_file()))
         self._look.SetFontSize(max(9, height))
         self._look.SetColor(color)
         self._look.SetOpacity(1.0 if halo else self.OPACITY)

@@ -328,7 +328,7 @@ class Painter:
         color = (0.93, 0.94, 0.95) if is_dark(background) else (0.20, 0.23, 0.27)
         margin = round(0.035 * height)
         self._title = Label((margin, margin), round(0.032 * height), color, halo=halo)
-        self._stamp = Label((width - margin, margin), round(0.028 * height), color, right=True, halo=halo)
+        self._stamp = Label((width - margin, margin), round(0.032 * height), color, right=True, halo=halo)
 
     # --- one picture ---------------------------------------------------------------------------------------
 
