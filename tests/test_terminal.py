@@ -73,7 +73,16 @@ def test_another_broken_pipe_is_an_error(capsys):
     with pytest.raises(SystemExit) as end, documented_exit(debug=False):
         raise BrokenPipeError(32, "Broken pipe")
     assert end.value.code == ExitCode.IO
-    assert "Broken pipe" in capsys.readouterr().err
+    assert "broken pipe" in capsys.readouterr().err.lower()
+
+
+def test_a_name_that_is_too_long_is_cut(capsys):
+    """It is told with its begin and its end, in one line."""
+    with pytest.raises(SystemExit) as end, documented_exit(debug=False):
+        os.stat("/tmp/" + 300 * "x")
+    said = capsys.readouterr().err
+    assert end.value.code == ExitCode.IO and "/tmp/xxx" in said and "...x" in said and len(said) < 200
+    assert said.endswith("file name too long; write a shorter name\n")
 
 
 @pytest.mark.parametrize(("encoding", "command"), [("ascii", ["check"]), ("latin-1", ["check"]), ("ascii", ["check", "--json"])])

@@ -90,6 +90,11 @@ class Problem:
         """Column, counted from 1; 0 without a place."""
         return self.span.column if self.span else 0
 
+    @property
+    def order(self) -> tuple[tuple[int, int], ...]:
+        """Key by which problems are in the order of the text: lines and columns of the includes that lead to it, then its own."""
+        return tuple((s.line, s.column) for s in self.span.included_from) + ((self.line, self.column),) if self.span else ()
+
     def __str__(self) -> str:
         """The message, the source line, a caret below the bad word, the way out beside it, the includes."""
         place = f"{self.span}: " if self.span else ""

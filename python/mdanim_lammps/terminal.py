@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import re
 import select
@@ -15,6 +16,9 @@ from typing import Any, NoReturn, TextIO
 from .errors import CONTROL, ExitCode, MdanimError, SceneError, for_a_shell, out_of_files, out_of_memory
 from .interrupts import PROGRAM, heard, interrupt, on_signals
 from .processes import available_memory
+
+LONGEST_NAME = 120
+"""Signs of the name of a file in a message at most."""
 
 
 def open_streams() -> None:
@@ -132,8 +136,7 @@ def documented_exit(*, debug: bool) -> Iterator[None]:
         if heard:
             _interrupted()
         _end_where_short(error)
-        told = error if error.filename else f"stdout, or a file, cannot be written: {error.strerror or error}; write it elsewhere"
-        print(error_line(told), file=sys.stderr)
+        print(error_line(_of_a_file(error)), file=sys.stderr)
         raise SystemExit(ExitCode.IO) from None
     except Exception as error:
         if heard and not debug:
@@ -143,6 +146,16 @@ def documented_exit(*, debug: bool) -> Iterator[None]:
         raise
     finally:
         for_a_shell(before)
+
+
+def _of_a_file(error: OSError) -> str:
+    """What the system says of a file, with a way out."""
+    if not error.filename:
+        return f"stdout, or a file, cannot be written: {error.strerror or error}; write it elsewhere"
+    name = str(error.filename)
+    name = name if len(name) <= LONGEST_NAME else f"{name[: LONGEST_NAME // 2]}...{name[-LONGEST_NAME // 4 :]}"
+    way_out = {errno.ENAMETOOLONG: "; write a shorter name", errno.EACCES: "; look at its permissions"}
+    return f"{name}: {(error.strerror or str(error)).lower()}{way_out.get(error.errno or 0, '')}"
 
 
 def _end_where_short(error: Exception) -> None:

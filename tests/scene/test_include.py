@@ -56,6 +56,12 @@ def test_problem_in_an_included_file_shows_the_chain(write, tmp_path):
     assert str(problem).endswith(f"included from {tmp_path}/a.txt:1:1\n        included from {tmp_path}/main.txt:2:1")
 
 
+def test_problems_are_in_the_order_of_the_text(write):
+    """Those of an included file come where it is included."""
+    found = problems(write(main='let a = 1 mn\ninclude "a.txt"\nlet b = 1 mn\n' + BALL + CONTROL, a="\n\n\nlet r = 2 mn\n"))
+    assert [problem.line for problem in found] == [1, 4, 3]
+
+
 def test_circle_of_includes_is_shown(write):
     """Refuse a file that includes itself through others, and show the round."""
     path = write(main='include "a.txt"\n' + CONTROL, a='include "b.txt"\n', b='include "a.txt"\n' + BALL)

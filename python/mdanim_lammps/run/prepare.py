@@ -100,7 +100,9 @@ def _prepare(scene: SceneRecord, spacing: Spacing, allow_unstable: bool) -> Prep
     ]
     problems += _unmeasurable(resolved) + _undriven(resolved, models)
     if problems:
-        raise SceneError(sorted([*problems, *scene.warnings], key=_place))  # a wrong scale comes before where it leads
+        raise SceneError(
+            sorted([*problems, *scene.warnings], key=lambda problem: problem.order)
+        )  # a wrong scale comes before where it leads
     context = _context(resolved, models, spacing, grid)
     if any(model.held.all() and not len(model.hexahedron) for model in models) and any(
         e.needs_inside(context) for e in resolved.effects
@@ -126,10 +128,6 @@ class _Passing(Container):
 
     def __contains__(self, pair: Any) -> bool:
         return pair in self.pairs or (pair[0] in self.body and self.body[pair[0]] == self.body.get(pair[1]))
-
-
-def _place(problem: Problem) -> tuple[int, int]:
-    return (problem.span.line, problem.span.column) if problem.span else (0, 0)
 
 
 def _refuse(certificate: Certificate) -> None:

@@ -44,7 +44,6 @@ def load_render(path: str | os.PathLike, names: Sequence[str]) -> Render:
     """
     source = _file(path)
     problems = Problems()
-    problems.begin(source)
     body, shared = parse(source, problems)
     out = Expander(shared, None, False).scene(body)
     if out is None or any(block.block != "render" for block in out.blocks):
@@ -87,7 +86,6 @@ def parse_scene(
 
 def _scene(source: SceneFile, name: str, overrides: Overrides | None, strict: bool = False, trust: bool = False) -> SceneRecord:
     problems = Problems()
-    problems.begin(source)
     if not source.text.strip():
         place = Span(source.name, 1, 1)
         raise SceneError([Problem(place, f"{source.name} is empty", "a scene has at least an object and a control block")])

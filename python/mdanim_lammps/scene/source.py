@@ -123,11 +123,6 @@ class Problems:
     def __init__(self):
         self.found: list[Problem] = []
         self._keys = set()
-        self._files: list[str] = []
-
-    def begin(self, source: SceneFile) -> None:
-        """Name the main file: its problems come first."""
-        self._files.append(source.name)
 
     def add(self, span: Span | None, message: str, hint: str = "", severity: str = "error", key=None) -> None:
         """Note a problem unless one with this key (by default: this place and severity) is known."""
@@ -135,8 +130,6 @@ class Problems:
         if key not in self._keys:
             self._keys.add(key)
             self.found.append(Problem(span, message, hint, severity))
-            if span and span.file not in self._files:
-                self._files.append(span.file)
 
     def fault(self, source: SceneFile, fault: Fault, where: str = "", used_at: tuple[Span, ...] = ()) -> None:
         """Note a Fault of a file."""
@@ -145,8 +138,7 @@ class Problems:
 
     def ordered(self) -> list[Problem]:
         """All problems in the order of the text."""
-        order = {name: n for n, name in enumerate(self._files)}
-        return sorted(self.found, key=lambda p: (order.get(p.file, -1), p.line, p.column))
+        return sorted(self.found, key=lambda problem: problem.order)
 
     @property
     def errors(self) -> int:

@@ -53,7 +53,11 @@ def unmeasured(scene: SceneRecord, asked: Iterable[Of]) -> list[Problem]:
         if m in reasons:
             on = "" if of.subject != WORLD else f", nor that on {scene.solids[m].name}"
             cause = f"the force of contact on {of.subject} is not known{on}: {reasons[m]}"
-            found.append(Problem(of.span, cause, "ask for that on another object, one that moves freely"))
+            known = any(k not in own for k, solid in enumerate(scene.solids) if not solid.hold)
+            way_out = (
+                "ask for that on another object, one that moves freely" if known else "take the line out: no object here has it"
+            )
+            found.append(Problem(of.span, cause, way_out))
     return list(dict.fromkeys(found))  # the components of an arrow have one problem
 
 
