@@ -149,7 +149,7 @@ def documented_exit(*, debug: bool) -> Iterator[None]:
 
 
 def _of_a_file(error: OSError) -> str:
-    """What the system says of a file, with a way out."""
+    """The words of the system on a file, with a way out."""
     if not error.filename:
         return f"stdout, or a file, cannot be written: {error.strerror or error}; write it elsewhere"
     name = str(error.filename)

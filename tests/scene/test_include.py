@@ -57,7 +57,7 @@ def test_problem_in_an_included_file_shows_the_chain(write, tmp_path):
 
 
 def test_problems_are_in_the_order_of_the_text(write):
-    """Those of an included file come where it is included."""
+    """Problems of an included file come where it is included."""
     found = problems(write(main='let a = 1 mn\ninclude "a.txt"\nlet b = 1 mn\n' + BALL + CONTROL, a="\n\n\nlet r = 2 mn\n"))
     assert [problem.line for problem in found] == [1, 4, 3]
 

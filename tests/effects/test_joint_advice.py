@@ -1,0 +1,35 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""What hangs by points below its own centre of mass is told before the run."""
+
+import pytest
+from mdanim_lammps.run.prepare import prepare
+from mdanim_lammps.scene.parse import parse_scene
+
+SWING = """gravity (0, 0, -9.81) m/s^2
+repeat k in 1 .. 2 {
+  let y = (2*k - 3)*24 cm
+  object rod[k] { shape box (2, 2, 156) cm  position (0, y, 132 cm)  density 2000  elasticity rigid }
+  joint ball rod[k] world { at (0, y, 2.1 m) }
+  joint ball rod[k] seat { at (0, y, 0.54 m) }
+}
+object seat { shape box (24, 56, 4) cm  position (0, 0, 0.52) m  density 600  elasticity rigid }
+"""
+RIDER = "object rider { shape box (20, 30, 50) cm  position (0, 0, 0.79) m  density 300  elasticity rigid }\n"
+WELD = "joint weld rider seat {}\n"
+
+
+@pytest.mark.parametrize(
+    ("more", "told"),
+    [
+        ("", False),
+        (RIDER + WELD, True),
+        (RIDER + WELD + "joint ball rod[1] rider { at (0, -0.24, 1) m }\n", False),
+        (RIDER + WELD + "joint weld rod[1] seat {}\n", False),
+    ],
+    ids=["a seat alone", "with a rider", "held above him too", "stiff"],
+)
+def test_a_swing_below_its_rider(more, told):
+    """By two points below the centre of mass it turns over; a third one above, or a weld, keeps it."""
+    notes = [note.message for note in prepare(parse_scene(SWING + more + "control { time 1 s }\n")).certificate.notes]
+    said = [note for note in notes if "hangs by points" in note]
+    assert [note.split(" below")[0] for note in said] == ["what is welded of seat, rider hangs by points that are 17.9 cm"][:told]
