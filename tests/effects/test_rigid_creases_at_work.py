@@ -106,3 +106,32 @@ def test_few_particles_of_rings_and_meshes(prepared, shape):
         x = instance.array("x")
         assert ready.system.center_of_mass(x)[0, 2] == pytest.approx(0.5 - 0.5 * 9.81 * 0.1**2, abs=1e-6)
         assert Geometry(ready.system).sunk(x) is None
+
+
+def test_what_has_no_features_is_eight_particles_too(prepared):
+    """A mesh whose features are not known, struck by an elastic ball: both go on as the middle of both does, with all energy, and
+    the ball is thrown back. Alone over ground the mesh has no cells, and stays on it."""
+    text = f"""gravity (0, 0, 0) m/s^2
+    object it {{ shape mesh "{MESHES}/sliver.obj" scale 0.03  position (0, 0, 0) m  density 1000
+      elasticity rigid  resolution 3 cm }}
+    object ball {{ shape sphere 5 cm  position (0, 0, 0.11) m  mass 1  elasticity 300 kPa
+      velocity (0, 0, -1) m/s  resolution 4 cm }}
+    control {{ time 0.1 s }}
+    """
+    ready = prepared(text)
+    system = ready.system
+    assert system.first[1] == 8
+    with Instance(ready.plan) as instance:
+        instance.setup()
+        instance.run(ready.certificate.steps)
+        momentum = np.add.reduceat(system.mass[:, None] * instance.array("v"), system.first[:-1])
+    np.testing.assert_allclose(momentum.sum(axis=0), (0.0, 0.0, -1.0), rtol=0, atol=1e-9)
+    struck, ball = system.mass_of
+    fastest = 2.0 / (struck + ball)  # of the mesh after a central elastic blow
+    assert 0.7 * struck * fastest < -momentum[0, 2] <= struck * fastest
+    alone = prepared(f"""ground z 0 m  gravity (0, 0, -9.81) m/s^2
+    object it {{ shape mesh "{MESHES}/sliver.obj" scale 0.03  position (0, 0, 0.0455) m  density 1000  elasticity rigid }}
+    control {{ time 0.1 s  friction 0.5 }}
+    """)
+    assert alone.system.frames[0].cells.filled.shape == (1, 1, 1)
+    assert run(alone)[0] == pytest.approx((0.0, 0.0, 0.045), abs=2e-3)

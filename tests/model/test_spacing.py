@@ -224,7 +224,7 @@ def test_finer_cells_are_tried_up_to_a_number(monkeypatch, most, tried):
 
 def test_two_bodies_in_one_file_are_refused():
     """Say that separate bodies want separate objects."""
-    with pytest.raises(SceneError, match=r"two-parts\.obj has 2 surfaces that do not hang together"):
+    with pytest.raises(SceneError, match=r"two-parts\.obj has 2 parts that do not hang together"):
         model(Mesh(MESHES / "two-parts.obj"), 0.5)
 
 

@@ -65,6 +65,10 @@ class BodyKind:
         kind that does not."""
         return lattice
 
+    def bare(self, scene: SceneRecord, solid: Solid) -> bool:
+        """Whether nothing reads cells of an object nor points of its surface, so that its spacing costs nothing."""
+        return False
+
     def make(self, solid: Solid, h: float, shared: Any) -> Any:
         """The model (model/model.py) of an object at a particle spacing h [m]; ``shared`` makes what equal objects share
         (model/build.py).

@@ -26,10 +26,10 @@ from .lattice import Lattice, make_lattice
 from .limits import bounding_cells
 from .masses import Fit, fit_masses
 from .mesh import MeshError
+from .mesh_parts import pieces
 from .model import Model, Surface
 from .spacing import plan_spacing
 from .springs import equivalent_modulus, reduced_mass, rest_lengths, stiffness, types
-from .triangles import connected
 
 
 def build_models(
@@ -299,7 +299,14 @@ def _too_thin(solid: Solid, h: float, error: TooThin) -> Problem:
 
 def _in_parts(solid: Solid) -> str:
     """Way out of what is never in one piece."""
-    if isinstance(solid.shape, Mesh) and (parts := int(connected(mesh.load(solid.shape).triangles).max()) + 1) > 1:
-        cause = f"{solid.shape.path.name} has {parts} surfaces that do not hang together"
-        return f"{cause}: save each body as a file and write an object for each, with origin file, which keeps their places"
+    if isinstance(solid.shape, Mesh) and (parts := _parts(mesh.load(solid.shape))) > 1:
+        cause = f"{solid.shape.path.name} has {parts} parts that do not hang together"
+        return (
+            f"{cause}: write elasticity rigid, or an object for each, part 1 to part {parts} with origin file, which keeps places"
+        )
     return "make separate bodies, and parts that touch in a point, separate objects"
+
+
+def _parts(found: mesh.Triangles) -> int:
+    """How many parts of its file a mesh consists of."""
+    return len(found.names) or int(pieces(found.points, found.triangles).max()) + 1

@@ -32,7 +32,10 @@ def fill_cells(shape: Shape, spacing: float, loose: bool = False) -> Cells:
         return Cells(np.ones((1, 1, 1), bool), *shapes.extent(shape))
     if isinstance(shape, Box):
         return _box_cells(shape, _counts(shape.size, spacing, loose))
-    return _voxels(shape, spacing, mesh.load(shape) if isinstance(shape, Mesh) else None)
+    whole, apart = _voxels(shape, spacing, mesh.load(shape) if isinstance(shape, Mesh) else None)
+    if whole is None and (apart is None or not loose):
+        raise TooThin("its cells are not in one piece")
+    return apart if whole is None else whole
 
 
 def end_share(filled: np.ndarray) -> float:
@@ -108,20 +111,21 @@ GOOD_VOLUME = 0.05
 
 
 @lru_cache(maxsize=64)
-def _voxels(shape: Shape, spacing: float, triangles: mesh.Triangles | None) -> Cells:
-    """Cubic cells whose centre is inside, with the edge and alignment whose volume and extent are nearest to the true ones.
+def _voxels(shape: Shape, spacing: float, triangles: mesh.Triangles | None) -> tuple[Cells | None, Cells | None]:
+    """Cubic cells whose centre is inside, with the edge and alignment whose volume and extent are nearest to the true ones: those
+    in one piece, and those in several that are better; None where there are none.
 
     Scenes are often prepared again with the same shapes: cells of the last ones are kept, of a mesh as long as its file stays.
 
     The edge stays within 4 % of the spacing where that gives a good volume, else within 12 %, else 20 %.
-    Along each axis either a corner or the centre of a cell falls on the middle of the shape. Only fillings in
-    one piece count.
+    Along each axis either a corner or the centre of a cell falls on the middle of the shape.
     """
     volume, (low, high) = shapes.volume(shape), shapes.extent(shape)
     trials = SEARCH / max(1.0, float(np.prod((high - low) / spacing)))
     alignments = _alignments(high - low) if trials > 2 else [(0, 0, 0)]
     count = int(np.clip(trials / len(alignments), 1, 9))
     best, best_error, best_score = None, np.inf, np.inf
+    apart, apart_score = None, np.inf
     for reach in (0.04, 0.12, 0.2):
         for edge, odd in product(spacing * _around_one(reach, count), alignments):
             cells = _filled(shape, low, high, edge, odd)
@@ -132,15 +136,16 @@ def _voxels(shape: Shape, spacing: float, triangles: mesh.Triangles | None) -> C
             # thousandth is not worth an edge 5 % off the spacing.
             out = max(abs(cells.low - low).max(), abs(cells.high - high).max()) / edge
             score = error + 0.1 * out + 0.02 * abs(edge / spacing - 1)
-            if score < best_score and _in_one_piece(cells.filled):
-                best, best_error, best_score = cells, error, score
+            if score < best_score:
+                if _in_one_piece(cells.filled):
+                    best, best_error, best_score = cells, error, score
+                elif score < apart_score:
+                    apart, apart_score = cells, score
         if best_error <= GOOD_VOLUME:
             break
-    if best is None:
-        raise TooThin("its cells are not in one piece")
-    for array in (best.filled, best.low, best.high):
+    for array in (part for cells in (best, apart) if cells is not None for part in (cells.filled, cells.low, cells.high)):
         array.setflags(write=False)
-    return best
+    return best, apart
 
 
 def _around_one(reach: float, count: int) -> np.ndarray:

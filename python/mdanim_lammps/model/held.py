@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from ..scene.scene import Box, Mesh, PieceShape, Shape, Solid, Sphere
+from ..scene.scene import Box, Mesh, Shape, Solid, Sphere
 from . import shapes
 from .cells import fill_cells
 from .contact_body import BodyFrame
@@ -55,15 +55,14 @@ def held_model(solid: Solid, h: float, shared: Any) -> Model:
     return corner_model(solid, cell, placed.corner, shapes.mass(solid) * placed.share, placed.surface, placed.frame, free=None)
 
 
-def free_model(solid: Solid, h: float, shared: Any, hollow: bool = False) -> Model:
+def free_model(solid: Solid, h: float, shared: Any, hollow: bool = False, bare: bool = False) -> Model:
     """The same of an object that moves and does not deform, with the corners of a box along its own axes; their centre of mass is
     that of the object. Of one that is ``hollow`` the box is not a cell: it may surround others.
 
-    A piece whose contact is found elsewhere has a surface of one cell, and counts as resolved with h.
+    A ``bare`` mesh, whose contact is found elsewhere, has a surface of one cell, and counts as resolved with h.
 
     Raises cells.TooThin, mesh.MeshError.
     """
-    bare = shared.by_features and isinstance(solid.shape, PieceShape)
     placed = shared.once(_placed, solid.shape, math.inf if bare else h, UPRIGHT)
     arm, mass = placed.corner @ np.array(solid.rotation).T, shapes.mass(solid) * placed.share
     edge = placed.frame.cells.edge
@@ -119,7 +118,7 @@ def corner_model(
 
 def _shaped(shared: Any, shape: Shape, h: float) -> tuple[BodyFrame, Surface, np.ndarray]:
     """Cells, and the drawn surface with its vertices [m], shape (V, 3); body frame."""
-    lattice = make_lattice(fill_cells(shape, h), tied=False)
+    lattice = make_lattice(fill_cells(shape, h, loose=True), tied=False)
     surface = make_surface(shape, lattice)
     return BodyFrame(shape, lattice.cells), surface, surface.vertices(lattice.position)
 

@@ -15,7 +15,8 @@ from ..scene.formatting import say
 from ..scene.scene import Mesh, PieceShape
 from . import vtk_surface
 from .crossings import crossings
-from .mesh_formats import UnreadableMesh
+from .mesh_formats import Polygons, UnreadableMesh
+from .mesh_parts import named_part, piece
 from .mesh_reader import read_polygons
 from .nearest import Nearest, blocks
 from .orientation import MeshError, outward
@@ -46,6 +47,8 @@ class Triangles:
     """RGB of the points, uint8, shape (V, 3); None where the file has none, or the surface is made anew."""
     mended: str = ""
     """Changes to the surface of the file, in words."""
+    names: tuple[str, ...] = ()
+    """Names of all parts of the file."""
 
     @property
     def area(self) -> float:
@@ -60,7 +63,7 @@ def load(shape: Mesh) -> Triangles:
 
         return piece(shape).surface
     path, stamp = stamped(shape)
-    return _load(path, shape.scale, shape.mended, stamp.st_mtime_ns, stamp.st_size)
+    return _load(path, shape.part, shape.scale, shape.mended, stamp.st_mtime_ns, stamp.st_size)
 
 
 def stamped(shape: Mesh) -> tuple[Path, os.stat_result]:
@@ -76,8 +79,8 @@ def stamped(shape: Mesh) -> tuple[Path, os.stat_result]:
 
 
 @lru_cache(maxsize=64)
-def _load(path: Path, scale: float, mend: bool, changed: int, size: int) -> Triangles:
-    points, triangles, color = read_file(path)
+def _load(path: Path, part: str | int | None, scale: float, mend: bool, changed: int, size: int) -> Triangles:
+    points, triangles, color, names = read_file(path, part)
     read, mended = len(points), ""
     if mend:
         points, triangles, mended = solid(points, triangles, path.name)
@@ -88,7 +91,7 @@ def _load(path: Path, scale: float, mend: bool, changed: int, size: int) -> Tria
     points = (points - centre) * scale
     color = color if len(points) == read else None
     volume *= scale**3
-    return Triangles(points, triangles, volume, thickness(points, triangles, volume), centre * scale, color, mended)
+    return Triangles(points, triangles, volume, thickness(points, triangles, volume), centre * scale, color, mended, names)
 
 
 def check_size(points: np.ndarray, scale: float, name: str) -> None:
@@ -102,24 +105,47 @@ def check_size(points: np.ndarray, scale: float, name: str) -> None:
         )
 
 
-def read_file(path: Path) -> tuple[np.ndarray, np.ndarray, np.ndarray | None]:
-    """Points in units of the file (V, 3), equal ones merged, triangles (T, 3), and colours of points (V, 3) if it has any."""
+def read_file(path: Path, part: str | int | None = None) -> tuple[np.ndarray, np.ndarray, np.ndarray | None, tuple[str, ...]]:
+    """Points in units of the file (V, 3), equal ones merged, triangles (T, 3), colours of points (V, 3) if it has any, and the
+    names of all its parts; of one part, or of all together. Raises MeshError."""
     try:
-        corners, faces, color = read_polygons(path)
+        found = _read(path, part is not None)
     except (OSError, UnreadableMesh) as error:
         raise MeshError(f"mesh {path.name}: {error}", "export it again as STL, OBJ or PLY") from None
-    surface = vtk_surface.polygons(corners, faces)
-    if len(color):
-        vtk_surface.paint(surface, color)
+    names = found.names
+    if names and part is not None:
+        found = named_part(found, part, path.name)
+    faces = np.insert(found.index, np.cumsum(found.count) - found.count, found.count)
+    surface = vtk_surface.polygons(found.points, faces)
+    if len(found.color):
+        vtk_surface.paint(surface, found.color)
     surface = vtk_surface.merged(vtk_surface.triangulated(surface), 1e-7)
     points, triangles = vtk_surface.arrays(surface)
+    color = vtk_surface.paint_of(surface) if len(found.color) else None
     corners = np.sort(triangles, axis=1)
     triangles = triangles[(corners[:, 0] != corners[:, 1]) & (corners[:, 1] != corners[:, 2])]
     if not len(triangles):
         raise MeshError(f"mesh {path.name}: holds no triangle", "export a surface, not points or lines")
     if not np.isfinite(points).all():
         raise MeshError(f"mesh {path.name}: holds coordinates that are not finite", "export it again")
-    return points, triangles, vtk_surface.paint_of(surface) if len(color) else None
+    if not names and part is not None:
+        used, number = np.unique(piece(points, triangles, part, path.name), return_inverse=True)
+        points, triangles = points[used], number.reshape(-1, 3).astype(np.int32)
+        color = None if color is None else color[used]
+    return points, triangles, color, names
+
+
+def _read(path: Path, again: bool) -> Polygons:
+    """Contents of a file; ``again`` says that those of other parts may be asked for soon."""
+    if not again:
+        return read_polygons(path)
+    stamp = path.stat()
+    return _kept(path, stamp.st_mtime_ns, stamp.st_size)
+
+
+@lru_cache(maxsize=1)
+def _kept(path: Path, changed: int, size: int) -> Polygons:
+    return read_polygons(path)
 
 
 def second_moments(mesh: Triangles) -> np.ndarray:

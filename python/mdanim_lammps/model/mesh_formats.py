@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""STL, OBJ and PLY as polygons. Normals, texture, materials and groups are passed over, right or wrong."""
+"""STL, OBJ and PLY as polygons with the names of parts. Normals, texture and materials are passed over, right or wrong."""
 
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, field
 from itertools import islice
 
 import numpy as np
@@ -28,6 +29,11 @@ class Polygons:
     """Points at the corners, one polygon after the other, int64; each is one that is there."""
     color: np.ndarray
     """RGB of the points, uint8, shape (V, 3), or (0, 3) where the file has none."""
+    names: tuple[str, ...] = ()
+    """Names of the parts: objects of an OBJ file, or its groups where it has one object at most; solids of an STL file. None of a
+    file with one part."""
+    part: np.ndarray = field(default_factory=lambda: np.zeros(0, np.int64))
+    """The part of each polygon, its number in ``names``, int64, shape (F,); (0,) without names."""
 
 
 def read(data: bytes, kind: str) -> Polygons:
@@ -35,15 +41,18 @@ def read(data: bytes, kind: str) -> Polygons:
     return {".stl": _stl, ".obj": _obj, ".ply": _ply}[kind](data)
 
 
-def _polygons(points: np.ndarray, count, index, places=None, color: np.ndarray | None = None) -> Polygons:
-    """Checked polygons; ``places`` tell where each one stands in the file."""
+def _polygons(points: np.ndarray, count, index, places=None, color: np.ndarray | None = None, of: Sequence[str] = ()) -> Polygons:
+    """Checked polygons; ``places`` tell where each one stands in the file, ``of`` the name of its part."""
     count, index = np.asarray(count, np.int64), np.asarray(index, np.int64)
     wrong = np.flatnonzero((index < 0) | (index >= len(points)))
     if len(wrong):
         face = int(np.searchsorted(np.cumsum(count), wrong[0], side="right"))
         place = f"line {places[face]}" if places is not None else f"face {face + 1}"
         raise UnreadableMesh(f"{place}: names point {index[wrong[0]] + (places is not None)}, there are {len(points)}")
-    return Polygons(points.astype(np.float32), count, index, np.zeros((0, 3), np.uint8) if color is None else color)
+    number: dict[str, int] = {}
+    part = np.array([number.setdefault(name, len(number)) for name in of], np.int64)
+    named = (tuple(number), part) if len(number) > 1 else ()
+    return Polygons(points.astype(np.float32), count, index, np.zeros((0, 3), np.uint8) if color is None else color, *named)
 
 
 def _numbers(words: list[bytes], places: list[int]) -> np.ndarray:
@@ -59,6 +68,11 @@ def _number(word: bytes, line: int) -> float:
         return float(word.upper().replace(b"D", b"E"))  # as Fortran writes exponents
     except ValueError:
         raise UnreadableMesh(f"line {line}: {_shown(word)} is not a number") from None
+
+
+def _name(line: bytes) -> str:
+    """The name of a part behind the first word of a line, without what a text of a scene cannot hold."""
+    return " ".join(b" ".join(line.split()[1:]).decode(errors="replace").replace('"', "'").split())
 
 
 def _shown(word: bytes) -> str:
@@ -81,7 +95,8 @@ def _stl(data: bytes) -> Polygons:
 
 
 def _stl_text(data: bytes) -> Polygons:
-    words, places, count, first = [], [], [], None
+    words, places, count, first, of = [], [], [], None, []
+    solids, name = 0, ""
     for line, text in enumerate(data.splitlines(), 1):
         word, *rest = text.split() or [b""]
         word = word.lower()
@@ -94,12 +109,16 @@ def _stl_text(data: bytes) -> Polygons:
             first = len(places)
         elif word == b"endloop" and first is not None:
             count.append(len(places) - first)
+            of.append(name)
             first = None
-        elif word not in (b"", b"solid", b"facet", b"endloop", b"endfacet", b"endsolid", b"color"):
+        elif word == b"solid":
+            solids += 1
+            name = _name(text) or str(solids)
+        elif word not in (b"", b"facet", b"endloop", b"endfacet", b"endsolid", b"color"):
             raise UnreadableMesh(f"line {line}: {_shown(word)} is not a word of an STL file")
     if first is not None:
         raise UnreadableMesh("is cut short: it ends inside of a triangle")
-    return _polygons(_numbers(words, places), count, np.arange(len(places)))
+    return _polygons(_numbers(words, places), count, np.arange(len(places)), of=of)
 
 
 # --- OBJ --------------------------------------------------------------------------------------------------------------
@@ -107,6 +126,8 @@ def _stl_text(data: bytes) -> Polygons:
 
 def _obj(data: bytes) -> Polygons:
     words, places, count, index, faces = [], [], [], [], []
+    named: dict[bytes, str] = {b"o": "", b"g": ""}
+    of: dict[bytes, list[str]] = {word: [] for word in named}
     for line, (word, rest) in _obj_lines(data):
         if word == b"v":
             if len(rest) < 3:
@@ -119,9 +140,13 @@ def _obj(data: bytes) -> Polygons:
                 count.append(len(corners))
                 index += corners
                 faces.append(line)
+                for kind, name in named.items():
+                    of[kind].append(name)
+        elif word in named:
+            named[word] = _name(b" ".join((word, *rest)))
     if not places:
         raise UnreadableMesh("has no point, which is a line 'v x y z'")
-    return _polygons(_numbers(words, places), count, index, faces)
+    return _polygons(_numbers(words, places), count, index, faces, of=of[b"o" if len(set(of[b"o"])) > 1 else b"g"])
 
 
 def _obj_lines(data: bytes):

@@ -13,7 +13,7 @@ import numpy as np
 
 from ..children import TimeoutExpired, command, run
 from ..scene.limits import MOST_BYTES_OF_MESH
-from .mesh_formats import UnreadableMesh, read
+from .mesh_formats import Polygons, UnreadableMesh, read
 
 MEMORY = 8 << 30
 """Address space of the reading process [bytes]: 30 times the size of the largest file."""
@@ -23,12 +23,8 @@ UNREADABLE = 3
 """Exit code of the reading process for a file that is not a mesh; it says why on stderr."""
 
 
-def read_polygons(path: Path) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Points, shape (V, 3), in units of the file, faces as VTK lists them, (count, index, index, ...) one after the other, and
-    colours of points, uint8 RGB, shape (V, 3), or (0, 3) where the file has none.
-
-    Every index is that of a point. Raises UnreadableMesh, and OSError for a file that is not there.
-    """
+def read_polygons(path: Path) -> Polygons:
+    """Contents of a file. Raises UnreadableMesh, and OSError for a file that is not there."""
     found = path.stat()
     if not stat.S_ISREG(found.st_mode):
         raise UnreadableMesh("is not a regular file")
@@ -37,7 +33,7 @@ def read_polygons(path: Path) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     return _read_apart(path)
 
 
-def _read_apart(path: Path) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _read_apart(path: Path) -> Polygons:
     """`contents` by a process of its own."""
     try:
         done = run(command(__name__, path), text=False, capture_output=True, timeout=SECONDS)
@@ -48,18 +44,17 @@ def _read_apart(path: Path) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     if done.returncode:
         raise UnreadableMesh("is too large to be read, or damaged")
     arrays = io.BytesIO(done.stdout)
-    return np.load(arrays), np.load(arrays), np.load(arrays)
+    *parts, names, part = (np.load(arrays) for _ in range(6))
+    return Polygons(*parts, tuple(names.tolist()), part)
 
 
-def contents(path: Path) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def contents(path: Path) -> Polygons:
     """The same as `read_polygons`, by this process, however much memory and time that takes. Raises UnreadableMesh."""
-    found = read(path.read_bytes(), path.suffix.lower())
-    faces = np.insert(found.index, np.cumsum(found.count) - found.count, found.count)
-    return found.points, faces, found.color
+    return read(path.read_bytes(), path.suffix.lower())
 
 
 def main() -> None:
-    """Write the contents of a file to the standard output, as three arrays."""
+    """Write the contents of a file to the standard output, as six arrays."""
     for limit, most in ((resource.RLIMIT_AS, MEMORY), (resource.RLIMIT_CORE, 0)):
         hard = resource.getrlimit(limit)[1]
         resource.setrlimit(limit, (most if hard == resource.RLIM_INFINITY else min(most, hard), hard))
@@ -68,5 +63,5 @@ def main() -> None:
     except UnreadableMesh as error:
         print(error, file=sys.stderr)
         sys.exit(UNREADABLE)
-    for array in found:
+    for array in (found.points, found.count, found.index, found.color, np.array(found.names, str), found.part):
         np.save(sys.stdout.buffer, array)

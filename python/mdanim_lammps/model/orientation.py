@@ -16,6 +16,7 @@ CROSSED = 0.01
 
 
 CLOSE = "write solid in place of mesh to have all that it encloses"
+FLAT = "write sheet thickness 1 mm behind it to have its surface as a sheet, mesh in place of solid, or export a body"
 
 
 class MeshError(Exception):
@@ -47,7 +48,7 @@ def outward(points: np.ndarray, triangles: np.ndarray, name: str) -> np.ndarray:
     triangles = _turned_by_part(points, triangles, np.ones(len(triangles), bool), True)
     volume, _ = volume_and_centre(points, triangles)
     if volume <= 1e-9 * np.ptp(points, axis=0).max() ** 3:
-        raise MeshError(f"mesh {name}: encloses no volume", "export a body, not a sheet")
+        raise MeshError(f"mesh {name}: encloses no volume", FLAT)
     if (twice := _enclosed_twice(points, triangles)) > CROSSED:
         raise MeshError(
             f"mesh {name}: its surface crosses itself, {100 * twice:.0f} % of the inside is enclosed more than once",

@@ -36,14 +36,14 @@ class ShellSurface:
 def of_file(shape: Mesh) -> ShellSurface:
     """The surface in the file of a mesh. Raises MeshError."""
     path, stamp = mesh.stamped(shape)
-    return _of_file(path, shape.scale, shape.mended, stamp.st_mtime_ns, stamp.st_size)
+    return _of_file(path, shape.part, shape.scale, shape.mended, stamp.st_mtime_ns, stamp.st_size)
 
 
 @lru_cache(maxsize=64)
-def _of_file(path, scale: float, mended: bool, changed: int, size: int) -> ShellSurface:
+def _of_file(path, part, scale: float, mended: bool, changed: int, size: int) -> ShellSurface:
     if mended:
         raise MeshError(f"mesh {path.name}: a sheet has no inside to be mended", "write mesh in place of solid")
-    points, triangles, _ = mesh.read_file(path)
+    points, triangles, *_ = mesh.read_file(path, part)
     name = path.name
     triangles = once(triangles)
     _, uses = np.unique(np.sort(edges(triangles), axis=1), axis=0, return_counts=True)

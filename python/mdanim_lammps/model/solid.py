@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .orientation import MeshError, outward, parts_outward
+from .orientation import FLAT, MeshError, outward, parts_outward
 from .triangles import edges, surface_of
 from .winding import enclosing
 
@@ -31,7 +31,7 @@ def solid(points: np.ndarray, triangles: np.ndarray, name: str) -> tuple[np.ndar
     except MeshError:
         points, around = enclosing(points, parts_outward(points, triangles))
     if not len(around):
-        raise MeshError(f"mesh {name}: encloses no volume", "export a body, not a sheet")
+        raise MeshError(f"mesh {name}: encloses no volume", FLAT)
     told += ", its surface is made anew"
     try:
         fewer, less = _fewer(points, around)

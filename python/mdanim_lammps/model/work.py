@@ -39,7 +39,7 @@ def seconds(scene: SceneRecord, h: float | Sequence[float], particles: Sequence[
 
 def _bodies(scene: SceneRecord, h: float | Sequence[float]) -> set[tuple[Shape, float]]:
     rows = zip(scene.solids, np.broadcast_to(h, len(scene.solids)).tolist())
-    return {(s.shape, own) for s, own in rows if kind_of(s).fills}
+    return {(s.shape, own) for s, own in rows if (kind := kind_of(s)).fills and not kind.bare(scene, s)}
 
 
 def _touches(scene: SceneRecord) -> bool:

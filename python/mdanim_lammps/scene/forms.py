@@ -38,6 +38,8 @@ class Slot:
     """Whether the rule of the setting does not hold for it: a place."""
     other: str = ""
     """A second SI unit that a number may have; such a number keeps its unit."""
+    or_text: bool = False
+    """Whether a text in quotes may stand for the number."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,7 +62,7 @@ def _slot(text: str) -> Slot:
     if shown.startswith("("):
         return Slot("place" if other else "vector", shown, u, shown.count(",") + 1, dim=dim, anywhere=anywhere)
     if shown.startswith('"'):
-        return Slot("text", shown)
+        return Slot("number", shown, or_text=True) if "|" in shown else Slot("text", shown)
     if "|" in shown:
         return Slot("choice", shown, choices=tuple(shown.split("|")))
     if shown in KINDS:
@@ -127,7 +129,7 @@ def _value(slot: Slot, x: Any, number: Callable[[float], str]) -> str | None:
     """One value as the language has it. Raises ValueError for a text that it cannot hold."""
     if x is None:
         return None
-    if slot.kind in ("text", "color"):
+    if slot.kind in ("text", "color") or (slot.or_text and isinstance(x, str)):
         text = str(x)
         if any(c in text for c in '"\n\r'):
             raise ValueError(f"a text of the scene language holds no quote and no line break: {text!r}")

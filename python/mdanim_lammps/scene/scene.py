@@ -81,9 +81,10 @@ class Solid:
     shape: Shape = setting(
         None,
         "Form of the object in its own frame: edge lengths, radii, heights along z. A mesh is a closed STL, OBJ or PLY file, "
-        "beside the scene file; `scale` is metres per unit of the file, default 1. A solid is all that the surface of such a "
-        "file encloses, which may have gaps, doubled faces and parts that cross. Colours of the points of a PLY file are drawn "
-        "where the object has no `color`. A rope lies between two points of the world, `thickness` is its diameter; with a "
+        "beside the scene file; `scale` is metres per unit of the file, default 1; `part` takes one of its parts, by name "
+        "(objects or groups of an OBJ file, solids of an STL file) or by number. A solid is all that the surface of such a file "
+        "encloses, which may have gaps, doubled faces and parts that cross. Colours of the points of a PLY file are drawn where "
+        "the object has no `color`. A rope lies between two points of the world, `thickness` is its diameter; with a "
         "`length` above their distance it hangs through along -z, with one below it is stretched. A chain is a rope that does "
         "not resist bending. With `sheet thickness` behind it the surface of a shape is a sheet, hollow inside; a mesh may then "
         "be open.",

@@ -206,7 +206,7 @@ class SettingReader(Reader):
 
     def value(self, slot: Slot, keyword: Keyword, more: bool) -> Value:
         t = self.peek
-        if slot.kind == "text":
+        if slot.kind == "text" or (slot.or_text and t.type in ("STRING", "BAD_STRING")):
             token = self.text(keyword.name, example(keyword))
             return Value(slot, token, token, text=str(token)[1:-1])
         if slot.kind == "choice":

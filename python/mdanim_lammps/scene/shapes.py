@@ -93,7 +93,7 @@ class Torus:
 class Mesh:
     """The inside of a closed mesh from an STL, OBJ or PLY file, or all that a surface with gaps encloses; axes as in the file."""
 
-    FORMS: ClassVar = tuple(f'{word} <"file"> [scale <s>]' for word in ("mesh", "solid"))
+    FORMS: ClassVar = tuple(f'{word} <"file"> [part <"name"|k>] [scale <s>]' for word in ("mesh", "solid"))
     ALSO: ClassVar = ("stl", "obj", "ply", "file")
 
     path: Path
@@ -102,16 +102,23 @@ class Mesh:
     """Metres per unit of the file."""
     mended: bool = False
     """Whether it is all that a surface encloses which has gaps, is doubled or crosses itself."""
+    part: str | int | None = None
+    """Which part of the file, by name or by number from 1 on; None for all of it."""
 
     @classmethod
     def read(cls, form: int, values: tuple) -> Mesh:
-        """A mesh or a solid."""
-        path, scale = values
-        return cls(path, 1.0 if scale is None else scale, form == 1)
+        """A mesh or a solid. Raises ValueError(message, hint, number of the value)."""
+        path, part, scale = values
+        if isinstance(part, float):
+            if part != int(part):
+                cause = f"a part is a name in quotes or a whole number, found {number(part, 6)}"
+                raise ValueError(cause, 'e.g. part "wheel", or part 2', 1)
+            part = int(part)
+        return cls(path, 1.0 if scale is None else scale, form == 1, part)
 
     def write(self) -> tuple[int, tuple]:
         """Form and values that are read as this."""
-        return int(self.mended), (self.path, self.scale)
+        return int(self.mended), (self.path, self.part, self.scale)
 
 
 @dataclass(frozen=True, slots=True)

@@ -105,7 +105,7 @@ class Evaluator:
         if kind == "check":
             subject, quantity, argument = x
             return subject, quantity, v.argument and self.checked(s, v.argument, argument)
-        if kind in ("text", "choice", "name", "relation") or v.name is not None:
+        if kind in ("text", "choice", "name", "relation") or v.node is None:
             return x
         what = label(s, v)
         if kind == "number":

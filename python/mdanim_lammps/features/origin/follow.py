@@ -41,14 +41,13 @@ def fill(v: Any) -> None:
             continue
         form = _record(block, "shape")
         file = mesh_of(form)
-        if file is None:
-            if form is not None:
-                v.problem(origin.span(), f"origin file is for a mesh or a solid{block.where}", "write position")
+        if form is not None and file is None:
+            v.problem(origin.span(), f"origin file is for a mesh or a solid{block.where}", "write position")
             block.broken.add("position")
             continue
-        path = beside(shape.entry.source.folder, file.path)
+        path = beside(shape.entry.source.folder, file.path if file else Path())
         centre = np.zeros(3)
-        if refusal_of_mesh(path, str(file.path)) is None:  # else told where shapes are checked
+        if file is not None and refusal_of_mesh(path, str(file.path)) is None:  # else told where shapes are checked
             with suppress(mesh.MeshError):  # told where bodies are made, as that of a mesh with a position
                 centre = shapes.centre_in_file(with_path(form, path))
         turn = np.array(_record(block, "orientation") or IDENTITY)

@@ -16,8 +16,8 @@ from ...model.held import free_model
 from ...model.largest import largest
 from ...model.polyhedron import polyhedron
 from ...scene.once import once_for
-from ...scene.scene import Box, Cone, Cylinder, Ellipsoid, Mesh, PieceShape, Sphere, Torus
-from .shapes import hidden, is_known, is_rigid, on_objects, only_balls_move
+from ...scene.scene import Box, Cone, Cylinder, Ellipsoid, Mesh, Sphere, Torus
+from .shapes import hidden, is_known, is_rigid, on_objects, on_planes, only_balls_move
 
 DISPLACED = 0.9
 """Part of the volume of the rigid objects in a scene with a liquid that those have whose thinnest parts set its cells."""
@@ -72,7 +72,12 @@ class RigidBody(BodyKind):
         return not by_features(scene)
 
     def particles(self, scene, solid, lattice, h):
-        return 8 if isinstance(solid.shape, PieceShape) and by_features(scene) else lattice
+        return 8 if is_cornered(scene, solid.shape) else lattice
+
+    def bare(self, scene, solid):
+        """A mesh that others touch by its features, or that planes alone touch, by its hull."""
+        alone = len(scene.solids) == 1 and scene.liquid is None
+        return isinstance(solid.shape, Mesh) and (by_features(scene) or (alone and on_planes(solid.shape)))
 
     def make(self, solid, h, shared):
         boxed = isinstance(solid.shape, Box | Sphere)  # the box around them has their middle
@@ -81,8 +86,8 @@ class RigidBody(BodyKind):
         elif boxed and lines_alone(shared.scene):
             model = single_cell_model(solid, h, shared)
             model = replace(model, frame=shared.once(_framed, solid.shape, h))
-        elif isinstance(solid.shape, OF_CORNERS) and shared.by_features:
-            model = free_model(solid, h, shared, hollow=is_hollow(solid.shape))
+        elif is_cornered(shared.scene, solid.shape):
+            model = free_model(solid, h, shared, hollow=is_hollow(solid.shape), bare=self.bare(shared.scene, solid))
         else:
             model = lattice_model(solid, h, shared, loose=True)
         return replace(model, inertia=tensor_of(solid))
@@ -109,6 +114,12 @@ def _framed(shared, shape, h: float) -> BodyFrame:
 
 def _across(solid) -> int:
     return ACROSS if isinstance(solid.shape, Box | Sphere | Mesh) and on_objects(solid.shape) else ROUND
+
+
+def is_cornered(scene, shape) -> bool:
+    """Whether the corners of a box around a shape are all its particles. Of a mesh they are where no liquid reads its cells:
+    points of its surface are found by these corners, too."""
+    return by_features(scene) or (isinstance(shape, Mesh) and scene.liquid is None)
 
 
 @once_for(lambda scene: scene)
