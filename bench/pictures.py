@@ -2,7 +2,8 @@
 """Cost of a picture: python bench/pictures.py FOLDER ... prints seconds of one core per picture of 1280 x 720, in draft and in
 final quality, and the memory of the process that draws, for output folders of runs. Without a folder: what the command
 ``mdanim-lammps picture scenes/beam.txt`` takes. ``floor FOLDER ...``: what the window of objects takes when it is empty, by VTK's
-own shader and by ours, beside a whole draft."""
+own shader and by ours, beside a whole draft. ``tells FOLDER ...``: a draft with what its scene lays over pictures and without,
+and the functions of these layers that are called where nothing is asked for."""
 
 from __future__ import annotations
 
@@ -100,8 +101,54 @@ def print_floors(folders: list[str]) -> None:
         print(f"{Path(folder).name:<24} {pixels:7d} " + " ".join(f"{1e3 * s:9.1f}" for s in seconds), flush=True)
 
 
+LAYERS = ("overlay.py", "layer.py", "curves.py", "ghosts.py", "tones.py", "run_values.py")
+"""Files of what scenes lay over pictures."""
+
+
+def tells(folder: str) -> tuple[float, float, int]:
+    """Seconds of processor time of a draft with what its scene lays over it and without, the least of several, and how many
+    functions of LAYERS are called in one without."""
+    os.environ["LP_NUM_THREADS"] = "1"
+    from mdanim_lammps.picture.render import Painter
+    from mdanim_lammps.results.trajectory import Trajectory
+    from mdanim_lammps.run.folder import stored_scene
+
+    render, seconds, called = stored_scene(Path(folder)).render, [], []
+    without = replace(render, arrows=(), trail=(), label=(), plot=(), caption=(), freeze=None, color_by=None)
+
+    def note(frame, event, _):
+        if event == "call" and Path(frame.f_code.co_filename).name in LAYERS:
+            called.append(frame.f_code.co_name)
+
+    for shown in (render, without):
+        with Trajectory(folder) as trajectory, Painter(trajectory, shown, size=SIZE) as painter:
+            times = []
+            for _ in range(RUNS):
+                start = time.process_time()
+                painter.pixels(len(trajectory) // 2)
+                times.append(time.process_time() - start)
+            seconds.append(min(times))
+            if shown is without:
+                sys.setprofile(note)
+                painter.pixels(len(trajectory) // 2)
+                sys.setprofile(None)
+    return seconds[0], seconds[1], len(called)
+
+
+def print_tells(folders: list[str]) -> None:
+    """Print a line for each folder, each measured by a process of its own."""
+    print(f"{'folder':<24} with all layers [ms]  without  functions of layers called then")
+    for folder in folders:
+        with ProcessPoolExecutor(1, get_context("spawn")) as pool:
+            full, bare, calls = pool.submit(tells, folder).result()
+        print(f"{Path(folder).name:<24} {1e3 * full:20.1f} {1e3 * bare:8.1f} {calls:6d}", flush=True)
+
+
 def main(folders: list[str]) -> None:
     """Print a line for each folder."""
+    if folders[:1] == ["tells"]:
+        print_tells(folders[1:])
+        return
     if folders[:1] == ["floor"]:
         print_floors(folders[1:])
         return

@@ -50,6 +50,7 @@ def test_page_of_a_lesson(tmp_path):
     assert said.returncode == ExitCode.DIVERGED and "MISSED" in said.stderr, said.stderr
     page = (tmp_path / "fall.out" / "lesson.html").read_text()
     assert ">missed<" in page and "A &lt;lesson&gt;" in page and "Both &amp; none" in page and "ball.speed at 0.1 s" in page
+    assert "= 0.981 +- 0.00981 m/s<" in page
     assert "<script" not in page and "default-src 'none'" in page and not re.search(r'(src|href)="(?!data:)', page)
     movie, curves = (base64.b64decode(found) for found in re.findall(r'src="data:[a-z/0-9]+;base64,([^"]+)"', page))
     assert movie == (tmp_path / "fall.out" / "movie.mp4").read_bytes() and curves.startswith(b"\x89PNG")

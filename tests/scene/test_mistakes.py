@@ -52,6 +52,7 @@ MISTAKES = [
      "position (0, 0, 1) m"),
     ("decimal comma in a vector", text(position="(0,5, 1, 2) m"), 3, 12, "found 4 numbers", "with a point"),
     ("decimal comma", text(mass="1,5 kg"), 4, 9, "',' cannot follow here", "with a point"),
+    ("a word before a value", text(shape="sphere radius 9 cm"), 2, 16, "'radius' is not written before its value", "alone"),
     ("vector without brackets", text(position="0 0 1 m"), 3, 14, "'0' follows another value", "(x, y, z)"),
     ("number for a vector", text("gravity -9.81\n"), 1, 9,
      "gravity is a vector (gx, gy, gz), found the number -9.81", "(0, 0, -9.81)"),

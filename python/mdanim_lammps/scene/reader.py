@@ -182,6 +182,9 @@ class Reader:
             return build.number(self.take())
         if t.type == "NAME":
             self.take()
+            if self._next().type == "NUMBER" and t not in self.names and t not in build.RESERVED:
+                way_out = "leave it out: values stand alone, in their order, as in cylinder 5 cm 12 cm"
+                raise Fault(t, f"'{t}' is not written before its value", way_out)
             site = next(self.sites) if t == "rand" else 0
             if self._next().type != "LPAR" or self._next_value_in_brackets(t):
                 return build.name(t)

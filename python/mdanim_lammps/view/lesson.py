@@ -86,7 +86,15 @@ def page_of(run: LessonRun, scene: SceneRecord, movie: bytes) -> str:
     if scene.answer:
         parts.append(f"<details><summary>Answer</summary><p>{html.escape(scene.answer)}</p></details>")
     if run.outcomes:
-        rows = [(one.what, one.asked, number(one.found, 6), "met" if one.met else "missed") for one in run.outcomes]
+        rows = [
+            (
+                one.what,
+                f"{one.asked} {one.expect.unit}",
+                f"{number(one.found, 6)} {one.expect.unit}",
+                "met" if one.met else "missed",
+            )
+            for one in run.outcomes
+        ]
         table = plain_table(("quantity", "expected", "found", ""), rows)
         parts.append(f"<details><summary>Measured in this run</summary>{table}</details>")
     text = run.trajectory.metadata.scene_text
