@@ -7,7 +7,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from ..scene.scene import Mesh
+from ..scene.scene import Mesh, PieceShape
 from . import mesh
 from .polyhedron import hull
 from .triangles import areas
@@ -23,7 +23,11 @@ LEAST_AREA = 2e-14
 @lru_cache(maxsize=256)
 def is_known(shape: Mesh) -> bool:
     """Whether the fix takes the triangles of a mesh: each has an area, and each edge has two of them. Raises mesh.MeshError."""
-    body = mesh.load(shape)
+    return is_clean(mesh.load(shape))
+
+
+def is_clean(body: mesh.Triangles) -> bool:
+    """The same of a surface."""
     if len(body.triangles) > MOST_TRIANGLES:
         return False
     size = float(np.linalg.norm(np.ptp(body.points, axis=0)))
@@ -38,4 +42,5 @@ def is_known(shape: Mesh) -> bool:
 @lru_cache(maxsize=256)
 def may_move(shape: Mesh) -> bool:
     """The same of a mesh that moves, whose corners also meet planes. Raises mesh.MeshError."""
-    return len(mesh.load(shape).points) <= MOST_CORNERS and is_known(shape) and hull(shape) is not None
+    few = len(mesh.load(shape).points) <= MOST_CORNERS
+    return few and is_known(shape) and (isinstance(shape, PieceShape) or hull(shape) is not None)

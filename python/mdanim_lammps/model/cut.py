@@ -9,14 +9,16 @@ from __future__ import annotations
 
 import hashlib
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
 
-from ..scene.scene import Box, Bricks, Cone, Cylinder, Ellipsoid, Mesh, PieceShape, Shape, Sphere, Torus, VoronoiCells
+from ..scene.scene import Box, Bricks, Cone, Cylinder, Ellipsoid, Mesh, PieceShape, Shape, Shell, Sphere, Torus, VoronoiCells
 from . import mesh, shapes
 from .mesh import MeshError, Triangles
+from .orientation import outward
 from .polyhedron import Polyhedron, is_clean
 from .triangles import volume_and_centre
 
@@ -28,10 +30,16 @@ NEAREST = 24
 """Other points by which a cell is cut at first."""
 AROUND = 32
 """Sides of a round shape that is cut, around its axis: pieces have flat faces."""
+CONVEX = 1e-6
+"""Volume of the hull of a convex mesh beyond its own, over this."""
 ONE_PLACE = 1.1e-6
 """Distance over the size of a piece below which two of its corners are one."""
 LEAST_FACE = 3e-8
 """Area of a face over the square of the size of a piece below which its plane is left out: the piece is larger by a crumb."""
+
+
+Inside = Callable[[np.ndarray], np.ndarray]
+"""Tells which points [m], shape (N, 3), are inside, bool, shape (N,)."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -88,9 +96,11 @@ def piece(shape: PieceShape) -> Piece:
     return division(shape.of, shape.how, shape.seed).pieces[shape.number]
 
 
-def count(shape: Shape, how: VoronoiCells | Bricks) -> int:
-    """The number of pieces."""
-    return how.number if isinstance(how, VoronoiCells) else sum(len(row) - 1 for row in _rows(shape, how))
+def count(shape: Shape, how: VoronoiCells | Bricks, seed: str) -> int:
+    """The number of pieces; of what is not convex there may be more than cells. Raises mesh.MeshError."""
+    if isinstance(how, Bricks):
+        return sum(len(row) - 1 for row in _rows(shape, how))
+    return how.number if concave(shape) is None else len(division(shape, how, seed).pieces)
 
 
 @lru_cache(maxsize=256)
@@ -98,38 +108,117 @@ def division(shape: Shape, how: VoronoiCells | Bricks, seed: str) -> Division:
     """A shape in pieces. Raises mesh.MeshError where it cannot be cut."""
     if isinstance(how, Bricks):
         return _bricks(shape, how)
-    pieces = tuple(_piece(corner, faces) for corner, faces in _voronoi(shape, how.number, seed))
+    if (body := concave(shape)) is not None:
+        from .cut_concave import pieces_of
+
+        pieces, faces = pieces_of(body, how.number, seed)
+        return Division(pieces, faces, tuple(range(len(pieces))))
+    planes = convex_planes(shape)
+    low, high = shapes.extent(shape)
+    cells = voronoi(low, high, lambda some: (some @ planes[:, :3].T < planes[:, 3]).all(axis=1), planes, how.number, seed)
+    pieces = tuple(_piece(corner, faces) for _, corner, faces in cells)
     return Division(pieces, tuple(_common_faces(pieces)), tuple(range(len(pieces))))
+
+
+def concave(shape: Shape) -> Triangles | None:
+    """The surface of a shape that is not convex; None of all others. Raises mesh.MeshError."""
+    from scipy.spatial import ConvexHull
+
+    if isinstance(shape, Shell):
+        return _hollow(shape)
+    if isinstance(shape, Torus):
+        return _ring(shape)
+    if not isinstance(shape, Mesh):
+        return None
+    body = mesh.load(shape)
+    return body if ConvexHull(body.points).volume > (1.0 + CONVEX) * body.volume else None
+
+
+def _hollow(shape: Shell) -> Triangles:
+    """What lies between two surfaces, half of the thickness outside of that of a shape and inside."""
+    points, triangles, volume = np.zeros((0, 3)), [], 0.0
+    for by in (0.5 * shape.thickness, -0.5 * shape.thickness):
+        body = _surface(_grown(shape.shape, by))
+        triangles.append((body.triangles if by > 0.0 else body.triangles[:, ::-1]) + len(points))
+        points = np.concatenate([points, body.points])
+        volume += math.copysign(body.volume, by)
+    return Triangles(points, np.concatenate(triangles).astype(np.int32), volume, shape.thickness, np.zeros(3))
+
+
+def _grown(shape: Shape, by: float) -> Shape:
+    """A shape whose surface is farther out [m]."""
+    match shape:
+        case Box():
+            return Box(tuple(a + 2.0 * by for a in shape.size))
+        case Sphere():
+            return Sphere(shape.radius + by)
+        case Ellipsoid():
+            return Ellipsoid(tuple(a + by for a in shape.radii))
+        case Cylinder():
+            return Cylinder(shape.radius + by, shape.height + 2.0 * by)
+        case Torus():
+            return Torus(shape.major, shape.minor + by)
+    raise MeshError("only walls of boxes, spheres, ellipsoids, cylinders and rings are known", "take one of these, or a mesh")
+
+
+def _surface(shape: Shape) -> Triangles:
+    """The surface of a shape with flat sides."""
+    from scipy.spatial import ConvexHull
+
+    if isinstance(shape, Torus):
+        return _ring(shape)
+    points = _corners(shape)
+    triangles = outward(points, ConvexHull(points).simplices, "the wall")
+    return Triangles(points, triangles, shapes.volume(shape), shapes.thickness(shape), np.zeros(3))
+
+
+def _ring(shape: Torus) -> Triangles:
+    """A ring with flat sides that has the volume of the round one."""
+    angle, around = (2.0 * np.pi * np.arange(n) / n for n in (AROUND, AROUND // 2))
+    far = shape.major + shape.minor * np.cos(around)[None, :] + 0.0 * angle[:, None]
+    points = np.stack(
+        [far * np.cos(angle)[:, None], far * np.sin(angle)[:, None], shape.minor * np.sin(around) + 0.0 * far], axis=-1
+    )
+    number = np.arange(points[..., 0].size).reshape(far.shape)
+    right, up, both = np.roll(number, -1, 0), np.roll(number, -1, 1), np.roll(number, (-1, -1), (0, 1))
+    triangles = np.concatenate(
+        [np.stack([number, right, both], -1).reshape(-1, 3), np.stack([number, both, up], -1).reshape(-1, 3)]
+    )
+    points = points.reshape(-1, 3)
+    volume, _ = volume_and_centre(points, triangles)
+    points *= (shapes.volume(shape) / volume) ** (1.0 / 3.0)
+    return Triangles(points, triangles.astype(np.int32), shapes.volume(shape), 2.0 * shape.minor, np.zeros(3))
 
 
 # --- cells of points ---------------------------------------------------------------------------------------------------
 
 
-def _voronoi(shape: Shape, number: int, seed: str) -> list[tuple[np.ndarray, dict[int, list[int]]]]:
-    """Corners of each cell [m] and its faces, by the piece beyond, below 0 for faces of the shape."""
+def voronoi(
+    low: np.ndarray, high: np.ndarray, inside: Inside, planes: np.ndarray, number: int, seed: str
+) -> list[tuple[np.ndarray, np.ndarray, dict[int, list[int]]]]:
+    """The point of each cell [m], its corners [m] and its faces, by the piece beyond, below 0 for the planes around all; points
+    lie ``inside`` the box from ``low`` to ``high``."""
     from scipy.spatial import cKDTree
 
-    planes = convex_planes(shape)
     key = np.frombuffer(hashlib.sha256(seed.encode()).digest()[:16], np.uint64)
     rng = np.random.Generator(np.random.Philox(key=key))
-    point = _inside(shape, planes, number, rng)
-    sample = _inside(shape, planes, SAMPLES * number, rng)
+    point = _scattered(low, high, inside, number, rng)
+    sample = _scattered(low, high, inside, SAMPLES * number, rng)
     for _ in range(ROUNDS):
         owner = cKDTree(point).query(sample)[1]
         own = np.bincount(owner, minlength=number)
         total = np.stack([np.bincount(owner, sample[:, k], number) for k in range(3)], axis=1)
         point = np.where(own[:, None] > 0, total / np.maximum(own, 1)[:, None], point)
     tree = cKDTree(point)
-    return [_cell(point, tree, n, planes) for n in range(number)]
+    return [(point[n], *_cell(point, tree, n, planes)) for n in range(number)]
 
 
-def _inside(shape: Shape, planes: np.ndarray, number: int, rng: np.random.Generator) -> np.ndarray:
-    """Points at random within planes [m], shape (number, 3)."""
-    low, high = shapes.extent(shape)
+def _scattered(low: np.ndarray, high: np.ndarray, inside: Inside, number: int, rng: np.random.Generator) -> np.ndarray:
+    """Points at random inside [m], shape (number, 3)."""
     found, have = [], 0
     while have < number:
         some = low + (high - low) * rng.random((2 * number + 100, 3))
-        some = some[(some @ planes[:, :3].T < planes[:, 3]).all(axis=1)]
+        some = some[inside(some)]
         found.append(some)
         have += len(some)
     return np.concatenate(found)[:number]
@@ -196,7 +285,7 @@ def _around(corner: np.ndarray, normal: np.ndarray, numbers: np.ndarray) -> tupl
 
 def convex_planes(shape: Shape) -> np.ndarray:
     """Planes n.x <= d that a convex shape is within, rows (n, d) [m], shape (K, 4). Round shapes get flat sides, and the volume
-    that they have. Raises MeshError where it is not convex."""
+    that they have."""
     from scipy.spatial import ConvexHull
 
     corner = _corners(shape)
@@ -212,13 +301,8 @@ def _corners(shape: Shape) -> np.ndarray:
         return 0.5 * np.array(shape.size) * np.array([(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
     from scipy.spatial import ConvexHull
 
-    if isinstance(shape, Torus):
-        raise MeshError("a torus is not convex", "cut a box, a sphere, an ellipsoid, a cylinder, a cone or a mesh")
     if isinstance(shape, Mesh):
-        body = mesh.load(shape)
-        if ConvexHull(body.points).volume > (1.0 + 1e-6) * body.volume:
-            raise MeshError("the mesh is not convex", "cut convex parts of it, each an object, and weld them")
-        return body.points
+        return mesh.load(shape).points
     angle = 2.0 * np.pi * np.arange(AROUND) / AROUND
     ring = np.stack([np.cos(angle), np.sin(angle)], axis=1)
     if isinstance(shape, Cylinder | Cone):
@@ -355,27 +439,30 @@ AXES = {
 
 def _common(a: int, b: int, side_a: int, side_b: int, loop: np.ndarray) -> CommonFace:
     """A face by its corners around the normal from a to b, shape (C, 3) [m]."""
-    start = loop.mean(axis=0)
-    first, second = loop - start, np.roll(loop, -1, axis=0) - start
-    twice = np.cross(first, second)
+    start = np.broadcast_to(loop.mean(axis=0), loop.shape)
+    return common_face(a, b, int(side_a), int(side_b), np.stack([start, loop, np.roll(loop, -1, axis=0)], axis=1))
+
+
+def common_face(a: int, b: int, side_a: int, side_b: int, corners: np.ndarray) -> CommonFace:
+    """A flat face by triangles around the normal from a to b, shape (T, 3, 3) [m]."""
+    twice = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     normal = twice.sum(axis=0)
     normal /= np.linalg.norm(normal)
     weight = 0.5 * twice @ normal
     area = float(weight.sum())
-    at = start + (weight[:, None] * (first + second)).sum(axis=0) / (3.0 * area)
+    at = weight @ corners.mean(axis=1) / area
     across = np.cross(normal, np.eye(3)[np.abs(normal).argmin()])
     across /= np.linalg.norm(across)
     flat = np.stack([across, np.cross(normal, across)])
-    p, q = (first + start - at) @ flat.T, (second + start - at) @ flat.T
-    spread = sum(np.einsum("k,ki,kj->ij", weight / 12.0, u, v) for u, v in ((p, p), (q, q), (p + q, p + q)))
+    own = (corners - at) @ flat.T
+    ends = np.concatenate([own, own.sum(axis=1, keepdims=True)], axis=1)
+    spread = np.einsum("t,tki,tkj->ij", weight / 12.0, ends, ends)
     _, main = np.linalg.eigh(spread)
     axes = main.T @ flat
     axes[1] = np.cross(normal, axes[0])
-    own = (loop - at) @ axes.T
+    places = (corners - at).reshape(-1, 3) @ axes.T
     moments = np.einsum("ki,ij,kj->k", main.T, spread, main.T)
-    second_moments = float(moments[1]), float(moments[0])  # about an axis: of the distance from it
-    far = np.abs(own).max(axis=0)
-    section = second_moments[0] / far[1], second_moments[1] / far[0], sum(second_moments) / np.linalg.norm(own, axis=1).max()
-    return CommonFace(
-        a, b, int(side_a), int(side_b), at, np.vstack([normal, axes]), area, second_moments, tuple(map(float, section))
-    )
+    second = float(moments[1]), float(moments[0])  # about an axis: of the distance from it
+    far = np.abs(places).max(axis=0)
+    section = second[0] / far[1], second[1] / far[0], sum(second) / np.linalg.norm(places, axis=1).max()
+    return CommonFace(a, b, side_a, side_b, at, np.vstack([normal, axes]), area, second, tuple(map(float, section)))

@@ -10,7 +10,7 @@ import numpy as np
 
 from ..errors import Problem
 from ..scene.formatting import say, whole
-from ..scene.scene import Mesh, SceneRecord, Solid
+from ..scene.scene import Mesh, PieceShape, SceneRecord, Solid
 from . import shapes
 from .boxes import box_pairs
 from .convex import bounds, depth_by_supports, overlap, placed, support
@@ -73,6 +73,8 @@ def check_geometry(
     bodies = _BoundingBoxes(models, scene.solids, [m.surface.vertices(m.position) for m in models], contact, features)
     problems += _outside(scene, bodies, planes)
     first, second = _candidates(scene, bodies)
+    apart = np.array([not _are_glued(scene.solids[i], scene.solids[j]) for i, j in zip(first, second)], bool)
+    first, second = first[apart], second[apart]
     bodies.find_features(first, second, passing)
     inside = 0
     for looked, (i, j) in enumerate(zip(first, second), 1):
@@ -84,6 +86,12 @@ def check_geometry(
             left = f"{whole(len(first) - looked)} more pairs of objects are close and were not looked at"
             return [*problems, Problem(None, left, "fix these first")]
     return problems
+
+
+def _are_glued(one: Solid, other: Solid) -> bool:
+    """Whether two solids are pieces of one object, which share faces."""
+    a, b = one.shape, other.shape
+    return isinstance(a, PieceShape) and isinstance(b, PieceShape) and a.whole is b.whole
 
 
 class _BoundingBoxes:

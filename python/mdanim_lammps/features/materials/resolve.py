@@ -83,7 +83,7 @@ def _suited(block: EvaluatedBlock, found: Settings) -> Settings:
     holds = [_kind(s) for s in block.settings.get("hold", ())]
     held = HoldAll in holds
     shape = block.first("shape")
-    bends = shape is not None and getattr(_kind(shape), "BENDS", False)
+    bends = shape is not None and getattr(_kind(shape), "BENDS", False) and not _is_shell_in_pieces(block)
     if "elasticity" in found and not bends and (held or not holds) and _stiff(found):
         given = found["elasticity"][0]
         found["elasticity"] = [given.following(given.entry.keyword, Rigid())]
@@ -106,7 +106,13 @@ def _stiff(found: Settings) -> bool:
 
 def _is_sheet(block: EvaluatedBlock) -> bool:
     shape = block.first("shape")
-    return shape is not None and _kind(shape) in (Sheet, Shell)
+    return shape is not None and _kind(shape) in (Sheet, Shell) and not _is_shell_in_pieces(block)
+
+
+def _is_shell_in_pieces(block: EvaluatedBlock) -> bool:
+    """Whether an object is a shell that breaks, which is rigid."""
+    shape = block.first("shape")
+    return shape is not None and _kind(shape) is Shell and block.first("pieces") is not None
 
 
 def _kind(s: EvaluatedSetting) -> type:

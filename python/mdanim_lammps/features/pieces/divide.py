@@ -9,9 +9,10 @@ from typing import Any
 import numpy as np
 
 from ...model import cut
+from ...model.creased import may_move
 from ...model.mesh import MeshError
 from ...scene.scene import PieceShape, Solid
-from .names import piece_name
+from .names import piece_name, seed_of
 
 
 def pieces_of(v: Any, solid: Solid) -> tuple[Solid, ...]:
@@ -19,13 +20,14 @@ def pieces_of(v: Any, solid: Solid) -> tuple[Solid, ...]:
     v is the scene/validate.Validator."""
     if solid.pieces is None or v.problems.errors:
         return (solid,)
-    seed = f"{v.blocks('control')[0].value('seed', 1):.0f} {solid.name}" if v.blocks("control") else f"1 {solid.name}"
+    seed = seed_of(v, solid.name)
     try:
         division = cut.division(solid.shape, solid.pieces, seed)
     except MeshError as error:
         v.problem(solid.spans["pieces"], f"{solid.name} cannot be cut into pieces: {error}", error.hint)
         return ()
-    unclean = [n for n, piece in enumerate(division.pieces) if piece.polyhedron is None]
+    shapes = [PieceShape(of=solid.shape, how=solid.pieces, seed=seed, number=alike, whole=solid) for alike in division.alike]
+    unclean = [n for n, shape in enumerate(shapes) if division.pieces[n].polyhedron is None and not may_move(shape)]
     if unclean:
         cause = f"{piece_name(solid.name, unclean[0])} has edges or faces too small for contact by features"
         v.problem(solid.spans["pieces"], cause, "write another seed in control, or a few pieces more")
@@ -39,7 +41,7 @@ def pieces_of(v: Any, solid: Solid) -> tuple[Solid, ...]:
             replace(
                 solid,
                 name=piece_name(solid.name, n),
-                shape=PieceShape(of=solid.shape, how=solid.pieces, seed=seed, number=division.alike[n], whole=solid),
+                shape=shapes[n],
                 position=tuple((np.array(solid.position) + arm).tolist()),
                 velocity=tuple((velocity + np.cross(spin, arm)).tolist()),
                 mass=None if solid.mass is None else solid.mass * share,

@@ -6,7 +6,7 @@ from __future__ import annotations
 from typing import Any
 
 from ...model.mesh import MeshError
-from .names import piece_name
+from .names import piece_name, seed_of
 
 
 def explained() -> dict[str, str]:
@@ -16,19 +16,19 @@ def explained() -> dict[str, str]:
 
 def fill(v: Any) -> None:
     """Put the names of pieces in place of those of objects; v is the scene/validate.Validator."""
-    counts = {b.name: count for b in v.blocks("object") if b.first("pieces") is not None for count in [_count(b)] if count}
+    counts = {b.name: count for b in v.blocks("object") if b.first("pieces") is not None for count in [_count(v, b)] if count}
     if counts:
         pieces = {name: [piece_name(name, n) for n in range(count)] for name, count in counts.items()}
         v.names = dict.fromkeys(one for name in v.names for one in pieces.get(name, [name]))
 
 
-def _count(block: Any) -> int:
+def _count(v: Any, block: Any) -> int:
     """The number of pieces of an object; 0 where it has none that can be told."""
     from ...model import cut
 
     given, shape = block.first("pieces"), block.first("shape")
     try:
         how = given.record()
-        return how.number if hasattr(how, "number") else cut.count(shape.record(), how) if shape else 0
+        return cut.count(shape.record(), how, seed_of(v, block.name)) if shape else 0
     except (ValueError, MeshError):  # told where the record is made
         return 0

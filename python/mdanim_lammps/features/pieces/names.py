@@ -3,6 +3,14 @@
 
 from __future__ import annotations
 
+from typing import Any
+
+
+def seed_of(v: Any, name: str) -> str:
+    """What the pieces of an object follow from; v is the scene/validate.Validator."""
+    control = v.blocks("control")
+    return f"{control[0].value('seed', 1):.0f} {name}" if control else f"1 {name}"
+
 
 def piece_name(whole: str, number: int) -> str:
     """``glass.piece[3]`` of piece 2, from 0."""

@@ -6,10 +6,10 @@ from __future__ import annotations
 from dataclasses import fields
 from typing import Any
 
-from ...scene.formatting import with_article
+from ...scene.formatting import say, with_article
 from ...scene.limits import Limit
 from ...scene.schema import Observable, OneOf, Rule, setting
-from ...scene.shapes import Bricks, PieceShape, Rope, Sheet, Shell, Torus, VoronoiCells, holds_all
+from ...scene.shapes import HOLLOW, Bricks, PieceShape, Rope, Sheet, Shell, VoronoiCells, holds_all
 
 SWITCHES = {"pieces": "an object's `pieces n`"}
 
@@ -54,7 +54,8 @@ ALLOWED = frozenset(
 
 def check_object(v: Any, block: Any, solid: Any) -> Any:
     """Rigid solids break, and all that they have is known of their pieces."""
-    from ..rigid.words import Rigid  # it has words, too
+    from ..rigid.words import Rigid  # they have words, too
+    from ..sheets.words import width
 
     if solid.pieces is None:
         if solid.strength is not None and "strength" in solid.spans:
@@ -62,18 +63,25 @@ def check_object(v: Any, block: Any, solid: Any) -> Any:
             v.problem(solid.spans["strength"], cause, "write pieces 20, or leave it out", severity="warning")
         return solid
     span, shape = solid.spans["pieces"], solid.shape
-    if isinstance(shape, Rope | Sheet | Shell | Torus):
-        kind = "a sheet" if isinstance(shape, Shell) else with_article(type(shape).FORMS[0].split()[0])
-        way_out = (
-            "take another shape, or leave out pieces" if isinstance(shape, Torus) else "write tear-strain 0.1 in place of it"
-        )
-        v.problem(span, f"{solid.name} is {kind}, which is not cut into pieces", way_out)
+    if isinstance(shape, Shell) and isinstance(shape.shape, HOLLOW):
+        if shape.thickness >= 0.5 * width(shape):
+            thick, wide = say(shape.thickness, "m"), say(width(shape), "m")
+            cause = f"{solid.name} is not hollow: its wall is {thick} thick and it is {wide} wide"
+            v.problem(solid.spans["shape"], cause, "write a thinner wall, or leave out sheet")
+            return solid
+    elif isinstance(shape, Shell):
+        cause = f"{solid.name} is the sheet of a {type(shape.shape).FORMS[0].split()[0]}, which is not cut into pieces"
+        v.problem(span, cause, "write a mesh file with both sides of its wall, without sheet")
+        return solid
+    elif isinstance(shape, Rope | Sheet):
+        kind = with_article(type(shape).FORMS[0].split()[0])
+        v.problem(span, f"{solid.name} is {kind}, which is not cut into pieces", "write tear-strain 0.1 in place of it")
         return solid
     if holds_all(solid.hold):
         v.problem(span, f"{solid.name} is held as a whole, so it never breaks", "leave out pieces, or hold all")
     elif not isinstance(solid.elasticity, Rigid):
         cause = f"{solid.name} has pieces and deforms; only rigid objects are cut into pieces"
-        v.problem(span, cause, "write elasticity rigid")
+        v.problem(span, cause, "write elasticity rigid, or tear-strain 0.1 in place of pieces")
     if solid.strength is None and not block.excused("strength"):
         cause = f"{solid.name} has pieces and no strength: when does it break?"
         v.problem(span, cause, "write strength 1 MPa, or a material: glass, brick, biscuit, ice")

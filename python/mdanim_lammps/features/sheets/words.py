@@ -43,8 +43,8 @@ def finest(sheet: Sheet | Shell) -> float:
 
 def check_object(v: Any, block: Any, solid: Any) -> Any:
     """Settings that make no sense in a sheet."""
-    if not is_sheet(solid):
-        return solid
+    if not is_sheet(solid) or (isinstance(solid.shape, Shell) and solid.pieces is not None):
+        return solid  # a shell in pieces is a rigid hollow one
     spans, sheet = solid.spans, solid.shape
     if not isinstance(solid.elasticity, Young):
         cause = f"{solid.name} is a sheet: its springs follow from Young's modulus and its thickness"
