@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What hangs by points below its own centre of mass is told before the run."""
+"""A rigid body that hangs by points below its centre of mass is told before the run."""
 
 import pytest
 from mdanim_lammps.run.prepare import prepare

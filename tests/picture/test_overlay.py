@@ -167,11 +167,13 @@ def test_strings_are_in_the_picture(tmp_path):
 
 
 def test_words_stand_where_and_when_they_should(run):
-    """A label beside its object, a caption in its time alone, a trail where the object was."""
-    label, view = changed(run, label=(NameTag("ball", "falls"),))
-    pixel, _ = seen_at(view, SIZE, run.trajectory.centers[6, :1])
-    y, x = np.nonzero(label)
-    assert x.min() > pixel[0, 0] and x.min() < pixel[0, 0] + 25 and abs((y.min() + y.max()) / 2 - pixel[0, 1]) < 6
+    """A label beside its object, on the left where it would cover another one on the right, a caption in its time alone, a trail
+    where the object was."""
+    for m, name, side in ((0, "ball", -1), (1, "cube", 1)):  # the ball flies to the cube
+        label, view = changed(run, label=(NameTag(name, "falls"),))
+        pixel, _ = seen_at(view, SIZE, run.trajectory.centers[6, [m]])
+        y, x = np.nonzero(label)
+        assert 0 < (side * (x - pixel[0, 0])).min() < 25 and abs((y.min() + y.max()) / 2 - pixel[0, 1]) < 6
     caption = (Caption("now", 0.1, 0.3),)
     frames = (0, 1, 2, 6, 7)
     both = zip(pictures(run, frames)[0], pictures(run, frames, caption=caption)[0])

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -14,7 +15,7 @@ from ..scene.naming import objects_by_name
 from ..scene.quantities import QUANTITIES
 from ..scene.render import Render
 from ..scene.shown import Arrows
-from .camera import Action, Reserved, View
+from .camera import Action, Reserved, View, corners
 from .curves import COVERED, Curves
 from .framing import pixels_per_metre, seen_at
 from .layer import Color, InkLayer
@@ -29,6 +30,11 @@ WORDS = {False: 0.016, True: 0.075}
 BAR, ROW, MOST_ROOM = 7.5, 1.5, 0.16
 """Width of a scale of colours with its numbers, and height of a row of the legend, over that of letters; the most of a picture
 that each of them is given."""
+BESIDE, WIDTH = 0.4, 0.65
+"""Distance of words from their object, and width of a bold letter, over the height of letters."""
+LOOKS, FEWER = 12, 0.8
+"""Moments of a run at which words are tried on both sides of their object, and the share of what they cover on the right below
+which they stand on the left."""
 LEGEND = 4.5
 """Length of an arrow of the legend over that of letters, at most."""
 SEEN = 2.0
@@ -85,9 +91,11 @@ class Overlay:
         render: the scene's ``render`` block.
         size: of a picture as it is drawn, in pixels.
         dark: whether the background is.
-        action: where things happen.
+        action: where things happen in both.
+        own: where they happen in what is drawn.
         tones: colours that tell a quantity; None for none.
         finer: pixels that are drawn for one of the picture, along each side.
+        view_at: gives the camera at a time [s].
 
     Raises:
         UsageError: a quantity that the run has not recorded.
@@ -101,8 +109,10 @@ class Overlay:
         size: tuple[int, int],
         dark: bool,
         action: Action,
+        own: Action,
         tones: Tones | None,
         finer: int,
+        view_at: Callable[[float], View],
     ):
         self._trajectory = trajectory = runs[0]
         self._render, self._size, self._action = render, size, action
@@ -110,6 +120,7 @@ class Overlay:
         self._tones, names = tones, list(trajectory.names)
         self._of_name = objects_by_name(names) if render.trail or render.label else {}
         self._colors = object_colors(trajectory.metadata.colors, trajectory.metadata.still) / 255.0
+        self._on_left = self._labels_on_left(own, view_at)
         told = [RunValues(run) for run in runs if run is not None]
         lines = [_vectors(render.arrows, values) for values in told]
         every = [one for found in lines for one in found]
@@ -170,6 +181,29 @@ class Overlay:
             words = f"{one.word}  {number(value)} {one.unit}" if length else f"{one.word}: too small to be seen"
             self._layer.words((left + widest + 0.7 * letters, y), words, color=one.color)
 
+    def _labels_on_left(self, own: Action, view_at: Callable[[float], View]) -> set[int]:
+        """Objects whose words cover less of others that move, and of room for curves, on the left of them than on the right, over
+        the run."""
+        letters, free = self._layer.letters, np.flatnonzero(own.free)
+        words = [(m, one.text) for one in self._render.label for m in self._of_name[one.name]]
+        room = self._size[0] * (1.0 - (COVERED if self._render.plot else 0.0))
+        parts = np.array_split(self._trajectory.times, len(own.low))
+        shown = np.unique(np.linspace(0, len(parts) - 1, LOOKS).astype(int))
+        covered = np.zeros((2, len(words)))
+        for k in shown if words else ():
+            boxes = corners(own.low[k], own.high[k])
+            points, _ = seen_at(view_at(float(parts[k].mean())), self._size, boxes)
+            points = points.reshape(8, -1, 2)
+            low, high = points.min(axis=0), points.max(axis=0)
+            for n, (m, text) in enumerate(words):
+                wide, y = WIDTH * letters * len(text), points[:, m, 1].mean()
+                for side, left in enumerate((high[m, 0] + BESIDE * letters, low[m, 0] - BESIDE * letters - wide)):
+                    across = np.minimum(high[free, 0], left + wide) - np.maximum(low[free, 0], left)
+                    along = np.minimum(high[free, 1], y + 0.5 * letters) - np.maximum(low[free, 1], y - 0.5 * letters)
+                    out = max(0.0, left + wide - room) + max(0.0, -left)
+                    covered[side, n] += (np.clip(across, 0.0, None) * np.clip(along, 0.0, None)).sum() + out * letters
+        return {m for n, (m, _) in enumerate(words) if covered[1, n] < FEWER * covered[0, n]}
+
     def _labels(self, view: View, low: np.ndarray, high: np.ndarray) -> None:
         """Words beside the boxes of objects, whose corners are ``low`` and ``high`` [m], shape (O, 3)."""
         corner = np.array(np.unravel_index(np.arange(8), (2, 2, 2))).T
@@ -178,8 +212,9 @@ class Overlay:
                 points, ahead = seen_at(view, self._size, np.where(corner, high[m], low[m]))
                 if ahead.all():
                     # Beside it: arrows often point up or down.
-                    at = (points[:, 0].max() + 0.4 * self._layer.letters, points[:, 1].mean())
-                    self._layer.words(at, one.text, fontweight="bold")
+                    left, beside = m in self._on_left, BESIDE * self._layer.letters
+                    x = points[:, 0].min() - beside if left else points[:, 0].max() + beside
+                    self._layer.words((x, points[:, 1].mean()), one.text, fontweight="bold", ha="right" if left else "left")
 
     def _captions(self, time: float) -> None:
         free = 1.0 - (COVERED if self._curves else 0.0)

@@ -86,7 +86,8 @@ class Painter:
         if render.tells:
             dark = is_dark(background_colors(render)[0])
             runs = trajectory, beside
-            self._overlay = Overlay(runs, render, self._pixels, dark, seen or self.action, self._tones, self._finer)
+            both = seen or self.action
+            self._overlay = Overlay(runs, render, self._pixels, dark, both, self.action, self._tones, self._finer, self.view)
 
     def _pixel(self) -> np.ndarray:
         """Size of a pixel on each object where it comes nearest to the camera [m], shape (M,)."""
