@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""Sheets against closed forms, and the energy of a fall: ``python bench/sheets.py [closed|bends|falls|cost]``.
+"""Sheets against closed forms, and the energy of a fall: ``python bench/sheets.py [closed|bends|stays|falls|cost]``.
 
 The tables are those of docs/physics-sheets.md; scenes and closed forms are in tests/lab/sheet_cases.py.
 """
@@ -13,6 +13,7 @@ from mdanim_lammps.engine.instance import Instance
 from timing import print_tables
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "lab"))
+import bend_cases
 import sheet_cases
 from rope_cases import DOWN, made
 
@@ -43,6 +44,20 @@ def bends() -> tuple[list[str], list[list]]:
     return ["strip", "bending by", "force at its end", "couple about its length"], rows
 
 
+def stays() -> tuple[list[str], list[list]]:
+    """What strips that are bent all at once, and not across, keep of it."""
+    rows = []
+    for e, times in ((0.003, 1.5), (0.003, 2.0), (0.003, 4.0), (0.01, 2.0), (0.01, 4.0)):
+        for axis, name in enumerate("xy"):
+            yields = bend_cases.plastic(e)
+            found = bend_cases.kept(bend_cases.strip(e, axis), times * yields, axis)
+            closed = [form(times * yields, yields, axis) for form in (bend_cases.by_law, bend_cases.by_section)]
+            turn = 180.0 / 3.141592653589793 * times * yields * 2.5e-3
+            off = [f"{100.0 * (found / one - 1.0):+.1f} %" for one in closed]
+            rows.append([f"along {name}, e = {e}", f"{times:g} k_p, {turn:.0f} degrees a link", f"{found:.4g}", *off])
+    return ["strip", "bent to", "keeps [1/m]", "over the law", "over a section"], rows
+
+
 def cost() -> tuple[list[str], list[list]]:
     """Processor time of a step per spring of a sheet and a solid of about as many springs, both damped: the least of many."""
     texts = {
@@ -67,7 +82,7 @@ def cost() -> tuple[list[str], list[list]]:
     ]
 
 
-TABLES = {"closed": closed, "bends": bends, "falls": falls, "cost": cost}
+TABLES = {"closed": closed, "bends": bends, "stays": stays, "falls": falls, "cost": cost}
 
 if __name__ == "__main__":
     print_tables(TABLES, sys.argv[1:])

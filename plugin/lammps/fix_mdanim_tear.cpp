@@ -195,7 +195,7 @@ void FixMdanimTear::span(const TearRules &of, tagint first)
 {
   for (const TearOver &over : of.overs) {
     const tagint tag[3] = {first + over.low, first + over.middle, first + over.high};
-    Spanning one{&over, {atom->map(tag[0]), atom->map(tag[1]), atom->map(tag[2])}, {-1, -1}, {}};
+    Spanning one{&over, of.leaves_rest, {atom->map(tag[0]), atom->map(tag[1]), atom->map(tag[2])}, {-1, -1}, {}};
     const auto &[a, m, b] = one.at;
     if (!is_here(a) && !is_here(m) && !is_here(b)) continue;
     if (is_here(a)) one.slot[0] = slot_of(a, tag[2]);
@@ -203,7 +203,7 @@ void FixMdanimTear::span(const TearRules &of, tagint first)
     if ((is_here(a) && one.slot[0] < 0) || (is_here(b) && one.slot[1] < 0))
       error->one(FLERR, "{}: particles {} and {} have no bond over two links, which its objects tell of", name(), tag[0], tag[2]);
     find_gone(one, tag);
-    if (one.gone[0] && one.gone[1]) continue;
+    if ((one.gone[0] && one.gone[1]) || (!one.leaves_rest && (one.gone[0] || one.gone[1]))) continue;
     const int from = one.gone[0] ? 1 : 0, to = one.gone[1] ? 1 : 2;    // the particles that it pulls at
     if (std::none_of(one.at + from, one.at + to + 1, [this](int i) { return is_here(i); })) continue;
     for (int k = from; k <= to; ++k)
@@ -246,13 +246,16 @@ void FixMdanimTear::release(int i, int j, const LoadFree &spring, double sign)
 void FixMdanimTear::release(const Spanning &one, double sign)
 {
   const auto &[a, m, b] = one.at;
-  if (one.gone[0] && one.gone[1]) return;
-  if (one.gone[0])
+  if (!one.gone[0] && !one.gone[1]) {
+    losses.count(a, b, grown_by(one.over->whole(), a, one.slot[0]), sign);
+    losses.count(b, a, grown_by(one.over->whole(), b, one.slot[1]), sign);
+  } else if (!one.leaves_rest || (one.gone[0] && one.gone[1])) {
+    return;
+  } else if (one.gone[0]) {
     release(m, b, one.over->remainder(1), sign);
-  else if (one.gone[1])
+  } else {
     release(a, m, one.over->remainder(0), sign);
-  else
-    release(a, b, one.over->whole(), sign);
+  }
 }
 
 LoadFree FixMdanimTear::load_free(const Watched &one) const
@@ -263,9 +266,12 @@ LoadFree FixMdanimTear::load_free(const Watched &one) const
   const tagint tag = atom->tag[one.i], other = atom->tag[one.j];
   const TearLink *const link =
       of.link(static_cast<int>(std::min(tag, other) - lowest[n]), static_cast<int>(std::max(tag, other) - lowest[n]));
-  const double more = yields ? yields->more(one.i, slot) : 0.0;
-  return {{spring.K, spring.r0 + more, 0.0}, (link ? link->length : spring.r0) + more};
+  return grown_by({{spring.K, spring.r0, 0.0}, link ? link->length : spring.r0}, one.i, slot);
 }
+
+// A spring of a particle with what it has grown by.
+LoadFree FixMdanimTear::grown_by(const LoadFree &spring, int i, int slot) const
+{ return yields && is_here(i) ? grown_spring(spring, yields->more(i, slot)) : spring; }
 
 void FixMdanimTear::break_link(const Watched &one, std::vector<GoneLink> &here)
 {
@@ -325,7 +331,7 @@ template <class Visit> void FixMdanimTear::each_remainder(Visit visit) const
 {
   if (!any_remains) return;
   for (const Spanning &one : spanning) {
-    if (one.gone[0] == one.gone[1]) continue;
+    if (one.gone[0] == one.gone[1] || !one.leaves_rest) continue;
     const int link = one.gone[0] ? 1 : 0, i = one.at[link], j = one.at[link + 1];
     const LoadFree left = one.over->remainder(link);
     const Vec3 apart = vec3(atom->x[i]) - vec3(atom->x[j]);

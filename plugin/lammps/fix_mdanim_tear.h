@@ -60,6 +60,7 @@ class FixMdanimTear : public mdanim::FixBase {
   // are gone.
   struct Spanning {
     const mdanim::TearOver *over;
+    bool leaves_rest;
     int at[3], slot[2];
     bool gone[2];
   };
@@ -82,6 +83,7 @@ class FixMdanimTear : public mdanim::FixBase {
   void release(int i, int j, const mdanim::LoadFree &spring, double sign);
   void release(const Spanning &one, double sign);
   mdanim::LoadFree load_free(const Watched &one) const;
+  mdanim::LoadFree grown_by(const mdanim::LoadFree &spring, int i, int slot) const;
   void tell_all(std::vector<GoneLink> here);
   template <class Visit> void each_remainder(Visit visit) const;    // visit(i, apart, LoadFree) for each local end
   void pull() const;

@@ -21,18 +21,26 @@ using namespace mdanim;
 
 static const char *const STYLE = "fix mdanim/yield";
 
-// fix ID group mdanim/yield grown NAME bears NAME
-FixMdanimYield::FixMdanimYield(LAMMPS *lmp, int narg, char **arg) : FixBase(lmp, narg, arg), losses(lmp)
+// fix ID group mdanim/yield grown NAME bears NAME keyword values ...
+FixMdanimYield::FixMdanimYield(LAMMPS *lmp, int narg, char **arg) : FixBase(lmp, narg, arg), rings(lmp, STYLE), losses(lmp)
 {
   need(OPEN_BOX | ATOM_MAP);
   need_words(lmp, STYLE, "fix ID group mdanim/yield", "grown NAME bears NAME", narg - 3);
   const auto into = [](std::string &name) { return [&name](int at, char **words) { name = words[at + 1]; }; };
-  const std::vector<Keyword> known = {{"grown", "NAME", "", into(grown)}, {"bears", "NAME", "", into(bears)}};
+  const auto read = [this](int at, char **words) { rings.read(words[at + 1]); };
+  const auto of_rings = [this](int at, char **words) { rings.set_property(words[at + 1]); };
+  const std::vector<Keyword> known = {{"grown", "NAME", "", into(grown)},
+                                      {"bears", "NAME", "", into(bears)},
+                                      {"free", "NAME", "", into(free)},
+                                      {"bent", "NAME", "", of_rings},
+                                      {"rings", "FILE", "", read}};
   for (int iarg = 3; iarg < narg;) iarg += take_keyword(lmp, STYLE, known, iarg, narg, arg);
   if (grown.empty()) error->all(FLERR, "{}: the keyword grown is missing; write grown NAME", STYLE);
   if (bears.empty()) error->all(FLERR, "{}: the keyword bears is missing; write bears NAME", STYLE);
-  of_growths = find(grown);
-  of_most = find(bears);
+  if (rings.has_rings() != rings.has_property())
+    error->all(FLERR, "{}: what bends of layers stay is told by both bent NAME and rings FILE", STYLE);
+  if (rings.has_rings()) need(OPEN_BOX | ATOM_MAP | OBJECTS);
+  find_properties();
   comm->ghost_velocity = 1;    // the account sees what both ends of a spring did
   tell({{"energy", true, [this] { return sum(losses.total()); }}, clock()});
 }
@@ -57,6 +65,13 @@ int FixMdanimYield::find(const std::string &property) const
   return found;
 }
 
+void FixMdanimYield::find_properties()
+{
+  of_growths = find(grown);
+  of_most = find(bears);
+  if (!free.empty()) of_lengths = find(free);
+}
+
 double **FixMdanimYield::growths() const { return atom->darray[of_growths]; }
 
 void FixMdanimYield::init()
@@ -65,8 +80,14 @@ void FixMdanimYield::init()
   springs = dynamic_cast<BondMdanimHarmonic *>(force->bond);
   if (!springs || springs->are_given())
     error->all(FLERR, "{}: needs bond_style mdanim/harmonic, with bonds that particles have themselves", name());
-  of_growths = find(grown);
-  of_most = find(bears);
+  find_properties();
+  if (rings.has_rings()) rings.init();
+}
+
+void FixMdanimYield::setup_post_neighbor()
+{
+  rings.begin();
+  watch();
 }
 
 // A bond yields where an end is in the group; then both ends follow.
@@ -82,19 +103,24 @@ void FixMdanimYield::watch()
       if (j < 0) springs->lost_partner(i, static_cast<int>(atom->bond_atom[i][b]));
       if (!((atom->mask[i] | atom->mask[j]) & groupbit)) continue;
       const Spring &spring = springs->springs()[type];
-      watched.push_back({i, b, j, spring.K, spring.r0, most[i][b], 0.0});
+      const double length = of_lengths < 0 ? spring.r0 : atom->darray[of_lengths][i][b];
+      watched.push_back({i, b, j, spring.K, spring.r0, length, most[i][b], 0.0});
     }
+  rings.watch(groupbit);
 }
 
 bool FixMdanimYield::is_gone(const YieldBond &one) const { return atom->bond_type[one.i][one.slot] <= 0; }
 
-double FixMdanimYield::length(const YieldBond &one) const
+double FixMdanimYield::now(const YieldBond &one) const
 { return root(floored_square(vec3(atom->x[one.i]) - vec3(atom->x[one.j]))); }
+
+LoadFree FixMdanimYield::first(const YieldBond &one) const { return {{one.K, one.r0, 0.0}, one.length}; }
 
 // No time passes: nothing yields.
 void FixMdanimYield::setup(int vflag)
 {
-  for (YieldBond &one : watched) one.factor = growth_factor(one.K, more(one.i, one.slot), length(one));
+  for (YieldBond &one : watched) one.factor = growth_factor(one.K, more(one.i, one.slot), now(one));
+  rings.look();
   post_force(vflag);
 }
 
@@ -103,14 +129,16 @@ void FixMdanimYield::pre_force(int)
   const Lap lap(seconds);
   for (YieldBond &one : watched) {
     if (is_gone(one)) continue;
-    const double r = length(one), before = more(one.i, one.slot), now = mdanim::grown(one.r0, r - one.r0, before, one.most);
-    if (now != before) {
-      losses.count(one.i, one.j, grown_spring(one.K, one.r0, before), 1.0);
-      losses.count(one.i, one.j, grown_spring(one.K, one.r0, now), -1.0);
-      growths()[one.i][one.slot] = now;
+    const double r = now(one), before = more(one.i, one.slot);
+    const double after = mdanim::grown(one.length, r - one.length, before, one.most);
+    if (after != before) {
+      losses.count(one.i, one.j, grown_spring(first(one), before), 1.0);
+      losses.count(one.i, one.j, grown_spring(first(one), after), -1.0);
+      growths()[one.i][one.slot] = after;
     }
-    one.factor = growth_factor(one.K, now, r);
+    one.factor = growth_factor(one.K, after, r);
   }
+  rings.yield(losses);
 }
 
 void FixMdanimYield::post_force(int)
@@ -118,6 +146,7 @@ void FixMdanimYield::post_force(int)
   const Lap lap(seconds);
   for (const YieldBond &one : watched)
     if (one.factor != 0.0 && !is_gone(one)) add_to(atom->f[one.i], one.factor * (vec3(atom->x[one.i]) - vec3(atom->x[one.j])));
+  rings.push();
 }
 
 // All forces of the step are there.
@@ -129,8 +158,8 @@ double FixMdanimYield::compute_scalar()
   double here = 0.0;
   for (const YieldBond &one : watched)
     if (const double growth = more(one.i, one.slot); growth != 0.0 && !is_gone(one))
-      here += 0.5 * growth_energy(one.K, growth, length(one) - one.r0);
-  return sum(here);
+      here += 0.5 * growth_energy(first(one), growth, now(one));
+  return sum(here + rings.energy());
 }
 
-double FixMdanimYield::memory_usage() { return static_cast<double>(watched.capacity() * sizeof(YieldBond)); }
+double FixMdanimYield::memory_usage() { return static_cast<double>(watched.capacity() * sizeof(YieldBond) + rings.bytes()); }

@@ -20,6 +20,14 @@ void SpringLosses::count(int i, int j, const LoadFree &spring, double sign)
   less[i] += sign * force_of(spring.spring, apart);
 }
 
+void SpringLosses::count(int i, double energy, const Vec3 &now, const Vec3 &then)
+{
+  if (i >= atom->nlocal) return;
+  if (less.empty()) less.resize(atom->nlocal);
+  lost += energy + work_of(now, then, update->dt * vec3(atom->v[i]));
+  less[i] += now;
+}
+
 void SpringLosses::close(int groupbit)
 {
   for (std::size_t i = 0; i < less.size(); ++i) {

@@ -19,6 +19,8 @@ class SpringLosses : protected LAMMPS_NS::Pointers {
   // Counts the end i of a spring to j, if it is a local particle: `sign` is 1 of a spring that is there no longer, -1 of one that
   // is there instead.
   void count(int i, int j, const LoadFree &spring, double sign);
+  // The same of anything else with forces on i, at places now and a step before, and a part of its energy.
+  void count(int i, double energy, const Vec3 &now, const Vec3 &then);
   // Ends the step, for particles of a group.
   void close(int groupbit);
   double total() const { return lost; }    // on this rank

@@ -32,10 +32,11 @@ inline bool is_too_long(const Vec3 &apart, double limit) { return limit > 0.0 &&
 struct LoadFree {
   Spring spring;    // without a dashpot
   double length;
+  double more = 0.0;    // energy beside that of its stretch
 
   double stored() const { return mdanim::energy(spring, length); }
   // Energy beyond that without load.
-  double energy(double r) const { return mdanim::energy(spring, r) - stored(); }
+  double energy(double r) const { return mdanim::energy(spring, r) - stored() + more; }
 };
 
 // The remainder along a link of the length `link` of a spring over it and another one, together `both` long.
@@ -52,12 +53,16 @@ inline Vec3 force_of(const Spring &spring, const Vec3 &apart)
   return spring_factor(own.push, own.pull, floored_square(apart)) * apart;
 }
 
+// dt u.D^n/2 - dt u.(D^n - D^{n-1})/12 of a particle, by forces now and a step before, and its own motion between them.
+inline double work_of(const Vec3 &now, const Vec3 &then, const Vec3 &way)
+{ return dot(5.0 / 12.0 * now + 1.0 / 12.0 * then, way); }
+
 // Part of particle i in V' - V + dt u.D^n/2 - dt u.(D^n - D^{n-1})/12 of a spring that is there no longer. `apart` and `before`
 // are where it is from the other particle, in this step and in the last one, `way` is its own motion between them.
 inline double lost_with(const LoadFree &of, const Vec3 &apart, const Vec3 &before, const Vec3 &way)
 {
   const Vec3 now = force_of(of.spring, apart), then = force_of(of.spring, before);
-  return 0.5 * of.energy(std::sqrt(dot(apart, apart))) + dot(5.0 / 12.0 * now + 1.0 / 12.0 * then, way);
+  return 0.5 * of.energy(std::sqrt(dot(apart, apart))) + work_of(now, then, way);
 }
 
 // The rest of it, dt^2 (2 F^n + D^n).D^n/12 m, from all springs of a particle that are there no longer.

@@ -74,6 +74,7 @@ std::map<int, TearRules> read_tear_rules(const std::string &name, const std::str
       if (found.count(molecule)) words.fail("object " + std::to_string(molecule) + " is there already");
       now = &found[molecule];
       now->strain = words.positive("the strain that springs bear");
+      now->leaves_rest = !words.takes("whole");
     } else if (kind != "link" && kind != "over") {
       words.fail("a line begins with object, link or over, got " + kind);
     } else if (!now) {

@@ -33,6 +33,7 @@ struct TearOver {
 // An object whose springs may break.
 struct TearRules {
   double strain = 0.0;            // of springs that no link tells otherwise
+  bool leaves_rest = true;        // of springs over two links, along the one that is there
   std::vector<TearLink> links;    // ascending
   std::vector<TearOver> overs;    // ascending by both ends
 

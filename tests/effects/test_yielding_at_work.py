@@ -127,8 +127,6 @@ def test_dents_are_told(prepared, tmp_path):
 
 
 SOLID = "object a { shape box (1, 1, 1) m position (0, 0, 1) m density 1 "
-ROPE = "object a { shape rope from (0, 0, 1) m to (1, 0, 1) m thickness 1 cm density 1 elasticity 1 MPa "
-SHEET = "object a { shape sheet (1, 1) m thickness 1 mm position (0, 0, 1) m density 1 elasticity 1 MPa "
 MISTAKES = [
     (
         SOLID + "elasticity rigid yield-strain 0.1 }",
@@ -141,8 +139,6 @@ MISTAKES = [
     (SOLID + "elasticity 1 MPa yield-strain -1 }", "-1 }", "yield-strain must be > 0", ""),
     (SOLID + "elasticity 1 MPa yield-stain 0.1 }", "yield-stain", "'yield' cannot follow here", "yield-strain"),
     (SOLID + "elasticity 1 MPa plasticity 0.1 }", "plasticity", "plasticity is not supported", "yield-strain 0.02"),
-    (ROPE + "yield-strain 0.1 }", "yield-strain", "a is a rope, which does not stay bent yet", "solid shape"),
-    (SHEET + "yield-strain 0.1 }", "yield-strain", "a is a sheet, which does not stay bent yet", "solid shape"),
 ]
 
 

@@ -14,6 +14,8 @@ GONE = "torn"
 """Name of the field of springs that has 1 for one that is gone: pictures leave out what it held together."""
 GROWN = "grown"
 """Name of the field of springs that has by how much their rest lengths have changed for good [m]."""
+BENT = "bent"
+"""Name of the field of particles that has what the lines across each in a sheet are bent by for good [1/m]."""
 PER = ("particle", "bond", "object", "pair", "cell", "column", "row", "run")
 """Things that a field has one value for each of: ``run`` has one number in all, ``row`` is a row of a table of any length."""
 

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ..effects.fields import GROWN
+from ..effects.fields import BENT, GROWN
 from ..errors import MdanimError
 from ..model.build import build_models
 from ..model.spacing import plan_spacing
@@ -41,6 +41,7 @@ def write(cut: Cut, folder: Path, stem: str, on_frame: Callable[[int], None]) ->
             numbers = table.numbers(frame)
             if system:
                 energy = elastic(system, t.position(frame), t.gone(frame), grown_in(t, frame))
+                energy[np.unique(system.object[_is_bent(t, frame)])] = np.nan
                 numbers = np.column_stack([numbers, energy[cut.objects]])
             numbers = np.column_stack([numbers, *cut.of_objects(frame).values()])
             time = float(t.times[frame])
@@ -70,13 +71,20 @@ def grown_in(trajectory: Trajectory, frame: int) -> np.ndarray | float:
     return trajectory.field(GROWN, frame) if GROWN in [field.name for field in trajectory.metadata.fields] else 0.0
 
 
+def _is_bent(trajectory: Trajectory, frame: int) -> np.ndarray:
+    """Particles of sheets across which something is bent for good, whose energy is not in springs alone, bool, shape (N,)."""
+    if BENT not in [field.name for field in trajectory.metadata.fields]:
+        return np.zeros(trajectory.metadata.total, bool)
+    return trajectory.field(BENT, frame).any(axis=1)
+
+
 def elastic(system: System, position: np.ndarray, gone: np.ndarray | None = None, grown: np.ndarray | float = 0.0) -> np.ndarray:
     """Energy of the springs of each object [J], shape (O,), for positions of all particles [m], shape (N, 3), the ends of
     springs that are gone, shape (G, 2), and `grown_in`; NaN for objects that are torn, whose springs are no longer those of the
     scene."""
     i, j = system.spring.T
     stretch = np.linalg.norm(position[i] - position[j], axis=1) - system.rest - grown
-    energy = 0.5 * system.stiffness * stretch**2 - system.preload_energy
+    energy = 0.5 * system.stiffness * stretch**2 - system.preload_energy + system.preload * grown
     found = np.bincount(system.object[i], energy, len(system.names))
     if gone is not None:
         found[np.unique(system.object[gone[:, 0]])] = np.nan

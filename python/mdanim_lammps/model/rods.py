@@ -3,10 +3,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+
+from .bends import BendLine
 
 SOFT = 1.0 / 16.0
 """Constant of a spring over two links, over that of a link: so soft that its push hardly changes where the rod is bent."""
@@ -24,6 +26,20 @@ class Rod:
     """Factor of the section of each link, shape (n - 1,)."""
     bent: np.ndarray
     """The same of its resistance to bending at each particle between two links, shape (n - 2,)."""
+
+
+def bends_of(rods: Sequence[Rod], place: np.ndarray) -> Iterator[tuple[int, BendLine]]:
+    """Particles between two links of rods, and the lines across them, with the energy of `springs_of`, E I theta^2/(l1 + l2) =
+    E I k^2 (l1 + l2)/4, for I = w t^3/12. ``place``: particles [m], shape (N, 3)."""
+    for rod in rods:
+        for k in range(len(rod.length) - 1):
+            one, other = rod.length[k : k + 2].tolist()
+            near, far = 2.0 / ((one + other) * one), 2.0 / ((one + other) * other)
+            low, middle, high = rod.particle[k : k + 3].tolist()
+            stiffness = float(rod.bent[k]) / 12.0 * 0.5 * (one + other)
+            weight, sharpest = (near, -near - far, far), near * one + far * other
+            line = BendLine((low, middle, high), weight, stiffness, place[high] - place[low], sharpest)
+            yield middle, line
 
 
 def springs_of(rods: Sequence[Rod], pull: float, bend: float) -> tuple[np.ndarray, np.ndarray]:

@@ -12,6 +12,7 @@ import numpy as np
 
 from ...model import shapes
 from ...model.bare import BareBody, BareFrame, bare_model
+from ...model.bends import Ring
 from ...model.build import NothingHeld, caught_in_box
 from ...model.lattice import Cells
 from ...scene.formatting import say
@@ -100,6 +101,10 @@ class SheetFrame(BareFrame):
     def spans(self) -> int:
         """A curved one has directions across, too."""
         return 2 if isinstance(self.woven, Weave) else 3
+
+    def rings(self, held: np.ndarray) -> list[Ring]:
+        """What it bends by, from which particles are held, bool, shape (N,)."""
+        return self.woven.rings_of(held & ~held.all())
 
     @property
     def closed(self) -> bool:

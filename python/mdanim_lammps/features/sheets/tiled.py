@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from ...model import shapes
+from ...model.bends import BendLine, Ring, runs_around
 from ...model.orientation import MeshError
 from ...model.remesh import remeshed
 from ...model.rods import SOFT
@@ -45,6 +46,9 @@ LAME = 0.375
 """Both constants of Lame of a layer over E t, with Poisson's ratio 1/3."""
 
 
+Crossing = tuple[int, int, float, float, float]
+
+
 @dataclass(frozen=True, eq=False)
 class Fan:
     """A particle and those around it, laid flat."""
@@ -61,7 +65,7 @@ class Fan:
     area: float
     """A third of its triangles [m^2]."""
 
-    def opposite(self, n: int) -> tuple[int, int, float, float, float] | None:
+    def opposite(self, n: int) -> Crossing | None:
         """The two spokes between which the line from the n-th one through the middle goes on, the parts of both ends in the place
         where it leaves the fan, and how far that is [m]; None where it leaves the surface."""
         x, y = self.length * np.cos(self.angle), self.length * np.sin(self.angle)
@@ -123,27 +127,11 @@ class Tiled:
     @cached_property
     def fans(self) -> list[Fan]:
         """Fans of all particles: one of each on smooth ground, several at creases."""
-        following: list[dict[int, int]] = [{} for _ in self.place]
-        for a, b, c in self.triangle.tolist():
-            following[a][b], following[b][c], following[c][a] = c, a, b
         cut: list[set[int]] = [set() for _ in self.place]
         for a, b in self.creases.tolist():
             cut[a].add(b)
             cut[b].add(a)
-        return [fan for v, after in enumerate(following) for fan in self._fans_at(v, after, cut[v])]
-
-    def _fans_at(self, v: int, after: dict[int, int], cut: set[int]) -> list[Fan]:
-        """Fans of a particle, from which neighbour follows each, and where a fan ends."""
-        starts = sorted(b for b in after if b in cut)
-        left, found = dict(after), []
-        while left:
-            first = next((s for s in starts if s in left), min(left))
-            run = [first]
-            while run[-1] in left and (len(run) == 1 or run[-1] not in cut):
-                run.append(left.pop(run[-1]))
-            closed = run[0] == run[-1] and run[0] not in cut
-            found.append(self._fan(v, run, closed))
-        return found
+        return [self._fan(*run) for run in runs_around(self.triangle, len(self.place), cut)]
 
     def _fan(self, v: int, run: list[int], closed: bool) -> Fan:
         arm = self.place[run] - self.place[v]
@@ -180,6 +168,29 @@ class Tiled:
         order = np.lexsort((pair[:, 1], pair[:, 0]))
         return pair[order].astype(np.int32), value[order]
 
+    def rings_of(self, held: np.ndarray) -> list[Ring]:
+        """Fans with the lines from each spoke through the middle, along which springs resist bending."""
+        found = [(fan, [line for line, _ in self._across(fan) if line.stiffness > 0.0]) for fan in self.fans]
+        return [Ring(fan.middle, fan.spoke, fan.closed, 3.0 * fan.area, lines) for fan, lines in found if lines]
+
+    def _across(self, fan: Fan) -> list[tuple[BendLine, tuple[int, Crossing]]]:
+        """Lines from the spokes of a fan through its middle, and where they leave it: the curvature along one is 2/(l1 + l2)
+        times the sum of both slopes, a sum of heights."""
+        crossing = [(k, line) for k in range(len(fan.spoke)) if (line := fan.opposite(k)) is not None]
+        if not crossing:
+            return []
+        rigidity, found = _weights(fan.angle[[k for k, _ in crossing]], 3.0 * LAME / 12.0 * fan.area).tolist(), []
+        for (k, (b, c, at_b, at_c, far)), stiff in zip(crossing, rigidity):
+            near = float(fan.length[k])
+            here, there = _slopes(near, far)
+            ends = [(int(fan.spoke[k]), here), (fan.middle, -here - there)]
+            ends += [(int(fan.spoke[m]), there * part) for m, part in ((b, at_b), (c, at_c)) if part > 0.0]
+            particle, weight = zip(*ends)
+            way = self.place[fan.spoke[k]] - self.place[fan.middle]
+            line = BendLine(particle, weight, stiff, way, 4.0 / (near + far))
+            found.append((line, (k, (b, c, at_b, at_c, far))))
+        return found
+
     @property
     def _softness(self) -> float:
         """Constant of a spring over two links over E t, times what it pushes with per length over E t^3 [m^2]: that of a rod's,
@@ -197,19 +208,13 @@ class Tiled:
         """
         n, number, value, loaded, load = len(self.place), [], [], [], []
         for which, fan in enumerate(self.fans):
-            lines = [(k, line) for k in range(len(fan.spoke)) if (line := fan.opposite(k)) is not None]
-            if not lines:
-                continue
-            rigidity = _weights(fan.angle[[k for k, _ in lines]], 3.0 * LAME / 12.0 * fan.area)
-            for (k, (b, c, at_b, at_c, far)), stiff in zip(lines, rigidity.tolist()):
-                near = float(fan.length[k])
-                here, there = 2.0 / ((near + far) * near), 2.0 / ((near + far) * far)
-                ends = [(int(fan.spoke[k]), here), (fan.middle, -here - there)]
-                ends += [(int(fan.spoke[m]), there * part) for m, part in ((b, at_b), (c, at_c)) if part > 0.0]
+            for line, (k, (b, c, at_b, at_c, far)) in self._across(fan):
+                ends, stiff = list(zip(line.particle, line.weight)), line.stiffness
                 for i, (p, u) in enumerate(ends):
                     for q, v in ends[:i]:
                         number.append(min(p, q) * n + max(p, q))
                         value.append(-stiff * u * v)
+                here, there = _slopes(float(fan.length[k]), far)
                 for m, part in ((b, at_b), (c, at_c)):
                     if part > 0.0:
                         angles, lengths = fan.angle[[k, m]], fan.length[[k, m]]
@@ -251,6 +256,11 @@ class Tiled:
             np.subtract.at(wanted[:, :5], self._bends[2], self._softness * self._bends[3])
         wanted /= np.sqrt(area)[:, None]
         return _least_squares(matrix, wanted.ravel(), math.sqrt(0.75), LEAST * math.sqrt(0.75))
+
+
+def _slopes(near: float, far: float) -> tuple[float, float]:
+    """Weights of the heights of both ends of a line in its curvature [1/m^2], from the lengths of its parts [m]."""
+    return 2.0 / ((near + far) * near), 2.0 / ((near + far) * far)
 
 
 def _least_squares(matrix: Any, goal: np.ndarray, start: float, least: float) -> np.ndarray:

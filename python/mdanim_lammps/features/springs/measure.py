@@ -14,6 +14,7 @@ from ...scene.once import once_for
 from ...scene.scene import SceneRecord
 from ..rigid.words import Rigid
 from ..tearing.gone import gone_of
+from ..yielding.bends import energy as energy_of_bends
 from ..yielding.grown import grown_of
 
 
@@ -42,8 +43,10 @@ def _elastic(g: Glance) -> float:
     system = g.context.system
     gone = gone_of(system, g.solid, g.fields)
     own = kept(system, g.solid, gone)
-    stretch = _lengths(system, own, g.position) - system.rest[own] - grown_of(system, g.solid, g.fields)[~gone]
-    return float((0.5 * system.stiffness[own] * stretch**2 - system.preload_energy[own]).sum())
+    grown = grown_of(system, g.solid, g.fields)[~gone]
+    stretch = _lengths(system, own, g.position) - system.rest[own] - grown
+    energy = 0.5 * system.stiffness[own] * stretch**2 - system.preload_energy[own] + system.preload[own] * grown
+    return float(energy.sum()) + energy_of_bends(g.context, g.solid, g.position, g.fields)
 
 
 def _look(g: Glance) -> float:

@@ -112,7 +112,8 @@ def limits(solid: Any, seed: int, strain: float, length: np.ndarray) -> np.ndarr
 
 def rules_text(system: System, m: int, model: Model, solid: Any, seed: int, strain: float) -> str:
     """The lines of an object."""
-    own, lines = system.springs_of(m), [f"object {m + 1} {strain!r}\n"]
+    own = system.springs_of(m)
+    lines = [f"object {m + 1} {strain!r}{' whole' if solid.yield_strain is not None else ''}\n"]
     over, length = over_two_of(system, m, model), system.unloaded[own]
     pair = system.spring[own] - system.first[m]
     if over.any() or isinstance(solid.shape, Rope):

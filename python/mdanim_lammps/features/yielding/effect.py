@@ -8,11 +8,13 @@ import numpy as np
 from ...effects.context import Context, Verdict
 from ...effects.effect import Effect
 from ...effects.envelope import Envelope
-from ...effects.fields import column
+from ...effects.fields import BENT, column
 from ...effects.margin import Margin
+from ...errors import Problem
 from ...model.springs import dashpots
 from ...scene.formatting import at_least, number, say
 from ..springs.effect import spring_norm
+from .bends import field_of, first_values, is_layer, stiffness, table
 from .grown import EFFECT, FIX, NAME, acts
 from .words import yields
 
@@ -24,14 +26,20 @@ CRUSHED = 0.15
 """Energy of motion of each volume over E e above which cells at the spot of a blow may be crushed (docs/physics-yielding.md)."""
 LOOK = 2.0
 """Seconds of the flights of what may hit."""
-POISSON = 0.25
-"""Poisson's ratio of lattices (docs/physics-solids.md)."""
+FREE = column("free", "m", per="bond")
+"""Length of a spring without load, where it is not its rest length."""
+RINGS = "bends"
+"""Table of rings."""
+POISSON = {3: 0.25, 2: 1.0 / 3.0}
+"""Poisson's ratio of lattices (docs/physics-solids.md) and of flat sheets."""
+ANY_WAY = 0.82
+"""Part of e that springs of curved sheets bear, whose directions are any: the mean of what they bear is then E e."""
 LOST = "yielding"
 """Column of the ledger: work of springs that yield."""
 
 
 class Yielding(Effect):
-    """F = -k (r - L - p), p = r - L -+ b where +-(r - L - p) > b (docs/physics-yielding.md)."""
+    """F = -k (r - r0 - p), p = r - L -+ b where +-(r - L - p) > b, of sheets in bending, too (docs/physics-yielding.md)."""
 
     styles = (("fix", "mdanim/yield"),)
     name, fix = EFFECT, FIX
@@ -49,10 +57,24 @@ class Yielding(Effect):
         return acts(context)
 
     def columns(self, context):
-        return {GROWN: np.zeros(len(context.system.spring)), BEARS: borne(context)}
+        found = {GROWN: np.zeros(len(context.system.spring)), BEARS: borne(context)}
+        if _holds_itself(context):
+            found[FREE] = context.system.unloaded
+        if (bent := field_of(context)) is not None:
+            found[bent] = first_values(context, bent)
+        return found
+
+    def tables(self, context):
+        rings = table(context, share)
+        return {RINGS: rings} if rings else {}
 
     def rate(self, context):
-        return turned(context, context.system.stiffness)
+        system, found = context.system, turned(context, context.system.stiffness)
+        for m, (model, solid) in enumerate(zip(context.system_models, context.solids)):
+            if is_layer(solid):
+                own = slice(*system.first[m : m + 2])
+                found[own] += stiffness(model, solid) / system.mass[own]
+        return found
 
     def drag_rate(self, context):
         ratio = context.damping_ratio
@@ -61,8 +83,19 @@ class Yielding(Effect):
     def margins(self, envelope):
         return blow(envelope)
 
+    def notes(self, envelope):
+        """Ropes, which have no direction across in which they could keep a bend."""
+        for model, solid in zip(envelope.context.models, envelope.scene.solids):
+            if yields(solid) and model.frame.dimensions == 1:
+                cause = f"{solid.name} keeps what it is pulled to, and does not stay bent"
+                way = "write a strip, as in shape sheet (30, 1) cm thickness 2 mm, or a box, for a wire that is to be bent"
+                return [Problem(solid.spans.get("yield-strain"), cause, way, severity="note")]
+        return []
+
     def commands(self, context):
-        return [f"fix {self.fix} mobile mdanim/yield grown {GROWN.name} bears {BEARS.name}"]
+        free = f" free {FREE.name}" if _holds_itself(context) else ""
+        bends = f" bent {BENT} rings table:{RINGS}" if any(map(is_layer, context.solids)) else ""
+        return [f"fix {self.fix} mobile mdanim/yield grown {GROWN.name} bears {BEARS.name}{free}{bends}"]
 
     def losses(self, scene):
         return (LOST,)
@@ -74,17 +107,33 @@ class Yielding(Effect):
         return {self.name: readings.fix_seconds(self.fix)}
 
 
+def _holds_itself(context: Context) -> bool:
+    """Whether a scene has springs that yield and push without load, of ropes and sheets."""
+    return any(yields(solid) and model.frame.bare for model, solid in zip(context.models, context.scene.solids))
+
+
+def share(context: Context, m: int, way: np.ndarray) -> np.ndarray:
+    """Part of e that what lies along directions of an object bears, shape (K,), from these by its own axes, shape (K, 3): the
+    strain there in a body that is pulled along one of its axes until it is longer by 1, of all axes the largest. So all of it
+    yields together, and a bar bears E e."""
+    frame = context.system_models[m].frame
+    if frame.dimensions == 1:
+        return np.ones(len(way))
+    if frame.spans != frame.dimensions:
+        return np.full(len(way), ANY_WAY)
+    square = (way[:, : frame.dimensions] ** 2).max(axis=1) / (way**2).sum(axis=1)
+    return (1.0 + POISSON[frame.dimensions]) * square - POISSON[frame.dimensions]
+
+
 def borne(context: Context) -> np.ndarray:
-    """Stretch that springs bear [m], shape (S,): that which they have in a body that is pulled along one of its own axes until it
-    is longer by e, of the three the largest. So all of them yield together, and a bar bears E e."""
+    """Stretch that springs bear [m], shape (S,): `share` of e, of their length without load."""
     system, found = context.system, np.zeros(len(context.system.spring))
     for m, solid in enumerate(context.solids):
         if yields(solid):
             own = system.springs_of(m)
             i, j = system.spring[own].T
             along = (system.position[i] - system.position[j]) @ np.array(solid.rotation)
-            square = (along**2).max(axis=1) / (along**2).sum(axis=1)
-            found[own] = solid.yield_strain * ((1.0 + POISSON) * square - POISSON) * system.rest[own]
+            found[own] = solid.yield_strain * share(context, m, along) * system.unloaded[own]
     return found
 
 
@@ -102,12 +151,13 @@ def turned(context: Context, weight: np.ndarray) -> np.ndarray:
 
 
 def blow(env: Envelope) -> list[Margin]:
-    """The energy of motion of each volume beside E e, which is what each volume takes that is pressed to nothing."""
-    own = np.array([yields(solid) for solid in env.scene.solids], bool) & env.reach.moving
+    """The energy of motion of each volume of a solid beside E e, which is what each volume takes that is pressed to nothing."""
+    solid = np.array([yields(one) and not model.frame.bare for one, model in zip(env.scene.solids, env.context.models)], bool)
+    own = solid & env.reach.moving
     if not own.any() or (len(own) == 1 and not env.planes):
         return []
     system = env.system
-    bears = system.young * np.array([solid.yield_strain or np.inf for solid in env.scene.solids])
+    bears = system.young * np.where(solid, [one.yield_strain or np.inf for one in env.scene.solids], np.inf)
     ratio = np.where(own, 0.5 * system.density * env.reach.speed**2 / bears, 0.0)
     m = int(ratio.argmax())
     enough = at_least(env.scene.solids[m].yield_strain * float(ratio[m]) / CRUSHED) if ratio[m] else 0.0

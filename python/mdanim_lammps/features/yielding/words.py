@@ -9,7 +9,6 @@ from typing import Any
 from ...scene.holding import all_held
 from ...scene.limits import Limit
 from ...scene.schema import Observable, Rule, setting
-from ...scene.shapes import Rope, Sheet, Shell
 
 SWITCHES = {"yielding": "an object's `yield-strain e`"}
 
@@ -31,8 +30,8 @@ class YieldWords:
 
     yield_strain: float | None = setting(
         "<e>",
-        "Of an elastic solid: a spring that is longer or shorter than its rest length by more than this share of the first one "
-        "stays so, and bears no more. Absent: it always springs back.",
+        "Of what deforms: a strain beyond this one stays, and nothing bears more than at it. A sheet stays bent by what its "
+        "faces are strained beyond 1.5 times of it. Absent: it always springs back.",
         "0.02", Rule.POSITIVE, default=None, limit=YIELD_STRAIN, after="toughness", shared=True)  # fmt: skip
     """[-]; None for never."""
 
@@ -46,15 +45,11 @@ def yields(solid: Any) -> bool:
 
 
 def check_object(v: Any, block: Any, solid: Any) -> Any:
-    """Only elastic solids that can move yield."""
+    """Only what is elastic and can move yields."""
     if solid.yield_strain is None or "yield-strain" not in solid.spans:
         return solid
     span = solid.spans["yield-strain"]
-    if isinstance(solid.shape, (Rope, Sheet, Shell)):
-        kind = "a rope" if isinstance(solid.shape, Rope) else "a sheet"
-        cause = f"{solid.name} is {kind}, which does not stay bent yet: only solids yield"
-        v.problem(span, cause, "take yield-strain out, or write a solid shape, as in shape box (30, 2, 1) cm")
-    elif getattr(solid.elasticity, "modulus", 0.0) == math.inf:
+    if getattr(solid.elasticity, "modulus", 0.0) == math.inf:
         cause = f"{solid.name} is rigid: it has no springs that could yield"
         v.problem(span, cause, "write its elasticity, as in elasticity 1 MPa, or take yield-strain out")
     elif all_held(solid):
