@@ -45,7 +45,7 @@ def bends() -> tuple[list[str], list[list]]:
 
 
 def stays() -> tuple[list[str], list[list]]:
-    """What strips that are bent all at once, and not across, keep of it."""
+    """Strips that are bent all at once, and not across, and the curvature that they keep."""
     rows = []
     for e, times in ((0.003, 1.5), (0.003, 2.0), (0.003, 4.0), (0.01, 2.0), (0.01, 4.0)):
         for axis, name in enumerate("xy"):

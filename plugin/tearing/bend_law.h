@@ -104,7 +104,7 @@ class BendShape {
   double size;
 };
 
-// What a line that was bent by `before` is bent by, at a curvature.
+// The bend of a line that was bent by `before`, at a curvature.
 inline double bent(double curvature, double before, double most)
 { return std::abs(curvature - before) <= most ? before : curvature - std::copysign(most, curvature - before); }
 

@@ -84,7 +84,7 @@ def test_a_curved_sheet_that_yields_stays_as_it_is_drawn(prepared):
 
 
 def test_the_stiffness_of_rings():
-    """Of random rings of six, flat to folded flat, the largest curvature of what bends store is below that of the bound."""
+    """The bound is above the largest one of random rings of six, flat to folded flat."""
     chance, angle = np.random.default_rng(2), np.arange(6) * np.pi / 3.0
     flat = np.vstack([np.zeros(3), np.column_stack([np.cos(angle), np.sin(angle), 0.0 * angle])])
     weight = np.zeros((3, 7))

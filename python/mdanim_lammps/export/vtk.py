@@ -29,7 +29,7 @@ def write(cut: Cut, folder: Path, stem: str, on_frame: Callable[[int], None]) ->
         vertices, normals = (np.concatenate([np.zeros((0, 3)), *(s[k] for s in surfaces[: len(solids)])]) for k in (0, 1))
         x = cut.position(frame)
         parts = {
-            "surfaces": _mesh(vertices, triangle, {"object": owner, "Normals": normals}),
+            "surfaces": _mesh(vertices, _drawn(vertices, triangle), {"object": owner, "Normals": normals}),
             "particles": _mesh(
                 x,
                 None,
@@ -63,6 +63,13 @@ def write(cut: Cut, folder: Path, stem: str, on_frame: Callable[[int], None]) ->
         f"'object' counts {named}{', ...' if len(m.names) > 8 else ''}",
         "strain is the largest |r/r0 - 1| of a particle's springs",
     ]
+
+
+def _drawn(points: np.ndarray, triangle: np.ndarray) -> np.ndarray:
+    """Triangles with three corners in different places, shape (K, 3): those of what is torn and of what is drawn once it is torn
+    are in one place while they are not drawn."""
+    corner = points[triangle]
+    return triangle[(corner != np.roll(corner, 1, axis=1)).any(axis=2).all(axis=1)]
 
 
 def _mesh(points: np.ndarray, triangle: np.ndarray | None, arrays: dict[str, np.ndarray]):

@@ -17,11 +17,11 @@ class BendLine:
     particle: tuple[int, ...]
     """Three or four of the ring."""
     weight: tuple[float, ...]
-    """Of the height of each in the curvature [1/m^2]; their sum is 0."""
+    """The part of the height of each in the curvature [1/m^2]; their sum is 0."""
     stiffness: float
     """c of the energy c k^2/2 of a curvature k, over E t^3 and the factor of its bending [m^2]."""
     direction: np.ndarray
-    """Of the line in the body without load, shape (3,)."""
+    """From its first particle on in the body without load, shape (3,)."""
     sharpest: float
     """Its curvature where it is folded [1/m]: sum |w| l with the distances l of particles from the middle."""
 
@@ -36,7 +36,7 @@ class Ring:
     closed: bool
     """Whether the first one is beside the last one, too."""
     area: float
-    """Of its triangles, laid flat [m^2]."""
+    """The area of its triangles, laid flat [m^2]."""
     lines: list[BendLine] = field(default_factory=list)
 
 

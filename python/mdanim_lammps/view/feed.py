@@ -98,7 +98,7 @@ class Feed:
             self._carry, self.triangle, of = self.mesh.carry[order], rank[self.mesh.triangle], of[order]
         else:
             self._carry, self.triangle = self.mesh.carry, self.mesh.triangle
-        self._of_skin = self.mesh.of_skin[order]
+        self._of_skin, self._lift = self.mesh.of_skin[order], self.mesh.lift[order]
         self.object_of_vertex = of
         self.first = np.searchsorted(of, np.arange(len(m.names)))
         self.count = np.diff(np.append(self.first, len(of)))
@@ -185,7 +185,8 @@ class Feed:
 
     def buffers(self) -> dict[str, np.ndarray]:
         """Arrays that do not change: ``triangle``, ``object`` of vertices, their ``tint`` where mesh files have colours, their
-        ``material`` where objects have textures; of a liquid ``sheet`` and ``rim``; by frame the ``path`` of a camera that moves,
+        ``material`` where objects have textures, ``lift``, how much nearer to the eye they are drawn where there are layers [m];
+        of a liquid ``sheet`` and ``rim``; by frame the ``path`` of a camera that moves,
         eye, look and up, and the way of walls that move, ``walls``."""
         found = {"triangle": self.triangle.astype("<u4"), "object": self.object_of_vertex.astype("<u4")}
         if self.metadata.skin.painted.any():
@@ -195,6 +196,8 @@ class Feed:
             found |= {"sheet": sheet.triangle.astype("<u4"), "rim": sheet.rim.astype("<u4")}
         if (material := material_places(self._trajectory, self.start, self.object_of_vertex)) is not None:
             found["material"] = material.astype("<f4")
+        if self._lift.any():
+            found["lift"] = self._lift.astype("<f4")
         if self._added:
             first = np.cumsum([0, *self._added_counts])
             shifted = [(one.triangle + n, one.line + n) for one, n in zip(self._added, first)]

@@ -103,7 +103,7 @@ class SheetFrame(BareFrame):
         return 2 if isinstance(self.woven, Weave) else 3
 
     def rings(self, held: np.ndarray) -> list[Ring]:
-        """What it bends by, from which particles are held, bool, shape (N,)."""
+        """Rings and lines that it bends by, from which particles are held, bool, shape (N,)."""
         return self.woven.rings_of(held & ~held.all())
 
     @property

@@ -34,7 +34,7 @@ def field_of(context: Context) -> Field | None:
 
 @once_for(lambda model: model)
 def rings(model: Model) -> list[Ring]:
-    """Those of an object that bend."""
+    """The rings of an object that bend."""
     return model.frame.rings(model.held)
 
 

@@ -68,3 +68,14 @@ export function texture(material, on) {
       .replace("#include <color_fragment>", "#include <color_fragment>\nif (patterned > 0.5) diffuseColor.rgb = toLight(textured(toScreen(diffuseColor.rgb)));");
   };
 }
+
+// Draw layers nearer to the eye along lines of sight, as in the movie: edges under them come through between particles.
+export function liftLayers(material) {
+  const before = material.onBeforeCompile, key = material.customProgramCacheKey();
+  material.customProgramCacheKey = () => `lifted ${key}`;
+  material.onBeforeCompile = (shader, renderer) => {
+    before?.call(material, shader, renderer);
+    shader.vertexShader = "attribute float lift;\n" + shader.vertexShader.replace("#include <project_vertex>",
+      "#include <project_vertex>\ngl_Position = projectionMatrix * vec4(mvPosition.xyz * max(0.0, 1.0 - lift / max(length(mvPosition.xyz), 1e-30)), 1.0);");
+  };
+}

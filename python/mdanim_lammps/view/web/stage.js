@@ -6,7 +6,7 @@ import {
 } from "./vendor.js";
 import { Extras } from "./extras.js";
 import { Liquid } from "./liquid.js";
-import { floorOf, texture } from "./looks.js";
+import { floorOf, liftLayers, texture } from "./looks.js";
 import { pick, placeVertices, sumNormals } from "./message.js";
 
 const SHADOWS = [2048, 1024, 512], PIXELS = [1, 0.7, 0.5]; // by level of quality
@@ -81,6 +81,10 @@ export class Stage {
       geometry.setAttribute("material", new BufferAttribute(data.material, 4));
       this.textures = { value: 1 };
       texture(material, this.textures);
+    }
+    if (data.lift) {
+      geometry.setAttribute("lift", new BufferAttribute(data.lift, 1));
+      liftLayers(material);
     }
     this.surface = new Mesh(geometry, material);
     this.surface.castShadow = this.surface.receiveShadow = true;
