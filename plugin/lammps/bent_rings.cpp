@@ -84,7 +84,7 @@ void BentRings::watch(int groupbit)
 {
   watched.clear();
   for (std::size_t r = 0; r < rings.size(); ++r) {
-    Watched one{r, {}, {}};
+    SeenRing one{r, {}, {}};
     bool is_here = false;
     for (const int particle : rings[r].of->of) {
       const int i = atom->map(lowest[rings[r].molecule] + particle);
@@ -102,16 +102,16 @@ void BentRings::watch(int groupbit)
   }
 }
 
-double *BentRings::bent_of(const Watched &one) const { return atom->darray[property][one.row[0]] + shape(one).slot; }
+double *BentRings::bent_of(const SeenRing &one) const { return atom->darray[property][one.row[0]] + shape(one).slot; }
 
 // Places of the particles of a ring, a time before.
-void BentRings::places(const Watched &one, double before)
+void BentRings::places(const SeenRing &one, double before)
 {
   x.resize(one.row.size());
   for (std::size_t k = 0; k < x.size(); ++k) x[k] = vec3(atom->x[one.row[k]]) - before * vec3(atom->v[one.row[k]]);
 }
 
-void BentRings::find_force(Watched &one)
+void BentRings::find_force(SeenRing &one)
 {
   const double *const bent = bent_of(one);
   std::fill(one.force.begin(), one.force.end(), Vec3());
@@ -121,14 +121,14 @@ void BentRings::find_force(Watched &one)
 
 void BentRings::look()
 {
-  for (Watched &one : watched) {
+  for (SeenRing &one : watched) {
     places(one, 0.0);
     find_force(one);
   }
 }
 
 // Takes what lines were bent by more into the account. x has the places of the ring.
-void BentRings::release(const Watched &one, const std::vector<double> &less, double lost, SpringLosses &losses)
+void BentRings::release(const SeenRing &one, const std::vector<double> &less, double lost, SpringLosses &losses)
 {
   now.assign(one.row.size(), Vec3());
   then = now;
@@ -142,7 +142,7 @@ void BentRings::yield(SpringLosses &losses)
 {
   const std::vector<std::size_t> gone = newly_gone();
   std::vector<double> less;
-  for (Watched &one : watched) {
+  for (SeenRing &one : watched) {
     const BendRing &ring = shape(one);
     double *const bent = bent_of(one);
     places(one, 0.0);
@@ -169,13 +169,13 @@ void BentRings::yield(SpringLosses &losses)
     find_force(one);
   }
   if (!gone.empty())
-    watched.erase(std::remove_if(watched.begin(), watched.end(), [this](const Watched &one) { return rings[one.ring].is_gone; }),
+    watched.erase(std::remove_if(watched.begin(), watched.end(), [this](const SeenRing &one) { return rings[one.ring].is_gone; }),
                   watched.end());
 }
 
 void BentRings::push() const
 {
-  for (const Watched &one : watched)
+  for (const SeenRing &one : watched)
     for (std::size_t k = 0; k < one.row.size(); ++k)
       if (one.row[k] < atom->nlocal) add_to(atom->f[one.row[k]], one.force[k]);
 }
@@ -184,7 +184,7 @@ double BentRings::energy() const
 {
   double here = 0.0;
   std::vector<Vec3> at;
-  for (const Watched &one : watched) {
+  for (const SeenRing &one : watched) {
     if (one.row[0] >= atom->nlocal) continue;
     at.clear();
     for (const int i : one.row) at.push_back(vec3(atom->x[i]));
@@ -195,8 +195,8 @@ double BentRings::energy() const
 
 std::size_t BentRings::bytes() const
 {
-  std::size_t found = watched.capacity() * sizeof(Watched);
-  for (const Watched &one : watched) found += one.row.size() * (sizeof(int) + sizeof(Vec3));
+  std::size_t found = watched.capacity() * sizeof(SeenRing);
+  for (const SeenRing &one : watched) found += one.row.size() * (sizeof(int) + sizeof(Vec3));
   for (const OwnRing &one : rings)
     found += sizeof one + one.of->of.size() * sizeof(int) + one.of->lines.size() * sizeof(BendLine);
   return found;

@@ -50,18 +50,18 @@ class BentRings : protected LAMMPS_NS::Pointers {
     bool is_gone = false;
   };
   // A ring with a particle here: rows of its particles, and their forces.
-  struct Watched {
+  struct SeenRing {
     std::size_t ring;
     std::vector<int> row;
     std::vector<Vec3> force;
   };
 
-  double *bent_of(const Watched &one) const;
-  const BendRing &shape(const Watched &one) const { return *rings[one.ring].of; }
-  void places(const Watched &one, double before);
-  void find_force(Watched &one);
+  double *bent_of(const SeenRing &one) const;
+  const BendRing &shape(const SeenRing &one) const { return *rings[one.ring].of; }
+  void places(const SeenRing &one, double before);
+  void find_force(SeenRing &one);
   std::vector<std::size_t> newly_gone();
-  void release(const Watched &one, const std::vector<double> &less, double lost, SpringLosses &losses);
+  void release(const SeenRing &one, const std::vector<double> &less, double lost, SpringLosses &losses);
 
   std::string who, property_name;
   int property = -1;
@@ -71,7 +71,7 @@ class BentRings : protected LAMMPS_NS::Pointers {
   std::map<std::pair<int, std::pair<int, int>>, std::vector<std::size_t>> of_link;    // rings, where links may go
   const LAMMPS_NS::FixMdanimTear *tears = nullptr;
   std::size_t known = 0;    // links that are gone of which it knows
-  std::vector<Watched> watched;
+  std::vector<SeenRing> watched;
   std::vector<Vec3> x, now, then;    // of one ring
 };
 

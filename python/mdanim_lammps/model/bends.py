@@ -27,7 +27,7 @@ class BendLine:
 
 
 @dataclass(frozen=True, eq=False)
-class Ring:
+class BendRing:
     """A particle with those around it."""
 
     middle: int
@@ -57,7 +57,7 @@ def runs_around(triangle: np.ndarray, count: int, cut: Sequence[set[int]] | None
             yield v, run, closed
 
 
-def curvatures(ring: Ring, x: np.ndarray) -> np.ndarray:
+def curvatures(ring: BendRing, x: np.ndarray) -> np.ndarray:
     """Curvature along each line of a ring [1/m], of particles at x [m], shape (N, 3)."""
     arm = x[ring.around] - x[ring.middle]
     beside = np.roll(arm, -1, axis=0)

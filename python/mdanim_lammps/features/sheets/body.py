@@ -12,7 +12,7 @@ import numpy as np
 
 from ...model import shapes
 from ...model.bare import BareBody, BareFrame, bare_model
-from ...model.bends import Ring
+from ...model.bends import BendRing
 from ...model.build import NothingHeld, caught_in_box
 from ...model.lattice import Cells
 from ...scene.formatting import say
@@ -102,7 +102,7 @@ class SheetFrame(BareFrame):
         """A curved one has directions across, too."""
         return 2 if isinstance(self.woven, Weave) else 3
 
-    def rings(self, held: np.ndarray) -> list[Ring]:
+    def rings(self, held: np.ndarray) -> list[BendRing]:
         """Rings and lines that it bends by, from which particles are held, bool, shape (N,)."""
         return self.woven.rings_of(held & ~held.all())
 

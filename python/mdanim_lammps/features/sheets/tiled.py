@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from ...model import shapes
-from ...model.bends import BendLine, Ring, runs_around
+from ...model.bends import BendLine, BendRing, runs_around
 from ...model.orientation import MeshError
 from ...model.remesh import remeshed
 from ...model.rods import SOFT
@@ -168,10 +168,10 @@ class Tiled:
         order = np.lexsort((pair[:, 1], pair[:, 0]))
         return pair[order].astype(np.int32), value[order]
 
-    def rings_of(self, held: np.ndarray) -> list[Ring]:
+    def rings_of(self, held: np.ndarray) -> list[BendRing]:
         """Fans with the lines from each spoke through the middle, along which springs resist bending."""
         found = [(fan, [line for line, _ in self._across(fan) if line.stiffness > 0.0]) for fan in self.fans]
-        return [Ring(fan.middle, fan.spoke, fan.closed, 3.0 * fan.area, lines) for fan, lines in found if lines]
+        return [BendRing(fan.middle, fan.spoke, fan.closed, 3.0 * fan.area, lines) for fan, lines in found if lines]
 
     def _across(self, fan: Fan) -> list[tuple[BendLine, tuple[int, Crossing]]]:
         """Lines from the spokes of a fan through its middle, and where they leave it: the curvature along one is 2/(l1 + l2)

@@ -12,7 +12,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from ...model.bends import BendLine, Ring, runs_around
+from ...model.bends import BendLine, BendRing, runs_around
 from ...model.rods import Rod, bends_of, springs_of
 from ...model.triangles import areas
 from ...scene.scene import Sheet
@@ -160,7 +160,7 @@ class Weave:
         (S, 3), for Young's modulus [Pa] and the thickness [m]; ``bending`` scales the rigidity."""
         return springs_of(self.rods(held), young * thickness, bending * young * thickness**3 / 12.0)
 
-    def rings_of(self, held: np.ndarray) -> list[Ring]:
+    def rings_of(self, held: np.ndarray) -> list[BendRing]:
         """All particles with those around them, and the lines along which these springs resist bending."""
         place = np.column_stack([self.place, np.zeros(len(self.place))])
         lines: list[list[BendLine]] = [[] for _ in place]
@@ -169,7 +169,7 @@ class Weave:
         area = np.zeros(len(place))
         np.add.at(area, self.triangle, areas(place, self.triangle)[:, None])
         return [
-            Ring(v, np.array(run[: -1 if closed else None]), closed, float(area[v]), lines[v])
+            BendRing(v, np.array(run[: -1 if closed else None]), closed, float(area[v]), lines[v])
             for v, run, closed in runs_around(self.triangle, len(place))
             if lines[v]
         ]

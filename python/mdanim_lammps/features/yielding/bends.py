@@ -9,7 +9,7 @@ import numpy as np
 
 from ...effects.context import Context
 from ...effects.fields import BENT, Field, Fields, column
-from ...model.bends import Ring, curvatures
+from ...model.bends import BendRing, curvatures
 from ...model.model import Model
 from ...scene.once import once_for
 from .words import yields
@@ -33,7 +33,7 @@ def field_of(context: Context) -> Field | None:
 
 
 @once_for(lambda model: model)
-def rings(model: Model) -> list[Ring]:
+def rings(model: Model) -> list[BendRing]:
     """The rings of an object that bend."""
     return model.frame.rings(model.held)
 
