@@ -86,7 +86,7 @@ def test_the_forms_of_elasticity_are_told(words, hint):
         ("rigid", "elasticity rigid   a form of elasticity in object"),
         ("elasticity rigid", "does not deform"),
         ("contact_bound", "a column of ledger.csv"),
-        ("contact bound", "up to 1 a step is proved to be stable"),
+        ("contact bound", "up to 1 proves that the step is stable"),
     ],
 )
 def test_rigid_words_are_explained(word, told):

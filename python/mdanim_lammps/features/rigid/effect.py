@@ -164,7 +164,7 @@ class RigidMotion(Effect):
             Problem(
                 None,
                 f"contacts of rigid objects: the {PROOF} has been {number(most, 3)}, where many touched one object at once; "
-                f"up to {number(AT_REST)} things have come to rest, up to 1 a step is proved to be stable",
+                f"up to 1 proves that the step is stable, and with up to {number(AT_REST)} all has been seen to come to rest",
                 f"if something trembles where it should lie still, write a timestep of {factor} of this one",
                 severity="note",
             )

@@ -58,7 +58,7 @@ MARGINS = {
 
 LEDGER = {
     "contact_bound": "the largest dt^2 S/4 + dt D/2 of a rigid object since the start, with the sums S and D of stiffness and "
-    "damping over its contacts [-]; up to 1 a step is proved to be stable, and with up to 10 things have come to rest"
+    "damping over its contacts [-]; up to 1 proves that the step is stable, and with up to 12 all has been seen to come to rest"
 }
 """Columns of the ledger that are not energies."""
 
