@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """How many mesh files become bodies that fall and lie: python bench/meshes.py FILE_OR_FOLDER ...
 
-Each STL, OBJ and PLY file is scaled to 20 cm, made a rigid body 2 cm above the ground, and let fall for two seconds: as a
+Each STL, OBJ and PLY file is scaled to 20 cm, made a rigid body 2 cm above the ground, and let fall for three seconds: as a
 `mesh`, or as what the message names, a `solid` or a `sheet` of rubber. A row has the file, its faces, the word that took it or
 what the message says, particles, seconds of processor time and the most memory. Each try is a process of its own, which may take
 a minute of processor time and 2 GB; the row of one that takes more says so.
@@ -25,7 +25,7 @@ from mdanim_lammps.model.shapes import extent
 
 SIZE, ABOVE = 0.2, 0.02
 """Longest side of the box around each body, and its height above the ground [m]."""
-STILL = 2e-3
+STILL = 5e-3
 """How far the middle of a body that lies rises or sinks in the last half second [m]; it may roll or rock."""
 SECONDS, BYTES = 60, 2_000_000_000
 """Most that a try may take: processor time [s], data [bytes]."""
@@ -39,7 +39,7 @@ SCENE = """
 gravity (0, 0, -9.81) m/s^2
 ground z 0 m
 object body {{ shape {shape}  position (0, 0, {height!r}) m {density} }}
-control {{ time 2 s  frames 10 fps  friction 0.5 }}
+control {{ time 3 s  frames 10 fps  friction 0.5 }}
 record body.position.z
 record body.speed
 """
@@ -67,15 +67,15 @@ def _files(place: Path) -> list[Path]:
 
 def _tried(path: Path) -> tuple[str, dict]:
     """The word that takes a file and what came of it, or "" and why it is not taken."""
-    words = list(FORMS)
-    while True:
-        word = words.pop(0)
+    left = list(FORMS)
+    word: str | None = left[0]
+    while word:
+        left.remove(word)
         done = _limited(_fallen, path, word)
         if not done["why"]:
             return word, done
-        words = [word for word in words if f"write {word}" in done["hint"]]
-        if not words:
-            return "", done | {"why": f"{done['why']}; {done['hint']}" if done["hint"] else done["why"]}
+        word = next((word for word in left if f"write {word}" in done["hint"]), None)
+    return "", done | {"why": f"{done['why']}; {done['hint']}" if done["hint"] else done["why"]}
 
 
 def _spent() -> float:

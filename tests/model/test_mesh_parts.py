@@ -72,7 +72,7 @@ def test_parts_are_bodies_where_the_file_has_them(tmp_path, name):
 
 
 def test_a_part_that_touches_others_is_a_body(tmp_path):
-    """Three cubes side by side share corners, so that all of them are no closed surface; each one is."""
+    """Three cubes side by side share corners, so that all of them together are not a closed surface; each one is."""
     path = tmp_path / "row.obj"
     path.write_text(obj(["o a\n", "o b\n", "o c\n"], (0, 1, 2)))
     with pytest.raises(MeshError, match="more than two triangles"):

@@ -144,7 +144,8 @@ def _make_material(body: _Body, mass: float, elasticity: Elasticity, loose: bool
         spring, kind, k = spring[keep], kind[keep], k[keep]
     # Masses by shares are of few kinds.
     rest = rest_lengths(edge)[kind]
-    spring_type, constants = types(np.stack([k, rest, reduced_mass(even, spring), rest], axis=1))
+    spring_type, constants = types(np.stack([k, rest, reduced_mass(even, spring)], axis=1))
+    constants = constants[:, [0, 1, 2, 1]]
     _freeze(m, spring_type, constants)
     return _Material(m, spring, spring_type, constants, equivalent_modulus(edge, elasticity))
 

@@ -72,6 +72,10 @@ def equivalent_modulus(cell: np.ndarray, elasticity: Elasticity) -> float:
     return elasticity.modulus
 
 
+ROWS = 1 << 16
+"""Rows that are sorted together."""
+
+
 def types(constants: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Type of each spring (from 1, the smallest unsigned integers that do, shape (S,)) and the
     constants of each type, shape (T, K).
@@ -84,8 +88,24 @@ def types(constants: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def distinct_rows(rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Number of the first row of each kind, ascending, shape (T,), and the kind of each row, shape (S,), for float64 rows of
-    shape (S, K). Rows are of one kind when all bits of them agree."""
+    """Number of the first row of each kind, ascending, shape (T,), and the kind of each row, int32, shape (S,), for float64 rows
+    of shape (S, K). Rows are of one kind when all bits of them agree."""
+    # Block by block, then among the first ones of all blocks: sorts of all rows would take several times their memory.
+    starts = range(0, len(rows), ROWS)
+    found = [_distinct(rows[start : start + ROWS]) for start in starts]
+    if len(found) < 2:
+        return found[0] if found else (np.zeros(0, np.intp), np.zeros(0, np.int32))
+    firsts = np.concatenate([first + start for start, (first, _) in zip(starts, found)])
+    among, which = _distinct(rows[firsts])
+    kind, at = np.empty(len(rows), np.int32), 0
+    for start, (first, inverse) in zip(starts, found):
+        kind[start : start + len(inverse)] = which[at + inverse]
+        at += len(first)
+    return firsts[among], kind
+
+
+def _distinct(rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """`distinct_rows` of rows that are few."""
     # A mixed key per row is enough to find equal rows quickly; equality itself is checked on all bits below.
     bits, key = rows.view(np.uint64), np.zeros(len(rows), np.uint64)
     with np.errstate(over="ignore"):
@@ -96,8 +116,8 @@ def distinct_rows(rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         found = np.unique(bits, axis=0, return_index=True, return_inverse=True)
     first, inverse = found[1], found[2].reshape(-1)
     order = np.argsort(first)
-    rank = np.empty(len(order), np.intp)
-    rank[order] = np.arange(len(order))
+    rank = np.empty(len(order), np.int32)
+    rank[order] = np.arange(len(order), dtype=np.int32)
     return first[order], rank[inverse]
 
 

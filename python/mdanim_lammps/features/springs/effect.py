@@ -8,6 +8,7 @@ import numpy as np
 from ...bodies import all_held, kind_of
 from ...effects.context import Context, Verdict
 from ...effects.effect import Effect
+from ...model.nearest import blocks
 from ..tearing.gone import change_of_energy
 from ..yielding.grown import energy_of_growth
 from .strength import strength, turning
@@ -88,9 +89,11 @@ def spring_norm(system, weight: np.ndarray) -> np.ndarray:
     """``block_norm`` of the springs of a system with these weights; shape (N,)."""
     if not len(system.spring):
         return np.zeros(system.particles)
-    i, j = system.spring.T
-    direction = system.position[i] - system.position[j]
-    direction /= np.linalg.norm(direction, axis=1)[:, None]
+    direction = np.empty((len(system.spring), 3))
+    for rows in blocks(len(direction)):
+        i, j = system.spring[rows].T
+        between = system.position[i] - system.position[j]
+        direction[rows] = between / np.linalg.norm(between, axis=1)[:, None]
     return block_norm(system.spring, weight, direction, system.particles)
 
 
