@@ -69,6 +69,8 @@ TEXTS = {
     "a splash, surface": SPLASH.replace("MODEL", "surface"),
     "a splash, paper": SPLASH.replace("MODEL", "paper"),
     "a heap": HEAP,
+    "a heap in air": f"air {{ }}\n{HEAP}",
+    "a splash in air": f"air {{ }}\n{SPLASH.replace('MODEL', 'waves')}",
     "contact of the paper": BARRIER,
 }
 """Scenes in which much happens in a short time."""

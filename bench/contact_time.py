@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """Time of contact in scenes where objects lie on each other: ``python bench/contact_time.py [rounds [scene ...]]``, with
-``--against FOLDER`` beside another build, FOLDER being that of its package.
+``--against FOLDER`` beside another build, FOLDER being that of its package. A scene is its name, with more lines of text behind a
+comma: ``"plates, air { }"`` takes standard steps.
 
 Each scene runs to its middle, then rounds of steps from there on take turns: processor time of a step on one thread, looks at
 points that touch nothing, and points in contact. A round has several short runs, of which the quickest counts: others on the
@@ -35,9 +36,10 @@ def serve(name: str, state: Path) -> None:
     whose figures are a line of JSON."""
     from mdanim_lammps.engine.instance import Instance
     from mdanim_lammps.run.prepare import prepare
-    from mdanim_lammps.scene.parse import load_scene
+    from mdanim_lammps.scene.parse import parse_scene
 
-    plan = prepare(load_scene(SCENES / f"{name}.txt")).plan
+    scene, _, more = name.partition(", ")
+    plan = prepare(parse_scene((SCENES / f"{scene}.txt").read_text(encoding="utf-8") + more)).plan
     middle = round(MIDDLE * plan.certificate.steps)
     with Instance(plan) as instance:
         instance.lammps.lmp.command("run_style verlet/mdanim threads 1")

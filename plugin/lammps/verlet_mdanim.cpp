@@ -173,10 +173,22 @@ void VerletMdanim::run(int n)
     run_passes(n);
   } else {
     search.tell_why(n);
+    equip_members();
     Verlet::run(n);
   }
   local_then = atom->nlocal;
   ghosts_then = atom->nghost;
+}
+
+// In LAMMPS's own steps, too, springs and contacts are computed by kernels and threads.
+void VerletMdanim::equip_members() const
+{
+  const Kernels &kernels = told ? *told : widest_kernels();
+  const auto equip = [&](auto *style) {
+    if (auto *member = dynamic_cast<PassMember *>(style)) engine.equip(*member, kernels);
+  };
+  equip(force->bond);
+  for (Fix *fix : modify->get_fix_list()) equip(fix);
 }
 
 void VerletMdanim::run_passes(int n)

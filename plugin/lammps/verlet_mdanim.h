@@ -40,6 +40,7 @@ class VerletMdanim : public SplitVerlet {
   bool cut();
   bool cut_for_ranks();
   void refuse_if_moved();
+  void equip_members() const;
   void run_passes(int n);
   int take_steps(int step, int most);
   bigint next_stop() const;

@@ -238,13 +238,17 @@ def _rough(value: float) -> float:
 def threads_line(choice: ThreadChoice) -> str:
     """How many threads there will be, and why."""
     head = f"threads  {choice.threads}"
-    if choice.asked:
-        return f"{head}, as asked for"
-    if choice.cores == 1:
+    if not choice.asked and choice.cores == 1:
         return f"{head}: there is one core for each process"
+    head += ", as asked for" if choice.asked else f" of {choice.cores} cores"
+    if choice.standard:
+        takes = f"with {' and '.join(choice.standard)} on LAMMPS takes its standard steps"
+        return f"{head}: {takes}, of which threads share springs, contact and liquid alone"
+    if choice.asked:
+        return head
     pays = f"a thread pays from {count(choice.pays_from, 'particle')} on"
     of_pass = f"a pass over {count(choice.particles, 'particle')} takes {1e-3 * choice.step:.0f} us"
-    return f"{head} of {choice.cores} cores: {of_pass}, {pays}"
+    return f"{head}: {of_pass}, {pays}"
 
 
 def check_lines(

@@ -5,6 +5,7 @@ import ctypes
 import math
 import os
 import re
+from pathlib import Path
 
 import numpy as np
 import plugin_path
@@ -14,6 +15,7 @@ from mdanim_lammps import Scene, Trajectory
 from mdanim_lammps.engine.instance import Instance
 from mdanim_lammps.engine.threads import (
     LEAST,
+    STANDARD,
     THREADS,
     asked_threads,
     check_threads,
@@ -92,6 +94,25 @@ def test_threads_are_taken_where_they_pay(monkeypatch, edge, damping, cores, ask
     choice = choose_threads(prepare(parse_scene(BLOCK.format(edge, damping))).plan, cores)
     assert choice.threads == threads
     assert re.match(f"threads  .*{line}", threads_line(choice))
+
+
+def test_check_names_the_effects_of_standard_steps(monkeypatch):
+    """Whether threads are asked for or not; on one core there is nothing to tell."""
+    monkeypatch.delenv(THREADS, raising=False)
+    plan = prepare(parse_scene("gravity at 0 s (0, 0, -9.81) gravity at 1 s (0, 0, 0)\nair { }\n" + BLOCK.format(15, ""))).plan
+    takes = "with gravity and air on LAMMPS takes its standard steps, of which threads share springs, contact and liquid alone"
+    assert threads_line(choose_threads(plan, 2)) == f"threads  2 of 2 cores: {takes}"
+    assert "there is one core" in threads_line(choose_threads(plan, 1))
+    with with_threads(3):
+        assert threads_line(choose_threads(plan, 2)) == f"threads  3, as asked for: {takes}"
+
+
+def test_fixes_that_have_no_part_in_passes_are_known():
+    """As the plugin's classes have it: those of passes derive from a class of passes/pass_participant.h."""
+    headers = (Path(__file__).parents[2] / "plugin" / "lammps").glob("fix_mdanim_*.h")
+    bases = {path.stem: re.search(r"^class FixMdanim\w+ :([^{]*)", path.read_text(), re.MULTILINE) for path in headers}
+    others = {name for name, found in bases.items() if found and "::Pass" not in found[1]}
+    assert others == {f"fix_{style.replace('/', '_')}" for style in STANDARD}
 
 
 def test_the_environment_tells_what_a_thread_is_asked_for(monkeypatch):

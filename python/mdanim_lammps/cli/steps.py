@@ -89,7 +89,9 @@ def print_warnings(ready) -> None:
 
 def announce(ready, quiet: bool, verbose: bool, executing: Executing = Executing()) -> None:
     from ..certificate import note_lines
-    from ..report import certificate_line, effect_line, executors_line, output_line, scene_lines
+    from ..engine.threads import choose_threads, with_threads
+    from ..processes import cores
+    from ..report import certificate_line, effect_line, executors_line, output_line, scene_lines, threads_line
 
     print_warnings(ready)
     if quiet:
@@ -102,6 +104,9 @@ def announce(ready, quiet: bool, verbose: bool, executing: Executing = Executing
     print("\n".join([*note_lines(ready.certificate), output_line(ready)]))
     if line := executors_line(executing.executors, executing.control):
         print(line)
+    if executing.threads is not None:
+        with with_threads(executing.threads):
+            print(threads_line(choose_threads(ready.plan, cores())))
     sys.stdout.flush()
 
 

@@ -16,6 +16,7 @@ from ..errors import UsageError
 from ..processes import affinity, cores, quota
 
 if TYPE_CHECKING:
+    from ..effects import Effect
     from .plan import Plan
 
 THREADS = "MDANIM_THREADS"
@@ -27,6 +28,8 @@ LEAST_TASK = 4000.0
 PASS, DAMPED_PASS = 30.0, 40.0
 """Nanoseconds that a thread takes for a particle's step in a pass, without and with dashpots, as plugin/passes/range_cut.h has
 them."""
+STANDARD = frozenset(f"mdanim/{style}" for style in ("air", "drive", "folds", "inflate", "joint", "rigid", "tear", "yield"))
+"""Styles of fixes that have no part in passes: beside them LAMMPS takes its standard steps."""
 MOST_THREADS = 32
 """Team::MOST_TASKS of plugin/threads/team.h."""
 
@@ -61,6 +64,8 @@ class ThreadChoice:
     """Nanoseconds that one thread takes for a pass over all particles, about."""
     pays_from: int
     """Particles for each thread below which it costs more than it brings."""
+    standard: tuple[str, ...] = ()
+    """Effects that make LAMMPS take its standard steps: of these threads share springs, contact and liquid alone."""
 
 
 def choose_threads(plan: Plan, most: int) -> ThreadChoice:
@@ -70,7 +75,16 @@ def choose_threads(plan: Plan, most: int) -> ThreadChoice:
     of_particle = DAMPED_PASS if plan.damped else PASS
     pays_from = math.ceil(least_task() / of_particle)
     threads = asked or max(1, min(most, MOST_THREADS, particles // pays_from))
-    return ThreadChoice(threads, asked is not None, most, particles, particles * of_particle, pays_from)
+    standard = tuple(e.name for e in plan.effects if _is_standard(plan, e))
+    return ThreadChoice(threads, asked is not None, most, particles, particles * of_particle, pays_from, standard)
+
+
+def _is_standard(plan: Plan, effect: Effect) -> bool:
+    """Also a gravity that changes: its work is counted in each step."""
+    styles = {style for _, style in effect.styles}
+    if "mdanim/gravity" in styles:
+        return any("mdanim/gravity path" in command for command in effect.commands(plan.context))
+    return not styles.isdisjoint(STANDARD)
 
 
 def least_task() -> float:

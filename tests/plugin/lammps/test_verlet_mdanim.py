@@ -9,7 +9,7 @@ import numpy as np
 import plugin_lab as lab
 import plugin_path
 import pytest
-from filming import BETWEEN, EFFECTS, END, FALL, LATER, OTHER_WALLS, POND, SHAPES, WIDTHS, film, passes, supported
+from filming import BETWEEN, EFFECTS, END, FALL, LATER, OTHER_WALLS, POND, SHAPES, SOFT, WIDTHS, film, passes, supported
 from mdanim_lammps.engine.instance import Instance
 from mdanim_lammps.run.prepare import prepare
 from mdanim_lammps.scene.parse import parse_scene
@@ -197,6 +197,19 @@ def test_order_of_particles_changes_no_bit(tmp_path, drag):
     shuffled, none = lab_state(BODY, tmp_path, commands, order=np.random.default_rng(5).permutation(len(BODY.x)))
     assert (taken, none) == (299, 0)
     assert np.array_equal(straight, shuffled)
+
+
+def test_steps_without_passes_are_computed_by_kernels_and_threads():
+    """Contacts at surfaces and springs beside a fix that passes do not know: the bits of run_style verlet."""
+    text = f"""air {{ }} ground z 0
+object a {{ shape sphere 3 cm position (0, 0, 2.9) cm {SOFT} spin (0, 9, 0) friction 0.3 }}
+object b {{ shape box (4, 4, 3) cm position (1, 0, 7.3) cm {SOFT} velocity (0, 0, -2) friction 0.3 }}"""
+    end = "control { time 10 s resolution 1 cm }\n"
+    plain, energies, trace, none = film(text, "verlet", (1, 40, 19), end=end)
+    found, told, seen, taken = film(text, "verlet/mdanim threads 3", (1, 40, 19), end=end)
+    assert none == taken == 0
+    assert np.array_equal(found, plain) and np.array_equal(seen, trace)
+    np.testing.assert_allclose(told, energies, rtol=1e-12, atol=1e-15)
 
 
 @pytest.mark.parametrize(
