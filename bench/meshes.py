@@ -33,7 +33,7 @@ SUFFIXES = (".stl", ".obj", ".ply")
 FORMS = {
     "mesh": 'mesh "{path}" scale {scale!r}  elasticity rigid',
     "solid": 'solid "{path}" scale {scale!r}  elasticity rigid',
-    "sheet": 'mesh "{path}" scale {scale!r} sheet thickness 2 mm  material rubber  damping 0.1',
+    "sheet": 'mesh "{path}" scale {scale!r} sheet thickness 2 mm  material rubber  resolution 1 cm',
 }
 SCENE = """
 gravity (0, 0, -9.81) m/s^2
