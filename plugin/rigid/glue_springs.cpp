@@ -2,6 +2,8 @@
 
 #include "rigid/glue_springs.h"
 
+#include "rigid/coarse_glue.h"
+
 #include <cstddef>
 #include <utility>
 
@@ -73,15 +75,23 @@ double measure(const PieceMotions &of, const PieceMotions &stiff)
 
 }    // namespace
 
-void solve(const std::vector<GlueSpring> &springs, const PieceMotions &stiff, const PieceMotions &load, PieceMotions &x)
+void solve(const std::vector<GlueSpring> &springs, const PieceMotions &stiff, const CoarseGlue &coarse, const PieceMotions &load,
+           PieceMotions &x)
 {
   const std::size_t count = x.size();
   const double enough = TOLERANCE * TOLERANCE * measure(load, stiff);
-  PieceMotions left = load, way(count), pull(count);
+  PieceMotions left = load, down(count), pull(count);
+  // Finds what pieces move by the load that is left, each for itself and in groups; returns the work.
+  const auto descend = [&] {
+    for (std::size_t k = 0; k < count; ++k) down[k] = over(left[k], stiff[k]);
+    if (coarse.is_on()) coarse.add(left, down);
+    return product(left, down);
+  };
   add(springs, x, left, -1.0);
-  double now = measure(left, stiff);
-  for (std::size_t k = 0; k < count; ++k) way[k] = over(left[k], stiff[k]);
-  for (std::size_t loop = 0; loop < LEAST_LOOPS + 6 * count && now > enough; ++loop) {
+  if (!(measure(left, stiff) > enough)) return;
+  double now = descend();
+  PieceMotions way = down;
+  for (std::size_t loop = 0; loop < LEAST_LOOPS + 6 * count; ++loop) {
     pull.assign(count, {});
     add(springs, way, pull, 1.0);
     const double slope = product(way, pull);
@@ -91,11 +101,9 @@ void solve(const std::vector<GlueSpring> &springs, const PieceMotions &stiff, co
       x[k].place += step * way[k].place, x[k].turn += step * way[k].turn;
       left[k].place -= step * pull[k].place, left[k].turn -= step * pull[k].turn;
     }
-    const double next = measure(left, stiff), part = next / now;
-    for (std::size_t k = 0; k < count; ++k) {
-      const PieceMotion down = over(left[k], stiff[k]);
-      way[k] = {down.place + part * way[k].place, down.turn + part * way[k].turn};
-    }
+    if (!(measure(left, stiff) > enough)) break;
+    const double next = descend(), part = next / now;
+    for (std::size_t k = 0; k < count; ++k) way[k] = {down[k].place + part * way[k].place, down[k].turn + part * way[k].turn};
     now = next;
   }
 }

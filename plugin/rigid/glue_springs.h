@@ -41,7 +41,9 @@ std::vector<FaceLoads> hanging_loads(const std::vector<GlueSpring> &springs, con
 FaceForce face_force(const GlueSpring &spring, const PieceMotions &x);
 // Adds the diagonal of K.
 void add_diagonal(const GlueSpring &spring, PieceMotions &stiff);
+class CoarseGlue;
 // Solves K x = load from x on; `stiff` is the diagonal of K.
-void solve(const std::vector<GlueSpring> &springs, const PieceMotions &stiff, const PieceMotions &load, PieceMotions &x);
+void solve(const std::vector<GlueSpring> &springs, const PieceMotions &stiff, const CoarseGlue &coarse, const PieceMotions &load,
+           PieceMotions &x);
 
 }    // namespace mdanim

@@ -182,6 +182,9 @@ void GluedBodies::find_springs(Whole &whole) const
     whole.bears = std::min(whole.bears, face.strength * face.area);
     whole.springs.push_back(spring);
   }
+  std::vector<Vec3> places;
+  for (const int n : whole.pieces) places.push_back(in_whole[n].place);
+  whole.coarse.make(whole.springs, places);
 }
 
 std::vector<double> GluedBodies::shares(const Whole &whole, const std::vector<RigidBody> &bodies, const PieceMotions &more,
@@ -195,7 +198,7 @@ std::vector<double> GluedBodies::shares(const Whole &whole, const std::vector<Ri
   if (pushes <= QUIET * whole.bears) return found;
   PieceMotions x;
   for (const int n : whole.pieces) x.push_back(given_way[n]);
-  solve(whole.springs, whole.stiff, load, x);
+  solve(whole.springs, whole.stiff, whole.coarse, load, x);
   for (std::size_t k = 0; k < x.size(); ++k) given_way[whole.pieces[k]] = x[k];
   for (std::size_t s = 0; s < found.size(); ++s) {
     const FaceForce on_a = face_force(whole.springs[s], x);

@@ -11,6 +11,7 @@
 #include "records/byte_reader.h"
 #include "records/byte_writer.h"
 #include "rigid/body.h"
+#include "rigid/coarse_glue.h"
 #include "rigid/glue.h"
 #include "rigid/glue_springs.h"
 #include "rigid/shape.h"
@@ -29,7 +30,8 @@ class GluedBodies {
     double drag = 0.0;
     std::vector<GlueSpring> springs;    // of unbroken faces
     PieceMotions stiff;                 // diagonal of K
-    double bears = 0.0;                 // force that its weakest face bears; infinite of one that never breaks
+    CoarseGlue coarse;
+    double bears = 0.0;    // force that its weakest face bears; infinite of one that never breaks
   };
 
   bool is_on() const { return !faces.empty(); }

@@ -74,3 +74,13 @@ def test_what_stands_on_an_edge_bears_on_all_of_it(tmp_path):
         one.run(200)
         assert one.number("touching") == 2.0
         assert stresses(one, bodies).max() < 0.02 * 0.75 * DENSITY * GRAVITY * (6 * EDGE) ** 2 / EDGE
+
+
+def test_many_pieces_bear_what_few_do(tmp_path):
+    """A bar of 240 cubes that spins: rho w^2 L^2/8 in its middle, where groups of pieces take part in finding it."""
+    pieces, spin = 240, 2.0
+    bodies = bar(pieces, spin=(0, 0, spin))
+    tension = DENSITY * spin**2 * (pieces * EDGE) ** 2 / 8
+    with world(tmp_path, bodies, 2 * tension, frequency=2e3) as one:
+        one.run(1)
+        assert stresses(one, bodies).max() == pytest.approx(tension, rel=1e-3)
