@@ -20,12 +20,12 @@ ABOVE = Render(camera=(Camera((0.0, -0.01, 5.0), (0.0, 0.0, 0.0)),), quality=Qua
 LEVEL = 0.5
 
 
-def picture(path, models, slope, render=ABOVE):
+def picture(path, models, slope, render=ABOVE, size=SIZE):
     """A pool whose surface rises along x, as floats from 0 to 1, and the view."""
     scene, models, grid = pool_scene(models)
     height = LEVEL + slope * column_centres(grid)[0]
     path = write(path, scene, models, wet_frames(models, (height, raw_of(grid, height, models))), grid)
-    with Trajectory(path) as t, Painter(t, render, size=SIZE) as painter:
+    with Trajectory(path) as t, Painter(t, render, size=size) as painter:
         return painter.frame(0).astype(float) / 255, painter.view(0.0)
 
 
@@ -112,3 +112,18 @@ def test_the_same_frame_is_the_same_picture(tmp_path):
             _, _, after = (painter.frame(n) for n in (1, 2, 0))
         with Painter(t, ABOVE, size=SIZE) as painter:
             np.testing.assert_array_equal(painter.frame(0), after)
+
+
+@pytest.mark.soak
+def test_the_surface_mirrors_what_stands_above_it(tmp_path):
+    """In a low view the image of a plate over level water is as far below the surface as the plate is above it; water beside the
+    image is as without the plate."""
+    low = replace(ABOVE, camera=(Camera((0.0, -4.0, 1.3), (0.0, 0.0, 0.5)),))
+    size = (180, 102)
+    wet, view = picture(tmp_path / "w.h5", [box("plate", (0.3, 0.05, 0.3), (3, 1, 3), (0.0, 0.2, 0.68))], 0.0, low, size)
+    bare, _ = picture(tmp_path / "b.h5", [box("plate", (0.3, 0.05, 0.3), (3, 1, 3), (0.0, 0.2, 9.0))], 0.0, low, size)
+    below = np.array([[0.0, 0.175, 2 * LEVEL - 0.6], [0.35, 0.175, 2 * LEVEL - 0.6]])
+    seen = (project(view, below, size[0] / size[1])[0] * [0.5, -0.5] + 0.5) * size
+    more = (wet - bare)[..., 0] - (wet - bare)[..., 2]
+    image, beside = (more[int(y) - 1 : int(y) + 2, int(x) - 1 : int(x) + 2].mean() for x, y in seen)
+    assert image > 0.02 and abs(beside) < 0.005

@@ -15,6 +15,8 @@ from .pieces import Lookup, MovingMesh, cells, lit_actor
 
 REFRACTIVE_INDEX = 1.33
 """Refractive index of the liquid, over that of air."""
+NORMAL_SHARE = ((REFRACTIVE_INDEX - 1.0) / (REFRACTIVE_INDEX + 1.0)) ** 2
+"""Share of light that the surface throws back, seen straight on."""
 
 # Foam lies in specks, which are the fewer the less of it there is: where it fades, holes grow in it. The liquid is seen
 # between them also where there is most of it. On a steep face they are drawn out downward, as on a fall.
@@ -60,6 +62,7 @@ float foam(vec3 where, float top, vec3 normal, out float bright)
 
 NOT_BENT = """
 bool bentAside(vec3 where, vec3 normal, vec3 toEye, out vec3 found) { return false; }
+bool mirrors(vec3 where, vec3 way, out vec3 found) { return false; }
 """
 
 # Things behind the surface are seen aside where the surface slopes: a ray is bent by as much as a level surface does not bend it,
@@ -128,6 +131,35 @@ bool bentAside(vec3 where, vec3 normal, vec3 toEye, out vec3 found)
   found = texture(behindColor, pixel / pictureSize).rgb;
   return true;
 }
+
+// The colour that a ray meets which the surface throws back, among what the picture shows, up to half a basin above the basin.
+bool mirrors(vec3 where, vec3 way, out vec3 found)
+{
+  if (way.z < 0.02) return false;
+  vec3 whole = min(length(basinHigh - basinLow), (1.5 * basinHigh.z - 0.5 * basinLow.z - where.z) / way.z) * way;
+  vec4 first = pictureMatrix * vec4(where, 1.0), last = pictureMatrix * vec4(where + whole, 1.0);
+  float before = 0.0;
+  for (int k = 1; k <= 24; k++) {
+    float part = float(k) / 24.0;
+    vec4 p = mix(first, last, part);
+    if (p.w <= 0.0 || any(greaterThan(abs(p.xy), vec2(p.w)))) return false;
+    if (against(p).z > 0.0) {
+      float low = before, high = part;
+      for (int n = 0; n < 6; n++) {
+        float middle = 0.5 * (low + high);
+        if (against(mix(first, last, middle)).z > 0.0) high = middle; else low = middle;
+      }
+      vec2 hit = against(mix(first, last, high)).xy;
+      vec3 thing = drawnAt(hit);
+      if (thing.z > where.z && distance(thing, where + high * whole) < 0.3 * cell.z) {
+        found = texture(behindColor, hit / pictureSize).rgb;
+        return true;
+      }
+    }
+    before = part;
+  }
+  return false;
+}
 """
 
 
@@ -184,6 +216,14 @@ FRAGMENT_SKIN = """//VTK::Light::Impl
     color = mix(aside, color, cover);
     cover = 1.0;
   }
+  vec3 image;
+  if (!INNER && n.z > 0.3 && mirrors(worldPosition, mirrored, image)) {
+    // Schlick's share of light that a surface of this index throws back.
+    float thrown = (1.0 - white) * mix(NORMAL_SHARE, 1.0, pow(1.0 - max(dot(n, toEye), 0.0), 5.0));
+    float both = 1.0 - (1.0 - thrown) * (1.0 - cover);
+    color = ((1.0 - thrown) * cover * color + thrown * image) / both;
+    cover = both;
+  }
   fragOutput0 = vec4(color, film * cover);
 }
 """
@@ -195,7 +235,7 @@ def _fragment(inner: bool, foamy: bool = False, shaded: bool = False, sky: bool 
     words = {"INNER": inner, "SHADED": shaded, "SKY": sky}
     named = "".join(f"const bool {name} = {str(value).lower()};\n" for name, value in words.items())
     white = "foam(worldPosition, inside, n, bright)" if foamy else "0.0"
-    return FRAGMENT_SKIN.replace("{\n", "{\n" + named, 1).replace("WHITE", white)
+    return FRAGMENT_SKIN.replace("{\n", "{\n" + named, 1).replace("WHITE", white).replace("NORMAL_SHARE", repr(NORMAL_SHARE))
 
 
 class LiquidSkin:
