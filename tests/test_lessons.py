@@ -11,6 +11,7 @@ import pytest
 from command_line import call
 from mdanim_lammps import Scene
 from mdanim_lammps.errors import ExitCode
+from mdanim_lammps.picture.plot import span_of
 from PIL import Image
 
 SCENES = Path(__file__).parent.parent / "scenes"
@@ -28,6 +29,14 @@ def test_lesson_meets_its_expectations(path, tmp_path):
     assert result.outcomes and not result.missed, "\n".join(map(str, result.missed))
 
 
+def test_what_is_as_good_as_constant_is_a_straight_line():
+    """On the lesson's page and in movies: rounding of a force of 18.6 N, and of a place 2 m up, is not drawn as a wild curve."""
+    assert span_of([np.array([18.56469, 18.56471, np.nan])], "N") == pytest.approx((-0.08 * 18.56471, 1.08 * 18.56471))
+    assert span_of([np.array([2.0, 2.0 + 1e-9])], "m") == pytest.approx((2.0 - 0.0116, 2.0 + 0.0116))
+    assert span_of([np.array([1.0]), np.array([2.0])], "m") == pytest.approx((0.92, 2.08))
+    assert span_of([np.full(2, np.nan)], "J") == pytest.approx((-0.08, 1.08))
+
+
 TEXT = """
 title "A <lesson>"
 question "Which one, <script>alert(1)</script>?"
@@ -37,6 +46,7 @@ object ball { shape sphere 5 cm  position (0, 0, 1) m  mass 1 kg  elasticity rig
 control { time 0.1 s  frames 20 fps }
 record ball.speed
 record ball.kinetic
+record ball.weight
 expect ball.speed at 0.1 s = 0.981 m/s +- 1 %
 render { size (64, 48) }
 """
@@ -54,8 +64,11 @@ def test_page_of_a_lesson(tmp_path):
     assert "<script" not in page and "default-src 'none'" in page and not re.search(r'(src|href)="(?!data:)', page)
     movie, curves = (base64.b64decode(found) for found in re.findall(r'src="data:[a-z/0-9]+;base64,([^"]+)"', page))
     assert movie == (tmp_path / "fall.out" / "movie.mp4").read_bytes() and curves.startswith(b"\x89PNG")
-    colors = np.asarray(Image.open(io.BytesIO(curves)).convert("RGB")).reshape(-1, 3)
-    assert (colors == (0x80, 0x00, 0xC0)).all(axis=1).sum() > 100  # a curve has the colour of its object
+    colors = np.asarray(Image.open(io.BytesIO(curves)).convert("RGB"))
+    own = (colors == (0x80, 0x00, 0xC0)).all(axis=2)
+    assert own.sum() > 100  # a curve has the colour of its object
+    long = np.flatnonzero(own.sum(axis=1) > 500) / len(own)
+    assert len(long) and long.min() > 0.67 and long.max() < 0.78  # the weight, constant, is high above 0
     (tmp_path / "silent.txt").write_text(TEXT.replace("question", "# question"))
     refused = call("silent.txt", "--lesson", "-o", "never.out", cwd=tmp_path)  # before it takes any time
     assert refused.returncode == 2 and "silent asks nothing; write question" in refused.stderr

@@ -9,11 +9,12 @@ import numpy as np
 import pytest
 from mdanim_lammps import Scene, Trajectory, UsageError
 from mdanim_lammps.errors import SceneError
-from mdanim_lammps.picture.curves import COVERED, _span
+from mdanim_lammps.picture.curves import COVERED
 from mdanim_lammps.picture.drawn import drawn
 from mdanim_lammps.picture.framing import pixels_per_metre, seen_at
 from mdanim_lammps.picture.layer import InkLayer
 from mdanim_lammps.picture.overlay import _round_value, room_for
+from mdanim_lammps.picture.plot import span_of
 from mdanim_lammps.picture.render import Painter
 from mdanim_lammps.picture.run_values import RunValues
 from mdanim_lammps.picture.tones import Tones
@@ -123,7 +124,7 @@ def test_curves_grow_with_the_film(run):
         red[:25] = False  # its name
         reach.append(np.flatnonzero(red.any(axis=0)).max())
         last = np.flatnonzero(red[:, reach[-1] - 2])
-        low, high = _span([RunValues(run.trajectory).series(Asked("ball", "position.z"))], whole=False)
+        low, high = span_of([RunValues(run.trajectory).series(Asked("ball", "position.z"))], "m")
     assert reach[1] - reach[0] == pytest.approx(reach[2] - reach[1], abs=2) and reach[1] - reach[0] > 70
     assert low < 1.5 - 9.81 * 0.125 and high > 1.5 and last.mean() > 80  # it has fallen to the lower edge
 

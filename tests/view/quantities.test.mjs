@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import test from "node:test";
 import { Gif, packed, paletteOf } from "../../python/mdanim_lammps/view/web/gif.js";
 import { letsOf, withLet } from "../../python/mdanim_lammps/view/web/lets.js";
-import { Quantities, ofMotion, ofVector, roundValue, usualScale } from "../../python/mdanim_lammps/view/web/quantities.js";
+import { Quantities, ofMotion, ofVector, roundValue, spanOf, usualScale } from "../../python/mdanim_lammps/view/web/quantities.js";
 
 const TRACK = { time: Float32Array.of(0, 1), centre: Float32Array.of(1, 2, 3, 4, 5, 6), velocity: Float32Array.of(3, 0, 4, 0, 0, -2) };
 
@@ -25,6 +25,16 @@ test("arrows are as long as shows well", () => {
   assert.ok(Math.abs(usualScale([rows], 10) - (0.14 * 10) / 2) < 1e-12);
   assert.equal(usualScale([new Float32Array(3)], 10), 1);
   assert.deepEqual([0.7, 2, 49.999, 50, 0].map(roundValue), [0.5, 2, 20, 50, 1]);
+});
+
+test("what is as good as constant is a straight line", () => {
+  const near = (found, ends) => found.forEach((x, k) => assert.ok(Math.abs(x - ends[k]) < 1e-9, `${found} is not ${ends}`));
+  near(spanOf(18.56469, 18.56471, "N"), [-0.08 * 18.56471, 1.08 * 18.56471]);
+  near(spanOf(2, 2, "m"), [2 - 0.0116, 2 + 0.0116]);
+  near(spanOf(1, 2, "m"), [0.92, 2.08]);
+  near(spanOf(-2, -1, "J"), [-2.16, 0.16]);
+  near(spanOf(null, null, "J"), [-0.08, 1.08]);
+  near(spanOf(0, 0, "J"), [-0.58, 0.58]);
 });
 
 test("a quantity is the way's, the scene's, or what the run tells once it has frames", async () => {

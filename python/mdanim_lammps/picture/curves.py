@@ -12,7 +12,7 @@ import numpy as np
 from ..scene.quantities import Asked
 from .layer import Color, InkLayer
 from .palette import is_dark, luminance
-from .plot import own_style
+from .plot import own_style, span_of
 from .run_values import RunValues
 
 WIDTH, MARGIN, GAP = 0.36, 0.02, 0.02
@@ -30,8 +30,6 @@ BRIGHTEST = 0.42
 """Luminance of curves at most on bright paper; on dark paper 1 less this is the least."""
 PALE = 0.35
 """Opacity of the curves of a run beside the one that is drawn."""
-ROOM = 0.08
-"""Room above and below curves, in parts of their span."""
 
 
 @dataclass(frozen=True)
@@ -88,14 +86,14 @@ class Curves:
         inner = (left + 4.4 * letters / width, top - share + 1.9 * letters / height)
         size = (left + WIDTH - 0.9 * letters / width - inner[0], top - 1.9 * letters / height - inner[1])
         axes = layer.figure.add_axes((*inner, *size), facecolor="none")
-        low, high = _span([one.values for both in curves for one in both], whole=unit != "m")
+        low, high = span_of([one.values for both in curves for one in both], unit)
         axes.set_xlim(0.0, self._end)
         axes.set_ylim(low, high)
         axes.locator_params(axis="x", nbins=5)
         axes.locator_params(axis="y", nbins=4)
         lines = {"length": 0.3 * letters, "width": 0.08 * letters, "pad": 0.25 * letters}
         axes.tick_params(labelsize=0.9 * letters, colors=layer.ink, **lines)
-        axes.xaxis.get_offset_text().set_fontsize(0.8 * letters)
+        axes.ticklabel_format(useOffset=False)
         axes.yaxis.get_offset_text().set_fontsize(0.8 * letters)
         axes.grid(True, color=(*layer.ink, 0.15), linewidth=0.07 * letters)
         for word, side in axes.spines.items():
@@ -160,14 +158,3 @@ def _legible(color: Color, paper: Color) -> Color:
     if is_dark(np.array(paper)):
         return tuple(x + (1.0 - x) * max(0.0, (1.0 - BRIGHTEST - bright) / (1.0 - bright)) for x in color)
     return tuple(x * min(1.0, BRIGHTEST / max(bright, 1e-9)) for x in color)
-
-
-def _span(series: Sequence[np.ndarray], whole: bool) -> tuple[float, float]:
-    """Least and largest value with some room; around one value a tenth of it. ``whole``: with 0."""
-    values = np.concatenate(series)
-    values = values[np.isfinite(values)]
-    low, high = (float(values.min()), float(values.max())) if len(values) else (0.0, 1.0)
-    if whole:
-        low, high = min(low, 0.0), max(high, 0.0)
-    room = ROOM * (high - low) if high - low > 1e-3 * max(abs(low), abs(high)) else 0.1 * max(abs(low), abs(high)) or 1.0
-    return low - room, high + room

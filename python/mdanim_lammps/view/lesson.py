@@ -16,7 +16,7 @@ from ..errors import OutputError, UsageError
 from ..picture.curves import tints
 from ..picture.layer import Color
 from ..picture.palette import object_colors
-from ..picture.plot import own_style
+from ..picture.plot import own_style, span_of
 from ..results.expect import Outcome
 from ..results.files import write_whole
 from ..results.html import plain_table
@@ -120,6 +120,9 @@ def drawn_curves(records: Records, subjects: Mapping[str, str], colors: Mapping[
         own = [name for name in names if records.units[name] == unit]
         for name, color in zip(own, tints([subjects.get(name, "") for name in own], colors, WHITE, n - 1)):
             axes.plot(records["time"], np.asarray(records[name]), color=color, label=name.replace("$", r"\$"))
+        axes.set_xlim(0.0, records["time"][-1] or 1.0)
+        axes.set_ylim(*span_of([np.asarray(records[name]) for name in own], unit))
+        axes.ticklabel_format(useOffset=False)
         axes.set_ylabel(unit or "-")
         axes.grid(alpha=0.3)
         # Above the axes, where no curve is.

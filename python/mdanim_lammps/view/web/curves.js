@@ -86,7 +86,7 @@ export class Curves {
       return element("span", {}, key, away);
     });
     this.place.append(element("div", { className: "keys" }, ...keys, element("span", { className: "faint", textContent: unit ? `[${unit}]` : "" })), figure);
-    lines.set(figure, names, this.data(curves), 120, looks, unit !== "m");
+    lines.set(figure, names, this.data(curves), 120, unit, looks);
     return lines;
   }
 

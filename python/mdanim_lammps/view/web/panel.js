@@ -2,6 +2,7 @@
 // The panels beside the picture. Text from scenes is set as text, never as HTML.
 import { Plot } from "./vendor.js";
 import { RELATIVE, drawn, number } from "./message.js";
+import { spanOf } from "./quantities.js";
 
 export const INK = ["#e8743b", "#3b8fc4", "#4fae7b", "#d99a1c", "#d3557a", "#7a6fc9", "#2fa39d", "#b5654f", "#7f9c2e",
   "#5b6b7a", "#a13f8f", "#1f6f5c", "#c2b23a", "#3f4fa8"];
@@ -58,12 +59,6 @@ export function legendKey(words, color, toggle, shown = true) {
   return key;
 }
 
-// Least and largest value of an axis that has 0, with some room.
-function withZero(_, low, high) {
-  const least = Math.min(0, low ?? 0), most = Math.max(0, high ?? 1), room = 0.08 * (most - least || 1);
-  return [least - (least < 0 ? room : 0), most + (most > 0 ? room : 0)];
-}
-
 // Lines over time, with a cursor at the frame that is seen.
 export class Lines {
   constructor() {
@@ -76,13 +71,13 @@ export class Lines {
     this.plot = null;
   }
 
-  // Times and one array of values for each name, with looks that are not the usual ones; "whole": the axis has 0.
-  set(place, names, data, height, looks = [], whole = false) {
+  // Times and one array of values for each name, and their unit, with looks that are not the usual ones.
+  set(place, names, data, height, unit, looks = []) {
     if (this.plot) return this.plot.setData(data);
     const ink = getComputedStyle(document.body).getPropertyValue("--faint"), axis = { stroke: ink, font: "10px sans-serif", grid: { stroke: ink + "30" }, ticks: { show: false } };
     const series = [{}, ...names.map((label, k) => ({ label, stroke: INK[k % INK.length], width: 1.5, pxAlign: 0, ...looks[k] }))];
     const values = (_, ticks) => ticks.map((x) => number(x, 4));
-    this.plot = new Plot({ width: Math.max(160, Math.min(640, (place.closest("aside")?.clientWidth || 300) - 28)), height, scales: { x: { time: false }, ...(whole ? { y: { range: withZero } } : {}) }, legend: { show: false }, cursor: { show: false }, padding: [6, 16, 0, 0],
+    this.plot = new Plot({ width: Math.max(160, Math.min(640, (place.closest("aside")?.clientWidth || 300) - 28)), height, scales: { x: { time: false }, y: { range: (_, low, high) => spanOf(low, high, unit) } }, legend: { show: false }, cursor: { show: false }, padding: [6, 16, 0, 0],
       axes: [{ ...axis, size: 24, values: (_, ticks) => ticks.map((x) => `${number(x)} s`) }, { ...axis, size: 46, values }], series,
       hooks: { draw: [() => this.at(this.time)] } }, data, place);
     this.line = element("div", { className: "now" });
@@ -101,7 +96,7 @@ export class Height extends Lines {
   show(points) {
     byId("height").hidden = points === null;
     if (points === null) return this.clear();
-    return this.set(byId("height-line"), ["height"], points, 110);
+    return this.set(byId("height-line"), ["height"], points, 110, "m");
   }
 }
 
@@ -140,7 +135,7 @@ export class Energies extends Lines {
       this.figure = element("div");
       byId("energies").replaceChildren(keys, this.figure);
     }
-    this.set(this.figure, this.names, data, 150);
+    this.set(this.figure, this.names, data, 150, "J");
   }
 }
 

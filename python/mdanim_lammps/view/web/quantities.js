@@ -6,6 +6,7 @@ const AXES = ["x", "y", "z"];
 export const MOTION = { speed: "m/s", ...Object.fromEntries(AXES.flatMap((a) => [[`position.${a}`, "m"], [`velocity.${a}`, "m/s"]])) };
 export const ARROW_UNITS = { velocity: "m/s", spin: "rad/s" }; // of all other arrows: N
 const USUAL = 0.14, AMONG = 0.95; // length of an arrow over the size of the scene, that of the value that this share of all values does not exceed
+const ROOM = 0.08, LEAST = 0.01; // room above and below curves over their span; span of an axis over the largest value at it, at least
 const NOTHING = 1e-9; // values below this share of the largest have no part in that
 
 const norm = (v, at = 0) => Math.hypot(v[at], v[at + 1], v[at + 2]);
@@ -41,6 +42,14 @@ export function roundValue(value) {
   if (!(value > 0)) return 1;
   const power = 10 ** Math.floor(Math.log10(value));
   return power * [5, 2, 1].find((k) => k * power <= value * (1 + 1e-12));
+}
+
+// The ends of an axis for values of a unit, as picture/plot.py has them; without values from 0 to 1.
+export function spanOf(low, high, unit) {
+  let [least, most] = [low ?? 0, high ?? 1];
+  if (unit !== "m") [least, most] = [Math.min(least, 0), Math.max(most, 0)];
+  const span = LEAST * Math.max(Math.abs(least), Math.abs(most)) || 1, more = 0.5 * Math.max(0, span - (most - least)), room = ROOM * Math.max(most - least, span);
+  return [least - more - room, most + more + room];
 }
 
 // Quantities that a page may show of a run; while it goes on ("live") those of the frames that there are.
