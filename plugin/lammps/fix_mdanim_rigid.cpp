@@ -121,10 +121,7 @@ void FixMdanimRigid::init()
   } catch (const std::exception &problem) {
     error->all(FLERR, "{}: {}", name(), problem.what());
   }
-  if (bodies.empty())
-    make();
-  else
-    follow_changes();
+  bodies.empty() ? make() : follow_changes();
 }
 
 void FixMdanimRigid::reset_dt() { half_dt = 0.5 * update->dt * force->ftm2v; }

@@ -30,7 +30,8 @@ void FixMdanimRigid::make()
   for (int n = 0; n < objects.size(); ++n) {
     if (bodies[n].aside) continue;    // it stays as it is
     const auto other = given.find(static_cast<int>(objects.id(n)));
-    const PrincipalAxes axes = principal_axes(other == given.end() ? found[n].inertia : other->second);
+    const PrincipalAxes axes = principal_axes(other == given.end() ? found[n].inertia : other->second,
+                                              axes_of(touching.given_shapes(), static_cast<int>(objects.id(n))));
     if (!(axes.moments.x > THIN * axes.moments.z))
       error->all(FLERR,
                  "{}: the particles of object {} (molecule ID) stand on a line, so it has no moment of inertia about it; add "
@@ -41,8 +42,8 @@ void FixMdanimRigid::make()
   particles.fix_places(bodies);
   set_velocities(found);
   touching.make(name(), objects, bodies);
-  sleep.tell_contact();
   glue.join(name());
+  sleep.tell_contact();
   // Last: glue changes velocities by roundings, and `changes` compares particles with what was put.
   particles.put(bodies, true);
 }

@@ -140,6 +140,7 @@ void FixMdanimRigid::unpack(const StateRecords &all)
     touching.take(name(), objects, bodies, std::move(poses));
     sleep.read(rest);
     glue.unpack(name(), rest);
+    sleep.tell_contact();
     touching.read_contacts(records, STATE_VERSION, rest);
     touching.read_driven(STATE_VERSION, all);
     for (int n = 0; n < objects.size(); ++n)

@@ -45,14 +45,24 @@ class RigidSleep {
 
   // Part of the record of a body.
   void put(std::size_t body, ByteWriter &writer) const;
-  // From what is left of the records of bodies, if they have one; tells contact, which has taken the bodies.
+  // From what is left of the records of bodies, if they have one. Contact has to be told once glue is there.
   void read(std::vector<std::optional<ByteReader>> &records);
 
  private:
+  // A body, or all that are glued together, moves as one, and has the number of the first.
+  bool is_first(std::size_t body) const { return glue.glued.first_of(static_cast<int>(body)) == static_cast<int>(body); }
+  const RigidBody &whole_of(std::size_t body) const
+  { return glue.glued.holds(body) ? glue.glued.whole(static_cast<int>(body)).body : bodies[body]; }
   double size_of(std::size_t body) const;
   double acceleration_of(std::size_t body) const;
   bool is_calm(std::size_t body) const;
-  void tell(std::size_t body);
+  void set_calm(std::size_t body, double calm);
+  // Calls visit(n) for each of them.
+  template <class Visit> void each_of(std::size_t body, const Visit &visit) const
+  {
+    if (!glue.glued.holds(body)) return visit(body);
+    for (const int n : glue.glued.whole(static_cast<int>(body)).pieces) visit(static_cast<std::size_t>(n));
+  }
   int sleepers() const;
 
   LAMMPS_NS::LAMMPS *lmp;

@@ -162,10 +162,7 @@ void RigidTouching::make(const std::string &fix, const ObjectTable &objects, con
       in_bodies[n] = poses[n];
       continue;
     }
-    const Pose &pose = found->second.pose;
-    const Quaternion &q = bodies[n].q;
-    in_bodies[n] = {transposed_times(bodies[n].turn, pose.place - bodies[n].centre),
-                    unit(Quaternion{q.w, -q.x, -q.y, -q.z} * pose.q)};
+    in_bodies[n] = in_body(found->second.pose, bodies[n], found->second.shape.thin());
   }
   take(fix, objects, bodies, std::move(in_bodies));
 }
@@ -180,6 +177,7 @@ void RigidTouching::take(const std::string &fix, const ObjectTable &objects, con
   is_current = false;
   if (!is_on()) return;
   std::vector<Solid> solids;
+  SharedShapes shared;
   for (const auto &[id, given] : shapes) {
     const int n = objects.number_of(id);
     if (given.held != (n == ObjectTable::NONE))
@@ -196,7 +194,7 @@ void RigidTouching::take(const std::string &fix, const ObjectTable &objects, con
       one.shape = given.shape.placed({});
       one.move_to(given.pose.place, matrix(given.pose.q));
     } else {
-      one.shape = given.shape.placed(poses[n]);
+      one.shape = shared.take(given.shape.placed(poses[n]));
       one.over_mass = 1.0 / bodies[n].mass;
       one.over = bodies[n].over;
       one.aside = bodies[n].aside;

@@ -53,6 +53,7 @@ class RigidTouching {
   void take(const std::string &fix, const ObjectTable &objects, const std::vector<RigidBody> &bodies,
             std::vector<Pose> in_bodies);
   const Pose &pose(int body) const { return poses[body]; }
+  const std::map<int, GivenShape> &given_shapes() const { return shapes; }    // by molecule IDs
 
   // Tells contact how some pieces are glued now.
   void glue(const GluedBodies &glued, const std::vector<int> &pieces);

@@ -92,8 +92,7 @@ int GluedBodies::broken_faces() const { return static_cast<int>(std::count(broke
 void GluedBodies::gather(const std::vector<RigidBody> &bodies, const std::vector<double> &drag)
 {
   for (Whole &whole : wholes) {
-    whole.body.force = whole.body.torque = Vec3();
-    whole.drag = 0.0;
+    whole.body.force = whole.body.torque = Vec3(), whole.drag = 0.0;
     for (const int n : whole.pieces) {
       whole.body.force += bodies[n].force;
       whole.body.torque += bodies[n].torque + cross(bodies[n].centre - whole.body.centre, bodies[n].force);
@@ -121,7 +120,7 @@ double GluedBodies::kick(std::vector<RigidBody> &bodies, double half_dt, bool fi
 {
   double taken = 0.0;
   for (Whole &whole : wholes) {
-    if (whole.body.aside) continue;
+    if (whole.body.aside || whole.body.asleep) continue;
     if (whole.drag == 0.0)
       whole.body.kick(half_dt);
     else
@@ -134,7 +133,7 @@ double GluedBodies::kick(std::vector<RigidBody> &bodies, double half_dt, bool fi
 void GluedBodies::drift(std::vector<RigidBody> &bodies, double dt)
 {
   for (Whole &whole : wholes) {
-    if (whole.body.aside) continue;
+    if (whole.body.aside || whole.body.asleep) continue;
     whole.body.drift(dt);
     spread(bodies, whole, true);
   }
@@ -240,7 +239,7 @@ std::vector<int> GluedBodies::judge(const std::vector<RigidBody> &bodies, const 
   std::vector<char> is_opened(wholes.size(), 0);
   for (std::size_t w = 0; w < wholes.size(); ++w) {
     Whole &whole = wholes[w];
-    if (whole.body.aside || !std::isfinite(whole.bears)) continue;
+    if (whole.body.aside || whole.body.asleep || !std::isfinite(whole.bears)) continue;
     const std::vector<double> share = shares(whole, bodies, more, to_acceleration);
     take_stress(whole, share);
     const std::vector<int> gone = faces_that_break(whole, share);

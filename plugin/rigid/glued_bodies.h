@@ -47,6 +47,7 @@ class GluedBodies {
   const std::vector<int> &faces_of(int body) const { return at[body]; }
   int number_of_whole(int body) const { return is_on() ? whole_of[body] : ALONE; }    // ALONE where it is none
   const Whole &whole(int body) const { return wholes[whole_of[body]]; }
+  RigidBody &body_of_whole(int body) { return wholes[whole_of[body]].body; }
   int first_of(int body) const { return holds(body) ? whole(body).pieces.front() : body; }
   const Pose &pose(int body) const { return in_whole[body]; }    // of a piece in its whole
   int broken_faces() const;

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 namespace mdanim {
@@ -23,11 +24,20 @@ struct PrincipalAxes {
 };
 
 // By rotations in one plane after the other (Jacobi's method), ascending and right-handed. Moments that differ by less than
-// rounding are made equal.
-inline PrincipalAxes principal_axes(const Inertia &inertia)
+// rounding are made equal. `near`: axes that are kept where they are principal ones but for rounding; those of space need no such
+// tolerance.
+inline PrincipalAxes principal_axes(const Inertia &inertia, const std::optional<Quaternion> &near = {})
 {
-  double a[3][3] = {
-      {inertia.xx, inertia.xy, inertia.xz}, {inertia.xy, inertia.yy, inertia.yz}, {inertia.xz, inertia.yz, inertia.zz}};
+  Matrix3 about{
+      {{inertia.xx, inertia.xy, inertia.xz}, {inertia.xy, inertia.yy, inertia.yz}, {inertia.xz, inertia.yz, inertia.zz}}};
+  if (near) about = transposed(matrix(*near)) * about * matrix(*near);
+  double a[3][3] = {{about.row[0].x, about.row[0].y, about.row[0].z},
+                    {about.row[0].y, about.row[1].y, about.row[1].z},
+                    {about.row[0].z, about.row[1].z, about.row[2].z}};
+  const double least = near ? 1e-13 * (a[0][0] + a[1][1] + a[2][2]) : 0.0;
+  for (int p = 0; p < 3; ++p)
+    for (int q = 0; q < 3; ++q)
+      if (p != q && std::fabs(a[p][q]) <= least) a[p][q] = 0.0;
   double axes[3][3] = {{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}};    // columns
   constexpr int SWEEPS = 30;                                                  // convergence is quadratic: some six are used
   for (int sweep = 0; sweep < SWEEPS && (a[0][1] != 0.0 || a[0][2] != 0.0 || a[1][2] != 0.0); ++sweep)
@@ -54,6 +64,8 @@ inline PrincipalAxes principal_axes(const Inertia &inertia)
       }
       a[p][q] = a[q][p] = 0.0;
     }
+  for (const auto &[p, q] : {std::pair{0, 1}, {0, 2}, {1, 2}})
+    if (std::fabs(a[p][p] - a[q][q]) <= least) a[q][q] = a[p][p];
   int order[3] = {0, 1, 2};
   std::stable_sort(order, order + 3, [&](int p, int q) { return a[p][p] < a[q][q]; });
   Vec3 columns[3];
@@ -67,7 +79,8 @@ inline PrincipalAxes principal_axes(const Inertia &inertia)
     if (moments[k + 1] - moments[k] <= 1e-13 * moments[2]) moments[k + 1] = moments[k];
   const Matrix3 rows{{columns[0], columns[1], columns[2]}};
   const Matrix3 turn{{rows * Vec3{1.0, 0.0, 0.0}, rows * Vec3{0.0, 1.0, 0.0}, rows * Vec3{0.0, 0.0, 1.0}}};
-  return {{moments[0], moments[1], moments[2]}, quaternion(turn)};
+  const Quaternion found = quaternion(turn);
+  return {{moments[0], moments[1], moments[2]}, near ? *near * found : found};
 }
 
 }    // namespace mdanim

@@ -23,6 +23,7 @@ struct SolidPair {
   int a = 0, b = 0;           // numbers of bodies, a < b
   double asleep = 0.0;        // both may go so far together before the bodies can touch
   double known_for = -1.0;    // and so far until features must be looked up again
+  double gone = 0.0;          // ways of both when they were looked at last
   std::vector<Touch> touches;
   int axis = 0;    // number of the direction that separated the bodies last
 
@@ -33,12 +34,31 @@ struct SolidPair {
   std::vector<int> sides[2], triangles;
   std::vector<std::pair<int, int>> below[2];
 
+  // Begin to fetch it from memory, and then what its lists hold.
+  void fetch() const
+  {
+    constexpr int LINE = 64;
+    for (const char *at = reinterpret_cast<const char *>(this); at < reinterpret_cast<const char *>(this + 1); at += LINE)
+      __builtin_prefetch(at);
+  }
+  void fetch_lists() const
+  {
+    for (const std::vector<NearFeatures> *list : {&corners[0], &corners[1], &edges}) __builtin_prefetch(list->data());
+    for (const Touch &touch : touches) __builtin_prefetch(&touch);
+  }
+
   void forget()
   {
     asleep = 0.0;
     known_for = -1.0;
   }
 };
+
+// Contacts of two bodies, by their shapes.
+void touch_solids(const TouchStep &step, SolidPair &pair, Solid &a, Solid &b, const TouchLaw &law);
+// How deep two bodies are in each other: the depth of the deepest contact that begins without a force at the setup of a run; 0
+// where they are apart. Corners that are deeper than half of the thinnest part touch nothing.
+double overlap(Solid &a, Solid &b);
 
 // Contacts of a pair of polyhedra.
 void touch_polyhedra(const TouchStep &step, SolidPair &pair, Solid &a, Solid &b, const TouchLaw &law);
@@ -70,7 +90,7 @@ struct SolidPlane {
   bool moves = false;
   Vec3 shift, way, velocity;    // of one that moves: from the start, of the step that ends here, and its mean velocity
 
-  bool is_beyond(const Solid &one) const { return dot(n, one.centre) - at > one.shape.bound(); }    // of reach, at the start
+  double above(const Solid &one) const { return dot(n, one.centre) - at - one.shape.bound(); }    // the start, of all of it
   bool is_above(const Solid &one) const { return dot(n, one.centre - shift) - at > one.shape.bound(); }    // the same, now
 };
 // Contacts of a body that may reach the plane.

@@ -34,6 +34,7 @@ void RigidContact::forget()
 {
   near.pairs.clear();
   near.forget();
+  watched.forget(solids.size(), settings.planes.size());
   is_active_known = false;
   at_plane.assign(settings.planes.size(), std::vector<std::vector<Touch>>(solids.size()));
   plane_push.clear();
@@ -58,15 +59,15 @@ void RigidContact::place_driven(int n, const Vec3 &centre, const Matrix3 &turn, 
 }
 
 // A pair may have friction and damping of its own.
-TouchLaw RigidContact::law_with(double yields, Material material, std::pair<int, int> ids) const
+TouchLaw RigidContactSettings::law_with(double yields, Material material, std::pair<int, int> ids) const
 {
-  const auto rolling = settings.rolling.find(ids);
-  const double arm = rolling != settings.rolling.end() ? rolling->second : material.rolling;
-  if (const auto own = settings.pairs.find(ids); own != settings.pairs.end()) material = own->second;
-  return {settings.frequency * settings.frequency / yields, material.friction, material.damping, arm};
+  const auto rolls = rolling.find(ids);
+  const double arm = rolls != rolling.end() ? rolls->second : material.rolling;
+  if (const auto own = pairs.find(ids); own != pairs.end()) material = own->second;
+  return {frequency * frequency / yields, material.friction, material.damping, arm};
 }
 
-TouchLaw RigidContact::law_of(const Solid &a, const Solid &b) const
+TouchLaw RigidContactSettings::law_of(const Solid &a, const Solid &b) const
 {
   const Material &one = a.material, &other = b.material;
   double damping = std::max(one.damping, other.damping);
@@ -75,54 +76,29 @@ TouchLaw RigidContact::law_of(const Solid &a, const Solid &b) const
   return law_with(a.yields + b.yields, usual, {a.id, b.id});
 }
 
-TouchLaw RigidContact::law_at(const Solid &one, int plane) const
+TouchLaw RigidContactSettings::law_at(const Solid &one, int plane) const
 { return law_with(one.yields, one.material, {one.id, -1 - plane}); }
-
-// Contacts of two bodies, by their shapes.
-static void touch_solids(const TouchStep &step, SolidPair &pair, Solid &a, Solid &b, const TouchLaw &law)
-{
-  const auto is = [](const Solid &one, SolidShape::ShapeKind kind) { return one.shape.kind() == kind; };
-  const bool is_ball = is(a, SolidShape::BALL), is_other_ball = is(b, SolidShape::BALL);
-  const bool is_mesh = is(a, SolidShape::MESH), is_other_mesh = is(b, SolidShape::MESH);
-  if (is_ball && is_other_mesh)
-    touch_ball_and_mesh(step, pair, a, b, law);
-  else if (is_other_ball && is_mesh)
-    touch_ball_and_mesh(step, pair, b, a, law);
-  else if (is(a, SolidShape::ELLIPSOID) && is_other_mesh)
-    touch_ellipsoid_and_mesh(step, pair, a, b, law);
-  else if (is(b, SolidShape::ELLIPSOID) && is_mesh)
-    touch_ellipsoid_and_mesh(step, pair, b, a, law);
-  else if (is_ball && is_other_ball)
-    touch_balls(step, pair, a, b, law);
-  else if (is_ball)
-    touch_ball_and_other(step, pair, a, b, law);
-  else if (is_other_ball)
-    touch_ball_and_other(step, pair, b, a, law);
-  else if (is(a, SolidShape::TORUS) || is(b, SolidShape::TORUS))
-    touch_with_curves(step, pair, a, b, law);
-  else if (is(a, SolidShape::ELLIPSOID))
-    touch_ellipsoid_and_other(step, pair, a, b, law);
-  else if (is(b, SolidShape::ELLIPSOID))
-    touch_ellipsoid_and_other(step, pair, b, a, law);
-  else if ((is_mesh || is(a, SolidShape::POLYHEDRON)) && (is_other_mesh || is(b, SolidShape::POLYHEDRON)))
-    touch_polyhedra(step, pair, a, b, law);
-  else
-    touch_with_curves(step, pair, a, b, law);
-}
 
 void RigidContact::touch_pair(const TouchStep &step, SolidPair &pair)
 {
   Solid &a = solids[pair.a], &b = solids[pair.b];
   forget_parted(pair.touches);
   if (a.aside || b.aside || (a.whole != Solid::ALONE && a.whole == b.whole)) return;
-  const double way = a.stir + b.stir;
+  const double way = watched.gone(pair) - pair.gone;
+  pair.gone += way;
   pair.asleep -= way;
   pair.known_for -= way;
-  const Vec3 between = a.centre - b.centre;
   // Two bodies begin to touch within their spheres, and may go on touching beyond them, on ramps.
-  const double reach = a.shape.bound() + b.shape.bound();
-  if (pair.touches.empty() && (pair.asleep > 0.0 || dot(between, between) > reach * reach)) return;
-  touch_solids(step, pair, a, b, law_of(a, b));
+  if (pair.touches.empty()) {
+    if (pair.asleep > 0.0) return;
+    const double apart = length(a.centre - b.centre) - (a.shape.bound() + b.shape.bound());
+    if (apart > 0.0) {
+      pair.asleep = WatchedPairs::SURELY * apart;
+      return;
+    }
+  }
+  step.next(pair.touches);
+  touch_solids(step, pair, a, b, settings.law_of(a, b));
   step.listed(pair.touches);
 }
 
@@ -132,8 +108,9 @@ void RigidContact::touch_plane(const TouchStep &step, std::vector<Touch> &touche
 {
   const SolidPlane &plane = settings.planes[k];
   const auto touch = [&] {
-    if (touches.empty() && plane.is_beyond(one)) return;
-    mdanim::touch_plane(step, touches, one, plane, law_at(one, k));
+    if (touches.empty() && plane.above(one) > 0.0) return;
+    step.next({});
+    mdanim::touch_plane(step, touches, one, plane, settings.law_at(one, k));
     step.listed(touches, k);
   };
   if (!plane.moves) return touch();
@@ -156,13 +133,11 @@ void RigidContact::step(double dt)
     one.begin_step();
     one.stir =
         one.held && !one.driven ? 0.0 : dt * (std::sqrt(dot(one.velocity, one.velocity)) + one.fastest_turn * one.shape.bound());
+    watched.go(static_cast<int>(n), one.stir);
   }
   const TouchStep step(dt, settings.onset, account);
   touch_planes(step, all);
-  if (all)
-    for (SolidPair &pair : near.pairs) touch(step, pair, true);
-  else
-    for (const int k : active) touch(step, near.pairs[k], false);
+  watched.each(all ? nullptr : &active, near.pairs, [&](int k) { touch(step, k, all); });
   if (!step.is_first()) step.share_blows();
   for (const Solid &one : solids) {
     account.worst_bound = std::max(account.worst_bound, 0.25 * dt * dt * one.stiffness_sum + 0.5 * dt * one.damping_sum);
@@ -176,11 +151,14 @@ void RigidContact::touch_planes(const TouchStep &step, bool all)
   const auto is_at_rest = [stand](const Solid &one) { return stand && one.settled; };
   for (std::size_t k = 0; k < settings.planes.size(); ++k)
     for (std::size_t n = 0; n < solids.size(); ++n)
-      if (Solid &one = solids[n]; !one.held && !one.aside && !is_at_rest(one)) {
+      if (Solid &one = solids[n];
+          watched.may_touch(static_cast<int>(k), static_cast<int>(n)) && !one.held && !one.aside && !is_at_rest(one)) {
         std::vector<Touch> &touches = at_plane[k][n];
         forget_parted(touches);
         touch_plane(step, touches, one, static_cast<int>(k));
         one.is_carried = one.is_carried || (length(settings.planes[k].velocity) > 0.0 && !touches.empty());
+        const double above = settings.planes[k].moves || !touches.empty() ? 0.0 : settings.planes[k].above(one);
+        watched.watch(static_cast<int>(k), static_cast<int>(n), above);
       }
   for (std::size_t n = 0; n < solids.size(); ++n)
     if (Solid &one = solids[n]; !is_at_rest(one))
@@ -213,13 +191,15 @@ bool RigidContact::find_active(bool listed_anew)
   for (std::size_t k = 0; k < near.pairs.size(); ++k)
     if (const SolidPair &pair = near.pairs[k]; !is_settled(pair) || is_stirred(pair.a) || is_stirred(pair.b))
       active.push_back(static_cast<int>(k));
+  watched.take(near.pairs);
   is_active_known = true;
   return true;
 }
 
 // Bodies that sleep give to each other what they gave in the last step in which one was awake or had just been put to sleep.
-void RigidContact::touch(const TouchStep &step, SolidPair &pair, bool all)
+void RigidContact::touch(const TouchStep &step, int k, bool all)
 {
+  SolidPair &pair = near.pairs[k];
   Solid &a = solids[pair.a], &b = solids[pair.b];
   if (a.settled && b.settled) {
     if (pair.touches.empty()) return;
@@ -231,6 +211,7 @@ void RigidContact::touch(const TouchStep &step, SolidPair &pair, bool all)
     touch_counted(step, pair);
   else
     touch_pair(step, pair);
+  watched.watch(k, pair);
   if (pair.touches.empty()) return;
   a.is_carried = a.is_carried || (b.driven && b.stir > 0.0);
   b.is_carried = b.is_carried || (a.driven && a.stir > 0.0);
@@ -242,7 +223,10 @@ bool RigidContact::lay_aside(int n, bool aside)
   solids[n].aside = aside;
   is_active_known = false;
   for (auto &of_plane : at_plane) of_plane[n].clear();
-  for (int k = 0; k < static_cast<int>(settings.planes.size()); ++k) plane_push.erase({k, solids[n].id});
+  for (int k = 0; k < static_cast<int>(settings.planes.size()); ++k) {
+    plane_push.erase({k, solids[n].id});
+    watched.watch(k, n, 0.0);
+  }
   for (SolidPair &pair : near.pairs) {
     if (pair.a != n && pair.b != n) continue;
     pair.touches.clear();
@@ -357,16 +341,6 @@ void RigidContact::begin_account()
   account.deepest = account.worst_bound = 0.0;
   account.most_touching = 0;
   if (settings.sleeps) each_touch([this](const Touch &touch) { account.deepest = std::max(account.deepest, depth_of(touch)); });
-}
-
-double overlap(Solid &a, Solid &b)
-{
-  TouchAccount account;
-  SolidPair pair;
-  touch_solids(TouchStep(0.0, 1.0, account), pair, a, b, {1.0, 0.0, 0.0});
-  double deepest = 0.0;
-  for (const Touch &touch : pair.touches) deepest = std::max(deepest, touch.memory.offset);
-  return deepest;
 }
 
 std::size_t RigidContact::bytes() const

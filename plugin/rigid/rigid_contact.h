@@ -10,6 +10,7 @@
 #include "rigid/near_solids.h"
 #include "rigid/rigid_beds.h"
 #include "rigid/touch.h"
+#include "rigid/watched_pairs.h"
 
 #include <algorithm>
 #include <map>
@@ -36,11 +37,12 @@ struct RigidContactSettings {
   {
     return std::none_of(planes.begin(), planes.end(), [](const SolidPlane &plane) { return plane.moves; });
   }
-};
+  TouchLaw law_of(const Solid &a, const Solid &b) const;
+  TouchLaw law_at(const Solid &one, int plane) const;
 
-// How deep two bodies are in each other: the depth of the deepest contact that begins without a force at the setup of a run; 0
-// where they are apart. Corners that are deeper than half of the thinnest part touch nothing.
-double overlap(Solid &a, Solid &b);
+ private:
+  TouchLaw law_with(double yields, Material material, std::pair<int, int> ids) const;
+};
 
 class RigidContact {
  public:
@@ -93,13 +95,10 @@ class RigidContact {
 
  private:
   Bytes record_of(const SolidPair &pair) const;
-  TouchLaw law_of(const Solid &a, const Solid &b) const;
-  TouchLaw law_at(const Solid &one, int plane) const;
-  TouchLaw law_with(double yields, Material material, std::pair<int, int> ids) const;
   void touch_pair(const TouchStep &step, SolidPair &pair);
   void touch_plane(const TouchStep &step, std::vector<Touch> &touches, Solid &one, int plane);
   void touch_counted(const TouchStep &step, SolidPair &pair);
-  void touch(const TouchStep &step, SolidPair &pair, bool all);
+  void touch(const TouchStep &step, int k, bool all);
   void touch_planes(const TouchStep &step, bool all);
   bool find_active(bool listed_anew);
   template <class Visit> void each_touch(const Visit &visit) const
@@ -112,7 +111,8 @@ class RigidContact {
   std::vector<Solid> solids;
   RigidBeds beds;
   NearSolids near;
-  std::vector<int> active;    // pairs that are looked at where some bodies are settled
+  WatchedPairs watched;
+  std::vector<int> active;    // pairs that are looked at where some bodies are settled, else all
   bool is_active_known = false;
   std::vector<char> unstirred;    // of bodies: settled, and so is all that is near
   RigidBeds::TouchesAtPlanes at_plane;

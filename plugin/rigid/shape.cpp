@@ -8,12 +8,36 @@
 
 namespace mdanim {
 
+Pose in_body(const Pose &pose, const RigidBody &body, double size)
+{
+  constexpr double PARTS = 1LL << 42;
+  const auto part = [](double x) { return std::round(x * PARTS) / PARTS; };
+  const auto place = [&](double x) { return size * part(x / size); };
+  const Vec3 at = transposed_times(body.turn, pose.place - body.centre);
+  const Quaternion q = unit(Quaternion{body.q.w, -body.q.x, -body.q.y, -body.q.z} * pose.q);
+  return {{place(at.x), place(at.y), place(at.z)}, {part(q.w), part(q.x), part(q.y), part(q.z)}};
+}
+
+const SolidShape &SharedShapes::take(SolidShape shape)
+{
+  const double bound = shape.bound();
+  const auto [first, last] = known.equal_range(bound);
+  const auto alike = std::find_if(first, last, [&](const auto &other) { return shape.is_same(other.second); });
+  return (alike != last ? alike : known.emplace(bound, std::move(shape)))->second;
+}
+
+const std::shared_ptr<const Polyhedron> &SolidShape::none()
+{
+  static const auto empty = std::make_shared<const Polyhedron>();
+  return empty;
+}
+
 SolidShape SolidShape::of(Polyhedron polyhedron)
 {
   SolidShape shape;
   shape.its_kind = POLYHEDRON;
-  shape.its_polyhedron = std::move(polyhedron);
-  shape.its_thin = shape.its_polyhedron.thickness();
+  shape.its_polyhedron = std::make_shared<const Polyhedron>(std::move(polyhedron));
+  shape.its_thin = shape.its_polyhedron->thickness();
   return shape;
 }
 
@@ -73,10 +97,15 @@ bool SolidShape::is_same(const SolidShape &other) const
 {
   const auto are_same = [](const Vec3 &a, const Vec3 &b) { return a.x == b.x && a.y == b.y && a.z == b.z; };
   const std::vector<Polyhedron::Corner> &one = corners(), &two = other.corners();
+  const std::vector<Polyhedron::Face> &faces = its_polyhedron->faces(), &others = other.its_polyhedron->faces();
   return its_kind == other.its_kind && are_same(its_middle, other.its_middle) && are_same(axes[0], other.axes[0]) &&
          are_same(axes[1], other.axes[1]) && are_same(axes[2], other.axes[2]) && are_same(size, other.size) &&
          std::equal(one.begin(), one.end(), two.begin(), two.end(),
-                    [&](const Polyhedron::Corner &a, const Polyhedron::Corner &b) { return are_same(a.at, b.at); });
+                    [&](const Polyhedron::Corner &a, const Polyhedron::Corner &b) { return are_same(a.at, b.at); }) &&
+         std::equal(faces.begin(), faces.end(), others.begin(), others.end(),
+                    [](const Polyhedron::Face &a, const Polyhedron::Face &b) {
+                      return a.corners == b.corners && a.covered == b.covered;
+                    });
 }
 
 SolidShape SolidShape::placed(const Pose &pose) const
@@ -85,14 +114,16 @@ SolidShape SolidShape::placed(const Pose &pose) const
   SolidShape shape = *this;
   shape.its_middle = pose.place + turn * its_middle;
   for (Vec3 &axis : shape.axes) axis = turn * axis;
-  if (its_kind == POLYHEDRON) shape.its_polyhedron = its_polyhedron.moved([&](const Vec3 &at) { return pose.place + turn * at; });
+  if (its_kind == POLYHEDRON)
+    shape.its_polyhedron =
+        std::make_shared<const Polyhedron>(its_polyhedron->moved([&](const Vec3 &at) { return pose.place + turn * at; }));
   const bool is_moved = length(pose.place) > 0.0 || pose.q.w != 1.0;
   if (its_kind == MESH && is_moved)
     shape.its_mesh =
         std::make_shared<const TriangleMesh>(its_mesh->moved([&](const Vec3 &at) { return pose.place + turn * at; }));
   const double middle = length(shape.its_middle);
   double bound = 0.0;
-  for (const Polyhedron::Corner &corner : shape.its_polyhedron.corners()) bound = std::max(bound, length(corner.at));
+  for (const Polyhedron::Corner &corner : shape.its_polyhedron->corners()) bound = std::max(bound, length(corner.at));
   if (its_kind == BALL) bound = middle + size.x;
   if (its_kind == CYLINDER || its_kind == CONE) bound = middle + std::sqrt(size.x * size.x + size.z * size.z);
   if (its_kind == ELLIPSOID) bound = middle + std::max({size.x, size.y, size.z});
@@ -112,8 +143,10 @@ const char *SolidShape::name() const
 // A polyhedron without sides that were covered when it was made has its edges as curves.
 void SolidShape::cover(const std::vector<char> &faces)
 {
-  its_polyhedron.cover(faces);
-  for (std::size_t e = 0; e < its_curves.size(); ++e) its_curves[e].covered = its_polyhedron.edges()[e].covered;
+  Polyhedron covered = *its_polyhedron;
+  covered.cover(faces);
+  its_polyhedron = std::make_shared<const Polyhedron>(std::move(covered));
+  for (std::size_t e = 0; e < its_curves.size(); ++e) its_curves[e].covered = its_polyhedron->edges()[e].covered;
 }
 
 // A sharp circle has its axis out of its flat face. The radius about the axis of a cone is that of a ball inside.
@@ -182,8 +215,8 @@ void SolidShape::find_curves()
 
 void SolidShape::each_feature(const std::function<void(const Vec3 &, const Vec3 &)> &visit) const
 {
-  for (const Polyhedron::Corner &corner : its_polyhedron.corners())
-    for (const int face : corner.faces) visit(corner.at, its_polyhedron.faces()[face].normal);
+  for (const Polyhedron::Corner &corner : its_polyhedron->corners())
+    for (const int face : corner.faces) visit(corner.at, its_polyhedron->faces()[face].normal);
   if (its_kind == BALL || its_kind == ELLIPSOID)
     for (int x = -1; x <= 1; ++x)
       for (int y = -1; y <= 1; ++y)
@@ -292,7 +325,7 @@ Polyhedron::Foot SolidShape::nearest_of_ellipsoid(const Vec3 &from_middle) const
 Polyhedron::Foot SolidShape::nearest(const Vec3 &x) const
 {
   const Vec3 from_middle = x - its_middle;
-  if (its_kind == POLYHEDRON) return its_polyhedron.nearest(x);
+  if (its_kind == POLYHEDRON) return its_polyhedron->nearest(x);
   if (its_kind == CYLINDER || its_kind == CONE) return nearest_of_revolution(from_middle);
   if (its_kind == ELLIPSOID) return nearest_of_ellipsoid(from_middle);
   if (its_kind == TORUS) {

@@ -10,6 +10,7 @@
 #include "rigid/triangle_mesh.h"
 
 #include <functional>
+#include <map>
 #include <memory>
 #include <vector>
 
@@ -20,6 +21,10 @@ struct Pose {
   Vec3 place;
   Quaternion q;
 };
+
+// A pose in space in the frame of a body, to 2^-42 of a size and of a turn: so bodies alike have their shapes at one place to the
+// bit.
+Pose in_body(const Pose &pose, const RigidBody &body, double size);
 
 class SolidShape {
  public:
@@ -45,7 +50,7 @@ class SolidShape {
 
   ShapeKind kind() const { return its_kind; }
   const char *name() const;
-  const Polyhedron &polyhedron() const { return its_polyhedron; }
+  const Polyhedron &polyhedron() const { return *its_polyhedron; }
   const TriangleMesh &mesh() const { return *its_mesh; }
   const Vec3 &middle() const { return its_middle; }
   const Vec3 &axis(int k) const { return axes[k]; }
@@ -58,14 +63,14 @@ class SolidShape {
 
   // Corners, and the tip of a cone.
   const std::vector<Polyhedron::Corner> &corners() const
-  { return its_kind == CONE ? its_tip : its_kind == MESH ? its_mesh->corners() : its_polyhedron.corners(); }
+  { return its_kind == CONE ? its_tip : its_kind == MESH ? its_mesh->corners() : its_polyhedron->corners(); }
   // Straight sharp edges that are convex.
-  const std::vector<Polyhedron::Edge> &edges() const { return its_kind == MESH ? its_mesh->edges() : its_polyhedron.edges(); }
+  const std::vector<Polyhedron::Edge> &edges() const { return its_kind == MESH ? its_mesh->edges() : its_polyhedron->edges(); }
   // Flat sides of what has corners, and sides of what is round.
   std::size_t sides() const
   {
     return its_kind == MESH         ? its_mesh->sides().size()
-           : its_kind == POLYHEDRON ? its_polyhedron.faces().size()
+           : its_kind == POLYHEDRON ? its_polyhedron->faces().size()
                                     : its_curves.size();
   }
   // Edges, rims, and curves with a radius: the axes of cylinders and cones, the middle line of a torus.
@@ -77,19 +82,29 @@ class SolidShape {
   void each_feature(const std::function<void(const Vec3 &, const Vec3 &)> &visit) const;
 
  private:
+  static const std::shared_ptr<const Polyhedron> &none();
   Polyhedron::Foot nearest_of_revolution(const Vec3 &from_middle) const;
   Polyhedron::Foot nearest_of_ellipsoid(const Vec3 &from_middle) const;
   void each_feature_of_torus(const std::function<void(const Vec3 &, const Vec3 &)> &visit) const;
   void find_curves();
 
   ShapeKind its_kind = BALL;
-  Polyhedron its_polyhedron;
+  std::shared_ptr<const Polyhedron> its_polyhedron = none();
   std::shared_ptr<const TriangleMesh> its_mesh;
   Vec3 its_middle, axes[3] = {{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}};
   Vec3 size;    // radius and half of the height, half axes, or the radii of a torus
   std::vector<Polyhedron::Corner> its_tip;
   std::vector<Curve> its_curves;
   double its_bound = 0.0, its_thin = 0.0;
+};
+
+// Shapes of bodies: those with the same bits are shared.
+class SharedShapes {
+ public:
+  const SolidShape &take(SolidShape shape);
+
+ private:
+  std::multimap<double, SolidShape> known;    // by their bounds
 };
 
 }    // namespace mdanim

@@ -7,6 +7,7 @@
 #include "rigid/solid.h"
 
 #include <map>
+#include <optional>
 #include <string>
 
 namespace mdanim {
@@ -18,6 +19,13 @@ struct GivenShape {
   Pose pose;           // in space, when bodies are made; of one that is driven, at time 0 of its drive
   SolidShape shape;    // in its own frame
 };
+
+// Axes of a shape, if it is one of these, when bodies are made.
+inline std::optional<Quaternion> axes_of(const std::map<int, GivenShape> &shapes, int id)
+{
+  const auto found = shapes.find(id);
+  return found == shapes.end() ? std::nullopt : std::optional(found->second.pose.q);
+}
 
 // By molecule IDs. Throws std::runtime_error with the line: `name` names the file.
 std::map<int, GivenShape> read_shapes(const std::string &name, const std::string &text);

@@ -126,6 +126,20 @@ double TouchStep::follow(Touch &touch, double depth, double k) const
   return (depth - last) - (last - touch.earlier) + dt * dt * touch.yields * touch.press;
 }
 
+// The depth at which a contact has no force falls to a part 1/e in the time in which its frequency goes through OUT radians, so
+// that bodies are moved and not thrown, where what it bears is within the onset. The energy that it gains so is booked.
+void TouchStep::press_out(Touch &touch, double depth, double k) const
+{
+  constexpr double OUT = 1000.0;
+  if (depth_of(touch) >= onset) return;
+  const double less = (dt / OUT) * std::sqrt(touch.stiffness * touch.yields) * touch.memory.offset;
+  const auto gains = [&](double within) {
+    return Onset<double>(within + less, onset).value - Onset<double>(within, onset).value;
+  };
+  account.let_go -= 0.5 * k * (gains(depth_of(touch)) + gains(depth - touch.memory.offset));    // of both ends of the way
+  touch.memory.offset -= less;
+}
+
 // The dashpot over that of a spring without an onset: in a blow F/sqrt(2 k U) for the force F of the spring and its energy U. As
 // a function of sqrt(2 U) the speed then is that of a linear spring, whatever F, so that as much is left of a slow blow, which
 // hardly leaves the onset, as of a fast one. What has gone deeper again after it came back rests: that has all of it, and
@@ -140,7 +154,9 @@ static double dashpot_at(const Touch &touch, double depth, double onset)
 ContactForce<double> TouchStep::pressure(Touch &touch, const ContactLaw &its_law, double part, double depth) const
 {
   constexpr int LOOKS = 3;    // each is nearer to the next depth by (dt Omega)^2 and more
-  const double before = touch.memory.depth, k = touch.stiffness * part, pulled = is_first() ? 0.0 : follow(touch, depth, k);
+  const double k = touch.stiffness * part;
+  if (presses_out && touch.followed != 0.0) press_out(touch, depth, k);
+  const double before = touch.memory.depth, pulled = is_first() ? 0.0 : follow(touch, depth, k);
   if (touch.followed != 0.0 && before < touch.earlier && depth > before) touch.rests = 1.0;
   ContactLaw law = its_law;
   law.damping *= dashpot_at(touch, depth, onset);
@@ -152,7 +168,9 @@ ContactForce<double> TouchStep::pressure(Touch &touch, const ContactLaw &its_law
   for (int look = 0; look < LOOKS; ++look) {
     const double way = came + pulled - dt * dt * touch.yields * (force.press + touch.more);
     const double goes = way < 0.0 ? k * way * more_force(now, now + way, onset) : 0.0;
-    touch.more = std::max(force_over(touch.owed + goes, k, came, way), -force.press);    // a contact never pulls
+    const double more = std::max(force_over(touch.owed + goes, k, came, way), -force.press);    // a contact never pulls
+    if (more == touch.more) break;
+    touch.more = more;
   }
   force.press += touch.more;
   touch.press = force.press;

@@ -148,6 +148,13 @@ class TouchStep {
 
   ContactLaw law_of(const Touch &touch, const TouchLaw &law) const
   { return {touch.stiffness, onset, law.friction, touch.damping, {}}; }
+  // Says which contacts come next, those of one pair. Where all of them began below the surface, without a force, nothing keeps
+  // the bodies from lying in each other: they are pressed out slowly (see touch.cpp).
+  void next(const std::vector<Touch> &touches) const
+  {
+    const auto is_inside = [this](const Touch &one) { return one.memory.offset > onset; };
+    presses_out = !is_first() && std::all_of(touches.begin(), touches.end(), is_inside);
+  }
   // The part of a contact that depends on its depth. In the step in which it begins or ends, its force counts for as long as it
   // acts (see touch.cpp).
   ContactForce<double> pressure(Touch &touch, const ContactLaw &law, double part, double depth) const;
@@ -189,9 +196,11 @@ class TouchStep {
   void resist_rolling(Touch &touch, const TouchLaw &law, Solid &a, Solid *b, const Vec3 &n, double part,
                       ContactForce<double> &push) const;
   double follow(Touch &touch, double depth, double k) const;
+  void press_out(Touch &touch, double depth, double k) const;
   static Touch damped(Touch::TouchKind kind, const TouchLaw &law, double yields);
   double dt, onset;
   bool deep = true;
+  mutable bool presses_out = false;
   TouchAccount &account;
   mutable std::vector<Birth> births;
   mutable std::size_t found = 0;    // births whose contacts are known

@@ -135,13 +135,13 @@ def test_held_beams_side_by_side_do_not_meet():
 
 def boxes(n: int, size: float, seed: int) -> Sweeps:
     """Boxes at random places in a cube; a third of them is held. Corners are whole numbers, so that many boxes just touch.
-    A third are ropes, and some pairs are joined."""
+    A third are ropes, some pairs are joined, and some objects are parts of one body."""
     draw = np.random.default_rng(seed)
     low = np.floor(20 * draw.random((n, 3)))
     high, fixed = low + np.floor(20 * size * draw.random((n, 3))), draw.random(n) < 1 / 3
     i, j = np.sort(draw.integers(n, size=(2, n)), axis=0)
     passing = frozenset((a, b) for a, b in zip(i.tolist(), j.tolist()) if a < b and n > 2)
-    return Sweeps(low, high, fixed, passing, draw.random(n) < 1 / 3)
+    return Sweeps(low, high, fixed, passing, draw.random(n) < 1 / 3, np.arange(n) // 3)
 
 
 @pytest.mark.parametrize(("n", "size"), [(2, 1.0), (40, 0.05), (40, 0.4), (300, 0.1)])
@@ -157,6 +157,7 @@ def test_pairs_are_those_of_the_naive_way(n, size, monkeypatch):
         and not (swept.fixed[i] and swept.fixed[j])
         and not (swept.bare[i] and swept.bare[j])
         and (i, j) not in swept.passing
+        and swept.body[i] != swept.body[j]
     }
     for block in (1, 50, 1 << 20):
         monkeypatch.setattr("mdanim_lammps.model.boxes.BLOCK", block)
@@ -167,16 +168,17 @@ def test_pairs_are_those_of_the_naive_way(n, size, monkeypatch):
 @pytest.mark.parametrize("n", [1, 2, 3, 4])
 @pytest.mark.parametrize("seed", range(20))
 def test_a_pair_is_there_as_in_the_naive_way(n, seed):
-    """Pairs that are both held, both ropes, or joined do not count."""
+    """Pairs that are both held, both ropes, joined or of one body do not count."""
     draw = np.random.default_rng(seed)
     fixed, lines = draw.random((2, n)) < 0.6
     passing = frozenset((i, j) for i in range(n) for j in range(i + 1, n) if draw.random() < 0.4)
+    body = np.arange(n) // draw.integers(1, n + 1)
     naive = any(
-        not (fixed[i] and fixed[j]) and not (lines[i] and lines[j]) and (i, j) not in passing
+        not (fixed[i] and fixed[j]) and not (lines[i] and lines[j]) and (i, j) not in passing and body[i] != body[j]
         for i in range(n)
         for j in range(i + 1, n)
     )
-    assert Sweeps(np.zeros((n, 3)), np.ones((n, 3)), fixed, passing, lines).any_pair == naive
+    assert Sweeps(np.zeros((n, 3)), np.ones((n, 3)), fixed, passing, lines, body).any_pair == naive
 
 
 def test_ten_thousand_objects_are_looked_through():

@@ -47,7 +47,7 @@ class Reach:
     def region(self) -> region.Sweeps:
         """A box for each solid that holds it at all times. Raises SceneError for a mesh that is not a closed solid."""
         of = spacings(self.scene, choose_spacing(self.scene)[0]) if self._h is None else self._h
-        return region.sweeps(self.acting, np.array(of))
+        return region.sweeps(self.acting, np.array(of), self.body)
 
     def closest(self) -> tuple[Solid, Solid, float]:
         """Two solids of which one can move, and the least distance that remains between their boxes, along one axis [m]; see

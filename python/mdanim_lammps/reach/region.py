@@ -45,34 +45,42 @@ class Sweeps:
     """Pairs i < j that never are in contact, whatever moves."""
     bare: np.ndarray | None = None
     """Solids that are lines or sheets of particles, bool, shape (M,): two of them never are in contact. None for none."""
+    body: np.ndarray | None = None
+    """Number of the first solid of the rigid body that each solid is a part of, shape (M,): parts of one never are in contact.
+    None where each is its own."""
 
     @property
     def any_pair(self) -> bool:
         """Whether there are two solids that may be in contact wherever they are."""
         i, j = np.array(sorted(self.passing), int).reshape(-1, 2).T
         apart = int(self.may_touch(i, j, of_passing=True).sum())
-        bare = self._bare
-        within = _pairs(self.fixed) + _pairs(bare) - _pairs(self.fixed & bare)
-        return _pairs(np.ones(len(self.fixed), bool)) - within > apart
+        in_bodies = 0 if self.body is None else self._pairs_within(self.body)
+        return self._pairs_within(np.zeros(len(self.fixed), int)) - in_bodies > apart
 
     def may_touch(self, i: np.ndarray, j: np.ndarray, *, of_passing: bool = False) -> np.ndarray:
         """Pairs of solids that contact may act between wherever they are, bool, of the shape of ``i`` and ``j``;
         ``of_passing``: but for `passing`."""
         found = ~(self.fixed[i] & self.fixed[j]) & ~(self._bare[i] & self._bare[j])
+        if self.body is not None:
+            found &= self.body[i] != self.body[j]
         if self.passing and not of_passing:
             pairs = zip(np.minimum(i, j).tolist(), np.maximum(i, j).tolist())
             found &= np.array([pair not in self.passing for pair in pairs], bool)
         return found
 
+    def _pairs_within(self, group: np.ndarray) -> int:
+        """Pairs of solids of one group, by the numbers of groups, shape (M,), of which neither both are fixed nor both bare."""
+
+        def pairs(these: np.ndarray) -> int:
+            count = np.bincount(group[these])
+            return int((count * (count - 1) // 2).sum())
+
+        everyone, fixed, bare = np.ones(len(group), bool), self.fixed, self._bare
+        return pairs(everyone) - pairs(fixed) - pairs(bare) + pairs(fixed & bare)
+
     @property
     def _bare(self) -> np.ndarray:
         return np.zeros(len(self.fixed), bool) if self.bare is None else self.bare
-
-
-def _pairs(of: np.ndarray) -> int:
-    """Number of pairs of those that are marked."""
-    count = int(of.sum())
-    return count * (count - 1) // 2
 
 
 def closest(scene: SceneRecord, swept: Sweeps) -> tuple[Solid, Solid, float]:
@@ -98,9 +106,9 @@ def closest(scene: SceneRecord, swept: Sweeps) -> tuple[Solid, Solid, float]:
 # --- boxes --------------------------------------------------------------------------------------------------
 
 
-def sweeps(acting: Acting, h: np.ndarray) -> Sweeps:
+def sweeps(acting: Acting, h: np.ndarray, body: np.ndarray | None = None) -> Sweeps:
     """The region that every solid can reach, for the actions on them and their particle spacings h [m], shape
-    (M,).
+    (M,). ``body`` as `Sweeps` has it.
 
     Along an axis on which nothing but gravity and drag of air acts, the centre of mass moves on its parabola. Along one on which
     a wall, the ground or a liquid may act, it gets no farther than at the largest speed that energy allows; so does what is
@@ -145,7 +153,7 @@ def sweeps(acting: Acting, h: np.ndarray) -> Sweeps:
     for m, drive in acting.drives.items():
         low[m], high[m] = low[m] + drive.low, high[m] + drive.high
     bare = np.array([not kind_of(solid).fills for solid in scene.solids], bool)
-    return Sweeps(low - half, high + half, bodies.fixed, acting.passing, bare)
+    return Sweeps(low - half, high + half, bodies.fixed, acting.passing, bare, body)
 
 
 class _Movers:

@@ -121,7 +121,7 @@ def test_what_is_remembered_changes_no_bit(tmp_path, heap):
         world.run(1700)
         before = state_lab.pack(world.lmp, "r")
         world.run(300)
-        assert world.number("touching") > 8
+        assert world.number("touching") > 5
         end = ends(world)
         state_lab.put(world.lmp, "r", before)
         for _ in range(300):

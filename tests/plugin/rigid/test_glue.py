@@ -4,7 +4,8 @@
 import numpy as np
 import pytest
 import rigid_lab as lab
-from glue_lab import DENSITY, EDGE, bar, world
+import state_lab
+from glue_lab import DENSITY, EDGE, bar, glue_file, world
 
 
 def motion(rows, bodies):
@@ -112,3 +113,31 @@ def test_files_with_mistakes_are_refused(tmp_path):
     make = lab.World(tmp_path, bodies, words=f"glue {tmp_path}/glue", planes=[], gravity=(0, 0, 0), frequency=1e3)
     with pytest.raises(Exception, match=r"line 1 of .*the molecule ID with the lower number stands first"), make:
         pass
+
+
+def test_what_is_glued_sleeps_and_wakes_as_one(tmp_path):
+    """Three cubes in a row on the ground, with one on the last of them. A ball strikes the first one after they fell asleep: it
+    moves as where nothing sleeps. A state that is put back after each step gives the same bits."""
+    bodies = bar(3, at=(0, 0, EDGE / 2))
+    flies = 0.5
+    ball = lab.ball(0.04, 12000.0, at=(-0.19 - 2 * flies, 0, 0.05), v=(2, 0, 0.5 * 9.81 * flies))
+    beside = [lab.box((EDGE,) * 3, DENSITY, at=(EDGE, 0, 1.5 * EDGE)), ball]
+    options = {"planes": ["plane z lo 0.0"], "gravity": (0, 0, -9.81), "frequency": lab.frequency_of(2.0, EDGE), "thin": EDGE}
+    ends = []
+    for rule in ("", " sleep 1e-4 1e-2 0.1"):
+        with lab.World(tmp_path, [*bodies, *beside], words=glue_file(tmp_path, bodies, 1e12) + rule, **options) as one:
+            one.run(round(0.45 / one.dt))
+            if rule:
+                assert one.number("asleep") == 4 and not one.rows()[:3, 3:6].any()
+                kept = state_lab.pack(one.lmp, "r")
+            one.run(round(0.1 / one.dt))
+            if rule:
+                assert one.number("asleep") == 0
+            ends.append(one.rows()[:, :3])
+            if rule:
+                state_lab.put(one.lmp, "r", kept)
+                for _ in range(round(0.1 / one.dt)):
+                    one.lmp.command("run 1")
+                    state_lab.put(one.lmp, "r", state_lab.pack(one.lmp, "r"))
+                assert (one.rows()[:, :3] == ends[-1]).all()
+    assert ends[0] == pytest.approx(ends[1], abs=1e-4 * EDGE) and ends[0][0, 0] > -EDGE + 1e-3

@@ -227,3 +227,18 @@ def test_random_blows(tmp_path, two, mu):
         assert end[0] == pytest.approx(start[0], abs=1e-13 * np.abs(start[0]).max())
         assert end[1] == pytest.approx(start[1], abs=1e-10 * np.abs(start[1]).max())
     assert np.sort(off)[-2] < 1e-2 and max(off) < 4e-2
+
+
+def test_what_lies_in_each_other_is_pressed_out(tmp_path):
+    """Two boxes of which one began 4 mm in the other: such contacts have no force, and they would stay so. They part at less than
+    5 cm/s, and the energy that they gain is booked."""
+    bodies = [lab.box((0.2, 0.2, 0.1)), lab.box((0.1, 0.1, 0.1), at=(0.0, 0.0, 0.096))]
+    with lab.World(tmp_path, bodies, frequency=lab.frequency_of(2.0, 0.1), planes=(), gravity=(0, 0, 0)) as world:
+        apart = lambda: float(world.rows()[1, 2] - world.rows()[0, 2]) - 0.1
+        world.run(100)
+        assert apart() < -3.5e-3 and world.number("touching") >= 4
+        world.run(5000)
+        assert apart() > 0.0 and world.number("touching") == 0
+        assert np.abs(world.rows()[:, 3:6]).max() < 0.05
+        assert world.number("let_go") < 0.0
+        assert abs(world.energy(0.0)) < 2e-2 * -world.number("let_go")

@@ -164,8 +164,8 @@ def depths(envelope: Envelope) -> list[Margin]:
             value,
             part * found.thin,
             "m",
-            f"{what} {say(value, 'm')} deep, {number(100.0 * value / own, 2)} % of the thinnest part of a rigid object, "
-            f"{say(own, 'm')} of {solids[thinnest].name}",
+            f"{what} {say(value, 'm')} deep, {number(100.0 * value / own, 2)} % of {say(own, 'm')}, the "
+            f"thickness of {solids[thinnest].name}, which says how hard contacts are",
             place,
             "warning" if value > part * found.thin * (1.0 + 1e-9) else "ok",
             hint=f"write contact-stiffness {number(stiffness * max(1.0, value / (part * found.thin)) ** 2 * 1.05, 2)} in control",
