@@ -3,6 +3,7 @@ import assert from "node:assert/strict";
 import test from "node:test";
 import { Gif, packed, paletteOf } from "../../python/mdanim_lammps/view/web/gif.js";
 import { letsOf, withLet } from "../../python/mdanim_lammps/view/web/lets.js";
+import { Overlay } from "../../python/mdanim_lammps/view/web/overlay.js";
 import { Quantities, ofMotion, ofVector, roundValue, spanOf, usualScale } from "../../python/mdanim_lammps/view/web/quantities.js";
 
 const TRACK = { time: Float32Array.of(0, 1), centre: Float32Array.of(1, 2, 3, 4, 5, 6), velocity: Float32Array.of(3, 0, 4, 0, 0, -2) };
@@ -25,6 +26,14 @@ test("arrows are as long as shows well", () => {
   assert.ok(Math.abs(usualScale([rows], 10) - (0.14 * 10) / 2) < 1e-12);
   assert.equal(usualScale([new Float32Array(3)], 10), 1);
   assert.deepEqual([0.7, 2, 49.999, 50, 0].map(roundValue), [0.5, 2, 20, 50, 1]);
+});
+
+test("arrows of one object are as long as show its own well", () => {
+  const vectors = Float32Array.of(0, 0, -5000, 0, 0, -10, 0, 0, -5000, 0, 0, -10), objects = [{ still: true }, { still: false }];
+  const overlay = new Overlay({ objects, size: 10, bounds: [[0, 0, 0], [1, 1, 1]] });
+  const scale = (objects) => { overlay.show([{ word: "weight", vectors, objects, scale: null }]); return overlay.arrows[0].scale; };
+  for (const [objects, most] of [[[1], 10], [null, 10], [[0], 5000], [[0, 1], 5000]]) assert.ok(Math.abs(scale(objects) * most - 1.4) < 1e-9, `${objects}`);
+  assert.equal(overlay.arrows[0].most, 5000);
 });
 
 test("what is as good as constant is a straight line", () => {

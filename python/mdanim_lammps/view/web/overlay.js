@@ -2,7 +2,7 @@
 // Things that are laid over the picture: arrows with their legend, trails, labels, captions; looks are those of picture/overlay.py.
 import { Vector3 } from "./vendor.js";
 import { number } from "./message.js";
-import { ARROW_UNITS, roundValue, usualScale } from "./quantities.js";
+import { ARROW_UNITS, roundValue, rowsOf, usualScale } from "./quantities.js";
 
 const COLORS = { velocity: "#1c66bf", force: "#333333", contact: "#cc1f24", weight: "#1f8533", spin: "#7d47ad" };
 const ON_DARK = { velocity: "#63a8ff", force: "#d8d8d8", contact: "#ff6b6b", weight: "#5fd67b", spin: "#c39bf0" };
@@ -27,11 +27,17 @@ export class Overlay {
   // Arrows of words: their vectors by frame (null: velocities of each frame), the objects that have one (null: all that move) and a scale (null: one that shows well).
   show(arrows) {
     const units = (word) => ARROW_UNITS[word] ?? "N";
-    this.arrows = arrows.map((one) => {
-      const alike = arrows.filter((other) => units(other.word) === units(one.word) && other.scale === null && other.vectors);
-      const most = one.vectors ? one.vectors.reduce((most, x) => Math.max(most, Math.abs(x) || 0), 0) : Infinity;
-      return { ...one, most, unit: units(one.word), scale: one.scale ?? (one.vectors ? usualScale(alike.map(({ vectors }) => vectors), this.scene.size) : null) };
+    const lines = arrows.map((one) => ({ ...one, unit: units(one.word), shown: one.vectors && rowsOf(one.vectors, this.having(one), this.scene.objects.length) }));
+    this.arrows = lines.map(({ shown, ...one }) => {
+      const alike = lines.filter((other) => other.unit === one.unit && other.scale === null && other.shown);
+      const most = shown ? shown.reduce((most, x) => Math.max(most, Math.abs(x) || 0), 0) : Infinity;
+      return { ...one, most, scale: one.scale ?? (shown ? usualScale(alike.map((other) => other.shown), this.scene.size) : null) };
     });
+  }
+
+  // The objects that have an arrow of a line.
+  having({ objects }) {
+    return objects ?? [...this.scene.objects.keys()].filter((k) => !this.scene.objects[k].still);
   }
 
   // Lay it over a picture of a frame: into a pen whose unit is a pixel of the page.
@@ -83,7 +89,7 @@ export class Overlay {
   }
 
   vectors({ word, vectors, objects, scale }, { frame, object }) {
-    const O = this.scene.objects.length, chosen = objects ?? [...Array(O).keys()].filter((k) => !this.scene.objects[k].still);
+    const O = this.scene.objects.length, chosen = this.having({ objects });
     const of = (k) => (vectors ? vectors.subarray(3 * (O * frame + k), 3 * (O * frame + k) + 3) : object.subarray(12 * k + 9, 12 * k + 12));
     if (!vectors) for (const k of chosen) this.fastest = Math.max(this.fastest, Math.hypot(...of(k)));
     const length = scale ?? this.usual();

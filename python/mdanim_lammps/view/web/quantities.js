@@ -24,6 +24,13 @@ export function ofVector(word, name, vectors, k, O) {
   return Float64Array.from({ length: vectors.length / (3 * O) }, (_, f) => (axis < 0 ? norm(vectors, 3 * (O * f + k)) : vectors[3 * (O * f + k) + axis]));
 }
 
+// The vectors of some of O objects, by frame.
+export function rowsOf(vectors, objects, O) {
+  const frames = vectors.length / (3 * O), rows = new Float32Array(3 * objects.length * frames);
+  for (let f = 0; f < frames; f++) objects.forEach((k, n) => rows.set(vectors.subarray(3 * (O * f + k), 3 * (O * f + k) + 3), 3 * (objects.length * f + n)));
+  return rows;
+}
+
 // The least value that a share of some values does not exceed; NaN and what is next to nothing are left out.
 export function usual(sizes, share = AMONG) {
   const found = Float64Array.from(sizes).filter(Number.isFinite), most = found.reduce((a, b) => Math.max(a, b), 0);
