@@ -208,3 +208,10 @@ def test_friction_between_what_never_touches_is_not_asked_for(kind):
     ready = prepare(parse_scene(text + BOX.replace("MPa", "MPa  friction 0.5")))
     told = [p.message for p in (*ready.warnings, *ready.certificate.notes)]
     assert not [said for said in told if "works as 0 against other" in said and " of box " not in said]
+
+
+def test_a_narrow_sheet_beside_coarse_objects(prepared):
+    """The resolution of `control` is at most half of its width: wider lattices had springs with a stiffness below 0."""
+    text = "object a { shape sheet (20, 1) cm thickness 1 mm  position (0, 0, 1) m  density 1000  elasticity 1 MPa }\n"
+    system = prepared(text + "control { time 0.1 s  resolution 2 cm }\n").system
+    assert system.stiffness.min() > 0.0 and system.spacing[0] < 6e-3

@@ -23,7 +23,7 @@ from .drawn import both_sides
 from .refined import refined
 from .tiled import Tiled, tiled
 from .weave import Weave, weave
-from .words import finest, is_sheet, width
+from .words import coarsest, finest, is_sheet, width
 
 PARTICLES = {Accuracy.PREVIEW: 400, Accuracy.BALANCED: 1200, Accuracy.REFERENCE: 4800}
 """Particles of a sheet without a ``resolution``, about."""
@@ -57,7 +57,7 @@ class SheetBody(BareBody):
         def own(solid):
             area, across = shapes.volume(solid.shape) / solid.shape.thickness, width(solid.shape)
             usual = min(math.sqrt(area / PARTICLES[accuracy]), across / ACROSS[accuracy])
-            return max(usual, finest(solid.shape), given or 0.0)
+            return max(usual, finest(solid.shape), min(given or 0.0, coarsest(solid.shape)))
 
         return own
 

@@ -41,6 +41,11 @@ def finest(sheet: Sheet | Shell) -> float:
     return sheet.thickness * math.sqrt(max(1.0, sheet.bending))
 
 
+def coarsest(sheet: Sheet | Shell) -> float:
+    """Largest spacing of its particles [m], with two of them across: on a wider lattice springs of oblique rods push."""
+    return 0.5 * width(sheet)
+
+
 def check_object(v: Any, block: Any, solid: Any) -> Any:
     """Settings that make no sense in a sheet."""
     if not is_sheet(solid) or (isinstance(solid.shape, Shell) and solid.pieces is not None):
@@ -61,7 +66,7 @@ def check_object(v: Any, block: Any, solid: Any) -> Any:
     if solid.restitution is not None and isinstance(solid.elasticity, Young):  # a material has one for what is rigid
         cause = f"{solid.name} is a sheet: restitution is of rigid and held objects"
         v.problem(spans["restitution"], cause, "leave it out; damping takes energy of its springs")
-    least, most = finest(sheet), 0.5 * width(sheet)
+    least, most = finest(sheet), coarsest(sheet)
     if solid.resolution is not None and not least * (1.0 - 1e-9) <= solid.resolution <= most:
         cause = (
             f"particles of {solid.name} are at least {say(least, 'm', 6)} apart and there are two spacings or more across: "
