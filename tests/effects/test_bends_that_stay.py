@@ -7,7 +7,7 @@ from bend_cases import by_law, by_section, kept, plastic, strip
 from mdanim_lammps.engine.instance import Instance
 from mdanim_lammps.features.yielding import bends
 from mdanim_lammps.model.bends import BLUNT
-from mdanim_lammps.run.energy import energies
+from mdanim_lammps.run.energy import energies, least_energy
 
 
 @pytest.mark.parametrize("axis", [0, 1])
@@ -113,3 +113,12 @@ def test_the_stiffness_of_rings():
         most = max(most, float(np.abs(np.linalg.eigvalsh(found)).max()))
     # c, b and l are 1, w is 2.
     assert 5.0 < most < bends.STIFFEST * 3.0 * 2.0 / area
+
+
+def test_rounding_of_a_sheet_at_rest_is_no_residual(prepared):
+    """Where nothing happens: its springs over two links store more than any strain of it."""
+    text = (
+        "object a { shape sheet (20, 2) cm thickness 1.5 mm  position (0, 0, 1) m  resolution 5 mm  density 1  elasticity 10 MPa"
+    )
+    ready = prepared(text + " }\ncontrol { time 0.05 s }\n")
+    assert least_energy(ready.scene, ready.system) > 1e3 * np.spacing(ready.system.preload_energy.sum())

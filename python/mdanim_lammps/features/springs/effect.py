@@ -77,6 +77,10 @@ class Springs(Effect):
     def notes(self, envelope):
         return turning(envelope)
 
+    def weighed(self, scene, system):
+        """What springs that hold each other without load store [J], of which the energy is told without it."""
+        return float(system.preload_energy.sum())
+
     def energy(self, readings):
         stored = float(readings.system.preload_energy.sum())
         return readings.elastic_energy() - stored + change_of_energy(readings) + energy_of_growth(readings)
