@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// What a flat surface gives to pieces that are glued together, spread over all that lie on it (docs/physics-pieces.md).
+// The force that a flat surface gives to pieces that are glued together, spread over all that lie on it (docs/physics-pieces.md).
 //
 // Contact acts at the corners of a whole. What is between these lies on the surface too, and bears its part:
 //   p = w max(0, a + b x + c y),
@@ -22,7 +22,7 @@ struct Bed {
     Vec3 centre, at;
     double area;
   };
-  // What presses a piece now, and where.
+  // The force of contact on a piece, and where it acts.
   struct BedPress {
     int piece;
     Vec3 centre, at;
@@ -36,8 +36,8 @@ struct Bed {
 
   // Force and torque on a piece about its centre, as what presses it.
   void press(int piece, const Vec3 &centre, const Vec3 &force, const Vec3 &torque);
-  // Adds what each piece bears more than contact gives it, by the numbers of pieces; their sum is no force and no torque. A
-  // corner that is in the list twice lies on both of two sides that meet.
+  // Adds what each piece bears more than contact gives it, by the numbers of pieces; forces and torques of all of them are 0
+  // together. A corner that is in the list twice lies on both of two sides that meet.
   void spread(PieceMotions &more);
 
  private:

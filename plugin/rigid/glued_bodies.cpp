@@ -152,6 +152,13 @@ void GluedBodies::take_motion(std::vector<RigidBody> &bodies)
 
 // --- stress ---
 
+static std::vector<Vec3> places_of(const GluedBodies::Whole &whole, const std::vector<Pose> &in_whole)
+{
+  std::vector<Vec3> found;
+  for (const int n : whole.pieces) found.push_back(in_whole[n].place);
+  return found;
+}
+
 void GluedBodies::find_springs(Whole &whole) const
 {
   std::vector<int> own;
@@ -181,9 +188,7 @@ void GluedBodies::find_springs(Whole &whole) const
     whole.bears = std::min(whole.bears, face.strength * face.area);
     whole.springs.push_back(spring);
   }
-  std::vector<Vec3> places;
-  for (const int n : whole.pieces) places.push_back(in_whole[n].place);
-  whole.coarse.make(whole.springs, places);
+  whole.coarse.make(whole.springs, places_of(whole, in_whole));
 }
 
 std::vector<double> GluedBodies::shares(const Whole &whole, const std::vector<RigidBody> &bodies, const PieceMotions &more,
@@ -272,8 +277,7 @@ std::vector<FaceLoads> GluedBodies::face_loads(const std::vector<RigidBody> &bod
   std::vector<FaceLoads> found(at.size());
   for (const Whole &whole : wholes) {
     if (whole.body.aside) continue;
-    std::vector<Vec3> places;
-    for (const int n : whole.pieces) places.push_back(in_whole[n].place);
+    const std::vector<Vec3> places = places_of(whole, in_whole);
     const PieceMotions load = loads_of_pieces(whole.body, whole.pieces, in_whole, bodies, to_acceleration);
     const std::vector<FaceLoads> own = hanging_loads(whole.springs, places, load);
     const Matrix3 &turn = whole.body.turn;
@@ -348,10 +352,8 @@ void GluedBodies::rebuild(const std::vector<char> &has)
       continue;
     }
     const Kept &own = kept[n];
-    from_start[n] = own.from_start;
-    bore[n] = own.bore;
-    in_whole[n] = own.pose;
-    given_way[n] = own.way;
+    from_start[n] = own.from_start, in_whole[n] = own.pose;
+    bore[n] = own.bore, given_way[n] = own.way;
     whole_of[n] = ALONE;
     if (own.behind == ALONE) continue;
     const std::size_t first = n - static_cast<std::size_t>(own.behind);

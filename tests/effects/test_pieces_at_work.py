@@ -80,6 +80,13 @@ def test_a_tin_of_glass_is_rigid(prepared):
     assert ready.system.rigid.all() and ready.system.mass.sum() == pytest.approx(2470 * (outer - inner), rel=1e-6)
 
 
+def test_pieces_of_a_mesh_file_have_the_name_of_the_whole():
+    """In a scene that names the file as it is beside it: how many there are follows from the file."""
+    text = scene(shape='mesh "meshes/bowl.stl" scale 0.01', pieces="pieces 5  strength 1 MPa", more="expect plate.pieces > 1")
+    found = parse_scene(text, folder=MESHES.parent)
+    assert found.solids[0].name == "plate.piece[1]" and found.expects[0].of == "NAMES"
+
+
 def second(piece):
     """Second moments of a piece about its centre by its volume."""
     from mdanim_lammps.model.mesh import second_moments

@@ -135,7 +135,7 @@ def concave(shape: Shape) -> Triangles | None:
 
 
 def _hollow(shape: Shell) -> Triangles:
-    """What lies between two surfaces, half of the thickness outside of that of a shape and inside."""
+    """Gives what lies between two surfaces, half of the thickness outside of that of a shape and inside."""
     points, triangles, volume = np.zeros((0, 3)), [], 0.0
     for by in (0.5 * shape.thickness, -0.5 * shape.thickness):
         body = _surface(_grown(shape.shape, by))

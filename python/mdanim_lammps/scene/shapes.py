@@ -307,7 +307,7 @@ class Shell:
 SOLID = (Box, Sphere, Ellipsoid, Cylinder, Cone, Torus, Mesh)
 """Shapes that fill a volume, whose surface may be a sheet."""
 HOLLOW = (Box, Sphere, Ellipsoid, Cylinder, Torus)
-"""Those of them whose sheet may break into pieces: it is what lies between a larger one and a smaller one."""
+"""Shapes whose sheet may break into pieces: it is all that lies between a larger one and a smaller one."""
 
 
 class OneShape(OneOf):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What is glued together bears on flat surfaces with all that lies there, as on springs that do not pull."""
+"""Flat surfaces bear all of what is glued together that lies there, as springs that do not pull."""
 
 import numpy as np
 import pytest

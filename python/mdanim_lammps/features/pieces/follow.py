@@ -6,6 +6,8 @@ from __future__ import annotations
 from typing import Any
 
 from ...model.mesh import MeshError
+from ...scene.meshes import beside, refusal_of_mesh
+from ...scene.shapes import mesh_of, with_path
 from .names import piece_name, seed_of
 
 
@@ -26,9 +28,16 @@ def _count(v: Any, block: Any) -> int:
     """The number of pieces of an object; 0 where it has none that can be told."""
     from ...model import cut
 
-    given, shape = block.first("pieces"), block.first("shape")
+    given, at = block.first("pieces"), block.first("shape")
+    if at is None:
+        return 0
     try:
-        how = given.record()
-        return cut.count(shape.record(), how, seed_of(v, block.name)) if shape else 0
+        how, shape = given.record(), at.record()
+        if (file := mesh_of(shape)) is not None:
+            path = beside(at.entry.source.folder, file.path)
+            if refusal_of_mesh(path, str(file.path)) is not None:
+                return 0
+            shape = with_path(shape, path)
+        return cut.count(shape, how, seed_of(v, block.name))
     except (ValueError, MeshError):  # told where the record is made
         return 0

@@ -7,7 +7,7 @@ from typing import Any
 
 
 def seed_of(v: Any, name: str) -> str:
-    """What the pieces of an object follow from; v is the scene/validate.Validator."""
+    """Gives the seed that the pieces of an object follow from; v is the scene/validate.Validator."""
     control = v.blocks("control")
     return f"{control[0].value('seed', 1):.0f} {name}" if control else f"1 {name}"
 
