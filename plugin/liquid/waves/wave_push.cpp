@@ -13,12 +13,21 @@ namespace mdanim {
 namespace {
 
 constexpr int LEAST_PART = SolidParts::FULL / 8;    // a cell with a smaller solid part gets the values of its neighbours
+constexpr int HALF = SolidParts::FULL / 2;          // a cell with a smaller solid part hides no surface
 constexpr double NARROW = 1.0;                      // gaps below bodies that cells do not resolve: liquid seeps in
 constexpr double HIGHEST = 8.0;    // cells of liquid: greatest pressure on a body beyond that of the liquid around it
 constexpr int SMOOTHINGS = 4;
 bool is_narrow(const WaveExchange::SpanView &span) { return span.capacity <= NARROW; }
 // A gap beside the face of a wall, where cells are nearly full, is a part of the wall.
 bool is_crack(const WaveExchange::SpanView &span) { return is_narrow(span) && span.roof - span.floor > NARROW; }
+
+// The head of liquid that seeps below a run is between those around, which push the run up to their mean: the part of the run
+// that this is, over that below its own head.
+double pushed(double bottom, double top, double mean, double own)
+{
+  const auto wet = [&](double head) { return std::clamp(head, bottom, top) - bottom; };
+  return wet(own) > 0.0 ? std::min(2.0, wet(mean) / wet(own)) : 1.0;
+}
 
 constexpr double HIDDEN = std::numeric_limits<double>::quiet_NaN();
 
@@ -146,7 +155,7 @@ double WavePush::seen_at(const Waves &waves, int column) const
   const WaveExchange::SpanView top = waves.exchange.span_view(column, spans - 1);
   if (top.high < nz || !top.wet || top.volume < ON_BODY) return HIDDEN;
   for (int z = top.low + 1; z < nz && z < top.phi; ++z)
-    if (waves.solids().at(column, z) > 0) return HIDDEN;
+    if (waves.solids().at(column, z) >= HALF) return HIDDEN;
   return top.phi;
 }
 
@@ -235,20 +244,20 @@ void WavePush::press(const Waves &waves, SolidRun &run)
 }
 
 // The rise of a head across a face acts on the solid parts on both sides of it.
-void WavePush::put(const SolidParts &solid, int column, int z, OnCell on)
+void WavePush::put(const SolidParts &solid, int column, int z, const SolidRun *stands, OnCell on)
 {
-  const std::size_t cell = static_cast<std::size_t>(z) * nx * ny + column;
   const auto rise = [&](int side) {
     const int other = neighbour(column, side, nx, ny);
     if (other < 0 || std::isnan(ambient[other]) || std::isnan(ambient[column])) return 0.0;
     const double both = (solid.at(column, z) + solid.at(other, z)) / static_cast<double>(SolidParts::FULL);
-    return std::clamp(ambient[other] - ambient[column], -HIGHEST, HIGHEST) / std::max(1.0, both);
+    const double share = stands ? pushed(stands->bottom, stands->top, 0.5 * (ambient[other] + ambient[column]), on.head) : 1.0;
+    return share * std::clamp(ambient[other] - ambient[column], -HIGHEST, HIGHEST) / std::max(1.0, both);
   };
   on.of[OnCell::ALONG_X] = rise(0) - rise(1);
   on.of[OnCell::ALONG_Y] = rise(2) - rise(3);
   if (found.empty() || !(found.back() == on)) found.push_back(on);
-  known[cell] = static_cast<int>(found.size()) - 1;
-  cells.push_back(cell);
+  cells.push_back(static_cast<std::size_t>(z) * nx * ny + column);
+  known[cells.back()] = static_cast<int>(found.size()) - 1;
 }
 
 void WavePush::fill(const Waves &waves, int column)
@@ -263,7 +272,7 @@ void WavePush::fill(const Waves &waves, int column)
     on.of[OnCell::ON_TOP] = run.on_top;
     on.of[OnCell::FLOW_X] = 0.5 * (run.u[0] + run.u[1]);
     on.of[OnCell::FLOW_Y] = 0.5 * (run.u[2] + run.u[3]);
-    put(solid, column, z, on);
+    put(solid, column, z, run.seeps ? &run : nullptr, on);
   };
   const SolidRun *run = &runs[first_run[column]];
   int z = 0;
@@ -290,7 +299,7 @@ void WavePush::fill(const Waves &waves, int column)
       on.of[OnCell::SHARE] = span.wet ? std::clamp(span.phi - span.floor, 0.0, 1.0) : 0.0;
       on.of[OnCell::FLOW_X] = 0.5 * (sides.u[0] + sides.u[1]);
       on.of[OnCell::FLOW_Y] = 0.5 * (sides.u[2] + sides.u[3]);
-      put(solid, column, z, on);
+      put(solid, column, z, nullptr, on);
     }
   }
   for (; z < nz; ++z)

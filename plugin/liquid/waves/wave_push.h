@@ -80,7 +80,7 @@ class WavePush {
   void find_close(const Waves &waves);
   void take_along(const Waves &waves, const AddedMass::Solids *solids, double since);
   void press(const Waves &waves, SolidRun &run);
-  void put(const SolidParts &solid, int column, int z, OnCell on);
+  void put(const SolidParts &solid, int column, int z, const SolidRun *stands, OnCell on);
   void fill(const Waves &waves, int column);
   void spread(const SolidParts &solid);
 

@@ -11,8 +11,8 @@ from plugin_library import library
 SHAPE = (16, 20, 24)
 
 
-def push(w: lab.Waves, part: np.ndarray) -> np.ndarray:
-    """Force on all that is solid, the sum over its cells, shape (3,)."""
+def push(w: lab.Waves, part: np.ndarray, volume: np.ndarray | None = None) -> np.ndarray:
+    """Force on all that is solid, the sum over its cells, or on the volumes in cells that are given, shape (3,)."""
     nz, ny, nx = w.shape
     mass = np.ascontiguousarray((part > 0).any(axis=0), float)
     out = np.empty((*w.shape, 8))
@@ -24,7 +24,7 @@ def push(w: lab.Waves, part: np.ndarray) -> np.ndarray:
     z = np.arange(nz)[:, None, None]
     below = np.clip(head - z, 0.0, 1.0) * share
     every, aside = below + over - on_top, np.maximum(0.0, below + beside)
-    solid = part / lab.SOLID * (known > 0)
+    solid = (part if volume is None else volume) / lab.SOLID * (known > 0)
     return np.array([(solid * along_x * aside).sum(), (solid * along_y * aside).sum(), (solid * every).sum()])
 
 
@@ -113,3 +113,15 @@ def test_in_a_swell_it_is_the_pressure_on_the_faces(body):
     largest = np.abs(expected[:, 0]).max()
     assert largest > 0.05 * scale
     assert np.abs(found - expected)[:, :2].max() < 0.25 * largest
+
+
+@pytest.mark.parametrize("aside", [0.0, 0.3, 0.4, 0.7])
+def test_a_gate_that_stands_between_two_levels(aside):
+    """Half of the difference of their squares acts on it, to 5 %, wherever its faces lie in their columns."""
+    part = moved(block((0, 0, 9), (16, 20, 15)), aside, 2)
+    w = lab.Waves(SHAPE)
+    w.solids(part)
+    levels = np.where(np.arange(24) < 12, 9.0, 2.0) * np.ones(SHAPE[1:])
+    w.pour(levels)
+    whole = np.where(part >= lab.SOLID // 2, lab.SOLID, 0)  # as its lattice cells lie in columns
+    assert push(w, part, whole)[0] == pytest.approx(0.5 * (9.0**2 - 2.0**2) * 20, rel=0.05)
