@@ -17,8 +17,8 @@ from ...model.tensors import largest_eigenvalue
 from .basin import liquid_level
 from .frames import COUPLING, FIX, is_wavy
 
-WAVE_DRAG = 0.15
-"""Part of the usual drag that is left where waves take energy away."""
+WAVE_DRAG = 0.06
+"""Part of the usual drag that is left where waves take energy away, with which a sphere bobs as one in the sea."""
 DRAG_COEFFICIENT = 0.5
 """C of quadratic drag, F = C rho A v^2 / 2: that of a sphere."""
 DRAGGING = 0.07

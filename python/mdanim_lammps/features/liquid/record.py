@@ -105,7 +105,7 @@ class Liquid(Worded):
     drag: float | None = setting(
         "auto | <gamma:1/s>",
         "Immersed solids feel F = -gamma rho V v with the immersed volume V and the velocity v against the liquid; `auto` is "
-        "gamma = sqrt(g/L) for a body of size L; with `model waves` 0.15 sqrt(g/L) + 0.25 v/L, so that what is slow glides on.",
+        "gamma = sqrt(g/L) for a body of size L; with `model waves` 0.06 sqrt(g/L) + 0.25 v/L, so that what is slow glides on.",
         "4 1/s", Rule.NOT_NEGATIVE, default=None)  # fmt: skip
     """gamma [1/s]; None is ``auto``."""
     model: LiquidModel = setting(
