@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""A rigid body that hangs by points below its centre of mass is told before the run."""
+"""A rigid body that hangs by points below its centre of mass is told before the run, a joint that has opened after it."""
 
 import pytest
+from mdanim_lammps import Scene
 from mdanim_lammps.run.prepare import prepare
 from mdanim_lammps.scene.parse import parse_scene
 
@@ -33,3 +34,19 @@ def test_a_swing_below_its_rider(more, told):
     notes = [note.message for note in prepare(parse_scene(SWING + more + "control { time 1 s }\n")).certificate.notes]
     said = [note for note in notes if "hangs by points" in note]
     assert [note.split(" below")[0] for note in said] == ["what is welded of seat, rider hangs by points that are 17.9 cm"][:told]
+
+
+@pytest.mark.parametrize(("more", "told"), [("", True), ("stiffness 4e6 N/m", False)])
+def test_a_joint_that_has_opened(tmp_path, more, told):
+    """Three bars without slack between fixed ends pull far harder at their joints than their weights, which `check` counts on."""
+    text = f"""gravity (0, 0, -9.81) m/s^2
+repeat i in 1 .. 3 {{ object bar[i] {{ shape box (31, 4, 1) cm position (0.32*(i - 2), 0, 1) density 2000 elasticity rigid }} }}
+repeat i in 1 .. 2 {{ joint ball bar[i] bar[i + 1] {{ at (0.32*(i - 1.5), 0, 1) {more} }} }}
+joint ball bar[1] world {{ at (-0.48, 0, 1) {more} }}
+joint ball bar[3] world {{ at (0.48, 0, 1) {more} }}
+control {{ time 0.3 s }}
+"""
+    (tmp_path / "bars.txt").write_text(text)
+    said = [p for p in Scene.load(tmp_path / "bars.txt").run(tmp_path / "bars.out").warnings if "has opened by" in p.message]
+    assert len(said) == told
+    assert not said or ("joint ball bar[" in said[0].message and "write stiffness" in said[0].hint)

@@ -1,21 +1,33 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""Remarks of ``check`` on joints: what hangs by points below its own centre of mass."""
+"""Remarks on joints: of ``check``, what is drawn apart at the start or hangs by points below its own centre of mass; of a run,
+what has opened."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 import numpy as np
 
+from ...effects.context import Context
 from ...effects.envelope import Envelope
+from ...effects.measured import Measured
 from ...errors import Problem
 from ...model.shapes import radius
-from ...scene.formatting import say
+from ...scene.formatting import number, say
 from .links import NOTHING, Link, links_of
+from .preload import torn
+from .rows import BROKEN, FIELD, FORCE, GAP, NUMBER, SIZE
+from .strength import GAP as AT_REST
+from .strength import Strength, strengths
+from .welds import arm_of, welds_here
 
 HIGHER = 0.02
 """Height of a centre of mass over the points by which it hangs, in sizes of the body, above which it turns over soon."""
+TORN = 0.01
+"""Part of the largest speed at the start, at which a joint may be drawn apart there."""
+SEEN = 0.1
+"""Gap of a joint that is seen, over the thinnest part of what it joins."""
 IN_LINE = 1e-3
 """Distance from a line within which points are on it, in sizes of the body."""
 
@@ -30,6 +42,50 @@ def notes(envelope: Envelope) -> list[Problem]:
     what = names[0] if len(whole) == 1 else f"what is welded of {', '.join(names[:3])}{' and more' if len(whole) > 3 else ''}"
     cause = f"{what} hangs by points that are {say(height, 'm')} below its centre of mass: it turns over"
     return [Problem(envelope.place(whole[0], "shape"), cause, "join it above its centre of mass", severity="note")]
+
+
+def drawn_apart(context: Context) -> list[Problem]:
+    """The object that moves against its joints at the start more than any other, where one does."""
+    joined = [(one.link, one.arm) for one in strengths(context)]
+    joined += [(link, arm_of(context.scene.solids, link)) for link in welds_here(context)]
+    speeds = [(torn(context, *one), one[0]) for one in joined]
+    if not speeds:
+        return []
+    speed, worst = max(speeds, key=lambda found: found[0])
+    fastest = max(math.hypot(*s.velocity) + math.hypot(*s.spin) * radius(s.shape) for s in context.scene.solids)
+    if speed <= TORN * fastest:
+        return []
+    names = [context.scene.solids[m].name for m in (worst.first, worst.named) if m != NOTHING]
+    return [
+        Problem(
+            worst.joint.spans.get("joint"),
+            f"joint {worst.joint.words}: what it holds together moves apart at {say(speed, 'm/s')} at the start, which "
+            "begins with a blow",
+            f"write a velocity and a spin of {' and '.join(names)} that belong together",
+            severity="warning",
+        )
+    ]
+
+
+def opened(joints: Iterable[Strength], run: Measured) -> list[Problem]:
+    """The joint, of those that hold points together, that has opened most in the frames of a run, where that is seen."""
+    holding = {one.link.number: one.link.joint for one in joints if one.link.joint.kind != "spring"}
+    worst, when = None, 0.0
+    for n, time in enumerate(run.times.tolist()):
+        rows = run.trajectory.field(FIELD, n)["value"]
+        rows = rows[np.isin(rows[:, NUMBER], list(holding)) & (rows[:, BROKEN] == 0.0)]
+        if not len(rows):
+            continue
+        most = rows[np.nanargmax(rows[:, GAP] / rows[:, SIZE])]
+        if worst is None or most[GAP] * worst[SIZE] > worst[GAP] * most[SIZE]:
+            worst, when = most, time
+    if worst is None or not worst[GAP] > SEEN * worst[SIZE]:
+        return []
+    joint, gap, force = holding[int(worst[NUMBER])], float(worst[GAP]), float(worst[FORCE])
+    stiffness = number(force / (4.0 * AT_REST * float(worst[SIZE])), 2)
+    cause = f"joint {joint.words} has opened by {say(gap, 'm', 2)} under {say(force, 'N', 2)}, at {say(when, 's', 3)}"
+    way_out = f"write stiffness {stiffness} N/m in such joints; what is taut between fixed ends pulls less with some slack"
+    return [Problem(joint.spans.get("stiffness") or joint.spans.get("joint"), cause, way_out, severity="warning")]
 
 
 def _upside_down(envelope: Envelope) -> Iterator[tuple[list[int], float]]:

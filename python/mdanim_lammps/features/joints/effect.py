@@ -12,22 +12,19 @@ from ...effects.context import Context, Verdict
 from ...effects.effect import Effect
 from ...effects.margin import Margin
 from ...errors import Problem
-from ...model.shapes import radius
 from ...scene.formatting import number, say
+from . import advice
 from .links import NOTHING, Link, links_of
 from .place import doubled, misplaced
-from .preload import torn
 from .rows import BROKEN, FIELD, FORCE, TOLD, joint_field, rows_of_joints
 from .strength import GAP, Strength, Sums, strengths
 from .table import joints_text
-from .welds import arm_of, thin_of, told_of_welds, welds_here
+from .welds import thin_of, told_of_welds, welds_here
 
 HEAT, WORK = "joint_heat", "work"
 """Columns of the ledger."""
 RESOLVED = 120
 """Steps in a period of a spring: leap-frog makes it too short by 1e-4, and its energy varies by 7e-4."""
-TORN = 0.01
-"""Part of the largest speed at the start, at which a joint may be drawn apart there."""
 SHOWS = 4.0
 """Times the gap of a joint between rigid objects, from which on it is worth a warning."""
 
@@ -129,29 +126,7 @@ class Joints(Effect):
 
     def warnings(self, context):
         """Joints that stand twice; objects that move against their joints at the start: the worst."""
-        return [*doubled(context.scene), *self._torn(context)]
-
-    def _torn(self, context):
-        """The object that moves against its joints at the start more than any other, where one does."""
-        joined = [(one.link, one.arm) for one in strengths(context)]
-        joined += [(link, arm_of(context.scene.solids, link)) for link in welds_here(context)]
-        speeds = [(torn(context, *one), one[0]) for one in joined]
-        if not speeds:
-            return []
-        speed, worst = max(speeds, key=lambda found: found[0])
-        fastest = max(math.hypot(*s.velocity) + math.hypot(*s.spin) * radius(s.shape) for s in context.scene.solids)
-        if speed <= TORN * fastest:
-            return []
-        names = [context.scene.solids[m].name for m in (worst.first, worst.named) if m != NOTHING]
-        return [
-            Problem(
-                worst.joint.spans.get("joint"),
-                f"joint {worst.joint.words}: what it holds together moves apart at {say(speed, 'm/s')} at the start, which "
-                "begins with a blow",
-                f"write a velocity and a spin of {' and '.join(names)} that belong together",
-                severity="warning",
-            )
-        ]
+        return [*doubled(context.scene), *advice.drawn_apart(context)]
 
     def margins(self, envelope):
         found = [one for one in strengths(envelope.context) if not one.swings]
@@ -176,6 +151,9 @@ class Joints(Effect):
                 hint=f"write stiffness {number(stiffness, 2)} N/m in it",
             )
         ]
+
+    def doubts(self, context, run):
+        return advice.opened(strengths(context), run)
 
     def notes(self, envelope):
         """The hardest joint, where joints set the time step."""
