@@ -69,6 +69,7 @@ def test_what_a_rope_does_not_do_is_told(prepared):
     assert "a keeps what it is pulled to" in note.message and "shape sheet" in note.hint
 
 
+@pytest.mark.soak
 def test_a_curved_sheet_that_yields_stays_as_it_is_drawn(prepared):
     """It is free of stress: one without yield-strain opens."""
     shape = "cylinder 3 cm 5 cm sheet thickness 0.5 mm"

@@ -34,7 +34,7 @@ expect bar.yielded > 0
         (8, 1000, 0.02, 0.0135, ""),
         (6, 2000, 0.01, 0.0075, ""),
         (8, 1000, 0.02, 0.0135, "resolution 2 cm"),
-        (8, 500, 0.03, 0.02, ""),
+        pytest.param(8, 500, 0.03, 0.02, "", marks=pytest.mark.soak),
     ],
 )
 def test_what_stays_of_a_push(prepared, tmp_path, wide, young, e, down, more):
