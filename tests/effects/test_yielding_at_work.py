@@ -32,7 +32,7 @@ expect bar.yielded > 0
     ("wide", "young", "e", "down", "more"),
     [
         (8, 1000, 0.02, 0.0135, ""),
-        (6, 2000, 0.01, 0.0075, ""),
+        pytest.param(6, 2000, 0.01, 0.0075, "", marks=pytest.mark.soak),
         (8, 1000, 0.02, 0.0135, "resolution 2 cm"),
         pytest.param(8, 500, 0.03, 0.02, "", marks=pytest.mark.soak),
     ],
