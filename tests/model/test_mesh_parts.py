@@ -216,6 +216,14 @@ def test_any_file_is_what_was_written(kind, written):
         np.testing.assert_array_equal(found.points[found.index], points[np.concatenate(faces)].astype(np.float32), str(seed))
 
 
+@pytest.mark.parametrize("form", ["ascii", "binary_little_endian", "binary_big_endian"])
+def test_a_file_without_faces_is_read(form):
+    """A scan before anything was scanned: what is read is empty, and told as that."""
+    head = f"ply\nformat {form} 1.0\nelement vertex 0\nproperty float x\nproperty float y\nproperty float z\n"
+    found = read((head + "element face 0\nproperty list uchar int vertex_indices\nend_header\n").encode(), ".ply")
+    assert found.points.shape == (0, 3) and len(found.count) == len(found.index) == 0
+
+
 def test_a_concave_polygon_is_one_face(tmp_path):
     """A prism over an L, whose ends have six corners, of which one points inward."""
     outline = [(0, 0), (2, 0), (2, 1), (1, 1), (1, 3), (0, 3)]

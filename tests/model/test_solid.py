@@ -131,6 +131,20 @@ def test_a_sheet_encloses_nothing():
         solid(points, flat, "sheet")
 
 
+def test_what_stays_open_is_not_told_to_become_a_solid(monkeypatch):
+    """It is one already: the way out is a sheet."""
+
+    def never(*_):
+        raise MeshError("not closed", "write solid in place of mesh")
+
+    points, loose = np.eye(4, 3), np.array([[0, 1, 2], [0, 1, 3]])
+    monkeypatch.setattr("mdanim_lammps.model.solid.outward", never)
+    monkeypatch.setattr("mdanim_lammps.model.solid.enclosing", lambda points, triangles: (points, triangles))
+    with pytest.raises(MeshError, match="encloses no solid, not even with its surface made anew") as error:
+        solid(points, loose, "soup.stl")
+    assert error.value.hint.startswith("write sheet thickness")
+
+
 def test_a_scene_says_what_was_done(tmp_path):
     """The word, its way back into text, and the note of check; a mesh of the same file is refused and names the word."""
     import pyvista

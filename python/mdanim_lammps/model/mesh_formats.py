@@ -321,8 +321,7 @@ def _uneven_rows(data: bytes, at: int, element: _Element, order: str) -> tuple[d
             column.append(np.frombuffer(data, kind, size, at))
             at += size * kind.itemsize
     return {
-        name: (np.array([len(v) for v in values], np.int64), np.concatenate(values) if values else np.zeros(0, kind))
-        if many
-        else np.concatenate(values)
+        name: (np.array([len(v) for v in values], np.int64), found) if many else found
         for values, (name, kind, many) in zip(columns, element.columns)
+        for found in [np.concatenate(values) if values else np.zeros(0, kind)]
     }, at

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
+
 import numpy as np
 
 from .orientation import FLAT, MeshError, outward, parts_outward
@@ -33,11 +35,10 @@ def solid(points: np.ndarray, triangles: np.ndarray, name: str) -> tuple[np.ndar
     if not len(around):
         raise MeshError(f"mesh {name}: encloses no volume", FLAT)
     told += ", its surface is made anew"
-    try:
-        fewer, less = _fewer(points, around)
-        return fewer, outward(fewer, less, name), told
-    except MeshError:
-        return points, outward(points, around, name), told
+    for surface in (_fewer(points, around), (points, around)):
+        with suppress(MeshError):
+            return surface[0], outward(*surface, name), told
+    raise MeshError(f"mesh {name}: encloses no solid, not even with its surface made anew", FLAT)
 
 
 def once(triangles: np.ndarray) -> np.ndarray:
