@@ -13,7 +13,7 @@ from mdanim_lammps.picture.curves import COVERED
 from mdanim_lammps.picture.drawn import drawn
 from mdanim_lammps.picture.framing import pixels_per_metre, seen_at
 from mdanim_lammps.picture.layer import InkLayer
-from mdanim_lammps.picture.overlay import _round_value, room_for
+from mdanim_lammps.picture.overlay import _near, _round_value, room_for
 from mdanim_lammps.picture.plot import span_of
 from mdanim_lammps.picture.render import Painter
 from mdanim_lammps.picture.run_values import RunValues
@@ -183,6 +183,20 @@ def test_words_stand_where_and_when_they_should(run):
     pixels, _ = seen_at(view, SIZE, run.trajectory.centers[2:7, 0])
     y, x = np.nonzero(trail)
     assert abs(x.min() - pixels[0, 0]) < 4 and abs(x.max() - pixels[-1, 0]) < 12 and abs(y.max() - pixels[0, 1]) < 4
+
+
+def test_an_object_in_pieces_has_its_words_once(tmp_path):
+    """Beside all of them while they hang together, however they have turned; then beside those that stay near their middle."""
+    text = "object vase { shape box (10, 10, 30) cm  material glass  pieces 6 }\nobject b { shape sphere 5 cm  density 9  elasticity rigid }\n"
+    scene = parse_scene(text + 'control { time 0.1 s }\nrender { label vase "glass"  label b "ball" }\n', "vase")
+    with Trajectory(write_start(prepare(scene), tmp_path)) as start, Painter(start, size=SIZE) as painter:
+        assert painter._overlay._words == [([0, 1, 2, 3, 4, 5], "glass"), ([6], "ball")]
+        places, reach = start.centers[0, :6], painter._overlay._reach[0]
+    turned = places[:, [2, 0, 1]] + (3.0, 0.0, 1.0)
+    assert _near(turned, reach).all() and _near(places[:1], 0.0).all()
+    away = np.where(np.arange(6)[:, None] == 2, turned + 9.0, turned)
+    assert _near(away, reach).tolist() == [n != 2 for n in range(6)]
+    assert _near(9.0 * turned, reach).sum() >= 1
 
 
 def test_copies_stay_where_things_were(run):

@@ -36,6 +36,13 @@ test("arrows of one object are as long as show its own well", () => {
   assert.equal(overlay.arrows[0].most, 5000);
 });
 
+test("an object in pieces has its words once, beside those near their middle", () => {
+  const box = (x) => [x, 0, 0, 1, 1, 1, x + 0.5, 0.5, 0.5, 0, 0, 0], written = [];
+  const overlay = Object.assign(new Overlay({ objects: [], bounds: [[0, 0, 0], [1, 1, 1]] }), { letters: 10, at: (x, y, z) => [x, y + z], write: (...all) => written.push(all) });
+  for (const places of [[0, 1, 2], [0, 1, 50]]) overlay.label(0, [0, 1, 2], "vase", { object: Float32Array.from(places.flatMap(box)) });
+  assert.deepEqual(written.map(([text, x]) => [text, x]), [["vase", 3 + 4], ["vase", 2 + 4]]);
+});
+
 test("what is as good as constant is a straight line", () => {
   const near = (found, ends) => found.forEach((x, k) => assert.ok(Math.abs(x - ends[k]) < 1e-9, `${found} is not ${ends}`));
   near(spanOf(18.56469, 18.56471, "N"), [-0.08 * 18.56471, 1.08 * 18.56471]);

@@ -67,5 +67,6 @@ def test_what_a_scene_shows_has_numbers_of_objects():
     render = parse_scene(text + "control { time 1 s }\n" + words).render
     told = shown(render, ("a", "b[1]", "b[2]"))
     assert told["arrows"] == [["contact", None, 0.1], ["force", [1, 2], None]] and told["plots"] == ["a.speed"]
-    assert told["trails"] == [[1, 1.0], [2, 1.0]] and told["labels"] == [[0, "x"]] and told["captions"] == [["c", None, 1.0]]
+    assert told["trails"] == [[1, 1.0], [2, 1.0]] and told["labels"] == [[[0], "x"]] and told["captions"] == [["c", None, 1.0]]
     assert shown(render, ("c",))["trails"] == []
+    assert shown(render, ("b[1]", "a.piece[1]", "a.piece[2]"))["labels"] == [[[1, 2], "x"]]

@@ -11,7 +11,7 @@ import numpy as np
 
 from ..results.trajectory import Trajectory
 from ..scene.formatting import number
-from ..scene.naming import objects_by_name
+from ..scene.naming import labelled, objects_by_name
 from ..scene.quantities import QUANTITIES
 from ..scene.render import Render
 from ..scene.shown import Arrows
@@ -119,6 +119,8 @@ class Overlay:
         self._layer = InkLayer(size, letters_of(size, finer), dark)
         self._tones, names = tones, list(trajectory.names)
         self._of_name = objects_by_name(names) if render.trail or render.label else {}
+        self._words = [(g, one.text) for one in render.label for g in labelled(self._of_name[one.name], names)]
+        self._reach = [_reach(trajectory.centers[0, group]) for group, _ in self._words]
         self._colors = object_colors(trajectory.metadata.colors, trajectory.metadata.still) / 255.0
         self._on_left = self._labels_on_left(own, view_at)
         told = [RunValues(run) for run in runs if run is not None]
@@ -135,7 +137,7 @@ class Overlay:
         self._arrows(view, frame)
         if self._render.label:
             skin = self._trajectory.metadata.skin
-            self._labels(view, *skin.boxes(skin.vertices(position, gone)))
+            self._labels(view, frame, *skin.boxes(skin.vertices(position, gone)))
         self._captions(float(self._trajectory.times[frame]))
         if self._curves:
             self._curves.show(float(self._trajectory.times[frame]))
@@ -182,10 +184,9 @@ class Overlay:
             self._layer.words((left + widest + 0.7 * letters, y), words, color=one.color)
 
     def _labels_on_left(self, own: Action, view_at: Callable[[float], View]) -> set[int]:
-        """Objects whose words cover less of others that move, and of room for curves, on the left of them than on the right, over
-        the run."""
-        letters, free = self._layer.letters, np.flatnonzero(own.free)
-        words = [(m, one.text) for one in self._render.label for m in self._of_name[one.name]]
+        """Numbers of words that cover less of others that move, and of room for curves, on the left of their object than on the
+        right, over the run."""
+        letters, free, words = self._layer.letters, np.flatnonzero(own.free), self._words
         room = self._size[0] * (1.0 - (COVERED if self._render.plot else 0.0))
         parts = np.array_split(self._trajectory.times, len(own.low))
         shown = np.unique(np.linspace(0, len(parts) - 1, LOOKS).astype(int))
@@ -195,26 +196,27 @@ class Overlay:
             points, _ = seen_at(view_at(float(parts[k].mean())), self._size, boxes)
             points = points.reshape(8, -1, 2)
             low, high = points.min(axis=0), points.max(axis=0)
-            for n, (m, text) in enumerate(words):
-                wide, y = WIDTH * letters * len(text), points[:, m, 1].mean()
-                for side, left in enumerate((high[m, 0] + BESIDE * letters, low[m, 0] - BESIDE * letters - wide)):
+            for n, (group, text) in enumerate(words):
+                wide, y = WIDTH * letters * len(text), points[:, group, 1].mean()
+                right, first = high[group, 0].max() + BESIDE * letters, low[group, 0].min() - BESIDE * letters
+                for side, left in enumerate((right, first - wide)):
                     across = np.minimum(high[free, 0], left + wide) - np.maximum(low[free, 0], left)
                     along = np.minimum(high[free, 1], y + 0.5 * letters) - np.maximum(low[free, 1], y - 0.5 * letters)
                     out = max(0.0, left + wide - room) + max(0.0, -left)
                     covered[side, n] += (np.clip(across, 0.0, None) * np.clip(along, 0.0, None)).sum() + out * letters
-        return {m for n, (m, _) in enumerate(words) if covered[1, n] < FEWER * covered[0, n]}
+        return {n for n in range(len(words)) if covered[1, n] < FEWER * covered[0, n]}
 
-    def _labels(self, view: View, low: np.ndarray, high: np.ndarray) -> None:
+    def _labels(self, view: View, frame: int, low: np.ndarray, high: np.ndarray) -> None:
         """Words beside the boxes of objects, whose corners are ``low`` and ``high`` [m], shape (O, 3)."""
         corner = np.array(np.unravel_index(np.arange(8), (2, 2, 2))).T
-        for one in self._render.label:
-            for m in self._of_name[one.name]:
-                points, ahead = seen_at(view, self._size, np.where(corner, high[m], low[m]))
-                if ahead.all():
-                    # Beside it: arrows often point up or down.
-                    left, beside = m in self._on_left, BESIDE * self._layer.letters
-                    x = points[:, 0].min() - beside if left else points[:, 0].max() + beside
-                    self._layer.words((x, points[:, 1].mean()), one.text, fontweight="bold", ha="right" if left else "left")
+        for n, (group, text) in enumerate(self._words):
+            near = np.array(group)[_near(self._trajectory.centers[frame, group], self._reach[n])]
+            points, ahead = seen_at(view, self._size, np.where(corner, high[near].max(axis=0), low[near].min(axis=0)))
+            if ahead.all():
+                # Beside it: arrows often point up or down.
+                left, beside = n in self._on_left, BESIDE * self._layer.letters
+                x = points[:, 0].min() - beside if left else points[:, 0].max() + beside
+                self._layer.words((x, points[:, 1].mean()), text, fontweight="bold", ha="right" if left else "left")
 
     def _captions(self, time: float) -> None:
         free = 1.0 - (COVERED if self._curves else 0.0)
@@ -234,6 +236,17 @@ class Overlay:
         self._layer.words((x, at[1]), "0")
         self._layer.words((x, at[1] + size[1]), f"≥ {number(tones.most)} {tones.unit}".rstrip())
         self._layer.words((at[0], at[1] + size[1] + 1.5 * letters), tones.name, fontweight="bold")
+
+
+def _reach(centres: np.ndarray) -> float:
+    """How far from the middle of all of these places [m], shape (n, 3), one of them is at most."""
+    return float(np.linalg.norm(centres - np.median(centres, axis=0), axis=1).max())
+
+
+def _near(centres: np.ndarray, reach: float) -> np.ndarray:
+    """Places that are about as near the middle of all as while these hang together, bool, shape (n,); one at least."""
+    away = np.linalg.norm(centres - np.median(centres, axis=0), axis=1)
+    return away <= max(1.3 * reach, away.min())
 
 
 def _vectors(lines: tuple[Arrows, ...], run: RunValues) -> list[_Vectors]:

@@ -6,6 +6,9 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator, Sequence
 
+PIECE = ".piece["
+"""Between the name of an object with pieces and the number of one."""
+
 
 def objects_by_name(names: Iterable[str]) -> dict[str, list[int]]:
     """Objects, from 0 and ascending, that a name stands for: one by its own name, all of a repeat by the name without index, a
@@ -44,6 +47,15 @@ def pairs_of(first: Sequence[int], second: Sequence[int]) -> Iterator[tuple[int,
         for j in second:
             if i < j or (j < i and not (i in both and j in both)):
                 yield min(i, j), max(i, j)
+
+
+def labelled(numbers: Iterable[int], names: Sequence[str]) -> list[list[int]]:
+    """Objects that have words together: the pieces of one object, any other alone."""
+    found: dict[str, list[int]] = {}
+    for number in numbers:
+        whole, piece, _ = names[number].rpartition(PIECE)
+        found.setdefault(whole if piece else names[number], []).append(number)
+    return list(found.values())
 
 
 def bare_name(name: str) -> str:

@@ -17,7 +17,7 @@ from ..errors import MdanimError, OutputError
 from ..picture.run_values import RunValues
 from ..results.quantities import quantity_of, unmeasured
 from ..results.trajectory import Trajectory
-from ..scene.naming import objects_by_name
+from ..scene.naming import labelled, objects_by_name
 from ..scene.quantities import GLOBALS, QUANTITIES, Asked
 from ..scene.render import Render
 from ..scene.schema import Observable
@@ -163,7 +163,7 @@ def shown(render: Render, names: tuple[str, ...]) -> dict:
     return {
         "arrows": arrows,
         "trails": [[m, one.time] for one in render.trail for m in of.get(one.name, [])],
-        "labels": [[m, one.text] for one in render.label for m in of.get(one.name, [])],
+        "labels": [[group, one.text] for one in render.label for group in labelled(of.get(one.name, []), names)],
         "captions": [[one.text, one.begin, one.end] for one in render.caption],
         "plots": [one.what for one in render.plot],
     }

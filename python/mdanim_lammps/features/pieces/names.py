@@ -5,6 +5,8 @@ from __future__ import annotations
 
 from typing import Any
 
+from ...scene.naming import PIECE
+
 
 def seed_of(v: Any, name: str) -> str:
     """Gives the seed that the pieces of an object follow from; v is the scene/validate.Validator."""
@@ -14,4 +16,4 @@ def seed_of(v: Any, name: str) -> str:
 
 def piece_name(whole: str, number: int) -> str:
     """``glass.piece[3]`` of piece 2, from 0."""
-    return f"{whole}.piece[{number + 1}]"
+    return f"{whole}{PIECE}{number + 1}]"

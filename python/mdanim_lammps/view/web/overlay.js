@@ -2,7 +2,7 @@
 // Things that are laid over the picture: arrows with their legend, trails, labels, captions; looks are those of picture/overlay.py.
 import { Vector3 } from "./vendor.js";
 import { number } from "./message.js";
-import { ARROW_UNITS, roundValue, rowsOf, usualScale } from "./quantities.js";
+import { ARROW_UNITS, median, roundValue, rowsOf, usualScale } from "./quantities.js";
 
 const COLORS = { velocity: "#1c66bf", force: "#333333", contact: "#cc1f24", weight: "#1f8533", spin: "#7d47ad" };
 const ON_DARK = { velocity: "#63a8ff", force: "#d8d8d8", contact: "#ff6b6b", weight: "#5fd67b", spin: "#c39bf0" };
@@ -12,7 +12,7 @@ const LEGEND = 4.5, HEAD = 3.2, HALF = 0.42; // length of an arrow of the legend
 
 export class Overlay {
   constructor(scene) {
-    Object.assign(this, { scene, words: true, only: null, trails: new Map(), ways: new Map(), arrows: [], fastest: 0 });
+    Object.assign(this, { scene, words: true, only: null, trails: new Map(), ways: new Map(), arrows: [], reach: [], fastest: 0 });
     this.ink = scene.dark ? "#f2f5f7" : "#212933";
     this.paper = scene.dark ? "#1f242b" : "#ffffff";
     this.middle = new Vector3(...scene.bounds[0]).add(new Vector3(...scene.bounds[1])).multiplyScalar(0.5);
@@ -53,7 +53,7 @@ export class Overlay {
     for (const one of this.arrows) this.vectors(one, frame);
     this.legend();
     if (!this.words) return;
-    for (const [k, text] of this.scene.shown.labels) this.label(k, text, frame);
+    this.scene.shown.labels.forEach(([group, text], n) => this.label(n, group, text, frame));
     const spoken = this.scene.shown.captions.filter(([, begin, end]) => frame.time >= (begin ?? 0) - 1e-9 && frame.time <= (end ?? Infinity) + 1e-9).reverse();
     spoken.forEach(([text], n) => this.write(text, width / 2, height * (0.9 - 0.06 * n), { size: 1.25, bold: true, align: "center" }));
   }
@@ -142,10 +142,14 @@ export class Overlay {
     });
   }
 
-  // Words beside the box of an object.
-  label(k, text, { object }) {
-    const [x, y, z, a, b, c] = object.subarray(12 * k, 12 * k + 6);
-    const corners = [0, 1, 2, 3, 4, 5, 6, 7].map((n) => this.at(x + (n & 1 ? a : 0), y + (n & 2 ? b : 0), z + (n & 4 ? c : 0)));
+  // Words beside the box of an object, or of those of its pieces that are as near their middle as any was so far.
+  label(number, group, text, { object }) {
+    const way = [0, 1, 2], at = (k, d) => object[12 * k + 6 + d], middle = way.map((d) => median(group.map((k) => at(k, d))));
+    const away = group.map((k) => Math.hypot(...way.map((d) => at(k, d) - middle[d])));
+    this.reach[number] = Math.min(this.reach[number] ?? Infinity, Math.max(...away));
+    const near = group.filter((_, n) => away[n] <= Math.max(1.3 * this.reach[number], Math.min(...away)));
+    const ends = way.map((d) => [Math.min(...near.map((k) => object[12 * k + d])), Math.max(...near.map((k) => object[12 * k + d] + object[12 * k + 3 + d]))]);
+    const corners = [0, 1, 2, 3, 4, 5, 6, 7].map((n) => this.at(...way.map((d) => ends[d][(n >> d) & 1])));
     if (corners.includes(null)) return;
     this.write(text, Math.max(...corners.map((p) => p[0])) + 0.4 * this.letters, corners.reduce((sum, p) => sum + p[1], 0) / 8, { bold: true });
   }

@@ -9,6 +9,7 @@ const USUAL = 0.14, AMONG = 0.95; // length of an arrow over the size of the sce
 const ROOM = 0.08, LEAST = 0.01; // room above and below curves over their span; span of an axis over the largest value at it, at least
 const NOTHING = 1e-9; // values below this share of the largest have no part in that
 
+export const median = (values) => { const some = [...values].sort((a, b) => a - b), half = some.length >> 1; return some.length % 2 ? some[half] : (some[half - 1] + some[half]) / 2; };
 const norm = (v, at = 0) => Math.hypot(v[at], v[at + 1], v[at + 2]);
 
 // Values of a word of MOTION from the places and velocities of a track.
