@@ -170,6 +170,9 @@ def test_what_is_refused(words, message, way_out):
 @pytest.mark.parametrize(
     ("words", "message", "way_out"),
     [
+        ("hold all velocity (1, 0, 0) m/s", "cube is held as a whole, and its velocity is not used", "drive velocity"),
+        ("hold all spin (0, 0, 3) rad/s", "cube is held as a whole, and its spin is not used", "drive turn"),
+        ("hold all drag 1 N*s/m", "cube is held as a whole, and its drag is not used", "leave out the drag or the hold"),
         ("hold all release 1 s velocity (1, 0, 0) m/s", "cube is held until 1 s, and its velocity is not used", "drive velocity"),
         ("hold all release 1 s spin (0, 0, 3) rad/s", "cube is held until 1 s, and its spin is not used", "drive turn"),
         ("hold all release 2 s", "cube is let go at 2 s, and the run ends at 2 s", "write an earlier time"),

@@ -9,11 +9,12 @@ import numpy as np
 import pytest
 from mdanim_lammps import Scene, Trajectory, UsageError
 from mdanim_lammps.errors import SceneError
+from mdanim_lammps.features.pieces.names import piece_name
 from mdanim_lammps.picture.curves import COVERED
 from mdanim_lammps.picture.drawn import drawn
 from mdanim_lammps.picture.framing import pixels_per_metre, seen_at
 from mdanim_lammps.picture.layer import InkLayer
-from mdanim_lammps.picture.overlay import _near, _round_value, room_for
+from mdanim_lammps.picture.overlay import _near, _reach, _round_value, room_for
 from mdanim_lammps.picture.plot import span_of
 from mdanim_lammps.picture.render import Painter
 from mdanim_lammps.picture.run_values import RunValues
@@ -21,6 +22,7 @@ from mdanim_lammps.picture.tones import Tones
 from mdanim_lammps.run.loop import write_start
 from mdanim_lammps.run.prepare import prepare
 from mdanim_lammps.scene.lock import lock_text
+from mdanim_lammps.scene.naming import labelled, objects_by_name
 from mdanim_lammps.scene.parse import parse_scene
 from mdanim_lammps.scene.quantities import Asked
 from mdanim_lammps.scene.render import Render, Standpoint
@@ -185,18 +187,17 @@ def test_words_stand_where_and_when_they_should(run):
     assert abs(x.min() - pixels[0, 0]) < 4 and abs(x.max() - pixels[-1, 0]) < 12 and abs(y.max() - pixels[0, 1]) < 4
 
 
-def test_an_object_in_pieces_has_its_words_once(tmp_path):
+def test_an_object_in_pieces_has_its_words_once():
     """Beside all of them while they hang together, however they have turned; then beside those that stay near their middle."""
-    text = "object vase { shape box (10, 10, 30) cm  material glass  pieces 6 }\nobject b { shape sphere 5 cm  density 9  elasticity rigid }\n"
-    scene = parse_scene(text + 'control { time 0.1 s }\nrender { label vase "glass"  label b "ball" }\n', "vase")
-    with Trajectory(write_start(prepare(scene), tmp_path)) as start, Painter(start, size=SIZE) as painter:
-        assert painter._overlay._words == [([0, 1, 2, 3, 4, 5], "glass"), ([6], "ball")]
-        places, reach = start.centers[0, :6], painter._overlay._reach[0]
-    turned = places[:, [2, 0, 1]] + (3.0, 0.0, 1.0)
+    names = [*(piece_name("vase", n) for n in range(6)), "b[1]", "b[2]"]
+    assert labelled(objects_by_name(names)["vase"], names) == [[0, 1, 2, 3, 4, 5]]
+    assert labelled(objects_by_name(names)["b"], names) == [[6], [7]]
+    places = np.array([(x, 0.0, z) for x in (0.0, 1.0) for z in (0.0, 1.5, 3.0)])
+    reach, turned = _reach(places), places[:, [2, 0, 1]] + (3.0, 0.0, 1.0)
     assert _near(turned, reach).all() and _near(places[:1], 0.0).all()
     away = np.where(np.arange(6)[:, None] == 2, turned + 9.0, turned)
     assert _near(away, reach).tolist() == [n != 2 for n in range(6)]
-    assert _near(9.0 * turned, reach).sum() >= 1
+    assert _near(9.0 * turned, reach).any()
 
 
 def test_copies_stay_where_things_were(run):
@@ -313,6 +314,22 @@ def test_what_cannot_be_shown_is_refused(line, message, hint):
         parse_scene(text)
     (problem,) = error.value.problems
     assert message in problem.message and hint in problem.hint and problem.span.line == 7
+
+
+@pytest.mark.parametrize(
+    ("line", "cause"),
+    [
+        ('caption "x" from 3 s to 4 s', "the caption begins at 3 s, and the run ends at 0.5 s"),
+        ("freeze 2 s", "the first copy would be left at 2 s, and the run ends at 0.5 s"),
+        ("color-by strain", "color-by strain shows nothing: no object deforms"),
+        ("color-by stress", "color-by stress shows nothing: no object deforms"),
+    ],
+)
+def test_what_would_not_be_seen_is_told(line, cause):
+    """A warning at its place; none where something can be seen."""
+    (warning,) = parse_scene(TEXT.replace("elasticity 1 MPa", "elasticity rigid") + f"render {{ {line} }}\n").warnings
+    assert warning.severity == "warning" and cause in warning.message and warning.span.line == 7 and warning.hint
+    assert not parse_scene(TEXT + f"render {{ {line.replace('3 s', '0.3 s').replace('freeze 2', 'freeze 0.2')} }}\n").warnings
 
 
 IN_A_LAKE = """

@@ -82,6 +82,20 @@ def check_render(v: Validator, block: EvaluatedBlock, render: Render) -> Render:
     return replace(render, plot=plots, arrows=tuple(arrows))
 
 
+def check_shown_in_time(v: Validator, control: Control | None, render: Render | None) -> None:
+    """Captions that begin, and copies that would be left, when the run has ended."""
+    if control is None or render is None:
+        return
+    (block,), ends = v.blocks("render")[:1], f"and the run ends at {number(control.time, 6)} s"
+    for s, one in zip(block.settings.get("caption", ()), render.caption):
+        if one.begin is not None and one.begin > control.time:
+            cause = f"the caption begins at {number(one.begin, 6)} s, {ends}"
+            v.problem(s.span(1), cause, "write an earlier time behind from", "warning")
+    if render.freeze is not None and render.freeze > control.time:
+        cause = f"the first copy would be left at {number(render.freeze, 6)} s, {ends}"
+        v.problem(render.spans["freeze"], cause, "write a shorter time", "warning")
+
+
 def _known_other(v: Validator, subject: str, word: str, other: str, span: Span, takes: str) -> bool:
     """Another object, the world, or what objects touch besides each other."""
     if not takes:

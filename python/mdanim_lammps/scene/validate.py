@@ -15,7 +15,7 @@ from ..errors import Span
 from ..features import facets
 from . import keywords
 from . import scene as records
-from .asked import ASKED, asked_for, check_render
+from .asked import ASKED, asked_for, check_render, check_shown_in_time
 from .evaluated import EvaluatedBlock, EvaluatedSetting, around
 from .formatting import number, say, whole
 from .keywords import BLOCKS, KEYWORDS, Block, did_you_mean, example, examples
@@ -95,6 +95,7 @@ class Validator:
         for facet in facets("places"):
             facet.check(self, held)
         held["control"] = control = self.frames(control, held["render"])
+        check_shown_in_time(self, control, held["render"])
         self.cameras()
         top |= asked_for(self, control)
         enough = [block for block in BLOCKS.values() if block.enough]

@@ -3,6 +3,9 @@
 
 from __future__ import annotations
 
+from typing import Any
+
+from ...scene.holding import all_held
 from ...scene.schema import Rule, setting
 
 SWITCHES = {"air-drag": "an object's `drag`"}
@@ -18,3 +21,16 @@ class DragWords:
 
 
 OBJECT = DragWords
+
+
+def check_object(v: Any, block: Any, solid: Any) -> Any:
+    """Air slows what can move."""
+    if all_held(solid) and solid.drag:
+        cause = f"{solid.name} is held as a whole, and its drag is not used"
+        v.problem(
+            solid.spans["drag"], cause, f"leave out the drag or the hold{block.where}", "warning", ("drag", id(block.group))
+        )
+    return solid
+
+
+CHECKS = {"object": check_object}

@@ -174,11 +174,14 @@ def check_object(v: Any, block: Any, solid: Any) -> Any:
         if isinstance(one, DriveOscillation) and not one.frequency > 0.0:
             _no_frequency(v, s, one)
     _check_keys(v, keys, solid)
-    if lets_go(solid) and holds_all(solid.hold):
+    if holds_all(solid.hold):
+        how, end = "as a whole", f", or leave out the hold or the {{}}{block.where}"
+        if lets_go(solid):
+            how, end = f"until {number(solid.release, 6)} s", ", which it keeps when it is let go"
         for word, drive in (("velocity", "velocity (1, 0, 0) m/s"), ("spin", "turn (0, 0, 3) rad/s")):
             if (s := block.first(word)) is not None and any(getattr(solid, word)):
-                cause = f"{solid.name} is held until {number(solid.release, 6)} s, and its {word} is not used"
-                v.problem(s.span(), cause, f"write drive {drive}, which it keeps when it is let go", severity="warning")
+                cause = f"{solid.name} is held {how}, and its {word} is not used"
+                v.problem(s.span(), cause, f"write drive {drive}{end.format(word)}", "warning", ("held", word, id(block.group)))
     return solid
 
 

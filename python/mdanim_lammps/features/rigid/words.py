@@ -90,6 +90,7 @@ def check(v: Any, top: Mapping, held: Mapping) -> None:
     _check_thickness(v, held)
     _check_paper(v, held)
     _check_sleep(v, top, held)
+    _check_colors(v, held)
 
 
 def _check_thickness(v: Any, held: Mapping) -> None:
@@ -124,6 +125,15 @@ def _check_sleep(v: Any, top: Mapping, held: Mapping) -> None:
     if not rigid or not any(map(any, (top.get("gravity", ()), *(g for _, g in top.get("gravity_path", ()))))):
         cause = f"sleep does nothing: {'there is no gravity' if rigid else 'no object that can move is rigid'}"
         v.problem(control.spans["sleep"], cause, "leave it out", severity="warning", key="sleep")
+
+
+def _check_colors(v: Any, held: Mapping) -> None:
+    """Colours of strain and stress are of what deforms."""
+    render, solids = held["render"], held["solids"]
+    word = render.color_by.value if render is not None and render.color_by else ""
+    if solids and word in ("strain", "stress") and all(isinstance(s.elasticity, Rigid) or all_held(s) for s in solids):
+        cause = f"color-by {word} shows nothing: no object deforms, as all are rigid or held"
+        v.problem(render.spans["color-by"], cause, "write color-by speed, or give an object an elasticity", "warning")
 
 
 CHECKS = {"object": check_object}
