@@ -19,6 +19,7 @@ from ..results.trajectory import Trajectory
 from ..results.trajectory_metadata import TrajectoryMetadata, springs_gone
 from ..results.untrusted import check_places
 from ..scene.keywords import did_you_mean
+from .stiff import StiffMotion, stiff_motion
 
 GREY = (0.5, 0.5, 0.5)
 """Colour of what a feature adds without one."""
@@ -223,6 +224,11 @@ class Cut:
         vertices = vertices[self._order]
         made = [(vertices[a:b], normals[a:b]) for a, b in zip(self._first, self._first[1:])]
         return made + [shape_of(one, self.trajectory, frame) for one in self._drawn]
+
+    @cached_property
+    def motion(self) -> StiffMotion:
+        """Motion of the objects, the first ones of `bodies`, that keep their shape."""
+        return stiff_motion(map(self.position, self.frames), self.metadata.first)
 
     @property
     def sheds_drops(self) -> bool:

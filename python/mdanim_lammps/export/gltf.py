@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""glTF 2.0 in one binary file. Its only way to bend a mesh over time are morph targets: each frame is one, as the
-difference to the first frame, and an animation lets one after the other count."""
+"""glTF 2.0 in one binary file. What keeps its shape is a node that moves and turns. The format bends a mesh over time by morph
+targets alone: each frame is one, as the difference to the first frame, and an animation lets one after the other count."""
 
 from __future__ import annotations
 
@@ -23,9 +23,11 @@ VERTICES, INDICES = 34962, 34963
 
 
 def write(cut: Cut, folder: Path, stem: str, on_frame: Callable[[int], None]) -> list[str]:
-    start, total = cut.surfaces(cut.frames[0]), len(cut.frames)
-    vertices = sum(len(v) for v, _ in start)
-    expected = 24 * vertices * total + 4 * total**2
+    start, total, motion = cut.surfaces(cut.frames[0]), len(cut.frames), cut.motion
+    stiff = np.append(motion.keeps, np.zeros(len(start) - len(motion.keeps), bool))
+    bent = np.flatnonzero(~stiff)
+    vertices = sum(len(start[n][0]) for n in bent)
+    expected = 24 * vertices * total + (4 * total**2 if len(bent) else 0) + 28 * total * stiff.sum()
     if expected > LARGEST:
         fewer = int(np.ceil(expected / LARGEST)) + 1
         raise UsageError(
@@ -36,32 +38,33 @@ def write(cut: Cut, folder: Path, stem: str, on_frame: Callable[[int], None]) ->
     with open(part, "wb") as file:
         out = _Buffer(file)
         meshes = []
-        for body, (x, normal) in zip(cut.bodies, start):
-            attributes = {"POSITION": out.add(x, FLOAT, VERTICES, bounds=True), "NORMAL": out.add(normal, FLOAT, VERTICES)}
+        for n, (body, (x, normal)) in enumerate(zip(cut.bodies, start)):
+            about = motion.centre[0, n] if stiff[n] else 0.0
+            attributes = {
+                "POSITION": out.add(x - about, FLOAT, VERTICES, bounds=True),
+                "NORMAL": out.add(normal, FLOAT, VERTICES),
+            }
             if body.paint is not None:
                 attributes["COLOR_0"] = out.add(np.column_stack([linear(body.paint / 255.0), np.ones(len(x))]), FLOAT, VERTICES)
             index = out.add(body.triangle.ravel().astype(np.uint32), UINT, INDICES)
-            meshes.append({"attributes": attributes, "indices": index, "material": 0, "targets": []})
+            meshes.append({"attributes": attributes, "indices": index, "material": 0})
+            if total > 1 and not stiff[n]:
+                meshes[n]["targets"] = []
         for done, frame in enumerate(cut.frames[1:], 1):
-            for mesh, (x, normal), (x0, normal0) in zip(meshes, cut.surfaces(frame), start):
-                mesh["targets"].append(
+            now = cut.surfaces(frame) if len(bent) else []
+            for n in bent:
+                (x, normal), (x0, normal0) = now[n], start[n]
+                meshes[n]["targets"].append(
                     {
                         "POSITION": out.add(x - x0, FLOAT, VERTICES, bounds=True),
                         "NORMAL": out.add(normal - normal0, FLOAT, VERTICES),
                     }
                 )
             on_frame(done)
-        animation = []
-        if total > 1:
-            times = out.add((cut.times - cut.times[0]).astype(np.float32), FLOAT, bounds=True)
-            weights = out.add(np.eye(total, dtype=np.float32)[:, 1:].ravel(), FLOAT)
-            animation = [
-                {
-                    "name": "run",
-                    "samplers": [{"input": times, "output": weights, "interpolation": "LINEAR"}],
-                    "channels": [{"sampler": 0, "target": {"node": n + 1, "path": "weights"}} for n in range(len(meshes))],
-                }
-            ]
+        nodes = [{"name": body.name, "mesh": n} for n, body in enumerate(cut.bodies)]
+        for n in np.flatnonzero(stiff):
+            nodes[n]["translation"] = motion.centre[0, n].tolist()
+        animation = _animation(cut, stiff, out) if total > 1 else []
     materials, known = [], {}
     for mesh, body in zip(meshes, cut.bodies):
         key = (body.color if body.paint is None else (1.0, 1.0, 1.0), body.clear)
@@ -77,11 +80,9 @@ def write(cut: Cut, folder: Path, stem: str, on_frame: Callable[[int], None]) ->
         "asset": {"version": "2.0", "generator": "mdanim-lammps"},
         "scene": 0,
         "scenes": [{"nodes": [0]}],
-        "nodes": [turned, *({"name": body.name, "mesh": n} for n, body in enumerate(cut.bodies))],
+        "nodes": [turned, *nodes],
         "meshes": [
-            {"name": body.name, "primitives": [mesh], "weights": [0.0] * (total - 1)}
-            if total > 1
-            else {"name": body.name, "primitives": [{k: v for k, v in mesh.items() if k != "targets"}]}
+            {"name": body.name, "primitives": [mesh]} | ({"weights": [0.0] * (total - 1)} if "targets" in mesh else {})
             for body, mesh in zip(cut.bodies, meshes)
         ],
         "materials": materials,
@@ -99,8 +100,11 @@ def write(cut: Cut, folder: Path, stem: str, on_frame: Callable[[int], None]) ->
         shutil.copyfileobj(data, file)
     part.unlink()
     on_frame(total)
+    ways = [f"{stiff.sum()} objects that keep their shape move and turn as nodes"] if stiff.any() else []
+    if len(bent) and total > 1:
+        ways.append(f"{total - 1} morph targets for {len(bent)} meshes; between frames positions are mixed linearly")
     return [
-        f"{total - 1} morph targets for {len(meshes)} meshes; between frames positions are mixed linearly",
+        *ways,
         "lengths are metres; the root node turns z to y, which is up in glTF",
         *(
             ["drops of the liquid are left out: their number changes, and a mesh of glTF keeps its points"]
@@ -108,6 +112,30 @@ def write(cut: Cut, folder: Path, stem: str, on_frame: Callable[[int], None]) ->
             else []
         ),
     ]
+
+
+def _animation(cut: Cut, stiff: np.ndarray, out: _Buffer) -> list[dict]:
+    """One animation of all nodes: places and rotations of what keeps its shape, weights of all else."""
+    total, motion = len(cut.frames), cut.motion
+    times = out.add((cut.times - cut.times[0]).astype(np.float32), FLOAT, bounds=True)
+    samplers, channels = [], []
+
+    def follow(node: int, path: str, sampler: int) -> None:
+        channels.append({"sampler": sampler, "target": {"node": node, "path": path}})
+
+    def sample(values: np.ndarray) -> int:
+        samplers.append({"input": times, "output": out.add(values, FLOAT), "interpolation": "LINEAR"})
+        return len(samplers) - 1
+
+    if not stiff.all():
+        weights = sample(np.eye(total, dtype=np.float32)[:, 1:].ravel())
+        for n in np.flatnonzero(~stiff).tolist():
+            follow(n + 1, "weights", weights)
+    for n in np.flatnonzero(stiff).tolist():
+        for path, values in (("translation", motion.centre[:, n]), ("rotation", motion.rotation[:, n])):
+            if np.ptp(values, axis=0).any():
+                follow(n + 1, path, sample(values))
+    return [{"name": "run", "samplers": samplers, "channels": channels}] if channels else []
 
 
 class _Buffer:

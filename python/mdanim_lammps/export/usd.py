@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""USD: a mesh with time samples for each object and the liquid, drops, materials by colour, camera and light. Metres, z up."""
+"""USD: a mesh for each object and the liquid, drops, materials by colour, camera and light. What keeps its shape moves and turns;
+all else has its points in each frame. Metres, z up."""
 
 from __future__ import annotations
 
@@ -54,7 +55,7 @@ def write(cut: Cut, folder: Path, stem: str, on_frame: Callable[[int], None]) ->
         if key not in materials:
             materials[key] = _material(stage, f"/scene/materials/material_{len(materials)}", body, Sdf, UsdShade)
         UsdShade.MaterialBindingAPI.Apply(mesh.GetPrim()).Bind(materials[key])
-        meshes.append((mesh.GetPointsAttr(), mesh.GetNormalsAttr(), mesh.GetExtentAttr()))
+        meshes.append(mesh)
     drops = None
     if cut.sheds_drops:
         drops = UsdGeom.Points.Define(stage, f"/scene/{_free_name(f'{cut.liquid.name}_drops', used)}")
@@ -63,12 +64,18 @@ def write(cut: Cut, folder: Path, stem: str, on_frame: Callable[[int], None]) ->
     render = record.render if record else Render()
     _camera(stage, cut, render)
     _lights(stage, render)
+    start, motion = cut.surfaces(cut.frames[0]), cut.motion
+    stiff = np.append(motion.keeps, np.zeros(len(start) - len(motion.keeps), bool))
+    for n in np.flatnonzero(stiff):
+        _shape(meshes[n], start[n][0] - motion.centre[0, n], start[n][1], array)
+        _follow(meshes[n], motion.centre[:, n], motion.rotation[:, n], codes)
+    bent = np.flatnonzero(~stiff)
     waiting = 0
     for done, (frame, code) in enumerate(zip(cut.frames, codes), 1):
-        for (points, normals, extent), (vertices, normal) in zip(meshes, cut.surfaces(frame)):
-            points.Set(array(vertices), code)
-            normals.Set(array(normal), code)
-            extent.Set(array([vertices.min(axis=0), vertices.max(axis=0)]), code)
+        now = cut.surfaces(frame) if len(bent) else []
+        for n in bent:
+            vertices, normal = now[n]
+            _shape(meshes[n], vertices, normal, array, code)
             waiting += 24 * len(vertices)
         if drops:
             now = cut.drops(frame)
@@ -81,6 +88,23 @@ def write(cut: Cut, folder: Path, stem: str, on_frame: Callable[[int], None]) ->
         on_frame(done)
     _save(stage, stem)
     return [f"one time code is a frame, {rate:g} of them a second; lengths are metres, z is up"]
+
+
+def _shape(mesh, vertices: np.ndarray, normal: np.ndarray, array: Callable, *code: float) -> None:
+    """The surface at a time code, or at all times."""
+    mesh.GetPointsAttr().Set(array(vertices), *code)
+    mesh.GetNormalsAttr().Set(array(normal), *code)
+    mesh.GetExtentAttr().Set(array([vertices.min(axis=0), vertices.max(axis=0)]), *code)
+
+
+def _follow(mesh, centre: np.ndarray, rotation: np.ndarray, codes: np.ndarray) -> None:
+    """Places, shape (F, 3), and quaternions, shape (F, 4), of a surface about its centre."""
+    from pxr import Gf
+
+    place, turn = mesh.AddTranslateOp(), mesh.AddOrientOp()
+    for code, at, (*axis, w) in zip(codes, centre.tolist(), rotation.tolist()):
+        place.Set(Gf.Vec3d(*at), code)
+        turn.Set(Gf.Quatf(w, *axis), code)
 
 
 def _free_name(wanted: str, used: set[str]) -> str:

@@ -9,13 +9,12 @@ from functools import lru_cache
 import numpy as np
 
 from ...picture.drawn import Drawn
-from ...scene.scene import Sphere
 from .rows import BROKEN, DRAWN, FIELD, FIRST, KIND, SECOND, SIZE
 
 BALL = 0.55
 """Radius of the ball over the thinnest part of what it joins: it stands out of a rod that it is in the middle of."""
-FINE = 0.5
-"""Size of its triangles over the radius."""
+FINE = 2
+"""Times that the triangles of an icosahedron are cut in four for it: 162 points."""
 TURNS, EACH = 12, 12
 """Turns of a coil, and points of each."""
 WIDE = 0.1
@@ -49,9 +48,10 @@ def drawn(trajectory):
 
 
 def _balls(rows: Callable, which: np.ndarray, size: np.ndarray) -> Drawn:
-    from ...model.shapes import surface
+    import pyvista as pv
 
-    point, triangle = surface(Sphere(1.0), FINE)
+    ball = pv.Icosphere(radius=1.0, nsub=FINE)
+    point, triangle = np.asarray(ball.points, float), ball.regular_faces
     radius = BALL * size[:, None, None]
     triangles = (triangle[None] + len(point) * np.arange(len(which))[:, None, None]).reshape(-1, 3).astype(np.int32)
 
