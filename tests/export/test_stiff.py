@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What keeps its shape is a mesh that moves and turns, in glTF and USD."""
+"""Meshes that move and turn, in glTF and USD, of what keeps its shape."""
 
 import json
 import struct
@@ -33,7 +33,7 @@ def turned(q: np.ndarray, x: np.ndarray) -> np.ndarray:
 
 
 def test_rotations_are_found():
-    """Of flat and solid bodies, half turns too; what bends, mirrors itself, or is on a line keeps no shape."""
+    """Rotations of flat and solid bodies, half turns too; what bends, mirrors itself, or is on a line keeps no shape."""
     rng = np.random.default_rng(3)
     body, flat, line = rng.normal(size=(7, 3)), rng.normal(size=(5, 3)) * [1, 1, 0], np.arange(3.0)[:, None] * [1, 2, 3]
     turns = [np.array([0, 0, 0, 1.0]), np.array([0, 0, 1.0, 0]), np.array([0.6, 0, 0.8, 0]), np.array([0.5, -0.5, 0.5, 0.5])]
