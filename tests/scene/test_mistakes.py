@@ -26,6 +26,14 @@ MISTAKES = [
     ("a joint without its word", "weld a b\n" + text(), 1, 1, "weld is a kind of joint", "write joint weld A B { ... }"),
     ("ground that is not a floor", "ground y 0 m\n" + text(), 1, 8, "ground cannot be followed by 'y'", "write ground z 0 m"),
     ("colour with a hyphen", text(color="light-blue"), 6, 9, "'light-blue' is not a colour", "did you mean 'lightblue'?"),
+    ("a camera that only looks", text() + "render { camera look ball }\n", 8, 17, "'from' is missing in camera, found 'look'",
+     "write camera from (4, -4, 2) m look NAME, or camera follow NAME"),
+    ("a unit before its number", text().replace("time 3 s", "time 3 s friction 0.5 fps 30"), 7, 37, "'30' follows another value",
+     "a unit comes behind its number: write frames, then 30 fps"),
+    ("a label with times", text() + 'render { label ball "x" from 0 s }\n', 8, 25, "'from' cannot follow here; label is complete",
+     "a label has no times"),
+    ("energy of an object", text() + "record ball.energy\n", 8, 8, "energy is not a quantity of ball",
+     "write kinetic, potential or elastic"),
     ("negative", text(mass="-2 kg"), 4, 8, "mass must be > 0, found -2 kg", ""),
     ("zero", text(shape="sphere 0 m"), 2, 16, "r of sphere must be > 0, found 0 m", ""),
     ("negative edge", text(shape="box (1, -1, 1) m"), 2, 13, "ly of shape box must be > 0", ""),
@@ -289,6 +297,15 @@ def test_all_problems_of_a_line_in_one_pass(control, columns):
     with pytest.raises(SceneError) as error:
         parse_scene(text().replace(CONTROL, f"control {{ {control} }}\n"))
     assert {p.column for p in error.value.problems} == columns, str(error.value)
+
+
+def test_names_in_pictures_are_told_beside_other_problems():
+    """Whatever else of the block cannot be read."""
+    for wrong in ("label ball hello", "size (0, 3)"):
+        with pytest.raises(SceneError) as error:
+            parse_scene(text() + f"render {{ plot bal.speed  trail bal  {wrong} }}\n")
+        told = [p.message for p in error.value.problems]
+        assert told[:2] == ["no object is called bal"] * 2 and len(told) == 3, told
 
 
 def test_a_mistake_in_a_repeat_is_told_once():

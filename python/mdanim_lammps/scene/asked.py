@@ -64,22 +64,27 @@ def check_render(v: Validator, block: EvaluatedBlock, render: Render) -> Render:
             for s in block.settings.get(word, ())[:1]:
                 cause = f"{word} needs an object, and the scene has none"
                 v.problem(s.span(), cause, "take it out; a curve is  plot liquid.height(0.2 m, 0 m)")
-    for word, at in (("arrows", 1), ("trail", 0), ("label", 0)):
-        for s in block.settings.get(word, ()):
-            if s.values[at] is not None and s.values[at] not in v.named:
-                v.known_object(s.values[at], s.span(at), v.named)
+    plots = shown(v, block)
     for s in block.settings.get("caption", ()):
         _, begin, end = s.values
         if end is not None and end <= (begin or 0.0):
             cause = f"the caption ends at {number(end, 6)} s and begins at {number(begin or 0.0, 6)} s"
             v.problem(s.span(2), cause, "write the earlier time first")
-    plots = (quantity(v, s.values[0], s.span(0)) for s in block.settings.get("plot", ()))
-    plots = tuple(dict.fromkeys(filter(None, plots)))
     if len(units_of := dict.fromkeys(of.unit for of in plots)) > MOST_PANELS:
         cause = f"curves of {len(units_of)} units are asked for, and a picture has room for {MOST_PANELS} panels"
         v.problem(block.settings["plot"][-1].span(), cause, "leave some out; record takes any number")
     arrows = (replace(one, span=s.span()) for one, s in zip(render.arrows, block.settings.get("arrows", ())))
     return replace(render, plot=plots, arrows=tuple(arrows))
+
+
+def shown(v: Validator, block: EvaluatedBlock) -> tuple[Asked, ...]:
+    """The quantities of curves; names in a ``render`` block that there are not are problems, also where others make it none."""
+    for word, at in (("arrows", 1), ("trail", 0), ("label", 0)):
+        for s in block.settings.get(word, ()):
+            if s.values[at] is not None and s.values[at] not in v.named:
+                v.known_object(s.values[at], s.span(at), v.named)
+    plots = (quantity(v, s.values[0], s.span(0)) for s in block.settings.get("plot", ()))
+    return tuple(dict.fromkeys(filter(None, plots)))
 
 
 def check_shown_in_time(v: Validator, control: Control | None, render: Render | None) -> None:

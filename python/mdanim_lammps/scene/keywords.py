@@ -137,6 +137,9 @@ MEANT = {
 MISPLACED = {
     "expect within": "a tolerance is written as +-, e.g. = 2 m/s +- 2 %",
     **{f"expect {over}": f"it stands first, e.g. expect {over} ball.speed < 3 m/s" for over in OVER},
+    "label from": 'a label has no times: leave them out, or write caption "..." from ...',
+    "label to": 'a label has no times: leave them out, or write caption "..." to ...',
+    "camera look": "write camera from (4, -4, 2) m look NAME, or camera follow NAME",
     **{f"{word} ,": f"one quantity in a line: write {word} again for the next" for word in ("record", "plot")},
     **{at: way_out for words in facets("words") for at, way_out in getattr(words, "MISPLACED", {}).items()},
 }

@@ -63,6 +63,8 @@ def meant(kind: str, word: str, near: Callable[[str, list[str]], str]) -> str:
     if other := next((k for k in GLOBALS if (k, word) in QUANTITIES), None):
         takes = QUANTITIES[other, word].takes
         return f"it belongs to {other}: write {other}.{word}{TAKEN[takes][1] if takes else ''}"
+    if kind == "NAME" and word == "energy":
+        return "write kinetic, potential or elastic"
     return near(word, known)
 
 

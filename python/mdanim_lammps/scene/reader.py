@@ -231,7 +231,8 @@ class Reader:
                 if not inside and (self.more or closed or ".." in self.stops):
                     return None
                 hint = f"write {self.slot.text}, with commas" if "," in self.slot.text else "an operator or a comma is missing"
-                raise Fault(t, f"'{t}' follows another value", hint)
+                before = self.tokens[self.at - 1]
+                raise Fault(t, f"'{t}' follows another value", self._turned(before, t) if before == "fps" else hint)
         elif t.type == "LPAR" and inside:
             raise Fault(t, "an operator is missing before this (", "multiply with *")
         elif t.type == "MOD" and after_unit:
@@ -273,8 +274,7 @@ class Reader:
             if known:
                 cure = f"write a product of units with *: {self.tokens[self.at - 1]}*{t}"
                 if (number := self.ahead(1)).type == "NUMBER":
-                    word = "frames" if t == "fps" else "a word that says what it is"
-                    cure = f"a unit comes behind its number: write {word}, then {number} {t}"
+                    cure = self._turned(t, number)
                 raise Fault(t, f"the unit '{t}' follows another unit", cure)
             if not inside:
                 return False
@@ -288,6 +288,12 @@ class Reader:
         if t in self.names and last.type != "SLASH":
             raise Fault(t, f"an operator is missing before '{t}'", "multiply with *")
         raise Fault(t, f"'{t}' is not a unit{what}", units.suggest_unit(str(t), dim))
+
+    @staticmethod
+    def _turned(unit: Token, number: Token) -> str:
+        """Hint where a unit stands before its number."""
+        word = "frames" if unit == "fps" else "a word that says what it is"
+        return f"a unit comes behind its number: write {word}, then {number} {unit}"
 
     def _unit_part(self, operator: Token) -> Token:
         """The unit after * or / of a unit."""

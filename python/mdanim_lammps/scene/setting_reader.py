@@ -182,7 +182,8 @@ class SettingReader(Reader):
             t = self.peek
             if isinstance(part, Word):
                 if part.text != t and not (part.text == "+-" and t.type == "PLUS_MINUS"):
-                    raise Fault(t, f"'{part.text}' is missing in {keyword.name}, found {t.found()}", example_of(keyword, words))
+                    hint = MISPLACED.get(f"{keyword.name} {t}") or example_of(keyword, words)
+                    raise Fault(t, f"'{part.text}' is missing in {keyword.name}, found {t.found()}", hint)
                 words.append(str(self.take()))
             elif isinstance(part, OptionalPart):
                 first = part.parts[0]
@@ -193,7 +194,8 @@ class SettingReader(Reader):
                 else:
                     following = parts[n + 1].text if n + 1 < len(parts) else None
                     present = t.type not in ("NEWLINE", "END", "RBRACE") and t != following
-                    present = present and not (following is None and str(t) in KEYWORDS[keyword.block])
+                    others = KEYWORDS[keyword.block] if following is None else literals(keyword.form)
+                    present = present and str(t) not in others
                 if present:
                     self.match(part.parts, keyword, words, values, parts[n + 1] if n + 1 < len(parts) else behind)
                 else:

@@ -15,7 +15,7 @@ from ..errors import Span
 from ..features import facets
 from . import keywords
 from . import scene as records
-from .asked import ASKED, asked_for, check_render, check_shown_in_time
+from .asked import ASKED, asked_for, check_render, check_shown_in_time, shown
 from .evaluated import EvaluatedBlock, EvaluatedSetting, around
 from .formatting import number, say, whole
 from .keywords import BLOCKS, KEYWORDS, Block, did_you_mean, example, examples
@@ -96,6 +96,9 @@ class Validator:
             facet.check(self, held)
         held["control"] = control = self.frames(control, held["render"])
         check_shown_in_time(self, control, held["render"])
+        if held["render"] is None:
+            for block in self.blocks("render")[:1]:
+                shown(self, block)
         self.cameras()
         top |= asked_for(self, control)
         enough = [block for block in BLOCKS.values() if block.enough]
