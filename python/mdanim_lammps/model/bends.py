@@ -9,6 +9,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+BLUNT = 0.3
+"""As in `plugin/tearing/bend_law.h`."""
+
 
 @dataclass(frozen=True, eq=False)
 class BendLine:
@@ -65,7 +68,3 @@ def curvatures(ring: BendRing, x: np.ndarray) -> np.ndarray:
     size = np.sqrt(normal @ normal + (BLUNT * 2.0 * ring.area) ** 2)
     normal *= np.sqrt(1.0 + BLUNT**2) / size
     return np.array([np.array(line.weight) @ (x[list(line.particle)] - x[ring.middle]) @ normal for line in ring.lines])
-
-
-BLUNT = 0.3
-"""As in `plugin/tearing/bend_law.h`."""

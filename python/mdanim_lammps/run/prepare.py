@@ -100,9 +100,8 @@ def _prepare(scene: SceneRecord, spacing: Spacing, allow_unstable: bool) -> Prep
     ]
     problems += _unmeasurable(resolved) + _undriven(resolved, models)
     if problems:
-        raise SceneError(
-            sorted([*problems, *scene.warnings], key=lambda problem: problem.order)
-        )  # a wrong scale comes before where it leads
+        # A wrong scale comes before where it leads.
+        raise SceneError(sorted([*problems, *scene.warnings], key=lambda problem: problem.order))
     context = _context(resolved, models, spacing, grid)
     if any(model.held.all() and not len(model.hexahedron) for model in models) and any(
         e.needs_inside(context) for e in resolved.effects

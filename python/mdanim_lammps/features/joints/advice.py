@@ -98,23 +98,25 @@ def _upside_down(envelope: Envelope) -> Iterator[tuple[list[int], float]]:
     up = -np.array(scene.gravity) / g
     weight = np.add.reduceat(system.mass, system.first[:-1])
     centre = np.add.reduceat(system.mass[:, None] * system.position, system.first[:-1]) / weight[:, None]
-    bodies: dict[tuple[int, ...], list[Link]] = {}
+    bodies: dict[int, list[Link]] = {}  # by the first objects of what is welded
     for link in links.all:
         for m in link.ends:
-            bodies.setdefault(tuple(links.whole_of.get(m, [m])), []).append(link)
-    for whole, own in bodies.items():
-        middle = np.average(centre[list(whole)], axis=0, weights=weight[list(whole)])
+            bodies.setdefault(links.whole_of.get(m, [m])[0], []).append(link)
+    for first, own in bodies.items():
+        whole = links.whole_of.get(first, [first])
+        middle = np.average(centre[whole], axis=0, weights=weight[whole])
         size = max(np.linalg.norm(centre[m] - middle) + radius(scene.solids[m].shape) for m in whole)
-        points = [_hung(link, whole, centre, up) for link in own if not {link.first, link.second} <= set(whole)]
+        members = set(whole)
+        points = [_hung(link, members, centre, up) for link in own if not {link.first, link.second} <= members]
         if not all(system.rigid[m] for m in whole) or not points or any(p is None for p in points):
             continue
         apart = np.array(points) - points[0]
         height = float(((middle - np.array(points)) @ up).min())
         if height > HIGHER * size and np.linalg.svd(apart, compute_uv=False)[1:].max(initial=0.0) <= IN_LINE * size:
-            yield list(whole), height
+            yield whole, height
 
 
-def _hung(link: Link, whole: tuple[int, ...], centre: np.ndarray, up: np.ndarray) -> np.ndarray | None:
+def _hung(link: Link, whole: set[int], centre: np.ndarray, up: np.ndarray) -> np.ndarray | None:
     """The point by which a joint carries a body from above; None for another joint."""
     first = link.first in whole
     point, other = (link.begin, link.second) if first else (link.end, link.first)

@@ -74,11 +74,12 @@ class Glue(Effect):
     def doubts(self, context, run):
         """Notes on objects that did not break, with the stress that they bore."""
         found = []
+        hangs, stress = (run.trajectory.field(name, len(run.times) - 1) for name in (WHOLE, BORE))
         for begin, end in wholes(context.scene):
             solid = context.scene.solids[begin]
-            if len(np.unique(run.trajectory.field(WHOLE, len(run.times) - 1)[begin:end])) > 1:
+            if len(np.unique(hangs[begin:end])) > 1:
                 continue
-            bore, whole = float(run.trajectory.field(BORE, len(run.times) - 1)[begin:end].max()), solid.shape.whole
+            bore, whole = float(stress[begin:end].max()), solid.shape.whole
             cause = f"{whole.name} bore up to {say(bore, 'Pa')} of {say(solid.strength, 'Pa')} and did not break"
             ways = [f"write strength {say(float(number(0.5 * bore, 2)), 'Pa')}"] if bore > 0.0 else []
             ways += ["let it fall from higher"]

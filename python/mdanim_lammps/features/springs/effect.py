@@ -78,11 +78,11 @@ class Springs(Effect):
         return turning(envelope)
 
     def weighed(self, scene, system):
-        """What springs that hold each other without load store [J], of which the energy is told without it."""
+        """Give what springs store that hold each other without load [J]; the energy is told without it."""
         return float(system.preload_energy.sum())
 
     def energy(self, readings):
-        stored = float(readings.system.preload_energy.sum())
+        stored = self.weighed(readings.context.scene, readings.system)
         return readings.elastic_energy() - stored + change_of_energy(readings) + energy_of_growth(readings)
 
     def clocks(self, readings):

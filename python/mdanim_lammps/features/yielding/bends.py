@@ -59,8 +59,18 @@ def first_values(context: Context, field: Field) -> np.ndarray:
     system, found = context.system, np.zeros((context.system.particles, *field.shape))
     for m, (model, solid) in enumerate(zip(context.system_models, context.solids)):
         if is_layer(solid):
-            for ring, slot, bend in zip(rings(model), _slots(model)[0], first_bends(model)):
-                found[system.first[m] + ring.middle, slot : slot + len(bend)] = bend
+            own = _first_values(model)
+            found[system.first[m] : system.first[m + 1], : own.shape[1]] = own
+    return found
+
+
+@once_for(lambda model: model)
+def _first_values(model: Model) -> np.ndarray:
+    """The same of one object, with room for its own lines, shape (n, K)."""
+    slots, most = _slots(model)
+    found = np.zeros((len(model.position), most))
+    for ring, slot, bend in zip(rings(model), slots, first_bends(model)):
+        found[ring.middle, slot : slot + len(bend)] = bend
     return found
 
 
@@ -104,9 +114,9 @@ def strain(context: Context, m: int, fields: Fields) -> float:
     """Largest strain of the faces of a sheet by what it is bent for good, t/2 times the change of a curvature [-]."""
     if fields.get(BENT) is None or not is_layer(context.solids[m]):
         return 0.0
-    own = slice(*context.system.first[m : m + 2])
-    start = first_values(context, Field(BENT, "1/m", shape=np.shape(fields[BENT])[1:]))
-    return 0.5 * context.solids[m].shape.thickness * float(np.abs(np.asarray(fields[BENT])[own] - start[own]).max(initial=0.0))
+    own, start = slice(*context.system.first[m : m + 2]), _first_values(context.system_models[m])
+    change = np.asarray(fields[BENT])[own, : start.shape[1]] - start
+    return 0.5 * context.solids[m].shape.thickness * float(np.abs(change).max(initial=0.0))
 
 
 def stiffness(model: Model, solid: Any) -> np.ndarray:
