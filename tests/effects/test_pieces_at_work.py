@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 from mdanim_lammps.engine.instance import Instance
 from mdanim_lammps.errors import SceneError
-from mdanim_lammps.model import cut, shapes
+from mdanim_lammps.model import cut, cut_concave, shapes
 from mdanim_lammps.model.inertia import tensor
+from mdanim_lammps.model.mesh import MeshError
 from mdanim_lammps.run.loop import simulate
 from mdanim_lammps.scene.lock import lock_text
 from mdanim_lammps.scene.parse import parse_scene
@@ -71,6 +72,15 @@ def test_what_is_not_convex_is_cut(shape):
     cut_off = sum(p.surface.area for p in found.pieces) - body.area
     assert 2.0 * sum(face.area for face in found.faces) == pytest.approx(cut_off, rel=1e-5)
     assert {n for face in found.faces for n in (face.a, face.b)} == set(range(len(found.pieces)))
+
+
+def test_ends_that_meet_none_are_refused():
+    """They would not be glued: the piece would fall off."""
+    corners = np.array([[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]])
+    ends = {(0, 1): [(0, corners)], (1, 0): [(1, corners)]}
+    assert len(cut_concave._met(ends, 1.0)) == 1
+    with pytest.raises(MeshError, match="not alike"):
+        cut_concave._met(ends | {(1, 0): [(1, 0.9 * corners)]}, 1.0)
 
 
 def test_a_tin_of_glass_is_rigid(prepared):

@@ -170,8 +170,9 @@ def _merged(points: np.ndarray, triangles: np.ndarray, near: float) -> np.ndarra
 
 
 def _met(ends: dict[tuple[int, int], list[tuple[int, np.ndarray]]], size: float) -> list[CommonFace]:
-    """Faces that two pieces have in common, from the flat ends of pieces towards other cells, triangles (T, 3, 3) [m]."""
-    found = []
+    """Faces that two pieces have in common, from the flat ends of pieces towards other cells, triangles (T, 3, 3) [m]. Raises
+    MeshError where an end meets none: no glue would hold it."""
+    found: list[CommonFace] = []
     for (cell, other), own in sorted(ends.items(), key=lambda item: item[0]):
         if cell > other:
             continue
@@ -180,6 +181,9 @@ def _met(ends: dict[tuple[int, int], list[tuple[int, np.ndarray]]], size: float)
                 (area, at), (area_b, at_b) = (_area_and_middle(corners) for corners in (one, two))
                 if np.linalg.norm(at - at_b) <= SAME * size and abs(area - area_b) <= SAME * max(area, area_b):
                     found.append(common_face(a, b, -1, -1, one))
+    total = sum(_area_and_middle(corners)[0] for own in ends.values() for _, corners in own)
+    if 2.0 * sum(face.area for face in found) < (1.0 - SAME) * total:
+        raise MeshError("the ends of two pieces are not alike", WAY_OUT)
     return found
 
 
