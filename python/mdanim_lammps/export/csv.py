@@ -85,7 +85,7 @@ def elastic(system: System, position: np.ndarray, gone: np.ndarray | None = None
     i, j = system.spring.T
     stretch = np.linalg.norm(position[i] - position[j], axis=1) - system.rest - grown
     energy = 0.5 * system.stiffness * stretch**2 - system.preload_energy + system.preload * grown
-    found = np.bincount(system.object[i], energy, len(system.names))
+    found = np.bincount(system.object[i], energy, len(system.names)).astype(float)  # integers where there is no spring
     if gone is not None:
         found[np.unique(system.object[gone[:, 0]])] = np.nan
     return found
