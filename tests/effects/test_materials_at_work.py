@@ -76,3 +76,23 @@ def test_what_is_rigid_by_material_is_told_in_one_short_line(prepared):
     (note,) = [n for n in certificate.notes if "rigid by material" in n.message]
     assert note.message == "rigid by material: a and 1 more (steel), c (oak)" and not note.hint
     assert [line for line in note_lines(certificate) if "c (oak)  [" in line]
+
+
+BALL = "ground z 0\nobject ball { shape sphere 10 cm  position (0, 0, 1) m  elasticity rigid  friction 1 "
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        (f"gravity (0, 0, -9.81)\n{BALL}mass 500 kg }}\n", "ball: 119 366 kg/m^3, and gold has 19 300"),
+        (f"gravity (0, 0, -9.81)\n{BALL}mass 0.1 g }}\n", "ball: 0.0239 kg/m^3, and air has 1.2"),
+        (f"gravity (0, 0, 9.81)\n{BALL}mass 4 kg }}\n", "gravity points up, and the ground is below"),
+        (f"gravity (0, 0, -9.81)\n{BALL}mass 80 kg }}\n", ""),
+    ],
+    ids=["too heavy", "too light", "upward", "lead"],
+)
+def test_masses_and_gravity_that_are_likely_mistyped(prepared, text, told):
+    """A note with a way out; none on what materials have."""
+    notes = [f"{note.message} {note.hint}" for note in prepared(text + "control { time 0.1 s }\n").certificate.notes]
+    assert [note for note in notes if told in note and ("kg/m^3" in note or "write gravity (0, 0, -9.81) m/s^2" in note)] == notes
+    assert len(notes) == bool(told), notes

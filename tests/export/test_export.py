@@ -13,12 +13,8 @@ from command_line import call
 from mdanim_lammps import Scene, Trajectory, open_universe
 from mdanim_lammps.errors import OutputError, UsageError
 from mdanim_lammps.export import FORMATS
-from mdanim_lammps.export.csv import elastic
 from mdanim_lammps.export.write import export
-from mdanim_lammps.model.build import build_models
-from mdanim_lammps.model.system import assemble
 from mdanim_lammps.results.ledger import Ledger
-from mdanim_lammps.scene.parse import parse_scene
 
 pytestmark = pytest.mark.filterwarnings("error")
 
@@ -491,12 +487,3 @@ def test_pages_name_every_format(page):
     """As a word of its own."""
     text = (Path(__file__).parents[2] / page).read_text(encoding="utf-8")
     assert not [name for name in FORMATS if not re.search(rf"\b{name}\b", text)]
-
-
-def test_rigid_objects_have_no_elastic_energy():
-    """Where a scene has no spring at all it is 0, not left out."""
-    text = "object a { shape box (1, 1, 1) cm  position (0, 0, 1) m  density 900  elasticity rigid }\ncontrol { time 1 s }\n"
-    scene = parse_scene(text)
-    system = assemble(build_models(scene, inside=False), scene)
-    energy = elastic(system, np.zeros((system.particles, 3)))
-    assert len(system.spring) == 0 and energy.tolist() == [0.0] and energy.dtype == float

@@ -8,9 +8,13 @@ import numpy as np
 import pytest
 from mdanim_lammps import Scene
 from mdanim_lammps.export import export
+from mdanim_lammps.export.csv import elastic
 from mdanim_lammps.export.cut import Cut
 from mdanim_lammps.export.stiff import stiff_motion
+from mdanim_lammps.model.build import build_models
+from mdanim_lammps.model.system import assemble
 from mdanim_lammps.results.trajectory import Trajectory
+from mdanim_lammps.scene.parse import parse_scene
 
 TEXT = """object top { shape box (8, 6, 4) cm position (0, 0, 1) m mass 1 kg elasticity rigid velocity (1, 2, 0) spin (9, 40, 3) }
 object jelly { shape box (6, 6, 6) cm position (1, 0, 1) m density 1000 elasticity 10 kPa spin (0, 0, 30) rad/s }
@@ -94,3 +98,12 @@ def test_usd_moves_it(folder, tmp_path):
         for frame in (0, 5, 8):
             matrix = np.array(mesh.ComputeLocalToWorldTransform(frame))
             np.testing.assert_allclose(points @ matrix[:3, :3] + matrix[3, :3], cut.surfaces(frame)[0][0], atol=1e-6)
+
+
+def test_rigid_objects_have_no_elastic_energy():
+    """Where a scene has no spring at all it is 0, not left out."""
+    text = "object a { shape box (1, 1, 1) cm  position (0, 0, 1) m  density 900  elasticity rigid }\ncontrol { time 1 s }\n"
+    scene = parse_scene(text)
+    system = assemble(build_models(scene, inside=False), scene)
+    energy = elastic(system, np.zeros((system.particles, 3)))
+    assert len(system.spring) == 0 and energy.tolist() == [0.0] and energy.dtype == float
