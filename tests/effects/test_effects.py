@@ -269,7 +269,7 @@ def test_walls_of_a_basin_go_on_upward(prepared):
     assert commands(prepared(pool()), "basin")[0] == "region basin block 0.0 1.0 0.0 0.8 0.0 INF"
 
 
-@pytest.mark.parametrize(("model", "part"), [("waves", 0.15), ("surface", 1.0)])
+@pytest.mark.parametrize(("model", "part"), [("waves", 0.06), ("surface", 1.0)])
 def test_drag_of_a_liquid_is_a_rate(prepared, model, part):
     """Take gamma as it is written; by default sqrt(g/L) with the edge of the cube of equal volume, a part of it beside waves."""
     plan = prepared(pool(f"level 0.25 m\n model {model}")).plan

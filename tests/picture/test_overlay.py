@@ -298,7 +298,7 @@ def test_on_a_dark_background_in_final_quality(run):
         ("label ball", "nothing follows ball", ""),
         ("plot ball.sped", "sped is not a quantity of ball", "did you mean 'speed'?"),
         ("plot post.draft", "post.draft needs a liquid block", ""),
-        ('caption "x" from 2 s to 1 s', "the caption ends at 1 s and begins at 2 s", "earlier time first"),
+        ('caption "x" from 0.2 s to 0.1 s', "the caption ends at 0.1 s and begins at 0.2 s", "earlier time first"),
         ("freeze 0 s", "freeze must be > 0, found 0", ""),
         ("color-by heat", "'heat' is not one of the choices of color-by", ""),
         ("plot ball.speed plot ball.position.z", "", ""),

@@ -93,8 +93,8 @@ def test_pieces_are_not_in_each_other(prepared, size, pieces):
     assert len(system.hexahedron) == pieces and Geometry(system).sunk(system.position) is None
 
 
-def test_a_concave_mesh_of_one_cell(prepared, tmp_path):
-    """Its cell is all that is known of where it is: nothing is in it that is beside it, and all that is in its middle."""
+def test_a_concave_mesh_without_cells_is_not_judged(prepared, tmp_path):
+    """The box around its eight particles tells too little of where it is: energies alone stop a run in which it is in another."""
     points, triangles = rigid_meshes.profile([(0, 0), (0.1, 0), (0.1, 0.1), (0.05, 0.097), (0, 0.1)], 0.1)
     write(tmp_path / "dent.obj", points, triangles)
     text = f"""object a {{ shape mesh "{tmp_path}/dent.obj" scale 1  position (0, 0, 0) m  density 300
@@ -104,6 +104,6 @@ def test_a_concave_mesh_of_one_cell(prepared, tmp_path):
     """
     system = prepared(text).system
     x, geometry = system.position.copy(), Geometry(system)
-    assert np.diff(geometry.first_cell)[0] == 1 and geometry.sunk(x) is None
+    assert np.diff(geometry.first_cell)[0] == 0 and geometry.sunk(x) is None
     x[system.first[1] :] -= (0.2, 0, 0)
-    assert set(geometry.sunk(x) or ()) == {0, 1}
+    assert geometry.sunk(x) is None

@@ -28,7 +28,18 @@ LEAST_TASK = 4000.0
 PASS, DAMPED_PASS = 30.0, 40.0
 """Nanoseconds that a thread takes for a particle's step in a pass, without and with dashpots, as plugin/passes/range_cut.h has
 them."""
-STANDARD = frozenset(f"mdanim/{style}" for style in ("air", "drive", "folds", "inflate", "joint", "rigid", "tear", "yield"))
+STANDARD = frozenset(
+    (
+        "mdanim/air",
+        "mdanim/drive",
+        "mdanim/folds",
+        "mdanim/inflate",
+        "mdanim/joint",
+        "mdanim/rigid",
+        "mdanim/tear",
+        "mdanim/yield",
+    )
+)
 """Styles of fixes that have no part in passes: beside them LAMMPS takes its standard steps."""
 MOST_THREADS = 32
 """Team::MOST_TASKS of plugin/threads/team.h."""
