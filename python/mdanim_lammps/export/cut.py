@@ -231,6 +231,11 @@ class Cut:
         return stiff_motion(map(self.position, self.frames), self.metadata.first)
 
     @property
+    def stiff(self) -> np.ndarray:
+        """Which of `bodies` keep their shape in all frames: objects alone, bool."""
+        return np.append(self.motion.keeps, np.zeros(len(self.bodies) - len(self.objects), bool))
+
+    @property
     def sheds_drops(self) -> bool:
         """Whether there is a liquid that drops may fly from."""
         return self.liquid is not None and self.liquid.most_drops > 0

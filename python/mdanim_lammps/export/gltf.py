@@ -24,7 +24,7 @@ VERTICES, INDICES = 34962, 34963
 
 def write(cut: Cut, folder: Path, stem: str, on_frame: Callable[[int], None]) -> list[str]:
     start, total, motion = cut.surfaces(cut.frames[0]), len(cut.frames), cut.motion
-    stiff = np.append(motion.keeps, np.zeros(len(start) - len(motion.keeps), bool))
+    stiff = cut.stiff
     bent = np.flatnonzero(~stiff)
     vertices = sum(len(start[n][0]) for n in bent)
     expected = 24 * vertices * total + (4 * total**2 if len(bent) else 0) + 28 * total * stiff.sum()

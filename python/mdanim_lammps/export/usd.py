@@ -65,7 +65,7 @@ def write(cut: Cut, folder: Path, stem: str, on_frame: Callable[[int], None]) ->
     _camera(stage, cut, render)
     _lights(stage, render)
     start, motion = cut.surfaces(cut.frames[0]), cut.motion
-    stiff = np.append(motion.keeps, np.zeros(len(start) - len(motion.keeps), bool))
+    stiff = cut.stiff
     for n in np.flatnonzero(stiff):
         _shape(meshes[n], start[n][0] - motion.centre[0, n], start[n][1], array)
         _follow(meshes[n], motion.centre[:, n], motion.rotation[:, n], codes)
