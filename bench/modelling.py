@@ -7,6 +7,7 @@ python bench/modelling.py masses     moments of inertia, and what their fit cost
 python bench/modelling.py shapes     how well cells fill round bodies
 python bench/modelling.py spacings   impulses where two spacings meet
 python bench/modelling.py forecast   processor seconds and memory that are told before modelling, and those it took
+python bench/modelling.py held       processor seconds of modelling and of the run, of scenes of held bodies
 python bench/modelling.py goals      the same of meshes of 30 000 particles (3 s at most) and of 1.8 million (15 s)
 """
 
@@ -24,7 +25,9 @@ ROOT = Path(__file__).parent.parent
 sys.path.insert(0, str(ROOT / "tests" / "lab"))
 
 from mdanim_lammps.errors import SceneError  # noqa: E402
-from mdanim_lammps.model import build_models, check_geometry, shapes  # noqa: E402
+from mdanim_lammps.model import shapes  # noqa: E402
+from mdanim_lammps.model.build import build_models  # noqa: E402
+from mdanim_lammps.model.overlap import check_geometry  # noqa: E402
 from mdanim_lammps.scene.scene import Box, Mesh, Sphere  # noqa: E402
 from model_samples import SHAPES, model, scene, shape_id, solid  # noqa: E402
 
@@ -90,8 +93,8 @@ MESHES = {"tests": f"{ROOT}/tests/lab/meshes", "scenes": f"{ROOT}/scenes/meshes"
 
 def told(name: str, size: float) -> None:
     """Print one row; runs in a process of its own."""
-    from mdanim_lammps.model import plan_spacing, work
-    from mdanim_lammps.model.spacing import estimate_particles
+    from mdanim_lammps.model import work
+    from mdanim_lammps.model.spacing import estimate_particles, plan_spacing
     from mdanim_lammps.run.prepare import prepare
     from mdanim_lammps.scene.parse import parse_scene
 
@@ -227,9 +230,38 @@ def spacings() -> None:
         print(f"| {name} | {rows[0]:.3f} | {rows[1]:.3f} | {rows[2]:.3f} | {residual:.1e} |", flush=True)
 
 
+HELD = ("helter", "marbles", "marble_lift", "shaker")
+
+
+def held() -> None:
+    """With libraries loaded by a scene before; seconds of the process that reads mesh files count."""
+    import tempfile
+
+    from mdanim_lammps import Scene
+
+    def spent() -> float:
+        child = resource.getrusage(resource.RUSAGE_CHILDREN)
+        return time.process_time() + child.ru_utime + child.ru_stime
+
+    print("| scene | objects | modelling [s] | of it reading meshes [s] | run [s] | modelling over both |")
+    print("|---|---|---|---|---|---|", flush=True)
+    with tempfile.TemporaryDirectory() as folder:
+        scenes = {name: Scene.load(ROOT / "scenes" / f"{name}.txt") for name in ("barge", *HELD)}
+        scenes.pop("barge").prepared  # noqa: B018  for its libraries
+        for name, case in scenes.items():
+            start, alone = spent(), time.process_time()
+            objects = len(case.prepared.system.names)
+            took, alone = spent() - start, time.process_time() - alone
+            case.run(f"{folder}/{name}")
+            ran = spent() - start - took
+            reading = f"{max(0.0, took - alone):.2f}"
+            print(f"| {name} | {objects} | {took:.2f} | {reading} | {ran:.2f} | {took / (took + ran):.2f} |", flush=True)
+
+
 if __name__ == "__main__":
     parts = {
         "cost": cost,
+        "held": held,
         "spacings": spacings,
         "physics": physics,
         "masses": masses,

@@ -40,11 +40,11 @@ def threads_of_tests():
 @pytest.fixture(scope="session", autouse=True)
 def meshes_read_here():
     """Mesh files are read by this process: the start of one of their own takes longer than most tests that have a mesh."""
-    from mdanim_lammps.model import mesh_reader
+    from mdanim_lammps.model import mesh_contents, mesh_reader
 
     apart = mesh_reader._read_apart
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(mesh_reader, "_read_apart", mesh_reader.contents)
+        patch.setattr(mesh_reader, "_read_apart", lambda paths: list(map(mesh_contents.contents, paths)))
         yield apart
 
 

@@ -15,7 +15,8 @@ from .effects import Verdict
 from .effects.kept import records_of
 from .engine.threads import ThreadChoice
 from .errors import DivergedError, problem_json
-from .model import plan_spacing, work
+from .model import work
+from .model.spacing import plan_spacing
 from .results.cost import Cost
 from .results.timeline import Timeline
 from .results.trajectory_file import trajectory_bytes

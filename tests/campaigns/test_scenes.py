@@ -9,7 +9,7 @@ from contextlib import contextmanager
 import pytest
 from campaign import rounds
 from mdanim_lammps.errors import MdanimError, SceneError
-from mdanim_lammps.model import plan_spacing
+from mdanim_lammps.model.spacing import plan_spacing
 from mdanim_lammps.run.prepare import prepare
 from mdanim_lammps.scene.keywords import KEYWORDS
 from mdanim_lammps.scene.lock import lock_text

@@ -3,7 +3,7 @@
 
 import numpy as np
 from mdanim_lammps.errors import Span
-from mdanim_lammps.model import build_models
+from mdanim_lammps.model.build import build_models
 from mdanim_lammps.scene.scene import (
     Box,
     Cone,

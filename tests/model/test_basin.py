@@ -13,7 +13,8 @@ from mdanim_lammps.effects import resolve
 from mdanim_lammps.errors import SceneError, Span
 from mdanim_lammps.features.liquid import basin
 from mdanim_lammps.features.liquid.record import Current, Inflow, Liquid, LiquidModel
-from mdanim_lammps.model import build_models, shapes
+from mdanim_lammps.model import shapes
+from mdanim_lammps.model.build import build_models
 from mdanim_lammps.model.spacing import choose_spacing
 from mdanim_lammps.model.system import assemble
 from mdanim_lammps.run.prepare import prepare

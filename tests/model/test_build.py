@@ -8,7 +8,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from mdanim_lammps.errors import SceneError
-from mdanim_lammps.model import Layer, build_models, shapes
+from mdanim_lammps.model import shapes
+from mdanim_lammps.model.build import build_models
+from mdanim_lammps.model.model import Layer
 from mdanim_lammps.scene.scene import Box, Cylinder, HoldAll, HoldFaces, HoldWithin, Mesh, Side, Sphere, SpringConstant, Young
 from model_samples import SHAPES, assert_closed, model, rotation, scene, shape_id, solid
 from paths import REPOSITORY

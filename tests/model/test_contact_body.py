@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 from mdanim_lammps.effects import Effect
 from mdanim_lammps.engine.sub_plan import SubPlans
-from mdanim_lammps.model import build_models, contact_body, shapes
+from mdanim_lammps.model import contact_body, shapes
+from mdanim_lammps.model.build import build_models
 from mdanim_lammps.model.cells import fill_cells
 from mdanim_lammps.model.contact_body import DENSE, FINE, FLAT, SHARP, BodyFrame, make_contact_body
 from mdanim_lammps.model.distance import distance, grid_distance

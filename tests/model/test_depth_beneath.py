@@ -7,7 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from mdanim_lammps.bodies import kind_of
-from mdanim_lammps.model import build_models, shapes
+from mdanim_lammps.model import shapes
+from mdanim_lammps.model.build import build_models
 from mdanim_lammps.model.spread import spread
 from mdanim_lammps.scene.scene import Cylinder, Ellipsoid, HoldAll, Sphere, Torus
 from model_samples import ROPE, SHEET, scene, solid

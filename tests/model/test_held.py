@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 from mdanim_lammps.errors import SceneError
-from mdanim_lammps.model import build_models
+from mdanim_lammps.model.build import build_models
 from mdanim_lammps.model.inertia import tensor
 from mdanim_lammps.model.shapes import extent
 from mdanim_lammps.model.system import assemble

@@ -6,9 +6,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
-from mdanim_lammps.model import Layer
 from mdanim_lammps.model.embed import _faces
 from mdanim_lammps.model.lattice import CORNERS, OFFSETS, Cells, make_lattice
+from mdanim_lammps.model.model import Layer
 from mdanim_lammps.scene.scene import Box
 from model_samples import assert_closed, enclosed_volume, model
 from twin import lattice as twin

@@ -4,7 +4,8 @@
 import numpy as np
 import pytest
 from mdanim_lammps.features.springs.effect import spring_norm
-from mdanim_lammps.model import build_models, masses, shapes
+from mdanim_lammps.model import masses, shapes
+from mdanim_lammps.model.build import build_models
 from mdanim_lammps.model.lattice import cells_around
 from mdanim_lammps.model.masses import HEAVIEST, STEPS, exposed, inertia, pairwise
 from mdanim_lammps.model.system import assemble

@@ -7,7 +7,7 @@ import sys
 
 import numpy as np
 import pytest
-from mdanim_lammps.model import mesh, mesh_reader, shapes
+from mdanim_lammps.model import mesh, mesh_contents, mesh_reader, shapes
 from mdanim_lammps.model.cells import fill_cells
 from mdanim_lammps.model.crossings import crossings
 from mdanim_lammps.model.mesh_formats import UnreadableMesh
@@ -189,7 +189,7 @@ def test_large_and_irregular_files_are_not_opened(tmp_path):
 @pytest.mark.usefixtures("meshes_read_apart")
 def test_files_are_read_by_a_process_of_their_own(monkeypatch):
     """It hands on what a file holds, and says what is wrong with one; its time is bounded, and this one outlives it."""
-    ours, theirs = (find(MESHES / "mixed.obj") for find in (mesh_reader.contents, mesh_reader.read_polygons))
+    ours, theirs = (find(MESHES / "mixed.obj") for find in (mesh_contents.contents, mesh_reader.read_polygons))
     for field in ("points", "count", "index", "color", "names", "part"):
         np.testing.assert_array_equal(getattr(ours, field), getattr(theirs, field))
     told = {

@@ -13,7 +13,9 @@ from mdanim_lammps.features.contact.words import ContactModel
 from mdanim_lammps.features.liquid.record import Liquid
 from mdanim_lammps.features.rigid.words import Rigid
 from mdanim_lammps.features.walls.words import Walls
-from mdanim_lammps.model import build_models, check_geometry, overlap, shapes
+from mdanim_lammps.model import overlap, shapes
+from mdanim_lammps.model.build import build_models
+from mdanim_lammps.model.overlap import check_geometry
 from mdanim_lammps.scene.scene import Box, Cylinder, Ellipsoid, HoldAll, Mesh, Sphere, Torus
 from model_samples import MESHES, SHAPES, rotation, scene, shape_id, solid
 

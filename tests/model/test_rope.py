@@ -5,7 +5,8 @@ import math
 
 import numpy as np
 import pytest
-from mdanim_lammps.model import build_models, shapes
+from mdanim_lammps.model import shapes
+from mdanim_lammps.model.build import build_models
 from mdanim_lammps.model.inertia import tensor
 from mdanim_lammps.model.tube import Tubes, frames, make_tube
 from mdanim_lammps.picture.surfaces import shaded_mesh

@@ -8,7 +8,8 @@ import pytest
 import sheet_cases
 from mdanim_lammps.features.sheets.drawn import both_sides
 from mdanim_lammps.features.sheets.weave import weave
-from mdanim_lammps.model import build_models, shapes
+from mdanim_lammps.model import shapes
+from mdanim_lammps.model.build import build_models
 from mdanim_lammps.model.distance import distance
 from mdanim_lammps.scene.scene import HoldFaces, Sheet, Side
 from model_samples import SHEET, rotation, scene, solid

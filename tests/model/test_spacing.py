@@ -7,9 +7,11 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from mdanim_lammps.errors import SceneError
 from mdanim_lammps.features.liquid.record import Liquid
-from mdanim_lammps.model import build, build_models, plan_spacing, shapes, spacing
+from mdanim_lammps.model import build, shapes, spacing
+from mdanim_lammps.model.build import build_models
 from mdanim_lammps.model.cells import TooThin, _without_nubs, box_counts, fill_cells
 from mdanim_lammps.model.limits import bounding_cells
+from mdanim_lammps.model.spacing import plan_spacing
 from mdanim_lammps.model.springs import MAX_ASPECT
 from mdanim_lammps.scene.parse import parse_scene
 from mdanim_lammps.scene.scene import Accuracy, Box, Cone, Cylinder, HoldAll, Mesh, Sphere

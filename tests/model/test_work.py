@@ -3,7 +3,8 @@
 
 import pytest
 from mdanim_lammps.bodies import kind_of
-from mdanim_lammps.model import build_models, shapes, work
+from mdanim_lammps.model import shapes, work
+from mdanim_lammps.model.build import build_models
 from mdanim_lammps.scene.scene import Box, Cone, Cylinder, Ellipsoid, Mesh, Sphere, Torus
 from model_samples import MESHES, scene, solid
 

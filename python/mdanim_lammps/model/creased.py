@@ -10,7 +10,7 @@ import numpy as np
 from ..scene.scene import Mesh, PieceShape
 from . import mesh
 from .polyhedron import hull
-from .triangles import areas
+from .triangles import areas, edge_keys
 
 MOST_TRIANGLES = 1_000_000
 """Triangles of a mesh up to which its features are found."""
@@ -33,10 +33,8 @@ def is_clean(body: mesh.Triangles) -> bool:
     size = float(np.linalg.norm(np.ptp(body.points, axis=0)))
     if areas(body.points, body.triangles).min() <= LEAST_AREA * size**2:
         return False
-    first, second = body.triangles, np.roll(body.triangles, -1, axis=1)
-    edge = (first.astype(np.int64) * len(body.points) + second).ravel()
-    back = (second.astype(np.int64) * len(body.points) + first).ravel()
-    return len(np.unique(edge)) == len(edge) and np.array_equal(np.sort(edge), np.sort(back))
+    edge, back = (np.sort(edge_keys(triangles, directed=True)) for triangles in (body.triangles, body.triangles[:, ::-1]))
+    return bool((np.diff(edge) > 0).all()) and np.array_equal(edge, back)
 
 
 @lru_cache(maxsize=256)

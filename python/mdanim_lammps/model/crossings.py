@@ -22,15 +22,20 @@ def crossings(
     low, high = points[:, :2].min(axis=0), points[:, :2].max(axis=0)
     # Slightly displaced, so that a line does not hit a vertex on a lattice of round numbers.
     lines = lines + 1e-9 * np.array([0.5772156649, 0.3819660113]) * (high - low)
+    low, high = np.maximum(low, lines.min(axis=0)), np.minimum(high, lines.max(axis=0))
+    a, b, c = (points[corner, :2] for corner in triangles.T)
+    least, most = np.minimum(np.minimum(a, b), c), np.maximum(np.maximum(a, b), c)
+    near = np.flatnonzero(((least <= high) & (most >= low)).all(axis=1))
+    if not len(near):
+        return
     bins = int(np.clip(np.sqrt(len(lines)), 1, 1024))
     to_bin = bins / np.maximum(high - low, np.finfo(float).tiny)
     column, row = (((lines - low) * to_bin).clip(0, bins - 1).astype(np.int64)).T
     order = np.argsort(row * bins + column, kind="stable")
     first = np.searchsorted((row * bins + column)[order], np.arange(bins * bins + 1))
 
-    a, b, c = (points[corner, :2] for corner in triangles.T)
-    c0, r0 = ((np.minimum(np.minimum(a, b), c) - low) * to_bin).clip(0, bins - 1).astype(np.int64).T
-    c1, r1 = ((np.maximum(np.maximum(a, b), c) - low) * to_bin).clip(0, bins - 1).astype(np.int64).T
+    c0, r0 = ((least[near] - low) * to_bin).clip(0, bins - 1).astype(np.int64).T
+    c1, r1 = ((most[near] - low) * to_bin).clip(0, bins - 1).astype(np.int64).T
     # The bins of one row that a triangle may touch are one stretch of the sorted lines.
     triangle, row = _ranges(r0, r1 + 1)
     start, stop = first[row * bins + c0[triangle]], first[row * bins + c1[triangle] + 1]
@@ -38,7 +43,7 @@ def crossings(
     cuts = np.searchsorted(pairs, np.arange(0, pairs[-1], batch))
     for a, b in zip(cuts, np.append(cuts[1:], len(pairs))):
         stretch, at = _ranges(start[a:b], stop[a:b])
-        yield _hits(points, triangles, lines, order[at], triangle[a:b][stretch])
+        yield _hits(points, triangles, lines, order[at], near[triangle[a:b][stretch]])
 
 
 def _ranges(start: np.ndarray, stop: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

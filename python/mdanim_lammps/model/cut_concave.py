@@ -15,7 +15,7 @@ from . import mesh, vtk_surface
 from .creased import is_clean
 from .cut import CommonFace, Piece, common_face, voronoi
 from .mesh import MeshError, Triangles
-from .triangles import areas, connected, edges, volume_and_centre
+from .triangles import areas, connected, edge_keys, volume_and_centre
 
 TRIES = 8
 """Seeds that are tried."""
@@ -104,8 +104,8 @@ def _clipped(body: Triangles, planes: dict[int, np.ndarray]) -> tuple[np.ndarray
     size = float(np.linalg.norm(np.ptp(body.points, axis=0)))
     triangles = _merged(points, _closed(points, _merged(points, triangles, ROUNDING * size), SMALL * size), ONE_PLACE * size)
     triangles = _turned(points, triangles, LEAST_AREA * size**2)
-    edge = np.sort(edges(triangles), axis=1)
-    if len(edge) != 2 * len(np.unique(edge, axis=0)):
+    edge = edge_keys(triangles)
+    if len(edge) != 2 * len(np.unique(edge)):
         raise MeshError("the surface of a piece does not close", WAY_OUT)
     return points, triangles
 

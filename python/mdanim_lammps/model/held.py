@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from ..scene.scene import Box, Mesh, Shape, Solid, Sphere
+from ..scene.scene import Shape, Solid
 from . import shapes
 from .cells import fill_cells
 from .contact_body import BodyFrame
@@ -39,16 +39,15 @@ class _Placed:
     frame: BodyFrame
 
 
-def held_model(solid: Solid, h: float, shared: Any) -> Model:
+def held_model(solid: Solid, h: float, shared: Any, bare: bool = False) -> Model:
     """The model of an object that is held as a whole, with the cells of its contact h [m] wide.
 
     The drawn surface is that of its lattice: each vertex is a weighted sum of the eight corners. ``shared`` makes what equal
-    objects share (build.SharedParts). A cuboid, a ball or a mesh whose contact is found elsewhere has a surface of one cell, and
-    counts as resolved with h.
+    objects share (build.SharedParts). A ``bare`` one, whose contact is found elsewhere, has a surface of one cell, and counts as
+    resolved with h.
 
     Raises cells.TooThin, mesh.MeshError.
     """
-    bare = shared.by_features and isinstance(solid.shape, Box | Sphere | Mesh)
     placed = shared.once(_placed, solid.shape, math.inf if bare else h, tuple(map(tuple, solid.rotation)))
     edge = placed.frame.cells.edge
     cell = one_cell_as(edge, h) if bare else edge

@@ -5,6 +5,8 @@ from __future__ import annotations
 
 import math
 import os
+from collections.abc import Iterable
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
@@ -12,12 +14,12 @@ from pathlib import Path
 import numpy as np
 
 from ..scene.formatting import say
-from ..scene.scene import Mesh, PieceShape
+from ..scene.scene import Mesh, PieceShape, Shape
 from . import vtk_surface
 from .crossings import crossings
 from .mesh_formats import Polygons, UnreadableMesh
 from .mesh_parts import named_part, piece
-from .mesh_reader import read_polygons
+from .mesh_reader import read_polygons, read_together
 from .nearest import Nearest, blocks
 from .orientation import MeshError, outward
 from .solid import solid
@@ -27,6 +29,8 @@ from .triangles import areas, edges, spots, volume_and_centre
 SUFFIXES = (".stl", ".obj", ".ply")
 SIZES = 1e-9, 1e9
 """Least and largest measure of a shape [m]."""
+MOST_AHEAD = 2**26
+"""Bytes of all mesh files of a scene up to which one process reads them together: beyond, its start is nothing beside that."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -76,6 +80,28 @@ def stamped(shape: Mesh) -> tuple[Path, os.stat_result]:
     except OSError as error:
         hint = "paths count from the folder of the scene file"
         raise MeshError(f"mesh {path}: {error.strerror}", hint) from None
+
+
+def read_ahead(shapes: Iterable[Shape]) -> None:
+    """Read the files of those of these shapes that are meshes and were not read before by one process, for `load`. What it cannot
+    read is left to `load`, which tells why."""
+    found = {}
+    for shape in dict.fromkeys(shapes):
+        if isinstance(shape, Mesh) and not isinstance(shape, PieceShape):
+            with suppress(MeshError):
+                path, stamp = stamped(shape)
+                found[path, stamp.st_mtime_ns, stamp.st_size] = path
+    for key in found.keys() & _read_before:
+        del found[key]
+    if len(found) > 1 and sum(key[2] for key in found) < MOST_AHEAD:
+        with suppress(OSError, UnreadableMesh):
+            _ahead.update(zip(found, read_together(list(found.values()))))
+
+
+_ahead: dict[tuple[Path, int, int], Polygons] = {}
+"""Contents of files, with time and size of their last change, until they are loaded."""
+_read_before: set[tuple[Path, int, int]] = set()
+"""Files that were loaded."""
 
 
 @lru_cache(maxsize=64)
@@ -137,15 +163,20 @@ def read_file(path: Path, part: str | int | None = None) -> tuple[np.ndarray, np
 
 def _read(path: Path, again: bool) -> Polygons:
     """Contents of a file; ``again`` says that those of other parts may be asked for soon."""
-    if not again:
-        return read_polygons(path)
     stamp = path.stat()
-    return _kept(path, stamp.st_mtime_ns, stamp.st_size)
+    key = path, stamp.st_mtime_ns, stamp.st_size
+    _read_before.add(key)
+    return _kept(*key) if again else _of_file(*key)
 
 
 @lru_cache(maxsize=1)
 def _kept(path: Path, changed: int, size: int) -> Polygons:
-    return read_polygons(path)
+    return _of_file(path, changed, size)
+
+
+def _of_file(path: Path, changed: int, size: int) -> Polygons:
+    ahead = _ahead.pop((path, changed, size), None)
+    return read_polygons(path) if ahead is None else ahead
 
 
 def second_moments(mesh: Triangles) -> np.ndarray:
@@ -190,7 +221,13 @@ def depth(mesh: Triangles, points: np.ndarray) -> np.ndarray:
 
 def away(mesh, points: np.ndarray) -> np.ndarray:
     """Distance of points [m], shape (N, 3), to the surface of a mesh [m], shape (N,)."""
-    return abs(vtk_surface.depth_below(mesh.points, mesh.triangles)(points))
+    return abs(_depth_below(mesh)(points))
+
+
+@lru_cache(maxsize=4)
+def _depth_below(mesh):
+    """Its locator takes as long as some thousand points."""
+    return vtk_surface.depth_below(mesh.points, mesh.triangles)
 
 
 # --- surface ------------------------------------------------------------------------------------------------

@@ -7,7 +7,7 @@ import numpy as np
 
 from .boxes import box_pairs
 from .crossings import crossings
-from .triangles import connected, edges, surface_of, volume_and_centre
+from .triangles import connected, edge_keys, surface_of, volume_and_centre
 
 LINES = 64
 """Lines along x and along y that look for what is enclosed twice."""
@@ -30,7 +30,7 @@ class MeshError(Exception):
 def outward(points: np.ndarray, triangles: np.ndarray, name: str) -> np.ndarray:
     """Turn triangles so that all face outward, whichever way they faced. A closed part inside another one is a cavity, a part
     inside a cavity is solid again. Raise MeshError where the surface is not closed, and where its parts cross each other."""
-    _, uses = np.unique(np.sort(edges(triangles), axis=1), axis=0, return_counts=True)
+    _, uses = np.unique(edge_keys(triangles), return_counts=True)
     if (uses == 1).any():
         raise MeshError(
             f"mesh {name}: not closed, {np.count_nonzero(uses == 1)} edges belong to one triangle only",
@@ -60,7 +60,7 @@ def outward(points: np.ndarray, triangles: np.ndarray, name: str) -> np.ndarray:
 def parts_outward(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
     """Turn the triangles of closed parts outward, of parts that may cross. One that lies inside of an odd number of others stays
     as it is, and so does one with a gap."""
-    edge, uses = np.unique(np.sort(edges(triangles), axis=1), axis=0, return_inverse=True, return_counts=True)[1:]
+    edge, uses = np.unique(edge_keys(triangles), return_inverse=True, return_counts=True)[1:]
     open_ = (uses[edge.reshape(-1, 3)] != 2).any(axis=1)
     return _turned_by_part(points, triangles, ~open_, False)
 
@@ -116,8 +116,8 @@ def _enclosed_twice(points: np.ndarray, triangles: np.ndarray) -> float:
 
 def _consistent(triangles: np.ndarray) -> bool:
     """Whether neighbours run along their common edge in opposite directions."""
-    edge = edges(triangles)
-    return len(np.unique(edge, axis=0)) == len(edge)
+    edge = edge_keys(triangles, directed=True)
+    return len(np.unique(edge)) == len(edge)
 
 
 def _reorient(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:

@@ -11,7 +11,7 @@ import numpy as np
 from ..errors import Problem
 from ..scene.formatting import say, whole
 from ..scene.scene import Mesh, PieceShape, SceneRecord, Solid
-from . import shapes
+from . import mesh, shapes
 from .boxes import box_pairs
 from .convex import bounds, depth_by_supports, overlap, placed, support
 from .model import Model
@@ -329,11 +329,10 @@ def _at_points(scene: SceneRecord, bodies: _BoundingBoxes, i: int, j: int) -> Ca
 def _deepest(points: np.ndarray, bodies: _BoundingBoxes, host: int, solid: Solid) -> float:
     """Largest depth of points [m], shape (N, 3), in an object [m]; 0 where all are outside."""
     points = points[((points > bodies.low[host]) & (points < bodies.high[host])).all(axis=1)]
-    if not len(points):
+    points, shape = (points - solid.position) @ np.array(solid.rotation), solid.shape
+    if not len(points) or not len(points := points[shapes.contains(shape, points)]):
         return 0.0
-    points = (points - solid.position) @ np.array(solid.rotation)
-    points = points[shapes.contains(solid.shape, points)]
-    return float(shapes.depth(solid.shape, points).max()) if len(points) else 0.0
+    return float((mesh.away(mesh.load(shape), points) if isinstance(shape, Mesh) else shapes.depth(shape, points)).max())
 
 
 def _way_out(planes: tuple[Plane, ...], bodies: _BoundingBoxes, i: int, j: int) -> tuple[int, int, float]:

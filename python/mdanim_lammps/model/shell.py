@@ -12,7 +12,7 @@ from ..scene.scene import Mesh
 from . import mesh
 from .orientation import MeshError, outward
 from .solid import facing_one_way, once
-from .triangles import areas, edges, spread_of
+from .triangles import areas, edge_keys, spread_of
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -46,7 +46,7 @@ def _of_file(path, part, scale: float, mended: bool, changed: int, size: int) ->
     points, triangles, *_ = mesh.read_file(path, part)
     name = path.name
     triangles = once(triangles)
-    _, uses = np.unique(np.sort(edges(triangles), axis=1), axis=0, return_counts=True)
+    _, uses = np.unique(edge_keys(triangles), return_counts=True)
     if (uses > 2).any():
         raise MeshError(
             f"mesh {name}: {np.count_nonzero(uses > 2)} edges belong to more than two triangles, which a sheet cannot have",
@@ -54,8 +54,8 @@ def _of_file(path, part, scale: float, mended: bool, changed: int, size: int) ->
         )
     closed = not (uses == 1).any()
     triangles = outward(points, triangles, name) if closed else facing_one_way(points, triangles)
-    directed = edges(triangles)
-    if len(np.unique(directed, axis=0)) != len(directed):
+    directed = edge_keys(triangles, directed=True)
+    if len(np.unique(directed)) != len(directed):
         raise MeshError(f"mesh {name}: has one side only", "cut it open: a sheet has two sides")
     mesh.check_size(points, scale, name)
     used, number = np.unique(triangles, return_inverse=True)

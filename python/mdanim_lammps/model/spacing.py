@@ -17,7 +17,7 @@ from ..scene.formatting import number, say, whole
 from ..scene.scene import Box, Mesh, SceneRecord, Shape, Solid
 from . import shapes, work
 from .limits import check_places, check_sparse
-from .mesh import MeshError
+from .mesh import MeshError, read_ahead
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,6 +87,7 @@ def choose_spacing(scene: SceneRecord) -> tuple[float, str, list[float]]:
     """
     problems = []
     thin = []
+    read_ahead(solid.shape for solid in scene.solids)
     for solid in scene.solids:
         try:
             thin.append(shapes.thickness(solid.shape))

@@ -57,11 +57,10 @@ def _rays(points: np.ndarray, triangles: np.ndarray) -> tuple[np.ndarray, np.nda
     chosen = np.searchsorted(area.cumsum(), (np.arange(RAYS) + 0.5) / RAYS * area.sum()).clip(max=len(area) - 1)
     start, inward = spots(points[triangles[chosen]]), -unit_normals(points, triangles)[chosen]
     size = np.linalg.norm(np.ptp(points, axis=0))
-    between, length = hits(points, triangles), np.zeros(RAYS)
-    for ray, (origin, direction) in enumerate(zip(start, inward)):
-        met = between(origin + 1e-6 * size * direction, origin + size * direction)
-        if len(met):
-            length[ray] = np.linalg.norm(met - origin, axis=1).min()
+    ray, met = hits(points, triangles, start + 1e-6 * size * inward, start + size * inward)
+    length = np.full(RAYS, np.inf)
+    np.minimum.at(length, ray, np.linalg.norm(met - start[ray], axis=1))
+    length[np.isinf(length)] = 0.0
     found = length > 0
     return length[found], (start + length[:, None] / 2 * inward)[found]
 

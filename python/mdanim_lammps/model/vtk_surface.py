@@ -113,20 +113,20 @@ def depth_below(points: np.ndarray, triangles: np.ndarray) -> Callable[[np.ndarr
     return depth
 
 
-def hits(points: np.ndarray, triangles: np.ndarray) -> Callable[[np.ndarray, np.ndarray], np.ndarray]:
-    """A function: where a line between two places [m] meets the surface [m], shape (K, 3)."""
-    from vtkmodules.util.numpy_support import vtk_to_numpy
+def hits(points: np.ndarray, triangles: np.ndarray, start: np.ndarray, end: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Where lines between places [m], shape (L, 3) each, meet the surface: numbers of lines, shape (K,), ascending, and places
+    [m], shape (K, 3)."""
     from vtkmodules.vtkCommonCore import vtkIdList, vtkPoints
     from vtkmodules.vtkCommonDataModel import vtkStaticCellLocator
 
-    locator = vtkStaticCellLocator()
+    locator, found, cells = vtkStaticCellLocator(), vtkPoints(), vtkIdList()
     locator.SetDataSet(surface(points, triangles))
     locator.BuildLocator()
-
-    def between(start: np.ndarray, end: np.ndarray) -> np.ndarray:
-        found = vtkPoints()
-        found.SetDataTypeToDouble()
-        locator.IntersectWithLine(start, end, TOLERANCE, found, vtkIdList())
-        return vtk_to_numpy(found.GetData()).reshape(-1, 3) if found.GetNumberOfPoints() else np.zeros((0, 3))
-
-    return between
+    found.SetDataTypeToDouble()
+    line: list[int] = []
+    met: list[tuple[float, float, float]] = []
+    for k, (a, b) in enumerate(zip(start.tolist(), end.tolist())):
+        locator.IntersectWithLine(a, b, TOLERANCE, found, cells)
+        met += map(found.GetPoint, range(found.GetNumberOfPoints()))
+        line += [k] * (len(met) - len(line))
+    return np.array(line, np.intp), np.array(met).reshape(-1, 3)

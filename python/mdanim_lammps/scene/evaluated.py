@@ -40,10 +40,15 @@ class EvaluatedSetting:
         keyword = self.entry.keyword
         return keyword.codec.read(keyword, self.entry.choice, self.values)
 
+    @property
+    def kind(self) -> type:
+        """The class of the record that it becomes, of a keyword with forms of several classes."""
+        return self.entry.keyword.codec.kind(self.entry.choice, self.values)
+
     def following(self, keyword: Keyword, value: Any) -> EvaluatedSetting:
         """A setting that follows from this one, at its place, with this value of the record's field."""
         choice, values = keyword.codec.write(keyword, value)
-        places = (self.entry.values[0],) * max(1, len(values))
+        places = (next(iter(self.entry.values), None),) * max(1, len(values))
         node = SettingNode(self.entry.source, self.entry.token, keyword, choice, (), places)
         return EvaluatedSetting(node, tuple(values), self.used_at)
 

@@ -120,7 +120,9 @@ class Solid:
     hold: tuple[Hold, ...] = setting(
         None,
         "Particles that never move: both faces across an axis of the object, one face, all of them (a wedge, an obstacle), "
-        "those inside a box of the world at the start, or of a rope both ends, its first or its last.", "faces x", default=(),
+        "those inside a box of the world at the start, or of a rope both ends, its first or its last. An object with `hold all` "
+        "needs neither mass nor elasticity, unless it is a rope, a sheet, or let go later: without them it is rigid.",
+        "faces x", default=(),
         many=True, codec=OneOf(HoldFaces, HoldAll, HoldWithin, HoldEnds))  # fmt: skip
     resolution: float | None = setting(
         "<h:m>",

@@ -7,6 +7,7 @@ from ...bodies import BodyKind, all_held, beneath, only_features
 from ...model import shapes
 from ...model.build import lattice_model
 from ...model.held import held_model
+from ...scene.scene import Box, Mesh, Sphere
 from .words import ContactModel
 
 
@@ -33,10 +34,14 @@ class HeldBody(BodyKind):
     def particles(self, scene, solid, lattice, h):
         return 8.0 if only_surfaces_act(scene) else lattice
 
+    def bare(self, scene, solid):
+        """Where all touch by features nothing reads its cells, and of these shapes none are made."""
+        return isinstance(solid.shape, Box | Sphere | Mesh) and only_features(scene)
+
     def make(self, solid, h, shared):
         if shared.inside or not only_surfaces_act(shared.scene):
             return lattice_model(solid, h, shared)
-        return held_model(solid, h, shared)
+        return held_model(solid, h, shared, self.bare(shared.scene, solid))
 
 
 def only_surfaces_act(scene) -> bool:

@@ -22,6 +22,7 @@ from ...model.largest import largest
 from ...model.system import System
 from ...reach import thrown_within
 from ...scene.once import once_for
+from ...scene.scene import Sphere
 
 DEPTH = 0.02
 """How deep the fastest blow goes, over the thinnest part of all rigid bodies."""
@@ -178,6 +179,8 @@ def _body(context: Context, m: int) -> tuple[ContactBody, np.ndarray, np.ndarray
 
 
 def _largest_mobility(context: Context, m: int) -> float:
+    if isinstance(context.scene.solids[m].shape, Sphere):  # normals lead through its centre
+        return float(1.0 / context.system.mass_of[m])
     body, point, tensor = _body(context, m)
     return float(mobility(tensor, float(context.system.mass_of[m]), point, body.normal).max())
 

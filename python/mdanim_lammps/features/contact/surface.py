@@ -173,7 +173,8 @@ class SurfaceContact(ObjectContact):
         would not roll. The surface alone stops it up to SLOW. What never moves has particles at the corners of a box.
         """
         system = context.system
-        with_barrier = (~are_dense(system) | fast(context)) & np.isfinite(system.young) & ~are_boxed(system) & ~system.bare
+        boxed = np.array([frame.corners is not None for frame in system.frames])[system.contact_kind]
+        with_barrier = (~are_dense(system) | fast(context)) & np.isfinite(system.young) & ~boxed & ~system.bare
         return np.where(with_barrier[system.object], particle_stiffness(context.scene, system), 0.0)
 
     def barrier_reach(self, context: Context) -> np.ndarray:
@@ -184,7 +185,8 @@ class SurfaceContact(ObjectContact):
         """
         system = context.system
         quick = fast(context)[system.object]
-        behind = np.where(system.boundary, 0.0, SHORT * shortest_edge(system)[system.object])
+        edge = np.array([frame.cells.edge.min() for frame in system.frames])[system.contact_kind]
+        behind = np.where(system.boundary, 0.0, SHORT * edge[system.object])
         reach = np.where(quick, FULL * system.spacing[system.object], behind)
         return np.where((np.isfinite(system.young) & ~system.bare)[system.object], reach, 0.0)
 
@@ -361,10 +363,11 @@ class SurfacePlanes(Planes):
         return self.law.penetration(readings)
 
     def stiffness(self, context: Context) -> np.ndarray:
-        """kappa of the surface of each solid against a plane, which has no points of its own [N/m^3], shape (M,)."""
+        """kappa of the surface of each solid against a plane, which has no points of its own [N/m^3], shape (M,); 0 of what is
+        held as a whole."""
         system = context.system
         share = np.where(are_dense(system), np.where(system.bare, 2.0 * resolved(system), ALONE), 1.0)
-        for own, _ in settled(context, planes=True):
+        for own in (system.held_whole, *(own for own, _ in settled(context, planes=True))):
             share = np.where(own, 0.0, share)
         return surface_stiffness(context, moduli(context), share) if share.any() else share
 
@@ -432,24 +435,18 @@ def are_dense(system: System) -> np.ndarray:
     return np.array([not isinstance(frame.shape, Box) for frame in system.frames])[system.contact_kind]
 
 
-def are_boxed(system: System) -> np.ndarray:
-    """Solids whose particles are the corners of a box around them, bool, shape (M,)."""
-    return np.array([frame.corners is not None for frame in system.frames])[system.contact_kind]
-
-
 def resolved(system: System) -> np.ndarray:
     """LINE times RESOLVED of lines and sheets of particles, 1 of all others, shape (M,)."""
     return np.array([LINE * RESOLVED[frame.dimensions] if frame.bare else 1.0 for frame in system.frames])[system.contact_kind]
 
 
-def shortest_edge(system: System) -> np.ndarray:
-    """Shortest edge of the cells of each solid [m], shape (M,)."""
-    return np.array([frame.cells.edge.min() for frame in system.frames])[system.contact_kind]
-
-
 def own_area(system: System) -> np.ndarray:
-    """w_i, the area of the surface that each particle carries [m^2], shape (N,)."""
-    return np.concatenate([system.contact_bodies[kind].carried for kind in system.contact_kind.tolist()])
+    """w_i, the area of the surface that each particle carries [m^2], shape (N,); 0 of what is rigid, which moves as a whole,
+    and of what is held as a whole, unless it is a line or a sheet, whose points press on others."""
+    found = np.zeros(len(system.object))
+    for m in np.flatnonzero(system.bare | ~(system.rigid | system.held_whole)).tolist():
+        found[system.first[m] : system.first[m + 1]] = system.frames[system.contact_kind[m]].contact.carried
+    return found
 
 
 def borne_area(system: System) -> np.ndarray:

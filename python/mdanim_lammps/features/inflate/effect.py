@@ -15,7 +15,7 @@ from ...effects.effect import Effect
 from ...effects.fields import Field
 from ...errors import Problem
 from ...model import shapes
-from ...model.triangles import areas, edges, normals
+from ...model.triangles import areas, edge_keys, normals
 from ...reach import Throw
 from ...scene.formatting import number, say
 from ...scene.once import once_for
@@ -260,7 +260,7 @@ def volume_in(x: np.ndarray, triangle: np.ndarray) -> float:
 
 def _open_edges(model: Any) -> int:
     """Edges with a triangle on one side only."""
-    _, uses = np.unique(np.sort(edges(model.frame.triangle), axis=1), axis=0, return_counts=True)
+    _, uses = np.unique(edge_keys(model.frame.triangle), return_counts=True)
     return int(np.count_nonzero(uses != 2))
 
 

@@ -80,15 +80,15 @@ def _known(given: EvaluatedSetting, material: Material, sheet: bool) -> Settings
 def _suited(block: EvaluatedBlock, found: Settings) -> Settings:
     """Settings of a material that suit an object: its form of elasticity decides on damping and restitution."""
     found = dict(found)
-    holds = [_kind(s) for s in block.settings.get("hold", ())]
+    holds = [s.kind for s in block.settings.get("hold", ())]
     held = HoldAll in holds
     shape = block.first("shape")
-    bends = shape is not None and getattr(_kind(shape), "BENDS", False) and not _is_shell_in_pieces(block)
+    bends = shape is not None and getattr(shape.kind, "BENDS", False) and not _is_shell_in_pieces(block)
     if "elasticity" in found and not bends and (held or not holds) and _stiff(found):
         given = found["elasticity"][0]
         found["elasticity"] = [given.following(given.entry.keyword, Rigid())]
     elasticity = block.first("elasticity") or next(iter(found.get("elasticity", ())), None)
-    rigid = elasticity is not None and _kind(elasticity) is Rigid
+    rigid = elasticity is not None and elasticity.kind is Rigid
     stays = held and block.first(RELEASE) is None
     left_out = set(SENSELESS) if rigid else set() if stays and not bends else {"restitution"}
     if block.first("pieces") is None:
@@ -99,22 +99,17 @@ def _suited(block: EvaluatedBlock, found: Settings) -> Settings:
 def _stiff(found: Settings) -> bool:
     """Whether waves in a material are so fast that it counts as rigid."""
     elasticity, density = found["elasticity"][0], found.get("density")
-    if _kind(elasticity) is not Young or not density:
+    if elasticity.kind is not Young or not density:
         return False
     return math.sqrt(elasticity.values[0] / density[0].values[0]) >= STIFF
 
 
 def _is_sheet(block: EvaluatedBlock) -> bool:
     shape = block.first("shape")
-    return shape is not None and _kind(shape) in (Sheet, Shell) and not _is_shell_in_pieces(block)
+    return shape is not None and shape.kind in (Sheet, Shell) and not _is_shell_in_pieces(block)
 
 
 def _is_shell_in_pieces(block: EvaluatedBlock) -> bool:
     """Whether an object is a shell that breaks, which is rigid."""
     shape = block.first("shape")
-    return shape is not None and _kind(shape) is Shell and block.first("pieces") is not None
-
-
-def _kind(s: EvaluatedSetting) -> type:
-    """The class of the record that a setting becomes."""
-    return s.entry.keyword.codec.kind(s.entry.choice, s.values)
+    return shape is not None and shape.kind is Shell and block.first("pieces") is not None

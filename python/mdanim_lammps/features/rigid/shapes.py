@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import lru_cache
 
 import numpy as np
 
@@ -11,7 +12,6 @@ from ...bodies import all_held, driven
 from ...model import creased, mesh
 from ...model.cover import hidden_sides
 from ...model.polyhedron import hull, polyhedron
-from ...model.shapes import thickness
 from ...scene.formatting import in_full
 from ...scene.once import once_for
 from ...scene.scene import Box, Cone, Cylinder, Ellipsoid, Mesh, SceneRecord, Shape, Solid, Sphere, Torus
@@ -83,15 +83,7 @@ def in_file(solid: Solid, hides: Sequence[int] = ()) -> tuple[list[float], str]:
         case Torus():
             kind, sizes = "torus", (shape.major, shape.minor)
         case Mesh() if polyhedron(shape) is None and is_known(solid):
-            of = mesh.load(shape)
-            corners, triangles = (
-                f"{len(rows)} {text}"
-                for rows, text in (
-                    (of.points, in_full(of.points.ravel())),
-                    (of.triangles, " ".join(map(str, of.triangles.ravel().tolist()))),
-                )
-            )
-            return place.tolist(), f"mesh {thickness(shape)!r} {corners} {triangles}"
+            return place.tolist(), _mesh_words(mesh.load(shape))
         case Mesh() if (body := polyhedron(shape) or hull(shape)) is not None:
             faces = " ".join(f"{len(face)} {' '.join(map(str, face))}" for face in body.faces)
             return place.tolist(), f"polyhedron {len(body.corner)} {in_full(body.corner.ravel())} {len(body.faces)} {faces}"
@@ -99,3 +91,10 @@ def in_file(solid: Solid, hides: Sequence[int] = ()) -> tuple[list[float], str]:
             raise TypeError(f"no features of {shape!r}")
     covered = f" covered {' '.join(SIDES[side] for side in hides)}" if hides else ""
     return place.tolist(), f"{kind} {in_full(sizes)}{covered}"
+
+
+@lru_cache(maxsize=8)
+def _mesh_words(of: mesh.Triangles) -> str:
+    """The kind and the sizes [m] of a mesh, which are asked for where objects start, and again for the file."""
+    points, corners = in_full(of.points.ravel()), " ".join(map(str, of.triangles.ravel().tolist()))
+    return f"mesh {of.thickness!r} {len(of.points)} {points} {len(of.triangles)} {corners}"
