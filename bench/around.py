@@ -22,6 +22,7 @@ NAMES = ("beam", "crowd", "float")
 GOAL, START = 25.0, 0.3
 """Pictures per second of processor time, and processor seconds to a plan of beam.txt."""
 PLAN = (
+    "from mdanim_lammps.__main__ import few_collections; few_collections(); "
     "import sys; from pathlib import Path; from mdanim_lammps.run.prepare import prepare; "
     "from mdanim_lammps.scene.parse import load_scene; prepare(load_scene(Path(sys.argv[1])))"
 )

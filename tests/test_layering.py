@@ -14,6 +14,7 @@ import pytest
 ROOT = Path(mdanim_lammps.__file__).parent
 SCRIPTS = sorted(p for folder in ("bench", "docs") for p in (Path(__file__).parents[1] / folder).rglob("*.py"))
 ROOMS = [
+    "records",
     "errors",
     "deprecated",
     "safe_start",

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from fractions import Fraction
 
 import numpy as np
@@ -25,6 +25,7 @@ from .effects.envelope import Envelope
 from .effects.margin import Margin
 from .errors import Problem, RefusedError, SceneError, Span
 from .model import shapes
+from .records import dataclass
 from .scene.formatting import estimate, number, say
 from .scene.scene import Control, SceneRecord
 

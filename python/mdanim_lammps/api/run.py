@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property, partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -15,6 +15,7 @@ from weakref import ref
 
 from ..errors import MdanimError, OutputError, Problem, RefusedError
 from ..parallel.frames import run_frames
+from ..records import dataclass
 from ..report import progress_line
 from ..results.checkpoint import Checkpoint
 from ..results.cost import Cost

@@ -9,13 +9,13 @@ import shutil
 import sys
 import tempfile
 from collections.abc import Iterator
-from dataclasses import dataclass
 from pathlib import Path
 
 from .. import __version__
 from ..children import command, run
 from ..engine import plugin
 from ..processes import available_memory, cores
+from ..records import dataclass
 from ..run.manifest import PACKAGES
 
 OK, NOTE, FAIL = 0, 1, 2

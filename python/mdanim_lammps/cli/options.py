@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
@@ -12,6 +12,7 @@ from cyclopts import Parameter
 
 from ..engine.threads import check_threads
 from ..errors import UsageError
+from ..records import dataclass
 
 if TYPE_CHECKING:
     from ..scene.scene import SceneRecord

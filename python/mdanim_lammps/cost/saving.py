@@ -4,13 +4,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
 from pathlib import Path
 
 from ..effects.envelope import Envelope
 from ..effects.proposal import Proposal
 from ..errors import MdanimError
 from ..features import facets
+from ..records import dataclass
 from ..results.cost import Cost
 from ..results.trajectory import Trajectory
 from ..run.prepare import Prepared, prepare

@@ -9,12 +9,11 @@ neither.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from ..engine.sub_plan import SubPlans
 from ..parallel.plan.frame_plan import FrameAssignment, PlanContext, PlannerOptions
+from ..records import dataclass
 from ..run.prepare import Prepared
 
 AHEAD = 1.0

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -15,6 +14,7 @@ from ..model.model import Model
 from ..model.spacing import Spacing
 from ..model.system import System
 from ..reach import Reach
+from ..records import dataclass
 from ..scene.scene import SceneRecord, Solid
 
 if TYPE_CHECKING:

@@ -5,10 +5,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+
+from ..records import dataclass
 
 GONE = "torn"
 """Name of the field of springs that has 1 for one that is gone: pictures leave out what it held together."""

@@ -4,9 +4,10 @@
 from __future__ import annotations
 
 import math
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 
 from ..errors import Span
+from ..records import dataclass
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,13 +4,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from ..model.grid import Grid
 from ..model.model import Model
+from ..records import dataclass
 from ..scene.scene import Asked, Expect, SceneRecord
 from .context import Context
 from .fields import Fields

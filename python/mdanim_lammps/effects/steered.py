@@ -4,10 +4,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
+from ..records import dataclass
 from ..scene.scene import SceneRecord
 from ..scene.schema import Vector
 from .context import Context

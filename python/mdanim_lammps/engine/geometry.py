@@ -5,13 +5,13 @@ from __future__ import annotations
 
 import ctypes
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import cached_property, lru_cache
 
 import numpy as np
 
 from ..model.faces import faces_of_solids
 from ..model.system import System, side_by_side
+from ..records import dataclass
 from .plugin import open_library
 
 NOT_FINITE, INVERTED = 1, 2

@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
 
@@ -18,6 +17,7 @@ from ..model.contact_body import ContactBody
 from ..model.grid import Grid
 from ..model.springs import types
 from ..model.system import System
+from ..records import dataclass
 from ..scene.scene import SceneRecord
 from .columns import Places, most_bonds, places
 

@@ -8,9 +8,11 @@ which other objects there are (plugin/lammps/stateful.h), so records are cut out
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 
 import numpy as np
+
+from ..records import dataclass
 
 
 @dataclass(frozen=True)

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from itertools import accumulate, pairwise
 
@@ -12,6 +12,7 @@ import numpy as np
 
 from ..effects import Context, Effect
 from ..model.system import System
+from ..records import dataclass
 from .plan import DRIVEN, Ends, Plan, both_ends
 
 

@@ -8,12 +8,12 @@ import os
 from collections import Counter
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from ..errors import UsageError
 from ..processes import affinity, cores, quota
+from ..records import dataclass
 
 if TYPE_CHECKING:
     from ..effects import Effect

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
@@ -15,6 +15,7 @@ from ..picture.drawn import Drawn, drawn, shape_of
 from ..picture.palette import object_colors, vertex_colors
 from ..picture.scenery import scenery
 from ..picture.surfaces import ShadedMesh, shaded_mesh
+from ..records import dataclass
 from ..results.trajectory import Trajectory
 from ..results.trajectory_metadata import TrajectoryMetadata, springs_gone
 from ..results.untrusted import check_places

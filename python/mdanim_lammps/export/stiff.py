@@ -4,9 +4,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 
 import numpy as np
+
+from ..records import dataclass
 
 SAME = 1e-5
 """Largest distance of a particle from its place in a body that keeps its shape, over the size of the body."""

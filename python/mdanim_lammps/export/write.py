@@ -10,11 +10,11 @@ import resource
 import shutil
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
 
 from ..errors import OutputError, SetupError, UsageError
+from ..records import dataclass
 from ..results.files import disk_errors, scratch, sync
 from ..results.overwriting import place_of
 from ..results.trajectory import Trajectory

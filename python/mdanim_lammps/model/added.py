@@ -9,7 +9,7 @@ moments are those of the whole.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import lru_cache
 from itertools import product
 from typing import Any
@@ -18,6 +18,7 @@ import numpy as np
 
 from ..bodies import lets_go
 from ..features import facets
+from ..records import dataclass
 from . import shapes
 from .inertia import tensor
 from .masses import inertia

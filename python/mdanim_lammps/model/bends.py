@@ -5,9 +5,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 
 import numpy as np
+
+from ..records import dataclass
 
 BLUNT = 0.3
 """As in `plugin/tearing/bend_law.h`."""

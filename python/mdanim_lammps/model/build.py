@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Container, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property, lru_cache, singledispatch
 from typing import Any
 
@@ -13,6 +13,7 @@ import numpy as np
 
 from ..bodies import kind_of, lets_go, only_features
 from ..errors import Problem, SceneError
+from ..records import dataclass
 from ..scene.formatting import number, say
 from ..scene.scene import Elasticity, HoldAll, HoldFaces, HoldWithin, Mesh, SceneRecord, Shape, Solid
 from . import mesh, shapes

@@ -4,13 +4,14 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import field, fields, replace
 from functools import cached_property
 from itertools import product
 from typing import ClassVar
 
 import numpy as np
 
+from ..records import dataclass
 from ..scene.scene import Box, Ellipsoid, PieceShape, Shape, Sphere
 from .distance import grid_distance
 from .embed import nearest_cell

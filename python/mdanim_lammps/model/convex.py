@@ -5,10 +5,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
 
 import numpy as np
 
+from ..records import dataclass
 from ..scene.scene import Box, Cone, Cylinder, Ellipsoid, Mesh, Solid, Sphere, Torus
 from . import mesh
 from .polyhedron import Polyhedron, polyhedron

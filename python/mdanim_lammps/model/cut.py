@@ -7,14 +7,14 @@ piece is a splinter. Random numbers are those of a counter (Philox); its key is 
 
 from __future__ import annotations
 
-import hashlib
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import lru_cache
 
 import numpy as np
 
+from ..records import dataclass
 from ..scene.scene import Box, Bricks, Cone, Cylinder, Ellipsoid, Mesh, PieceShape, Shape, Shell, Sphere, Torus, VoronoiCells
 from . import mesh, shapes
 from .mesh import MeshError, Triangles
@@ -198,6 +198,8 @@ def voronoi(
 ) -> list[tuple[np.ndarray, np.ndarray, dict[int, list[int]]]]:
     """The point of each cell [m], its corners [m] and its faces, by the piece beyond, below 0 for the planes around all; points
     lie ``inside`` the box from ``low`` to ``high``."""
+    import hashlib
+
     from scipy.spatial import cKDTree
 
     key = np.frombuffer(hashlib.sha256(seed.encode()).digest()[:16], np.uint64)

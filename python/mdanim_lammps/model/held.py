@@ -4,12 +4,12 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from itertools import product
 from typing import Any
 
 import numpy as np
 
+from ..records import dataclass
 from ..scene.scene import Shape, Solid
 from . import shapes
 from .cells import fill_cells

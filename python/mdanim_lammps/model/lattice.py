@@ -7,11 +7,11 @@ Wcislo 1999, sec. 3.1 and 5.2; formulas in docs/physics-solids.md.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from itertools import product
 
 import numpy as np
 
+from ..records import dataclass
 from .model import Layer
 
 OFFSETS = np.array(

@@ -9,10 +9,10 @@ are fitted to the ten moments of the shape: mass, centre and second moments.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 
 import numpy as np
 
+from ..records import dataclass
 from ..scene.scene import Young
 from .lattice import OFFSETS, Lattice
 from .model import Layer

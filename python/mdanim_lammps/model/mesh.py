@@ -7,19 +7,18 @@ import math
 import os
 from collections.abc import Iterable
 from contextlib import suppress
-from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
 
+from ..records import dataclass
 from ..scene.formatting import say
 from ..scene.scene import Mesh, PieceShape, Shape
 from . import vtk_surface
 from .crossings import crossings
 from .mesh_formats import Polygons, UnreadableMesh
 from .mesh_parts import named_part, piece
-from .mesh_reader import read_polygons, read_together
 from .nearest import Nearest, blocks
 from .orientation import MeshError, outward
 from .solid import solid
@@ -94,6 +93,8 @@ def read_ahead(shapes: Iterable[Shape]) -> None:
     for key in found.keys() & _read_before:
         del found[key]
     if len(found) > 1 and sum(key[2] for key in found) < MOST_AHEAD:
+        from .mesh_reader import read_together  # as in `_of_file`
+
         with suppress(OSError, UnreadableMesh):
             _ahead.update(zip(found, read_together(list(found.values()))))
 
@@ -175,6 +176,8 @@ def _kept(path: Path, changed: int, size: int) -> Polygons:
 
 
 def _of_file(path: Path, changed: int, size: int) -> Polygons:
+    from .mesh_reader import read_polygons  # what starts processes is loaded for scenes with a mesh alone
+
     ahead = _ahead.pop((path, changed, size), None)
     return read_polygons(path) if ahead is None else ahead
 

@@ -5,10 +5,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from itertools import islice
 
 import numpy as np
+
+from ..records import dataclass
 
 PLAIN = re.compile(rb"[^\x20-\x7e]+")
 

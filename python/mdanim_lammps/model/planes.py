@@ -4,11 +4,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
 
+from ..records import dataclass
 from ..scene.schema import Vector
 
 AXES = "xyz"

@@ -5,12 +5,12 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
 
 import numpy as np
 
+from ..records import dataclass
 from ..scene.scene import Mesh, PieceShape
 from . import mesh
 

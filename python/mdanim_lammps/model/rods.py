@@ -4,10 +4,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
+from ..records import dataclass
 from .bends import BendLine
 
 SOFT = 1.0 / 16.0

@@ -3,11 +3,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
 
+from ..records import dataclass
 from ..scene.scene import Mesh
 from . import mesh
 from .orientation import MeshError, outward

@@ -4,7 +4,7 @@ memory."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import lru_cache
 
 import numpy as np
@@ -13,6 +13,7 @@ from ..bodies import kind_of, kinds
 from ..errors import Problem, SceneError
 from ..features import facets
 from ..processes import available_memory
+from ..records import dataclass
 from ..scene.formatting import number, say, whole
 from ..scene.scene import Box, Mesh, SceneRecord, Shape, Solid
 from . import shapes, work

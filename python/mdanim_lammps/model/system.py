@@ -4,11 +4,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
 
+from ..records import dataclass
 from ..scene.scene import SceneRecord
 from . import shapes
 from .contact_body import BodyFrame, ContactBody

@@ -4,12 +4,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
 from ..errors import UsageError
+from ..records import dataclass
 from ..results.trajectory import Trajectory
 from ..results.untrusted import check_places
 from ..scene.keywords import did_you_mean

@@ -4,12 +4,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..features import facets
+from ..records import dataclass
 from ..results.trajectory import Trajectory
 from ..results.untrusted import check_places
 from ..scene.render import Render

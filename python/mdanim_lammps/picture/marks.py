@@ -3,11 +3,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from ..errors import UsageError
+from ..records import dataclass
 from ..results.trajectory_metadata import TrajectoryMetadata
 from .pieces import MovingLines
 

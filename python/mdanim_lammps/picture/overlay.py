@@ -5,10 +5,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
+from ..records import dataclass
 from ..results.trajectory import Trajectory
 from ..scene.formatting import number
 from ..scene.naming import labelled, objects_by_name

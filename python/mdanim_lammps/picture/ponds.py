@@ -6,11 +6,10 @@ One sheet over all columns would hang down, through the body and below it, to th
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from ..model.grid import Grid
+from ..records import dataclass
 from .hulls import AROUND, ASIDE, FINER, SHORE, Spots, against_bodies, beside, dry_spots
 from .liquid import DRIP, PUDDLE
 

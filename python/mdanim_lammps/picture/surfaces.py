@@ -3,10 +3,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
+from ..records import dataclass
 from ..results.trajectory_metadata import TrajectoryMetadata
 from ..results.weights import Weights
 from .pieces import cells

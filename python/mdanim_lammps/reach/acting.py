@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Protocol
 
@@ -14,6 +13,7 @@ import numpy as np
 from ..errors import Span
 from ..model.planes import Plane, closest, innermost
 from ..model.system import System
+from ..records import dataclass
 from ..scene.scene import SceneRecord
 from ..scene.schema import Vector
 

@@ -8,7 +8,7 @@ other. The bounds are derived in docs/cost.md.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -16,6 +16,7 @@ from ..bodies import all_held, kind_of
 from ..model import shapes
 from ..model.boxes import box_pairs
 from ..model.springs import equivalent_modulus
+from ..records import dataclass
 from ..scene.scene import Box, HoldFaces, SceneRecord, Solid
 from .acting import Acting
 

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import zlib
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 from zipfile import ZipFile
 
@@ -13,6 +13,7 @@ import numpy as np
 from ..engine.state import Records, State, StateRecords
 from ..errors import OutputError
 from ..processes import available_memory
+from ..records import dataclass
 from .files import write_whole
 from .untrusted import check_room
 

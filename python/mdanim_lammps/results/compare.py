@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +10,7 @@ import numpy as np
 from ..effects.fields import OF_OBJECTS
 from ..effects.kept import kinds
 from ..errors import OutputError
+from ..records import dataclass
 from ..scene.formatting import number, say
 from .trajectory import Trajectory
 from .untrusted import check_folder

@@ -5,11 +5,11 @@ from __future__ import annotations
 
 import math
 import operator
-from dataclasses import dataclass
 
 import numpy as np
 
 from ..effects.measured import Measurable, Measured
+from ..records import dataclass
 from ..scene.formatting import number
 from ..scene.scene import Expect
 from .quantities import quantity_of

@@ -6,13 +6,13 @@ from __future__ import annotations
 import os
 import socket
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
 from ..errors import OutputError
 from ..model.system import side_by_side
+from ..records import dataclass
 from .checksums import joined, shifts
 from .files import disk_errors
 from .trajectory_file import FrameTable, checksum

@@ -7,7 +7,7 @@ import csv
 import os
 import zlib
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from itertools import islice
 from pathlib import Path
 from typing import TextIO
@@ -15,6 +15,7 @@ from typing import TextIO
 import numpy as np
 
 from ..errors import OutputError
+from ..records import dataclass
 from ..scene.formatting import exact
 from ..scene.keywords import did_you_mean
 from .untrusted import check_room

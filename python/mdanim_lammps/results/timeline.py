@@ -4,12 +4,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, field
 from pathlib import Path
 
 import numpy as np
 
 from ..errors import OutputError
+from ..records import dataclass
 from .files import read_json, write_json
 from .forms import number, whole
 from .untrusted import check_room

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """The trajectory file: H5MD 1.1 in HDF5, with room for all frames from the start (docs/trajectory.md).
 
-HDF5 lays the file out once, before the first frame. Every quantity of the frames is one contiguous table, so the bytes of a
-frame have a place that is known: the writer puts them there without HDF5. A disk that is full or broken then meets plain
-writes, which fail with an error and nothing else, and a killed writer leaves a file that HDF5 opens.
+HDF5 lays the file out once, before the first frame. Every quantity of the frames is one contiguous table, so the writer puts
+the bytes of a frame in their place without HDF5. A disk that is full or broken then meets plain writes, which fail with an
+error and nothing else, and a killed writer leaves a file that HDF5 opens.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ import os
 import zlib
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -26,6 +26,7 @@ from ..effects.fields import Field
 from ..effects.kept import KeptRecord, kinds
 from ..errors import OutputError
 from ..model.model import Model, Surface
+from ..records import dataclass
 from ..scene.scene import Save
 from .files import disk_errors, sync
 from .trajectory_metadata import FIELDS, TrajectoryMetadata, distinct_surfaces, stored_particles
@@ -46,8 +47,7 @@ NOT_WRITTEN = -1
 OF_SOME = {"painted": ("color", (3,)), "tubed": ("tube", (4,)), "patched": ("patch", ())}
 """Tables of vertices that only some surfaces have, with the shape of a row, by the table that tells which surfaces have one."""
 
-# The first HDF5 whose whole metadata have checksums.
-_LIBVER = ("v110", "v110")
+_LIBVER = ("v110", "v110")  # the first HDF5 whose whole metadata have checksums
 # HDF5 puts groups, attributes and indices into blocks of this size; one block holds all of a usual file.
 _METADATA_BYTES = 1 << 16
 _CHUNK_BYTES = 1 << 20

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from functools import cached_property
 from itertools import pairwise
 
@@ -16,6 +16,7 @@ from ..model.grid import Grid
 from ..model.model import Layer, Model, Surface
 from ..model.patches import Patches, with_patches
 from ..model.tube import Tubes
+from ..records import dataclass
 from ..scene.scene import Save, SceneRecord
 from ..scene.shown import TEXTURES
 from .weights import Carry, Weights

@@ -3,12 +3,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from ..model.patches import Patches
 from ..model.tube import Tubes
+from ..records import dataclass
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,7 @@ from __future__ import annotations
 import time
 from collections.abc import Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Protocol
 
 import numpy as np
@@ -18,6 +18,7 @@ from ..engine.plan import Plan
 from ..engine.state import State
 from ..errors import DivergedError
 from ..model.model import Model
+from ..records import dataclass
 from ..results.checkpoint import Checkpoint
 from ..results.frame_rows import FrameRows, RowWriter
 from .energy import energies, tell, whole_fields

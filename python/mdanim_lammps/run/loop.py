@@ -9,7 +9,6 @@ import shutil
 import time
 from collections.abc import Callable
 from contextlib import suppress
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -22,6 +21,7 @@ from ..engine.commands import input_script, table_file
 from ..engine.data_file import write_bodies, write_data, write_wide_columns
 from ..errors import ExitCode, MdanimError, OutputError
 from ..interrupts import Interrupts
+from ..records import dataclass
 from ..results.checkpoint import Checkpoint
 from ..results.cost import Cost, CostShare
 from ..results.expect import Outcome, evaluate

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from types import MappingProxyType
 
 import numpy as np
@@ -16,6 +15,7 @@ from ..engine.plan import Plan
 from ..model.model import Model
 from ..model.patches import Members
 from ..model.system import System, centers
+from ..records import dataclass
 from ..results.quantities import recorded
 from .folds import Folds
 

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Container, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from typing import Any
 
@@ -23,6 +23,7 @@ from ..model.overlap import check_geometry
 from ..model.spacing import Spacing, nothing_in, plan_spacing, too_large
 from ..model.system import System, as_parts, assemble
 from ..reach import Reach
+from ..records import dataclass
 from ..results.quantities import unmeasured
 from ..scene.lammps_lines import check_trust, note
 from ..scene.lock import lock_text

@@ -3,10 +3,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 
 from ..errors import Problem
+from ..records import dataclass
 from ..results.cost import Cost
 from ..results.expect import Outcome
 from ..results.ledger import Ledger

@@ -4,10 +4,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Any
 
 from ..errors import Span
+from ..records import dataclass
 from .keywords import KEYWORDS
 from .schema import Keyword
 from .tokens import Token

@@ -5,9 +5,10 @@ from __future__ import annotations
 
 import math
 import operator
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 
 from ..errors import Span
+from ..records import dataclass
 from . import functions, units
 from .functions import FUNCTIONS
 from .keywords import did_you_mean

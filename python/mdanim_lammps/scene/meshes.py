@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import os
 from functools import lru_cache
 from pathlib import Path
@@ -30,6 +29,8 @@ def content_name(path: Path) -> str:
 
 @lru_cache(maxsize=1024)
 def _digest(path: Path, changed: int, size: int) -> str:
+    import hashlib  # loaded for scenes with a mesh alone
+
     digest = hashlib.sha256()
     with open(path, "rb") as file:
         while piece := file.read(2**20):

@@ -3,8 +3,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields, replace
+from dataclasses import fields, replace
 
+from ..records import dataclass
 from .formatting import say
 from .limits import LIMITS
 from .rotation import IDENTITY, product

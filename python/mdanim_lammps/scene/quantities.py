@@ -4,11 +4,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Any
 
 from ..errors import Span
 from ..features import facets
+from ..records import dataclass
 from .formatting import number
 from .schema import Codec, Keyword, Observable
 

@@ -6,12 +6,13 @@ from __future__ import annotations
 import math
 import os
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from enum import Enum
 from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar
 
 from ..errors import Span
+from ..records import dataclass
 from .formatting import number, vector
 from .limits import PIXELS, SHADOWS, SPEED
 from .quantities import Asked, QuantityName

@@ -5,13 +5,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from enum import Enum
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..errors import Span
 from ..features import facets
+from ..records import dataclass
 from .formatting import vector
 from .quantities import GLOBALS, OVER, QUANTITIES, RELATIONS, VECTORS, Asked, Check, Expect, QuantityName  # noqa: F401
 from .render import Camera, Render, Standpoint  # noqa: F401

@@ -9,12 +9,12 @@ from __future__ import annotations
 import dataclasses
 import re
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
 from enum import Enum
 from typing import Any, NamedTuple
 
 from ..errors import UsageError
 from ..features import facets
+from ..records import dataclass, extended
 from .formatting import number
 from .forms import Slot, alternatives, write
 from .limits import LIMITS, OTHER_UNIT, Limit
@@ -317,9 +317,7 @@ def with_words(record: type, kind: str) -> type:
             raise TypeError(f"the setting {name} of {kind} has no type: write {name}: TYPE = setting(...)")
     if not fields:
         return record
-    made = dataclasses.make_dataclass(record.__name__, fields, bases=(record,), frozen=True, slots=True)
-    made.__module__, made.__doc__ = record.__module__, record.__doc__
-    return made
+    return extended(record, fields)
 
 
 def keywords(block: str, record: type | None) -> dict[str, Keyword]:

@@ -4,10 +4,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import cache
 from itertools import count
 
+from ..records import dataclass
 from .expressions import Node
 from .forms import OptionalPart, Slot, Word, alternatives, literals, pieces
 from .keywords import (

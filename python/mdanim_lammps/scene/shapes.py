@@ -5,11 +5,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from enum import Enum
 from pathlib import Path
 from typing import Any, ClassVar, get_args
 
+from ..records import dataclass
 from .curve import Curve, hanging
 from .formatting import number
 from .schema import Keyword, OneOf, Vector

@@ -4,11 +4,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from enum import Enum
 from typing import ClassVar
 
 from ..errors import Span
+from ..records import dataclass
 from .naming import objects_by_name
 from .quantities import QUANTITIES, VECTORS, Asked
 

@@ -4,11 +4,11 @@
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..errors import Problem, SceneError, Span
+from ..records import dataclass
 from .limits import MOST_PROBLEMS
 from .tokens import Token
 

@@ -3,8 +3,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
+from ..records import dataclass
 from .expressions import Node
 from .forms import Slot
 from .schema import Keyword

@@ -5,11 +5,10 @@ from __future__ import annotations
 
 import math
 import operator
-from dataclasses import dataclass
 from difflib import get_close_matches
-from fractions import Fraction
 from functools import cache
 
+from ..records import dataclass
 from .formatting import number, say
 
 Dim = tuple
@@ -278,6 +277,8 @@ def power(x, y):
     result = magnitude(x) ** magnitude(y)
     if isinstance(result, complex):
         raise DimensionError(f"({show(x)}) ^ ({show(y)}) is not a real number")
+    from fractions import Fraction  # loaded for scenes with powers alone
+
     exponent = Fraction(magnitude(y)).limit_denominator(12)
     if dimension(x) != NONE and abs(exponent - Fraction(magnitude(y))) > 1e-12:
         raise DimensionError(

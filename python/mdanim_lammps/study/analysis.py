@@ -5,11 +5,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from ..effects.varied import varied
+from ..records import dataclass
 from ..scene.formatting import number, say
 from ..scene.scene import Expect
 from .error import Convergence, Growth, converge, difference, distance, extent, growth, order_until

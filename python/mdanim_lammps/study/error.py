@@ -9,9 +9,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
+
+from ..records import dataclass
 
 REST = 1e-12
 """Motion that is nothing but rounding [m]."""

@@ -4,11 +4,11 @@
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
+from ..records import dataclass
 from ..results.files import read_json, scratch
 from ..results.stored import SUMMARY
 from ..results.trajectory import Trajectory

@@ -6,13 +6,14 @@ from __future__ import annotations
 import hashlib
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, field, make_dataclass, replace
+from dataclasses import field, replace
 from typing import TYPE_CHECKING, Any
 
 from .. import __version__
 from ..certificate import fit_steps, may_end_early, whole_frames
 from ..effects.varied import Varied, varied
 from ..model.spacing import choose_spacing, scaled
+from ..records import dataclass, extended
 from ..run.prepare import Prepared, prepare
 from ..scene.lock import lock_text
 from ..scene.meshes import mesh_files
@@ -54,9 +55,7 @@ class Setting:
 
 
 if not TYPE_CHECKING:
-    _Base, _fields = Setting, [(v.name, Any, field(default=v.usual)) for v in varied()]
-    Setting = make_dataclass("Setting", _fields, bases=(_Base,), frozen=True, slots=True)
-    Setting.__module__, Setting.__doc__ = __name__, _Base.__doc__
+    Setting = extended(Setting, [(v.name, Any, field(default=v.usual)) for v in varied()])
 
 
 def values(setting: Setting) -> list[tuple[Varied, Any]]:

@@ -5,12 +5,13 @@ from __future__ import annotations
 
 import math
 import shutil
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import asdict, field, replace
 from pathlib import Path
 
 import numpy as np
 
 from ..errors import OutputError
+from ..records import dataclass
 from ..results.files import disk_errors, read_json, write_json, write_whole
 from ..results.stored import STUDY
 from .measure import Sample

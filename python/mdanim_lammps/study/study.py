@@ -4,10 +4,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
 from ..errors import DivergedError, RefusedError, UsageError
+from ..records import dataclass
 from ..run.prepare import prepare
 from ..scene.scene import SceneRecord
 from .analysis import Analysis, advice, analyse

@@ -6,11 +6,12 @@ from __future__ import annotations
 import math
 import tempfile
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 
 from ..effects.varied import varied
 from ..errors import DivergedError, UsageError
+from ..records import dataclass
 from ..run.prepare import prepare
 from ..scene.formatting import number, say
 from ..scene.scene import Accuracy, SceneRecord

@@ -8,12 +8,12 @@ import os
 import threading
 import time
 from contextlib import suppress
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
 from ..errors import MdanimError, OutputError, SceneError
+from ..records import dataclass
 from ..results.files import in_use
 from ..results.ledger import Ledger
 from ..results.progress import ENDED, ProgressTail

@@ -4,13 +4,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from ...model.model import Model
 from ...model.triangles import areas, normals
+from ...records import dataclass
 from ...scene.scene import Sphere
 
 FINE = 16

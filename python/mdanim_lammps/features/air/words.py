@@ -4,9 +4,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 
 from ...errors import Span
+from ...records import dataclass
 from ...scene.in_time import InTime
 from ...scene.schema import Block, Observable, Rule, Vector, setting
 

@@ -3,9 +3,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any, ClassVar
 
+from ...records import dataclass
 from ...scene.formatting import say
 from ...scene.holding import all_held
 from ...scene.schema import OneOf, Vector, setting

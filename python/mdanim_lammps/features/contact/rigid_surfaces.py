@@ -9,7 +9,6 @@ v/Omega deep.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -21,6 +20,7 @@ from ...model.inertia import mobility
 from ...model.largest import largest
 from ...model.system import System
 from ...reach import thrown_within
+from ...records import dataclass
 from ...scene.once import once_for
 from ...scene.scene import Sphere
 

@@ -7,13 +7,12 @@ The laws are those of plugin/barrier/law.h and plugin/wall/law.h, on the initial
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from ...model.boxes import box_pairs
 from ...model.model import Layer
 from ...model.system import System
+from ...records import dataclass
 
 REACH = 1.6
 """Reach of the barrier over the spacing: the smoothest of the forms measured (docs/physics-contact.md)."""

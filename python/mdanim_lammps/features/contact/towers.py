@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -14,6 +13,7 @@ from ...errors import Problem
 from ...model.boxes import box_pairs
 from ...model.overlap import BORN_AT_REST
 from ...model.shapes import extent
+from ...records import dataclass
 from ...scene.formatting import at_least, say
 from ...scene.scene import Box, Cylinder, Solid
 from .resting import LEVEL, floors

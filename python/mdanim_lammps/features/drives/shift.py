@@ -5,12 +5,12 @@ from __future__ import annotations
 
 import bisect
 import math
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from ...model.planes import PlaneMotion
+from ...records import dataclass
 from ...scene.schema import Vector
 from . import motion
 from .words import DriveKey, DriveOscillation, DriveVelocity, ShiftKey

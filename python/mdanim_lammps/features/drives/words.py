@@ -5,9 +5,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any, ClassVar
 
+from ...records import dataclass
 from ...scene.formatting import number, vector
 from ...scene.schema import OneOf, Rule, Vector, setting
 from ...scene.shapes import holds_all

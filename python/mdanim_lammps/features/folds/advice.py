@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -12,6 +11,7 @@ from ...effects.context import Context
 from ...effects.envelope import Envelope
 from ...errors import Problem
 from ...model.triangles import areas
+from ...records import dataclass
 from ...scene.formatting import number, say
 from ...scene.once import once_for
 from ..contact.words import CONTACT_STIFFNESS

@@ -5,7 +5,6 @@ too, or its surface is: its pieces touch each other."""
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from math import sqrt
 from typing import Any
 
@@ -16,6 +15,7 @@ from ...model.boxes import box_pairs
 from ...model.model import Model
 from ...model.rope import section
 from ...reach.region import Sweeps
+from ...records import dataclass
 from ...scene.once import once_for
 from ...scene.scene import SceneRecord
 from ..contact.pairs import damping, frictions, pair_rules

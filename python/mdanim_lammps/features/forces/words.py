@@ -4,9 +4,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any, ClassVar
 
+from ...records import dataclass
 from ...scene.formatting import number
 from ...scene.holding import all_held
 from ...scene.schema import OneOf, Vector, setting

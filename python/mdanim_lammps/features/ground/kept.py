@@ -4,9 +4,9 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 from ...effects.kept import KeptRecord
+from ...records import dataclass
 
 
 @dataclass(frozen=True, slots=True)

@@ -15,7 +15,6 @@ certificate.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -25,6 +24,7 @@ from ...model.inertia import largest_mobility
 from ...model.springs import equivalent_modulus
 from ...reach import Throw
 from ...reach.reach import wave_speed
+from ...records import dataclass
 from ...scene.holding import all_held
 from ...scene.once import once_for
 from ..joints.links import links_of

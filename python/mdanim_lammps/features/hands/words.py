@@ -4,10 +4,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from typing import Any, ClassVar
 
 from ...errors import Span
+from ...records import dataclass
 from ...scene.formatting import number
 from ...scene.holding import all_held
 from ...scene.schema import Block, OneOf, Vector, setting

@@ -3,9 +3,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Any, ClassVar
 
+from ...records import dataclass
 from ...scene.formatting import number
 from ...scene.schema import Observable, OneOf, setting
 from ...scene.shapes import Shell

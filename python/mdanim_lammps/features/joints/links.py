@@ -6,7 +6,6 @@ from __future__ import annotations
 import heapq
 import math
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -14,6 +13,7 @@ import numpy as np
 from ...bodies import all_held, driven, kind_of
 from ...model import shapes
 from ...reach import Leash
+from ...records import dataclass
 from ...scene import units
 from ...scene.naming import objects_by_name
 from ...scene.once import once_for

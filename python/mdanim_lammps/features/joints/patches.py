@@ -8,12 +8,12 @@ moves that by the mobility 1/M + d S^-1 d. Of a rigid body the patch is all of i
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
 from ...model.system import System
+from ...records import dataclass
 
 NEAR, MORE = 1.01, 0.75
 """Radius of a patch around a particle, and beyond the nearest one, over the spacing: seven particles around one, and those of a

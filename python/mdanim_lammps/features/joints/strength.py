@@ -12,13 +12,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
 
 from ...effects.context import Context
 from ...model.shapes import thickness
+from ...records import dataclass
 from ...scene.once import once_for
 from ...scene.scene import Rope
 from .ends import JointEnd, across, directions_of, lever, spin, unit

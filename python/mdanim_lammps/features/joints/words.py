@@ -5,11 +5,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from enum import Enum
 from typing import Any
 
 from ...errors import Span
+from ...records import dataclass
 from ...scene.formatting import number, say, whole
 from ...scene.holding import all_held
 from ...scene.limits import Limit

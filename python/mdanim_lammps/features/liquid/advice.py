@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -14,6 +13,7 @@ from ...effects.envelope import Envelope
 from ...errors import Problem, Span
 from ...model import shapes
 from ...model.model import Model
+from ...records import dataclass
 from ...scene.formatting import number, say, whole
 from ...scene.scene import Solid
 from ..contact.pairs import frictions

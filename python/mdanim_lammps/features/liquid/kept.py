@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
@@ -13,6 +13,7 @@ from ...effects.fields import Field
 from ...effects.kept import KeptRecord
 from ...errors import OutputError
 from ...model.grid import Grid
+from ...records import dataclass
 from ...scene.scene import Vector
 
 MOST_DROPS = 2048

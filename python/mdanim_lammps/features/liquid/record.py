@@ -4,11 +4,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from enum import Enum
 from typing import ClassVar
 
 from ...errors import Span
+from ...records import dataclass
 from ...scene.limits import Limit
 from ...scene.schema import BOX, COLOR, OneOf, Rule, Vector, Worded, Words, setting
 from ..drives.words import DriveOscillation, DriveVelocity, ShiftKey

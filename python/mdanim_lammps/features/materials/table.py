@@ -8,8 +8,10 @@ docs/materials.md is printed from here (page.py). SI units: density [kg/m^3], el
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, fields
+from dataclasses import field, fields
 from typing import NamedTuple
+
+from ...records import dataclass
 
 CHOSEN = "chosen"
 """Source of figures for which no range is cited: they are a choice of this program."""

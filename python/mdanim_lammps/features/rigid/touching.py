@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -21,6 +20,7 @@ from ...effects.readings import Readings
 from ...model.planes import Plane
 from ...model.shapes import thickness
 from ...model.system import System
+from ...records import dataclass
 from ...scene.formatting import in_full, number, say
 from ...scene.naming import objects_by_name, pairs_of
 from ...scene.scene import Shape, Solid

@@ -5,10 +5,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
 from enum import Enum
 from typing import Any, ClassVar
 
+from ...records import dataclass
 from ...scene.formatting import say
 from ...scene.holding import all_held
 from ...scene.schema import Words, setting

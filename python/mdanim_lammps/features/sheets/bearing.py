@@ -18,7 +18,6 @@ strain e bears no more than at TORN e, where it has torn beside the object.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -27,6 +26,7 @@ from ...effects.envelope import Envelope
 from ...errors import Problem
 from ...model import shapes
 from ...model.system import hardness, parts
+from ...records import dataclass
 from ...scene.formatting import number, say
 from ...scene.scene import Box, Cone, Cylinder, Ellipsoid, Shape, Solid, Sphere
 from ..contact.rigid_surfaces import moduli

@@ -5,7 +5,7 @@ resists bending."""
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from functools import cached_property
 
 import numpy as np
@@ -15,6 +15,7 @@ from ...model.bare import BareBody, BareFrame, bare_model
 from ...model.bends import BendRing
 from ...model.build import NothingHeld, caught_in_box
 from ...model.lattice import Cells
+from ...records import dataclass
 from ...scene.formatting import say
 from ...scene.scene import Accuracy, HoldAll, HoldFaces, HoldWithin, Sheet, Shell
 from ..tearing.words import tears

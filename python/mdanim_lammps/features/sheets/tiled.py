@@ -8,7 +8,6 @@ A fan is a particle with the smooth part of the surface around it: its triangles
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from typing import Any
 
@@ -20,6 +19,7 @@ from ...model.orientation import MeshError
 from ...model.remesh import remeshed
 from ...model.rods import SOFT
 from ...model.triangles import areas, edges
+from ...records import dataclass
 from ...scene.formatting import say
 from ...scene.scene import Shell
 

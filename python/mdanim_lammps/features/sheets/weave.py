@@ -6,7 +6,6 @@ the stiffness of a strip of the sheet.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from itertools import pairwise
 
@@ -15,6 +14,7 @@ import numpy as np
 from ...model.bends import BendLine, BendRing, runs_around
 from ...model.rods import Rod, bends_of, springs_of
 from ...model.triangles import areas
+from ...records import dataclass
 from ...scene.scene import Sheet
 
 EVEN = 50.0

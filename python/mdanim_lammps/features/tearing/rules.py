@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import math
-import random
 from typing import Any
 
 import numpy as np
@@ -105,6 +104,8 @@ def limits(solid: Any, seed: int, strain: float, length: np.ndarray) -> np.ndarr
     place."""
     if not isinstance(solid.shape, Rope):
         return (1.0 + strain) * length
+    import random  # loaded for ropes that tear alone
+
     each = np.full(len(length), MORE * strain)
     each[random.Random(f"{seed} {solid.name}").randrange(len(length))] = strain
     return (1.0 + each) * length

@@ -3,11 +3,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from ...effects.kept import KeptRecord
+from ...records import dataclass
 from ...scene.scene import Vector
 
 

@@ -4,9 +4,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Any, ClassVar
 
+from ...records import dataclass
 from ...scene.schema import BOX, OneOf, Vector, setting
 from ...scene.units import show
 from ..contact.words import ContactModel

@@ -7,10 +7,10 @@ Pure functions of arrays that every executor has, on integers only, so that all 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
+from ...records import dataclass
 from .teams import GAIN, LEAST, TENTH, Team, form, time_each
 
 CRUMB = 64

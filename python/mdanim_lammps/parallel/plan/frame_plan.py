@@ -7,12 +7,12 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
 from ...engine.sub_plan import SubPlans
 from ...reach.window import window
+from ...records import dataclass
 from . import islands
 from .assign import assign, firsts, total
 from .teams import GAIN, GAIN_BY_THREADS, LEAST, LEAST_BY_THREADS, Team

@@ -7,9 +7,9 @@ of all.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
+
+from ...records import dataclass
 
 TENTH = (11, 10)
 """Loads within this ratio of the mean, or of the largest island, are in balance."""

@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from mpi4py import MPI
@@ -15,6 +14,7 @@ from ...engine.state import Records, State, StateRecords
 from ...engine.sub_plan import SubPlans
 from ...engine.threads import MOST_THREADS, asked_threads, with_threads
 from ...model.system import side_by_side
+from ...records import dataclass
 from ...run.energy import losses
 from ...run.frame_source import run_window
 from ..plan.frame_plan import FrameAssignment

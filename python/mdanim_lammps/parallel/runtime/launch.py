@@ -16,7 +16,6 @@ import threading
 import time
 from collections.abc import Callable
 from contextlib import suppress
-from dataclasses import dataclass
 from pathlib import Path
 
 from ...children import DEVNULL, PIPE, Child, start
@@ -24,6 +23,7 @@ from ...children import command as child_command
 from ...engine.plugin import files_too_small, has_descriptors
 from ...errors import ExecutorLost, MdanimError, OutputError, SetupError
 from ...interrupts import Interrupts
+from ...records import dataclass
 from ...results.checkpoint import Checkpoint
 from ...results.files import CHECKPOINT, JOB, STOP, SUMMARY, claims, disk_errors
 from ...run.loop import Progress

@@ -6,7 +6,7 @@ from __future__ import annotations
 import pickle
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from enum import IntEnum
 
 import numpy as np
@@ -17,6 +17,7 @@ from ...effects.fields import Fields
 from ...engine.plan import Plan
 from ...engine.state import Records
 from ...model.model import Model
+from ...records import dataclass
 from ...results.checkpoint import Checkpoint
 from ...results.frame_rows import FrameRows
 from ...run.frame_source import Account

@@ -12,7 +12,7 @@ import threading
 import time
 from bisect import bisect_left
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import field
 
 import numpy as np
 from mpi4py import MPI
@@ -21,6 +21,7 @@ from ... import errors
 from ...engine.state import State, join_all
 from ...engine.sub_plan import SubPlans
 from ...errors import DivergedError
+from ...records import dataclass
 from ...results.timeline import Timeline
 from ...run.energy import ledger_terms, loss_terms, potentials, whole_fields
 from ...run.frame_source import Account, Frame, LammpsFailure
