@@ -77,7 +77,7 @@ class GluedBodies {
  private:
   // In the record of each piece.
   struct Kept {
-    std::int64_t behind = ALONE;    // the first piece of its whole is so many bodies before this one
+    std::int64_t behind = ALONE;    // the first piece of its whole is so many places before this one in its `group`
     double mass = 0.0;              // of the whole, and its motion
     Vec3 moments, centre, velocity;
     Quaternion q;
@@ -101,6 +101,9 @@ class GluedBodies {
   bool breakable = false;         // whether not all of them are welds
   std::vector<char> broken;
   std::vector<std::vector<int>> at;    // faces of bodies
+  // What glue held together at the start, ascending; the group of each body, and its place there. Other bodies may lie between.
+  std::vector<std::vector<int>> groups;
+  std::vector<int> group, place_in_group;
   std::vector<int> whole_of;
   std::vector<Pose> in_whole;      // of pieces
   std::vector<Pose> from_start;    // of pieces: from space at the start to their frames

@@ -127,6 +127,16 @@ def test_records_change_no_bit_and_are_the_same_however_it_is_run(tmp_path):
     assert texts[0] == texts[1] == texts[2] and texts[0].startswith(so_far) and so_far.count("\n") == 5
 
 
+def test_a_fault_of_records_does_not_hide_that_a_run_was_stopped(tmp_path, monkeypatch):
+    def fail(*_):
+        raise ValueError("zero-size array")
+
+    monkeypatch.setattr(Records, "of", fail)
+    place = tmp_path / "hops.out"
+    with pytest.raises(Interrupted):
+        Scene.from_text(HOPS + ASKED, "hops").run(place, on_progress=lambda p: p.frame == 1 and (place / "stop").touch())
+
+
 @pytest.mark.parametrize(
     ("line", "message"),
     [

@@ -233,7 +233,7 @@ class _Run:
             try:
                 account = self._frames(on_progress, log)
             except (MdanimError, KeyboardInterrupt):
-                with suppress(MdanimError, OSError), Trajectory(self.folder) as trajectory:
+                with suppress(Exception), Trajectory(self.folder) as trajectory:  # why the run has ended is what is told
                     self._write_records(self._measured(trajectory.renewed(len(self.ledger.rows))))
                 raise
             return self._finish(account)
@@ -391,6 +391,9 @@ class _Run:
         frame counts."""
         when = now.step * self.certificate.timestep
         extras = now.seen.recorded | {field.name: now.fields[field.name] for field in self.extras}
+        if self.ledger.rows:  # instances that have ended took what they had seen with them
+            before = self.ledger.rows[-1]
+            extras |= {field.name: max(before[field.name], extras[field.name]) for field in self.extras if field.largest}
         self.guard.fields(now.step, now.fields)
         # Losses before a resume are carried over.
         row = self.ledger.weigh(when, {t: e + self.carried.get(t, 0.0) for t, e in now.energies.items()} | extras)

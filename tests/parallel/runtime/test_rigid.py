@@ -69,6 +69,7 @@ def test_rigid_objects_are_the_same_in_all_forms(scene):  # noqa: F811
     for way in cases:
         assert compare(found["sequential"], found[way]).equal, way
         assert records(found[way]) == alone, way
+        assert (np.diff(Ledger.read(found[way] / "ledger.csv").array("contact_bound")) >= 0.0).all(), way  # since the start
 
 
 def test_executors_take_up_states_without_what_they_have_laid_aside(scene):  # noqa: F811
