@@ -79,6 +79,7 @@ void Polyhedron::find_faces(const std::vector<std::vector<int>> &loops)
 void Polyhedron::find_edges()
 {
   std::map<std::pair<int, int>, int> left_of;    // face to the left of an edge from one corner to the other
+  std::vector<EdgeEnd> edge_ends;
   for (std::size_t f = 0; f < all_faces.size(); ++f) {
     const std::vector<int> &loop = all_faces[f].corners;
     for (std::size_t k = 0; k < loop.size(); ++k)
@@ -101,6 +102,10 @@ void Polyhedron::find_edges()
         {0.5 * (all_corners[a].at + all_corners[b].at), along, 0.5 * length(way), {into_one, into_two}, {left, other->second}});
     all_corners[a].ways.push_back(along);
     all_corners[b].ways.push_back(-1.0 * along);
+    for (const auto &[face, into] : {std::pair(left, into_one), std::pair(other->second, into_two)}) {
+      edge_ends.push_back({a, face, along, into});
+      edge_ends.push_back({b, face, -1.0 * along, into});
+    }
     if (dot(one.normal, two.normal) > BLUNT) {
       one.next.push_back(other->second);
       two.next.push_back(left);
@@ -114,10 +119,40 @@ void Polyhedron::find_edges()
   }
   for (const Corner &corner : all_corners)
     if (corner.ways.size() < 3) throw std::runtime_error("a corner has fewer than three edges");
+  add_ways_between(all_corners, edge_ends);
+  for (Face &face : all_faces) find_outlines(face.bounds);
   // Euler: corners - edges + faces is 2 for each closed convex surface.
   if (all_corners.size() + all_faces.size() != all_edges.size() + 2)
     throw std::runtime_error("the " + std::to_string(all_faces.size()) +
                              " faces are more than one closed surface; give each of them as an object of its own");
+}
+
+void Polyhedron::add_ways_between(std::vector<Corner> &corners, std::vector<EdgeEnd> ends)
+{
+  constexpr double IN_LINE = -0.875;    // cosine between two ways; 30 degrees off the line they still say enough
+  std::stable_sort(ends.begin(), ends.end(),
+                   [](const EdgeEnd &a, const EdgeEnd &b) { return std::pair(a.corner, a.face) < std::pair(b.corner, b.face); });
+  for (std::size_t i = 0; i < ends.size(); ++i)
+    for (std::size_t j = i + 1; j < ends.size() && ends[j].corner == ends[i].corner && ends[j].face == ends[i].face; ++j) {
+      const Vec3 between = ends[i].way + ends[j].way;
+      if (dot(ends[i].way, ends[j].way) < IN_LINE && dot(between, ends[i].into) > 0.0 && dot(between, ends[j].into) > 0.0)
+        corners[ends[i].corner].ways.push_back(unit(between));
+    }
+}
+
+// Along an outline of many short edges the ramps of neighbours are one: their product would leave little within it.
+void Polyhedron::find_outlines(std::vector<Bound> &bounds)
+{
+  constexpr double ONE_CURVE = 0.8;    // cosine between two bounds
+  for (std::size_t k = 0; k < bounds.size(); ++k) bounds[k].outline = static_cast<int>(k);
+  for (std::size_t i = 0; i < bounds.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j) {
+      const int first = std::min(bounds[i].outline, bounds[j].outline), second = std::max(bounds[i].outline, bounds[j].outline);
+      if (first == second || dot(bounds[i].outward, bounds[j].outward) < ONE_CURVE) continue;
+      for (Bound &one : bounds)
+        if (one.outline == second) one.outline = first;
+    }
+  std::stable_sort(bounds.begin(), bounds.end(), [](const Bound &a, const Bound &b) { return a.outline < b.outline; });
 }
 
 void Polyhedron::cover(int face)

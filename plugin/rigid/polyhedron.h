@@ -13,7 +13,7 @@ class Polyhedron {
  public:
   struct Corner {
     Vec3 at;
-    std::vector<Vec3> ways;    // along its edges, away from it; of length 1
+    std::vector<Vec3> ways;    // along its edges, and between two of a face that are nearly in line, away from it; of length 1
     std::vector<int> faces;    // those that meet there
     bool covered = false;
   };
@@ -24,18 +24,24 @@ class Polyhedron {
     int faces[2];
     bool covered = false;
   };
+  // An edge of a face as it leads away from a corner: `into` leads from it into the face.
+  struct EdgeEnd {
+    int corner, face;
+    Vec3 way, into;
+  };
   // A sharp edge of a face: the face ends where outward . X = at.
   struct Bound {
     Vec3 outward;
     double at;
+    int outline = 0;    // bounds that turn little from one to the next are one curve
   };
   struct Face {
-    Vec3 normal;                 // outward, of length 1
-    double at;                   // normal . X of its points
-    std::vector<int> corners;    // around it, counter-clockwise from outside
-    std::vector<Bound> bounds;
-    std::vector<int> next;    // faces beyond its blunt edges
-    bool covered = false;     // another body is flush there: neither the face nor its edges and corners touch anything
+    Vec3 normal;                  // outward, of length 1
+    double at;                    // normal . X of its points
+    std::vector<int> corners;     // around it, counter-clockwise from outside
+    std::vector<Bound> bounds;    // those of one outline follow each other
+    std::vector<int> next;        // faces beyond its blunt edges
+    bool covered = false;         // another body is flush there: neither the face nor its edges and corners touch anything
   };
   // The closest point of the surface: its normal, and the distance, negative inside.
   struct Foot {
@@ -58,6 +64,9 @@ class Polyhedron {
   const std::vector<Face> &faces() const { return all_faces; }
   // Directions of edges, each once but for its sign.
   const std::vector<Vec3> &directions() const { return all_directions; }
+
+  // Where edges of a face are nearly in line at a corner, the body is between them: adds that way.
+  static void add_ways_between(std::vector<Corner> &corners, std::vector<EdgeEnd> ends);
 
   double area(int face) const;
   // Largest normal . X - at over faces: below 0 inside, at most the distance outside.
@@ -84,6 +93,7 @@ class Polyhedron {
   void check_corners() const;
   void find_faces(const std::vector<std::vector<int>> &loops);
   void find_edges();
+  static void find_outlines(std::vector<Bound> &bounds);
 
   std::vector<Corner> all_corners;
   std::vector<Edge> all_edges;

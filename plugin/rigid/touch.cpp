@@ -20,6 +20,54 @@ Touch TouchStep::damped(Touch::TouchKind kind, const TouchLaw &law, double yield
   return touch;
 }
 
+namespace {
+
+// Corners of a body that are as high over a surface as the one that begins to touch it: they press with it.
+struct LevelCorners {
+  int count = 0;
+  Vec3 middle;    // of their places
+  LevelCorners() = default;
+  LevelCorners(const Solid &one, const Vec3 &x, const Vec3 &n)
+  {
+    constexpr double LEVEL = 0.02;    // over the thinnest part: how deep the fastest blow goes
+    const Vec3 down = one.in_body(n);
+    const double height = dot(n, x - one.centre), near = LEVEL * one.shape.thin();
+    Vec3 sum;
+    for (const Polyhedron::Corner &corner : one.shape.corners())
+      if (!corner.covered && std::fabs(dot(down, corner.at) - height) <= near) sum += corner.at, ++count;
+    if (count) middle = one.place((1.0 / count) * sum);
+  }
+};
+
+// A flat end with many corners is as hard as one with FEW: with a whole spring at each of 36 corners no step was short enough.
+// All of them yield together, as their middle; 0 where there are few.
+struct SharedContact {
+  double share = 1.0, yields = 0.0;
+  SharedContact(Touch::TouchKind kind, const Solid &a, const Solid *b, const Vec3 &x, const Vec3 &n)
+  {
+    constexpr int FEW = 6;
+    const bool is_crossing = kind == Touch::EDGES || kind == Touch::CURVES;
+    if (!is_crossing && kind != Touch::CORNER && kind != Touch::CORNER_OF_OTHER) return;
+    LevelCorners level(a, x, n);
+    if (is_crossing)
+      if (const LevelCorners other(*b, x, n); other.count > level.count) level = other;
+    if (level.count <= FEW) return;
+    share = static_cast<double>(FEW) / level.count;
+    yields = level.count * (a.yields_at(level.middle, n) + (b ? b->yields_at(level.middle, n) : 0.0));
+  }
+};
+
+}    // namespace
+
+Touch TouchStep::born(Touch::TouchKind kind, const TouchLaw &law, const Solid &a, const Solid *b, const Vec3 &x,
+                      const Vec3 &n) const
+{
+  if (const SharedContact one(kind, a, b, x, n); one.share < 1.0)
+    return born(kind, {one.share * law.stiffness, law.friction, law.damping, law.rolling}, one.yields);
+  births.push_back({n, x - a.centre, b ? x - b->centre : Vec3(), &a, b});
+  return damped(kind, law, a.yields_at(x, n) + (b ? b->yields_at(x, n) : 0.0));
+}
+
 void TouchStep::listed(std::vector<Touch> &touches, int plane) const
 {
   // A contact that ended at once is in no list: then none of them is known.
@@ -219,7 +267,7 @@ void TouchStep::book(Solid &a, Solid *b, Touch &touch, double part, const Contac
       return touch.kind == Touch::EDGES || touch.kind == Touch::CURVES ? one.yields_any
                                                                        : (1.0 - stick) * one.yields + stick * one.yields_any;
     };
-    const double s = (b ? 2.0 : 1.0) * touch.stiffness;
+    const double s = (b ? 2.0 : 1.0) * part * touch.stiffness;
     one.stiffness_sum += s * along(ContactLaw::STICK);
     one.damping_sum += s * touch.damping * along(STICK_DAMPING * std::sqrt(ContactLaw::STICK));
     ++one.touching;

@@ -107,11 +107,7 @@ class TouchStep {
 
   // A contact that is born at x. `depth_before`: that of the step before, where it came through the surface; else it overlaps
   // from the beginning, without a force.
-  Touch born(Touch::TouchKind kind, const TouchLaw &law, const Solid &a, const Solid *b, const Vec3 &x, const Vec3 &n) const
-  {
-    births.push_back({n, x - a.centre, b ? x - b->centre : Vec3(), &a, b});
-    return damped(kind, law, a.yields_at(x, n) + (b ? b->yields_at(x, n) : 0.0));
-  }
+  Touch born(Touch::TouchKind kind, const TouchLaw &law, const Solid &a, const Solid *b, const Vec3 &x, const Vec3 &n) const;
   // The same of a point that shares its contact with others: its depth yields so to its force.
   Touch born(Touch::TouchKind kind, const TouchLaw &law, double yields) const
   {

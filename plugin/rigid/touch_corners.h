@@ -26,15 +26,32 @@ class PolyhedronHost {
   Vec3 normal(int side, const Vec3 &) const { return shape.faces()[side].normal; }
   double depth(int side, const Vec3 &x) const { return shape.faces()[side].at - dot(shape.faces()[side].normal, x); }
   double outside(const Vec3 &x) const { return shape.outside(x); }
-  // Part of a contact at x below a side: it fades over the ramp at sharp edges.
+  // Part of a contact at x below a side: it fades over the ramp at sharp edges. Of an outline of many edges the two nearest ones
+  // count, one as much as the other where x is as near to both.
   double part(int side, const Vec3 &x, Vec3 &slope) const
   {
+    constexpr double ROUND = 0.1;    // over the ramp: how far the corner between both is rounded
+    const std::vector<Polyhedron::Bound> &bounds = shape.faces()[side].bounds;
     double part = 1.0;
     slope = Vec3();
-    for (const Polyhedron::Bound &bound : shape.faces()[side].bounds) {
+    for (auto bound = bounds.begin(); bound != bounds.end();) {
+      const int outline = bound->outline;
+      double inside = HUGE_VAL, next = HUGE_VAL;
+      Vec3 outward, outward_of_next;
+      for (; bound != bounds.end() && bound->outline == outline; ++bound) {
+        const double from = bound->at - dot(bound->outward, x);
+        if (from < inside)
+          next = inside, outward_of_next = outward, inside = from, outward = bound->outward;
+        else if (from < next)
+          next = from, outward_of_next = bound->outward;
+      }
+      if (const double near = 1.0 - (next - inside) / (ROUND * ramp); near > 0.0) {
+        inside -= 0.25 * ROUND * ramp * near * near;
+        outward += (0.5 * near) * (outward_of_next - outward);
+      }
       double steep;
-      const double one = smooth_step(bound.at - dot(bound.outward, x), ramp, steep);
-      slope = one * slope - (part * steep) * bound.outward;
+      const double one = smooth_step(inside, ramp, steep);
+      slope = one * slope - (part * steep) * outward;
       part *= one;
     }
     return part;

@@ -170,6 +170,7 @@ void TriangleMesh::find_patches()
 void TriangleMesh::find_borders()
 {
   std::vector<Polyhedron::Corner> found(places.size());
+  std::vector<Polyhedron::EdgeEnd> edge_ends;
   for (std::size_t p = 0; p < places.size(); ++p) found[p].at = places[p];
   for (int t = 0; t < static_cast<int>(all_triangles.size()); ++t)
     for (int k = 0; k < 3; ++k) {
@@ -184,11 +185,16 @@ void TriangleMesh::find_borders()
           {places[a], along, -1.0 * into, length(way), beyond, is_convex, dot(normal, normal_beyond) <= BLUNT});
       found[a].ways.push_back(along);
       found[a].faces.push_back(own_side);
+      if (all_sides[own_side].triangles.size() > 1) {
+        edge_ends.push_back({a, own_side, along, into});
+        edge_ends.push_back({b, own_side, -1.0 * along, into});
+      }
       if (is_convex && a < b)
         all_edges.push_back({0.5 * (places[a] + places[b]), along, 0.5 * length(way), {into, into_beyond}, {own_side, beyond}});
     }
+  Polyhedron::add_ways_between(found, std::move(edge_ends));
   for (Polyhedron::Corner &one : found)
-    if (one.ways.size() >= 3) all_corners.push_back(std::move(one));
+    if (one.faces.size() >= 3) all_corners.push_back(std::move(one));
 }
 
 void TriangleMesh::find_trees()
@@ -217,6 +223,13 @@ std::vector<int> TriangleMesh::near(const BoxTree &tree, const Box &box)
   return found;
 }
 
+// Whether a point is on a border as well as its place is known: then it has no way to it.
+static bool distance_is_rounding(double square, const TriangleMesh::MeshBorder &border)
+{
+  constexpr double ROUNDING = 1e-9;
+  return square <= (ROUNDING * border.length) * (ROUNDING * border.length);
+}
+
 // Where the nearest point is the common end of two borders, that one counts whose line is farther away.
 TriangleMesh::Footprint TriangleMesh::footprint(int number, const Vec3 &x) const
 {
@@ -227,6 +240,8 @@ TriangleMesh::Footprint TriangleMesh::footprint(int number, const Vec3 &x) const
     Vec3 away, outward;
     bool is_edge = false;
   } all, sharp;
+  Vec3 at_end;    // where x is at the end of sharp borders: their sum and number
+  int ends = 0;
   const auto take = [](Nearest &least, const MeshBorder &border, double square, double line, const Vec3 &away) {
     constexpr double SAME = 1e-12;
     const bool is_same = std::fabs(square - least.square) <= SAME * square;
@@ -239,7 +254,9 @@ TriangleMesh::Footprint TriangleMesh::footprint(int number, const Vec3 &x) const
     const Vec3 away = from - s * border.along;
     const double square = dot(away, away), line = -dot(from, border.outward);
     take(all, border, square, line, away);
-    if (border.is_convex && border.is_sharp) take(sharp, border, square, line, away);
+    if (!border.is_convex || !border.is_sharp) continue;
+    take(sharp, border, square, line, away);
+    if (distance_is_rounding(square, border)) at_end += border.outward, ++ends;
   }
   Footprint found{all.square < HUGE_VAL ? std::sqrt(all.square) : HUGE_VAL, HUGE_VAL, {}};
   const bool is_inside = all.line >= 0.0;
@@ -247,7 +264,7 @@ TriangleMesh::Footprint TriangleMesh::footprint(int number, const Vec3 &x) const
   if (sharp.square == HUGE_VAL) return found;
   const double distance = std::sqrt(sharp.square), sign = is_inside || !all.is_edge ? 1.0 : -1.0;
   found.from_edge = sign * distance;
-  found.inward = distance > 0.0 ? (sign / distance) * sharp.away : -1.0 * sharp.outward;
+  found.inward = ends ? (-1.0 / ends) * at_end : (sign / distance) * sharp.away;
   return found;
 }
 

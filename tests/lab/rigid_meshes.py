@@ -45,6 +45,16 @@ def profile(outline, width: float) -> tuple[np.ndarray, np.ndarray]:
     return points, np.concatenate([front, front[:, ::-1] + n, sides])
 
 
+def prism(sides: int, radius: float, height: float) -> tuple[np.ndarray, np.ndarray]:
+    """As lab.prism, about its middle."""
+    k = np.arange(sides)
+    m, angle = (k + 1) % sides, 2 * np.pi * k / sides
+    points = np.concatenate([np.c_[radius * np.cos(angle), radius * np.sin(angle), np.full(sides, z)] for z in (-0.5, 0.5)])
+    points[:, 2] *= height
+    top = np.c_[np.zeros(sides - 2, int), k[1:-1], k[2:]] + sides
+    return points, np.concatenate([top, top[:, ::-1] - sides, np.c_[k, m, m + sides], np.c_[k, m + sides, k + sides]])
+
+
 def bowl(radius: float, wall: float, up: float, across: int, along: int) -> tuple[np.ndarray, np.ndarray]:
     """A part of a hollow sphere that begins at the origin, up to an angle, with this number of corners around and up."""
     angle, turn = np.linspace(0.0, up, along), 2 * np.pi * np.arange(across) / across

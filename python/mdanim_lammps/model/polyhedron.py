@@ -59,8 +59,7 @@ def _of_file(shape: Mesh) -> Polyhedron | None:
 @lru_cache(maxsize=256)
 def hull(shape: Mesh) -> Polyhedron | None:
     """The corners and faces of the hull of a mesh, all of it that a plane can touch; None where it has more than MOST_ON_PLANES
-    corners, more than MOST_CORNERS of them in one plane, or edges or faces too small for `fix mdanim/rigid`. Raises
-    mesh.MeshError."""
+    corners, or edges or faces too small for `fix mdanim/rigid`. Raises mesh.MeshError."""
     from scipy.spatial import ConvexHull
 
     found, points = _around_all(shape), mesh.load(shape).points
@@ -73,7 +72,7 @@ def hull(shape: Mesh) -> Polyhedron | None:
             return None
         found = ConvexHull(points[found.vertices[kept]])
     body = _merged(found, near)
-    if body is None or len(body.corner) > MOST_ON_PLANES or max(map(len, body.faces)) > MOST_CORNERS:
+    if body is None or len(body.corner) > MOST_ON_PLANES:
         return None
     return body if is_clean(body, near) else None
 

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 import rigid_lab as lab
 import rigid_meshes
+from mdanim_lammps.features.contact.restitution import damping_for
 from rigid_samples import BALL, CAN, COIN, CONE, CUBE, DOMINO, EGG, G, meeting, momenta, rolled, tilted
 from scipy.special import ellipk
 
@@ -38,6 +39,29 @@ def test_a_slab_of_triangles_is_as_a_box(tmp_path, body):
             assert world.number("deepest") > 0.0
             found.append(world.rows()[0])
     assert found[1] == pytest.approx(found[0], abs=1e-2 if body is COIN else 1e-5)
+
+
+@pytest.mark.parametrize("host", ["plane", "box", "twin", "twin of triangles", "turned twin"])
+@pytest.mark.parametrize("sides", [13, 36])
+def test_an_end_with_many_corners_is_as_hard_as_one_with_few(tmp_path, sides, host):
+    """A slender prism lands on its flat end: as much is left of the blow as is asked for. With a whole spring at each of 36
+    corners it was thrown up, and twins fell into each other. Where edges cross and corners meet, as of twins that are turned,
+    the blow is on more of them than count."""
+    rod, beta = lab.cylinder(0.02, 0.2).put(shape=lab.prism(sides, 0.02, 0.2)), damping_for(0.8)
+    below = {
+        "box": lab.box((1, 1, 0.2), held=True),
+        "twin": rod.put(held=True),
+        "twin of triangles": lab.mesh(*rigid_meshes.prism(sides, 0.02, 0.2), 0.04),
+        "turned twin": rod.put(held=True, q=lab.about((0, 0, 1), np.pi / sides)),
+    }
+    hosts, planes = ([], ["plane z lo 0.1"]) if host == "plane" else ([below[host].put(at=(0, 0, 0))], [])
+    bodies = [rod.put(at=(0, 0, 0.202), v=(0, 0, -1), beta=beta), *(one.put(beta=beta) for one in hosts)]
+    with lab.World(tmp_path, bodies, frequency=lab.frequency_of(1.0, 0.04), planes=planes, gravity=(0, 0, 0)) as world:
+        world.run(round(0.04 / world.dt))
+        row, energy = world.rows()[0], world.energy(0.0)
+    assert row[5] == pytest.approx(0.8, abs=0.03 if (sides, host) != (13, "turned twin") else 0.08)
+    assert abs(row[10:]).max() < 1e-6
+    assert energy == pytest.approx(0.5 * rod.mass, rel=1e-3)
 
 
 @pytest.mark.parametrize(("across", "along"), [(24, 10), (48, 20)])
