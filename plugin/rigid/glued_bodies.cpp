@@ -31,22 +31,16 @@ void GluedBodies::take(std::vector<GlueFace> given, std::size_t bodies)
   Whole all;
   for (std::size_t n = 0; n < bodies; ++n)
     if (!at[n].empty()) all.pieces.push_back(static_cast<int>(n));
-  groups = parts(all);
-  group.assign(bodies, ALONE);
-  place_in_group.assign(bodies, 0);
-  for (std::size_t g = 0; g < groups.size(); ++g)
-    for (std::size_t k = 0; k < groups[g].size(); ++k)
-      group[groups[g][k]] = static_cast<int>(g), place_in_group[groups[g][k]] = static_cast<int>(k);
+  at_start = GlueGroups(parts(all), bodies);
 }
 
 void GluedBodies::join(const std::vector<RigidBody> &bodies)
 {
-  const std::size_t count = bodies.size();
   broken.assign(faces.size(), 0);
   wholes.clear();
-  for (std::size_t n = 0; n < count; ++n)
+  for (std::size_t n = 0; n < bodies.size(); ++n)
     from_start[n] = {-1.0 * transposed_times(bodies[n].turn, bodies[n].centre), reversed(bodies[n].q)};
-  for (const std::vector<int> &hang_together : groups) make_whole(bodies, hang_together);
+  for (const std::vector<int> &group : at_start.groups) make_whole(bodies, group);
   number_wholes();
 }
 
@@ -310,7 +304,7 @@ void GluedBodies::put(int body, ByteWriter &writer) const
   kept.from_start = from_start[body], kept.bore = bore[body];
   if (holds(body)) {
     const Whole &whole = wholes[whole_of[body]];
-    kept.behind = place_in_group[body] - place_in_group[whole.pieces.front()];
+    kept.behind = at_start.place[body] - at_start.place[whole.pieces.front()];
     kept.mass = whole.body.mass, kept.moments = whole.body.moments, kept.centre = whole.body.centre;
     kept.velocity = whole.body.velocity, kept.q = whole.body.q, kept.L = whole.body.L;
     kept.pose = in_whole[body];
@@ -335,7 +329,7 @@ void GluedBodies::read(int body, ByteReader &reader)
       broken[f] = own[next++] != 0;
     }
   const Kept &now = kept[body];
-  if (next != own.size() || !(now.bore >= 0.0) || now.behind > place_in_group[body] || now.behind < ALONE ||
+  if (next != own.size() || !(now.bore >= 0.0) || now.behind > at_start.place[body] || now.behind < ALONE ||
       (now.behind != ALONE && !(now.mass > 0.0)) ||
       !std::isfinite(now.centre.x + now.centre.y + now.centre.z + now.velocity.x + now.velocity.y + now.velocity.z))
     reader.is_damaged("its glue");
@@ -362,7 +356,7 @@ void GluedBodies::rebuild(const std::vector<char> &has)
     bore[n] = own.bore, given_way[n] = own.way;
     whole_of[n] = ALONE;
     if (own.behind == ALONE) continue;
-    const int first = groups[group[n]][place_in_group[n] - own.behind];
+    const int first = at_start.groups[at_start.group[n]][at_start.place[n] - own.behind];
     if (number[first] == ALONE) {
       number[first] = static_cast<int>(wholes.size());
       Whole whole;

@@ -13,6 +13,7 @@
 #include "rigid/body.h"
 #include "rigid/coarse_glue.h"
 #include "rigid/glue.h"
+#include "rigid/glue_groups.h"
 #include "rigid/glue_springs.h"
 #include "rigid/shape.h"
 
@@ -77,7 +78,7 @@ class GluedBodies {
  private:
   // In the record of each piece.
   struct Kept {
-    std::int64_t behind = ALONE;    // the first piece of its whole is so many places before this one in its `group`
+    std::int64_t behind = ALONE;    // the first piece of its whole is so many places before this one in `at_start`
     double mass = 0.0;              // of the whole, and its motion
     Vec3 moments, centre, velocity;
     Quaternion q;
@@ -101,9 +102,7 @@ class GluedBodies {
   bool breakable = false;         // whether not all of them are welds
   std::vector<char> broken;
   std::vector<std::vector<int>> at;    // faces of bodies
-  // What glue held together at the start, ascending; the group of each body, and its place there. Other bodies may lie between.
-  std::vector<std::vector<int>> groups;
-  std::vector<int> group, place_in_group;
+  GlueGroups at_start;
   std::vector<int> whole_of;
   std::vector<Pose> in_whole;      // of pieces
   std::vector<Pose> from_start;    // of pieces: from space at the start to their frames
