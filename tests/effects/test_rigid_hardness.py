@@ -5,7 +5,10 @@ import numpy as np
 import pytest
 from mdanim_lammps.engine.instance import Instance
 from mdanim_lammps.features.contact.rigid_surfaces import frequency
+from mdanim_lammps.features.joints.hung import hung
+from mdanim_lammps.features.joints.links import links_of
 from mdanim_lammps.features.rigid.touching import omega
+from mdanim_lammps.scene.parse import parse_scene
 
 SCENE = """gravity (0, 0, -9.81) m/s^2
 ground z 0 m
@@ -63,6 +66,29 @@ def test_a_thin_sail_costs_a_boat_little(prepared):
     assert ready.system.particles < 2000
     displaced = np.add.reduceat(ready.system.volume, ready.system.first[:-1])
     np.testing.assert_allclose(displaced, [0.08, 0.4 * 0.003 * 0.6])
+
+
+WELD, HINGE = "joint weld sail hull { at (0.2, 0, 0.62) m }", "joint hinge sail hull { at (0.2, 0, 0.62) m  %s }"
+
+
+def test_a_sail_on_a_hinge_falls_with_the_hull(prepared):
+    """About its mast it does not come down: contacts are softer than those of a sail that falls by itself."""
+    ready = prepared(BOAT.replace(WELD, HINGE % "axis (0, 0, 1)"))
+    alone = 2.0 * np.sqrt(9.81 / 0.2) / 0.02
+    assert frequency(ready.context).speed == 0.0 and omega(ready.context) < 4.0 * alone
+
+
+@pytest.mark.parametrize(
+    ("axis", "sinks"), [("axis (0, 0, 1)", 0.0), ("axis (1, 0, 0)", 0.6), ("axis (1, 0, 0) limits -30 deg to 60 deg", 0.15)]
+)
+def test_what_a_hinge_lets_come_down(axis, sinks):
+    """By its arm and back about a level line, less where it has limits; a cube welded to the sail's top with the sail."""
+    top = "shape box (1, 1, 1) cm  position (0.2, 0, 1.225) m  density 400  elasticity rigid"
+    more = f"object top {{ {top} }}\njoint weld top sail {{ at (0.2, 0, 1.22) m }}\n"
+    links = links_of(parse_scene(BOAT.replace(WELD, HINGE % axis) + more, "boat"))
+    (group,) = hung(links)
+    assert group.first == 0
+    np.testing.assert_allclose([group.sinks[m] for m in range(3)], [0.0, sinks, sinks * 0.605 / 0.3], atol=1e-9)
 
 
 def test_a_blow_on_a_thin_part_of_a_body_comes_back(prepared):

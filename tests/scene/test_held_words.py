@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What an object that is held as a whole need not say."""
+"""Objects that are held as a whole: what they need not say."""
 
 import pytest
 from mdanim_lammps.errors import SceneError
@@ -14,7 +14,7 @@ def held(words):
 
 
 def test_it_is_rigid_and_its_mass_is_asked_by_nothing():
-    """What it says itself stays."""
+    """A word of its own stays."""
     step = held("shape box (1, 1, 1) m")
     assert isinstance(step.elasticity, Rigid) and step.density == 1000.0 and step.mass is None
     assert held("shape box (1, 1, 1) m mass 2 kg").density is None

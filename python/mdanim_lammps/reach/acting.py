@@ -56,6 +56,16 @@ class Leash:
 
 
 @dataclass(frozen=True, slots=True)
+class Hung:
+    """Solids that hang together for good."""
+
+    first: int
+    """The heaviest of them."""
+    sinks: Mapping[int, float]
+    """How far the centre of mass of each may come down if that one stays where it is [m]."""
+
+
+@dataclass(frozen=True, slots=True)
 class Throw:
     """Bounds of what forces that act wherever a solid is give to it."""
 
@@ -163,6 +173,10 @@ class Motion:
         """Solids that it holds at each other or at something that never moves, by number, and how far they may go, where that is
         known."""
         return {}
+
+    def hangs(self, scene: SceneRecord) -> Iterable[Hung]:
+        """Groups of solids that it holds together; what it unites is in one of them."""
+        return ()
 
     def passes(self, scene: SceneRecord) -> Iterable[tuple[int, int]]:
         """Pairs of solids i < j, by number, that may be in each other because of it: no contact acts between them."""

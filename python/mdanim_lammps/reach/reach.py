@@ -12,7 +12,7 @@ from ..model.spacing import choose_spacing, spacings
 from ..model.system import System
 from ..scene.scene import SceneRecord, Solid
 from . import region
-from .acting import Acting, Motion, thrown_within
+from .acting import Acting, Hung, Motion, thrown_within
 from .flight import Flight
 from .standing import standing
 
@@ -77,6 +77,18 @@ class Reach:
         return found
 
     @cached_property
+    def hung(self) -> np.ndarray:
+        """Number of the heaviest solid of what each solid hangs together with for good, its `body` of most, shape (M,)."""
+        found = self.body.copy()
+        for group in self._groups:
+            found[list(group.sinks)] = group.first
+        return found
+
+    @cached_property
+    def _groups(self) -> list[Hung]:
+        return [group for e in self.acting.effects for group in e.hangs(self.scene)]
+
+    @cached_property
     def moving(self) -> np.ndarray:
         """Solids of which something can move, bool, shape (M,)."""
         return ~self.system.still
@@ -122,24 +134,31 @@ class Reach:
 
         As if through air: in a liquid, heights count by the part of the weight that it leaves. Below the surface a light solid
         gains height; where there are others it may meet them at the surface already. What is part of a body that floats, as a
-        sail on a hull, comes down as far as that does.
+        sail on a hull, comes down as far as that does, and on a hinge by what that lets it.
         """
         (bottom, floor), surface = self.heights, self.acting.surface
         bottom = np.where(self.stands, np.minimum(bottom, floor), bottom)
         if surface is None:
             return np.minimum(bottom - floor, self.farthest_down) if self.acting.leashes else bottom - floor
-        weight, body = self.weight_left, self.body
+        weight, body = self.weight_left, self.hung
         lowest = bottom.copy()
         np.minimum.at(lowest, body, bottom)
         above = np.where(weight < 0.0, lowest[body], bottom) - surface
         in_air, below = np.maximum(0.0, above), np.minimum(bottom, surface) - floor
-        return in_air + below * (weight if len(self.system.names) == 1 else np.maximum(0.0, weight))
+        sinks = np.zeros(len(bottom))
+        for group in self._groups:
+            sinks[list(group.sinks)] = list(group.sinks.values())
+        return (
+            in_air
+            + np.where(weight < 0.0, sinks, 0.0)
+            + below * (weight if len(self.system.names) == 1 else np.maximum(0.0, weight))
+        )
 
     @cached_property
     def weight_left(self) -> np.ndarray:
-        """Part of the weight of each solid, or of the rigid body that it is a part of, that the liquid leaves when that is
-        immersed [-]; below 0 where it floats, shape (M,)."""
-        of_body = lambda values: np.bincount(self.body, values, len(values))[self.body]
+        """Part of the weight of each solid, or of what it hangs together with, that the liquid leaves when that is immersed [-];
+        below 0 where it floats, shape (M,)."""
+        of_body = lambda values: np.bincount(self.hung, values, len(values))[self.hung]
         return 1.0 - of_body(self.acting.lift(self.system)) / of_body(self.system.mass_of)
 
     @cached_property

@@ -78,7 +78,7 @@ def frequency(context: Context) -> Frequency:
 def _thickness(context: Context, free: np.ndarray) -> np.ndarray:
     """Thickness of some solids, by number, that says how deep blows may go [m], shape (K,): their own, and of small parts of a
     body `SMALL` times that, up to the thinnest of its large parts."""
-    solids, body = context.scene.solids, context.reach.body[free]
+    solids, body = context.scene.solids, context.reach.hung[free]
     own = {shape: shapes.thickness(shape) for shape in {solids[m].shape for m in free.tolist()}}
     found = np.array([own[solids[m].shape] for m in free.tolist()])
     order = np.argsort(body, kind="stable")

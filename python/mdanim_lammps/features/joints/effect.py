@@ -14,7 +14,8 @@ from ...effects.margin import Margin
 from ...errors import Problem
 from ...scene.formatting import number, say
 from . import advice
-from .links import NOTHING, Link, links_of
+from .links import Link, links_of
+from .motion import JointMotion
 from .place import doubled, misplaced
 from .rows import BROKEN, FIELD, FORCE, TOLD, joint_field, rows_of_joints
 from .strength import GAP, Strength, Sums, strengths
@@ -29,7 +30,7 @@ SHOWS = 4.0
 """Times the gap of a joint between rigid objects, from which on it is worth a warning."""
 
 
-class Joints(Effect):
+class Joints(JointMotion, Effect):
     """Springs between material points of two bodies: U = k |g|^2/2 + k L^2/2 sum |F_A e - F_B e|^2 with the gap g of both points
     and the directions e that a joint holds; motors, friction and stops act on the motion that it leaves (docs/physics-joints.md).
     """
@@ -46,25 +47,6 @@ class Joints(Effect):
         joint, more = scene.joints[0], len(links_of(scene).all) - 1
         others = f" and {more} more" if more else ""
         return Verdict(self.name, True, f"joint {joint.words}{others}", joint.spans.get("joint"))
-
-    # --- where things may be ------------------------------------------------------------------------------------------
-
-    def joins(self, scene):
-        return links_of(scene).pairs if scene.joints else ()
-
-    def unites(self, scene):
-        groups = links_of(scene).whole_of.values() if scene.joints else ()
-        return {group[0]: group for group in groups}.values()
-
-    def holds(self, scene):
-        return links_of(scene).leashes if scene.joints else {}
-
-    def passes(self, scene):
-        return links_of(scene).passing if scene.joints else ()
-
-    def untold(self, scene):
-        ends = (m for link in links_of(scene).all for m in (link.first, link.named)) if scene.joints else ()
-        return {m: "its joint pulls at it, and frames do not tell that from contact" for m in ends if m != NOTHING}
 
     # --- what it brings into a run ------------------------------------------------------------------------------------
 

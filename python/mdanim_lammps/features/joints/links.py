@@ -194,7 +194,7 @@ class Links:
         ways: dict[int, list[tuple[int, float]]] = {}
         heap: list[tuple[float, int, Vector]] = []
         for link in self.all:
-            if link.joint.breaks is not None or (more := _play(link)) == math.inf:
+            if link.joint.breaks is not None or (more := play(link)) == math.inf:
                 continue
             own = self._arm(link.first, link.begin) + more
             if link.second == NOTHING:
@@ -254,7 +254,7 @@ def _makes_one(link: Link, solids: Sequence[Solid]) -> bool:
     )
 
 
-def _play(link: Link) -> float:
+def play(link: Link) -> float:
     """How far both points of a joint may come apart [m]."""
     joint = link.joint
     if joint.kind == "slider":

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What an object that is held as a whole need not say: it does not bend, and nothing asks for its mass."""
+"""Objects that are held as a whole: what they need not say, because they do not bend, and nothing asks for their mass."""
 
 from __future__ import annotations
 
