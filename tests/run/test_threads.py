@@ -12,10 +12,11 @@ import plugin_path
 import pytest
 from filming import WIDTHS, ranges, supported
 from mdanim_lammps import Scene, Trajectory
+from mdanim_lammps.cli.options import Executing
+from mdanim_lammps.cli.steps import announce
 from mdanim_lammps.engine.instance import Instance
 from mdanim_lammps.engine.threads import (
     LEAST,
-    STANDARD,
     THREADS,
     asked_threads,
     check_threads,
@@ -24,6 +25,7 @@ from mdanim_lammps.engine.threads import (
     with_threads,
 )
 from mdanim_lammps.errors import UsageError
+from mdanim_lammps.features import effects
 from mdanim_lammps.processes import cores, quota
 from mdanim_lammps.report import threads_line
 from mdanim_lammps.run.prepare import prepare
@@ -107,12 +109,28 @@ def test_check_names_the_effects_of_standard_steps(monkeypatch):
         assert threads_line(choose_threads(plan, 2)) == f"threads  3, as asked for: {takes}"
 
 
+def test_a_run_of_which_threads_do_not_share_all_tells_it(monkeypatch, tmp_path, capsys):
+    """Whoever asks for them: a word of the command line, the environment or an argument."""
+    scene = "air {}\n" + BLOCK.format(2, "").replace("time 0.1 s", "time 1 ms frames 1000 fps")
+    (tmp_path / "a.txt").write_text(scene)
+    line = "threads  2, as asked for: with air on LAMMPS takes its standard steps, of which"
+    monkeypatch.delenv(THREADS, raising=False)
+    with pytest.warns(UserWarning, match=line):
+        Scene.load(tmp_path / "a.txt").run(tmp_path / "b.out", threads=2)
+    ready = prepare(parse_scene(scene))
+    for asked, environment in ((2, ""), (None, "2"), (None, "")):
+        monkeypatch.setenv(THREADS, environment)
+        announce(ready, False, False, Executing(threads=asked))
+        assert (line in capsys.readouterr().out) == bool(asked or environment)
+
+
 def test_fixes_that_have_no_part_in_passes_are_known():
     """As the plugin's classes have it: those of passes derive from a class of passes/pass_participant.h."""
+    standard = {style for e in effects() for form in e.forms if not form.in_passes for _, style in form.styles}
     headers = (Path(__file__).parents[2] / "plugin" / "lammps").glob("fix_mdanim_*.h")
     bases = {path.stem: re.search(r"^class FixMdanim\w+ :([^{]*)", path.read_text(), re.MULTILINE) for path in headers}
     others = {name for name, found in bases.items() if found and "::Pass" not in found[1]}
-    assert others == {f"fix_{style.replace('/', '_')}" for style in STANDARD}
+    assert others == {f"fix_{style.replace('/', '_')}" for style in standard}
 
 
 def test_the_environment_tells_what_a_thread_is_asked_for(monkeypatch):

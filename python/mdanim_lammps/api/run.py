@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections import deque
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
@@ -13,10 +14,11 @@ from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 from weakref import ref
 
+from ..engine.threads import asked_choice
 from ..errors import MdanimError, OutputError, Problem, RefusedError
 from ..parallel.frames import run_frames
 from ..records import dataclass
-from ..report import progress_line
+from ..report import progress_line, threads_line
 from ..results.checkpoint import Checkpoint
 from ..results.cost import Cost
 from ..results.expect import Outcome
@@ -211,6 +213,9 @@ class Run:
     ) -> Run:
         """Simulate into the folder, which this process has claimed; see `Scene.run` and `run_frames`."""
         self._result = self._opened = None
+        choice = asked_choice(ready.plan, options["threads"])
+        if choice and choice.standard:
+            warnings.warn(threads_line(choice), stacklevel=3)
         with progress_bar("run", quiet=quiet_unless(progress)) as bar:
 
             def tell(now: Progress) -> None:

@@ -7,6 +7,7 @@ import itertools
 import math
 import re
 import time
+import warnings
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
@@ -140,6 +141,7 @@ class Scene:
 
         On several ``executors``, ``control`` is ``central`` (the default) or ``peers``: the frames are the same to the last bit.
         So they are for any number of ``threads``; unless told, a process has as many as pay of all cores divided by executors.
+        A warning names the effects that threads which were asked for do not share.
         ``progress`` shows a bar, by default in a notebook only; ``on_progress`` is called with a Progress after every frame.
         Raises SceneError, RefusedError, DivergedError, OutputError, and UsageError for a flag that is not True or False.
         """
@@ -299,7 +301,9 @@ def check_lists(lists: Mapping) -> None:
 
 def _run_point(scene: Scene, folder: Path, force: bool, movie: bool) -> Run:
     """One run of a sweep, in a process of its own."""
-    return scene.run(folder, force=force, movie=movie, progress=False)
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", "threads ")  # their number is the sweep's, nobody asked for it
+        return scene.run(folder, force=force, movie=movie, progress=False)
 
 
 def draw_picture(

@@ -87,10 +87,9 @@ def print_warnings(ready) -> None:
         print(warning, file=sys.stderr)
 
 
-def announce(ready, quiet: bool, verbose: bool, executing: Executing = Executing()) -> None:
+def announce(ready, quiet: bool, verbose: bool, executing: Executing | None = None) -> None:
     from ..certificate import note_lines
-    from ..engine.threads import choose_threads, with_threads
-    from ..processes import cores
+    from ..engine.threads import asked_choice
     from ..report import certificate_line, effect_line, executors_line, output_line, scene_lines, threads_line
 
     print_warnings(ready)
@@ -102,11 +101,10 @@ def announce(ready, quiet: bool, verbose: bool, executing: Executing = Executing
             print(effect_line(verdict))
     print(certificate_line(ready))
     print("\n".join([*note_lines(ready.certificate), output_line(ready)]))
-    if line := executors_line(executing.executors, executing.control):
+    if executing and (line := executors_line(executing.executors, executing.control)):
         print(line)
-    if executing.threads is not None:
-        with with_threads(executing.threads):
-            print(threads_line(choose_threads(ready.plan, cores())))
+    if executing and (choice := asked_choice(ready.plan, executing.threads)):
+        print(threads_line(choice))
     sys.stdout.flush()
 
 

@@ -14,12 +14,12 @@ from ..model.model import Model
 from ..reach import Motion, Reach
 from ..scene.scene import SceneRecord
 from .context import Context, Verdict
-from .facets import Accounts, Advice, Bounds, Frames
+from .facets import Accounts, Advice, Bounds, Frames, Passes
 from .fields import Field
 from .steered import Steered
 
 
-class Effect(Motion, Bounds, Accounts, Frames, Steered, Advice):
+class Effect(Motion, Passes, Bounds, Accounts, Frames, Steered, Advice):
     """One physical effect. A subclass is one file in a folder of features/ and holds everything that belongs to the effect.
 
     An effect that is off leaves no trace: no column, no command, no term. Each facet has defaults that say nothing, so a subclass

@@ -158,6 +158,19 @@ class Frames:
         return 0.0
 
 
+class Passes:
+    """What takes the steps."""
+
+    in_passes = True
+    """Whether passes over the particles have it in them."""
+
+
+class StandardSteps(Passes):
+    """An effect that passes do not have in them: beside it LAMMPS takes its standard steps, of which threads share less."""
+
+    in_passes = False
+
+
 class Advice:
     """Remarks on an effect, of ``check`` and of a run."""
 

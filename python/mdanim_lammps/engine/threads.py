@@ -16,7 +16,6 @@ from ..processes import affinity, cores, quota
 from ..records import dataclass
 
 if TYPE_CHECKING:
-    from ..effects import Effect
     from .plan import Plan
 
 THREADS = "MDANIM_THREADS"
@@ -28,19 +27,6 @@ LEAST_TASK = 4000.0
 PASS, DAMPED_PASS = 30.0, 40.0
 """Nanoseconds that a thread takes for a particle's step in a pass, without and with dashpots, as plugin/passes/range_cut.h has
 them."""
-STANDARD = frozenset(
-    (
-        "mdanim/air",
-        "mdanim/drive",
-        "mdanim/folds",
-        "mdanim/inflate",
-        "mdanim/joint",
-        "mdanim/rigid",
-        "mdanim/tear",
-        "mdanim/yield",
-    )
-)
-"""Styles of fixes that have no part in passes: beside them LAMMPS takes its standard steps."""
 MOST_THREADS = 32
 """Team::MOST_TASKS of plugin/threads/team.h."""
 
@@ -86,16 +72,14 @@ def choose_threads(plan: Plan, most: int) -> ThreadChoice:
     of_particle = DAMPED_PASS if plan.damped else PASS
     pays_from = math.ceil(least_task() / of_particle)
     threads = asked or max(1, min(most, MOST_THREADS, particles // pays_from))
-    standard = tuple(e.name for e in plan.effects if _is_standard(plan, e))
+    standard = tuple(e.name for e in plan.effects if not e.in_passes)
     return ThreadChoice(threads, asked is not None, most, particles, particles * of_particle, pays_from, standard)
 
 
-def _is_standard(plan: Plan, effect: Effect) -> bool:
-    """Also a gravity that changes: its work is counted in each step."""
-    styles = {style for _, style in effect.styles}
-    if "mdanim/gravity" in styles:
-        return any("mdanim/gravity path" in command for command in effect.commands(plan.context))
-    return not styles.isdisjoint(STANDARD)
+def asked_choice(plan: Plan, threads: int | None) -> ThreadChoice | None:
+    """That of a run for which so many ``threads`` are asked, or those of the environment; None without. Raises UsageError."""
+    with with_threads(threads):
+        return choose_threads(plan, cores()) if asked_threads() else None
 
 
 def least_task() -> float:

@@ -11,6 +11,7 @@ import numpy as np
 from ...bodies import all_held
 from ...effects.context import Context, Verdict
 from ...effects.effect import Effect
+from ...effects.facets import StandardSteps
 from ...effects.fields import Field
 from ...errors import Problem
 from ...model import shapes
@@ -30,7 +31,7 @@ IN_A_STEP = 0.01
 """Largest part of a motion relative to the air that the air may take in a step: an explicit step is wrong by half of it."""
 
 
-class Air(Effect):
+class Air(StandardSteps, Effect):
     """Pressure on each triangle of the drawn surface, F = rho/2 C A |u| u n with the velocity u = n (w - v) of the air along the
     normal: at the outer side of solids and closed sheets where the air comes to it, at both sides of other sheets; links
     of ropes as cylinders (docs/physics-air.md).

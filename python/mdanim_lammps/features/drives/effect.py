@@ -8,6 +8,7 @@ import math
 from ... import features
 from ...effects.context import Verdict
 from ...effects.effect import Effect
+from ...effects.facets import StandardSteps
 from ...effects.fields import column
 from ...model.planes import Plane
 from ...reach import Throw
@@ -26,7 +27,7 @@ IN_A_PERIOD = 40.0
 """Steps in a period of an oscillation, and in a turn; the time between two keys is half a period."""
 
 
-class Drives(Effect):
+class Drives(StandardSteps, Effect):
     """x = to(t) + R(t) (x(0) - from) for what is held and driven [m]; its velocity is the mean of the step, and its work is
     -F dx with the mean of the forces before and after a step (docs/physics-drives.md).
     """

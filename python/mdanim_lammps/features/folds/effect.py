@@ -9,6 +9,7 @@ import numpy as np
 
 from ...effects.context import Verdict
 from ...effects.effect import Effect
+from ...effects.facets import StandardSteps
 from ..tearing.words import word_of
 from .layers import coupled, folds, layers, meeting, pairs
 
@@ -21,7 +22,7 @@ AT_ONCE = 2
 """Objects that a particle may touch at once: one over it, and one below."""
 
 
-class LayersTouch(Effect):
+class LayersTouch(StandardSteps, Effect):
     """The nearest points of a particle and of the triangles of another layer, or of two links, push each other with
     F = k g'(reach - d) at the distance d; friction and a dashpot (docs/physics-folds.md).
     """

@@ -7,6 +7,7 @@ import numpy as np
 
 from ...effects.context import Verdict
 from ...effects.effect import Effect
+from ...effects.facets import StandardSteps
 from ...scene.in_time import integral, vector_at
 
 
@@ -56,7 +57,7 @@ GRAVITY_WORK = "gravity_work"
 """Column of the ledger: work that a gravity that changes has done."""
 
 
-class ChangingGravity(Gravity):
+class ChangingGravity(StandardSteps, Gravity):
     """The same with g(t), straight from point to point of a path [m/s^2].
 
     A field that changes has no energy that is conserved: its work, the integral of sum m g(t) v dt, is counted step by step and

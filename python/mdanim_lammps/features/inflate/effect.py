@@ -12,6 +12,7 @@ import numpy as np
 from ...bodies import all_held
 from ...effects.context import Context, Verdict
 from ...effects.effect import Effect
+from ...effects.facets import StandardSteps
 from ...effects.fields import Field
 from ...errors import Problem
 from ...model import shapes
@@ -36,7 +37,7 @@ NU = 1.0 / 3.0
 """Poisson's ratio of sheets."""
 
 
-class Gas(Effect):
+class Gas(StandardSteps, Effect):
     """p = (p1 + p0) V1/V - p0 on each triangle of a closed sheet, V its volume, p1 and V1 those at the start: the gradient of
     U(V) = p0 (V - V*) - C ln(V/V*), C = (p1 + p0) V1, V* = C/p0 (docs/physics-inflate.md); nothing once the sheet has torn.
     """

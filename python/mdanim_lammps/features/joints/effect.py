@@ -10,6 +10,7 @@ import numpy as np
 
 from ...effects.context import Context, Verdict
 from ...effects.effect import Effect
+from ...effects.facets import StandardSteps
 from ...effects.margin import Margin
 from ...errors import Problem
 from ...scene.formatting import number, say
@@ -30,7 +31,7 @@ SHOWS = 4.0
 """Times the gap of a joint between rigid objects, from which on it is worth a warning."""
 
 
-class Joints(JointMotion, Effect):
+class Joints(StandardSteps, JointMotion, Effect):
     """Springs between material points of two bodies: U = k |g|^2/2 + k L^2/2 sum |F_A e - F_B e|^2 with the gap g of both points
     and the directions e that a joint holds; motors, friction and stops act on the motion that it leaves (docs/physics-joints.md).
     """

@@ -7,6 +7,7 @@ import numpy as np
 
 from ...effects.context import Verdict
 from ...effects.effect import Effect
+from ...effects.facets import StandardSteps
 from ...effects.fields import Field
 from ...errors import Problem
 from ...scene.formatting import number, say
@@ -25,7 +26,7 @@ BORE = "stress"
 """Field of objects: largest stress that the glue of a piece bore so far [Pa]; 0 of what is none."""
 
 
-class Glue(Effect):
+class Glue(StandardSteps, Effect):
     """Pieces move as one rigid body until the stress in a face is above its strength (docs/physics-pieces.md)."""
 
     styles = (("fix", "mdanim/rigid"),)

@@ -11,6 +11,7 @@ from ... import features
 from ...bodies import all_held
 from ...effects.context import Verdict
 from ...effects.effect import Effect
+from ...effects.facets import StandardSteps
 from ...effects.fields import Field
 from ...errors import Problem
 from ...model.inertia import components
@@ -38,7 +39,7 @@ WORK = "work"
 """The same of what driven objects that are held give to rigid ones."""
 
 
-class RigidMotion(Effect):
+class RigidMotion(StandardSteps, Effect):
     """Six numbers of place and six of motion: m dv/dt = F, dL/dt = T about the centre of mass, with the sums of forces on the
     particles of a body and of their torques (docs/physics-rigid.md, "Motion").
 

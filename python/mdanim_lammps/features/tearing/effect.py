@@ -7,6 +7,7 @@ import numpy as np
 
 from ...effects.context import Verdict
 from ...effects.effect import Effect
+from ...effects.facets import StandardSteps
 from ...effects.fields import column
 from ...errors import Problem
 from ...scene.formatting import say
@@ -23,7 +24,7 @@ LOST = "torn"
 """Column of the ledger: energy of springs that broke."""
 
 
-class Tearing(Effect):
+class Tearing(StandardSteps, Effect):
     """A spring is gone from the step on in which r^2 > (1 + e)^2 r0^2 (docs/physics-tearing.md)."""
 
     styles = (("fix", "mdanim/tear"),)

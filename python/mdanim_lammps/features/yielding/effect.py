@@ -8,6 +8,7 @@ import numpy as np
 from ...effects.context import Context, Verdict
 from ...effects.effect import Effect
 from ...effects.envelope import Envelope
+from ...effects.facets import StandardSteps
 from ...effects.fields import BENT, column
 from ...effects.margin import Margin
 from ...errors import Problem
@@ -38,7 +39,7 @@ LOST = "yielding"
 """Column of the ledger: work of springs that yield."""
 
 
-class Yielding(Effect):
+class Yielding(StandardSteps, Effect):
     """F = -k (r - r0 - p), p = r - L -+ b where +-(r - L - p) > b, of sheets in bending, too (docs/physics-yielding.md)."""
 
     styles = (("fix", "mdanim/yield"),)
