@@ -13,6 +13,8 @@ from ..records import dataclass
 
 BLUNT = 0.3
 """As in `plugin/tearing/bend_law.h`."""
+_FIRST, _NEXT = slice(None, -1), slice(1, None)
+"""Of the particles around a ring in turn, those at the beginnings and at the ends of sides."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,11 +64,44 @@ def runs_around(triangle: np.ndarray, count: int, cut: Sequence[set[int]] | None
             yield v, run, closed
 
 
-def curvatures(ring: BendRing, x: np.ndarray) -> np.ndarray:
-    """Curvature along each line of a ring [1/m], of particles at x [m], shape (N, 3)."""
-    arm = x[ring.around] - x[ring.middle]
-    beside = np.roll(arm, -1, axis=0)
-    normal = np.cross(arm, beside)[: None if ring.closed else -1].sum(axis=0)
-    size = np.sqrt(normal @ normal + (BLUNT * 2.0 * ring.area) ** 2)
-    normal *= np.sqrt(1.0 + BLUNT**2) / size
-    return np.array([np.array(line.weight) @ (x[list(line.particle)] - x[ring.middle]) @ normal for line in ring.lines])
+class BendRings(Sequence[BendRing]):
+    """The rings of an object, with arrays of all their lines."""
+
+    def __init__(self, rings: Sequence[BendRing]):
+        self._rings = list(rings)
+        lines = [(n, line) for n, ring in enumerate(self._rings) for line in ring.lines]
+        self.first = np.append(0, np.cumsum([len(ring.lines) for ring in self._rings], dtype=np.int64))
+        """Where the lines of each ring begin, and their number, shape (R + 1,)."""
+        self.stiffness = np.array([line.stiffness for _, line in lines])
+        """`BendLine.stiffness` of all lines, shape (L,)."""
+        self.of = np.array([n for n, _ in lines], np.int64)
+        """The ring of each line, shape (L,)."""
+        self.middle = np.array([ring.middle for ring in self._rings], np.int64)
+        self._blunt = np.array([BLUNT * 2.0 * ring.area for ring in self._rings])
+        most = max((len(line.particle) for _, line in lines), default=0)
+        self._particle, self._weight = np.zeros((len(lines), most), np.int64), np.zeros((len(lines), most))
+        for row, (n, line) in enumerate(lines):
+            self._particle[row] = self.middle[n]
+            self._particle[row, : len(line.particle)], self._weight[row, : len(line.weight)] = line.particle, line.weight
+        sides = [(np.append(ring.around, ring.around[0]) if ring.closed else ring.around) for ring in self._rings]
+        self._one, self._other = (
+            np.concatenate([side[part] for side in sides] or [[]]).astype(np.int64) for part in (_FIRST, _NEXT)
+        )
+        self._side_of = np.repeat(np.arange(len(sides)), [len(side) - 1 for side in sides])
+
+    def __getitem__(self, n):
+        return self._rings[n]
+
+    def __len__(self) -> int:
+        return len(self._rings)
+
+    def curvatures(self, x: np.ndarray) -> np.ndarray:
+        """Curvature along each line [1/m], shape (L,), of particles at x [m], shape (N, 3)."""
+        middle = x[self.middle]
+        of = middle[self._side_of]
+        sides = np.cross(x[self._one] - of, x[self._other] - of)
+        normal = np.column_stack([np.bincount(self._side_of, one, len(middle)) for one in sides.T])
+        size = np.sqrt((normal**2).sum(axis=1) + self._blunt**2)
+        normal *= (np.sqrt(1.0 + BLUNT**2) / size)[:, None]
+        bend = (self._weight[:, :, None] * (x[self._particle] - middle[self.of][:, None])).sum(axis=1)
+        return (bend * normal[self.of]).sum(axis=1)

@@ -9,7 +9,7 @@ import numpy as np
 
 from ...effects.context import Context
 from ...effects.fields import BENT, Field, Fields, column
-from ...model.bends import BendRing, curvatures
+from ...model.bends import BendRings
 from ...model.model import Model
 from ...scene.once import once_for
 from .words import yields
@@ -33,9 +33,16 @@ def field_of(context: Context) -> Field | None:
 
 
 @once_for(lambda model: model)
-def rings(model: Model) -> list[BendRing]:
+def rings(model: Model) -> BendRings:
     """The rings of an object that bend."""
-    return model.frame.rings(model.held)
+    return BendRings(model.frame.rings(model.held))
+
+
+@once_for(lambda model: model)
+def _places(model: Model) -> tuple[np.ndarray, np.ndarray]:
+    """Of all lines: the particle that has them, and their place among its own, both of shape (L,)."""
+    all_of, within = rings(model), np.array(_slots(model)[0], np.int64)
+    return all_of.middle[all_of.of], within[all_of.of] + np.arange(len(all_of.of)) - all_of.first[all_of.of]
 
 
 @once_for(lambda model: model)
@@ -49,9 +56,9 @@ def _slots(model: Model) -> tuple[list[int], int]:
 
 
 @once_for(lambda model: model)
-def first_bends(model: Model) -> list[np.ndarray]:
-    """Curvatures along the lines of each ring at the start [1/m]."""
-    return [curvatures(ring, model.position) for ring in rings(model)]
+def first_bends(model: Model) -> np.ndarray:
+    """Curvatures along all lines at the start [1/m], shape (L,)."""
+    return rings(model).curvatures(model.position)
 
 
 def first_values(context: Context, field: Field) -> np.ndarray:
@@ -67,10 +74,8 @@ def first_values(context: Context, field: Field) -> np.ndarray:
 @once_for(lambda model: model)
 def _first_values(model: Model) -> np.ndarray:
     """The same of one object, with room for its own lines, shape (n, K)."""
-    slots, most = _slots(model)
-    found = np.zeros((len(model.position), most))
-    for ring, slot, bend in zip(rings(model), slots, first_bends(model)):
-        found[ring.middle, slot : slot + len(bend)] = bend
+    found = np.zeros((len(model.position), _slots(model)[1]))
+    found[_places(model)] = first_bends(model)
     return found
 
 
@@ -87,7 +92,8 @@ def table(context: Context, share: Any) -> str:
             continue
         stiff, most = rigidity(solid), PLASTIC * 2.0 * solid.yield_strain / solid.shape.thickness
         lines.append(f"object {m + 1}\n")
-        for ring, slot, first in zip(rings(model), _slots(model)[0], first_bends(model)):
+        begins = np.split(first_bends(model), rings(model).first[1:-1])
+        for ring, slot, first in zip(rings(model), _slots(model)[0], begins):
             kind, around = "closed" if ring.closed else "open", " ".join(map(str, (ring.around + 1).tolist()))
             lines.append(f"ring {ring.middle + 1} {slot} {kind} {2.0 * ring.area!r} {around}\n")
             for line, bend in zip(ring.lines, first.tolist()):
@@ -102,12 +108,9 @@ def energy(context: Context, m: int, position: np.ndarray, fields: Fields) -> fl
     if fields.get(BENT) is None or not is_layer(context.solids[m]):
         return 0.0
     model, first = context.system_models[m], int(context.system.first[m])
-    x, bent, found = position[first:], np.asarray(fields[BENT])[first:], 0.0
-    for ring, slot, start in zip(rings(model), _slots(model)[0], first_bends(model)):
-        b = bent[ring.middle, slot : slot + len(start)]
-        stiff = np.array([line.stiffness for line in ring.lines])
-        found += float(stiff @ (0.5 * (b**2 + start**2) - b * curvatures(ring, x)))
-    return rigidity(context.solids[m]) * found
+    start, now = first_bends(model), rings(model).curvatures(position[first : first + len(model.position)])
+    b = np.asarray(fields[BENT])[first:][_places(model)]
+    return rigidity(context.solids[m]) * float(rings(model).stiffness @ (0.5 * (b**2 + start**2) - b * now))
 
 
 def strain(context: Context, m: int, fields: Fields) -> float:
