@@ -6,7 +6,9 @@ import pytest
 import rigid_meshes
 from mdanim_lammps import Trajectory
 from mdanim_lammps.engine.geometry import Geometry
+from mdanim_lammps.model import mesh
 from mdanim_lammps.run.loop import simulate
+from mdanim_lammps.scene.scene import Mesh
 
 SCENE = """gravity (0, 0, -9.81) m/s^2
 object a {{ shape {a}  position (0, 0, 0) m  density 1000  elasticity rigid {turn_a} }}
@@ -93,17 +95,32 @@ def test_pieces_are_not_in_each_other(prepared, size, pieces):
     assert len(system.hexahedron) == pieces and Geometry(system).sunk(system.position) is None
 
 
-def test_a_concave_mesh_without_cells_is_not_judged(prepared, tmp_path):
-    """The box around its eight particles tells too little of where it is: energies alone stop a run in which it is in another."""
-    points, triangles = rigid_meshes.profile([(0, 0), (0.1, 0), (0.1, 0.1), (0.05, 0.097), (0, 0.1)], 0.1)
-    write(tmp_path / "dent.obj", points, triangles)
-    text = f"""object a {{ shape mesh "{tmp_path}/dent.obj" scale 1  position (0, 0, 0) m  density 300
-      elasticity rigid  resolution 9.7 cm }}
-    object b {{ shape box (10, 10, 10) cm  position (0.2, 0, 0) m  density 300  elasticity 1 MPa  resolution 5 cm }}
+HELD, FREE = "hold all", "mass 9 kg elasticity rigid"
+OTHERS = {
+    "elastic": "box (6, 6, 6) cm {at}  density 300  elasticity 1 MPa  resolution 2 cm",
+    "rigid": "box (6, 6, 6) cm {at}  density 300  elasticity rigid",
+    "ring": "torus 10 cm 2 cm {at}  density 300  elasticity rigid",
+}
+
+
+@pytest.mark.parametrize(("other", "held"), [("elastic", HELD), ("rigid", HELD), ("ring", HELD), ("rigid", FREE)])
+def test_what_is_in_a_body_without_cells(prepared, tmp_path, other, held):
+    """A trough, held or rigid: an object in its hollow, or that lies on its rim, is not in it; one in its wall is. The centre of
+    a ring is in nothing."""
+    outline = [(0.0, 0.0), (0.3, 0.0), (0.3, 0.3), (0.2, 0.3), (0.2, 0.1), (0.1, 0.1), (0.1, 0.3), (0.0, 0.3)]
+    points, triangles = rigid_meshes.profile(outline, 0.3)
+    write(tmp_path / "trough.obj", points, triangles)
+    place = "({}, {}, {}) m".format(*mesh.load(Mesh(tmp_path / "trough.obj")).centre.tolist())
+    text = f"""object trough {{ shape mesh "{tmp_path}/trough.obj"  position {place}  {held} }}
+    object it {{ shape {OTHERS[other].format(at="position (0, 0, 2) m")} }}
     control {{ time 0.1 s }}
     """
     system = prepared(text).system
     x, geometry = system.position.copy(), Geometry(system)
-    assert np.diff(geometry.first_cell)[0] == 0 and geometry.sunk(x) is None
-    x[system.first[1] :] -= (0.2, 0, 0)
-    assert geometry.sunk(x) is None
+    assert np.diff(geometry.first_cell)[0] == 0
+    found = []
+    for at in ((0.15, 0.0, 0.2), (0.05, 0.0, 0.33), (0.05, 0.0, 0.2), (0.15, 0.0, 0.05)):
+        x[8:] = system.position[8:] - (0, 0, 2) + at
+        found.append(geometry.sunk(x))
+    inside = None if other == "ring" else (1, 0)
+    assert found == [None, None, inside, inside]

@@ -12,6 +12,7 @@ import numpy as np
 from ..model.faces import faces_of_solids
 from ..model.system import System, side_by_side
 from ..records import dataclass
+from .hosts import Hosts
 from .plugin import open_library
 
 NOT_FINITE, INVERTED = 1, 2
@@ -82,8 +83,9 @@ class Geometry:
         """Two solids of which the first is inside the second, deeper than contact ever lets it; None where there are none.
 
         Boundary particles of the first are below the outermost layer of cells of the second, but not those that stand out of the
-        first one's drawn surface; or the centre of the first is in the body of both, which of a rigid one with a single cell is
-        its shape (model/faces.py). Solids that are held entirely may be in each other. Raises MemoryError.
+        first one's drawn surface; or the centre of the first is in the body of both, which of a rigid one with a single cell
+        (model/faces.py) or of one without cells (engine/hosts.py) is its shape. Solids that are held entirely may be in each
+        other. Raises MemoryError.
         """
         library, model, _ = self._own
         count, which = self._which(solids)
@@ -91,7 +93,11 @@ class Geometry:
         found = library.mdanim_sunk(model, count, _address(which), _address(x), _address(pair))
         if found < 0:
             raise MemoryError
-        return (int(pair[0]), int(pair[1])) if found else None
+        return (int(pair[0]), int(pair[1])) if found else self._hosts.sunk(x, solids)
+
+    @cached_property
+    def _hosts(self) -> Hosts:
+        return Hosts(self.system, {(int(i), int(j)) for i, j in self.passing})
 
     @cached_property
     def first_cell(self) -> np.ndarray:

@@ -9,7 +9,7 @@ from .links import NOTHING, links_of
 
 
 class JointMotion(Motion):
-    """What joints hold, unite and let pass; without any nothing."""
+    """Objects that joints hold, unite and let pass; without joints there are none."""
 
     def joins(self, scene):
         return links_of(scene).pairs if scene.joints else ()
