@@ -49,10 +49,10 @@ def test_arrows_are_all_vectors_but_places_and_angles():
 
 def test_every_quantity_is_expected_recorded_and_shown(tmp_path):
     """By `expect` as it is and as its mean and most, in the table and as a curve of the page, each with a value in every
-    frame where it has one. Those of liquid, air, pieces and the world have scenes of their own."""
+    frame where it has one. Those of liquid, air, pieces and the world have scenes of their own; kinds of joints theirs."""
     asked = []
     for (kind, word), of in QUANTITIES.items():
-        if kind in ("liquid", "world", "NAMES") or of.needs in ("liquid", "air"):
+        if kind in ("liquid", "world", "NAMES") or of.needs in ("liquid", "air") or of.narrows:
             continue
         subject = kind if kind in GLOBALS else "cart" if word == "joint.way" else OF.get(word.split(".")[0], "ball")
         asked.append(f"{subject}.{word}{'' if of.alone else IN_BRACKETS.get(of.takes, '')}")

@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 from mdanim_lammps.errors import SceneError
 from mdanim_lammps.features.joints.links import NOTHING, links_of
+from mdanim_lammps.features.joints.measure import joints_between
 from mdanim_lammps.features.joints.strength import strengths
 from mdanim_lammps.scene.explain import explain
 from mdanim_lammps.scene.lock import lock_text
@@ -145,6 +146,27 @@ def test_a_hinge_beside_its_only_object_tells_of_rods_and_springs(prepared):
 def test_what_an_object_is_joined_to_is_advised(prepared):
     (way_out,) = refused(prepared, ROD + BAR + "joint hinge rod bar " + PLACE + "}\nexpect rod.joint.angle(world) = 0\n")
     assert way_out == "write rod.joint.angle(bar)"
+
+
+def test_of_several_joints_of_two_objects_one_is_meant(prepared):
+    """The kind says which; without it a number would be that of any. Among joints of one kind it is the first, with a word."""
+    both = ROD + BAR + "joint slider rod bar { axis (1, 0, 0) }\njoint spring rod bar { stiffness 9 N/m }\n"
+    (way_out,) = refused(prepared, both + "expect rod.joint.force(bar) = 1 N\n")
+    assert way_out == "write rod.joint.slider.force(bar) or rod.joint.spring.force(bar)"
+    (way_out,) = refused(prepared, both + "expect rod.joint.spring.force(world) = 1 N\n")
+    assert way_out == "write rod.joint.spring.force(bar)"
+    chosen = prepared(both + "expect rod.joint.spring.force(bar) = 1 N\nrecord bar.joint.torque(rod)\n" + END)
+    assert [[one.joint.kind for one in of_asked(chosen, n)] for n in (0, 1)] == [["spring"], ["slider"]] and not chosen.warnings
+    twice = ROD + BAR + "".join(f"joint hinge rod bar {{ at (0.05, {y}, 1) m axis (0, 1, 0) }}\n" for y in (0, 0.04))
+    assert not prepared(twice + "expect rod.joint.angle(bar) = 0\n" + END).warnings
+    (told,) = prepared(twice + "expect rod.joint.force(bar) < 1 N\nrecord rod.joint.force(bar)\n" + END).warnings
+    assert told.message == "rod.joint.force(bar) is that of the first of 2 joints hinge of both, at (5 cm, 0 m, 1 m)"
+
+
+def of_asked(ready, n: int):
+    """Joints that a line is about."""
+    one = ready.context.scene.asked[n]
+    return joints_between(ready.context.scene, one.subject, one.argument, one.quantity)
 
 
 def test_a_joint_that_stands_twice_is_warned_of(prepared):

@@ -210,7 +210,8 @@ def language_page() -> str:
         "\n## Quantities\n\n`expect` checks them, `record` writes them at every frame to `records.csv`: [how](show.md).\n\n",
         "| quantity | unit | meaning |\n|---|---|---|\n",
     ]
-    parts += [f"| `{k}.{q}` | {x.unit if x.unit != '1' else '-'} | {meaning(k, x)} |\n" for (k, q), x in QUANTITIES.items()]
+    listed = (of for of in QUANTITIES.items() if not of[1].narrows)
+    parts += [f"| `{k}.{q}` | {x.unit if x.unit != '1' else '-'} | {meaning(k, x)} |\n" for (k, q), x in listed]
     parts += [_END, _LIMITS]
     numbers = [
         ("objects", MOST_OBJECTS), ("rounds of all repeats together", MOST_ROUNDS),

@@ -64,6 +64,8 @@ class Observable(NamedTuple):
     """Whether an ``expect`` says how large it may be, and nothing of what is true."""
     alone: bool = False
     """Whether it also stands without its argument."""
+    narrows: bool = False
+    """Whether it only says of what kind is meant: the page of the language has no row for it."""
 
 
 def meaning(subject: str, quantity: Observable) -> str:

@@ -16,6 +16,7 @@ from ...errors import Problem
 from ...scene.formatting import number, say
 from . import advice
 from .links import Link, links_of
+from .measure import first_of_several
 from .motion import JointMotion
 from .place import doubled, misplaced
 from .rows import BROKEN, FIELD, FORCE, TOLD, joint_field, rows_of_joints
@@ -108,8 +109,9 @@ class Joints(StandardSteps, JointMotion, Effect):
         return misplaced(resolved.scene, models)
 
     def warnings(self, context):
-        """Joints that stand twice; objects that move against their joints at the start: the worst."""
-        return [*doubled(context.scene), *advice.drawn_apart(context)]
+        """Joints that stand twice, or are asked about and not the only ones; objects that move against their joints at the start:
+        the worst."""
+        return [*doubled(context.scene), *first_of_several(context.scene), *advice.drawn_apart(context)]
 
     def margins(self, envelope):
         found = [one for one in strengths(envelope.context) if not one.swings]

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import field, replace
 from enum import Enum
 from typing import Any
@@ -26,8 +26,29 @@ MOST_JOINTS = 10**5
 
 SWITCHES = {"joint": "a `joint` block"}
 
-QUANTITIES = {
-    ("NAME", f"joint.{what}"): Observable(of, f"{about}, `door.joint.{what}(frame)`", "joint", takes="joined")
+KINDS = {
+    "weld": "it holds both objects as they are",
+    "ball": "it holds one point, about which they turn in every direction",
+    "hinge": "it turns about an axis",
+    "slider": "it slides along an axis",
+    "spring": "it pulls and pushes along the line of its two ends",
+}
+"""Kinds of joints, with the motions that they leave."""
+
+HAVING = {
+    "angle": ("hinge",),
+    "way": ("slider", "spring"),
+    "force": tuple(KINDS),
+    "torque": ("weld", "hinge", "slider"),
+    "gap": tuple(KINDS),
+    "drive": ("hinge",),
+    "power": ("hinge", "slider"),
+}
+"""Kinds of joints that have each quantity."""
+
+
+def _quantities() -> Iterator[tuple[tuple[str, str], Observable]]:
+    """Those of the joint of two objects, and of that of a kind where several kinds have it."""
     for what, of, about in (
         ("angle", "rad", "angle of the hinge that joins it to another object or to the world, 0 at the start"),
         ("way", "m", "way of its slider from the start, or the length of its spring"),
@@ -36,8 +57,16 @@ QUANTITIES = {
         ("gap", "m", "distance of the two points that its joint holds together"),
         ("drive", "N*m", "torque of motor, friction and stops of its hinge"),
         ("power", "J/s", "power of these, or of those of its slider"),
-    )
-}
+    ):
+        kinds = HAVING[what] if len(HAVING[what]) > 1 else ()
+        more = f"; of one kind of several `door.joint.{kinds[-1]}.{what}(frame)`" if kinds else ""
+        yield ("NAME", f"joint.{what}"), Observable(of, f"{about}, `door.joint.{what}(frame)`{more}", "joint", takes="joined")
+        for kind in kinds:
+            told = f"{about}, of its joint {kind}, `door.joint.{kind}.{what}(frame)`"
+            yield ("NAME", f"joint.{kind}.{what}"), Observable(of, told, "joint", takes="joined", narrows=True)
+
+
+QUANTITIES = dict(_quantities())
 
 MARGINS = {"joint gap": "how far a joint opens under its load; above 1/200 of the thinnest part of what it joins it shows"}
 
@@ -193,15 +222,6 @@ class JointWords:
 
 
 SCENE = JointWords
-
-KINDS = {
-    "weld": "it holds both objects as they are",
-    "ball": "it holds one point, about which they turn in every direction",
-    "hinge": "it turns about an axis",
-    "slider": "it slides along an axis",
-    "spring": "it pulls and pushes along the line of its two ends",
-}
-"""Kinds of joints, with the motions that they leave."""
 
 BLOCKS = (
     Block(

@@ -114,9 +114,9 @@ def immersed_share(corners: np.ndarray, grid: Grid, height: np.ndarray) -> float
 
 
 def immersed_depth(points: np.ndarray, grid: Grid, height: np.ndarray) -> float:
-    """How deep an object is in the liquid: local level less its lowest point, at most its own height [m].
+    """How deep the lowest point of an object is below the surface [m], however deep the object lies; 0 of what is dry.
 
-    The local level is the mean over the columns that the object's upright bounding box touches; the smooth height
+    The surface is the mean over the columns that the object's upright bounding box touches; the smooth height
     runs on below a body that fills its columns. An object beside the basin has a draft of 0.
 
     Args:
@@ -133,7 +133,7 @@ def immersed_depth(points: np.ndarray, grid: Grid, height: np.ndarray) -> float:
         columns.append(slice(max(first, 0), min(last, count - 1) + 1))
     across, along = columns
     level = float(np.mean(height[along, across], dtype=np.float64))
-    return float(np.clip(level - low[2], 0.0, high[2] - low[2]))
+    return max(0.0, level - float(low[2]))
 
 
 def _draft(g: Glance) -> float:

@@ -22,7 +22,9 @@ SWITCHES = {
 }
 
 QUANTITIES = {
-    ("NAME", "draft"): Observable("m", "immersed depth of an object, from the surface to its lowest point", "liquid"),
+    ("NAME", "draft"): Observable(
+        "m", "depth of the lowest point of an object below the surface around it, 0 of what is dry", "liquid"
+    ),
     ("NAME", "immersed"): Observable("1", "share of an object's volume below the surface", "liquid"),
     ("liquid", "volume"): Observable("m^3", "volume of the liquid", "liquid"),
     ("liquid", "residual"): Observable("1", "cells gained or lost, to the unit", "liquid", bound=True),
