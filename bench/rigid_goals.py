@@ -151,7 +151,7 @@ def leaning_log(folder: Path, e: float, leans: float) -> float:
 
 def restitution(folder: Path) -> Iterator[Reached]:
     """Restitution of the point that meets the floor; and of a log that falls flat, or nearly so."""
-    for lowest, highest, most in ((0.4, 1.0, 0.02), (0.1, 0.3, 0.04)):
+    for lowest, highest, most in ((0.4, 1.0, 0.06), (0.1, 0.3, 0.1)):
         asked = [e for e in (0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.8, 0.9, 1.0) if lowest <= e <= highest]
         worst = {case: max(abs(rigid_motions.bounced(folder, case, e) - e) for e in asked) for case in rigid_motions.LANDING}
         told = ", ".join(f"{case} {value:.3f}" for case, value in worst.items())

@@ -64,7 +64,7 @@ Touch TouchStep::born(Touch::TouchKind kind, const TouchLaw &law, const Solid &a
 {
   if (const SharedContact one(kind, a, b, x, n); one.share < 1.0)
     return born(kind, {one.share * law.stiffness, law.friction, law.damping, law.rolling}, one.yields);
-  births.push_back({n, x - a.centre, b ? x - b->centre : Vec3(), &a, b});
+  births.push_back({n, x - a.centre, b ? x - b->centre : Vec3(), &a, b, -dot(relative_velocity(a, b, x), n)});
   return damped(kind, law, a.yields_at(x, n) + (b ? b->yields_at(x, n) : 0.0));
 }
 
@@ -80,8 +80,28 @@ void TouchStep::listed(std::vector<Touch> &touches, int plane) const
 }
 
 // All contacts of one blow begin to press alike, so the depth of contact i yields to them by the sum of lambda_ij over all j,
-// lambda_ii being its own. A log on both ends yields half as much as on one. Each has the dashpot of a contact that yields so, at
-// most that of MOST_DAMPING; where the sum is larger it keeps its own, with which stacks come to rest.
+// lambda_ii being its own. A log on both ends yields half as much as on one, a slender rod on the corners of its end several
+// times as much. Each has the dashpot of a contact that yields so, at most that of MOST_DAMPING; where the sum is larger it has
+// its own from where it rests, and where it is laid down, with which stacks come to rest.
+static void share_blow(const std::vector<Birth> &blow, double onset)
+{
+  constexpr double A_BLOW = 0.04;    // of the speed that goes through the onset: what is slower is laid down
+  SolidPush on_a, on_b;
+  for (const Birth &one : blow) {
+    on_a.add(*one.a, one.from_a, one.n);
+    if (one.b) on_b.add(*one.b, one.from_b, one.n);
+  }
+  for (const Birth &one : blow) {
+    const double own = one.touch->yields,
+                 all = on_a.moves(*one.a, one.from_a, one.n) + (one.b ? on_b.moves(*one.b, one.from_b, one.n) : 0.0);
+    const double most = 2.0 * Material::MOST_DAMPING / std::sqrt(one.touch->stiffness * own);
+    if (all < own)
+      one.touch->damping = all > 0.0 ? std::min(one.touch->damping * std::sqrt(own / all), most) : most;
+    else if (one.speed > A_BLOW * onset * std::sqrt(one.touch->stiffness * own))
+      one.touch->shared = std::sqrt(own / all);
+  }
+}
+
 void TouchStep::share_blows() const
 {
   using Body = std::pair<int, int>;
@@ -100,20 +120,8 @@ void TouchStep::share_blows() const
     }
     blows[{a, b}].push_back(birth);
   }
-  for (const auto &[bodies, blow] : blows) {
-    if (blow.size() == 1) continue;
-    SolidPush on_a, on_b;
-    for (const Birth &one : blow) {
-      on_a.add(*one.a, one.from_a, one.n);
-      if (one.b) on_b.add(*one.b, one.from_b, one.n);
-    }
-    for (const Birth &one : blow) {
-      const double own = one.touch->yields,
-                   all = on_a.moves(*one.a, one.from_a, one.n) + (one.b ? on_b.moves(*one.b, one.from_b, one.n) : 0.0);
-      const double most = 2.0 * Material::MOST_DAMPING / std::sqrt(one.touch->stiffness * own);
-      if (all < own) one.touch->damping = all > 0.0 ? std::min(one.touch->damping * std::sqrt(own / all), most) : most;
-    }
-  }
+  for (const auto &[bodies, blow] : blows)
+    if (blow.size() > 1) share_blow(blow, onset);
 }
 
 Vec3 TouchStep::relative_velocity(const Solid &a, const Solid *b, const Vec3 &x)
@@ -196,7 +204,7 @@ static double dashpot_at(const Touch &touch, double depth, double onset)
 {
   if (touch.rests != 0.0) return 1.0;
   const Onset<double> g(depth - touch.memory.offset, onset);
-  return g.value > 0.0 ? g.slope / std::sqrt(2.0 * g.value) : 0.0;
+  return g.value > 0.0 ? touch.shared * g.slope / std::sqrt(2.0 * g.value) : 0.0;
 }
 
 ContactForce<double> TouchStep::pressure(Touch &touch, const ContactLaw &its_law, double part, double depth) const

@@ -29,6 +29,7 @@ struct Touch {
   double more = 0.0;
   double owed = 0.0;        // work that `more` has still to do [J]
   double followed = 0.0;    // 1 from the second step on
+  double shared = 1.0;      // of its damping, in a blow that it shares with others
   double rests = 0.0;       // 1 from where it goes deeper again after it came back
   double parted = 0.0;      // 1 in the step after the bodies have parted, the last one that it is there
   double counted = 0.0;     // part of it that counted in the last step, of points that are nearest on a mesh
@@ -84,6 +85,7 @@ struct PartSlope {
 struct Birth {
   Vec3 n, from_a, from_b;    // from the centres of both
   const Solid *a = nullptr, *b = nullptr;
+  double speed = 0.0;    // at which it came
   int plane = 0;
   Touch *touch = nullptr;
 };

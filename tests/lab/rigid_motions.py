@@ -86,6 +86,7 @@ LANDING = {
     "ball on floor": (lab.ball(0.05), None),
     "face": (lab.box((0.1, 0.1, 0.1)), (0, 0, -0.05)),
     "edge": (lab.box((0.1, 0.1, 0.1), q=lab.about((1, 0, 0), np.pi / 4)), (0, 0, -0.05 * 2**0.5)),
+    "end of a column": (lab.box((0.04, 0.04, 0.2)), (0, 0, -0.1)),
     "corner": (lab.box((0.4, 0.2, 0.02), q=lab.about((1, 2, 0), 0.3)), "lowest"),
 }
 
