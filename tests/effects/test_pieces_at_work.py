@@ -210,8 +210,16 @@ def test_pieces_have_names():
     assert [s.name for s in found.solids[:2]] == ["plate.piece[1]", "plate.piece[2]"]
 
 
+def test_pieces_in_the_ground_are_one_problem(prepared):
+    """The deepest of them, and how many more."""
+    with pytest.raises(SceneError) as found:
+        prepared(scene().replace("ground z 0 m", "ground z 1.1 m"))
+    (problem,) = found.value.problems
+    assert "below the ground, and" in problem.message and "more of its pieces are" in problem.message
+
+
 MISTAKES = {
-    "pieces 1  strength 1 MPa": "cut into 2 pieces or more, found 1",
+    "pieces 1  strength 1 MPa": "must be a whole number >= 2, found 1",
     "pieces 5": "plate has pieces and no strength",
     "pieces 5  strength 1 MPa  hold all": "plate is held as a whole, so it never breaks",
     "pieces bricks (10, 0, 10) cm  strength 1 MPa": "the edges of a brick must be > 0",

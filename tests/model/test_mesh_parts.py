@@ -12,7 +12,9 @@ from mdanim_lammps.model.mesh_formats import read
 from mdanim_lammps.model.mesh_parts import pieces
 from mdanim_lammps.model.orientation import MeshError
 from mdanim_lammps.model.triangles import volume_and_centre
+from mdanim_lammps.scene.parse import load_scene
 from mdanim_lammps.scene.scene import Mesh
+from model_samples import MESHES
 
 CUBE = [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)]
 CORNERS = np.array([(x, y, z) for z in (0, 1) for y in (0, 1) for x in (0, 1)], float)
@@ -101,6 +103,18 @@ def test_a_part_that_is_not_there(tmp_path, name, part, cause, hint):
     assert hint in error.value.hint
 
 
+def test_parts_that_are_not_there_are_told_with_other_problems(tmp_path):
+    """Beside a file that is not there, and a number that is none."""
+    (tmp_path / "cube.obj").write_text((MESHES / "cuboid.obj").read_text())
+    names = {"a": 'mesh "cube.obj" part 7', "b": 'mesh "gone.obj"', "c": 'mesh "cube.obj" part 0'}
+    objects = "".join(f"object {n} {{ shape {s}  position (0, 0, 0) m  hold all }}\n" for n, s in names.items())
+    (tmp_path / "s.txt").write_text(f"{objects}control {{ time 1 s }}\n")
+    with pytest.raises(SceneError) as told:
+        load_scene(tmp_path / "s.txt")
+    for words in ("has no part 7", "gone.obj' is not there", "a whole number from 1 on, found 0"):
+        assert words in str(told.value)
+
+
 def test_pieces_are_numbered_in_the_order_of_the_file():
     """Triangles in any order, of which some touch in a point only: those are one piece."""
     triangles = np.array([[7, 8, 9], [0, 1, 2], [8, 10, 11], [3, 2, 4], [5, 6, 12]])
@@ -123,7 +137,7 @@ def test_a_scene_has_a_part_of_a_file(tmp_path):
         assert not [note for note in ready.certificate.notes if "parts" in note.message]
     notes = Scene.from_text(SCENE.format(part=""), folder=tmp_path).prepared.certificate.notes
     assert any('3 parts, which are one object: "body", "left wheel", "right wheel"' in note.message for note in notes)
-    with pytest.raises(SceneError, match=r"a whole number, found 1\.5"):
+    with pytest.raises(SceneError, match=r"a whole number from 1 on, found 1\.5"):
         Scene.from_text(SCENE.format(part="part 1.5"), folder=tmp_path)
 
 

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Container, Iterable, Iterator
+from collections.abc import Callable, Container, Iterable, Iterator, Sequence
 from typing import Protocol
 
 import numpy as np
@@ -253,16 +253,29 @@ def _outside(scene: SceneRecord, bodies: _BoundingBoxes, planes: tuple[Plane, ..
         out = limit.sign * (limit.at - edge[:, limit.axis])
         outer = bodies.outer_low if limit.sign > 0 else bodies.outer_high
         step = limit.sign * (limit.at - outer[:, limit.axis])
-        for i in np.flatnonzero((out > bodies.allowed) & ~bodies.fixed & ~too_wide[:, limit.axis]):
+        deeper = np.flatnonzero((out > bodies.allowed) & ~bodies.fixed & ~too_wide[:, limit.axis])
+        for i, more in _whole_ones(scene.solids, deeper, out):
             solid = scene.solids[i]
             problems.append(
                 Problem(
                     _span(solid),
-                    f"{solid.name} is {say(out[i], 'm')} {limit.beyond}",
+                    f"{solid.name} is {say(out[i], 'm')} {limit.beyond}{more}",
                     f"move it {_MOVES[limit.axis, limit.sign]} by {say(_enough(step[i]), 'm')}",
                 )
             )
     return problems
+
+
+def _whole_ones(solids: Sequence[Solid], found: np.ndarray, out: np.ndarray) -> Iterator[tuple[int, str]]:
+    """Some solids, by number and ascending, of the pieces of one object the farthest out alone, and words for the others."""
+    pieces: dict[int, list[int]] = {}
+    for i in found.tolist():
+        shape = solids[i].shape
+        pieces.setdefault(id(shape.whole) if isinstance(shape, PieceShape) else -i, []).append(i)
+    for several in pieces.values():
+        farthest = max(several, key=lambda i: (out[i], -i))
+        others = len(several) - 1
+        yield farthest, f", and {whole(others)} more of its pieces {'are' if others > 1 else 'is'}" if others else ""
 
 
 # --- pairs --------------------------------------------------------------------------------------------------

@@ -3,8 +3,6 @@
 
 from __future__ import annotations
 
-from contextlib import suppress
-
 import numpy as np
 
 from .orientation import FLAT, MeshError, outward, parts_outward
@@ -35,10 +33,16 @@ def solid(points: np.ndarray, triangles: np.ndarray, name: str) -> tuple[np.ndar
     if not len(around):
         raise MeshError(f"mesh {name}: encloses no volume", FLAT)
     told += ", its surface is made anew"
-    for surface in (_fewer(points, around), (points, around)):
-        with suppress(MeshError):
-            return surface[0], outward(*surface, name), told
-    raise MeshError(f"mesh {name}: encloses no solid, not even with its surface made anew", FLAT)
+    try:
+        fewer = _fewer(points, around)
+        return fewer[0], outward(*fewer, name), told
+    except MeshError:  # all of them may do
+        pass
+    try:
+        return points, outward(points, around, name), told
+    except MeshError as error:
+        cause = str(error).removeprefix(f"mesh {name}: ")
+        raise MeshError(f"mesh {name}: encloses no solid, not even with its surface made anew: {cause}", FLAT) from error
 
 
 def once(triangles: np.ndarray) -> np.ndarray:

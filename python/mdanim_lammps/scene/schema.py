@@ -37,6 +37,7 @@ class Rule(Enum):
     NOT_NEGATIVE = ">= 0"
     COUNT = "a whole number >= 1"
     WHOLE = "a whole number >= 0"
+    SEVERAL = "a whole number >= 2"
 
     def holds(self, x: float) -> bool:
         """Whether a finite number obeys the rule."""
@@ -46,7 +47,7 @@ class Rule(Enum):
             return x > 0.0
         if self is Rule.NOT_NEGATIVE:
             return x >= 0.0
-        return x == int(x) and (1 if self is Rule.COUNT else 0) <= x < 2**53
+        return x == int(x) and int(self.value[-1]) <= x < 2**53
 
 
 class Observable(NamedTuple):
@@ -81,7 +82,7 @@ class Codec:
         value)."""
         if not values:
             return None
-        if k.rule in (Rule.COUNT, Rule.WHOLE):
+        if k.rule in (Rule.COUNT, Rule.WHOLE, Rule.SEVERAL):
             return tuple(map(int, values[0])) if isinstance(values[0], tuple) else int(values[0])
         return values[0] if len(values) == 1 else values
 

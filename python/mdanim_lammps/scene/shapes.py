@@ -111,8 +111,8 @@ class Mesh:
         """A mesh or a solid. Raises ValueError(message, hint, number of the value)."""
         path, part, scale = values
         if isinstance(part, float):
-            if part != int(part):
-                cause = f"a part is a name in quotes or a whole number, found {number(part, 6)}"
+            if part != int(part) or part < 1:
+                cause = f"a part is a name in quotes or a whole number from 1 on, found {number(part, 6)}"
                 raise ValueError(cause, 'e.g. part "wheel", or part 2', 1)
             part = int(part)
         return cls(path, 1.0 if scale is None else scale, form == 1, part)
@@ -132,11 +132,8 @@ class VoronoiCells:
 
     @classmethod
     def read(cls, form: int, values: tuple) -> VoronoiCells:
-        """Raises ValueError(message, hint, number of the value)."""
-        (number,) = values
-        if number < 2:
-            raise ValueError("an object is cut into 2 pieces or more, found 1", "write pieces 20, or leave pieces out", 0)
-        return cls(int(number))
+        """So many."""
+        return cls(int(values[0]))
 
 
 @dataclass(frozen=True, slots=True)

@@ -133,7 +133,7 @@ class Evaluator:
     def number(self, s: SettingNode, v: Value, x, what: str, first, last) -> float:
         """One number in SI units that has the right dimension and obeys the rule."""
         dim = v.slot.dim
-        rule = Rule.ANY if v.slot.anywhere else s.keyword.rule
+        rule = Rule.ANY if v.slot.anywhere or v.slot.or_text else s.keyword.rule  # what counts from 1 on says so itself
         if type(x) is not float:
             if x.dim != dim:
                 raise Fault(

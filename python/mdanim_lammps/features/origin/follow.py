@@ -34,7 +34,6 @@ def fill(v: Any) -> None:
 
     c = P + R x with the centre of mass x in the file and the place P of its origin.
     """
-    _ask_of_units(v)
     for block in v.blocks("object"):
         origin = block.first("origin")
         if origin is None or origin.values[0] != "file" or (shape := block.first("shape")) is None:
@@ -53,28 +52,41 @@ def fill(v: Any) -> None:
         turn = np.array(_record(block, "orientation") or IDENTITY)
         at = np.array(block.first("position").values[0] if "position" in block.settings else (0.0, 0.0, 0.0))
         block.settings["position"] = [origin.following(KEYWORDS["object"]["position"], tuple((at + turn @ centre).tolist()))]
+    _look_at_files(v)
 
 
-def _ask_of_units(v: Any) -> None:
-    """Warn of each mesh without a scale that is larger than what is mostly modelled."""
-    known: set[Path] = set()
-    lines: set[int] = set()  # objects of a repeat have one
+def _look_at_files(v: Any) -> None:
+    """Warn of each mesh without a scale that is larger than what is mostly modelled, and tell what is wrong with the others of a
+    scene that has problems, beside those: one without any is told when its bodies are made."""
+    files: dict[int, tuple[EvaluatedSetting, Any, Mesh, str]] = {}  # objects of a repeat have one
+    wrong = bool(v.problems.errors)
     for block in v.blocks("object"):
-        if (shape := block.first("shape")) is None or id(shape.entry) in lines:
-            continue
-        lines.add(id(shape.entry))
-        file = mesh_of(_record(block, "shape"))
-        if file is None or file.scale != 1.0:
+        shape, form = block.first("shape"), _record(block, "shape")
+        if shape is None or id(shape.entry) in files or (file := mesh_of(form)) is None:
+            wrong |= form is None
             continue
         path = beside(shape.entry.source.folder, file.path)
-        if path not in known:
-            known.add(path)
-            _ask_of_unit(v, shape, replace(file, path=path), block.names[0])
+        if refusal_of_mesh(path, str(path)) is None:
+            files[id(shape.entry)] = shape, with_path(form, path), replace(file, path=path), block.name
+        else:
+            wrong = True
+    for shape, form, _, name in files.values() if wrong else ():
+        _tell_of(v, shape, form, name)
+    asked: set[Path] = set()
+    for shape, _, file, name in files.values():
+        if file.scale == 1.0 and file.path not in asked:
+            asked.add(file.path)
+            _ask_of_unit(v, shape, file, name)
+
+
+def _tell_of(v: Any, shape: EvaluatedSetting, form: Any, name: str) -> None:
+    try:
+        shapes.centre_in_file(form)
+    except mesh.MeshError as error:
+        v.problem(shape.span(), f"{name}: {error}", error.hint)
 
 
 def _ask_of_unit(v: Any, shape: EvaluatedSetting, file: Mesh, name: str) -> None:
-    if refusal_of_mesh(file.path, str(file.path)) is not None:
-        return
     with suppress(mesh.MeshError):
         size = float(np.ptp(mesh.load(file).points, axis=0).max())
         if size >= LARGE:

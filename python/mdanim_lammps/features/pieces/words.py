@@ -34,7 +34,7 @@ class PieceWords:
         "What it breaks into: so many pieces, cells of points that the `seed` of `control` chooses, or `bricks` of about this "
         "size, in rows of which every other one is shifted. Each is an object of its own, `NAME.piece[1]` and so on. Glue of the "
         "`strength` holds them together, and the object moves as a whole, until it breaks. Of `rigid` objects.",
-        "20", Rule.COUNT, default=None, limit=MOST_PIECES, codec=OneOf(VoronoiCells, Bricks), after="elasticity")  # fmt: skip
+        "20", Rule.SEVERAL, default=None, limit=MOST_PIECES, codec=OneOf(VoronoiCells, Bricks), after="elasticity")  # fmt: skip
     strength: float | None = setting(
         "<s:Pa>",
         "Of an object with `pieces`: the stress at which the glue of a face breaks, in tension and bending or in shear. Absent: "

@@ -20,7 +20,7 @@ def fill(v: Any) -> None:
     for block in v.blocks("object"):
         held = next((s for s in block.settings.get("hold", ()) if s.kind is HoldAll), None)
         shape, said = block.first("shape"), block.words()
-        if held is None or RELEASE in said or shape is None or getattr(shape.kind, "BENDS", False):
+        if held is None or RELEASE in said or (shape is not None and getattr(shape.kind, "BENDS", False)):
             continue
         for word, value in (("elasticity", Rigid()), ("density", DENSITY)):
             if word not in said:
