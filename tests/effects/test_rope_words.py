@@ -130,6 +130,15 @@ def test_what_does_not_fit_is_refused_with_its_place(name):
     assert found.span is not None and re.search(cause, found.message) and way_out in found.hint, (found.message, found.hint)
 
 
+def test_many_joints_off_ropes_are_told_once():
+    """A repeat makes many of one line of text."""
+    joints = "repeat i in 1 .. 3 { joint ball line box { at (0.2*i, 0, 1) m } }\n"
+    with pytest.raises(SceneError) as error:
+        prepare(parse_scene(line() + BOX + joints, "odd"))
+    (found,) = error.value.problems
+    assert found.message.endswith("beside the line of line, and 2 more so") and "without it they are straight" in found.hint
+
+
 @pytest.mark.parametrize(
     "joint", ["spring box line { from (0, 0, 0.15) m to (0.5, 0, 1) m }", "ball box line { at (0.5, 0, 0.2) m }"]
 )

@@ -276,6 +276,14 @@ def test_rigid_objects_are_asked_by_their_shapes(shape, place, told, hint):
     assert [(p.message, p.hint) for p in found] == ([] if told is None else [(told, hint)])
 
 
+def test_the_move_is_the_shortest_of_all_directions():
+    """A long plank on a slant lies 1 cm in a ball: up is 1 cm over the cosine, though its box is left soonest along y."""
+    place = tuple(0.59 * np.array([np.sin(0.3), 0.0, np.cos(0.3)]))
+    plank = solid(Box((6.0, 1.0, 0.2)), "plank", position=place, rotation=rotation(0, 0.3, 0), elasticity=Rigid())
+    (found,) = problems(solid(Sphere(0.5), "ball", elasticity=Rigid()), plank)
+    assert (found.message, found.hint) == ("plank starts inside ball, about 1 cm deep", "move it up by 1.1 cm")
+
+
 THICK = [Sphere(0.1), Cylinder(0.1, 0.2), Ellipsoid((0.1, 0.1, 0.1)), Box((0.2, 0.2, 0.2))]
 """Shapes with a thickness of 20 cm."""
 

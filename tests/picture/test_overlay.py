@@ -155,6 +155,18 @@ def test_a_view_in_a_direction_shows_the_whole_run_beside_what_is_laid_over_it(r
     assert (share > (room.left, room.below)).all() and (share < (1.0 - room.right, 1.0 - room.above)).all()
 
 
+def test_a_start_has_its_meshes_beside_it(tmp_path):
+    """Curves and arrows of a picture are found from its scene, which is read with its meshes."""
+    (tmp_path / "start").mkdir()
+    (tmp_path / "nut.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n")
+    text = """object nut { shape mesh "nut.obj" scale 0.1 position (0, 0, 1) m density 700 elasticity rigid }
+render { plot nut.speed arrows velocity of nut } control { time 0.1 s }
+"""
+    scene = Scene.from_text(text, "nut", folder=tmp_path)
+    with Trajectory(write_start(scene.prepared, tmp_path / "start")) as start:
+        assert RunValues(start).series(Asked("nut", "speed")).tolist() == [0.0]
+
+
 def test_strings_are_in_the_picture(tmp_path):
     """A pendulum is seen from its bob to the point of the world that it hangs at; before its run, too."""
     text = "gravity (0, 0, -9.81) m/s^2\nobject bob { shape sphere 3 cm  position (5, 0, 0) cm  mass 1 kg  elasticity rigid }\n"

@@ -91,10 +91,7 @@ def write_inputs(ready: Prepared, folder: Path) -> None:
     """Write scene.lock.txt, copies of its meshes, certificate.json, ``data.NAME``, ``in.NAME`` and, where surfaces touch,
     ``contact.NAME``; tables of effects are ``table.TABLE.NAME``. Raises OutputError."""
     plan = ready.plan
-    for path, name in mesh_files(ready.scene).items():
-        with disk_errors(folder / name):
-            (folder / name).parent.mkdir(exist_ok=True)
-        write_whole(folder / name, lambda part, path=path: shutil.copyfile(path, part))
+    _write_meshes(ready, folder)
     write_whole(folder / "scene.lock.txt", ready.lock)
     write_json(folder / "certificate.json", ready.certificate.to_json())
     write_whole(folder / f"data.{plan.name}", lambda part: write_data(plan, part))
@@ -105,6 +102,16 @@ def write_inputs(ready: Prepared, folder: Path) -> None:
     for name, text in plan.tables.items():
         write_whole(folder / table_file(plan, name), text)
     write_whole(folder / f"in.{plan.name}", input_script(plan))
+
+
+def _write_meshes(ready: Prepared, folder: Path) -> None:
+    """Copy the meshes of a scene into a folder, by the names that its lock has for them; names tell contents, so what is there
+    is right. Raises OutputError."""
+    for path, name in mesh_files(ready.scene).items():
+        if not (folder / name).exists():
+            with disk_errors(folder / name):
+                (folder / name).parent.mkdir(exist_ok=True)
+            write_whole(folder / name, lambda part, path=path: shutil.copyfile(path, part))
 
 
 def simulate(
@@ -146,7 +153,8 @@ def write_start(ready: Prepared, folder: Path) -> Path:
 
 
 def trajectory_writer(ready: Prepared, folder: Path, frames: int) -> TrajectoryWriter:
-    """A new trajectory in a folder. Raises OutputError."""
+    """A new trajectory in a folder, with the meshes that its scene is read with. Raises OutputError."""
+    _write_meshes(ready, folder)
     return TrajectoryWriter(
         folder / "trajectory.h5",
         ready.scene,

@@ -119,16 +119,20 @@ def one_sided(scene: SceneRecord, system: System, passing: Sequence[tuple[int, i
         return right
 
     found = nearest_boxes(low, high, counts)
+    if found is not None and (far := found[0] > float(system.spacing[list(found[1:])].max()) ** 2):
+        # Of what is not near, that of a material follows from no word of the scene.
+        rough &= np.array([s.spans.get("friction") != s.spans.get("material") for s in solids])
+        found = nearest_boxes(low, high, counts)
     if found is None:
         return []
-    nearest, *pair = found
+    pair = list(found[1:])
     one, other, mu = *(solids[m].name for m in pair), number(own[pair[0]])
     return [
         Problem(
             solids[pair[0]].spans.get("friction"),
             f"friction {mu} of {one} works as 0 against {other}, which has none: two objects have the root of the product",
             f"write friction {mu} in control, or contact {one} {other} {{ friction {mu} }}; or friction 0 in {other}",
-            severity="warning" if nearest <= float(system.spacing[pair].max()) ** 2 else "note",
+            severity="note" if far else "warning",
         )
     ]
 

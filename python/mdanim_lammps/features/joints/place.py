@@ -3,16 +3,18 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 
 import numpy as np
 
-from ...errors import Problem
+from ...errors import Problem, Span
 from ...model import shapes
 from ...model.distance import distance
 from ...model.model import Model
 from ...model.segments import to_segments
-from ...scene.formatting import say
+from ...scene.formatting import say, whole
 from ...scene.scene import Box, Mesh, PieceShape, Rope, SceneRecord, Sheet, Shell, Solid
 from ...scene.schema import Vector
 from .links import NOTHING, Link, links_of
@@ -30,10 +32,12 @@ def misplaced(scene: SceneRecord, models: Sequence[Model]) -> list[Problem]:
     """Problems of the places of joints that follow from particles: what is a line, a sheet or a mesh is far from them, or does
     not have them or their directions."""
     problems: list[Problem | None] = []
+    beside: dict[Span | None, list[Problem]] = {}
     for link in links_of(scene).all:
         ends = [(m, n) for n, m in enumerate((link.first, link.named)) if m != NOTHING]
         lines = [p for m, n in ends if models[m].frame.dimensions == 1 for p in _off_line(models[m], link, n, scene.solids[m])]
-        problems += lines
+        for one in lines:
+            beside.setdefault(one.span, []).append(one)
         problems += [_tilted(scene, link), _unlike(scene, models, link)]
         if link.joint.kind == "spring":
             places = [[end] for end in ends if models[end[0]].frame.dimensions > 1]
@@ -45,7 +49,16 @@ def misplaced(scene: SceneRecord, models: Sequence[Model]) -> list[Problem]:
                 most = max(max(models[m].spacing, shapes.thickness(scene.solids[m].shape)) for m, _ in place)
                 problem = far(link.joint, [(scene.solids[m], (link.begin, link.end)[n], _word(link, n)) for m, n in place], most)
             problems.append(problem or _off_sheet(scene, models, link, place))
-    return [p for p in problems if p is not None]
+    return [*map(_one_of_all, beside.values()), *(p for p in problems if p is not None)]
+
+
+def _one_of_all(beside: list[Problem]) -> Problem:
+    """The first of the problems of one place in the text, which a repeat has made many joints of, with the number of all."""
+    first, *others = beside
+    if not others:
+        return first
+    way_out = "ropes with a length sag: without it they are straight, and take points between their ends, as at (i*w, 0, h)"
+    return replace(first, message=f"{first.message}, and {whole(len(others))} more so", hint=way_out)
 
 
 def doubled(scene: SceneRecord) -> list[Problem]:
@@ -79,8 +92,10 @@ def _off_line(model: Model, link: Link, n: int, solid: Solid) -> list[Problem]:
     wanted = np.array((link.end, link.begin)[n], float) if span is None else at
     nearest = x[np.linalg.norm(x - wanted, axis=1).argmin()]
     place = joint.words if span is not None else f"{joint.words} has no {word}, and the centre of {joint.first}"
-    cause = f"joint {place} is {say(float(away.min()), 'm')} beside the line of {solid.name}, which has all of its particles"
+    cause = f"joint {place} is {say(float(away.min()), 'm')} beside the line of {solid.name}"
     way_out = f"write {word} {vector(nearest)} m, where its nearest particle is"
+    if isinstance(solid.shape, Rope) and solid.shape.length > math.dist(solid.shape.start, solid.shape.end):
+        way_out += "; without length it is straight"
     return [Problem(span or joint.spans.get("joint"), cause, way_out)]
 
 

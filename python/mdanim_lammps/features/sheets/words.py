@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from ...scene.formatting import number, say
-from ...scene.shapes import Box, Cone, Cylinder, Ellipsoid, HoldFaces, Sheet, Shell, Sphere, Torus, Young
+from ...scene.shapes import HOLLOW, Box, Cone, Cylinder, Ellipsoid, HoldFaces, Sheet, Shell, Sphere, Torus, Young
 from ..ropes.words import check_without_cells
 
 SWITCHES: dict[str, str] = {}
@@ -53,7 +53,10 @@ def check_object(v: Any, block: Any, solid: Any) -> Any:
     spans, sheet = solid.spans, solid.shape
     if not isinstance(solid.elasticity, Young):
         cause = f"{solid.name} is a sheet: its springs follow from Young's modulus and its thickness"
-        rigid = "shape box for a rigid plate" if isinstance(sheet, Sheet) else "leave out sheet for what is rigid and solid"
+        hollow = "leave out sheet and write its mass for what is rigid"
+        if isinstance(sheet, Shell) and isinstance(sheet.shape, HOLLOW):
+            hollow += "; of what breaks, pieces 20 makes it rigid and hollow"
+        rigid = "shape box for a rigid plate" if isinstance(sheet, Sheet) else hollow
         v.problem(spans["elasticity"], cause, f"write elasticity 1 MPa, or whatever its material has, or {rigid}")
     flat = isinstance(sheet, Sheet)
     if not flat and sheet.thickness > THICKEST * width(sheet):
