@@ -244,6 +244,11 @@ def test_what_cannot_break_is_refused(pieces):
         ("cylinder 4 cm 12 cm sheet thickness 5 cm", "material glass", "plate is not hollow: its wall is 5 cm thick"),
         ("box (10, 10, 10) cm", "density 2500  elasticity 1 MPa", "only rigid objects are cut into pieces"),
         ("sphere 10 cm", "density 2500  elasticity rigid  pieces bricks (1, 1, 1) cm", "only a box is made of bricks"),
+        (
+            "box (10, 10, 10) cm",
+            "density 2500  elasticity rigid  pieces bricks (1, 1e-9, 1) cm",
+            "it would have 1000000000000 bricks",
+        ),
     ],
 )
 def test_shapes_that_cannot_break_are_refused(shape, made, cause):

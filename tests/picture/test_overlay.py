@@ -7,14 +7,15 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from matplotlib.offsetbox import TextArea
 from mdanim_lammps import Scene, Trajectory, UsageError
 from mdanim_lammps.errors import SceneError
 from mdanim_lammps.features.pieces.names import piece_name
-from mdanim_lammps.picture.curves import COVERED
+from mdanim_lammps.picture.curves import COVERED, Curves
 from mdanim_lammps.picture.drawn import drawn
 from mdanim_lammps.picture.framing import pixels_per_metre, seen_at
 from mdanim_lammps.picture.layer import InkLayer
-from mdanim_lammps.picture.overlay import _near, _reach, _round_value, room_for
+from mdanim_lammps.picture.overlay import _near, _reach, _round_value, free_height, letters_of, room_for
 from mdanim_lammps.picture.plot import span_of
 from mdanim_lammps.picture.render import Painter
 from mdanim_lammps.picture.run_values import RunValues
@@ -389,3 +390,52 @@ def test_curves_of_what_several_objects_have(tmp_path):
     assert values.series(of).tolist() == [1.0] * len(found.trajectory)
     with pytest.raises(UsageError, match="has no object w"):
         values.series(replace(of, subject="w"))
+
+
+def test_names_of_curves_are_readable(run):
+    """In a small picture: ten pixels high at least, in lines of the panel, above the curves."""
+    size, letters = (640, 360), letters_of((640, 360))
+    layer, asked = InkLayer(size, letters, False), [Asked(name, f"position.{axis}") for name in ("ball", "cube") for axis in "xz"]
+    curves = Curves(layer, asked, [RunValues(run.trajectory)], {})
+    picture = np.full((size[1], size[0], 4), 255, np.uint8)
+    layer.lay_on(picture)
+    ground = layer.figure.axes[0]
+    names = [text for area in ground.findobj(TextArea) for text in area.get_children()]
+    assert [name.get_text() for name in names] == [
+        "ball.position.x",
+        "ball.position.z",
+        "cube.position.x",
+        "cube.position.z",
+        "[m]",
+    ]
+    boxes = [name.get_window_extent() for name in names]
+    panel, plot = ground.get_window_extent(), curves._curves[0][0].get_window_extent()
+    assert all(name.get_fontsize() >= 10.0 for name in names)
+    assert all(panel.x0 <= box.x0 and box.x1 <= panel.x1 and plot.y1 <= box.y0 and box.y1 <= panel.y1 + 1.0 for box in boxes)
+    assert plot.height > 0.4 * panel.height
+
+
+@pytest.mark.parametrize(
+    ("placed", "height"),
+    [([(11, 20, 5)], 5), ([(4, 20, 6)], 4), ([(4, 20, 4.5)], 6.5), ([(4, 20, 6), (0, 3, 4.5)], 2.5), ([], 5)],
+)
+def test_words_that_would_cover_others_stand_above_or_below_them(placed, height):
+    assert free_height(5.0, 0.0, 10.0, placed, 2.0) == height
+
+
+def test_labels_of_objects_side_by_side_are_apart(tmp_path):
+    """Three boxes behind each other, as the camera sees them."""
+    boxes = "".join(
+        f"object b{k} {{ shape box (10, 10, 10) cm  position (0, {0.3 * k}, 0.05) m  density 300  elasticity rigid }}\n"
+        for k in range(3)
+    )
+    labels = "".join(f'label b{k} "a long name of box number {k}"\n' for k in range(3))
+    scene = Scene.from_text(f"{boxes} control {{ time 0.1 s  frames 10 fps }}\nrender {{ camera front\n{labels} }}", "boxes")
+    found = scene.run(tmp_path / "b.out").trajectory
+    with Painter(found, found.scene.render, size=(640, 360)) as painter:
+        written = []
+        painter._overlay._layer.words = lambda at, text, ha, **_: written.append((ha, float(at[1])))
+        painter.pixels(1)
+    heights = [[y for side, y in written if side == ha] for ha in ("left", "right")]
+    assert max(map(len, heights)) > 1
+    assert all(np.diff(sorted(of_side)).min(initial=np.inf) >= 1.19 * letters_of((640, 360)) for of_side in heights)

@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import test from "node:test";
 import { Gif, packed, paletteOf } from "../../python/mdanim_lammps/view/web/gif.js";
 import { letsOf, withLet } from "../../python/mdanim_lammps/view/web/lets.js";
-import { Overlay } from "../../python/mdanim_lammps/view/web/overlay.js";
+import { Overlay, freeHeight } from "../../python/mdanim_lammps/view/web/overlay.js";
 import { Quantities, ofMotion, ofVector, roundValue, spanOf, usualScale } from "../../python/mdanim_lammps/view/web/quantities.js";
 
 const TRACK = { time: Float32Array.of(0, 1), centre: Float32Array.of(1, 2, 3, 4, 5, 6), velocity: Float32Array.of(3, 0, 4, 0, 0, -2) };
@@ -38,9 +38,15 @@ test("arrows of one object are as long as show its own well", () => {
 
 test("an object in pieces has its words once, beside those near their middle", () => {
   const box = (x) => [x, 0, 0, 1, 1, 1, x + 0.5, 0.5, 0.5, 0, 0, 0], written = [];
-  const overlay = Object.assign(new Overlay({ objects: [], bounds: [[0, 0, 0], [1, 1, 1]] }), { letters: 10, at: (x, y, z) => [x, y + z], write: (...all) => written.push(all) });
+  const overlay = Object.assign(new Overlay({ objects: [], bounds: [[0, 0, 0], [1, 1, 1]] }), { letters: 10, width: 999, at: (x, y, z) => [x, y + z], write: (...all) => written.push(all) });
   for (const places of [[0, 1, 2], [0, 1, 50]]) overlay.label(0, [0, 1, 2], "vase", { object: Float32Array.from(places.flatMap(box)) });
   assert.deepEqual(written.map(([text, x]) => [text, x]), [["vase", 3 + 4], ["vase", 2 + 4]]);
+});
+
+test("words that would cover others stand above or below them", () => {
+  assert.equal(freeHeight(5, 0, 10, [[11, 20, 5]], 2), 5);
+  assert.equal(freeHeight(5, 0, 10, [[4, 20, 6]], 2), 4);
+  assert.equal(freeHeight(5, 0, 10, [[4, 20, 6], [0, 3, 4.5]], 2), 2.5);
 });
 
 test("what is as good as constant is a straight line", () => {

@@ -15,6 +15,8 @@ from functools import lru_cache
 import numpy as np
 
 from ..records import dataclass
+from ..scene.formatting import number
+from ..scene.limits import MOST_PIECES
 from ..scene.scene import Box, Bricks, Cone, Cylinder, Ellipsoid, Mesh, PieceShape, Shape, Shell, Sphere, Torus, VoronoiCells
 from . import mesh, shapes
 from .mesh import MeshError, Triangles
@@ -333,6 +335,8 @@ def _rows(shape: Shape, how: Bricks) -> list[np.ndarray]:
     if not isinstance(shape, Box):
         raise MeshError("only a box is made of bricks", "write shape box (lx, ly, lz), or pieces 20")
     along, deep, high = (max(1, round(whole / one)) for whole, one in zip(shape.size, how.size))
+    if along * deep * high > MOST_PIECES.most:
+        raise MeshError(f"it would have {along * deep * high} bricks, {number(MOST_PIECES.most)} at most", MOST_PIECES.way_out)
     whole = np.linspace(-0.5, 0.5, along + 1) * shape.size[0]
     half = np.concatenate([whole[:1], 0.5 * (whole[1:] + whole[:-1]), whole[-1:]])
     return [half if row % 2 else whole for row in range(high) for _ in range(deep)]
@@ -344,8 +348,8 @@ def _bricks(shape: Shape, how: Bricks) -> Division:
     counts = [max(1, round(shape.size[k] / how.size[k])) for k in (1, 2)]
     y, z = (np.linspace(-0.5, 0.5, n + 1) * size for n, size in zip(counts, shape.size[1:]))
     low, high = [], []
-    for number, x in enumerate(ends):
-        row, layer = divmod(number, counts[0])
+    for place, x in enumerate(ends):
+        row, layer = divmod(place, counts[0])
         low += [(left, y[layer], z[row]) for left in x[:-1]]
         high += [(right, y[layer + 1], z[row + 1]) for right in x[1:]]
     lows, highs = np.array(low), np.array(high)

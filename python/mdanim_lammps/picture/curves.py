@@ -26,6 +26,8 @@ CURVES: tuple[Color, ...] = (
 )  # fmt: skip
 THIN, LETTER = 0.16, 0.62
 """Width of the topmost curve, and of a letter on average, over the height of letters."""
+SMALLER, LINE = 0.91, 1.25
+"""Height of letters of names, where they would not fit into a line, and of a line, over that of letters."""
 BRIGHTEST = 0.42
 """Luminance of curves at most on bright paper; on dark paper 1 less this is the least."""
 PALE = 0.35
@@ -82,9 +84,12 @@ class Curves:
         ground.set_yticks([])
         for side in ground.spines.values():
             side.set_color((*layer.ink, 0.25))
+        names = [both[0].of for both in curves]
+        colors = tints([of.subject for of in names], self._of_objects, layer.paper, n)
+        above = self._names(ground, names, colors, unit, WIDTH * width)
         # Room for numbers at the left and below, for names above.
         inner = (left + 4.4 * letters / width, top - share + 1.9 * letters / height)
-        size = (left + WIDTH - 0.9 * letters / width - inner[0], top - 1.9 * letters / height - inner[1])
+        size = (left + WIDTH - 0.9 * letters / width - inner[0], top - above / height - inner[1])
         axes = layer.figure.add_axes((*inner, *size), facecolor="none")
         low, high = span_of([one.values for both in curves for one in both], unit)
         axes.set_xlim(0.0, self._end)
@@ -103,31 +108,30 @@ class Curves:
         time = {"fontsize": 0.9 * letters, "color": layer.ink, "ha": "left", "va": "bottom"}
         corner = 0.35 * letters / (WIDTH * width), 0.35 * letters / (share * height)
         ground.text(*corner, "t [s]", transform=ground.transAxes, **time)
-        names = [both[0].of for both in curves]
-        colors = tints([of.subject for of in names], self._of_objects, layer.paper, n)
-        self._names(ground, names, colors, unit, WIDTH * width)
         for k, (color, both) in enumerate(zip(colors, curves)):
             # Curves below are wider, so that all are seen where they lie on each other.
             width = THIN * (1.0 + 0.9 * (len(curves) - 1 - k))
             self._curves += [(axes, one, color, width, beside) for beside, one in enumerate(both)]
 
-    def _names(self, ground: Any, names: list[Asked], colors: list[Color], unit: str, width: float) -> None:
-        """The names of the curves in their colours, the unit behind the last one; all that they have in common stands once.
-        Letters are smaller where they would not fit into this width [pixels]."""
-        from matplotlib.offsetbox import AnchoredOffsetbox, HPacker, TextArea
+    def _names(self, ground: Any, names: list[Asked], colors: list[Color], unit: str, width: float) -> float:
+        """Draw the names of the curves in their colours, the unit behind the last one; all that they have in common stands once.
+        Those that do not fit into this width [pixels] go on in the next line. Returns the height that they take [pixels]."""
+        from matplotlib.offsetbox import AnchoredOffsetbox, HPacker, TextArea, VPacker
 
         common = len(names) > 1 and len({(of.quantity, of.argument) for of in names}) == 1
         words = [of.subject if common else of.what for of in names]
         plain = {"color": self._layer.ink, "fontweight": "bold"}
-        rows = [(f"{names[0].quantity}", plain)] if common else []
-        rows += [(word, {"color": color, "fontweight": "bold"}) for word, color in zip(words, colors)]
-        rows += [(f"[{unit}]", {"color": self._layer.ink})] if unit else []
-        letters = self._layer.letters
-        long = LETTER * letters * sum(len(word) + 1 for word, _ in rows)
-        size = letters * min(1.0, (width - letters) / long)
-        boxes = [TextArea(word, textprops=look | {"fontsize": size}) for word, look in rows]
-        packed = HPacker(children=boxes, pad=0, sep=0.7 * size)
+        row = [(f"{names[0].quantity}", plain)] if common else []
+        row += [(word, {"color": color, "fontweight": "bold"}) for word, color in zip(words, colors)]
+        row += [(f"[{unit}]", {"color": self._layer.ink})] if unit else []
+        letters, room = self._layer.letters, width - self._layer.letters
+        lines = in_lines([len(word) + 1 for word, _ in row], room / (LETTER * SMALLER * letters))
+        longest = max(sum(len(word) + 1 for word, _ in row[line]) for line in lines)
+        size = min(letters if len(lines) == 1 else SMALLER * letters, room / (LETTER * longest))
+        boxes = [[TextArea(word, textprops=look | {"fontsize": size}) for word, look in row[line]] for line in lines]
+        packed = VPacker(children=[HPacker(children=line, pad=0, sep=0.7 * size) for line in boxes], pad=0, sep=0.25 * size)
         ground.add_artist(AnchoredOffsetbox("upper left", child=packed, frameon=False, pad=0.0, borderpad=0.35))
+        return (1.9 + LINE * (len(lines) - 1)) * letters
 
     def show(self, time: float) -> None:
         """Add the curves up to a time [s], with a point where they are then."""
@@ -142,6 +146,17 @@ class Curves:
             if len(pixels) and not beside:
                 size = (0.35 + width) * letters
                 self._layer.add(Line2D(*pixels[-1:].T, marker="o", markersize=size, markeredgewidth=0, linestyle="", **look))
+
+
+def in_lines(lengths: Sequence[int], most: float) -> list[slice]:
+    """Words of these lengths one after the other, in lines that are no longer than ``most`` or one word."""
+    begins, used = [0], 0.0
+    for n, length in enumerate(lengths):
+        if used + length > most and n > begins[-1]:
+            begins.append(n)
+            used = 0.0
+        used += length
+    return [slice(*line) for line in zip(begins, [*begins[1:], len(lengths)])]
 
 
 def tints(subjects: Sequence[str], of_objects: Mapping[str, Color], paper: Color, n: int = 0) -> list[Color]:

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -36,6 +36,8 @@ BESIDE, WIDTH = 0.4, 0.65
 LOOKS, FEWER = 12, 0.8
 """Moments of a run at which words are tried on both sides of their object, and the share of what they cover on the right below
 which they stand on the left."""
+APART = 1.2
+"""Distance of words one above the other, at least, over the height of letters."""
 LEGEND = 4.5
 """Length of an arrow of the legend over that of letters, at most."""
 SEEN = 2.0
@@ -184,11 +186,15 @@ class Overlay:
             words = f"{one.word}  {number(value)} {one.unit}" if length else f"{one.word}: too small to be seen"
             self._layer.words((left + widest + 0.7 * letters, y), words, color=one.color)
 
+    @property
+    def _room(self) -> float:
+        """Width of the picture without that of curves [pixels]."""
+        return self._size[0] * (1.0 - (COVERED if self._render.plot else 0.0))
+
     def _labels_on_left(self, own: Action, view_at: Callable[[float], View]) -> set[int]:
         """Numbers of words that cover less of others that move, and of room for curves, on the left of their object than on the
         right, over the run."""
         letters, free, words = self._layer.letters, np.flatnonzero(own.free), self._words
-        room = self._size[0] * (1.0 - (COVERED if self._render.plot else 0.0))
         parts = np.array_split(self._trajectory.times, len(own.low))
         shown = np.unique(np.linspace(0, len(parts) - 1, LOOKS).astype(int))
         covered = np.zeros((2, len(words)))
@@ -203,28 +209,32 @@ class Overlay:
                 for side, left in enumerate((right, first - wide)):
                     across = np.minimum(high[free, 0], left + wide) - np.maximum(low[free, 0], left)
                     along = np.minimum(high[free, 1], y + 0.5 * letters) - np.maximum(low[free, 1], y - 0.5 * letters)
-                    out = max(0.0, left + wide - room) + max(0.0, -left)
+                    out = max(0.0, left + wide - self._room) + max(0.0, -left)
                     covered[side, n] += (np.clip(across, 0.0, None) * np.clip(along, 0.0, None)).sum() + out * letters
         return {n for n in range(len(words)) if covered[1, n] < FEWER * covered[0, n]}
 
     def _labels(self, view: View, frame: int, low: np.ndarray, high: np.ndarray) -> None:
-        """Words beside the boxes of objects, whose corners are ``low`` and ``high`` [m], shape (O, 3)."""
-        corner = np.array(np.unravel_index(np.arange(8), (2, 2, 2))).T
+        """Words beside the boxes of objects, whose corners are ``low`` and ``high`` [m], shape (O, 3); out of the way of curves
+        and of each other."""
+        corner, letters = np.array(np.unravel_index(np.arange(8), (2, 2, 2))).T, self._layer.letters
+        placed: list[tuple[float, float, float]] = []
         for n, (group, text) in enumerate(self._words):
             near = np.array(group)[_near(self._trajectory.centers[frame, group], self._reach[n])]
             points, ahead = seen_at(view, self._size, np.where(corner, high[near].max(axis=0), low[near].min(axis=0)))
             if ahead.all():
                 # Beside it: arrows often point up or down.
-                left, beside = n in self._on_left, BESIDE * self._layer.letters
+                left, beside, wide = n in self._on_left, BESIDE * letters, WIDTH * letters * len(text)
                 x = points[:, 0].min() - beside if left else points[:, 0].max() + beside
-                self._layer.words((x, points[:, 1].mean()), text, fontweight="bold", ha="right" if left else "left")
+                begin = max(0.5 * beside, min(x - wide if left else x, self._room - wide - 0.5 * beside))
+                y = free_height(points[:, 1].mean(), begin, begin + wide, placed, APART * letters)
+                placed.append((begin, begin + wide, y))
+                self._layer.words((begin + wide if left else begin, y), text, fontweight="bold", ha="right" if left else "left")
 
     def _captions(self, time: float) -> None:
-        free = 1.0 - (COVERED if self._curves else 0.0)
         hair = 1e-9 * float(self._trajectory.times[-1])
         begun = (c for c in self._render.caption if (c.begin or 0.0) - hair <= time)
         for n, one in enumerate(reversed([c for c in begun if c.end is None or time <= c.end + hair])):
-            at = (0.5 * free * self._size[0], (0.1 + 0.06 * n) * self._size[1])
+            at = (0.5 * self._room, (0.1 + 0.06 * n) * self._size[1])
             self._layer.words(at, one.text, size=1.25, ha="center", fontweight="bold", zorder=6)
 
     def _bar(self) -> None:
@@ -237,6 +247,18 @@ class Overlay:
         self._layer.words((x, at[1]), "0")
         self._layer.words((x, at[1] + size[1]), f"≥ {number(tones.most)} {tones.unit}".rstrip())
         self._layer.words((at[0], at[1] + size[1] + 1.5 * letters), tones.name, fontweight="bold")
+
+
+def free_height(y: float, begin: float, end: float, placed: Sequence[tuple[float, float, float]], apart: float) -> float:
+    """The height nearest to y at which words from ``begin`` to ``end`` are ``apart`` from others, each of which is from a begin
+    to an end at a height. Words that were placed first stay, so that none jump to and fro."""
+    met = [height for low, high, height in placed if low < end and begin < high]
+    free = (
+        at
+        for at in (y, *(height + way for height in met for way in (apart, -apart)))
+        if all(abs(at - h) >= (1.0 - 1e-9) * apart for h in met)
+    )
+    return min(free, key=lambda at: abs(at - y))
 
 
 def _reach(centres: np.ndarray) -> float:

@@ -63,6 +63,7 @@ LIMITS = {
     "1": Limit("a plain number", 2.0**53, 1e-9),
 }
 """By SI unit: what any value of that unit may be."""
+MOST_PIECES = Limit("the number of pieces", 1e5, way_out="cut the object into fewer pieces")
 OTHER_UNIT = Limit("a value of this unit", 1e18, 1e-18)
 """For a setting of a feature whose unit is none of these, and that says no limit of its own."""
 

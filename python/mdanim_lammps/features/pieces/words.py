@@ -7,7 +7,7 @@ from dataclasses import fields
 from typing import Any
 
 from ...scene.formatting import say, with_article
-from ...scene.limits import Limit
+from ...scene.limits import MOST_PIECES, Limit
 from ...scene.schema import Observable, OneOf, Rule, setting
 from ...scene.shapes import HOLLOW, Bricks, PieceShape, Rope, Sheet, Shell, VoronoiCells, holds_all
 
@@ -22,7 +22,6 @@ QUANTITIES = {
 
 LEDGER = {"torn": "energy of motion and contact that was lost where glue broke"}
 
-MOST_PIECES = Limit("the number of pieces", 1e5, way_out="cut the object into fewer pieces")
 STRENGTH = Limit("strength", 1e12, 1.0, "30 MPa for glass, 1 MPa for a biscuit")
 
 

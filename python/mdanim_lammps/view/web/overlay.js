@@ -8,11 +8,20 @@ const COLORS = { velocity: "#1c66bf", force: "#333333", contact: "#cc1f24", weig
 const ON_DARK = { velocity: "#63a8ff", force: "#d8d8d8", contact: "#ff6b6b", weight: "#5fd67b", spin: "#c39bf0" };
 const LETTERS = 0.028, SMALLEST = 11, LARGEST = 20; // height of letters over that of the picture, and its limits [pixels]
 const SEEN = 2; // length of the longest arrow of a word at which it is seen [pixels]
+const WIDTH = 0.65; // of a bold letter, over the height of letters
+const APART = 1.2; // distance of words one above the other, at least, over the height of letters
 const LEGEND = 4.5, HEAD = 3.2, HALF = 0.42; // length of an arrow of the legend over that of letters; of a head over the width of a shaft; half of its width over its length
+
+// The height nearest to y at which words from `begin` to `end` are `apart` from others, each from a begin to an end at a height. Words that were placed first stay, so that none jump to and fro.
+export function freeHeight(y, begin, end, placed, apart) {
+  const met = placed.filter(([low, high]) => low < end && begin < high).map(([, , height]) => height);
+  const free = [y, ...met.flatMap((height) => [height + apart, height - apart])].filter((at) => met.every((height) => Math.abs(at - height) >= (1 - 1e-9) * apart));
+  return free.reduce((best, at) => (Math.abs(at - y) < Math.abs(best - y) ? at : best));
+}
 
 export class Overlay {
   constructor(scene) {
-    Object.assign(this, { scene, words: true, only: null, trails: new Map(), ways: new Map(), arrows: [], reach: [], fastest: 0 });
+    Object.assign(this, { scene, words: true, only: null, trails: new Map(), ways: new Map(), arrows: [], reach: [], placed: [], fastest: 0 });
     this.ink = scene.dark ? "#f2f5f7" : "#212933";
     this.paper = scene.dark ? "#1f242b" : "#ffffff";
     this.middle = new Vector3(...scene.bounds[0]).add(new Vector3(...scene.bounds[1])).multiplyScalar(0.5);
@@ -53,6 +62,7 @@ export class Overlay {
     for (const one of this.arrows) this.vectors(one, frame);
     this.legend();
     if (!this.words) return;
+    this.placed = [];
     this.scene.shown.labels.forEach(([group, text], n) => this.label(n, group, text, frame));
     const spoken = this.scene.shown.captions.filter(([, begin, end]) => frame.time >= (begin ?? 0) - 1e-9 && frame.time <= (end ?? Infinity) + 1e-9).reverse();
     spoken.forEach(([text], n) => this.write(text, width / 2, height * (0.9 - 0.06 * n), { size: 1.25, bold: true, align: "center" }));
@@ -151,7 +161,11 @@ export class Overlay {
     const ends = way.map((d) => [Math.min(...near.map((k) => object[12 * k + d])), Math.max(...near.map((k) => object[12 * k + d] + object[12 * k + 3 + d]))]);
     const corners = [0, 1, 2, 3, 4, 5, 6, 7].map((n) => this.at(...way.map((d) => ends[d][(n >> d) & 1])));
     if (corners.includes(null)) return;
-    this.write(text, Math.max(...corners.map((p) => p[0])) + 0.4 * this.letters, corners.reduce((sum, p) => sum + p[1], 0) / 8, { bold: true });
+    const wide = WIDTH * this.letters * text.length, right = this.width - wide - 0.2 * this.letters;
+    const x = Math.max(0.2 * this.letters, Math.min(Math.max(...corners.map((p) => p[0])) + 0.4 * this.letters, right));
+    const y = freeHeight(corners.reduce((sum, p) => sum + p[1], 0) / 8, x, x + wide, this.placed, APART * this.letters);
+    this.placed.push([x, x + wide, y]);
+    this.write(text, x, y, { bold: true });
   }
 
   write(text, x, y, { size = 1, bold = false, align = "left", color = this.ink }) {
