@@ -12,6 +12,7 @@ from ...model.model import Model
 from ...model.triangles import areas, normals
 from ...records import dataclass
 from ...scene.scene import Sphere
+from .coarser import coarser
 
 FINE = 16
 """Edges of triangles along the longest one of an object that does not deform, before they become panels."""
@@ -99,9 +100,9 @@ def skin_of(model: Model, solid: Any) -> AirSkin:
     corner = np.unique(surface.index)
     if len(corner) <= CORNERS and (model.inertia is not None or model.held.all()):
         return _of_one_piece(model, solid, corner)
-    place = surface.vertices(model.position)
-    triangles = AirPart("triangle", surface.triangle, np.zeros((len(surface.triangle), 0)), areas(place, surface.triangle))
-    return AirSkin(surface.index, surface.weight, (triangles,))
+    index, weight, triangle = coarser(surface, model.position, float(min(model.cell)))
+    place = np.einsum("pk,pkd->pd", weight, model.position[index])
+    return AirSkin(index, weight, (AirPart("triangle", triangle, np.zeros((len(triangle), 0)), areas(place, triangle)),))
 
 
 def _sizes(vectors: np.ndarray) -> np.ndarray:
