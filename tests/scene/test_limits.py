@@ -132,7 +132,7 @@ def test_include_of_no_file(strange):
         assert (problem.line, problem.column) == (1, 9), name
         assert "cannot include" in problem.message
         assert "environ" not in problem.message or "ordinary" in problem.message
-        assert time.perf_counter() - begin < 2.0
+        assert time.perf_counter() - begin < 10.0
 
 
 def test_mesh_of_no_file(strange):
@@ -144,7 +144,7 @@ def test_mesh_of_no_file(strange):
         (problem,) = problems(text(shape=f'mesh "m{n}.stl"'), folder=folder)
         assert (problem.line, problem.column) == (2, 14), name
         assert "mesh file" in problem.message
-        assert time.perf_counter() - begin < 2.0
+        assert time.perf_counter() - begin < 10.0
 
 
 def test_scene_file_that_is_no_file(strange):
