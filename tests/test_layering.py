@@ -49,7 +49,20 @@ ROOMS = [
 ]
 
 
-LANGUAGE = {"curve", "formatting", "forms", "holding", "in_time", "limits", "naming", "rotation", "schema", "shapes", "units"}
+LANGUAGE = {
+    "curve",
+    "formatting",
+    "forms",
+    "holding",
+    "in_time",
+    "limits",
+    "naming",
+    "rollers",
+    "rotation",
+    "schema",
+    "shapes",
+    "units",
+}
 """Modules of scene/ that know no word of a scene: words of features are written with them."""
 
 

@@ -212,3 +212,52 @@ def test_a_rope_outside_the_walls_is_told_at_its_shape():
         "walls from (0, 0, 0) m to (1, 1, 2) m\n" + line("shape chain from (2, 0, 1) m to (3, 0, 1) m thickness 1 cm")
     )
     assert "line stands outside the walls" in found.message and (found.line, found.column) == (3, 20)
+
+
+# --- rollers ---------------------------------------------------------------------------------------------------------------
+
+WHEEL = "object wheel {{ shape {shape}  position (0, {y}, 1) m  {turned}  mass 1 kg  elasticity rigid  hold all }}\n"
+ROUND, TURNED, OVER = "cylinder 10 cm 6 cm", "orientation axis (1, 0, 0) angle 90 deg", "runs over wheel"
+HUNG = "shape rope from (-10.5, 0, 60) cm to (10.5, 0, 60) cm thickness 1 cm"
+
+
+def over(more: str = OVER, shape: str = HUNG, round: str = ROUND, y: str = "0", turned: str = TURNED) -> str:
+    return WHEEL.format(shape=round, y=y, turned=turned) + line(shape, more)
+
+
+def test_a_rope_over_a_wheel_is_as_long_as_its_way():
+    """It is at rest in each link, comes back from the lock, and goes along with its group."""
+    scene = parse_scene(over())
+    rope = scene.solids[1]
+    assert rope.shape.length == pytest.approx(0.8 + np.pi * 0.105, rel=1e-12) and rope.position[2] > 0.8
+    again = parse_scene(lock_text(scene))
+    assert again == scene and again.solids[1].shape.rollers == rope.shape.rollers
+    x = np.array(rope.shape.curve.points(100))
+    assert np.abs(np.linalg.norm(np.diff(x, axis=0), axis=1) / (0.01 * rope.shape.length) - 1.0).max() < 2e-4
+    inner, _, control = over().partition("control")
+    place = "place g { position (3, 0, 0) m  orientation axis (0, 0, 1) angle 90 deg }\n"
+    moved = parse_scene(f"group g {{\n{inner}}}\n{place}{_}{control}")
+    assert moved.solids[1].shape.curve.length == pytest.approx(rope.shape.length)
+    assert moved.solids[1].shape.rollers[0].name == "g.wheel"
+
+
+@pytest.mark.parametrize(
+    ("text", "cause"),
+    [
+        (over("runs over reel"), "no object is called reel"),
+        (over(round="sphere 10 cm"), "line runs over wheel, which does not have the shape of a cylinder"),
+        (over(turned=""), "the axis of wheel stands upright"),
+        (over(y="0.2"), "it runs beside wheel"),
+        (over(shape=HUNG.replace("10.5, 0, 60) cm to", "10.5, 1, 60) cm to")), "its ends are 0.01 m apart along the axis"),
+        (over(shape=HUNG.replace("(10.5", "(-10.5").replace("to (-10.5, 0, 60", "to (-10.5, 0, 30")), "at one place across it"),
+        (over(shape=HUNG.replace("60)", "130)")), "a straight line passes over wheel and does not touch it"),
+        (over(shape=HUNG.replace("-10.5, 0, 60)", "-5, 0, 100)")), "its start and wheel are in each other"),
+        (over(shape=HUNG + " length 1.5 m"), "it hangs through: it is 1.5 m long, its way is 1.12987 m"),
+        (over(shape=HUNG + " length 0.5 m"), "it is stretched too far"),
+        (over().replace("wheel {", "wheel { runs over line "), "wheel is not a rope, and runs over nothing"),
+    ],
+)  # fmt: skip
+def test_a_rope_that_cannot_run_over_a_wheel(text, cause):
+    """With the place of its word and a way out."""
+    found = problem(text)
+    assert cause in found.message and found.hint and found.line

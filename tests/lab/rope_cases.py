@@ -170,10 +170,10 @@ def pulley(kind: str, mu: float = 0.5, density: float = 2000.0, thickness: float
     """Acceleration of a rope that runs over a pulley on a hinge, pulled by F1 and F2 at its ends, which rubs without slipping:
     (F1 - F2)/(m + I/r^2) with r in the middle of the rope [m/s^2]. An Atwood machine has the weights m1 g and m2 g, and these
     masses besides."""
-    top, reach, wide = radius + thickness / 2 + 1e-4, 0.35, 0.1
+    r, wide, low, more = radius + 0.5 * thickness, 0.1, 8.0, 4.0
     line = rope(
-        f"{kind} from (-{reach}, 0, {top}) m to ({reach}, 0, {top}) m thickness {thickness} m",
-        f"elasticity 5 MPa  friction {mu}  damping 0.5",
+        f"{kind} from ({-r}, 0, -0.25) m to ({r}, 0, -0.25) m thickness {thickness} m",
+        f"runs over wheel  elasticity 20 MPa  friction {mu}  damping 0.5",
     )
     wheel = f"shape cylinder {radius} m {wide} m  orientation axis (1, 0, 0) angle 90 deg  position (0, 0, 0) m"
     ready = made(
@@ -181,9 +181,8 @@ def pulley(kind: str, mu: float = 0.5, density: float = 2000.0, thickness: float
         "joint hinge wheel world { axis (0, 1, 0) }\n"
     )
     last, dt = int(ready.system.first[1]), ready.certificate.timestep
-    low, more, own = 8.0, 4.0, slice(last, None)
-    inertia = 0.5 * density * math.pi * radius**4 * wide
-    r, mass = radius + 0.5 * thickness, float(ready.system.mass[:last].sum())
+    own = slice(last, None)
+    inertia, mass = 0.5 * density * math.pi * radius**4 * wide, float(ready.system.mass[:last].sum())
     with Instance(ready.plan) as instance:
         lmp = instance.lammps.lmp
         for command in (f"group tip id {last}", "group root id 1", "group both union tip root", f"group line id 1:{last}"):
@@ -191,7 +190,7 @@ def pulley(kind: str, mu: float = 0.5, density: float = 2000.0, thickness: float
         lmp.command(f"fix pull both addforce 0 0 -{low}")
         lmp.command("fix calm line viscous 0.02")
         instance.setup()
-        instance.run(round(0.6 / dt))
+        instance.run(round(0.1 / dt))
         lmp.command("unfix calm")
         lmp.command(f"fix more tip addforce 0 0 -{more}")
         instance.setup()

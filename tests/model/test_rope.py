@@ -14,6 +14,7 @@ from mdanim_lammps.results.trajectory import Trajectory
 from mdanim_lammps.results.trajectory_metadata import metadata_of
 from mdanim_lammps.scene.curve import hanging
 from mdanim_lammps.scene.parse import parse_scene
+from mdanim_lammps.scene.rollers import Roller, taut
 from mdanim_lammps.scene.scene import Rope
 from model_samples import assert_closed, enclosed_volume
 from scipy.integrate import quad
@@ -37,6 +38,34 @@ def test_formulas_of_a_straight_rope_are_those_of_a_thin_cylinder():
     np.testing.assert_allclose(shapes.depth(STRAIGHT, points), [0.05, 0.02, -0.15, -0.45], atol=1e-12)
     low, high = shapes.extent(STRAIGHT)
     assert low == pytest.approx((-1.05, -0.05, -0.05)) and high == pytest.approx((1.05, 0.05, 0.05))
+
+
+def wheel(x: float, z: float, radius: float, is_over: bool) -> Roller:
+    return Roller("wheel", (x, 0.0, z), (0.0, 1.0, 0.0), 0.05, radius, is_over)
+
+
+def test_a_line_around_rollers_is_the_shortest():
+    """Half a circle between plumb lines; an open and a crossed belt of two circles have their closed lengths."""
+    half = taut((-0.1, 0.0, 0.6), (0.1, 0.0, 0.7), (wheel(0.0, 1.0, 0.1, True),))
+    assert half.length == pytest.approx(0.4 + 0.3 + math.pi * 0.1, rel=1e-12)
+    r, big, apart = 0.1, 0.3, 1.0
+    for crossed, lean in ((False, math.asin((big - r) / apart)), (True, math.asin((big + r) / apart))):
+        pair = (wheel(0.0, 0.0, r, True), wheel(apart, 0.0, big, not crossed))
+        _, first, second, _ = taut((-1.0, 0.0, -0.5), (3.0, 0.0, 0.0), pair).bends
+        assert math.dist(first.point(first.turn), second.point(0.0)) == pytest.approx(apart * math.cos(lean), rel=1e-9)
+
+
+def test_particles_around_a_roller_lie_on_it_with_equal_links():
+    """Under one and over the other: no link is longer or shorter, no particle in a roller, and those on it are at its radius."""
+    pair = (wheel(0.0, 0.5, 0.083, False), wheel(0.2, 1.0, 0.083, True))
+    line = taut((-0.083, 0.0, 1.1), (0.283, 0.0, 0.6), pair)
+    points = np.array(line.points(300))
+    links = np.linalg.norm(np.diff(points, axis=0), axis=1)
+    np.testing.assert_allclose(links, line.length / 300, rtol=3e-4)  # those at the ends of an arc: (h/r)^2/24
+    for r in pair:
+        away = np.hypot(points[:, 0] - r.centre[0], points[:, 2] - r.centre[2])
+        assert r.radius < away.min() < r.radius + 1e-5
+    assert line.middle()[1] == 0.0 and points[-1] == pytest.approx(line.end)
 
 
 def test_the_curve_of_a_slack_rope_is_a_catenary_of_its_length():

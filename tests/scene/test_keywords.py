@@ -49,6 +49,10 @@ def scene(block: str, **settings: str):
     if {"tear-strain", "toughness"} & set(settings):
         blocks["object"]["shape"] = "rope from (0, 0, 0) m to (1, 0, 0) m thickness 1 cm"
         del blocks["object"]["position"], blocks["liquid"]
+    if "runs" in settings:
+        blocks["wheel"] = BALL | {"shape": "cylinder 10 cm 6 cm", "orientation": "axis (1, 0, 0) angle 90 deg"}
+        blocks["object"]["shape"] = "rope from (-1, 0, 0) m to (1, 0, 0) m thickness 1 cm"
+        del blocks["object"]["position"], blocks["liquid"]
     if "inflate" in settings:
         blocks["object"]["shape"] = "sphere 10 cm sheet thickness 1 mm"
         del blocks["liquid"]
@@ -70,7 +74,13 @@ def scene(block: str, **settings: str):
     chosen |= settings
     text = "".join(f"{word} {value}\n" for word, value in top.items())
     for name, content in blocks.items():
-        heads = {"object": "object ball", "liquid": "liquid water", "contact": "contact ball floor", "floor": "object floor"}
+        heads = {
+            "object": "object ball",
+            "liquid": "liquid water",
+            "contact": "contact ball floor",
+            "floor": "object floor",
+            "wheel": "object wheel",
+        }
         head = (heads | {"place": "group few { } place few", "joint": f"joint {kind} ball floor", "hand": "hand ball"}).get(
             name, name
         )

@@ -9,6 +9,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from ..scene.rollers import Taut
 from ..scene.scene import Rope
 from .nearest import blocks
 from .segments import to_segments
@@ -16,6 +17,8 @@ from .tube import SIDES
 
 PARTS = 64
 """Straight parts that stand for the curve of a rope where depths and moments are asked for."""
+ARC, MOST_PARTS = 0.4, 4096
+"""The same around a roller: parts l with l^2/8 r = d/20 at most, and so many."""
 
 
 class RopeLaw:
@@ -79,4 +82,7 @@ def section(rope: Rope) -> float:
 def _line(rope: Rope) -> np.ndarray:
     """Points of its curve from its centre of mass [m], shape (P, 3)."""
     curve = rope.curve
+    if isinstance(curve, Taut):
+        fine = math.sqrt(ARC * curve.sharpest * rope.thickness)
+        return np.array(curve.points(min(max(PARTS, math.ceil(curve.length / fine)), MOST_PARTS))) - curve.middle()
     return np.array(curve.points(PARTS if curve.a else 1)) - curve.middle()

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 from ..records import dataclass
 from .schema import Vector
@@ -41,15 +42,19 @@ class Curve:
         return x + way * (x1 - x), y + way * (y1 - y), z + up
 
     def middle(self) -> Vector:
-        """Its centre of mass [m], by the trapezoidal rule."""
-        points = self.points(SAMPLES)
-        weight = [0.5, *[1.0] * (SAMPLES - 1), 0.5]
-        x, y, z = (sum(w * p[d] for w, p in zip(weight, points)) / SAMPLES for d in range(3))
-        return x, y, z
+        """Its centre of mass [m]."""
+        return middle_of(self.points)
 
     def points(self, parts: int) -> list[Vector]:
         """The ends of so many equal parts, both ends of the curve exactly."""
         return [self.start, *(self(self.length * n / parts) for n in range(1, parts)), self.end]
+
+
+def middle_of(points: Callable[[int], list[Vector]]) -> Vector:
+    """The centre of mass [m] of a line, from the ends of so many equal parts of it, by the trapezoidal rule."""
+    of, weight = points(SAMPLES), [0.5, *[1.0] * (SAMPLES - 1), 0.5]
+    x, y, z = (sum(w * p[d] for w, p in zip(weight, of)) / SAMPLES for d in range(3))
+    return x, y, z
 
 
 def hanging(start: Vector, end: Vector, length: float) -> Curve:

@@ -112,7 +112,7 @@ NOT_SUPPORTED = {
     "engine": "write motor speed 60 rpm in a joint hinge, or drive turn of what is held",
     "pendulum": "write joint hinge rod world { at (0, 0, 2) m axis (0, 1, 0) }, or hang it on a shape rope",
     "door": "write joint hinge door frame { at (1, 0, 1) m axis (0, 0, 1) }",
-    "pulley": "shape cylinder with a joint hinge or hold all, and a shape rope over it with friction in both",
+    "pulley": "shape cylinder with a joint hinge or hold all, and a shape rope that runs over it, with friction in both",
     "static": "write hold all: no particle of the object moves",
     "fixed": "write hold all: no particle of the object moves",
 }

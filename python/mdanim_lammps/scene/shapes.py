@@ -13,6 +13,7 @@ from typing import Any, ClassVar, get_args
 from ..records import dataclass
 from .curve import Curve, hanging
 from .formatting import number
+from .rollers import Roller, Taut, taut
 from .schema import Keyword, OneOf, Vector
 
 # --- shapes: body frame, centre of mass at the origin, axes of revolution along z -------------------------
@@ -193,6 +194,8 @@ class Rope:
     """Without load [m]; below the distance of its ends it is stretched to begin with."""
     bends: bool = True
     """Whether it resists bending as a rod of this section does; a chain does not."""
+    rollers: tuple[Roller, ...] = ()
+    """Runs around them; it is pulled straight then."""
 
     @classmethod
     def read(cls, form: int, values: tuple) -> Rope:
@@ -219,12 +222,24 @@ class Rope:
 
     def write(self) -> tuple[int, tuple]:
         """Form and values that are read as this."""
-        return 0 if self.bends else 1, (self.start, self.end, self.thickness, self.length)
+        is_as_long = self.rollers and self.length == self.curve.length
+        return 0 if self.bends else 1, (self.start, self.end, self.thickness, None if is_as_long else self.length)
 
     @property
-    def curve(self) -> Curve:
+    def curve(self) -> Curve | Taut:
         """The line that it lies along to begin with."""
-        return hanging(self.start, self.end, self.length)
+        return taut(self.start, self.end, self.rollers) if self.rollers else hanging(self.start, self.end, self.length)
+
+    def around(self, rollers: tuple[Roller, ...]) -> Rope:
+        """The same around rollers; as long as its way where its length is not given. Raises ValueError(cause, way out)."""
+        way = taut(self.start, self.end, rollers).length
+        length = way if self.length == math.dist(self.start, self.end) else self.length
+        what = f"{number(length, 6)} m long, its way is {number(way, 6)} m"
+        if length > way:
+            raise ValueError(f"it hangs through: it is {what}", "leave out its length, and move its ends further out")
+        if way > MOST_STRETCHED * length:
+            raise ValueError(f"it is stretched too far to begin with: it is {what}", "leave out its length")
+        return replace(self, length=length, rollers=rollers)
 
     def brings(self) -> dict[str, Any]:
         """Fields of its object that follow from it."""

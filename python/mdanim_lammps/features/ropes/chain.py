@@ -29,7 +29,7 @@ def links_of(rope: Rope, h: float) -> int:
 def places(rope: Rope, links: int) -> np.ndarray:
     """Particles at the start [m], shape (links + 1, 3): with links of equal lengths, in balance where they hang."""
     curve = rope.curve
-    if not curve.a:
+    if not isinstance(curve, Curve) or not curve.a:
         return np.array(curve.points(links))
     return np.array([rope.start]) + _hang(curve, links)
 

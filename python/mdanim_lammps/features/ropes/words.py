@@ -4,12 +4,48 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
+from dataclasses import replace
+from typing import Any, ClassVar
 
+from ...records import dataclass
 from ...scene.formatting import number, say
-from ...scene.shapes import HoldEnds, HoldFaces, Rope, Young
+from ...scene.rollers import Roller
+from ...scene.schema import OneOf, setting
+from ...scene.shapes import Cylinder, HoldEnds, HoldFaces, Rope, Young
 
 SWITCHES: dict[str, str] = {}
+
+
+@dataclass(frozen=True, slots=True)
+class Past:
+    """A cylinder that a rope runs over, or under."""
+
+    FORMS: ClassVar = ("over <NAME>", "under <NAME>")
+
+    side: str
+    name: str
+
+    @classmethod
+    def read(cls, form: int, values: tuple) -> Past:
+        """From one of FORMS and its values."""
+        return cls(cls.FORMS[form].split()[0], *values)
+
+    def write(self) -> tuple[int, tuple]:
+        """The number of one of FORMS, and its values."""
+        return ("over", "under").index(self.side), (self.name,)
+
+
+class RopeWords:
+    """Settings of an object."""
+
+    runs: tuple[Past, ...] = setting(
+        None,
+        "Of a rope: a cylinder that it runs over or under to begin with, from its start to its end; several lines for several "
+        "cylinders, in turn. It is pulled straight between them, and as long as its way unless a shorter `length` is given.",
+        "over wheel", default=(), many=True, codec=OneOf(Past), after="shape")  # fmt: skip
+
+
+OBJECT = RopeWords
 
 
 def is_rope(solid: Any) -> bool:
@@ -21,11 +57,18 @@ def check_object(v: Any, block: Any, solid: Any) -> Any:
     """Settings that make no sense in a rope, and those that ropes alone have."""
     spans = solid.spans
     if not is_rope(solid):
+        if solid.runs:
+            cause = f"{solid.name} is not a rope, and runs over nothing"
+            v.problem(spans["runs"], cause, "leave runs out, or take shape rope from (0, 0, 1) m to (1, 0, 1) m thickness 1 cm")
         if any(isinstance(h, HoldEnds) for h in solid.hold):
             cause = f"{solid.name} is not a rope and has no start and no end"
             v.problem(spans["hold"], cause, "write hold faces x, hold face -x, hold all, or a box")
         return solid
     rope = solid.shape
+    names = [(s, v.meant(block, one.name)) for s, one in zip(block.settings.get("runs", ()), solid.runs)]
+    unknown = [name for s, name in names if not v.known_object(name, s.span(0))]  # each is told
+    if names and not unknown:
+        solid = replace(solid, runs=tuple(replace(one, name=name) for one, (_, name) in zip(solid.runs, names)))
     if not isinstance(solid.elasticity, Young):
         cause = f"{solid.name} is a {kind(rope)}: its springs follow from Young's modulus and its thickness"
         v.problem(spans["elasticity"], cause, "write elasticity 100 MPa, or whatever its material has")
@@ -49,8 +92,11 @@ def kind(rope: Rope) -> str:
     return "rope" if rope.bends else "chain"
 
 
-def check(v: Any, top: Mapping, held: Mapping) -> None:
-    """Parts of a scene that know objects by their cells, which a rope does not have."""
+def check(v: Any, top: Mapping, held: dict) -> None:
+    """Ropes around what they run over, and parts of a scene that know objects by their cells, which a rope does not have."""
+    known = {solid.name: solid for solid in held["solids"]}
+    if any(solid.runs for solid in held["solids"]):
+        held["solids"] = tuple(_around(v, known, solid) if solid.runs and is_rope(solid) else solid for solid in held["solids"])
     if rope := next(filter(is_rope, held["solids"]), None):
         instead = "shape cylinder for what is to float, or joint spring A B { pulls only } for a string"
         check_without_cells(v, held, rope, kind(rope.shape), instead)
@@ -65,6 +111,30 @@ def check_without_cells(v: Any, held: Mapping, solid: Any, what: str, instead: s
     if control is not None and control.contact_model.value == "paper" and len(held["solids"]) > 1:
         cause = f"{solid.name} is a {what}, which touches others with its surface alone"
         v.problem(at, cause, "take contact-model paper out of control", key=f"{what}-paper")
+
+
+def _around(v: Any, known: Mapping, solid: Any) -> Any:
+    """A rope with its line around what it runs over."""
+    if not all(one.name in known for one in solid.runs):
+        return solid  # told, or broken itself
+    for one in solid.runs:
+        if not isinstance(known[one.name].shape, Cylinder):
+            v.problem(solid.spans["runs"], f"{solid.name} runs {one.side} {one.name}, which does not have the shape of a cylinder",
+                      f"write shape cylinder r h in {one.name}, or a cylinder welded to it")  # fmt: skip
+            return solid
+    rollers = []
+    for one in solid.runs:
+        wheel = known[one.name]
+        axis = tuple(row[2] for row in wheel.rotation)
+        radius = wheel.shape.radius + 0.5 * solid.shape.thickness
+        rollers.append(Roller(one.name, wheel.position, axis, 0.5 * wheel.shape.height, radius, one.side == "over"))
+    try:
+        shape = solid.shape.around(tuple(rollers))
+    except ValueError as e:
+        cause, way_out = e.args
+        v.problem(solid.spans["runs"], f"{solid.name} cannot run {solid.runs[0].side} {solid.runs[0].name}: {cause}", way_out)
+        return solid
+    return replace(solid, shape=shape, position=shape.curve.middle())
 
 
 CHECKS = {"object": check_object}
