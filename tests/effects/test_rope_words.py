@@ -245,7 +245,7 @@ def test_a_rope_over_a_wheel_is_as_long_as_its_way():
     ("text", "cause"),
     [
         (over("runs over reel"), "no object is called reel"),
-        (over(round="sphere 10 cm"), "line runs over wheel, which does not have the shape of a cylinder"),
+        (over(round="sphere 10 cm"), "line runs over wheel, which does not have the shape cylinder"),
         (over(turned=""), "the axis of wheel stands upright"),
         (over(y="0.2"), "it runs beside wheel"),
         (over(shape=HUNG.replace("10.5, 0, 60) cm to", "10.5, 1, 60) cm to")), "its ends are 0.01 m apart along the axis"),

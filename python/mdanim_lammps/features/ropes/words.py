@@ -119,7 +119,7 @@ def _around(v: Any, known: Mapping, solid: Any) -> Any:
         return solid  # told, or broken itself
     for one in solid.runs:
         if not isinstance(known[one.name].shape, Cylinder):
-            v.problem(solid.spans["runs"], f"{solid.name} runs {one.side} {one.name}, which does not have the shape of a cylinder",
+            v.problem(solid.spans["runs"], f"{solid.name} runs {one.side} {one.name}, which does not have the shape cylinder",
                       f"write shape cylinder r h in {one.name}, or a cylinder welded to it")  # fmt: skip
             return solid
     rollers = []
