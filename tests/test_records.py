@@ -22,7 +22,7 @@ def kinds(decorate: Any) -> list[type]:
 
     @decorate(frozen=True, slots=True)
     class Point:
-        """Of two fields."""
+        """Two fields."""
 
         x: float
         y: float = 2.0
@@ -89,7 +89,7 @@ MADE = {
 
 
 def told(call: Any) -> Any:
-    """What a call gives, or the type and the words of its error."""
+    """The value that a call gives, or the type and the words of its error."""
     try:
         return call()
     except Exception as error:

@@ -110,7 +110,7 @@ def test_check_names_the_effects_of_standard_steps(monkeypatch):
 
 
 def test_a_run_of_which_threads_do_not_share_all_tells_it(monkeypatch, tmp_path, capsys):
-    """Whoever asks for them: a word of the command line, the environment or an argument."""
+    """Asked for by a word of the command line, the environment or an argument."""
     scene = "air {}\n" + BLOCK.format(2, "").replace("time 0.1 s", "time 1 ms frames 1000 fps")
     (tmp_path / "a.txt").write_text(scene)
     line = "threads  2, as asked for: with air on LAMMPS takes its standard steps, of which"

@@ -159,7 +159,7 @@ class Frames:
 
 
 class Passes:
-    """What takes the steps."""
+    """Takes the steps."""
 
     in_passes = True
     """Whether passes over the particles have it in them."""

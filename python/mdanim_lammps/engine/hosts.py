@@ -90,7 +90,7 @@ class Hosts:
         return bool((shapes.depth(frame.shape, points) > depth).any())
 
     def _surface(self, shape: Mesh) -> mesh.Triangles:
-        """That of a mesh, whose file may be gone since the start."""
+        """The surface of a mesh, whose file may be gone since the start."""
         if shape not in self._surfaces:
             self._surfaces[shape] = mesh.load(shape)
         return self._surfaces[shape]

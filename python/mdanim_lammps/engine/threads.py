@@ -77,7 +77,8 @@ def choose_threads(plan: Plan, most: int) -> ThreadChoice:
 
 
 def asked_choice(plan: Plan, threads: int | None) -> ThreadChoice | None:
-    """That of a run for which so many ``threads`` are asked, or those of the environment; None without. Raises UsageError."""
+    """The choice of a run for which so many ``threads`` are asked, here or by the environment; None without. Raises
+    UsageError."""
     with with_threads(threads):
         return choose_threads(plan, cores()) if asked_threads() else None
 

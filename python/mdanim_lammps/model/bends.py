@@ -14,7 +14,7 @@ from ..records import dataclass
 BLUNT = 0.3
 """As in `plugin/tearing/bend_law.h`."""
 _FIRST, _NEXT = slice(None, -1), slice(1, None)
-"""Of the particles around a ring in turn, those at the beginnings and at the ends of sides."""
+"""Particles around a ring in turn at the beginnings and at the ends of sides."""
 
 
 @dataclass(frozen=True, eq=False)

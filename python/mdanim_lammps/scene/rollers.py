@@ -24,11 +24,11 @@ class Roller:
     centre: Vector
     """[m]"""
     axis: Vector
-    """Of length 1."""
+    """Has length 1."""
     half: float
     """Half its height [m]."""
     radius: float
-    """Of the rope's line around it [m]."""
+    """The radius of the rope's line around it [m]."""
     is_over: bool
     """Whether the rope is on its upper side, along z."""
 
@@ -157,7 +157,7 @@ def taut(start: Vector, end: Vector, rollers: tuple[Roller, ...]) -> Taut:
 
 
 def _pairs(rollers: tuple[Roller, ...]) -> list[str]:
-    """What each straight part is between, in words."""
+    """Both ends of each straight part, in words."""
     names = ["its start", *(r.name for r in rollers), "its end"]
     return [f"{a} and {b}" for a, b in pairwise(names)]
 

@@ -120,7 +120,7 @@ def one_sided(scene: SceneRecord, system: System, passing: Sequence[tuple[int, i
 
     found = nearest_boxes(low, high, counts)
     if found is not None and (far := found[0] > float(system.spacing[list(found[1:])].max()) ** 2):
-        # Of what is not near, that of a material follows from no word of the scene.
+        # The friction of a material counts for what is near alone: the scene does not say it.
         rough &= np.array([s.spans.get("friction") != s.spans.get("material") for s in solids])
         found = nearest_boxes(low, high, counts)
     if found is None:

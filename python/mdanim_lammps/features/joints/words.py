@@ -48,7 +48,7 @@ HAVING = {
 
 
 def _quantities() -> Iterator[tuple[tuple[str, str], Observable]]:
-    """Those of the joint of two objects, and of that of a kind where several kinds have it."""
+    """Quantities of the joint of two objects, and of its kind where several kinds have it."""
     for what, of, about in (
         ("angle", "rad", "angle of the hinge that joins it to another object or to the world, 0 at the start"),
         ("way", "m", "way of its slider from the start, or the length of its spring"),

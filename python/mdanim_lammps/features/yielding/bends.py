@@ -40,7 +40,7 @@ def rings(model: Model) -> BendRings:
 
 @once_for(lambda model: model)
 def _places(model: Model) -> tuple[np.ndarray, np.ndarray]:
-    """Of all lines: the particle that has them, and their place among its own, both of shape (L,)."""
+    """The particle of each line, and the place of the line among its own, both of shape (L,)."""
     all_of, within = rings(model), np.array(_slots(model)[0], np.int64)
     return all_of.middle[all_of.of], within[all_of.of] + np.arange(len(all_of.of)) - all_of.first[all_of.of]
 
