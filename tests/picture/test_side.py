@@ -4,12 +4,14 @@
 from __future__ import annotations
 
 from itertools import pairwise
+from types import SimpleNamespace
 
 import imageio_ffmpeg
 import numpy as np
 import pytest
 from mdanim_lammps import Scene, UsageError
 from mdanim_lammps.picture.camera import action_of
+from mdanim_lammps.picture.palette import colors_beside, object_colors
 from mdanim_lammps.picture.render import Painter
 from mdanim_lammps.picture.side import _painters, _together, render_side_by_side
 from mdanim_lammps.scene.quantities import Asked
@@ -97,3 +99,12 @@ def test_names_of_groups_stand_for_their_objects(tmp_path):
     path = tmp_path / "both.mp4"
     render_side_by_side(run.folder, run.folder, run.scene.record.render, path, size=(320, 90))
     assert imageio_ffmpeg.count_frames_and_secs(path)[0] == 3
+
+
+def test_objects_of_one_name_have_one_colour():
+    """Whatever stands before them in their scene; what the first run does not have goes on where that ends."""
+    first = SimpleNamespace(names=("a", "b", "wall"), colors=("", "#ff0000", ""), still=np.array([False, False, True]))
+    second = SimpleNamespace(names=("new", "b", "a", "wall"), colors=("",) * 4, still=np.array([False, False, False, True]))
+    a, b, wall = object_colors(first.colors, first.still).tolist()
+    new, *same = colors_beside(second, first).tolist()
+    assert same == [b, a, wall] and new == object_colors(("",) * 3, np.zeros(3, bool)).tolist()[2]

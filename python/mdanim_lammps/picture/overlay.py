@@ -20,7 +20,6 @@ from .camera import Action, Reserved, View, corners
 from .curves import COVERED, Curves
 from .framing import pixels_per_metre, seen_at
 from .layer import Color, InkLayer
-from .palette import object_colors
 from .run_values import RunValues
 from .tones import Tones
 
@@ -99,6 +98,7 @@ class Overlay:
         tones: colours that tell a quantity; None for none.
         finer: pixels that are drawn for one of the picture, along each side.
         view_at: gives the camera at a time [s].
+        colors: of objects, uint8, shape (O, 3).
 
     Raises:
         UsageError: a quantity that the run has not recorded.
@@ -116,6 +116,7 @@ class Overlay:
         tones: Tones | None,
         finer: int,
         view_at: Callable[[float], View],
+        colors: np.ndarray,
     ):
         self._trajectory = trajectory = runs[0]
         self._render, self._size, self._action = render, size, action
@@ -124,7 +125,7 @@ class Overlay:
         self._of_name = objects_by_name(names) if render.trail or render.label else {}
         self._words = [(g, one.text) for one in render.label for g in labelled(self._of_name[one.name], names)]
         self._reach = [_reach(trajectory.centers[0, group]) for group, _ in self._words]
-        self._colors = object_colors(trajectory.metadata.colors, trajectory.metadata.still) / 255.0
+        self._colors = colors / 255.0
         self._on_left = self._labels_on_left(own, view_at)
         told = [RunValues(run) for run in runs if run is not None]
         lines = [_vectors(render.arrows, values) for values in told]

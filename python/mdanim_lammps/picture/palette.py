@@ -37,22 +37,35 @@ def rgb(color: str) -> np.ndarray:
     return np.frombuffer(bytes.fromhex(color.lstrip("#")), dtype=np.uint8) / 255.0
 
 
-def object_colors(chosen: Sequence[str], still: np.ndarray) -> np.ndarray:
+def object_colors(chosen: Sequence[str], still: np.ndarray, begin: int = 0) -> np.ndarray:
     """Colour of each object, uint8, shape (O, 3): the scene's own, grey for what is held, else by index.
 
     Args:
         chosen: ``#rrggbb`` or empty, one per object.
         still: objects that never move, bool, shape (O,).
+        begin: number of the first colour.
     """
-    free = np.cumsum(~np.asarray(still, dtype=bool)) - 1
+    free = begin + np.cumsum(~np.asarray(still, dtype=bool)) - 1
     names = [color or (STILL if held else OBJECTS[index % len(OBJECTS)]) for color, held, index in zip(chosen, still, free)]
     return np.array([np.round(255 * rgb(name)) for name in names], dtype=np.uint8).reshape(-1, 3)
 
 
-def vertex_colors(metadata: TrajectoryMetadata) -> np.ndarray:
-    """Colour of each vertex of the skin, uint8, shape (V, 3): its object's, or else that of the mesh file."""
+def colors_beside(metadata: TrajectoryMetadata, first: TrajectoryMetadata) -> np.ndarray:
+    """Colour of each object of a run that is shown beside a first one, uint8, shape (O, 3): that of the object with its name
+    there; what is not there has the colours that follow."""
+    known = dict(zip(first.names, object_colors(first.colors, first.still)))
+    new = [m for m, name in enumerate(metadata.names) if name not in known]
+    begin = int(np.count_nonzero(~first.still))
+    more = iter(object_colors([metadata.colors[m] for m in new], metadata.still[new], begin))
+    return np.array([known[name] if name in known else next(more) for name in metadata.names], np.uint8).reshape(-1, 3)
+
+
+def vertex_colors(metadata: TrajectoryMetadata, of_objects: np.ndarray | None = None) -> np.ndarray:
+    """Colour of each vertex of the skin, uint8, shape (V, 3): its object's, or else that of the mesh file. ``of_objects``, of
+    shape (O, 3), are colours of objects in place of `object_colors`."""
     skin = metadata.skin
-    color = object_colors(metadata.colors, metadata.still)[skin.object_of_vertex]
+    of_objects = object_colors(metadata.colors, metadata.still) if of_objects is None else of_objects
+    color = of_objects[skin.object_of_vertex]
     chosen = np.array([bool(name) for name in metadata.colors], bool)[skin.object_of_vertex]
     color[skin.painted & ~chosen] = skin.paint[~chosen[skin.painted]]
     return color

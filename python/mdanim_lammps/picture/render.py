@@ -20,7 +20,7 @@ from .label import Label
 from .light import Light
 from .marks import MarkActors, Marks
 from .overlay import Overlay, room_for
-from .palette import background_colors, is_dark, vertex_colors
+from .palette import background_colors, is_dark, object_colors, vertex_colors
 from .pieces import MovingMesh, box_edges, have_own_textures, lit_actor
 from .scenery import scenery, way_of_walls
 from .standpoints import camera_of
@@ -47,7 +47,8 @@ class Painter:
         action: bounds over all frames, if known already; None finds them.
         marks: what is shown beside the surfaces.
         seen: what an automatic camera sees, where that is not the action of this run alone.
-        beside: a run that is shown beside this one, in the same colours, on the same axes and with arrows of the same scale.
+        beside: a run that is shown beside this one, on the same axes and with arrows of the same scale.
+        colors: of objects, uint8, shape (O, 3); None are those of the scene.
         name: words in place of the title.
 
     Raises:
@@ -65,10 +66,13 @@ class Painter:
         marks: Marks = Marks(),
         seen: Action | None = None,
         beside: Trajectory | None = None,
+        colors: np.ndarray | None = None,
         name: str = "",
     ):
         self.trajectory, self._name = trajectory, name or trajectory.metadata.title
         self.size = tuple(size or render.size)
+        metadata = trajectory.metadata
+        self._colors = object_colors(metadata.colors, metadata.still) if colors is None else colors
         self._finer = FINER[render.quality]
         if self._finer > 1 and max(self.size) * self._finer > MOST_PIXELS:
             raise UsageError(
@@ -87,7 +91,9 @@ class Painter:
             dark = is_dark(background_colors(render)[0])
             runs = trajectory, beside
             both = seen or self.action
-            self._overlay = Overlay(runs, render, self._pixels, dark, both, self.action, self._tones, self._finer, self.view)
+            self._overlay = Overlay(
+                runs, render, self._pixels, dark, both, self.action, self._tones, self._finer, self.view, self._colors
+            )
 
     def _pixel(self) -> np.ndarray:
         """Size of a pixel on each object where it comes nearest to the camera [m], shape (M,)."""
@@ -121,14 +127,17 @@ class Painter:
             self._surface.paint(np.concatenate([self._toned(index), self._surface_colors[len(vertices) :]]))
         view = self.view(time)
         shown_points = np.concatenate([self._mesh.seen_from(view.eye, vertices), points])
-        self._surface.move(shown_points, np.concatenate([shown, normals]))
+        self._surface.move(shown_points, shown_normals := np.concatenate([shown, normals]))
+        casting = shown_points[: len(self._casters.points)]
+        if self._ghosts:
+            self._casters.move(casting, shown_normals[: len(casting)])
         if self._tank:
             self._tank.show(index, position, vertices, self._mesh.triangle)
         if self._walls and self._way_of_walls:
             self._walls.SetPosition(*self._way_of_walls(time))
         self._marks.show(position)
         # Before the picture: only one window can be drawn into at a time.
-        self._light.cast(shown_points)
+        self._light.cast(casting)
         if self._tank:
             self._tank.part_skin(self._light, view.eye, bool(self._floor and self._floor.covers(view, self._pixels)))
         for actor in self._actors:
@@ -228,14 +237,17 @@ class Painter:
         (x, y, _), reach = self.action.centre, REACH * self.action.size
         self._more, own = Additions(self.trajectory, dark), len(self._mesh.carry)
         self._triangle = np.concatenate([self._mesh.triangle, own + self._more.triangle])
-        colors = [vertex_colors(metadata)[self._mesh.of_skin], self._more.color]
+        colors = [vertex_colors(metadata, self._colors)[self._mesh.of_skin], self._more.color]
         self._ghosts = Ghosts(self.trajectory, self._mesh, colors[0], render.freeze) if render.freeze else None
-        if self._ghosts:
+        if self._ghosts:  # what is not there casts no shadow
+            self._casters = MovingMesh(sum(map(len, colors)), self._triangle)
             self._triangle = np.concatenate([self._triangle, own + int(self._more.first[-1]) + self._ghosts.triangle])
             colors.append(self._ghosts.color)
         self._surface_colors = np.concatenate(colors)
         self._surface = MovingMesh(len(self._surface_colors), self._triangle)
         self._surface.paint(self._surface_colors)
+        if not self._ghosts:
+            self._casters = self._surface
         self._actors = [self._surface_actor(liquid, sky)]
         self._actors[0].SetVisibility(not marks.springs)
         # Objects are closed, so their inner faces are never visible, and drawing these takes time.
@@ -284,7 +296,7 @@ class Painter:
         typical = float(np.median(sizes)) if len(sizes) else self.action.size
         with silent():
             self._window = off_screen_window(self._renderers, (width, height), SAMPLES, clear=not self._behind)
-            self._light = Light(self._surface.data, self.action.centre, self.action.size, typical, render, self._floor)
+            self._light = Light(self._casters.data, self.action.centre, self.action.size, typical, render, self._floor)
             still = self._camera.still
             cover = self._tank.cover if self._tank else None
             self._backdrop = None if self._behind else Backdrop(self._pixels, (low, high), self._floor, still, sky, cover)

@@ -16,6 +16,7 @@ from ..scene.naming import objects_by_name
 from ..scene.render import Render
 from .camera import Action, action_of
 from .movie import FASTEST, MOST_PICTURES, encoder, movie_rate
+from .palette import colors_beside
 from .render import Painter
 
 LINE = 2
@@ -78,9 +79,10 @@ def _painters(
                 raise UsageError(f"{run.path} has no object {one.name}, which render names; take another render block by --scene")
     actions = [action_of(run) for run in runs]
     both = _together(*actions)
+    colors = None, colors_beside(runs[1].metadata, runs[0].metadata)
     return [
-        Painter(run, render, size=size, action=own, seen=both, beside=other, name=Path(folder).resolve().name)
-        for run, own, other, folder in zip(runs, actions, reversed(runs), folders)
+        Painter(run, render, size=size, action=own, seen=both, beside=other, colors=color, name=Path(folder).resolve().name)
+        for run, own, other, color, folder in zip(runs, actions, reversed(runs), colors, folders)
     ]
 
 
