@@ -423,7 +423,14 @@ def test_names_of_curves_are_readable(run):
 
 @pytest.mark.parametrize(
     ("placed", "height"),
-    [([(11, 20, 5)], 5), ([(4, 20, 6)], 4), ([(4, 20, 4.5)], 6.5), ([(4, 20, 6), (0, 3, 4.5)], 2.5), ([], 5)],
+    [
+        ([(11, 20, 5)], 5),
+        ([(4, 20, 6)], 4),
+        ([(4, 20, 4.5)], 6.5),
+        ([(4, 20, 6), (0, 3, 4.5)], 2.5),
+        ([], 5),
+        ([(0, 9, 2 * k) for k in range(9)], 5),
+    ],
 )
 def test_words_that_would_cover_others_stand_above_or_below_them(placed, height):
     assert free_height(5.0, 0.0, 10.0, placed, 2.0) == height

@@ -47,6 +47,7 @@ test("words that would cover others stand above or below them", () => {
   assert.equal(freeHeight(5, 0, 10, [[11, 20, 5]], 2), 5);
   assert.equal(freeHeight(5, 0, 10, [[4, 20, 6]], 2), 4);
   assert.equal(freeHeight(5, 0, 10, [[4, 20, 6], [0, 3, 4.5]], 2), 2.5);
+  assert.equal(freeHeight(5, 0, 10, [...Array(9).keys()].map((k) => [0, 9, 2 * k]), 2), 5);
 });
 
 test("what is as good as constant is a straight line", () => {

@@ -37,6 +37,8 @@ LOOKS, FEWER = 12, 0.8
 which they stand on the left."""
 APART = 1.2
 """Distance of words one above the other, at least, over the height of letters."""
+FARTHEST = 3.0
+"""Way of words from the height of their object, at most, over that distance: further away they would seem those of another."""
 LEGEND = 4.5
 """Length of an arrow of the legend over that of letters, at most."""
 SEEN = 2.0
@@ -252,14 +254,14 @@ class Overlay:
 
 def free_height(y: float, begin: float, end: float, placed: Sequence[tuple[float, float, float]], apart: float) -> float:
     """The height nearest to y at which words from ``begin`` to ``end`` are ``apart`` from others, each of which is from a begin
-    to an end at a height. Words that were placed first stay, so that none jump to and fro."""
-    met = [height for low, high, height in placed if low < end and begin < high]
-    free = (
-        at
-        for at in (y, *(height + way for height in met for way in (apart, -apart)))
-        if all(abs(at - h) >= (1.0 - 1e-9) * apart for h in met)
-    )
-    return min(free, key=lambda at: abs(at - y))
+    to an end at a height; y where all are too far. Words that were placed first stay, so that none jump to and fro."""
+    met, above, below = sorted(height for low, high, height in placed if low < end and begin < high), y, y
+    for height in met:
+        above = height + apart if abs(above - height) < (1.0 - 1e-9) * apart else above
+    for height in reversed(met):
+        below = height - apart if abs(below - height) < (1.0 - 1e-9) * apart else below
+    found = above if above - y < y - below else below
+    return found if abs(found - y) <= FARTHEST * apart else y
 
 
 def _reach(centres: np.ndarray) -> float:

@@ -10,13 +10,16 @@ const LETTERS = 0.028, SMALLEST = 11, LARGEST = 20; // height of letters over th
 const SEEN = 2; // length of the longest arrow of a word at which it is seen [pixels]
 const WIDTH = 0.65; // of a bold letter, over the height of letters
 const APART = 1.2; // distance of words one above the other, at least, over the height of letters
+const FARTHEST = 3; // way of words from the height of their object, at most, over that distance
 const LEGEND = 4.5, HEAD = 3.2, HALF = 0.42; // length of an arrow of the legend over that of letters; of a head over the width of a shaft; half of its width over its length
 
-// The height nearest to y at which words from `begin` to `end` are `apart` from others, each from a begin to an end at a height. Words that were placed first stay, so that none jump to and fro.
+// The height nearest to y at which words from `begin` to `end` are `apart` from others, each from a begin to an end at a height; y where all are too far. Words that were placed first stay, so that none jump to and fro.
 export function freeHeight(y, begin, end, placed, apart) {
-  const met = placed.filter(([low, high]) => low < end && begin < high).map(([, , height]) => height);
-  const free = [y, ...met.flatMap((height) => [height + apart, height - apart])].filter((at) => met.every((height) => Math.abs(at - height) >= (1 - 1e-9) * apart));
-  return free.reduce((best, at) => (Math.abs(at - y) < Math.abs(best - y) ? at : best));
+  const met = placed.filter(([low, high]) => low < end && begin < high).map(([, , height]) => height).sort((a, b) => a - b);
+  const away = (way) => (at, height) => (Math.abs(at - height) < (1 - 1e-9) * apart ? height + way * apart : at);
+  const above = met.reduce(away(1), y), below = met.reduceRight(away(-1), y);
+  const found = above - y < y - below ? above : below;
+  return Math.abs(found - y) <= FARTHEST * apart ? found : y;
 }
 
 export class Overlay {
