@@ -58,6 +58,7 @@ LONG = {
     "spiral": (0.8, False),
     "splash": (1.5, False),
     "swing": (0.8, False),
+    "tackle": (0.03, False),
     "trampoline": (0.6, False),
     "utube": (1.5, False),
     "vessels": (1.5, False),

@@ -88,6 +88,7 @@ PICTURES = {
     "chairs": 0.6,
     "catapult": 1.1,
     "swing": 7.8,
+    "tackle": 0.8,
     "merry": 5.0,
     "drawbridge": 2.5,
     "marble_lift": 2.3,
