@@ -242,7 +242,7 @@ def threads_line(choice: ThreadChoice) -> str:
     if not choice.asked and choice.cores == 1:
         return f"{head}: there is one core for each process"
     head += ", as asked for" if choice.asked else f" of {choice.cores} cores"
-    if choice.standard:
+    if choice.standard and not (choice.asked and choice.threads == 1):
         takes = f"with {' and '.join(choice.standard)} on LAMMPS takes its standard steps"
         return f"{head}: {takes}, of which threads share springs, contact and liquid alone"
     if choice.asked:

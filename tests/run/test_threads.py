@@ -5,6 +5,7 @@ import ctypes
 import math
 import os
 import re
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -122,6 +123,9 @@ def test_a_run_of_which_threads_do_not_share_all_tells_it(monkeypatch, tmp_path,
         monkeypatch.setenv(THREADS, environment)
         announce(ready, False, False, Executing(threads=asked))
         assert (line in capsys.readouterr().out) == bool(asked or environment)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        Scene.load(tmp_path / "a.txt").run(tmp_path / "c.out", threads=1)  # shares nothing
 
 
 def test_fixes_that_have_no_part_in_passes_are_known():

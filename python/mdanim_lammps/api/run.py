@@ -214,7 +214,7 @@ class Run:
         """Simulate into the folder, which this process has claimed; see `Scene.run` and `run_frames`."""
         self._result = self._opened = None
         choice = asked_choice(ready.plan, options["threads"])
-        if choice and choice.standard:
+        if choice and choice.standard and choice.threads > 1:
             warnings.warn(threads_line(choice), stacklevel=3)
         with progress_bar("run", quiet=quiet_unless(progress)) as bar:
 
