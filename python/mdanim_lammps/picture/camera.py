@@ -133,7 +133,7 @@ def action_of(trajectory: Trajectory, samples: int = 40) -> Action:
         nothing = np.zeros((1, 0, 3))
         bounds = tuple(np.array(corner, float) for corner in (there.liquid.low, there.liquid.high))
         return Action(nothing, nothing, bounds, False, ~metadata.still, np.zeros((1, 0), bool))
-    frames = np.unique(np.linspace(0, len(trajectory) - 1, samples).astype(int))
+    frames = sorted(set(np.linspace(0, len(trajectory) - 1, samples).astype(int).tolist()))
     below = np.zeros(centers.shape[1:])
     above = np.zeros(centers.shape[1:])
     for frame in frames:

@@ -293,7 +293,9 @@ class Painter:
             look.SetLineWidth(look.GetLineWidth() * self._finer)
 
         sizes = np.linalg.norm(self.action.high[0] - self.action.low[0], axis=1)
-        typical = float(np.median(sizes)) if len(sizes) else self.action.size
+        # The median; NumPy's would load masked arrays.
+        middle = np.sort(sizes)[(len(sizes) - 1) // 2 : len(sizes) // 2 + 1]
+        typical = float(middle.mean()) if len(sizes) else self.action.size
         with silent():
             self._window = off_screen_window(self._renderers, (width, height), SAMPLES, clear=not self._behind)
             self._light = Light(self._casters.data, self.action.centre, self.action.size, typical, render, self._floor)

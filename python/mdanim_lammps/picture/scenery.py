@@ -30,5 +30,7 @@ def scenery(metadata: TrajectoryMetadata) -> Scenery:
 
 def way_of_walls(scene: SceneRecord | None) -> Callable[[float], Vector] | None:
     """Displacement of the box of the walls at a time [s], in [m]; None where it stands, or where the scene is not known."""
-    planes = (p for e in features.effects() for p in e.of(scene).planes(scene)) if scene is not None else ()
+    if scene is None or scene.walls is None:
+        return None
+    planes = (p for e in features.effects() for p in e.of(scene).planes(scene))
     return next((p.motion.at for p in planes if p.effect == "walls" and p.motion), None)

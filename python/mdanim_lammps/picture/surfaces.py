@@ -131,10 +131,12 @@ def _tangents(vertices: np.ndarray, triangle: np.ndarray, at: np.ndarray) -> tup
     follow the normal.
     """
     edge = np.concatenate([triangle[:, [0, 1]], triangle[:, [1, 2]], triangle[:, [2, 0]]])
-    edge = np.unique(np.concatenate([edge, edge[:, ::-1]]), axis=0)
+    edge = np.concatenate([edge, edge[:, ::-1]]).astype(np.int64)
     row = np.full(len(vertices), -1, dtype=np.int64)
     row[at] = np.arange(len(at))
-    tail, head = edge[row[edge[:, 0]] >= 0].T
+    first, last = edge[row[edge[:, 0]] >= 0].T
+    # Numbers in place of rows: sorted in the same order, in a fraction of the time. With counts no masked arrays are loaded.
+    tail, head = np.divmod(np.unique(first * len(vertices) + last, return_counts=True)[0], len(vertices))
     normal = np.zeros_like(vertices)
     for k in range(3):
         np.add.at(normal, triangle[:, k], _area_vectors(vertices, triangle))

