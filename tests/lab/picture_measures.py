@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import numpy as np
-from mdanim_lammps.picture.camera import FIELD_OF_VIEW
+from mdanim_lammps.picture.lens import FIELD_OF_VIEW
 from mdanim_lammps.picture.palette import rgb
 
 

@@ -6,7 +6,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from mdanim_lammps.export.usd import camera_matrix
-from mdanim_lammps.picture.camera import MARGIN, CameraPath, Reserved, View, action_of, automatic_view, fit_view, hermite_weights
+from mdanim_lammps.picture.camera import CameraPath, action_of, automatic_view, corners, hermite_weights
+from mdanim_lammps.picture.lens import MARGIN, Reserved, View, fit_view
 from mdanim_lammps.picture.standpoints import camera_of
 from mdanim_lammps.results.trajectory import Trajectory
 from mdanim_lammps.scene.render import Camera
@@ -248,3 +249,16 @@ def test_words_have_room_below():
     room = (1.0 - MARGIN) / 2
     assert low[1] >= below + room * (1.0 - below) - 1e-9 and high[1] <= 1.0 - room * (1.0 - below) + 1e-9
     assert low[0] >= room * (1.0 - right) - 1e-9 and high[0] <= (1.0 - right) * (1.0 - room) + 1e-9
+
+
+@pytest.mark.parametrize(("size", "nearer"), [((4.0, 0.3, 0.3), 1.2), ((0.3, 0.3, 4.0), 0.95)], ids=["wide", "tall"])
+def test_what_is_wide_is_seen_below_a_corner_too(size, nearer):
+    """Not left of it alone, where it would be small; it touches a line that cuts the corner off."""
+    from mdanim_lammps.picture.framing import seen_at
+
+    points, forward, corner = corners(-0.5 * np.array([size]), 0.5 * np.array([size])), np.array([0.0, 0.96, -0.28]), (0.38, 0.4)
+    view = fit_view(points, forward, 16 / 9, Reserved(corner=corner))
+    beside = fit_view(points, forward, 16 / 9, Reserved(right=corner[0]))
+    assert np.linalg.norm(beside.eye - beside.look) > nearer * np.linalg.norm(view.eye - view.look)
+    share = seen_at(view, np.array([1600, 900]), points)[0] / (1600, 900)
+    assert (share > 0.0).all() and (share < 1.0).all() and (share < 1.0 - np.array(corner)).any(axis=1).all()

@@ -9,7 +9,8 @@ from pathlib import Path
 
 import numpy as np
 
-from ..picture.camera import FIELD_OF_VIEW, View, action_of
+from ..picture.camera import action_of
+from ..picture.lens import FIELD_OF_VIEW, View
 from ..picture.standpoints import camera_of
 from ..scene.render import Render
 from .cut import Body, Cut

@@ -7,9 +7,9 @@ from contextlib import nullcontext
 
 import numpy as np
 
-from .camera import View
 from .floor import FloorPlane
 from .framing import PicturePart, aim, part_around, whole
+from .lens import View
 from .window import off_screen_window, rgba
 
 

@@ -16,12 +16,9 @@ from ..results.untrusted import check_places
 from ..scene.keywords import did_you_mean
 from ..scene.render import Camera
 from .drawn import drawn
+from .lens import ALL_OF_IT, Lens, Reserved, View, fit_view, lens_for
 from .scenery import scenery
 
-FIELD_OF_VIEW = 30.0
-"""Vertical angle of view [degrees]."""
-MARGIN = 0.88
-"""Share of the picture, across, that the action may fill."""
 FALL, FAR = 0.25, 4.0
 """How far an object may fall, and go, before it leaves the picture, in sizes of the scene at its start."""
 LARGER = 0.35
@@ -38,49 +35,7 @@ STIR = 0.05
 """Share of the movement of the liveliest stretch up to which a stretch is at rest."""
 NEAR = 0.1
 """Distance at which an object meets others, in sizes of its own."""
-ALONG = 1e-6
-"""Sine of the angle between two directions that are one: rounding has a part in what is at right angles to both."""
 _BOXES = 50_000
-
-
-@dataclass(frozen=True)
-class View:
-    """A camera at one moment."""
-
-    eye: np.ndarray
-    """[m], shape (3,)."""
-    look: np.ndarray
-    """[m], shape (3,)."""
-    up: np.ndarray
-    """As the scene has it, shape (3,)."""
-
-    @property
-    def upright(self) -> np.ndarray:
-        """The direction that is up in the picture, shape (3,): ``up``, or, where that lies along the line of sight, z; looking
-        along z, it is y, as on a map."""
-        way = self.look - self.eye
-        for up in (self.up, np.array([0.0, 0.0, 1.0])):
-            if np.linalg.norm(np.cross(up, way)) > ALONG * np.linalg.norm(up) * np.linalg.norm(way):
-                return up
-        return np.array([0.0, 1.0, 0.0])
-
-
-@dataclass(frozen=True)
-class Reserved:
-    """Shares of a picture's width and height that are left to words, scales and curves."""
-
-    left: float = 0.0
-    right: float = 0.0
-    above: float = 0.0
-    below: float = 0.0
-
-    def tangents(self, aspect: float) -> np.ndarray:
-        """Tangents of the angles from the line of sight to the right, upper, left and lower side of what the action may fill,
-        shape (4,); a side on the other side of the line of sight has a negative one. ``aspect`` is width over height."""
-        first, last = np.array([self.left, self.below]), np.array([self.right, self.above])
-        half, middle = MARGIN * (1.0 - first - last), first - last
-        tangent = np.tan(np.radians(FIELD_OF_VIEW / 2)) * np.array([aspect, 1.0])
-        return np.concatenate([tangent * (half + middle), tangent * (half - middle)])
 
 
 @dataclass(frozen=True)
@@ -229,7 +184,7 @@ def what_leads(low: np.ndarray, high: np.ndarray, share: np.ndarray, basin=None)
 
 
 def automatic_view(
-    action: Action, aspect: float, walls=None, basin=None, forward: np.ndarray | None = None, room: Reserved = Reserved()
+    action: Action, aspect: float, walls=None, basin=None, forward: np.ndarray | None = None, room: Reserved = ALL_OF_IT
 ) -> View:
     """A view that shows what happens as large as it can be; the same for all frames.
 
@@ -264,7 +219,7 @@ def worth_holding(
     kept = (
         np.ones_like(action.leads)
         if everything or not action.leads.size
-        else worth_seeing(*boxes, action, fixed, forward, aspect, room)
+        else worth_seeing(*boxes, action, fixed, lens_for(np.concatenate([corners(*boxes), fixed]), forward, aspect, room))
     )
     return np.concatenate([corners(boxes[0][kept], boxes[1][kept]), fixed])
 
@@ -280,13 +235,11 @@ def three_quarters(action: Action) -> np.ndarray:
     return -np.array([np.cos(elevation) * np.cos(turn), np.cos(elevation) * np.sin(turn), np.sin(elevation)])
 
 
-def worth_seeing(
-    low, high, action: Action, fixed: np.ndarray, forward: np.ndarray, aspect: float, room: Reserved = Reserved()
-) -> np.ndarray:
+def worth_seeing(low, high, action: Action, fixed: np.ndarray, lens: Lens) -> np.ndarray:
     """Which boxes a picture should hold so that it shows much of what happens, and shows it large; bool, shape (W, O).
 
     The score is the share of boxes that are inside times the size at which they are seen to the power of `LARGER`. From each
-    of its four sides the picture is made smaller as long as the score grows.
+    of its sides the picture is made smaller as long as the score grows.
 
     Then what comes and goes is followed for a `MOMENT` more.
 
@@ -294,27 +247,24 @@ def worth_seeing(
         low, high: corners of each object in each stretch of frames [m], shape (W, O, 3).
         action: which objects move, and which boxes are inside in any case.
         fixed: points that are inside in any case [m], shape (P, 3).
-        forward: direction of view, unit length.
-        aspect: width over height.
-        room: what of the picture they may not take.
+        lens: direction of view and what of the picture they may take.
     """
     free, leads = action.free, action.leads
-    (right, up), tangent = _screen(forward), room.tangents(aspect)
-    side = _sides(corners(low, high), right, up, forward, tangent).reshape(8, *low.shape[:2], 4).max(axis=0)
-    fixed_side = _sides(fixed, right, up, forward, tangent).max(axis=0, initial=-np.inf)
-    middle = float(((low + high) / 2 @ forward).mean())
+    side = lens.sides(corners(low, high)).reshape(8, *low.shape[:2], -1).max(axis=0)
+    fixed_side = lens.sides(fixed).max(axis=0, initial=-np.inf)
+    middle = float(((low + high) / 2 @ lens.forward).mean())
 
     def score(kept: np.ndarray) -> float:
         if free.any() and kept[:, free].mean(axis=1).min() < LEAST:
             return -np.inf
         most = np.maximum(side[kept].max(axis=0), fixed_side)
-        away = middle + ((most[:2] + most[2:]) / (tangent[:2] + tangent[2:])).max()
+        away = middle - lens.depth(most)
         return float(np.log(kept.mean()) - LARGER * np.log(max(away, np.finfo(float).tiny)))
 
     kept = np.ones(low.shape[:2], dtype=bool)
     best = score(kept)
     while True:
-        sides = [(side[..., k], np.quantile(side[kept, k], share)) for k in range(4) for share in NEXT_SHARES]
+        sides = [(side[..., k], np.quantile(side[kept, k], share)) for k in range(side.shape[-1]) for share in NEXT_SHARES]
         smaller = [leads | (kept & (reach <= most)) for reach, most in sides]
         scores = [score(s) for s in smaller]
         if max(scores) <= best + 1e-9:
@@ -322,68 +272,6 @@ def worth_seeing(
         best, kept = max(scores), smaller[int(np.argmax(scores))]
     moment = round(MOMENT * len(kept))
     return sliding_window_view(np.pad(kept, [(moment, moment), (0, 0)]), 2 * moment + 1, axis=0).any(axis=-1)
-
-
-def fit_view(points: np.ndarray, forward: np.ndarray, aspect: float, room: Reserved = Reserved()) -> View:
-    """The nearest eye that looks along ``forward`` and sees all points inside the margin.
-
-    A point (a, b, c) along right, up and forward is inside the picture of an eye (x, y, z) where
-    ``a - x <= t (c - z)`` and ``x - a <= s (c - z)``, with the tangents t at the right and s at the left, and so for b and y;
-    they give x, y and the largest z in closed form.
-
-    Args:
-        points: [m], shape (P, 3).
-        forward: direction of view, unit length.
-        aspect: width over height.
-        room: what of the picture they may not take.
-    """
-    lens = Lens(forward, aspect, room)
-    along = points @ forward
-    return lens.view(lens.sides(points).max(axis=0), (along.min() + along.max()) / 2)
-
-
-class Lens:
-    """A direction of view and what of the picture may be filled.
-
-    Args:
-        forward: direction of view, unit length.
-        aspect: width over height.
-        room: what of the picture is left free.
-    """
-
-    def __init__(self, forward: np.ndarray, aspect: float, room: Reserved = Reserved()):
-        self.forward, self.tangent = forward, room.tangents(aspect)
-        self.right, self.up = _screen(forward)
-
-    def sides(self, points: np.ndarray) -> np.ndarray:
-        """How far points [m], shape (P, 3), push the right, upper, left and lower side of the picture out, shape (P, 4)."""
-        return _sides(points, self.right, self.up, self.forward, self.tangent)
-
-    def depth(self, most: np.ndarray) -> np.ndarray:
-        """Where along the direction of view the nearest eye is whose sides are pushed out so far, for sides of shape (..., 4)."""
-        return (-(most[..., :2] + most[..., 2:]) / (self.tangent[:2] + self.tangent[2:])).min(axis=-1)
-
-    def view(self, most: np.ndarray, middle: float) -> View:
-        """The view of that eye, whose look is so far along the direction [m]."""
-        # A single point has no size to stand back from.
-        depth = min(float(self.depth(most)), middle - 1e-3)
-        across = (most[:2] - most[2:] + depth * (self.tangent[:2] - self.tangent[2:])) / 2
-        eye = across[0] * self.right + across[1] * self.up + depth * self.forward
-        return View(eye, eye + (middle - depth) * self.forward, np.array([0.0, 0.0, 1.0]))
-
-
-def _screen(forward: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Right and up of a picture."""
-    right = np.cross(forward, [0.0, 0.0, 1.0])
-    # Straight down x is on the right, as `View.upright` has it.
-    right = right / np.linalg.norm(right) if right.any() else np.array([1.0, 0.0, 0.0])
-    return right, np.cross(right, forward)
-
-
-def _sides(points: np.ndarray, right, up, forward, tangent) -> np.ndarray:
-    """How far points push the right, upper, left and lower side of the picture out, a - t c and so on [m], shape (P, 4)."""
-    across = points @ np.stack([right, up], axis=1)
-    return np.concatenate([across, -across], axis=1) - tangent * (points @ forward)[:, None]
 
 
 class CameraPath:

@@ -34,6 +34,15 @@ PALE = 0.35
 """Opacity of the curves of a run beside the one that is drawn."""
 
 
+def covered(plots: Sequence[Asked], aspect: float) -> tuple[float, float]:
+    """Parts of a picture's width and height that panels of these quantities cover, from its upper right corner; ``aspect`` is
+    width over height."""
+    count = len({of.unit for of in plots})
+    if not count:
+        return 0.0, 0.0
+    return COVERED, MARGIN * aspect + count * HEIGHTS[min(count, len(HEIGHTS)) - 1] + (count - 1) * GAP
+
+
 @dataclass(frozen=True)
 class _Curve:
     """A quantity over time."""

@@ -10,8 +10,9 @@ import numpy as np
 
 from ..scene.render import Quality, Render
 from . import shading
-from .camera import Action, View
+from .camera import Action
 from .framing import corner_rays
+from .lens import View
 from .palette import is_dark
 from .pieces import MovingMesh, lit_actor, plane, texture
 

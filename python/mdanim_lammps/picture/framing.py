@@ -6,7 +6,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..records import dataclass
-from .camera import FIELD_OF_VIEW, View
+from .lens import FIELD_OF_VIEW, View
 
 AROUND = 4
 """Pixels around what is seen that a part holds too, for widths of lines and soft edges."""

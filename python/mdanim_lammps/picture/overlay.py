@@ -16,10 +16,11 @@ from ..scene.naming import labelled, objects_by_name
 from ..scene.quantities import QUANTITIES
 from ..scene.render import Render
 from ..scene.shown import Arrows
-from .camera import Action, Reserved, View, corners
-from .curves import COVERED, Curves
+from .camera import Action, corners
+from .curves import Curves, covered
 from .framing import pixels_per_metre, seen_at
 from .layer import Color, InkLayer
+from .lens import Reserved, View
 from .run_values import RunValues
 from .tones import Tones
 
@@ -67,7 +68,7 @@ def room_for(render: Render, size: tuple[int, int]) -> Reserved:
     letters = letters_of(size)
     left = min(BAR * letters / size[0], MOST_ROOM) if render.color_by else 0.0
     above = min(ROW * len(render.arrows) * letters / size[1], MOST_ROOM)
-    return Reserved(left, COVERED if render.plot else 0.0, above, WORDS[bool(render.caption)])
+    return Reserved(left, 0.0, above, WORDS[bool(render.caption)], covered(render.plot, size[0] / size[1]))
 
 
 @dataclass(frozen=True)
@@ -189,10 +190,11 @@ class Overlay:
             words = f"{one.word}  {number(value)} {one.unit}" if length else f"{one.word}: too small to be seen"
             self._layer.words((left + widest + 0.7 * letters, y), words, color=one.color)
 
-    @property
-    def _room(self) -> float:
-        """Width of the picture without that of curves [pixels]."""
-        return self._size[0] * (1.0 - (COVERED if self._render.plot else 0.0))
+    def _room(self, y: float) -> float:
+        """Width of the picture at a height without that of curves [pixels]."""
+        width, height = self._size
+        across, along = covered(self._render.plot, width / height)
+        return width * (1.0 - across * (y > height * (1.0 - along) - self._layer.letters))
 
     def _labels_on_left(self, own: Action, view_at: Callable[[float], View]) -> set[int]:
         """Numbers of words that cover less of others that move, and of room for curves, on the left of their object than on the
@@ -212,7 +214,7 @@ class Overlay:
                 for side, left in enumerate((right, first - wide)):
                     across = np.minimum(high[free, 0], left + wide) - np.maximum(low[free, 0], left)
                     along = np.minimum(high[free, 1], y + 0.5 * letters) - np.maximum(low[free, 1], y - 0.5 * letters)
-                    out = max(0.0, left + wide - self._room) + max(0.0, -left)
+                    out = max(0.0, left + wide - self._room(y)) + max(0.0, -left)
                     covered[side, n] += (np.clip(across, 0.0, None) * np.clip(along, 0.0, None)).sum() + out * letters
         return {n for n in range(len(words)) if covered[1, n] < FEWER * covered[0, n]}
 
@@ -228,7 +230,7 @@ class Overlay:
                 # Beside it: arrows often point up or down.
                 left, beside, wide = n in self._on_left, BESIDE * letters, WIDTH * letters * len(text)
                 x = points[:, 0].min() - beside if left else points[:, 0].max() + beside
-                begin = max(0.5 * beside, min(x - wide if left else x, self._room - wide - 0.5 * beside))
+                begin = max(0.5 * beside, min(x - wide if left else x, self._room(points[:, 1].mean()) - wide - 0.5 * beside))
                 y = free_height(points[:, 1].mean(), begin, begin + wide, placed, APART * letters)
                 placed.append((begin, begin + wide, y))
                 self._layer.words((begin + wide if left else begin, y), text, fontweight="bold", ha="right" if left else "left")
@@ -237,7 +239,7 @@ class Overlay:
         hair = 1e-9 * float(self._trajectory.times[-1])
         begun = (c for c in self._render.caption if (c.begin or 0.0) - hair <= time)
         for n, one in enumerate(reversed([c for c in begun if c.end is None or time <= c.end + hair])):
-            at = (0.5 * self._room, (0.1 + 0.06 * n) * self._size[1])
+            at = (0.5 * self._size[0], (0.1 + 0.06 * n) * self._size[1])
             self._layer.words(at, one.text, size=1.25, ha="center", fontweight="bold", zorder=6)
 
     def _bar(self) -> None:

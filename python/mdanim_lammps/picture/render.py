@@ -11,12 +11,13 @@ from ..scene.render import Floor, Quality, Render
 from . import shading
 from .backdrop import Backdrop
 from .behind import Behind
-from .camera import FIELD_OF_VIEW, Action, View, action_of
+from .camera import Action, action_of
 from .drawn import Additions, medium
 from .floor import REACH, FloorPlane
 from .framing import PicturePart, aim, part_around, whole
 from .ghosts import Ghosts
 from .label import Label
+from .lens import FIELD_OF_VIEW, View
 from .light import Light
 from .marks import MarkActors, Marks
 from .overlay import Overlay, room_for

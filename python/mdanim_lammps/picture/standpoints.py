@@ -12,24 +12,12 @@ from ..errors import UsageError
 from ..results.trajectory import Trajectory
 from ..scene.keywords import did_you_mean
 from ..scene.render import Camera, Standpoint
-from .camera import (
-    FIELD_OF_VIEW,
-    Action,
-    CameraPath,
-    Lens,
-    Reserved,
-    View,
-    automatic_view,
-    corners,
-    three_quarters,
-    worth_holding,
-)
+from .camera import Action, CameraPath, automatic_view, corners, three_quarters, worth_holding
+from .lens import ALL_OF_IT, FIELD_OF_VIEW, Lens, Reserved, View, lens_for
 from .scenery import scenery
 
 DIRECTIONS = {"top": (0.0, 0.0, -1.0), "side": (-1.0, 0.0, 0.0), "front": (0.0, 1.0, 0.0)}
 """Directions of view by the word of a camera."""
-ALL_OF_IT = Reserved()
-"""A picture of which nothing is left to words."""
 ROOM = 1.4
 """Half of the height of what is seen around an object that is followed, in its own sizes."""
 WIDEST = 4.0
@@ -77,9 +65,8 @@ def camera_of(
     if fixed or forward is not None or len(action.movers) < 2:
         return Standing(automatic_view(action, aspect, walls, basin, forward, room))
     forward = three_quarters(action)
-    wider = Widening(
-        action, trajectory.times, worth_holding(action, aspect, walls, basin, forward, False, room), Lens(forward, aspect, room)
-    )
+    points = worth_holding(action, aspect, walls, basin, forward, False, room)
+    wider = Widening(action, trajectory.times, points, lens_for(points, forward, aspect, room))
     return wider if not wider.still else Standing(wider.at(0.0))
 
 
@@ -119,7 +106,7 @@ class Widening:
         near = max(float(away(base)), 1e-3)
         when, objects = np.nonzero(action.movers)
         boxes = (np.clip(bound[when, objects], *action.bounds) for bound in (action.low, action.high))
-        pushed = np.maximum(lens.sides(corners(*boxes)).reshape(8, len(when), 4).max(axis=0), base)
+        pushed = np.maximum(lens.sides(corners(*boxes)).reshape(8, len(when), len(base)).max(axis=0), base)
         followed = away(pushed) <= WIDEST * near
         needed = np.tile(base, (len(stretches), 1))
         np.maximum.at(needed, when[followed], pushed[followed])
@@ -130,7 +117,7 @@ class Widening:
 
     def at(self, time: float) -> View:
         """The view at a simulated time [s]."""
-        sides = np.array([np.interp(time, self._times, self._sides[:, k]) for k in range(4)])
+        sides = np.array([np.interp(time, self._times, self._sides[:, k]) for k in range(self._sides.shape[1])])
         return self._lens.view(sides, self._middle)
 
 

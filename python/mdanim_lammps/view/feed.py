@@ -26,10 +26,11 @@ import numpy as np
 
 from ..errors import OutputError
 from ..features.liquid.kept import DROPS, HEIGHT, RAW, WAY
-from ..picture.camera import FIELD_OF_VIEW, Action, View, action_of
+from ..picture.camera import Action, action_of
 from ..picture.drawn import Drawn, drawn
 from ..picture.floor import grid_spacing
 from ..picture.foam import Foam
+from ..picture.lens import FIELD_OF_VIEW, View
 from ..picture.liquid import LiquidSheet, without_puddles
 from ..picture.palette import LIQUID, background_colors, is_dark, object_colors, rgb, vertex_colors
 from ..picture.ponds import one_sheet
