@@ -63,7 +63,8 @@ class MeshHost {
       if (!border.is_convex || !border.is_sharp || depth(border.beyond, x) >= own) continue;
       const Vec3 from = x - border.from;
       const double along = dot(from, border.along), aside = dot(from, border.outward);
-      if (along < -ramp || along > border.length + ramp || aside < -(own + ramp)) continue;
+      const bool is_near = along >= -ramp && along <= border.length + ramp && aside >= -(own + ramp) && aside <= ramp;
+      if (!is_near) continue;    // far beyond it there may be the same side again, across a hole
       if (!leads_in(border.beyond, corner, in_owner)) return false;
     }
     return true;

@@ -135,3 +135,35 @@ def test_what_has_no_features_is_eight_particles_too(prepared):
     """)
     assert alone.system.frames[0].cells.filled.shape == (1, 1, 1)
     assert run(alone)[0] == pytest.approx((0.0, 0.0, 0.045), abs=2e-3)
+
+
+def test_a_cube_lies_on_a_plate_with_a_hole(prepared, tmp_path):
+    """6 cm from the middle of the hole: two of its corners, over which the far side of the hole has an edge, found no side there,
+    and it fell through."""
+    ring, sectors = [(0.01, 0.0), (0.3, 0.0), (0.3, 0.03), (0.01, 0.03)], 48
+    turns = 2.0 * np.pi * np.arange(sectors) / sectors
+    lines = [f"v {r * np.cos(a)} {r * np.sin(a)} {z}" for a in turns for r, z in ring]
+    for k in range(sectors):
+        one, next_ = 4 * k + 1, 4 * ((k + 1) % sectors) + 1
+        lines += [f"f {one + i} {next_ + i} {next_ + j} {one + j}" for i, j in ((0, 1), (1, 2), (2, 3), (3, 0))]
+    (tmp_path / "plate.obj").write_text("\n".join(lines) + "\n")
+    text = f"""gravity (0, 0, -9.81) m/s^2
+    object plate {{ shape mesh "{tmp_path}/plate.obj"  origin file  position (0, 0, 0) m  hold all }}
+    object cube {{ shape box (4, 4, 4) cm  position (0.06, 0, 0.055) m  density 2000  elasticity rigid }}
+    control {{ time 0.1 s  restitution 0.3 }}
+    """
+    ready = prepared(text)
+    with Instance(ready.plan) as instance:
+        instance.setup()
+        instance.run(ready.certificate.steps)
+        centre = ready.system.center_of_mass(instance.array("x"))[1]
+    assert centre == pytest.approx((0.06, 0.0, 0.05), abs=2e-3)
+
+
+def test_a_thin_held_mesh_has_no_cells_to_search(prepared, tmp_path):
+    """An angle of 0.2 mm and a metre: it was refused for the cells in the box around it."""
+    points, triangles = rigid_meshes.profile([(0, 0), (1, 0), (1, 2e-4), (2e-4, 2e-4), (2e-4, 1), (0, 1)], 1.0)
+    text = scene(tmp_path, points, triangles, "shape sphere 2 cm  position (0.5, 0, 0.5) m", 0.1).replace(
+        "held.obj", f"{tmp_path}/held.obj"
+    )
+    assert prepared(text).system.particles == 16

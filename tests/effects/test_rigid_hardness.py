@@ -133,3 +133,17 @@ def test_what_is_thin_is_told_where_it_sets_the_step(prepared, thick, weld, told
     assert len(found) == bool(told)
     for part in told.split("; ") if told else []:
         assert part in found[0]
+
+
+@pytest.mark.parametrize(("shape", "thick"), [("box (60, 60, 0.02) cm", 0.0002), ("box (60, 60, 2) cm", None)])
+def test_what_is_held_and_thin_is_not_passed_through(prepared, shape, thick):
+    """The fastest blow of a cube of 4 cm on it goes half as deep as it is thick, at most; a ball needs no more than by itself."""
+    text = f"""gravity (0, 0, -9.81) m/s^2
+    object board {{ shape {shape}  position (0, 0, 0) m  hold all }}
+    object it {{ shape SHAPE  position (0, 0, 1) m  density 600  elasticity rigid }}
+    control {{ time 1 s }}
+    """
+    cube = frequency(prepared(text.replace("SHAPE", "box (4, 4, 4) cm")).context)
+    ball = frequency(prepared(text.replace("SHAPE", "sphere 2 cm")).context)
+    assert ball.thin == 0.04 and cube.thin == pytest.approx(0.04 if thick is None else 25.0 * thick)
+    assert cube.speed / cube.omega <= 0.5001 * (thick or 1.0)

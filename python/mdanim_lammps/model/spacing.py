@@ -70,7 +70,9 @@ def plan_spacing(scene: SceneRecord) -> Spacing:
     if problems:
         raise SceneError(problems)
     particles = tuple(estimate_particles(solid.shape, own) if kind_of(solid).fills else 0 for solid, own in zip(scene.solids, of))
-    filled = [(s, own, n) for s, own, n in zip(scene.solids, of, particles) if kind_of(s).fills]
+    filled = [
+        (s, own, n) for s, own, n in zip(scene.solids, of, particles) if (kind := kind_of(s)).fills and not kind.bare(scene, s)
+    ]
     if sparse := [p for s, own, n in filled if (p := check_sparse(s, own, n))]:
         raise SceneError(sparse)
     particles = tuple(kind_of(s).particles(scene, s, n, own) for s, n, own in zip(scene.solids, particles, of))

@@ -30,6 +30,8 @@ LARGE, SMALL = 0.9, 5.0
 """Part of the volume of a body that its large parts have; how much deeper than others its small ones may be struck, as a sail or
 a mast on a hull. Random blows go up to 3.4 times as deep as v/Omega: with 5 that is 0.34 of the thickness, and contact knows
 sides up to half of it; a step at full speed is 0.035 of it, and edges begin up to 0.06 (plugin/rigid/touch_polyhedra.cpp)."""
+WALL = 25.0
+"""How much deeper than others what is held may be struck: half of its thickness, of which a step at full speed is a third."""
 HARD = 1e20
 """Modulus of what is rigid and held [Pa]: the surface of its partner alone yields."""
 THICKER = 2.0
@@ -45,7 +47,7 @@ class Frequency:
     omega: float
     """[1/s]"""
     thin: float
-    """Thinnest part of all rigid bodies that move [m], see `_thickness`."""
+    """Thinnest part of all rigid bodies that move [m], see `_thickness`, and `WALL` times that of what is held."""
     thinnest: int
     """Number of the solid that has it."""
     speed: float
@@ -64,8 +66,9 @@ def frequency(context: Context) -> Frequency:
     """
     reach, system = context.reach, context.reach.system
     free = np.flatnonzero(system.rigid)
-    part = _thickness(context, free)
-    thinnest = int(free[part.argmin()])
+    held = _struck_by_corners(context, free)
+    part = np.concatenate([_thickness(context, free), [WALL * shapes.thickness(context.scene.solids[m].shape) for m in held]])
+    thinnest = int([*free.tolist(), *held][part.argmin()])
     thin, thicker = float(part.min()), float(part[part > THICKER * part.min()].min(initial=math.inf))
     thrown = _thrown_across(context, system) if reach.acting.throws else None
     speed = float(struck_at(context, system, thrown)[free].max())
@@ -73,6 +76,15 @@ def frequency(context: Context) -> Frequency:
     slowest = 2.0 * math.pi * context.scene.control.frames * DEPTH  # of what hardly moves, over a thickness
     hard = lambda s: float(max(speed, 2.0 * math.sqrt(load * reach.g * s), slowest * s)) / (DEPTH * s)
     return Frequency(hard(thin), thin, thinnest, speed, load, hard(thicker) if thicker < math.inf else None)
+
+
+def _struck_by_corners(context: Context, free: np.ndarray) -> list[int]:
+    """Numbers of the held solids that something else than balls may strike: a corner that is more than half through a wall after
+    its first step below it goes on. A ball does not, as its middle stays outside."""
+    solids = context.scene.solids
+    if all(isinstance(solids[m].shape, Sphere) for m in free.tolist()):
+        return []
+    return np.flatnonzero(context.reach.system.held_whole & ~context.reach.system.bare).tolist()
 
 
 def _thickness(context: Context, free: np.ndarray) -> np.ndarray:
