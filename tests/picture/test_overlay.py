@@ -461,3 +461,18 @@ def test_labels_of_objects_side_by_side_are_apart(tmp_path):
     heights = [[y for side, y in written if side == ha] for ha in ("left", "right")]
     assert max(map(len, heights)) > 1
     assert all(np.diff(sorted(of_side)).min(initial=np.inf) >= 1.19 * letters_of((640, 360)) for of_side in heights)
+
+
+def test_names_of_curves_leave_room_in_the_smallest_picture(run):
+    """Of panels without room for two lines as well, where names are smaller."""
+    asked = [Asked(name, f"position.{axis}") for name in ("ball", "cube") for axis in "xyz"] + [Asked("cube", "speed")]
+    layer = InkLayer((320, 180), letters_of((320, 180)), False)
+    curves = Curves(layer, asked, [RunValues(run.trajectory)], {})
+    assert all(axes.get_window_extent().height > 8.0 for axes, *_ in curves._curves)
+
+
+def test_words_are_as_they_are_written():
+    layer, drawn = InkLayer((200, 100), 11.0, False), []
+    layer.add = drawn.append
+    layer.words((0.0, 0.0), "$x$ 5 \\% of $")
+    assert [text._preprocess_math(text.get_text()) for text in drawn] == [("$x$ 5 \\% of $", False)]

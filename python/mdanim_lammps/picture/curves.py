@@ -28,6 +28,8 @@ THIN, LETTER = 0.16, 0.62
 """Width of the topmost curve, and of a letter on average, over the height of letters."""
 SMALLER, LINE = 0.91, 1.25
 """Height of letters of names, where they would not fit into a line, and of a line, over that of letters."""
+COVERED_BY_NAMES = 0.5
+"""Height of names in several lines, at most, over that of a panel."""
 BRIGHTEST = 0.42
 """Luminance of curves at most on bright paper; on dark paper 1 less this is the least."""
 PALE = 0.35
@@ -95,7 +97,7 @@ class Curves:
             side.set_color((*layer.ink, 0.25))
         names = [both[0].of for both in curves]
         colors = tints([of.subject for of in names], self._of_objects, layer.paper, n)
-        above = self._names(ground, names, colors, unit, WIDTH * width)
+        above = self._names(ground, names, colors, unit, (WIDTH * width, share * height))
         # Room for numbers at the left and below, for names above.
         inner = (left + 4.4 * letters / width, top - share + 1.9 * letters / height)
         size = (left + WIDTH - 0.9 * letters / width - inner[0], top - above / height - inner[1])
@@ -122,9 +124,10 @@ class Curves:
             width = THIN * (1.0 + 0.9 * (len(curves) - 1 - k))
             self._curves += [(axes, one, color, width, beside) for beside, one in enumerate(both)]
 
-    def _names(self, ground: Any, names: list[Asked], colors: list[Color], unit: str, width: float) -> float:
+    def _names(self, ground: Any, names: list[Asked], colors: list[Color], unit: str, panel: tuple[float, float]) -> float:
         """Draw the names of the curves in their colours, the unit behind the last one; all that they have in common stands once.
-        Those that do not fit into this width [pixels] go on in the next line. Returns the height that they take [pixels]."""
+        Those that do not fit into the width of the ``panel``, (width, height) [pixels], go on in the next line; they are smaller
+        where it has no room for these. Returns the height that they take [pixels]."""
         from matplotlib.offsetbox import AnchoredOffsetbox, HPacker, TextArea, VPacker
 
         common = len(names) > 1 and len({(of.quantity, of.argument) for of in names}) == 1
@@ -133,11 +136,17 @@ class Curves:
         row = [(f"{names[0].quantity}", plain)] if common else []
         row += [(word, {"color": color, "fontweight": "bold"}) for word, color in zip(words, colors)]
         row += [(f"[{unit}]", {"color": self._layer.ink})] if unit else []
-        letters, room = self._layer.letters, width - self._layer.letters
-        lines = in_lines([len(word) + 1 for word, _ in row], room / (LETTER * SMALLER * letters))
-        longest = max(sum(len(word) + 1 for word, _ in row[line]) for line in lines)
-        size = min(letters if len(lines) == 1 else SMALLER * letters, room / (LETTER * longest))
-        boxes = [[TextArea(word, textprops=look | {"fontsize": size}) for word, look in row[line]] for line in lines]
+        letters, lengths = self._layer.letters, [len(word) + 1 for word, _ in row]
+        room, size = panel[0] - letters, letters
+        most = 1 + max(0, int((COVERED_BY_NAMES * panel[1] - 1.9 * letters) / (LINE * letters)))
+        lines = in_lines(lengths, room / (LETTER * size))
+        while len(lines) > 1 and (size > SMALLER * letters or len(lines) > most):
+            size *= SMALLER
+            lines = in_lines(lengths, room / (LETTER * size))
+        sizes = [min(size, room / (LETTER * sum(lengths[line]))) for line in lines]
+        boxes = [
+            [TextArea(word, textprops=look | {"fontsize": own}) for word, look in row[line]] for line, own in zip(lines, sizes)
+        ]
         packed = VPacker(children=[HPacker(children=line, pad=0, sep=0.7 * size) for line in boxes], pad=0, sep=0.25 * size)
         ground.add_artist(AnchoredOffsetbox("upper left", child=packed, frameon=False, pad=0.0, borderpad=0.35))
         return (1.9 + LINE * (len(lines) - 1)) * letters

@@ -72,7 +72,7 @@ class InkLayer:
         from matplotlib.text import Text
 
         own = {"fontsize": size * self.letters, "color": color or self.ink, "ha": "left", "va": "center", "zorder": 5} | more
-        drawn = Text(float(at[0]), float(at[1]), text.replace("$", r"\$"), parse_math=False, **own)
+        drawn = Text(float(at[0]), float(at[1]), text, parse_math=False, **own)
         drawn.set_path_effects([withStroke(linewidth=0.25 * self.letters, foreground=(*self.paper, 0.85))])
         self.add(drawn)
 
