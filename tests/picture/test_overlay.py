@@ -328,6 +328,7 @@ def test_on_a_dark_background_in_final_quality(run):
         ("plot post.draft", "post.draft needs a liquid block", ""),
         ('caption "x" from 0.2 s to 0.1 s', "the caption ends at 0.1 s and begins at 0.2 s", "earlier time first"),
         ("freeze 0 s", "freeze must be > 0, found 0", ""),
+        ("freeze 1 ms", "501 copies would cover the picture; 200 are the most", "freeze 0.05 s"),
         ("color-by heat", "'heat' is not one of the choices of color-by", ""),
         ("plot ball.speed plot ball.position.z", "", ""),
     ],
@@ -464,7 +465,7 @@ def test_labels_of_objects_side_by_side_are_apart(tmp_path):
 
 
 def test_names_of_curves_leave_room_in_the_smallest_picture(run):
-    """Of panels without room for two lines as well, where names are smaller."""
+    """Names are smaller where a panel has no room for their lines."""
     asked = [Asked(name, f"position.{axis}") for name in ("ball", "cube") for axis in "xyz"] + [Asked("cube", "speed")]
     layer = InkLayer((320, 180), letters_of((320, 180)), False)
     curves = Curves(layer, asked, [RunValues(run.trajectory)], {})

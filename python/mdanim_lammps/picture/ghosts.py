@@ -7,14 +7,13 @@ import numpy as np
 
 from ..errors import UsageError
 from ..results.trajectory import Trajectory
+from ..scene.limits import MOST_COPIES
 from .surfaces import ShadedMesh
 
 PALE = 0.55
 """Part of white in the colour of a copy."""
 APART = 0.1
 """A copy that is nearer than this to the object itself, or to the copy before it, over its size, is left out."""
-MOST = 200
-"""Copies of the whole scene in a picture."""
 
 
 class Ghosts:
@@ -26,15 +25,15 @@ class Ghosts:
         color: of its vertices, uint8, shape (V, 3).
         every: time between two copies [s].
 
-    Raises UsageError for more than MOST copies.
+    Raises UsageError for more than MOST_COPIES copies.
     """
 
     def __init__(self, trajectory: Trajectory, mesh: ShadedMesh, color: np.ndarray, every: float):
         self._trajectory, self._mesh = trajectory, mesh
         times, moves = trajectory.times, ~np.asarray(trajectory.metadata.still)
         count = int((times[-1] - times[0]) / every + 1e-9) + 1
-        if count > MOST:
-            raise UsageError(f"freeze: {count} copies of everything would cover the picture; {MOST} are the most")
+        if count > MOST_COPIES:
+            raise UsageError(f"freeze: {count} copies of everything would cover the picture; {MOST_COPIES} are the most")
         wanted = times[0] + every * np.arange(count)
         self._frames = np.unique(np.abs(times[None] - wanted[:, None]).argmin(axis=1))
         self._own = np.flatnonzero(moves[mesh.object_of_vertex])

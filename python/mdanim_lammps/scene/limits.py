@@ -70,5 +70,7 @@ OTHER_UNIT = Limit("a value of this unit", 1e18, 1e-18)
 SPEED = Limit("speed", 1e4, 1e-4, "speed 0.1 shows a second of the scene in ten seconds, speed 10 ten seconds in one")
 SHADOWS = Limit("shadows", 1.0, way_out="1 is the darkest: nothing of the lamp is left in a shadow")
 PIXELS = Limit("the size of a picture", 16384, way_out="the most is 16384 along a side")
+MOST_COPIES = 200
+"""Copies that ``freeze`` leaves behind: more would cover the picture."""
 MOST_FRAMES = 10**7
 """Frames of a run: every frame has a row of the ledger in memory."""
