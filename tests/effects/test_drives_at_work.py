@@ -8,6 +8,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from drive_cases import GRAVITY, G, followed, plate, stays
+from mdanim_lammps import Scene
 from mdanim_lammps.errors import SceneError
 from mdanim_lammps.features.contact.rigid_surfaces import loads
 from mdanim_lammps.features.drives import motion
@@ -227,6 +228,15 @@ def test_what_dives_on_a_path_displaces_the_liquid(prepared):
     assert lift < lifting < 1.08 * lift
     change = sum(last[0][k] - first[0][k] for k in last[0] if k != "work")
     assert abs(change - work) < 1e-3 * sum(abs(last[0][k] - first[0][k]) for k in last[0])
+
+
+def test_what_is_driven_off_at_a_frame_beside_a_liquid_at_rest(tmp_path):
+    """Nothing else is in play at the frame in which a lid starts, and the account of its first step is not yet even."""
+    lid = "object lid { shape box (20, 20, 20) cm position (0, 0, 20) cm density 500 elasticity rigid hold all\n"
+    keys = "  key 0.04 s at (0, 0, 20) cm\n  key 0.08 s at (0, 0, 30) cm\n}\n"
+    text = GRAVITY + BASIN + lid + keys + "control { time 0.08 s frames 50 fps resolution 4 cm }\n"
+    run = Scene(parse_scene(text)).run(tmp_path / "out", movie=False)
+    assert run.ledger.residual < 1e-3
 
 
 @pytest.mark.parametrize("model", ["waves", "surface"])

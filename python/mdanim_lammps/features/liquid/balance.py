@@ -7,6 +7,7 @@ import numpy as np
 
 from ...model.system import System
 from ...scene.scene import SceneRecord
+from ..drives.motion import ways
 
 UNEVEN = 200.0
 """Times `load_energy`: a vibration has up to 4 times that, and the account of the highest ones, at half of the bound, is off by
@@ -33,3 +34,13 @@ def load_energy(scene: SceneRecord, system: System) -> np.ndarray:
     load = np.linalg.norm(scene.gravity) * (system.mass - system.density[system.object] * system.volume)
     of_particles = np.where(system.held, 0.0, 0.5 * load**2 / (system.young * system.spacing)[system.object])
     return np.where(hangs, np.add.reduceat(of_particles, system.first[:-1]), 0.0)
+
+
+def starting_energy(scene: SceneRecord, system: System) -> float:
+    """Energy of motion of all driven objects and as much liquid, at most [J].
+
+    Where an object is driven off, the accounts of the liquid and of the drive share the first step in different ways, by a part
+    of this energy for one step; beside a liquid at rest nothing else may be in play.
+    """
+    mass = system.mass_of + scene.liquid.density * np.add.reduceat(system.volume, system.first[:-1])
+    return 0.5 * sum(float(mass[m]) * way.speed**2 for m, way in ways(scene).items())

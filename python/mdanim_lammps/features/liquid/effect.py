@@ -19,7 +19,7 @@ from ..contact.planes import Sides
 from ..contact.surface import touching_planes
 from ..drives.shift import motion_of
 from . import frames
-from .balance import UNEVEN, full_basin, load_energy
+from .balance import UNEVEN, full_basin, load_energy, starting_energy
 from .basin import check_basin, leaky_walls, liquid_level, open_hulls, plan_grid, too_large
 from .forces import Buoyancy, LiquidDrag, free_solid
 from .frames import FIX, FLOW, OCCUPANCY, SHAKEN, WAVES, WORK, is_wavy
@@ -163,7 +163,9 @@ class LiquidAutomaton(Effect):
         return full_basin(scene) if scene.liquid else 0.0
 
     def unsettled(self, scene, system):
-        return UNEVEN * float(load_energy(scene, system).sum()) if scene.liquid else 0.0
+        if not scene.liquid:
+            return 0.0
+        return UNEVEN * float(load_energy(scene, system).sum()) + starting_energy(scene, system)
 
     def counted(self, context):
         grid, liquid = context.grid, context.scene.liquid
