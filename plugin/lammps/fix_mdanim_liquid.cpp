@@ -292,8 +292,8 @@ void FixMdanimLiquid::tell_numbers()
         {"clock", false, [this] { return basin->clock(update->ntimestep, update->dt); }},
         {"way_x", false, [this] { return basin->way().x; }},
         {"way_y", false, [this] { return basin->way().y; }},
-        {"shaken", false, [this] { return buoyancy.density() * basin->impulses().shaken; }},
-        {"work", false, [this] { return buoyancy.density() * (basin->impulses().shaken - shaken_before); }}});
+        {"outer", false, [this] { return buoyancy.density() * basin->impulses().outer; }},
+        {"work", false, [this] { return buoyancy.density() * (basin->impulses().outer - outer_before); }}});
 }
 
 // A row per column of cells: x, y of its centre, z of the smooth surface, z of the topmost liquid (NaN where a body hides it).

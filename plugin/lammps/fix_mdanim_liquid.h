@@ -97,7 +97,7 @@ class FixMdanimLiquid : public mdanim::FixBase,
   bool in_passes = false;              // whether passes move particles near the liquid
   bool changed_since_setup = false;    // solids, by fix_modify
   bool has_looked = false;             // so that the values at particles are known until the next update
-  double shaken_before = 0.0;          // Basin::Impulses::shaken when the fix was made, or its state was set
+  double outer_before = 0.0;           // Basin::Impulses::outer when the fix was made, or its state was set
   bigint asked = -1;                   // step for which it is known whether an update is due
   bool due_then = false;
   double look_seconds = 0.0;

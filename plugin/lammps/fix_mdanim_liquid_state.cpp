@@ -67,7 +67,7 @@ void FixMdanimLiquid::unpack(const StateRecords &records)
     if (bad) throw std::runtime_error("the liquid's state of particles has a value that is not a number");
   }
   buoyancy.set_ledger(basin->set_state(whole->second.data(), whole->second.size()));
-  shaken_before = basin->impulses().shaken;
+  outer_before = basin->impulses().outer;
   buoyancy.kept = std::move(kept);
   has_looked = true;
   asked = -1;

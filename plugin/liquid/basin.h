@@ -85,7 +85,8 @@ class Basin {
   // among them; on solids that move; and the momentum that came with liquid, less that which left with it.
   struct Impulses {
     Vec3 basin, solids, came;
-    double shaken = 0.0;    // work on the liquid by the acceleration of the basin, in its frame, over density
+    double outer = 0.0;    // energy from outside, over density: of liquid that came and went, and in the frame of a basin that
+                           // moves the work of its acceleration
   };
   // A drop of liquid that flies.
   struct Droplet {

@@ -64,6 +64,9 @@ def scene(block: str, **settings: str):
         blocks["joint"]["limits"] = "-30 deg to 60 deg"
     if "(floor)" in settings.get("expect", ""):
         blocks["floor"] = dict(BALL)
+    if "pool" in settings:
+        del blocks["liquid"]["volume"]
+        blocks["liquid"] |= {"fill": "from (-1, -1, 0) m to (0, 1, 1.2) m", "level": "0.5 m"}
     if settings.get("sweeps", "auto") != "auto":
         blocks["liquid"]["model"] = "surface"
     top = {"gravity": "(0, 0, -9.81) m/s^2"}

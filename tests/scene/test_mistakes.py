@@ -8,6 +8,8 @@ from mdanim_lammps.errors import SceneError
 from mdanim_lammps.scene.parse import parse_scene
 from scene_parts import CONTROL, pool, text
 
+HALF = "fill from (0, 0, 0) m to (0.5, 1, 1) m"
+
 # --- mistakes: line, column, words of the message, words of the way out -----------------------------------
 
 MISTAKES = [
@@ -195,6 +197,16 @@ MISTAKES = [
      "the part that is filled has no extent along y", "lower corner"),
     ("too much for fill", pool("volume 6 l fill from (0, 0, 0) m to (0.1, 0.5, 0.1) m"), 3, 10,
      "6 l of liquid do not fit into the fill region of 5 l", "larger fill region"),
+    ("pool without fill", pool("level 0.5 m pool from (0, 0, 0) m to (1, 1, 0.2) m"), 3, 15,
+     "all of the basin is filled, the pool too", "write fill"),
+    ("pool with a volume", pool(f"volume 1 l {HALF} pool from (0.5, 0, 0) m to (1, 1, 0.2) m"), 3, 53,
+     "a pool is beside what is filled to a level", "in place of volume"),
+    ("pool above the level", pool(f"level 0.1 m {HALF} pool from (0.5, 0, 0) m to (1, 1, 0.2) m"), 3, 54,
+     "the pool goes up to 20 cm, above the level of 10 cm", ""),
+    ("pool outside", pool(f"level 0.5 m {HALF} pool from (0.5, 0, 0) m to (2, 1, 0.2) m"), 3, 54,
+     "is not all in the basin", "the basin goes from (0, 0, 0) to (1, 1, 1) m"),
+    ("pool in what is filled", pool(f"level 0.5 m {HALF} pool from (0.4, 0, 0) m to (1, 1, 0.2) m"), 3, 54,
+     "the pool and the part that is filled overlap", ""),
     ("level outside fill", pool("level 0.1 m fill from (0, 0, 0.2) m to (1, 1, 1) m"), 3, 9,
      "the level 10 cm is outside the fill region, which goes from 20 cm to 1 m", ""),
     ("calm without waves", pool("level 0.5 m model surface calm 3 s"), 3, 29, "model surface has no calm", "write model waves"),

@@ -73,7 +73,7 @@ class WaveBasin : public Basin {
   double energy() const override { return energy_now() - energy_at_start; }
   Vec3 momentum() const override { return in_world(waves.momentum() + drops.momentum()); }
   Impulses impulses() const override
-  { return {in_world(account.basin), in_world(account.solids), in_world(account.came), account.shaken}; }
+  { return {in_world(account.basin), in_world(account.solids), in_world(account.came), account.outer}; }
   double highest() const override { return heights.crest(); }
   double bytes() const override;
   double mean_level() const override { return mean_of(heights.all_heads()); }

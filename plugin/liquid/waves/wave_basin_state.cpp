@@ -36,7 +36,7 @@ struct WaveBasinHead {
     reader.expect_numbers(std::array{wait.before, wait.dt, gone, slept, travel}, "a time or a way", 0.0);
     reader.expect_numbers(std::array{units, updates, moving, wait.steps, wait.looked}, "a count", 0.0);
     reader.expect_numbers(
-        std::array{ledger.sum.work, ledger.sum.lost, ledger.power.work, ledger.power.lost, energy_at_start, account.shaken},
+        std::array{ledger.sum.work, ledger.sum.lost, ledger.power.work, ledger.power.lost, energy_at_start, account.outer},
         "an energy");
     for (const Vec3 &impulse : {account.basin, account.solids, account.came})
       reader.expect_numbers(std::array{impulse.x, impulse.y, impulse.z}, "an impulse");
@@ -59,7 +59,7 @@ Vec3 WaveBasin::in_world(const Vec3 &momentum) const
   return {momentum.x * unit * shape.cell.x, momentum.y * unit * shape.cell.y, 0.0};
 }
 
-void WaveBasin::find_heights() { heights.find(waves.exchange, shape.nz); }
+void WaveBasin::find_heights() { heights.find(waves.exchange, shape.nz, solids.now().mass); }
 
 // At bodies, the surface around them: the head of the liquid below them is that of the pressure there.
 double WaveBasin::smooth_height(int column) const

@@ -32,7 +32,9 @@ Units WaveExchange::give(int column, double height, Units units, double ux, doub
   const Units taken = std::clamp<Units>(span[i].capacity - content[i], 0, units);
   if (taken == 0) return 0;
   run.resting = false;
+  run.brought -= moment_of(columns.solid, span[i], content[i]);
   content[i] += taken;
+  run.brought += moment_of(columns.solid, span[i], content[i]);
   ux = run.limited(ux);
   uy = run.limited(uy);
   run.came += static_cast<double>(taken) / UNITS_PER_CELL * Vec3{ux, uy, 0.0};
@@ -46,7 +48,9 @@ Units WaveExchange::give(int column, double height, Units units, double ux, doub
       if (height_there == 0.0) return;
       const double part = static_cast<double>(taken) / UNITS_PER_CELL / links;
       double &u = columns.arrays_of(link).u[link.at];
+      const double was = u;
       u += std::min(1.0, part / height_there) * ((d == 0 ? ux : uy) - u);
+      run.brought += 0.5 * columns.arrays_of(link).height[link.at] * (u * u - was * was);
     });
   }
   return taken;
@@ -61,7 +65,9 @@ Units WaveExchange::take(int column, double height, Units most)
   const Units taken = std::clamp<Units>(content[i] - film, 0, most);
   if (taken == 0) return 0;
   run.resting = false;
+  run.brought -= moment_of(columns.solid, span[i], content[i]);
   content[i] -= taken;
+  run.brought += moment_of(columns.solid, span[i], content[i]);
   run.came -= static_cast<double>(taken) / UNITS_PER_CELL * velocity_of(i);
   return taken;
 }

@@ -11,13 +11,13 @@
 
 namespace mdanim {
 
-static constexpr double PUDDLE = 1.0 / 64.0;    // in cells: lower floors belong to the floor of the basin
+static constexpr double PUDDLE = 1.0 / 64.0;    // in cells: lower floors belong to the floor of the basin, thinner layers are dry
 
-void WaveHeights::find(const WaveExchange &waves, int nz)
+void WaveHeights::find(const WaveExchange &waves, int nz, const std::vector<double> &moving)
 {
   std::vector<int> unknown;
   for (int c = 0; c < nx * ny; ++c) {
-    find_of(c, waves, nz);
+    find_of(c, waves, nz, moving[c] == 0.0);
     if (std::isnan(heads[c])) unknown.push_back(c);
   }
   for (const int c : fill_inward(heads, unknown, nx, ny)) heads[c] = 0.0;    // solid from wall to wall
@@ -28,7 +28,7 @@ void WaveHeights::find(const WaveExchange &waves, int nz)
 }
 
 // Finds the head of the topmost liquid, NaN where there is none below a solid. Its top is given where there is no solid above it.
-void WaveHeights::find_of(int column, const WaveExchange &waves, int nz)
+void WaveHeights::find_of(int column, const WaveExchange &waves, int nz, bool stands)
 {
   const int spans = waves.spans_of(column);
   hollow[column] = 0;
@@ -36,9 +36,9 @@ void WaveHeights::find_of(int column, const WaveExchange &waves, int nz)
   for (int n = spans - 1; n >= 0; --n) {
     const WaveExchange::SpanView span = waves.span_view(column, n);
     const bool last = n == spans - 1 && span.high == nz;
-    // A thin layer on a body is not a surface; dry ground on the open floor is one.
+    // A thin layer on a body is not a surface, on ground it is; dry ground on the open floor is one.
     const bool on_floor = n == 0 && last && span.floor < PUDDLE;
-    if (!on_floor && span.volume < ON_BODY) continue;
+    if (!on_floor && span.volume < (last && stands ? PUDDLE : ON_BODY)) continue;
     heads[column] = std::min(span.phi, nz + 1.0);
     if (last) tops[column] = std::min(span.surface, nz + 1.0);
     if (last) return;

@@ -15,8 +15,9 @@ class WaveHeights {
  public:
   WaveHeights(int nx, int ny) : nx(nx), ny(ny), heads(nx * ny, 0.0), tops(nx * ny, 0.0), hollow(nx * ny, 0) {}
 
-  // Finds heads of all columns; columns without liquid that solids hide get the mean of those around.
-  void find(const WaveExchange &waves, int nz);
+  // Finds heads of all columns; columns without liquid that solids hide get the mean of those around. `moving` is the mass of
+  // the solids in each that can move: others are ground.
+  void find(const WaveExchange &waves, int nz, const std::vector<double> &moving);
 
   double head(int column) const { return heads[column]; }    // of the surface that acts on solids
   const std::vector<double> &all_heads() const { return heads; }
@@ -26,7 +27,7 @@ class WaveHeights {
   double crest() const { return highest; }                       // the highest head under open sky
 
  private:
-  void find_of(int column, const WaveExchange &waves, int nz);
+  void find_of(int column, const WaveExchange &waves, int nz, bool stands);
 
   int nx, ny;
   std::vector<double> heads, tops;

@@ -24,6 +24,7 @@ struct WaveRun {
   bool some_full = false;          // some span is
   Vec3 lost, came, left_behind;    // momentum, see Waves::take_lost()
   double climbed = 0.0;            // see Waves::take_climbed()
+  double brought = 0.0;            // see Waves::take_brought()
   struct Counts {                  // for tests and benchmarks
     long updates = 0, sub_updates = 0, solutions = 0, iterations = 0, limited = 0;
     Units displaced = 0;    // units displaced by spans that closed

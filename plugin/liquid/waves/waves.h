@@ -67,6 +67,8 @@ class Waves {
   Vec3 take_left_behind() { return std::exchange(run.left_behind, Vec3{}); }
   // Work against the tilt by which that acts.
   double take_climbed() { return std::exchange(run.climbed, 0.0); }
+  // Energy by which liquid that came and went has changed energy() since the last call.
+  double take_brought() { return std::exchange(run.brought, 0.0); }
 
   // Everything that later updates depend on, as it is between updates.
   std::vector<std::uint8_t> state() const;

@@ -150,7 +150,7 @@ WAVES_HEAD = np.dtype(
         *((n, t) for n, t in zip(("before", "steps", "dt", "looked"), ("f8", "i8", "f8", "i8"))),
         *((n, "f8") for n in ("gone", "slept", "travel", "energy")),
         ("impulses", "f8", 9),
-        ("shaken", "f8"),
+        ("outer", "f8"),
         ("drops", "u8"),
     ]
 )
@@ -199,7 +199,7 @@ def test_the_state_of_waves_is_as_it_is_read_here(splash):
     ("part", "field"),
     [
         *(("head", name) for name in ("before", "dt", "gone", "slept", "travel", "work", "lost", "work_power", "lost_power")),
-        *(("head", name) for name in ("energy", "impulses", "shaken")),
+        *(("head", name) for name in ("energy", "impulses", "outer")),
         *((name, None) for name in ("mass", "afloat", "ambient", "added", "paddle", "due")),
     ],
 )
@@ -215,7 +215,7 @@ def test_no_number_of_a_state_is_taken_unlooked_at(splash, part, field, bad):
         target[field] = bad
     else:
         target.reshape(-1)[{"afloat": 2, "added": 3}.get(part, 0)] = bad
-    anything = part == "ambient" or field in ("work", "lost", "work_power", "lost_power", "energy", "impulses", "shaken")
+    anything = part == "ambient" or field in ("work", "lost", "work_power", "lost_power", "energy", "impulses", "outer")
     if (np.isnan(bad) and part == "ambient") or (bad == -1e300 and anything):
         return
     with pytest.raises(RuntimeError, match="is damaged: "):

@@ -120,7 +120,7 @@ def _walled(envelope: Envelope, axis: int, height: float) -> bool:
 
 def _tall_dam(envelope: Envelope) -> Found | None:
     dam, liquid = _dam(envelope), envelope.scene.liquid
-    if dam is None or dam[2] < TALL * dam[1]:
+    if dam is None or dam[2] < TALL * dam[1] or liquid.pool:
         return None
     times = number(dam[2] / dam[1], 2)
     return liquid.spans.get("fill"), f"{liquid.name} breaks from a dam {'' if times == '1' else f'{times} times '}as high as wide"
@@ -199,16 +199,6 @@ def _beach(envelope: Envelope) -> Found | None:
         there &= (high[:, :2] > scene.liquid.low[:2]).all(axis=1) & (low[:, :2] < scene.liquid.high[:2]).all(axis=1)
         if there.any():
             return _place(envelope, model), f"{scene.liquid.name} has a beach, {model.name}"
-    return None
-
-
-def _wet_slope(envelope: Envelope) -> Found | None:
-    for model, corner in _slopes(envelope):
-        low, high = corner.min(axis=1), corner.max(axis=1)
-        for flow in envelope.scene.liquid.inflow:
-            over = (high[:, :2] > flow.low[:2]).all(axis=1) & (low[:, :2] < flow.high[:2]).all(axis=1)
-            if (over & (low[:, 2] < flow.high[2])).any():
-                return _place(envelope, model), f"{envelope.scene.liquid.name} flows down {model.name}"
     return None
 
 
@@ -294,12 +284,6 @@ SHORTFALLS = (
         "waves run up 19 % too little with twelve cells in the depth, half with six",
         f"{VALIDATION}solitary-waves-on-a-beach",
         "write a finer resolution",
-    ),
-    Shortfall(
-        _wet_slope,
-        "a layer thinner than half a cell runs off, and is not drawn",
-        f"{PHYSICS}bodies-in-waves",
-        "write a finer resolution, or a larger rate",
     ),
     Shortfall(
         _slides, "after some seconds it begins to slide to and fro", f"{PHYSICS}bodies-in-waves", "write friction 0.5 in it"

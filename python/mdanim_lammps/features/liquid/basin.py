@@ -47,7 +47,12 @@ def liquid_level(liquid: Liquid) -> float:
     if volume is None:
         volume = (liquid.level - low[2]) * (high[0] - low[0]) * (high[1] - low[1])
     area = (liquid.high[0] - liquid.low[0]) * (liquid.high[1] - liquid.low[1])
-    return liquid.low[2] + volume / area
+    return liquid.low[2] + (volume + pooled(liquid)) / area
+
+
+def pooled(liquid: Liquid) -> float:
+    """Volume of all pools [m^3]."""
+    return sum(math.prod(b - a for a, b in zip(pool.low, pool.high)) for pool in liquid.pool)
 
 
 # --- whether all fits ---------------------------------------------------------------------------------------
@@ -111,6 +116,17 @@ def _unusable(liquid: Liquid, grid: Grid) -> list[Problem]:
                 f"fill more of the basin, or write resolution {say(0.9 * thinnest, 'm')} in control",
             )
         ]
+    for pool in liquid.pool:
+        if not grid.cells_within(pool.low, pool.high):
+            thinnest = min(b - a for a, b in zip(pool.low, pool.high))
+            return [
+                Problem(
+                    liquid.spans.get("pool"),
+                    f"no cell of the basin has its centre in the pool, which is {say(thinnest, 'm')} thin "
+                    f"where cells are {say(max(grid.cell), 'm')}",
+                    f"a larger pool, or resolution {say(0.9 * thinnest, 'm')} in control",
+                )
+            ]
     top = high if liquid.level is None else (high[0], high[1], min(high[2], liquid.level))
     volume = liquid.volume or math.prod(b - a for a, b in zip(low, top))
     if grid.units(volume) < 1:
@@ -210,7 +226,7 @@ def _too_full(scene: SceneRecord, models: Sequence[Model], grid: Grid, lifts: bo
 
     standing = np.array([bool(m.held.any()) for m in models], bool)
     within = _within(models, liquid.low, liquid.high)
-    free = grid.cells * cell - poured - (volume * within)[standing].sum()
+    free = grid.cells * cell - poured - pooled(liquid) - (volume * within)[standing].sum()
     sinks = np.where(standing, 0.0, volume * [_sunk(s, v, liquid) if lifts else 1.0 for s, v in zip(scene.solids, volume)])
     too_big = [
         Problem(

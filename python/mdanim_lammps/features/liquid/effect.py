@@ -22,7 +22,7 @@ from . import frames
 from .balance import UNEVEN, full_basin, load_energy, starting_energy
 from .basin import check_basin, leaky_walls, liquid_level, open_hulls, plan_grid, too_large
 from .forces import Buoyancy, LiquidDrag, free_solid
-from .frames import FIX, FLOW, OCCUPANCY, SHAKEN, WAVES, WORK, is_wavy
+from .frames import FIX, FLOW, OCCUPANCY, OUTER, WAVES, WORK, is_wavy
 from .ledger import CELLS, DUE
 from .ledger import WAVES as ENERGY
 from .record import LiquidModel
@@ -219,7 +219,9 @@ class LiquidAutomaton(Effect):
     def commands(self, context):
         scene = context.scene
         liquid, grid = scene.liquid, context.grid
-        fill = [f"region fill {_block(*liquid.fill)}"] if liquid.fill else []
+        fill = [f"region {name} {_block(low, high)}" for name, low, high in _filled(liquid)]
+        if liquid.pool:
+            fill.append(f"region fill union {len(fill)} {' '.join(name for name, *_ in _filled(liquid))}")
         words = [
             "fix liquid all mdanim/liquid liquid",
             repr(liquid.density),
@@ -247,11 +249,11 @@ class LiquidWaves(LiquidAutomaton):
 
     def further_energies(self, readings):
         # The energy that closes the sum with the work on solids, of which the scalar is the negative, and that on the liquid.
-        shaken = readings.fix_value(FIX, SHAKEN) if readings.context.scene.liquid.moves else 0.0
-        return {"wave_loss": readings.fix_scalar(FIX) + shaken - readings.fix_value(FIX, WAVES)}
+        outer = readings.fix_value(FIX, OUTER) if self.sources(readings.context.scene) else 0.0
+        return {"wave_loss": readings.fix_scalar(FIX) + outer - readings.fix_value(FIX, WAVES)}
 
     def sources(self, scene):
-        return (WORK,) if scene.liquid.moves else ()
+        return (WORK,) if scene.liquid.moves or scene.liquid.fed else ()
 
     def lost(self, readings):
         return {term: readings.fix_value(FIX, term) for term in self.sources(readings.context.scene)}
@@ -349,6 +351,14 @@ def _flows(liquid):
     for word, flows in (("inflow", liquid.inflow), ("drain", liquid.drain)):
         for n, flow in enumerate(flows):
             yield word, f"{word}-{n}", flow
+
+
+def _filled(liquid):
+    """Boxes that liquid starts in: the name of the region, and its corners."""
+    if liquid.fill:
+        yield ("part-0" if liquid.pool else "fill", *liquid.fill)
+    for n, pool in enumerate(liquid.pool, start=1):
+        yield f"part-{n}", pool.low, pool.high
 
 
 def _makers(liquid) -> str:

@@ -29,9 +29,10 @@ TO_SOLIDS, CAME = ("solid_impulse_x", "solid_impulse_y"), ("came_x", "came_y")
 """In the fix's vector, along x and y [N s]: the liquid's momentum; the impulses that it has given to its basin with all that is
 held, and to what moves; the momentum that came with liquid, less what went with it."""
 ALONG = ("way_x", "way_y")
-SHAKEN, WORK = "shaken", "work"
-"""Work of the acceleration of a basin that moves, since the start of the liquid, and since that of an instance."""
 """In the fix's vector: displacement of the basin from where it is at the start [m]."""
+OUTER, WORK = "outer", "work"
+"""In the fix's vector: energy from outside, of liquid that comes and goes and of the acceleration of a basin that moves,
+since the start of the liquid, and since that of an instance [J]."""
 CLOCK = "clock"
 """In the fix's vector: time that a liquid with momentum has gone through, or has slept at rest [s]."""
 OVERFLOW = 0.05

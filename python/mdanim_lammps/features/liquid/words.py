@@ -165,6 +165,7 @@ def check_liquid(v: Any, block: Any, liquid: Any) -> Any:
             if not all(a <= x <= b for a, x, b in zip(low, corner, high)):
                 cause = f"the {name} corner of fill lies outside the basin: {vector(corner)} m"
                 v.problem(s.span(which), cause, f"the basin goes from {vector(low)} to {vector(high)} m")
+    check_pools(v, block, liquid)
     where = "the basin" if liquid.fill is None else "the fill region"
     bottom, top = liquid.fill or (low, high)
     room = math.prod(b - a for a, b in zip(bottom, top))
@@ -186,6 +187,27 @@ def check_liquid(v: Any, block: Any, liquid: Any) -> Any:
             severity="warning",
         )
     return liquid
+
+
+def check_pools(v: Any, block: Any, liquid: Any) -> None:
+    """Pools lie in the basin beside what is filled, below its level."""
+    taken = [] if liquid.fill is None else [("the part that is filled", *liquid.fill)]
+    for s, pool in zip(block.settings.get("pool", ()), liquid.pool):
+        v.corners(s, "the pool")
+        if liquid.fill is None:
+            v.problem(s.span(), "all of the basin is filled, the pool too", "write fill from ... to ..., or leave the pool out")
+        if liquid.level is None:
+            v.problem(s.span(), "a pool is beside what is filled to a level", "write level in place of volume")
+        elif pool.high[2] > liquid.level:
+            cause = f"the pool goes up to {say(pool.high[2], 'm', 6)}, above the level of {say(liquid.level, 'm', 6)}"
+            v.problem(s.span(), cause, "fill what stands higher, and make a pool of what is lower")
+        if not all(a <= x <= b for corner in (pool.low, pool.high) for a, x, b in zip(liquid.low, corner, liquid.high)):
+            cause = f"the pool from {vector(pool.low)} to {vector(pool.high)} m is not all in the basin"
+            v.problem(s.span(), cause, f"the basin goes from {vector(liquid.low)} to {vector(liquid.high)} m")
+        for name, low, high in taken:
+            if all(a < d and c < b for a, b, c, d in zip(pool.low, pool.high, low, high)):
+                v.problem(s.span(), f"the pool and {name} overlap", "let each end where the other begins")
+        taken.append(("another pool", pool.low, pool.high))
 
 
 def check_motion(v: Any, block: Any, liquid: Any) -> None:
