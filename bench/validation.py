@@ -36,6 +36,7 @@ PARTS = (
     "ropes",
     "dams",
     "waves",
+    "wakes",
     "afloat",
 )
 """Modules of bench/published, in the order of the page."""

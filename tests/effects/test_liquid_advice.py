@@ -66,7 +66,7 @@ def test_notes_tell_what_the_page_has_measured():
     kept = [json.loads(path.read_text())["balanced"]["rows"] for path in (REPOSITORY / "bench/published/found").glob("*.json")]
     offs = {round(100 * abs((r["found"] - r["published"]) / (r["scale"] or r["published"]))) for rows in kept for r in rows}
     told = {int(n) for one in SHORTFALLS for n in re.findall(r"(\d+) %", one.text)}
-    assert told == {68, 9, 11, 19, 41} and told <= offs
+    assert told == {68, 9, 11, 19, 28, 41} and told <= offs
 
 
 @pytest.mark.parametrize(
