@@ -39,6 +39,7 @@ void Drops::update(Waves &waves, double dt, std::uint64_t when)
   land(waves, from);
   if (share > 0.0 && !waves.at_rest()) leave(waves, dt, when);
   while (drops.size() > most) merge();
+  waves.take_brought();    // what flies keeps its energy in the account
 }
 
 Units Drops::total() const

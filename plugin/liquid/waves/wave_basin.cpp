@@ -172,17 +172,14 @@ void WaveBasin::give_impulses(double since, double asleep)
 // Part `n` of an update: makers, waves and drops. Drops also lose momentum to walls, and gain some by their scatter.
 void WaveBasin::go_on(double time, int parts, int n)
 {
-  const double per_cell = g * shape.cell.z * cell_volume();
   makers.apply(waves, time);
   account.came += waves.take_came();
-  account.outer += per_cell * waves.take_brought();
   gone += waves.update(time, 1.0 / (parts - n)) * unit_of_time;
   account.came -= waves.take_left_behind();
-  account.outer -= per_cell * waves.take_climbed();
+  account.outer += g * shape.cell.z * cell_volume() * (waves.take_brought() - waves.take_climbed());
   const Vec3 lost = waves.take_lost(), flying = drops.momentum();
   drops.update(waves, time, key_of(static_cast<std::uint64_t>(updates), n));
   account.basin += lost - (drops.momentum() - flying) - waves.take_came();
-  waves.take_brought();    // by drops, whose energy counts while they fly
 }
 
 // --- what a particle finds ---
