@@ -12,7 +12,7 @@ from mdanim_lammps import features
 from mdanim_lammps.effects import resolve
 from mdanim_lammps.errors import SceneError, Span
 from mdanim_lammps.features.liquid import basin
-from mdanim_lammps.features.liquid.record import Current, Inflow, Liquid, LiquidModel, Pool
+from mdanim_lammps.features.liquid.record import Current, Inflow, Liquid, LiquidModel, Puddle
 from mdanim_lammps.model import shapes
 from mdanim_lammps.model.build import build_models
 from mdanim_lammps.model.spacing import choose_spacing
@@ -92,7 +92,12 @@ def test_cells_belong_to_a_region_by_their_centre():
         pytest.param({"volume": None, "level": 0.3}, 0.3, id="level"),
         pytest.param({"volume": None, "level": 0.8, "fill": ((0.0, 0.0, 0.4), (0.5, 1.0, 1.0))}, 0.2, id="dam"),
         pytest.param(
-            {"volume": None, "level": 0.8, "fill": ((0.0, 0.0, 0.4), (0.5, 1.0, 1.0)), "pool": (Pool((0.5, 0, 0), (1, 1, 0.2)),)},
+            {
+                "volume": None,
+                "level": 0.8,
+                "fill": ((0.0, 0.0, 0.4), (0.5, 1.0, 1.0)),
+                "pool": (Puddle((0.5, 0, 0), (1, 1, 0.2)),),
+            },
             0.3,
             id="pool",
         ),

@@ -20,7 +20,7 @@ SWEEPS = Limit("sweeps", 4096, way_out="write sweeps auto, which takes 8 for eac
 
 
 @dataclass(frozen=True, slots=True)
-class Pool:
+class Puddle:
     """A further part of the basin that liquid starts in."""
 
     FORMS: ClassVar = (BOX,)
@@ -114,11 +114,11 @@ class Liquid(Worded):
         BOX, "Part of the basin that the liquid starts in, behind a dam that is gone at once. Absent: all of it.",
         "from (-1, -1, 0) m to (0, 1, 1.2) m", default=None)  # fmt: skip
     """Lower and upper corner of the part of the basin that the liquid starts in [m]; None is all of it."""
-    pool: tuple[Pool, ...] = setting(
+    pool: tuple[Puddle, ...] = setting(
         None,
         "A further part of the basin that liquid starts in, full to its top, in whole cells: a wet floor before a dam, or a "
         "lock with another level. With `fill` and `level`, and not higher than this.",
-        "from (0, -1, 0) m to (1, 1, 0.1) m", default=(), many=True, codec=OneOf(Pool))  # fmt: skip
+        "from (0, -1, 0) m to (1, 1, 0.1) m", default=(), many=True, codec=OneOf(Puddle))  # fmt: skip
     drag: float | None = setting(
         "auto | <gamma:1/s>",
         "Immersed solids feel F = -gamma rho V v with the immersed volume V and the velocity v against the liquid; `auto` is "
