@@ -33,6 +33,10 @@ struct Felt {
   Vector3 springs, dashpots;
 };
 
+// Forces of springs on particles at a distance d, with this square, from their partners; by a row of Pass::law.
+MDANIM_ALWAYS_INLINE Vector3 spring_force(const double *coeffs, const Vector3 &d, const Vector &square)
+{ return spring_factor(load(coeffs), load(coeffs + LANES), square) * d; }
+
 // Evaluates the springs of a block, each once, and the dashpots beside them: forces on its own particles go into `felt`, those on
 // their partners into f and part. place(array, i) gives the lanes of particles from i on.
 template <bool DAMPED, class Place>
@@ -50,7 +54,7 @@ MDANIM_ALWAYS_INLINE void add_springs(const Pass &pass, const Entry *entry, unsi
     const double *const own = coeffs + static_cast<unsigned long>(entry[e].law) * (COEFFS * LANES);
     const Vector3 d = here - place(x, j);
     const Vector square = floored_square(d);
-    Vector3 force = spring_factor(load(own), load(own + LANES), square) * d;
+    Vector3 force = spring_force(own, d, square);
     if (DAMPED) {
       const Vector3 slowing = dashpot_factor(load(own + 2 * LANES), d, v - place(pass.v, j), square) * d;
       force += slowing;
@@ -60,6 +64,78 @@ MDANIM_ALWAYS_INLINE void add_springs(const Pass &pass, const Entry *entry, unsi
     felt.springs += force;
     store(f, j, load(f, j) - force);
   }
+}
+
+MDANIM_ALWAYS_INLINE Vector3 from_last(const Vector3 &a, const Vector3 &b)
+{ return {from_last(a.x, b.x), from_last(a.y, b.y), from_last(a.z, b.z)}; }
+
+MDANIM_ALWAYS_INLINE Vector3 from_second(const Vector3 &a, const Vector3 &b)
+{ return {from_second(a.x, b.x), from_second(a.y, b.y), from_second(a.z, b.z)}; }
+
+// Whether offsets of three entries, of `left`, differ by one: they push the same particles, one lane aside.
+MDANIM_ALWAYS_INLINE bool are_three(const Entry *entry, long left)
+{ return left >= 3 && entry[1].offset == entry[0].offset - 1 && entry[2].offset == entry[0].offset - 2; }
+
+// Whether what two entries push overlaps neither in one block nor from it to the next.
+MDANIM_ALWAYS_INLINE bool are_apart(const Entry &longer, const Entry &shorter)
+{ return longer.offset - shorter.offset >= 2 * LANES; }
+
+// Evaluates three such entries of all blocks of a strip, and in the same go one before them or behind them that is apart. The
+// forces that the three push with are added up in registers, in the same order. `open` are those on LANES partners of a block
+// that lack the lowest offset of the next block.
+template <bool BEFORE, bool BEHIND>
+MDANIM_ALWAYS_INLINE void feel_three(const Pass &pass, const Block *block, const Entry *entry, long entries, double *felt,
+                                     bool first)
+{
+  const double *const x[] = {pass.x[0], pass.x[1], pass.x[2]};
+  double *const f[] = {pass.range->f[0], pass.range->f[1], pass.range->f[2]};
+  double *const end = felt + block->strip * (3 * LANES);
+  const long longer = BEFORE ? entry[0].offset : 0, middle = entry[BEFORE + 1].offset,
+             shorter = BEHIND ? entry[BEFORE + 3].offset : 0;
+  long i = block->start, j = i + middle;
+  Vector3 open = load<Vector>(f, j - LANES), high{}, low{};
+  for (; felt < end; felt += 3 * LANES, entry += entries, i += LANES, j += LANES) {
+    const Vector3 here = load<Vector>(x, i);
+    const auto force = [&](int n, long at) __attribute__((always_inline)) {
+      const double *const coeffs = pass.law + static_cast<unsigned long>(entry[n].law) * (2 * LANES);
+      const Vector3 d = here - load<Vector>(x, at);
+      return spring_force(coeffs, d, floored_square(d));
+    };
+    Vector3 sum = first ? Vector3{} : load_own(felt);
+    const auto push_one = [&](int n, long at) __attribute__((always_inline)) {
+      const Vector3 one = force(n, at);
+      sum += one;
+      store(f, at, load<Vector>(f, at) - one);
+    };
+    if (BEFORE) push_one(0, i + longer);
+    const Vector3 up = force(BEFORE, j + 1), along = force(BEFORE + 1, j), down = force(BEFORE + 2, j - 1);
+    sum = ((sum + up) + along) + down;
+    if (BEHIND) push_one(BEFORE + 3, i + shorter);
+    store_own(felt, sum);
+    store(f, j - LANES, open - from_second(low, down));
+    open = (load<Vector>(f, j) - from_last(high, up)) - along;
+    high = up, low = down;
+  }
+  store(f, j - LANES, open - from_second(low, Vector3{}));
+  store(f, j, load<Vector>(f, j) - from_last(high, Vector3{}));
+}
+
+// The number of entries of a strip, of those that are left, that were taken in one go; 0 where they are to be taken one by one.
+MDANIM_ALWAYS_INLINE long feel_together(const Pass &pass, const Block *block, const Entry *entry, long entries, long left,
+                                        double *felt)
+{
+  const bool first = left == entries, before = !are_three(entry, left);
+  if (before && !(are_three(entry + 1, left - 1) && are_apart(entry[0], entry[1]))) return 0;
+  const Entry *const next = entry + before + 3;
+  left -= before + 3;
+  const bool behind = left > 0 && are_apart(next[-1], *next) && !are_three(next, left);
+  if (before)
+    behind ? feel_three<true, true>(pass, block, entry, entries, felt, first)
+           : feel_three<true, false>(pass, block, entry, entries, felt, first);
+  else
+    behind ? feel_three<false, true>(pass, block, entry, entries, felt, first)
+           : feel_three<false, false>(pass, block, entry, entries, felt, first);
+  return before + 3 + behind;
 }
 
 // Evaluates the springs of a strip, offset by offset; forces on the blocks' own particles go into rows of `felt`, those of
@@ -80,7 +156,7 @@ __attribute__((noinline)) void feel_strip(const Pass &pass, const Block *block, 
     const double *const own = coeffs + static_cast<unsigned long>(law) * COEFFS;
     const Vector3 d = load<Vector>(x, i) - load<Vector>(x, j);
     const Vector square = floored_square(d);
-    Vector3 force = spring_factor(load(own), load(own + LANES), square) * d;
+    Vector3 force = spring_force(own, d, square);
     if (DAMPED) {
       const Vector3 faster = load<Vector>(v, i) - load<Vector>(v, j);
       const Vector3 slowing = dashpot_factor(load(own + 2 * LANES), d, faster, square) * d;
@@ -93,6 +169,12 @@ __attribute__((noinline)) void feel_strip(const Pass &pass, const Block *block, 
   };
   for (long k = 0; k < entries; ++k) {
     const Entry *entry = pass.entry + first_entry + k;
+    if constexpr (!DAMPED && LANES > 4) {    // else it does not pay (docs/decisions/one-pass.md)
+      if (const long taken = feel_together(pass, block, entry, entries, entries - k, felt)) {
+        k += taken - 1;
+        continue;
+      }
+    }
     long i = block->start, j = i + entry->offset;
     if (k == 0)
       for (double *to = felt; to < end; to += NUMBERS, entry += entries, i += LANES, j += LANES) add(i, j, entry->law, {}, to);

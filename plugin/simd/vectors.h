@@ -44,9 +44,27 @@ template <class Number, class Vector> MDANIM_ALWAYS_INLINE void store(Number *to
 #if defined(__clang__) || __GNUC__ >= 12
 #define MDANIM_SHUFFLE(a, b, ...) __builtin_shufflevector(a, b, __VA_ARGS__)
 #else
-#define MDANIM_SHUFFLE(a, b, ...) __builtin_shuffle(a, b, FourPlaces{__VA_ARGS__})
-typedef long long FourPlaces __attribute__((vector_size(32)));
+template <int BYTES> struct Places {
+  typedef long long Of __attribute__((vector_size(BYTES)));
+};
+#define MDANIM_SHUFFLE(a, b, ...) __builtin_shuffle(a, b, typename Places<sizeof(a)>::Of{__VA_ARGS__})
 #endif
+
+// Of the lanes of two vectors that follow each other, those from the last one of the first on; and those from its second one on.
+template <class Vector> MDANIM_ALWAYS_INLINE Vector from_last(const Vector &a, const Vector &b)
+{
+  if constexpr (sizeof(Vector) == 64)
+    return MDANIM_SHUFFLE(a, b, 7, 8, 9, 10, 11, 12, 13, 14);
+  else
+    return MDANIM_SHUFFLE(a, b, 3, 4, 5, 6);
+}
+template <class Vector> MDANIM_ALWAYS_INLINE Vector from_second(const Vector &a, const Vector &b)
+{
+  if constexpr (sizeof(Vector) == 64)
+    return MDANIM_SHUFFLE(a, b, 1, 2, 3, 4, 5, 6, 7, 8);
+  else
+    return MDANIM_SHUFFLE(a, b, 1, 2, 3, 4);
+}
 
 // Exchanges rows and columns.
 MDANIM_ALWAYS_INLINE void transpose(Four &a, Four &b, Four &c, Four &d)

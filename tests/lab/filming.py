@@ -31,7 +31,7 @@ SOFT = f"{SOLID} damping 0.1"
 SHAPES = {
     "block": f"object a {{ shape box (7, 6, 5) cm position (0, 0, 0) spin (3, 2, 40) rad/s {SOLID} }}",
     "sphere": f"object a {{ shape sphere 5 cm position (0, 0, 0) {SOLID} spin (3, 2, 40) rad/s }}",
-    "plate": f"object a {{ shape box (12, 12, 1) cm position (0, 0, 0) {SOLID} spin (9, 2, 4) rad/s }}",
+    "plate": f"object a {{ shape box (17, 17, 1) cm position (0, 0, 0) {SOLID} spin (9, 2, 4) rad/s }}",
     "needle": f"object a {{ shape box (1, 1, 9) cm position (0, 0, 0) {SOLID} spin (9, 2, 4) rad/s }}",
     "several": "\n".join(
         f"object a{i} {{ shape box ({2 + i}, 3, {5 - i}) cm position ({9 * i}, 0, 0) cm {SOLID} spin (9, {i}, 4) rad/s }}"
