@@ -50,7 +50,7 @@ template <int BYTES> struct Places {
 #define MDANIM_SHUFFLE(a, b, ...) __builtin_shuffle(a, b, typename Places<sizeof(a)>::Of{__VA_ARGS__})
 #endif
 
-// Of the lanes of two vectors that follow each other, those from the last one of the first on; and those from its second one on.
+// Lanes of two vectors that follow each other, from the last lane of the first on; and from its second one on.
 template <class Vector> MDANIM_ALWAYS_INLINE Vector from_last(const Vector &a, const Vector &b)
 {
   if constexpr (sizeof(Vector) == 64)
