@@ -44,10 +44,10 @@ template <class Number, class Vector> MDANIM_ALWAYS_INLINE void store(Number *to
 #if defined(__clang__) || __GNUC__ >= 12
 #define MDANIM_SHUFFLE(a, b, ...) __builtin_shufflevector(a, b, __VA_ARGS__)
 #else
-template <int BYTES> struct Places {
+template <int BYTES> struct ShuffledLanes {
   typedef long long Of __attribute__((vector_size(BYTES)));
 };
-#define MDANIM_SHUFFLE(a, b, ...) __builtin_shuffle(a, b, typename Places<sizeof(a)>::Of{__VA_ARGS__})
+#define MDANIM_SHUFFLE(a, b, ...) __builtin_shuffle(a, b, typename ShuffledLanes<sizeof(a)>::Of{__VA_ARGS__})
 #endif
 
 // Lanes of two vectors that follow each other, from the last lane of the first on; and from its second one on.
