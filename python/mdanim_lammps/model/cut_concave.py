@@ -32,7 +32,7 @@ SAME = 1e-3
 they are one."""
 CRUMB = 1e-9
 """Volume over that of the whole below which a part is left out."""
-WAY_OUT = "write another seed in control, or other pieces"
+WAY_OUT = "write another seed in control, or take a mesh of some hundred triangles"
 
 
 def pieces_of(body: Triangles, number: int, seed: str) -> tuple[tuple[Piece, ...], tuple[CommonFace, ...]]:

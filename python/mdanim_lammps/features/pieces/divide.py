@@ -30,7 +30,9 @@ def pieces_of(v: Any, solid: Solid) -> tuple[Solid, ...]:
     unclean = [n for n, shape in enumerate(shapes) if division.pieces[n].polyhedron is None and not may_move(shape)]
     if unclean:
         cause = f"{piece_name(solid.name, unclean[0])} has edges or faces too small for contact by features"
-        v.problem(solid.spans["pieces"], cause, "write another seed in control, or a few pieces more")
+        v.problem(
+            solid.spans["pieces"], cause, "write another seed in control, a few pieces more, or a mesh of some hundred triangles"
+        )
         return ()
     turn, spin, velocity = (np.array(x) for x in (solid.rotation, solid.spin, solid.velocity))
     volume, found = division.volume, []
