@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """Objects that start inside each other or outside the scene: found, named, and freed by the offered move."""
 
+import math
 import re
 from dataclasses import replace
 
@@ -277,11 +278,12 @@ def test_rigid_objects_are_asked_by_their_shapes(shape, place, told, hint):
 
 
 def test_the_move_is_the_shortest_of_all_directions():
-    """A long plank on a slant lies 1 cm in a ball: up is 1 cm over the cosine, though its box is left soonest along y."""
-    place = tuple(0.59 * np.array([np.sin(0.3), 0.0, np.cos(0.3)]))
-    plank = solid(Box((6.0, 1.0, 0.2)), "plank", position=place, rotation=rotation(0, 0.3, 0), elasticity=Rigid())
-    (found,) = problems(solid(Sphere(0.5), "ball", elasticity=Rigid()), plank)
-    assert (found.message, found.hint) == ("plank starts inside ball, about 1 cm deep", "move it up by 1.1 cm")
+    """A plank on a slant lies 5 mm in a roller as wide as itself: up is 5 mm over the cosine, along the roller is its width."""
+    pivot = solid(Cylinder(0.05, 0.2), "pivot", rotation=rotation(math.pi / 2, 0, 0), elasticity=Rigid())
+    place = tuple(0.06 * np.array([np.sin(0.35), 0.0, np.cos(0.35)]))
+    plank = solid(Box((1.2, 0.2, 0.03)), "plank", position=place, rotation=rotation(0, 0.35, 0), elasticity=Rigid())
+    (found,) = problems(pivot, plank)
+    assert found.hint == "move it up by 5.4 mm"  # 5.32, rounded up
 
 
 THICK = [Sphere(0.1), Cylinder(0.1, 0.2), Ellipsoid((0.1, 0.1, 0.1)), Box((0.2, 0.2, 0.2))]
