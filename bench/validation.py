@@ -34,6 +34,7 @@ PARTS = (
     "beams",
     "contact",
     "ropes",
+    "machines",
     "dams",
     "waves",
     "wakes",

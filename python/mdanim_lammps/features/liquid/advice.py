@@ -15,11 +15,12 @@ from ...model import shapes
 from ...model.model import Model
 from ...records import dataclass
 from ...scene.formatting import number, say, whole
-from ...scene.scene import Solid
+from ...scene.scene import Box, Ellipsoid, Solid, Sphere
 from ..contact.pairs import frictions
 from ..drives.words import DriveOscillation
 from .basin import liquid_level
 from .frames import is_wavy
+from .measure import immersed_share
 from .occupied import filled
 
 TALL = 1.0
@@ -34,6 +35,8 @@ SUDDEN = 0.5
 """Speed over sqrt(g L) from which a body of size L that starts in the liquid pushes it as a blow."""
 SLENDER = 3.0
 """Length along its way over its width from which a body cuts through the liquid."""
+OFF_REST = 0.1
+"""Share of a body below the surface at the start, less that at rest, from which it bobs."""
 HIGH = 0.2
 """Height of waves over the depth from which crests at walls are too high."""
 MANY, FEW = 1_000_000, 100_000
@@ -136,6 +139,23 @@ def _in_a_flood(envelope: Envelope) -> Found | None:
         dry = low[axis] >= liquid.fill[1][axis] or high[axis] <= liquid.fill[0][axis]
         if dry and low[2] < liquid.low[2] + 0.5 * height:
             return envelope.place(m, "position"), f"{liquid.name} floods {envelope.system.names[m]}"
+    return None
+
+
+def _box_in_a_flood(envelope: Envelope) -> Found | None:
+    """What is held on the dry floor before a dam, and lower than that."""
+    dam, liquid = _dam(envelope), envelope.scene.liquid
+    if dam is None:
+        return None
+    axis, _, height = dam
+    lows, highs = envelope.system.bounds(envelope.system.position)
+    cell = envelope.context.grid.cell
+    for m in np.flatnonzero(envelope.system.held_whole).tolist():
+        low, high = lows[m], highs[m]
+        dry = low[axis] >= liquid.fill[1][axis] or high[axis] <= liquid.fill[0][axis]
+        inside = all(low[k] > liquid.low[k] + cell[k] and high[k] < liquid.high[k] - cell[k] for k in (0, 1))
+        if dry and inside and low[2] < liquid.low[2] + cell[2] and high[2] < liquid.low[2] + height:
+            return envelope.place(m, "position"), f"{liquid.name} floods {envelope.system.names[m]}, which is lower than the dam"
     return None
 
 
@@ -247,6 +267,24 @@ def _slams(envelope: Envelope) -> Found | None:
     return None
 
 
+def _bobs(envelope: Envelope) -> Found | None:
+    """A body without hollows that floats in liquid which is level, and starts higher or deeper than it rests."""
+    liquid, system = envelope.scene.liquid, envelope.system
+    if liquid.fill is not None:
+        return None
+    level, grid = liquid_level(liquid), envelope.context.grid
+    for m, low, high in _free(envelope):
+        model, rests = envelope.context.models[m], float(system.density[m]) / liquid.density
+        full = isinstance(envelope.context.solids[m].shape, (Box, Ellipsoid, Sphere))
+        if not full or not low[2] < level < high[2] or rests >= 1.0:
+            continue
+        below = immersed_share(model.position[model.hexahedron], grid, np.full(grid.shape[1::-1], level))
+        if abs(below - rests) > OFF_REST:
+            deeper = "deeper" if below > rests else "higher"
+            return envelope.place(m, "position"), f"{system.names[m]} starts {deeper} than it floats, and bobs"
+    return None
+
+
 def _high_crests(envelope: Envelope) -> Found | None:
     """A basin that is shaken near the period of its longest wave, by the linear law of that wave."""
     liquid, g = envelope.scene.liquid, envelope.reach.g
@@ -278,6 +316,11 @@ SHORTFALLS = (
         "a flood pushes a blunt body without a blow, and a tall column by 9 % of the impulse too little, later by 11 % too much",
         f"{VALIDATION}a-flood-meets-a-tall-column",
     ),
+    Shortfall(
+        _box_in_a_flood,
+        "the jet at its face has no pressure, and while that stands the pressure on the upper half is 14 % too low",
+        f"{VALIDATION}a-flood-meets-a-low-box",
+    ),
     Shortfall(_narrow_arm, "there liquid swings too fast, in 19 % less time in a U-tube", f"{VALIDATION}a-u-tube"),
     Shortfall(
         _beach, "nothing rubs on the ground, and high waves run up to 28 % too far", f"{VALIDATION}solitary-waves-on-a-beach"
@@ -290,6 +333,11 @@ SHORTFALLS = (
         "a blunt body that is set in motion at once gives the liquid up to twice what it loses",
         f"{PHYSICS}bodies-in-waves",
         "begin slower, or make it slender",
+    ),
+    Shortfall(
+        _bobs,
+        "its period is up to 5 % off by where it lies on the cells, and its first turning point by up to 9 %",
+        f"{VALIDATION}a-sphere-bobs",
     ),
     Shortfall(_high_crests, "crests at its walls come out up to 41 % too high", f"{VALIDATION}a-tank-is-shaken"),
 )
