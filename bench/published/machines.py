@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What is built of parts: a ball on a rope, a crank with a piston, a beam of glued stones."""
+"""Machines and buildings of several parts: a ball on a rope, a crank with a piston, a beam of glued stones."""
 
 from __future__ import annotations
 
@@ -71,7 +71,7 @@ CASES = [
         "A ball on a rope swings",
         "The pendulum of a lesson, 2π √(I/(M g d)) (1 + φ²/16), with the mass of the rope, the size of the ball, and the rope"
         " longer by its load over E A.",
-        "0.1 %: the next term of the amplitude is 3e-6; the ball turns a little against the rope, which begins unstretched.",
+        "0.1 %: the next term of the amplitude is 3e-6; the ball turns a little against the rope, which begins without a load.",
         "As 2π √(L/g) of the rope as it is written it is 2 % slow: 1.5 % are the ball's radius, 0.3 % the"
         " stretch of a rope of 100 MPa, 0.2 % the amplitude.",
         string,
@@ -90,7 +90,7 @@ CASES = [
         "lintel",
         "A beam of glued stones",
         "Statics: M/W in the middle of a beam on two supports, with M = w (L S/4 − L²/8) for the weight w of a metre, W = t³/6"
-        " (Galileo 1638 has the dependence on length and thickness; the section modulus is Navier's, 1826).",
+        " (Galileo 1638 has the dependence on length and thickness).",
         "1 % of the stress, 2 % of the strength, which is found by halving an interval six times.",
         "Glue breaks by pull and bending, or by shear, in the joints between stones alone.",
         lintel,

@@ -143,7 +143,7 @@ def _in_a_flood(envelope: Envelope) -> Found | None:
 
 
 def _box_in_a_flood(envelope: Envelope) -> Found | None:
-    """What is held on the dry floor before a dam, and lower than that."""
+    """A held object on the dry floor before a dam, and lower than that."""
     dam, liquid = _dam(envelope), envelope.scene.liquid
     if dam is None:
         return None
