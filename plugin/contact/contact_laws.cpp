@@ -10,7 +10,7 @@ namespace mdanim {
 static constexpr double ALONE = 2.0;     // stiffness where only the dense points of one body act, over that of points of both
 static constexpr double LINE = 0.2;      // the same of a line or a sheet of particles, of which each bears all that it meets
 static constexpr double ONSET = 0.05;    // eps over the spacing: what lands flat meets many points in one step
-static constexpr double ROUND = 0.0;     // that of a body which is curved everywhere, on what is flat: its points meet it one by one
+static constexpr double ROUND = 0.0;     // that of a body which is curved everywhere, on what is flat: it meets few at once
 
 static ContactLaw law_of(const ContactObject &owner, bool on_flat, double density, double kappa, double friction, double damping)
 {
