@@ -238,7 +238,11 @@ control { time 0.3 s  frames 20 fps  resolution 5 cm }
         ("expect max ball.speed at 0.1 s < 1 m/s", "max is of many moments, found one", "write from T0 to T1"),
         ("expect ball.speed from 0.5 s to 0.2 s < 1 m/s", "the window ends at 0.2 s and begins at 0.5 s", "earlier time first"),
         ("expect ball.speed from 0 s to 2 s < 1 m/s", "2 s lies outside the run, which ends at 1 s", "an earlier time"),
-        ("expect maximum ball.speed < 1 m/s", "expect maximum names no quantity", "e.g. maximum.position.z"),
+        (
+            "expect maximum ball.speed < 1 m/s",
+            "expect maximum ball: 'maximum' is none of the words",
+            "write expect max ball.position.z",
+        ),
         ("record ball.sped", "sped is not a quantity of ball", "did you mean 'speed'?"),
         ("record bal.speed", "no object is called bal", "did you mean 'ball'?"),
         ("record ball", "record ball names no quantity", "e.g. ball.position.z"),

@@ -281,6 +281,9 @@ class SettingReader(Reader):
             parts.append(self.inner_part(parts))
         at = quantity_of(parts)
         name, last = joined(parts[:at]), parts[-1].last
+        if at == len(parts) and keyword.name == "expect" and self.peek.type == "NAME":
+            cause = f"expect {name.token} {self.peek}: '{name.token}' is none of the words before NAME.QUANTITY"
+            raise Fault(name.token, cause, f"write expect max {self.peek}.position.z, or min, or mean", name.last)
         if at == len(parts):
             raise Fault(name.token, f"{keyword.name} {name.token} names no quantity", f"e.g. {name.token}.position.z", name.last)
         text = ".".join(part.token for part in parts[at:])

@@ -154,15 +154,14 @@ class Joints(StandardSteps, JointMotion, Effect):
         own = [one for one in found if any(m in body.members for body in one.bodies)]
         hardest = max(own, key=lambda one: one.stiffness)
         joint = hardest.link.joint
-        return [
-            Problem(
-                joint.spans.get("joint"),
-                f"joint {joint.words} sets the time step: {number(hardest.stiffness)} N/m hold it together, it opens by "
-                f"{say(hardest.gap, 'm')} under {say(hardest.load, 'N')} at rest",
-                "write a lower stiffness in it where a larger gap may be seen",
-                severity="note",
-            )
-        ]
+        cause = f"joint {joint.words} sets the time step: {number(hardest.stiffness)} N/m "
+        if hardest.swings:
+            cause += f"give what hangs on it {say(hardest.frequency / (2.0 * math.pi), 'Hz')}"
+            way_out = "write a lower stiffness in it, or more mass on it, where it may swing slower"
+        else:
+            cause += f"hold it together, it opens by {say(hardest.gap, 'm')} under {say(hardest.load, 'N')} at rest"
+            way_out = "write a lower stiffness in it where a larger gap may be seen"
+        return [Problem(joint.spans.get("joint"), cause, way_out, severity="note")]
 
 
 def _numbers(context: Context) -> dict[int, int]:
