@@ -323,7 +323,9 @@ SHORTFALLS = (
     ),
     Shortfall(_narrow_arm, "there liquid swings too fast, in 19 % less time in a U-tube", f"{VALIDATION}a-u-tube"),
     Shortfall(
-        _beach, "high waves run up to 28 % too far, in part as nothing rubs on the ground", f"{VALIDATION}solitary-waves-on-a-beach"
+        _beach,
+        "high waves run up to 28 % too far, in part as nothing rubs on the ground",
+        f"{VALIDATION}solitary-waves-on-a-beach",
     ),
     Shortfall(
         _slides, "after some seconds it begins to slide to and fro", f"{PHYSICS}bodies-in-waves", "write friction 0.5 in it"
