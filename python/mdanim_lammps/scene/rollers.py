@@ -147,7 +147,7 @@ def taut(start: Vector, end: Vector, rollers: tuple[Roller, ...]) -> Taut:
     for k, r in enumerate(rollers, 1):
         at_top = 0.0 if (bends[k].sense < 0.0) == r.is_over else math.pi
         turn, to_top = (bends[k].sense * (way - ways[k - 1]) % (2.0 * math.pi) for way in (ways[k], at_top))
-        if math.pi < turn < to_top:  # it would go around on the other side
+        if turn > math.pi and max(to_top, turn - to_top) > math.pi:  # it would go around on the other side
             side = ("under", "over")[r.is_over]
             raise ValueError(
                 f"a straight line passes {side} {r.name} and does not touch it", "put its ends, or the roller, elsewhere"
