@@ -36,6 +36,23 @@ def test_a_swing_below_its_rider(more, told):
     assert [note.split(" below")[0] for note in said] == ["what is welded of seat, rider hangs by points that are 17.9 cm"][:told]
 
 
+@pytest.mark.parametrize(
+    ("pair", "told"),
+    [("body wheel", True), ("wheel body", False), ("body wheel { at (0.3, 0.2, 0.1) m }", False), ("body lid", False)],
+)
+def test_a_hinge_in_the_middle_of_the_wrong_object(pair, told):
+    """A wheel that is named second, without a place, is held by the middle of the car; a lid of its size may be meant so."""
+    text = f"""object body {{ shape box (80, 30, 10) cm  position (0, 0, 0.2) m  mass 5 kg  elasticity rigid }}
+object wheel {{ shape cylinder 10 cm 4 cm  position (0.3, 0.2, 0.1) m  orientation axis (1, 0, 0) angle 90 deg  mass 1 kg
+  elasticity rigid }}
+object lid {{ shape box (80, 30, 11) cm  position (0, 0, 0.5) m  mass 5 kg  elasticity rigid }}
+joint hinge {pair if "{" in pair else pair + " {}"}
+control {{ time 1 s }}
+""".replace("{}", "{ axis (0, 1, 0) }").replace("m }\n", "m  axis (0, 1, 0) }\n")
+    said = [note for note in prepare(parse_scene(text)).certificate.notes if "says no place" in note.message]
+    assert [note.hint for note in said] == ["name wheel first, joint hinge wheel body, or write at (0.3, 0.2, 0.1) m"][:told]
+
+
 @pytest.mark.parametrize(("more", "told"), [("", True), ("stiffness 4e6 N/m", False)])
 def test_a_joint_that_has_opened(tmp_path, more, told):
     """Three bars without slack between fixed ends pull far harder at their joints than their weights, which `check` counts on."""

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator
+from itertools import islice
 
 import numpy as np
 
@@ -14,7 +15,7 @@ from ...effects.envelope import Envelope
 from ...effects.measured import Measured
 from ...errors import Problem
 from ...model.shapes import radius
-from ...scene.formatting import number, say
+from ...scene.formatting import number, say, vector
 from .links import NOTHING, Link, links_of
 from .preload import torn
 from .rows import BROKEN, FIELD, FORCE, GAP, NUMBER, SIZE
@@ -33,15 +34,32 @@ IN_LINE = 1e-3
 
 
 def notes(envelope: Envelope) -> list[Problem]:
-    """Remarks on a scene in which something can move: the first body that hangs upside down."""
-    found = next(_upside_down(envelope), None)
-    if found is None:
-        return []
-    whole, height = found
+    """Remarks on a scene in which something can move: the first hinge in the middle of the wrong object, and the first body that
+    hangs upside down."""
+    over = (_turns_over(envelope, *found) for found in _upside_down(envelope))
+    return [*islice(_misplaced_hinges(envelope), 1), *islice(over, 1)]
+
+
+def _misplaced_hinges(envelope: Envelope) -> Iterator[Problem]:
+    """Hinges without a place, which are in the middle of the first object, where the second one is smaller and elsewhere."""
+    solids = envelope.scene.solids
+    for link in links_of(envelope.scene).all:
+        joint, first, second = link.joint, solids[link.first], solids[link.named]
+        if joint.kind != "hinge" or joint.at is not None or link.swapped or NOTHING in (link.second, link.named):
+            continue
+        size = radius(second.shape)
+        if size < radius(first.shape) and math.dist(first.position, second.position) > size:
+            cause = f"joint {joint.words} says no place, so it is in the middle of {first.name}, outside of {second.name}"
+            way_out = f"name {second.name} first, joint hinge {second.name} {first.name}, or write at {vector(second.position)} m"
+            yield Problem(joint.spans.get("joint"), cause, way_out, severity="note")
+
+
+def _turns_over(envelope: Envelope, whole: list[int], height: float) -> Problem:
+    """The note on a body that hangs by points so far [m] below its centre of mass."""
     names = [envelope.system.names[m] for m in whole]
     what = names[0] if len(whole) == 1 else f"what is welded of {', '.join(names[:3])}{' and more' if len(whole) > 3 else ''}"
     cause = f"{what} hangs by points that are {say(height, 'm')} below its centre of mass: it turns over"
-    return [Problem(envelope.place(whole[0], "shape"), cause, "join it above its centre of mass", severity="note")]
+    return Problem(envelope.place(whole[0], "shape"), cause, "join it above its centre of mass", severity="note")
 
 
 def drawn_apart(context: Context) -> list[Problem]:
