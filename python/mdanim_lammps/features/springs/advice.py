@@ -10,6 +10,7 @@ from ...errors import Problem
 from ...model.shapes import thickness
 from ...scene.formatting import number, say
 from ...scene.scene import Box
+from ..joints.links import links_of
 
 STIFF = 2.5
 """How much too stiff a square bar is against twist, times the square of its cells across: 0.59 with 2, 0.165 with 4, 0.038 with 8
@@ -35,7 +36,7 @@ def _twisted(envelope: Envelope, m: int) -> bool:
     """Whether a part of a solid is held, or joined, and a torque turns the rest, mostly about its longest axis."""
     system, solid = envelope.system, envelope.scene.solids[m]
     rows = slice(*system.first[m : m + 2])
-    if not solid.torque or not (system.held[rows].any() or any(solid.name in (j.a, j.b) for j in envelope.scene.joints)):
+    if not solid.torque or not (system.held[rows].any() or any(m in link.ends for link in links_of(envelope.scene).all)):
         return False
     x = system.position[rows] - system.position[rows].mean(axis=0)
     along = np.linalg.eigh(x.T @ x)[1][:, -1]
