@@ -330,7 +330,7 @@ def test_on_a_dark_background_in_final_quality(run):
         ("freeze 0 s", "freeze must be > 0, found 0", ""),
         ("freeze 1 ms", "501 copies would cover the picture; 200 are the most", "freeze 0.05 s"),
         ("color-by heat", "'heat' is not one of the choices of color-by", ""),
-        ("plot ball.speed plot ball.position.z", "", ""),
+        ("freeze 2.505 ms plot ball.speed plot ball.position.z", "", ""),  # 200 copies
     ],
 )
 def test_what_cannot_be_shown_is_refused(line, message, hint):

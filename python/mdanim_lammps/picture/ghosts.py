@@ -7,7 +7,7 @@ import numpy as np
 
 from ..errors import UsageError
 from ..results.trajectory import Trajectory
-from ..scene.limits import MOST_COPIES
+from ..scene.limits import MOST_COPIES, copies
 from .surfaces import ShadedMesh
 
 PALE = 0.55
@@ -31,7 +31,7 @@ class Ghosts:
     def __init__(self, trajectory: Trajectory, mesh: ShadedMesh, color: np.ndarray, every: float):
         self._trajectory, self._mesh = trajectory, mesh
         times, moves = trajectory.times, ~np.asarray(trajectory.metadata.still)
-        count = int((times[-1] - times[0]) / every + 1e-9) + 1
+        count = copies(times[-1] - times[0], every)
         if count > MOST_COPIES:
             raise UsageError(f"freeze: {count} copies of everything would cover the picture; {MOST_COPIES} are the most")
         wanted = times[0] + every * np.arange(count)

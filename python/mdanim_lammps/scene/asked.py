@@ -12,7 +12,7 @@ from . import units
 from .evaluated import EvaluatedBlock, EvaluatedSetting
 from .formatting import number, with_article
 from .keywords import BLOCKS, did_you_mean
-from .limits import MOST_COPIES
+from .limits import MOST_COPIES, copies
 from .quantities import GLOBALS, PLANES, QUANTITIES, TAKEN, Asked, Check, Expect, QuantityName, meant
 
 if TYPE_CHECKING:
@@ -100,8 +100,8 @@ def check_shown_in_time(v: Validator, control: Control | None, render: Render | 
     if render.freeze is not None and render.freeze > control.time:
         cause = f"the first copy would be left at {number(render.freeze, 6)} s, {ends}"
         v.problem(render.spans["freeze"], cause, "write a shorter time", "warning")
-    elif render.freeze is not None and control.time / render.freeze + 1.0 > MOST_COPIES:
-        cause = f"{number(control.time / render.freeze + 1.0, 3)} copies would cover the picture; {MOST_COPIES} are the most"
+    elif render.freeze is not None and (left := copies(control.time, render.freeze)) > MOST_COPIES:
+        cause = f"{number(left, 3)} copies would cover the picture; {MOST_COPIES} are the most"
         v.problem(render.spans["freeze"], cause, f"e.g. freeze {number(control.time / 10.0, 2)} s")
 
 

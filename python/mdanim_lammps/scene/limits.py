@@ -74,3 +74,8 @@ MOST_COPIES = 200
 """Copies that ``freeze`` leaves behind: more would cover the picture."""
 MOST_FRAMES = 10**7
 """Frames of a run: every frame has a row of the ledger in memory."""
+
+
+def copies(time: float, every: float) -> int:
+    """Copies that ``freeze`` leaves behind in this time, one so often [s]: the first one at once."""
+    return int(time / every + 1e-9) + 1

@@ -37,9 +37,9 @@ def coarser(surface: Surface, position: np.ndarray, edge: float) -> tuple[np.nda
 
 def _groups(place: np.ndarray, triangle: np.ndarray, size: float) -> tuple[np.ndarray, np.ndarray]:
     """Numbers of the groups of vertices, shape (V,), and the vertex in the middle of each, shape (G,)."""
-    normal = np.zeros_like(place)
+    normal, of_triangle = np.zeros_like(place), normals(place, triangle)
     for column in triangle.T:
-        np.add.at(normal, column, normals(place, triangle))
+        np.add.at(normal, column, of_triangle)
     axis = np.abs(normal).argmax(axis=1)
     side = 2 * axis + (normal[np.arange(len(normal)), axis] > 0.0)
     cube = np.floor((place - place.min(axis=0)) / size).astype(int)
