@@ -50,7 +50,7 @@ Units WaveExchange::give(int column, double height, Units units, double ux, doub
       double &u = columns.arrays_of(link).u[link.at];
       const double was = u;
       u += std::min(1.0, part / height_there) * ((d == 0 ? ux : uy) - u);
-      run.brought += 0.5 * columns.arrays_of(link).height[link.at] * (u * u - was * was);
+      run.brought += 0.5 * height_there * (u * u - was * was);
     });
   }
   return taken;

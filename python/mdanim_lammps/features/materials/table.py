@@ -181,7 +181,7 @@ MATERIALS = {
         "firm gelatine, as of fruit gums; a dessert has about 1 kPa [J] and folds up where it is dropped",
         _own(1000), _own(50 * _k), _own(0.2), _own(0.3), _own(0.3), _own(10 * _k), "#d3324d"),
     "clay": Material(
-        "soft wet clay, as elastic as it is before it gives way; with `yield-strain 0.01` dents stay",
+        "soft wet clay, as elastic as it is before it gives way; with yield-strain 0.01 dents stay",
         _own(1800), _f(5 * _M, 4.8 * _M, 19 * _M, "B"), _own(0.6), _own(0.1), _own(3.0), _own(50 * _k), "#a8876d"),
 }  # fmt: skip
 """Materials by name."""
