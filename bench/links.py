@@ -84,7 +84,8 @@ def rows() -> Iterator[Row]:
         yield of_ropes(f"whirls a ball on a joint, {kind}", "m v²/r", "N")
     yield of_joints("speed of a wheel after 1.5 s of 2 N m, M t/I", "M t/I", 0.01)
     yield of_joints("its speed at last, that of the motor", "60 rpm", 0.01)
-    for shape, kind, frequency in (("box (6, 6, 6) cm", "300 kPa", 5.0), ("sphere 4 cm", "rigid", 3.0)):
+    ball = "sphere 4 cm"
+    for shape, kind, frequency in (("box (6, 6, 6) cm", "300 kPa", 5.0), (ball, "rigid", 3.0), (ball, "1 MPa", 2.0)):
         name = f"{shape.split()[0]} leaves a plate that shakes, {kind}, {frequency:g} Hz"
         yield Row(name, "a (2πf)² = g", partial(drive_cases.leaves, shape, kind, frequency), 0.02, "m/s²")
     yield Row("a block slips on a belt", "v/(μ g)", slips, 0.01, "s")

@@ -140,12 +140,13 @@ def test_the_lock_says_the_same():
 
 
 @pytest.mark.parametrize(("shape", "elasticity", "frequency"), [
-    ("sphere 4 cm", "1 MPa", 3.0), ("box (6, 6, 6) cm", "300 kPa", 5.0), ("box (6, 6, 6) cm", "rigid", 5.0),
+    ("sphere 4 cm", "1 MPa", 2.0), ("box (6, 6, 6) cm", "300 kPa", 5.0), ("box (6, 6, 6) cm", "rigid", 5.0),
     ("sphere 4 cm", "rigid", 3.0),
 ])  # fmt: skip
 def test_what_lies_on_a_shaking_plate_leaves_it_at_g(shape, elasticity, frequency):
-    """Amplitude (2 pi f)^2 = g, within 2 per cent: just below it presses on the plate at all times, above it lifts off. Both are
-    stiff beside their weight, so they follow the plate."""
+    """Amplitude (2 pi f)^2 = g, within 2 per cent: just below it presses on the plate at all times, above it lifts off. All are
+    stiff beside their weight, so they follow the plate: the elastic ball gives way by 0.44 mm, and a mass on a spring of Hertz
+    that does, by its equation of motion, leaves at 0.988 g at 2 Hz (here: 0.995 g), at 0.977 g at 3 Hz (0.983 g)."""
     assert stays(0.98, shape, elasticity, frequency) and not stays(1.02, shape, elasticity, frequency)
 
 
