@@ -152,6 +152,18 @@ def test_nothing_is_compiled_before_the_first_record():
     assert Late(1).a == 1 and inspect.isfunction(vars(Late)["__init__"])
 
 
+def test_an_init_of_ones_own_is_refused():
+    """The standard library keeps it; here it would be written over."""
+    with pytest.raises(TypeError, match="Own has an __init__ of its own"):
+
+        @records.dataclass
+        class Own:
+            a: int
+
+            def __init__(self):
+                self.a = 1
+
+
 def test_the_package_makes_records_by_its_own_decorator():
     by_standard = re.compile(
         r"^from dataclasses import [^#\n]*\b(dataclass|make_dataclass)\b|dataclasses\.(make_)?dataclass\(", re.M

@@ -25,6 +25,8 @@ else:
 
         def decorate(cls: type) -> type:
             own = {name for name, value in vars(cls).items() if value is not None}
+            if "__init__" in own:
+                raise TypeError(f"{cls.__name__} has an __init__ of its own; take dataclasses.dataclass for it")
             derived = frozen and any(
                 dataclasses.is_dataclass(base) for base in cls.__mro__[1:]
             )  # of what is frozen, as it asks for

@@ -159,6 +159,8 @@ def test_of_several_joints_of_two_objects_one_is_meant(prepared):
     assert [[one.joint.kind for one in of_asked(chosen, n)] for n in (0, 1)] == [["spring"], ["slider"]] and not chosen.warnings
     twice = ROD + BAR + "".join(f"joint hinge rod bar {{ at (0.05, {y}, 1) m axis (0, 1, 0) }}\n" for y in (0, 0.04))
     assert not prepared(twice + "expect rod.joint.angle(bar) = 0\n" + END).warnings
+    opposite = twice[::-1].replace(")0 ,1 ,0(", ")0 ,1- ,0(", 1)[::-1]
+    assert len(prepared(opposite + "expect rod.joint.angle(bar) = 0\n" + END).warnings) == 1  # which sign?
     (told,) = prepared(twice + "expect rod.joint.force(bar) < 1 N\nrecord rod.joint.force(bar)\n" + END).warnings
     assert told.message == "rod.joint.force(bar) is that of the first of 2 joints hinge of both, at (5 cm, 0 m, 1 m)"
 

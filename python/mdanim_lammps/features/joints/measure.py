@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Sequence
 
 import numpy as np
@@ -72,9 +73,9 @@ def first_of_several(scene: SceneRecord) -> list[Problem]:
 
 
 def _one_direction(joints: Sequence[Link]) -> bool:
-    """Whether all have one axis, or its opposite."""
+    """Whether all have one axis: about its opposite an angle has the other sign."""
     axes = [link.axis for link in joints]
-    return all(axis is not None and np.linalg.norm(np.cross(axis, axes[0])) < 1e-9 for axis in axes)
+    return None not in axes and all(math.dist(axis, axes[0]) < 1e-9 for axis in axes)
 
 
 def _along(what: str) -> Measure:
