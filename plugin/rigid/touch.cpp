@@ -22,19 +22,25 @@ Touch TouchStep::damped(Touch::TouchKind kind, const TouchLaw &law, double yield
 
 namespace {
 
-// Corners of a body that are as high over a surface as the one that begins to touch it: they press with it.
+// Corners of a body that are as high over a surface as the one that begins to touch it, with the surface below them: they press
+// with it.
 struct LevelCorners {
   int count = 0;
   Vec3 middle;    // of their places
   LevelCorners() = default;
-  LevelCorners(const Solid &one, const Vec3 &x, const Vec3 &n)
+  LevelCorners(const Solid &one, const Solid *host, const Vec3 &x, const Vec3 &n)
   {
-    constexpr double LEVEL = 0.02;    // over the thinnest part: how deep the fastest blow goes
+    constexpr double LEVEL = 0.02;     // over the thinnest part: how deep the fastest blow goes
+    constexpr double BESIDE = 0.05;    // over the size: corners of twins that are turned on each other are beside their ends
     const Vec3 down = one.in_body(n);
-    const double height = dot(n, x - one.centre), near = LEVEL * one.shape.thin();
+    const double height = dot(n, x - one.centre), near = LEVEL * one.shape.thin(), beside = BESIDE * one.shape.bound();
+    const bool may_miss = host && host->shape.kind() != SolidShape::MESH;
     Vec3 sum;
-    for (const Polyhedron::Corner &corner : one.shape.corners())
-      if (!corner.covered && std::fabs(dot(down, corner.at) - height) <= near) sum += corner.at, ++count;
+    for (const Polyhedron::Corner &corner : one.shape.corners()) {
+      if (corner.covered || std::fabs(dot(down, corner.at) - height) > near) continue;
+      if (may_miss && host->shape.nearest(host->in_body(one.place(corner.at) - host->centre)).distance > beside) continue;
+      sum += corner.at, ++count;
+    }
     if (count) middle = one.place((1.0 / count) * sum);
   }
 };
@@ -48,9 +54,9 @@ struct SharedContact {
     constexpr int FEW = 6;
     const bool is_crossing = kind == Touch::EDGES || kind == Touch::CURVES;
     if (!is_crossing && kind != Touch::CORNER && kind != Touch::CORNER_OF_OTHER) return;
-    LevelCorners level(a, x, n);
+    LevelCorners level(a, b, x, n);    // corners are those of a
     if (is_crossing)
-      if (const LevelCorners other(*b, x, n); other.count > level.count) level = other;
+      if (const LevelCorners other(*b, &a, x, n); other.count > level.count) level = other;
     if (level.count <= FEW) return;
     share = static_cast<double>(FEW) / level.count;
     yields = level.count * (a.yields_at(level.middle, n) + (b ? b->yields_at(level.middle, n) : 0.0));
