@@ -27,7 +27,6 @@ namespace {
 struct LevelCorners {
   int count = 0;
   Vec3 middle;    // of their places
-  LevelCorners() = default;
   LevelCorners(const Solid &one, const Solid *host, const Vec3 &x, const Vec3 &n)
   {
     constexpr double LEVEL = 0.02;     // over the thinnest part: how deep the fastest blow goes

@@ -117,14 +117,13 @@ def _around(v: Any, known: Mapping, solid: Any) -> Any:
     """A rope with its line around what it runs over."""
     if not all(one.name in known for one in solid.runs):
         return solid  # told, or broken itself
-    for one in solid.runs:
-        if not isinstance(known[one.name].shape, Cylinder):
-            v.problem(solid.spans["runs"], f"{solid.name} runs {one.side} {one.name}, which does not have the shape cylinder",
-                      f"write shape cylinder r h in {one.name}, or a cylinder welded to it")  # fmt: skip
-            return solid
     rollers = []
     for one in solid.runs:
         wheel = known[one.name]
+        if not isinstance(wheel.shape, Cylinder):
+            v.problem(solid.spans["runs"], f"{solid.name} runs {one.side} {one.name}, which does not have the shape cylinder",
+                      f"write shape cylinder r h in {one.name}, or a cylinder welded to it")  # fmt: skip
+            return solid
         axis = tuple(row[2] for row in wheel.rotation)
         radius = wheel.shape.radius + 0.5 * solid.shape.thickness
         rollers.append(Roller(one.name, wheel.position, axis, 0.5 * wheel.shape.height, radius, one.side == "over"))
