@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """How hard rigid objects are where they touch follows from what may happen on their ways, not from the time of the scene."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from mdanim_lammps.engine.instance import Instance
@@ -10,6 +12,7 @@ from mdanim_lammps.features.joints.links import links_of
 from mdanim_lammps.features.rigid.touching import omega
 from mdanim_lammps.scene.parse import parse_scene
 
+ROOT = Path(__file__).parents[2]
 SCENE = """gravity (0, 0, -9.81) m/s^2
 ground z 0 m
 object cart {{ shape box (20, 20, 10) cm  position (0, 0, 0.05) m  density 600  elasticity rigid  {push} }}
@@ -82,13 +85,78 @@ def test_a_sail_on_a_hinge_falls_with_the_hull(prepared):
     ("axis", "sinks"), [("axis (0, 0, 1)", 0.0), ("axis (1, 0, 0)", 0.6), ("axis (1, 0, 0) limits -30 deg to 60 deg", 0.15)]
 )
 def test_what_a_hinge_lets_come_down(axis, sinks):
-    """By its arm and back about a level line, less where it has limits; a cube welded to the sail's top with the sail."""
+    """By its arm and back about a level line, less where it has limits; a cube welded to the sail's top with the sail, and the
+    hull by what their energy gives it."""
     top = "shape box (1, 1, 1) cm  position (0.2, 0, 1.225) m  density 400  elasticity rigid"
     more = f"object top {{ {top} }}\njoint weld top sail {{ at (0.2, 0, 1.22) m }}\n"
     links = links_of(parse_scene(BOAT.replace(WELD, HINGE % axis) + more, "boat"))
     (group,) = hung(links)
+    hull, sail, top = 0.08, 0.4 * 0.003 * 0.6, 1e-6
+    lost = sinks * (sail + top * 0.605 / 0.3)
     assert group.first == 0
-    np.testing.assert_allclose([group.sinks[m] for m in range(3)], [0.0, sinks, sinks * 0.605 / 0.3], atol=1e-9)
+    np.testing.assert_allclose([group.sinks[m] for m in range(3)], [lost / hull, lost / (sail + top), sinks * 0.605 / 0.3])
+
+
+SLING = """gravity (0, 0, -9.81) m/s^2
+object mast { shape box (10, 10, 10) cm  position (0, 0, 2) m  density 50000  elasticity rigid }
+object arm { shape box (50, 2, 2) cm  position (0.25, 0.1, 2) m  density 5000  elasticity rigid }
+object lash { shape box (50, 2, 2) cm  position (0.25, 0.15, 2) m  density 500  elasticity rigid }
+joint weld mast world { at (0, 0, 2) m }
+joint hinge arm mast { at (0, 0.1, 2) m  axis (0, 1, 0)  %s }
+joint %s lash arm { at (0.5, 0.15, 2) m  %s }
+control { time 0.35 s }
+"""
+DOWN = 0.5 / np.sqrt(2.0)
+
+
+@pytest.mark.parametrize(
+    ("first", "joint", "more", "drops"),
+    [
+        ("", "hinge", "axis (0, 1, 0)", (0.25, 0.75)),
+        ("", "ball", "", (0.25, 0.75)),
+        ("", "weld", "", (0.25, 0.25)),
+        ("", "hinge", "axis (1, 0, 0)", (0.25, 0.75)),  # at most: about its own length, and the arm turned, it is not known how
+        ("", "slider", "axis (1, 0, 0)  limits -0.1 m to 0.05 m", (0.25, 0.35)),
+        ("limits 0 to 45 deg", "hinge", "axis (0, 1, 0)  limits -30 deg to 0", (DOWN / 2, DOWN + 0.125)),
+        ("limits 0 to 45 deg", "hinge", "axis (0, -1, 0)  limits 0 to 30 deg", (DOWN / 2, DOWN + 0.125)),
+        ("limits -45 deg to 0", "weld", "", (0.0, 0.0)),
+    ],
+)
+def test_what_a_double_pendulum_may_lose(first, joint, more, drops):
+    """A light lash lies folded back along an arm that is level: both hang straight down in the end, or as far as joints let
+    them, and each may have the energy of both."""
+    (group,) = hung(links_of(parse_scene(SLING % (first, joint, more), "sling")))
+    arm, lash = 1.0, 0.1
+    lost = arm * drops[0] + lash * drops[1]
+    own = (arm + lash,) * 2 if joint == "weld" else (arm, lash)
+    wanted = [lost / 50.0, *(max(drop, lost / mass) for drop, mass in zip(drops, own))]
+    np.testing.assert_allclose([group.sinks[m] for m in range(3)], wanted, atol=1e-12)
+
+
+def test_a_sling_is_no_faster_than_its_energy_lets_it(prepared):
+    """The lash gets more energy than by its own fall, and less than it and the arm lose."""
+    ready = prepared(SLING % ("", "hinge", "axis (0, 1, 0)"))
+    (group,) = hung(links_of(ready.scene))
+    fastest = 0.0
+    with Instance(ready.plan) as instance:
+        instance.setup()
+        for _ in range(50):
+            instance.run(ready.certificate.steps // 50)
+            fastest = max(fastest, float((instance.array("v")[ready.system.object == 2].mean(axis=0) ** 2).sum()))
+    assert 0.75 < fastest / (2.0 * 9.81) < group.sinks[2] == pytest.approx(0.75 + 10.0 * 0.25)
+
+
+def test_what_the_chains_of_a_drawbridge_may_lose():
+    """Twelve links from the deck up to either winch, which drives: they may hang down from the deck, one below the other."""
+    scene = parse_scene((ROOT / "scenes" / "drawbridge.txt").read_text(), "drawbridge")
+    (group,) = hung(links_of(scene))
+    place = {m: solid.name for m, solid in enumerate(scene.solids) if m in group.sinks}
+    long, rise = np.hypot(2.01, 1.85) / 12, 1.85 / 12
+    drops = [(i - 0.5) * (long + rise) for i in range(1, 13)]
+    assert place.pop(group.first) == "deck" and len(place) == 24
+    lost = 2.0 * sum(drops)
+    np.testing.assert_allclose([group.sinks[m] for m in place], lost)
+    assert group.sinks[group.first] == pytest.approx(lost * 7800 * 0.98 * long * 0.02**2 / (500 * 2.12 * 1.3 * 0.06))
 
 
 def test_a_blow_on_a_thin_part_of_a_body_comes_back(prepared):

@@ -62,7 +62,7 @@ class Hung:
     first: int
     """The heaviest of them."""
     sinks: Mapping[int, float]
-    """How far the centre of mass of each may come down if that one stays where it is [m]."""
+    """Height of the fall in which each would get the energy that joints let all of them lose if that one stays as it is [m]."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -134,7 +134,7 @@ class Reach:
 
         As if through air: in a liquid, heights count by the part of the weight that it leaves. Below the surface a light solid
         gains height; where there are others it may meet them at the surface already. What is part of a body that floats, as a
-        sail on a hull, comes down as far as that does, and on a hinge by what that lets it.
+        sail on a hull, comes down as far as that does, and on a hinge it has what energy that lets all lose that hang on it.
         """
         (bottom, floor), surface = self.heights, self.acting.surface
         bottom = np.where(self.stands, np.minimum(bottom, floor), bottom)
