@@ -23,57 +23,24 @@ VERTICES, INDICES = 34962, 34963
 
 
 def write(cut: Cut, folder: Path, stem: str, on_frame: Callable[[int], None]) -> list[str]:
-    start, total, motion = cut.surfaces(cut.frames[0]), len(cut.frames), cut.motion
-    stiff = cut.stiff
+    total, stiff = len(cut.frames), cut.stiff
     bent = np.flatnonzero(~stiff)
-    vertices = sum(len(start[n][0]) for n in bent)
-    expected = 24 * vertices * total + (4 * total**2 if len(bent) else 0) + 28 * total * stiff.sum()
-    if expected > LARGEST:
-        fewer = int(np.ceil(expected / LARGEST)) + 1
-        raise UsageError(
-            f"--to gltf: {total} frames of {vertices} vertices would take {expected / 1e9:.1f} GB, the format allows 4 GB; "
-            f"take fewer frames (--every {fewer}) or objects (--objects), or --to usd"
-        )
+    start = cut.surfaces(cut.frames[0])
+    _refuse_too_large(cut, sum(len(start[n][0]) for n in bent))
     part = folder / "buffer"
     with open(part, "wb") as file:
         out = _Buffer(file)
-        meshes = []
-        for n, (body, (x, normal)) in enumerate(zip(cut.bodies, start)):
-            about = motion.centre[0, n] if stiff[n] else 0.0
-            attributes = {
-                "POSITION": out.add(x - about, FLOAT, VERTICES, bounds=True),
-                "NORMAL": out.add(normal, FLOAT, VERTICES),
-            }
-            if body.paint is not None:
-                attributes["COLOR_0"] = out.add(np.column_stack([linear(body.paint / 255.0), np.ones(len(x))]), FLOAT, VERTICES)
-            index = out.add(body.triangle.ravel().astype(np.uint32), UINT, INDICES)
-            meshes.append({"attributes": attributes, "indices": index, "material": 0})
-            if total > 1 and not stiff[n]:
-                meshes[n]["targets"] = []
+        meshes = [_mesh(cut, n, surface, out) for n, surface in enumerate(start)]
         for done, frame in enumerate(cut.frames[1:], 1):
             now = cut.surfaces(frame) if len(bent) else []
             for n in bent:
-                (x, normal), (x0, normal0) = now[n], start[n]
-                meshes[n]["targets"].append(
-                    {
-                        "POSITION": out.add(x - x0, FLOAT, VERTICES, bounds=True),
-                        "NORMAL": out.add(normal - normal0, FLOAT, VERTICES),
-                    }
-                )
+                meshes[n].setdefault("targets", []).append(_attributes(now[n][0] - start[n][0], now[n][1] - start[n][1], out))
             on_frame(done)
         nodes = [{"name": body.name, "mesh": n} for n, body in enumerate(cut.bodies)]
         for n in np.flatnonzero(stiff):
-            nodes[n]["translation"] = motion.centre[0, n].tolist()
+            nodes[n]["translation"] = cut.motion.centre[0, n].tolist()
         animation = _animation(cut, stiff, out) if total > 1 else []
-    materials, known = [], {}
-    for mesh, body in zip(meshes, cut.bodies):
-        key = (body.color if body.paint is None else (1.0, 1.0, 1.0), body.clear)
-        if key not in known:
-            known[key] = len(materials)
-            color = [*linear(np.array(key[0])).tolist(), OPACITY if body.clear else 1.0]
-            look = {"pbrMetallicRoughness": {"baseColorFactor": color, "metallicFactor": 0.0, "roughnessFactor": 0.5}}
-            materials.append(look | ({"alphaMode": "BLEND"} if body.clear else {}))
-        mesh["material"] = known[key]
+    materials = _materials(cut, meshes)
     # glTF has y up: the root turns the scene's z there.
     turned = {"name": stem, "rotation": [-(0.5**0.5), 0.0, 0.0, 0.5**0.5], "children": list(range(1, len(meshes) + 1))}
     document = {
@@ -91,27 +58,67 @@ def write(cut: Cut, folder: Path, stem: str, on_frame: Callable[[int], None]) ->
         "buffers": [{"byteLength": out.length}],
         **({"animations": animation} if animation else {}),
     }
-    text = json.dumps(document, separators=(",", ":")).encode()
-    text += b" " * (-len(text) % 4)
-    with open(folder / f"{stem}.glb", "wb") as file, open(part, "rb") as data:
-        file.write(struct.pack("<4sII", b"glTF", 2, 12 + 8 + len(text) + 8 + out.length))
-        file.write(struct.pack("<I4s", len(text), b"JSON") + text)
-        file.write(struct.pack("<I4s", out.length, b"BIN\0"))
-        shutil.copyfileobj(data, file)
-    part.unlink()
+    _join(document, part, out.length, folder / f"{stem}.glb")
     on_frame(total)
     ways = [f"{stiff.sum()} objects that keep their shape move and turn as nodes"] if stiff.any() else []
     if len(bent) and total > 1:
         ways.append(f"{total - 1} morph targets for {len(bent)} meshes; between frames positions are mixed linearly")
-    return [
-        *ways,
-        "lengths are metres; the root node turns z to y, which is up in glTF",
-        *(
-            ["drops of the liquid are left out: their number changes, and a mesh of glTF keeps its points"]
-            if cut.sheds_drops
-            else []
-        ),
-    ]
+    ways.append("lengths are metres; the root node turns z to y, which is up in glTF")
+    if cut.sheds_drops:
+        ways.append("drops of the liquid are left out: their number changes, and a mesh of glTF keeps its points")
+    return ways
+
+
+def _refuse_too_large(cut: Cut, vertices: int) -> None:
+    """A file that counts its length in too few bits is not begun; ``vertices`` are those of what bends."""
+    total = len(cut.frames)
+    expected = 24 * vertices * total + (0 if cut.stiff.all() else 4 * total**2) + 28 * total * cut.stiff.sum()
+    if expected > LARGEST:
+        fewer = int(np.ceil(expected / LARGEST)) + 1
+        raise UsageError(
+            f"--to gltf: {total} frames of {vertices} vertices would take {expected / 1e9:.1f} GB, the format allows 4 GB; "
+            f"take fewer frames (--every {fewer}) or objects (--objects), or --to usd"
+        )
+
+
+def _attributes(position: np.ndarray, normal: np.ndarray, out: _Buffer) -> dict[str, int]:
+    """Accessors of positions and normals, both of shape (V, 3)."""
+    return {"POSITION": out.add(position, FLOAT, VERTICES, bounds=True), "NORMAL": out.add(normal, FLOAT, VERTICES)}
+
+
+def _mesh(cut: Cut, n: int, surface: tuple[np.ndarray, np.ndarray], out: _Buffer) -> dict:
+    """A body in the first frame; about its centre if it keeps its shape. Its material is that of ``_materials``."""
+    body, (x, normal) = cut.bodies[n], surface
+    attributes = _attributes(x - (cut.motion.centre[0, n] if cut.stiff[n] else 0.0), normal, out)
+    if body.paint is not None:
+        attributes["COLOR_0"] = out.add(np.column_stack([linear(body.paint / 255.0), np.ones(len(x))]), FLOAT, VERTICES)
+    return {"attributes": attributes, "indices": out.add(body.triangle.ravel().astype(np.uint32), UINT, INDICES)}
+
+
+def _materials(cut: Cut, meshes: list[dict]) -> list[dict]:
+    """A material for each look of bodies; writes its number into their meshes."""
+    materials, known = [], {}
+    for mesh, body in zip(meshes, cut.bodies):
+        key = (body.color if body.paint is None else (1.0, 1.0, 1.0), body.clear)
+        if key not in known:
+            known[key] = len(materials)
+            color = [*linear(np.array(key[0])).tolist(), OPACITY if body.clear else 1.0]
+            look = {"pbrMetallicRoughness": {"baseColorFactor": color, "metallicFactor": 0.0, "roughnessFactor": 0.5}}
+            materials.append(look | ({"alphaMode": "BLEND"} if body.clear else {}))
+        mesh["material"] = known[key]
+    return materials
+
+
+def _join(document: dict, part: Path, length: int, path: Path) -> None:
+    """Write the document and the binary part, which is removed, as one file."""
+    text = json.dumps(document, separators=(",", ":")).encode()
+    text += b" " * (-len(text) % 4)
+    with open(path, "wb") as file, open(part, "rb") as data:
+        file.write(struct.pack("<4sII", b"glTF", 2, 12 + 8 + len(text) + 8 + length))
+        file.write(struct.pack("<I4s", len(text), b"JSON") + text)
+        file.write(struct.pack("<I4s", length, b"BIN\0"))
+        shutil.copyfileobj(data, file)
+    part.unlink()
 
 
 def _animation(cut: Cut, stiff: np.ndarray, out: _Buffer) -> list[dict]:

@@ -38,6 +38,16 @@ MOST_PIXELS = 16384
 """Pixels that Mesa draws along a side."""
 
 
+def _renderer():
+    """A renderer of VTK that lays translucent surfaces over the rest in the order of adding."""
+    from vtkmodules.vtkRenderingCore import vtkRenderer
+
+    renderer = vtkRenderer()
+    renderer.SetUseHiddenLineRemoval(False)
+    renderer.SetUseOIT(False)
+    return renderer
+
+
 class Painter:
     """Draws frames of one trajectory, all with the same lamp, floor and, unless the scene moves it, camera.
 
@@ -214,31 +224,43 @@ class Painter:
     # --- the stage -----------------------------------------------------------------------------------------
 
     def _build(self, render: Render, marks: Marks) -> None:
+        """All that is drawn. The order in which actors are added is that in which they are drawn."""
         import vtkmodules.vtkRenderingFreeType
         import vtkmodules.vtkRenderingOpenGL2  # noqa: F401
-        from vtkmodules.vtkRenderingCore import vtkRenderer
 
-        low, high = background_colors(render)
-        self._renderer = vtkRenderer()
-        self._renderer.SetUseHiddenLineRemoval(False)
-        # Translucent surfaces are laid over the rest in the order of adding.
-        self._renderer.SetUseOIT(False)
-        metadata, dark, sky = self.trajectory.metadata, is_dark(low), render.quality is Quality.FINAL
-        there = scenery(metadata)
-        self._walls, self._way_of_walls = None, way_of_walls(self.trajectory.scene)
-        self._pixels = width, height = tuple(n * self._finer for n in self.size)
+        colors = background_colors(render)
+        dark, sky = is_dark(colors[0]), render.quality is Quality.FINAL
+        self._pixels = tuple(n * self._finer for n in self.size)
+        self._renderer = _renderer()
         # In final quality the surface of a medium looks up what is behind it, so that has to be drawn before.
         through = medium(self.trajectory, render)
         self._behind = Behind(self._pixels) if sky and through and through.bends else None
         self._front = self._in_front() if self._behind else self._renderer
+        self._renderers = [self._renderer, self._front] if self._behind else [self._renderer]
         self._tank = through.make(dark, sky, self._behind) if through else None
-        at = None if render.floor is Floor.NONE else self._floor_height()
-        liquid = bool(self._tank)
-        self._floor = None if at is None else FloorPlane(at, self.action, render, (low, high), height, self._finer, liquid)
-        (x, y, _), reach = self.action.centre, REACH * self.action.size
+        height, liquid = None if render.floor is Floor.NONE else self._floor_height(), bool(self._tank)
+        self._floor = (
+            None if height is None else FloorPlane(height, self.action, render, colors, self._pixels[1], self._finer, liquid)
+        )
+        self._add_surfaces(render, dark, sky, marks)
+        self._add_walls(dark)
+        if self._tank:
+            self._add_tank(height)
+        self._marks = MarkActors(marks, self.trajectory.metadata, dark, self._pixels[1])
+        for actor in self._marks.actors:
+            self._front.AddViewProp(actor)
+        self._write(colors[0], self._floor is not None and render.floor.value in FLOORS)
+        self._set_background(colors)
+        for actor in (actor for renderer in self._renderers for actor in renderer.GetActors()):
+            look = actor.GetProperty()
+            look.SetLineWidth(look.GetLineWidth() * self._finer)
+        self._open_windows(render, colors, sky)
+
+    def _add_surfaces(self, render: Render, dark: bool, sky: bool, marks: Marks) -> None:
+        """Surfaces of objects, of what features add and of frozen moments, in one mesh; the floor's own actors around them."""
         self._more, own = Additions(self.trajectory, dark), len(self._mesh.carry)
         self._triangle = np.concatenate([self._mesh.triangle, own + self._more.triangle])
-        colors = [vertex_colors(metadata, self._colors)[self._mesh.of_skin], self._more.color]
+        colors = [vertex_colors(self.trajectory.metadata, self._colors)[self._mesh.of_skin], self._more.color]
         self._ghosts = Ghosts(self.trajectory, self._mesh, colors[0], render.freeze) if render.freeze else None
         if self._ghosts:  # what is not there casts no shadow
             self._casters = MovingMesh(sum(map(len, colors)), self._triangle)
@@ -249,60 +271,61 @@ class Painter:
         self._surface.paint(self._surface_colors)
         if not self._ghosts:
             self._casters = self._surface
-        self._actors = [self._surface_actor(liquid, sky)]
-        self._actors[0].SetVisibility(not marks.springs)
+        surface = self._surface_actor(bool(self._tank), sky)
+        surface.SetVisibility(not marks.springs)
         # Objects are closed, so their inner faces are never visible, and drawing these takes time.
-        self._actors[0].GetProperty().BackfaceCullingOn()
-        if self._tank:
-            # Before the floor: pixels that are hidden are not shaded.
-            self._actors.append(self._tank.plate)
-        if self._floor:
-            # First, as it hides only what is drawn later.
-            self._renderer.AddActor(self._floor.cover)
-        for actor in (*self._actors, *self._more.actors):
+        surface.GetProperty().BackfaceCullingOn()
+        # The tank's plate comes before the floor: pixels that are hidden are not shaded.
+        self._actors = [surface, *([self._tank.plate] if self._tank else [])]
+        # The cover is first, as it hides only what is drawn later.
+        for actor in (*([self._floor.cover] if self._floor else []), *self._actors, *self._more.actors):
             self._renderer.AddActor(actor)
         if self._floor:
             self._actors.append(self._floor.actor)
+
+    def _add_walls(self, dark: bool) -> None:
+        there, self._walls, self._way_of_walls = scenery(self.trajectory.metadata), None, way_of_walls(self.trajectory.scene)
         if there.walls is not None:
             self._walls = box_edges(*there.walls, 0.8 if dark else 0.35)
             self._renderer.AddActor(self._walls)
-        if self._tank:
-            for actor in self._tank.inner:
-                self._renderer.AddActor(actor)
-            for actor in self._tank.actors:
-                self._front.AddActor(actor)
-            self._actors += self._tank.skin
-            self._tank.colour_through(self._actors)
-            self._tank.stand_on(0.0 if at is None else at, (x, y, 0.0 if at is None else reach))
-        self._marks = MarkActors(marks, metadata, dark, self.size[1] * self._finer)
-        for actor in self._marks.actors:
-            self._front.AddViewProp(actor)
-        self._write(low, self._floor is not None and render.floor.value in FLOORS)
-        if self._behind:
-            self._renderer.SetBackground(low)
-            self._renderer.SetBackground2(high)
-            self._renderer.GradientBackgroundOn()
-            if self._floor:
-                self._renderer.AddActor(self._floor.actor)
-                self._floor.cover.VisibilityOff()
-        else:
+
+    def _add_tank(self, floor: float | None) -> None:
+        """The liquid and its basin, which stand on a floor of this height [m]."""
+        for actor in self._tank.inner:
+            self._renderer.AddActor(actor)
+        for actor in self._tank.actors:
+            self._front.AddActor(actor)
+        self._actors += self._tank.skin
+        self._tank.colour_through(self._actors)
+        (x, y, _), reach = self.action.centre, REACH * self.action.size
+        self._tank.stand_on(floor or 0.0, (x, y, 0.0 if floor is None else reach))
+
+    def _set_background(self, colors: tuple) -> None:
+        """These colours, below and above, where all is in one window; else nothing, as what is drawn is laid over a backdrop."""
+        if not self._behind:
             self._renderer.SetBackground(0.0, 0.0, 0.0)
             self._renderer.SetBackgroundAlpha(0.0)
-        self._renderers = [self._renderer, self._front] if self._behind else [self._renderer]
-        for actor in (actor for renderer in self._renderers for actor in renderer.GetActors()):
-            look = actor.GetProperty()
-            look.SetLineWidth(look.GetLineWidth() * self._finer)
+            return
+        self._renderer.SetBackground(colors[0])
+        self._renderer.SetBackground2(colors[1])
+        self._renderer.GradientBackgroundOn()
+        if self._floor:
+            self._renderer.AddActor(self._floor.actor)
+            self._floor.cover.VisibilityOff()
 
+    def _open_windows(self, render: Render, colors: tuple, sky: bool) -> None:
+        """Windows of the picture, of the lamp and of the backdrop."""
         sizes = np.linalg.norm(self.action.high[0] - self.action.low[0], axis=1)
         # The median; NumPy's would load masked arrays.
         middle = np.sort(sizes)[(len(sizes) - 1) // 2 : len(sizes) // 2 + 1]
         typical = float(middle.mean()) if len(sizes) else self.action.size
         with silent():
-            self._window = off_screen_window(self._renderers, (width, height), SAMPLES, clear=not self._behind)
+            self._window = off_screen_window(self._renderers, self._pixels, SAMPLES, clear=not self._behind)
             self._light = Light(self._casters.data, self.action.centre, self.action.size, typical, render, self._floor)
-            still = self._camera.still
             cover = self._tank.cover if self._tank else None
-            self._backdrop = None if self._behind else Backdrop(self._pixels, (low, high), self._floor, still, sky, cover)
+            self._backdrop = None
+            if not self._behind:
+                self._backdrop = Backdrop(self._pixels, colors, self._floor, self._camera.still, sky, cover)
         self._light.fall_on(self._actors)
         if self._backdrop and self._floor:
             have_own_textures(self._floor.actor, ("skyDepth", "liquidHeights"))
@@ -320,14 +343,10 @@ class Painter:
 
     def _in_front(self):
         """A renderer that draws over what the other one has drawn, and behind what that holds nearer to the camera."""
-        from vtkmodules.vtkRenderingCore import vtkRenderer
-
-        front = vtkRenderer()
+        front = _renderer()
         front.SetLayer(1)
         front.PreserveColorBufferOn()
         front.PreserveDepthBufferOn()
-        front.SetUseHiddenLineRemoval(False)
-        front.SetUseOIT(False)
         front.SetActiveCamera(self._renderer.GetActiveCamera())
         return front
 
