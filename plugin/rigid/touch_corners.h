@@ -78,6 +78,7 @@ class PolyhedronHost {
 constexpr double LEADS_IN = -0.45;
 constexpr double DEEPEST_BIRTH = 0.5, SHALLOW = 0.03;    // over the thinnest part of the host
 constexpr double SURELY = 0.9;                           // of a way that leads nowhere near
+constexpr double LITTLE = 0.1;                           // part with which a contact begins that comes over a ramp
 constexpr double A_STEP = 1.01;                          // the last step, and a little for rounding
 
 // The side of a host below which a corner is, with the depth; -1 where it is below none: it has to be below each side that

@@ -20,7 +20,6 @@ constexpr double FADED = 0.02, FADES = 0.015;                    // square of a 
 constexpr double FADED_ON_CONES = 0.1, FADES_ON_CONES = 0.08;    // on cones places run along faster
 constexpr double AT_BIRTH = -0.1, AT_END = -0.4;                 // how far a normal may be out of the cones of sharp curves
 constexpr double SHALLOW_BIRTH = 0.06;                           // over the thinnest part
-constexpr double LITTLE = 0.1;                                   // part with which a contact begins that comes over a ramp
 constexpr double SAME_PLACE = 0.25;    // over the radius of a circle: how far a contact may move along it in a step
 
 // A small motion: turned about a pivot, then moved.

@@ -86,11 +86,19 @@ struct PlacedEdge {
   {
   }
   Vec3 across(int face) const { return solid.in_space(edge.across[face]); }
+  // Moves it, turned about a pivot by a small angle.
+  void shift(const Vec3 &pivot, const Vec3 &move, const Vec3 &turn)
+  {
+    middle += move + cross(turn, middle - pivot);
+    along = unit(along + cross(turn, along));
+  }
 
  private:
   const Solid &solid;
   const Polyhedron::Edge &edge;
 };
+
+constexpr double FADED = 0.02, FADES = 0.015;    // square of a sine: the ramp of nearly parallel edges
 
 // The lines of two edges: where they are closest, along each from its middle, and n across both, out of the first.
 struct EdgeCrossing {
@@ -121,6 +129,18 @@ struct EdgeCrossing {
   }
 };
 
+// The part of a crossing that counts: ramps from the ends inward, and for edges that are nearly parallel.
+struct CrossingPart {
+  double of_a, of_b, of_angle, slope_a, slope_b, slope_angle;
+  CrossingPart(const PlacedEdge &a, const PlacedEdge &b, const EdgeCrossing &at, double wa, double wb)
+      : of_a(smooth_step(a.half - std::fabs(at.s) - wa, wa, slope_a)),
+        of_b(smooth_step(b.half - std::fabs(at.r) - wb, wb, slope_b)),
+        of_angle(smooth_step(at.square - FADED, FADES, slope_angle))
+  {
+  }
+  double value() const { return of_a * of_b * of_angle; }
+};
+
 // Whether an edge, longer by `more` at both ends, goes through a host that is thicker by `by`.
 bool passes(const Solid &host, const PlacedEdge &edge, double more, double by)
 {
@@ -148,9 +168,8 @@ bool passes(const Solid &host, const PlacedEdge &edge, double more, double by)
   return true;
 }
 
-constexpr double PARALLEL = 1e-4;                   // square of the sine below which two edges have no crossing
+constexpr double PARALLEL = 1e-4;                   // square of a sine below which two edges have no crossing
 constexpr double CROSSED = 0.05;                    // the same: below it nothing is said of a later time
-constexpr double FADED = 0.02, FADES = 0.015;       // the same: the ramp of nearly parallel edges
 constexpr double AT_BIRTH = -0.1, AT_END = -0.4;    // how far n may be out of the cones
 constexpr double SHALLOW_BIRTH = 0.06;              // over the thinnest part
 
@@ -260,12 +279,9 @@ void touch_edges(const TouchStep &step, SolidPair &pair, Solid &a, Solid &b, con
       near.until = pair.known_for - way_to_meet(a, b, at);
       continue;
     }
-    // Ramps from the ends inward, and for edges that are nearly parallel.
     const double wa = 0.5 * ramp_of(a), wb = 0.5 * ramp_of(b);
-    double slope_a, slope_b, slope_angle;
-    const double part_a = smooth_step(one.half - std::fabs(at.s) - wa, wa, slope_a),
-                 part_b = smooth_step(other.half - std::fabs(at.r) - wb, wb, slope_b),
-                 part_angle = smooth_step(at.square - FADED, FADES, slope_angle), part = part_a * part_b * part_angle;
+    const CrossingPart counts(one, other, at, wa, wb);
+    const double part = counts.value();
     const Vec3 on_a = one.middle + at.s * one.along, on_b = other.middle + at.r * other.along, x = 0.5 * (on_a + on_b);
     if (!is_known) {
       if (part <= 0.0 || (at.depth > SHALLOW_BIRTH * thinner(a, b) && !step.may_be_deep())) continue;
@@ -273,11 +289,16 @@ void touch_edges(const TouchStep &step, SolidPair &pair, Solid &a, Solid &b, con
       touch.first = i;
       touch.second = j;
       touch.anchor = {at.s, at.r, 0.0};
-      const double deeper = step.time_step() * dot(TouchStep::relative_velocity(a, &b, x), at.n);
-      if (!step.is_first() && at.depth - A_STEP * deeper <= 0.0)
-        TouchStep::came_from(touch, at.depth - deeper);
-      else
-        TouchStep::overlaps(touch, at.depth);
+      const Vec3 relative = TouchStep::relative_velocity(a, &b, x);
+      const double back = -A_STEP * step.time_step();
+      const auto came_over_ramp = [&] {
+        if (part >= LITTLE || at.depth >= SHALLOW * thinner(a, b)) return false;
+        PlacedEdge before = one;
+        before.shift(x, back * relative, back * (a.spin - b.spin));
+        return CrossingPart(before, other, EdgeCrossing(before, other), wa, wb).value() <= 0.0;
+      };
+      step.begin(touch, a, &b, {x, -1.0 * at.n, at.depth, part},
+                 at.depth + back * dot(relative, at.n) <= 0.0 || came_over_ramp());
       pair.touches.push_back(touch);
       found = pair.touches.end() - 1;
     } else if (at.cone < AT_END || at.depth <= 0.0 || part <= 0.0) {
@@ -294,9 +315,9 @@ void touch_edges(const TouchStep &step, SolidPair &pair, Solid &a, Solid &b, con
     ContactForce<double> push = step.pressure(touch, its_law, part, at.depth);
     Vec3 force = (-push.press) * at.n;
     // The gradient of `part`: s and r move by (u - cosine w)/sine^2 and -(w - cosine u)/sine^2 with the first body.
-    const double by_s = push.surface_energy * (at.s > 0.0 ? -slope_a : slope_a) * part_b * part_angle,
-                 by_r = push.surface_energy * part_a * (at.r > 0.0 ? -slope_b : slope_b) * part_angle,
-                 by_angle = push.surface_energy * part_a * part_b * slope_angle;
+    const double by_s = push.surface_energy * (at.s > 0.0 ? -counts.slope_a : counts.slope_a) * counts.of_b * counts.of_angle,
+                 by_r = push.surface_energy * counts.of_a * (at.r > 0.0 ? -counts.slope_b : counts.slope_b) * counts.of_angle,
+                 by_angle = push.surface_energy * counts.of_a * counts.of_b * counts.slope_angle;
     if (by_s != 0.0 || by_r != 0.0) {
       const Vec3 aside =
           (by_s / at.square) * (one.along - at.cosine * other.along) - (by_r / at.square) * (other.along - at.cosine * one.along);

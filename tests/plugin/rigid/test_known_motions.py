@@ -243,3 +243,25 @@ def test_what_lies_in_each_other_is_pressed_out(tmp_path):
         assert np.abs(world.rows()[:, 3:6]).max() < 0.05
         assert world.number("let_go") < 0.0
         assert abs(world.energy(0.0)) < 2e-2 * -world.number("let_go")
+
+
+def contact_of_crossings(tmp_path, above: float, beside: float, v) -> tuple[float, float]:
+    """Energy of contact, over the mass, and depth where the edge of a bar is over the middle of a box and below its top."""
+    low = 0.1 + 0.1 / np.sqrt(2)  # the bar's height as its edge is level with the top of the box
+    bar = lab.box((0.4, 0.1, 0.1), at=(0, beside, low + above), q=lab.about((1, 0, 0), np.pi / 4), v=v, mu=0.0, beta=0.0)
+    bodies = [bar, lab.box((0.1, 0.1, 0.1), at=(0, 0, 0.05), held=True)]
+    with lab.World(tmp_path, bodies, frequency=10.0, step=1e-3, planes=(), gravity=(0, 0, 0)) as world:
+        world.run(round((beside / -v[1] if v[1] else (above + 1e-3) / -v[2]) / world.dt))
+        assert world.number("touching") == 2
+        return world.number("contact") / bar.mass, low - world.rows()[0, 2]
+
+
+def test_edges_that_come_from_beside_press_as_from_above(tmp_path):
+    """Contacts of edges begin at an end of one of them, a millimetre deep, with the force that they have there otherwise. They
+    had none, so that boxes in heaps went into each other where their contacts passed from one edge to the next."""
+    beside, deep = contact_of_crossings(tmp_path, -1e-3, 0.053, (0, -2, 0))
+    above, deeper = contact_of_crossings(tmp_path, 5e-4, 0.0, (0, 0, -2))
+    onset = 5e-4
+    energy = lambda d: 0.5 * (d - onset / 2) ** 2 + onset**2 / 24
+    assert min(deep, deeper) > 9e-4
+    assert beside / above == pytest.approx(energy(deep) / energy(deeper), rel=1e-3)
