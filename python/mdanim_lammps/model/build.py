@@ -124,7 +124,7 @@ class SharedParts:
 
 
 def _make_body(shape: Shape, h: float, loose: bool = False) -> _Body:
-    lattice = make_lattice(fill_cells(shape, h, loose))
+    lattice = make_lattice(fill_cells(shape, h, loose), tied=not loose and h < math.inf)  # springs are of what deforms
     surface = make_surface(shape, lattice)
     _freeze(lattice.position, lattice.share, lattice.layer, lattice.spring, lattice.hexahedron)
     _freeze(surface.triangle, surface.index, surface.weight)

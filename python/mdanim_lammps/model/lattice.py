@@ -121,7 +121,8 @@ def make_lattice(cells: Cells, tied: bool = True) -> Lattice:
     centre = share @ position / share.sum()
     moved = Cells(cells.filled, cells.low - centre, cells.high - centre)
     some = (cells.filled, braced, number, present)
-    spring, kind, holders, braces = _springs(*some) if tied else (np.zeros((0, 2), np.int32), *np.zeros((3, 0)))
+    untied = np.zeros((0, 2), np.int32), np.zeros(0, np.uint8), np.zeros(0, np.float32), np.zeros(0, np.float32)
+    spring, kind, holders, braces = _springs(*some) if tied else untied
     return Lattice(
         position=position - centre,
         share=share,

@@ -321,15 +321,13 @@ def _at_points(scene: SceneRecord, bodies: _BoundingBoxes, i: int, j: int) -> Ca
     # Vertices of the true surfaces find most overlaps; two bars that cross share no vertex but the centres of
     # cells. The cells of the smaller body are enough, so the cells of a large floor are not searched for
     # every pebble.
-    small, large = (i, j) if bodies.resolved(i) <= bodies.resolved(j) else (j, i)
-    cells = bodies.cells(small)
+    small = i if bodies.resolved(i) <= bodies.resolved(j) else j
+    of_first, of_second = (
+        np.concatenate([bodies.vertices[m], bodies.cells(m)]) if m == small else bodies.vertices[m] for m in (i, j)
+    )
 
     def deepest(moved: np.ndarray) -> float:
-        return max(
-            _deepest(bodies.vertices[j] + moved, bodies, i, first),
-            _deepest(bodies.vertices[i] - moved, bodies, j, second),
-            _deepest(cells + moved if small == j else cells - moved, bodies, large, scene.solids[large]),
-        )
+        return max(_deepest(of_second + moved, bodies, i, first), _deepest(of_first - moved, bodies, j, second))
 
     return deepest
 

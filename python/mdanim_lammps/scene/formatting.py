@@ -31,7 +31,7 @@ def say(value: float, unit: str = "", digits: int = 3) -> str:
 
 def in_full(numbers: Iterable[float]) -> str:
     """Numbers with all their bits, for programs."""
-    return " ".join(repr(float(number)) for number in numbers)
+    return " ".join(map(repr, map(float, numbers)))
 
 
 def number(value: float, digits: int = 3) -> str:
