@@ -99,7 +99,7 @@ void RigidContact::touch_pair(const TouchStep &step, SolidPair &pair)
   }
   step.next(pair.touches);
   touch_solids(step, pair, a, b, settings.law_of(a, b));
-  step.listed(pair.touches);
+  step.listed(pair.touches, a, &b);
 }
 
 // In the frame of a plane that moves, contact is as with one that stands. The work is -F dx of the plane with the mean of the
@@ -111,7 +111,7 @@ void RigidContact::touch_plane(const TouchStep &step, std::vector<Touch> &touche
     if (touches.empty() && plane.above(one) > 0.0) return;
     step.next({});
     mdanim::touch_plane(step, touches, one, plane, settings.law_at(one, k));
-    step.listed(touches, k);
+    step.listed(touches, one, nullptr, k);
   };
   if (!plane.moves) return touch();
   const Vec3 centre = one.centre, velocity = one.velocity, force = one.force;

@@ -10,7 +10,7 @@
 namespace mdanim {
 
 // The dashpot has beta times critical damping, 2 beta sqrt(k/lambda), with lambda of both along n.
-Touch TouchStep::damped(Touch::TouchKind kind, const TouchLaw &law, double yields)
+Touch TouchStep::born(Touch::TouchKind kind, const TouchLaw &law, double yields)
 {
   Touch touch;
   touch.kind = kind;
@@ -69,41 +69,45 @@ Touch TouchStep::born(Touch::TouchKind kind, const TouchLaw &law, const Solid &a
 {
   if (const SharedContact one(kind, a, b, x, n); one.share < 1.0)
     return born(kind, {one.share * law.stiffness, law.friction, law.damping, law.rolling}, one.yields);
-  births.push_back({n, x - a.centre, b ? x - b->centre : Vec3(), &a, b, -dot(relative_velocity(a, b, x), n)});
-  return damped(kind, law, a.yields_at(x, n) + (b ? b->yields_at(x, n) : 0.0));
-}
-
-void TouchStep::listed(std::vector<Touch> &touches, int plane) const
-{
-  // A contact that ended at once is in no list: then none of them is known.
-  if (births.size() - found > touches.size()) found = births.size();
-  Touch *touch = touches.data() + touches.size() - (births.size() - found);
-  for (; found < births.size(); ++found) {
-    births[found].touch = touch++;
-    births[found].plane = plane;
-  }
-}
-
-// All contacts of one blow begin to press alike, so the depth of contact i yields to them by the sum of lambda_ij over all j,
-// lambda_ii being its own. A log on both ends yields half as much as on one, a slender rod on the corners of its end several
-// times as much. Each has the dashpot of a contact that yields so, at most that of MOST_DAMPING; where the sum is larger it has
-// its own from where it rests, and where it is laid down, with which stacks come to rest.
-static void share_blow(const std::vector<Birth> &blow, double onset)
-{
+  Touch touch = born(kind, law, a.yields_at(x, n) + (b ? b->yields_at(x, n) : 0.0));
   constexpr double A_BLOW = 0.04;    // of the speed that goes through the onset: what is slower is laid down
+  const double speed = -dot(relative_velocity(a, b, x), n);
+  touch.shares = !is_first() && touch.damping > 0.0 && speed > A_BLOW * onset * std::sqrt(touch.stiffness * touch.yields);
+  changes = true;
+  return touch;
+}
+
+void TouchStep::listed(std::vector<Touch> &touches, const Solid &a, const Solid *b, int plane) const
+{
+  const bool is_glued = a.whole != Solid::ALONE || (b && b->whole != Solid::ALONE);    // may touch by other pieces too
+  const bool changed = std::exchange(changes, false);
+  if (changed) in_blow.push_back({{}, {}, {}, &a, b, plane, nullptr});
+  if (!changed && !is_glued) return;
+  for (Touch &one : touches)
+    if (one.shares != 0.0 && one.rests == 0.0 && one.parted == 0.0)
+      in_blow.push_back({one.n, one.at - a.centre, b ? one.at - b->centre : Vec3(), &a, b, plane, &one});
+}
+
+// The depth of contact i of a blow yields by the sum of lambda_ij over the parts of all contacts j that press with it, lambda_ii
+// being its own: a log on both ends yields half as much as on one, a slender rod on the corners of its end several times as much. Each has the
+// dashpot of a contact that yields so, at most that of MOST_DAMPING, until it rests, when it has its own. What is laid down has
+// its own from the beginning: with that stacks come to rest.
+static void share_blow(std::vector<InBlow> &blow)
+{
+  const auto mark = std::remove_if(blow.begin(), blow.end(), [](const InBlow &one) { return !one.touch; });
+  if (mark == blow.end()) return;
+  blow.erase(mark, blow.end());
   SolidPush on_a, on_b;
-  for (const Birth &one : blow) {
-    on_a.add(*one.a, one.from_a, one.n);
-    if (one.b) on_b.add(*one.b, one.from_b, one.n);
+  for (const InBlow &one : blow) {
+    on_a.add(*one.a, one.from_a, one.touch->part * one.n);
+    if (one.b) on_b.add(*one.b, one.from_b, one.touch->part * one.n);
   }
-  for (const Birth &one : blow) {
-    const double own = one.touch->yields,
-                 all = on_a.moves(*one.a, one.from_a, one.n) + (one.b ? on_b.moves(*one.b, one.from_b, one.n) : 0.0);
-    const double most = 2.0 * Material::MOST_DAMPING / std::sqrt(one.touch->stiffness * own);
-    if (all < own)
-      one.touch->damping = all > 0.0 ? std::min(one.touch->damping * std::sqrt(own / all), most) : most;
-    else if (one.speed > A_BLOW * onset * std::sqrt(one.touch->stiffness * own))
-      one.touch->shared = std::sqrt(own / all);
+  for (const InBlow &one : blow) {
+    Touch &touch = *one.touch;
+    const double own = touch.yields, of_a = on_a.moves(*one.a, one.from_a, one.n),
+                 all = (1.0 - touch.part) * own + of_a + (one.b ? on_b.moves(*one.b, one.from_b, one.n) : 0.0);
+    const double most = 2.0 * Material::MOST_DAMPING / (touch.damping * std::sqrt(touch.stiffness * own));
+    touch.shared = all > 0.0 ? std::min(std::sqrt(own / all), most) : most;
   }
 }
 
@@ -113,20 +117,18 @@ void TouchStep::share_blows() const
   const auto body = [](const Solid &one) {
     return Body{one.whole != Solid::ALONE, one.whole != Solid::ALONE ? one.whole : one.id};
   };
-  std::map<std::pair<Body, Body>, std::vector<Birth>> blows;
-  for (Birth birth : births) {
-    if (!birth.a || !birth.touch || !(birth.touch->damping > 0.0)) continue;
-    Body a = body(*birth.a), b = birth.b ? body(*birth.b) : Body{-1, birth.plane};
-    if (birth.b && b < a) {
+  std::map<std::pair<Body, Body>, std::vector<InBlow>> blows;
+  for (InBlow one : in_blow) {
+    Body a = body(*one.a), b = one.b ? body(*one.b) : Body{-1, one.plane};
+    if (one.b && b < a) {
       std::swap(a, b);
-      std::swap(birth.a, birth.b);
-      std::swap(birth.from_a, birth.from_b);
-      birth.n = -1.0 * birth.n;
+      std::swap(one.a, one.b);
+      std::swap(one.from_a, one.from_b);
+      one.n = -1.0 * one.n;
     }
-    blows[{a, b}].push_back(birth);
+    blows[{a, b}].push_back(one);
   }
-  for (const auto &[bodies, blow] : blows)
-    if (blow.size() > 1) share_blow(blow, onset);
+  for (auto &[bodies, blow] : blows) share_blow(blow);
 }
 
 Vec3 TouchStep::relative_velocity(const Solid &a, const Solid *b, const Vec3 &x)
@@ -137,6 +139,7 @@ Vec3 TouchStep::relative_velocity(const Solid &a, const Solid *b, const Vec3 &x)
 
 void TouchStep::end(Touch &touch, double depth) const
 {
+  changes = true;
   account.let_go -= touch.owed;
   account.heat += touch.memory.stick_energy + touch.rolling.stick_energy;
   account.damped += last_damping_work(touch.memory, std::min(depth, touch.memory.depth));
@@ -267,10 +270,13 @@ void TouchStep::apply(Solid &a, Solid *b, const Vec3 &x, const Vec3 &f) const
 // S = sum of 2 k lambda* over the contacts of a body (k lambda* at planes). The springs of a contact are k (n n + 0.8 t t), so
 // lambda* is at most 0.2 lambda + 0.8 lambda along any direction; n of two edges may be any direction. D is the same with
 // dashpots, k eta (n n + 0.5 sqrt(0.8) t t).
-void TouchStep::book(Solid &a, Solid *b, Touch &touch, double part, const ContactForce<double> &force) const
+void TouchStep::book(Solid &a, Solid *b, Touch &touch, const Meeting &at, const ContactForce<double> &force) const
 {
+  touch.at = at.x;
+  touch.part = at.part;
+  touch.n = b && b->id < a.id ? -1.0 * at.n : at.n;
   // `more` has done a half of its work.
-  touch.energy = part * force.surface_energy + touch.memory.stick_energy + touch.rolling.stick_energy - touch.owed +
+  touch.energy = at.part * force.surface_energy + touch.memory.stick_energy + touch.rolling.stick_energy - touch.owed +
                  0.5 * touch.more * (touch.memory.depth - touch.earlier);
   account.heat += force.heat;
   account.damped += force.damped;
@@ -280,7 +286,7 @@ void TouchStep::book(Solid &a, Solid *b, Touch &touch, double part, const Contac
       return touch.kind == Touch::EDGES || touch.kind == Touch::CURVES ? one.yields_any
                                                                        : (1.0 - stick) * one.yields + stick * one.yields_any;
     };
-    const double s = (b ? 2.0 : 1.0) * part * touch.stiffness;
+    const double s = (b ? 2.0 : 1.0) * at.part * touch.stiffness;
     one.stiffness_sum += s * along(ContactLaw::STICK);
     one.damping_sum += s * touch.damping * along(STICK_DAMPING * std::sqrt(ContactLaw::STICK));
     ++one.touching;
@@ -306,8 +312,9 @@ void TouchStep::press(Touch &touch, const TouchLaw &its_law, Solid &a, Solid *b,
     touch.anchor = own - (b ? b->in_body(left) : left);
     force += push.pull + push.drag;
   }
-  apply(a, b, b ? b->place(own) : own, force);
-  book(a, b, touch, part, push);
+  const Meeting at{b ? b->place(own) : own, n, depth, part};
+  apply(a, b, at.x, force);
+  book(a, b, touch, at, push);
 }
 
 Touch *TouchStep::meet(std::vector<Touch> &list, Touch::TouchKind kind, int number, const TouchLaw &law, Solid &a, Solid *b,
@@ -374,7 +381,7 @@ void TouchStep::press_between(Touch &touch, const TouchLaw &its_law, Solid &a, S
   }
   if (its_law.rolling > 0.0) resist_rolling(touch, its_law, a, b, at.n, at.part, push);
   apply(a, b, at.x, force);
-  book(a, b, touch, at.part, push);
+  book(a, b, touch, at, push);
 }
 
 // Friction of the angle by which one rolled over the other, across n: of a moment of inertia I = 1/(1/I_a + 1/I_b) by their least

@@ -20,8 +20,11 @@ struct Touch {
   std::int32_t side = 0;                 // of the host of a corner or a moving point
   double stiffness = 0.0;                // k [N/m]
   double damping = 0.0;                  // dashpot over k [s]
+  double shares = 0.0;                   // 1 where it began by a blow, which it shares with others until it rests
+  double part = 1.0;                     // that counted last
   double yields = 0.0;                   // acceleration of the depth over the force [1/kg]
   Vec3 anchor;    // corners: in the host; edges: places along both; moving points: way from the anchor, in the host's frame
+  Vec3 at, n;     // where it was last, and the normal along which it pushes the body with the lower number
   Vec3 place;     // of curves, which may meet at several: in the host. Of an ellipsoid: the normal
   ContactMemory<double> memory;
   double earlier = 0.0;    // depth of the step before that of memory [m], where it is `followed`
@@ -29,7 +32,7 @@ struct Touch {
   double more = 0.0;
   double owed = 0.0;        // work that `more` has still to do [J]
   double followed = 0.0;    // 1 from the second step on
-  double shared = 1.0;      // of its damping, in a blow that it shares with others
+  double shared = 1.0;      // its damping in the blow over that of one that has it alone
   double rests = 0.0;       // 1 from where it goes deeper again after it came back
   double parted = 0.0;      // 1 in the step after the bodies have parted, the last one that it is there
   double counted = 0.0;     // part of it that counted in the last step, of points that are nearest on a mesh
@@ -81,13 +84,12 @@ struct PartSlope {
   Vec3 by_place, by_turn;
 };
 
-// Where a contact was born in this step: it pushes `a` along n, and `b`, if there is one, against it.
-struct Birth {
+// A contact in its blow, of two bodies, or of one and a plane: it pushes `a` along n, and `b`, if there is one, against it.
+struct InBlow {
   Vec3 n, from_a, from_b;    // from the centres of both
   const Solid *a = nullptr, *b = nullptr;
-  double speed = 0.0;    // at which it came
   int plane = 0;
-  Touch *touch = nullptr;
+  Touch *touch = nullptr;    // none: a contact of these bodies has begun or ended
 };
 
 // One evaluation of contacts: forces on bodies, and the account.
@@ -111,17 +113,17 @@ class TouchStep {
   // from the beginning, without a force.
   Touch born(Touch::TouchKind kind, const TouchLaw &law, const Solid &a, const Solid *b, const Vec3 &x, const Vec3 &n) const;
   // The same of a point that shares its contact with others: its depth yields so to its force.
-  Touch born(Touch::TouchKind kind, const TouchLaw &law, double yields) const
-  {
-    births.emplace_back();
-    return damped(kind, law, yields);
-  }
-  // The contacts that were born since the last call are the last ones of this list.
-  void listed(std::vector<Touch> &touches, int plane = 0) const;
-  // Damps contacts of two bodies, or of one and a plane, that were born together in this step as the one blow that they are.
+  static Touch born(Touch::TouchKind kind, const TouchLaw &law, double yields);
+  // These are all contacts of two bodies, or of one and a plane, as they are after this step.
+  void listed(std::vector<Touch> &touches, const Solid &a, const Solid *b, int plane = 0) const;
+  // Damps contacts of two bodies, or of one and a plane, as the one blow that they are.
   void share_blows() const;
   static void came_from(Touch &touch, double depth_before) { touch.memory.depth = std::min(0.0, depth_before); }
-  static void overlaps(Touch &touch, double depth) { touch.memory.offset = touch.memory.depth = depth; }
+  static void overlaps(Touch &touch, double depth)
+  {
+    touch.memory.offset = touch.memory.depth = depth;
+    touch.shares = 0.0;
+  }
   // Velocity of the point x of `a` over that of `b`, or of a plane.
   static Vec3 relative_velocity(const Solid &a, const Solid *b, const Vec3 &x);
   void end(Touch &touch, double depth) const;
@@ -169,7 +171,7 @@ class TouchStep {
     account.work -= 0.5 * dot(before + force.pull + force.drag, ran);
   }
   void apply(Solid &a, Solid *b, const Vec3 &x, const Vec3 &f) const;
-  void book(Solid &a, Solid *b, Touch &touch, double part, const ContactForce<double> &force) const;
+  void book(Solid &a, Solid *b, Touch &touch, const Meeting &at, const ContactForce<double> &force) const;
 
   // A point X of `a`, in the frame of its host `b` or of space, at the depth d below a side with the outward normal n in space.
   // `slope`: gradient of `part` in the host's frame.
@@ -195,13 +197,12 @@ class TouchStep {
                       ContactForce<double> &push) const;
   double follow(Touch &touch, double depth, double k) const;
   void press_out(Touch &touch, double depth, double k) const;
-  static Touch damped(Touch::TouchKind kind, const TouchLaw &law, double yields);
   double dt, onset;
   bool deep = true;
   mutable bool presses_out = false;
   TouchAccount &account;
-  mutable std::vector<Birth> births;
-  mutable std::size_t found = 0;    // births whose contacts are known
+  mutable bool changes = false;           // whether one of those that are listed next has begun or ended
+  mutable std::vector<InBlow> in_blow;    // of bodies of which one has begun or ended, and of all that are glued
 };
 
 }    // namespace mdanim

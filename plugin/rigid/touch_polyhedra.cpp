@@ -350,7 +350,7 @@ void touch_edges(const TouchStep &step, SolidPair &pair, Solid &a, Solid &b, con
       force += push.drag;
     }
     step.apply(a, &b, x, force);
-    step.book(a, &b, touch, part, push);
+    step.book(a, &b, touch, {x, -1.0 * at.n, at.depth, part}, push);
   }
 }
 

@@ -66,7 +66,7 @@ def test_what_is_struck_wakes(tmp_path):
             each.run(300)
         assert max(run.rows()[2, 2], awake.rows()[2, 2]) < 2.2 * SIDE
         assert apart < 1e-4 * SIDE
-        run.run(6500)  # two cubes rock on a third
+        run.run(7000)  # two cubes rock on a third
         assert run.number("asleep") >= 6
         lost = run.energy() + run.number("stilled") - awake.energy()
         assert abs(lost) < 1e-4 * awake.energy()
