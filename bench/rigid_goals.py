@@ -16,7 +16,6 @@ from typing import NamedTuple
 
 import numpy as np
 import one_thread  # noqa: F401
-from mdanim_lammps.features.contact.restitution import damping_for
 from timing import markdown
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests" / "campaigns"))
@@ -138,17 +137,6 @@ def rocking(folder: Path) -> Iterator[Reached]:
     yield Reached("rocking block: amplitudes to the third", "0.1", f"{worst:.2f}", worst < 0.1)
 
 
-def leaning_log(folder: Path, e: float, leans: float) -> float:
-    """Speed that is left of a log, 80 cm long, that falls on one end a little before the other."""
-    log, angle = lab.cylinder(0.1, 0.8), np.radians(leans)
-    q = lab.about((1, 0, 0), np.pi / 2 + angle)
-    z = 0.1 * np.cos(angle) + 0.4 * np.sin(angle) + 2e-3
-    body = log.put(at=(0, 0, z), q=q, v=(0, 0, -1), beta=damping_for(e))
-    with lab.World(folder, [body], frequency=lab.frequency_of(1.0, 0.2), gravity=(0, 0, 0)) as world:
-        world.run(round(0.06 / world.dt))
-        return float(world.rows()[0, 5])
-
-
 def restitution(folder: Path) -> Iterator[Reached]:
     """Restitution of the point that meets the floor; and of a log that falls flat, or nearly so."""
     for lowest, highest, most, on_end in ((0.4, 1.0, 0.02, 0.06), (0.1, 0.3, 0.04, 0.1)):
@@ -162,10 +150,19 @@ def restitution(folder: Path) -> Iterator[Reached]:
     slow = [(speed, e, rigid_motions.bounced(folder, "ball on floor", e, speed)) for speed, e in blows]
     told = ", ".join(f"{left:.3f} of {e:g} at {speed:g}" for speed, e, left in slow)
     yield Reached("restitution at parts of the fastest speed", "0.02", told, all(abs(left - e) <= 0.02 for _, e, left in slow))
-    leans = (0.0, 0.02, 0.05, 0.1, 0.2)
-    found = [leaning_log(folder, 0.5, lean) - 0.5 for lean in leans]
-    told = ", ".join(f"{value:+.3f} at {lean:g}°" for lean, value in zip(leans, found))
-    yield Reached("restitution 0.5: log on both ends, one a little first", "0.06", told, max(map(abs, found)) <= 0.06)
+    leans = (0.0, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 1.5, 2.0, 3.0, 5.0)
+    for case in rigid_motions.LONG:
+        found = [
+            (rigid_motions.leaning(folder, case, 0.5, lean)[0], rigid_motions.blow_by_blow(case, 0.5, lean)[0]) for lean in leans
+        ]
+        told = ", ".join(f"{left:.2f} ({least:.2f}) at {lean:g}°" for lean, (left, least) in zip(leans, found))
+        off = max(max(left - max(0.5, least), min(0.5, least) - left) for left, least in found)
+        what = f"restitution 0.5 of a {case} that leans: its centre between 0.5 and Newton's law blow by blow (in brackets)"
+        yield Reached(what, "0.06", told, off <= 0.06)
+    backs = [rigid_motions.falls_back(folder, 0.5, stiffness) for stiffness in (1.0, 16.0, 256.0)]
+    told = ", ".join(f"{left:.2f}" for left in backs)
+    what = "restitution 0.5 of the other edge of a column that falls back, blow at 0.06 m/s, `contact-stiffness` 1, 16, 256"
+    yield Reached(what, "0.06 where contacts are hard", told, abs(backs[-1] - 0.5) <= 0.06)
 
 
 def standing(folder: Path) -> Iterator[Reached]:
