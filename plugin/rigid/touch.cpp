@@ -89,9 +89,9 @@ void TouchStep::listed(std::vector<Touch> &touches, const Solid &a, const Solid 
 }
 
 // The depth of contact i of a blow yields by the sum of lambda_ij over the parts of all contacts j that press with it, lambda_ii
-// being its own: a log on both ends yields half as much as on one, a slender rod on the corners of its end several times as much. Each has the
-// dashpot of a contact that yields so, at most that of MOST_DAMPING, until it rests, when it has its own. What is laid down has
-// its own from the beginning: with that stacks come to rest.
+// being its own: a log on both ends yields half as much as on one, a slender rod on the corners of its end several times as much.
+// Each has the dashpot of a contact that yields so, at most that of MOST_DAMPING, until it rests, when it has its own. What is
+// laid down has its own from the beginning: with that stacks come to rest.
 static void share_blow(std::vector<InBlow> &blow)
 {
   const auto mark = std::remove_if(blow.begin(), blow.end(), [](const InBlow &one) { return !one.touch; });
