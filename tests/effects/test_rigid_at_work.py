@@ -13,6 +13,7 @@ from mdanim_lammps.features.contact.rigid_surfaces import frequency
 from mdanim_lammps.features.rigid.shapes import polyhedron
 from mdanim_lammps.features.rigid.touching import omega
 from mdanim_lammps.model import shapes
+from mdanim_lammps.model.spacing import plan_spacing
 from mdanim_lammps.model.spin import spin
 from mdanim_lammps.results.motion import MotionTable
 from mdanim_lammps.run.energy import energies, tell
@@ -62,6 +63,13 @@ def test_it_has_few_particles_without_springs_and_sets_no_spacing(prepared):
     ready = prepared(BLOCK + card + CONTROL)
     assert ready.context.spacing.h == prepared(BLOCK + CONTROL).context.spacing.h == pytest.approx(0.05)
     assert ready.context.spacing.of == pytest.approx((0.05, 0.002))
+
+
+@pytest.mark.parametrize(("sizes", "cell"), [("10 cm 4 mm", 0.002), ("10 cm 12 cm", 0.03), ("1 cm 30 cm", 0.005)])
+def test_a_disc_is_round_about_its_axis_alone(sizes, cell):
+    """Two cells across the height of a coin beside something soft, four across a log."""
+    coin = f"object coin {{ shape cylinder {sizes}  position (0, 0, 3) m  density 500  elasticity rigid }}\n"
+    assert plan_spacing(parse_scene(BLOCK + coin + CONTROL)).of[1] == pytest.approx(cell)
 
 
 def test_its_moments_are_those_of_its_shape(prepared):

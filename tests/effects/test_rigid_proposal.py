@@ -184,6 +184,23 @@ def test_a_plank_that_sags_is_not_named(prepared):
         assert ("plank" in before(ready)) == (sag < proposal.SAG) == (t == 8)
 
 
+@pytest.mark.parametrize(
+    ("shape", "beneath", "named"),
+    [
+        ("box (48, 8, 4) cm", "box (60, 8, 8) cm", ["plate[0...2]"]),
+        ("box (48, 8, 4) cm", "box (24, 8, 8) cm", []),  # its ends are free
+        ("cylinder 24 cm 4 cm", "box (60, 60, 8) cm", ["plate[0...2]"]),
+    ],
+)
+def test_what_lies_flat_is_not_bent_by_what_is_above(prepared, shape, beneath, named):
+    """Three plates on each other that bear a weight; as a bar between its ends the lowest would sag by a seventh and more."""
+    plate = "object plate[{n}] {{ shape {shape}  position (0, 0, {z}) cm  density 1000  elasticity 3 MPa }}\n"
+    objects = "".join(plate.format(n=n, shape=shape, z=10 + 4 * n) for n in range(3))
+    objects += f"object foot {{ shape {beneath}  position (0, 0, 4) cm  hold all }}\n"
+    objects += "object weight { shape box (8, 8, 4) cm  position (0, 0, 22) cm  density 30000  elasticity rigid }\n"
+    assert before(prepared(SCENE.format(objects=objects, mu=0.5, control="resolution 4 cm", expect=""))) == named
+
+
 def test_the_scene_as_it_is_proposed(prepared):
     """Rigid, without damping, and all else as it was; it can be prepared."""
     ready = prepared(wall(more="damping 0.1"))

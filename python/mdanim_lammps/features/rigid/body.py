@@ -22,7 +22,7 @@ from .shapes import hidden, is_known, is_rigid, on_objects, on_planes, only_ball
 DISPLACED = 0.9
 """Part of the volume of the rigid objects in a scene with a liquid that those have whose thinnest parts set its cells."""
 ACROSS, ROUND = 2, 4
-"""Cells across its thinnest part: the least that have an inside; and of what is round, or touches others at points of its
+"""Cells across its thinnest part: the least that have an inside; and of what is round there, or touches others at points of its
 surface, a third of a cell apart: a torus of 2 rolls so down a slope with 0.96 of its acceleration, one of 4 with 0.995."""
 OF_CORNERS = (Cone, Cylinder, Ellipsoid, Torus, Mesh)
 """Shapes whose particles are the corners of a box around the drawn surface."""
@@ -113,7 +113,9 @@ def _framed(shared, shape, h: float) -> BodyFrame:
 
 
 def _across(solid) -> int:
-    return ACROSS if isinstance(solid.shape, Box | Sphere | Mesh) and on_objects(solid.shape) else ROUND
+    shape = solid.shape
+    is_disc = isinstance(shape, Cylinder) and shape.height <= shape.radius  # two across its height are four around
+    return ACROSS if is_disc or (isinstance(shape, Box | Sphere | Mesh) and on_objects(shape)) else ROUND
 
 
 def is_cornered(scene, shape) -> bool:

@@ -14,9 +14,11 @@ from ...effects.context import Context
 from ...effects.envelope import Envelope
 from ...effects.proposal import Proposal
 from ...model import shapes
+from ...model.overlap import BORN_AT_REST
+from ...reach.standing import LEVEL
 from ...scene.formatting import number
 from ...scene.naming import bare_name, told_together
-from ...scene.scene import SceneRecord, Solid
+from ...scene.scene import Box, Cylinder, SceneRecord, Solid
 from ..contact.pairs import damping, frictions
 from ..contact.rigid_surfaces import loads, struck_at
 from ..contact.words import ContactModel
@@ -35,6 +37,8 @@ STRAY = 0.015
 twentieth of its length is 0.015 off."""
 SAG = 0.05
 """Sag of a bar that lies at its ends over its length, before the run."""
+BORNE = 0.8
+"""Part of either side of a flat object that one flat thing below it takes, so that what is above it does not bend it."""
 BLOW = 0.7
 """Fastest blow that will not be seen, over the one that folds up the spot where an object is struck: up to 0.69 of the objects of
 scenes/ that strained by less than STRAIN, and 0.9 or more of those that strained by more."""
@@ -55,7 +59,7 @@ def before(envelope: Envelope) -> Proposal | None:
     thin = np.array([shapes.thickness(s.shape) for s in solids])
     weight = system.density * envelope.reach.g * size / system.young
     sag = BAR * weight * (size / thin) ** 2
-    sag[free] *= loads(system, free, context.reach.body)
+    sag[free] *= np.where(_lies_flat(context)[free], 1.0, loads(system, free, context.reach.body))
     fine = (blow <= BLOW * folds_at(spots(envelope))) & (sag <= SAG)
     return _proposal(
         context.scene,
@@ -120,6 +124,31 @@ def _may_be(solid: Solid, is_looked_at: bool, takes: bool) -> bool:
     if solid.hold or not (kind.deforms and kind.fills) or is_looked_at:
         return False
     return not any(getattr(solid, word) and (word != "damping" or not takes) for word in SENSELESS)
+
+
+def _lies_flat(context: Context) -> np.ndarray:
+    """Objects that lie with a flat side on level ground or along most of another flat side at the start, bool, shape (M,): what
+    is above them presses them together, and does not bend them."""
+    system, planes = context.reach.system, context.reach.acting.planes
+    low, high = system.bounds(system.position)
+    near = BORN_AT_REST * system.spacing
+    flat = np.array([_is_level(s) for s in context.solids])
+    found = np.zeros(len(flat), bool)
+    for plane in (p for p in planes if p.axis == 2 and p.sign > 0 and p.motion is None):
+        found |= flat & (abs(low[:, 2] - plane.at) <= near)
+    for m in np.flatnonzero(flat & ~found).tolist():
+        shared = np.minimum(high[:, :2], high[m, :2]) - np.maximum(low[:, :2], low[m, :2])
+        along = (shared >= BORNE * (high[m, :2] - low[m, :2])).all(axis=1)
+        found[m] = (flat & along & (abs(high[:, 2] - low[m, 2]) <= np.maximum(near, near[m]))).any()
+    return found
+
+
+def _is_level(solid: Solid) -> bool:
+    """Whether the upper and the lower side of an object are flat and level."""
+    down = abs(np.array(solid.rotation)[2])
+    if isinstance(solid.shape, Box):
+        return bool(down.max() > 1.0 - LEVEL)
+    return isinstance(solid.shape, Cylinder) and bool(down[2] > 1.0 - LEVEL)
 
 
 def _size(solid: Solid) -> float:
