@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """Elastic objects that `check` and the end of a run propose as rigid: how strains are measured, who is named, who is not."""
 
+import re
 from types import SimpleNamespace
 
 import numpy as np
@@ -254,7 +255,11 @@ def test_a_study_rates_rigid_against_elastic(tmp_path, monkeypatch):
     assert study.points[rigid.key].particles < study.points[elastic.key].particles
     assert set(a.ladders) == {"time step"} and a.finest in a.measured["time step"]
     assert a.rated[rigid.key].error.middle < 0.02
-    assert [line for line in order_lines(study) if line.startswith(f"rigid: {rigid}: ")]
+    (line,) = (line for line in order_lines(study) if line.startswith("rigid: "))
+    apart = study.points[rigid.key].tracks[0] - study.points[elastic.key].tracks[0]
+    apart = 100.0 * np.sqrt((apart**2).sum(-1).mean()) / a.scale
+    assert re.search(r"rigid is .* off and takes .*; elastic is .* off and takes", line)
+    assert float(re.search(r", (\S+) % from the scene's own", line)[1]) == pytest.approx(apart, rel=0.06)
     assert Store(tmp_path / "study", scene_hash(parse_scene(SLIDE))).points.keys() == study.points.keys()
 
 

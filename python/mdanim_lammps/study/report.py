@@ -12,9 +12,9 @@ from ..effects.varied import varied
 from ..picture.plot import own_style
 from ..results.files import write_whole
 from ..scene.formatting import number, say
-from .analysis import Rated, lost, off
+from .analysis import Analysis, Rated, lost, off
 from .error import ROUND_OFF, distance
-from .setting import ALL, values
+from .setting import ALL, Setting, values
 from .store import Store
 
 if TYPE_CHECKING:
@@ -147,6 +147,16 @@ def _spread(middle: float, spread: float, runs: int) -> str:
     return f"{number(middle)}{told}"
 
 
+def _chosen(a: Analysis, setting: Setting, shown: str) -> str:
+    """Error and time of a setting that is a choice, and how far from the scene's own it moves: better known than both errors."""
+    r = a.rated[setting.key]
+    told = f"{shown} is {off(r.error.middle, a.doubt)} off and takes {say(r.seconds.middle, 's', 2)}"
+    if setting == a.own or not a.scale:
+        return told
+    apart = distance(r.point.tracks[0], a.rated[a.own.key].point.tracks[0]) / a.scale
+    return f"{told}, {number(100 * apart, 2)} % from the scene's own"
+
+
 def order_lines(study: Study) -> list[str]:
     """One line per ladder: its order, or why it has none, or why it was left out."""
     lines = []
@@ -165,12 +175,8 @@ def order_lines(study: Study) -> list[str]:
             told += f"; the limit is the finest run, which may be off by {number(100 * c.doubt, 2)} %"
         lines.append(f"{name}: {what}{told}")
     for name in a.measured.keys() - a.ladders.keys():
-        told = (
-            f"{s}: {off(r.error.middle, a.doubt)} off, {say(r.seconds.middle, 's', 2)}"
-            for s in a.measured[name]
-            for r in [a.rated[s.key]]
-        )
-        lines.append(f"{name}: {'; '.join(told)}")
+        (choice,) = (v for v in varied() if v.name == name)
+        lines.append(f"{name}: {'; '.join(_chosen(a, s, choice.shown(getattr(s, name))) for s in a.measured[name])}")
     g = study.analysis.growth
     if study.analysis.chaotic and math.isfinite(g.folding):
         lines.append(
