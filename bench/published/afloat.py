@@ -31,7 +31,9 @@ def afloat(runs: Runs) -> Found:
     for density in (300.0, 500.0, 900.0):
         run = runs.run("afloat", density=density)
         rows.append(Row(f"share below the surface, {density:g} kg/m³", density / 1000.0, run.outcomes[0].found, 0.02))
-    return Found(rows)
+    points = {"here": ((0.3, 0.5, 0.9), [row.found for row in rows])}
+    line = {"Archimedes": ((0.0, 1.0), (0.0, 1.0))}
+    return Found(rows, Curve("density over that of water", "share below the surface", line, points))
 
 
 CASES = [

@@ -18,7 +18,7 @@ from mdanim_lammps.scene.scene import SceneRecord
 from mdanim_lammps.scene.shapes import Mesh
 from scipy.optimize import linprog
 
-from .case import SCENES, Case, Found, Row, Runs
+from .case import SCENES, Case, Curve, Found, Row, Runs
 from .standing import least
 
 STONES = 20
@@ -98,14 +98,20 @@ def limit(held: Callable[[float], bool], low: float, high: float) -> float:
 
 def arch(runs: Runs) -> Found:
     """Limits of thickness and of friction, by halving."""
-    rows = []
+    rows, found = [], []
     thickness = least(lambda thin: stands(runs, thin, 0.6), 0.09, 0.13, 4)
     rows.append(Row("least t/R at friction 0.6", 0.107426, thickness, 0.04))
+    found.append((thickness, 0.6))
     for thin, low, high, published in ((0.15, 0.30, 0.40, None), (0.25, 0.27, 0.35, 0.309215)):
         needed = published or limit(lambda mu, thin=thin: statics(thin, mu) is not None, low, high)
-        found = least(lambda mu, thin=thin: stands(runs, thin, mu), low, high, 3)
-        rows.append(Row(f"least friction at t/R {thin:g}", needed, found, 0.02))
-    return Found(rows)
+        friction = least(lambda mu, thin=thin: stands(runs, thin, mu), low, high, 3)
+        rows.append(Row(f"least friction at t/R {thin:g}", needed, friction, 0.02))
+        found.append((thin, friction))
+    thick = np.array([0.11, 0.12, 0.13, 0.15, 0.17, 0.19, 0.21, 0.25])
+    needs = [limit(lambda mu, thin=thin: statics(thin, mu) is not None, 0.25, 0.5) for thin in thick]
+    line = {"statics of twenty stones": ((thick[0], *thick), (0.62, *needs))}
+    points = {"Cocchetti and Rizzi": ((0.107426, 0.200637), (0.395832, 0.309215)), "here": tuple(zip(*found))}
+    return Found(rows, Curve("t/R", "least friction", line, points))
 
 
 CASES = [

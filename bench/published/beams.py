@@ -9,7 +9,7 @@ import numpy as np
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
-from .case import Case, Found, Row, Runs, places
+from .case import Case, Curve, Found, Row, Runs, places
 
 ELASTICA = {1.0: (0.30172, 0.05643), 3.0: (0.60325, 0.25442), 10.0: (0.81061, 0.55500)}
 """Deflection and shortening of the end over the length, at P L^2/(E I)."""
@@ -49,15 +49,22 @@ def tip_force(runs: Runs) -> Found:
         last = tip[np.flatnonzero(time <= end + 1e-9)[-1]]
         for value, figure, what in zip((-last[2], LENGTH - last[0]), known, ("deflection", "shortening"), strict=True):
             rows.append(Row(f"{what} over length, P L²/EI = {alpha:g}", figure, float(value) / LENGTH, 0.01))
-    return Found(rows)
+    alphas = np.linspace(0.2, 11.0, 40)
+    known = np.array([elastica(alpha) for alpha in alphas]).T
+    lines = {"deflection, elastica": (alphas, known[0]), "shortening, elastica": (alphas, known[1])}
+    points = {
+        f"{what} here": (list(ELASTICA), [row.found for row in rows[k::2]]) for k, what in enumerate(("deflection", "shortening"))
+    }
+    return Found(rows, Curve("P L²/EI", "over the length", lines, points))
 
 
 def arc(runs: Runs) -> Found:
     """The strip under two torques."""
-    rows = []
+    rows, ends = [], []
     for degrees in (90, 180):
         tip = runs.run("elastica_circle", turn=degrees).trajectory.objects["tip"].center_of_mass[-1] / LENGTH
         turn = math.radians(degrees)
+        ends.append(tip[[0, 2]])
         rows += [
             Row(
                 f"height of the end over length, turned by {degrees}°",
@@ -74,7 +81,10 @@ def arc(runs: Runs) -> Found:
                 scale=1.0,
             ),
         ]
-    return Found(rows)
+    turns = np.linspace(1e-6, 1.2 * math.pi, 80)
+    line = {"closed form": (np.sin(turns) / turns, (1.0 - np.cos(turns)) / turns)}
+    points = {"here, turned by 90° and 180°": tuple(zip(*ends))}
+    return Found(rows, Curve("way of the end over the length", "its height over the length", line, points))
 
 
 def sag(slender: float, thickness: float = 0.1, young: float = 2e6, weight: float = 1000.0) -> tuple[float, float]:
@@ -102,7 +112,11 @@ def timoshenko(runs: Runs) -> Found:
                 "m",
             )
         )
-    return Found(rows)
+    long = np.linspace(3.0, 11.0, 40)
+    of_bending = [sum(sag(n)) / sag(n)[0] for n in long]
+    lines = {"Timoshenko": (long, of_bending), "Euler, without shear": ((3.0, 11.0), (1.0, 1.0))}
+    found = [row.found / sag(n)[0] for row, n in zip(rows, (4, 10), strict=True)]
+    return Found(rows, Curve("length over thickness", "deflection over that of bending", lines, {"here": ((4, 10), found)}))
 
 
 def swings(runs: Runs) -> Found:
@@ -116,7 +130,10 @@ def swings(runs: Runs) -> Found:
     before = np.flatnonzero((height[:-1] < 0.0) & (height[1:] >= 0.0))
     passed = time[before] - height[before] * (time[before + 1] - time[before]) / (height[before + 1] - height[before])
     period = float(passed[-1] - passed[0]) / (len(passed) - 1)
-    return Found([Row("period", 0.2541, period, 0.01, "s")])
+    some, most = np.arange(0.0, time[-1], 0.2541 / 16.0), height.max()
+    points = {"Euler's period": (some, np.sin(2.0 * math.pi * some / 0.2541))}
+    curve = Curve("time [s]", "first mode over its largest", {"here": (time, height / most)}, points)
+    return Found([Row("period", 0.2541, period, 0.01, "s")], curve)
 
 
 def _first_mode(time: np.ndarray, x: np.ndarray, value: np.ndarray) -> float:
@@ -145,12 +162,19 @@ def waves(runs: Runs) -> Found:
     turn = (y * (twisted[..., 2] - z) - z * (twisted[..., 1] - 0.2 - y)) / 0.1**2
     twist = 4.0 * length / _first_mode(time, twisted[0, :, 0], turn)
     shear = math.sqrt(1e6 / 2.0 / (1.0 + POISSON) / 1000.0 * 6.0 * 0.140577)
-    return Found(
-        [
-            Row("speed of stretching, √(E/ρ)", math.sqrt(1000.0), stretch, 0.01, "m/s"),
-            Row("speed of twist, √(G J/ρ I)", shear, twist, 0.02, "m/s"),
-        ]
-    )
+    rows = [
+        Row("speed of stretching, √(E/ρ)", math.sqrt(1000.0), stretch, 0.01, "m/s"),
+        Row("speed of twist, √(G J/ρ I)", shear, twist, 0.02, "m/s"),
+    ]
+    end, lines = pulled[0, :, 0] > 0.999 * length, {}
+    for name, value, speed in (("stretching", pulled[..., 0] - pulled[0, :, 0], math.sqrt(1000.0)), ("twist", turn, shear)):
+        way = value[:, end].mean(1)
+        lines[f"{name} here"] = (time * speed / length, way / way.mean())
+    # The end of a bar under an even load goes there and back in parabolas, by 2 about its mean.
+    some = np.arange(0.0, 12.0, 0.25)
+    phase = np.abs((some + 2.0) % 4.0 - 2.0)
+    points = {"closed form": (some, np.where(phase < 1.0, phase**2, 0.0) + np.where(phase < 1.0, 0.0, 2.0 - (2.0 - phase) ** 2))}
+    return Found(rows, Curve("time over L/c, of the closed form", "way of the end over its mean", lines, points))
 
 
 CASES = [

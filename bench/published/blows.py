@@ -5,12 +5,15 @@ from __future__ import annotations
 
 import math
 
-from .case import Case, Found, Row, Runs
+import numpy as np
+from scipy.integrate import solve_ivp
+
+from .case import Case, Curve, Found, Row, Runs
 
 
 def bounce(runs: Runs) -> Found:
     """Speeds after over before, from heights, of balls, of logs that fall flat and of boxes."""
-    rows = []
+    rows, points = [], {}
     for scene, kinds in (("bounce", ("ball",)), ("bounce_flat", ("log", "box"))):
         objects = runs.run(scene).trajectory.objects
         for kind in kinds:
@@ -19,7 +22,9 @@ def bounce(runs: Runs) -> Found:
                 lowest = int(height[:60].argmin())
                 back = math.sqrt(float(height[lowest:].max()) / float(height[0]))
                 rows.append(Row(f"{kind}, {e:g}", e, back, 0.03, scale=1.0))
-    return Found(rows)
+            points[f"{kind} here"] = ((0.4, 0.6, 0.8, 1.0), [row.found for row in rows[-4:]])
+    line = {"as it is asked for": ((0.3, 1.0), (0.3, 1.0))}
+    return Found(rows, Curve("restitution in the scene", "speed after over before", line, points))
 
 
 def clacks(runs: Runs) -> Found:
@@ -36,7 +41,14 @@ def clacks(runs: Runs) -> Found:
     for k in (1, 3):
         left = float(abs(objects[f"ball[{k}]"].velocity[after, 0]).max())
         rows.append(Row(f"speed left to ball {k}", 0.0, left, 0.01, "m/s", scale=speed))
-    return Found(rows)
+    some, struck = np.linspace(0.0, 0.95, 39), math.radians(40.0)
+    swing = solve_ivp(lambda _, s: (s[1], -9.81 / 0.5 * math.sin(s[0])), (0.0, 0.95), (struck, 0.0), t_eval=some, rtol=1e-9)
+    angle = swing.y[0]
+    down = int(np.argmax(angle < 0.0))
+    lines = {f"ball {k} here": (run.times, objects[f"ball[{k}]"].center_of_mass[:, 2] - 0.5) for k in (1, 3, 5)}
+    high = 0.5 * (1.0 - np.cos(angle))
+    points = {"pendulum that strikes": (some[:down], high[:down]), "pendulum that is struck": (some[down:], high[down:])}
+    return Found(rows, Curve("time [s]", "height [m]", lines, points))
 
 
 CASES = [
@@ -49,6 +61,7 @@ CASES = [
         "A blow is a damped spring that does not pull, over some nine steps. A log of which one end "
         "comes first has each end damped as if it fell alone, and keeps more.",
         bounce,
+        peers=True,
     ),
     Case(
         "clacks",
@@ -59,5 +72,6 @@ CASES = [
         "speed, which only the string sets, and 0.5 % of the last height.",
         "Strings are stiff and have no mass. Balls that touch from the beginning share the blow, and all of them move.",
         clacks,
+        peers=True,
     ),
 ]

@@ -55,7 +55,7 @@ def blow(runs: Runs) -> Found:
                 "of a ball": (speeds, list(map(touches, speeds))),
                 "Hertz, of a half-space": (speeds, list(map(half_space, speeds))),
             },
-            {"found": (SPEEDS, found)},
+            {"here": (SPEEDS, found)},
         ),
     )
 

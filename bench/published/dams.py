@@ -199,6 +199,7 @@ CASES = [
         "1.5 %, as of the bore before a wall.",
         "",
         stoker,
+        sph=True,
     ),
     Case(
         "dam_front",

@@ -103,7 +103,7 @@ def row(runs: Runs) -> Found:
                 Row("speed of the wave", 15.0 * pitch / float(twin[-1] - twin[-16]), speeds[g], 0.01, "m/s"),
             ]
             stones = np.arange(1, number + 1)
-            curve = Curve("time [s]", "stone that begins to fall", {"found": (began, stones)}, {"twin": (twin, stones)})
+            curve = Curve("time [s]", "stone that begins to fall", {"here": (began, stones)}, {"twin": (twin, stones)})
     rows.append(Row("speed over that with a quarter of g", 2.0, speeds[9.81] / speeds[9.81 / 4.0], 0.005))
     return Found(rows, curve)
 

@@ -7,7 +7,7 @@ import math
 
 import numpy as np
 
-from .case import Case, Found, Row, Runs
+from .case import Case, Curve, Found, Row, Runs
 
 G = 9.81
 """[m/s^2]"""
@@ -15,61 +15,80 @@ G = 9.81
 
 def slide(runs: Runs) -> Found:
     """Slides at two speeds."""
-    rows = []
+    rows, lines, points = [], {}, {}
     for mu, v in ((0.5, 2.0), (0.2, 1.0)):
         run = runs.run("slide", mu=mu, v=f"{v} m/s")
-        found = run.trajectory.objects["block"].center_of_mass[-1, 0]
-        rows.append(Row(f"slides at {v:g} m/s, friction {mu:g}", v**2 / (2.0 * mu * G), float(found), 0.005, "m"))
-    return Found(rows)
+        times, x = run.trajectory.times, run.trajectory.objects["block"].center_of_mass[:, 0]
+        rows.append(Row(f"slides at {v:g} m/s, friction {mu:g}", v**2 / (2.0 * mu * G), float(x[-1]), 0.005, "m"))
+        lines[f"here, friction {mu:g}"] = (times, x)
+        some = np.linspace(0.0, times[-1], 25)
+        slides = np.minimum(some, v / (mu * G))
+        points[f"closed form, friction {mu:g}"] = (some, v * slides - 0.5 * mu * G * slides**2)
+    return Found(rows, Curve("time [s]", "way [m]", lines, points))
 
 
 def incline(runs: Runs) -> Found:
     """One block at the limit of friction, one just beyond it."""
     slope, time = math.atan(0.5), 2.0
     way = 0.5 * G * time**2 * (math.sin(slope) - 0.49 * math.cos(slope))
-    objects = runs.run("incline").trajectory.objects
-    ways = [
-        float((of.center_of_mass[-1] - of.center_of_mass[0])[0]) / math.cos(slope) for of in (objects["stays"], objects["slides"])
+    run = runs.run("incline").trajectory
+    stays, slides = (
+        (run.objects[name].center_of_mass - run.objects[name].center_of_mass[0])[:, 0] / math.cos(slope)
+        for name in ("stays", "slides")
+    )
+    rows = [
+        Row("way with friction 0.5", 0.0, float(stays[-1]), 0.005, "m", scale=way),
+        Row("way with friction 0.49", way, float(slides[-1]), 0.005, "m"),
     ]
-    return Found([
-        Row("way with friction 0.5", 0.0, ways[0], 0.005, "m", scale=way),
-        Row("way with friction 0.49", way, ways[1], 0.005, "m"),
-    ])  # fmt: skip
+    some = np.linspace(0.0, time, 21)
+    lines = {"here, friction 0.5": (run.times, stays), "here, friction 0.49": (run.times, slides)}
+    points = {"Coulomb, 0.5": (some, 0.0 * some), "Coulomb, 0.49": (some, way * (some / time) ** 2)}
+    return Found(rows, Curve("time [s]", "way down the slope [m]", lines, points))
 
 
 def skid(runs: Runs) -> Found:
     """Speed and place after it has come to roll, at two frictions."""
-    rows = []
+    rows, lines, points = [], {}, {}
     for mu in (0.2, 0.4):
         v, time = 3.0, 1.2
-        ball = runs.run("skid", mu=mu).trajectory.objects["ball"]
+        run = runs.run("skid", mu=mu).trajectory
+        ball = run.objects["ball"]
         skids = 2.0 * v / (7.0 * mu * G)
         place = v * skids - 0.5 * mu * G * skids**2 + 5.0 / 7.0 * v * (time - skids)
         rows.append(Row(f"speed at last, friction {mu:g}", 5.0 / 7.0 * v, float(ball.velocity[-1, 0]), 0.0005, "m/s"))
         rows.append(Row(f"way in {time:g} s, friction {mu:g}", place, float(ball.center_of_mass[-1, 0]), 0.0005, "m"))
-    return Found(rows)
+        some = np.linspace(0.0, time, 25)
+        lines[f"here, friction {mu:g}"] = (run.times, ball.velocity[:, 0])
+        points[f"closed form, friction {mu:g}"] = (some, np.maximum(v - mu * G * some, 5.0 / 7.0 * v))
+    return Found(rows, Curve("time [s]", "speed [m/s]", lines, points))
 
 
 def rolls(runs: Runs) -> Found:
     """Ways down a slope of 20 degrees in 1.2 s."""
-    objects, time = runs.run("rolls").trajectory.objects, 1.2
-    falls = 0.5 * G * time**2 * math.sin(math.radians(20.0))
+    run, time = runs.run("rolls").trajectory, 1.2
+    falls, some = 0.5 * G * time**2 * math.sin(math.radians(20.0)), np.linspace(0.0, time, 13)
     inertia = {"ball": 2.0 / 5.0, "disc": 1.0 / 2.0, "ring": 0.8**2 + 0.75 * 0.2**2}
-    rows = []
+    rows, lines, points = [], {}, {}
     for name, share in inertia.items():
-        c = objects[name].center_of_mass
+        c = run.objects[name].center_of_mass
+        lines[f"{name} here"] = (run.times, np.linalg.norm(c - c[0], axis=1))
+        points[f"{name}, closed form"] = (some, falls / (1.0 + share) * (some / time) ** 2)
         rows.append(Row(f"way of the {name}", falls / (1.0 + share), float(np.linalg.norm(c[-1] - c[0])), 0.0005, "m"))
-    return Found(rows)
+    return Found(rows, Curve("time [s]", "way [m]", lines, points))
 
 
 def green(runs: Runs) -> Found:
     """Where it stops, with two arms of the torque that resists."""
-    rows = []
+    rows, lines, points = [], {}, {}
     for arm in (1.5, 3.0):
-        found = runs.run("green", arm=f"{arm} mm").trajectory.objects["ball"].center_of_mass[-1, 0]
-        way = 0.7 * 1.8**2 * 21.35 / (G * arm)
-        rows.append(Row(f"rolls at 1.8 m/s, arm {arm:g} mm", way, float(found), 0.0005, "m"))
-    return Found(rows)
+        run = runs.run("green", arm=f"{arm} mm").trajectory
+        x, way = run.objects["ball"].center_of_mass[:, 0], 0.7 * 1.8**2 * 21.35 / (G * arm)
+        rows.append(Row(f"rolls at 1.8 m/s, arm {arm:g} mm", way, float(x[-1]), 0.0005, "m"))
+        some = np.linspace(0.0, run.times[-1], 26)
+        rest = np.maximum(0.0, 1.0 - some * 1.8 / (2.0 * way))
+        lines[f"here, arm {arm:g} mm"] = (run.times, x)
+        points[f"closed form, arm {arm:g} mm"] = (some, way * (1.0 - rest**2))
+    return Found(rows, Curve("time [s]", "way [m]", lines, points))
 
 
 CASES = [
@@ -117,6 +136,7 @@ CASES = [
         "0.05 %: closed forms without slip, where friction 0.5 is above all that rolling needs.",
         "Rigid. Elastic balls lose 1 to 2.5 % of their way by the points on which they roll (`scenes/race.txt`).",
         rolls,
+        peers=True,
     ),
     Case(
         "green",
@@ -125,5 +145,6 @@ CASES = [
         "0.05 %: a closed form, as in [how rolling resistance is computed](physics-rigid.md#rolling-resistance).",
         "The arm of a real lawn depends on speed; the model has one number.",
         green,
+        peers=True,
     ),
 ]

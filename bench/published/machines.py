@@ -25,7 +25,10 @@ def string(runs: Runs) -> Found:
     centre = length + radius
     inertia = ball * (centre**2 + 0.4 * radius**2) + rope * length**2 / 3.0
     period = 2.0 * math.pi * math.sqrt(inertia / (ball * centre + 0.5 * rope * length) / G) * (1.0 + swing**2 / 16.0)
-    return Found([Row("period of 10°", period, float(passed[-1] - passed[0]) / (len(passed) - 1), 0.001, "s")])
+    row = Row("period of 10°", period, float(passed[-1] - passed[0]) / (len(passed) - 1), 0.001, "s")
+    some = np.arange(0.0, time[-1], period / 12.0)
+    points = {"closed form": (some, centre * swing * np.cos(2.0 * math.pi * some / period))}
+    return Found([row], Curve("time [s]", "x of the ball [m]", {"here": (time, x)}, points))
 
 
 def piston(runs: Runs) -> Found:
@@ -39,7 +42,7 @@ def piston(runs: Runs) -> Found:
         at = int(np.argmin(abs(run.times - 1.0 - degrees / 360.0)))
         rows.append(Row(f"place with the crank at {degrees}°", float(known[at]), float(found[at]), 0.002, "m", scale=2.0 * r))
     curve = Curve(
-        "time [s]", "place of the piston [m]", {"found": (run.times, found)}, {"closed form": (run.times[::5], known[::5])}
+        "time [s]", "place of the piston [m]", {"here": (run.times, found)}, {"closed form": (run.times[::5], known[::5])}
     )
     return Found(rows, curve)
 
@@ -50,19 +53,20 @@ def lintel(runs: Runs) -> Found:
     moment = 2500.0 * G * thick**2 * (long * span / 4.0 - long**2 / 8.0)
     stress = moment / (thick**3 / 6.0) / 1e3
     whole, broken = 2.0 * stress, 0.5 * stress
-    bore = runs.run("lintel").outcomes[0].found / 1e3
+    bore, tries = runs.run("lintel").outcomes[0].found / 1e3, []
     for _ in range(6):
         strength = 0.5 * (whole + broken)
-        if runs.run("lintel", strength=strength / 1e3).outcomes[1].found > 1:
+        tries.append((strength, runs.run("lintel", strength=strength / 1e3).outcomes[1].found))
+        if tries[-1][1] > 1:
             broken = strength
         else:
             whole = strength
-    return Found(
-        [
-            Row("largest stress, M/W", stress, bore, 0.01, "kPa"),
-            Row("strength with which it stays whole", stress, 0.5 * (whole + broken), 0.02, "kPa"),
-        ]
-    )
+    rows = [
+        Row("largest stress, M/W", stress, bore, 0.01, "kPa"),
+        Row("strength with which it stays whole", stress, 0.5 * (whole + broken), 0.02, "kPa"),
+    ]
+    line = {"statics, whole from M/W on": ((0.5 * stress, stress, stress, 1.5 * stress), (2.0, 2.0, 1.0, 1.0))}
+    return Found(rows, Curve("strength of the glue [kPa]", "pieces in the end", line, {"here": tuple(zip(*tries))}))
 
 
 CASES = [
@@ -85,6 +89,7 @@ CASES = [
         "With `stiffness 4e6 N/m` in its hinges, as in `scenes/crank.txt`, it is within 0.06 %.",
         piston,
         quick=True,
+        peers=True,
     ),
     Case(
         "lintel",

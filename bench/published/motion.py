@@ -37,7 +37,7 @@ def swings(runs: Runs) -> Found:
     curve = Curve(
         "x of the lower rod [m]",
         "z [m]",
-        {"found": (own[1][until, 0], own[1][until, 2])},
+        {"here": (own[1][until, 0], own[1][until, 2])},
         {"Lagrange's equations": (places[1][0, ::12], places[1][1, ::12])},
     )
     return Found(rows, curve)
@@ -68,13 +68,16 @@ def diver(runs: Runs) -> Found:
     run = runs.run("diver").trajectory
     ball = math.sqrt(2.0 * 60.0 * 4.0 / 3.0 * 0.2 * G / (1.2 * 0.6))
     plate = math.sqrt(2.0 * 100.0 * 0.02 * G / (1.2 * 1.2))
-    rows = []
+    rows, lines, points = [], {}, {}
     for name, last in (("ball", ball), ("plate", plate)):
+        some = np.linspace(0.0, 4.0, 21)
+        lines[f"{name} here"] = (run.times, -run.objects[name].velocity[:, 2])
+        points[f"{name}, closed form"] = (some, last * np.tanh(G * some / last))
         for time in (1.0, 4.0):
             at = int(np.argmin(abs(run.times - time)))
             speed = last * math.tanh(G * run.times[at] / last)
             rows.append(Row(f"{name} after {time:g} s", speed, -float(run.objects[name].velocity[at, 2]), 0.0005, "m/s"))
-    return Found(rows)
+    return Found(rows, Curve("time [s]", "speed [m/s]", lines, points))
 
 
 CASES = [
@@ -87,6 +90,7 @@ CASES = [
         "be, over the length of a rod: 0.2 %, as a double pendulum makes small differences grow.",
         "A double pendulum is chaotic: from the third second on the smallest difference decides.",
         swings,
+        peers=True,
     ),
     Case(
         "diver",

@@ -6,7 +6,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from scipy.integrate import quad
+from scipy.integrate import quad, solve_bvp
 from scipy.optimize import brentq
 
 from .case import Case, Curve, Found, Row, Runs, places
@@ -21,12 +21,14 @@ def hangs(runs: Runs) -> Found:
     a = brentq(lambda a: 2.0 * a * math.sinh(0.5 * span / a) - length, 0.1, 10.0)
     last = run.trajectory.objects["chain"].position(len(run.trajectory) - 1)
     pull = run.outcomes[0].found
-    return Found(
-        [
-            Row("sag", a * (math.cosh(0.5 * span / a) - 1.0), float(np.ptp(last[:, 2])), 0.003, "m"),
-            Row("pull at its end", weight * a * math.cosh(0.5 * span / a), float(pull), 0.002, "N"),
-        ]
-    )
+    rows = [
+        Row("sag", a * (math.cosh(0.5 * span / a) - 1.0), float(np.ptp(last[:, 2])), 0.003, "m"),
+        Row("pull at its end", weight * a * math.cosh(0.5 * span / a), float(pull), 0.002, "N"),
+    ]
+    some = np.linspace(-0.5 * span, 0.5 * span, 33)
+    points = {"catenary": (some, a * (np.cosh(some / a) - math.cosh(0.5 * span / a)))}
+    lines = {"here": (last[:, 0] - 0.5 * (last[:, 0].min() + last[:, 0].max()), last[:, 2] - last[:, 2].max())}
+    return Found(rows, Curve("x from the middle [m]", "height [m]", lines, points))
 
 
 def falls(share: float, length: float) -> float:
@@ -64,7 +66,7 @@ def folded(runs: Runs) -> Found:
         Curve(
             "time [s]",
             "fall of the end [m]",
-            {"found": (time[:whole], fallen[:whole]), "free fall": (time[:whole], 0.5 * G * time[:whole] ** 2)},
+            {"here": (time[:whole], fallen[:whole]), "free fall": (time[:whole], 0.5 * G * time[:whole] ** 2)},
             {"energy kept": ([falls(share, length) for share in shares[::4]], length * shares[::4])},
         ),
     )
@@ -93,7 +95,46 @@ def pulled_over(runs: Runs) -> Found:
                 "cm",
             )
         )
-    return Found(rows)
+    some = np.linspace(0.0, 0.7, 15)
+    known = 100.0 * (heavy - light) / (2.0 * of_length) * (np.cosh(rate * some) - 1.0)
+    lines = {"here": (time[begun:] - time[begun], 100.0 * way[begun:])}
+    return Found(rows, Curve("time from the release [s]", "way [cm]", lines, {"closed form": (some, known)}))
+
+
+def heavy(long: float) -> float:
+    """Angle by which the end of a strip is below where it sticks out [deg], with its free length over (B/w)^(1/3): the rigidity B
+    and the weight w of a length. θ'' = −(L³ w/B) (1 − s) cos θ with θ = 0 at s = 0 and θ' = 0 at s = 1."""
+    at = np.linspace(0.0, 1.0, 100)
+    found = solve_bvp(
+        lambda s, y: np.array([y[1], -(long**3) * (1.0 - s) * np.cos(y[0]), np.cos(y[0]), np.sin(y[0])]),
+        lambda start, end: np.array([start[0], end[1], start[2], start[3]]),
+        at,
+        np.array([at, 0.0 * at, at, 0.0 * at]),
+        tol=1e-6,
+    )
+    return math.degrees(math.atan2(*found.sol(1.0)[:1:-1]))
+
+
+def peirce(angle: float) -> float:
+    """Free length over (B/w)^(1/3) at an angle [deg], by Peirce's formula."""
+    return 2.0 * (math.tan(math.radians(angle)) / math.cos(0.5 * math.radians(angle))) ** (1.0 / 3.0)
+
+
+def droops(runs: Runs) -> Found:
+    """Angles of three strips: from the middle between the columns of particles that are held to the end."""
+    run, c, rows = runs.run("droop"), (1.177e6 * 0.005**2 / (12.0 * 250.0 * G)) ** (1.0 / 3.0), []
+    shown = []
+    for k in (1, 2, 3):
+        x = places(run, f"strip[{k}]")[[0, -1]]
+        columns = np.unique(x[0, :, 0].round(6))
+        clamp, end = columns[:2].mean(), np.isclose(x[0, :, 0], x[0, :, 0].max())
+        tip, long = x[1, end].mean(axis=0), (x[0, end, 0].mean() - clamp) / c
+        angle = math.degrees(math.atan2(-tip[2], tip[0] - clamp))
+        rows.append(Row(f"droop of a free length of {0.9 + 0.5 * k:.1f} (B/w)^⅓", heavy(long), angle, 0.01, "°"))
+        shown.append((long, angle))
+    angles, longs = np.linspace(2.0, 62.0, 40), np.linspace(0.6, 2.6, 40)
+    lines = {"heavy elastica": (longs, [heavy(long) for long in longs]), "Peirce": ([peirce(a) for a in angles], angles)}
+    return Found(rows, Curve("free length over (B/w)^⅓", "droop [°]", lines, {"here": tuple(zip(*shown))}))
 
 
 CASES = [
@@ -126,5 +167,15 @@ CASES = [
         "1 %: the rope lies around the roller as a polygon of links of 2 cm, and stretches by 1 %.",
         "",
         pulled_over,
+    ),
+    Case(
+        "droop",
+        "A strip of cloth droops over an edge",
+        "W. G. Bickley, The heavy elastica, Phil. Mag. 17 (1934) 603, computed anew by `heavy` in bench/published/ropes.py; the"
+        " test of cloth is F. T. Peirce's, The handle of cloth as a measurable quantity, J. Textile Inst. 21 (1930) T377, ASTM"
+        " D1388, whose formula is an approximation to it.",
+        "1 %: strips have 24 to 41 links along their free length.",
+        "",
+        droops,
     ),
 ]

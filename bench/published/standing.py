@@ -9,7 +9,7 @@ from collections.abc import Callable
 import numpy as np
 from scipy.integrate import quad
 
-from .case import Case, Found, Row, Runs
+from .case import Case, Curve, Found, Row, Runs
 
 G = 9.81
 """[m/s^2]"""
@@ -34,8 +34,11 @@ def leaning(runs: Runs) -> Found:
         z = runs.run("leaning", mu=mu).trajectory.objects["card[0]"].center_of_mass[:, 2]
         return bool(abs(z[-1] - z[0]) < 0.01)
 
-    least_friction = 0.5 * (math.tan(math.radians(30.0)) - 1.0 / 40.0)
-    return Found([Row("least friction", least_friction, least(stands, 0.2, 0.6, 6), 0.012)])
+    leans = np.linspace(5.0, 50.0, 50)
+    needed = 0.5 * (np.tan(np.radians(leans)) - 1.0 / 40.0)
+    row = Row("least friction", 0.5 * (math.tan(math.radians(30.0)) - 1.0 / 40.0), least(stands, 0.2, 0.6, 6), 0.012)
+    curve = Curve("lean from upright [°]", "least friction", {"statics": (leans, needed)}, {"here": ((30.0,), (row.found,))})
+    return Found([row], curve)
 
 
 def rocking(runs: Runs) -> Found:
@@ -58,14 +61,18 @@ def rocking(runs: Runs) -> Found:
     # The first frame that is as fast as all within a tenth of a second.
     fastest = [k for k in range(100, len(spin) - 100) if spin[k - 100 : k].max() < spin[k] >= spin[k : k + 100].max()][:2]
     times = run.times[fastest]
-    return Found(
-        [
-            Row("time to the first blow", first, float(times[0]), 0.01, "s"),
-            Row("speed at the first blow", speed, float(spin[fastest[0]]), 0.01, "rad/s"),
-            Row("time to the second blow", 2.0 * second, float(times[1] - times[0]), 0.01, "s"),
-            Row("speed left by a blow, 1 − 3/2 sin² α", keeps, float(spin[fastest[1]] / spin[fastest[0]]), 0.01),
-        ]
+    rows = [
+        Row("time to the first blow", first, float(times[0]), 0.01, "s"),
+        Row("speed at the first blow", speed, float(spin[fastest[0]]), 0.01, "rad/s"),
+        Row("time to the second blow", 2.0 * second, float(times[1] - times[0]), 0.01, "s"),
+        Row("speed left by a blow, 1 − 3/2 sin² α", keeps, float(spin[fastest[1]] / spin[fastest[0]]), 0.01),
+    ]
+    blows = ((first, first, first + 2.0 * second), (speed, keeps * speed, keeps * speed))
+    shown = run.times < 1.2
+    curve = Curve(
+        "time [s]", "spin [rad/s]", {"here": (run.times[shown], spin[shown])}, {"Housner, before and after blows": blows}
     )
+    return Found(rows, curve)
 
 
 CASES = [
@@ -78,6 +85,7 @@ CASES = [
         "less than 1 cm after a second of their whole weight.",
         "Weight grows from nothing in half a second. Cards that are put down at once slip a little at the first moment.",
         leaning,
+        peers=True,
     ),
     Case(
         "rocking",

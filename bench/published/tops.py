@@ -7,7 +7,7 @@ import math
 
 import numpy as np
 from scipy.integrate import quad
-from scipy.special import ellipk
+from scipy.special import ellipj, ellipk
 
 from .case import Case, Curve, Found, Row, Runs
 
@@ -42,13 +42,16 @@ def gyro(runs: Runs) -> Found:
     times, depth = minima(run.times, run.objects["nods"].center_of_mass[:, 2])
     rate = float((goes[-1] - goes[0]) / (run.times[-1] - run.times[0]))
     lowest = math.degrees(math.acos(float(np.mean(depth)) / arm))
-    return Found(
-        [
-            Row("steady precession", steady, rate, 0.0005, "rad/s"),
-            Row("period of nodding", nod, float(np.mean(np.diff(times))), 0.0005, "s"),
-            Row("lean when lowest", math.degrees(math.acos(low)), lowest, 0.0005, "°"),
-        ]
-    )
+    rows = [
+        Row("steady precession", steady, rate, 0.0005, "rad/s"),
+        Row("period of nodding", nod, float(np.mean(np.diff(times))), 0.0005, "s"),
+        Row("lean when lowest", math.degrees(math.acos(low)), lowest, 0.0005, "°"),
+    ]
+    leans = np.degrees(np.arccos(np.clip(run.objects["nods"].center_of_mass[:, 2] / arm, -1.0, 1.0)))
+    turns = nod * np.arange(0.0, run.times[-1] / nod, 0.5)
+    ends = np.where(np.arange(len(turns)) % 2, math.degrees(math.acos(low)), math.degrees(lean))
+    points = {"elliptic integral": (turns, ends)}
+    return Found(rows, Curve("time [s]", "lean from upright [°]", {"here": (run.times, leans)}, points))
 
 
 def flip(runs: Runs) -> Found:
@@ -76,7 +79,19 @@ def flip(runs: Runs) -> Found:
         Row("time from one turn-over to the next", turn, found, 0.0005, "s"),
         Row("fastest spin on the way", fastest, float(spin.max()), 0.0005, "rad/s"),
     ]
-    curve = Curve("time [s]", "spin [rad/s]", {"found": (run.times, spin)}, {})
+    # w2 = w_most sn(rate (t - t0)) along the middle axis; the other two by 2 E and L^2. It begins near the turn of w2.
+    first = float(highest[0]) if len(highest) else 0.0
+    some = np.linspace(0.0, run.times[-1], 61)
+    sn, cn, dn, _ = ellipj(rate * (some - first), k2)
+    points = {}
+    if square <= energy * middle:
+        most = (
+            math.sqrt((square - energy * small) / (big * (big - small))),
+            math.sqrt((square - energy * small) / (middle * (middle - small))),
+            math.sqrt((energy * big - square) / (small * (big - small))),
+        )
+        points = {"Euler's equations": (some, np.sqrt((most[0] * cn) ** 2 + (most[1] * sn) ** 2 + (most[2] * dn) ** 2))}
+    curve = Curve("time [s]", "spin [rad/s]", {"here": (run.times, spin)}, points)
     return Found(rows, curve if len(times) else None)
 
 
@@ -96,6 +111,7 @@ CASES = [
         "0.05 %: the joint that holds the tip gives way by a part of the size of the top.",
         "Air and friction of the bearing are left out. `scenes/tops.txt` has tops that stand on the ground by friction.",
         gyro,
+        peers=True,
     ),
     Case(
         "flip",

@@ -13,15 +13,20 @@ G = 9.81
 
 def sway(runs: Runs) -> Found:
     """A tank that is pushed aside once, at two shapes."""
-    rows = []
+    rows, lines, points = [], {}, {}
     for long, depth in ((1.73, 0.6), (1.0, 1.0)):
         run = runs.run("sway", long=long, depth=depth)
         times, (x, heights) = run.trajectory.times, along_x(run)
         k, later = np.pi / long, times > 0.3
-        zeros = crossings(times[later], heights[later] @ np.cos(k * x))
+        mode = heights @ np.cos(k * x)
+        zeros = crossings(times[later], mode[later])
         period = 2.0 * np.pi / np.sqrt(G * k * np.tanh(k * depth))
         rows.append(Row(f"period, {long:g} m long, {depth:g} m deep", period, 2.0 * np.diff(zeros).mean(), 0.015, "s"))
-    return Found(rows)
+        some, name = zeros[0] + period * np.arange(0.25, 4.0, 0.25), f"{long:g} m long, {depth:g} m deep"
+        sign = np.sign(mode[np.searchsorted(times, some[0])])
+        lines[f"here, {name}"] = (times, mode / abs(mode[later]).max())
+        points[f"linear, {name}"] = (some, sign * np.sin(2.0 * np.pi * (some - zeros[0]) / period))
+    return Found(rows, Curve("time [s]", "longest wave over its largest", lines, points))
 
 
 LONG, DEEP, WAY, TURN = 1.73, 0.6, 0.032, 2.0 * np.pi / 1.3
@@ -85,9 +90,8 @@ def beach(runs: Runs) -> Found:
         mean = runs_up.mean()
         spread = float(np.abs(runs_up / mean - 1.0).max())
         rows.append(Row(f"run-up over depth, wave of {high:g} of the depth", mean, up, round(spread, 3)))
-    curve = Curve(
-        "height of the wave over the depth", "run-up over the depth", {"here": (highs, ups)}, {"Synolakis": tuple(measured[:2])}
-    )
+    points = {"Synolakis": tuple(measured[:2]), "here": (highs, ups)}
+    curve = Curve("height of the wave over the depth", "run-up over the depth", {}, points)
     return Found(rows, curve)
 
 
@@ -99,8 +103,13 @@ def utube(runs: Runs) -> Found:
     small, some = times > 2.0, np.ones(7) / 7.0  # means of 0.14 s: heads jump for a frame where a front meets a wall
     zeros = crossings(times[small], np.convolve(left - right, some, "same")[small])
     long = 0.9 + (left + right)[small].mean() - 0.1
-    row = Row("period of small swings, 2π√(L/2g)", 2.0 * np.pi * np.sqrt(long / 2.0 / G), 2.0 * np.diff(zeros).mean(), 0.05, "s")
-    curve = Curve("time [s]", "level [m]", {"left arm": (times, left), "right arm": (times, right)}, {})
+    period = 2.0 * np.diff(zeros).mean() if len(zeros) > 1 else np.nan
+    row = Row("period of small swings, 2π√(L/2g)", 2.0 * np.pi * np.sqrt(long / 2.0 / G), period, 0.05, "s")
+    mean, swing = 0.5 * (left + right)[small].mean(), 0.5 * np.ptp((left - right)[small]) / 2.0
+    some = zeros[0] + row.published * np.arange(0.0, 2.4, 1.0 / 12.0) if len(zeros) else np.array([])
+    sign = np.sign(np.interp(some[1], times, left) - mean) if len(some) else 1.0
+    points = {"left arm, closed form": (some, mean + sign * swing * np.sin(2.0 * np.pi * (some - some[:1]) / row.published))}
+    curve = Curve("time [s]", "level [m]", {"left arm here": (times, left), "right arm here": (times, right)}, points)
     return Found([row], curve)
 
 
@@ -163,7 +172,14 @@ def weir(runs: Runs) -> Found:
     ]
     middle = heights[np.searchsorted(times, when[len(when) // 2])]
     floor = np.where((x > 1.5) & (x < end), high, np.where((x > 5.3) & (x < 5.7), 0.05, 0.0))
-    return Found(rows, Curve("x [m]", "height [m]", {"here": (x, middle), "weir and sill": (x, floor)}, {}))
+    jump = 0.5 * rows[1].published * (np.sqrt(1.0 + 8.0 * flow**2 / (G * rows[1].published ** 3)) - 1.0)
+    points = {
+        "energy over the weir, 3/2 (q²/g)^⅓": ((1.0,), (high + rows[0].published,)),
+        "critical depth on the weir": ((1.8,), (high + critical,)),
+        "Rand, depth below the fall": ((2.6,), (rows[1].published,)),
+        "Bélanger, behind a jump from there": ((4.6,), (jump,)),
+    }
+    return Found(rows, Curve("x [m]", "height [m]", {"here": (x, middle), "weir and sill": (x, floor)}, points))
 
 
 CASES = [
@@ -184,6 +200,7 @@ CASES = [
         "1.5 %: undulations behind the bore, and its width of some cells.",
         "",
         bore,
+        sph=True,
     ),
     Case(
         "weir",
@@ -211,6 +228,7 @@ CASES = [
         "experiment, whose waves are 24 % lower). So the cause is not the dispersion here: the waves of the experiment have "
         "less than linear ones.",
         shaken,
+        sph=True,
     ),
     Case(
         "beach",
@@ -233,5 +251,6 @@ CASES = [
         "duct. It gives the period to 1 % at `preview` and `balanced`; with finer cells the heads in the arms vibrate ([why it "
         "is left out](decisions/liquid.md#waves)).",
         utube,
+        sph=True,
     ),
 ]
