@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import json
 import math
+import re
 import sys
 from collections.abc import Iterable
 from dataclasses import asdict
@@ -63,7 +64,11 @@ def measured(case: Case, way: str) -> tuple[Found, float]:
 
 
 def _percent(share: float, sign: str = "") -> str:
-    return NOT_FOUND if math.isnan(share) else f"{100 * share:{sign}.2g} %"
+    if math.isnan(share):
+        return NOT_FOUND
+    if 0.0 < abs(share) < 1e-5:
+        return "< 0.001 %"
+    return f"{100 * share:{sign}.0f} %" if abs(share) >= 1.0 else f"{100 * share:{sign}.2g} %"
 
 
 def cells(row: Row) -> list[str]:
@@ -106,7 +111,8 @@ def draw(case: Case, curve: Curve) -> None:
             axes.plot(x, y, label=name)
         for name, (x, y) in curve.points.items():
             axes.plot(x, y, "o", mfc="none", label=name)
-        figure.legend(loc="outside upper center", ncols=3 if len(curve.lines) + len(curve.points) > 2 else 2, frameon=False)
+        wide = max(map(len, (*curve.lines, *curve.points))) > 20
+        figure.legend(loc="outside upper center", ncols=2 if wide else 3, frameon=False)
         figure.savefig(picture_of(case), dpi=120, metadata={"Software": None})
 
 
@@ -136,23 +142,37 @@ def section(case: Case) -> str:
     return "\n\n".join(part for part in parts if part) + "\n"
 
 
+def anchor(title: str) -> str:
+    """The link to a section of the page."""
+    return re.sub(r"[^\w -]", "", title.lower()).replace(" ", "-")
+
+
 def overview(all_cases: Iterable[Case]) -> str:
-    """A row for each case: how many of its figures are within, and the worst."""
-    rows = []
+    """How many figures are within, and a row for each case with the figure that is nearest to, or farthest beyond, what it may be
+    off."""
+    table, rows = [], []
     for case in all_cases:
-        of, _ = kept(case)["balanced"]
-        close = sum(row.close for row in of)
-        many = f"{close} of {len(of)}"
-        rows.append([case.title, many if close == len(of) else f"**{many}**", _percent(_off(of))])
-    return markdown(("case", "figures within", "largest error"), rows)
+        of = kept(case)["balanced"][0]
+        rows += of
+        worst = max(of, key=lambda row: math.inf if math.isnan(row.off) else abs(row.off) / row.within)
+        within = f"{sum(row.close for row in of)} of {len(of)}"
+        table.append([f"[{case.title}](#{anchor(case.title)})", *cells(worst), within, case.by])
+    told = f"**{sum(row.close for row in rows)} of {len(rows)} figures of {len(table)} cases are within what they may be off.**"
+    return told + "\n\n" + markdown(("case", "its figure that is farthest off", *HEAD[1:], "figures within", "source"), table)
 
 
 def beside_peers(all_cases: Iterable[Case]) -> str:
-    """A row for each case that another program has run: the largest error of each, and its processor time."""
+    """A row for each case that another program has run: the largest error of each, the least one in bold, and its processor
+    time."""
     rows = []
     for case in all_cases:
         of = kept(case)
-        told = {way: f"{_percent(_off(of[way][0]))}; {of[way][1]:.2g} s" for way in ("balanced", *PEERS) if way in of}
+        offs = {way: _off(of[way][0]) for way in ("balanced", *PEERS) if way in of}
+        least = min(off for off in offs.values() if not math.isnan(off))
+        told = {
+            way: f"**{_percent(off)}**; {of[way][1]:.2g} s" if off == least else f"{_percent(off)}; {of[way][1]:.2g} s"
+            for way, off in offs.items()
+        }
         if len(told) > 1:
             rows.append([case.title, *(told.get(way, "") for way in ("balanced", *PEERS))])
     return markdown(("largest error; processor time", "here, balanced", *PEERS), rows)

@@ -40,6 +40,7 @@ CASES = [
     Case(
         "bobbing_sphere",
         "A sphere bobs",
+        "IEA OES Task 10, other programs",
         "Heave decay of a sphere, IEA OES Task 10; series of HydroChrono (sphere_decay_ref_data.txt), mean of a "
         "linear and a viscous one.",
         "10 % of turning points: both series differ by 3 % from their mean, and two places on the grid by 7 %, as cells are 1/10 "
@@ -56,6 +57,7 @@ CASES = [
     Case(
         "afloat",
         "A cube floats",
+        "Archimedes",
         "Archimedes.",
         "Six cells across: the share of a body in any attitude is exact to 2 % ([what to "
         "expect](physics-liquid.md#what-to-expect)).",

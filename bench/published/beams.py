@@ -181,6 +181,7 @@ CASES = [
     Case(
         "elastica",
         "A strip that a force bends far",
+        "Bisshopp and Drucker 1945",
         "K. E. Bisshopp and D. C. Drucker, Large deflection of cantilever beams, Quarterly of Applied Mathematics 3"
         " (1945) 272–275; figures are Euler's integrals, computed anew to five digits by `elastica` in"
         " bench/published/beams.py.",
@@ -192,6 +193,7 @@ CASES = [
     Case(
         "elastica_circle",
         "A strip that a torque bends to an arc",
+        "Euler's elastica",
         "Closed form: height (1 − cos t)/t and way sin t/t of the end over the length, t = M L/(E I); case v04.138 of"
         " Code_Aster, test CantileverIntoCircle of MuJoCo (test/plugin/elasticity/elasticity_test.cc).",
         "2 % of the length: by 180° it is turned by 3.4° too little, as a strip that is clamped cannot narrow and is held at one "
@@ -202,6 +204,7 @@ CASES = [
     Case(
         "timoshenko",
         "A short bar bends and shears by its weight",
+        "Timoshenko's beam",
         "Timoshenko's beam, ρ g A L⁴/8EI + ρ g L²/2kG with Cowper's k; Project Chrono's test of beams"
         " (utest_FEA_beams_static.cpp) allows 5 %.",
         "3 %, and 2 % of the longer one: the clamp keeps the cross section from narrowing, which the theory of beams does not "
@@ -213,6 +216,7 @@ CASES = [
     Case(
         "gray",
         "A beam that swings",
+        "Gray et al. 2001",
         "Gray, Monaghan and Swift (2001): the beam of length 0.2 m and thickness 0.02 m that SPHinXsys has as"
         " test_2d_oscillating_beam. Its period by Euler's theory is 2π/ω with ω² = E H² k⁴/12ρ(1 − ν²), k L = 1.875.",
         "1 %: shear and inertia of turning, which Euler's theory leaves out, make a beam of ten times its thickness"
@@ -223,6 +227,7 @@ CASES = [
     Case(
         "bar_waves",
         "Waves of stretching and of twist in a bar",
+        "Saint-Venant",
         "Closed forms: √(E/ρ), and Saint-Venant's √(G J/ρ I) with J = 0.1406 a⁴ and I = a⁴/6 of a square.",
         "1 % of stretching; 2 % of twist. The held end keeps the cross section from warping, as if the bar were shorter"
         " by a part of its thickness.",

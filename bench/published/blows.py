@@ -47,7 +47,10 @@ def clacks(runs: Runs) -> Found:
     down = int(np.argmax(angle < 0.0))
     lines = {f"ball {k} here": (run.times, objects[f"ball[{k}]"].center_of_mass[:, 2] - 0.5) for k in (1, 3, 5)}
     high = 0.5 * (1.0 - np.cos(angle))
-    points = {"pendulum that strikes": (some[:down], high[:down]), "pendulum that is struck": (some[down:], high[down:])}
+    points = {
+        "pendulum that strikes": (some[:down], high[:down]),
+        "pendulum that is struck": (some[down:] + 4.0 * 0.002 / speed, high[down:]),
+    }
     return Found(rows, Curve("time [s]", "height [m]", lines, points))
 
 
@@ -55,6 +58,7 @@ CASES = [
     Case(
         "bounce",
         "Balls, logs and boxes bounce",
+        "Newton's law of restitution",
         "The coefficient of restitution, speed after a blow over the speed before it; Project Chrono has it as a unit test "
         "(utest_SMC_cor_normal).",
         "*off* is the difference of both coefficients. [Restitution](physics-rigid.md#restitution) promises 0.03 from 0.4 on.",
@@ -66,6 +70,7 @@ CASES = [
     Case(
         "clacks",
         "Newton's cradle",
+        "Newton's law of restitution",
         "Equal masses exchange their velocities. Balls that touch do not: Herrmann and Seitz, Am. J. Phys. 50 (1982) 977.",
         "Balls are 2 mm apart, so that they strike one after the other, and a blow goes up to 1 mm deep: a ball that has handed "
         "on its speed is up to 3 mm from its place, and swings about it with 0.9 % of the speed, hence 1 %. 0.1 % of the first "

@@ -110,6 +110,8 @@ class Case:
     name: str
     """As its scene in scenes/validation is called, or as the names of its scenes begin."""
     title: str
+    by: str
+    """Its source in a few words."""
     source: str
     """Who measured or derived it, and where that is published."""
     tolerance: str

@@ -64,6 +64,7 @@ CASES = [
     Case(
         "hertz",
         "How long an elastic ball touches the floor",
+        "Hertz 1882, of a ball",
         "H. Hertz (1882), 2.868 (m²/R E*² v)^⅕ of a ball that is a half-space where it is dented. The figures are those"
         " of his pressure on a ball, by a series without a half-space (with A. E. H. Love's solutions for a sphere;"
         " tests/lab/ball_on_plane.py): 3 to 7 % less, and the power of the speed −0.22 in place of −0.2. D. Gugan,"

@@ -185,9 +185,10 @@ CASES = [
     Case(
         "ritter",
         "A long dam breaks",
+        "Ritter 1892",
         "A. Ritter 1892: h = (2 √(gd) − x/t)²/9g, in shallow water without friction.",
         "1 %, and 5 % of the front, where the solution is thinner than a cell of 1/16 of the depth.",
-        "",
+        "The front is where the water is a sixth of a cell deep; cells that are half as wide take half of its error.",
         ritter,
         quick=True,
         sph=True,
@@ -195,6 +196,7 @@ CASES = [
     Case(
         "stoker",
         "A long dam breaks onto water",
+        "Stoker 1957",
         "J. J. Stoker, Water Waves (1957): shallow water without friction; the bore is that of Bélanger.",
         "1.5 %, as of the bore before a wall.",
         "",
@@ -204,6 +206,7 @@ CASES = [
     Case(
         "dam_front",
         "A dam breaks onto a dry floor",
+        "Martin and Moyce 1952, experiment",
         f"Martin and Moyce 1952, Fig. 3 (n² = 2); Koshizuka and Oka 1996. {PYSPH}",
         "5 %, by which the experiments differ from their mean. The cells are 1/16 of the column's width. A place counts as "
         "reached when the water is 1/100 of the dam's height deep.",
@@ -220,6 +223,7 @@ CASES = [
     Case(
         "flood_on_column",
         "A flood meets a tall column",
+        "Yeh and Petroff, experiment",
         f"Yeh and Petroff, as in Raad and Bidoae, J. Comput. Phys. 203 (2005) 668. {PYSPH}",
         "Scatter of the measured force: 0.8 N of 18 N where it is even, 5 %; in the back flow 4 N of 12 N between points of the "
         "same time, 30 %. The clocks of the gate differ, so both series begin at their first 5 N.",
@@ -236,6 +240,7 @@ CASES = [
     Case(
         "flood_on_box",
         "A flood meets a low box",
+        "Kleefsman et al. 2005, experiment",
         f"Kleefsman et al. 2005, test 2 of SPHERIC. {PYSPH}",
         "4 % of the arrival, a cell of 4 cm on the way from the gate; 10 % of pressures, as half a cell of head is 7 to 9 % of "
         "them. The pressure is that of the water at rest above the gauge in the column of cells before the box.",

@@ -112,6 +112,7 @@ CASES = [
     Case(
         "row",
         "A row of dominoes",
+        "twin after van Leeuwen 2010",
         "Stones that turn about their feet and strike each other inelastically, as those of van Leeuwen, Am. J. Phys. 78 (2010) "
         "721; equations and solution are in bench/published/dominoes.py. That speed grows as √g is exact.",
         "1 %: the twin's feet never slip or lift, and its blows take no time. 0.5 % of √g: a frame in the time of fifteen "

@@ -95,6 +95,7 @@ CASES = [
     Case(
         "slide",
         "A block slides to a stop",
+        "Coulomb, as in Project Chrono's test",
         "Closed form v²/(2μg); Project Chrono's unit test of sliding friction (src/tests/unit_tests/smc_contact) allows 0.5 %.",
         "Within what Chrono's own test allows.",
         "The block is rigid: friction of an elastic one acts where its sole bears weight.",
@@ -105,6 +106,7 @@ CASES = [
     Case(
         "incline",
         "Blocks on a slope of one half",
+        "Coulomb, as in IPC's test (Li et al. 2020)",
         "Coulomb: a block stays up to μ = tan θ and slides by g t²/2 (sin θ − μ cos θ) beyond; IPC (Li et al. 2020) has it as "
         "slopeTest_highSchoolPhysics with μ = 0.5 and 0.49.",
         "0.5 %. The way of the first block is over that of the second. All of its friction is in use, so it slips while it sinks "
@@ -121,6 +123,7 @@ CASES = [
     Case(
         "skid",
         "A bowling ball skids until it rolls",
+        "Coriolis 1835",
         "Newton's second law with Coulomb friction: a full ball rolls at 5/7 of its speed, after 2v/(7μg), whatever the friction "
         "(Coriolis 1835; a test of the Newton physics engine, test_kamino_solvers_dvi.py).",
         "0.05 %: both are closed forms; the ball sinks in by a part of its radius and so turns with a shorter arm.",
@@ -132,6 +135,7 @@ CASES = [
     Case(
         "rolls",
         "A ball, a disc and a ring roll down a slope",
+        "Newton's law",
         "Closed form g sin θ t²/2 over 1 + I/(m R²), with I/(m R²) = 2/5, 1/2, and 0.67 of a ring of the radii 8 and 2 cm.",
         "0.05 %: closed forms without slip, where friction 0.5 is above all that rolling needs.",
         "Rigid. Elastic balls lose 1 to 2.5 % of their way by the points on which they roll (`scenes/race.txt`).",
@@ -141,6 +145,7 @@ CASES = [
     Case(
         "green",
         "A golf ball stops on the green",
+        "Newton's law",
         "Closed form 7 v² R/(10 g r) of a full ball with the arm r of the resistance; 1.8 m/s is what a stimpmeter gives it.",
         "0.05 %: a closed form, as in [how rolling resistance is computed](physics-rigid.md#rolling-resistance).",
         "The arm of a real lawn depends on speed; the model has one number.",

@@ -84,6 +84,7 @@ CASES = [
     Case(
         "swings",
         "Pendulums",
+        "elliptic integral; Lagrange's equations",
         "A rod on its end: 4 K(sin φ/2) √(I/(m g L/2)) with the elliptic integral K; the double pendulum by Lagrange's "
         "equations, integrated to 1e-11.",
         "0.05 % of the periods, by joints that give way a little. Off its place is the distance of a centre from where it must "
@@ -95,6 +96,7 @@ CASES = [
     Case(
         "diver",
         "A ball and a plate fall in air",
+        "Newton 1687",
         "Quadratic drag: v tanh(g t/v) with v = √(2 m g/(ρ C A)) (Newton 1687, book II).",
         "0.05 %: closed forms; cases of [air](physics-air.md#measured) are within 0.5 %.",
         "C is 0.6 of a ball and 1.2 of a plate unless `coefficient` says otherwise, at all Reynolds numbers; measured are 0.4 to "

@@ -118,7 +118,7 @@ def _geom(solid: Solid, asset: str) -> str:
 
 
 def _mesh(solid: Solid) -> tuple[tuple, str] | None:
-    """What its mesh is known by, and how it is written: a file, or the points of a cone; None of other shapes."""
+    """Key of its mesh, and how it is written: a file, or the points of a cone; None of other shapes."""
     shape = solid.shape
     if isinstance(shape, shapes.Mesh):
         s = shape.scale
@@ -203,7 +203,7 @@ class Tree:
             at, turned = np.array(solids[parent].position), np.array(solids[parent].rotation)
         for solid in self.scene.solids:
             joint = None if solid.hold else self.on.get(solid.name)
-            # What is held stands in the world, and so does what hangs on it.
+            # Held objects stand in the world, and so does what hangs on it.
             if (WORLD if joint is None or joint.second == WORLD or solids[joint.second].hold else joint.second) != parent:
                 continue
             asset = "" if (mesh := _mesh(solid)) is None else assets.setdefault(mesh[0], (f"mesh{len(assets)}", mesh[1]))[0]

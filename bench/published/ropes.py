@@ -141,6 +141,7 @@ CASES = [
     Case(
         "catenary",
         "A hanging chain",
+        "catenary",
         "Closed form: L = 2a sinh(S/2a), sag a (cosh(S/2a) − 1), pull at the ends w a cosh(S/2a).",
         "0.3 % of the sag, 0.2 % of the pull: the chain stretches by 0.1 %, which lowers it by 1.3 mm.",
         "",
@@ -149,6 +150,7 @@ CASES = [
     Case(
         "folded_chain",
         "A folded chain falls faster than a ball",
+        "Calkin and March 1989",
         "M. G. Calkin and R. H. March, The dynamics of a falling chain I, American Journal of Physics 57 (1989) 154–157,"
         " by C. W. Wong and K. Yasui, Falling chains, American Journal of Physics 74 (2006) 490–496: energy is kept, so"
         " the free end falls with v² = g x (2L − x)/(L − x). M. Schagerl, A. Steindl, W. Steiner and H. Troger, On the"
@@ -161,6 +163,7 @@ CASES = [
     Case(
         "atwood",
         "Atwood's machine",
+        "Atwood 1784",
         "Closed form with the masses of rope and roller, x'' = ((M − m) + 2 λ x) g/(M + m + λ L + I/r²) with the mass of"
         " rope per length λ; P.-T. Brun, B. Audoly, A. Goriely and D. Vella (arXiv:1605.03714) have it without these"
         " masses, after Atwood (1784).",
@@ -171,6 +174,7 @@ CASES = [
     Case(
         "droop",
         "A strip of cloth droops over an edge",
+        "Bickley 1934, Peirce 1930",
         "W. G. Bickley, The heavy elastica, Phil. Mag. 17 (1934) 603, computed anew by `heavy` in bench/published/ropes.py; the"
         " test of cloth is F. T. Peirce's, The handle of cloth as a measurable quantity, J. Textile Inst. 21 (1930) T377, ASTM"
         " D1388, whose formula is an approximation to it.",

@@ -79,6 +79,7 @@ CASES = [
     Case(
         "leaning",
         "Two cards lean on each other",
+        "statics",
         "Statics: the foot needs μ = (tan α − d/L)/2 at the angle α from upright; 60° from the ground as in IPC's house of cards "
         "(Li et al. 2020, 5_hitCardHouse).",
         "1.2 %: found by halving an interval of friction six times, to 1.1 % of the figure; they stand where they have sunk by "
@@ -90,6 +91,7 @@ CASES = [
     Case(
         "rocking",
         "A slender block rocks from edge to edge",
+        "Housner 1963",
         "Housner, Bull. Seismol. Soc. Am. 53 (1963) 403: θ'' = −p² sin(α − θ) with p² = 3g/4R, and a blow leaves 1 − 3/2 sin² α "
         "of the speed.",
         "1 %: times are exact by a quadrature without the small angles of the paper; a blow takes some milliseconds here, none "

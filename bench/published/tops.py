@@ -106,6 +106,7 @@ CASES = [
     Case(
         "gyro",
         "A heavy top precesses and nods",
+        "Klein and Sommerfeld 1897",
         "Steady precession of a symmetric top, (I₁ − I₃) cos θ Ω² − I₃ s Ω + m g l = 0, and its nutation by an elliptic integral "
         "(Klein and Sommerfeld 1897; Goldstein, Classical Mechanics, 5.7).",
         "0.05 %: the joint that holds the tip gives way by a part of the size of the top.",
@@ -116,6 +117,7 @@ CASES = [
     Case(
         "flip",
         "A block turns over about its middle axis",
+        "Euler's equations",
         "Euler's equations: 2K(k)/λ from one turn-over to the next (Landau and Lifshitz, Mechanics, § 37).",
         "0.05 %: rotations are exact to rounding; the time depends on the logarithm of how far off the axis it starts.",
         "A rigid block. One that deforms ends up about the axis of its largest moment, as its `damping` takes energy.",

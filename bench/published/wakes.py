@@ -89,6 +89,7 @@ CASES = [
     Case(
         "kelvin",
         "The wake of what is towed",
+        "Kelvin 1887",
         "Lord Kelvin 1887: the wake of a small body has a half angle of 19.47°, and behind it run waves of the length 2πv²/g, "
         "here with that of the depth, v²k = g tanh kd. Published is the angle at which linear waves of the same buoy, as a "
         "pressure on the water, are highest at the same time.",

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""What gives way: a bar about a plastic hinge."""
+"""A bar that turns about a plastic hinge."""
 
 from __future__ import annotations
 
@@ -56,6 +56,7 @@ CASES = [
     Case(
         "collapse",
         "A bar turns about a plastic hinge",
+        "Prager and Hodge 1951",
         "W. Prager and P. G. Hodge, Theory of Perfectly Plastic Solids (1951): a section that yields all through bears"
         " M = σ b t²/4, 1.5 times what it bears when its faces begin to yield; deflections between both in closed form.",
         "5 %: the bar has four cells in its thickness, and Euler's theory leaves out its shear, 3 % of its deflection.",
