@@ -49,8 +49,8 @@ def test_a_row_is_close_within_its_tolerance_only():
 
 
 def test_closed_forms_of_the_page_have_their_known_ends():
-    """A strip that sticks out a little droops by L^3/8 as a beam does, and Peirce's formula goes along; a bar whose section yields
-    all through is bent by 20/9 of what its first yield is."""
+    """A strip that sticks out a little droops by L^3/8 as a beam does, and Peirce's formula goes along; a bar whose section
+    yields all through is bent by 20/9 of what its first yield is."""
     assert math.isclose(ropes.heavy(0.3), math.degrees(0.3**3 / 8.0), rel_tol=1e-3)
     assert math.isclose(ropes.peirce(ropes.heavy(1.4)), 1.4, rel_tol=0.01)
     assert math.isclose(yielding.under(1.0) / yielding.under(2.0 / 3.0), 20.0 / 9.0, rel_tol=1e-6)
