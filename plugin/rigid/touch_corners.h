@@ -205,20 +205,30 @@ void touch_corners(const TouchStep &step, SolidPair &pair, bool of_other, Solid 
     const int q = one.first;
     const Vec3 x = in_host(corners[q].at);
     auto found = find_touch(touches, kind, q);
-    if (found == touches.end()) {
-      if (const double way = host.outside(x) - ramp; way >= 0.0) {
-        one.until = pair.known_for - SURELY * way;
-        continue;
-      }
-      const auto in_owner = [&](const Vec3 &n) { return a.in_body(b.in_space(n)); };
-      double depth;
-      const int side = side_of_birth(host, corners[q], in_owner, x, DEEPEST_BIRTH * b.shape.thin(), depth);
-      Vec3 unused;
-      if (side < 0 || host.part(side, x, unused) <= 0.0) continue;
-      touches.push_back(born_below(step, kind, q, side, x, depth, a, b, host, law));
-      found = touches.end() - 1;
-    } else {
+    const bool is_known = found != touches.end();
+    if (is_known) {
       found->side = host.shallowest(found->side, x);
+    } else if (const double way = host.outside(x) - ramp; way >= 0.0) {
+      one.until = pair.known_for - SURELY * way;
+      continue;
+    }
+    // A contact that began below its side, and so without a force, gives way where the corner comes below a nearer side.
+    if (!is_known || (found->memory.offset > 0.0 && !step.is_first())) {
+      const auto in_owner = [&](const Vec3 &n) { return a.in_body(b.in_space(n)); };
+      const double deepest = is_known ? host.depth(found->side, x) : DEEPEST_BIRTH * b.shape.thin();
+      double depth;
+      Vec3 unused;
+      const int side = side_of_birth(host, corners[q], in_owner, x, deepest, depth);
+      const bool begins = side >= 0 && host.part(side, x, unused) > 0.0 && !(is_known && side == found->side);
+      if (!is_known && !begins) continue;
+      if (is_known && begins) {
+        step.let_go(*found, deepest, host.part(found->side, x, unused));
+        touches.erase(found);
+      }
+      if (begins) {
+        touches.push_back(born_below(step, kind, q, side, x, depth, a, b, host, law));
+        found = touches.end() - 1;
+      }
     }
     press_corner(step, *found, x, a, b, host, law);
   }

@@ -10,6 +10,7 @@ import pytest
 import rigid_lab as lab
 import rigid_motions
 from rigid_samples import BALL, CAN, COIN, CONE, CUBE, DOMINO, EGG, WEDGE, G, meeting, momenta, rolled, tilted
+from scipy.spatial.transform import Rotation
 
 
 @pytest.mark.parametrize("host", ["plane", "box"])
@@ -283,3 +284,20 @@ def test_edges_that_come_from_beside_press_as_from_above(tmp_path):
     energy = lambda d: 0.5 * (d - onset / 2) ** 2 + onset**2 / 24
     assert min(deep, deeper) > 9e-4
     assert beside / above == pytest.approx(energy(deep) / energy(deeper), rel=1e-3)
+
+
+def test_a_corner_that_began_inside_is_held_where_it_comes_in_again(tmp_path):
+    """A corner that starts 20 mm below the top of a box leaves it by 2 mm through a side, and is thrown back. Its contact with
+    the top, without a force, lasts beside the edge; the side stops the corner all the same. It went on through the box."""
+    third, across = np.sqrt(1 / 3), np.sqrt(2 / 3)
+    edges = np.array([[third, across * np.cos(turn), across * np.sin(turn)] for turn in np.radians([90, 210, 330])])
+    corner, q = -0.05 * edges.sum(axis=0), Rotation.from_matrix(edges.T).as_quat(scalar_first=True)
+    box = lab.box((0.1, 0.1, 0.1), held=True)
+    cube = lab.box((0.1, 0.1, 0.1), at=(0.05 - 0.022, 0.0, 0.05 - 0.02) - corner, q=q, v=(1, 0, 0), mu=0.0, beta=0.0)
+    back = 1.0 / (2.0 * 0.024)
+    with lab.World(tmp_path, [cube, box], frequency=500.0, planes=(), gravity=(-back, 0, 0)) as world:
+        middle = lambda: float(world.rows()[0, 0]) + corner[0] - 0.05  # it does not turn as long as nothing presses
+        world.run(round(1.0 / back / world.dt))
+        assert middle() == pytest.approx(2e-3, abs=1e-4)
+        world.run(round(1.0 / back / world.dt))
+        assert -2e-3 < middle() < 0.0
