@@ -39,7 +39,7 @@ def serve(name: str, state: Path) -> None:
     from mdanim_lammps.scene.parse import parse_scene
 
     scene, _, more = name.partition(", ")
-    plan = prepare(parse_scene((SCENES / f"{scene}.txt").read_text(encoding="utf-8") + more)).plan
+    plan = prepare(parse_scene((SCENES / f"{scene}.txt").read_text(encoding="utf-8") + more, folder=SCENES)).plan
     middle = round(MIDDLE * plan.certificate.steps)
     with Instance(plan) as instance:
         instance.lammps.lmp.command("run_style verlet/mdanim threads 1")

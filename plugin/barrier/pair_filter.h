@@ -18,12 +18,14 @@ struct StripMask {
   int strip, bits;
 };
 
+constexpr double NO_PAIR = -__builtin_inf();
 struct Candidates {
   const double *const *place;    // of particles, all x, all y, all z
   const Strip *strip;
   int strips;
-  const double *reach2;    // square of the reach of every pair, 0 where there is none
+  const double *reach2;    // square of the reach of every pair, NO_PAIR where there is none
   StripMask *lanes;        // room for one strip more than there are
+  double *least;           // gets the least of r^2 - reach^2 of all pairs
 };
 
 // The functions for one set of instructions; all sets give the same answers.

@@ -36,13 +36,17 @@ int in_reach(const Candidates &all, int *found)
   StripMask *const lanes = all.lanes;
   const int strips = all.strips;
   int some = 0;
+  Four least = constant<Four>(__builtin_inf());
   for (int n = 0; n < strips; ++n) {
     const auto [one, first] = all.strip[n];
     const Vec<Four> at{constant<Four>(place[0][one]), constant<Four>(place[1][one]), constant<Four>(place[2][one])};
-    const int near = bits(square(at, place, first) < load<Four>(all.reach2 + STRIP * n));
+    const Four beyond = square(at, place, first) - load<Four>(all.reach2 + STRIP * n);
+    const int near = bits(beyond < 0.0);
+    least = smaller(least, beyond);
     lanes[some] = {n, near};
     some += near != 0;
   }
+  *all.least = smaller(smaller<double>(least[0], least[1]), smaller<double>(least[2], least[3]));
   int many = 0;
   for (int n = 0; n < some; ++n) many = append(lanes[n].bits, STRIP * lanes[n].strip, found, many);
   return many;

@@ -99,7 +99,23 @@ struct PlaneTask {
   PointsTask points;
 };
 
+// Particles of an object that go from `last` to places in arrays of all x, all y, all z, which become rows: those from `first` to
+// `end` - 1.
+struct MoveTask {
+  const double *const *to;
+  int first, end;
+  const PaddedVec3 *last;    // may be the same as
+  PaddedVec3 *now;
+};
+
+// The mean of their displacements, and the square of the largest one relative to it.
+struct MovedBy {
+  Vec3 mean;
+  double square;
+};
+
 struct ContactKernels {
+  MovedBy (*move)(const MoveTask &);
   // Places of the points of the first `n` contacts from `first` on.
   void (*find_points)(const PointsTask &, const FieldContact *first, int n, PointNow *now);
   // Computes the first `n` of the contacts from `first` on, all of points of one kind; those in `hard` stay as they are.

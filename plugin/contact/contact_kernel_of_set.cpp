@@ -255,10 +255,11 @@ void MDANIM_OF_SET(push_at_plane)(const PlaneTask &task, PlaneContact *first, in
 void MDANIM_OF_SET(add_at_plane)(const PointsTask &task, const PlaneContact *first, int n, const PlanePush<double> *pushed,
                                  PaddedVec3 *on);    // contact_plane_of_set.cpp
 void MDANIM_OF_SET(look_at_points)(const LookTask &task, const PointBefore *first, int n,
-                                   LookedBlock &looked);    // contact_look_of_set.cpp
+                                   LookedBlock &looked);        // contact_look_of_set.cpp
+MovedBy MDANIM_OF_SET(move_particles)(const MoveTask &task);    // contact_move_of_set.cpp
 extern const ContactKernels MDANIM_OF_SET(contact_kernels);
 const ContactKernels MDANIM_OF_SET(contact_kernels) = {
-    find_points,  push,         MDANIM_OF_SET(push_at_plane), MDANIM_OF_SET(add_at_plane), MDANIM_OF_SET(look_at_points),
-    add_to_nodes, add_to_points};
+    MDANIM_OF_SET(move_particles), find_points,  push,         MDANIM_OF_SET(push_at_plane), MDANIM_OF_SET(add_at_plane),
+    MDANIM_OF_SET(look_at_points), add_to_nodes, add_to_points};
 
 }    // namespace mdanim

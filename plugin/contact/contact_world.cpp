@@ -7,6 +7,7 @@
 #include "contact/mean_motion.h"
 #include "contact/plane_field.h"
 #include "contact/rigid_field.h"
+#include "simd/kernels.h"
 
 #include <algorithm>
 #include <cmath>
@@ -208,7 +209,7 @@ void ContactWorld::list(const std::vector<ContactParticle> &particles, const Coo
     one.find_host_slots();
     one.is_calm = false, one.unchecked = -1.0;    // its cells that are here may be others
     if (one.is_rigid()) continue;                 // it has been placed
-    MeanMotion(changes).tell(one);
+    tell_mean_motion(one, changes);
     one.find_crushed(arrays.place());
   }
   list_fields();
@@ -255,6 +256,7 @@ void ContactWorld::move_to(const Coordinates &places)
   }
   const PaddedVec3 *const last = has_before ? arrays.place() : arrays.place_before();    // as motions are counted
   has_before = false;
+  const ContactKernels &kernels = arrays.kernels ? *arrays.kernels : widest_kernels().contact;
   threads.parts(static_cast<long>(arrays.size()), NS_OF_PARTICLE, [&](long from, long to) {
     for (ContactObject &one : all) {
       if (one.first_slot == one.last_slot || one.first_slot < from || one.first_slot >= to) continue;
@@ -265,15 +267,8 @@ void ContactWorld::move_to(const Coordinates &places)
         clear_forces(one);
         continue;
       }
-      MeanMotion motion;
-      for (int s = one.first_slot; s < one.last_slot; ++s) motion.add(place(places, s) - last[s].value);
-      motion.take_mean();
-      for (int s = one.first_slot; s < one.last_slot; ++s) {
-        const Vec3 x = place(places, s);
-        motion.compare(x - last[s].value);
-        now[s].value = x;
-      }
-      motion.tell(one);
+      const MovedBy moved = kernels.move({places.data(), one.first_slot, one.last_slot, last, now});
+      one.has_moved(moved.mean, moved.square);
       one.find_crushed(now);
       clear_forces(one);
     }

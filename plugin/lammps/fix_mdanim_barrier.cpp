@@ -17,6 +17,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 using namespace LAMMPS_NS;
@@ -170,7 +171,8 @@ void FixMdanimBarrier::find_pairs()
   pair.clear();
   particle.clear();
   unmoved.clear();
-  tried_pairs = 0.0;
+  tried_pairs = longest = 0.0;
+  least_beyond = std::numeric_limits<double>::infinity();    // until there are pairs
 
   std::vector<Box> boxes;
   const double range = survey(boxes) + neighbor->skin;
@@ -219,13 +221,14 @@ void FixMdanimBarrier::find_pairs()
 void FixMdanimBarrier::add_pair(int low, int high, const ContactPair &known)
 {
   if (strip.empty() || strip.back().one != low || high <= last_high || strip.back().first + STRIP <= high) {
-    constexpr double none[STRIP] = {};
+    constexpr double none[STRIP] = {NO_PAIR, NO_PAIR, NO_PAIR, NO_PAIR};
     strip.push_back({low, high});
     reach2.push(none, STRIP);
     pair.resize(pair.size() + STRIP, {0.0, 0.0, 0.0});
   }
   const size_t number = STRIP * (strip.size() - 1) + high - strip.back().first;
   reach2.data()[number] = known.reach * known.reach;
+  longest = std::max(longest, known.reach);
   pair[number] = known;
   tried_pairs += known.share;
   last_high = high;
@@ -258,12 +261,20 @@ int FixMdanimBarrier::find_touching(const Positions &place)
   masks.resize(strip.size() + 1);
   touching_pair.resize(pair.size() + STRIP);
   const auto all = place.all();
-  return filter->in_reach({all.data(), strip.data(), static_cast<int>(strip.size()), reach2.data(), masks.data()},
+  return filter->in_reach({all.data(), strip.data(), static_cast<int>(strip.size()), reach2.data(), masks.data(), &least_beyond},
                           touching_pair.data());
 }
 
 // Between outputs, where the energy is not read.
 void FixMdanimBarrier::add_forces(const Positions &place, const ForceSums &total) { push<false>(place, total); }
+
+// A pair comes nearer by what both of its particles go. Particles of other ranks may be faster than those of this one.
+double FixMdanimBarrier::rests_for() const
+{
+  constexpr double ROUNDING = 1e-9;    // of a reach, by which places and sums may be wrong
+  if (comm->nprocs > 1 || !(least_beyond > 0.0)) return 0.0;
+  return 0.5 * (std::sqrt(longest * longest + least_beyond) - longest) - ROUNDING * longest;
+}
 
 // Forces on the particles that have candidates; none on those that are not moved. TELLS: computes energy and pairs in touch, too.
 template <bool TELLS> void FixMdanimBarrier::push(const Positions &place, const ForceSums &total)

@@ -36,6 +36,7 @@ class FixMdanimBarrier : public mdanim::FixBase, public mdanim::PassParticipant 
   void equip(const mdanim::Kernels &kernels, const mdanim::Threads &) override { filter = &kernels.pair_filter; }
   double safe_displacement() const override { return clear; }
   bool sees_absolute_position() const override { return false; }
+  double rests_for() const override;
 
  private:
   // A particle's contribution to a pair. Owners send that of ghosts at every rebuild.
@@ -74,6 +75,8 @@ class FixMdanimBarrier : public mdanim::FixBase, public mdanim::PassParticipant 
   mdanim::Doubles reach2;           // squares of the reach of pairs, 0 for numbers without a pair
   std::vector<ContactPair> pair;    // and other data of the pairs
   int last_high = 0;                // the higher one of the last pair
+  double longest = 0.0;             // reach of these pairs
+  double least_beyond = 0.0;        // r^2 - reach^2 of these, when it was computed last
   std::vector<int> particle;        // of pairs, local or ghost: first boundary, then barrier, each ascending by tag
   std::vector<int> unmoved;         // places in it of particles that this rank adds no forces to
   const mdanim::PairFilter *filter;

@@ -125,6 +125,8 @@ class PassParticipant : public PassMember {
   // append_required_atoms() names, in that order; those of ghosts are ignored.
   virtual bool depends_on_positions_only() const { return false; }
   virtual void add_forces(const Positions & /*place*/, const ForceSums & /*force*/) {}
+  // How far particles may go, from where they were when it was asked for forces last, before it adds some again.
+  virtual double rests_for() const { return 0.0; }
   // Whether it will read any particle in this step. Asked once, when the step has begun, unless the fix needs positions only.
   virtual bool needs_all_atoms() { return false; }
   // How far particles may go from where they were at the last rebuild before the fix must look again, as far as it can tell. A

@@ -40,6 +40,7 @@ PassRun::PassRun(SimdBlocks &blocks, const Kernels &kernels, const Threads &thre
   std::vector<std::vector<int>> of_early(crew.early.size());
   for (std::size_t n = 0; n < crew.early.size(); ++n) crew.early[n]->append_required_atoms(of_early[n]);
   blocks.expect(of_early);
+  rests.assign(crew.early.size(), 0.0);
   look = !crew.late.empty() ||
          std::any_of(of_early.begin(), of_early.end(), [](const auto &particles) { return !particles.empty(); });
   blocks.fill(pass, atoms.f);
@@ -105,6 +106,7 @@ void PassRun::step(long long next, const std::function<void(bool at_end)> &late)
     late_participants_turn(late);
     if (needs_all) hold_back();    // they may need other particles now
   }
+  for (double &rest : rests) rest -= dt * largest_speed();
   if (Loss *account = crew.springs->account()) account->passed(sums.dashpots, dt);
 }
 
@@ -156,8 +158,10 @@ void PassRun::take_pass()
 void PassRun::early_participants_turn()
 {
   for (std::size_t n = 0; n < crew.early.size(); ++n) {
+    if (rests[n] > 0.0) continue;
     blocks.tell_places(n, atoms.x, place);
     crew.early[n]->add_forces(place, blocks.external_force_of(n));
+    rests[n] = crew.early[n]->rests_for();
   }
 }
 

@@ -127,19 +127,12 @@ void SimdBlocks::expect(const std::vector<std::vector<int>> &particles_of)
       const long row = block.external_force + n;
       provider.slot.push_back(row * 3 * lanes + ours(i) - block.start);
     }
+  for (ForceProvider &provider : force_providers) provider.find_rows();
   external_force.assign(static_cast<std::size_t>(rows) * 3 * lanes);
 }
 
 void SimdBlocks::tell_places(std::size_t n, const double *const *of_ghosts, Positions &to) const
-{
-  const std::vector<int> &particle = force_providers[n].particle;
-  to.make_room(particle.size());
-  for (int d = 0; d < 3; ++d) {
-    double *next = to.along[d].data();
-    for (const int i : particle) *next++ = x[d][i];
-  }
-  for (const auto &[i, place] : force_providers[n].ghosts) to.put(place, of_ghosts[i]);
-}
+{ force_providers[n].tell_places(x, of_ghosts, to); }
 
 void SimdBlocks::hold_back(const std::vector<int> &wanted, bool everything)
 {
@@ -325,7 +318,8 @@ std::size_t SimdBlocks::bytes() const
 {
   std::size_t of_providers = external_force.bytes() + range.bytes();
   for (const ForceProvider &b : force_providers)
-    of_providers += b.particle.capacity() * sizeof(int) + b.ghosts.capacity() * sizeof(Ghost) + b.slot.capacity() * sizeof(long);
+    of_providers += b.particle.capacity() * sizeof(int) + b.ghosts.capacity() * sizeof(ForceProvider::Ghost) +
+                    b.slot.capacity() * sizeof(long);
   return of_providers + all.capacity() * sizeof(Block) + entries.capacity() * sizeof(Entry) + motions.bytes() + memory.bytes() +
          (home.capacity() + outside.capacity() + index.capacity() + place.capacity() + ghosts.capacity() + waiting.capacity()) *
              sizeof(int) +

@@ -7,6 +7,7 @@
 #include "numbers/vec3.h"
 #include "passes/block_ranges.h"
 #include "passes/cutter.h"
+#include "passes/force_provider.h"
 #include "passes/immersed_blocks.h"
 #include "passes/pass.h"
 #include "passes/pass_participant.h"
@@ -119,14 +120,6 @@ class SimdBlocks {
   std::vector<int> home;       // block of each particle
   std::vector<bool> slowed;    // blocks with friction
   std::vector<int> outside;    // particles of blocks that are held back
-  struct Ghost {
-    int particle, to;    // `particle` in LAMMPS's order
-  };
-  struct ForceProvider {
-    std::vector<int> particle;    // in our order, any one for a ghost
-    std::vector<Ghost> ghosts;
-    std::vector<long> slot;    // of each particle's force in `external_force`; of ghosts all the same one, in a row of no block
-  };
   std::vector<ForceProvider> force_providers;
   Doubles external_force;              // see Pass
   std::vector<int> index, place;       // index of a particle in LAMMPS's arrays, and back
