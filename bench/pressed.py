@@ -44,7 +44,7 @@ FRESH = 3
 
 
 GOALS = {"rest": 1.4, "blow": 1.6}
-"""Of 12^3 cells pressed over apart, where surfaces touch."""
+"""Ratios of 12^3 cells, pressed over apart, where surfaces touch."""
 
 
 class Blocks:
