@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """Rigid bodies of fix mdanim/rigid, beside those of LAMMPS: ``python bench/rigid.py [TABLE ...]``, all of TABLES without a word.
 
-The tables are those of docs/fix_mdanim_rigid.md, `tops` and `sleep` those of docs/physics-rigid.md.
+The tables are those of docs/fix_mdanim_rigid.md, `tops`, `sleep` and `blocks` those of docs/physics-rigid.md.
 """
 
 import sys
@@ -10,9 +10,13 @@ import time
 from pathlib import Path
 
 import numpy as np
+from mdanim_lammps.engine.instance import Instance
+from mdanim_lammps.run.prepare import prepare
+from mdanim_lammps.scene.parse import parse_scene
 from timing import print_tables
 
-sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "lab"))
+ROOT = Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(ROOT / "tests" / "lab"))
 import plugin_lab as lab
 import rigid_lab
 import rigid_tops
@@ -159,7 +163,35 @@ def sleep(seconds: int = 5) -> tuple[list[str], list[list]]:
     return ["heap of 200 cubes", "without [s]", "with sleep [s]", "asleep then", "stilled [J]"], rows
 
 
-TABLES = {"tops": tops, "sleep": sleep, "free": free, "cost": cost, "dominoes": dominoes, "heap": heap}
+def poured(layers: int, until: float, words: str) -> tuple[float, list[int]]:
+    """Processor seconds of scenes/blocks.txt with so many layers, without modelling and output, and how many sleep after each
+    tenth of its time."""
+    text = (ROOT / "scenes" / "blocks.txt").read_text()
+    for old, new in (("layers = 10", f"layers = {layers}"), ("2.5 s", f"{until} s"), ("friction 0.5", f"friction 0.5 {words}")):
+        assert old in text
+        text = text.replace(old, new)
+    ready = prepare(parse_scene(text))
+    took, asleep = 0.0, []
+    with Instance(ready.plan) as run:
+        run.setup()
+        for _ in range(10):
+            start = time.process_time()
+            run.run(ready.certificate.steps // 10)
+            took += time.process_time() - start
+            asleep.append(int(run.fix_value("rigid", "asleep")) if words else 0)
+    return took, asleep
+
+
+def blocks() -> tuple[list[str], list[list]]:
+    """Blocks that are poured out, until they lie."""
+    rows = []
+    for layers, until in ((3, 2.2), (10, 2.5)):
+        (awake, _), (sleeps, asleep) = (poured(layers, until, words) for words in ("", "sleep on"))
+        rows.append([f"{100 * layers}, {until} s", f"{awake:.1f}", f"{sleeps:.1f}", " ".join(map(str, asleep))])
+    return ["blocks", "without [s]", "with sleep [s]", "asleep after each tenth"], rows
+
+
+TABLES = {"tops": tops, "sleep": sleep, "blocks": blocks, "free": free, "cost": cost, "dominoes": dominoes, "heap": heap}
 
 if __name__ == "__main__":
     print_tables(TABLES, sys.argv[1:])
