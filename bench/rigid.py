@@ -15,12 +15,12 @@ from mdanim_lammps.run.prepare import prepare
 from mdanim_lammps.scene.parse import parse_scene
 from timing import print_tables
 
-ROOT = Path(__file__).resolve().parent.parent
-sys.path.insert(0, str(ROOT / "tests" / "lab"))
+sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "lab"))
 import plugin_lab as lab
 import rigid_lab
 import rigid_tops
 
+ROOT = Path(__file__).resolve().parent.parent
 STYLES = ("mdanim/rigid", "rigid molecule", "rigid/nve molecule")
 TURN = 600
 """Time steps of a turn."""
