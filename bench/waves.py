@@ -2,7 +2,8 @@
 """Waves against closed forms, and what an update costs: ``python bench/waves.py [forms|bodies|coupling|cost]``.
 
 Printed are the tables of docs/physics-liquid.md. Cell, g and the density of the liquid are 1. Costs are times of one core, the
-least of several rounds, for a small swell in an open basin; `obstacles` has a block, a shelf and porous cells in it.
+least of several rounds, for a small swell in an open basin; `obstacles` has a block, a shelf and porous cells in it, the ground
+of `rough` rubs.
 """
 
 import sys
@@ -137,8 +138,9 @@ def cost(rounds: int = 5) -> list[tuple]:
     rows = []
     for cells in (128, 512):
         for depth in (5, 20):
-            for name, obstacles in (("", False), (", obstacles", True)):
+            for name, obstacles, bed in (("", False, 0.0), (", rough", False, 0.02), (", obstacles", True, 0.0)):
                 w = basin(cells, depth, obstacles)
+                w.set(bed=bed)
                 count = 20 if cells == 128 else 3
                 before = w.counts
                 seconds = min(w.update(count) / count for _ in range(rounds))

@@ -57,6 +57,7 @@ std::vector<Keyword> LiquidCommand::keywords()
          model = static_cast<Model>(choice(lmp, STYLE, "model must be", {"surface", "paper", "waves"}, at + 1, arg));
        }},
       {"calm", "T", "", [this](int at, char **arg) { calm = positive(lmp, STYLE, "calm", at + 1, arg); }},
+      {"manning", "n", "", [this](int at, char **arg) { manning = positive(lmp, STYLE, "manning", at + 1, arg); }},
       {"drops", "share", "",
        [this](int at, char **arg) {
          spray = utils::numeric(FLERR, arg[at + 1], false, lmp);
@@ -106,6 +107,7 @@ void LiquidCommand::read_keywords(const std::vector<Keyword> &of_parts, int narg
       error->all(FLERR, at, "{}: {} is for model waves; leave it out, or write model waves", STYLE, word);
   };
   for_waves(calm > 0.0, Error::NOPOINTER, "calm");
+  for_waves(manning > 0.0, Error::NOPOINTER, "manning");
   for_waves(spray > 0.0, Error::NOPOINTER, "drops");
   if (!makers.empty()) for_waves(true, makers[0], arg[makers[0]]);
 }
@@ -127,6 +129,7 @@ std::unique_ptr<Basin> LiquidCommand::make_basin(const RankSums &ranks, char **a
   try {
     if (model == Model::WAVES) {
       auto waves = std::make_unique<WaveBasin>(shape, g, calm > 0.0 ? calm_rate(calm) : 0.0, spray, key, ranks);
+      if (manning > 0.0) waves->roughen(manning);
       const double area = cell.x * n[0] * cell.y * n[1];
       add_makers(*waves, level ? *level - low.z : *volume / area, arg);
       basin = std::move(waves);

@@ -47,7 +47,7 @@ class LiquidCommand : protected LAMMPS_NS::Pointers {
   std::string region_id, fill_id;
   int n[3];    // cells along each axis
   std::optional<double> volume, level, gravity;
-  double calm = 0.0, spray = 0.0;
+  double calm = 0.0, manning = 0.0, spray = 0.0;
   bool any_vertical = false;
   std::int64_t seed = 1;
   std::vector<int> makers;    // places of the words of each

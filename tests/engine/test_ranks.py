@@ -25,7 +25,7 @@ NEARER = MEETING.replace("44) cm", "42.6) cm").replace("-4, 5) cm", "-4, 3.5) cm
 SCENES = {
     "solids": NEARER.replace("drag 0.8", "drag 0.8\n  damping 0.05"),
     "liquid": SPLASH,
-    "waves": SPLASH.replace("model surface", "model waves drops 1 wave -x amplitude 2 cm period 0.5 s"),
+    "waves": SPLASH.replace("model surface", "model waves manning 0.03 drops 1 wave -x amplitude 2 cm period 0.5 s"),
 }
 MOVING = {
     **{name: SHAPES[name] for name in ("sphere", "held", "damped", "damped beside others", "damped and held")},

@@ -146,6 +146,7 @@ def scenes(draw):
             drag=draw(st.none() | st.floats(0, 100)),
             model=model,
             calm=draw(st.none() | positive) if waves else None,
+            manning=draw(st.none() | st.floats(1e-4, 1.0)) if waves else None,
             drops=draw(st.sampled_from([0.0, 0.25, 1.0])) if waves else 0.0,
             wave=draw(st.sampled_from([(), (liquids.Wave("-x", 0.1, 2.0), liquids.Wave("+y", 0.02, 3.0))])) if waves else (),
             current=draw(st.sampled_from([(), (liquids.Current("+x", 0.3),)])) if waves else (),

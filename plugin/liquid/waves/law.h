@@ -4,6 +4,7 @@
 
 #pragma once
 
+#include "numbers/cube_root.h"
 #include "numbers/real.h"
 
 namespace mdanim {
@@ -15,7 +16,7 @@ struct WaveLaw {
   double film = 1.0 / 1024.0;         // a content up to this does not flow
   double viscosity = 0.02;            // between neighbouring links
   double calm = 0.0;                  // rate at which all velocities decay, see calm_rate()
-  double bed = 0.0;                   // friction of the floor, times |u|/H
+  double bed = 0.0;                   // friction of the ground, times |u|/H^(4/3), see bed_friction()
   double inertia = 8.0 / 21.0;        // of rising columns, in their depth
   double quick = 0.125;               // part of the dispersive head that does not push
   double breaking = 0.3;              // difference of heads from which a front loses its inertia, completely at twice that
@@ -30,6 +31,13 @@ struct WaveLaw {
 
 // Friction under which waves decay to 1/e in a time: half of their energy is in velocities.
 constexpr double calm_rate(double time) { return 2.0 / time; }
+
+// Friction of the ground: n^2 g cell^(-1/3) with Manning's n [time/length^(1/3)], for cells that are so long and so high.
+inline double bed_friction(double n, double g, double length, double height)
+{
+  const double root = inverse_cube_root(height);
+  return n * n * g * length * ((root * root) * (root * root));
+}
 
 // (W1) Head of the surface of a span with solids only at its ends. A full span has the head of its rest.
 template <class Real> struct SpanSurface {
@@ -77,10 +85,23 @@ template <class Real> struct Around {
   Real inflow[4];          // flux from there, positive where it comes towards the link
 };
 
+// (W4) Rate at which the ground slows what flows at u, and at the flux `across` beside it: n^2 g |u|/H^(4/3), Manning's law.
+template <class Real>
+MDANIM_ALWAYS_INLINE Real bed_rate(const WaveLaw &law, const Real &u, const Real &across, const Real &height)
+{
+  const Real root_of_height = inverse_cube_root(larger(height, constant<Real>(law.film)));    // its inverse
+  const Real square = root_of_height * root_of_height, v = across * (square * root_of_height);
+  return constant<Real>(law.bed) * root(u * u + v * v) * (square * square);
+}
+
+template <class Real> struct Advected {
+  Real u, rubbed;    // velocity, and what the ground has taken of it
+};
+
 // (W3) Advection of Stelling & Duinmeijer 2003 and viscosity, both as a mean of velocities; (W4) friction. Viscosity acts over
 // the height that two links share: one gains the momentum that the other loses.
 template <class Real>
-MDANIM_ALWAYS_INLINE Real advected(const WaveLaw &law, const Real &u, const Around<Real> &around, const Real &volume_a,
+MDANIM_ALWAYS_INLINE Advected<Real> advected(const WaveLaw &law, const Real &u, const Around<Real> &around, const Real &volume_a,
                                    const Real &volume_b, const Real &height)
 {
   const Real none = constant<Real>(0.0), one = constant<Real>(1.0);
@@ -97,9 +118,14 @@ MDANIM_ALWAYS_INLINE Real advected(const WaveLaw &law, const Real &u, const Arou
                 weight[3] * (around.u[3] - u);
   if (any(sum > one)) change = change / larger(sum, one);
   const Real mean = u + change;
-  if (law.calm == 0.0 && law.bed == 0.0) return mean;
-  const Real rubbed = larger(mean, none - mean) / larger(height, constant<Real>(0.05));
-  return mean / (one + constant<Real>(law.dt) * (constant<Real>(law.calm) + constant<Real>(law.bed) * rubbed));
+  if (law.bed > 0.0) {
+    const Real across = constant<Real>(0.5) * (around.inflow[2] - around.inflow[3]);
+    const Real part = constant<Real>(law.dt) * bed_rate(law, mean, across, height);
+    const Real slower = mean / (one + (constant<Real>(law.dt * law.calm) + part));
+    return {slower, slower * part};
+  }
+  if (law.calm > 0.0) return {mean / (one + constant<Real>(law.dt) * constant<Real>(law.calm)), none};
+  return {mean, none};
 }
 
 // Sums over the links of a span. (W5), (W6): D delta = sum of c delta of the others + rhs, with D = S + sum of H.

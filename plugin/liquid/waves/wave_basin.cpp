@@ -57,6 +57,9 @@ WaveBasin::WaveBasin(const Shape &shape, double g, double calm, double spray, st
   drops.share = spray;
 }
 
+void WaveBasin::roughen(double n)
+{ waves.run.law.bed = bed_friction(n, g, std::sqrt(shape.cell.x * shape.cell.y), shape.cell.z); }
+
 void WaveBasin::accelerate(const Vec3 &mean)
 {
   const double per_g = 1.0 / (g * shape.cell.z);

@@ -29,6 +29,9 @@ class WaveBasin : public Basin {
   // `ranks` must outlive the basin.
   WaveBasin(const Shape &shape, double g, double calm, double spray, std::uint64_t seed, const RankSums &ranks);
 
+  // Sets Manning's n of the ground [time/length^(1/3)].
+  void roughen(double n);
+
   // Makers of waves, to be added before the first update; lengths, times and volumes in units of the world. Sides as SideOf.
   void add_wave(int side, double amplitude, double period, double depth);
   void add_current(int side, double speed);

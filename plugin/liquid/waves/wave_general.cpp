@@ -65,7 +65,7 @@ void WaveStepper::general_advection(const LinkPlace &link)
   const WaveLinks &l = columns.arrays_of(link);
   const Ends e = columns.ends(link);
   const long j = link.at;
-  l.faster[j] = 0.0;
+  l.faster[j] = l.rubbed[j] = 0.0;
   if (l.wet[j] == 0.0) return;
   const SideOf back = link.d == 0 ? WEST : SOUTH, ahead = link.d == 0 ? EAST : NORTH;
   const SideOf left = link.d == 0 ? SOUTH : WEST, right = link.d == 0 ? NORTH : EAST;
@@ -89,7 +89,9 @@ void WaveStepper::general_advection(const LinkPlace &link)
   set(2, beside(left_a.widest, left_b.widest), 0.5 * (left_a.q + left_b.q));
   const SideLinks right_a = side_of(e.a, right), right_b = side_of(e.b, right);
   set(3, beside(right_a.widest, right_b.widest), 0.0 - 0.5 * (right_a.q + right_b.q));
-  l.faster[j] = advected(law, l.u[j], around, arrays.volume[e.a], arrays.volume[e.b], l.height[j]);
+  const auto found = advected(law, l.u[j], around, arrays.volume[e.a], arrays.volume[e.b], l.height[j]);
+  l.faster[j] = found.u;
+  l.rubbed[j] = found.rubbed;
 }
 
 void WaveStepper::general_push(const LinkPlace &link)

@@ -84,7 +84,8 @@ void WaveStepper::move_links()
     for (int d = 0; d < 2; ++d) run.kernels->push(arrays, law, d, first, end);
   });
   loops.each_listed(columns.listed_links, [&](const LinkPlace &link) { general_push(link); });
-  run.lost += law.dt * (walls.force() + law.calm * moving());
+  run.lost += law.dt * (walls.force() + law.calm * momentum(&WaveLinks::moving, &WaveLinks::faster));
+  if (law.bed > 0.0) run.lost += momentum(&WaveLinks::rubbing, &WaveLinks::rubbed);
   if (run.is_moved) leave_behind();
   if (const WaveLoops::RowRange tight = balance(); tight.first < tight.last) {
     limit(tight);
@@ -97,14 +98,14 @@ void WaveStepper::move_links()
     });
 }
 
-// Momentum along x and y before pressure, after friction has taken a part of it.
-Vec3 WaveStepper::moving() const
+// Momentum along x and y by sums of rows of the grid, and by the velocities of further links.
+Vec3 WaveStepper::momentum(double *WaveLinks::*of_rows, double *WaveLinks::*of_links) const
 {
   double sum[2] = {0.0, 0.0};
   for (int d = 0; d < 2; ++d) {
     const WaveLinks &l = arrays.links[d];
-    for (long row = 1; row < columns.end_row(); ++row) sum[d] += l.moving[row];
-    columns.further_links_of(d, [&](const LinkPlace &link) { sum[d] += l.height[link.at] * l.faster[link.at]; });
+    for (long row = 1; row < columns.end_row(); ++row) sum[d] += (l.*of_rows)[row];
+    columns.further_links_of(d, [&](const LinkPlace &link) { sum[d] += l.height[link.at] * (l.*of_links)[link.at]; });
   }
   return {sum[0], sum[1], 0.0};
 }

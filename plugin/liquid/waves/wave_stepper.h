@@ -36,7 +36,7 @@ class WaveStepper {
   void sub_update(double dt, double share);
   void find_surfaces();
   void move_links();
-  Vec3 moving() const;
+  Vec3 momentum(double *WaveLinks::*of_rows, double *WaveLinks::*of_links) const;
   void leave_behind();
   WaveLoops::RowRange balance();
   void limit(const WaveLoops::RowRange &tight);

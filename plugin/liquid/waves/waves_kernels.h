@@ -14,8 +14,9 @@ namespace mdanim {
 struct WaveLinks {
   double *edge, *top, *u, *q;    // heights between which it is open; velocity, and the flux that made the present contents
   double *wet, *height, *faster, *units;    // see Opened; u after advection; units that pass
+  double *rubbed;    // velocity that the ground has taken; only with friction of the ground
   double *couple;
-  double *moving;    // momentum before pressure, of rows
+  double *moving, *rubbing;    // momentum before pressure, and what the ground has taken of it, of rows
 };
 
 // Arrays of spans and links, row after row. A row is `stride` long, a multiple of 8 that leaves at least one place behind the

@@ -128,9 +128,11 @@ template <class Vector> void advect(const WaveArrays &a, const WaveLaw &law, int
     around.inflow[1] = none - half * (own + load<Vector>(q + at[1]));
     around.inflow[2] = half * (load<Vector>(across_q + i - across) + load<Vector>(across_q + i - across + along));
     around.inflow[3] = none - half * (load<Vector>(across_q + i) + load<Vector>(across_q + i + along));
-    const Vector mean =
+    const auto found =
         advected(law, u, around, load<Vector>(a.volume + i), load<Vector>(a.volume + i + along), load<Vector>(links.height + i));
-    store(links.faster + i, pick(load<Vector>(links.wet + i) > none, mean, none));
+    const auto wet = load<Vector>(links.wet + i) > none;
+    store(links.faster + i, pick(wet, found.u, none));
+    if (law.bed > 0.0) store(links.rubbed + i, pick(wet, found.rubbed, none));
   });
 }
 
@@ -278,6 +280,10 @@ template <class Vector> void push(const WaveArrays &a, const WaveLaw &law, int d
     push_at<Vector>(a, law, at, opening<Vector>(at));
     return load<Vector>(links.height + i) * load<Vector>(links.faster + i);
   });
+  if (law.bed > 0.0)
+    sum_rows_to<Vector>(links.rubbing, a, first, end, [&](long i) MDANIM_INLINED {
+      return load<Vector>(links.height + i) * load<Vector>(links.rubbed + i);
+    });
 }
 
 template <class Vector> double fastest(const WaveArrays &a, long first, long end)

@@ -83,7 +83,7 @@ UNEVEN = FLYING.split("control")[0].replace("1 .. 4", "1 .. 3") + "control { tim
 """A last frame that is shorter than the others."""
 POOL = RAFTS.replace("time 0.24 s", "time 0.16 s")
 """The same, shorter."""
-WAVES = POOL.replace("model surface", "model waves drops 1 wave -x amplitude 2 cm period 0.5 s")
+WAVES = POOL.replace("model surface", "model waves manning 0.03 drops 1 wave -x amplitude 2 cm period 0.5 s")
 """The same in a liquid with momentum."""
 APART = (
     GRAVITY

@@ -153,10 +153,11 @@ def join(part, a, b):
 
 
 class Twin:
-    """A basin that is poured once."""
+    """A basin that is poured once; `bed` is n^2 g cell^(-1/3) with Manning's n."""
 
-    def __init__(self, part, height):
+    def __init__(self, part, height, bed=0.0):
         nz, ny, nx = part.shape
+        self.bed = bed
         self.height, self.fastest = nz, 4 * nz**0.5
         self.spans = [span for y in range(ny) for x in range(nx) for span in cut(part, x, y)]
         self._join(part)
@@ -244,7 +245,7 @@ class Twin:
             link.height = link.opening(upwind) if link.wet else 0.0
 
     def _advected(self, link, dt):
-        """(W3)."""
+        """(W3), (W4)."""
         ahead = "east" if link.b.x > link.a.x else "north"
         back = OPPOSITE[ahead]
         across = ("south", "north") if ahead == "east" else ("west", "east")
@@ -275,7 +276,12 @@ class Twin:
             shared = min(height, link.height) / max(link.height, 1e-6)
             weights.append((u, max(q, 0.0) * dt / depth + VISCOSITY * dt * shared))
         total = max(1.0, sum(weight for _, weight in weights))
-        return link.u + sum(weight * (u - link.u) for u, weight in weights) / total
+        mean = link.u + sum(weight * (u - link.u) for u, weight in weights) / total
+        if not self.bed:
+            return mean
+        height = max(link.height, FILM)
+        speed = np.hypot(mean, (incoming[2][1] - incoming[3][1]) / 2 / height)
+        return mean / (1 + dt * self.bed * speed / height ** (4 / 3))
 
     def _solve(self, dt, share):
         """(W5), (W6)."""

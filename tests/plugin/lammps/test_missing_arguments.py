@@ -52,6 +52,7 @@ BARRIER = "fix a all mdanim/barrier all all 1.0 1.0"
                 ("gravity", "G"),
                 ("model", "surface|paper|waves"),
                 ("calm", "T"),
+                ("manning", "n"),
                 ("drops", "share"),
                 ("vertical", "lower|any"),
                 ("seed", "N"),

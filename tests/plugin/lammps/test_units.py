@@ -41,6 +41,7 @@ class Units:
         self.number = 1.0
         self.velocity = self.length / self.time
         self.rate = 1.0 / self.time
+        self.manning = self.time / self.length ** (1 / 3)
         self.per_length = 1.0 / self.length
         self.area, self.volume = self.length**2, self.length**3
         self.flow = self.volume / self.time
@@ -187,7 +188,7 @@ def waves() -> Scene:
     """All words of waves but drops."""
     told = {"f_water[12]": "energy", "f_water[13]": "length", **{f"f_water[{n}]": "momentum" for n in range(14, 22)}}
     makers = "wave -x 0.2:length 60.0:time current -y 0.01:velocity inflow mouth 0.3:flow 0.02:velocity 0.0:velocity"
-    return liquid(f"model waves calm 400.0:time softness d_soft {makers} drain mouth 0.1:flow", outputs=told)
+    return liquid(f"model waves calm 400.0:time manning 1.0:manning softness d_soft {makers} drain mouth 0.1:flow", outputs=told)
 
 
 def joints() -> Scene:

@@ -274,11 +274,12 @@ class LiquidWaves(LiquidAutomaton):
         }
 
     def words(self, scene, held):
-        calm = scene.liquid.calm or calm_time(scene)
+        calm = scene.liquid.calm or (0.0 if scene.liquid.manning else calm_time(scene))
         solids = f"cells i2_cell softness d_softness {held}"
         drops = f" drops {scene.liquid.drops!r}" if scene.liquid.drops else ""
         pace = f"every {EVERY} stride {WAVE_STRIDE} period {WAVE_PERIOD}"
-        return f"model waves calm {calm!r}{drops} {solids} {pace}{_makers(scene.liquid)}"
+        slows = f" calm {calm!r}" * bool(calm) + (f" manning {scene.liquid.manning!r}" if scene.liquid.manning else "")
+        return f"model waves{slows}{drops} {solids} {pace}{_makers(scene.liquid)}"
 
     def commands(self, context):
         regions = [f"region {name} {_block(flow.low, flow.high)}" for _, name, flow in _flows(context.scene.liquid)]

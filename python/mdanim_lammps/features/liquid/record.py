@@ -14,6 +14,7 @@ from ...scene.limits import Limit
 from ...scene.schema import BOX, COLOR, OneOf, Rule, Vector, Worded, Words, setting
 from ..drives.words import DriveOscillation, DriveVelocity, ShiftKey
 
+MANNING = Limit("manning", 1.0, 1e-4, "0.01 is glass, 0.013 concrete, 0.03 gravel, 0.05 a brook with stones, 0.1 dense reeds")
 DROPS = Limit("drops", 1.0, way_out="1 lets all of it fly")
 SWEEPS = Limit("sweeps", 4096, way_out="write sweeps auto, which takes 8 for each cell that the fastest solid travels")
 """The limit of fix mdanim/liquid."""
@@ -138,6 +139,13 @@ class Liquid(Worded):
         "50 times that of a long wave through the longer side of the basin, L/√(g depth), or through its depth.",
         "20 s", Rule.POSITIVE, default=None)  # fmt: skip
     """Time in which waves die to 1/e [s]; None is ``auto``."""
+    manning: float | None = setting(
+        "<n>",
+        "With `model waves`: friction of the ground, that is the floor and all that the liquid flows over, by Manning's n as in "
+        "tables, a plain number: glass 0.01, concrete 0.013, gravel 0.03, a brook with stones 0.05. The liquid loses the head "
+        "n² u²/h^(4/3) in each metre. Absent: smooth. With it `calm auto` is none.",
+        "0.03", Rule.POSITIVE, default=None, limit=MANNING)  # fmt: skip
+    """Manning's n [s/m^(1/3)]; None is smooth."""
     drops: float = setting(
         "<share>", "With `model waves`: share of what shoots up from impacts and fronts that flies as drops, and comes back.",
         "0.5", Rule.NOT_NEGATIVE, default=0.0, limit=DROPS)  # fmt: skip

@@ -234,7 +234,7 @@ def check_motion(v: Any, block: Any, liquid: Any) -> None:
 def check_waves(liquid: Any, block: Any, problem: Any) -> None:
     """Makers only with waves, only inside the basin, and with a rate; ``problem`` takes a span, a cause and a way out."""
     waves = liquid.model.value == "waves"
-    for word in ("sweeps",) if waves else ("calm", "drops", "wave", "current", "inflow", "drain"):
+    for word in ("sweeps",) if waves else ("calm", "manning", "drops", "wave", "current", "inflow", "drain"):
         if getattr(liquid, word):
             cause, way_out = f"model {liquid.model.value} has no {word}", "surface" if waves else "waves"
             problem(block.first(word).span(), cause, f"leave the line out, or write model {way_out}")

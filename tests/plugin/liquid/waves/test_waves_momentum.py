@@ -135,7 +135,7 @@ def test_the_account_has_the_same_bits_however_it_is_computed(change):
     """Threads, the general form and every instruction set."""
     found = []
     for changed in (False, True):
-        w = dam(held=np.pad(np.full((4, 3, 8), 4096), [(0, 16), (0, 0), (80, 32)]), calm=0.02)
+        w = dam(held=np.pad(np.full((4, 3, 8), 4096), [(0, 16), (0, 0), (80, 32)]), calm=0.02, bed=0.02)
         if changed and change == "threads":
             w.threads(3)
         elif changed and change == "general":

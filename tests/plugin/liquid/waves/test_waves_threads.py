@@ -10,7 +10,7 @@ import waves_lab as lab
 @pytest.mark.parametrize("threads", [2, 3, 5])
 def test_threads_change_no_bit(threads):
     """Rows of columns are shared, in the middle of a splash beside a shelf with liquid above and below it."""
-    alone, shared = (lab.Waves((24, 20, 20)) for _ in range(2))
+    alone, shared = (lab.Waves((24, 20, 20), bed=0.02) for _ in range(2))
     shared.threads(threads)
     body = forms.Body((5, 5, 5), (10.2, 9.7, 15), 0.6, velocity=(0.1, 0, -2))
     shelf = np.zeros(alone.shape, int)
