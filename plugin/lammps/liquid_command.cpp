@@ -128,8 +128,8 @@ std::unique_ptr<Basin> LiquidCommand::make_basin(const RankSums &ranks, char **a
   std::unique_ptr<Basin> basin;
   try {
     if (model == Model::WAVES) {
-      auto waves = std::make_unique<WaveBasin>(shape, g, calm > 0.0 ? calm_rate(calm) : 0.0, spray, key, ranks);
-      if (manning > 0.0) waves->roughen(manning);
+      auto waves =
+          std::make_unique<WaveBasin>(shape, g, WaveSettings{calm > 0.0 ? calm_rate(calm) : 0.0, manning, spray, key}, ranks);
       const double area = cell.x * n[0] * cell.y * n[1];
       add_makers(*waves, level ? *level - low.z : *volume / area, arg);
       basin = std::move(waves);

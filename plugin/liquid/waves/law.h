@@ -102,7 +102,7 @@ template <class Real> struct Advected {
 // the height that two links share: one gains the momentum that the other loses.
 template <class Real>
 MDANIM_ALWAYS_INLINE Advected<Real> advected(const WaveLaw &law, const Real &u, const Around<Real> &around, const Real &volume_a,
-                                   const Real &volume_b, const Real &height)
+                                             const Real &volume_b, const Real &height)
 {
   const Real none = constant<Real>(0.0), one = constant<Real>(1.0);
   const Real depth = larger(constant<Real>(0.5) * (volume_a + volume_b), constant<Real>(1e-6));

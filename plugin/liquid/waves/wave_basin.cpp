@@ -47,18 +47,16 @@ std::string WaveBasin::unusable(const Shape &shape)
   return text;
 }
 
-WaveBasin::WaveBasin(const Shape &shape, double g, double calm, double spray, std::uint64_t seed, const RankSums &ranks)
+WaveBasin::WaveBasin(const Shape &shape, double g, const WaveSettings &settings, const RankSums &ranks)
     : Basin(shape, g, ranks), unit_of_time(std::sqrt(shape.cell.x * shape.cell.y / (g * shape.cell.z))),
       waves(shape.nx, shape.ny, shape.nz), solids(shape.nx, shape.ny, shape.nz), from_solids(shape, unit_of_time),
-      push(shape.nx, shape.ny, shape.nz), makers(shape.nx, shape.ny), drops(shape.nx, shape.ny, seed),
+      push(shape.nx, shape.ny, shape.nz), makers(shape.nx, shape.ny), drops(shape.nx, shape.ny, settings.seed),
       heights(shape.nx, shape.ny), rising(columns())
 {
-  waves.run.law.calm = calm * unit_of_time;
-  drops.share = spray;
+  waves.run.law.calm = settings.calm * unit_of_time;
+  waves.run.law.bed = bed_friction(settings.manning, g, std::sqrt(shape.cell.x * shape.cell.y), shape.cell.z);
+  drops.share = settings.spray;
 }
-
-void WaveBasin::roughen(double n)
-{ waves.run.law.bed = bed_friction(n, g, std::sqrt(shape.cell.x * shape.cell.y), shape.cell.z); }
 
 void WaveBasin::accelerate(const Vec3 &mean)
 {

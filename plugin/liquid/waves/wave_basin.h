@@ -19,18 +19,22 @@
 
 namespace mdanim {
 
+// What the command says of waves.
+struct WaveSettings {
+  double calm = 0.0;       // rate at which waves decay in addition [1/time]
+  double manning = 0.0;    // Manning's n of the ground [time/length^(1/3)]
+  double spray = 0.0;      // the share of drops, see Drops
+  std::uint64_t seed = 1;
+};
+
 // Waves, the cells that solids fill, and the push of each on the other. The unit of time of the waves is sqrt(cell/g).
 class WaveBasin : public Basin {
  public:
   // Empty when such a basin is possible, else the reason why not.
   static std::string unusable(const Shape &shape);
 
-  // `calm` [1/time] is a rate at which waves decay in addition, `spray` the share of drops, see Drops. Throws std::bad_alloc.
-  // `ranks` must outlive the basin.
-  WaveBasin(const Shape &shape, double g, double calm, double spray, std::uint64_t seed, const RankSums &ranks);
-
-  // Sets Manning's n of the ground [time/length^(1/3)].
-  void roughen(double n);
+  // Throws std::bad_alloc. `ranks` must outlive the basin.
+  WaveBasin(const Shape &shape, double g, const WaveSettings &settings, const RankSums &ranks);
 
   // Makers of waves, to be added before the first update; lengths, times and volumes in units of the world. Sides as SideOf.
   void add_wave(int side, double amplitude, double period, double depth);

@@ -19,8 +19,8 @@ double *WaveArrays::*const OF_SPANS[] = {
 };
 
 double *WaveLinks::*const OF_LINKS[] = {
-    &WaveLinks::edge,   &WaveLinks::top,    &WaveLinks::u,     &WaveLinks::q,      &WaveLinks::wet,
-    &WaveLinks::height, &WaveLinks::faster, &WaveLinks::units, &WaveLinks::rubbed, &WaveLinks::couple, &WaveLinks::moving, &WaveLinks::rubbing,
+    &WaveLinks::edge,   &WaveLinks::top,   &WaveLinks::u,      &WaveLinks::q,      &WaveLinks::wet,    &WaveLinks::height,
+    &WaveLinks::faster, &WaveLinks::units, &WaveLinks::rubbed, &WaveLinks::couple, &WaveLinks::moving, &WaveLinks::rubbing,
 };
 
 }    // namespace

@@ -14,7 +14,7 @@ namespace mdanim {
 struct WaveLinks {
   double *edge, *top, *u, *q;    // heights between which it is open; velocity, and the flux that made the present contents
   double *wet, *height, *faster, *units;    // see Opened; u after advection; units that pass
-  double *rubbed;    // velocity that the ground has taken; only with friction of the ground
+  double *rubbed;                           // velocity that the ground has taken; only with friction of the ground
   double *couple;
   double *moving, *rubbing;    // momentum before pressure, and what the ground has taken of it, of rows
 };

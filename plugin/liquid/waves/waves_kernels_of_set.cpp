@@ -281,9 +281,8 @@ template <class Vector> void push(const WaveArrays &a, const WaveLaw &law, int d
     return load<Vector>(links.height + i) * load<Vector>(links.faster + i);
   });
   if (law.bed > 0.0)
-    sum_rows_to<Vector>(links.rubbing, a, first, end, [&](long i) MDANIM_INLINED {
-      return load<Vector>(links.height + i) * load<Vector>(links.rubbed + i);
-    });
+    sum_rows_to<Vector>(links.rubbing, a, first, end,
+                        [&](long i) MDANIM_INLINED { return load<Vector>(links.height + i) * load<Vector>(links.rubbed + i); });
 }
 
 template <class Vector> double fastest(const WaveArrays &a, long first, long end)

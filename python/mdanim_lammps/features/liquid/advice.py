@@ -210,16 +210,28 @@ def _slopes(envelope: Envelope) -> Iterator[tuple[Model, np.ndarray]]:
             yield model, corner[gentle]
 
 
-def _beach(envelope: Envelope) -> Found | None:
-    scene = envelope.scene
-    level = liquid_level(scene.liquid)
-    for model, corner in _slopes(envelope):
+def _smooth_slope(envelope: Envelope, wet: Callable[[np.ndarray, np.ndarray], np.ndarray], what: str) -> Found | None:
+    """A slope of smooth ground in the basin: `wet` tells of triangles, by their lowest and highest z, whether it is one."""
+    liquid = envelope.scene.liquid
+    for model, corner in () if liquid.manning else _slopes(envelope):
         low, high = corner.min(axis=1), corner.max(axis=1)
-        there = (low[:, 2] < level) & (high[:, 2] > level)
-        there &= (high[:, :2] > scene.liquid.low[:2]).all(axis=1) & (low[:, :2] < scene.liquid.high[:2]).all(axis=1)
+        there = wet(low[:, 2], high[:, 2])
+        there &= (high[:, :2] > liquid.low[:2]).all(axis=1) & (low[:, :2] < liquid.high[:2]).all(axis=1)
         if there.any():
-            return _place(envelope, model), f"{scene.liquid.name} has a beach, {model.name}"
+            return _place(envelope, model), f"{liquid.name} {what} {model.name}"
     return None
+
+
+def _beach(envelope: Envelope) -> Found | None:
+    level = liquid_level(envelope.scene.liquid)
+    return _smooth_slope(envelope, lambda low, high: (low < level) & (high > level), "has a beach,")
+
+
+def _river(envelope: Envelope) -> Found | None:
+    if not (inflow := envelope.scene.liquid.inflow):
+        return None
+    top = max(flow.high[2] for flow in inflow)
+    return _smooth_slope(envelope, lambda low, high: low < top, "flows down")
 
 
 def _place(envelope: Envelope, model: Model) -> Span | None:
@@ -324,8 +336,15 @@ SHORTFALLS = (
     Shortfall(_narrow_arm, "there liquid swings too fast, in 19 % less time in a U-tube", f"{VALIDATION}a-u-tube"),
     Shortfall(
         _beach,
-        "high waves run up to 28 % too far, in part as nothing rubs on the ground",
+        "high waves run up to 28 % too far, as nothing rubs on the ground",
         f"{VALIDATION}solitary-waves-on-a-beach",
+        "write manning 0.01 in the liquid for smooth ground, 0.03 for gravel",
+    ),
+    Shortfall(
+        _river,
+        "nothing rubs on smooth ground, so that it gets faster all the way down",
+        f"{PHYSICS}friction-of-the-ground",
+        "write manning 0.03 in the liquid, which is gravel",
     ),
     Shortfall(
         _slides, "after some seconds it begins to slide to and fro", f"{PHYSICS}bodies-in-waves", "write friction 0.5 in it"
