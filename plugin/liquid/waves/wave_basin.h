@@ -19,7 +19,7 @@
 
 namespace mdanim {
 
-// What the command says of waves.
+// Numbers that the command has for waves.
 struct WaveSettings {
   double calm = 0.0;       // rate at which waves decay in addition [1/time]
   double manning = 0.0;    // Manning's n of the ground [time/length^(1/3)]
