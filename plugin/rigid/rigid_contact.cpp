@@ -99,7 +99,7 @@ void RigidContact::touch_pair(const TouchStep &step, SolidPair &pair)
   }
   step.next(pair.touches);
   touch_solids(step, pair, a, b, settings.law_of(a, b));
-  step.listed(pair.touches, a, &b);
+  step.listed(pair.touches, {&a, &b, &pair});
 }
 
 // In the frame of a plane that moves, contact is as with one that stands. The work is -F dx of the plane with the mean of the
@@ -111,7 +111,7 @@ void RigidContact::touch_plane(const TouchStep &step, std::vector<Touch> &touche
     if (touches.empty() && plane.above(one) > 0.0) return;
     step.next({});
     mdanim::touch_plane(step, touches, one, plane, settings.law_at(one, k));
-    step.listed(touches, one, nullptr, k);
+    step.listed(touches, {&one, nullptr, nullptr, k});
   };
   if (!plane.moves) return touch();
   const Vec3 centre = one.centre, velocity = one.velocity, force = one.force;
@@ -138,7 +138,8 @@ void RigidContact::step(double dt)
   const TouchStep step(dt, settings.onset, account);
   touch_planes(step, all);
   watched.each(all ? nullptr : &active, near.pairs, [&](int k) { touch(step, k, all); });
-  if (!step.is_first()) step.share_blows();
+  if (!step.is_first())
+    for (const auto &[one, force] : step.share_blows()) push_more(one, force);
   for (const Solid &one : solids) {
     account.worst_bound = std::max(account.worst_bound, 0.25 * dt * dt * one.stiffness_sum + 0.5 * dt * one.damping_sum);
     account.most_touching = std::max(account.most_touching, one.touching);
@@ -196,6 +197,10 @@ bool RigidContact::find_active(bool listed_anew)
   return true;
 }
 
+// Whether the force of a pair is kept.
+static bool is_counted(const Solid &a, const Solid &b)
+{ return a.whole != Solid::ALONE || b.whole != Solid::ALONE || a.asleep || b.asleep; }
+
 // Bodies that sleep give to each other what they gave in the last step in which one was awake or had just been put to sleep.
 void RigidContact::touch(const TouchStep &step, int k, bool all)
 {
@@ -207,7 +212,7 @@ void RigidContact::touch(const TouchStep &step, int k, bool all)
     if (all || !unstirred[pair.b]) b.force -= pair.force, b.torque += pair.torque_b;
     return;
   }
-  if (a.whole != Solid::ALONE || b.whole != Solid::ALONE || a.asleep || b.asleep)
+  if (is_counted(a, b))
     touch_counted(step, pair);
   else
     touch_pair(step, pair);
@@ -314,6 +319,31 @@ double RigidContact::change(const std::map<int, double> &yielded)
     }
   }
   return gone - (account.heat + account.damped + account.let_go - booked);
+}
+
+void RigidContact::push_more(const InBlow &one, const Vec3 &force)
+{
+  Solid &a = *one.a;
+  const Vec3 torque_a = cross(one.from_a, force);
+  a.force += force;
+  a.torque += torque_a;
+  if (!one.b) {
+    a.force_at_planes += force;
+    a.torque_at_planes += torque_a;
+    if (!settings.planes[one.plane].moves) return;
+    account.work += 0.5 * dot(force, settings.planes[one.plane].way);
+    plane_push[{one.plane, a.id}] = plane_push[{one.plane, a.id}].value_or(Vec3{}) + force;
+    return;
+  }
+  Solid &b = *one.b;
+  const Vec3 torque_b = -1.0 * cross(one.from_b, force);
+  b.force -= force;
+  b.torque += torque_b;
+  if (!is_counted(a, b)) return;
+  const bool is_turned = &a != &solids[one.pair->a];
+  one.pair->force += is_turned ? -1.0 * force : force;
+  one.pair->torque_a += is_turned ? torque_b : torque_a;
+  one.pair->torque_b += is_turned ? torque_a : torque_b;
 }
 
 // Keeps what the pair gives to bodies that may come apart.

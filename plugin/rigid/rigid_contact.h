@@ -97,6 +97,8 @@ class RigidContact {
   Bytes record_of(const SolidPair &pair) const;
   void touch_pair(const TouchStep &step, SolidPair &pair);
   void touch_plane(const TouchStep &step, std::vector<Touch> &touches, Solid &one, int plane);
+  // Adds to the force of a contact in this step.
+  void push_more(const InBlow &one, const Vec3 &force);
   void touch_counted(const TouchStep &step, SolidPair &pair);
   void touch(const TouchStep &step, int k, bool all);
   void touch_planes(const TouchStep &step, bool all);

@@ -45,20 +45,22 @@ struct LevelCorners {
 };
 
 // A flat end with many corners is as hard as one with FEW: with a whole spring at each of 36 corners no step was short enough.
-// All of them yield together, as their middle; 0 where there are few.
+// All of them yield together, as their middle; 0 where there are few. Edges of ends that are turned on each other cross at twice
+// as many places.
 struct SharedContact {
+  static constexpr int FEW = 6;
   double share = 1.0, yields = 0.0;
   SharedContact(Touch::TouchKind kind, const Solid &a, const Solid *b, const Vec3 &x, const Vec3 &n)
   {
-    constexpr int FEW = 6;
     const bool is_crossing = kind == Touch::EDGES || kind == Touch::CURVES;
     if (!is_crossing && kind != Touch::CORNER && kind != Touch::CORNER_OF_OTHER) return;
     LevelCorners level(a, b, x, n);    // corners are those of a
     if (is_crossing)
       if (const LevelCorners other(*b, &a, x, n); other.count > level.count) level = other;
-    if (level.count <= FEW) return;
-    share = static_cast<double>(FEW) / level.count;
-    yields = level.count * (a.yields_at(level.middle, n) + (b ? b->yields_at(level.middle, n) : 0.0));
+    const int count = is_crossing ? 2 * level.count : level.count;
+    if (count <= FEW) return;
+    share = static_cast<double>(FEW) / count;
+    yields = count * (a.yields_at(level.middle, n) + (b ? b->yields_at(level.middle, n) : 0.0));
   }
 };
 
@@ -67,51 +69,68 @@ struct SharedContact {
 Touch TouchStep::born(Touch::TouchKind kind, const TouchLaw &law, const Solid &a, const Solid *b, const Vec3 &x,
                       const Vec3 &n) const
 {
-  if (const SharedContact one(kind, a, b, x, n); one.share < 1.0)
-    return born(kind, {one.share * law.stiffness, law.friction, law.damping, law.rolling}, one.yields);
-  Touch touch = born(kind, law, a.yields_at(x, n) + (b ? b->yields_at(x, n) : 0.0));
   constexpr double A_BLOW = 0.04;    // of the speed that goes through the onset: what is slower is laid down
+  const SharedContact one(kind, a, b, x, n);
+  const double alone = one.share < 1.0 ? one.yields / SharedContact::FEW : a.yields_at(x, n) + (b ? b->yields_at(x, n) : 0.0);
+  Touch touch = born(kind, {one.share * law.stiffness, law.friction, law.damping, law.rolling}, alone);
+  if (one.share < 1.0) touch.yields = one.yields;
+  touch.alone = alone;
   const double speed = -dot(relative_velocity(a, b, x), n);
   touch.shares = !is_first() && touch.damping > 0.0 && speed > A_BLOW * onset * std::sqrt(touch.stiffness * touch.yields);
   changes = true;
   return touch;
 }
 
-void TouchStep::listed(std::vector<Touch> &touches, const Solid &a, const Solid *b, int plane) const
+void TouchStep::listed(std::vector<Touch> &touches, const InBlow &of) const
 {
-  const bool is_glued = a.whole != Solid::ALONE || (b && b->whole != Solid::ALONE);    // may touch by other pieces too
+  const bool is_glued = of.a->whole != Solid::ALONE || (of.b && of.b->whole != Solid::ALONE);    // touches by other pieces too
   const bool changed = std::exchange(changes, false);
-  if (changed) in_blow.push_back({{}, {}, {}, &a, b, plane, nullptr});
+  if (changed) in_blow.push_back(of);
   if (!changed && !is_glued) return;
   for (Touch &one : touches)
     if (one.shares != 0.0 && one.rests == 0.0 && one.parted == 0.0)
-      in_blow.push_back({one.n, one.at - a.centre, b ? one.at - b->centre : Vec3(), &a, b, plane, &one});
+      in_blow.push_back(
+          {of.a, of.b, of.pair, of.plane, &one, one.n, one.at - of.a->centre, of.b ? one.at - of.b->centre : Vec3()});
 }
 
-// The depth of contact i of a blow yields by the sum of lambda_ij over the parts of all contacts j that press with it, lambda_ii
-// being its own: a log on both ends yields half as much as on one, a slender rod on the corners of its end several times as much.
-// Each has the dashpot of a contact that yields so, at most that of MOST_DAMPING, until it rests, when it has its own. What is
-// laid down has its own from the beginning: with that stacks come to rest.
-static void share_blow(std::vector<InBlow> &blow)
+// What has just begun has had its dashpot as if it were alone. Returns what is to be added to the force of this step.
+double TouchStep::take_share(Touch &touch, double share) const
+{
+  const double more = touch.followed == 1.0 ? (share / touch.shared - 1.0) * touch.memory.damping : 0.0;
+  touch.shared = share;
+  touch.memory.damping += more;
+  touch.press += more;
+  account.damped += 0.5 * more * (touch.memory.depth - touch.earlier);
+  return more;
+}
+
+// The depth of contact i of a blow yields to all contacts j that press with it by the sum of k_j part_j lambda_ij: a log on both
+// ends yields half as much as on one, a slender rod on the corners of its end several times as much. Each has the dashpot of a
+// contact that yields so, at most that of MOST_DAMPING, until it rests, when it has its own. What is laid down has its own from
+// the beginning: with that stacks come to rest.
+static std::vector<double> shares_of(std::vector<InBlow> &blow)
 {
   const auto mark = std::remove_if(blow.begin(), blow.end(), [](const InBlow &one) { return !one.touch; });
-  if (mark == blow.end()) return;
+  if (mark == blow.end()) return {};
   blow.erase(mark, blow.end());
   SolidPush on_a, on_b;
   for (const InBlow &one : blow) {
-    on_a.add(*one.a, one.from_a, one.touch->part * one.n);
-    if (one.b) on_b.add(*one.b, one.from_b, one.touch->part * one.n);
+    const Vec3 push = (one.touch->stiffness * one.touch->part) * one.n;
+    on_a.add(*one.a, one.from_a, push);
+    if (one.b) on_b.add(*one.b, one.from_b, push);
   }
+  std::vector<double> shares;
   for (const InBlow &one : blow) {
-    Touch &touch = *one.touch;
-    const double own = touch.yields, of_a = on_a.moves(*one.a, one.from_a, one.n),
-                 all = (1.0 - touch.part) * own + of_a + (one.b ? on_b.moves(*one.b, one.from_b, one.n) : 0.0);
-    const double most = 2.0 * Material::MOST_DAMPING / (touch.damping * std::sqrt(touch.stiffness * own));
-    touch.shared = all > 0.0 ? std::min(std::sqrt(own / all), most) : most;
+    const Touch &touch = *one.touch;
+    const double of_a = on_a.moves(*one.a, one.from_a, one.n), of_b = one.b ? on_b.moves(*one.b, one.from_b, one.n) : 0.0,
+                 alone = touch.stiffness * touch.alone, all = of_a + of_b + (1.0 - touch.part) * alone;
+    const double most = 2.0 * Material::MOST_DAMPING / (touch.damping * std::sqrt(alone));
+    shares.push_back(all > 0.0 ? std::min(std::sqrt(alone / all), most) : most);
   }
+  return shares;
 }
 
-void TouchStep::share_blows() const
+std::vector<std::pair<InBlow, Vec3>> TouchStep::share_blows() const
 {
   using Body = std::pair<int, int>;
   const auto body = [](const Solid &one) {
@@ -128,7 +147,13 @@ void TouchStep::share_blows() const
     }
     blows[{a, b}].push_back(one);
   }
-  for (auto &[bodies, blow] : blows) share_blow(blow);
+  std::vector<std::pair<InBlow, Vec3>> changed;
+  for (auto &[bodies, blow] : blows) {
+    const std::vector<double> shares = shares_of(blow);
+    for (std::size_t k = 0; k < shares.size(); ++k)
+      if (const double more = take_share(*blow[k].touch, shares[k]); more != 0.0) changed.emplace_back(blow[k], more * blow[k].n);
+  }
+  return changed;
 }
 
 Vec3 TouchStep::relative_velocity(const Solid &a, const Solid *b, const Vec3 &x)
@@ -239,7 +264,7 @@ ContactForce<double> TouchStep::pressure(Touch &touch, const ContactLaw &its_law
   force.press += touch.more;
   touch.press = force.press;
   touch.earlier = before;
-  touch.followed = 1.0;
+  touch.followed = touch.followed == 0.0 ? 1.0 : 2.0;
   return force;
 }
 

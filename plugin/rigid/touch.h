@@ -8,9 +8,12 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 namespace mdanim {
+
+struct SolidPair;
 
 // Plain values: records hold them as they are.
 struct Touch {
@@ -22,7 +25,8 @@ struct Touch {
   double damping = 0.0;                  // dashpot over k [s]
   double shares = 0.0;                   // 1 where it began by a blow, which it shares with others until it rests
   double part = 1.0;                     // that counted last
-  double yields = 0.0;                   // acceleration of the depth over the force [1/kg]
+  double yields = 0.0;                   // acceleration of the depth over the force, of all that press alike [1/kg]
+  double alone = 0.0;                    // the same of one contact of which its dashpot is, where it rests
   Vec3 anchor;    // corners: in the host; edges: places along both; moving points: way from the anchor, in the host's frame
   Vec3 at, n;     // where it was last, and the normal along which it pushes the body with the lower number
   Vec3 place;     // of curves, which may meet at several: in the host. Of an ellipsoid: the normal
@@ -31,7 +35,7 @@ struct Touch {
   double press = 0.0;      // force of the last step, without friction, and its part `more` [N] (see touch.cpp)
   double more = 0.0;
   double owed = 0.0;        // work that `more` has still to do [J]
-  double followed = 0.0;    // 1 from the second step on
+  double followed = 0.0;    // steps in which it was pressed, up to 2
   double shared = 1.0;      // its damping in the blow over that of one that has it alone
   double rests = 0.0;       // 1 from where it goes deeper again after it came back
   double parted = 0.0;      // 1 in the step after the bodies have parted, the last one that it is there
@@ -86,10 +90,11 @@ struct PartSlope {
 
 // A contact in its blow, of two bodies, or of one and a plane: it pushes `a` along n, and `b`, if there is one, against it.
 struct InBlow {
-  Vec3 n, from_a, from_b;    // from the centres of both
-  const Solid *a = nullptr, *b = nullptr;
+  Solid *a = nullptr, *b = nullptr;
+  SolidPair *pair = nullptr;
   int plane = 0;
-  Touch *touch = nullptr;    // none: a contact of these bodies has begun or ended
+  Touch *touch = nullptr;          // none: a contact of these bodies has begun or ended
+  Vec3 n{}, from_a{}, from_b{};    // from the centres of both
 };
 
 // One evaluation of contacts: forces on bodies, and the account.
@@ -115,9 +120,10 @@ class TouchStep {
   // The same of a point that shares its contact with others: its depth yields so to its force.
   static Touch born(Touch::TouchKind kind, const TouchLaw &law, double yields);
   // These are all contacts of two bodies, or of one and a plane, as they are after this step.
-  void listed(std::vector<Touch> &touches, const Solid &a, const Solid *b, int plane = 0) const;
-  // Damps contacts of two bodies, or of one and a plane, as the one blow that they are.
-  void share_blows() const;
+  void listed(std::vector<Touch> &touches, const InBlow &of) const;
+  // Damps contacts of two bodies, or of one and a plane, as the one blow that they are. Returns those that have just begun, with
+  // what that adds to the force on `a` in this step.
+  std::vector<std::pair<InBlow, Vec3>> share_blows() const;
   static void came_from(Touch &touch, double depth_before) { touch.memory.depth = std::min(0.0, depth_before); }
   static void overlaps(Touch &touch, double depth)
   {
@@ -196,6 +202,7 @@ class TouchStep {
   void resist_rolling(Touch &touch, const TouchLaw &law, Solid &a, Solid *b, const Vec3 &n, double part,
                       ContactForce<double> &push) const;
   double follow(Touch &touch, double depth, double k) const;
+  double take_share(Touch &touch, double share) const;
   void press_out(Touch &touch, double depth, double k) const;
   double dt, onset;
   bool deep = true;

@@ -118,7 +118,7 @@ def test_a_block_rocks_as_housner_says(tmp_path):
 def test_restitution(tmp_path, case, e):
     """On faces, edges, in corners; of balls; of a column on its end, whose four corners give way as one and twice as fast: with
     four dashpots 0.3 was left of 0.5."""
-    assert rigid_motions.bounced(tmp_path, case, e) == pytest.approx(e, abs=0.05 if case == "end of a column" else 0.02)
+    assert rigid_motions.bounced(tmp_path, case, e) == pytest.approx(e, abs=0.02)
 
 
 @pytest.mark.parametrize(("case", "degrees"), [("log", 0.1), ("log", 0.3), ("log", 1.5), ("column", 0.3)])
@@ -136,7 +136,7 @@ def test_what_leans_more_comes_back_blow_by_blow(tmp_path, case, degrees, e):
     """Speed and spin are those of Newton's law at one end after the other."""
     speed, spin = rigid_motions.leaning(tmp_path, case, e, degrees)
     wanted, turns = rigid_motions.blow_by_blow(case, e, degrees)
-    assert speed == pytest.approx(wanted, abs=0.03) and spin == pytest.approx(turns, abs=0.1, rel=0.02)
+    assert speed == pytest.approx(wanted, abs=0.03) and spin == pytest.approx(turns, abs=0.1, rel=0.03)
 
 
 @pytest.mark.parametrize("speed", [0.1, 0.01])

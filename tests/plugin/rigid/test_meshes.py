@@ -42,11 +42,11 @@ def test_a_slab_of_triangles_is_as_a_box(tmp_path, body):
 
 
 @pytest.mark.parametrize("host", ["plane", "box", "twin", "twin of triangles", "turned twin"])
-@pytest.mark.parametrize("sides", [13, 36])
+@pytest.mark.parametrize("sides", [4, 6, 13, 36])
 def test_an_end_with_many_corners_is_as_hard_as_one_with_few(tmp_path, sides, host):
     """A slender prism lands on its flat end: as much is left of the blow as is asked for. With a whole spring at each of 36
     corners it was thrown up, and twins fell into each other. Where edges cross and corners meet, as of twins that are turned,
-    the blow is on more of them than count."""
+    the blow is on twice as many: 0.67 was left of 0.8 for six sides, and 0.89 of 0.3."""
     rod, beta = lab.cylinder(0.02, 0.2).put(shape=lab.prism(sides, 0.02, 0.2)), damping_for(0.8)
     below = {
         "box": lab.box((1, 1, 0.2), held=True),
@@ -59,7 +59,7 @@ def test_an_end_with_many_corners_is_as_hard_as_one_with_few(tmp_path, sides, ho
     with lab.World(tmp_path, bodies, frequency=lab.frequency_of(1.0, 0.04), planes=planes, gravity=(0, 0, 0)) as world:
         world.run(round(0.04 / world.dt))
         row, energy = world.rows()[0], world.energy(0.0)
-    assert row[5] == pytest.approx(0.8, abs=0.03 if (sides, host) != (13, "turned twin") else 0.08)
+    assert row[5] == pytest.approx(0.8, abs=0.03)
     assert abs(row[10:]).max() < 1e-6
     assert energy == pytest.approx(0.5 * rod.mass, rel=1e-3)
 
