@@ -93,7 +93,7 @@ void TouchStep::listed(std::vector<Touch> &touches, const InBlow &of) const
           {of.a, of.b, of.pair, of.plane, &one, one.n, one.at - of.a->centre, of.b ? one.at - of.b->centre : Vec3()});
 }
 
-// What has just begun has had its dashpot as if it were alone. Returns what is to be added to the force of this step.
+// A contact that has just begun has had its dashpot as if it were alone. Returns what is to be added to the force of this step.
 double TouchStep::take_share(Touch &touch, double share) const
 {
   const double more = touch.followed == 1.0 ? (share / touch.shared - 1.0) * touch.memory.damping : 0.0;
