@@ -16,7 +16,7 @@ LONG, THICK, YOUNG, YIELDS = 0.12, 0.02, 2e6, 0.01
 def under(load: float) -> float:
     """Deflection at the end of the bar [m], under a load over that of the plastic hinge, 1.5 times that of the first yield.
 
-    M'' of the elastic core of height 2 y at each section: the curvature is that of the first yield over y (Prager and Hodge).
+    The curvature of a section is that of its first yield over the part of its height that is elastic (Prager and Hodge).
     """
     first = 2.0 / 3.0 * YIELDS * LONG**2 / THICK  # P L^3/3 E I at the load of the first yield
     over = 1.5 * load
@@ -59,8 +59,9 @@ CASES = [
         "Prager and Hodge 1951",
         "W. Prager and P. G. Hodge, Theory of Perfectly Plastic Solids (1951): a section that yields all through bears"
         " M = σ b t²/4, 1.5 times what it bears when its faces begin to yield; deflections between both in closed form.",
-        "5 %: the bar has four cells in its thickness, and Euler's theory leaves out its shear, 3 % of its deflection.",
-        "Ideal plasticity: metals harden, and bear more as they bend on.",
+        "5 %: the bar has four cells in its thickness, and Euler's theory leaves out its shear, 2 % of its deflection.",
+        "Ideal plasticity: metals harden, and bear more as they bend on. With two cells in its thickness, as at `preview`, the bar"
+        " gives way a fifth too early.",
         hinge,
     )
 ]
