@@ -60,8 +60,8 @@ CASES = [
         "W. Prager and P. G. Hodge, Theory of Perfectly Plastic Solids (1951): a section that yields all through bears"
         " M = σ b t²/4, 1.5 times what it bears when its faces begin to yield; deflections between both in closed form.",
         "5 %: the bar has four cells in its thickness, and Euler's theory leaves out its shear, 2 % of its deflection.",
-        "Ideal plasticity: metals harden, and bear more as they bend on. With two cells in its thickness, as at `preview`, the bar"
-        " gives way a fifth too early.",
+        "Ideal plasticity: metals harden, and bear more as they bend on. With two cells in its thickness, as at `preview`,"
+        " the bar gives way a fifth too early.",
         hinge,
     )
 ]
