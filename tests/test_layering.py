@@ -156,7 +156,7 @@ PLUGIN = Path(__file__).parents[1] / "plugin"
 FOLDERS = [
     *("numbers", "simd", "threads", "geometry", "records"),  # plain floors
     # effects; passes know those before them
-    *("springs", "leapfrog", "gravity", "buoyancy", "barrier", "passes", "wall", "contact", "rigid", "joints", "drives"),
+    *("springs", "leapfrog", "gravity", "buoyancy", "barrier", "contact", "passes", "wall", "rigid", "joints", "drives"),
     *("forces", "hands", "air", "inflate", "tearing", "folds"),
     *("liquid", "liquid/automaton", "liquid/waves"),
     *("lammps", "c_api"),

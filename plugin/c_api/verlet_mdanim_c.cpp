@@ -26,6 +26,13 @@ MDANIM_EXPORT int mdanim_ranges(void *handle) noexcept
   return run ? run->ranges() : 0;
 }
 
+// Number of points near planes whose contacts the latest pass of this rank computed itself; 0 before the first pass.
+MDANIM_EXPORT long mdanim_points_at_planes(void *handle) noexcept
+{
+  const VerletMdanim *run = run_of(handle);
+  return run ? run->points_at_planes() : 0;
+}
+
 // The set of vector instructions that this rank's passes use; empty before the first pass.
 MDANIM_EXPORT const char *mdanim_width(void *handle) noexcept
 {

@@ -10,6 +10,7 @@
 #include "contact/contact_object.h"
 #include "contact/contact_plane.h"
 #include "contact/law.h"
+#include "contact/points_at_plane.h"
 #include "contact/wakes.h"
 #include "records/byte_writer.h"
 
@@ -67,6 +68,12 @@ class ContactField {
   // The owner is torn: contacts of points that are replaced end. `before` is null where it was whole. Places are those of this
   // step and the last one. Must be followed by forget() and list().
   virtual void owner_tears(const TornBody *before, const ContactArrays &arrays, ContactAccount &account) = 0;
+
+  // Whether passes over blocks can compute its contacts: points are particles near a plane at rest. Then its points with their
+  // contacts, by slots of particles; and these again with what has become of them.
+  virtual bool fits_passes() const { return false; }
+  virtual PointsAtPlane hand_over() const { return {}; }
+  virtual void take_back(const PointsAtPlane & /*now*/, ContactAccount & /*account*/) {}
 
   virtual std::size_t touching() const = 0;    // number of contacts
   bool is_idle() const { return touching() == 0; }

@@ -22,6 +22,12 @@ static constexpr double NS_OF_OBJECT = 5e3, NS_OF_FIELD = 5e3, NS_OF_PARTICLE = 
 
 // --- objects ---
 
+static void clear_forces(ContactObject &one, ContactArrays &arrays)
+{
+  if (one.is_pushed) arrays.clear_forces(one.first_slot, one.last_slot);
+  one.is_pushed = false;
+}
+
 void ContactWorld::drop_lists()
 {
   listed = false;
@@ -30,7 +36,7 @@ void ContactWorld::drop_lists()
 
 void ContactWorld::take(std::vector<ContactObject> now, std::vector<char> moves)
 {
-  for (ContactObject &one : all) clear_forces(one);    // the new objects have no forces yet
+  for (ContactObject &one : all) clear_forces(one, arrays);    // the new objects have no forces yet
   drop_lists();
   std::set<int> same;
   for (const ContactObject &one : now)
@@ -177,15 +183,9 @@ void ContactWorld::place_rigid(const std::vector<Vec3> &frames, std::vector<Box>
   }
 }
 
-void ContactWorld::clear_forces(ContactObject &one)
-{
-  if (one.is_pushed) arrays.clear_forces(one.first_slot, one.last_slot);
-  one.is_pushed = false;
-}
-
 void ContactWorld::list(const std::vector<ContactParticle> &particles, const Coordinates &places)
 {
-  for (ContactObject &one : all) clear_forces(one);
+  for (ContactObject &one : all) clear_forces(one, arrays);
   arrays.renew(particles.size());
   for (std::size_t slot = 0; slot < particles.size(); ++slot) arrays.place()[slot].value = place(places, slot);
   const PaddedVec3 *const last = has_before ? arrays.place_before_of_old_slots() : arrays.place_of_old_slots();
@@ -264,13 +264,13 @@ void ContactWorld::move_to(const Coordinates &places)
       if (one.is_rigid()) {
         for (int s = one.first_slot; s < one.last_slot; ++s) now[s].value = place(places, s);
         move_rigid(one, place_of(one, now));
-        clear_forces(one);
+        clear_forces(one, arrays);
         continue;
       }
       const MovedBy moved = kernels.move({places.data(), one.first_slot, one.last_slot, last, now});
       one.has_moved(moved.mean, moved.square);
       one.find_crushed(now);
-      clear_forces(one);
+      clear_forces(one, arrays);
     }
   });
 }

@@ -70,6 +70,10 @@ class ContactWorld {
   bool is_pushed(int object) const { return all[object].is_pushed; }
   Vec3 force_on_planes() const;
 
+  // For passes, see FieldSums. Until points are taken back no step is to be computed here.
+  std::vector<PointsAtPlane> hand_over_planes() const { return sums.hand_over(); }
+  void take_back_planes(const std::vector<PointsAtPlane> &points) { sums.take_back(points, account); }
+
   // Contacts as records of pairs of objects, (a, b), and of objects at planes, (a, 0).
   StateRecords records() const;
   // Replaces all contacts by these. Throws std::runtime_error, and changes nothing, where they are not of the present objects.
@@ -102,7 +106,6 @@ class ContactWorld {
   Fields read(const StateRecords &records);
   void drop_lists();
   void move_to(const Coordinates &places);
-  void clear_forces(ContactObject &one);
   void list_fields();
   void find_points();
 

@@ -28,6 +28,22 @@ void FieldSums::weigh()
   }
 }
 
+std::vector<PointsAtPlane> FieldSums::hand_over() const
+{
+  std::vector<PointsAtPlane> found;
+  if (!std::all_of(active.begin(), active.end(), [](const Active &one) { return one.field->fits_passes(); })) return found;
+  for (const Active &one : active) found.push_back(one.field->hand_over());
+  return found;
+}
+
+void FieldSums::take_back(const std::vector<PointsAtPlane> &points, ContactAccount &account)
+{
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    active[k].field->take_back(points[k], account);
+    rests[k].until = active[k].field->rests_until();
+  }
+}
+
 // Adds what has come nearer in this step to the budget.
 bool FieldSums::goes_on_resting(Rest &rest, const std::vector<ContactObject> &objects)
 {

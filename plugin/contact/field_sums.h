@@ -27,6 +27,10 @@ class FieldSums {
   const std::vector<Active> &all() const { return active; }
   // To be called when all fields have their lists.
   void weigh();
+  // Points of all fields, whose contacts passes are to compute, where these can do so for each field; else nothing. They come in
+  // the order of sums. And these points with what has become of them.
+  std::vector<PointsAtPlane> hand_over() const;
+  void take_back(const std::vector<PointsAtPlane> &points, ContactAccount &account);
   // The forces of all fields in a step, on `objects`; dt = 0 at the setup of a run.
   void step(std::vector<ContactObject> &objects, ContactArrays &arrays, const Threads &threads, double dt,
             ContactAccount &account);

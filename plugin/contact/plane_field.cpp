@@ -56,6 +56,49 @@ void PlaneField::owner_tears(const TornBody *before, const ContactArrays &arrays
   contacts.erase(std::remove_if(contacts.begin(), contacts.end(), ends), contacts.end());
 }
 
+// --- in passes ---
+
+// Springs of contacts that had friction before are left to the field.
+bool PlaneField::fits_passes() const
+{
+  if (plane.moves || owner->is_rigid()) return false;
+  const auto has_springs = [](const PlaneContact &one) {
+    return one.state.memory.stick != 0.0 || one.state.memory.damping != 0.0;
+  };
+  if (!(law.friction > 0.0) && (law.damping > 0.0 || std::any_of(contacts.begin(), contacts.end(), has_springs))) return false;
+  return std::all_of(near.begin(), near.end(), [this](int point) {
+    const PointCarriers by = owner->carriers_of(point);
+    return by.middle - by.first == 1 && by.first->weight == 1.0;
+  });
+}
+
+PointsAtPlane PlaneField::hand_over() const
+{
+  PointsAtPlane all = {law, owner->body->radius(), plane.axis, plane.sign, plane.at, {}};
+  all.points.reserve(near.size());
+  for (std::size_t q = 0; q < near.size(); ++q)
+    all.points.push_back({owner->slot[owner->carriers_of(near[q]).first->slot], owner->areas()[near[q]], known[q] != 0});
+  for (std::size_t c = 0; c < contacts.size(); ++c) all.points[of_contact[c]].state = contacts[c].state;
+  return all;
+}
+
+void PlaneField::take_back(const PointsAtPlane &now, ContactAccount &account)
+{
+  contacts.clear(), of_contact.clear();
+  for (std::size_t q = 0; q < near.size(); ++q) {
+    const PointAtPlane &point = now.points[q];
+    account.heat += point.heat;
+    account.damped += point.damped;
+    account.deepest = std::max(account.deepest, point.deepest);
+    known[q] = point.state.memory.depth > 0.0;
+    wake.set(q, AT_ONCE);
+    if (!known[q]) continue;
+    wake.set(q, NEVER);
+    of_contact.push_back(q);
+    contacts.push_back({near[q], number, point.state});
+  }
+}
+
 int PlaneField::cost() const
 {
   constexpr std::size_t CONTACT = 30;

@@ -6,7 +6,7 @@
 
 #include "contact/contact_field.h"
 #include "contact/contact_plane.h"
-#include "contact/plane_contact.h"
+#include "contact/points_at_plane.h"
 
 #include <cstdint>
 #include <optional>
@@ -36,6 +36,9 @@ class PlaneField : public FieldOf<PlaneContact, std::uint8_t> {
   // The force on a plane that moves, for the work of the next step.
   Vec3 kept_force() const { return before.value_or(Vec3{}); }
   void restore_force(const Vec3 &force) { before = force; }
+  bool fits_passes() const override;
+  PointsAtPlane hand_over() const override;
+  void take_back(const PointsAtPlane &now, ContactAccount &account) override;
   std::size_t bytes() const override { return bytes_of_rows() + ahead.capacity() * sizeof(PlanePush<double>); }
 
  private:

@@ -44,6 +44,16 @@ static std::vector<OwnParticles> by_object(const std::vector<ContactParticle> &a
 
 // --- the command ---
 
+static void read_bodies_of(const char *file, LAMMPS *lmp, std::map<int, std::shared_ptr<const ContactBody>> &bodies)
+{
+  const std::string text = read_shared_file(lmp, STYLE, "bodies", file);
+  try {
+    for (auto &[number, body] : read_bodies(file, text)) bodies[number] = std::make_shared<const ContactBody>(std::move(body));
+  } catch (const std::exception &problem) {
+    lmp->error->all(FLERR, "{}: {}", STYLE, problem.what());
+  }
+}
+
 // fix ID group mdanim/contact BODY YOUNG FRICTION [objects] [plane x|y|z lo|hi at]… [moving x|y|z lo|hi at FIXID]…
 //     [stiffness f] [damping beta] [pair MOL MOL mu beta]… [exclude MOL MOL]… [belt MOL vx vy vz]… [among GROUP] [except GROUP]
 //     [bodies FILE]
@@ -131,17 +141,20 @@ std::vector<Keyword> FixMdanimContact::keywords()
            }},
           {"among", "GROUP", "", group(among)},
           {"except", "GROUP", "", group(except)},
-          {"bodies", "FILE", "", [this](int at, char **arg) { read_bodies_of(arg[at + 1]); }}};
+          {"bodies", "FILE", "", [this](int at, char **arg) { read_bodies_of(arg[at + 1], lmp, bodies); }}};
 }
 
-void FixMdanimContact::read_bodies_of(const char *file)
+// A rule for a molecule that does not exist is a mistake.
+static void need_molecules_of(const ContactSettings &settings, const Fix *fix, LAMMPS *lmp)
 {
-  const std::string text = read_shared_file(lmp, "fix mdanim/contact", "bodies", file);
-  try {
-    for (auto &[number, body] : read_bodies(file, text)) bodies[number] = std::make_shared<const ContactBody>(std::move(body));
-  } catch (const std::exception &problem) {
-    error->all(FLERR, "fix mdanim/contact: {}", problem.what());
-  }
+  std::vector<int> with_laws, apart;
+  for (const auto &[ids, law] : settings.pairs) with_laws.insert(with_laws.end(), {ids.first, ids.second});
+  for (const auto &[a, b] : settings.excluded) apart.insert(apart.end(), {a, b});
+  std::vector<int> with_belts;
+  for (const auto &[id, velocity] : settings.belts) with_belts.push_back(id);
+  need_molecules(fix, lmp, "pair", with_laws);
+  need_molecules(fix, lmp, "exclude", apart);
+  need_molecules(fix, lmp, "belt", with_belts);
 }
 
 int FixMdanimContact::setmask() { return POST_NEIGHBOR | POST_FORCE; }
@@ -152,25 +165,11 @@ void FixMdanimContact::take_body(int number, const ContactBodyArrays &arrays)
 void FixMdanimContact::init()
 {
   FixBase::init();
-  need_molecules_of_pairs();
+  need_molecules_of(world_of_contact.settings, this, lmp);
   moving.init(name());
   torn.init(lmp);
   threads_now = Threads();
   world_of_contact.use(nullptr, threads_now);    // until passes give those of their instructions
-}
-
-// A rule for a molecule that does not exist is a mistake.
-void FixMdanimContact::need_molecules_of_pairs() const
-{
-  const ContactSettings &settings = world_of_contact.settings;
-  std::vector<int> with_laws, apart;
-  for (const auto &[ids, law] : settings.pairs) with_laws.insert(with_laws.end(), {ids.first, ids.second});
-  for (const auto &[a, b] : settings.excluded) apart.insert(apart.end(), {a, b});
-  std::vector<int> with_belts;
-  for (const auto &[id, velocity] : settings.belts) with_belts.push_back(id);
-  need_molecules(this, lmp, "pair", with_laws);
-  need_molecules(this, lmp, "exclude", apart);
-  need_molecules(this, lmp, "belt", with_belts);
 }
 
 // --- objects ---
@@ -377,6 +376,27 @@ void FixMdanimContact::add_forces(const Positions &place, const ForceSums &force
   need_lists();
   world_of_contact.step(shared.places(place.all()), update->dt);
   give_forces([&force](std::size_t n, const Vec3 &one) { force.add(n, one); });
+}
+
+// Every rank needs the places of all that is near, so passes do this for one rank alone. A particle beside the group would not
+// feel its contacts.
+std::vector<PointsAtPlane> FixMdanimContact::hand_over_planes()
+{
+  if (comm->nprocs > 1 || world_of_contact.settings.objects) return {};
+  const Lap lap(seconds);
+  need_lists();
+  if (!std::all_of(mine.begin(), mine.end(), [this](int i) { return atom->mask[i] & groupbit; })) return {};
+  std::vector<PointsAtPlane> found = world_of_contact.hand_over_planes();
+  for (PointsAtPlane &some : found)
+    for (PointAtPlane &point : some.points) point.particle = mine[point.particle];
+  return found;
+}
+
+void FixMdanimContact::take_back_planes(const std::vector<PointsAtPlane> &planes, double of_passes)
+{
+  const Lap lap(seconds);
+  world_of_contact.take_back_planes(planes);
+  seconds += of_passes;
 }
 
 // --- output ---

@@ -54,6 +54,8 @@ class FixMdanimContact : public mdanim::FixBase, public mdanim::PassParticipant,
     threads_now = threads;
   }
   void add_forces(const mdanim::Positions &place, const mdanim::ForceSums &force) override;
+  std::vector<mdanim::PointsAtPlane> hand_over_planes() override;
+  void take_back_planes(const std::vector<mdanim::PointsAtPlane> &planes, double seconds) override;
   double safe_displacement() const override { return world_of_contact.near.distance_apart(); }
   bool sees_absolute_position() const override { return !world_of_contact.settings.planes.empty(); }
 
@@ -67,8 +69,6 @@ class FixMdanimContact : public mdanim::FixBase, public mdanim::PassParticipant,
   // Whether contacts may belong to other bodies or particles than objects have now: they are then replaced.
   enum class Contacts { STAY, ARE_REPLACED };
   std::vector<mdanim::Keyword> keywords();
-  void read_bodies_of(const char *file);
-  void need_molecules_of_pairs() const;
   void take_objects(Contacts contacts);
   [[noreturn]] void refuse_new_object(int i) const;
   void need_lists() const;

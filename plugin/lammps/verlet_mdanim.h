@@ -26,8 +26,9 @@ class VerletMdanim : public SplitVerlet {
   double memory_usage() override;
   long long passes() const { return passed; }
   int ranges() const { return engine.ranges(); }
-  const char *width() const { return engine.width(); }          // of the latest run with passes; empty before the first
-  long long held_back() const { return engine.held_back(); }    // particles, all passes together
+  long points_at_planes() const { return engine.points_at_planes(); }    // in the latest pass
+  const char *width() const { return engine.width(); }                   // of the latest run with passes; empty before the first
+  long long held_back() const { return engine.held_back(); }             // particles, all passes together
 
  private:
   static constexpr int MOST_THREADS = mdanim::Team::MOST_TASKS;    // more threads cannot have a range each

@@ -76,7 +76,7 @@ Cut Cutter::cut(const HalfBonds &bonds, const int *object)
     Block block = {};
     block.start = end - length[end];
     block.lanes = static_cast<short>(length[end]);
-    block.external_force = block.crossing = block.immersed = -1;
+    block.external_force = block.planes = block.crossing = block.immersed = -1;
     block.object = object[end - 1] - 1;
     block.chunk = chunk[end - 1];
     cut.block.push_back(block);

@@ -5,6 +5,7 @@
 #pragma once
 
 #include "buoyancy/immersed.h"
+#include "passes/plane_rows.h"
 #include "springs/dashpot_work.h"
 
 namespace mdanim {
@@ -26,6 +27,7 @@ struct Block {
   bool bound;        // some have springs
   unsigned end;
   int external_force;    // first of its rows of Pass::external_force; negative for none
+  int planes;            // first of its rows of PlaneRows; negative for none
   unsigned motion;       // row of Pass::motion
   int object;            // molecule - 1
   int chunk;             // row of Pass::sums
@@ -131,6 +133,7 @@ struct Pass {
   PassAcceleration gravity;
   double *external_force;    // rows of forces from elsewhere, (3, lanes) each, to be added after gravity; zero after a pass:
   int force_providers;       // so many in a row for a block that has any
+  PlaneRows planes;          // forces that are added to those of the same provider
   Friction friction;
   ImmersedRows immersed;
   double *total;     // (N, 3): sum of all forces on the particles of blocks that are held back

@@ -49,6 +49,7 @@ class PassEngine {
   long long held_back() const { return moved_alone; }    // particles, all passes together
   const char *width() const { return kernels ? kernels->name : ""; }
   int ranges() const { return blocks ? static_cast<int>(blocks->ranges().all().size()) : 0; }
+  long points_at_planes() const { return blocks ? blocks->points_at_planes() : 0; }
   std::size_t bytes() const;
 
  private:

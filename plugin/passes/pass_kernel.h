@@ -10,6 +10,7 @@
 #pragma once
 
 #include "leapfrog/law.h"
+#include "passes/plane_kernel.h"
 #include "passes/spring_kernel.h"
 
 #include <sched.h>
@@ -88,18 +89,6 @@ struct Tally {
   }
 };
 
-// Adds the forces of participants and clears their rows for the next pass while they are in the cache. Not inlined: most blocks
-// have none, and the springs need all registers.
-__attribute__((noinline)) void take_external_force(const Pass &pass, const Block &block, double *total)
-{
-  double *row = pass.external_force + static_cast<long>(block.external_force) * (3 * LANES);
-  for (int n = 0; n < pass.force_providers; ++n, row += 3 * LANES)
-    for (int d = 0; d < 3 * LANES; d += LANES) {
-      store(total + d, load(total + d) + load(row + d));
-      store(row + d, Vector{});
-    }
-}
-
 // The dashpots' part in the account of a block that has gone from `first` to `last`.
 MDANIM_ALWAYS_INLINE void account(const Pass &pass, const Block &block, const double *motion, const Vector3 &now,
                                   const Vector3 &first, const Vector3 &last, DashpotSums &sums)
@@ -175,6 +164,7 @@ MDANIM_ALWAYS_INLINE void advance(const Pass &pass, const Block &block, const do
     if (pass.looks) tally.box.include(place);
     tally.fastest_of_object = largest(square, tally.fastest_of_object);
   } else {
+    if (block.lanes < LANES) square = load(motion + FOREIGN_LANE * LANES) > 0.0 ? Vector{} : square;
     tally.fastest = largest(square, tally.fastest);
   }
 }
@@ -216,6 +206,30 @@ MDANIM_ALWAYS_INLINE Vector3 load_before(int end, double *const *from, int i)
   for (int d = 0; d < 3; ++d)
     for (int lane = 0; lane < LANES; ++lane) lanes[d * LANES + lane] = from[d][i + lane < end ? i + lane : i];
   return load_own(lanes);
+}
+
+MDANIM_ALWAYS_INLINE bool is_pushed(const Block &block) { return block.external_force >= 0 || block.planes >= 0; }
+
+// Adds the forces of participants: those that they have given, whose rows are cleared for the next pass while they are in the
+// cache, and those of their planes. Not inlined: most blocks have none, and the springs need all registers.
+__attribute__((noinline)) void take_external_force(const Pass &pass, const Block &block, double *total)
+{
+  double *const given =
+      block.external_force >= 0 ? pass.external_force + static_cast<long>(block.external_force) * (3 * LANES) : nullptr;
+  const PlaneRow *row = block.planes >= 0 ? pass.planes.row + block.planes : nullptr;
+  Vector3 x;
+  if (row) x = block.at_border ? load_before(pass.range->end, pass.x, block.start) : load(pass.x, block.start);
+  for (int n = 0; n < pass.force_providers; ++n) {
+    if (row && row->provider == n) {
+      pass.planes.law[row->law].law.friction > 0.0 ? push_with_friction(pass.planes, row, x, total)
+                                                   : push_without_friction(pass.planes, row, x, total);
+      while (row && row->provider == n) row = row->is_last ? nullptr : row + 1;
+    } else if (given) {
+      double *const of_fix = given + n * (3 * LANES);
+      store_own(total, load_own(total) + load_own(of_fix));
+      store_own(of_fix, Vector3{});
+    }
+  }
 }
 
 template <bool DAMPED> MDANIM_ALWAYS_INLINE void cross(const Pass &pass, const Border &border)
@@ -295,7 +309,7 @@ template <bool DAMPED> MDANIM_ALWAYS_INLINE void feel_anywhere(const Pass &pass,
     feel<true>(pass, block, e, total);
   else
     feel<false>(pass, block, e, total);
-  if (__builtin_expect(block.external_force >= 0, 0)) take_external_force(pass, block, total);
+  if (__builtin_expect(is_pushed(block), 0)) take_external_force(pass, block, total);
 }
 
 template <Friction FRICTION, bool DAMPED>
@@ -317,7 +331,7 @@ MDANIM_ALWAYS_INLINE void step_strip(const Pass &pass, const Block *block, unsig
   const Block *const end = block + block->strip;
   for (const double *own = felt; block < end; ++block, own += NUMBERS) {
     add_up<DAMPED>(pass, *block, {load_own(own), DAMPED ? load_own(own + 3 * LANES) : Vector3{}}, total);
-    if (__builtin_expect(block->external_force >= 0, 0)) take_external_force(pass, *block, total);
+    if (__builtin_expect(is_pushed(*block), 0)) take_external_force(pass, *block, total);
     move<FRICTION, DAMPED_PASS>(pass, *block, total, tally);
   }
   e = end[-1].end;

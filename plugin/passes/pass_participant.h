@@ -4,6 +4,7 @@
 
 #pragma once
 
+#include "contact/points_at_plane.h"
 #include "geometry/aligned_array.h"
 #include "numbers/vec3.h"
 #include "passes/displacement_budget.h"
@@ -127,6 +128,11 @@ class PassParticipant : public PassMember {
   virtual void add_forces(const Positions & /*place*/, const ForceSums & /*force*/) {}
   // How far particles may go, from where they were when it was asked for forces last, before it adds some again.
   virtual double rests_for() const { return 0.0; }
+  // Hands over points of such a fix at planes, whose contacts passes are to compute and to add up, in the order in which planes
+  // act: beside these the fix gives no forces and needs no particles. Empty where it does all itself. They belong to passes until
+  // they are taken back, with the wall time that passes took for them since.
+  virtual std::vector<PointsAtPlane> hand_over_planes() { return {}; }
+  virtual void take_back_planes(const std::vector<PointsAtPlane> & /*planes*/, double /*seconds*/) {}
   // Whether it will read any particle in this step. Asked once, when the step has begun, unless the fix needs positions only.
   virtual bool needs_all_atoms() { return false; }
   // How far particles may go from where they were at the last rebuild before the fix must look again, as far as it can tell. A

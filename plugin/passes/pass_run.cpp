@@ -20,6 +20,9 @@ static constexpr double OF_LEAPFROG = 0.35, OF_DRAG = 0.14, OF_GRAVITY = 0.01;
 // near.
 static constexpr double MORE_IN_LIQUID = 0.26;
 
+// The same for a lane of a row at planes: bench/alone.py, walls.
+static constexpr double MORE_AT_PLANE = 0.3;
+
 PassRun::PassRun(SimdBlocks &blocks, const Kernels &kernels, const Threads &threads, const PassCrew &crew,
                  const AtomArrays &atoms, double dt, Fresh fresh)
     : blocks(blocks), kernels(kernels), threads(threads), crew(crew), atoms(atoms), dt(dt),
@@ -38,12 +41,16 @@ PassRun::PassRun(SimdBlocks &blocks, const Kernels &kernels, const Threads &thre
     if (blocks.damped()) blocks.take_in_dashpots(account->latest(), account->latest_seen());
   }
   std::vector<std::vector<int>> of_early(crew.early.size());
-  for (std::size_t n = 0; n < crew.early.size(); ++n) crew.early[n]->append_required_atoms(of_early[n]);
-  blocks.expect(of_early);
   rests.assign(crew.early.size(), 0.0);
+  seconds_at_planes.assign(crew.early.size(), 0.0);
+  for (std::size_t n = 0; n < crew.early.size(); ++n) {
+    at_planes.push_back(crew.early[n]->hand_over_planes());
+    if (at_planes[n].empty()) crew.early[n]->append_required_atoms(of_early[n]);
+  }
+  blocks.expect(of_early, at_planes);
   look = !crew.late.empty() ||
          std::any_of(of_early.begin(), of_early.end(), [](const auto &particles) { return !particles.empty(); });
-  blocks.fill(pass, atoms.f);
+  blocks.fill(pass, atoms.f, dt);
   pass.gravity.works = crew.gravity && !crew.gravity->steady();
   if (crew.gravity && !pass.gravity.works) set_gravity();
   pass.trace = crew.integrator->trace_rows();
@@ -95,6 +102,13 @@ void PassRun::step(long long next, const std::function<void(bool at_end)> &late)
     take_pass();
   }
   const double share_of_liquid = blocks.share_of_liquid(MORE_IN_LIQUID);
+  double touching = 0.0;
+  for (std::size_t n = 0; n < at_planes.size(); ++n) {
+    const double of_planes = blocks.share_of_planes(n, MORE_AT_PLANE) * all;
+    seconds_at_planes[n] += of_planes;
+    touching += of_planes;
+  }
+  all -= touching;
   const double moving = (1.0 - share_of_liquid) * (OF_LEAPFROG + (pass.friction == Friction::NONE ? 0.0 : OF_DRAG)) * all;
   const double pulling = crew.gravity ? OF_GRAVITY * all : 0.0, lifting = share_of_liquid * all;
   crew.integrator->moved(sums.loss, sums.bend, pass.largest_phi, moving);
@@ -158,7 +172,7 @@ void PassRun::take_pass()
 void PassRun::early_participants_turn()
 {
   for (std::size_t n = 0; n < crew.early.size(); ++n) {
-    if (rests[n] > 0.0) continue;
+    if (rests[n] > 0.0 || !at_planes[n].empty()) continue;
     blocks.tell_places(n, atoms.x, place);
     crew.early[n]->add_forces(place, blocks.external_force_of(n));
     rests[n] = crew.early[n]->rests_for();
@@ -220,6 +234,9 @@ void PassRun::update_liquid()
 void PassRun::leave()
 {
   give_back_to_liquid();
+  blocks.give_out_planes(at_planes);
+  for (std::size_t n = 0; n < at_planes.size(); ++n)
+    if (!at_planes[n].empty()) crew.early[n]->take_back_planes(at_planes[n], seconds_at_planes[n]);
   blocks.give_out(threads, atoms.x, atoms.v);
   Loss *account = crew.springs->account();
   if (!account) return;

@@ -69,9 +69,11 @@ class PassRun {
   std::vector<PassSums> chunk_sums;    // and of each of its chunks
   bool look = false;
   long long moved_alone = 0;
-  Positions place;              // positions of the particles of an early participant
-  std::vector<double> rests;    // how far particles may still go before each of these is asked for forces again
-  std::vector<int> wanted;      // particles that late participants need
+  PlaneBlocks::OfProviders at_planes;       // points of early participants whose contacts the passes compute,
+  std::vector<double> seconds_at_planes;    // and the time for them
+  Positions place;                          // positions of the particles of an early participant
+  std::vector<double> rests;                // how far particles may still go before each of these is asked for forces again
+  std::vector<int> wanted;                  // particles that late participants need
 };
 
 }    // namespace mdanim

@@ -17,7 +17,7 @@ static constexpr int PAGE = 512, LINE = 8;    // doubles
 
 SimdBlocks::SimdBlocks(const Cutter &of, Cut &&cut, RangeCut &&ranges)
     : cutter(of), lanes(of.lanes()), particles(cut.particles), many_chunks(cut.chunks), has_damped(of.damped()),
-      all(std::move(cut.block)), entries(std::move(cut.entry)), immersed(lanes),
+      all(std::move(cut.block)), entries(std::move(cut.entry)), immersed(lanes), external(lanes),
       range(std::move(ranges), (damped() ? 6 : 3) * lanes)
 {
   set_strips(all, entries, lanes, range.cut());
@@ -101,38 +101,14 @@ void SimdBlocks::set_apart(const std::vector<bool> &moves)
   for (std::size_t n = 0; n < all.size(); ++n) std::fill_n(&home[all[n].start], all[n].lanes, static_cast<int>(n));
 }
 
-// Gives blocks with a particle of any provider a row for each provider.
-void SimdBlocks::expect(const std::vector<std::vector<int>> &particles_of)
+void SimdBlocks::expect(const std::vector<std::vector<int>> &particles_of, const PlaneBlocks::OfProviders &points)
 {
-  const int many = static_cast<int>(particles_of.size());
-  for (Block &block : all) block.external_force = -1;
-  force_providers.assign(many, {});
-  int rows = 1;    // the first is for forces on ghosts
-  for (int n = 0; n < many; ++n)
-    for (const int i : particles_of[n]) {
-      ForceProvider &provider = force_providers[n];
-      const int to = static_cast<int>(provider.slot.size());
-      if (is_ghost(i)) {
-        provider.ghosts.push_back({i, to});
-        provider.particle.push_back(0);
-        provider.slot.push_back(0);
-        continue;
-      }
-      provider.particle.push_back(ours(i));
-      Block &block = all[home[ours(i)]];
-      if (block.external_force < 0) {
-        block.external_force = rows;
-        rows += many;
-      }
-      const long row = block.external_force + n;
-      provider.slot.push_back(row * 3 * lanes + ours(i) - block.start);
-    }
-  for (ForceProvider &provider : force_providers) provider.find_rows();
-  external_force.assign(static_cast<std::size_t>(rows) * 3 * lanes);
+  external.expect(particles_of, points, all, [this](int i) -> PlaneBlocks::Lane {
+    if (is_ghost(i)) return {-1, 0};
+    const int block = home[ours(i)];
+    return {block, ours(i) - all[block].start};
+  });
 }
-
-void SimdBlocks::tell_places(std::size_t n, const double *const *of_ghosts, Positions &to) const
-{ force_providers[n].tell_places(x, of_ghosts, to); }
 
 void SimdBlocks::hold_back(const std::vector<int> &wanted, bool everything)
 {
@@ -294,15 +270,14 @@ void SimdBlocks::give_out_forces(double *const *f) const
   for (const int i : outside) std::copy_n(&total[3 * static_cast<std::size_t>(i)], 3, f[index[i]]);
 }
 
-void SimdBlocks::fill(Pass &pass, double *const *forces)
+void SimdBlocks::fill(Pass &pass, double *const *forces, double dt)
 {
   pass.block = all.data();
   pass.entry = entries.data();
   pass.law = cutter.rows();
   pass.damped_law = damped() ? cutter.damped_rows() : nullptr;
   pass.motion = motions.data();
-  pass.external_force = external_force.data();
-  pass.force_providers = static_cast<int>(force_providers.size());
+  external.fill(pass, dt);
   for (int d = 0; d < 3; ++d) {
     pass.x[d] = x[d];
     pass.v[d] = v[d];
@@ -316,11 +291,8 @@ void SimdBlocks::fill(Pass &pass, double *const *forces)
 
 std::size_t SimdBlocks::bytes() const
 {
-  std::size_t of_providers = external_force.bytes() + range.bytes();
-  for (const ForceProvider &b : force_providers)
-    of_providers += b.particle.capacity() * sizeof(int) + b.ghosts.capacity() * sizeof(ForceProvider::Ghost) +
-                    b.slot.capacity() * sizeof(long);
-  return of_providers + all.capacity() * sizeof(Block) + entries.capacity() * sizeof(Entry) + motions.bytes() + memory.bytes() +
+  return external.bytes() + range.bytes() + all.capacity() * sizeof(Block) + entries.capacity() * sizeof(Entry) +
+         motions.bytes() + memory.bytes() +
          (home.capacity() + outside.capacity() + index.capacity() + place.capacity() + ghosts.capacity() + waiting.capacity()) *
              sizeof(int) +
          total.capacity() * sizeof(double) + immersed.bytes();

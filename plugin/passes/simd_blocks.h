@@ -7,7 +7,7 @@
 #include "numbers/vec3.h"
 #include "passes/block_ranges.h"
 #include "passes/cutter.h"
-#include "passes/force_provider.h"
+#include "passes/external_forces.h"
 #include "passes/immersed_blocks.h"
 #include "passes/pass.h"
 #include "passes/pass_participant.h"
@@ -38,13 +38,16 @@ class SimdBlocks {
   int chunks() const { return many_chunks; }
 
   template <class Tell> void set_motion(Friction friction, Tell mover);    // Mover mover(int i)
-  // Sets the participants that give forces before every pass, in the order in which they are added: the particles of each; some
-  // may be ghosts.
-  void expect(const std::vector<std::vector<int>> &particles);
-  // For participant number n, its particles in the same order: positions, those of ghosts from x; and where forces on them are
-  // added up, which is zero after every pass for all particles that it moves.
-  void tell_places(std::size_t n, const double *const *x, Positions &place) const;
-  ForceSums external_force_of(std::size_t n) { return {external_force.data(), force_providers[n].slot.data(), lanes}; }
+  // Forces that participants give, see ExternalForces. Particles are numbered as LAMMPS does.
+  void expect(const std::vector<std::vector<int>> &particles, const PlaneBlocks::OfProviders &points);
+  void tell_places(std::size_t n, const double *const *of_ghosts, Positions &to) const
+  { external.tell_places(n, x, of_ghosts, to); }
+  ForceSums external_force_of(std::size_t n) { return external.of(n); }
+  void give_out_planes(PlaneBlocks::OfProviders &points) const { external.planes().give_out(points); }
+  long points_at_planes() const { return external.planes().points(); }    // whose contacts passes compute
+  // Share of a participant's planes in the time of a pass in which a particle at a plane takes `more` than another.
+  double share_of_planes(std::size_t n, double more) const
+  { return more * external.planes().particles_of(n) / (particles + more * external.planes().particles()); }
 
   // Holds back every block with one of these particles, and no other; ghosts among them are left out.
   void hold_back(const std::vector<int> &particles, bool everything);
@@ -82,7 +85,7 @@ class SimdBlocks {
   void pack(const std::vector<int> &particles, bool velocities, double *to) const;
   void unpack(const std::vector<int> &particles, bool velocities, const double *from);
 
-  void fill(Pass &pass, double *const *f);    // f: where forces on those that are held back go
+  void fill(Pass &pass, double *const *f, double dt);    // f: where forces on those that are held back go
   BlockRanges &ranges() { return range; }
   const BlockRanges &ranges() const { return range; }
   void give_out_forces(double *const *f) const;    // forces are there after a pass and this call
@@ -117,15 +120,14 @@ class SimdBlocks {
   std::vector<Block> all;
   int active = 0;    // the first blocks, which have work in a pass
   std::vector<Entry> entries;
-  std::vector<int> home;       // block of each particle
-  std::vector<bool> slowed;    // blocks with friction
-  std::vector<int> outside;    // particles of blocks that are held back
-  std::vector<ForceProvider> force_providers;
-  Doubles external_force;              // see Pass
+  std::vector<int> home;               // block of each particle
+  std::vector<bool> slowed;            // blocks with friction
+  std::vector<int> outside;            // particles of blocks that are held back
   std::vector<int> index, place;       // index of a particle in LAMMPS's arrays, and back
   std::vector<int> ghosts, waiting;    // in our order; `outside` in LAMMPS's
   std::vector<double> total;           // see Pass, in our order
   ImmersedBlocks immersed;
+  ExternalForces external;
   int owned = 0;    // number of own particles in LAMMPS's arrays; ghosts come after them
   DistinctRows<double> motions;
   Doubles memory;    // of the arrays
