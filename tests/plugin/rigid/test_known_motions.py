@@ -10,6 +10,7 @@ import pytest
 import rigid_lab as lab
 import rigid_motions
 from rigid_samples import BALL, CAN, COIN, CONE, CUBE, DOMINO, EGG, WEDGE, G, meeting, momenta, rolled, tilted
+from scipy.integrate import solve_ivp
 from scipy.spatial.transform import Rotation
 
 
@@ -194,6 +195,23 @@ def test_a_cradle(tmp_path, many):
     with lab.World(tmp_path, balls, frequency=lab.frequency_of(1.0, 0.1, 0.002), planes=[], gravity=(0, 0, 0)) as world:
         world.run(round(0.06 / world.dt))
         assert world.rows()[:, 3] == pytest.approx([0.0] * (5 - many) + [1.0] * many, abs=1e-2)
+
+
+def test_balls_that_touch_at_the_start_share_the_blow(tmp_path):
+    """As equal masses do with the springs of contacts between them, integrated in another way: all of them move."""
+    balls = [lab.ball(0.05, 7800, at=(0.1 * n - 0.01 * (n == 0), 0, 0), v=(n == 0, 0, 0), mu=0.0, beta=0.0) for n in range(5)]
+
+    frequency, onset = lab.frequency_of(1.0, 0.1), 0.005 * 0.1
+
+    def pushed(_, state):
+        into = np.maximum(-np.diff(state[:5]), 0.0)
+        force = 0.5 * frequency**2 * np.where(into < onset, into**2 / (2.0 * onset), into - 0.5 * onset)
+        return np.r_[state[5:], np.diff(np.r_[0.0, -force, 0.0])]
+
+    wanted = solve_ivp(pushed, (0.0, 0.06), [0.0] * 5 + [1.0] + [0.0] * 4, rtol=1e-7, atol=1e-9, max_step=5e-4).y[5:, -1]
+    with lab.World(tmp_path, balls, frequency=frequency, planes=[], gravity=(0, 0, 0)) as world:
+        world.run(round(0.08 / world.dt))
+        assert world.rows()[:, 3] == pytest.approx(wanted, abs=1e-2)
 
 
 @pytest.mark.parametrize(("turn", "count"), [(0.0, 10), (0.3, 10), (np.pi / 4, 6)])
