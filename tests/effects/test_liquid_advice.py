@@ -38,8 +38,7 @@ SHAKE = "level 0.4 m  drive oscillation ({way}, 0, 0) m frequency 0.6 Hz"
         (DAM.format(width=0.9), BLOCK.format(x=1.5, more="friction 0.5"), "floods block"),
         (DAM.format(width=0.9), BLOCK.format(x=0.4, more="friction 0.5"), ""),
         ("fill from (0, 0, 0) m to (0.3, 0.8, 1) m  level 0.6 m", WALL.format(long=140, z=0.5), ""),
-        ("level 0.6 m", WALL.format(long=140, z=0.5), "an arm of water is 30 cm wide and 60 cm deep"),
-        ("level 0.6 m", WALL.format(long=140, z=0.4), ""),
+        ("level 0.6 m", WALL.format(long=140, z=0.5), ""),
         ("level 0.3 m", SLOPE.format(tilt=-20), "has a beach, slope"),
         ("level 0.3 m  manning 0.01", SLOPE.format(tilt=-20), ""),
         ("level 0.8 m", SLOPE.format(tilt=-20), ""),
@@ -72,7 +71,7 @@ def test_notes_tell_what_the_page_has_measured():
     kept = [json.loads(path.read_text())["balanced"]["rows"] for path in (REPOSITORY / "bench/published/found").glob("*.json")]
     offs = {round(100 * abs((r["found"] - r["published"]) / (r["scale"] or r["published"]))) for rows in kept for r in rows}
     told = {int(n) for one in SHORTFALLS for n in re.findall(r"(\d+) %", one.text)}
-    assert told == {68, 5, 9, 11, 14, 19, 28, 41} and told <= offs
+    assert told == {68, 5, 9, 11, 14, 28, 41} and told <= offs
 
 
 @pytest.mark.parametrize(

@@ -6,6 +6,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
+from arms import inertia_of_arm
 from scipy.optimize import brentq
 from waves_lab import SOLID, UNIT, Waves
 
@@ -122,17 +123,18 @@ def dish(radius: int, depth: int, periods=4, **settings) -> Swing:
 
 
 def vessels(arm: int, wall: int, gap: int, depth: int, periods=3, **settings) -> Swing:
-    """Two vessels joined through an opening at the floor; the inertia of the liquid there and in both sets the period."""
+    """Two vessels joined through an opening at the floor; the inertia of the liquid there and, by potential flow, in both."""
     cells, tall = 2 * arm + wall, 2 * depth
     solid = np.zeros((tall, 1, cells))
     solid[gap:, :, arm : arm + wall] = SOLID
     w = Waves((tall, 1, cells), **settings)
+    w.walls(solid)
     w.solids(solid)
     level = np.full(cells, float(depth))
     level[:arm] += 1.0
     level[arm + wall :] -= 1.0
     w.pour(level)
-    inertia = wall / gap + 2 * arm / 3 / depth + 2 * depth / 3 / arm
+    inertia = wall / gap + 2 * inertia_of_arm(depth - gap, gap, arm)
     exact = 2 * np.pi * np.sqrt(inertia * arm / 2)
     signal = []
     for _ in range(int((periods + 1.5) * exact / DT)):

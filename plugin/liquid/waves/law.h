@@ -194,6 +194,16 @@ MDANIM_ALWAYS_INLINE Real pushing_head(const WaveLaw &law, const Real &head, con
   return smaller(larger(head + (one - part) * delta, head - constant<Real>(law.slam)), constant<Real>(law.height + law.slam));
 }
 
+// (W8) Inertia of liquid that turns up or down at the mouth of a duct, beyond that of columns, as a length of the duct. `above`:
+// liquid above its roof; `open`: its height; `wide`: the width of the arm. In a narrow arm columns have none of their own.
+inline double mouth_inertia(double above, double open, double wide, bool narrow)
+{
+  const double as_one = (narrow ? above + open / 3.0 : 2.0 / 3.0 * above) / wide;
+  const double y = root(root(1.0 + 1.15 * above / open));
+  const double turns = 16.0 / 3.141592653589793 * (y - 1.0) / (y + 1.0);    // 2/pi of the logarithm: into a wide arm
+  return open * root(as_one * as_one + turns * turns);
+}
+
 template <class Real> struct UpwindFlux {
   Real u, units;    // velocity; units that pass in this sub-update, a whole number
 };
@@ -206,14 +216,14 @@ template <class Real> MDANIM_ALWAYS_INLINE Real whole(const Real &a)
 }
 
 // (W8) Pressure moves the liquid, and the acceleration of the basin leaves it behind; the flux is that of the upwind opening, in
-// whole units.
+// whole units. `ease`: inertia of the link over all that it moves.
 template <class Real, class Opening>
 MDANIM_ALWAYS_INLINE UpwindFlux<Real> pushed(const WaveLaw &law, const Real &u, const Real &wet, const Real &phi_a,
                                              const Real &phi_b, const Real &level_a, const Real &level_b, const Real &edge,
-                                             double tilt, const Opening &opening)
+                                             double tilt, double ease, const Opening &opening)
 {
   const Real none = constant<Real>(0.0), most = constant<Real>(law.fastest);
-  const Real faster = u - constant<Real>(law.dt) * ((larger(phi_b, edge) - larger(phi_a, edge)) + constant<Real>(tilt));
+  const Real faster = u - constant<Real>(law.dt * ease) * ((larger(phi_b, edge) - larger(phi_a, edge)) + constant<Real>(tilt));
   const Real held = smaller(larger(faster, none - most), most);
   const Real height = opening(pick(held > none, level_a, level_b));
   const auto flows = smaller(wet, height) > none;

@@ -19,15 +19,17 @@ double *WaveArrays::*const OF_SPANS[] = {
 };
 
 double *WaveLinks::*const OF_LINKS[] = {
-    &WaveLinks::edge,   &WaveLinks::top,   &WaveLinks::u,      &WaveLinks::q,      &WaveLinks::wet,    &WaveLinks::height,
-    &WaveLinks::faster, &WaveLinks::units, &WaveLinks::rubbed, &WaveLinks::couple, &WaveLinks::moving, &WaveLinks::rubbing,
+    &WaveLinks::edge,   &WaveLinks::top,    &WaveLinks::u,       &WaveLinks::q,      &WaveLinks::wet,
+    &WaveLinks::height, &WaveLinks::faster, &WaveLinks::units,   &WaveLinks::rubbed, &WaveLinks::couple,
+    &WaveLinks::more,   &WaveLinks::moving, &WaveLinks::rubbing,
 };
 
 }    // namespace
 
 WaveColumns::WaveColumns(int nx, int ny, int nz)
     : nx(nx), ny(ny), nz(nz), stride((nx / WaveKernels::SUMMED + 1) * WaveKernels::SUMMED), further_start((1 + ny) * stride),
-      solid(nx, ny, nz), wall(nx, ny, nz), spans_in(nx * ny, 0), further(nx * ny, 0), of_spans(std::size(OF_SPANS))
+      solid(nx, ny, nz), wall(nx, ny, nz), general(nx * ny, 0), spans_in(nx * ny, 0), further(nx * ny, 0),
+      of_spans(std::size(OF_SPANS))
 {
   for (auto &arrays_of_links : of_links) arrays_of_links.resize(std::size(OF_LINKS));
   arrays.stride = stride;

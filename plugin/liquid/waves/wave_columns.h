@@ -108,6 +108,8 @@ class WaveColumns {
   }
 
   double opening(const LinkPlace &link, double level) const;    // of a link up to a level
+  // Inertia of a link over that of all that it moves.
+  double ease(const LinkPlace &link) const { return 1.0 / (1.0 + arrays_of(link).more[link.at]); }
 
   // --- for new solids ---
 
@@ -127,8 +129,9 @@ class WaveColumns {
   const long further_start;    // place of the first further span
   long links_start = 0;        // place of the first further link
   long further_rows = 0;
-  SolidParts solid, wall;      // all solids; the held ones
-  bool all_general = false;    // for tests: the general form computes all spans and links
+  SolidParts solid, wall;               // all solids; the held ones
+  bool all_general = false;             // for tests: the general form computes all spans and links
+  std::vector<std::uint8_t> general;    // columns that are left to it although they are plain
 
   std::vector<int> spans_in, further;    // of each column: the number of spans, and the number of its first further one
   std::vector<Span> span;                // of each place; column -1 where there is none

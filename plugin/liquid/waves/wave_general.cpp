@@ -90,15 +90,16 @@ void WaveStepper::general_advection(const LinkPlace &link)
   const SideLinks right_a = side_of(e.a, right), right_b = side_of(e.b, right);
   set(3, beside(right_a.widest, right_b.widest), 0.0 - 0.5 * (right_a.q + right_b.q));
   const auto found = advected(law, l.u[j], around, arrays.volume[e.a], arrays.volume[e.b], l.height[j]);
-  l.faster[j] = found.u;
+  l.faster[j] = l.more[j] > 0.0 ? l.u[j] + (found.u - l.u[j]) * columns.ease(link) : found.u;
   l.rubbed[j] = found.rubbed;
 }
 
 void WaveStepper::general_push(const LinkPlace &link)
 {
   const Ends e = columns.ends(link);
-  push_at<double>(arrays, law, {columns.arrays_of(link), link.d, link.at, e.a, e.b},
-                  [&](double level) { return columns.opening(link, level); });
+  push_at<double>(
+      arrays, law, {columns.arrays_of(link), link.d, link.at, e.a, e.b},
+      [&](double level) { return columns.opening(link, level); }, columns.ease(link));
 }
 
 SpanFluxes<double> WaveStepper::fluxes_of(long i) const

@@ -116,14 +116,14 @@ void WaveColumns::put_link(const LinkPlace &link, const LinkState &state)
   l.top[link.at] = state.top;
   l.u[link.at] = state.u;
   l.q[link.at] = state.q;
-  l.wet[link.at] = l.height[link.at] = l.faster[link.at] = l.units[link.at] = l.couple[link.at] = 0.0;
+  l.wet[link.at] = l.height[link.at] = l.faster[link.at] = l.units[link.at] = l.couple[link.at] = l.more[link.at] = 0.0;
 }
 
 // A column is regular without spans, or with one that is plain and linked to all columns around that have spans.
 bool WaveColumns::is_regular(int column) const
 {
   if (spans_in[column] == 0) return true;
-  if (spans_in[column] > 1 || !span[place(column)].plain) return false;
+  if (spans_in[column] > 1 || general[column] || !span[place(column)].plain) return false;
   bool linked = true;
   const long i = place(column);
   const auto look = [&](const LinkPlace &link, long other) { linked = linked && (is_link(link) || span[other].column < 0); };

@@ -111,14 +111,15 @@ void WaveSolver::general_assembly(long i)
   SpanSums<double> sums;
   columns.each_link_of(i, [&](const LinkPlace &link, long other, bool inward) {
     const WaveLinks &l = columns.arrays_of(link);
-    const double flux = l.height[link.at] * (l.faster[link.at] - law.dt * law.tilt[link.d]) * law.dt;
+    const double flux = l.height[link.at] * (l.faster[link.at] - law.dt * columns.ease(link) * law.tilt[link.d]) * law.dt;
     sums.look(head, arrays.head[other], l.wet[link.at], full, arrays.full[other], inward ? flux : 0.0 - flux);
   });
   if (full > 0.0) {
     sums.diagonal = arrays.yields[i] * (1.0 / (law.share * law.share));
     sums.rhs = full_rhs(law, arrays.volume[i], arrays.capacity[i], arrays.coming[i], sums.inflow);
   } else {
-    sums.diagonal = free_stiffness(law, sums.steepest, arrays.volume[i], arrays.slope[i]);
+    sums.diagonal =
+        free_stiffness(law, mouths.in_narrow_arm(i) ? 2.0 * law.breaking : sums.steepest, arrays.volume[i], arrays.slope[i]);
     // A partly solid column has the head that it will have: otherwise liquid under nearly shut cells would rise and fall for
     // ever.
     if (arrays.slope[i] < POROUS) sums.rhs = sums.inflow / (law.dt * law.dt);
@@ -126,7 +127,8 @@ void WaveSolver::general_assembly(long i)
   arrays.beside_full[i] = sums.beside_full;
   columns.each_link_of(i, [&](const LinkPlace &link, long other, bool inward) {
     const WaveLinks &l = columns.arrays_of(link);
-    sums.couple(head, arrays.head[other], l.edge[link.at], l.height[link.at], inward ? law.tilt[link.d] : -law.tilt[link.d]);
+    sums.couple(head, arrays.head[other], l.edge[link.at], l.height[link.at] * columns.ease(link),
+                inward ? law.tilt[link.d] : -law.tilt[link.d]);
   });
   const bool solved = sums.diagonal > 0.0;
   arrays.scale[i] = 1.0 / root(solved ? sums.diagonal : 1.0);
@@ -137,7 +139,7 @@ void WaveSolver::general_coupling(const LinkPlace &link)
 {
   const WaveLinks &l = columns.arrays_of(link);
   const Ends e = columns.ends(link);
-  const double bare = coupling(arrays.head[e.a], arrays.head[e.b], l.edge[link.at], l.height[link.at]);
+  const double bare = coupling(arrays.head[e.a], arrays.head[e.b], l.edge[link.at], l.height[link.at] * columns.ease(link));
   l.couple[link.at] = bare * arrays.scale[e.a] * arrays.scale[e.b];
 }
 

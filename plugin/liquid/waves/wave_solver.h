@@ -4,14 +4,15 @@
 #pragma once
 
 #include "liquid/waves/wave_loops.h"
+#include "liquid/waves/wave_mouths.h"
 
 namespace mdanim {
 
 class WaveSolver {
  public:
-  // Both must outlive this.
-  WaveSolver(WaveColumns &columns, WaveRun &run)
-      : columns(columns), run(run), law(run.law), arrays(columns.arrays), loops(columns, run.threads)
+  // All must outlive this.
+  WaveSolver(WaveColumns &columns, WaveRun &run, const WaveMouths &mouths)
+      : columns(columns), run(run), mouths(mouths), law(run.law), arrays(columns.arrays), loops(columns, run.threads)
   {
   }
 
@@ -34,6 +35,7 @@ class WaveSolver {
 
   WaveColumns &columns;
   WaveRun &run;
+  const WaveMouths &mouths;
   const WaveLaw &law;
   WaveArrays &arrays;
   WaveLoops loops;

@@ -72,6 +72,7 @@ void WaveStepper::find_surfaces()
     for (int d = 0; d < 2; ++d) run.kernels->open_links(arrays, law, d, first, end);
   });
   loops.each_listed(columns.listed_links, [&](const LinkPlace &link) { general_opening(link); });
+  mouths.load(law);
   loops.rows([&](long first, long end) {
     for (int d = 0; d < 2; ++d) run.kernels->advect(arrays, law, d, first, end);
   });
@@ -84,7 +85,7 @@ void WaveStepper::move_links()
     for (int d = 0; d < 2; ++d) run.kernels->push(arrays, law, d, first, end);
   });
   loops.each_listed(columns.listed_links, [&](const LinkPlace &link) { general_push(link); });
-  run.lost += law.dt * (walls.force() + law.calm * momentum(&WaveLinks::moving, &WaveLinks::faster));
+  run.lost += law.dt * (walls.force() + law.calm * momentum(&WaveLinks::moving, &WaveLinks::faster)) + mouths.turned();
   if (law.bed > 0.0) run.lost += momentum(&WaveLinks::rubbing, &WaveLinks::rubbed);
   if (run.is_moved) leave_behind();
   if (const WaveLoops::RowRange tight = balance(); tight.first < tight.last) {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "liquid/waves/wave_loops.h"
+#include "liquid/waves/wave_mouths.h"
 #include "liquid/waves/wave_solver.h"
 #include "liquid/waves/wave_walls.h"
 
@@ -12,9 +13,9 @@ namespace mdanim {
 class WaveStepper {
  public:
   // All must outlive this.
-  WaveStepper(WaveColumns &columns, WaveRun &run, const WaveWalls &walls)
-      : columns(columns), run(run), walls(walls), law(run.law), arrays(columns.arrays), span(columns.span),
-        content(columns.content), loops(columns, run.threads), solver(columns, run)
+  WaveStepper(WaveColumns &columns, WaveRun &run, const WaveWalls &walls, WaveMouths &mouths)
+      : columns(columns), run(run), walls(walls), mouths(mouths), law(run.law), arrays(columns.arrays), span(columns.span),
+        content(columns.content), loops(columns, run.threads), solver(columns, run, mouths)
   {
   }
 
@@ -51,6 +52,7 @@ class WaveStepper {
   WaveColumns &columns;
   WaveRun &run;
   const WaveWalls &walls;
+  WaveMouths &mouths;
   WaveLaw &law;
   WaveArrays &arrays;
   const std::vector<Span> &span;

@@ -11,7 +11,8 @@
 namespace mdanim {
 
 Waves::Waves(int nx, int ny, int nz)
-    : columns(nx, ny, nz), exchange(columns, run), cut(columns, run), walls(columns), stepper(columns, run, walls)
+    : columns(nx, ny, nz), exchange(columns, run), cut(columns, run), walls(columns), mouths(columns),
+      stepper(columns, run, walls, mouths)
 {
   run.kernels = &widest_kernels().waves;
   run.law.height = nz;
@@ -63,7 +64,7 @@ Waves::Energy Waves::energy() const
   });
   columns.each_link([&](const LinkPlace &link) {
     const WaveLinks &l = columns.arrays_of(link);
-    energy.motion += 0.5 * l.height[link.at] * l.u[link.at] * l.u[link.at];
+    energy.motion += 0.5 * l.height[link.at] * (1.0 + l.more[link.at]) * l.u[link.at] * l.u[link.at];
   });
   return energy;
 }

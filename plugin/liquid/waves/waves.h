@@ -8,6 +8,7 @@
 #include "liquid/waves/wave_columns.h"
 #include "liquid/waves/wave_exchange.h"
 #include "liquid/waves/wave_loops.h"
+#include "liquid/waves/wave_mouths.h"
 #include "liquid/waves/wave_solids.h"
 #include "liquid/waves/wave_stepper.h"
 #include "liquid/waves/wave_walls.h"
@@ -32,13 +33,17 @@ class Waves {
   // the waves cannot be used any more after that. `again`: the part of the change that will come once more in the next update.
   // Outside of a box `where` (null: the whole basin) nothing has changed.
   void set_solids(const std::uint16_t *part, const double *mass, double again = 1.0, const CellBox *where = nullptr)
-  { cut.set_solids(part, mass, again, where); }
+  {
+    cut.set_solids(part, mass, again, where);
+    mouths.find_links();
+  }
   // Sets the held part of each cell, as in SolidParts: a wall, like the sides of the basin. Plates at such walls cut columns when
   // solids are set next.
   void set_walls(const std::uint16_t *held)
   {
     cut.set_walls(held);
     walls.list_faces();
+    mouths.list();
   }
   const SolidParts &solids() const { return columns.solid; }
   // Fills all spans of each column up to a height; full spans get the pressure of that height. `from`: leaves out liquid below
@@ -99,6 +104,7 @@ class Waves {
  private:
   WaveSolids cut;
   WaveWalls walls;
+  WaveMouths mouths;
   WaveStepper stepper;
 };
 

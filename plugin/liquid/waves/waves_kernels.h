@@ -16,6 +16,7 @@ struct WaveLinks {
   double *wet, *height, *faster, *units;    // see Opened; u after advection; units that pass
   double *rubbed;                           // velocity that the ground has taken; only with friction of the ground
   double *couple;
+  double *more;                // inertia of the liquid that turns up or down at its mouth, over that of the link: mouth_inertia()
   double *moving, *rubbing;    // momentum before pressure, and what the ground has taken of it, of rows
 };
 

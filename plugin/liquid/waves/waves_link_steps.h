@@ -42,13 +42,14 @@ MDANIM_ALWAYS_INLINE void open_at(const WaveArrays &arrays, const WaveLaw &law, 
 }
 
 template <class Real, class Opening>
-MDANIM_ALWAYS_INLINE void push_at(const WaveArrays &arrays, const WaveLaw &law, const LinkAt &at, const Opening &opening)
+MDANIM_ALWAYS_INLINE void push_at(const WaveArrays &arrays, const WaveLaw &law, const LinkAt &at, const Opening &opening,
+                                  double ease = 1.0)
 {
   const WaveLinks &links = at.links;
   const long i = at.link;
   const auto level = levels_at<Real>(arrays, law, at);
   const auto flow = pushed(law, load<Real>(links.faster + i), load<Real>(links.wet + i), load<Real>(arrays.phi + at.a),
-                           load<Real>(arrays.phi + at.b), level.a, level.b, level.edge, law.tilt[at.d], opening);
+                           load<Real>(arrays.phi + at.b), level.a, level.b, level.edge, law.tilt[at.d], ease, opening);
   store(links.u + i, flow.u);
   store(links.units + i, flow.units);
 }

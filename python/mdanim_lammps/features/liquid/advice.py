@@ -162,42 +162,6 @@ def _box_in_a_flood(envelope: Envelope) -> Found | None:
 # --- walls and floors ---------------------------------------------------------------------------------------
 
 
-def _narrow_arm(envelope: Envelope) -> Found | None:
-    """Liquid between walls that goes on below one of them, in an arm that is narrower than deep."""
-    from scipy.ndimage import label
-
-    scene, grid = envelope.scene, envelope.context.grid
-    top = round((liquid_level(scene.liquid) - grid.low[2]) / grid.cell[2])
-    if not any(model.still for model in envelope.context.models) or not 0 < top <= grid.shape[2]:
-        return None
-    open_cells = ~_held_cells(envelope)[:top]
-    arms, many = label(open_cells[-1])
-    if many < 2:
-        return None
-    joined, _ = label(open_cells)
-    of_arm = [int(joined[-1][arms == n][0]) for n in range(1, many + 1)]
-    deep = np.where(open_cells.all(axis=0), top, np.argmin(open_cells[::-1], axis=0)) * grid.cell[2]
-    for n in range(1, many + 1):
-        if of_arm.count(of_arm[n - 1]) < 2:
-            continue
-        wide = float(np.minimum(*(_runs(arms == n, k) * grid.cell[k] for k in (0, 1))).max())
-        depth = float(deep[arms == n].max())
-        if wide < depth:
-            cause = f"an arm of {scene.liquid.name} is {say(wide, 'm')} wide and {say(depth, 'm')} deep"
-            return scene.liquid.spans.get("basin"), cause
-    return None
-
-
-def _runs(mask: np.ndarray, axis: int) -> np.ndarray:
-    """Cells of the run along x or y in which each cell of a mask is, 0 outside, shape (ny, nx)."""
-    from scipy.ndimage import label
-
-    beside = np.zeros((3, 3), int)
-    beside[(slice(None), 1) if axis else (1, slice(None))] = 1
-    run, _ = label(mask, beside)
-    return np.where(mask, np.bincount(run.ravel())[run], 0)
-
-
 def _slopes(envelope: Envelope) -> Iterator[tuple[Model, np.ndarray]]:
     """Gentle slopes of held solids: corners of their triangles, shape (T, 3, 3)."""
     for model in envelope.context.models:
@@ -333,7 +297,6 @@ SHORTFALLS = (
         "the jet at its face has no pressure, and while that stands the pressure on the upper half is 14 % too low",
         f"{VALIDATION}a-flood-meets-a-low-box",
     ),
-    Shortfall(_narrow_arm, "there liquid swings too fast, in 19 % less time in a U-tube", f"{VALIDATION}a-u-tube"),
     Shortfall(
         _beach,
         "high waves run up to 28 % too far, as nothing rubs on the ground",

@@ -251,11 +251,11 @@ def test_liquid_sloshes_in_a_dish_as_thacker_says():
 
 @pytest.mark.parametrize(
     ("arm", "wall", "gap", "depth", "error"),
-    [(8, 16, 4, 16, 0.01), (8, 32, 4, 16, 0.01), (16, 8, 4, 16, 0.025), (4, 48, 4, 12, 0.01), (1, 64, 1, 12, 0.02)],
+    [(8, 16, 4, 16, 0.01), (8, 32, 4, 16, 0.01), (16, 8, 4, 16, 0.02), (4, 48, 4, 12, 0.01), (1, 64, 1, 12, 0.01)],
     ids=str,
 )
 def test_vessels_swing_through_an_opening(arm, wall, gap, depth, error):
-    """The period of a U-tube of any shape: through a full duct under a wall."""
+    """The period of a U-tube, as of potential flow, whether its arms are narrower than deep or not."""
     assert forms.vessels(arm, wall, gap, depth, periods=2).period == pytest.approx(1.0, abs=error)
 
 
