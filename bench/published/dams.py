@@ -211,7 +211,8 @@ CASES = [
         "5 %, by which the experiments differ from their mean. The cells are 1/16 of the column's width. A place counts as "
         "reached when the water is 1/100 of the dam's height deep.",
         "The model is one of shallow liquid where the surface is steep: the foot of the dam does not wait for the water "
-        "above it to fall, and the front is ahead by a width and a half from the start. *Tried:* fronts that break only "
+        "above it to fall, and the front is ahead by a width and a half from the start: by 68, 68 and 71 % at 2 √(a/2g) with 8, "
+        "16 and 32 cells, so cells are not the cause. *Tried:* fronts that break only "
         "where they rise. The lead at 2 √(a/2g) falls from 63 to 39 %; but the flood of the low box then comes 10 % late in "
         "place of 3 %, and its pressure is lower by a quarter. *Tried:* no front breaks where its surface goes down and the "
         "heads alone would pull it down faster than it can fall ([figures](decisions/liquid.md#waves)). It halves the lead, "

@@ -17,6 +17,7 @@ from ...records import dataclass
 from ...scene.formatting import number, say, whole
 from ...scene.scene import Box, Ellipsoid, Solid, Sphere
 from ..contact.pairs import frictions
+from ..drives.motion import velocity_of
 from ..drives.words import DriveOscillation
 from .basin import liquid_level
 from .frames import is_wavy
@@ -261,6 +262,16 @@ def _bobs(envelope: Envelope) -> Found | None:
     return None
 
 
+def _wake(envelope: Envelope) -> Found | None:
+    """What is driven on through the surface."""
+    liquid, system = envelope.scene.liquid, envelope.system
+    lows, highs = system.bounds(system.position)
+    for m, solid in enumerate(envelope.context.solids):
+        if velocity_of(solid)[:2].any() and lows[m][2] < liquid_level(liquid) < highs[m][2]:
+            return envelope.place(m, "drive"), f"{system.names[m]} is towed through {liquid.name}"
+    return None
+
+
 def _high_crests(envelope: Envelope) -> Found | None:
     """A basin that is shaken near the period of its longest wave, by the linear law of that wave."""
     liquid, g = envelope.scene.liquid, envelope.reach.g
@@ -322,6 +333,11 @@ SHORTFALLS = (
         _bobs,
         "its period is up to 5 % off by where it lies on the cells, and its first turning point by up to 9 %",
         f"{VALIDATION}a-sphere-bobs",
+    ),
+    Shortfall(
+        _wake,
+        "short waves run too fast, and the highest ones behind it are 33 % farther from its course",
+        f"{VALIDATION}the-wake-of-what-is-towed",
     ),
     Shortfall(_high_crests, "crests at its walls come out up to 41 % too high", f"{VALIDATION}a-tank-is-shaken"),
 )
