@@ -263,7 +263,7 @@ def _bobs(envelope: Envelope) -> Found | None:
 
 
 def _wake(envelope: Envelope) -> Found | None:
-    """What is driven on through the surface."""
+    """A held object that is driven on through the surface."""
     liquid, system = envelope.scene.liquid, envelope.system
     lows, highs = system.bounds(system.position)
     for m, solid in enumerate(envelope.context.solids):
