@@ -84,10 +84,10 @@ void WaveMouths::list()
       }
     }
   }
-  mouths.erase(std::remove_if(mouths.begin(), mouths.end(), [&](const Mouth &mouth) { return !joins[ducts.of[mouth.duct]]; }),
+  mouths.erase(std::remove_if(mouths.begin(), mouths.end(), [&](const DuctMouth &mouth) { return !joins[ducts.of[mouth.duct]]; }),
                mouths.end());
   std::fill(columns.general.begin(), columns.general.end(), 0);
-  for (const Mouth &mouth : mouths) {
+  for (const DuctMouth &mouth : mouths) {
     ++mouths_of[arms.of[mouth.arm]];
     columns.general[mouth.arm] = columns.general[mouth.duct] = 1;
   }
@@ -101,7 +101,7 @@ void WaveMouths::list()
 void WaveMouths::find_links()
 {
   constexpr double SAME = 1e-9;
-  for (Mouth &mouth : mouths) {
+  for (DuctMouth &mouth : mouths) {
     const int d = mouth.link.d;
     mouth.link.at = -1;
     const auto look = [&](const WaveColumns::LinkPlace &link) {
@@ -120,7 +120,7 @@ void WaveMouths::find_links()
 // Liquid that fills an arm to above the roof of the duct. As it rises the same energy moves more of it, and the flow is slower.
 void WaveMouths::load(const WaveLaw &law)
 {
-  for (Mouth &mouth : mouths) {
+  for (DuctMouth &mouth : mouths) {
     if (mouth.link.at < 0) continue;
     const WaveLinks &l = columns.arrays_of(mouth.link);
     const long j = mouth.link.at;
@@ -140,7 +140,7 @@ void WaveMouths::load(const WaveLaw &law)
 Vec3 WaveMouths::turned() const
 {
   double sum[2] = {0.0, 0.0};
-  for (const Mouth &mouth : mouths) {
+  for (const DuctMouth &mouth : mouths) {
     if (mouth.link.at < 0) continue;
     const WaveLinks &l = columns.arrays_of(mouth.link);
     const long j = mouth.link.at;

@@ -25,7 +25,7 @@ class WaveMouths {
   bool in_narrow_arm(long i) const { return arm_wide[columns.span[i].column] < columns.arrays.volume[i]; }
 
  private:
-  struct Mouth {
+  struct DuctMouth {
     WaveColumns::LinkPlace link;    // at -1 where other solids have changed it
     int arm, duct;                  // columns
     bool arm_is_first;              // of the link
@@ -34,7 +34,7 @@ class WaveMouths {
   };
 
   WaveColumns &columns;
-  std::vector<Mouth> mouths;
+  std::vector<DuctMouth> mouths;
   std::vector<double> arm_wide;    // of each column: columns of its arm for each mouth of that, or NOWHERE
 };
 
