@@ -104,7 +104,7 @@ struct PlaneTask {
 struct MoveTask {
   const double *const *to;
   int first, end;
-  const PaddedVec3 *last;    // may be the same as
+  const PaddedVec3 *last;    // may be `now`
   PaddedVec3 *now;
 };
 

@@ -89,7 +89,7 @@ struct ContactObject {
   std::shared_ptr<const TornBody> torn{};    // null where it is whole
   std::vector<int> slot_of_host{};           // of a torn object: `slot` without particles at tears
 
-  // Sets the mean displacement of its particles, and what the square of the largest relative to it leads to.
+  // Sets `way` to the mean displacement of its particles, and `stir` by the square of the largest one relative to it.
   void has_moved(const Vec3 &mean, double square) { way = mean, stir = body->leverage() * std::sqrt(square); }
   // To be called when it has moved.
   void find_crushed(const PaddedVec3 *place);

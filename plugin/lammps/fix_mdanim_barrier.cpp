@@ -271,7 +271,7 @@ void FixMdanimBarrier::add_forces(const Positions &place, const ForceSums &total
 // A pair comes nearer by what both of its particles go. Particles of other ranks may be faster than those of this one.
 double FixMdanimBarrier::rests_for() const
 {
-  constexpr double ROUNDING = 1e-9;    // of a reach, by which places and sums may be wrong
+  constexpr double ROUNDING = 1e-6;    // of a reach, by which places and sums may be wrong after many steps
   if (comm->nprocs > 1 || !(least_beyond > 0.0)) return 0.0;
   return 0.5 * (std::sqrt(longest * longest + least_beyond) - longest) - ROUNDING * longest;
 }

@@ -72,7 +72,7 @@ class FixMdanimBarrier : public mdanim::FixBase, public mdanim::PassParticipant 
   // Pairs that may touch, numbered ascending by the lower tag and then by the higher one: added up in this order, the forces on
   // every particle are in ascending order of its partners' tags. Some numbers in between do not stand for pairs (pair_filter.h).
   std::vector<mdanim::Strip> strip;
-  mdanim::Doubles reach2;           // squares of the reach of pairs, 0 for numbers without a pair
+  mdanim::Doubles reach2;           // squares of the reach of pairs, NO_PAIR for numbers without a pair
   std::vector<ContactPair> pair;    // and other data of the pairs
   int last_high = 0;                // the higher one of the last pair
   double longest = 0.0;             // reach of these pairs

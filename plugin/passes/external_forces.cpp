@@ -48,7 +48,7 @@ std::size_t ExternalForces::bytes() const
   std::size_t sum = given.bytes() + at_planes.bytes();
   for (const ForceProvider &b : providers)
     sum += b.particle.capacity() * sizeof(int) + b.ghosts.capacity() * sizeof(ForceProvider::Ghost) +
-           b.slot.capacity() * sizeof(long);
+           b.slot.capacity() * sizeof(long) + b.in_row.capacity() * sizeof(b.in_row[0]);
   return sum;
 }
 

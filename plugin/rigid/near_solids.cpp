@@ -82,4 +82,13 @@ void NearSolids::list(const std::vector<Solid> &solids, const Pairs &excluded)
   pairs = std::move(now);
 }
 
+std::size_t NearSolids::bytes() const
+{
+  std::size_t all = pairs.capacity() * sizeof(SolidPair);
+  for (const SolidPair &pair : pairs)
+    all += pair.touches.capacity() * sizeof(Touch) +
+           (pair.corners[0].capacity() + pair.corners[1].capacity() + pair.edges.capacity()) * sizeof(NearFeatures);
+  return all;
+}
+
 }    // namespace mdanim

@@ -5,6 +5,7 @@
 
 #include "rigid/pair.h"
 
+#include <cstddef>
 #include <set>
 #include <utility>
 #include <vector>
@@ -18,6 +19,7 @@ class NearSolids {
   // `excluded`: ids of pairs that are none, the lower one first.
   bool update(const std::vector<Solid> &solids, const Pairs &excluded);
   void forget() { listed_at.clear(); }
+  std::size_t bytes() const;
 
   std::vector<SolidPair> pairs;    // ascending
 

@@ -52,6 +52,23 @@ struct SolidPair {
     asleep = 0.0;
     known_for = -1.0;
   }
+
+  // Adds to what is kept; `in_order`: `a` of the blow is the first body.
+  void add(bool in_order, const InBlow &one, const Vec3 &push)
+  {
+    const Vec3 on_a = cross(one.from_a, push), on_b = -1.0 * cross(one.from_b, push);
+    force += in_order ? push : -1.0 * push;
+    torque_a += in_order ? on_a : on_b;
+    torque_b += in_order ? on_b : on_a;
+  }
+  // Takes what is kept from both bodies.
+  void take_back(Solid &first, Solid &second) const
+  {
+    first.force -= force;
+    second.force += force;
+    first.torque -= torque_a;
+    second.torque -= torque_b;
+  }
 };
 
 // Contacts of two bodies, by their shapes.
@@ -105,6 +122,7 @@ inline double margin_of(const Solid &a, const Solid &b)
   return NEAR * std::min(a.shape.thin(), b.shape.thin());
 }
 
+constexpr double FADED = 0.02, FADES = 0.015;    // square of a sine: the ramp of nearly parallel edges and curves
 // Width of the ramps about edges over the thinnest part.
 inline double ramp_of(const Solid &solid) { return 0.0625 * solid.shape.thin(); }
 // Step from 0 at x = -w to 1 at x = w, and its slope.

@@ -257,6 +257,7 @@ static void soften(std::vector<Touch> &touches, double part)
   for (Touch &touch : touches) {
     touch.stiffness *= part;
     touch.yields /= part;
+    touch.alone /= part;
     touch.owed *= part;
     touch.memory.stick *= part;
     touch.memory.stick_energy *= part;
@@ -307,10 +308,7 @@ double RigidContact::change(const std::map<int, double> &yielded)
     for (SolidPair &pair : near.pairs) {
       if (!yielded.count(pair.a) && !yielded.count(pair.b)) continue;
       Solid &a = solids[pair.a], &b = solids[pair.b];
-      a.force -= pair.force;
-      b.force += pair.force;
-      a.torque -= pair.torque_a;
-      b.torque -= pair.torque_b;
+      pair.take_back(a, b);
       gone += energy_of(pair.touches);
       soften(pair.touches, part(was(pair.a) + was(pair.b), a.yields + b.yields));
       pair.forget();
@@ -323,27 +321,14 @@ double RigidContact::change(const std::map<int, double> &yielded)
 
 void RigidContact::push_more(const InBlow &one, const Vec3 &force)
 {
-  Solid &a = *one.a;
-  const Vec3 torque_a = cross(one.from_a, force);
-  a.force += force;
-  a.torque += torque_a;
-  if (!one.b) {
-    a.force_at_planes += force;
-    a.torque_at_planes += torque_a;
-    if (!settings.planes[one.plane].moves) return;
+  one.push(force);
+  if (one.b) {
+    if (is_counted(*one.a, *one.b)) one.pair->add(one.a == &solids[one.pair->a], one, force);
+  } else if (settings.planes[one.plane].moves) {
     account.work += 0.5 * dot(force, settings.planes[one.plane].way);
-    plane_push[{one.plane, a.id}] = plane_push[{one.plane, a.id}].value_or(Vec3{}) + force;
-    return;
+    std::optional<Vec3> &pushed = plane_push[{one.plane, one.a->id}];
+    pushed = pushed.value_or(Vec3{}) + force;
   }
-  Solid &b = *one.b;
-  const Vec3 torque_b = -1.0 * cross(one.from_b, force);
-  b.force -= force;
-  b.torque += torque_b;
-  if (!is_counted(a, b)) return;
-  const bool is_turned = &a != &solids[one.pair->a];
-  one.pair->force += is_turned ? -1.0 * force : force;
-  one.pair->torque_a += is_turned ? torque_b : torque_a;
-  one.pair->torque_b += is_turned ? torque_a : torque_b;
 }
 
 // Keeps what the pair gives to bodies that may come apart.
@@ -373,14 +358,7 @@ void RigidContact::begin_account()
   if (settings.sleeps) each_touch([this](const Touch &touch) { account.deepest = std::max(account.deepest, depth_of(touch)); });
 }
 
-std::size_t RigidContact::bytes() const
-{
-  std::size_t all = solids.capacity() * sizeof(Solid) + near.pairs.capacity() * sizeof(SolidPair);
-  for (const SolidPair &pair : near.pairs)
-    all += pair.touches.capacity() * sizeof(Touch) +
-           (pair.corners[0].capacity() + pair.corners[1].capacity() + pair.edges.capacity()) * sizeof(NearFeatures);
-  return all;
-}
+std::size_t RigidContact::bytes() const { return solids.capacity() * sizeof(Solid) + near.bytes(); }
 
 // --- records ---
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "contact/law.h"
+#include "rigid/blows.h"
 #include "rigid/solid.h"
 
 #include <algorithm>
@@ -12,8 +13,6 @@
 #include <vector>
 
 namespace mdanim {
-
-struct SolidPair;
 
 // Plain values: records hold them as they are.
 struct Touch {
@@ -26,7 +25,7 @@ struct Touch {
   double shares = 0.0;                   // 1 where it began by a blow, which it shares with others until it rests
   double part = 1.0;                     // that counted last
   double yields = 0.0;                   // acceleration of the depth over the force, of all that press alike [1/kg]
-  double alone = 0.0;                    // the same of one contact of which its dashpot is, where it rests
+  double alone = 0.0;                    // the same by this contact alone: sets its dashpot where it rests
   Vec3 anchor;    // corners: in the host; edges: places along both; moving points: way from the anchor, in the host's frame
   Vec3 at, n;     // where it was last, and the normal along which it pushes the body with the lower number
   Vec3 place;     // of curves, which may meet at several: in the host. Of an ellipsoid: the normal
@@ -88,15 +87,6 @@ struct PartSlope {
   Vec3 by_place, by_turn;
 };
 
-// A contact in its blow, of two bodies, or of one and a plane: it pushes `a` along n, and `b`, if there is one, against it.
-struct InBlow {
-  Solid *a = nullptr, *b = nullptr;
-  SolidPair *pair = nullptr;
-  int plane = 0;
-  Touch *touch = nullptr;          // none: a contact of these bodies has begun or ended
-  Vec3 n{}, from_a{}, from_b{};    // from the centres of both
-};
-
 // One evaluation of contacts: forces on bodies, and the account.
 class TouchStep {
  public:
@@ -121,9 +111,7 @@ class TouchStep {
   static Touch born(Touch::TouchKind kind, const TouchLaw &law, double yields);
   // These are all contacts of two bodies, or of one and a plane, as they are after this step.
   void listed(std::vector<Touch> &touches, const InBlow &of) const;
-  // Damps contacts of two bodies, or of one and a plane, as the one blow that they are. Returns those that have just begun, with
-  // what that adds to the force on `a` in this step.
-  std::vector<std::pair<InBlow, Vec3>> share_blows() const;
+  std::vector<std::pair<InBlow, Vec3>> share_blows() const { return blows.share(account); }
   static void came_from(Touch &touch, double depth_before) { touch.memory.depth = std::min(0.0, depth_before); }
   static void overlaps(Touch &touch, double depth)
   {
@@ -202,14 +190,13 @@ class TouchStep {
   void resist_rolling(Touch &touch, const TouchLaw &law, Solid &a, Solid *b, const Vec3 &n, double part,
                       ContactForce<double> &push) const;
   double follow(Touch &touch, double depth, double k) const;
-  double take_share(Touch &touch, double share) const;
   void press_out(Touch &touch, double depth, double k) const;
   double dt, onset;
   bool deep = true;
   mutable bool presses_out = false;
   TouchAccount &account;
-  mutable bool changes = false;           // whether one of those that are listed next has begun or ended
-  mutable std::vector<InBlow> in_blow;    // of bodies of which one has begun or ended, and of all that are glued
+  mutable bool changes = false;    // whether one of those that are listed next has begun or ended
+  mutable Blows blows;
 };
 
 }    // namespace mdanim

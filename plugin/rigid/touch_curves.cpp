@@ -16,7 +16,6 @@ namespace mdanim {
 
 namespace {
 
-constexpr double FADED = 0.02, FADES = 0.015;                    // square of a sine: the ramp of nearly parallel curves
 constexpr double FADED_ON_CONES = 0.1, FADES_ON_CONES = 0.08;    // on cones places run along faster
 constexpr double AT_BIRTH = -0.1, AT_END = -0.4;                 // how far a normal may be out of the cones of sharp curves
 constexpr double SHALLOW_BIRTH = 0.06;                           // over the thinnest part

@@ -98,8 +98,6 @@ struct PlacedEdge {
   const Polyhedron::Edge &edge;
 };
 
-constexpr double FADED = 0.02, FADES = 0.015;    // square of a sine: the ramp of nearly parallel edges
-
 // The lines of two edges: where they are closest, along each from its middle, and n across both, out of the first.
 struct EdgeCrossing {
   double cosine, square;    // of the angle between them, and of its sine
@@ -295,7 +293,8 @@ void touch_edges(const TouchStep &step, SolidPair &pair, Solid &a, Solid &b, con
         if (part >= LITTLE || at.depth >= SHALLOW * thinner(a, b)) return false;
         PlacedEdge before = one;
         before.shift(x, back * relative, back * (a.spin - b.spin));
-        return CrossingPart(before, other, EdgeCrossing(before, other), wa, wb).value() <= 0.0;
+        const EdgeCrossing was(before, other);
+        return was.square < PARALLEL || CrossingPart(before, other, was, wa, wb).value() <= 0.0;
       };
       step.begin(touch, a, &b, {x, -1.0 * at.n, at.depth, part},
                  at.depth + back * dot(relative, at.n) <= 0.0 || came_over_ramp());

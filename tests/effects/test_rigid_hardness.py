@@ -133,6 +133,16 @@ def test_what_a_double_pendulum_may_lose(first, joint, more, drops):
     np.testing.assert_allclose([group.sinks[m] for m in range(3)], wanted, atol=1e-12)
 
 
+def test_a_hinge_at_what_turns_anyhow_has_no_axis_in_space():
+    """An upright axis beyond a ball: the lash goes down as on a second ball."""
+    at_ball = SLING.replace("hinge arm mast { at (0, 0.1, 2) m  axis (0, 1, 0)", "ball arm mast { at (0, 0.1, 2) m")
+    balls, upright = (
+        hung(links_of(parse_scene(at_ball % ("", *joint), "sling")))[0].sinks
+        for joint in (("ball", ""), ("hinge", "axis (0, 0, 1)"))
+    )
+    assert upright[2] == pytest.approx(balls[2])
+
+
 def test_a_sling_is_no_faster_than_its_energy_lets_it(prepared):
     """The lash gets more energy than by its own fall, and less than it and the arm lose."""
     ready = prepared(SLING % ("", "hinge", "axis (0, 1, 0)"))

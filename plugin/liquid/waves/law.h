@@ -89,8 +89,8 @@ template <class Real> struct Around {
 template <class Real>
 MDANIM_ALWAYS_INLINE Real bed_rate(const WaveLaw &law, const Real &u, const Real &across, const Real &height)
 {
-  const Real root_of_height = inverse_cube_root(larger(height, constant<Real>(law.film)));    // its inverse
-  const Real square = root_of_height * root_of_height, v = across * (square * root_of_height);
+  const Real inverse_root = inverse_cube_root(larger(height, constant<Real>(law.film)));
+  const Real square = inverse_root * inverse_root, v = across * (square * inverse_root);
   return constant<Real>(law.bed) * root(u * u + v * v) * (square * square);
 }
 

@@ -70,7 +70,7 @@ def write(cut: Cut, folder: Path, stem: str, on_frame: Callable[[int], None]) ->
 
 
 def _refuse_too_large(cut: Cut, vertices: int) -> None:
-    """A file that counts its length in too few bits is not begun; ``vertices`` are those of what bends."""
+    """Raise UsageError for a file beyond what the format allows; ``vertices`` are those of what bends."""
     total = len(cut.frames)
     expected = 24 * vertices * total + (0 if cut.stiff.all() else 4 * total**2) + 28 * total * cut.stiff.sum()
     if expected > LARGEST:

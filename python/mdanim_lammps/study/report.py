@@ -174,7 +174,7 @@ def order_lines(study: Study) -> list[str]:
         if c.doubt and c.order is None:
             told += f"; the limit is the finest run, which may be off by {number(100 * c.doubt, 2)} %"
         lines.append(f"{name}: {what}{told}")
-    for name in a.measured.keys() - a.ladders.keys():
+    for name in (n for n in a.measured if n not in a.ladders):
         (choice,) = (v for v in varied() if v.name == name)
         lines.append(f"{name}: {'; '.join(_chosen(a, s, choice.shown(getattr(s, name))) for s in a.measured[name])}")
     g = study.analysis.growth

@@ -62,7 +62,7 @@ class Place:
             way = play(link) * axis
             return Place(self.at, self.lowest + min(self.hangs(way), self.hangs(-way)), self.axis, self.angles)
         if kind != "hinge" or axis is None:
-            return Place(top, lowest - play(link), None, self.angles)
+            return Place(top, lowest - play(link), None, (-math.pi, math.pi))
         angles = (-math.pi, math.pi) if link.joint.limits is None else tuple(units.magnitude(x) for x in link.joint.limits)
         along = 1.0 if is_first else -1.0
         if self.angles != (0.0, 0.0):  # about the same axis as the last joint it turns by both angles, about another one anyhow

@@ -278,7 +278,7 @@ class LiquidWaves(LiquidAutomaton):
         solids = f"cells i2_cell softness d_softness {held}"
         drops = f" drops {scene.liquid.drops!r}" if scene.liquid.drops else ""
         pace = f"every {EVERY} stride {WAVE_STRIDE} period {WAVE_PERIOD}"
-        slows = f" calm {calm!r}" * bool(calm) + (f" manning {scene.liquid.manning!r}" if scene.liquid.manning else "")
+        slows = "".join(f" {word} {value!r}" for word, value in (("calm", calm), ("manning", scene.liquid.manning)) if value)
         return f"model waves{slows}{drops} {solids} {pace}{_makers(scene.liquid)}"
 
     def commands(self, context):
