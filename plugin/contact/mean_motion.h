@@ -10,8 +10,9 @@
 
 namespace mdanim {
 
-// Sets the motion of an object from displacements of many of its particles: their mean, and the largest one of any of them relative to it. The mean
-// is better than one of them: an object that turns has particles that go twice as far relative to one at its rim.
+// Sets the motion of an object from displacements of many of its particles: their mean, and the largest one of any of them
+// relative to it. The mean is better than one of them: an object that turns has particles that go twice as far relative to one at
+// its rim.
 inline void tell_mean_motion(ContactObject &one, const std::vector<Vec3> &changes)
 {
   Vec3 mean;

@@ -7,8 +7,8 @@
 
 namespace mdanim {
 
-// a^(-1/3) for a from 1e-300 to 1e300, to 1e-9 of it. The guess is right to 4 %: its upper 32 bits are GUESS minus a third of those
-// of a. With r = 1 - a z^3 the root is z (1 - r)^(-1/3) = z (1 + r/3 + 2 r^2/9 + 14 r^3/81 +
+// a^(-1/3) for a from 1e-300 to 1e300, to 1e-9 of it. The guess is right to 4 %: its upper 32 bits are GUESS minus a third of
+// those of a. With r = 1 - a z^3 the root is z (1 - r)^(-1/3) = z (1 + r/3 + 2 r^2/9 + 14 r^3/81 +
 // ...).
 template <class Real> MDANIM_ALWAYS_INLINE Real inverse_cube_root(const Real &a)
 {

@@ -30,8 +30,7 @@ void Blows::hold(std::vector<Touch> &touches, const InBlow &of, bool changed)
   if (!changed && !is_glued) return;
   for (Touch &one : touches)
     if (one.shares != 0.0 && one.rests == 0.0 && one.parted == 0.0)
-      all.push_back(
-          {of.a, of.b, of.pair, of.plane, &one, one.n, one.at - of.a->centre, of.b ? one.at - of.b->centre : Vec3()});
+      all.push_back({of.a, of.b, of.pair, of.plane, &one, one.n, one.at - of.a->centre, of.b ? one.at - of.b->centre : Vec3()});
 }
 
 // A contact that has just begun has had its dashpot as if it were alone. Returns what is to be added to the force of this step.
@@ -92,7 +91,8 @@ std::vector<std::pair<InBlow, Vec3>> Blows::share(TouchAccount &account) const
   for (auto &[bodies, blow] : blows) {
     const std::vector<double> shares = shares_of(blow);
     for (std::size_t k = 0; k < shares.size(); ++k)
-      if (const double more = take_share(*blow[k].touch, shares[k], account); more != 0.0) changed.emplace_back(blow[k], more * blow[k].n);
+      if (const double more = take_share(*blow[k].touch, shares[k], account); more != 0.0)
+        changed.emplace_back(blow[k], more * blow[k].n);
   }
   return changed;
 }
