@@ -158,7 +158,7 @@ def overview(all_cases: Iterable[Case]) -> str:
         within = f"{sum(row.close for row in of)} of {len(of)}"
         table.append([f"[{case.title}](#{anchor(case.title)})", *cells(worst), within, case.by])
     told = f"**{sum(row.close for row in rows)} of {len(rows)} figures of {len(table)} cases are within what they may be off.**"
-    return told + "\n\n" + markdown(("case", "its figure that is farthest off", *HEAD[1:], "figures within", "source"), table)
+    return told + "\n\n" + markdown(("case", "its figure that is farthest off for what it may be", *HEAD[1:], "figures within", "source"), table)
 
 
 def beside_peers(all_cases: Iterable[Case]) -> str:
@@ -168,7 +168,7 @@ def beside_peers(all_cases: Iterable[Case]) -> str:
     for case in all_cases:
         of = kept(case)
         offs = {way: _off(of[way][0]) for way in ("balanced", *PEERS) if way in of}
-        least = min(off for off in offs.values() if not math.isnan(off))
+        least = min((off for off in offs.values() if not math.isnan(off)), default=math.nan)
         told = {
             way: f"**{_percent(off)}**; {of[way][1]:.2g} s" if off == least else f"{_percent(off)}; {of[way][1]:.2g} s"
             for way, off in offs.items()

@@ -115,8 +115,8 @@ def _simulate(scene: SceneRecord) -> Heights:
 
     liquid, h = scene.liquid, scene.control.resolution
     (x0, _, z0), (x1, _, z1) = liquid.low, liquid.high
-    filled = [(liquid.low[0], liquid.high[0]) if liquid.fill is None else (liquid.fill[0][0], liquid.fill[1][0])]
-    water = [(*filled[0], liquid.level), *((one.low[0], one.high[0], one.high[2]) for one in liquid.pool)]
+    left, right = (liquid.low[0], liquid.high[0]) if liquid.fill is None else (liquid.fill[0][0], liquid.fill[1][0])
+    water = [(left, right, liquid.level), *((one.low[0], one.high[0], one.high[2]) for one in liquid.pool)]
     regions = "".join(
         f"region water{k} block {left} {right - 0.01 * h} {z0} {top - 0.01 * h} INF INF units box\n"
         f"create_atoms 1 region water{k}\n"

@@ -143,7 +143,7 @@ class Liquid(Worded):
         "<n>",
         "With `model waves`: friction of the ground, that is the floor and all that the liquid flows over, by Manning's n as in "
         "tables, a plain number: glass 0.01, concrete 0.013, gravel 0.03, a brook with stones 0.05. The liquid loses the head "
-        "n² u²/h^(4/3) in each metre. Absent: smooth. With it `calm auto` is none.",
+        "n² u²/h^(4/3) in each metre. Absent: smooth. With `manning`, `calm auto` adds no decay.",
         "0.03", Rule.POSITIVE, default=None, limit=MANNING)  # fmt: skip
     """Manning's n [s/m^(1/3)]; None is smooth."""
     drops: float = setting(
