@@ -4,6 +4,7 @@
 Every row is a short scene of its own; the tables are those of docs/physics-contact.md.
 """
 
+import itertools
 import math
 import sys
 from collections.abc import Callable
@@ -86,6 +87,7 @@ def roll() -> tuple[list[str], list[list]]:
 SLABS = {"held": f"{STUFF}  hold all", "ten times as stiff": STUFF.replace("1 MPa", "10 MPa"), "as soft": STUFF}
 BLOW = 0.01
 """Speed of a blow on a corner [c]."""
+CORNER_CELLS = (4, 6, 8, 12)
 HALF_TURN = math.radians(30.0), math.radians(60.0)
 """Turn of the cube, about (1, 1, 0) and then about z."""
 
@@ -109,9 +111,25 @@ def corner() -> tuple[list[str], list[list]]:
     return ["slab", "cells"] + [f"{m}: {what}" for m in MODELS for what in ("up", "aside", "spin L/v", "energy")], rows
 
 
-def blow(slab: str, cells: int, model: str) -> list[str]:
-    """Rows of a cube of this many cells; the blow is over when its speed has changed and changes no more."""
-    turn, h, v = turned_cube(), 100 / cells, BLOW * WAVE
+def slow_corner() -> tuple[list[str], list[list]]:
+    """A cube falls on its corner onto the held slab: speed upward after the blow over that before, with surfaces."""
+    rows = [
+        [f"{speed:g} c", *(blow(SLABS["held"], cells, "surface", speed)[0] for cells in CORNER_CELLS)]
+        for speed in (0.0006, 0.0025, 0.01, 0.04)
+    ]
+    return ["speed", *(f"{cells} cells" for cells in CORNER_CELLS), "rigid"], [[*row, f"{rigid_blow():.3f}"] for row in rows]
+
+
+def rigid_blow() -> float:
+    """Speed upward after a blow on the corner of a rigid cube that loses no energy, over that before."""
+    arm = min((turned_cube() @ np.array(signs) for signs in itertools.product((-0.5, 0.5), repeat=3)), key=lambda one: one[2])
+    return 2.0 / (1.0 + 6.0 * (arm[0] ** 2 + arm[1] ** 2)) - 1.0
+
+
+def blow(slab: str, cells: int, model: str, speed: float = BLOW) -> list[str]:
+    """Rows of a cube of this many cells that comes at a speed [c]; the blow is over when its speed has changed and changes no
+    more."""
+    turn, h, v = turned_cube(), 100 / cells, speed * WAVE
     rows = " ".join(f"({x!r}, {y!r}, {z!r})" for x, y, z in turn.tolist())
     low = 50.0 * np.abs(turn[2]).sum()
     world = World(
@@ -217,7 +235,7 @@ def met(lower: str, upper: str, speed: float, model: str) -> float | None:
 
 TABLES: dict[str, Callable[[], tuple[list[str], list[list]]]] = {
     "rest": rest, "hertz": hertz, "lattice": lattice, "slope": slope, "level": level, "roll": roll, "corner": corner,
-    "pass": passing,
+    "slow_corner": slow_corner, "pass": passing,
 }  # fmt: skip
 
 

@@ -158,7 +158,8 @@ def overview(all_cases: Iterable[Case]) -> str:
         within = f"{sum(row.close for row in of)} of {len(of)}"
         table.append([f"[{case.title}](#{anchor(case.title)})", *cells(worst), within, case.by])
     told = f"**{sum(row.close for row in rows)} of {len(rows)} figures of {len(table)} cases are within what they may be off.**"
-    return told + "\n\n" + markdown(("case", "its figure that is farthest off for what it may be", *HEAD[1:], "figures within", "source"), table)
+    head = ("case", "its figure that is farthest off for what it may be", *HEAD[1:], "figures within", "source")
+    return told + "\n\n" + markdown(head, table)
 
 
 def beside_peers(all_cases: Iterable[Case]) -> str:

@@ -56,6 +56,14 @@ def test_fast_objects_with_friction_are_warned_of(prepared):
     assert [n for n in bare.certificate.notes if "full reach" in n.message]
     (warning,) = told
     assert "works as 0" in warning.message and not [n for n in rough.certificate.notes if "full reach" in n.message]
+    assert "more than 0.3 of the wave speed" in warning.message
+
+
+def test_a_needle_keeps_the_full_reach_from_a_lower_speed_on(prepared):
+    """It is one cell across along two axes: 0.1 of the wave speed, told as that."""
+    needle = FAST.replace("CONTROL", "friction 0.5").replace("box (40, 40, 10)", "box (40, 5, 5)").replace("-6.6", "-3.3")
+    (told,) = [w.message for w in prepared(needle).warnings if "full reach" in w.message]
+    assert told.startswith("slab may meet others at more than 0.1 of the wave speed")
 
 
 TABLE = """gravity (0, 0, -9.81) m/s^2

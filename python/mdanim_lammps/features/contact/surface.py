@@ -286,8 +286,8 @@ class SurfaceContact(ObjectContact):
         return [
             Problem(
                 thrower.span if thrower else next((spans[k] for k in ("velocity", "position", "object") if k in spans), None),
-                f"{system.names[m]}{more} may meet others at more than {SLOW:g} of the wave speed{by(thrower)} and keeps the "
-                f"full reach of the barrier, which bears objects without friction{so}",
+                f"{system.names[m]}{more} may meet others at more than {slowest(system)[m]:g} of the wave speed{by(thrower)} and "
+                f"keeps the full reach of the barrier, which bears objects without friction{so}",
                 f"{thrower.way_out}, or a higher elasticity where friction matters"
                 if thrower
                 else "write a lower speed or a higher elasticity where friction matters",
