@@ -114,12 +114,15 @@ class ContactWorld {
   std::vector<int> torn_now;                  // objects, until there are lists
   std::map<int, int> number_of;               // of ids
   bool listed = false, has_before = false;    // lists are there; they have been made since the last step, and know its places
+  std::map<FieldKey, std::vector<LossOfPoint>> losses_in_passes;
   Fields fields;
   FieldSums sums;
   Threads threads;
   ContactArrays arrays;
 
  public:
+  // The account, with what points have lost since it was asked for last.
+  const ContactAccount &booked();
   ContactAccount account;
   NearObjects near{settings, all, movable};
 };

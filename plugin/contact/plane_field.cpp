@@ -6,6 +6,8 @@
 #include "contact/contact_kernel.h"
 
 #include <algorithm>
+#include <iterator>
+#include <utility>
 
 namespace mdanim {
 
@@ -15,6 +17,10 @@ void PlaneField::list(const FieldLists &with)
   const double reach = REACH * with.skin + plane.ahead(with.skin);
   list_points(with, plane.within(reach + owner->body->radius()), true, reach, AT_ONCE,
               [this](const Vec3 &x) { return -depth_at(x); });
+  are_particles = std::all_of(near.begin(), near.end(), [this](int point) {
+    const PointCarriers by = owner->carriers_of(point);
+    return by.middle - by.first == 1 && by.first->weight == 1.0;
+  });
 }
 
 bool PlaneField::look_at(std::size_t q, const ContactArrays &arrays, bool may_begin)
@@ -61,15 +67,11 @@ void PlaneField::owner_tears(const TornBody *before, const ContactArrays &arrays
 // Springs of contacts that had friction before are left to the field.
 bool PlaneField::fits_passes() const
 {
-  if (plane.moves || owner->is_rigid()) return false;
+  if (!may_be_in_passes()) return false;
   const auto has_springs = [](const PlaneContact &one) {
     return one.state.memory.stick != 0.0 || one.state.memory.damping != 0.0;
   };
-  if (!(law.friction > 0.0) && (law.damping > 0.0 || std::any_of(contacts.begin(), contacts.end(), has_springs))) return false;
-  return std::all_of(near.begin(), near.end(), [this](int point) {
-    const PointCarriers by = owner->carriers_of(point);
-    return by.middle - by.first == 1 && by.first->weight == 1.0;
-  });
+  return law.friction > 0.0 || (!(law.damping > 0.0) && std::none_of(contacts.begin(), contacts.end(), has_springs));
 }
 
 PointsAtPlane PlaneField::hand_over() const
@@ -79,16 +81,21 @@ PointsAtPlane PlaneField::hand_over() const
   for (std::size_t q = 0; q < near.size(); ++q)
     all.points.push_back({owner->slot[owner->carriers_of(near[q]).first->slot], owner->areas()[near[q]], known[q] != 0});
   for (std::size_t c = 0; c < contacts.size(); ++c) all.points[of_contact[c]].state = contacts[c].state;
+  auto loss = losses.begin();
+  for (std::size_t q = 0; q < near.size(); ++q) {
+    while (loss != losses.end() && loss->point < near[q]) ++loss;
+    if (loss != losses.end() && loss->point == near[q]) all.points[q].heat = loss->heat, all.points[q].damped = loss->damped;
+  }
   return all;
 }
 
 void PlaneField::take_back(const PointsAtPlane &now, ContactAccount &account)
 {
   contacts.clear(), of_contact.clear();
+  std::vector<LossOfPoint> of_near;
   for (std::size_t q = 0; q < near.size(); ++q) {
     const PointAtPlane &point = now.points[q];
-    account.heat += point.heat;
-    account.damped += point.damped;
+    if (point.heat != 0.0 || point.damped != 0.0) of_near.push_back({near[q], point.heat, point.damped});
     account.deepest = std::max(account.deepest, point.deepest);
     known[q] = point.state.memory.depth > 0.0;
     wake.set(q, AT_ONCE);
@@ -97,6 +104,27 @@ void PlaneField::take_back(const PointsAtPlane &now, ContactAccount &account)
     of_contact.push_back(q);
     contacts.push_back({near[q], number, point.state});
   }
+  std::vector<LossOfPoint> all;    // of points that are not near any more, too
+  std::set_union(of_near.begin(), of_near.end(), losses.begin(), losses.end(), std::back_inserter(all),
+                 [](const LossOfPoint &one, const LossOfPoint &other) { return one.point < other.point; });
+  losses = std::move(all);
+}
+
+// By ascending points.
+void PlaneField::add_losses(const std::vector<LossOfPoint> &more)
+{
+  std::vector<LossOfPoint> all;
+  auto one = losses.begin();
+  for (const LossOfPoint &other : more) {
+    if (other.heat == 0.0 && other.damped == 0.0) continue;
+    while (one != losses.end() && one->point < other.point) all.push_back(*one++);
+    const bool is_known = one != losses.end() && one->point == other.point;
+    all.push_back(is_known ? LossOfPoint{other.point, one->heat + other.heat, one->damped + other.damped} : other);
+    if (is_known) ++one;
+  }
+  if (all.empty()) return;
+  all.insert(all.end(), one, losses.end());
+  losses = std::move(all);
 }
 
 int PlaneField::cost() const
@@ -135,10 +163,10 @@ void PlaneField::push_all(const ContactArrays &arrays, double dt)
 
 void PlaneField::work_ahead(const ContactArrays &arrays, double dt) { push_all(arrays, dt); }
 
-void PlaneField::end(const PlaneContact &contact, std::size_t q, double depth, ContactAccount &account)
+void PlaneField::end(const PlaneContact &contact, std::size_t q, double depth, LossOfPoint &loss)
 {
-  account.heat += contact.state.memory.stick_energy;
-  account.damped += last_damping_work(contact.state.memory, depth);
+  loss.heat = contact.state.memory.stick_energy;
+  loss.damped = last_damping_work(contact.state.memory, depth);
   known[q] = 0;
   wake.set(q, budget - depth);
 }
@@ -158,24 +186,27 @@ void PlaneField::add_forces(ContactArrays &arrays, double dt, ContactAccount &ac
     arrays.kernels->add_at_plane(owner->points_at(arrays.place()), now.data(), static_cast<int>(now.size()), ahead.data(),
                                  arrays.force());
   ContactAccount sums;
+  std::vector<LossOfPoint> of_step;
   std::size_t left = 0;
   for (std::size_t c = 0; c < now.size(); ++c) {
     const PlanePush<double> &found = ahead[c];
-    if (found.depth <= 0.0) {
-      if (moves) end(now[c], of_contact[c], found.depth, sums);
-      continue;
-    }
+    LossOfPoint loss = {now[c].point, found.heat, found.damped};
+    if (found.depth <= 0.0 && moves) end(now[c], of_contact[c], found.depth, loss);
+    if (may_be_in_passes())
+      of_step.push_back(loss);
+    else
+      sums.heat += loss.heat, sums.damped += loss.damped;
+    if (found.depth <= 0.0) continue;
     if (!arrays.kernels) owner->push_point(now[c].point, found.force, arrays.force());
     on_plane -= found.force;
     sums.energy += found.energy;
     sums.stick_energy += now[c].state.memory.stick_energy;
-    sums.heat += found.heat;
-    sums.damped += found.damped;
     sums.deepest = std::max(sums.deepest, found.depth);
     ++sums.touching;
     if (moves) keep(c, left);
   }
   if (moves) keep_first(left);
+  add_losses(of_step);
   account.add(sums);
   if (!plane.moves) return;
   // -F dx with the mean of the forces before and after the step; at the setup of a run nothing has moved.

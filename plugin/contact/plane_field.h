@@ -20,9 +20,9 @@ class PlaneField : public FieldOf<PlaneContact, std::uint8_t> {
   // Reach of lists over the skin: 1/2 for particles, and half of that for points outside of cells.
   static constexpr double REACH = 0.75;
 
-  // The plane must outlive the field.
-  PlaneField(ContactObject &owner, int number, const ContactPlane &plane, const ContactLaw &law)
-      : FieldOf(owner, owner, law), number(number), plane(plane)
+  // The plane, and losses in passes by ascending points, must outlive the field.
+  PlaneField(ContactObject &owner, int number, const ContactPlane &plane, const ContactLaw &law, std::vector<LossOfPoint> &losses)
+      : FieldOf(owner, owner, law), number(number), plane(plane), losses(losses)
   {
   }
 
@@ -42,6 +42,8 @@ class PlaneField : public FieldOf<PlaneContact, std::uint8_t> {
   std::size_t bytes() const override { return bytes_of_rows() + ahead.capacity() * sizeof(PlanePush<double>); }
 
  private:
+  // Losses are then summed point by point, as in passes.
+  bool may_be_in_passes() const { return are_particles && !plane.moves && !owner->is_rigid(); }
   double depth_at(const Vec3 &x) const { return plane.depth(x) + owner->body->radius(); }
   double approach() const override { return nearer(*owner, plane.normal(), plane.way); }
   bool look_at(std::size_t q, const ContactArrays &arrays, bool may_begin) override;
@@ -49,10 +51,13 @@ class PlaneField : public FieldOf<PlaneContact, std::uint8_t> {
   void begin_step(const ContactArrays &arrays) override;
   PlanePush<double> push(PlaneContact &contact, std::size_t q, const ContactArrays &arrays, double dt) const;
   void push_all(const ContactArrays &arrays, double dt);
-  void end(const PlaneContact &contact, std::size_t q, double depth, ContactAccount &account);
+  void end(const PlaneContact &contact, std::size_t q, double depth, LossOfPoint &loss);
+  void add_losses(const std::vector<LossOfPoint> &more);
 
   int number;
   const ContactPlane &plane;
+  std::vector<LossOfPoint> &losses;
+  bool are_particles = false;              // points that are near
   std::vector<PlanePush<double>> ahead;    // of contacts in this step
   Vec3 on_plane;
   std::optional<Vec3> before;    // force on a plane that moves in the step before; none at the start

@@ -15,8 +15,15 @@ struct PointAtPlane {
   double area;
   bool was_below;                // a contact that begins has no potential at the depth at which it begins
   PlaneState<double> state{};    // of its contact; depth 0 where there is none
-  // Since then: energy that friction and dashpots took [J], and the largest depth [m].
-  double heat = 0.0, damped = 0.0, deepest = 0.0;
+  double heat = 0.0,
+         damped = 0.0;     // energy that friction and dashpots have taken in passes since the last step of the field [J]
+  double deepest = 0.0;    // largest depth in these passes [m]
+};
+
+// The same energy of a point of a field. Summed point by point it does not depend on where passes end.
+struct LossOfPoint {
+  int point;
+  double heat, damped;
 };
 
 struct PointsAtPlane {

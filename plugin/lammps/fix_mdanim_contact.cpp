@@ -64,8 +64,8 @@ FixMdanimContact::FixMdanimContact(LAMMPS *lmp, int narg, char **arg) : FixBase(
   look_up({&among, &except}, {&kind, &young, &friction});
   const ContactAccount &account = world_of_contact.account;
   tell({{"stick_energy", true, [&] { return account.stick_energy; }},
-        {"friction_heat", true, [&] { return account.heat; }},
-        {"damping_loss", true, [&] { return account.damped; }},
+        {"friction_heat", true, [this] { return world_of_contact.booked().heat; }},
+        {"damping_loss", true, [this] { return world_of_contact.booked().damped; }},
         {"let_go", true, [&] { return account.let_go; }},
         {"deepest", false, [&] { return account.deepest; }},
         {"touching", true, [&] { return account.touching; }},

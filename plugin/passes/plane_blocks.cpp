@@ -99,6 +99,7 @@ void PlaneBlocks::take_in(const OfProviders &points, std::vector<Block> &all, co
         if (some.law.friction > 0.0) {
           put(DAMPING, memory.damping), put(STICK, memory.stick), put(STICK_ENERGY, memory.stick_energy);
           put_vector(PULL, memory.pull), put_vector(DRAG, memory.drag);
+          put(HEAT, point.heat), put(DAMPED, point.damped);
         }
         ++place;
       }
