@@ -125,6 +125,7 @@ def test_bounds_are_met_on_their_side(relation, below, equal, above):
         assert met == [bool(below), bool(equal), bool(above)]
         assert not Outcome(expect, float("nan")).met
     assert f"expect box.position.z {relation} 0.3" in str(Outcome(expect, 0.2))
+    assert "it has no value then (mdanim-lammps explain position.z tells of it), MISSED" in str(Outcome(expect, float("nan")))
 
 
 def test_what_to_record_is_named_once():

@@ -21,6 +21,13 @@ void WaveHeights::find(const WaveExchange &waves, int nz, const std::vector<doub
     if (std::isnan(heads[c])) unknown.push_back(c);
   }
   for (const int c : fill_inward(heads, unknown, nx, ny)) heads[c] = 0.0;    // solid from wall to wall
+  for (const int c : unknown) {
+    if (moving[c] != 0.0) continue;
+    const WaveExchange::SpanView top = waves.span_view(c, waves.spans_of(c) - 1);
+    if (top.high != nz || !(heads[c] > top.floor)) continue;
+    heads[c] = top.floor;    // dry ground that is lower than the liquid around
+    hollow[c] = 1;
+  }
   above_all = std::clamp(static_cast<int>(std::ceil(*std::max_element(heads.begin(), heads.end()))), 0, nz);
   highest = 0.0;
   for (const double top : tops)

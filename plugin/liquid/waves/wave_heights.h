@@ -15,7 +15,8 @@ class WaveHeights {
  public:
   WaveHeights(int nx, int ny) : nx(nx), ny(ny), heads(nx * ny, 0.0), tops(nx * ny, 0.0), hollow(nx * ny, 0) {}
 
-  // Finds heads of all columns; columns without liquid that solids hide get the mean of those around. `moving` is the mass of
+  // Finds heads of all columns; columns without liquid that solids hide get the mean of those around, at most the height of dry
+  // ground. `moving` is the mass of
   // the solids in each that can move: others are ground.
   void find(const WaveExchange &waves, int nz, const std::vector<double> &moving);
 

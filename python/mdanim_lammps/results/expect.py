@@ -43,7 +43,10 @@ class Outcome:
     def __str__(self) -> str:
         verdict = "met" if self.met else "MISSED"
         place = f"{self.expect.span}: " if self.expect.span else ""
-        return f"{place}expect {self.what} {self.asked}: found {number(self.found, 6)}, {verdict}"
+        told = f"found {number(self.found, 6)}"
+        if math.isnan(self.found):
+            told = f"it has no value then (mdanim-lammps explain {self.expect.quantity} tells of it)"
+        return f"{place}expect {self.what} {self.asked}: {told}, {verdict}"
 
     @property
     def what(self) -> str:

@@ -50,7 +50,8 @@ QUANTITIES = {
         ("NAME", f"contact.{axis}"): Observable(
             "N",
             f"force of contact with objects, ground and walls on an object, mean since the frame before, {axis}; that with one "
-            f"thing alone is `ball.contact.{axis}(cube)`",
+            f"thing alone is `ball.contact.{axis}(cube)`, which has no value where another way leads to that thing, as over the "
+            "ground that both stand on",
             takes="touched",
             alone=True,
         )
