@@ -8,6 +8,7 @@ models   the same for a cube of 6^3 cells set upright onto the surface, by `liqu
 waves    the first table for ``model waves``, with a calm time of 10 sqrt(L/g)
 speed    terminal speed under the liquid's drag over (rho_s - rho_l) g / (gamma rho_l)
 bobbing  first fall and period of a cube that bobs in ``model waves``, over those of its mass alone; in potential flow
+light    how fast the middle of light floating cubes still goes up and down after 13 s, in m and s
 drift    what a floating cube moves sideways in 20 s, and the sweeps of the automaton in that time
 
 Without words all of them. Units as in scenes/lab/cube.txt: spacing 1, liquid of density 1000; elasticity 1000 Pa is a wave speed
@@ -15,6 +16,7 @@ of about 1.
 """
 
 import sys
+import tempfile
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -197,7 +199,37 @@ def drift() -> None:
         )
 
 
-WORDS = {"drafts": drafts, "cells": cells, "models": models, "waves": waves, "bobbing": bobbing, "speed": speed, "drift": drift}
+LIGHT = """gravity (0, 0, -9.81) m/s^2
+liquid water {{ basin from (0, 0, 0) m to (1, 1, 1) m  density 1000 kg/m^3  level 0.5 m }}
+object cork {{ shape box (20, 20, 20) cm  position (0.5, 0.5, 0.63) m  density {density} kg/m^3  elasticity {stuff} }}
+control {{ time 15 s  frames 30 fps  resolution 5 cm }}
+"""
+LIGHT_ONES = [(110, "100 kPa"), (150, "100 kPa"), (200, "100 kPa"), (150, "1 MPa"), (150, "100 kPa  damping 0.1"), (150, "rigid")]
+
+
+def light() -> None:
+    """Print how light cubes go on."""
+    from mdanim_lammps import Scene
+    from mdanim_lammps.scene.parse import parse_scene
+
+    print("density, elasticity, and the speed up and down from 13 to 15 s [mm/s]")
+    for density, stuff in LIGHT_ONES:
+        with tempfile.TemporaryDirectory() as folder:
+            track = Scene(parse_scene(LIGHT.format(density=density, stuff=stuff))).run(Path(folder) / "out").trajectory
+        speed = np.diff(track.objects["cork"].center_of_mass[-60:, 2]) / np.diff(track.times[-60:])
+        print(f"{density:<8}{stuff:24}{1000.0 * speed.std():.2g}", flush=True)
+
+
+WORDS = {
+    "drafts": drafts,
+    "cells": cells,
+    "models": models,
+    "waves": waves,
+    "bobbing": bobbing,
+    "speed": speed,
+    "light": light,
+    "drift": drift,
+}
 
 if __name__ == "__main__":
     for what in sys.argv[1:] or WORDS:

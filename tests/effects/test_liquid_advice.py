@@ -22,6 +22,7 @@ HELD = "density 2000 kg/m^3  elasticity 1 MPa  hold all"
 DAM = "fill from (0, 0, 0) m to ({width}, 0.8, 1) m  level 0.6 m"
 BLOCK = "object block {{ shape box (20, 20, 20) cm  position ({x}, 0.4, 0.1) m  density 2000 kg/m^3  elasticity rigid  {more} }}"
 FLOAT = "object block {{ shape box (20, 20, 20) cm  position (1, 0.4, {z}) m  density 500 kg/m^3  elasticity rigid }}"
+CORK = FLOAT.replace("density 500", "density 120").replace("elasticity rigid", "elasticity 100 kPa  {more}")
 TOWED = FLOAT.format(z=0.6).replace("elasticity", "hold all  drive velocity (0.3, 0, 0) m/s  elasticity")
 POST = f"object post {{ shape box (10, 10, 10) cm  position (0.5, 0.4, 0.9) m  {HELD} }}"
 LIES = "shape box (100, 80, 20) cm  position (1.3, 0.4, 0.3) m  orientation axis (0, 1, 0) angle {tilt} deg"
@@ -53,6 +54,8 @@ SHAKE = "level 0.4 m  drive oscillation ({way}, 0, 0) m frequency 0.6 Hz"
         ("level 0.6 m", FLOAT.format(z=0.65), "block starts higher than it floats, and bobs"),
         ("level 0.6 m", FLOAT.format(z=0.6), ""),
         (DAM.format(width=0.9), BLOCK.format(x=1.5, more="hold all"), "water floods block, which is lower than the dam"),
+        ("level 0.6 m", CORK.format(z=0.68, more=""), "block is 0.12 times as dense as water"),
+        ("level 0.6 m", CORK.format(z=0.68, more="damping 0.1"), ""),
         ("level 0.6 m", TOWED, "block is towed through water"),
         (SHAKE.format(way=0.1), POST, "by the law of low ones"),
         (SHAKE.format(way=0.002), POST, ""),

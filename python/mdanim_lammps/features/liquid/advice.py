@@ -38,6 +38,9 @@ SLENDER = 3.0
 """Length along its way over its width from which a body cuts through the liquid."""
 OFF_REST = 0.1
 """Share of a body below the surface at the start, less that at rest, from which it bobs."""
+LIGHTEST, LIGHTER, STIFF = 0.1, 0.16, 1000.0
+"""Density over that of the liquid from which there is no warning of a light body, up to which an elastic one goes on shaking, and
+its stiffness over the pressure of a cell of liquid from which it does not."""
 HIGH = 0.2
 """Height of waves over the depth from which crests at walls are too high."""
 MANY, FEW = 1_000_000, 100_000
@@ -262,6 +265,18 @@ def _bobs(envelope: Envelope) -> Found | None:
     return None
 
 
+def _shakes(envelope: Envelope) -> Found | None:
+    """A light body that deforms, without damping."""
+    liquid, system = envelope.scene.liquid, envelope.system
+    pressure = liquid.density * envelope.reach.g * float(envelope.context.grid.cell[2])
+    for m, _, _ in _free(envelope):
+        share = float(system.density[m]) / liquid.density
+        soft = not system.rigid[m] and system.young[m] < STIFF * pressure and not envelope.context.solids[m].damping
+        if soft and LIGHTEST <= share < LIGHTER:
+            return envelope.place(m, "density"), f"{system.names[m]} is {number(share, 2)} times as dense as {liquid.name}"
+    return None
+
+
 def _wake(envelope: Envelope) -> Found | None:
     """A held object that is driven on through the surface."""
     liquid, system = envelope.scene.liquid, envelope.system
@@ -333,6 +348,12 @@ SHORTFALLS = (
         _bobs,
         "its period is up to 5 % off by where it lies on the cells, and its first turning point by up to 9 %",
         f"{VALIDATION}a-sphere-bobs",
+    ),
+    Shortfall(
+        _shakes,
+        "a soft body so light goes on shaking where it floats, as nothing damps it",
+        f"{PHYSICS}bodies-in-waves",
+        "write damping 0.1 in it, or elasticity rigid",
     ),
     Shortfall(
         _wake,
