@@ -5,7 +5,7 @@
 # make docs    the docs as a site: build/docs/index.html; notebooks are run, a warning is an error
 # make soak   set up .venv, run the long form of the hard cases (all tests marked soak)
 # make sanitize  set up .venv, build the plugin with sanitizers, run its tests and six scenes under them (tests/sanitize.py)
-# make bench  set up .venv, measure all of docs/performance.md (ten minutes; python bench/all.py --quick takes one)
+# make bench  set up .venv, measure all of docs/performance.md (six minutes; python bench/all.py --quick takes one)
 # make bench-peers  set up .venv and .venv-peers, measure other programs on the same scenes (docs/performance.md)
 # make clean  forget everything that was built
 PYTHON ?= python3

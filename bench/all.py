@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """Measures all that docs/performance.md tells, in one go: ``python bench/all.py [--quick] [--rounds N] [--write] [PART ...]``.
 
-Parts: step, alone, pressed, automaton, around, memory, limits. ``--quick`` takes about a minute; ``--write`` puts tables, figures
-(docs/performance.json) and the plot into docs/ in place of those that stand there; without it they are printed only. Every part
-runs in a process of its own, its contenders take turns in every round; a part that fails is told as such, and the exit code is 1.
+Parts: step, alone, pressed, automaton, around, memory, limits. ``--quick`` takes about a minute. ``--write`` puts tables and the
+plot into docs/ in place of those that stand there, and figures into docs/performance.json, under the processor's name; without it
+they are printed only. Every part runs in a process of its own, and its contenders take turns in every round. A part that fails is
+told as such; the exit code is 1 then.
 """
 
 import argparse
@@ -14,10 +15,12 @@ import time
 from importlib import import_module
 from pathlib import Path
 
-from timing import Sample, machine, markdown, replace_between
+from processors import FIGURES
+from processors import table as of_processors
+from timing import Sample, machine, markdown, processor, replace_between
 
 PAGE = Path(__file__).resolve().parent.parent / "docs" / "performance.md"
-FIGURES, PLOT = PAGE.with_suffix(".json"), PAGE.parent / "images" / "performance.png"
+PLOT = PAGE.parent / "images" / "performance.png"
 LIMIT = 1800
 """Seconds that a part may take."""
 
@@ -181,8 +184,11 @@ def main() -> int:
     elif options.write:
         if draw(found):
             text += "\n![nanoseconds per particle-step](images/performance.png)\n"
-        FIGURES.write_text(json.dumps(found, indent=1) + "\n")
         replace_between(PAGE, "bench", text)
+        measured = json.loads(FIGURES.read_text())
+        measured[processor()] = measured.get(processor(), {}) | found
+        FIGURES.write_text(json.dumps(measured, indent=1) + "\n")
+        replace_between(PAGE, "processors", of_processors(measured))
     return 1 if failed else 0
 
 

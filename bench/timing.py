@@ -70,8 +70,8 @@ def print_tables(tables: Mapping[str, Callable[[], tuple[Sequence[str], Iterable
         print(markdown(*tables[word]()))
 
 
-def machine() -> str:
-    """Processor and load, in a line."""
+def processor() -> str:
+    """Name of the processor."""
     told: dict[str, str] = {}
     for line in Path("/proc/cpuinfo").read_text().splitlines():
         name, _, value = line.partition(":")
@@ -79,9 +79,14 @@ def machine() -> str:
     cpu = told.get("model name", platform.processor())
     if "model" in told:  # names of virtual machines do not say which generation
         cpu += f" (family {told['cpu family']}, model {told['model']})"
+    return cpu
+
+
+def machine() -> str:
+    """Processor and load, in a line."""
     busy = os.getloadavg()[0] / os.cpu_count()
-    return f"{cpu}, {os.cpu_count()} cores; load at the start {busy:.1f} per core" + (
-        ": **a busy machine, so read ratios and minima**" if busy > 0.3 else ""
+    return f"{processor()}, {os.cpu_count()} cores; load at the start {busy:.1f} per core" + (
+        ": **a busy machine, so read ratios and minima**" if busy > 0.5 else ""
     )
 
 
