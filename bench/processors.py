@@ -64,7 +64,7 @@ LINES: dict[str, tuple[str, Callable[[dict], float | None]]] = {
     "blocks of 12³ pressed by weight, over apart": ("≤ 1.4", lambda f: pressed(f, "rest")),
     "the same pressed by a blow": ("≤ 1.6", lambda f: pressed(f, "blow")),
 }
-"""What is told of each processor: its goal, and where it is found."""
+"""Lines of the table: the goal, and where the figure is found."""
 
 
 def table(processors: dict[str, dict]) -> str:

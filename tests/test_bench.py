@@ -28,6 +28,7 @@ def test_the_start_of_a_run_can_be_measured(tmp_path):
         pytest.param("import liquid_tables; print(*liquid_tables.PARTS)", "physics-liquid.md", id="liquid"),
         pytest.param("print('links')", "physics-joints.md", id="links"),
         pytest.param("print('threads')", "decisions/threads.md", id="threads"),
+        pytest.param("print('bench processors peers')", "performance.md", id="performance"),
         pytest.param("print('executors threads goals supervisor model')", "beyond-one-host.md", id="scaling"),
     ],
 )
