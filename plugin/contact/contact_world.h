@@ -58,11 +58,7 @@ class ContactWorld {
   void tear(const TornEnds &ends, const Coordinates *places);
 
   // Sets kernels and threads. Null: contacts one at a time, with the same bits. The number of threads changes no bit either.
-  void use(const ContactKernels *kernels, const Threads &now)
-  {
-    arrays.kernels = kernels;
-    threads = now;
-  }
+  void use(const ContactKernels *kernels, const Threads &now) { arrays.kernels = kernels, threads = now; }
   // Computes the forces with all particles at these places. dt = 0 at the setup of a run: nothing changes.
   void step(const Coordinates &places, double dt);
   const PaddedVec3 *forces() const { return arrays.force(); }
@@ -121,8 +117,7 @@ class ContactWorld {
   ContactArrays arrays;
 
  public:
-  // The account, with what points have lost since it was asked for last.
-  const ContactAccount &booked();
+  const ContactAccount &booked();    // with what points have lost since it was asked for last
   ContactAccount account;
   NearObjects near{settings, all, movable};
 };

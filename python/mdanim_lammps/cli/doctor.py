@@ -97,8 +97,8 @@ def _mpi() -> tuple[int, str]:
     from ..parallel.runtime.launch import launcher
 
     mpiexec = launcher()
-    # A process that ends at once may be gone before mpiexec has spoken to it, and then mpiexec dies of SIGPIPE.
-    done = run([*mpiexec, "-n", "1", sys.executable, "-I", "-c", "pass"], capture_output=True, timeout=30)
+    # A process that ends at once may be gone before mpiexec has spoken to it, and then mpiexec dies of SIGPIPE: this one answers.
+    done = run([*mpiexec, "-n", "1", sys.executable, "-I", "-c", "from mpi4py import MPI"], capture_output=True, timeout=30)
     library = MPI.Get_library_version().split("\n")[0].strip(" \0")
     if done.returncode:
         return FAIL, f"{' '.join(mpiexec)} ends with {done.returncode}: {done.stderr.strip()}"
