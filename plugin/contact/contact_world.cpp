@@ -86,8 +86,7 @@ ContactLaw ContactWorld::law_of(const FieldKey &key) const
 std::unique_ptr<ContactField> ContactWorld::make(const FieldKey &key)
 {
   ContactObject &owner = all[owner_of(key)];
-  if (key.at_plane)
-    return std::make_unique<PlaneField>(owner, key.second, settings.planes[key.second], law_of(key), losses_in_passes[key]);
+  if (key.at_plane) return std::make_unique<PlaneField>(owner, key.second, settings.planes[key.second], law_of(key), losses[key]);
   ContactObject &host = all[host_of(key)];
   if (host.is_rigid()) return std::make_unique<RigidField>(owner, host, law_of(key));
   return std::make_unique<LatticeField>(owner, host, law_of(key));
@@ -278,9 +277,9 @@ void ContactWorld::move_to(const Coordinates &places)
 
 const ContactAccount &ContactWorld::booked()
 {
-  for (auto &[key, losses] : losses_in_passes) {
-    for (const LossOfPoint &one : losses) account.heat += one.heat, account.damped += one.damped;
-    losses.clear();
+  for (auto &[key, of_field] : losses) {
+    for (const LossOfPoint &one : of_field) account.heat += one.heat, account.damped += one.damped;
+    of_field.clear();
   }
   return account;
 }

@@ -110,7 +110,7 @@ class ContactWorld {
   std::vector<int> torn_now;                  // objects, until there are lists
   std::map<int, int> number_of;               // of ids
   bool listed = false, has_before = false;    // lists are there; they have been made since the last step, and know its places
-  std::map<FieldKey, std::vector<LossOfPoint>> losses_in_passes;
+  std::map<FieldKey, std::vector<LossOfPoint>> losses;    // that the account does not hold yet
   Fields fields;
   FieldSums sums;
   Threads threads;

@@ -20,7 +20,7 @@ class PlaneField : public FieldOf<PlaneContact, std::uint8_t> {
   // Reach of lists over the skin: 1/2 for particles, and half of that for points outside of cells.
   static constexpr double REACH = 0.75;
 
-  // The plane, and losses in passes by ascending points, must outlive the field.
+  // The plane, and losses by ascending points, must outlive the field.
   PlaneField(ContactObject &owner, int number, const ContactPlane &plane, const ContactLaw &law, std::vector<LossOfPoint> &losses)
       : FieldOf(owner, owner, law), number(number), plane(plane), losses(losses)
   {

@@ -13,14 +13,13 @@ namespace mdanim {
 struct PointAtPlane {
   int particle;
   double area;
-  bool was_below;                // a contact that begins has no potential at the depth at which it begins
-  PlaneState<double> state{};    // of its contact; depth 0 where there is none
-  double heat = 0.0,
-         damped = 0.0;     // energy that friction and dashpots have taken in passes since the last step of the field [J]
-  double deepest = 0.0;    // largest depth in these passes [m]
+  bool was_below;                     // a contact that begins has no potential at the depth at which it begins
+  PlaneState<double> state{};         // of its contact; depth 0 where there is none
+  double heat = 0.0, damped = 0.0;    // energy that friction and dashpots took, which the account does not hold yet [J]
+  double deepest = 0.0;               // largest depth in the passes [m]
 };
 
-// The same energy of a point of a field. Summed point by point it does not depend on where passes end.
+// The same energy of a point of a field. Point by point, it does not depend on where passes end.
 struct LossOfPoint {
   int point;
   double heat, damped;
