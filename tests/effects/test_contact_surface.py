@@ -5,7 +5,7 @@ import math
 
 import numpy as np
 import pytest
-from mdanim_lammps import features
+from mdanim_lammps import Scene, features
 from mdanim_lammps.certificate import note_lines
 from mdanim_lammps.effects import resolve
 from mdanim_lammps.engine.commands import input_script
@@ -464,3 +464,21 @@ def test_friction_may_bring_objects_together(a, control, on):
     """A spinning ball stays where it is on ice and rolls to another on rough ground."""
     resolved = resolve(features.effects(), parse_scene(ROLL.format(a=a, control=control)))
     assert resolved.verdicts["contact"].on == on
+
+
+SHELF = """gravity (0, 0, -9.81) m/s^2
+object shelf {{ shape box (0.6, 0.4, {t}) m  position (0, 0, {z}) m  hold all }}
+object ball {{ shape sphere 10 cm  position (0, 0, 0.11) m  mass 3 kg  elasticity 300 kPa  velocity (0, 0, -2) m/s }}
+control {{ time 0.1 s  frames 100 fps }}
+record ball.position.z
+"""
+
+
+def test_a_ball_bounces_on_a_thin_shelf_as_on_a_thick_one(tmp_path):
+    """A held cuboid has an exact depth, however thin: none of the ball's cells is finer for it, and it moves alike to rounding."""
+    heights = []
+    for t in (0.2, 0.0005):
+        scene = Scene.from_text(SHELF.format(t=t, z=-t / 2))
+        assert scene.prepared.system.spacing[1] == pytest.approx(0.05, rel=0.03)  # four across the ball
+        heights.append(scene.run(tmp_path / f"{t}", movie=False, progress=False).records["ball.position.z"])
+    assert np.ptp(heights[0]) > 0.05 and np.allclose(*heights, rtol=0.0, atol=1e-12)

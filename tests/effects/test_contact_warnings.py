@@ -96,3 +96,28 @@ def test_what_stands_on_a_table_does_not_fall(prepared, x, z, low, more, falls):
     assert (not ready.warnings) == (falls == 0) and speeds
     quick = ready.plan.columns["reach"][ready.system.boundary].any()
     assert quick == (falls > 0)
+
+
+SQUEEZED = """ground z 0 m
+object cube { shape box (10, 10, 10) cm  position (0, 0, 5) cm  mass 1 kg  elasticity 1 MPa }
+object plate { shape box (20, 20, 2) cm  position (0, 0, 11) cm  hold all  DRIVE }
+control { time 0.2 s  CONTROL }
+"""
+PRESSED = "key 0.1 s at (0, 0, 10.5) cm"
+
+
+@pytest.mark.parametrize(
+    ("drive", "control", "asked", "told"),
+    [
+        pytest.param(PRESSED, "", "record cube.stress.z", "42 % too low", id="4 cells, 0.58 by bench/squeezed.py"),
+        pytest.param(PRESSED, "contact-stiffness 16  resolution 12.5 mm", "record cube.stress.z", "7 % too low", id="harder"),
+        pytest.param(PRESSED, "contact-stiffness 100  resolution 12.5 mm", "record cube.stress.z", "", id="hard"),
+        pytest.param(PRESSED, "", "record cube.position.z", "", id="nothing asks for stress"),
+        pytest.param("", "", "record cube.stress.z", "", id="nothing squeezes"),
+    ],
+)
+def test_stress_of_what_is_squeezed_is_told_to_be_low(prepared, drive, control, asked, told):
+    """By how much faces sink in, which is measured in docs/physics-contact.md."""
+    ready = prepared(SQUEEZED.replace("DRIVE", drive).replace("CONTROL", control) + asked)
+    found = [n.message for n in ready.certificate.notes if "squeeze it" in n.message]
+    assert len(found) == bool(told) and all(told in message for message in found)

@@ -39,11 +39,17 @@ def test_resolution_overrides_accuracy():
     assert (plan.h, plan.set_by) == (0.02, "resolution")
 
 
-def test_a_held_obstacle_needs_two_cells_only():
-    """Do not let a thin plate that never moves make everything fine."""
+def test_a_held_obstacle_does_not_set_the_spacing():
+    """A thin plate that never moves does not make everything fine where something else has cells, and none is in a liquid."""
     plate = solid(Box((2.0, 2.0, 0.1)), "plate", hold=(HoldAll(),))
-    assert plan_spacing(scene(plate, solid(Sphere(0.5), "ball"))).h == pytest.approx(0.05)
+    ball = solid(Sphere(0.5), "ball")
+    assert plan_spacing(scene(plate, ball)).of == pytest.approx((0.25, 0.25))
     assert plan_spacing(scene(plate, solid(Sphere(0.05), "ball"))).h == pytest.approx(0.025)
+    disc = solid(Cylinder(1.0, 0.1), "disc", hold=(HoldAll(),))
+    assert plan_spacing(scene(disc, ball)).of == pytest.approx((0.05, 0.25))
+    assert plan_spacing(scene(plate, solid(Sphere(0.5), "ball", hold=(HoldAll(),)))).h == pytest.approx(0.05)
+    pool = Liquid("water", (-2, -2, 0), (2, 2, 2), 1000.0, level=1.0)
+    assert plan_spacing(scene(plate, ball, liquid=pool)).h == pytest.approx(0.05)
 
 
 def test_a_liquid_alone_is_32_cells_wide():
