@@ -475,7 +475,7 @@ record ball.position.z
 
 
 def test_a_ball_bounces_on_a_thin_shelf_as_on_a_thick_one(tmp_path):
-    """A held cuboid has an exact depth, however thin: none of the ball's cells is finer for it, and it moves alike to rounding."""
+    """A held cuboid has an exact depth, however thin: cells of a ball are not finer for it, and it moves alike."""
     heights = []
     for t in (0.2, 0.0005):
         scene = Scene.from_text(SHELF.format(t=t, z=-t / 2))
