@@ -57,7 +57,7 @@ def main(argv: list[str] | None = None) -> None:
         try:
             app(arguments, exit_on_error=False, print_error=False)
         except CycloptsError as error:
-            raise UsageError(f"{' '.join(str(error).split())}; see '{PROGRAM} --help'") from None
+            raise UsageError(f"{' '.join(str(error).split())} (see '{PROGRAM} --help')") from None
 
 
 def refuse_mistyped(arguments: list[str], commands: list[str]) -> None:

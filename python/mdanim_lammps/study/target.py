@@ -74,7 +74,7 @@ class Choice:
     def __str__(self) -> str:
         doubt = f" ± {number(100 * self.doubt, 1)}" if self.doubt > 0.01 * self.reached else ""
         got = f"estimated {number(100 * self.reached, 2)}{doubt} %" + (
-            "" if (self.closed or 0.0) < ROUND_OFF else f", closed form {number(100 * self.closed, 2)} %"
+            "" if (self.closed or 0.0) < ROUND_OFF else f", off its expect by {number(100 * self.closed, 2)} %"
         )
         step = f", time step {say(self.timestep, 's')}" if self.timestep else ""
         more = "".join(v.told(value, number) for v, value in values(self.setting))
