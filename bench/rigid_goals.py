@@ -56,14 +56,15 @@ def dominoes(folder: Path) -> Iterator[Reached]:
 
 
 def heap(folder: Path) -> Iterator[Reached]:
-    """The first second of a thousand boxes, at a tenth of the overlap of MuJoCo's."""
+    """The first second of a thousand boxes, at a tenth of the overlap of MuJoCo's; ours at steps of 0.42/Omega."""
     sys.path.insert(0, str(ROOT / "bench" / "peers"))
     import all as peers
 
     rows = {}
     for name in ("ours, 0.25", "mujoco_rigid, CG"):
-        rows[name] = peers.contender(name, "heap", {"time": 1.0, "bodies": 1000, "limit": 90.0})
-    what, goal = "heap of 1 000 boxes, 1 s, `contact-stiffness 0.25`", "no slower than MuJoCo's CG at a tenth of its overlap"
+        rows[name] = peers.contender(name, "heap", {"time": 1.0, "bodies": 1000, "limit": 90.0, "fraction": 0.6})
+    what = "heap of 1 000 boxes, 1 s, `contact-stiffness 0.25`, steps of 0.42/Ω"
+    goal = "no slower than MuJoCo's CG at a tenth of its overlap"
     if any("failed" in row for row in rows.values()):
         yield Reached(what, goal, str([row.get("failed") for row in rows.values()]), None)
         return

@@ -61,6 +61,12 @@ struct Solid {
   Vec3 place(const Vec3 &own) const { return centre + turn * own; }
   Vec3 in_body(const Vec3 &a) const { return transposed_times(turn, a); }
   Vec3 velocity_at(const Vec3 &x) const { return velocity + cross(spin, x - centre); }
+  // The same, in the step that ends now, of what was at x before it.
+  Vec3 velocity_from(const Vec3 &x, double dt) const
+  {
+    const Vec3 middle = whole == ALONE ? centre : place(carrier.centre), v = velocity_at(middle);
+    return v + cross(spin, x - (middle - dt * v));
+  }
   // lambda = 1/m + (r x n) I^-1 (r x n): acceleration along n of the point x over a force along n that acts there.
   double yields_at(const Vec3 &x, const Vec3 &n) const
   {

@@ -111,7 +111,9 @@ void TouchStep::let_go(Touch &touch, double depth, double part) const
 //   sum more_n (d_n+1 - d_n-1)/2 = sum over ways of E,   E = U(d') - U(d) - (d' - d) (U'(d') + U'(d))/2.
 // The deeper end of a way has its E. d_n+1 is where the motion leads to by the force and by all else that acted in the step
 // before; what comes otherwise is owed, and given by the next steps, the last part of it in the step after the bodies have
-// parted.
+// parted. Bodies do not meet along n by what the depth changes where n turns, with a curved surface or with a body. What
+//   F_n (met_n + met_n+1)/2
+// takes from the motion, met_n+1 being their way along n_n in the next step, is more than that: it is given back likewise.
 
 // E over the way, for a spring of 1.
 static double more_force(double a, double b, double onset)
@@ -132,13 +134,23 @@ static double force_over(double work, double k, double came, double next_way)
   return std::clamp(2.0 * work / way, -0.5 * k * both, 0.5 * k * both);
 }
 
+// The way of its bodies towards each other along the last normal, over both steps around it, less the change of depth.
+double TouchStep::unlike_depth(const Touch &touch, const Solid &a, const Solid *b, double depth) const
+{
+  const auto along = [&](const Solid &one) { return dot(touch.n, one.velocity_from(touch.at, dt)); };
+  const double apart = b ? along(a) - along(*b) : along(a);    // along n, which pushes the body with the lower number
+  const double meets = (b && b->id < a.id ? dt : -dt) * apart, last = touch.memory.depth;
+  const double before = touch.followed > 1.0 ? touch.met - (last - touch.earlier) : 0.0;    // it may have come from beside
+  return before + meets - (depth - last);
+}
+
 // Books the work of the last step's force, now that its way is known. Returns the change of depth by all other forces.
-double TouchStep::follow(Touch &touch, double depth, double k) const
+double TouchStep::follow(Touch &touch, const Solid &a, const Solid *b, double depth, double k) const
 {
   if (touch.followed == 0.0) return 0.0;
   const double last = touch.memory.depth, offset = touch.memory.offset;
   if (depth < last) touch.owed += k * (depth - last) * more_force(last - offset, depth - offset, onset);
-  touch.owed -= 0.5 * touch.more * (depth - touch.earlier);
+  touch.owed -= 0.5 * (touch.more * (depth - touch.earlier) + touch.press * unlike_depth(touch, a, b, depth));
   return (depth - last) - (last - touch.earlier) + dt * dt * touch.yields * touch.press;
 }
 
@@ -167,12 +179,13 @@ static double dashpot_at(const Touch &touch, double depth, double onset)
   return g.value > 0.0 ? touch.shared * g.slope / std::sqrt(2.0 * g.value) : 0.0;
 }
 
-ContactForce<double> TouchStep::pressure(Touch &touch, const ContactLaw &its_law, double part, double depth) const
+ContactForce<double> TouchStep::pressure(Touch &touch, const Solid &a, const Solid *b, const ContactLaw &its_law, double part,
+                                         double depth) const
 {
   constexpr int LOOKS = 3;    // each is nearer to the next depth by (dt Omega)^2 and more
   const double k = touch.stiffness * part;
   if (presses_out && touch.followed != 0.0) press_out(touch, depth, k);
-  const double before = touch.memory.depth, pulled = is_first() ? 0.0 : follow(touch, depth, k);
+  const double before = touch.memory.depth, pulled = is_first() ? 0.0 : follow(touch, a, b, depth, k);
   if (touch.followed != 0.0 && before < touch.earlier && depth > before) touch.rests = 1.0;
   ContactLaw law = its_law;
   law.damping *= dashpot_at(touch, depth, onset);
@@ -198,7 +211,7 @@ ContactForce<double> TouchStep::pressure(Touch &touch, const ContactLaw &its_law
 void TouchStep::part(Touch &touch, Solid &a, Solid *b, const Meeting &at) const
 {
   const double before = touch.memory.depth, depth = std::min(at.depth, before), came = depth - before;
-  const double way = came + follow(touch, depth, touch.stiffness * at.part);
+  const double way = came + follow(touch, a, b, depth, touch.stiffness * at.part);
   touch.parted = 1.0;
   touch.energy = 0.0;
   if (depth <= 0.0) {
@@ -225,6 +238,7 @@ void TouchStep::apply(Solid &a, Solid *b, const Vec3 &x, const Vec3 &f) const
 void TouchStep::book(Solid &a, Solid *b, Touch &touch, const Meeting &at, const ContactForce<double> &force) const
 {
   touch.at = at.x;
+  if (!is_first()) touch.met = -dt * dot(at.n, relative_velocity(a, b, at.x));
   touch.part = at.part;
   touch.n = b && b->id < a.id ? -1.0 * at.n : at.n;
   // `more` has done a half of its work.
@@ -251,7 +265,7 @@ void TouchStep::press(Touch &touch, const TouchLaw &its_law, Solid &a, Solid *b,
                       const Vec3 &slope, const Vec3 &n) const
 {
   const ContactLaw law = law_of(touch, its_law);
-  ContactForce<double> push = pressure(touch, law, part, depth);
+  ContactForce<double> push = pressure(touch, a, b, law, part, depth);
   Vec3 force = push.press * n;
   if (b && (slope.x != 0.0 || slope.y != 0.0 || slope.z != 0.0)) force -= push.surface_energy * b->in_space(slope);
   if (law.friction > 0.0) {
@@ -312,7 +326,7 @@ void TouchStep::press_between(Touch &touch, const TouchLaw &its_law, Solid &a, S
                               const PartSlope *slope) const
 {
   const ContactLaw law = law_of(touch, its_law);
-  ContactForce<double> push = pressure(touch, law, at.part, at.depth);
+  ContactForce<double> push = pressure(touch, a, b, law, at.part, at.depth);
   Vec3 force = push.press * at.n;
   if (slope) {
     force -= push.surface_energy * slope->by_place;

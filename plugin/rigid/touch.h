@@ -33,13 +33,15 @@ struct Touch {
   double earlier = 0.0;    // depth of the step before that of memory [m], where it is `followed`
   double press = 0.0;      // force of the last step, without friction, and its part `more` [N] (see touch.cpp)
   double more = 0.0;
-  double owed = 0.0;        // work that `more` has still to do [J]
-  double followed = 0.0;    // steps in which it was pressed, up to 2
-  double shared = 1.0;      // its damping in the blow over that of one that has it alone
-  double rests = 0.0;       // 1 from where it goes deeper again after it came back
-  double parted = 0.0;      // 1 in the step after the bodies have parted, the last one that it is there
-  double counted = 0.0;     // part of it that counted in the last step, of points that are nearest on a mesh
-  double energy = 0.0;      // now, with that of sticking [J]
+  double owed = 0.0;         // work that `more` has still to do [J]
+  double met = 0.0;          // way of its bodies towards each other along n in the step that led here [m]
+  double followed = 0.0;     // steps in which it was pressed, up to 2
+  double shared = 1.0;       // its damping in the blow over that of one that has it alone
+  double rests = 0.0;        // 1 from where it goes deeper again after it came back
+  double parted = 0.0;       // 1 in the step after the bodies have parted, the last one that it is there
+  double counted = 0.0;      // part of it that counted in the last step, of points that are nearest on a mesh
+  double over_ends = 0.0;    // 1 for edges that count beyond their ends
+  double energy = 0.0;       // now, with that of sticking [J]
   // Resistance to rolling: its spring, dashpot and stick energy, of angles and torques in place of ways and forces.
   ContactMemory<double> rolling;
   Vec3 rolled;    // angle from its anchor, in the host's frame [rad]
@@ -151,7 +153,8 @@ class TouchStep {
   }
   // The part of a contact that depends on its depth. In the step in which it begins or ends, its force counts for as long as it
   // acts (see touch.cpp).
-  ContactForce<double> pressure(Touch &touch, const ContactLaw &law, double part, double depth) const;
+  ContactForce<double> pressure(Touch &touch, const Solid &a, const Solid *b, const ContactLaw &law, double part,
+                                double depth) const;
   // The way of the surface of `a` over that of `b`, or of a plane, in this step, besides that of their bodies.
   Vec3 ran(const Solid &a, const Solid *b) const { return b ? dt * (a.belt - b->belt) : dt * a.belt; }
   // Friction, whose spring has half of the dashpot: with all of it a stack of ten boxes that are turned trembles at 0.35/Omega.
@@ -189,7 +192,8 @@ class TouchStep {
   // The torque that resists rolling, up to the arm `rolling` of the law times the force of the contact.
   void resist_rolling(Touch &touch, const TouchLaw &law, Solid &a, Solid *b, const Vec3 &n, double part,
                       ContactForce<double> &push) const;
-  double follow(Touch &touch, double depth, double k) const;
+  double follow(Touch &touch, const Solid &a, const Solid *b, double depth, double k) const;
+  double unlike_depth(const Touch &touch, const Solid &a, const Solid *b, double depth) const;
   void press_out(Touch &touch, double depth, double k) const;
   double dt, onset;
   bool deep = true;

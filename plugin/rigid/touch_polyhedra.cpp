@@ -127,12 +127,14 @@ struct EdgeCrossing {
   }
 };
 
-// The part of a crossing that counts: ramps from the ends inward, and for edges that are nearly parallel.
+// The part of a crossing that counts: ramps at the ends of edges, and for edges that are nearly parallel. Ramps go from the ends
+// inward, where corners bear what edges do not. Where a corner cannot be below a side, as it passes over an edge, they are about
+// the ends, so that the crossing with its next edge counts by as much more as this one counts less.
 struct CrossingPart {
   double of_a, of_b, of_angle, slope_a, slope_b, slope_angle;
-  CrossingPart(const PlacedEdge &a, const PlacedEdge &b, const EdgeCrossing &at, double wa, double wb)
-      : of_a(smooth_step(a.half - std::fabs(at.s) - wa, wa, slope_a)),
-        of_b(smooth_step(b.half - std::fabs(at.r) - wb, wb, slope_b)),
+  CrossingPart(const PlacedEdge &a, const PlacedEdge &b, const EdgeCrossing &at, double wa, double wb, bool over_ends)
+      : of_a(smooth_step(a.half - std::fabs(at.s) - (over_ends ? 0.0 : wa), wa, slope_a)),
+        of_b(smooth_step(b.half - std::fabs(at.r) - (over_ends ? 0.0 : wb), wb, slope_b)),
         of_angle(smooth_step(at.square - FADED, FADES, slope_angle))
   {
   }
@@ -170,6 +172,7 @@ constexpr double PARALLEL = 1e-4;                   // square of a sine below wh
 constexpr double CROSSED = 0.05;                    // the same: below it nothing is said of a later time
 constexpr double AT_BIRTH = -0.1, AT_END = -0.4;    // how far n may be out of the cones
 constexpr double SHALLOW_BIRTH = 0.06;              // over the thinnest part
+constexpr double OVER_ENDS = 0.02;                  // how far n is within the cones where crossings count beyond ends
 
 std::vector<int> edges_near(const Solid &one, const Solid &host, const std::vector<Touch> &touches, bool of_first, double margin)
 {
@@ -240,12 +243,8 @@ void run_along(Vec3 &anchor, const Vec3 &ran, const Vec3 &one, const Vec3 &other
 // How far both bodies may go until edges begin to touch that do not cross, or not with a normal of both, or above each other:
 // after a way w they have moved along each other by 4 w/sine at most, and n has turned by 4 w/(sine size). Half of that, to be
 // sure; 0 where the edges are nearly parallel.
-double way_to_cross(const PlacedEdge &one, const PlacedEdge &other, const EdgeCrossing &at)
-{
-  if (at.square < CROSSED) return 0.0;
-  const double apart = std::max(std::fabs(at.s) - one.half, std::fabs(at.r) - other.half);
-  return 0.125 * std::max(apart, 0.0) * std::sqrt(at.square);
-}
+double way_to_cross(const EdgeCrossing &at, double apart)
+{ return at.square < CROSSED ? 0.0 : 0.125 * apart * std::sqrt(at.square); }
 
 double way_to_meet(const Solid &a, const Solid &b, const EdgeCrossing &at)
 {
@@ -268,8 +267,10 @@ void touch_edges(const TouchStep &step, SolidPair &pair, Solid &a, Solid &b, con
     if (at.square < PARALLEL) continue;
     auto found = find_touch(pair.touches, Touch::EDGES, i, j);
     const bool is_known = found != pair.touches.end();
-    if (!is_known && (std::fabs(at.s) >= one.half || std::fabs(at.r) >= other.half)) {
-      near.until = pair.known_for - way_to_cross(one, other, at);
+    const double wa = 0.5 * ramp_of(a), wb = 0.5 * ramp_of(b);
+    const double beyond_a = std::fabs(at.s) - one.half, beyond_b = std::fabs(at.r) - other.half;
+    if (!is_known && (beyond_a >= wa || beyond_b >= wb)) {
+      near.until = pair.known_for - way_to_cross(at, std::max(beyond_a - wa, beyond_b - wb));
       continue;
     }
     at.find_normal(one, other);
@@ -277,8 +278,8 @@ void touch_edges(const TouchStep &step, SolidPair &pair, Solid &a, Solid &b, con
       near.until = pair.known_for - way_to_meet(a, b, at);
       continue;
     }
-    const double wa = 0.5 * ramp_of(a), wb = 0.5 * ramp_of(b);
-    const CrossingPart counts(one, other, at, wa, wb);
+    const bool over_ends = is_known ? found->over_ends != 0.0 : at.cone > OVER_ENDS;
+    const CrossingPart counts(one, other, at, wa, wb, over_ends);
     const double part = counts.value();
     const Vec3 on_a = one.middle + at.s * one.along, on_b = other.middle + at.r * other.along, x = 0.5 * (on_a + on_b);
     if (!is_known) {
@@ -286,6 +287,7 @@ void touch_edges(const TouchStep &step, SolidPair &pair, Solid &a, Solid &b, con
       Touch touch = step.born(Touch::EDGES, law, a, &b, x, -1.0 * at.n);
       touch.first = i;
       touch.second = j;
+      touch.over_ends = over_ends;
       touch.anchor = {at.s, at.r, 0.0};
       const Vec3 relative = TouchStep::relative_velocity(a, &b, x);
       const double back = -A_STEP * step.time_step();
@@ -294,7 +296,7 @@ void touch_edges(const TouchStep &step, SolidPair &pair, Solid &a, Solid &b, con
         PlacedEdge before = one;
         before.shift(x, back * relative, back * (a.spin - b.spin));
         const EdgeCrossing was(before, other);
-        return was.square < PARALLEL || CrossingPart(before, other, was, wa, wb).value() <= 0.0;
+        return was.square < PARALLEL || CrossingPart(before, other, was, wa, wb, over_ends).value() <= 0.0;
       };
       step.begin(touch, a, &b, {x, -1.0 * at.n, at.depth, part},
                  at.depth + back * dot(relative, at.n) <= 0.0 || came_over_ramp());
@@ -311,7 +313,7 @@ void touch_edges(const TouchStep &step, SolidPair &pair, Solid &a, Solid &b, con
     }
     Touch &touch = *found;
     const ContactLaw its_law = step.law_of(touch, law);
-    ContactForce<double> push = step.pressure(touch, its_law, part, at.depth);
+    ContactForce<double> push = step.pressure(touch, a, &b, its_law, part, at.depth);
     Vec3 force = (-push.press) * at.n;
     // The gradient of `part`: s and r move by (u - cosine w)/sine^2 and -(w - cosine u)/sine^2 with the first body.
     const double by_s = push.surface_energy * (at.s > 0.0 ? -counts.slope_a : counts.slope_a) * counts.of_b * counts.of_angle,

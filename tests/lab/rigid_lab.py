@@ -89,6 +89,16 @@ def prism(sides: int, radius: float, height: float) -> str:
     return f"polyhedron {2 * sides} {numbers} {sides + 2} " + " ".join(" ".join(map(str, [len(f), *f])) for f in faces)
 
 
+def blade(half: float, height: float, length: float) -> Rigid:
+    """A held wedge whose edge is on the first axis, and its back this far below it and twice `half` wide."""
+    x, y, z = length / 2, half, -height
+    corners = [(-x, 0, 0), (x, 0, 0), (-x, -y, z), (-x, y, z), (x, -y, z), (x, y, z)]
+    faces = [[0, 2, 4, 1], [0, 1, 5, 3], [2, 3, 5, 4], [0, 3, 2], [1, 4, 5]]
+    numbers = " ".join(repr(float(c)) for corner in corners for c in corner)
+    words = f"polyhedron 6 {numbers} 5 " + " ".join(" ".join(map(str, [len(f), *f])) for f in faces)
+    return Rigid(words, 0.0, np.zeros(3), np.zeros(3), half, held=True)
+
+
 def ball(radius, density=600.0, **more) -> Rigid:
     """A full ball."""
     mass = density * 4 / 3 * np.pi * radius**3

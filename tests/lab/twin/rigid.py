@@ -7,6 +7,7 @@ that of the plugin.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -70,6 +71,11 @@ class TwinBody:
         self.torque = self.torque + np.cross(at - self.x, force)
 
 
+def apart(velocities: Sequence[np.ndarray]) -> np.ndarray:
+    """Velocity of the first of two bodies over the second, or of one over the floor."""
+    return velocities[0] - velocities[1] if len(velocities) > 1 else velocities[0]
+
+
 @dataclass
 class TwinTouch:
     """The memory of a contact."""
@@ -88,14 +94,26 @@ class TwinTouch:
     more: float = 0.0
     """The part of the force beside spring and dashpot, for the work of beginning, onset and end."""
     owed: float = 0.0
+    met: float = 0.0
+    """Way of its bodies towards each other along n, in the last step."""
+    n: np.ndarray = field(default_factory=lambda: np.zeros(3))
+    point: np.ndarray = field(default_factory=lambda: np.zeros(3))
+    """Normal and place of the last step."""
+    follows: bool = False
+    """Whether it was there in the step before the last one."""
     rests: bool = False
     """Whether it has gone deeper again after it came back."""
 
-    def look_back(self, now: float, dt: float, work: float) -> float:
+    def look_back(self, now: float, dt: float, work: float, bodies: Sequence[TwinBody]) -> float:
         """Books the last step, whose way ends here; the change of depth by other forces in it."""
         if self.earlier is None:
             return 0.0
-        self.owed += work - 0.5 * self.more * (now - self.earlier)
+        meets = -dt * self.n @ apart([b.velocity(self.point + dt * b.v) for b in bodies])  # of what was at that point
+        unlike = meets - (now - self.depth)
+        if self.follows:
+            unlike += self.met - (self.depth - self.earlier)
+        self.follows = True
+        self.owed += work - 0.5 * (self.more * (now - self.earlier) + self.press * unlike)
         return now - 2.0 * self.depth + self.earlier + dt * dt * self.mobility * self.press
 
     def force_over(self, work: float, came: float, goes: float) -> float:
@@ -137,7 +155,8 @@ class TwinWorld:
                 self.touches.pop(key)
                 self._last_push(touch, a, b, at, n, depth)
             return
-        way = a.velocity(at) - (b.velocity(at) if b else 0.0)
+        two = [a, b] if b else [a]
+        way = apart([body.velocity(at) for body in two])
         mu = np.sqrt(a.mu * b.mu) if b else a.mu
         if touch is None:
             mobility = a.mobility(at, n) + (b.mobility(at, n) if b else 0.0)
@@ -147,7 +166,7 @@ class TwinWorld:
             touch = TwinTouch(k, eta, mobility, min(0.0, depth + dt * way @ n), np.zeros(3), np.zeros(3), at)
             self.touches[key] = touch
         last, now, k = touch.depth, depth, touch.k
-        others = touch.look_back(now, dt, k * self._missing(last, now) if now < last else 0.0)
+        others = touch.look_back(now, dt, k * self._missing(last, now) if now < last else 0.0, two)
         energy, force = self.energy_and_force(now)
         press = k * force
         touch.rests = touch.rests or (touch.earlier is not None and last < touch.earlier and now > last)
@@ -162,6 +181,7 @@ class TwinWorld:
             more = max(touch.force_over(work, now - last, goes), -press)
         press += more
         touch.earlier, touch.more, touch.press = last, more, press
+        touch.met, touch.n, touch.point = -dt * way @ n, n, at
         touch.depth = now
         force = press * n
         if mu > 0.0:
@@ -182,7 +202,7 @@ class TwinWorld:
     def _last_push(self, touch: TwinTouch, a: TwinBody, b: TwinBody | None, at, n, depth: float) -> None:
         """Gives what is owed when both have parted."""
         now, last = min(depth, touch.depth), touch.depth
-        others = touch.look_back(now, self.dt, touch.k * self._missing(last, now))
+        others = touch.look_back(now, self.dt, touch.k * self._missing(last, now), [a, b] if b else [a])
         push = touch.force_over(touch.owed, now - last, now - last + others)
         a.push(at, push * n)
         if b:
