@@ -19,7 +19,7 @@ from mdanim_lammps.run.prepare import Prepared
 from scene_texts import MEETING, SPLASH
 from twin import world
 
-WAVES = SPLASH.replace("model surface", "model waves drops 1 wave -x amplitude 2 cm period 0.5 s")
+WAVES = SPLASH.replace("model surface", "model waves manning 0.03 drops 1 wave -x amplitude 2 cm period 0.5 s")
 SCENES = [pytest.param(MEETING, id="solids"), pytest.param(SPLASH, id="liquid"), pytest.param(WAVES, id="waves")]
 
 

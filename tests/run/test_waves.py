@@ -27,6 +27,7 @@ liquid water {
   basin from (-20, -20, 0) cm to (20, 20, 40) cm
   density 1000
   level 20 cm
+  manning 0.03
   drops 1
   inflow from (-20, -20, 15) cm to (-15, 20, 20) cm rate 1e-3 m^3/s
 }
