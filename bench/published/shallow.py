@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""The flood on the column by shallow water alone: finite volumes, first order, fluxes of Harten, Lax and van Leer.
+"""Dams by shallow water alone: finite volumes, first order, fluxes of Harten, Lax and van Leer.
 
-``python bench/published/shallow.py`` prints the force while the flood is even and at its least, as the case has them, on a dry
-floor and on one with a centimetre of water. Half of the tank is computed, as both halves are mirror images.
+``python bench/published/shallow.py`` prints the force on the column while the flood is even and at its least, as the case has
+them, on a dry floor and on one with a centimetre of water, and places of the front of a dam that is twice as high as wide. Half
+of the tank of the column is computed, as both halves are mirror images.
 """
 
 from __future__ import annotations
@@ -70,6 +71,25 @@ def force(cell: float, wet: float, time: float = 1.9) -> np.ndarray:
     return np.array(found).T
 
 
+def front(cells: int, last: float = 9.0, thin: float = 0.01) -> np.ndarray:
+    """Times over √(a/2g) and places over a of the front of a dam of the width a and the height 2a, shape (2, steps): where the
+    depth is over `thin` of the dam's height, with so many cells in its width."""
+    cell, now, found = 1.0 / cells, 0.0, []
+    x = (np.arange(round((2.0 + 2.0 * last) * cells)) + 0.5) * cell
+    q = np.zeros((3, 1, len(x)))
+    q[0] = np.where(x < 1.0, 2.0, 0.0)
+    mirror = np.array([1.0, -1.0, 1.0])[:, None, None]
+    while now < last:
+        speed = np.abs(q[1]) / np.maximum(q[0], 1e-4) + np.sqrt(G * q[0])
+        step = 0.4 * cell / speed.max()
+        cells_in = np.concatenate([mirror * q[:, :, :1], q, q[:, :, -1:]], axis=2)
+        q = q - np.diff(_flux(cells_in[:, :, :-1], cells_in[:, :, 1:], 1), axis=2) * step / cell
+        q[0] = np.maximum(q[0], 0.0)
+        now += step * np.sqrt(2.0 * G)
+        found.append((now, x[q[0, 0] > 2.0 * thin].max() + 0.5 * cell))
+    return np.array(found).T
+
+
 if __name__ == "__main__":
     for cell, wet in ((0.015, 0.0), (0.0075, 0.0), (0.0075, 0.01)):
         times, pushes = force(cell, wet)
@@ -77,3 +97,8 @@ if __name__ == "__main__":
         even = np.interp(np.linspace(0.15, 0.35, 50), since, pushes).mean()
         told = f"cells of {1e3 * cell:g} mm, {1e3 * wet:g} mm of water"
         print(f"{told}: {even:.3g} N even, {pushes[since > 0.8].min():.3g} N at least")
+    for cells in (16, 64, 128):
+        places = np.interp((2.0, 3.0, 5.0, 7.0, 9.0), *front(cells))
+        print(
+            f"front of a dam at 2, 3, 5, 7 and 9 √(a/2g), {cells} cells in its width: {', '.join(f'{x:.3g}' for x in places)} a"
+        )

@@ -357,7 +357,7 @@ SHORTFALLS = (
     ),
     Shortfall(
         _wake,
-        "short waves run too fast, and the highest ones behind it are 33 % farther from its course",
+        "waves behind it come out as low as a third, and the highest ones are 33 % farther from its course",
         f"{VALIDATION}the-wake-of-what-is-towed",
     ),
     Shortfall(_high_crests, "crests at its walls come out up to 41 % too high", f"{VALIDATION}a-tank-is-shaken"),
