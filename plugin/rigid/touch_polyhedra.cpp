@@ -257,20 +257,119 @@ double way_to_meet(const Solid &a, const Solid &b, const EdgeCrossing &at)
   return 0.5 * std::max({by_turning, by_depth, 0.0});
 }
 
+// Two edges that cross with a normal of both.
+class CrossedEdges {
+ public:
+  const double part;    // that counts
+
+  CrossedEdges(const TouchStep &step, const TouchLaw &law, Solid &a, Solid &b, const PlacedEdge &one, const PlacedEdge &other,
+               const EdgeCrossing &at, bool over_ends)
+      : CrossedEdges(step, law, a, b, one, other, at, over_ends,
+                     CrossingPart(one, other, at, 0.5 * ramp_of(a), 0.5 * ramp_of(b), over_ends))
+  {
+  }
+  Meeting meeting() const { return {x, -1.0 * at.n, at.depth, part}; }
+  bool may_begin() const { return part > 0.0 && (at.depth <= SHALLOW_BIRTH * thinner(a, b) || step.may_be_deep()); }
+  Touch begun(int first, int second) const
+  {
+    Touch touch = step.born(Touch::EDGES, law, a, &b, x, -1.0 * at.n);
+    touch.first = first;
+    touch.second = second;
+    touch.over_ends = over_ends;
+    touch.anchor = {at.s, at.r, 0.0};
+    const Vec3 relative = TouchStep::relative_velocity(a, &b, x);
+    const double back = -A_STEP * step.time_step();
+    step.begin(touch, a, &b, meeting(), at.depth + back * dot(relative, at.n) <= 0.0 || came_over_ramp(relative, back));
+    return touch;
+  }
+  void press(Touch &touch) const
+  {
+    const ContactLaw its_law = step.law_of(touch, law);
+    ContactForce<double> push = step.pressure(touch, a, &b, its_law, part, at.depth);
+    Vec3 force = (-push.press) * at.n + push_aside(push.surface_energy);
+    if (law.friction > 0.0) {
+      rub(touch, its_law, push);
+      force += push.drag;
+    }
+    step.apply(a, &b, x, force);
+    step.book(a, &b, touch, meeting(), push);
+  }
+
+ private:
+  CrossedEdges(const TouchStep &step, const TouchLaw &law, Solid &a, Solid &b, const PlacedEdge &one, const PlacedEdge &other,
+               const EdgeCrossing &at, bool over_ends, const CrossingPart &counts)
+      : part(counts.value()), step(step), law(law), a(a), b(b), one(one), other(other), at(at), over_ends(over_ends),
+        counts(counts), x(0.5 * ((one.middle + at.s * one.along) + (other.middle + at.r * other.along)))
+  {
+  }
+  bool came_over_ramp(const Vec3 &relative, double back) const
+  {
+    if (part >= LITTLE || at.depth >= SHALLOW * thinner(a, b)) return false;
+    PlacedEdge before = one;
+    before.shift(x, back * relative, back * (a.spin - b.spin));
+    const EdgeCrossing was(before, other);
+    return was.square < PARALLEL ||
+           CrossingPart(before, other, was, 0.5 * ramp_of(a), 0.5 * ramp_of(b), over_ends).value() <= 0.0;
+  }
+  void turn(const Vec3 &torque) const
+  {
+    a.torque += torque;
+    b.torque -= torque;
+  }
+  // The force by the gradient of `part`: s and r move by (u - cosine w)/sine^2 and -(w - cosine u)/sine^2 with the first body.
+  Vec3 push_aside(double energy) const
+  {
+    const double by_s = energy * (at.s > 0.0 ? -counts.slope_a : counts.slope_a) * counts.of_b * counts.of_angle,
+                 by_r = energy * counts.of_a * (at.r > 0.0 ? -counts.slope_b : counts.slope_b) * counts.of_angle,
+                 by_angle = energy * counts.of_a * counts.of_b * counts.slope_angle;
+    Vec3 aside;
+    if (by_s != 0.0 || by_r != 0.0) {
+      aside =
+          (by_s / at.square) * (one.along - at.cosine * other.along) - (by_r / at.square) * (other.along - at.cosine * one.along);
+      // They also move as the edges turn towards n.
+      turn((0.5 * at.depth) * cross(at.n, aside) + (at.depth * (by_s + at.cosine * by_r) / at.square) * cross(one.along, at.n));
+    }
+    if (by_angle != 0.0) turn((2.0 * at.cosine * by_angle) * cross(one.along, other.along));
+    return aside;
+  }
+  // Friction from anchors on both edges: its spring acts midway between them.
+  void rub(Touch &touch, const ContactLaw &its_law, ContactForce<double> &push) const
+  {
+    const Vec3 ran = step.ran(a, &b), &u = one.along, &w = other.along;
+    run_along(touch.anchor, ran, u, w, at);
+    const Vec3 away = (touch.anchor.x - at.s) * u - (touch.anchor.y - at.r) * w;
+    step.friction(touch, its_law, part, away, at.n, ran, push);
+    touch.anchor = {at.s + push.kept * (touch.anchor.x - at.s), at.r + push.kept * (touch.anchor.y - at.r), 0.0};
+    const Vec3 between = 0.5 * ((one.middle + touch.anchor.x * u) + (other.middle + touch.anchor.y * w));
+    step.apply(a, &b, between, push.pull);
+    // The way from one anchor to the other has a part along n, which turns with both edges.
+    const double lever = (dot(cross(u, w), at.n) > 0.0 ? 1.0 : -1.0) * at.depth / std::sqrt(at.square);
+    turn(lever * (at.cosine * push.pull - 0.5 * (dot(push.pull, u) * w + dot(push.pull, w) * u)));
+  }
+
+  const TouchStep &step;
+  const TouchLaw &law;
+  Solid &a, &b;
+  const PlacedEdge &one, &other;
+  const EdgeCrossing &at;
+  const bool over_ends;
+  const CrossingPart counts;
+  const Vec3 x;
+};
+
 void touch_edges(const TouchStep &step, SolidPair &pair, Solid &a, Solid &b, const TouchLaw &law)
 {
+  const double wa = 0.5 * ramp_of(a), wb = 0.5 * ramp_of(b);
   for (NearFeatures &near : pair.edges) {
     if (pair.known_for > near.until) continue;
-    const int i = near.first, j = near.second;
-    const PlacedEdge one(a, i), other(b, j);
+    const PlacedEdge one(a, near.first), other(b, near.second);
     EdgeCrossing at(one, other);
     if (at.square < PARALLEL) continue;
-    auto found = find_touch(pair.touches, Touch::EDGES, i, j);
+    const auto found = find_touch(pair.touches, Touch::EDGES, near.first, near.second);
     const bool is_known = found != pair.touches.end();
-    const double wa = 0.5 * ramp_of(a), wb = 0.5 * ramp_of(b);
-    const double beyond_a = std::fabs(at.s) - one.half, beyond_b = std::fabs(at.r) - other.half;
-    if (!is_known && (beyond_a >= wa || beyond_b >= wb)) {
-      near.until = pair.known_for - way_to_cross(at, std::max(beyond_a - wa, beyond_b - wb));
+    const double beyond = std::max(std::fabs(at.s) - one.half - wa, std::fabs(at.r) - other.half - wb);
+    if (!is_known && beyond >= 0.0) {
+      near.until = pair.known_for - way_to_cross(at, beyond);
       continue;
     }
     at.find_normal(one, other);
@@ -278,80 +377,19 @@ void touch_edges(const TouchStep &step, SolidPair &pair, Solid &a, Solid &b, con
       near.until = pair.known_for - way_to_meet(a, b, at);
       continue;
     }
-    const bool over_ends = is_known ? found->over_ends != 0.0 : at.cone > OVER_ENDS;
-    const CrossingPart counts(one, other, at, wa, wb, over_ends);
-    const double part = counts.value();
-    const Vec3 on_a = one.middle + at.s * one.along, on_b = other.middle + at.r * other.along, x = 0.5 * (on_a + on_b);
+    const CrossedEdges edges(step, law, a, b, one, other, at, is_known ? found->over_ends != 0.0 : at.cone > OVER_ENDS);
     if (!is_known) {
-      if (part <= 0.0 || (at.depth > SHALLOW_BIRTH * thinner(a, b) && !step.may_be_deep())) continue;
-      Touch touch = step.born(Touch::EDGES, law, a, &b, x, -1.0 * at.n);
-      touch.first = i;
-      touch.second = j;
-      touch.over_ends = over_ends;
-      touch.anchor = {at.s, at.r, 0.0};
-      const Vec3 relative = TouchStep::relative_velocity(a, &b, x);
-      const double back = -A_STEP * step.time_step();
-      const auto came_over_ramp = [&] {
-        if (part >= LITTLE || at.depth >= SHALLOW * thinner(a, b)) return false;
-        PlacedEdge before = one;
-        before.shift(x, back * relative, back * (a.spin - b.spin));
-        const EdgeCrossing was(before, other);
-        return was.square < PARALLEL || CrossingPart(before, other, was, wa, wb, over_ends).value() <= 0.0;
-      };
-      step.begin(touch, a, &b, {x, -1.0 * at.n, at.depth, part},
-                 at.depth + back * dot(relative, at.n) <= 0.0 || came_over_ramp());
-      pair.touches.push_back(touch);
-      found = pair.touches.end() - 1;
-    } else if (at.cone < AT_END || at.depth <= 0.0 || part <= 0.0) {
-      if (at.depth <= 0.0 || part <= 0.0) {
-        step.part(*found, a, &b, {x, -1.0 * at.n, at.depth, part});
-      } else {
-        step.let_go(*found, at.depth, part);
-        pair.touches.erase(found);
-      }
-      continue;
+      if (!edges.may_begin()) continue;
+      pair.touches.push_back(edges.begun(near.first, near.second));
+      edges.press(pair.touches.back());
+    } else if (at.depth <= 0.0 || edges.part <= 0.0) {
+      step.part(*found, a, &b, edges.meeting());
+    } else if (at.cone < AT_END) {
+      step.let_go(*found, at.depth, edges.part);
+      pair.touches.erase(found);
+    } else {
+      edges.press(*found);
     }
-    Touch &touch = *found;
-    const ContactLaw its_law = step.law_of(touch, law);
-    ContactForce<double> push = step.pressure(touch, a, &b, its_law, part, at.depth);
-    Vec3 force = (-push.press) * at.n;
-    // The gradient of `part`: s and r move by (u - cosine w)/sine^2 and -(w - cosine u)/sine^2 with the first body.
-    const double by_s = push.surface_energy * (at.s > 0.0 ? -counts.slope_a : counts.slope_a) * counts.of_b * counts.of_angle,
-                 by_r = push.surface_energy * counts.of_a * (at.r > 0.0 ? -counts.slope_b : counts.slope_b) * counts.of_angle,
-                 by_angle = push.surface_energy * counts.of_a * counts.of_b * counts.slope_angle;
-    if (by_s != 0.0 || by_r != 0.0) {
-      const Vec3 aside =
-          (by_s / at.square) * (one.along - at.cosine * other.along) - (by_r / at.square) * (other.along - at.cosine * one.along);
-      force += aside;
-      // They also move as the edges turn towards n.
-      const Vec3 torque =
-          (0.5 * at.depth) * cross(at.n, aside) + (at.depth * (by_s + at.cosine * by_r) / at.square) * cross(one.along, at.n);
-      a.torque += torque;
-      b.torque -= torque;
-    }
-    if (by_angle != 0.0) {
-      const Vec3 torque = (2.0 * at.cosine * by_angle) * cross(one.along, other.along);
-      a.torque += torque;
-      b.torque -= torque;
-    }
-    if (law.friction > 0.0) {
-      const Vec3 ran = step.ran(a, &b);
-      run_along(touch.anchor, ran, one.along, other.along, at);
-      const Vec3 away = (touch.anchor.x - at.s) * one.along - (touch.anchor.y - at.r) * other.along;
-      step.friction(touch, its_law, part, away, at.n, ran, push);
-      touch.anchor = {at.s + push.kept * (touch.anchor.x - at.s), at.r + push.kept * (touch.anchor.y - at.r), 0.0};
-      const Vec3 between = 0.5 * ((one.middle + touch.anchor.x * one.along) + (other.middle + touch.anchor.y * other.along));
-      step.apply(a, &b, between, push.pull);
-      // The way from one anchor to the other has a part along n, which turns with both edges.
-      const Vec3 &u = one.along, &w = other.along;
-      const double lever = (dot(cross(u, w), at.n) > 0.0 ? 1.0 : -1.0) * at.depth / std::sqrt(at.square);
-      const Vec3 turning = lever * (at.cosine * push.pull - 0.5 * (dot(push.pull, u) * w + dot(push.pull, w) * u));
-      a.torque += turning;
-      b.torque -= turning;
-      force += push.drag;
-    }
-    step.apply(a, &b, x, force);
-    step.book(a, &b, touch, {x, -1.0 * at.n, at.depth, part}, push);
   }
 }
 
