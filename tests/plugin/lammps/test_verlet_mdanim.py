@@ -326,6 +326,20 @@ def test_a_periodic_box_gets_the_plain_step(tmp_path):
     assert np.array_equal(found, plain)
 
 
+def test_blocks_far_from_the_origin_are_pushed_in_time(tmp_path):
+    """Passes do not look at pairs as long as these cannot come into reach. Where places are rounded more, two blocks meet in the
+    same step as without passes."""
+    far = np.full(3, 1e4)
+    pair = lab.join(lab.block((4, 3, 3), far, (0.1, 0.0, 0.0)), lab.block((3, 4, 3), far + (6.0, 0.0, 0.0), (-0.2, 0.0, 0.0)))
+    commands = ["fix push all mdanim/barrier boundary inner 1.0 1.6", MOVE[1], "timestep 0.1"]
+    found, taken = lab_state(pair, tmp_path, [*commands, "run_style verlet/mdanim", "run 300"])
+    plain, none = lab_state(pair, tmp_path, [*commands, "run_style verlet", "run 300"])
+    assert (taken, none) == (299, 0)
+    assert np.array_equal(found, plain)
+    n, first = len(pair.x), pair.molecule == 1
+    assert found[n : 2 * n][first].mean(0)[0] < 0.05
+
+
 def test_only_the_group_is_pushed(tmp_path):
     """Let contact push one of two bodies alone, the first: the other one flies on as if nothing was there."""
     pair = lab.join(lab.block((4, 3, 3)), lab.block((3, 4, 3), (4.8, 0.0, 0.0), (-0.2, 0.0, 0.0)))
