@@ -17,7 +17,7 @@ from ...errors import Problem
 from ...model.inertia import components
 from ...scene.formatting import number
 from ..contact.surface import DAMPED, HEAT, LET_GO
-from . import points, spinning, touching
+from . import cradle, points, spinning, touching
 from .words import Rigid, Sleep
 
 GROUP = "bodies"
@@ -177,7 +177,7 @@ class RigidMotion(StandardSteps, Effect):
         return touching.depths(envelope)
 
     def notes(self, envelope):
-        return [*points.notes(envelope), *spinning.notes(envelope)]
+        return [*cradle.notes(envelope), *points.notes(envelope), *spinning.notes(envelope)]
 
     def kinetic(self, readings):
         return self._sum(readings, "kinetic")
