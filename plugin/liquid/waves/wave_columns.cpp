@@ -14,7 +14,7 @@ double *WaveArrays::*const OF_SPANS[] = {
     &WaveArrays::capacity, &WaveArrays::floor,  &WaveArrays::roof,        &WaveArrays::full,  &WaveArrays::rest,
     &WaveArrays::phi,      &WaveArrays::volume, &WaveArrays::head,        &WaveArrays::slope, &WaveArrays::yields,
     &WaveArrays::coming,   &WaveArrays::rhs,    &WaveArrays::beside_full, &WaveArrays::delta, &WaveArrays::last_delta,
-    &WaveArrays::scale,    &WaveArrays::x,      &WaveArrays::r,           &WaveArrays::p,     &WaveArrays::next_p,
+    &WaveArrays::scale,    &WaveArrays::x,      &WaveArrays::r,           &WaveArrays::p,     &WaveArrays::flat,
     &WaveArrays::ap,       &WaveArrays::net,    &WaveArrays::sums,
 };
 

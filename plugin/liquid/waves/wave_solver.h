@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include "liquid/waves/wave_blocks.h"
 #include "liquid/waves/wave_loops.h"
 #include "liquid/waves/wave_mouths.h"
 
@@ -12,7 +13,8 @@ class WaveSolver {
  public:
   // All must outlive this.
   WaveSolver(WaveColumns &columns, WaveRun &run, const WaveMouths &mouths)
-      : columns(columns), run(run), mouths(mouths), law(run.law), arrays(columns.arrays), loops(columns, run.threads)
+      : columns(columns), run(run), mouths(mouths), law(run.law), arrays(columns.arrays), loops(columns, run.threads),
+        blocks(columns)
   {
   }
 
@@ -25,9 +27,11 @@ class WaveSolver {
   using Ends = WaveColumns::Ends;
 
   void assemble(bool some_full);
-  void solve(bool again);
+  void forget_beside(const std::vector<std::uint8_t> &freed);
+  void solve(bool again, bool with_blocks);
+  void descend(double left, double enough, bool with_blocks);
   bool let_go();
-  bool let_go(long first, long end);
+  bool let_go_in(long row);
   double sum_of_rows() const;
   void general_assembly(long i);
   void general_coupling(const LinkPlace &link);
@@ -39,6 +43,8 @@ class WaveSolver {
   const WaveLaw &law;
   WaveArrays &arrays;
   WaveLoops loops;
+  WaveBlocks blocks;
+  std::vector<std::uint8_t> stale;    // rows whose part of the system is to be made anew
 };
 
 }    // namespace mdanim

@@ -33,26 +33,39 @@ struct WaveArrays {
   double *volume, *head, *slope;
   double *yields, *coming;    // 1/mass of floating bodies above, 0 where they are held; change of the capacity, see (W6)
   double *rhs, *beside_full;
-  double *delta, *last_delta;                 // phi - head, in this update and in the last one
-  double *scale, *x, *r, *p, *next_p, *ap;    // of the solver
-  double *net;                                // units gained by a span
-  double *sums;                               // of rows
-  WaveLinks links[2];                         // along x, along y
+  double *delta, *last_delta;        // phi - head, in this update and in the last one
+  double *scale, *x, *r, *p, *ap;    // of the solver
+  double *flat;                      // x of a change of heads by 1; 0 where nothing is joined
+  double *net;                       // units gained by a span
+  double *sums;                      // of rows
+  WaveLinks links[2];                // along x, along y
+};
+
+// The system of blocks, row after row of blocks from the first one: D, and the couplings to the next block along x and along y.
+struct BlockSums {
+  double *diagonal, *couple[2];
+  long end_row;    // of columns
 };
 
 // Rows [first, end); the first row with columns is 1. No row writes where another reads or writes.
 struct WaveKernels {
   static constexpr int SUMMED = 8;    // numbers of a row are summed in this number of parts
+  static constexpr int BLOCK = 4;     // columns along the edge of a block
 
   bool (*surfaces)(const WaveArrays &, const WaveLaw &, long first, long end);             // (W1); whether some span is full
   void (*open_links)(const WaveArrays &, const WaveLaw &, int d, long first, long end);    // (W2) of direction d
   void (*advect)(const WaveArrays &, const WaveLaw &, int d, long first, long end);        // (W3), (W4)
   void (*assemble)(const WaveArrays &, const WaveLaw &, bool some_full, long first, long end);    // (W5), (W6)
   void (*couple)(const WaveArrays &, long first, long end);
-  void (*guess)(const WaveArrays &, bool again, long first, long end);        // x; `again`: from delta
-  void (*start)(const WaveArrays &, long first, long end);                    // r = rhs - A x
-  void (*turn)(const WaveArrays &, double beta, long first, long end);        // next_p = r + beta p, ap = A next_p
-  void (*advance)(const WaveArrays &, double alpha, long first, long end);    // x += alpha next_p, r -= alpha ap
+  void (*guess)(const WaveArrays &, bool again, long first, long end);    // x; `again`: from delta
+  void (*start)(const WaveArrays &, long first, long end);                // r = rhs - A x
+  // x += alpha p, and then p = r + flat lift + beta p. Unless null, `lift` has a row for each row of blocks.
+  void (*turn)(const WaveArrays &, double alpha, double beta, const double *lift, long first, long end);
+  void (*product)(const WaveArrays &, long first, long end);                      // ap = A p
+  void (*advance)(const WaveArrays &, double alpha, long first, long end);        // r -= alpha ap
+  void (*finish)(const WaveArrays &, double alpha, long first, long end);         // x += alpha p
+  void (*gather)(const WaveArrays &, double *to, long first, long end);           // flat r, summed in each row of each block
+  void (*blocks)(const WaveArrays &, const BlockSums &, long first, long end);    // the system of rows of blocks
   void (*sum)(const WaveArrays &, const double *a, const double *b, long first, long end);    // of a b, to `sums`
   void (*heads)(const WaveArrays &, const WaveLaw &, long first, long end);          // (W7), and delta becomes the last one
   void (*push)(const WaveArrays &, const WaveLaw &, int d, long first, long end);    // (W8), and `moving`

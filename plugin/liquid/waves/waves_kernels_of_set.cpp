@@ -171,6 +171,7 @@ MDANIM_ALWAYS_INLINE void assemble(const WaveArrays &a, const WaveLaw &law, long
       sums.rhs = pick(full, full_rhs(law, volume, load<Vector>(a.capacity + i), load<Vector>(a.coming + i), sums.inflow), none);
       store(a.beside_full + i, sums.beside_full);
     }
+    const Vector stiffness = sums.diagonal;
     links_of(a, i, [&](int d, long link, long other, bool inward) MDANIM_INLINED {
       const WaveLinks &links = a.links[d];
       sums.couple(head, load<Vector>(a.head + other), load<Vector>(links.edge + link), load<Vector>(links.height + link),
@@ -179,6 +180,7 @@ MDANIM_ALWAYS_INLINE void assemble(const WaveArrays &a, const WaveLaw &law, long
     const auto solved = sums.diagonal > none;
     const Vector one = constant<Vector>(1.0), scale = one / root(pick(solved, sums.diagonal, one));
     store(a.scale + i, scale);
+    store(a.flat + i, pick(sums.diagonal > stiffness, one / scale, none));
     store(a.rhs + i, pick(solved, sums.rhs * scale, none));
   });
 }
@@ -227,16 +229,32 @@ template <class Vector> void start(const WaveArrays &a, long first, long end)
   });
 }
 
-template <class Vector> void turn(const WaveArrays &a, double beta, long first, long end)
+template <class Vector, bool LIFTED>
+MDANIM_ALWAYS_INLINE void turn(const WaveArrays &a, double alpha, double beta, const double *lift, long first, long end)
 {
-  const Vector factor = constant<Vector>(beta);
+  const Vector step = constant<Vector>(alpha), factor = constant<Vector>(beta);
+  for (long row = first; row < end; ++row) {
+    const double *const lifted = LIFTED ? lift + ((row - 1) / WaveKernels::BLOCK - row) * a.stride : nullptr;
+    each<Vector>(a, row, row + 1, [&](long i) MDANIM_INLINED {
+      const Vector p = load<Vector>(a.p + i);
+      Vector r = load<Vector>(a.r + i);
+      if (LIFTED) r += load<Vector>(a.flat + i) * load<Vector>(lifted + i);
+      store(a.x + i, load<Vector>(a.x + i) + step * p);
+      store(a.p + i, r + factor * p);
+    });
+  }
+}
+
+template <class Vector> void turn(const WaveArrays &a, double alpha, double beta, const double *lift, long first, long end)
+{ lift ? turn<Vector, true>(a, alpha, beta, lift, first, end) : turn<Vector, false>(a, alpha, beta, lift, first, end); }
+
+template <class Vector> void product(const WaveArrays &a, long first, long end)
+{
   sum_rows<Vector>(a, first, end, [&](long i) MDANIM_INLINED {
-    // Computes p of the neighbours once more, so that no row waits for another.
-    const auto p = [&](long j) MDANIM_INLINED { return load<Vector>(a.r + j) + factor * load<Vector>(a.p + j); };
-    const Vector own = p(i), ap = apply<Vector>(a, i, p);
-    store(a.next_p + i, own);
+    const auto p = [&](long j) MDANIM_INLINED { return load<Vector>(a.p + j); };
+    const Vector ap = apply<Vector>(a, i, p);
     store(a.ap + i, ap);
-    return own * ap;
+    return p(i) * ap;
   });
 }
 
@@ -244,11 +262,61 @@ template <class Vector> void advance(const WaveArrays &a, double alpha, long fir
 {
   const Vector factor = constant<Vector>(alpha);
   sum_rows<Vector>(a, first, end, [&](long i) MDANIM_INLINED {
-    store(a.x + i, load<Vector>(a.x + i) + factor * load<Vector>(a.next_p + i));
     const Vector r = load<Vector>(a.r + i) - factor * load<Vector>(a.ap + i);
     store(a.r + i, r);
     return r * r;
   });
+}
+
+template <class Vector> void finish(const WaveArrays &a, double alpha, long first, long end)
+{
+  const Vector step = constant<Vector>(alpha);
+  each<Vector>(a, first, end,
+               [&](long i) MDANIM_INLINED { store(a.x + i, load<Vector>(a.x + i) + step * load<Vector>(a.p + i)); });
+}
+
+// Sums of four numbers each.
+template <class Vector> MDANIM_ALWAYS_INLINE void store_by_four(double *to, const Vector &numbers)
+{
+  double part[LANES<Vector>];
+  store(part, numbers);
+  for (int n = 0; n < LANES<Vector>; n += 4) to[n / 4] = (part[n] + part[n + 1]) + (part[n + 2] + part[n + 3]);
+}
+
+template <class Vector> void gather(const WaveArrays &a, double *to, long first, long end)
+{
+  each<Vector>(a, first, end, [&](long i) MDANIM_INLINED {
+    store_by_four<Vector>(to + i / WaveKernels::BLOCK, load<Vector>(a.flat + i) * load<Vector>(a.r + i));
+  });
+}
+
+template <class Vector> void blocks(const WaveArrays &a, const BlockSums &sums, long first, long end)
+{
+  constexpr int EDGE = WaveKernels::BLOCK;
+  Vector inside, across{};    // lanes of links within a block, and of those to the next one
+  for (int n = 0; n < LANES<Vector>; ++n)
+    inside[n] = n % EDGE < EDGE - 1 ? 2.0 : 0.0, across[n] = n % EDGE < EDGE - 1 ? 0.0 : 1.0;
+  const Vector two = constant<Vector>(2.0);
+  for (long row = first; row < end; ++row)
+    for (long x = 0; x < a.stride; x += LANES<Vector>) {
+      Vector diagonal{}, east{}, north{};
+      for (long y = 1 + EDGE * row; y < 1 + EDGE * (row + 1) && y < sums.end_row; ++y) {
+        const long i = y * a.stride + x;
+        const Vector flat = load<Vector>(a.flat + i);
+        const Vector to_east = load<Vector>(a.links[0].couple + i) * flat * load<Vector>(a.flat + i + 1);
+        const Vector to_north = load<Vector>(a.links[1].couple + i) * flat * load<Vector>(a.flat + i + a.stride);
+        diagonal += flat * flat - inside * to_east;
+        east += across * to_east;
+        if (y == EDGE * (row + 1))
+          north = to_north;
+        else
+          diagonal -= two * to_north;
+      }
+      const long to = (row * a.stride + x) / EDGE;
+      store_by_four<Vector>(sums.diagonal + to, diagonal);
+      store_by_four<Vector>(sums.couple[0] + to, east);
+      store_by_four<Vector>(sums.couple[1] + to, north);
+    }
 }
 
 template <class Vector> void sum(const WaveArrays &arrays, const double *a, const double *b, long first, long end)
@@ -345,7 +413,8 @@ extern const WaveKernels MDANIM_OF_SET(wave_kernels);
 const WaveKernels MDANIM_OF_SET(wave_kernels) = {
     kernel::surfaces<Four>, kernel::open_links<Four>, kernel::advect<Four>, assemble,
     kernel::couple<Wide>,   kernel::guess<Wide>,      kernel::start<Wide>,  kernel::turn<Wide>,
-    kernel::advance<Wide>,  kernel::sum<Wide>,        kernel::heads<Four>,  kernel::push<Four>,
+    kernel::product<Wide>,  kernel::advance<Wide>,    kernel::finish<Wide>, kernel::gather<Wide>,
+    kernel::blocks<Wide>,   kernel::sum<Wide>,        kernel::heads<Four>,  kernel::push<Four>,
     kernel::fastest<Four>,  kernel::balance<Four>,    kernel::settle<Four>,
 };
 

@@ -306,7 +306,7 @@ def test_light_bodies_are_stable(size, density, above):
 def test_a_bore_carries_a_float():
     """Flow pushes a body along, and not aside."""
     along, aside = forms.carried(201)
-    assert 4.0 < along < 6.0 and aside < 0.05
+    assert 4.0 < along < 6.0 and aside < 0.055
 
 
 # --- solids that move ---
