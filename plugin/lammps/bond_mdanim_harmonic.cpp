@@ -182,7 +182,7 @@ void BondMdanimHarmonic::tally()
     const SpringCoeffs &own = law[type];
     const double square = floored_square(d);
     double factor = spring_factor(own.push, own.pull, square);
-    if (own.c > 0.0) factor += dashpot_factor(own.c, d, vec3(atom->v[i]) - vec3(atom->v[j]), square);
+    if (own.c > 0.0) factor -= own.c * strain_rate(d, vec3(atom->v[i]) - vec3(atom->v[j]), square);
     const double w[6] = {d.x * d.x * factor, d.y * d.y * factor, d.z * d.z * factor,
                          d.x * d.y * factor, d.x * d.z * factor, d.y * d.z * factor};
     for (int k = 0; k < 6; ++k) sums[k] += share * w[k];

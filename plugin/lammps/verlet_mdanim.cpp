@@ -342,7 +342,7 @@ bool VerletMdanim::look_again()
 {
   timer->stamp(Timer::BOND);
   measure();
-  // The last values of dashpots do not migrate with particles: several ranks make lists in a plain step, when they are due.
+  // Strain rates do not migrate with springs: several ranks make lists in a plain step, when they are due.
   const bool alone = comm->nprocs == 1, between_passes = alone || !engine.crew.springs->account();
   if (spend(0.0) && !(between_passes && budget.nearly_spent())) return true;
   engine.leave();

@@ -29,7 +29,6 @@ void BlockRanges::fill(const std::vector<Block> &all, int active, int particles,
     own.first_entry = own.first ? cuts.crossing[own.first - 1].end : 0;
     own.claimed = own.crossed = turn;
     std::copy_n(range[n + 1].f, 3, own.f);
-    std::copy_n(range[n + 1].part, 3, own.part);
   }
   const auto is_below = [](const Block &block, int particle) { return block.start < particle; };
   const auto first = [&](std::size_t n) {

@@ -17,6 +17,7 @@ class BlockRanges {
   BlockRanges(RangeCut &&ranges, int doubles);
 
   const RangeCut &cut() const { return cuts; }
+  std::vector<Crossing> &crossings() { return cuts.crossing; }
   const std::vector<Range> &all() const { return range; }
   Range &operator[](std::size_t n) { return range[n]; }
   // Sets the ranges of the first `active` blocks, which have something to do in a pass; `particles` of all blocks.

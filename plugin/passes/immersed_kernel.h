@@ -10,10 +10,6 @@
 namespace mdanim {
 namespace {
 
-typedef float Floats __attribute__((vector_size(4 * LANES)));
-
-MDANIM_ALWAYS_INLINE Vector load_floats(const float *from) { return __builtin_convertvector(load<Floats>(from), Vector); }
-
 // Built at once: numbers that are set one by one are cleared in memory first.
 template <int MANY> using Numbers = std::make_integer_sequence<int, MANY>;
 
@@ -51,7 +47,7 @@ __attribute__((noinline)) void move_immersed(const Pass &pass, const Block &bloc
     tally.fastest_near = place.z < rows.top_of_near ? larger(square, tally.fastest_near) : tally.fastest_near;
   };
   const Vector mass = phi > 0.0 ? particle.of[OWN_MASS] : Vector{};
-  advance<FRICTION, DAMPED>(pass, block, total, load_own(total) + force.push, half_steps<FRICTION>(phi, kick), mass, tally, then);
+  advance<FRICTION, DAMPED>(pass, block, load_own(total) + force.push, half_steps<FRICTION>(phi, kick), mass, tally, then);
 }
 
 }    // namespace

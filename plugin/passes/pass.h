@@ -26,6 +26,7 @@ struct Block {
   bool damped;       // some of its particles have dashpots
   bool bound;        // some have springs
   unsigned end;
+  unsigned rates;        // first of its strip's rows of Pass::rate, if it is damped
   int external_force;    // first of its rows of Pass::external_force; negative for none
   int planes;            // first of its rows of PlaneRows; negative for none
   unsigned motion;       // row of Pass::motion
@@ -44,6 +45,7 @@ struct Crossing {
   int start;
   bool damped;
   unsigned end;
+  unsigned rates;
 };
 
 // A border between two ranges. Springs across it are evaluated once, before a thread moves any particle that they need. They are
@@ -52,7 +54,7 @@ struct Crossing {
 struct Border {
   int first, crossings;    // of Pass::crossing, ascending
   unsigned first_entry;
-  double *f[3], *part[3];       // of the range above
+  double *f[3];                 // of the range above
   unsigned claimed, crossed;    // Pass::turn in which a thread has begun to evaluate them, and in which they are done
 };
 
@@ -60,11 +62,11 @@ struct Border {
 struct Range {
   int first, blocks;    // of Pass::block
   unsigned first_entry;
-  int end;                   // particle
-  Border *below, *above;     // null where no spring crosses
-  double *f[3], *part[3];    // of this range alone, with the lanes of a vector on either side
-  int shared[2];             // objects that the ranges below and above may have blocks of, too; negative for none
-  double *shared_trace;      // two rows of TRACE for them
+  int end;                  // particle
+  Border *below, *above;    // null where no spring crosses
+  double *f[3];             // of this range alone, with the lanes of a vector on either side
+  int shared[2];            // objects that the ranges below and above may have blocks of, too; negative for none
+  double *shared_trace;     // two rows of TRACE for them
 };
 
 enum class Friction { NONE, IMPLICIT, EXPONENTIAL };
@@ -85,7 +87,7 @@ struct Mover {
 // A row of Pass::trace: a box, see boxes.h, and the negative of the largest v^2.
 enum Trace { FASTEST = 6, TRACE };
 
-using DashpotSums = DashpotWork<double>;    // over particles
+using DashpotSums = DashpotWork<double>;    // over springs
 
 // Sums over particles that have moved in a pass. They are kept for each chunk of particles (Cut) and added up in the order of
 // chunks: no number depends on how many lanes a block has, nor on which threads take the pass.
@@ -121,14 +123,15 @@ struct Pass {
   const double *damped_law;    // rows of push, pull and c; null where nothing is damped
   const double *motion;        // see Motion
   double *x[3], *v[3];         // x^n -> x^{n+1}, v^{n-1/2} -> v^{n+1/2}
-  // With dashpots: their forces of the last step, F^{n-1} -> F^n, and the velocities that the forces of this step were computed
-  // with, v^{n-3/2} -> v^{n-1/2}. For blocks that are held back these stay as they are, and F^n goes to `held_part`.
-  double *last[3], *seen[3], *held_part[3];
-  // The range; forces from lower partners so far, and the dashpots' part of them, both zero before and after a pass.
-  const Range *range;
+  double dt;
+  // With dashpots: strain rates in the forces of the last step, one for each lane of an entry, those of a strip entry by entry;
+  // and the velocities that the forces of this step were computed with, v^{n-3/2} -> v^{n-1/2}, of blocks that are not held back.
+  float *rate;
+  double *seen[3];
+  const Range *range;    // the range; forces from lower partners so far are zero before and after a pass
   const Crossing *crossing;
   const Entry *crossing_entry;
-  double *crossed;    // what crossing springs do to their lower particles: rows of (3, lanes), (6, lanes) with dashpots
+  double *crossed;    // what crossing springs do to their lower particles: rows of (3, lanes), (5, lanes) with dashpots
   unsigned turn;      // number of the pass
   PassAcceleration gravity;
   double *external_force;    // rows of forces from elsewhere, (3, lanes) each, to be added after gravity; zero after a pass:

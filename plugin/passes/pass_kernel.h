@@ -89,21 +89,6 @@ struct Tally {
   }
 };
 
-// The dashpots' part in the account of a block that has gone from `first` to `last`.
-MDANIM_ALWAYS_INLINE void account(const Pass &pass, const Block &block, const double *motion, const Vector3 &now,
-                                  const Vector3 &first, const Vector3 &last, DashpotSums &sums)
-{
-  const Vector others = load(motion + FOREIGN_LANE * LANES), counts = load(motion + OWNED_LANE * LANES);
-  const auto keep = [&](const Vector &theirs, const Vector &own) { return others > 0.0 ? theirs : own; };
-  const Vector3 before = load(pass.last, block.start), seen = load(pass.seen, block.start);
-  const DashpotWork<Vector> terms = dashpot_work(now, before, seen, first, last);
-  store(pass.last, block.start, Vector3{keep(before.x, now.x), keep(before.y, now.y), keep(before.z, now.z)});
-  store(pass.seen, block.start, Vector3{keep(seen.x, first.x), keep(seen.y, first.y), keep(seen.z, first.z)});
-  add_lanes(sums.work, counts * terms.work);
-  add_lanes(sums.bend, counts * terms.bend);
-  add_lanes(sums.ahead, counts * terms.ahead);
-}
-
 // The law of leapfrog/law.h with the coefficients in a row of Pass::motion.
 template <Friction FRICTION> MDANIM_ALWAYS_INLINE auto half_steps(const double *motion)
 {
@@ -128,8 +113,8 @@ template <Friction FRICTION> MDANIM_ALWAYS_INLINE auto half_steps(const Vector &
 // The second half of a step and the first half of the next, by a law of leapfrog/law.h; friction takes from `mass` only.
 // then(v^n, v^{n+1/2}, r^{n+1}) is called with the sums of the block's chunk.
 template <Friction FRICTION, bool DAMPED, class Law, class Then>
-MDANIM_ALWAYS_INLINE void advance(const Pass &pass, const Block &block, const double *total, const Vector3 &f, const Law &law,
-                                  const Vector &mass, Tally &tally, const Then &then)
+MDANIM_ALWAYS_INLINE void advance(const Pass &pass, const Block &block, const Vector3 &f, const Law &law, const Vector &mass,
+                                  Tally &tally, const Then &then)
 {
   const int i = block.start;
   const double *const motion = pass.motion + static_cast<unsigned long>(block.motion) * (MOTIONS * LANES);
@@ -141,15 +126,14 @@ MDANIM_ALWAYS_INLINE void advance(const Pass &pass, const Block &block, const do
   store(pass.x, i, place);
   Vector square = dot(last, last);
   tally.squares += square;
-  if (block.chunk != tally.chunk) tally.turn_to_chunk(block.chunk, pass);
   if (pass.bends) add_lanes(tally.sums.bend, dt * dot(last, f));
   if (__builtin_expect(pass.gravity.works, 0)) {
     const Vector mass = load(motion + OWNED_LANE * LANES) * load(motion + MASS * LANES);
     add_lanes(tally.sums.pulled,
               mass * (pass.gravity.both[0] * first.x + pass.gravity.both[1] * first.y + pass.gravity.both[2] * first.z));
   }
-  if (DAMPED && block.damped) account(pass, block, motion, load_own(total + 3 * LANES), first, last, tally.sums.dashpots);
-  if constexpr (FRICTION != Friction::NONE) {    // 0 in lanes of others
+  if (DAMPED && block.damped) store(pass.seen, i, first);    // lanes of others come later
+  if constexpr (FRICTION != Friction::NONE) {                // 0 in lanes of others
     add_lanes(tally.sums.loss, law.loss_of_step(first, middle, last, f, mass));
   }
   then(middle, last, place);
@@ -176,13 +160,16 @@ void move_immersed(const Pass &pass, const Block &block, const double *total, Ta
 template <Friction FRICTION, bool DAMPED>
 MDANIM_ALWAYS_INLINE void move(const Pass &pass, const Block &block, const double *total, Tally &tally)
 {
-  const int i = block.start;
+  const double *const motion = pass.motion + static_cast<unsigned long>(block.motion) * (MOTIONS * LANES);
+  if (block.chunk != tally.chunk) tally.turn_to_chunk(block.chunk, pass);
+  if (DAMPED && block.damped) {    // springs of a ghost's lane are told by the rank that it belongs to
+    const Vector counts = load(motion + OWNED_LANE * LANES);
+    add_lanes(tally.sums.dashpots.work, counts * load(total + 3 * LANES));
+    add_lanes(tally.sums.dashpots.bend, counts * load(total + 4 * LANES));
+  }
   if (block.held_back) {
     for (int lane = 0; lane < block.lanes; ++lane)
-      for (int d = 0; d < 3; ++d) {
-        pass.total[3 * (i + lane) + d] = total[d * LANES + lane];
-        if (DAMPED && block.damped) pass.held_part[d][i + lane] = total[(3 + d) * LANES + lane];
-      }
+      for (int d = 0; d < 3; ++d) pass.total[3 * (block.start + lane) + d] = total[d * LANES + lane];
     return;
   }
   if constexpr (FRICTION != Friction::NONE) {
@@ -191,9 +178,8 @@ MDANIM_ALWAYS_INLINE void move(const Pass &pass, const Block &block, const doubl
       return;
     }
   }
-  const double *const motion = pass.motion + static_cast<unsigned long>(block.motion) * (MOTIONS * LANES);
-  advance<FRICTION, DAMPED>(pass, block, total, load_own(total), half_steps<FRICTION>(motion), load(motion + BRAKED_MASS * LANES),
-                            tally, [](const Vector3 &, const Vector3 &, const Vector3 &) {});
+  advance<FRICTION, DAMPED>(pass, block, load_own(total), half_steps<FRICTION>(motion), load(motion + BRAKED_MASS * LANES), tally,
+                            [](const Vector3 &, const Vector3 &, const Vector3 &) {});
 }
 
 // --- at the borders of ranges ---
@@ -240,12 +226,10 @@ template <bool DAMPED> MDANIM_ALWAYS_INLINE void cross(const Pass &pass, const B
     const Crossing &block = pass.crossing[n];
     Felt felt{};
     if (DAMPED && block.damped)
-      add_springs<true>(pass, pass.crossing_entry, e, block.end, block.start, border.f, border.part, felt, place);
+      add_springs<true>(pass, pass.crossing_entry, e, block.end, block.rates, block.start, border.f, felt, place);
     else
-      add_springs<false>(pass, pass.crossing_entry, e, block.end, block.start, border.f, border.part, felt, place);
-    double *const row = pass.crossed + static_cast<long>(n) * ((DAMPED ? 6 : 3) * LANES);
-    store_own(row, felt.springs);
-    if (DAMPED) store_own(row + 3 * LANES, felt.dashpots);
+      add_springs<false>(pass, pass.crossing_entry, e, block.end, block.rates, block.start, border.f, felt, place);
+    felt.put<DAMPED>(pass.crossed + static_cast<long>(n) * (FELT<DAMPED> * LANES));
   }
 }
 
@@ -269,12 +253,10 @@ __attribute__((noinline)) void feel_at_border(const Pass &pass, const Block &blo
   Felt felt{};
   if (block.crossing >= 0) {
     see_crossed<DAMPED_PASS>(pass, *pass.range->above);
-    const double *const row = pass.crossed + static_cast<long>(block.crossing) * ((DAMPED_PASS ? 6 : 3) * LANES);
-    felt.springs = load_own(row);
-    if (DAMPED) felt.dashpots = load_own(row + 3 * LANES);
+    felt = Felt::from<DAMPED>(pass.crossed + static_cast<long>(block.crossing) * (FELT<DAMPED_PASS> * LANES));
   }
   const auto place = [end = pass.range->end](double *const *from, int i) { return load_before(end, from, i); };
-  add_springs<DAMPED>(pass, pass.entry, e, block.end, block.start, pass.range->f, pass.range->part, felt, place);
+  add_springs<DAMPED>(pass, pass.entry, e, block.end, block.rates, block.start, pass.range->f, felt, place);
   add_up<DAMPED>(pass, block, felt, total);
 }
 
@@ -282,17 +264,17 @@ __attribute__((noinline)) void feel_at_border(const Pass &pass, const Block &blo
 template <Friction FRICTION, bool DAMPED>
 __attribute__((noinline)) void move_at_border(const Pass &pass, const Block &block, const double *total, Tally &tally)
 {
-  constexpr int KINDS = DAMPED ? 4 : 2;
+  constexpr int KINDS = DAMPED ? 3 : 2;
   double room[KINDS][3][LANES] = {};
   Pass copy = pass;
-  double **const of_copy[] = {copy.x, copy.v, copy.last, copy.seen};
+  double **const of_copy[] = {copy.x, copy.v, copy.seen};
   for (int kind = 0; kind < KINDS; ++kind)
     for (int d = 0; d < 3; ++d) {
       for (int lane = 0; lane < block.lanes; ++lane) room[kind][d][lane] = of_copy[kind][d][block.start + lane];
       of_copy[kind][d] = room[kind][d] - block.start;
     }
   move<FRICTION, DAMPED>(copy, block, total, tally);
-  double *const *const of_pass[] = {pass.x, pass.v, pass.last, pass.seen};
+  double *const *const of_pass[] = {pass.x, pass.v, pass.seen};
   for (int kind = 0; kind < KINDS; ++kind)
     for (int d = 0; d < 3; ++d)
       for (int lane = 0; lane < block.lanes; ++lane) of_pass[kind][d][block.start + lane] = room[kind][d][lane];
@@ -325,12 +307,12 @@ MDANIM_ALWAYS_INLINE void move_anywhere(const Pass &pass, const Block &block, co
 template <Friction FRICTION, bool DAMPED_PASS, bool DAMPED>
 MDANIM_ALWAYS_INLINE void step_strip(const Pass &pass, const Block *block, unsigned &e, Tally &tally)
 {
-  constexpr int NUMBERS = (DAMPED ? 6 : 3) * LANES;
-  alignas(64) double felt[LONGEST_STRIP * NUMBERS], total[(DAMPED_PASS ? 6 : 3) * LANES];
+  constexpr int NUMBERS = FELT<DAMPED> * LANES;
+  alignas(64) double felt[LONGEST_STRIP * NUMBERS], total[FELT<DAMPED_PASS> * LANES];
   feel_strip<DAMPED>(pass, block, e, felt);
   const Block *const end = block + block->strip;
   for (const double *own = felt; block < end; ++block, own += NUMBERS) {
-    add_up<DAMPED>(pass, *block, {load_own(own), DAMPED ? load_own(own + 3 * LANES) : Vector3{}}, total);
+    add_up<DAMPED>(pass, *block, Felt::from<DAMPED>(own), total);
     if (__builtin_expect(is_pushed(*block), 0)) take_external_force(pass, *block, total);
     move<FRICTION, DAMPED_PASS>(pass, *block, total, tally);
   }
@@ -340,7 +322,7 @@ MDANIM_ALWAYS_INLINE void step_strip(const Pass &pass, const Block *block, unsig
 // A block alone moves while the next one's springs keep the divider busy, so nothing waits for its forces.
 template <Friction FRICTION, bool DAMPED> MDANIM_ALWAYS_INLINE void go(Pass &pass)
 {
-  double total[2][(DAMPED ? 6 : 3) * LANES];
+  double total[2][FELT<DAMPED> * LANES];
   Tally tally;
   tally.box.open();
   const Block *const block = pass.block + pass.range->first;

@@ -38,7 +38,7 @@ PassRun::PassRun(SimdBlocks &blocks, const Kernels &kernels, const Threads &thre
     });
   if (Loss *account = crew.springs->account()) {
     account->close(atoms.v, dt);
-    if (blocks.damped()) blocks.take_in_dashpots(account->latest(), account->latest_seen());
+    blocks.forget_rates();
   }
   std::vector<std::vector<int>> of_early(crew.early.size());
   rests.assign(crew.early.size(), 0.0);
@@ -162,7 +162,6 @@ void PassRun::take_pass()
     sums.pulled += of_chunk.pulled;
     sums.dashpots.work += of_chunk.dashpots.work;
     sums.dashpots.bend += of_chunk.dashpots.bend;
-    sums.dashpots.ahead += of_chunk.dashpots.ahead;
     sums.liquid_work += of_chunk.liquid_work;
     sums.liquid_lost += of_chunk.liquid_lost;
   }
@@ -193,7 +192,6 @@ void PassRun::late_participants_turn(const std::function<void(bool at_end)> &lat
   late(true);
   if (waiting.empty()) return;
   crew.integrator->begin_step(waiting);
-  if (blocks.damped()) blocks.count_held_back(atoms.v, sums.dashpots);
   blocks.take_in_held_back(threads, atoms.x, atoms.v);
   for (const int i : waiting) {
     const double square = dot(vec3(atoms.v[i]), vec3(atoms.v[i]));
@@ -240,8 +238,8 @@ void PassRun::leave()
   blocks.give_out(threads, atoms.x, atoms.v);
   Loss *account = crew.springs->account();
   if (!account) return;
-  if (blocks.damped()) blocks.give_out_dashpots(account->latest(), account->latest_seen());
-  account->reopen();
+  if (blocks.damped()) blocks.give_out_dashpots(dt, account->latest(), account->latest_seen());
+  account->reopen(dt);
 }
 
 }    // namespace mdanim

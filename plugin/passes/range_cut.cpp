@@ -140,7 +140,7 @@ void RangeCutter::take_out_crossings()
     block.end = static_cast<unsigned>(inside.size());
     if (found.entry.size() == had) continue;
     block.crossing = static_cast<int>(found.crossing.size());
-    found.crossing.push_back({block.start, block.damped, static_cast<unsigned>(found.entry.size())});
+    found.crossing.push_back({block.start, block.damped, static_cast<unsigned>(found.entry.size()), 0});
   }
   cut.entry.swap(inside);
 }

@@ -18,13 +18,13 @@ static constexpr int PAGE = 512, LINE = 8;    // doubles
 SimdBlocks::SimdBlocks(const Cutter &of, Cut &&cut, RangeCut &&ranges)
     : cutter(of), lanes(of.lanes()), particles(cut.particles), many_chunks(cut.chunks), has_damped(of.damped()),
       all(std::move(cut.block)), entries(std::move(cut.entry)), immersed(lanes), external(lanes),
-      range(std::move(ranges), (damped() ? 6 : 3) * lanes)
+      range(std::move(ranges), (damped() ? 5 : 3) * lanes)
 {
   set_strips(all, entries, lanes, range.cut());
+  rate.assign(static_cast<std::size_t>(lanes) * number_rates());
   // A processor compares loads with pending stores by their place in a page only. So the places of a particle in all arrays that
   // a thread works on are spread evenly over a page.
-  const int kinds = damped() ? 5 : 2, kinds_of_range = damped() ? 2 : 1;
-  const int apart = PAGE / (3 * (kinds + kinds_of_range)) / LINE * LINE;
+  const int kinds = damped() ? 3 : 2, apart = PAGE / (3 * (kinds + 1)) / LINE * LINE;
   std::vector<std::pair<double **, long>> arrays;
   long size = 0;
   const auto add = [&](double *(&of)[3], int kind, int first, int end) {    // with places for particles from `first` to `end`
@@ -35,13 +35,12 @@ SimdBlocks::SimdBlocks(const Cutter &of, Cut &&cut, RangeCut &&ranges)
       size += end - first;
     }
   };
-  double *(*const of_all[])[3] = {&x, &v, &last, &seen, &held_part};
+  double *(*const of_all[])[3] = {&x, &v, &seen};
   for (int kind = 0; kind < kinds; ++kind) add(*of_all[kind], kind, 0, particles + cut.farthest + 2 * lanes);
   const RangeCut &cuts = range.cut();
   for (int n = 0; n < cuts.ranges(); ++n) {
     const int end = n + 1 < cuts.ranges() ? cuts.first[n + 1] : particles + cut.farthest;
-    double *(*const of_range[])[3] = {&range[n].f, &range[n].part};
-    for (int kind = 0; kind < kinds_of_range; ++kind) add(*of_range[kind], kinds + kind, cuts.first[n] - lanes, end + lanes);
+    add(range[n].f, kinds, cuts.first[n] - lanes, end + lanes);
   }
   memory.assign(size);
   for (const auto &[array, place] : arrays) *array = memory.data() + place;
@@ -50,6 +49,42 @@ SimdBlocks::SimdBlocks(const Cutter &of, Cut &&cut, RangeCut &&ranges)
 SimdBlocks::SimdBlocks(const Cutter &of, Cut &&cut, RangeCut &&ranges, const std::vector<int> &places, int own)
     : SimdBlocks(of, std::move(cut), std::move(ranges))
 { lay_out_at(places, own); }
+
+// Gives all damped entries their rows of Pass::rate; returns how many there are.
+unsigned SimdBlocks::number_rates()
+{
+  unsigned next = 0;
+  const auto number = [&next](auto &blocks) {
+    unsigned before = 0;
+    for (auto &block : blocks) {
+      block.rates = next;
+      if (block.damped) next += block.end - before;
+      before = block.end;
+    }
+  };
+  number(all);
+  number(range.crossings());
+  return next;
+}
+
+// Springs across a border come first: their offsets are the longest.
+template <class Visit> void SimdBlocks::each_damped_entry(const Visit &visit) const
+{
+  const RangeCut &cuts = range.cut();
+  unsigned e = 0;
+  for (int n = 0, head = 0; n < active; ++n) {
+    const Block &block = all[n];
+    if (block.strip) head = n;
+    if (block.damped && block.crossing >= 0) {
+      const Crossing &across = cuts.crossing[block.crossing];
+      unsigned k = block.crossing ? cuts.crossing[block.crossing - 1].end : 0;
+      for (unsigned row = across.rates; k < across.end; ++k, ++row) visit(cuts.entry[k], block.start, row);
+    }
+    unsigned row = all[head].rates + (n - head);
+    for (; e < block.end; ++e, row += all[head].strip)
+      if (block.damped) visit(entries[e], block.start, row);
+  }
+}
 
 void SimdBlocks::lay_out_at(const std::vector<int> &places, int own)
 {
@@ -176,6 +211,7 @@ void SimdBlocks::take_in_held_back(const Threads &threads, const double *const *
 {
   each_outside(threads, [&](int i) {
     for (int d = 0; d < 3; ++d) {
+      if (damped()) seen[d][i] = v[d][i];
       x[d][i] = from_x[at(i)][d];
       v[d][i] = from_v[at(i)][d];
     }
@@ -192,40 +228,27 @@ void SimdBlocks::give_out_held_back(const Threads &threads, double *const *to_x,
   });
 }
 
-void SimdBlocks::take_in_dashpots(const std::vector<Vec3> &from_force, const std::vector<Vec3> &from_seen)
+// Forces follow from the strain rates: in the last step r_ij was r_ij - dt v_ij. Their sums have the order of all forces.
+void SimdBlocks::give_out_dashpots(double dt, std::vector<Vec3> &to_force, std::vector<Vec3> &to_seen) const
 {
-  const auto put = [](const Vec3 &from, double *const *to, int i) { to[0][i] = from.x, to[1][i] = from.y, to[2][i] = from.z; };
-  for (int i = 0; i < particles; ++i) {
-    const int from = at(i);
-    if (is_ghost(from)) continue;
-    put(from_force[from], last, i);
-    put(from_seen[from], seen, i);
-  }
-}
-
-void SimdBlocks::give_out_dashpots(std::vector<Vec3> &to_force, std::vector<Vec3> &to_seen) const
-{
+  std::vector<Vec3> of_lower(particles), of_upper(particles);    // partners
+  const auto of = [](const double *const *a, int i) { return Vec3{a[0][i], a[1][i], a[2][i]}; };
+  each_damped_entry([&](const Entry &entry, int start, unsigned row) {
+    const double *const c = cutter.row(true, entry.law) + 2 * lanes;
+    const float *const rates = rate.data() + static_cast<std::size_t>(row) * lanes;
+    for (int lane = 0; lane < lanes; ++lane) {
+      if (c[lane] == 0.0) continue;
+      const int i = start + lane, j = i + entry.offset;
+      const Vec3 slowing = (c[lane] * rates[lane]) * ((of(x, i) - of(x, j)) - dt * (of(v, i) - of(v, j)));
+      of_upper[i] -= slowing;
+      of_lower[j] += slowing;
+    }
+  });
   for (int i = 0; i < particles; ++i) {
     const int to = at(i);
     if (is_ghost(to)) continue;
-    to_force[to] = {last[0][i], last[1][i], last[2][i]};
-    to_seen[to] = {seen[0][i], seen[1][i], seen[2][i]};
-  }
-}
-
-void SimdBlocks::count_held_back(const double *const *from_v, DashpotSums &sums)
-{
-  for (const int i : outside) {
-    if (!all[home[i]].damped) continue;
-    const auto of = [i](const double *const *a) { return Vec3{a[0][i], a[1][i], a[2][i]}; };
-    const auto terms = dashpot_work(of(held_part), of(last), of(seen), of(v), vec3(from_v[at(i)]));
-    sums.work += terms.work;
-    sums.bend += terms.bend;
-    sums.ahead += terms.ahead;
-    for (int d = 0; d < 3; ++d) {
-      last[d][i] = held_part[d][i];
-      seen[d][i] = v[d][i];
-    }
+    to_force[to] = of_lower[i] + of_upper[i];
+    to_seen[to] = of(seen, i);
   }
 }
 
@@ -281,10 +304,10 @@ void SimdBlocks::fill(Pass &pass, double *const *forces, double dt)
   for (int d = 0; d < 3; ++d) {
     pass.x[d] = x[d];
     pass.v[d] = v[d];
-    pass.last[d] = last[d];
     pass.seen[d] = seen[d];
-    pass.held_part[d] = held_part[d];
   }
+  pass.rate = rate.data();
+  pass.dt = dt;
   pass.total = reordered ? total.data() : forces[0];
   range.fill(all, active, particles, pass);
 }
@@ -292,7 +315,7 @@ void SimdBlocks::fill(Pass &pass, double *const *forces, double dt)
 std::size_t SimdBlocks::bytes() const
 {
   return external.bytes() + range.bytes() + all.capacity() * sizeof(Block) + entries.capacity() * sizeof(Entry) +
-         motions.bytes() + memory.bytes() +
+         motions.bytes() + memory.bytes() + rate.bytes() +
          (home.capacity() + outside.capacity() + index.capacity() + place.capacity() + ghosts.capacity() + waiting.capacity()) *
              sizeof(int) +
          total.capacity() * sizeof(double) + immersed.bytes();

@@ -68,11 +68,10 @@ class SimdBlocks {
   void take_in_held_back(const Threads &threads, const double *const *x, const double *const *v);
   void give_out_held_back(const Threads &threads, double *const *x, double *const *v) const;
 
+  // Where damped: the first pass after this knows no strain rates of the step before.
+  void forget_rates() { rate.assign(rate.size()); }
   // Where damped: forces of dashpots in the last step, and the velocities that they were computed with, of all own particles.
-  void take_in_dashpots(const std::vector<Vec3> &force, const std::vector<Vec3> &seen);
-  void give_out_dashpots(std::vector<Vec3> &force, std::vector<Vec3> &seen) const;
-  // Adds the sums of particles that are held back; they have moved, and v is the array that they will be taken in from.
-  void count_held_back(const double *const *v, DashpotSums &sums);
+  void give_out_dashpots(double dt, std::vector<Vec3> &force, std::vector<Vec3> &seen) const;
 
   // With ghosts: gives out positions of these own particles, which other ranks wait for, and velocities unless v is null; and
   // takes in those of ghosts.
@@ -111,6 +110,9 @@ class SimdBlocks {
       return is_ghost(found) ? -1 : found;
     };
   }
+  unsigned number_rates();
+  // Calls visit(entry, first particle of its block, row of Pass::rate) for all entries of damped blocks.
+  template <class Visit> void each_damped_entry(const Visit &visit) const;
   void set_apart(const std::vector<bool> &moves);    // by the first particle of a block: whether any of it moves
 
   const Cutter &cutter;
@@ -132,7 +134,8 @@ class SimdBlocks {
   DistinctRows<double> motions;
   Doubles memory;    // of the arrays
   double *x[3] = {}, *v[3] = {};
-  double *last[3] = {}, *seen[3] = {}, *held_part[3] = {};    // where damped
+  double *seen[3] = {};    // where damped
+  Floats rate;             // see Pass
   BlockRanges range;
 };
 

@@ -18,6 +18,12 @@ MDANIM_ALWAYS_INLINE Vector load(const double *from) { return load<Vector>(from)
 
 MDANIM_ALWAYS_INLINE Vector3 load(const double *const *from, long i) { return load<Vector>(from, i); }
 
+typedef float Floats __attribute__((vector_size(4 * LANES)));
+
+MDANIM_ALWAYS_INLINE Vector load_floats(const float *from) { return __builtin_convertvector(load<Floats>(from), Vector); }
+
+MDANIM_ALWAYS_INLINE void store_floats(float *to, const Vector &value) { store(to, __builtin_convertvector(value, Floats)); }
+
 // Loads components of a block's own numbers, LANES of each.
 MDANIM_ALWAYS_INLINE Vector3 load_own(const double *from) { return {load(from), load(from + LANES), load(from + 2 * LANES)}; }
 
@@ -28,40 +34,68 @@ MDANIM_ALWAYS_INLINE void store_own(double *to, const Vector3 &value)
   store(to + 2 * LANES, value.z);
 }
 
-// Forces on the particles of a block: of springs to upper partners, and of dashpots alone.
+// Vectors of numbers that a block adds up: forces on its particles from upper partners, and what dashpots take.
+template <bool DAMPED> constexpr int FELT = DAMPED ? 5 : 3;
+template <bool DAMPED> constexpr int COEFFS = DAMPED ? 3 : 2;
+
 struct Felt {
-  Vector3 springs, dashpots;
+  Vector3 force;
+  DashpotWork<Vector> taken;
+
+  template <bool DAMPED> MDANIM_ALWAYS_INLINE static Felt from(const double *row)
+  { return {load_own(row), {DAMPED ? load(row + 3 * LANES) : Vector{}, DAMPED ? load(row + 4 * LANES) : Vector{}}}; }
+  template <bool DAMPED> MDANIM_ALWAYS_INLINE void put(double *row) const
+  {
+    store_own(row, force);
+    if (DAMPED) store(row + 3 * LANES, taken.work), store(row + 4 * LANES, taken.bend);
+  }
 };
 
-// Forces of springs on particles at a distance d, with this square, from their partners; by a row of Pass::law.
-MDANIM_ALWAYS_INLINE Vector3 spring_force(const double *coeffs, const Vector3 &d, const Vector &square)
-{ return spring_factor(load(coeffs), load(coeffs + LANES), square) * d; }
+// Particles in all lanes: where they are, and with dashpots how fast.
+template <bool DAMPED> struct Lanes {
+  Vector3 x, v;
+
+  template <class Place> MDANIM_ALWAYS_INLINE static Lanes at(double *const *x, double *const *v, long i, const Place &place)
+  { return {place(x, i), DAMPED ? place(v, i) : Vector3{}}; }
+};
+
+// Forces of springs on particles from their partners, by a row of Pass::law or Pass::damped_law; `rate` is their row of
+// Pass::rate.
+template <bool DAMPED>
+MDANIM_ALWAYS_INLINE Vector3 force_of(const double *coeffs, const Lanes<DAMPED> &here, const Lanes<DAMPED> &there, double dt,
+                                      float *rate, DashpotWork<Vector> &taken)
+{
+  const Vector3 d = here.x - there.x;
+  const Vector square = floored_square(d);
+  Vector factor = spring_factor(load(coeffs), load(coeffs + LANES), square);
+  if constexpr (DAMPED) {
+    const Vector3 faster = here.v - there.v;
+    const Vector c = load(coeffs + 2 * LANES), along = dot(faster, d), now = along / square;
+    const DashpotWork<Vector> one = dashpot_work(along, square, dot(faster, faster), now, load_floats(rate), dt);
+    factor -= c * now;
+    taken.work += c * one.work;
+    taken.bend += c * one.bend;
+    store_floats(rate, now);
+  }
+  return factor * d;
+}
 
 // Evaluates the springs of a block, each once, and the dashpots beside them: forces on its own particles go into `felt`, those on
-// their partners into f and part. place(array, i) gives the lanes of particles from i on.
+// their partners into f. place(array, i) gives the lanes of particles from i on.
 template <bool DAMPED, class Place>
-MDANIM_ALWAYS_INLINE void add_springs(const Pass &pass, const Entry *entry, unsigned &e, unsigned end, int i, double *const *of_f,
-                                      double *const *of_part, Felt &felt, const Place &place)
+MDANIM_ALWAYS_INLINE void add_springs(const Pass &pass, const Entry *entry, unsigned &e, unsigned end, unsigned rates, int i,
+                                      double *const *of_f, Felt &felt, const Place &place)
 {
-  constexpr int COEFFS = DAMPED ? 3 : 2;
-  double *const x[] = {pass.x[0], pass.x[1], pass.x[2]}, *const f[] = {of_f[0], of_f[1], of_f[2]};
-  const double *const coeffs = DAMPED ? pass.damped_law : pass.law;
-  const Vector3 here = place(x, i);
-  Vector3 v;
-  if (DAMPED) v = place(pass.v, i);
-  for (; e < end; ++e) {
+  double *const x[] = {pass.x[0], pass.x[1], pass.x[2]}, *const v[] = {pass.v[0], pass.v[1], pass.v[2]};
+  double *const f[] = {of_f[0], of_f[1], of_f[2]};
+  const double *const coeffs = DAMPED ? pass.damped_law : pass.law, dt = pass.dt;
+  float *rate = DAMPED ? pass.rate + static_cast<unsigned long>(rates) * LANES : nullptr;
+  const auto here = Lanes<DAMPED>::at(x, v, i, place);
+  for (; e < end; ++e, rate += LANES) {
     const int j = i + entry[e].offset;
-    const double *const own = coeffs + static_cast<unsigned long>(entry[e].law) * (COEFFS * LANES);
-    const Vector3 d = here - place(x, j);
-    const Vector square = floored_square(d);
-    Vector3 force = spring_force(own, d, square);
-    if (DAMPED) {
-      const Vector3 slowing = dashpot_factor(load(own + 2 * LANES), d, v - place(pass.v, j), square) * d;
-      force += slowing;
-      felt.dashpots += slowing;
-      store(of_part, j, load(of_part, j) - slowing);
-    }
-    felt.springs += force;
+    const double *const own = coeffs + static_cast<unsigned long>(entry[e].law) * (COEFFS<DAMPED> * LANES);
+    const Vector3 force = force_of<DAMPED>(own, here, Lanes<DAMPED>::at(x, v, j, place), dt, rate, felt.taken);
+    felt.force += force;
     store(f, j, load(f, j) - force);
   }
 }
@@ -99,7 +133,7 @@ MDANIM_ALWAYS_INLINE void feel_three(const Pass &pass, const Block *block, const
     const auto force = [&](int n, long at) __attribute__((always_inline)) {
       const double *const coeffs = pass.law + static_cast<unsigned long>(entry[n].law) * (2 * LANES);
       const Vector3 d = here - load<Vector>(x, at);
-      return spring_force(coeffs, d, floored_square(d));
+      return spring_factor(load(coeffs), load(coeffs + LANES), floored_square(d)) * d;
     };
     Vector3 sum = first ? Vector3{} : load_own(felt);
     const auto push_one = [&](int n, long at) __attribute__((always_inline)) {
@@ -138,37 +172,32 @@ MDANIM_ALWAYS_INLINE long feel_together(const Pass &pass, const Block *block, co
   return before + 3 + behind;
 }
 
-// Evaluates the springs of a strip, offset by offset; forces on the blocks' own particles go into rows of `felt`, those of
-// dashpots behind the rest. Block by block a load of forces on partners overlaps the store for the offset before, which differs
-// by a row or by one place, and waits until that store has reached the cache. In a strip the same places come again after all of
-// its blocks. Each sum keeps its order: a longer offset leads to a particle from a lower one.
+// Evaluates the springs of a strip, offset by offset; what its blocks add up goes into rows of `felt`. Block by block a load of
+// forces on partners overlaps the store for the offset before, which differs by a row or by one place, and waits until that store
+// has reached the cache. In a strip the same places come again after all of its blocks. Each sum keeps its order: a longer offset
+// leads to a particle from a lower one.
 template <bool DAMPED>
 __attribute__((noinline)) void feel_strip(const Pass &pass, const Block *block, unsigned first_entry, double *felt)
 {
-  constexpr int NUMBERS = (DAMPED ? 6 : 3) * LANES, COEFFS = (DAMPED ? 3 : 2) * LANES;
-  const double *const x[] = {pass.x[0], pass.x[1], pass.x[2]}, *const v[] = {pass.v[0], pass.v[1], pass.v[2]};
+  constexpr int NUMBERS = FELT<DAMPED> * LANES;
+  double *const x[] = {pass.x[0], pass.x[1], pass.x[2]}, *const v[] = {pass.v[0], pass.v[1], pass.v[2]};
   double *const f[] = {pass.range->f[0], pass.range->f[1], pass.range->f[2]};
-  double *const part[] = {pass.range->part[0], pass.range->part[1], pass.range->part[2]};
-  const double *const coeffs = DAMPED ? pass.damped_law : pass.law;
-  const long entries = block->end - first_entry;
+  const double *const law = DAMPED ? pass.damped_law : pass.law, dt = pass.dt;
+  const long entries = block->end - first_entry, of_entry = block->strip * LANES;
   double *const end = felt + block->strip * NUMBERS;
-  const auto add = [&](long i, long j, unsigned law, const Felt &before, double *to) __attribute__((always_inline)) {
-    const double *const own = coeffs + static_cast<unsigned long>(law) * COEFFS;
-    const Vector3 d = load<Vector>(x, i) - load<Vector>(x, j);
-    const Vector square = floored_square(d);
-    Vector3 force = spring_force(own, d, square);
-    if (DAMPED) {
-      const Vector3 faster = load<Vector>(v, i) - load<Vector>(v, j);
-      const Vector3 slowing = dashpot_factor(load(own + 2 * LANES), d, faster, square) * d;
-      force += slowing;
-      store_own(to + 3 * LANES, before.dashpots + slowing);
-      store(part, j, load<Vector>(part, j) - slowing);
-    }
-    store_own(to, before.springs + force);
+  float *const rates = DAMPED ? pass.rate + static_cast<unsigned long>(block->rates) * LANES : nullptr;
+  const auto place = [](double *const *from, long i) __attribute__((always_inline)) { return load<Vector>(from, i); };
+  const auto add = [&](long i, long j, unsigned of_law, float *rate, Felt sum, double *to) __attribute__((always_inline)) {
+    const double *const own = law + static_cast<unsigned long>(of_law) * (COEFFS<DAMPED> * LANES);
+    const Vector3 force =
+        force_of<DAMPED>(own, Lanes<DAMPED>::at(x, v, i, place), Lanes<DAMPED>::at(x, v, j, place), dt, rate, sum.taken);
+    sum.force += force;
+    sum.put<DAMPED>(to);
     store(f, j, load<Vector>(f, j) - force);
   };
   for (long k = 0; k < entries; ++k) {
     const Entry *entry = pass.entry + first_entry + k;
+    float *rate = DAMPED ? rates + k * of_entry : nullptr;
     if constexpr (!DAMPED && LANES > 4) {    // else it does not pay (docs/decisions/one-pass.md)
       if (const long taken = feel_together(pass, block, entry, entries, entries - k, felt)) {
         k += taken - 1;
@@ -176,15 +205,12 @@ __attribute__((noinline)) void feel_strip(const Pass &pass, const Block *block, 
       }
     }
     long i = block->start, j = i + entry->offset;
-    if (k == 0)
-      for (double *to = felt; to < end; to += NUMBERS, entry += entries, i += LANES, j += LANES) add(i, j, entry->law, {}, to);
-    else
-      for (double *to = felt; to < end; to += NUMBERS, entry += entries, i += LANES, j += LANES)
-        add(i, j, entry->law, {load_own(to), DAMPED ? load_own(to + 3 * LANES) : Vector3{}}, to);
+    for (double *to = felt; to < end; to += NUMBERS, entry += entries, i += LANES, j += LANES, rate += LANES)
+      add(i, j, entry->law, rate, k == 0 ? Felt{} : Felt::from<DAMPED>(to), to);
   }
 }
 
-// Adds up the forces on a block's own particles: of springs and gravity, and behind that of dashpots alone.
+// Adds up the forces on a block's own particles, with gravity, and what dashpots take behind them.
 template <bool DAMPED> MDANIM_ALWAYS_INLINE void add_up(const Pass &pass, const Block &block, const Felt &felt, double *total)
 {
   double *const f[] = {pass.range->f[0], pass.range->f[1], pass.range->f[2]};
@@ -194,19 +220,14 @@ template <bool DAMPED> MDANIM_ALWAYS_INLINE void add_up(const Pass &pass, const 
   const Vector3 received = load(f, i),
                 gravity{mass * pass.gravity.now[0], mass * pass.gravity.now[1], mass * pass.gravity.now[2]};
   store(f, i, others * received);
-  store_own(total, (received + felt.springs) + gravity);
-  if (DAMPED) {
-    const Vector3 slowed = load(pass.range->part, i);
-    store(pass.range->part, i, others * slowed);
-    store_own(total + 3 * LANES, slowed + felt.dashpots);
-  }
+  Felt{(received + felt.force) + gravity, felt.taken}.put<DAMPED>(total);
 }
 
 template <bool DAMPED> MDANIM_ALWAYS_INLINE void feel(const Pass &pass, const Block &block, unsigned &e, double *total)
 {
   Felt felt{};
   const auto place = [](double *const *from, int i) { return load(from, i); };
-  add_springs<DAMPED>(pass, pass.entry, e, block.end, block.start, pass.range->f, pass.range->part, felt, place);
+  add_springs<DAMPED>(pass, pass.entry, e, block.end, block.rates, block.start, pass.range->f, felt, place);
   add_up<DAMPED>(pass, block, felt, total);
 }
 

@@ -6,10 +6,8 @@
 
 namespace mdanim {
 
-// A shorter strip takes longer than its blocks one by one, and so does any with dashpots where vectors have more lanes
-// (docs/decisions/one-pass.md).
+// A shorter strip takes longer than its blocks one by one (docs/decisions/one-pass.md).
 constexpr std::size_t SHORTEST = 4;
-constexpr int MOST_DAMPED_LANES = 4;
 
 void set_strips(std::vector<Block> &block, const std::vector<Entry> &entry, int lanes, const RangeCut &ranges)
 {
@@ -26,9 +24,8 @@ void set_strips(std::vector<Block> &block, const std::vector<Entry> &entry, int 
            std::equal(entries + first_entry(n), entries + own.end, entries + first_entry(n - 1), entries + before.end, equal);
   };
   for (std::size_t n = 0; n < block.size();) {
-    const std::size_t longest = block[n].damped && lanes > MOST_DAMPED_LANES ? 1 : LONGEST_STRIP;
     std::size_t end = n + 1;
-    while (end < block.size() && end - n < longest && follows(end)) ++end;
+    while (end < block.size() && end - n < LONGEST_STRIP && follows(end)) ++end;
     if (end - n < SHORTEST) end = n + 1;
     for (std::size_t k = n; k < end; ++k) block[k].strip = k == n ? static_cast<short>(end - n) : 0;
     n = end;

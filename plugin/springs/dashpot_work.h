@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-// Work of the dashpots' force on a particle in a step: the terms from which passes/loss.h sums the energy that dashpots take.
+// Work of dashpots in a step, spring by spring: the terms from which passes/loss.h sums the energy that they take.
 
 #pragma once
 
@@ -7,17 +7,22 @@
 
 namespace mdanim {
 
-// F is the force of dashpots, dv^n = v^{n+1/2} - v^{n-1/2}.
+// F is the force of dashpots on each particle, dv^n = v^{n+1/2} - v^{n-1/2}; the signs are those of what is taken.
 template <class Real> struct DashpotWork {
-  Real work;     // F^n . (v^{n-1/2} + v^{n+1/2})
-  Real bend;     // F^n . dv^{n-1}
-  Real ahead;    // F^{n-1} . dv^n
+  Real work;    // -F^n . v^{n-1/2} - F^{n-1} . v^{n-1/2}
+  Real bend;    // -(F^n - F^{n-1}) . dv^{n-1}
 };
 
-// `now` is F^n, `before` F^{n-1}, `seen` v^{n-3/2}; the step goes from v^{n-1/2} `first` to v^{n+1/2} `last`.
+// The terms of one spring with c = 1 between steps n-1 and n. `rate` and `before` are its strain rates in the forces of these
+// steps: (v_ij . r_ij) / r^2 of v^{n-1/2}, r^n and of v^{n-3/2}, r^{n-1}. The other numbers belong to v^{n-1/2} and r^n: v_ij .
+// r_ij, r^2 and v_ij^2. As r^{n-1} was r^n - dt v_ij, `work` is exact. `bend` is c (n . dv_ij)^2 but for how far the spring turns
+// and strains in a step, relative to how far its vibrations go: it corrects the sum by (omega dt)^2 at most.
 template <class Real>
-MDANIM_ALWAYS_INLINE DashpotWork<Real> dashpot_work(const Vec<Real> &now, const Vec<Real> &before, const Vec<Real> &seen,
-                                                    const Vec<Real> &first, const Vec<Real> &last)
-{ return {dot(now, first + last), dot(now, first - seen), dot(before, last - first)}; }
+MDANIM_ALWAYS_INLINE DashpotWork<Real> dashpot_work(const Real &along, const Real &square, const Real &fast, const Real &rate,
+                                                    const Real &before, double dt)
+{
+  const Real more = rate - before;
+  return {rate * along + before * (along - dt * fast), more * more * square};
+}
 
 }    // namespace mdanim

@@ -33,10 +33,10 @@ template <class Real> MDANIM_ALWAYS_INLINE Real floored_square(const Vec<Real> &
 template <class Real> MDANIM_ALWAYS_INLINE Real spring_factor(const Real &push, const Real &pull, const Real &square)
 { return push / root(square) - pull; }
 
-// The dashpot's part of the same factor: F_i = -c (v_ij . n) n = [-c (v_ij . r_ij) / r^2] r_ij.
-template <class Real>
-MDANIM_ALWAYS_INLINE Real dashpot_factor(const Real &c, const Vec<Real> &rij, const Vec<Real> &vij, const Real &square)
-{ return -(c * dot(vij, rij)) / square; }
+// The rate at which the distance grows, relative to it. The dashpot's part of the same factor is -c times that:
+// F_i = -c (v_ij . n) n = -c [(v_ij . r_ij) / r^2] r_ij.
+template <class Real> MDANIM_ALWAYS_INLINE Real strain_rate(const Vec<Real> &rij, const Vec<Real> &vij, const Real &square)
+{ return dot(vij, rij) / square; }
 
 MDANIM_ALWAYS_INLINE double energy(const Spring &s, double r) { return s.K * (r - s.r0) * (r - s.r0); }
 

@@ -21,6 +21,7 @@ constexpr double NS_OF_CHUNK = 40.0 * CHUNK;
 struct Stretch {
   std::vector<double> x, y, z;       // r_ij, then F_i
   std::vector<double> push, pull;    // see SpringCoeffs
+  std::vector<double> brake;         // of dashpots: c times the strain rate
   std::vector<double> K, r0;         // of energies, see Spring
 };
 
@@ -59,7 +60,7 @@ class RowLoops : RowSprings, RowParticles {
  private:
   void take_apart(int begin, int end, int n, Stretch &stretch) const;
   double energies(int begin, int end, int n, Stretch &stretch, double sum) const;
-  void add_dashpots(int begin, int end, Stretch &stretch, std::vector<Vec3> &on) const;
+  void brake(int begin, int end, Stretch &stretch, std::vector<Vec3> &on) const;
   void sum_rows(int begin, int end, const Stretch &stretch) const;
   void sum_halves(int begin, int end, int first, const Stretch &stretch, Ring &received) const;
 
@@ -104,21 +105,20 @@ double RowLoops::energies(int begin, int end, int n, Stretch &stretch, double su
   return sum;
 }
 
-// Adds the dashpots of rows [begin, end) to `stretch`, and their forces on each particle to `on`.
-void RowLoops::add_dashpots(int begin, int end, Stretch &stretch, std::vector<Vec3> &on) const
+// Puts the dashpots of rows [begin, end) beside their springs in `stretch`, and adds their forces on each particle to `on`.
+void RowLoops::brake(int begin, int end, Stretch &stretch, std::vector<Vec3> &on) const
 {
+  stretch.brake.resize(stretch.x.size());
   for (int i = begin, at = 0; i < end; ++i)
     for (const SpringRows::Link &link : rows[i]) {
-      const int own = at++, j = i + link.offset;
+      double &own = stretch.brake[at++] = 0.0;
+      const int j = i + link.offset;
       const double c = law[link.type].c;
       if (c == 0.0) continue;
       const Vec3 d = vec3(x + 3 * i) - vec3(x + 3 * j), vij = vec3(v + 3 * i) - vec3(v + 3 * j);
-      const Vec3 push = dashpot_factor(c, d, vij, floored_square(d)) * d;
-      stretch.x[own] += push.x;
-      stretch.y[own] += push.y;
-      stretch.z[own] += push.z;
-      on[i] += push;
-      if (upper_only) on[j] -= push;
+      own = c * strain_rate(d, vij, floored_square(d));
+      on[i] -= own * d;
+      if (upper_only) on[j] += own * d;
     }
 }
 
@@ -164,8 +164,14 @@ double RowLoops::compute(int begin, int end, int first, bool with_energy, std::v
     Stretch &stretch = with.stretch;
     take_apart(from, to, springs, stretch);
     if (with_energy && from >= first) sum = energies(from, to, springs, stretch, sum);
-    kernels.forces(springs, stretch.push.data(), stretch.pull.data(), stretch.x.data(), stretch.y.data(), stretch.z.data());
-    if (on) add_dashpots(from, to, stretch, *on);
+    const auto data = [](std::vector<double> &of) { return of.data(); };
+    if (on) {
+      brake(from, to, stretch, *on);
+      kernels.damped_forces(springs, data(stretch.push), data(stretch.pull), data(stretch.brake), data(stretch.x),
+                            data(stretch.y), data(stretch.z));
+    } else {
+      kernels.forces(springs, data(stretch.push), data(stretch.pull), data(stretch.x), data(stretch.y), data(stretch.z));
+    }
     if (upper_only)
       sum_halves(from, to, first, stretch, with.received);
     else

@@ -8,6 +8,8 @@ namespace mdanim {
 struct SpringKernels {
   // r_ij -> F_i of n springs.
   void (*forces)(int n, const double *push, const double *pull, double *x, double *y, double *z);
+  // The same with dashpots beside some; `brake` is c times the strain rate.
+  void (*damped_forces)(int n, const double *push, const double *pull, const double *brake, double *x, double *y, double *z);
   // r_ij -> energies of n springs, written in place of K.
   void (*energies)(int n, const double *x, const double *y, const double *z, const double *r0, double *K);
 };

@@ -255,17 +255,16 @@ MDANIM_EXPORT double mdanim_loss(int steps, int particles, const double *f, cons
   for (int n = 0; n < steps; ++n) {
     if (n == first) loss.close(rows_of(v + n * size, particles).data(), dt);
     if (n >= first && n < last) {
-      DashpotSums sums = {0.0, 0.0, 0.0};
+      DashpotSums sums = {0.0, 0.0};
       for (int i = 0; i < particles; ++i) {
-        const auto terms = dashpot_work(at(f, n, i), loss.latest()[i], loss.latest_seen()[i], at(v, n, i), at(v, n + 1, i));
-        sums.work += terms.work;
-        sums.bend += terms.bend;
-        sums.ahead += terms.ahead;
-        loss.latest()[i] = at(f, n, i);
-        loss.latest_seen()[i] = at(v, n, i);
+        const Vec3 before = n > first ? loss.latest()[i] : Vec3(), now = at(f, n, i), seen = at(v, n, i);
+        sums.work -= dot(now + before, seen);
+        sums.bend -= dot(now - before, seen - loss.latest_seen()[i]);
+        loss.latest()[i] = now;
+        loss.latest_seen()[i] = seen;
       }
       loss.passed(sums, dt);
-      if (n == last - 1) loss.reopen();
+      if (n == last - 1) loss.reopen(dt);
       continue;
     }
     std::vector<Vec3> &force = loss.forces(particles);

@@ -192,6 +192,14 @@ def test_dashpot_loss_is_the_energy_that_is_missing(tmp_path):
     assert errors[2] < 1e-5
 
 
+def test_passes_sum_the_same_loss_spring_by_spring(tmp_path):
+    """The motion of plain steps, and their loss but for the bend of one pass and rates of four bytes."""
+    plain, passes = (missing(tmp_path, 0.04, [f"run_style {style}"]) for style in ("verlet", "verlet/mdanim"))
+    assert passes[0] == pytest.approx(plain[0], rel=1e-9)
+    assert passes[1] != plain[1]
+    assert passes[1] == pytest.approx(plain[1], rel=3e-6)
+
+
 def test_dashpot_loss_survives_a_new_order_of_particles(tmp_path):
     """Let LAMMPS sort particles in the middle of the run; only the steps across a sort are estimated."""
     plain, other = missing(tmp_path, 0.04), missing(tmp_path, 0.04, ["atom_modify sort 20 1.1"])
