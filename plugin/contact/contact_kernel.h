@@ -106,9 +106,10 @@ struct MoveTask {
   int first, end;
   const PaddedVec3 *last;    // may be `now`
   PaddedVec3 *now;
+  Vec3 about;    // a displacement
 };
 
-// The mean of their displacements, and the square of the largest one relative to it.
+// The mean of their displacements, and the square of the largest one relative to `about`.
 struct MovedBy {
   Vec3 mean;
   double square;

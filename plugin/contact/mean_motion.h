@@ -6,6 +6,8 @@
 #include "contact/contact_object.h"
 
 #include <algorithm>
+#include <cmath>
+#include <optional>
 #include <vector>
 
 namespace mdanim {
@@ -20,7 +22,8 @@ inline void tell_mean_motion(ContactObject &one, const std::vector<Vec3> &change
   if (!changes.empty()) mean = (1.0 / static_cast<double>(changes.size())) * mean;
   double square = 0.0;
   for (const Vec3 &change : changes) square = std::max(square, dot(change - mean, change - mean));
-  one.has_moved(mean, square);
+  one.has_moved(mean, std::sqrt(square));
+  one.usual = changes.empty() ? std::nullopt : std::optional(mean);
 }
 
 }    // namespace mdanim

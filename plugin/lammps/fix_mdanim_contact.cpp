@@ -347,6 +347,16 @@ template <class Add> void FixMdanimContact::give_forces(const Add &add) const
   });
 }
 
+// The same for a rank that has all particles, each of which may move.
+void FixMdanimContact::take_forces(const ForceSums &sums)
+{
+  PaddedVec3 *const forces = world_of_contact.take_forces();
+  threads_now.parts(static_cast<long>(mine.size()), NS_OF_PARTICLE, [&](long from, long to) {
+    for (const OwnParticles &own : of_object)
+      if (world_of_contact.is_pushed(own.object)) sums.take(std::max(own.first, from), std::min(own.end, to), forces);
+  });
+}
+
 // Adds forces with particles where LAMMPS has them.
 void FixMdanimContact::push(double dt)
 {
@@ -375,17 +385,20 @@ void FixMdanimContact::add_forces(const Positions &place, const ForceSums &force
   const Lap lap(seconds);
   need_lists();
   world_of_contact.step(shared.places(place.all()), update->dt);
-  give_forces([&force](std::size_t n, const Vec3 &one) { force.add(n, one); });
+  if (has_all)
+    take_forces(force);
+  else
+    give_forces([&force](std::size_t n, const Vec3 &one) { force.add(n, one); });
 }
 
 // Every rank needs the places of all that is near, so passes do this for one rank alone. A particle beside the group would not
 // feel its contacts.
 std::vector<PointsAtPlane> FixMdanimContact::hand_over_planes()
 {
-  if (comm->nprocs > 1 || world_of_contact.settings.objects) return {};
   const Lap lap(seconds);
+  has_all = comm->nprocs == 1 && std::all_of(mine.begin(), mine.end(), [this](int i) { return atom->mask[i] & groupbit; });
+  if (!has_all || world_of_contact.settings.objects) return {};
   need_lists();
-  if (!std::all_of(mine.begin(), mine.end(), [this](int i) { return atom->mask[i] & groupbit; })) return {};
   std::vector<PointsAtPlane> found = world_of_contact.hand_over_planes();
   for (PointsAtPlane &some : found)
     for (PointAtPlane &point : some.points) point.particle = mine[point.particle];

@@ -76,6 +76,7 @@ class FixMdanimContact : public mdanim::FixBase, public mdanim::PassParticipant,
   void list();
   mdanim::Coordinates places_now();
   template <class Add> void give_forces(const Add &add) const;
+  void take_forces(const mdanim::ForceSums &sums);
   void push(double dt);
   void move_planes();
   std::size_t bytes_of_bodies() const;
@@ -93,6 +94,7 @@ class FixMdanimContact : public mdanim::FixBase, public mdanim::PassParticipant,
   mdanim::TornEnds torn;
   mdanim::ObjectTable objects;    // at the setup; their particles when lists were made
   std::vector<tagint> lowest;     // tags of objects
+  bool has_all = false;           // that take part in contacts, and all of these are in the group
   std::vector<int> mine;          // local particles that take part in contacts, in the order of the world of contact
   std::vector<mdanim::OwnParticles> of_object;    // parts of these, by ascending objects
   mdanim::SharedPlaces shared;                    // places of these particles, on all ranks

@@ -5,8 +5,8 @@
 
 #include "geometry/aligned_array.h"
 
-#include <algorithm>
 #include <cstddef>
+#include <cstring>
 #include <vector>
 
 namespace mdanim {
@@ -38,7 +38,7 @@ struct ForceProvider {
       const int *i = particle.data(), *const end = i + particle.size();
       for (const char is_in_row : in_row) {
         if (is_in_row)
-          std::copy_n(from + *i, 4, next);
+          std::memcpy(next, from + *i, 4 * sizeof(double));    // not std::copy_n(), which calls a function
         else
           for (int k = 0; k < 4; ++k) next[k] = from[i[k]];
         next += 4, i += 4;

@@ -196,24 +196,34 @@ MDANIM_ALWAYS_INLINE Vector3 load_before(int end, double *const *from, int i)
 
 MDANIM_ALWAYS_INLINE bool is_pushed(const Block &block) { return block.external_force >= 0 || block.planes >= 0; }
 
-// Adds the forces of participants: those that they have given, whose rows are cleared for the next pass while they are in the
-// cache, and those of their planes. Not inlined: most blocks have none, and the springs need all registers.
+// Adds the forces that a participant has given, and clears them for the next pass while they are in the cache. Many are 0.
+MDANIM_ALWAYS_INLINE void take_given(double *of_fix, double *total)
+{
+  const Vector3 force = load_own(of_fix);
+  if (!any_lane((force.x != 0.0) | (force.y != 0.0) | (force.z != 0.0))) return;
+  store_own(total, load_own(total) + force);
+  store_own(of_fix, Vector3{});
+}
+
+// Adds the forces of participants: those that they have given, and those of their planes. Not inlined: most blocks have none, and
+// the springs need all registers.
 __attribute__((noinline)) void take_external_force(const Pass &pass, const Block &block, double *total)
 {
   double *const given =
       block.external_force >= 0 ? pass.external_force + static_cast<long>(block.external_force) * (3 * LANES) : nullptr;
-  const PlaneRow *row = block.planes >= 0 ? pass.planes.row + block.planes : nullptr;
-  Vector3 x;
-  if (row) x = block.at_border ? load_before(pass.range->end, pass.x, block.start) : load(pass.x, block.start);
+  if (block.planes < 0) {
+    for (int n = 0; n < pass.force_providers; ++n) take_given(given + n * (3 * LANES), total);
+    return;
+  }
+  const PlaneRow *row = pass.planes.row + block.planes;
+  const Vector3 x = block.at_border ? load_before(pass.range->end, pass.x, block.start) : load(pass.x, block.start);
   for (int n = 0; n < pass.force_providers; ++n) {
     if (row && row->provider == n) {
       pass.planes.law[row->law].law.friction > 0.0 ? push_with_friction(pass.planes, row, x, total)
                                                    : push_without_friction(pass.planes, row, x, total);
       while (row && row->provider == n) row = row->is_last ? nullptr : row + 1;
     } else if (given) {
-      double *const of_fix = given + n * (3 * LANES);
-      store_own(total, load_own(total) + load_own(of_fix));
-      store_own(of_fix, Vector3{});
+      take_given(given + n * (3 * LANES), total);
     }
   }
 }

@@ -8,6 +8,7 @@
 #include "geometry/aligned_array.h"
 #include "numbers/vec3.h"
 #include "passes/displacement_budget.h"
+#include "passes/force_sums.h"
 #include "passes/pass.h"
 #include "passes/pass_liquid.h"
 #include "springs/spring_rows.h"
@@ -23,26 +24,6 @@ class Threads;
 // The owner of a particle: the rank, and the index in its arrays.
 struct Home {
   int rank, index;
-};
-
-// Sums of the forces on the particles of one participant, zero at first.
-class ForceSums {
- public:
-  // Components of the sum for particle n lie at slot[n], slot[n] + apart and slot[n] + 2 apart.
-  ForceSums(double *sums, const long *slot, long apart) : sums(sums), slot(slot), apart(apart) {}
-  void add(std::size_t n, const Vec3 &force) const
-  {
-    double *const to = sums + slot[n];
-    to[0] += force.x;
-    to[apart] += force.y;
-    to[2 * apart] += force.z;
-  }
-  void clear(std::size_t n) const { sums[slot[n]] = sums[slot[n] + apart] = sums[slot[n] + 2 * apart] = 0.0; }
-
- private:
-  double *sums;
-  const long *slot;
-  long apart;
 };
 
 struct PassCrew;
