@@ -222,7 +222,11 @@ class ContactArrays {
   // The places become those of the step before; new ones must then be set.
   void keep_places() { place_rows.swap(rows_before); }
   std::size_t size() const { return force_rows.size(); }
-  void clear_forces(int from, int to) { std::fill(force_rows.begin() + from, force_rows.begin() + to, PaddedVec3{}); }
+  bool taken = true;    // all forces are 0: who took them has cleared them
+  void clear_forces(int from, int to)
+  {
+    if (!taken) std::fill(force_rows.begin() + from, force_rows.begin() + to, PaddedVec3{});
+  }
   PaddedVec3 *place() { return place_rows.data() + 1; }    // slot -1, of a particle that is not here, may be read
   const PaddedVec3 *place() const { return place_rows.data() + 1; }
   PaddedVec3 *place_before() { return rows_before.data() + 1; }    // in the step before

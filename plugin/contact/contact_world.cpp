@@ -22,9 +22,9 @@ static constexpr double NS_OF_OBJECT = 5e3, NS_OF_FIELD = 5e3, NS_OF_PARTICLE = 
 
 // --- objects ---
 
-void ContactWorld::clear_forces(ContactObject &one)
+static void clear_forces(ContactObject &one, ContactArrays &arrays)
 {
-  if (one.is_pushed && !taken) arrays.clear_forces(one.first_slot, one.last_slot);
+  if (one.is_pushed) arrays.clear_forces(one.first_slot, one.last_slot);
   one.is_pushed = false;
 }
 
@@ -36,7 +36,7 @@ void ContactWorld::drop_lists()
 
 void ContactWorld::take(std::vector<ContactObject> now, std::vector<char> moves)
 {
-  for (ContactObject &one : all) clear_forces(one);    // the new objects have no forces yet
+  for (ContactObject &one : all) clear_forces(one, arrays);    // the new objects have no forces yet
   drop_lists();
   std::set<int> same;
   for (const ContactObject &one : now)
@@ -185,7 +185,7 @@ void ContactWorld::place_rigid(const std::vector<Vec3> &frames, std::vector<Box>
 
 void ContactWorld::list(const std::vector<ContactParticle> &particles, const Coordinates &places)
 {
-  for (ContactObject &one : all) clear_forces(one);
+  for (ContactObject &one : all) clear_forces(one, arrays);
   arrays.renew(particles.size());
   for (std::size_t slot = 0; slot < particles.size(); ++slot) arrays.place()[slot].value = place(places, slot);
   const PaddedVec3 *const last = has_before ? arrays.place_before_of_old_slots() : arrays.place_of_old_slots();
@@ -265,19 +265,12 @@ void ContactWorld::move_to(const Coordinates &places)
       if (one.is_rigid()) {
         for (int s = one.first_slot; s < one.last_slot; ++s) now[s].value = place(places, s);
         move_rigid(one, place_of(one, now));
-        clear_forces(one);
+        clear_forces(one, arrays);
         continue;
       }
-      // Displacements are compared with that of the step before: so places are gone over once.
-      const auto move = [&](const Vec3 &about) {
-        return kernels.move({places.data(), one.first_slot, one.last_slot, last, now, about});
-      };
-      const Vec3 about = is_counted ? Vec3{} : one.usual ? *one.usual : move({}).mean;
-      const MovedBy moved = move(about);
-      one.has_moved(moved.mean, std::sqrt(moved.square) + length(moved.mean - about));
-      if (!is_counted) one.usual = one.way;
+      tell_motion(one, kernels, {places.data(), one.first_slot, one.last_slot, last, now, {}}, is_counted);
       one.find_crushed(now);
-      clear_forces(one);
+      clear_forces(one, arrays);
     }
   });
 }
@@ -296,7 +289,7 @@ void ContactWorld::step(const Coordinates &places, double dt)
   account.begin_step();
   if (arrays.size() == 0) return;
   move_to(places);
-  taken = false;
+  arrays.taken = false;
   sums.step(all, arrays, threads, dt, account);
 }
 

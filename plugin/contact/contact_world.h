@@ -62,12 +62,7 @@ class ContactWorld {
   // Computes the forces with all particles at these places. dt = 0 at the setup of a run: nothing changes.
   void step(const Coordinates &places, double dt);
   const PaddedVec3 *forces() const { return arrays.force(); }
-  // The same, for one who clears all of them that are not 0.
-  PaddedVec3 *take_forces()
-  {
-    taken = true;
-    return arrays.force();
-  }
+  PaddedVec3 *take_forces() { return arrays.taken = true, arrays.force(); }    // for one who clears all that are not 0
   // Whether some force on an object's particles is not 0.
   bool is_pushed(int object) const { return all[object].is_pushed; }
   Vec3 force_on_planes() const;
@@ -107,7 +102,6 @@ class ContactWorld {
   template <class Field, class Row> void put(Fields &into, const FieldKey &key, std::vector<Row> rows);
   Fields read(const StateRecords &records);
   void drop_lists();
-  void clear_forces(ContactObject &one);
   void move_to(const Coordinates &places);
   void list_fields();
   void find_points();
@@ -116,7 +110,6 @@ class ContactWorld {
   std::vector<char> movable;
   std::vector<int> torn_now;                  // objects, until there are lists
   std::map<int, int> number_of;               // of ids
-  bool taken = true;                          // forces: all are 0
   bool listed = false, has_before = false;    // lists are there; they have been made since the last step, and know its places
   std::map<FieldKey, std::vector<LossOfPoint>> losses;    // that the account does not hold yet
   Fields fields;

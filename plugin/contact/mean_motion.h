@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include "contact/contact_kernel.h"
 #include "contact/contact_object.h"
 
 #include <algorithm>
@@ -24,6 +25,16 @@ inline void tell_mean_motion(ContactObject &one, const std::vector<Vec3> &change
   for (const Vec3 &change : changes) square = std::max(square, dot(change - mean, change - mean));
   one.has_moved(mean, std::sqrt(square));
   one.usual = changes.empty() ? std::nullopt : std::optional(mean);
+}
+
+// Sets it from all of the particles in a step, which go to their places. Displacements are compared with the mean one of the step
+// before: so places are gone over once. `is_counted`: the object has been told of the motion, and nothing has moved since.
+inline void tell_motion(ContactObject &one, const ContactKernels &kernels, MoveTask task, bool is_counted)
+{
+  if (!is_counted) task.about = one.usual ? *one.usual : kernels.move(task).mean;
+  const MovedBy moved = kernels.move(task);
+  one.has_moved(moved.mean, std::sqrt(moved.square) + length(moved.mean - task.about));
+  if (!is_counted) one.usual = one.way;
 }
 
 }    // namespace mdanim

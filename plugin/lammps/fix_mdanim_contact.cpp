@@ -42,6 +42,16 @@ static std::vector<OwnParticles> by_object(const std::vector<ContactParticle> &a
   return found;
 }
 
+// Calls give(first, end) for the particles of each object that is pushed; threads share them.
+template <class Give>
+static void each_pushed(const ContactWorld &world, const std::vector<OwnParticles> &all, const Threads &threads, const Give &give)
+{
+  threads.parts(all.empty() ? 0 : all.back().end, NS_OF_PARTICLE, [&](long from, long to) {
+    for (const OwnParticles &own : all)
+      if (world.is_pushed(own.object)) give(std::max(own.first, from), std::min(own.end, to));
+  });
+}
+
 // --- the command ---
 
 static void read_bodies_of(const char *file, LAMMPS *lmp, std::map<int, std::shared_ptr<const ContactBody>> &bodies)
@@ -337,23 +347,11 @@ Coordinates FixMdanimContact::places_now()
 // Calls add(n, force) for those of `mine` that may move.
 template <class Add> void FixMdanimContact::give_forces(const Add &add) const
 {
-  const PaddedVec3 *forces = world_of_contact.forces();
-  threads_now.parts(static_cast<long>(mine.size()), NS_OF_PARTICLE, [&](long from, long to) {
-    for (const OwnParticles &own : of_object)
-      for (long n = std::max(own.first, from); n < std::min(own.end, to) && world_of_contact.is_pushed(own.object); ++n) {
-        const Vec3 &force = forces[shared.number_of(n)].value;
-        if ((force.x != 0.0 || force.y != 0.0 || force.z != 0.0) && atom->mask[mine[n]] & groupbit) add(n, force);
-      }
-  });
-}
-
-// The same for a rank that has all particles, each of which may move.
-void FixMdanimContact::take_forces(const ForceSums &sums)
-{
-  PaddedVec3 *const forces = world_of_contact.take_forces();
-  threads_now.parts(static_cast<long>(mine.size()), NS_OF_PARTICLE, [&](long from, long to) {
-    for (const OwnParticles &own : of_object)
-      if (world_of_contact.is_pushed(own.object)) sums.take(std::max(own.first, from), std::min(own.end, to), forces);
+  each_pushed(world_of_contact, of_object, threads_now, [&](long n, long end) {
+    for (; n < end; ++n) {
+      const Vec3 &force = world_of_contact.forces()[shared.number_of(n)].value;
+      if ((force.x != 0.0 || force.y != 0.0 || force.z != 0.0) && atom->mask[mine[n]] & groupbit) add(n, force);
+    }
   });
 }
 
@@ -386,7 +384,8 @@ void FixMdanimContact::add_forces(const Positions &place, const ForceSums &force
   need_lists();
   world_of_contact.step(shared.places(place.all()), update->dt);
   if (has_all)
-    take_forces(force);
+    each_pushed(world_of_contact, of_object, threads_now,
+                [&, all = world_of_contact.take_forces()](long first, long end) { force.take(first, end, all); });
   else
     give_forces([&force](std::size_t n, const Vec3 &one) { force.add(n, one); });
 }

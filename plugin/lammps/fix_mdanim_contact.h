@@ -76,7 +76,6 @@ class FixMdanimContact : public mdanim::FixBase, public mdanim::PassParticipant,
   void list();
   mdanim::Coordinates places_now();
   template <class Add> void give_forces(const Add &add) const;
-  void take_forces(const mdanim::ForceSums &sums);
   void push(double dt);
   void move_planes();
   std::size_t bytes_of_bodies() const;
