@@ -80,13 +80,13 @@ struct ContactObject {
   std::shared_ptr<LateOuterCells> outer{};    // empty until first asked for after lists were made
   Spot<double> rigid{}, rigid_before{};       // of a rigid body: x(X) at X = 0, and its gradient; those of the step before
   bool takes_force = true;                    // whether forces on its particles matter
-  Vec3 way{};                     // mean displacement of its particles, or that of the middle of a rigid body, in this step
-  double stir = 0.0;              // the largest displacement of a point relative to that in this step, or more
-  std::optional<Vec3> usual{};    // the mean displacement in the last step in which it could move; none of an object that is new
-  bool is_pushed = false;         // by contacts, in the last step
-  bool is_crushed = false;        // some cell is: a place in space may then be in several cells
-  bool is_calm = false;           // no cell is soon, unless the object is pushed
-  double unchecked = 0.0;         // how far its points may go until that is found anew [m]
+  Vec3 way{};                 // mean displacement of its particles, or that of the middle of a rigid body, in this step
+  double stir = 0.0;          // the largest displacement of a point relative to that in this step, or more
+  Vec3 usual{};               // that mean in the last step in which it could move
+  bool is_pushed = false;     // by contacts, in the last step
+  bool is_crushed = false;    // some cell is: a place in space may then be in several cells
+  bool is_calm = false;       // no cell is soon, unless the object is pushed
+  double unchecked = 0.0;     // how far its points may go until that is found anew [m]
   std::shared_ptr<const TornBody> torn{};    // null where it is whole
   std::vector<int> slot_of_host{};           // of a torn object: `slot` without particles at tears
 

@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <vector>
 
 namespace mdanim {
@@ -24,16 +23,23 @@ inline void tell_mean_motion(ContactObject &one, const std::vector<Vec3> &change
   double square = 0.0;
   for (const Vec3 &change : changes) square = std::max(square, dot(change - mean, change - mean));
   one.has_moved(mean, std::sqrt(square));
-  one.usual = changes.empty() ? std::nullopt : std::optional(mean);
+  one.usual = mean;
 }
 
 // Sets it from all of the particles in a step, which go to their places. Displacements are compared with the mean one of the step
-// before: so places are gone over once. `is_counted`: the object has been told of the motion, and nothing has moved since.
+// before, so most objects are gone over once; again where the mean is another one now. `is_counted`: the object has been told of
+// the motion, and nothing has moved since.
 inline void tell_motion(ContactObject &one, const ContactKernels &kernels, MoveTask task, bool is_counted)
 {
-  if (!is_counted) task.about = one.usual ? *one.usual : kernels.move(task).mean;
-  const MovedBy moved = kernels.move(task);
-  one.has_moved(moved.mean, std::sqrt(moved.square) + length(moved.mean - task.about));
+  constexpr double OTHER = 0.02;    // of the largest displacement relative to it
+  if (!is_counted) task.about = one.usual;
+  MovedBy moved = kernels.move(task);
+  const auto other = [&] { return length(moved.mean - task.about); };
+  if (!is_counted && other() > OTHER * std::sqrt(moved.square)) {
+    task.about = moved.mean;
+    moved = kernels.move(task);
+  }
+  one.has_moved(moved.mean, std::sqrt(moved.square) + other());
   if (!is_counted) one.usual = one.way;
 }
 
