@@ -18,7 +18,7 @@
 using namespace LAMMPS_NS;
 using namespace mdanim;
 
-static constexpr std::int64_t STATE_VERSION = 8;
+static constexpr std::int64_t STATE_VERSION = 9;
 
 namespace {
 

@@ -278,7 +278,7 @@ int VerletMdanim::take_steps(int step, int most)
     overflowed = overflowed || !finite;
     if (overflowed || update->ntimestep >= stop || !look_again()) break;
   }
-  if (engine.is_running()) engine.leave();
+  if (engine.is_running()) leave_passes();
   timer->stamp(Timer::BOND);
   ev_set(update->ntimestep);
   return taken;
@@ -345,7 +345,7 @@ bool VerletMdanim::look_again()
   // Strain rates do not migrate with springs: several ranks make lists in a plain step, when they are due.
   const bool alone = comm->nprocs == 1, between_passes = alone || !engine.crew.springs->account();
   if (spend(0.0) && !(between_passes && budget.nearly_spent())) return true;
-  engine.leave();
+  leave_passes();
   if (!between_passes) return false;
   const bool same_places = rebuild_lists();
   if (alone ? !same_places : !cut()) return false;
@@ -360,6 +360,13 @@ bool VerletMdanim::look_again()
   // On a rank that is alone, particles are mostly where they were.
   start_passes(!alone || modify->n_pre_exchange || modify->n_pre_neighbor);
   return true;
+}
+
+// Dashpots tell their forces by the present places and velocities of both particles, so ghosts are met once more.
+void VerletMdanim::leave_passes()
+{
+  if (comm->nprocs > 1 && !ghosts_are_met && engine.crew.springs->account()) meet_ghosts();
+  engine.leave();
 }
 
 // Updates ghosts on all ranks. Participants look for particles in the arrays of LAMMPS.

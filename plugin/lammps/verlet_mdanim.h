@@ -49,6 +49,7 @@ class VerletMdanim : public SplitVerlet {
   void start_passes(bool positions);
   void act_late(bool at_end);
   bool look_again();
+  void leave_passes();
   void meet_ghosts();
   void tell_limits();
   void measure();

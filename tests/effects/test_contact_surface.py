@@ -467,18 +467,27 @@ def test_friction_may_bring_objects_together(a, control, on):
 
 
 SHELF = """gravity (0, 0, -9.81) m/s^2
-object shelf {{ shape box (0.6, 0.4, {t}) m  position (0, 0, {z}) m  hold all }}
-object ball {{ shape sphere 10 cm  position (0, 0, 0.11) m  mass 3 kg  elasticity 300 kPa  velocity (0, 0, -2) m/s }}
-control {{ time 0.1 s  frames 100 fps }}
+object shelf {{ shape box {size} m  position (0, 0, {z}) m  hold all }}
+object ball {{ shape sphere 10 cm  position (0, 0, 0.11) m  mass 3 kg  elasticity 300 kPa  velocity (0, 0, -{v}) m/s }}
+control {{ time {time} s  frames 100 fps }}
 record ball.position.z
 """
 
 
+def heights(tmp_path, size, z, v=2, time=0.1):
+    """Of the ball at each frame [m]."""
+    scene = Scene.from_text(SHELF.format(size=size, z=z, v=v, time=time))
+    assert scene.prepared.system.spacing[1] == pytest.approx(0.05, rel=0.03)  # four across the ball
+    return scene.run(tmp_path / f"{abs(z)}", movie=False, progress=False).records["ball.position.z"]
+
+
 def test_a_ball_bounces_on_a_thin_shelf_as_on_a_thick_one(tmp_path):
-    """A held cuboid has an exact depth, however thin: cells of a ball are not finer for it, and it moves alike."""
-    heights = []
-    for t in (0.2, 0.0005):
-        scene = Scene.from_text(SHELF.format(t=t, z=-t / 2))
-        assert scene.prepared.system.spacing[1] == pytest.approx(0.05, rel=0.03)  # four across the ball
-        heights.append(scene.run(tmp_path / f"{t}", movie=False, progress=False).records["ball.position.z"])
-    assert np.ptp(heights[0]) > 0.05 and np.allclose(*heights, rtol=0.0, atol=1e-12)
+    """A plate has an exact depth: cells of the ball are 2.5 times as wide, and it bears them alike."""
+    thick, thin = (heights(tmp_path, (0.6, 0.4, t), -t / 2) for t in (0.2, 0.02))
+    assert np.ptp(thick) > 0.05 and np.allclose(thick, thin, rtol=0.0, atol=1e-12)
+
+
+def test_a_ball_stays_on_the_edge_of_a_thin_plate(tmp_path):
+    """As thin as its cells allow: it comes down by a third of its radius at most, and leaves again."""
+    found = heights(tmp_path, (0.02, 0.4, 0.4), -0.2)
+    assert 0.065 < found.min() < 0.1 and found[-1] > 0.11

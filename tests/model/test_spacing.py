@@ -39,17 +39,20 @@ def test_resolution_overrides_accuracy():
     assert (plan.h, plan.set_by) == (0.02, "resolution")
 
 
-def test_a_held_obstacle_does_not_set_the_spacing():
-    """A thin plate that never moves does not make everything fine where something else has cells, and none is in a liquid."""
-    plate = solid(Box((2.0, 2.0, 0.1)), "plate", hold=(HoldAll(),))
+def test_a_held_plate_asks_for_few_cells():
+    """Those of 2.5 times its thickness where something elastic can move; two across other obstacles, and in a liquid."""
+    plate = solid(Box((2.0, 2.0, 0.02)), "plate", hold=(HoldAll(),))
     ball = solid(Sphere(0.5), "ball")
-    assert plan_spacing(scene(plate, ball)).of == pytest.approx((0.25, 0.25))
+    assert plan_spacing(scene(plate, ball)).h == pytest.approx(0.05)
     assert plan_spacing(scene(plate, solid(Sphere(0.05), "ball"))).h == pytest.approx(0.025)
-    disc = solid(Cylinder(1.0, 0.1), "disc", hold=(HoldAll(),))
-    assert plan_spacing(scene(disc, ball)).of == pytest.approx((0.05, 0.25))
-    assert plan_spacing(scene(plate, solid(Sphere(0.5), "ball", hold=(HoldAll(),)))).h == pytest.approx(0.05)
+    assert plan_spacing(scene(plate, ball, resolution=0.05)).h == 0.05
+    with pytest.raises(SceneError, match="plate: thinner than the spacing allows"):
+        plan_spacing(scene(plate, ball, resolution=0.051))
+    for shape in (Box((2.0, 0.07, 0.02)), Cylinder(1.0, 0.02)):
+        assert plan_spacing(scene(solid(shape, "bar", hold=(HoldAll(),)), ball)).h == pytest.approx(0.01)
+    assert plan_spacing(scene(plate, solid(Sphere(0.5), "ball", hold=(HoldAll(),)))).h == pytest.approx(0.01)
     pool = Liquid("water", (-2, -2, 0), (2, 2, 2), 1000.0, level=1.0)
-    assert plan_spacing(scene(plate, ball, liquid=pool)).h == pytest.approx(0.05)
+    assert plan_spacing(scene(plate, ball, liquid=pool)).h == pytest.approx(0.01)
 
 
 def test_a_liquid_alone_is_32_cells_wide():

@@ -38,7 +38,7 @@ class BodyKind:
         """Whether an object is of this kind."""
         raise NotImplementedError
 
-    def cells(self, scene: SceneRecord, solid: Solid) -> int:
+    def cells(self, scene: SceneRecord, solid: Solid) -> float:
         """Cells across its thinnest part that it should have. One that never moves need not bend, so two, the least that have an
         inside, are enough."""
         wanted = scene.control.accuracy.cells
@@ -52,9 +52,9 @@ class BodyKind:
         """Particle spacing [m] of its objects that have no ``resolution`` of their own, where that of the scene is h [m]."""
         return lambda solid: h
 
-    def thinner(self, scene: SceneRecord, solid: Solid) -> bool:
-        """Whether one of its objects may be thinner than its spacing."""
-        return not self.fills
+    def least(self, scene: SceneRecord, solid: Solid) -> float:
+        """Cells across its thinnest part that one of its objects has at least; 0 where it may be as thin as it likes."""
+        return 1.0 if self.fills else 0.0
 
     def has_spacing(self, scene: SceneRecord) -> bool:
         """Whether something reads particles or points of them as far apart as their spacing, so that ``resolution`` sets it."""

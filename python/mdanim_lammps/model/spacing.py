@@ -56,7 +56,7 @@ def plan_spacing(scene: SceneRecord) -> Spacing:
     problems = check_places(scene, of)
     too_thin: dict[tuple, list[str]] = {}  # objects of a repeat are one problem
     for solid, own, t in zip(scene.solids, of, thin):
-        if own > t * (1 + 1e-9) and not kind_of(solid).thinner(scene, solid):
+        if own * kind_of(solid).least(scene, solid) > t * (1 + 1e-9):
             too_thin.setdefault((_span(solid), t, own, solid.resolution is None), []).append(solid.name)
     for (span, t, own, shared), names in too_thin.items():
         more = f" and {whole(len(names) - 1)} more" if len(names) > 1 else ""

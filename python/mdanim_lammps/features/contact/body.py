@@ -11,6 +11,10 @@ from ...scene.once import once_for
 from ...scene.scene import Box, Mesh, Sphere
 from .words import ContactModel
 
+PLATE, COARSEST = 4.0, 2.5
+"""Second side of a cuboid over its thickness from which it is a plate; and cells that may meet it over its thickness: the edge of
+a plate holds a ball whose cells are 2.5 times as wide, not 5 times."""
+
 
 class HeldBody(BodyKind):
     """An object that is held as a whole. The points and the depth of its surface are as fine as the spacing says; its particles
@@ -22,25 +26,22 @@ class HeldBody(BodyKind):
     def takes(self, solid):
         return all_held(solid)
 
-    def asks(self, scene):
-        """None where its surface alone counts and something else sets the spacing: a thin shelf does not ask for fine cells
-        of what falls onto it."""
-        others = only_surfaces_act(scene) and any(solid.resolution is None for solid in _soft(scene))
-        return lambda solid: not others
+    def cells(self, scene, solid):
+        """The depth of a plate is exact with fewer, so that a shelf does not make cells of what lies on it fine."""
+        return 1.0 / COARSEST if _is_plate(scene, solid) else super().cells(scene, solid)
+
+    def least(self, scene, solid):
+        return 1.0 / COARSEST if _is_plate(scene, solid) else 1.0
 
     def has_spacing(self, scene):
         return not only_features(scene)
 
     def spacing(self, scene, h):
-        """As the scene, where something reads its surface, no coarser than two cells across but for a cuboid, whose depth is
-        exact, and fine enough for what lies on it."""
-        if not (only_features(scene) or only_surfaces_act(scene)):
-            return lambda solid: h
-        return lambda s: h if self.thinner(scene, s) else min(h, shapes.thickness(s.shape) / max(2, beneath(scene, s)))
-
-    def thinner(self, scene, solid):
-        """A cuboid may be so for what falls onto it: its depth is exact, and its points are as far apart as those of others."""
-        return isinstance(solid.shape, Box) and only_surfaces_act(scene) and bool(_soft(scene))
+        """As the scene, where something reads its surface, and fine enough for what lies on it."""
+        if not only_features(scene):
+            bare = any(beneath(scene, solid) for solid in scene.solids)
+            return lambda solid: min(h, shapes.thickness(solid.shape) / max(1, beneath(scene, solid))) if bare else h
+        return lambda solid: min(h, shapes.thickness(solid.shape) / 2)
 
     def particles(self, scene, solid, lattice, h):
         return 8.0 if only_surfaces_act(scene) else lattice
@@ -55,10 +56,18 @@ class HeldBody(BodyKind):
         return held_model(solid, h, shared, self.bare(shared.scene, solid))
 
 
+def _is_plate(scene, solid) -> bool:
+    """Whether an object is a thin cuboid beside something elastic with an inside, and nothing reads particles in it."""
+    if not (isinstance(solid.shape, Box) and only_surfaces_act(scene) and _has_elastic(scene)):
+        return False
+    thin, second, _ = sorted(solid.shape.size)
+    return second >= PLATE * thin
+
+
 @once_for(lambda scene: scene)
-def _soft(scene) -> list:
-    """Objects with an inside that can move and whose thinnest parts may set the spacing of the scene."""
-    return [s for s in scene.solids if not all_held(s) and kind_of(s).fills and kind_of(s).sets_spacing]
+def _has_elastic(scene) -> bool:
+    """Whether an object with an inside can move and deform."""
+    return any(not all_held(s) and kind_of(s).fills and kind_of(s).deforms for s in scene.solids)
 
 
 def only_surfaces_act(scene) -> bool:

@@ -9,7 +9,6 @@ import numpy as np
 
 from ...effects.envelope import Envelope
 from ...errors import Problem
-from ..drives.motion import is_driven
 
 DEEP = 0.25
 """Depth of a face in another one, in spacings, over the root of pressure by stiffness times Young's modulus (docs/physics-
@@ -31,7 +30,7 @@ def borne(strain: float, cells: float, stiffness: float) -> float:
 def notes(envelope: Envelope) -> list[Problem]:
     """One note, for the first elastic object whose stress is asked for and that something driven may press."""
     scene, system = envelope.scene, envelope.system
-    driven = np.flatnonzero([is_driven(solid) for solid in scene.solids])
+    driven = np.flatnonzero([bool(solid.drive or solid.key_points) for solid in scene.solids])
     asked = {of.subject for of in scene.asked if of.quantity.startswith("stress.")}
     for m in np.flatnonzero(~(system.rigid | system.held_whole | system.bare)).tolist():
         name, spans = system.names[m], scene.solids[m].spans
@@ -42,10 +41,10 @@ def notes(envelope: Envelope) -> list[Problem]:
         if missing < TOLD:
             continue
         cause = (
-            f"{name} may be pressed by what is driven: faces sink in where they touch, so between two faces that squeeze it by "
-            f"{100.0 * STRAIN:.0f} % its stress is {100.0 * missing:.0f} % too low, by less more "
-            "(docs/physics-contact.md#squeezed-by-a-given-way)"
+            f"{name} may be pressed by what is driven: faces sink in where they touch, so between two faces that "
+            f"squeeze it across its thinnest part by {100.0 * STRAIN:.0f} % its stress is {100.0 * missing:.0f} % too low, "
+            "by less more (docs/physics-contact.md#squeezed-by-a-given-way)"
         )
-        way_out = "write contact-stiffness 16 or a finer resolution; a load by weight or force is borne in full"
+        way_out = "write a larger contact-stiffness or a finer resolution; a load by weight or force is borne in full"
         return [Problem(spans.get("elasticity"), cause, way_out, severity="note")]
     return []

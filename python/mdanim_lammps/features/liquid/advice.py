@@ -79,7 +79,7 @@ def _many_cells(envelope: Envelope) -> list[Problem]:
         return []
     coarse = float(f"{spacing.h * (cells / FEW) ** (1 / 3):.1g}")
     thin = shapes.thickness(solid.shape)
-    if not kind_of(solid).thinner(envelope.scene, solid):
+    if kind_of(solid).least(envelope.scene, solid):
         coarse = min(coarse, thin)
     if coarse < 2.0 * spacing.h:
         return []

@@ -62,11 +62,10 @@ class RigidBody(BodyKind):
         finest = h if scene.liquid is not None or soft else math.inf
         usual = lambda s: 1 if scene.liquid is not None and isinstance(s.shape, Box) else _across(s)
         across = lambda s: max(usual(s), beneath(scene, s) if isinstance(s.shape, Sphere) else 0)
-        return lambda s: finest if self.thinner(scene, s) else min(finest, shapes.thickness(s.shape) / across(s))
+        return lambda s: finest if _may_be_thin(scene, s) else min(finest, shapes.thickness(s.shape) / across(s))
 
-    def thinner(self, scene, solid):
-        """A cuboid may be so where a liquid alone reads its cells: one across, which it fills."""
-        return isinstance(solid.shape, Box) and scene.liquid is not None and _features_alone(scene)
+    def least(self, scene, solid):
+        return 0.0 if _may_be_thin(scene, solid) else 1.0
 
     def has_spacing(self, scene):
         return not by_features(scene)
@@ -110,6 +109,12 @@ def _framed(shared, shape, h: float) -> BodyFrame:
     """The frame of a cuboid or a ball whose particles are the corners of the box around it, with cells of h [m]."""
     corner, cells = shared.body(shape, math.inf).lattice.position, fill_cells(shape, h)
     return BodyFrame(shape, cells, rigid=True, corners=(corner - cells.low) / cells.edge)
+
+
+def _may_be_thin(scene, solid) -> bool:
+    """Whether an object may be thinner than its spacing: a cuboid where a liquid alone reads its cells, one across, which it
+    fills."""
+    return isinstance(solid.shape, Box) and scene.liquid is not None and _features_alone(scene)
 
 
 def _across(solid) -> int:
