@@ -475,7 +475,7 @@ record ball.position.z
 
 
 def heights(tmp_path, size, z, v=2, time=0.1):
-    """Of the ball at each frame [m]."""
+    """Heights of the ball at each frame [m]."""
     scene = Scene.from_text(SHELF.format(size=size, z=z, v=v, time=time))
     assert scene.prepared.system.spacing[1] == pytest.approx(0.05, rel=0.03)  # four across the ball
     return scene.run(tmp_path / f"{abs(z)}", movie=False, progress=False).records["ball.position.z"]

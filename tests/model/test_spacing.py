@@ -40,7 +40,7 @@ def test_resolution_overrides_accuracy():
 
 
 def test_a_held_plate_asks_for_few_cells():
-    """Those of 2.5 times its thickness where something elastic can move; two across other obstacles, and in a liquid."""
+    """Cells of 2.5 times its thickness where something elastic can move; two across other obstacles, and in a liquid."""
     plate = solid(Box((2.0, 2.0, 0.02)), "plate", hold=(HoldAll(),))
     ball = solid(Sphere(0.5), "ball")
     assert plan_spacing(scene(plate, ball)).h == pytest.approx(0.05)
