@@ -6,6 +6,7 @@
 ``automaton N``  such a block as it plunges into a deep basin of `model surface`; with 46 there are 2·10^6 cells
 ``float N``      scenes/float.txt with about N particles, and cells as small: the cuboid is in the liquid
 ``heap N``       about N objects of scenes/pile.txt, poured into its bin; nine of ten have landed
+``boxes N``      about N rigid boxes, poured into a bin; nine of ten have landed
 ``hail N``       N blocks of 1000 particles that fall and collide, N a square
 ``FILE``         a file of scenes/, from its own beginning on
 """
@@ -67,6 +68,22 @@ control {
   resolution 1 cm
 }
 """
+BOXES = """
+gravity (0, 0, -9.81)
+ground z 0
+walls from (-{wall}, -{wall}, -1) m to ({wall}, {wall}, 100) m
+repeat k in 0 .. {layers} - 1 {{ repeat j in 0 .. {side} - 1 {{ repeat i in 0 .. {side} - 1 {{
+  object box[(k*{side} + j)*{side} + i] {{
+    shape       box (10, 10, 10) cm
+    elasticity  rigid
+    density     600
+    position    (20*(i - {middle}) + rand(0, 2), 20*(j - {middle}) + rand(0, 2), 12 + 18*k) cm
+    orientation euler (rand(0, 90), rand(0, 90), rand(0, 90)) deg
+    velocity    (0, 0, -{speed}) m/s
+  }}
+}} }} }}
+control {{ time 4 s  friction 0.5 }}
+"""
 KINDS = 16
 """Objects of a layer of scenes/pile.txt."""
 POUR = 3.0
@@ -85,6 +102,13 @@ def hail(side: int) -> str:
     """Text of a hail of side^2 blocks by 1000 particles."""
     speed = "velocity (rand(-1.5, 1.5), rand(-1.5, 1.5), 0) m/s"
     return GRAVITY + "ground z 0 m\n" + rows(side, "(i*0.3, j*0.3, 0.3 + 0.1*((i + 2*j) mod 5))", 9, speed) + END
+
+
+def boxes(number: int) -> str:
+    """Text of so many rigid boxes, about, in a bin as wide as their heap is high."""
+    side = max(2, round((number / 2.5) ** (1 / 3)))
+    sizes = {"side": side, "layers": round(number / side**2), "middle": (side - 1) / 2, "wall": 0.1 * side + 0.1}
+    return BOXES.format(speed=POUR, **sizes)
 
 
 def in_basin(
@@ -123,6 +147,7 @@ def scene_of(name: str):
         "cube": lambda: CUBE.format(n - 1),
         "pool": lambda: POOL.format(n - 1, 7 * (n - 1) // 2, 2 * (n - 1), (n - 1) // 2),
         "automaton": lambda: plunging(n, side := round(128 * n / 46), side, side / 2, "surface"),
+        "boxes": lambda: boxes(n),
         "hail": lambda: hail(round(n**0.5)),
     }
     return parse_scene(texts[kind]())
@@ -131,7 +156,7 @@ def scene_of(name: str):
 def warm(name: str, ready):
     """Step and state from which a scene is measured, run up to there by all cores; None where that is its beginning."""
     kind, _, size = name.partition(" ")
-    if kind not in ("heap", "float") or not size:
+    if kind not in ("heap", "boxes", "float") or not size:
         return None
     import numpy as np
     from mdanim_lammps.engine.instance import Instance
@@ -147,8 +172,8 @@ def warm(name: str, ready):
             fast = np.linalg.norm(ready.system.center_of_mass(instance.array("v")), axis=1)
             landed = float((fast < LANDED).mean())
             # The cuboid of float.txt touches the liquid after 0.2 s.
-            if (kind == "heap" and now > 0.1 and (landed >= 0.9 or now > 1.2)) or (kind == "float" and now >= 0.3):
+            if (kind != "float" and now > 0.1 and (landed >= 0.9 or now > 1.2)) or (kind == "float" and now >= 0.3):
                 break
-        told = f", {100 * landed:.0f} % have landed" if kind == "heap" else ""
+        told = f", {100 * landed:.0f} % have landed" if kind != "float" else ""
         print(f"{name}: begun at {now:.2f} s, after {time.perf_counter() - start:.0f} s{told}", file=sys.stderr, flush=True)
         return instance.step, instance.state()

@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """Gain of threads: ``python bench/threads.py [rounds [threads [scene ...]]] [--write]``.
 
-A scene is a name of bench/scene_texts.py, such as ``cube 30``, ``heap 208``, ``pool 46``, ``automaton 46``, ``float 1e5``,
-``hail 64``, or the name of a file in scenes/. Told is the wall time of a step by one thread and by several, in turns, beside the
-machine's own ceiling in the same rounds: what as many independent processes with one thread each do at once, over one alone.
-Where others use the processors, none of this says much; then the processor time of the thread that calls does, which falls by
-what others do for it. Figures are medians over rounds. All see the same steps of a scene in a round, without frames.
+A scene is a name of bench/scene_texts.py, such as ``cube 30``, ``heap 208``, ``boxes 1000``, ``pool 46``, ``automaton 46``,
+``float 1e5``, ``hail 64``, or the name of a file in scenes/. Told is the wall time of a step by one thread and by several, in
+turns, beside the machine's own ceiling in the same rounds: what as many independent processes with one thread each do at once,
+over one alone. Where others use the processors, none of this says much; then the processor time of the thread that calls does,
+which falls by what others do for it. Figures are medians over rounds. All see the same steps of a scene in a round, without
+frames.
 ``--write`` puts the table into docs/decisions/threads.md.
 """
 
@@ -25,7 +26,7 @@ from timing import machine, markdown, replace_between
 PAGE = Path(__file__).resolve().parents[1] / "docs" / "decisions" / "threads.md"
 ALONE, SHARED, AT_ONCE = "alone", "shared", "at once"
 ROUNDS = 9
-NAMES = ("cube 30", "cube 60", "beam", "crowd", "heap 208", "pool 46", "automaton 46", "float 1e5")
+NAMES = ("cube 30", "cube 60", "beam", "crowd", "heap 208", "boxes 1000", "pool 46", "automaton 46", "float 1e5")
 FIRST_STEPS, PARTICLE_STEPS, SECONDS = 20, 8_000_000, 2.0
 """Steps that are not measured; the most that are measured at once, times particles, and how long they may take about."""
 

@@ -98,6 +98,7 @@ END = "control {{ time 0.2 s frames 50 fps resolution 1 cm  {} }}\n"
 THREADS = {
     "threads_of_passes": ("passes/*.cpp", "barrier/*.cpp"),
     "threads_of_contact": ("contact/*.cpp", "barrier/contact_search.cpp"),
+    "threads_of_rigid": ("rigid/*.cpp",),
     "threads_of_cells": ("liquid/automaton/automaton.cpp", "liquid/occupancy.cpp"),
     "threads_of_waves": ("liquid/waves/*.cpp", "liquid/occupancy.cpp"),
 }

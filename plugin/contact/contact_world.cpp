@@ -97,10 +97,9 @@ void ContactWorld::list_fields()
   sums.clear();
   Fields kept;
   const auto keep = [&](const FieldKey &key, const Zone *host_zone) {
-    const auto old = fields.find(key);
-    std::unique_ptr<ContactField> &field = kept[key];
-    field = old == fields.end() ? make(key) : std::move(old->second);
-    sums.add(owner_of(key), host_of(key), field.get(), host_zone);
+    Fields::node_type old = fields.extract(key);
+    const auto now = old ? kept.insert(kept.end(), std::move(old)) : kept.emplace_hint(kept.end(), key, make(key));
+    sums.add(owner_of(key), host_of(key), now->second.get(), host_zone);
   };
   for (const NearObjects::NearPair &pair : near.pairs()) {
     keep({false, all[pair.a].id, all[pair.b].id, false}, &pair.of_b);
@@ -189,29 +188,28 @@ void ContactWorld::list(const std::vector<ContactParticle> &particles, const Coo
   arrays.renew(particles.size());
   for (std::size_t slot = 0; slot < particles.size(); ++slot) arrays.place()[slot].value = place(places, slot);
   const PaddedVec3 *const last = has_before ? arrays.place_before_of_old_slots() : arrays.place_of_old_slots();
-  std::size_t from = 0;
-  std::vector<Vec3> changes;
-  for (int n = 0; n < objects(); ++n) {
-    ContactObject &one = all[n];
-    const std::vector<int> slot_before = std::move(one.slot);
-    one.outer = std::make_shared<LateOuterCells>();
-    one.slot.assign(near.has_zones(n) ? one.body->slots() : 0, -1);
-    one.first_slot = static_cast<int>(from);
-    changes.clear();    // since the last step, of objects that already existed
-    for (; from < particles.size() && particles[from].object == n; ++from) {
-      const int at = one.body->slot_of(particles[from].node);
-      one.slot[at] = static_cast<int>(from);
-      const bool was_here = !slot_before.empty() && slot_before[at] >= 0;
-      arrays.place_before()[from] = was_here ? last[slot_before[at]] : arrays.place()[from];
-      if (was_here) changes.push_back(arrays.place()[from].value - arrays.place_before()[from].value);
+  for (int n = 0, to = 0; n < objects(); all[n++].last_slot = to)
+    for (all[n].first_slot = to; to < static_cast<int>(particles.size()) && particles[to].object == n;) ++to;
+  threads.parts(objects(), NS_OF_OBJECT, [&](long first, long end) {
+    for (int n = static_cast<int>(first); n < end; ++n) {
+      ContactObject &one = all[n];
+      const std::vector<int> slot_before = std::move(one.slot);
+      one.outer = std::make_shared<LateOuterCells>();
+      one.slot.assign(near.has_zones(n) ? one.body->slots() : 0, -1);
+      std::vector<Vec3> changes;    // since the last step, where the object already existed
+      for (int slot = one.first_slot; slot < one.last_slot; ++slot) {
+        const int at = one.body->slot_of(particles[slot].node);
+        one.slot[at] = slot;
+        const bool was_here = !slot_before.empty() && slot_before[at] >= 0;
+        arrays.place_before()[slot] = was_here ? last[slot_before[at]] : arrays.place()[slot];
+        if (was_here) changes.push_back(arrays.place()[slot].value - arrays.place_before()[slot].value);
+      }
+      one.find_host_slots();
+      one.is_calm = false, one.unchecked = -1.0;              // its cells that are here may be others
+      if (!one.is_rigid()) tell_mean_motion(one, changes);    // else it has been placed
+      one.find_crushed(arrays.place());
     }
-    one.last_slot = static_cast<int>(from);
-    one.find_host_slots();
-    one.is_calm = false, one.unchecked = -1.0;    // its cells that are here may be others
-    if (one.is_rigid()) continue;                 // it has been placed
-    tell_mean_motion(one, changes);
-    one.find_crushed(arrays.place());
-  }
+  });
   list_fields();
   find_points();
   for (const int n : torn_now)    // points that are below a plane since another particle carries them

@@ -11,21 +11,27 @@
 namespace mdanim {
 
 static constexpr int FIELD_COST = 20;    // cost of a field without points [ns], approximately
+static constexpr double LOOK_COST =
+    300.0;    // at a point of an object without a contact [ns]; it comes beside the costs of fields
+// A step has something to do with few of the fields, and cannot know beforehand with which.
+static constexpr int PARTS_OF_THREAD = 8;
 
 void FieldSums::clear()
 {
   for (std::size_t k = 0; k < rests.size(); ++k) active[k].field->rest(rests[k].budget);
-  active.clear(), rests.clear(), costs.assign(1, 0);
+  active.clear(), rests.clear(), ends.clear(), has_something.clear(), costs.assign(1, 0);
 }
 
 void FieldSums::weigh()
 {
   costs.assign(1, 0);
-  rests.clear();
+  rests.clear(), ends.clear();
   for (const Active &one : active) {
     costs.push_back(costs.back() + FIELD_COST + one.field->cost());
-    rests.push_back({one.a, one.b, one.field->at_plane(), false, one.field->budget_now(), one.field->rests_until()});
+    ends.push_back({one.a, one.b});
+    rests.push_back({one.a, one.b, one.field->at_plane(), one.field->budget_now(), one.field->rests_until()});
   }
+  has_something.assign(active.size(), false);
 }
 
 std::vector<PointsAtPlane> FieldSums::hand_over() const
@@ -49,7 +55,6 @@ bool FieldSums::goes_on_resting(Rest &rest, const std::vector<ContactObject> &ob
 {
   rest.budget += rest.at_plane ? nearer(objects[rest.a], rest.at_plane->normal(), rest.at_plane->way)
                                : nearer(objects[rest.a], objects[rest.b]);
-  rest.has_something = false;
   return !(rest.until < rest.budget || (objects[rest.b].is_crushed && !rest.at_plane));
 }
 
@@ -65,14 +70,17 @@ void FieldSums::add_forces(std::size_t k, std::vector<ContactObject> &objects, C
 void FieldSums::step(std::vector<ContactObject> &objects, ContactArrays &arrays, const Threads &threads, double dt,
                      ContactAccount &account)
 {
-  if (dt > 0.0 && threads.pays(static_cast<double>(costs.back()))) {
-    look_and_work_ahead(objects, arrays, threads, dt);
+  if (active.empty()) return;
+  const double ns = static_cast<double>(costs.back()) + LOOK_COST * looks_before, looks = account.looks;
+  if (dt > 0.0 && threads.pays(ns)) {
+    look_and_work_ahead(objects, arrays, threads, ns, dt);
     add_side_by_side(objects, arrays, threads, dt);
   } else {
     look(0, active.size(), objects, arrays, dt, [&](std::size_t k) { add_forces(k, objects, arrays, dt); });
   }
   for (std::size_t k = 0; k < active.size(); ++k)
-    if (rests[k].has_something) account.add(active[k].of_step);
+    if (has_something[k]) account.add(active[k].of_step);
+  looks_before = account.looks - looks;
 }
 
 // Has what a step reads of a field brought into the cache, some fields ahead: of most fields a step reads little, and waits for
@@ -96,8 +104,8 @@ void FieldSums::look(std::size_t first, std::size_t end, const std::vector<Conta
   std::vector<ContactField *> awake;
   std::vector<std::size_t> number;
   for (std::size_t k = first; k < end; ++k) {
-    if (goes_on_resting(rests[k], objects) && dt > 0.0) continue;
-    rests[k].has_something = true;
+    has_something[k] = !goes_on_resting(rests[k], objects) || dt == 0.0;
+    if (!has_something[k]) continue;
     awake.push_back(active[k].field), number.push_back(k);
   }
   for (std::size_t n = 0; n < awake.size(); ++n) {
@@ -117,28 +125,29 @@ void FieldSums::look(std::size_t first, std::size_t end, const std::vector<Conta
 
 // The work that fields do independently. Their contributions to shared particles and sums are added afterwards, in one order.
 void FieldSums::look_and_work_ahead(const std::vector<ContactObject> &objects, const ContactArrays &arrays,
-                                    const Threads &threads, double dt)
+                                    const Threads &threads, double ns, double dt)
 {
-  threads.parts(costs.back(), 1.0, [&](long from, long to) {    // costs are in ns, approximately
-    const auto number = [&](long cost) { return std::lower_bound(costs.begin(), costs.end() - 1, cost) - costs.begin(); };
+  const auto number = [&](long cost) { return std::lower_bound(costs.begin(), costs.end() - 1, cost) - costs.begin(); };
+  const auto of_costs = [&](long from, long to) {    // costs are in ns, approximately
     look(number(from), number(to), objects, arrays, dt, [&](std::size_t k) {
       ContactField &field = *active[k].field;
       field.work_ahead(arrays, dt);
-      rests[k].has_something = field.has_something();
-      if (!rests[k].has_something) rests[k].until = field.rests_until();
+      has_something[k] = field.has_something();
+      if (!has_something[k]) rests[k].until = field.rests_until();
     });
-  });
+  };
+  threads.parts(costs.back(), ns / static_cast<double>(costs.back()), of_costs, PARTS_OF_THREAD);
 }
 
 // On each object fields are added in the order of sums. First come those that wait for none, then those that wait for one of
 // them, and so on.
-void FieldSums::order(std::size_t objects)
+void FieldSums::find_order(std::size_t objects)
 {
   std::vector<int> before(objects, 0), longest(objects, 0);    // number of fields so far, and the longest chain of them
   for (auto &some : after_chain) some.clear();
   for (std::size_t k = 0; k < active.size(); ++k) {
-    if (!rests[k].has_something) continue;
-    const Active &one = active[k];
+    if (!has_something[k]) continue;
+    const ObjectsOfField &one = ends[k];
     const int chain = std::max(longest[one.a], longest[one.b]);
     if (static_cast<std::size_t>(chain) == after_chain.size()) after_chain.emplace_back();
     after_chain[chain].push_back({k, before[one.a], before[one.b]});
@@ -154,7 +163,7 @@ void FieldSums::order(std::size_t objects)
 void FieldSums::add_side_by_side(std::vector<ContactObject> &objects, ContactArrays &arrays, const Threads &threads, double dt)
 {
   constexpr double PART = 0.3;    // of the cost
-  order(objects.size());
+  find_order(objects.size());
   std::vector<std::atomic<int>> added(objects.size());
   std::atomic<std::size_t> next{0};
   threads.each(threads.many(), PART * static_cast<double>(costs.back()), [&](int) {

@@ -41,8 +41,10 @@ class FieldSums {
   struct Rest {
     int a, b;
     const ContactPlane *at_plane;    // null for a field of two objects
-    bool has_something;              // whether it has forces to add in this step
     double budget, until;
+  };
+  struct ObjectsOfField {
+    int a, b;
   };
   // A field with forces to add in this step, and the number of fields that come before it on each of its objects.
   struct OrderedField {
@@ -55,13 +57,16 @@ class FieldSums {
   void look(std::size_t first, std::size_t end, const std::vector<ContactObject> &objects, const ContactArrays &arrays, double dt,
             const Work &work);
   void look_and_work_ahead(const std::vector<ContactObject> &objects, const ContactArrays &arrays, const Threads &threads,
-                           double dt);
-  void order(std::size_t objects);
+                           double ns, double dt);
+  void find_order(std::size_t objects);
   void add_side_by_side(std::vector<ContactObject> &objects, ContactArrays &arrays, const Threads &threads, double dt);
 
   std::vector<Active> active;                            // in the order of sums,
   std::vector<Rest> rests;                               // the same,
+  std::vector<ObjectsOfField> ends;                      // their objects, which no step changes,
+  std::vector<char> has_something;                       // whether each has forces to add in this step,
   std::vector<long> costs = {0};                         // and the cost of all before each of them; at the end, that of all
+  double looks_before = 0.0;                             // at points of objects, in the last step
   std::vector<OrderedField> ordered;                     // in an order in which no field waits for a later one
   std::vector<std::vector<OrderedField>> after_chain;    // fields that wait for chains of n others, for each n
 };

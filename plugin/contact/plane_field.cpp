@@ -127,10 +127,11 @@ void PlaneField::add_losses(const std::vector<LossOfPoint> &more)
   losses = std::move(all);
 }
 
+// Cost of a point, of a field with contacts, and of a contact.
 int PlaneField::cost() const
 {
-  constexpr std::size_t CONTACT = 30;
-  return static_cast<int>(near.size() + CONTACT * contacts.size());
+  constexpr std::size_t POINT = 2, SOME_CONTACTS = 600, CONTACT = 80;
+  return static_cast<int>(POINT * near.size() + (contacts.empty() ? 0 : SOME_CONTACTS + CONTACT * contacts.size()));
 }
 
 void PlaneField::begin_step(const ContactArrays &)

@@ -21,14 +21,15 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <mutex>
 #include <stdexcept>
 
 using namespace LAMMPS_NS;
 using namespace FixConst;
 using namespace mdanim;
 
-static constexpr double NS_OF_PARTICLE = 4.0;    // approximately
-static constexpr double USUAL_DAMPING = 0.3;     // beta
+static constexpr double NS_OF_PARTICLE = 4.0, NS_OF_ZONES = 15.0;    // of a particle, approximately
+static constexpr double USUAL_DAMPING = 0.3;                         // beta
 static const char *const STYLE = "fix mdanim/contact";
 static const char *const LEFT_OUT = ", or leave it out by 'among GROUP'";
 
@@ -290,6 +291,32 @@ void FixMdanimContact::move_planes()
       [this](int plane, const Vec3 &shift, const Vec3 &way) { world_of_contact.settings.planes[plane].move_to(shift, way); });
 }
 
+// Lowers extents by those of all particles: lower(i, extents) does so for one.
+template <class Lower>
+static void lower_by_all(const Threads &threads, int particles, std::vector<double> &extents, const Lower &lower)
+{
+  std::mutex one_at_a_time;
+  threads.parts(particles, NS_OF_ZONES, [&](long from, long to) {
+    std::vector<double> here(extents.size(), Box::FAR);
+    for (long i = from; i < to; ++i) lower(static_cast<int>(i), here);
+    const std::lock_guard<std::mutex> lock(one_at_a_time);
+    for (std::size_t k = 0; k < here.size(); ++k) extents[k] = std::min(extents[k], here[k]);
+  });
+}
+
+// Particles for which this holds, ascending.
+template <class Holds> static std::vector<int> find_all(const Threads &threads, int particles, const Holds &holds)
+{
+  std::vector<char> found(particles);
+  threads.parts(particles, NS_OF_ZONES, [&](long from, long to) {
+    for (long i = from; i < to; ++i) found[i] = holds(static_cast<int>(i));
+  });
+  std::vector<int> all;
+  for (int i = 0; i < particles; ++i)
+    if (found[i]) all.push_back(i);
+  return all;
+}
+
 void FixMdanimContact::list()
 {
   const Lap lap(seconds);
@@ -302,19 +329,19 @@ void FixMdanimContact::list()
   world_of_contact.near.look_ahead(boxes, neighbor->skin);
   std::vector<double> extents = world_of_contact.near.initial_extents();
   if (!extents.empty()) {
-    for (int i = 0; i < nlocal; ++i)
-      if (objects[i] >= 0) world_of_contact.near.lower_extents(objects[i], vec3(atom->x[i]), extents);
+    lower_by_all(threads_now, nlocal, extents, [this](int i, std::vector<double> &here) {
+      if (objects[i] >= 0) world_of_contact.near.lower_extents(objects[i], vec3(atom->x[i]), here);
+    });
     MPI_Allreduce(MPI_IN_PLACE, extents.data(), static_cast<int>(extents.size()), MPI_DOUBLE, MPI_MIN, world);
     world_of_contact.near.drop_separated_pairs(extents);
   }
-
   std::vector<std::pair<ContactParticle, int>> needed;    // and local indices
+  const auto node = [this](int i) { return static_cast<int>(atom->tag[i] - lowest[objects[i]]); };
+  const auto is_needed = [&](int i) {
+    return objects[i] >= 0 && world_of_contact.near.needs({objects[i], node(i)}, vec3(atom->x[i]));
+  };
   if (!world_of_contact.near.none())
-    for (int i = 0; i < nlocal; ++i) {
-      if (objects[i] < 0 || !world_of_contact.near.has_zones(objects[i])) continue;
-      const ContactParticle particle{objects[i], static_cast<int>(atom->tag[i] - lowest[objects[i]])};
-      if (world_of_contact.near.needs(particle, vec3(atom->x[i]))) needed.push_back({particle, i});
-    }
+    for (const int i : find_all(threads_now, nlocal, is_needed)) needed.push_back({{objects[i], node(i)}, i});
   if (!std::is_sorted(needed.begin(), needed.end())) std::sort(needed.begin(), needed.end());
   std::vector<ContactParticle> particles;
   mine.clear();

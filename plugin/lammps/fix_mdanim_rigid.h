@@ -11,6 +11,7 @@
 #include "lammps/rigid_sleep.h"
 #include "lammps/rigid_touching.h"
 #include "lammps/stateful.h"
+#include "passes/pass_participant.h"
 #include "rigid/body.h"
 #include "rigid/inertia.h"
 
@@ -23,11 +24,12 @@ namespace LAMMPS_NS {
 // Moves the particles of each object of its group as one rigid body, by the sums of the forces on them and by contact with other
 // bodies. Every rank has all bodies; sums over particles have the same bits in any order, so that bodies are the same on any
 // number of ranks.
-class FixMdanimRigid : public mdanim::FixBase, public mdanim::Stateful {
+class FixMdanimRigid : public mdanim::FixBase, public mdanim::Stateful, public mdanim::Equipped {
  public:
   FixMdanimRigid(class LAMMPS *, int, char **);
   ~FixMdanimRigid() override;
 
+  void equip(const mdanim::Kernels &, const mdanim::Threads &now) override { particles.use(now), touching.contact.use(now); }
   int setmask() override;
   void init() override;
   void setup(int) override;

@@ -26,14 +26,15 @@ void RigidParticles::fix_places(const std::vector<RigidBody> &bodies)
 
 void RigidParticles::put(const std::vector<RigidBody> &bodies, bool places, bool settled) const
 {
-  for (int i = 0; i < atom->nlocal; ++i) {
-    if (of_particle[i] == ObjectTable::NONE || !moves(i)) continue;    // it may have left the group since the last lists
+  constexpr double NS_OF_PLACE = 10.0;
+  each_particle(NS_OF_PLACE, [&](int i) {
+    if (of_particle[i] == ObjectTable::NONE || !moves(i)) return;    // it may have left the group since the last lists
     const RigidBody &body = bodies[of_particle[i]];
-    if (body.settled && !settled) continue;
+    if (body.settled && !settled) return;
     const Vec3 from_centre = body.turn * own(i), place = body.centre + from_centre, v = body.velocity_at(from_centre);
     if (places) atom->x[i][0] = place.x, atom->x[i][1] = place.y, atom->x[i][2] = place.z;
     atom->v[i][0] = v.x, atom->v[i][1] = v.y, atom->v[i][2] = v.z;
-  }
+  });
 }
 
 RigidParticles::BodyChanges RigidParticles::changes(const std::vector<RigidBody> &bodies) const

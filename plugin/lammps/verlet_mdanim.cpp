@@ -185,7 +185,7 @@ void VerletMdanim::equip_members() const
 {
   const Kernels &kernels = told ? *told : widest_kernels();
   const auto equip = [&](auto *style) {
-    if (auto *member = dynamic_cast<PassMember *>(style)) engine.equip(*member, kernels);
+    if (auto *member = dynamic_cast<Equipped *>(style)) engine.equip(*member, kernels);
   };
   equip(force->bond);
   for (Fix *fix : modify->get_fix_list()) equip(fix);

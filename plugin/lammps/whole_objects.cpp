@@ -5,6 +5,8 @@
 #include "fmt/format.h"
 #include "group.h"
 
+#include <utility>
+
 using namespace LAMMPS_NS;
 
 namespace mdanim {
@@ -63,6 +65,18 @@ void WholeObjects::locate()
                  "{}: particle {} of object {} (molecule ID) has come into its group since the setup of this run; let it come "
                  "between two runs, the second without 'pre no'",
                  name(), atom->tag[i], atom->molecule[i]);
+  }
+  find_runs();
+}
+
+void WholeObjects::find_runs()
+{
+  run.clear();
+  std::vector<char> has_begun(known.size(), false);
+  for (int i = 0; i < atom->nlocal; ++i) {
+    if (i > 0 && of_particle[i] == of_particle[i - 1]) continue;
+    if (of_particle[i] != ObjectTable::NONE && std::exchange(has_begun[of_particle[i]], true)) return run.clear();
+    run.push_back(i);
   }
 }
 

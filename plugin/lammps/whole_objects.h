@@ -8,6 +8,7 @@
 #include "numbers/unordered_sum.h"
 #include "numbers/vec3.h"
 #include "rigid/inertia.h"
+#include "threads/team.h"
 
 #include "atom.h"
 #include "comm.h"
@@ -28,6 +29,9 @@ class WholeObjects : protected LAMMPS_NS::Pointers {
  public:
   // Takes the objects of the group of a fix.
   WholeObjects(LAMMPS_NS::LAMMPS *lmp, const LAMMPS_NS::Fix &fix) : Pointers(lmp), fix(fix) {}
+
+  // Sets the threads that sums are shared among. Their number changes no bit.
+  void use(const Threads &now) { threads = now; }
 
   bool moves(int i) const { return atom->mask[i] & fix.groupbit; }
   double mass_at(int i) const { return mass_of(atom->rmass, atom->mass, atom->type, i); }
@@ -93,27 +97,48 @@ class WholeObjects : protected LAMMPS_NS::Pointers {
   double bytes() const;
 
  protected:
+  // Calls work(i) for all local particles, shared by bodies; one call takes about `ns` nanoseconds.
+  template <class Work> void each_particle(double ns, const Work &work) const;
+
   std::vector<int> of_particle;
 
  private:
+  static constexpr double NS_OF_TERMS = 15.0;    // of a particle, approximately
+
   std::string name() const;
+  void find_runs();
   std::vector<LAMMPS_NS::bigint> take_objects(bool with_aside);    // their numbers of particles
 
   const LAMMPS_NS::Fix &fix;
   ObjectTable known;
   std::vector<LAMMPS_NS::bigint> particles;    // of each object, on all ranks
+  Threads threads;
+  std::vector<int> run;    // first particles of bodies, where those of each body follow each other; else none
 };
+
+template <class Work> void WholeObjects::each_particle(double ns, const Work &work) const
+{
+  const auto runs = static_cast<long>(run.size());
+  if (runs == 0) {
+    for (int i = 0; i < atom->nlocal; ++i) work(i);
+    return;
+  }
+  threads.parts(runs, ns * static_cast<double>(atom->nlocal) / static_cast<double>(runs), [&](long first, long end) {
+    const int last = end < runs ? run[end] : atom->nlocal;
+    for (int i = run[first]; i < last; ++i) work(i);
+  });
+}
 
 template <int N, class Terms, class Asked>
 std::vector<std::array<double, N>> WholeObjects::largest(const Terms &terms_of, const Asked &asked) const
 {
   std::vector<std::array<double, N>> found(known.size(), std::array<double, N>{});
-  for (int i = 0; i < atom->nlocal; ++i) {
-    if (of_particle[i] == ObjectTable::NONE || !asked(of_particle[i])) continue;
+  each_particle(NS_OF_TERMS, [&](int i) {
+    if (of_particle[i] == ObjectTable::NONE || !asked(of_particle[i])) return;
     const std::array<double, N> terms = terms_of(i);
     std::array<double, N> &of_body = found[of_particle[i]];
     for (int k = 0; k < N; ++k) of_body[k] = std::isfinite(terms[k]) ? std::max(of_body[k], std::fabs(terms[k])) : HUGE_VAL;
-  }
+  });
   if (comm->nprocs > 1) MPI_Allreduce(MPI_IN_PLACE, found.data(), static_cast<int>(N * found.size()), MPI_DOUBLE, MPI_MAX, world);
   for (const auto &of_body : found)
     for (const double one : of_body)
@@ -130,10 +155,9 @@ std::vector<std::array<double, N>> WholeObjects::sums_within(const Terms &terms_
   for (auto &of_body : scale)
     for (double &one : of_body) one = unordered::scale_for(one);
   std::vector<UnorderedSums<N>> sum(count);
-  for (int i = 0; i < atom->nlocal; ++i) {
-    if (of_particle[i] == ObjectTable::NONE || !asked(of_particle[i])) continue;
-    sum[of_particle[i]].add(terms_of(i), scale[of_particle[i]]);
-  }
+  each_particle(NS_OF_TERMS, [&](int i) {
+    if (of_particle[i] != ObjectTable::NONE && asked(of_particle[i])) sum[of_particle[i]].add(terms_of(i), scale[of_particle[i]]);
+  });
   static_assert(sizeof(UnorderedSums<N>) == 2 * N * sizeof(std::uint64_t), "whole numbers, summed over ranks");
   if (comm->nprocs > 1) MPI_Allreduce(MPI_IN_PLACE, sum.data(), static_cast<int>(2 * N * count), MPI_UINT64_T, MPI_SUM, world);
   std::vector<std::array<double, N>> values(count);

@@ -23,8 +23,9 @@ class ExternalForces {
               const PlaneBlocks::Where &where);
   // For participant number n, its particles in the same order: their places, those of ghosts from an array of LAMMPS; and where
   // forces on them are added up, which is zero after every pass for all particles that it moves.
-  void tell_places(std::size_t n, const double *const *x, const double *const *of_ghosts, Positions &to) const
-  { providers[n].tell_places(x, of_ghosts, to); }
+  void tell_places(const Threads &threads, std::size_t n, const double *const *x, const double *const *of_ghosts,
+                   Positions &to) const
+  { providers[n].tell_places(threads, x, of_ghosts, to); }
   ForceSums of(std::size_t n) { return {given.data(), providers[n].slot.data(), lanes}; }
   const PlaneBlocks &planes() const { return at_planes; }
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "geometry/aligned_array.h"
+#include "threads/team.h"
 
 #include <cstddef>
 #include <cstring>
@@ -29,23 +30,29 @@ struct ForceProvider {
   }
 
   // Places from arrays of blocks, and from LAMMPS's for ghosts.
-  template <class Arrays> void tell_places(const Arrays &x, const double *const *of_ghosts, Positions &to) const
+  void tell_places(const Threads &threads, const double *const *x, const double *const *of_ghosts, Positions &to) const
   {
     to.make_room(particle.size());
-    for (int d = 0; d < 3; ++d) {
-      const double *const from = x[d];
-      double *next = to.along[d].data();
-      const int *i = particle.data(), *const end = i + particle.size();
-      for (const char is_in_row : in_row) {
-        if (is_in_row)
-          std::memcpy(next, from + *i, 4 * sizeof(double));    // not std::copy_n(), which calls a function
-        else
-          for (int k = 0; k < 4; ++k) next[k] = from[i[k]];
-        next += 4, i += 4;
-      }
-      while (i < end) *next++ = from[*i++];
-    }
+    threads.parts(static_cast<long>(in_row.size()), 4.0 * PARTICLE, [&](long from, long end) { tell_fours(from, end, x, to); });
+    for (std::size_t n = 4 * in_row.size(); n < particle.size(); ++n)
+      for (int d = 0; d < 3; ++d) to.along[d].data()[n] = x[d][particle[n]];
     for (const auto &[i, place] : ghosts) to.put(place, of_ghosts[i]);
+  }
+
+ private:
+  static constexpr double PARTICLE = 3.0;    // time to copy a place [ns], approximately
+
+  void tell_fours(long from, long end, const double *const *x, Positions &to) const
+  {
+    for (int d = 0; d < 3; ++d) {
+      double *next = to.along[d].data() + 4 * from;
+      const int *i = particle.data() + 4 * from;
+      for (long four = from; four < end; ++four, next += 4, i += 4)
+        if (in_row[four])
+          std::memcpy(next, x[d] + *i, 4 * sizeof(double));    // not std::copy_n(), which calls a function
+        else
+          for (int k = 0; k < 4; ++k) next[k] = x[d][i[k]];
+    }
   }
 };
 

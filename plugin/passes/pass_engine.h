@@ -21,8 +21,8 @@ class PassEngine {
 
   // Sets the threads that take passes. The caller of all other functions is one of them.
   void set_threads(Threads &&now) { threads = std::move(now); }
-  // Has a style that takes part in passes compute with these threads in other steps too.
-  void equip(PassMember &member, const Kernels &now) const { member.equip(now, threads); }
+  // Has a style compute with these threads in steps without passes too.
+  void equip(Equipped &style, const Kernels &now) const { style.equip(now, threads); }
 
   // The crew is complete and uses these kernels; knowledge of a single run is forgotten. Returns whether the kernels differ from
   // before.

@@ -28,13 +28,21 @@ struct Home {
 
 struct PassCrew;
 
+// A style that may compute with kernels and threads, also where each step is LAMMPS's own.
+class Equipped {
+ public:
+  // Sets those of this run.
+  virtual void equip(const Kernels &, const Threads &) {}
+
+ protected:
+  ~Equipped() = default;
+};
+
 // A member of the crew of a pass: the bond style, or a fix.
-class PassMember {
+class PassMember : public Equipped {
  public:
   // Joins the crew. False where it cannot, given those that have joined before: each step is then LAMMPS's own.
   virtual bool join(PassCrew &crew) = 0;
-  // Sets the kernels and threads to compute with in this run.
-  virtual void equip(const Kernels &, const Threads &) {}
 
  protected:
   ~PassMember() = default;

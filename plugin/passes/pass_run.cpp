@@ -172,7 +172,7 @@ void PassRun::early_participants_turn()
 {
   for (std::size_t n = 0; n < crew.early.size(); ++n) {
     if (rests[n] > 0.0 || !at_planes[n].empty()) continue;
-    blocks.tell_places(n, atoms.x, place);
+    blocks.tell_places(threads, n, atoms.x, place);
     crew.early[n]->add_forces(place, blocks.external_force_of(n));
     rests[n] = crew.early[n]->rests_for();
   }

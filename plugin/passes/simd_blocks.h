@@ -40,8 +40,8 @@ class SimdBlocks {
   template <class Tell> void set_motion(Friction friction, Tell mover);    // Mover mover(int i)
   // Forces that participants give, see ExternalForces. Particles are numbered as LAMMPS does.
   void expect(const std::vector<std::vector<int>> &particles, const PlaneBlocks::OfProviders &points);
-  void tell_places(std::size_t n, const double *const *of_ghosts, Positions &to) const
-  { external.tell_places(n, x, of_ghosts, to); }
+  void tell_places(const Threads &threads, std::size_t n, const double *const *of_ghosts, Positions &to) const
+  { external.tell_places(threads, n, x, of_ghosts, to); }
   ForceSums external_force_of(std::size_t n) { return external.of(n); }
   void give_out_planes(PlaneBlocks::OfProviders &points) const { external.planes().give_out(points); }
   long points_at_planes() const { return external.planes().points(); }    // whose contacts passes compute

@@ -31,6 +31,8 @@ class Blows {
  public:
   // Takes all contacts of two bodies, or of one and a plane, as they are after the step; `changed`: one has begun or ended.
   void hold(std::vector<Touch> &touches, const InBlow &of, bool changed);
+  // Takes those of another, as if they had been held here.
+  void take(const Blows &other) { all.insert(all.end(), other.all.begin(), other.all.end()); }
   // Damps contacts of each two bodies, or of one and a plane, as the one blow that they are. Returns those that have just begun,
   // with what that adds to the force on `a` in this step.
   std::vector<std::pair<InBlow, Vec3>> share(TouchAccount &account) const;

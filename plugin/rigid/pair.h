@@ -53,6 +53,14 @@ struct SolidPair {
     known_for = -1.0;
   }
 
+  // Ends all contacts of a body that is laid aside, or comes back: its ways were not counted.
+  void end()
+  {
+    touches.clear();
+    force = torque_a = torque_b = Vec3();
+    forget();
+  }
+
   // Adds to what is kept; `in_order`: `a` of the blow is the first body.
   void add(bool in_order, const InBlow &one, const Vec3 &push)
   {
@@ -60,6 +68,15 @@ struct SolidPair {
     force += in_order ? push : -1.0 * push;
     torque_a += in_order ? on_a : on_b;
     torque_b += in_order ? on_b : on_a;
+  }
+  // Keeps what the pair gives to its bodies in work().
+  template <class Work> void keep(const Solid &first, const Solid &second, const Work &work)
+  {
+    const Vec3 force_before = first.force, torque_before = first.torque, torque_of_second = second.torque;
+    work();
+    force = first.force - force_before;
+    torque_a = first.torque - torque_before;
+    torque_b = second.torque - torque_of_second;
   }
   // Takes what is kept from both bodies.
   void take_back(Solid &first, Solid &second) const

@@ -6,10 +6,13 @@
 #include <cmath>
 #include <cstddef>
 #include <cstring>
+#include <numeric>
 
 namespace mdanim {
 
 static constexpr std::size_t MOST_MOVING = 26;    // points that move over one body
+// Costs of a body in a step beside its contacts, of a pair that is near, of a body at a plane, and of a contact; approximate.
+static constexpr double NS_OF_BODY = 15.0, NS_OF_PAIR = 3.0, NS_OF_PLANE = 4.0, NS_OF_TOUCH = 200.0;
 
 void RigidContact::take(std::vector<Solid> now)
 {
@@ -42,11 +45,8 @@ void RigidContact::forget()
 
 void RigidContact::place(int n, const RigidBody &body)
 {
-  Solid &one = solids[n];
-  one.move_to(body.centre, body.turn);
-  one.velocity = body.velocity;
-  one.spin = body.spin;
-  one.fastest_turn = std::sqrt(dot(body.L, body.L)) * std::max({body.over.x, body.over.y, body.over.z});
+  place_driven(n, body.centre, body.turn, body.velocity, body.spin);
+  solids[n].fastest_turn = std::sqrt(dot(body.L, body.L)) * std::max({body.over.x, body.over.y, body.over.z});
 }
 
 void RigidContact::place_driven(int n, const Vec3 &centre, const Matrix3 &turn, const Vec3 &velocity, const Vec3 &spin)
@@ -124,43 +124,66 @@ void RigidContact::touch_plane(const TouchStep &step, std::vector<Touch> &touche
   if (!step.is_first() || !before) before = now;
 }
 
-void RigidContact::step(double dt)
+// Contacts of all of them together.
+static long touches_of(const std::vector<Solid> &solids)
 {
-  const bool all = find_active(settings.objects && near.update(solids, settings.excluded));
-  for (std::size_t n = 0; n < solids.size(); ++n) {
-    Solid &one = solids[n];
-    if (unstirred[n] && !all) continue;
-    one.begin_step();
-    one.stir =
-        one.held && !one.driven ? 0.0 : dt * (std::sqrt(dot(one.velocity, one.velocity)) + one.fastest_turn * one.shape.bound());
-    watched.go(static_cast<int>(n), one.stir);
-  }
-  const TouchStep step(dt, settings.onset, account);
-  touch_planes(step, all);
-  watched.each(all ? nullptr : &active, near.pairs, [&](int k) { touch(step, k, all); });
-  if (!step.is_first())
-    for (const auto &[one, force] : step.share_blows()) push_more(one, force);
+  return std::accumulate(solids.begin(), solids.end(), 0L, [](long sum, const Solid &one) { return sum + one.touching; });
+}
+
+static void see_bounds(const std::vector<Solid> &solids, double dt, TouchAccount &account)
+{
   for (const Solid &one : solids) {
     account.worst_bound = std::max(account.worst_bound, 0.25 * dt * dt * one.stiffness_sum + 0.5 * dt * one.damping_sum);
     account.most_touching = std::max(account.most_touching, one.touching);
   }
 }
 
+void RigidContact::step(double dt)
+{
+  const bool all = find_active(settings.objects && near.update(solids, settings.excluded));
+  threads.all().parts(bodies(), NS_OF_BODY, [&](long first, long end) {
+    for (int n = static_cast<int>(first); n < end; ++n) {
+      if (unstirred[n] && !all) continue;
+      solids[n].begin_step(dt);
+      watched.go(n, solids[n].stir);
+    }
+  });
+  const TouchStep step(dt, settings.onset, account);
+  touch_planes(step, all);
+  const auto pairs = static_cast<long>(all ? near.pairs.size() : active.size());
+  const double ns =
+      NS_OF_PAIR * static_cast<double>(pairs) + 0.5 * NS_OF_TOUCH * static_cast<double>(all_touches - touches_at_planes);
+  threads.share(step, solids, account, pairs, ns, [&](const TouchStep &of_some, long first, long end) {
+    watched.each(all ? nullptr : &active, first, end, near.pairs, [&](int k) { touch(of_some, k, all); });
+  });
+  if (!step.is_first())
+    for (const auto &[one, force] : step.share_blows()) push_more(one, force);
+  all_touches = touches_of(solids);
+  see_bounds(solids, dt, account);
+}
+
+// Planes that move add to sums of their own, one after the other.
 void RigidContact::touch_planes(const TouchStep &step, bool all)
 {
   const bool stand = settings.planes_stand();
   const auto is_at_rest = [stand](const Solid &one) { return stand && one.settled; };
-  for (std::size_t k = 0; k < settings.planes.size(); ++k)
-    for (std::size_t n = 0; n < solids.size(); ++n)
-      if (Solid &one = solids[n];
-          watched.may_touch(static_cast<int>(k), static_cast<int>(n)) && !one.held && !one.aside && !is_at_rest(one)) {
-        std::vector<Touch> &touches = at_plane[k][n];
-        forget_parted(touches);
-        touch_plane(step, touches, one, static_cast<int>(k));
-        one.is_carried = one.is_carried || (length(settings.planes[k].velocity) > 0.0 && !touches.empty());
-        const double above = settings.planes[k].moves || !touches.empty() ? 0.0 : settings.planes[k].above(one);
-        watched.watch(static_cast<int>(k), static_cast<int>(n), above);
-      }
+  const auto touch_some = [&](const TouchStep &of_some, long first, long end) {
+    int k = first < end ? static_cast<int>(first / bodies()) : 0, n = static_cast<int>(first - 1L * k * bodies());
+    for (long number = first; number < end; ++number, ++n) {
+      if (n == bodies()) ++k, n = 0;
+      Solid &one = solids[n];
+      if (!watched.may_touch(k, n) || one.held || one.aside || is_at_rest(one)) continue;
+      std::vector<Touch> &touches = at_plane[k][n];
+      forget_parted(touches);
+      touch_plane(of_some, touches, one, k);
+      if (length(settings.planes[k].velocity) > 0.0 && !touches.empty()) of_some.carry(one);
+      watched.watch(k, n, settings.planes[k].moves || !touches.empty() ? 0.0 : settings.planes[k].above(one));
+    }
+  };
+  const long size = static_cast<long>(settings.planes.size()) * bodies();
+  const double ns = NS_OF_PLANE * static_cast<double>(size) + NS_OF_TOUCH * static_cast<double>(touches_at_planes);
+  threads.share(step, solids, account, size, stand ? ns : 0.0, touch_some);
+  touches_at_planes = touches_of(solids);
   for (std::size_t n = 0; n < solids.size(); ++n)
     if (Solid &one = solids[n]; !is_at_rest(one))
       one.force_at_planes = one.force, one.torque_at_planes = one.torque;
@@ -208,18 +231,14 @@ void RigidContact::touch(const TouchStep &step, int k, bool all)
   Solid &a = solids[pair.a], &b = solids[pair.b];
   if (a.settled && b.settled) {
     if (pair.touches.empty()) return;
-    if (all || !unstirred[pair.a]) a.force += pair.force, a.torque += pair.torque_a;
-    if (all || !unstirred[pair.b]) b.force -= pair.force, b.torque += pair.torque_b;
+    if (all || !unstirred[pair.a]) step.push({&a, nullptr, pair.force, pair.torque_a, {}});
+    if (all || !unstirred[pair.b]) step.push({&b, nullptr, -1.0 * pair.force, pair.torque_b, {}});
     return;
   }
-  if (is_counted(a, b))
-    touch_counted(step, pair);
-  else
-    touch_pair(step, pair);
+  is_counted(a, b) ? touch_counted(step, pair) : touch_pair(step, pair);
   watched.watch(k, pair);
-  if (pair.touches.empty()) return;
-  a.is_carried = a.is_carried || (b.driven && b.stir > 0.0);
-  b.is_carried = b.is_carried || (a.driven && a.stir > 0.0);
+  if (b.driven && b.stir > 0.0 && !pair.touches.empty()) step.carry(a);
+  if (a.driven && a.stir > 0.0 && !pair.touches.empty()) step.carry(b);
 }
 
 bool RigidContact::lay_aside(int n, bool aside)
@@ -232,12 +251,8 @@ bool RigidContact::lay_aside(int n, bool aside)
     plane_push.erase({k, solids[n].id});
     watched.watch(k, n, 0.0);
   }
-  for (SolidPair &pair : near.pairs) {
-    if (pair.a != n && pair.b != n) continue;
-    pair.touches.clear();
-    pair.force = pair.torque_a = pair.torque_b = Vec3();
-    pair.forget();    // its ways were not counted
-  }
+  for (SolidPair &pair : near.pairs)
+    if (pair.a == n || pair.b == n) pair.end();
   return true;
 }
 
@@ -334,12 +349,11 @@ void RigidContact::push_more(const InBlow &one, const Vec3 &force)
 // Keeps what the pair gives to bodies that may come apart.
 void RigidContact::touch_counted(const TouchStep &step, SolidPair &pair)
 {
-  Solid &a = solids[pair.a], &b = solids[pair.b];
-  const Vec3 force = a.force, torque_a = a.torque, torque_b = b.torque;
+  LateSums *const late_ones = step.late_sums();
+  if (!late_ones) return pair.keep(solids[pair.a], solids[pair.b], [&] { touch_pair(step, pair); });
+  const std::size_t from = late_ones->size();
   touch_pair(step, pair);
-  pair.force = a.force - force;
-  pair.torque_a = a.torque - torque_a;
-  pair.torque_b = b.torque - torque_b;
+  late_ones->end_kept(pair, from);
 }
 
 const TouchAccount &RigidContact::found()

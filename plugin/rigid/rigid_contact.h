@@ -49,6 +49,8 @@ class RigidContact {
   RigidContactSettings settings;
   TouchAccount account;
 
+  // Sets the threads of steps. Their number changes no bit.
+  void use(const Threads &now) { threads.use(now); }
   // Bodies by ascending ids. Their contacts, if any, end.
   void take(std::vector<Solid> now);
   int bodies() const { return static_cast<int>(solids.size()); }
@@ -97,8 +99,7 @@ class RigidContact {
   Bytes record_of(const SolidPair &pair) const;
   void touch_pair(const TouchStep &step, SolidPair &pair);
   void touch_plane(const TouchStep &step, std::vector<Touch> &touches, Solid &one, int plane);
-  // Adds to the force of a contact in this step.
-  void push_more(const InBlow &one, const Vec3 &force);
+  void push_more(const InBlow &one, const Vec3 &force);    // in this step
   void touch_counted(const TouchStep &step, SolidPair &pair);
   void touch(const TouchStep &step, int k, bool all);
   void touch_planes(const TouchStep &step, bool all);
@@ -111,6 +112,8 @@ class RigidContact {
   }
 
   std::vector<Solid> solids;
+  TouchThreads threads;
+  long touches_at_planes = 0, all_touches = 0;    // in the last step; those of two bodies count twice
   RigidBeds beds;
   NearSolids near;
   WatchedPairs watched;

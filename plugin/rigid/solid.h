@@ -91,8 +91,10 @@ struct Solid {
       axis[k] = {pick(now.row[0]), pick(now.row[1]), pick(now.row[2])};
     }
   }
-  void begin_step()
+  void begin_step(double dt)
   {
+    const double speed = std::sqrt(dot(velocity, velocity)) + fastest_turn * shape.bound();
+    stir = held && !driven ? 0.0 : dt * speed;
     force = torque = Vec3();
     stiffness_sum = damping_sum = 0.0;
     touching = 0;

@@ -92,14 +92,14 @@ Vec3 TouchStep::relative_velocity(const Solid &a, const Solid *b, const Vec3 &x)
 void TouchStep::end(Touch &touch, double depth) const
 {
   changes = true;
-  account.let_go -= touch.owed;
-  account.heat += touch.memory.stick_energy + touch.rolling.stick_energy;
-  account.damped += last_damping_work(touch.memory, std::min(depth, touch.memory.depth));
+  add(account.let_go, -touch.owed);
+  add(account.heat, touch.memory.stick_energy + touch.rolling.stick_energy);
+  add(account.damped, last_damping_work(touch.memory, std::min(depth, touch.memory.depth)));
 }
 
 void TouchStep::let_go(Touch &touch, double depth, double part) const
 {
-  account.let_go += touch.stiffness * part * Onset<double>(depth - touch.memory.offset, onset).value;
+  add(account.let_go, touch.stiffness * part * Onset<double>(depth - touch.memory.offset, onset).value);
   end(touch, depth);
 }
 
@@ -164,7 +164,7 @@ void TouchStep::press_out(Touch &touch, double depth, double k) const
   const auto gains = [&](double within) {
     return Onset<double>(within + less, onset).value - Onset<double>(within, onset).value;
   };
-  account.let_go -= 0.5 * k * (gains(depth_of(touch)) + gains(depth - touch.memory.offset));    // of both ends of the way
+  add(account.let_go, -0.5 * k * (gains(depth_of(touch)) + gains(depth - touch.memory.offset)));    // of both ends of the way
   touch.memory.offset -= less;
 }
 
@@ -225,6 +225,7 @@ void TouchStep::part(Touch &touch, Solid &a, Solid *b, const Meeting &at) const
 
 void TouchStep::apply(Solid &a, Solid *b, const Vec3 &x, const Vec3 &f) const
 {
+  if (late) return late->add(TouchPush{&a, b, f, cross(x - a.centre, f), b ? cross(x - b->centre, f) : Vec3()});
   a.force += f;
   a.torque += cross(x - a.centre, f);
   if (!b) return;
@@ -244,18 +245,20 @@ void TouchStep::book(Solid &a, Solid *b, Touch &touch, const Meeting &at, const 
   // `more` has done a half of its work.
   touch.energy = at.part * force.surface_energy + touch.memory.stick_energy + touch.rolling.stick_energy - touch.owed +
                  0.5 * touch.more * (touch.memory.depth - touch.earlier);
-  account.heat += force.heat;
-  account.damped += force.damped;
-  account.deepest = std::max(account.deepest, depth_of(touch));
+  add(account.heat, force.heat);
+  add(account.damped, force.damped);
+  if (late)
+    late->deepen(depth_of(touch));
+  else
+    account.deepest = std::max(account.deepest, depth_of(touch));
   const auto add_to_sums = [&](Solid &one) {
     const auto along = [&](double stick) {    // sum of lambda n n and `stick` t t
       return touch.kind == Touch::EDGES || touch.kind == Touch::CURVES ? one.yields_any
                                                                        : (1.0 - stick) * one.yields + stick * one.yields_any;
     };
     const double s = (b ? 2.0 : 1.0) * at.part * touch.stiffness;
-    one.stiffness_sum += s * along(ContactLaw::STICK);
-    one.damping_sum += s * touch.damping * along(STICK_DAMPING * std::sqrt(ContactLaw::STICK));
-    ++one.touching;
+    const double slower = s * touch.damping * along(STICK_DAMPING * std::sqrt(ContactLaw::STICK));
+    give(TouchBound{&one, s * along(ContactLaw::STICK), slower, 1});
   };
   add_to_sums(a);
   if (b) add_to_sums(*b);
@@ -330,9 +333,7 @@ void TouchStep::press_between(Touch &touch, const TouchLaw &its_law, Solid &a, S
   Vec3 force = push.press * at.n;
   if (slope) {
     force -= push.surface_energy * slope->by_place;
-    const Vec3 torque = push.surface_energy * slope->by_turn;
-    a.torque -= torque;
-    if (b) b->torque += torque;
+    turn(a, b, -push.surface_energy * slope->by_turn);
   }
   if (law.friction > 0.0) {
     // The way that the material of one went over that of the other, step by step.
@@ -369,11 +370,10 @@ void TouchStep::resist_rolling(Touch &touch, const TouchLaw &law, Solid &a, Soli
   contact_friction<double>(spring, 1.0, part, angle, n, dt, touch.rolling, torque);
   const Vec3 left = torque.kept * angle, resists = torque.pull + torque.drag;
   touch.rolled = b ? b->in_body(left) : left;
-  a.torque += resists;
-  if (b) b->torque -= resists;
+  turn(a, b, resists);
   const auto add_to_sums = [&](Solid &one) {
-    one.stiffness_sum += (b ? 2.0 : 1.0) * k * turns(one);
-    one.damping_sum += (b ? 2.0 : 1.0) * k * damping * turns(one);
+    const double s = (b ? 2.0 : 1.0) * k;
+    give(TouchBound{&one, s * turns(one), s * damping * turns(one), 0});
   };
   add_to_sums(a);
   if (b) add_to_sums(*b);

@@ -5,6 +5,7 @@
 
 #include "contact/law.h"
 #include "rigid/blows.h"
+#include "rigid/late_sums.h"
 #include "rigid/solid.h"
 
 #include <algorithm>
@@ -102,6 +103,18 @@ class TouchStep {
     return step;
   }
 
+  // The same step for some of the contacts, which keeps what it adds up in `sums`.
+  TouchStep with(LateSums &sums) const
+  {
+    TouchStep step(*this);
+    step.late = &sums;
+    step.blows = {};
+    return step;
+  }
+  LateSums *late_sums() const { return late; }
+  const Blows &held_blows() const { return blows; }
+  void take(const Blows &of_some) const { blows.take(of_some); }
+
   bool is_first() const { return dt == 0.0; }
   bool may_be_deep() const { return is_first() && deep; }    // whether edges that overlap far touch
   double time_step() const { return dt; }
@@ -130,7 +143,7 @@ class TouchStep {
   // The same of one whose place is not known any more.
   void let_go(Touch &touch) const
   {
-    account.let_go += touch.energy - touch.memory.stick_energy - touch.rolling.stick_energy;
+    add(account.let_go, touch.energy - touch.memory.stick_energy - touch.rolling.stick_energy);
     end(touch, touch.memory.depth);
   }
 
@@ -138,7 +151,7 @@ class TouchStep {
   void count_part(Touch &touch, double part) const
   {
     const Onset<double> g(touch.memory.depth - touch.memory.offset, onset);
-    if (touch.followed != 0.0) account.let_go += touch.stiffness * (touch.counted - part) * g.value;
+    if (touch.followed != 0.0) add(account.let_go, touch.stiffness * (touch.counted - part) * g.value);
     touch.counted = part;
   }
 
@@ -165,9 +178,14 @@ class TouchStep {
     const Vec3 before = touch.memory.pull + touch.memory.drag;
     law.damping *= STICK_DAMPING;
     contact_friction<double>(law, 1.0, part, away, n, dt, touch.memory, force);
-    account.work -= 0.5 * dot(before + force.pull + force.drag, ran);
+    add(account.work, -0.5 * dot(before + force.pull + force.drag, ran));
   }
+  // All that a step adds to bodies goes through these, and through add() to the account.
+  void push(const TouchPush &one) const { give(one); }
   void apply(Solid &a, Solid *b, const Vec3 &x, const Vec3 &f) const;
+  // A torque on `a`, and against it on `b`.
+  void turn(Solid &a, Solid *b, const Vec3 &torque) const { push({&a, b, {}, torque, torque}); }
+  void carry(Solid &one) const { late ? late->carry(one) : void(one.is_carried = true); }
   void book(Solid &a, Solid *b, Touch &touch, const Meeting &at, const ContactForce<double> &force) const;
 
   // A point X of `a`, in the frame of its host `b` or of space, at the depth d below a side with the outward normal n in space.
@@ -192,6 +210,8 @@ class TouchStep {
   // The torque that resists rolling, up to the arm `rolling` of the law times the force of the contact.
   void resist_rolling(Touch &touch, const TouchLaw &law, Solid &a, Solid *b, const Vec3 &n, double part,
                       ContactForce<double> &push) const;
+  template <class Given> void give(const Given &one) const { __builtin_expect(late != nullptr, 0) ? late->add(one) : one.add(); }
+  void add(double &sum, double more) const { __builtin_expect(late != nullptr, 0) ? late->add(sum, more) : void(sum += more); }
   double follow(Touch &touch, const Solid &a, const Solid *b, double depth, double k) const;
   double unlike_depth(const Touch &touch, const Solid &a, const Solid *b, double depth) const;
   void press_out(Touch &touch, double depth, double k) const;
@@ -199,6 +219,7 @@ class TouchStep {
   bool deep = true;
   mutable bool presses_out = false;
   TouchAccount &account;
+  LateSums *late = nullptr;        // none: all is added at once
   mutable bool changes = false;    // whether one of those that are listed next has begun or ended
   mutable Blows blows;
 };

@@ -311,11 +311,7 @@ class CrossedEdges {
     return was.square < PARALLEL ||
            CrossingPart(before, other, was, 0.5 * ramp_of(a), 0.5 * ramp_of(b), over_ends).value() <= 0.0;
   }
-  void turn(const Vec3 &torque) const
-  {
-    a.torque += torque;
-    b.torque -= torque;
-  }
+  void turn(const Vec3 &torque) const { step.turn(a, &b, torque); }
   // The force by the gradient of `part`: s and r move by (u - cosine w)/sine^2 and -(w - cosine u)/sine^2 with the first body.
   Vec3 push_aside(double energy) const
   {

@@ -39,15 +39,16 @@ class WatchedPairs {
   { above_until[plane][body] = above > 0.0 ? ways[body] + SURELY * above : -HUGE_VAL; }
   bool may_touch(int plane, int body) const { return ways[body] >= above_until[plane][body]; }
 
-  // Calls visit(k) for those of some pairs, or of all, that may touch. What a pair remembers is in many places of memory: it is
-  // fetched while pairs before it are looked at.
-  template <class Visit> void each(const std::vector<int> *some, const std::vector<SolidPair> &pairs, const Visit &visit)
+  // Calls visit(k) for those of some pairs, or of all, that may touch, from the first one to before the end. What a pair
+  // remembers is in many places of memory: it is fetched while pairs before it are looked at.
+  template <class Visit>
+  void each(const std::vector<int> *some, long first, long end, const std::vector<SolidPair> &pairs, const Visit &visit) const
   {
     constexpr std::size_t FIRST = 6, THEN = 3;
-    due.clear();
-    const int count = static_cast<int>(some ? some->size() : pairs.size());
-    for (int n = 0; n < count; ++n)
-      if (const int k = some ? (*some)[n] : n; may_touch(k)) due.push_back(k);
+    std::vector<int> due;
+    due.reserve(end - first);
+    for (long n = first; n < end; ++n)
+      if (const int k = some ? (*some)[n] : static_cast<int>(n); may_touch(k)) due.push_back(k);
     for (std::size_t n = 0; n < due.size(); ++n) {
       if (n + FIRST < due.size()) pairs[due[n + FIRST]].fetch();
       if (n + THEN < due.size()) pairs[due[n + THEN]].fetch_lists();
@@ -63,7 +64,6 @@ class WatchedPairs {
   std::vector<double> ways;    // of bodies, no less than the farthest way of a point of each
   std::vector<Watch> watched;
   std::vector<std::vector<double>> above_until;    // by planes and bodies
-  std::vector<int> due;
 };
 
 }    // namespace mdanim

@@ -91,17 +91,15 @@ class Threads {
   }
   // Calls work(first, end) for parts of all numbers from 0 to size - 1, each of which takes about `ns` nanoseconds. There are
   // several parts for each thread, because one may cost more than another.
-  template <class Work> void parts(long size, double ns, const Work &work) const
+  template <class Work> void parts(long size, double ns, const Work &work, int for_each_thread = 4) const
   {
     const double all = ns * static_cast<double>(size);
-    const long many = std::min<long>({size, PARTS_OF_ONE * most(all), Team::MOST_TASKS});
+    const long many = std::min<long>({size, for_each_thread * most(all), Team::MOST_TASKS});
     if (many < 2 || !pays(all)) return work(0L, size);
     share_out(static_cast<int>(many), [&](long n) { work(size * n / many, size * (n + 1) / many); });
   }
 
  private:
-  static constexpr int PARTS_OF_ONE = 4;
-
   template <class Work> void share_out(int tasks, const Work &work) const
   {
     const auto one = [](void *of_whom, int n) { (*static_cast<const Work *>(of_whom))(n); };

@@ -103,6 +103,22 @@ def test_bits_do_not_depend_on_ranks_or_order(tmp_path, heap):
     assert len(set(ends)) == 1
 
 
+@HEAPS
+def test_bits_do_not_depend_on_threads(tmp_path, monkeypatch, heap):
+    """Bodies, contacts, the account and the bound on the step of three threads, which share all they can, are those of one."""
+    monkeypatch.setenv("MDANIM_LEAST_TASK", "1")
+    found = []
+    for threads in (1, 3):
+        with heap(tmp_path, [f"run_style verlet/mdanim threads {threads}"]) as world:
+            world.run(500)
+            books = [
+                world.number(n) for n in ("friction_heat", "damping_loss", "let_go", "deepest", "worst_bound", "most_touching")
+            ]
+            found.append((ends(world), books))
+    assert are_same(found[0][0], found[1][0]) and found[0][1] == found[1][1]
+    assert found[0][1][0] > 0.0 and found[0][1][1] > 0.0
+
+
 def ends(world):
     """Places, velocities and the state of all bodies and contacts."""
     return plugin_lab.by_tag(world.lmp, "x"), plugin_lab.by_tag(world.lmp, "v"), state_lab.pack(world.lmp, "r")
