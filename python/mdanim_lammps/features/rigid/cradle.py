@@ -7,6 +7,7 @@ import numpy as np
 
 from ...effects.envelope import Envelope
 from ...errors import Problem
+from ...model.boxes import box_pairs
 from ...scene.scene import Sphere
 
 GAP = 2e-3
@@ -20,16 +21,20 @@ def notes(envelope: Envelope) -> list[Problem]:
     solids = envelope.scene.solids
     free = envelope.system.rigid & envelope.reach.free
     balls = [m for m in np.flatnonzero(free) if isinstance(solids[m].shape, Sphere)]
-    if len(balls) < 3:
-        return []
-    centre = np.array([solids[m].position for m in balls])
+    centre = np.array([solids[m].position for m in balls]).reshape(-1, 3)
     radius = np.array([solids[m].shape.radius for m in balls])
-    for k, m in enumerate(balls):
-        way = centre - centre[k]
-        far, both = np.linalg.norm(way, axis=1), radius + radius[k]
-        near = np.flatnonzero((far < (1.0 + GAP) * both) & (np.arange(len(balls)) != k))
-        if len(near) != 2 or way[near[0]] @ way[near[1]] > STRAIGHT * far[near].prod():
+    reach = (1.0 + GAP) * radius[:, None]
+    found = list(box_pairs(centre - reach, centre + reach)) if balls else []
+    i, j = np.concatenate([np.stack(pair) for pair in found], axis=1) if found else np.zeros((2, 0), int)
+    way = centre[j] - centre[i]
+    far = np.linalg.norm(way, axis=1)
+    touch = far < (1.0 + GAP) * (radius[i] + radius[j])
+    one, to = np.concatenate([i[touch], j[touch]]), np.concatenate([way[touch], -way[touch]])
+    to /= np.linalg.norm(to, axis=1)[:, None]
+    for k in np.flatnonzero(np.bincount(one, minlength=len(balls)) == 2).tolist():
+        if np.prod(to[one == k], axis=0).sum() > STRAIGHT:
             continue
+        m = balls[k]
         return [
             Problem(
                 solids[m].spans.get("position"),
