@@ -43,7 +43,7 @@ def test_what_holds_for_every_body(shape, cells, mass, position, angles, velocit
     n = len(body.position)
     # A sum of n terms in pairs is exact to a few units in the last place.
     assert body.mass.sum() == pytest.approx(mass, rel=1e-15)
-    hair = 1e-14 * (1 + np.abs(position).max())
+    hair = 1e-13 * (1 + np.abs(position).max())
     np.testing.assert_allclose(body.mass @ body.position / mass, position, atol=hair)
     np.testing.assert_allclose(body.mass @ body.velocity / mass, velocity, atol=1e-13)
     np.testing.assert_allclose(body.velocity - velocity, np.cross(spin, body.position - position), atol=1e-12)

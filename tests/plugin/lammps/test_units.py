@@ -232,7 +232,7 @@ SCENES = {
     "waves": waves,
 }
 ROUGH = {"waves"}
-"""Scenes in which rounding makes more than rounding: liquid is counted in 2^-20 of a cell."""
+"""Scenes in which rounding makes more than rounding: liquid is counted in 2^-20 of a cell, and its solver goes on to 2e-3."""
 
 
 @cache
@@ -254,7 +254,7 @@ def test_a_scene_is_the_same_motion_in_every_unit_system(tmp_path, shared, scene
     found, told = SCENES[scene]().run(units(system), tmp_path, style)
     expected, expected_told = reference(scene, style, shared)
     # Rounding of a few hundred steps, and of the constants of electron, whose mvv2e and 1/ftm2v differ by 1e-9.
-    limit = 1e-6 if scene in ROUGH else 1e-8
+    limit = 1e-5 if scene in ROUGH else 1e-8
     for name, one, other in zip("xvf", found, expected):
         assert np.abs(one - other).max() < limit * np.abs(other).max(), name
     for word, value in told.items():

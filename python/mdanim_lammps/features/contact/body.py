@@ -66,8 +66,8 @@ def _is_plate(scene, solid) -> bool:
 
 @once_for(lambda scene: scene)
 def _has_elastic(scene) -> bool:
-    """Whether an object with an inside can move and deform."""
-    return any(not all_held(s) and kind_of(s).fills and kind_of(s).deforms for s in scene.solids)
+    """Whether an object with an inside can move and deform, and has the spacing of the scene."""
+    return any(not all_held(s) and kind_of(s).fills and kind_of(s).deforms and s.resolution is None for s in scene.solids)
 
 
 def only_surfaces_act(scene) -> bool:
