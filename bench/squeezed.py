@@ -15,7 +15,7 @@ from timing import print_tables
 YOUNG, SIDE = 1e6, 10.0
 """[Pa], [cm]"""
 CUBE = f"object cube {{ shape box (10, 10, 10) cm  position (0, 0, 5) cm  mass 1 kg  elasticity {YOUNG} Pa  damping 0.5 }}"
-PLATE = "object plate {{ shape box (20, 20, 2) cm  position (0, 0, 11) cm  hold all  key 0.3 s at (0, 0, {z}) cm }}"
+PLATE = "object plate {{ shape box (20, 20, 2) cm  position (0, 0, 11) cm  hold all  key {rise} s at (0, 0, {z}) cm }}"
 RISE, PARTS = 0.3, (0.01, 0.05)
 """Time in which the plate comes down [s], by parts of the side."""
 
@@ -23,7 +23,7 @@ RISE, PARTS = 0.3, (0.01, 0.05)
 def stress(cells: int, stiffness: float, part: float) -> float:
     """Mean stress along z at the end [Pa], tension above 0, where the plate comes down by a part of the side."""
     text = (
-        f"ground z 0 m\n{CUBE}\n{PLATE.format(z=11.0 - part * SIDE)}\n"
+        f"ground z 0 m\n{CUBE}\n{PLATE.format(rise=RISE, z=11.0 - part * SIDE)}\n"
         f"control {{ time {2 * RISE} s  frames 10 fps  resolution {SIDE / cells} cm  contact-stiffness {stiffness} }}\n"
         "record cube.stress.z\n"
     )

@@ -11,8 +11,8 @@
 namespace mdanim {
 
 static constexpr int FIELD_COST = 20;    // cost of a field without points [ns], approximately
-static constexpr double LOOK_COST =
-    300.0;    // at a point of an object without a contact [ns]; it comes beside the costs of fields
+// Cost of a look at a point of an object without a contact [ns], which comes beside the costs of fields.
+static constexpr double LOOK_COST = 300.0;
 // A step has something to do with few of the fields, and cannot know beforehand with which.
 static constexpr int PARTS_OF_THREAD = 8;
 

@@ -49,7 +49,7 @@ struct TouchBound {
 class alignas(64) LateSums {    // threads write to some that are side by side
  public:
   void clear();
-  // Out of the way of a step by one thread, which adds all at once.
+  // Not inlined: a step by one thread, which adds all at once, never comes here.
   void add(const TouchPush &one);
   void add(const TouchBound &one);
   void add(double &sum, double more);

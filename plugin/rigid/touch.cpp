@@ -224,14 +224,7 @@ void TouchStep::part(Touch &touch, Solid &a, Solid *b, const Meeting &at) const
 }
 
 void TouchStep::apply(Solid &a, Solid *b, const Vec3 &x, const Vec3 &f) const
-{
-  if (late) return late->add(TouchPush{&a, b, f, cross(x - a.centre, f), b ? cross(x - b->centre, f) : Vec3()});
-  a.force += f;
-  a.torque += cross(x - a.centre, f);
-  if (!b) return;
-  b->force -= f;
-  b->torque -= cross(x - b->centre, f);
-}
+{ push({&a, b, f, cross(x - a.centre, f), b ? cross(x - b->centre, f) : Vec3()}); }
 
 // S = sum of 2 k lambda* over the contacts of a body (k lambda* at planes). The springs of a contact are k (n n + 0.8 t t), so
 // lambda* is at most 0.2 lambda + 0.8 lambda along any direction; n of two edges may be any direction. D is the same with

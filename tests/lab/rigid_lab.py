@@ -78,6 +78,13 @@ def box(size, density=600.0, **more) -> Rigid:
     ).put(**more)
 
 
+def polyhedron(corners, faces) -> str:
+    """Words of a polyhedron with these corners, and the numbers of those around each face."""
+    numbers = " ".join(repr(float(c)) for corner in corners for c in corner)
+    around = " ".join(" ".join(map(str, [len(f), *f])) for f in faces)
+    return f"polyhedron {len(corners)} {numbers} {len(faces)} {around}"
+
+
 def prism(sides: int, radius: float, height: float) -> str:
     """Words of a prism over a regular polygon with this radius, along its third axis."""
     angle = 2 * np.pi * np.arange(sides) / sides
@@ -85,8 +92,7 @@ def prism(sides: int, radius: float, height: float) -> str:
     low = [sides - 1 - k for k in range(sides)]
     faces = [low, [k + sides for k in range(sides)]]
     faces += [[k, (k + 1) % sides, (k + 1) % sides + sides, k + sides] for k in range(sides)]
-    numbers = " ".join(repr(float(c)) for corner in corners for c in corner)
-    return f"polyhedron {2 * sides} {numbers} {sides + 2} " + " ".join(" ".join(map(str, [len(f), *f])) for f in faces)
+    return polyhedron(corners, faces)
 
 
 def blade(half: float, height: float, length: float) -> Rigid:
@@ -94,9 +100,7 @@ def blade(half: float, height: float, length: float) -> Rigid:
     x, y, z = length / 2, half, -height
     corners = [(-x, 0, 0), (x, 0, 0), (-x, -y, z), (-x, y, z), (x, -y, z), (x, y, z)]
     faces = [[0, 2, 4, 1], [0, 1, 5, 3], [2, 3, 5, 4], [0, 3, 2], [1, 4, 5]]
-    numbers = " ".join(repr(float(c)) for corner in corners for c in corner)
-    words = f"polyhedron 6 {numbers} 5 " + " ".join(" ".join(map(str, [len(f), *f])) for f in faces)
-    return Rigid(words, 0.0, np.zeros(3), np.zeros(3), half, held=True)
+    return Rigid(polyhedron(corners, faces), 0.0, np.zeros(3), np.zeros(3), half, held=True)
 
 
 def ball(radius, density=600.0, **more) -> Rigid:

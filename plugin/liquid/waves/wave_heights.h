@@ -16,8 +16,7 @@ class WaveHeights {
   WaveHeights(int nx, int ny) : nx(nx), ny(ny), heads(nx * ny, 0.0), tops(nx * ny, 0.0), hollow(nx * ny, 0) {}
 
   // Finds heads of all columns; columns without liquid that solids hide get the mean of those around, at most the height of dry
-  // ground. `moving` is the mass of
-  // the solids in each that can move: others are ground.
+  // ground. `moving` is the mass of the solids in each that can move: others are ground.
   void find(const WaveExchange &waves, int nz, const std::vector<double> &moving);
 
   double head(int column) const { return heads[column]; }    // of the surface that acts on solids

@@ -42,9 +42,8 @@ def test_a_bar_that_lies_on_flat_ground_does_not_bend(tmp_path, ground):
         tmp_path, bodies, 1e6, beside=beside, planes=planes, gravity=(0, 0, -GRAVITY), frequency=frequency, thin=EDGE
     ) as one:
         one.run(300)
-        assert (
-            4.0 <= one.number("touching") <= 8.0
-        )  # rounding decides whether edges touch that meet at their ends, and bear nothing
+        # Rounding decides whether edges touch that meet at their ends, and bear nothing.
+        assert 4.0 <= one.number("touching") <= 8.0
         assert stresses(one, bodies).max() < 1e-3 * 0.75 * DENSITY * GRAVITY * (6 * EDGE) ** 2 / EDGE
 
 

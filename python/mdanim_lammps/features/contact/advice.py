@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""Remarks of ``check`` on objects that rest on something: those that slide, and those that fall over;
-and on those that something squeezes."""
+"""Remarks of ``check`` on objects that rest on something, and slide or fall over, and on those that something squeezes."""
 
 from __future__ import annotations
 

@@ -31,7 +31,7 @@ class HeldBody(BodyKind):
         return 1.0 / COARSEST if _is_plate(scene, solid) else super().cells(scene, solid)
 
     def least(self, scene, solid):
-        return 1.0 / COARSEST if _is_plate(scene, solid) else 1.0
+        return 1.0 / COARSEST if _is_plate(scene, solid) else super().least(scene, solid)
 
     def has_spacing(self, scene):
         return not only_features(scene)

@@ -65,7 +65,7 @@ class RigidBody(BodyKind):
         return lambda s: finest if _may_be_thin(scene, s) else min(finest, shapes.thickness(s.shape) / across(s))
 
     def least(self, scene, solid):
-        return 0.0 if _may_be_thin(scene, solid) else 1.0
+        return 0.0 if _may_be_thin(scene, solid) else super().least(scene, solid)
 
     def has_spacing(self, scene):
         return not by_features(scene)
