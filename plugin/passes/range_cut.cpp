@@ -3,18 +3,30 @@
 
 #include "passes/range_cut.h"
 
+#include "passes/strips.h"
+
 #include <algorithm>
+#include <limits>
 
 namespace mdanim {
 
-// Cost of a block besides its springs, in vectors of springs: gravity, friction and motion.
-static constexpr int MOTION_COST = 6;
-// A border moves to the beginning of an object within this fraction of a range.
-static constexpr int NEAR = 16;
+// Cost of a block besides its springs, in vectors of springs: gravity, friction and motion; and more where it stands alone
+// instead of in a strip.
+static constexpr long MOTION_COST = 6, ALONE_COST = 3;
+// Cost of a vector of springs across a border, to the range above: these springs come one block at a time, with places and forces
+// that another thread's processor has in its cache.
+static constexpr long CROSSING_COST = 4;
 
 namespace {
 
 class RangeCutter {
+  // A border below a block.
+  struct RangeBorder {
+    std::size_t block;
+    int reach;        // one beyond the highest particle that a spring leads to across it
+    long crossing;    // cost of these springs
+  };
+
  public:
   RangeCutter(Cutter &cutter, Cut &cut) : cutter(cutter), cut(cut), lanes(cutter.lanes()) {}
 
@@ -26,9 +38,8 @@ class RangeCutter {
  private:
   unsigned first_entry(std::size_t block) const { return block ? cut.block[block - 1].end : 0; }
   bool begins_chunk(std::size_t block) const { return cut.block[block].chunk != cut.block[block - 1].chunk; }
-  bool begins_object(std::size_t block) const { return cut.block[block].object != cut.block[block - 1].object; }
-  std::size_t best_block(long ideal, long near) const;
-  int reach(std::size_t border) const;
+  RangeBorder border_at(std::size_t block) const;
+  RangeBorder best_border(long before, int ranges) const;
   template <class Tell> void split(const Block &block, const Entry &entry, int end, Tell tell) const;
 
   Cutter &cutter;
@@ -54,57 +65,65 @@ template <class Tell> void RangeCutter::split(const Block &block, const Entry &e
   }
 }
 
-// One beyond the highest particle that a spring leads to across a border.
-int RangeCutter::reach(std::size_t border) const
+RangeCutter::RangeBorder RangeCutter::border_at(std::size_t block) const
 {
-  const int at = cut.block[border].start;
-  int high = at;
-  for (std::size_t n = border; n-- > 0 && cut.block[n].start + lanes + cut.farthest > at;) {
-    const Block &block = cut.block[n];
-    for (unsigned e = first_entry(n); e < block.end; ++e) {
-      const int last = block.start + block.lanes - 1 + cut.entry[e].offset;
-      if (last >= at) high = std::max(high, last + 1);    // a lane may have no such spring: refusing a border costs little
+  const int at = cut.block[block].start;
+  RangeBorder found{block, at, 0};
+  for (std::size_t n = block; n-- > 0 && cut.block[n].start + lanes + cut.farthest > at;)
+    for (unsigned e = first_entry(n); e < cut.block[n].end; ++e) {
+      const int last = cut.block[n].start + cut.block[n].lanes - 1 + cut.entry[e].offset;
+      if (last < at) continue;    // a lane may have no such spring: refusing a border costs little
+      found.reach = std::max(found.reach, last + 1);
+      found.crossing += CROSSING_COST;
     }
-  }
-  return high;
+  return found;
 }
 
-// The block that begins a chunk, and if possible an object, nearest to a cost.
-std::size_t RangeCutter::best_block(long ideal, long near) const
+// The border, where a chunk begins, with which the dearest of this range and the mean of the `ranges` above costs least. The
+// range begins after a cost of `before`, with which springs across its lower border are counted.
+RangeCutter::RangeBorder RangeCutter::best_border(long before, int ranges) const
 {
+  RangeBorder best{};
+  double least = std::numeric_limits<double>::infinity();
+  const auto mean_above = [&](std::size_t n, long crossing) {
+    return static_cast<double>(cost.back() - cost[n] + crossing) / ranges;
+  };
+  const auto below = [&](std::size_t n) { return static_cast<double>(cost[n] - before); };
+  const auto try_at = [&](std::size_t n) {
+    if (!begins_chunk(n)) return;
+    const RangeBorder here = border_at(n);
+    const double dearest = std::max(below(n), mean_above(n, here.crossing));
+    if (dearest < least) best = here, least = dearest;
+  };
   const std::size_t blocks = cut.block.size();
-  const auto distance = [&](std::size_t n) { return std::labs(cost[n] - ideal); };
-  const std::size_t at = std::lower_bound(cost.begin(), cost.end(), ideal) - cost.begin();
-  std::size_t best = 0;
-  for (std::size_t n = std::max<std::size_t>(at, 1); n < blocks; ++n)
-    if (begins_chunk(n)) {
-      best = n;
-      break;
-    }
-  for (std::size_t n = std::min(at, blocks); n-- > 1;)
-    if (begins_chunk(n)) {
-      if (!best || distance(n) < distance(best)) best = n;
-      break;
-    }
-  std::size_t object = 0;
-  for (std::size_t n = 1; n < blocks; ++n)
-    if (begins_object(n) && distance(n) <= near && (!object || distance(n) < distance(object))) object = n;
-  return object ? object : best;
+  const long even = before + (cost.back() - before) / (ranges + 1);
+  const std::size_t at = std::lower_bound(cost.begin(), cost.end(), even) - cost.begin();
+  for (std::size_t n = std::max<std::size_t>(at, 1); n < blocks && below(n) < least; ++n) try_at(n);
+  for (std::size_t n = std::min(at, blocks); n-- > 1 && mean_above(n, 0) < least;) try_at(n);
+  return best;
 }
 
 void RangeCutter::find_borders(int wanted)
 {
   found.first.assign(1, 0);
-  for (std::size_t n = 0; n < cut.block.size(); ++n)
-    cost.push_back(cost.back() + MOTION_COST + static_cast<long>(cut.block[n].end - first_entry(n)));
+  if (wanted < 2) return;
+  set_strips(cut.block, cut.entry, lanes, found);
+  int strip = 0;
+  for (std::size_t n = 0; n < cut.block.size(); ++n) {
+    const Block &block = cut.block[n];
+    if (block.strip) strip = block.strip;
+    cost.push_back(cost.back() + MOTION_COST + (strip == 1 ? ALONE_COST : 0) + static_cast<long>(block.end - first_entry(n)));
+  }
+  long before = 0;
   int reached = 0;    // reached by springs over the last border, and by lanes that are loaded with them
   for (int r = 1; r < wanted; ++r) {
-    const std::size_t border = best_block(cost.back() * r / wanted, cost.back() / wanted / NEAR);
-    if (!border) break;
-    const int at = cut.block[border].start;
+    const RangeBorder border = best_border(before, wanted - r);
+    if (!border.block) break;
+    const int at = cut.block[border.block].start;
     if (at <= found.first.back() || reached > at) continue;
     found.first.push_back(at);
-    reached = reach(border) + lanes;
+    reached = border.reach + lanes;
+    before = cost[border.block] - border.crossing;
   }
 }
 

@@ -23,8 +23,8 @@ struct RangeCut {
   std::size_t bytes() const { return crossing.capacity() * sizeof(Crossing) + entry.capacity() * sizeof(Entry); }
 };
 
-// Cuts into `wanted` ranges of equal cost at most. They begin where chunks do, and if possible where objects do. A spring crosses
-// one border at most: where springs reach too far for that there are fewer ranges.
+// Cuts into `wanted` ranges of equal cost at most, springs across their borders counted. They begin where chunks do. A spring
+// crosses one border at most: where springs reach too far for that there are fewer ranges.
 RangeCut cut_into_ranges(Cutter &cutter, Cut &cut, int wanted);
 
 }    // namespace mdanim

@@ -68,13 +68,22 @@ def test_borders_lie_where_chunks_or_objects_begin():
     assert all(n == 0 or objects[n] != objects[n - 1] for n in first)
 
 
-@pytest.mark.parametrize(("layers", "border"), [((159, 143), 36 * 159), ((171, 131), 11 * CHUNK), ((290,), 10 * CHUNK)])
-def test_a_border_moves_to_an_object_that_begins_near(layers, border):
-    """Half of two bars is nearer to a chunk than to the second bar: the border is at the bar within a sixteenth of a range.
-    Else it is at the nearest chunk, on either side."""
+@pytest.mark.parametrize(
+    ("layers", "border"), [((142, 144), 36 * 142), ((159, 143), 11 * CHUNK), ((171, 131), 11 * CHUNK), ((290,), 10 * CHUNK)]
+)
+def test_a_border_lies_at_an_object_that_begins_near(layers, border):
+    """Half of the first two bars is nearer to a chunk than to the second bar, but no spring crosses the border at the bar. Other
+    borders are at the nearest chunk, on either side."""
     particles, springs, krc, objects = several(*(lattice((5, 5, n - 1)) for n in layers))
     _, first = cut_into_ranges(4, particles, springs, krc, objects, 2)
     assert list(first) == [0, border]
+
+
+def test_the_range_above_a_wide_border_has_fewer_particles():
+    """It has the springs across the border to evaluate, too: those of a sixth of the particles of a slab."""
+    particles, springs, krc, objects = several(lattice((30, 30, 5)))
+    _, first = cut_into_ranges(4, particles, springs, krc, objects, 2)
+    assert 0.6 < first[1] / particles < 0.65
 
 
 def test_ranges_cost_alike():
