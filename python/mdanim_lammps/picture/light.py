@@ -111,7 +111,6 @@ class Light:
         self._pixels = MORE_PIXELS if final or typical < size / 30.0 else PIXELS
         self._touch = 2.0 * ROOM / (FAR - NEAR) / self._pixels  # as much depth as a pixel is wide
         self._lamp = DepthPictures(data, centre, self._radius, axes(self._toward)[None], self._pixels)
-        self._nearest = Lookup(self._pixels // BLOCK, self._pixels // BLOCK, packed=True)
         self._sky = DepthPictures(data, centre, self._radius, sky_axes(), SKY_PIXELS) if final else None
         self.shade = FloorShade(floor.height) if floor else None
         self._floor = floor
@@ -122,13 +121,12 @@ class Light:
         part = self._part(points)
         self._lamp.take(part)
         matrix, (width, height) = self._matrix(part), part.size
-        self._nearest.resize(width // BLOCK, height // BLOCK)
-        self._nearest.fill(nearest_around(self._lamp.depth.numbers, BLOCK))
+        nearest = nearest_around(self._lamp.depth.numbers, BLOCK)
         if self.shade:
-            self.shade.cast(self._lamp.depth.numbers, self._nearest.numbers, matrix)
+            self.shade.cast(self._lamp.depth.numbers, nearest, matrix)
         if self._sky:
             self._sky.take()
-        self._cast = matrix, self._nearest.numbers
+        self._cast = matrix, nearest
         found = gl_matrix(matrix)
         for uniforms in self._uniforms:
             uniforms.SetUniformMatrix("lampMatrix", found)
@@ -161,8 +159,6 @@ class Light:
                 look.SetTexture("floorShade", self.shade.texture)
             else:
                 look.SetTexture("lampDepth", self._lamp.depth.texture)
-                look.SetTexture("lampNearest", self._nearest.texture)
-            uniforms.SetUniformi("lampBlock", BLOCK)
             uniforms.SetUniformf("lampTouch", self._touch)
             uniforms.SetUniformf("shadowDarkness", self._darkness)
             for name, axis in zip(("lampRight", "lampUp", "lamp"), axes(self._toward).tolist()):

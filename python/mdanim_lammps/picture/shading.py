@@ -66,38 +66,33 @@ LAMP = """
 // Share of the lamp that is seen from a point of a surface: the mean over a square four depth pixels wide that slides
 // smoothly over them, so that the edge of a shadow is soft and has no steps however near the camera comes. What a depth pixel
 // holds is compared with the plane of the surface there. What is nearer by less than `slack` depth pixels does not shade.
+// Nothing here depends on what is looked up: software OpenGL is slower with a branch or a loop that may end early.
 float lampSeen(vec3 where, vec3 normal, float slack)
 {
   vec3 p = (lampMatrix * vec4(where, 1.0)).xyz;
-  if (any(lessThan(p.xy, vec2(0.0))) || any(greaterThan(p.xy, vec2(1.0)))) return 1.0;
-  vec2 texel = p.xy * lampPixels - 0.5;
-  ivec2 corner = ivec2(floor(texel));
+  // The outermost pixels hold nothing.
+  vec2 texel = clamp(p.xy * lampPixels - 0.5, vec2(2.0), lampPixels - 4.0);
+  ivec2 corner = ivec2(texel);
   vec2 part = texel - floor(texel);
   vec2 slope = lampTouch * vec2(dot(normal, lampRight), dot(normal, lampUp)) / max(dot(normal, lamp), 0.15);
   float least = p.z - slack * lampTouch;
-  // Most lit points have no object between them and the lamp, nor near that line.
-  ivec2 block = clamp(corner, ivec2(0), ivec2(lampPixels) - 1) / lampBlock;
-  float nearest = numberAt(lampNearest, block);
-  int rows = nearest > least + 3.0 * (abs(slope.x) + abs(slope.y)) ? 0 : 5;
   // Five pixels of a row lie in two texels. Of their eight pixels those count that are less than 2.5 from the middle.
-  ivec2 last = ivec2(lampPixels) - 1;
   int first = (corner.x - 2) >> 2;
   float begin = float(4 * first - corner.x) - part.x;
   vec4 one = begin + vec4(0.0, 1.0, 2.0, 3.0), other = one + 4.0;
   vec4 oneCounts = clamp(2.5 - abs(one + 0.5), 0.0, 1.0), otherCounts = clamp(2.5 - abs(other + 0.5), 0.0, 1.0);
   vec4 oneAbove = least + slope.x * one, otherAbove = least + slope.x * other;
-  float lit = rows == 0 ? 16.0 : 0.0;
-  // Software OpenGL computes both ways of a branch, but a loop ends where no pixel near by needs it.
-  for (int j = 0; j < rows; j++) {
+  float lit = 0.0;
+  for (int j = 0; j < 5; j++) {
     float row = j == 0 ? 1.0 - part.y : j == 4 ? part.y : 1.0, rise = slope.y * (float(j - 2) - part.y);
-    int y = clamp(corner.y + j - 2, 0, last.y);
-    vec4 there = texelFetch(lampDepth, ivec2(clamp(first, 0, last.x >> 2), y), 0);
-    vec4 beside = texelFetch(lampDepth, ivec2(clamp(first + 1, 0, last.x >> 2), y), 0);
+    vec4 there = texelFetch(lampDepth, ivec2(first, corner.y + j - 2), 0);
+    vec4 beside = texelFetch(lampDepth, ivec2(first + 1, corner.y + j - 2), 0);
     vec4 free = vec4(greaterThan(there, min(oneAbove + rise, vec4(0.9999999))));
     vec4 alsoFree = vec4(greaterThan(beside, min(otherAbove + rise, vec4(0.9999999))));
     lit += row * (dot(oneCounts, free) + dot(otherCounts, alsoFree));
   }
-  return lit > 15.9999 ? 1.0 : lit / 16.0;
+  bool beyond = any(lessThan(p.xy, vec2(0.0))) || any(greaterThan(p.xy, vec2(1.0)));
+  return beyond || lit > 15.9999 ? 1.0 : lit / 16.0;
 }
 
 float shadow(vec3 where, vec3 normal, float slack)
