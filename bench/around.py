@@ -43,11 +43,15 @@ def spent() -> float:
     return sum(u.ru_utime + u.ru_stime for u in used)
 
 
+def compiled(folder: Path) -> dict[str, str]:
+    """Environment of processes whose modules are compiled as those of an installed package are."""
+    return {"PYTHONPYCACHEPREFIX": str(folder / "compiled"), "PYTHONDONTWRITEBYTECODE": ""}
+
+
 def python(folder: Path, code: str, *words: object) -> float:
-    """Processor seconds of some code in a Python of its own, whose modules are compiled as those of an installed package are."""
-    settings = {"PYTHONPYCACHEPREFIX": str(folder / "compiled"), "PYTHONDONTWRITEBYTECODE": ""}
+    """Processor seconds of some code in such a Python of its own."""
     start = spent()
-    subprocess.run([sys.executable, "-c", code, *map(str, words)], check=True, timeout=600, env=os.environ | settings)
+    subprocess.run([sys.executable, "-c", code, *map(str, words)], check=True, timeout=600, env=os.environ | compiled(folder))
     return spent() - start
 
 
@@ -58,6 +62,7 @@ def pictures(name: str, folder: Path) -> float:
     from mdanim_lammps.scene.parse import load_scene
 
     scene = load_scene(SCENES / f"{name}.txt")
+    os.environ.update(compiled(folder.parent))
     with Trajectory(folder) as trajectory:
         count = len(movie_frames(trajectory)[0])
         start = spent()

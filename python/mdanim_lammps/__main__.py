@@ -1,12 +1,10 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """The program from its first instruction: ``mdanim-lammps`` and ``python -m mdanim_lammps``."""
 
-import atexit
-import gc
 import os
 import sys
 
-from .safe_start import is_safe
+from .safe_start import few_collections, is_safe
 
 # A module that lies beside a scene is not a part of this program.
 if __name__ == "__main__" and not is_safe():
@@ -16,15 +14,6 @@ if named and "" in named.split(os.pathsep) and os.getcwd() in sys.path:
     sys.path.remove(os.getcwd())  # an empty part, as of "$UNSET:/opt/lib", is the current folder
 
 from .interrupts import end_at_once, on_signals  # noqa: E402 - what it imports may be found in the current folder before
-
-
-def few_collections() -> None:
-    """Look for garbage a tenth as often, and not when the process ends.
-
-    Nearly all that a short command makes are modules, which stay: this is a tenth of the time of ``mdanim-lammps picture``.
-    """
-    gc.set_threshold(10_000)
-    atexit.register(gc.freeze)
 
 
 def main() -> None:

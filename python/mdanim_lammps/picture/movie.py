@@ -3,12 +3,8 @@
 
 from __future__ import annotations
 
-import os
-import sys
-import tempfile
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import ExitStack, closing, contextmanager
 from fractions import Fraction
 from pathlib import Path
 
@@ -17,26 +13,14 @@ import numpy as np
 from ..children import ChildLost, Workers
 from ..errors import OutputError, SetupError, UsageError
 from ..processes import cores, limited
-from ..results.files import disk_errors, scratch, sync, write_whole
+from ..results.files import disk_errors, write_whole
 from ..results.overwriting import MADE
 from ..results.trajectory import Trajectory
 from ..scene.render import Render
+from .encoder import Yuv, encoder
 from .marks import Marks
 from .window import upright
 
-CODING = {
-    "codec": "libx264",
-    "quality": None,  # -crf says it
-    "pix_fmt_in": "rgb0",  # as pictures are drawn, first row below
-    "macro_block_size": 1,  # no other size than asked for
-    "ffmpeg_log_level": "error",
-}
-OUTPUT = [
-    *("-vf", "vflip,scale=out_color_matrix=bt709:out_range=tv", "-preset", "veryfast", "-crf", "17"),
-    *("-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc", "bt709", "-movflags", "+faststart"),
-    *("-metadata", f"comment={MADE}"),
-]
-"""H.264 that browsers and slides play."""
 MOST_PICTURES = 10_000_000
 FASTEST = 60.0
 """Pictures per second of a time lapse; a movie at the speed of the simulated time has all of its frames."""
@@ -118,11 +102,9 @@ def render_movie(
     processes = processes or processes_for(len(shown))
     # A library that finds no memory ends its process: not this one, where that is likely.
     pictures = _draw_here if processes == 1 and not limited() else _draw_apart
-    with encoder(Path(path), size, rate, len(shown)) as encode:
-        for done, picture in enumerate(pictures(trajectory, render, size, shown, processes), start=1):
+    with encoder(Path(path), size, rate) as encode:
+        for done, picture in enumerate(pictures(trajectory, render, size, shown, processes, frames), start=1):
             encode(picture)
-            if frames is not None:
-                _save_png(upright(picture), Path(frames) / f"frame-{done - 1:05d}.png")
             if on_progress is not None:
                 on_progress(done, len(shown))
     return Path(path)
@@ -169,26 +151,50 @@ def movie_rate(fps: float) -> Fraction:
 # --- drawing ----------------------------------------------------------------------------------------------
 
 
-def _draw_here(trajectory, render, size, shown: Sequence[int], _processes) -> Iterator[np.ndarray]:
-    from .render import Painter
+class _Drawing:
+    """Pictures of a trajectory as the encoder takes them.
 
-    with Painter(trajectory, render, size=size) as painter:
-        for index in shown:
-            yield painter.pixels(int(index))
+    Args:
+        trajectory: what is drawn.
+        render: how.
+        size: in pixels.
+        frames: a folder where each is kept too; None for none.
+        action: bounds over all frames, if known already.
+    """
+
+    def __init__(self, trajectory: Trajectory, render: Render, size: tuple[int, int], frames, action=None):
+        from .render import Painter
+
+        self.painter, self._yuv = Painter(trajectory, render, size=size, action=action), Yuv()
+        self._frames = None if frames is None else Path(frames)
+
+    def picture(self, number: int, frame: int) -> np.ndarray:
+        """The picture of this number, which shows this frame, as `Yuv` has it."""
+        pixels = self.painter.pixels(frame)
+        if self._frames:
+            _save_png(upright(pixels), self._frames / f"frame-{number:05d}.png")
+        return self._yuv.of(pixels)
 
 
-def _draw_apart(trajectory, render, size, shown: Sequence[int], processes: int) -> Iterator[np.ndarray]:
+def _draw_here(trajectory, render, size, shown: Sequence[int], _processes, frames=None) -> Iterator[np.ndarray]:
+    drawing = _Drawing(trajectory, render, size, frames)
+    with drawing.painter:
+        for number, index in enumerate(shown):
+            yield drawing.picture(number, int(index))
+
+
+def _draw_apart(trajectory, render, size, shown: Sequence[int], processes: int, frames=None) -> Iterator[np.ndarray]:
     """Pictures in order, drawn by several processes that are a few pictures ahead."""
     from .camera import action_of
 
-    task = (trajectory.path.absolute(), render, size, action_of(trajectory))
+    task = (trajectory.path.absolute(), render, size, frames and Path(frames).absolute(), action_of(trajectory))
     # Software OpenGL starts as many threads per process as there are cores.
     threads = {"LP_NUM_THREADS": str(max(1, cores() // processes))}
     ahead: deque = deque()
     with Workers(processes, begin=(_begin_worker, task), more=threads) as workers:
         try:
-            for index in shown:
-                ahead.append(workers.submit(_draw_in_worker, int(index)))
+            for number, index in enumerate(shown):
+                ahead.append(workers.submit(_draw_in_worker, number, int(index)))
                 if len(ahead) > 2 * processes:
                     yield ahead.popleft().result()
             while ahead:
@@ -201,84 +207,21 @@ def _draw_apart(trajectory, render, size, shown: Sequence[int], processes: int) 
 
 
 _worker: dict = {}
-"""State of a process that draws: its task, and the painter once there is one."""
+"""State of a process that draws: its task, and what draws once there is one."""
 
 
 def _begin_worker(task: tuple) -> None:
     _worker["task"] = task
 
 
-def _draw_in_worker(frame: int) -> np.ndarray:
-    if "painter" not in _worker:
-        path, render, size, action = _worker["task"]
-        from .render import Painter
-
-        _worker["painter"] = Painter(Trajectory(path), render, size=size, action=action)
-    return _worker["painter"].pixels(frame)
+def _draw_in_worker(number: int, frame: int) -> np.ndarray:
+    if "drawing" not in _worker:
+        path, *task = _worker["task"]
+        _worker["drawing"] = _Drawing(Trajectory(path), *task)
+    return _worker["drawing"].picture(number, frame)
 
 
 # --- writing ----------------------------------------------------------------------------------------------
-
-
-@contextmanager
-def encoder(path: Path, size: tuple[int, int], rate: Fraction, pictures: int) -> Iterator[Callable[[np.ndarray], None]]:
-    """Send pictures to ffmpeg, as `Painter.pixels` gives them; the movie gets its name at the end, an error leaves nothing."""
-    try:
-        import imageio_ffmpeg
-
-        imageio_ffmpeg.get_ffmpeg_exe()
-    except (ImportError, RuntimeError) as error:
-        raise SetupError(f"no ffmpeg for the movie ({error}); pip install imageio-ffmpeg, or run with --no-movie") from None
-    with ExitStack() as stack:
-        try:
-            path.parent.mkdir(parents=True, exist_ok=True)
-            part = stack.enter_context(scratch(path.parent, "movie")) / "movie.mp4"
-        except OSError as error:
-            raise OutputError(f"{path}: cannot be written: {error.strerror}; name another file or folder") from None
-        said = stack.enter_context(tempfile.TemporaryFile())
-        # With more threads the same pictures take more processor time: 15 ms each in place of 11.
-        output = [*OUTPUT, "-threads", str(max(1, cores() // 2))]
-        writer = stack.enter_context(closing(imageio_ffmpeg.write_frames(part, size, fps=rate, output_params=output, **CODING)))
-
-        def failed() -> OutputError:
-            said.seek(0)
-            words = said.read().decode(errors="replace").strip().splitlines()
-            return OutputError(
-                f"{path}: the movie cannot be written: {words[-1] if words else 'ffmpeg stopped'}; "
-                "make room or name another file, then `render` again"
-            )
-
-        def encode(picture: np.ndarray) -> None:
-            try:
-                writer.send(picture)
-            except OSError:
-                raise failed() from None
-
-        with _stderr_into(said.fileno()):
-            writer.send(None)
-        yield encode
-        writer.close()
-        try:
-            # ffmpeg's exit code cannot be had: a movie that is not whole cannot be read, or is too short.
-            if imageio_ffmpeg.count_frames_and_secs(part)[0] != pictures:
-                raise failed()
-            sync(part)
-            os.replace(part, path)
-        except (OSError, RuntimeError):
-            raise failed() from None
-
-
-@contextmanager
-def _stderr_into(file: int) -> Iterator[None]:
-    """Give processes that are started meanwhile a file in place of stderr."""
-    sys.stderr.flush()
-    kept = os.dup(2)
-    os.dup2(file, 2)
-    try:
-        yield
-    finally:
-        os.dup2(kept, 2)
-        os.close(kept)
 
 
 def _save_png(picture: np.ndarray, path: Path) -> None:

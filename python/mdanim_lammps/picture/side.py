@@ -15,7 +15,8 @@ from ..results.trajectory import Trajectory
 from ..scene.naming import objects_by_name
 from ..scene.render import Render
 from .camera import Action, action_of
-from .movie import FASTEST, MOST_PICTURES, encoder, movie_rate
+from .encoder import Yuv, encoder
+from .movie import FASTEST, MOST_PICTURES, movie_rate
 from .palette import colors_beside
 from .render import Painter
 
@@ -57,12 +58,13 @@ def render_side_by_side(
                 raise OutputError(f"{run.path}: holds no frame, nothing can be drawn; resume the run first")
         moments, rate = _moments(runs, render.speed, fps)
         painters = [stack.enter_context(painter) for painter in _painters(runs, (first, second), render, (half, height))]
-        with encoder(Path(path), (2 * half, height), rate, len(moments)) as encode:
+        with encoder(Path(path), (2 * half, height), rate) as encode:
+            yuv = Yuv()
             for done, moment in enumerate(moments, 1):
                 frames = [int(np.abs(run.times - moment).argmin()) for run in runs]
                 picture = np.concatenate([painter.pixels(n) for painter, n in zip(painters, frames)], axis=1)
                 picture[:, half - LINE // 2 : half + LINE // 2] = 128
-                encode(picture)
+                encode(yuv.of(picture))
                 if on_progress is not None:
                     on_progress(done, len(moments))
     return Path(path)
