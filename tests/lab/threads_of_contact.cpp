@@ -45,7 +45,7 @@ struct Shape {
     const double edge[] = {H, H, H};
     return ContactBody({count, edge, static_cast<int>(node.size()), node.data(), filled.data(), static_cast<int>(cell.size()),
                         cell.data(), at.data(), centre.data(), normal.data(), area.data(), kind.data(),
-                        depth.empty() ? nullptr : depth.data()});
+                        depth.empty() ? nullptr : depth.data(), depth.size()});
   }
 };
 
