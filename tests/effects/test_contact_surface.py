@@ -5,7 +5,7 @@ import math
 
 import numpy as np
 import pytest
-from mdanim_lammps import Scene, features
+from mdanim_lammps import features
 from mdanim_lammps.certificate import note_lines
 from mdanim_lammps.effects import resolve
 from mdanim_lammps.engine.commands import input_script
@@ -464,30 +464,3 @@ def test_friction_may_bring_objects_together(a, control, on):
     """A spinning ball stays where it is on ice and rolls to another on rough ground."""
     resolved = resolve(features.effects(), parse_scene(ROLL.format(a=a, control=control)))
     assert resolved.verdicts["contact"].on == on
-
-
-SHELF = """gravity (0, 0, -9.81) m/s^2
-object shelf {{ shape box {size} m  position (0, 0, {z}) m  hold all }}
-object ball {{ shape sphere 10 cm  position (0, 0, 0.11) m  mass 3 kg  elasticity 300 kPa  velocity (0, 0, -{v}) m/s }}
-control {{ time {time} s  frames 100 fps }}
-record ball.position.z
-"""
-
-
-def heights(tmp_path, size, z, v=2, time=0.1):
-    """Heights of the ball at each frame [m]."""
-    scene = Scene.from_text(SHELF.format(size=size, z=z, v=v, time=time))
-    assert scene.prepared.system.spacing[1] == pytest.approx(0.05, rel=0.03)  # four across the ball
-    return scene.run(tmp_path / f"{abs(z)}", movie=False, progress=False).records["ball.position.z"]
-
-
-def test_a_ball_bounces_on_a_thin_shelf_as_on_a_thick_one(tmp_path):
-    """A plate has an exact depth: cells of the ball are 2.5 times as wide, and it bears them alike."""
-    thick, thin = (heights(tmp_path, (0.6, 0.4, t), -t / 2) for t in (0.2, 0.02))
-    assert np.ptp(thick) > 0.05 and np.allclose(thick, thin, rtol=0.0, atol=1e-12)
-
-
-def test_a_ball_stays_on_the_edge_of_a_thin_plate(tmp_path):
-    """As thin as its cells allow: it comes down by a third of its radius at most, and leaves again."""
-    found = heights(tmp_path, (0.02, 0.4, 0.4), -0.2)
-    assert 0.065 < found.min() < 0.1 and found[-1] > 0.11

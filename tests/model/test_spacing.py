@@ -46,10 +46,11 @@ def test_a_held_plate_asks_for_few_cells():
     assert plan_spacing(scene(plate, ball)).h == pytest.approx(0.05)
     assert plan_spacing(scene(plate, solid(Sphere(0.05), "ball"))).h == pytest.approx(0.025)
     assert plan_spacing(scene(plate, ball, resolution=0.05)).h == 0.05
-    with pytest.raises(SceneError, match="plate: thinner than the spacing allows"):
+    with pytest.raises(SceneError, match="plate: thinner than the spacing allows") as caught:
         plan_spacing(scene(plate, ball, resolution=0.051))
-    for shape in (Box((2.0, 0.07, 0.02)), Cylinder(1.0, 0.02)):
-        assert plan_spacing(scene(solid(shape, "bar", hold=(HoldAll(),)), ball)).h == pytest.approx(0.01)
+    assert "write resolution 5 cm" in caught.value.problems[0].hint
+    for shape, h in ((Box((2.0, 0.07, 0.02)), 0.01), (Cylinder(0.01, 1.0), 0.01), (Cylinder(1.0, 0.02), 0.05)):
+        assert plan_spacing(scene(solid(shape, "bar", hold=(HoldAll(),)), ball)).h == pytest.approx(h)
     assert plan_spacing(scene(plate, solid(Sphere(0.5), "ball", hold=(HoldAll(),)))).h == pytest.approx(0.01)
     pool = Liquid("water", (-2, -2, 0), (2, 2, 2), 1000.0, level=1.0)
     assert plan_spacing(scene(plate, ball, liquid=pool)).h == pytest.approx(0.01)

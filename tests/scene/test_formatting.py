@@ -5,7 +5,7 @@ import re
 
 import pytest
 from command_line import GOOD
-from mdanim_lammps.scene.formatting import PREFIXED, at_least, estimate, number, say, whole
+from mdanim_lammps.scene.formatting import PREFIXED, at_least, at_most, estimate, number, say, whole
 from mdanim_lammps.scene.units import unit
 
 
@@ -51,6 +51,12 @@ def test_counts_stand_in_threes():
 def test_what_is_told_to_write_is_enough(value, enough):
     """Round up."""
     assert at_least(value) == pytest.approx(enough, rel=1e-12) and at_least(value) >= value
+
+
+@pytest.mark.parametrize(("value", "enough"), [(0.0125, 0.0125), (0.012349, 0.0123), (0.01239, 0.0123), (0.9996, 0.999)])
+def test_what_is_told_to_write_is_not_too_much(value, enough):
+    """Round down."""
+    assert at_most(value) == pytest.approx(enough, rel=1e-12)
 
 
 @pytest.mark.parametrize("si", PREFIXED)

@@ -1,22 +1,31 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""Whether objects are inside of those that have no cells: what is held, and rigid objects that are not convex."""
+"""Whether objects are inside of those that have no cells: what is held, and rigid objects that are not convex; and whether
+what does not deform has gone through the surface of what does."""
 
 from __future__ import annotations
 
-from collections.abc import Container
+from collections.abc import Container, Iterator
 from functools import cached_property
 
 import numpy as np
 
 from ..model import mesh, shapes
+from ..model.contact_body import BodyFrame
+from ..model.nearest import Nearest
 from ..model.system import System
-from ..scene.scene import Mesh
+from ..scene.scene import Mesh, PieceShape
 
 DEEP = 0.4
 """Depth of the centre of a guest below its own surface, over its thickness, from which on it says that all of it is in another
 object: no blow goes as deep."""
+IN_CELL, AT_SURFACE = 0.75, 0.5
+"""Cells from the middle of the nearest cell within which a place is in a body that deforms; and from its box, within which no
+place is looked at."""
 BOX = [0, 1, 2, 4]
 """The lower corner of a box, and the ends of its edges there."""
+
+UPPER = [[1, 2, 5, 6], [2, 3, 6, 7], [4, 5, 6, 7]]
+"""Corners of the upper sides of a hexahedron of VTK across x, y and z."""
 
 
 class Hosts:
@@ -29,6 +38,8 @@ class Hosts:
         boxed = np.array([frame.corners is not None for frame in system.frames])[system.contact_kind]
         self.numbers = np.flatnonzero(self.whole & boxed & (cells == 0))
         """Which they are, ascending."""
+        self.firm, self.soft = np.flatnonzero(self.whole & boxed), np.flatnonzero(~self.whole & ~system.bare)
+        """Solids that are corners of a box, and those that deform and fill a volume, ascending."""
         self._surfaces: dict[Mesh, mesh.Triangles] = {}
 
     @cached_property
@@ -51,22 +62,39 @@ class Hosts:
         drawn = np.concatenate([system.frames[kind].drawn for kind in system.contact_kind.tolist()])
         return system.boundary & drawn & ~self.whole[system.object]
 
+    @cached_property
+    def first_cell(self) -> np.ndarray:
+        """First cell of each solid, and the number of all at the end, shape (M + 1,)."""
+        owner = self.system.object[self.system.hexahedron[:, 0]]
+        return np.searchsorted(owner, np.arange(len(self.system.names) + 1))
+
     def sunk(self, x: np.ndarray, solids: np.ndarray | None = None) -> tuple[int, int] | None:
-        """A guest in a host, and the host, the first one of all hosts; x and ``solids`` as in `Geometry`. Of a guest that deforms
-        a point of its surface is deeper than a cell, of others the centre is below the surface."""
-        hosts, guests = self.numbers, self.guests if len(self.numbers) else self.numbers
+        """Two solids of which the first is in the second, as `Geometry.sunk`: a guest in a host, or what does not deform in what
+        does. Of a guest that deforms a point of its surface is deeper than a cell, of others the centre is below the surface; of
+        what does not deform a point of its surface is deeper than a cell in the other body as that was at the start."""
+        for host, guest in self._meeting(x, self.numbers, self.guests, solids):
+            if self._is_in(x, guest, host):
+                return guest, host
+        for firm, soft in self._meeting(x, self.firm, self.soft, solids):
+            if self._is_pierced(x, firm, soft):
+                return firm, soft
+        return None
+
+    def _meeting(
+        self, x: np.ndarray, hosts: np.ndarray, guests: np.ndarray, solids: np.ndarray | None
+    ) -> Iterator[tuple[int, int]]:
+        """Hosts, and guests whose boxes overlap with theirs, that must not be in each other."""
         if solids is not None:
             hosts, guests = np.intersect1d(hosts, solids), np.intersect1d(guests, solids)
         if not len(hosts) or not len(guests):
-            return None
+            return
         low, high = self.system.bounds(x)
         for m in hosts.tolist():
             near = guests[((low[guests] < high[m]) & (high[guests] > low[m])).all(axis=1)]
             for n in near.tolist():
                 both_still = self.system.still[m] and self.system.still[n]
-                if n != m and not both_still and (min(m, n), max(m, n)) not in self.passing and self._is_in(x, n, m):
-                    return n, m
-        return None
+                if n != m and not both_still and (min(m, n), max(m, n)) not in self.passing:
+                    yield m, n
 
     def _is_in(self, x: np.ndarray, guest: int, host: int) -> bool:
         system = self.system
@@ -80,17 +108,45 @@ class Hosts:
         points = points[((points > corner.min(axis=0)) & (points < corner.max(axis=0))).all(axis=1)]
         if not len(points):
             return False
-        own = frame.cells.low + frame.corners[BOX] * frame.cells.edge
-        edges = corner[BOX[1:]] - corner[0]
-        points = own[0] + (points - corner[0]) @ np.linalg.solve(edges, own[1:] - own[0])
+        own = _own_box(frame)
+        points = own[0] + (points - corner[0]) @ np.linalg.solve(corner[BOX[1:]] - corner[0], own[1:] - own[0])
         if isinstance(frame.shape, Mesh):  # few are in it, and only these are asked for exactly
             surface = self._surface(frame.shape)
             points = points[mesh.quick_depth(surface)(points) > depth]
             return bool(len(points)) and bool((mesh.depth(surface, points) > depth).any())
         return bool((shapes.depth(frame.shape, points) > depth).any())
 
+    def _is_pierced(self, x: np.ndarray, firm: int, soft: int) -> bool:
+        system = self.system
+        corner, cells = x[system.first[firm] : system.first[firm + 1]], slice(*self.first_cell[soft : soft + 2])
+        frame, own = system.frames[system.contact_kind[firm]], _own_box(system.frames[system.contact_kind[firm]])
+        body, h = system.frames[system.contact_kind[soft]], float(np.cbrt(system.cell_volume[soft]))
+        if isinstance(frame.shape, Mesh | PieceShape) and frame.cells.filled.size == 1:
+            return False  # only its features touch
+        at = frame.cells.low + frame.contact.at * frame.cells.edge
+        points = corner[0] + (at - own[0]) @ np.linalg.solve(own[1:] - own[0], corner[BOX[1:]] - corner[0])
+        around = x[system.first[soft] : system.first[soft + 1]]
+        low, high = around.min(axis=0) + AT_SURFACE * h, around.max(axis=0) - AT_SURFACE * h
+        points = points[((points > low) & (points < high)).all(axis=1)]
+        if not len(points):
+            return False
+        place = x[system.hexahedron[cells]]
+        middle = place.mean(axis=1)
+        near = Nearest(middle)(points)[1]
+        of = np.stack([place[near][:, ends].mean(axis=1) for ends in UPPER], axis=1) - middle[near][:, None]
+        within = np.linalg.solve(np.swapaxes(of, 1, 2), (points - middle[near])[..., None])[..., 0] / 2.0
+        inside = (np.abs(within) <= IN_CELL).all(axis=1)
+        number = np.argwhere(body.cells.filled)[near[inside], ::-1]
+        rest = body.cells.low + (number + 0.5 + within[inside]) * body.cells.edge
+        return bool((shapes.depth(body.shape, rest) > h).any())
+
     def _surface(self, shape: Mesh) -> mesh.Triangles:
         """The surface of a mesh, whose file may be gone since the start."""
         if shape not in self._surfaces:
             self._surfaces[shape] = mesh.load(shape)
         return self._surfaces[shape]
+
+
+def _own_box(frame: BodyFrame) -> np.ndarray:
+    """BOX of a body in its own frame [m], shape (4, 3)."""
+    return frame.cells.low + frame.corners[BOX] * frame.cells.edge

@@ -144,6 +144,8 @@ class BodyFrame:
     """Nodes around the grid whose depth is kept."""
     tears: bool = False
     """As that of ContactBody."""
+    grain: float = 0.0
+    """Points are 1 / DENSITY of this apart where cells are smaller [m]."""
 
     @property
     def radius(self) -> float:
@@ -180,7 +182,7 @@ class BodyFrame:
     @cached_property
     def contact(self) -> ContactBody:
         """The same object at every call."""
-        body = make_contact_body(self.shape, self.cells, self.open, self.margin)
+        body = make_contact_body(self.shape, self.cells, self.open, self.margin, self.grain)
         if self.corners is not None:
             return _in_box(body, self.corners)
         if self.rigid:
@@ -203,20 +205,22 @@ class BodyFrame:
         return contains(self.shape, self.cells.low + place * self.cells.edge)
 
 
-def make_contact_body(shape: Shape, cells: Cells, open_parts: np.ndarray | None = None, margin: int = MARGIN) -> ContactBody:
+def make_contact_body(
+    shape: Shape, cells: Cells, open_parts: np.ndarray | None = None, margin: int = MARGIN, grain: float = 0.0
+) -> ContactBody:
     """Points and depth of a shape that fills these cells, both about its centre of mass; the depth is kept on so many nodes
     around the grid.
 
     A cuboid has a point for every boundary particle and side, in the order FLAT, SHARP, then sides -x, +x, -y, +y, -z, +z, then
     particles; none on covered parts of its sides (``open_parts`` as ContactBody.open). Any other shape has points of its true
-    surface, 1 / DENSITY of a cell apart, each carried by the nearest cell; behind them a ball or an ellipsoid of five cells and
-    less has fine points.
+    surface, 1 / DENSITY of a cell or of a coarser ``grain`` [m] apart, each carried by the nearest cell; behind them a ball or an
+    ellipsoid of five cells and less has fine points.
     """
     open_parts = np.zeros((0, 5)) if open_parts is None else open_parts
     boxed = isinstance(shape, Box) or (
         isinstance(shape, PieceShape) and cells.filled.size == 1
     )  # a piece whose points nothing reads
-    points = _cuboid(cells, open_parts) if boxed else _dense(shape, cells)
+    points = _cuboid(cells, open_parts) if boxed else _dense(shape, cells, grain)
     points = {name: np.ascontiguousarray(field) for name, field in points.items()}  # row by row, as C functions read them
     body = ContactBody(
         count=cells.count.astype(np.int32),
@@ -336,9 +340,9 @@ def _flat(place: np.ndarray, count: np.ndarray) -> np.ndarray:
 # --- all other shapes -------------------------------------------------------------------------------------------------
 
 
-def _dense(shape: Shape, cells: Cells) -> dict[str, np.ndarray]:
+def _dense(shape: Shape, cells: Cells, grain: float) -> dict[str, np.ndarray]:
     """Fields of the points of any other shape."""
-    edge = float(cells.edge.min())
+    edge = max(float(cells.edge.min()), grain)
     sets = [_spread_on(shape, cells, edge / DENSITY, DENSE)]
     fine = max(thickness(shape) / FINE_ACROSS, edge / FINE_DENSITY)
     if isinstance(shape, Sphere | Ellipsoid) and fine < WORTHWHILE * edge / DENSITY:

@@ -18,12 +18,13 @@ FACES = np.array([(0, 4, 7, 3), (1, 2, 6, 5), (0, 1, 5, 4), (3, 7, 6, 2), (0, 3,
 """Corners of the faces -x, +x, -y, +y, -z, +z of a VTK hexahedron, counter-clockwise seen from outside."""
 
 
-def make_surface(shape: Shape, lattice: Lattice) -> Surface:
-    """Draw a cuboid by its boundary particles, any other shape by its true surface, embedded in the cells."""
+def make_surface(shape: Shape, lattice: Lattice, grain: float = 0.0) -> Surface:
+    """Draw a cuboid by its boundary particles, any other shape by its true surface, embedded in the cells, with facets of their
+    size, or of ``grain`` [m] where that is more."""
     if isinstance(shape, Box):
         return _faces(lattice)
     bare = isinstance(shape, PieceShape) and lattice.cells.filled.size == 1
-    points, triangles = shapes.surface(shape, inf if bare else float(lattice.cells.edge.min()))
+    points, triangles = shapes.surface(shape, inf if bare else max(float(lattice.cells.edge.min()), grain))
     color = mesh.colors_at(mesh.load(shape), points) if isinstance(shape, Mesh) else None
     return replace(_embedded(points, triangles, lattice), color=color)
 

@@ -39,8 +39,9 @@ class _Placed:
     frame: BodyFrame
 
 
-def held_model(solid: Solid, h: float, shared: Any, bare: bool = False) -> Model:
-    """The model of an object that is held as a whole, with the cells of its contact h [m] wide.
+def held_model(solid: Solid, h: float, shared: Any, bare: bool = False, across: float = math.inf) -> Model:
+    """The model of an object that is held as a whole, with the cells of its contact h [m] wide, those of its depth ``across`` [m]
+    where that is less.
 
     The drawn surface is that of its lattice: each vertex is a weighted sum of the eight corners. ``shared`` makes what equal
     objects share (build.SharedParts). A ``bare`` one, whose contact is found elsewhere, has a surface of one cell, and counts as
@@ -48,7 +49,7 @@ def held_model(solid: Solid, h: float, shared: Any, bare: bool = False) -> Model
 
     Raises cells.TooThin, mesh.MeshError.
     """
-    placed = shared.once(_placed, solid.shape, math.inf if bare else h, tuple(map(tuple, solid.rotation)))
+    placed = shared.once(_placed, solid.shape, math.inf if bare else h, tuple(map(tuple, solid.rotation)), across)
     edge = placed.frame.cells.edge
     cell = one_cell_as(edge, h) if bare else edge
     return corner_model(solid, cell, placed.corner, shapes.mass(solid) * placed.share, placed.surface, placed.frame, free=None)
@@ -115,15 +116,17 @@ def corner_model(
     )
 
 
-def _shaped(shared: Any, shape: Shape, h: float) -> tuple[BodyFrame, Surface, np.ndarray]:
-    """Cells, and the drawn surface with its vertices [m], shape (V, 3); body frame."""
-    lattice = make_lattice(fill_cells(shape, h, loose=True), tied=False)
-    surface = make_surface(shape, lattice)
-    return BodyFrame(shape, lattice.cells), surface, surface.vertices(lattice.position)
+def _shaped(shared: Any, shape: Shape, h: float, across: float = math.inf) -> tuple[BodyFrame, Surface, np.ndarray]:
+    """Cells, and the drawn surface with its vertices [m], shape (V, 3); body frame. Points and vertices go by h where the cells
+    of the depth are finer."""
+    lattice = make_lattice(fill_cells(shape, min(h, across), loose=True), tied=False)
+    grain = h if across < h else 0.0
+    surface = make_surface(shape, lattice, grain)
+    return BodyFrame(shape, lattice.cells, grain=grain), surface, surface.vertices(lattice.position)
 
 
-def _placed(shared: Any, shape: Shape, h: float, rotation: tuple[tuple[float, ...], ...]) -> _Placed:
-    frame, surface, body = shared.once(_shaped, shape, h)
+def _placed(shared: Any, shape: Shape, h: float, rotation: tuple[tuple[float, ...], ...], across: float = math.inf) -> _Placed:
+    frame, surface, body = shared.once(_shaped, shape, h, across)
     turn = np.array(rotation)
     vertex = body @ turn.T
     low, high = vertex.min(axis=0), vertex.max(axis=0)

@@ -14,7 +14,7 @@ from ..errors import Problem, SceneError
 from ..features import facets
 from ..processes import available_memory
 from ..records import dataclass
-from ..scene.formatting import number, say, whole
+from ..scene.formatting import at_most, number, say, whole
 from ..scene.scene import Box, Mesh, SceneRecord, Shape, Solid
 from . import shapes, work
 from .limits import check_places, check_sparse
@@ -56,15 +56,17 @@ def plan_spacing(scene: SceneRecord) -> Spacing:
     problems = check_places(scene, of)
     too_thin: dict[tuple, list[str]] = {}  # objects of a repeat are one problem
     for solid, own, t in zip(scene.solids, of, thin):
-        if own * kind_of(solid).least(scene, solid) > t * (1 + 1e-9):
-            too_thin.setdefault((_span(solid), t, own, solid.resolution is None), []).append(solid.name)
-    for (span, t, own, shared), names in too_thin.items():
+        kind = kind_of(solid)
+        if own * kind.least(scene, solid) > t * (1 + 1e-9):
+            enough = at_most(t / min(2.0, kind.cells(scene, solid)))
+            too_thin.setdefault((_span(solid), t, own, enough, solid.resolution is None), []).append(solid.name)
+    for (span, t, own, enough, shared), names in too_thin.items():
         more = f" and {whole(len(names) - 1)} more" if len(names) > 1 else ""
         problems.append(
             Problem(
                 span,
                 f"{names[0]}{more}: thinner than the spacing allows, {say(t, 'm')} at its thinnest, spacing {say(own, 'm')}",
-                f"write resolution {say(t / 2, 'm')} {'in control' if shared else 'in it'}, or make it thicker",
+                f"write resolution {say(enough, 'm')} {'in control' if shared else 'in it'}, or make it thicker",
             )
         )
     if problems:

@@ -95,7 +95,9 @@ def _(shape: Cylinder, spacing):
 @spread.register
 def _(shape: Cone, spacing):
     r, h = shape.radius, shape.height
-    return _turned(shape, [(0, -h / 4), (r, -h / 4), (0, 3 * h / 4)], spacing)
+    found = _turned(shape, [(0, -h / 4), (r, -h / 4), (0, 3 * h / 4)], spacing)
+    found.normal[-1] = 0.0, 0.0, 1.0  # around the tip: those of a slim cone would face nothing that lies on it
+    return found
 
 
 @spread.register

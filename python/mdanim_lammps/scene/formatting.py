@@ -79,5 +79,12 @@ def at_least(value: float, digits: int = 2) -> float:
     return rounded if rounded >= value else _rounded(rounded + 10.0 ** (math.floor(math.log10(rounded)) + 1 - digits), digits)
 
 
+def at_most(value: float, digits: int = 3) -> float:
+    """The next number of so few digits that is not above a positive one, but for rounding."""
+    rounded = _rounded(value, digits)
+    near = rounded <= value * (1.0 + 1e-9)
+    return rounded if near else _rounded(rounded - 10.0 ** (math.floor(math.log10(value)) + 1 - digits), digits)
+
+
 def _rounded(value: float, digits: int) -> float:
     return float(f"{value:.{digits - 1}e}") if math.isfinite(value) else value

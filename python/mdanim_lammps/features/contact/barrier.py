@@ -18,6 +18,7 @@ from ...model.model import Layer
 from ...reach import by, thrower_of
 from ...scene.formatting import at_least, say
 from .forms import Form, particle_stiffness, stiffness_told
+from .narrow import narrow
 from .pairs import largest_of_partners
 from .planes import OR_ON_SURFACES, STIFFNESS, others
 from .touching import REACH, THIN, WAY_NAMES, touching
@@ -128,7 +129,7 @@ class ObjectContact(Form):
         return REACH * context.system.spacing
 
     def margins(self, envelope):
-        return [*envelope.own_step("contact", envelope.rates[self.name]), *self._closing_speed(envelope)]
+        return [*envelope.own_step("contact", envelope.rates[self.name]), *self._closing_speed(envelope), *narrow(envelope)]
 
     def tunnelling(self, envelope: Envelope) -> np.ndarray:
         """Closing speed over the wave speed from which each solid is passed through, shape (M,)."""

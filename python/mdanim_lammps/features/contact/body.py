@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import math
+
 from ...bodies import BodyKind, all_held, beneath, kind_of, only_features
 from ...model import shapes
 from ...model.build import lattice_model
@@ -12,8 +14,10 @@ from ...scene.scene import Box, Mesh, Sphere
 from .words import ContactModel
 
 PLATE, COARSEST = 4.0, 2.5
-"""Second side of a cuboid over its thickness from which it is a plate; and cells that may meet it over its thickness: the edge of
-a plate holds a ball whose cells are 2.5 times as wide, not 5 times."""
+"""Second side of the box around an object over its thickness from which it is a plate; and cells that may meet it over its
+thickness: the edge of a plate holds a ball whose cells are 2.5 times as wide, not 5 times."""
+ACROSS = 2
+"""Cells across a plate that its depth takes, unless it is a cuboid: the least that have an inside."""
 
 
 class HeldBody(BodyKind):
@@ -27,7 +31,7 @@ class HeldBody(BodyKind):
         return all_held(solid)
 
     def cells(self, scene, solid):
-        """The depth of a plate is exact with fewer, so that a shelf does not make cells of what lies on it fine."""
+        """The depth of a plate does not go by these, so that a shelf does not make cells of what lies on it fine."""
         return 1.0 / COARSEST if _is_plate(scene, solid) else super().cells(scene, solid)
 
     def least(self, scene, solid):
@@ -53,15 +57,18 @@ class HeldBody(BodyKind):
     def make(self, solid, h, shared):
         if shared.inside or not only_surfaces_act(shared.scene):
             return lattice_model(solid, h, shared)
-        return held_model(solid, h, shared, self.bare(shared.scene, solid))
+        exact = isinstance(solid.shape, Box) or not _is_plate(shared.scene, solid)
+        across = math.inf if exact else shapes.thickness(solid.shape) / ACROSS
+        return held_model(solid, h, shared, self.bare(shared.scene, solid), across)
 
 
 def _is_plate(scene, solid) -> bool:
-    """Whether an object is a thin cuboid beside something elastic with an inside, and nothing reads particles in it."""
-    if not (isinstance(solid.shape, Box) and only_surfaces_act(scene) and _has_elastic(scene)):
+    """Whether an object is thin along one axis beside something elastic with an inside, as a shelf, a disc or a bowl, and nothing
+    reads particles in it."""
+    if not (only_surfaces_act(scene) and _has_elastic(scene)):
         return False
-    thin, second, _ = sorted(solid.shape.size)
-    return second >= PLATE * thin
+    low, high = shapes.extent(solid.shape)
+    return sorted(high - low)[1] >= PLATE * shapes.thickness(solid.shape)
 
 
 @once_for(lambda scene: scene)

@@ -68,6 +68,7 @@ MARGINS = {
     "contact": "the time step that contact alone would bear, by its largest curvature over a plane (an estimate)",
     "wall": "the time step that ground, walls and basin alone would bear",
     "closing speed": "how fast objects may meet so that nothing passes through; softer or thinner objects bear less",
+    "narrow part": "cells of what meets a held rod or plate, whose end or edge goes through wider ones (an estimate)",
 }
 
 

@@ -1,0 +1,63 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""Held things that are narrower than what meets them is resolved for: what ``check`` tells of them."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...effects.envelope import Envelope
+from ...effects.margin import Margin
+from ...model import shapes
+from ...scene.formatting import at_most, say
+from .body import COARSEST, PLATE
+from .words import ContactModel
+
+END = 1.0
+"""Cells over the thickness of a rod that its end holds at a thirtieth of the wave speed; the edge of a plate holds COARSEST."""
+
+
+def widest_cells(shape: shapes.Shape) -> float:
+    """Cells [m] that an end or an edge of a held shape holds; infinite where the shape is not slender."""
+    thin, (low, high) = shapes.thickness(shape), shapes.extent(shape)
+    _, second, longest = sorted(high - low)
+    if longest < PLATE * thin:
+        return np.inf
+    return thin * (COARSEST if second >= PLATE * thin else END)
+
+
+def narrow(envelope: Envelope) -> list[Margin]:
+    """The cells of what deforms beside those that a held thing holds that it may meet: where they are wider, few points of either
+    meet, and one may go through the other."""
+    scene, system = envelope.scene, envelope.system
+    if scene.control.contact_model is not ContactModel.SURFACE:
+        return []
+    cells = np.where(system.rigid | system.held_whole | system.bare, 0.0, np.cbrt(system.cell_volume))
+    holds = np.full(len(cells), np.inf)
+    holds[system.held_whole] = [widest_cells(scene.solids[m].shape) for m in np.flatnonzero(system.held_whole).tolist()]
+    soft, thin = np.flatnonzero(cells > 0.0), np.flatnonzero(np.isfinite(holds))
+    worst: tuple[float, int, int] | None = None
+    for n in thin.tolist():
+        met = soft[envelope.reach.region.may_touch(soft, np.full(len(soft), n))]
+        if len(met) and (worst is None or cells[met].max() / holds[n] > worst[0]):
+            m = int(met[cells[met].argmax()])
+            worst = float(cells[m] / holds[n]), m, n
+    if worst is None:
+        return []
+    used, m, n = worst
+    own = "resolution" in scene.solids[m].spans
+    return [
+        Margin(
+            "narrow part",
+            system.names[m],
+            float(cells[m]),
+            float(holds[n]),
+            "m",
+            f"{system.names[m]} may meet {system.names[n]} with cells of {say(float(cells[m]), 'm')}; an edge or an end of "
+            f"{system.names[n]}, {say(shapes.thickness(scene.solids[n].shape), 'm')} thick, holds cells of "
+            f"{say(float(holds[n]), 'm')}, and may go through wider ones",
+            envelope.place(m, "resolution", "shape") if own else scene.control.spans.get("resolution"),
+            "warning" if used > 1.05 else "ok",
+            hint=f"write resolution {say(at_most(float(holds[n])), 'm')} in {system.names[m]}, or a thicker {system.names[n]}, "
+            "unless they meet at a broad side of it",
+        )
+    ]
