@@ -167,7 +167,7 @@ void FixMdanimRigid::collect()
     bodies[n].force = {all[n][0], all[n][1], all[n][2]};
     bodies[n].torque = {all[n][3], all[n][4], all[n][5]};
     if (!touching.is_on()) continue;
-    const RigidTouching::Push &push = touching.push(static_cast<int>(n));
+    const RigidTouching::Push push = touching.push(static_cast<int>(n));
     bodies[n].force += units * push.force;
     bodies[n].torque += units * push.torque;
   }

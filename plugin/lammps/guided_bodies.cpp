@@ -48,7 +48,7 @@ void GuidedBodies::touch(double dt)
   for (std::size_t n = 0; touching.guide() && n < bodies.size(); ++n) before.push_back(touching.push(static_cast<int>(n)));
   touching.step(bodies, dt);
   each([&](std::size_t n) {
-    const RigidTouching::Push &now = touching.push(static_cast<int>(n));
+    const RigidTouching::Push now = touching.push(static_cast<int>(n));
     touching.work -=
         0.5 * dt * (dot(before[n].force + now.force, bodies[n].velocity) + dot(before[n].torque + now.torque, bodies[n].spin));
   });

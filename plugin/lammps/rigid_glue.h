@@ -62,6 +62,9 @@ class RigidGlue {
 
  private:
   void take(const std::string &fix);
+  // Whether a body moves by the forces on it, and not with others that it is glued to.
+  bool is_mover(int n) const { return !bodies[n].aside && !bodies[n].guided && !bodies[n].asleep && !glued.holds(n); }
+  template <class Work> void each_mover(double ns, const Work &work);
   void tell_contact();
   bool judge();    // whether glue broke
   double kinetic_of(int body, double half_dt, const std::vector<double> &drag) const;

@@ -171,7 +171,6 @@ void RigidTouching::take(const std::string &fix, const ObjectTable &objects, con
                          std::vector<Pose> in_bodies)
 {
   poses = std::move(in_bodies);
-  pushes.assign(bodies.size(), {});
   solid_of.assign(bodies.size(), NO_SHAPE);
   driven.clear();
   is_current = false;
@@ -246,21 +245,16 @@ double RigidTouching::unglue(const GluedBodies &glued, const std::vector<int> &p
   for (const int n : pieces)
     if (solid_of[n] != NO_SHAPE) yielded[solid_of[n]] = contact.solid(solid_of[n]).yields;
   glue(glued, pieces);
-  const double gone = contact.change(yielded);
-  take_pushes();
-  return gone;
-}
-
-void RigidTouching::take_pushes()
-{
-  for (std::size_t n = 0; n < solid_of.size(); ++n)
-    if (solid_of[n] != NO_SHAPE) pushes[n] = {contact.solid(solid_of[n]).force, contact.solid(solid_of[n]).torque};
+  return contact.change(yielded);
 }
 
 void RigidTouching::place_all(const std::vector<RigidBody> &bodies, bool settled)
 {
-  for (std::size_t n = 0; n < bodies.size(); ++n)
-    if (solid_of[n] != NO_SHAPE && (settled || !bodies[n].settled)) contact.place(solid_of[n], bodies[n]);
+  constexpr double NS_OF_PLACE = 30.0;
+  contact.helpers().parts(static_cast<long>(bodies.size()), NS_OF_PLACE, [&](long first, long end) {
+    for (long n = first; n < end; ++n)
+      if (solid_of[n] != NO_SHAPE && (settled || !bodies[n].settled)) contact.place(solid_of[n], bodies[n]);
+  });
 }
 
 // Where driven shapes are now; velocities are the means of the step that ends here.
@@ -308,7 +302,6 @@ void RigidTouching::step(const std::vector<RigidBody> &bodies, double dt)
   move_planes();
   contact.step(dt);
   count_work(dt > 0.0);
-  take_pushes();
   is_current = true;
 }
 

@@ -65,8 +65,15 @@ class RigidTouching {
   struct Push {
     Vec3 force, torque;
   };
-  const Push &push(int body) const { return pushes[body]; }
-  void set_push(int body, const Push &push) { pushes[body] = push; }
+  Push push(int body) const
+  {
+    if (solid_of[body] == NO_SHAPE) return {};
+    return {contact.solid(solid_of[body]).force, contact.solid(solid_of[body]).torque};
+  }
+  void set_push(int body, const Push &push)
+  {
+    if (solid_of[body] != NO_SHAPE) contact.set_force(solid_of[body], push.force, push.torque);
+  }
   // A body that is laid aside neither moves nor touches.
   void lay_aside(int body, bool aside)
   {
@@ -102,7 +109,6 @@ class RigidTouching {
   void place_all(const std::vector<RigidBody> &bodies, bool settled);    // those that are settled, too
   void place_driven();
   void move_planes();
-  void take_pushes();
   void count_work(bool moves);
   void read_plane(int iarg, char **arg);
   std::pair<int, int> read_two(int iarg, char **arg) const;
@@ -112,8 +118,7 @@ class RigidTouching {
   MovingPlanes moving;
   std::map<int, GivenShape> shapes;    // by molecule IDs
   std::vector<Pose> poses;             // of bodies
-  std::vector<Push> pushes;
-  std::vector<int> solid_of;    // number among the bodies of contact
+  std::vector<int> solid_of;           // number among the bodies of contact
   std::vector<DrivenSolid> driven;
   std::string drive_id;
   LAMMPS_NS::FixMdanimDrive *drive = nullptr;

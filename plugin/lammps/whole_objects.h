@@ -32,6 +32,7 @@ class WholeObjects : protected LAMMPS_NS::Pointers {
 
   // Sets the threads that sums are shared among. Their number changes no bit.
   void use(const Threads &now) { threads = now; }
+  const Threads &helpers() const { return threads; }
 
   bool moves(int i) const { return atom->mask[i] & fix.groupbit; }
   double mass_at(int i) const { return mass_of(atom->rmass, atom->mass, atom->type, i); }

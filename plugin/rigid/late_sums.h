@@ -24,12 +24,11 @@ struct TouchPush {
 
   void add() const
   {
-    a->force += force;
-    a->torque += on_a;
-    if (!b) return;
-    b->force -= force;
-    b->torque -= on_b;
+    add_to_a();
+    if (b) add_to_b();
   }
+  void add_to_a() const { a->force += force, a->torque += on_a; }
+  void add_to_b() const { b->force -= force, b->torque -= on_b; }
 };
 
 // Terms of a contact in the sums of the bound on the step of a body, and to the number of its contacts.
@@ -60,6 +59,11 @@ class alignas(64) LateSums {    // threads write to some that are side by side
   void end_kept(SolidPair &pair, std::size_t from) { kept.push_back({&pair, from, pushes.size()}); }
   // Adds all of it.
   void settle(std::vector<Solid> &solids, TouchAccount &account) const;
+  // The same in parts, which threads take side by side where no pair keeps what it gives: what bodies in [first, end) get, and
+  // the rest, none of which is a sum of a body.
+  bool comes_in_parts() const { return kept.empty(); }
+  void settle_bodies(const Solid *first, const Solid *end) const;
+  void settle_rest(TouchAccount &account) const;
 
  private:
   struct AccountTerm {
@@ -99,13 +103,13 @@ class TouchThreads {
       work(of_some, size * n / parts, size * (n + 1) / parts);
       blows[n] = of_some.held_blows();
     });
-    for (int n = 0; n < parts; ++n) {
-      late[n].settle(solids, account);
-      step.take(blows[n]);
-    }
+    settle(parts, solids, account);
+    for (const Blows &of_part : blows) step.take(of_part);
   }
 
  private:
+  void settle(int parts, std::vector<Solid> &solids, TouchAccount &account) const;
+
   Threads threads;
   std::vector<LateSums> late;    // of the parts
 };

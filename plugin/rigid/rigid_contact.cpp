@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstring>
-#include <numeric>
 
 namespace mdanim {
 
@@ -45,17 +44,8 @@ void RigidContact::forget()
 
 void RigidContact::place(int n, const RigidBody &body)
 {
-  place_driven(n, body.centre, body.turn, body.velocity, body.spin);
+  solids[n].put(body.centre, body.turn, body.velocity, body.spin);
   solids[n].fastest_turn = std::sqrt(dot(body.L, body.L)) * std::max({body.over.x, body.over.y, body.over.z});
-}
-
-void RigidContact::place_driven(int n, const Vec3 &centre, const Matrix3 &turn, const Vec3 &velocity, const Vec3 &spin)
-{
-  Solid &one = solids[n];
-  one.move_to(centre, turn);
-  one.velocity = velocity;
-  one.spin = spin;
-  one.fastest_turn = std::sqrt(dot(spin, spin));
 }
 
 // A pair may have friction and damping of its own.
@@ -124,18 +114,16 @@ void RigidContact::touch_plane(const TouchStep &step, std::vector<Touch> &touche
   if (!step.is_first() || !before) before = now;
 }
 
-// Contacts of all of them together.
-static long touches_of(const std::vector<Solid> &solids)
+// Takes note of the bounds on the step of all bodies; returns the number of their contacts together.
+static long see_bounds(const std::vector<Solid> &solids, double dt, TouchAccount &account)
 {
-  return std::accumulate(solids.begin(), solids.end(), 0L, [](long sum, const Solid &one) { return sum + one.touching; });
-}
-
-static void see_bounds(const std::vector<Solid> &solids, double dt, TouchAccount &account)
-{
+  long touches = 0;
   for (const Solid &one : solids) {
     account.worst_bound = std::max(account.worst_bound, 0.25 * dt * dt * one.stiffness_sum + 0.5 * dt * one.damping_sum);
     account.most_touching = std::max(account.most_touching, one.touching);
+    touches += one.touching;
   }
+  return touches;
 }
 
 void RigidContact::step(double dt)
@@ -158,8 +146,7 @@ void RigidContact::step(double dt)
   });
   if (!step.is_first())
     for (const auto &[one, force] : step.share_blows()) push_more(one, force);
-  all_touches = touches_of(solids);
-  see_bounds(solids, dt, account);
+  all_touches = see_bounds(solids, dt, account);
 }
 
 // Planes that move add to sums of their own, one after the other.
@@ -183,12 +170,15 @@ void RigidContact::touch_planes(const TouchStep &step, bool all)
   const long size = static_cast<long>(settings.planes.size()) * bodies();
   const double ns = NS_OF_PLANE * static_cast<double>(size) + NS_OF_TOUCH * static_cast<double>(touches_at_planes);
   threads.share(step, solids, account, size, stand ? ns : 0.0, touch_some);
-  touches_at_planes = touches_of(solids);
-  for (std::size_t n = 0; n < solids.size(); ++n)
-    if (Solid &one = solids[n]; !is_at_rest(one))
+  touches_at_planes = 0;
+  for (std::size_t n = 0; n < solids.size(); ++n) {
+    Solid &one = solids[n];
+    touches_at_planes += one.touching;
+    if (!is_at_rest(one))
       one.force_at_planes = one.force, one.torque_at_planes = one.torque;
     else if (all || !unstirred[n])
       one.force = one.force_at_planes, one.torque = one.torque_at_planes;
+  }
 }
 
 void RigidContact::rest(int n, bool asleep, bool settled)

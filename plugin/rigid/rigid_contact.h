@@ -58,11 +58,14 @@ class RigidContact {
   int number_of(int id) const;    // -1 for none
   std::size_t near_pairs() const { return near.pairs.size(); }
   std::size_t bytes() const;
+  const Threads &helpers() const { return threads.all(); }
 
   // Places a body that can move, before a step.
   void place(int n, const RigidBody &body);
   // Places one that is driven, with its velocities in the step that ends here.
-  void place_driven(int n, const Vec3 &centre, const Matrix3 &turn, const Vec3 &velocity, const Vec3 &spin);
+  void place_driven(int n, const Vec3 &centre, const Matrix3 &turn, const Vec3 &velocity, const Vec3 &spin)
+  { solids[n].put(centre, turn, velocity, spin); }
+  void set_force(int n, const Vec3 &force, const Vec3 &torque) { solids[n].force = force, solids[n].torque = torque; }
   // A body that is laid aside touches nothing, and its contacts end. Returns whether this is new.
   bool lay_aside(int n, bool aside);
   // Says whether a body does not move, and whether it has not done so for some steps: between two that are settled nothing

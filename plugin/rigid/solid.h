@@ -91,6 +91,13 @@ struct Solid {
       axis[k] = {pick(now.row[0]), pick(now.row[1]), pick(now.row[2])};
     }
   }
+  // The same, with the motion that it has there.
+  void put(const Vec3 &to, const Matrix3 &now, const Vec3 &v, const Vec3 &w)
+  {
+    move_to(to, now);
+    velocity = v, spin = w;
+    fastest_turn = std::sqrt(dot(w, w));
+  }
   void begin_step(double dt)
   {
     const double speed = std::sqrt(dot(velocity, velocity)) + fastest_turn * shape.bound();
