@@ -15,6 +15,10 @@ HALF = "fill from (0, 0, 0) m to (0.5, 1, 1) m"
 MISTAKES = [
     ("a model that was", pool("volume 1 l model pressure"), 3, 20, "not one of the choices of model any more", "model waves"),
     ("mistyped unit", text(mass="1.5 kgg"), 4, 12, "'kgg' is not a unit of mass", "did you mean 'kg'?"),
+    ("a shape of another program", text(shape="ball radius 2 cm"), 2, 9,
+     "shape cannot be followed by 'ball'", "did you mean 'sphere'?"),
+    ("sizes with an x between", text(shape="cuboid 40 x 10 x 2 cm"), 2, 9,
+     "shape cannot be followed by 'cuboid'", "did you mean 'box'?"),
     ("foreign unit", text(mass="3 lb"), 4, 10, "'lb' is not a unit of mass", "units that fit: kg g t"),
     ("wrong dimension", text(mass="3 m"), 4, 8, "mass must be a mass, found 3 m, a length", "kg"),
     ("wrong dimension of a let", text("let e = 3 kg\n", elasticity="e"), 6, 14,

@@ -18,7 +18,7 @@ from . import units
 from .expressions import Node
 from .forms import Slot, literals
 from .functions import FUNCTIONS
-from .keywords import BLOCKS, KEYWORDS
+from .keywords import BLOCKS, KEYWORDS, nearest
 from .limits import DEEPEST_BRACKET, DEEPEST_EXPRESSION
 from .source import Fault, SceneFile
 from .tokens import Token, tokens
@@ -36,6 +36,8 @@ ODD = {
     "mod": "mod stands between two numbers: k mod 2",
 }
 """Signs that the language does not have or that cannot begin a value, and what to write instead."""
+BY = ("x", "by")
+"""Words between sizes, as in 2 x 3; neither is an operator."""
 VALUE = ("NUMBER", "STRING")
 """Tokens that are values by themselves."""
 
@@ -280,7 +282,7 @@ class Reader:
                 return False
         if known:
             return True
-        if t == "x" or t == "by":
+        if t in BY:
             raise Fault(t, f"'{t}' is not an operator", "multiply with *; a vector is (x, y, z)")
         dim = slot.dim if slot.kind not in ("let", "check") and slot.unit not in ("?", "1") else None
         what = f" of {units.describe(dim).split(' ', 1)[1]}" if dim is not None else ""
@@ -326,7 +328,7 @@ class Reader:
         while True:
             t = self.peek
             between = block and passed and depth <= 0 and not braces and t not in self.names
-            if between and (str(t) in KEYWORDS[block] or self._begins(block)):
+            if between and (str(t) in KEYWORDS[block] or self._begins(block, bad)):
                 break
             passed |= bad is not None and t.start >= bad.start
             t = self.take()
@@ -349,8 +351,16 @@ class Reader:
                         break
         self.at = max(self.at, start + 1)
 
-    def _begins(self, block: str) -> bool:
-        """Whether the next word is behind a value and before one, and follows no setting of the block: it is meant to be one."""
+    def _begins(self, block: str, bad: Token | None) -> bool:
+        """Whether the next word is behind a value and before one, and follows no setting of the block: it is meant to be one.
+
+        A word right behind a bad choice belongs to it, as in ``shape ball radius 2``, unless it is like a setting; an x stands
+        between sizes.
+        """
         word, before, behind = self.peek, self.tokens[self.at - 1], self.ahead(1)
         within = any(str(word) in literals(k.form) for k in KEYWORDS[block].values())
-        return word.type == "NAME" and before.type in (*VALUE, "RPAR", "NAME") and behind.type in (*VALUE, "LPAR") and not within
+        if word.type != "NAME" or word in BY:
+            return False
+        if bad is not None and before.start == bad.start and self.tokens[self.at - 2].type not in VALUE:
+            return nearest(str(word), KEYWORDS[block]) is not None
+        return before.type in (*VALUE, "RPAR", "NAME") and behind.type in (*VALUE, "LPAR") and not within
