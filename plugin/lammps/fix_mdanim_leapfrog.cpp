@@ -261,7 +261,6 @@ Mover FixMdanimLeapfrog::mover(int i)
   if (!(atom->mask[i] & groupbit)) return {0.0, 0.0, 0.0, 0.0, 0.0, false};
   const double mass = mass_of(atom->rmass, atom->mass, atom->type, i), kick = half_dt / mass, *own = lambda.values(lmp);
   const double phi = has_drag ? (own ? own[i] : lambda.number) * kick : 0.0;
-  largest_phi = std::max(largest_phi, phi);
   return {0.0, mass, kick, update->dt, phi, false};
 }
 

@@ -22,7 +22,8 @@ class ImmersedBlocks {
   void forget() { listed = -1; }    // coefficients of particles have changed
   bool knows(const PassLiquid &liquid) const { return listed == liquid.listed(); }
   // Lists the blocks whose `immersed` is not negative.
-  template <class Own> void list(const PassLiquid &liquid, const double *lambda, std::vector<Block> &all, const Own &own);
+  template <class Own>
+  void list(const Threads &threads, const PassLiquid &liquid, const double *lambda, std::vector<Block> &all, const Own &own);
   // Takes in what is kept for particles; blocks that are held back are left out.
   template <class Own>
   void take_in(const Threads &threads, PassLiquid &liquid, const std::vector<Block> &all, const Own &own, ImmersedRows &rows);
@@ -59,25 +60,42 @@ class ImmersedBlocks {
   std::vector<unsigned> coefficients_of;
 };
 
+// Most runs list what the last one has listed.
 template <class Own>
-void ImmersedBlocks::list(const PassLiquid &liquid, const double *lambda, std::vector<Block> &all, const Own &own)
+void ImmersedBlocks::list(const Threads &threads, const PassLiquid &liquid, const double *lambda, std::vector<Block> &all,
+                          const Own &own)
 {
-  blocks.clear();
-  coefficients_of.clear();
-  coefficients = {};
-  const auto mover = liquid.immersed(lambda);
-  std::vector<double> row(PARTICLE_NUMBERS * lanes);
+  std::vector<int> now;
   for (std::size_t b = 0; b < all.size(); ++b) {
-    Block &block = all[b];
-    if (block.immersed < 0) continue;
-    block.immersed = static_cast<int>(blocks.size());
-    blocks.push_back(static_cast<int>(b));
+    if (all[b].immersed < 0) continue;
+    all[b].immersed = static_cast<int>(now.size());
+    now.push_back(static_cast<int>(b));
+  }
+  const std::size_t length = static_cast<std::size_t>(PARTICLE_NUMBERS) * lanes;
+  const auto tell = [&, mover = liquid.immersed(lambda)](const Block &block, std::vector<double> &row) {
     for (int lane = 0; lane < lanes; ++lane) {
       const int i = lane < block.lanes ? own(block.start + lane) : -1;
       const Immersed<double> of_lane = i >= 0 ? mover(i) : Immersed<double>{};
       for (int k = 0; k < PARTICLE_NUMBERS; ++k) row[k * lanes + lane] = of_lane.of[k];
     }
-    coefficients_of.push_back(coefficients.find_or_add(row.data(), row.size()));
+  };
+  std::atomic<bool> same{now == blocks};
+  blocks.swap(now);
+  threads.parts(static_cast<long>(blocks.size()), PARTICLE * lanes, [&](long from, long end) {
+    std::vector<double> row(length);
+    for (long n = from; n < end && same; ++n) {
+      tell(all[blocks[n]], row);
+      if (!coefficients.is(coefficients_of[n], row.data(), length)) same = false;
+    }
+  });
+  if (!same) {
+    coefficients_of.clear();
+    coefficients = {};
+    std::vector<double> row(length);
+    for (const int b : blocks) {
+      tell(all[b], row);
+      coefficients_of.push_back(coefficients.find_or_add(row.data(), length));
+    }
   }
   kept.assign(blocks.size() * KEPT_NUMBERS * lanes);
   small.assign(blocks.size() * SMALL_NUMBERS * lanes);

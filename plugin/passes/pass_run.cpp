@@ -30,7 +30,7 @@ PassRun::PassRun(SimdBlocks &blocks, const Kernels &kernels, const Threads &thre
 {
   if (fresh.positions) blocks.take_in(atoms.x, atoms.v);
   if (fresh.motion)
-    blocks.set_motion(crew.integrator->friction(), [&](int i) {
+    phi_of_movers = blocks.set_motion(threads, crew.integrator->friction(), [&](int i) {
       Mover mover = crew.integrator->mover(i);
       if (crew.gravity) mover.pulled = crew.gravity->pulled(i);
       mover.in_liquid = crew.liquid && crew.liquid->is_near(i);
@@ -111,7 +111,7 @@ void PassRun::step(long long next, const std::function<void(bool at_end)> &late)
   all -= touching;
   const double moving = (1.0 - share_of_liquid) * (OF_LEAPFROG + (pass.friction == Friction::NONE ? 0.0 : OF_DRAG)) * all;
   const double pulling = crew.gravity ? OF_GRAVITY * all : 0.0, lifting = share_of_liquid * all;
-  crew.integrator->moved(sums.loss, sums.bend, pass.largest_phi, moving);
+  crew.integrator->moved(sums.loss, sums.bend, std::max(pass.largest_phi, phi_of_movers), moving);
   if (crew.gravity) crew.gravity->took(pulling);
   if (pass.gravity.works) crew.gravity->worked(sums.pulled + pulled_at_held_back());
   if (crew.liquid) crew.liquid->acted(sums.liquid_work, sums.liquid_lost, pass.fastest_near, lifting + looking);

@@ -67,6 +67,7 @@ class PassRun {
   std::vector<Pass> of_range;          // the pass of each range
   PassSums sums = {};                  // sums of the last pass,
   std::vector<PassSums> chunk_sums;    // and of each of its chunks
+  double phi_of_movers = 0.0;          // the largest one that members told of
   bool look = false;
   long long moved_alone = 0;
   PlaneBlocks::OfProviders at_planes;       // points of early participants whose contacts the passes compute,

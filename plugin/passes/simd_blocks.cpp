@@ -172,7 +172,7 @@ void SimdBlocks::immerse(const Threads &threads, PassLiquid &liquid, const doubl
   if (!immersed.knows(liquid)) {
     for (Block &block : all) block.immersed = -1;
     for (const int i : liquid.near_particles()) all[home[ours(i)]].immersed = 0;
-    immersed.list(liquid, lambda, all, own_particle());
+    immersed.list(threads, liquid, lambda, all, own_particle());
   }
   immersed.take_in(threads, liquid, all, own_particle(), pass.immersed);
 }

@@ -13,6 +13,9 @@
 #include "passes/pass_participant.h"
 #include "threads/team.h"
 
+#include <algorithm>
+#include <atomic>
+#include <mutex>
 #include <vector>
 
 namespace mdanim {
@@ -37,7 +40,8 @@ class SimdBlocks {
   bool damped() const { return has_damped; }    // some block is
   int chunks() const { return many_chunks; }
 
-  template <class Tell> void set_motion(Friction friction, Tell mover);    // Mover mover(int i)
+  // Takes in how particles move: Mover mover(int i), which threads ask side by side. Returns the largest phi of all.
+  template <class Tell> double set_motion(const Threads &threads, Friction friction, const Tell &mover);
   // Forces that participants give, see ExternalForces. Particles are numbered as LAMMPS does.
   void expect(const std::vector<std::vector<int>> &particles, const PlaneBlocks::OfProviders &points);
   void tell_places(const Threads &threads, std::size_t n, const double *const *of_ghosts, Positions &to) const
@@ -110,6 +114,15 @@ class SimdBlocks {
       return is_ghost(found) ? -1 : found;
     };
   }
+  // A row of Pass::motion, the largest phi of its particles, in passes or in the liquid, and whether any of them moves.
+  struct BlockMotion {
+    std::vector<double> row;
+    double phi;
+    bool slow, moves;
+  };
+  template <class Tell> void tell_motion(const Block &block, Friction friction, const Tell &mover, BlockMotion &to) const;
+  template <class Tell>
+  bool move_as_before(const Threads &threads, Friction friction, const Tell &mover, double &largest_phi) const;
   unsigned number_rates();
   // Calls visit(entry, first particle of its block, row of Pass::rate) for all entries of damped blocks.
   template <class Visit> void each_damped_entry(const Visit &visit) const;
@@ -139,28 +152,68 @@ class SimdBlocks {
   BlockRanges range;
 };
 
-template <class Tell> void SimdBlocks::set_motion(Friction friction, Tell mover)
+template <class Tell>
+void SimdBlocks::tell_motion(const Block &block, Friction friction, const Tell &mover, BlockMotion &to) const
 {
-  std::vector<double> row(MOTIONS * lanes);
+  to.row.resize(MOTIONS * lanes);
+  to.slow = to.moves = false;
+  to.phi = 0.0;
+  for (int lane = 0; lane < lanes; ++lane) {
+    const int i = lane < block.lanes ? at(block.start + lane) : -1;
+    Mover of_lane = i < 0 || is_ghost(i) ? Mover{} : mover(i);
+    to.phi = std::max(to.phi, of_lane.phi);
+    if (of_lane.in_liquid) of_lane.phi = 0.0;
+    to.slow = to.slow || of_lane.phi != 0.0;
+    to.moves = to.moves || of_lane.dt != 0.0 || of_lane.in_liquid;
+    mdanim::set_motion(of_lane, friction, lanes, lane, to.row.data());
+    to.row[FOREIGN_LANE * lanes + lane] = lane < block.lanes ? 0.0 : 1.0;
+    to.row[OWNED_LANE * lanes + lane] = i < 0 || is_ghost(i) ? 0.0 : 1.0;
+  }
+}
+
+// Most runs begin with particles that move as in the last one: to see that takes less than to set it anew.
+template <class Tell>
+bool SimdBlocks::move_as_before(const Threads &threads, Friction friction, const Tell &mover, double &largest_phi) const
+{
+  constexpr double NS_OF_LANE = 20.0;
+  if (slowed.size() != all.size()) return false;
+  std::atomic<bool> same{true};
+  std::mutex one_at_a_time;
+  threads.parts(static_cast<long>(all.size()), NS_OF_LANE * lanes, [&](long from, long end) {
+    BlockMotion now;
+    double phi = 0.0;
+    for (long n = from; n < end && same; ++n) {
+      const Block &block = all[n];
+      tell_motion(block, friction, mover, now);
+      phi = std::max(phi, now.phi);
+      if (now.slow != slowed[n] || (block.bound || now.moves) != (n < active) ||
+          !motions.is(block.motion, now.row.data(), now.row.size()))
+        same = false;
+    }
+    const std::lock_guard<std::mutex> lock(one_at_a_time);
+    largest_phi = std::max(largest_phi, phi);
+  });
+  return same;
+}
+
+template <class Tell> double SimdBlocks::set_motion(const Threads &threads, Friction friction, const Tell &mover)
+{
+  double largest_phi = 0.0;
+  immersed.forget();
+  if (move_as_before(threads, friction, mover, largest_phi)) return largest_phi;
   std::vector<bool> slow(particles), moves(particles);    // by the first particle of a block
   motions = {};
+  BlockMotion now;
   for (Block &block : all) {
-    for (int lane = 0; lane < lanes; ++lane) {
-      const int i = lane < block.lanes ? at(block.start + lane) : -1;
-      Mover of_lane = i < 0 || is_ghost(i) ? Mover{} : mover(i);
-      if (of_lane.in_liquid) of_lane.phi = 0.0;
-      if (of_lane.phi != 0.0) slow[block.start] = true;
-      if (of_lane.dt != 0.0 || of_lane.in_liquid) moves[block.start] = true;
-      mdanim::set_motion(of_lane, friction, lanes, lane, row.data());
-      row[FOREIGN_LANE * lanes + lane] = lane < block.lanes ? 0.0 : 1.0;
-      row[OWNED_LANE * lanes + lane] = i < 0 || is_ghost(i) ? 0.0 : 1.0;
-    }
-    block.motion = motions.find_or_add(row.data(), row.size());
+    tell_motion(block, friction, mover, now);
+    largest_phi = std::max(largest_phi, now.phi);
+    slow[block.start] = now.slow, moves[block.start] = now.moves;
+    block.motion = motions.find_or_add(now.row.data(), now.row.size());
   }
   set_apart(moves);
-  immersed.forget();
   slowed.clear();
   for (const Block &block : all) slowed.push_back(slow[block.start]);
+  return largest_phi;
 }
 
 }    // namespace mdanim
